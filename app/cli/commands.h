@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// The subcommands of `scarp`. Each adds itself, its options and its help to the program; it runs when it was called, and
+// throws scarp::Error when it fails.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace scarp::cli {
+
+void add_render(CLI::App& program);
+void add_info(CLI::App& program);
+void add_generate(CLI::App& program);
+void add_marches(CLI::App& program);
+
+}  // namespace scarp::cli

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// `scarp generate`: procedural terrain of any size as a GeoTIFF.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "app/cli/commands.h"
+#include "app/cli/numbers.h"
+#include "app/cli/progress.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/source/procedural_dem_file.h"
+
+namespace scarp::cli {
+namespace {
+
+struct GenerateOptions {
+  std::string output, size, kind = "fbm";
+  ProceduralDem terrain;
+  int threads = 0;
+};
+
+void run(GenerateOptions options) {
+  ProceduralDem& terrain = options.terrain;
+  constexpr std::string_view kForm = "N or NxM samples, columns first, for example 2049 or 4097x2049";
+  const auto size = numbers_from(options.size, 'x', 1, 2, "--size", kForm);
+  for (const double n : size) {
+    if (n != std::floor(n) || !(n >= 1 && n <= kLargestProceduralSide)) {
+      throw Error(fmt::format("--size '{}': expected {}, 1 to {} each", options.size, kForm, kLargestProceduralSide));
+    }
+  }
+  terrain.cols = static_cast<int>(size.front());
+  terrain.rows = static_cast<int>(size.back());
+  const auto kind = terrain_kind(options.kind);
+  if (!kind) throw Error(fmt::format("--kind '{}': expected fbm or ridged", options.kind));
+  terrain.kind = *kind;
+  const ThreadLimit limit(options.threads);
+
+  const auto begin = std::chrono::steady_clock::now();
+  write_procedural_dem(options.output, terrain, terminal_progress("generate"));
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  fmt::print("{}: {} x {} samples, {}, seed {}; {:.2f} s\n", options.output, terrain.cols, terrain.rows, options.kind,
+             terrain.seed, seconds);
+}
+
+}  // namespace
+
+void add_generate(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("generate", "Write procedural terrain of any size as a GeoTIFF");
+  const auto options = std::make_shared<GenerateOptions>();
+  GenerateOptions& o = *options;
+  command
+      ->add_option("--size", o.size,
+                   fmt::format("N or NxM samples, columns first, up to {0} x {0}", kLargestProceduralSide))
+      ->required();
+  command->add_option("-o,--output", o.output, "the GeoTIFF to write")->required();
+  command->add_option("--seed", o.terrain.seed, "which terrain; any whole number from 0")->capture_default_str();
+  command->add_option("--kind", o.kind, "fbm (rolling mountains) or ridged (sharp crests)")->capture_default_str();
+  command->add_option("--cell", o.terrain.cell_m, "metres from sample to sample; above 0")->capture_default_str();
+  command->add_option("--wavelength", o.terrain.wavelength,
+                      "of the largest features, in samples, from 2 (the lesser of 1024 and half the longer side)");
+  command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace scarp::cli

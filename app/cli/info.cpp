@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// `scarp info`: what is in a raster, as Scarp will use it.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "app/cli/commands.h"
+#include "app/cli/progress.h"
+#include "app/cli/raster_options.h"
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/accel/slope_bound.h"
+#include "scarp/scene/from_raster.h"
+#include "scarp/source/read_raster.h"
+
+namespace scarp::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+  std::string input;
+  RasterOptions raster;
+  bool json = false;
+};
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+// Everything there is to say, once: the text and the JSON are made of this. Keys are explained in doc/user.
+Json describe(const InfoOptions& options) {
+  Raster raster = read_raster(options.input, options.raster, terminal_progress("read"));
+  stop_if_interrupted();
+  const Georeference geo = raster.georeference;
+  Json info;
+  info["path"] = raster.path;
+  info["cols"] = raster.cols;
+  info["rows"] = raster.rows;
+  info["file_type"] = raster.file_type;
+  info["crs"] = geo.crs_name.empty() ? Json() : Json(geo.crs_name);
+  info["georeferenced"] = geo.present;
+  info["map_from_node"] = geo.map_from_node;
+  info["cell_size_m"] = {geo.cell_x_m, geo.cell_y_m};
+  info["cell_size_found"] = geo.cell_size_found;
+  info["grid_north_azimuth_deg"] = geo.grid_north_azimuth * kDegrees;
+  info["vertical_unit"] = raster.vertical_unit.empty() ? Json() : Json(raster.vertical_unit);
+  info["scale"] = raster.scale;
+  info["offset"] = raster.offset;
+  info["nodata"] = raster.nodata ? Json(*raster.nodata) : Json();
+  std::vector<std::string> notes = std::move(raster.notes);
+
+  const HeightField field = height_field_from(std::move(raster));
+  stop_if_interrupted();
+  const double samples = static_cast<double>(field.cols()) * field.rows();
+  const double sample_bytes = field.sample_type() == SampleType::float32 ? 4 : 2;
+  info["nodata_count"] = field.nodata_count();
+  info["nodata_share"] = static_cast<double>(field.nodata_count()) / samples;
+  info["min_sample"] = field.min_sample();
+  info["max_sample"] = field.max_sample();
+  info["min_m"] = field.min_height();
+  info["max_m"] = field.max_height();
+  info["width_m"] = field.width();
+  info["depth_m"] = field.depth();
+  info["slope_bound"] = slope_bound(field);
+  info["sample_type"] = name_of(field.sample_type());
+  info["bytes_per_sample"] = sample_bytes + static_cast<double>(MaxPyramid(field).bytes()) / samples;
+  if (!field.has_cells()) notes.push_back("a single row or column has no cells: every ray misses");
+  info["notes"] = notes;
+  return info;
+}
+
+std::string text_of(const Json& info) {
+  const auto number = [&](const char* key) { return info[key].get<double>(); };
+  const auto text = [&](const char* key, const char* otherwise) {
+    return info[key].is_null() ? otherwise : info[key].get<std::string>();
+  };
+  std::string out;
+  const auto line = [&](std::string_view name, const std::string& value) {
+    out += fmt::format("{:<12} {}\n", name, value);
+  };
+  line("file", text("path", ""));
+  line("size", fmt::format("{} x {} samples, {:.6g} x {:.6g} m", info["cols"].get<int>(), info["rows"].get<int>(),
+                           number("width_m"), number("depth_m")));
+  line("CRS", text("crs", "none"));
+  line("cell",
+       fmt::format("{:.6g} x {:.6g} m", info["cell_size_m"][0].get<double>(), info["cell_size_m"][1].get<double>()));
+  line("", text("cell_size_found", ""));
+  line("units", fmt::format("{}; metres = sample x {:.10g} + {:.10g}",
+                            text("vertical_unit", "not said, metres assumed"), number("scale"), number("offset")));
+  line("nodata", info["nodata_count"].get<std::int64_t>() == 0
+                     ? "no holes"
+                     : fmt::format("{} samples ({:.3g} %), marked by {}", info["nodata_count"].get<std::int64_t>(),
+                                   100 * number("nodata_share"),
+                                   info["nodata"].is_null() ? "NaN" : fmt::format("{}", number("nodata"))));
+  line("heights", fmt::format("{:.6g} to {:.6g} m (samples {:.8g} to {:.8g})", number("min_m"), number("max_m"),
+                              number("min_sample"), number("max_sample")));
+  line("slope bound",
+       fmt::format("{:.4g} ({:.1f} degrees)", number("slope_bound"), std::atan(number("slope_bound")) * kDegrees));
+  line("samples", fmt::format("{} (in the file {}), {:.2f} bytes each with the pyramid", text("sample_type", ""),
+                              text("file_type", ""), number("bytes_per_sample")));
+  for (const Json& note : info["notes"]) line("note", note.get<std::string>());
+  return out;
+}
+
+}  // namespace
+
+void add_info(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("info", "Say what is in a raster of heights, as scarp will use it");
+  const auto options = std::make_shared<InfoOptions>();
+  command->add_option("IN", options->input, "raster of heights: anything GDAL reads, .npy, .npz")->required();
+  command->add_flag("--json", options->json, "one JSON object instead of text");
+  add_raster_options(*command, options->raster);
+  command->callback([options] {
+    const Json info = describe(*options);
+    // File names may hold any bytes; JSON may not.
+    fmt::print("{}", options->json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : text_of(info));
+  });
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// `scarp marches`: the table of marching techniques, for people or as Markdown for the documentation.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "scarp/march/marches.h"
+
+namespace scarp::cli {
+namespace {
+
+constexpr std::array<std::string_view, 6> kHeads = {"name", "guarantee", "fields", "runs on", "parameters", "description"};
+using Row = std::array<std::string, kHeads.size()>;
+
+Row row_of(const MarchEntry& march) {
+  std::string runs_on;
+  if (march.cpu != nullptr) runs_on += "cpu";
+  if (march.simd != nullptr) runs_on += ", simd";
+  if (march.gpu) runs_on += ", gpu";
+  return {std::string(march.name), std::string(name_of(march.guarantee)), std::string(march.fields), runs_on,
+          march.parameters.empty() ? "-" : std::string(march.parameters), std::string(march.description)};
+}
+
+void print_markdown(const std::vector<Row>& rows) {
+  fmt::print("| {} |\n|{}\n", fmt::join(kHeads, " | "), [] {
+    std::string line;
+    for (std::size_t i = 0; i < kHeads.size(); ++i) line += "---|";
+    return line;
+  }());
+  for (const Row& row : rows) fmt::print("| `{}` | {} |\n", row[0], fmt::join(row.begin() + 1, row.end(), " | "));
+}
+
+// Name, guarantee and so on in columns; parameters and description, which are long, on lines of their own.
+void print_plain(const std::vector<Row>& rows) {
+  constexpr std::size_t kColumns = 4;
+  std::array<std::size_t, kColumns> widths{};
+  for (std::size_t i = 0; i < kColumns; ++i) {
+    widths[i] = kHeads[i].size();
+    for (const Row& row : rows) widths[i] = std::max(widths[i], row[i].size());
+  }
+  const auto columns = [&](const auto& row) {
+    std::string line;
+    for (std::size_t i = 0; i < kColumns; ++i) line += fmt::format("{:{}}  ", row[i], widths[i]);
+    return line.substr(0, line.find_last_not_of(' ') + 1);
+  };
+  fmt::print("{}\n", columns(kHeads));
+  for (const Row& row : rows) {
+    fmt::print("{}\n    {}\n", columns(row), row[5]);
+    if (row[4] != "-") fmt::print("    {}\n", row[4]);
+  }
+}
+
+}  // namespace
+
+void add_marches(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("marches", "List the marching techniques and what each guarantees");
+  const auto markdown = std::make_shared<bool>(false);
+  command->add_flag("--markdown", *markdown, "as a table in Markdown");
+  command->callback([markdown] {
+    std::vector<Row> rows;
+    for (const MarchEntry& march : marches()) rows.push_back(row_of(march));
+    if (*markdown) {
+      print_markdown(rows);
+    } else {
+      print_plain(rows);
+    }
+  });
+}
+
+}  // namespace scarp::cli

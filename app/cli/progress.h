@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Progress on a terminal, and the way out with Ctrl-C.
+#pragma once
+
+#include <string_view>
+
+#include "scarp/base/progress.h"
+
+namespace scarp::cli {
+
+/// From now on the first SIGINT or SIGTERM makes every terminal_progress() ask for a stop, so that files half written are
+/// removed on the way out; a second one ends the program at once.
+void catch_interrupts();
+
+/// The signal that was caught, or 0.
+int caught_signal();
+
+/// Throws Interrupted when a signal was caught: for the places between two long tasks.
+void stop_if_interrupted();
+
+/// A line "what 0...10...20" on stderr when that is a terminal, nothing otherwise; asks for a stop after a signal.
+Progress terminal_progress(std::string_view what);
+
+/// Ends a progress line that has not come to its end, so that a message begins on a line of its own.
+void end_progress_line();
+
+}  // namespace scarp::cli

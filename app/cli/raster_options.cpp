@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/raster_options.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "app/cli/numbers.h"
+#include "scarp/base/error.h"
+
+namespace scarp::cli {
+namespace {
+
+RasterWindow window_from(const std::string& text) {
+  constexpr std::string_view kForm = "COL,ROW,COLS,ROWS in samples, counted from 0, for example 0,0,1024,1024";
+  const auto numbers = numbers_from(text, ',', 4, 4, "--window", kForm);
+  int whole[4];
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (numbers[i] != std::floor(numbers[i]) || std::abs(numbers[i]) > 1e9)
+      throw Error(fmt::format("--window '{}': expected {}", text, kForm));
+    whole[i] = static_cast<int>(numbers[i]);
+  }
+  return {whole[0], whole[1], whole[2], whole[3]};
+}
+
+MapBounds bounds_from(const std::string& text) {
+  const auto n = numbers_from(text, ',', 4, 4, "--bounds",
+                              "W,S,E,N in units of the CRS, for example -84.415,36.568,-84.127,36.734");
+  return {n[0], n[1], n[2], n[3]};
+}
+
+}  // namespace
+
+void add_raster_options(CLI::App& command, RasterOptions& options) {
+  const std::string group = "What the file does not say";
+  command.add_option("--band", options.band, "band to read, from 1 (the only one)")
+      ->check(CLI::PositiveNumber)
+      ->group(group);
+  command.add_option("--key", options.key, "array of a .npz file (the only one with two dimensions)")->group(group);
+  command
+      .add_option_function<std::string>(
+          "--window", [&options](const std::string& text) { options.window = window_from(text); },
+          "COL,ROW,COLS,ROWS: read this part only")
+      ->group(group);
+  command.add_option("--nodata", options.nodata, "sample value that marks a hole; nan: none but NaN does")
+      ->group(group);
+  command.add_option("--unit", options.unit, "vertical unit: m, ft, us-ft, km, dm, cm, mm, yd, fathom")->group(group);
+  command.add_option("--scale", options.scale, "height = sample * scale + offset, in the vertical unit; not 0")
+      ->group(group);
+  command.add_option("--offset", options.offset, "see --scale")->group(group);
+  command.add_option("--crs", options.crs, "coordinate reference system, for example EPSG:4326")->group(group);
+  command
+      .add_option_function<std::string>(
+          "--bounds", [&options](const std::string& text) { options.bounds = bounds_from(text); },
+          "W,S,E,N: outer edges of the file, in units of its CRS")
+      ->group(group);
+}
+
+}  // namespace scarp::cli

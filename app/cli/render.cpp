@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+// `scarp render`: an elevation model in, a picture out.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "app/cli/commands.h"
+#include "app/cli/numbers.h"
+#include "app/cli/progress.h"
+#include "app/cli/raster_options.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/output/png.h"
+#include "scarp/render/picture.h"
+#include "scarp/render/ramp.h"
+#include "scarp/scene/from_raster.h"
+#include "scarp/source/read_raster.h"
+
+namespace scarp::cli {
+namespace {
+
+// What was typed. Texts stay texts until run() has a message for them.
+struct RenderOptions {
+  std::string input, output;
+  RasterOptions raster;
+  double exaggeration = 1;
+  std::string march = "max-mip";
+  MarchSettings march_settings;
+  PictureSettings picture;
+  std::string size, look = "shaded", sun, view, eye, target;
+  double fov_deg = ViewSettings{}.fov_deg;
+  bool top = false, no_shadows = false, no_plinth = false;
+  int threads = 0;
+};
+
+// Seconds since it was made or last asked.
+class Watch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(begin_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+int whole(double number, const RenderOptions& options) {
+  if (number != std::floor(number) || std::abs(number) > 1e9) {
+    throw Error(fmt::format("--size '{}': expected WIDTHxHEIGHT in pixels, for example 1280x720", options.size));
+  }
+  return static_cast<int>(number);
+}
+
+dvec3 point_from(const std::string& text, std::string_view option) {
+  const auto p = numbers_from(text, ',', 3, 3, option, "X,Y,Z in metres from the south-west sample, for example 500,-2000,1800");
+  return {p[0], p[1], p[2]};
+}
+
+// The texts become settings; all that can be judged without the file is judged here.
+ViewSettings settle(RenderOptions& options) {
+  PictureSettings& picture = options.picture;
+  picture.look = find_look(options.look);
+  picture.shadows = !options.no_shadows;
+  picture.plinth = !options.no_plinth;
+  if (!options.size.empty()) {
+    const auto size = numbers_from(options.size, 'x', 2, 2, "--size", "WIDTHxHEIGHT in pixels, for example 1280x720");
+    picture.width = whole(size[0], options);
+    picture.height = whole(size[1], options);
+  }
+  if (!options.sun.empty()) {
+    const auto sun = numbers_from(options.sun, ',', 2, 2, "--sun", "AZIMUTH,ALTITUDE in degrees, for example 315,45");
+    picture.sun = {sun[0], sun[1]};
+  }
+  validate(picture);
+  ViewSettings view;
+  view.fov_deg = options.fov_deg;
+  if (!options.view.empty()) {
+    const auto numbers = numbers_from(options.view, ',', 2, 3, "--view",
+                                      "AZIMUTH,ELEVATION[,DISTANCE] in degrees and multiples of the framed distance, for example 205,35 or 205,35,0.5");
+    view.azimuth_deg = numbers[0];
+    view.elevation_deg = numbers[1];
+    if (numbers.size() == 3) view.distance = numbers[2];
+  }
+  validate(view);
+  validate(options.march_settings);
+  if (!(std::isfinite(options.exaggeration) && options.exaggeration > 0)) {
+    throw Error(fmt::format("--exaggeration {}: it must be above 0", options.exaggeration));
+  }
+  std::string extension = std::filesystem::path(options.output).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (!options.output.empty() && extension != ".png") {
+    throw Error(fmt::format("output '{}': pictures are written as PNG; let the name end in .png", options.output));
+  }
+  return view;
+}
+
+// A map without --size has the shape of the ground, its longer side as long as a picture's default width.
+void fit_size_to_ground(const Box& box, PictureSettings& picture) {
+  const dvec3 size = box.high - box.low;
+  const double pixels_per_metre = picture.width / std::max(size.x, size.y);
+  picture.width = std::max(1, static_cast<int>(std::lround(size.x * pixels_per_metre)));
+  picture.height = std::max(1, static_cast<int>(std::lround(size.y * pixels_per_metre)));
+}
+
+Camera camera_of(const RenderOptions& options, const ViewSettings& view, const Box& box, double grid_north_azimuth) {
+  const int width = options.picture.width, height = options.picture.height;
+  if (options.top) return Camera::top(box, width, height);
+  if (options.eye.empty()) return Camera::framed(box, view, grid_north_azimuth, width, height);
+  const dvec3 target = options.target.empty() ? box.middle() : point_from(options.target, "--target");
+  return Camera::look_at(point_from(options.eye, "--eye"), target, options.fov_deg, width, height);
+}
+
+void print_findings(const Picture& picture) {
+  if (picture.steps) {
+    fmt::print("steps per ray: {} (first colour of the ramp) to {} (last), mean {:.1f}\n", picture.steps->least,
+               picture.steps->most, picture.steps->mean);
+  }
+  if (picture.errors) {
+    fmt::print("judged by exhaustive; tolerance {:.3g} m along the ray; pixels:\n", picture.errors->tolerance_m);
+    for (int i = 0; i < kVerdicts; ++i) {
+      const auto verdict = static_cast<Verdict>(i);
+      fmt::print("  {:10}  {:9}  {}\n", name_of(verdict), colour_name_of(verdict), (*picture.errors)[verdict]);
+    }
+  }
+}
+
+void run(RenderOptions options) {
+  const ViewSettings view = settle(options);
+  const MarchEntry& march = find_march(options.march);
+  if (!options.eye.empty()) point_from(options.eye, "--eye");
+  if (!options.target.empty()) point_from(options.target, "--target");
+  const ThreadLimit limit(options.threads);
+  // Reserved first: an unwritable place is found before the work and not after it.
+  ReplaceFile file(options.output);
+
+  Watch watch;
+  Raster raster = read_raster(options.input, options.raster, terminal_progress("read"));
+  stop_if_interrupted();
+  const double read_s = watch.lap();
+  const double grid_north_azimuth = raster.georeference.grid_north_azimuth;
+  const std::vector<std::string> notes = raster.notes;
+
+  HeightField field = height_field_from(std::move(raster), options.exaggeration);
+  if (!field.has_cells()) {
+    throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed",
+                            options.input, field.cols(), field.rows()));
+  }
+  if (field.all_nodata()) {
+    throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", options.input));
+  }
+  const TerrainScene scene(std::move(field), march, options.march_settings);
+  stop_if_interrupted();
+  const double build_s = watch.lap();
+
+  const Box box = picture_box(scene.field(), options.picture.plinth);
+  if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
+  const Camera camera = camera_of(options, view, box, grid_north_azimuth);
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  const Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
+  const double render_s = watch.lap();
+  write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s\n", options.output, picture.image.width,
+             picture.image.height, read_s, build_s, render_s);
+  print_findings(picture);
+}
+
+void add_march_options(CLI::App& command, MarchSettings& march) {
+  const std::string group = "Settings of marches";
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    command.add_option(name, value, help)->group(group)->capture_default_str();
+  };
+  add("--naive-step-factor", march.naive.step_factor, "share of the vertical distance that naive steps; above 0");
+  add("--naive-min-step", march.naive.min_step, "its least step, a share of the ray's way out; above 0, at most 1");
+  add("--naive-tolerance", march.naive.tolerance, "height above ground that it takes for a hit, per distance; 0 or more");
+  add("--naive-max-steps", march.naive.max_steps, "its limit of steps; 1 or more");
+  add("--relaxed-step-factor", march.relaxed.step_factor, "share of the vertical distance that relaxed steps; above 0");
+  add("--relaxed-tolerance", march.relaxed.tolerance, "height off the ground that it takes for a hit, per distance; above 0");
+  add("--relaxed-max-steps", march.relaxed.max_steps, "its limit of steps; 1 or more");
+  add("--bisect-halvings", march.bisect.halvings, "halvings of max-mip-bisect; 1 to 60");
+}
+
+}  // namespace
+
+void add_render(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("render", "Render an elevation model into a PNG picture");
+  const auto options = std::make_shared<RenderOptions>();
+  RenderOptions& o = *options;
+  command->add_option("IN", o.input, "raster of heights: anything GDAL reads, .npy, .npz")->required();
+  command->add_option("-o,--output", o.output, "the picture, .png")->required();
+  command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels (1280x720; with --top the shape of the ground)");
+  command->add_option("--look", o.look, "shaded, height, steps, error")->capture_default_str();
+  command->add_option("--ramp", o.picture.ramp, fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
+  command->add_option("--exaggeration", o.exaggeration, "heights times this; above 0")->capture_default_str();
+  command->add_option("--sun", o.sun, "AZIMUTH,ALTITUDE of the sun in degrees, compass and above the horizon (315,45)");
+  command->add_flag("--no-shadows", o.no_shadows, "hill shade only");
+  command->add_flag("--no-plinth", o.no_plinth, "no walls below the terrain's border");
+  command->add_option("--haze", o.picture.haze, "share of haze over a distance as long as the field's diagonal, 0 to 0.95")->capture_default_str();
+  command->add_option("--aa", o.picture.aa, "N x N samples per pixel of the shaded look, 1 to 16")->capture_default_str();
+  command->add_option("--error-tolerance", o.picture.error_tolerance, "of the error look, in sides of a cell along the ray")->capture_default_str();
+  command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
+
+  const std::string from = "Where from";
+  CLI::Option* view = command->add_option("--view", o.view,
+      "AZIMUTH,ELEVATION[,DISTANCE]: the camera stands at that compass azimuth and elevation in degrees; distance in "
+      "multiples of the one at which all just fits (190,35,1)")->group(from);
+  CLI::Option* eye = command->add_option("--eye", o.eye, "X,Y,Z in metres: x east, y north from the south-west sample, z up, exaggerated")->group(from);
+  command->add_option("--target", o.target, "X,Y,Z that the eye looks at (the middle)")->group(from)->needs(eye);
+  CLI::Option* fov = command->add_option("--fov", o.fov_deg, "vertical angle of view in degrees, 1 to 150")->group(from)->capture_default_str();
+  command->add_flag("--top", o.top, "a map: straight down, no perspective, grid north up")->group(from)->excludes(view)->excludes(eye)->excludes(fov);
+  view->excludes(eye);
+
+  command->add_option("--march", o.march, "technique, see 'scarp marches'")->group("Settings of marches")->capture_default_str();
+  add_march_options(*command, o.march_settings);
+  add_raster_options(*command, o.raster);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace scarp::cli

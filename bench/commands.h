@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// The commands of scarp-bench and their options.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/fields.h"
+#include "bench/protocol.h"
+#include "bench/rays.h"
+#include "bench/report.h"
+
+namespace scarp::bench {
+
+/// Which ground, rays and threads; shared by the commands that trace rays.
+struct TraceOptions {
+  FieldOptions field;
+  RayCounts rays;
+  std::uint64_t ray_seed = 1;
+  std::vector<double> exaggerations{1};
+  std::vector<int> threads{1};
+  int repeats = 3;
+  double pass_limit_s = 10;
+  std::int64_t judged = 20000;  ///< rays per class that the judge answers
+};
+
+/// `heights`: all marches beside Embree in the five ray classes.
+struct HeightsOptions {
+  TraceOptions trace;
+  std::vector<int> sizes{2049};
+  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes"};
+  std::vector<std::string> engines{"scarp", "embree-tri", "embree-grid"};
+  std::string embree_quality = "high";
+};
+void run_heights(const HeightsOptions& options, const ReportOptions& report);
+
+/// `naive`: the comparison of the max-mip article, with naive marching as fine as it takes to be right.
+struct NaiveOptions {
+  TraceOptions trace;
+  double miss_limit = 0.001;  ///< share of the judge's hits that naive may miss
+};
+void run_naive(const NaiveOptions& options, const ReportOptions& report);
+
+/// `pyramid`: how fast the pyramid of maxima is built.
+struct PyramidOptions {
+  std::vector<int> sizes{2049, 8193};
+  int repeats = 5;
+};
+void run_pyramid(const PyramidOptions& options, const ReportOptions& report);
+
+}  // namespace scarp::bench

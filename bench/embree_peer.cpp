@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "bench/embree_peer.h"
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+#include <pmmintrin.h>
+#include <xmmintrin.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <cstring>
+
+#include "bench/protocol.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+
+namespace scarp::bench {
+namespace {
+
+// Embree's own recommendation for each thread that calls it; undone afterwards, Scarp's arithmetic needs no such help.
+class DenormalsOff {
+ public:
+  DenormalsOff() : before_(_mm_getcsr()) {
+    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
+    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
+  }
+  ~DenormalsOff() { _mm_setcsr(before_); }
+  DenormalsOff(const DenormalsOff&) = delete;
+  DenormalsOff& operator=(const DenormalsOff&) = delete;
+
+ private:
+  unsigned before_;
+};
+
+// What Embree allocates, as its memory monitor tells.
+struct Memory {
+  std::atomic<std::int64_t> current{0}, peak{0};
+
+  static bool count(void* self, ssize_t bytes, bool) {
+    Memory& memory = *static_cast<Memory*>(self);
+    const std::int64_t now = memory.current += bytes;
+    std::int64_t peak = memory.peak;
+    while (now > peak && !memory.peak.compare_exchange_weak(peak, now)) {
+    }
+    return true;
+  }
+};
+
+void fill(RTCRay& to, const BenchRay& from) {
+  to.org_x = from.ox, to.org_y = from.oy, to.org_z = from.oz;
+  to.dir_x = from.dx, to.dir_y = from.dy, to.dir_z = from.dz;
+  to.tnear = 0, to.tfar = from.t_max;
+  to.time = 0, to.mask = ~0u, to.id = 0, to.flags = 0;
+}
+
+void fill(RTCRay8& to, const RayPacket& from) {
+  std::memcpy(to.org_x, from.ox, sizeof from.ox), std::memcpy(to.org_y, from.oy, sizeof from.oy);
+  std::memcpy(to.org_z, from.oz, sizeof from.oz), std::memcpy(to.dir_x, from.dx, sizeof from.dx);
+  std::memcpy(to.dir_y, from.dy, sizeof from.dy), std::memcpy(to.dir_z, from.dz, sizeof from.dz);
+  std::memcpy(to.tfar, from.t_max, sizeof from.t_max);
+  std::memset(to.tnear, 0, sizeof to.tnear), std::memset(to.time, 0, sizeof to.time);
+  std::memset(to.mask, 0xff, sizeof to.mask), std::memset(to.id, 0, sizeof to.id), std::memset(to.flags, 0, sizeof to.flags);
+}
+
+RTCIntersectContext context_with(RTCIntersectContextFlags flags) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = flags;
+  return context;
+}
+
+void trace_single(RTCScene scene, const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
+  const DenormalsOff denormals_off;
+  RTCIntersectContext context = context_with(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  const BenchRay* rays = set.rays.data();
+  if (set.any_hit) {
+    RTCRay ray;
+    for (std::int64_t i = begin; i < end; ++i) {
+      fill(ray, rays[i]);
+      rtcOccluded1(scene, &context, &ray);
+      *answers++ = ray.tfar < 0 ? kBlocked : kMiss;
+    }
+  } else {
+    RTCRayHit query;
+    for (std::int64_t i = begin; i < end; ++i) {
+      fill(query.ray, rays[i]);
+      query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+      rtcIntersect1(scene, &context, &query);
+      *answers++ = query.hit.geomID != RTC_INVALID_GEOMETRY_ID ? query.ray.tfar : kMiss;
+    }
+  }
+}
+
+void trace_packets(RTCScene scene, RTCIntersectContextFlags flags, const RaySet& set, std::int64_t begin, std::int64_t end,
+                   float* answers) {
+  const DenormalsOff denormals_off;
+  RTCIntersectContext context = context_with(flags);
+  if (set.any_hit) {
+    RTCRay8 rays;
+    for (std::int64_t i = begin; i < end; i += 8) {
+      const RayPacket& packet = set.packets[static_cast<std::size_t>(i / 8)];
+      fill(rays, packet);
+      rtcOccluded8(packet.valid, scene, &context, &rays);
+      const std::int64_t lanes = std::min<std::int64_t>(8, end - i);
+      for (std::int64_t lane = 0; lane < lanes; ++lane) *answers++ = rays.tfar[lane] < 0 ? kBlocked : kMiss;
+    }
+  } else {
+    RTCRayHit8 query;
+    for (std::int64_t i = begin; i < end; i += 8) {
+      const RayPacket& packet = set.packets[static_cast<std::size_t>(i / 8)];
+      fill(query.ray, packet);
+      std::memset(query.hit.geomID, 0xff, sizeof query.hit.geomID);
+      std::memset(query.hit.instID, 0xff, sizeof query.hit.instID);
+      rtcIntersect8(packet.valid, scene, &context, &query);
+      const std::int64_t lanes = std::min<std::int64_t>(8, end - i);
+      for (std::int64_t lane = 0; lane < lanes; ++lane) {
+        *answers++ = query.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID ? query.ray.tfar[lane] : kMiss;
+      }
+    }
+  }
+}
+
+constexpr std::int64_t kRowsPerPiece = 64;
+
+// x, y, z of each sample in world space, and one float more: Embree reads the last vertex with four lanes.
+std::vector<float> vertices_of(const HeightField& field) {
+  const std::size_t cols = static_cast<std::size_t>(field.cols());
+  std::vector<float> vertices(cols * static_cast<std::size_t>(field.rows()) * 3 + 1);
+  field.visit([&](const auto& grid) {
+    parallel_for(field.rows(), kRowsPerPiece, [&](std::int64_t begin, std::int64_t end) {
+      for (int row = static_cast<int>(begin); row < end; ++row) {
+        float* out = vertices.data() + static_cast<std::size_t>(row) * cols * 3;
+        for (int col = 0; col < field.cols(); ++col) {
+          const dvec3 at = field.world_from_grid(col, row, static_cast<double>(grid.at(col, row)));
+          for (int axis = 0; axis < 3; ++axis) *out++ = static_cast<float>(at[axis]);
+        }
+      }
+    });
+  });
+  return vertices;
+}
+
+// Two triangles per cell, split from (col+1, row) to (col, row+1), counterclockwise as seen from above.
+std::vector<std::uint32_t> triangles_of(const HeightField& field) {
+  const std::size_t cell_cols = static_cast<std::size_t>(field.cell_cols());
+  std::vector<std::uint32_t> indices(cell_cols * static_cast<std::size_t>(field.cell_rows()) * 6);
+  parallel_for(field.cell_rows(), kRowsPerPiece, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t row = begin; row < end; ++row) {
+      std::uint32_t* out = indices.data() + static_cast<std::size_t>(row) * cell_cols * 6;
+      for (int col = 0; col < field.cell_cols(); ++col) {
+        const auto nw = static_cast<std::uint32_t>(row * field.cols() + col), ne = nw + 1;
+        const auto sw = nw + static_cast<std::uint32_t>(field.cols()), se = sw + 1;
+        for (const std::uint32_t corner : {nw, sw, ne, ne, sw, se}) *out++ = corner;
+      }
+    }
+  });
+  return indices;
+}
+
+}  // namespace
+
+struct EmbreePeer::Scene {
+  // Declared first, destroyed last: Embree counts down while its device goes.
+  Memory memory;
+  std::vector<float> vertices;
+  std::vector<std::uint32_t> indices;
+  EmbreeSurface surface;
+  double build_s = 0;
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+
+  ~Scene() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+
+  void check(std::string_view what) const {
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
+      throw Error(fmt::format("Embree, {}: error {}; too little memory is the usual cause", what, static_cast<int>(error)));
+    }
+  }
+
+  double input_bytes() const {
+    return static_cast<double>(vertices.size() * sizeof(float) + indices.size() * sizeof(std::uint32_t));
+  }
+};
+
+EmbreeQuality find_embree_quality(std::string_view name) {
+  if (name == "medium") return EmbreeQuality::medium;
+  if (name == "high") return EmbreeQuality::high;
+  throw Error(fmt::format("Embree quality '{}': unknown; there are: medium, high", name));
+}
+
+EmbreePeer::EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality)
+    : scene_(std::make_unique<Scene>()) {
+  Scene& s = *scene_;
+  s.surface = surface;
+  s.device = rtcNewDevice(nullptr);
+  s.check("device");
+  rtcSetDeviceMemoryMonitorFunction(s.device, &Memory::count, &s.memory);
+
+  const Stopwatch watch;
+  s.scene = rtcNewScene(s.device);
+  rtcSetSceneFlags(s.scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(s.scene, quality == EmbreeQuality::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
+  s.vertices = vertices_of(field);
+  const std::size_t vertex_count = static_cast<std::size_t>(field.cols()) * static_cast<std::size_t>(field.rows());
+  const bool grid = surface == EmbreeSurface::grid;
+  RTCGeometry geometry = rtcNewGeometry(s.device, grid ? RTC_GEOMETRY_TYPE_GRID : RTC_GEOMETRY_TYPE_TRIANGLE);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s.vertices.data(), 0, 3 * sizeof(float),
+                             vertex_count);
+  if (grid) {
+    auto* one = static_cast<RTCGrid*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_GRID, 0, RTC_FORMAT_GRID, sizeof(RTCGrid), 1));
+    s.check("grid buffer");
+    *one = {0, static_cast<unsigned>(field.cols()), static_cast<unsigned short>(field.cols()),
+            static_cast<unsigned short>(field.rows())};
+  } else {
+    s.indices = triangles_of(field);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, s.indices.data(), 0,
+                               3 * sizeof(std::uint32_t), s.indices.size() / 3);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(s.scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(s.scene);
+  s.build_s = watch.wall_s();
+  s.check("scene");
+}
+
+EmbreePeer::~EmbreePeer() = default;
+
+std::vector<Engine> EmbreePeer::engines() const {
+  const Scene& s = *scene_;
+  Engine common;
+  common.name = s.surface == EmbreeSurface::grid ? "embree-grid" : "embree-tri";
+  common.bytes = static_cast<double>(s.memory.current) + s.input_bytes();
+  common.peak_bytes = static_cast<double>(s.memory.peak) + s.input_bytes();
+  common.build_s = s.build_s;
+  std::vector<Engine> engines(3, common);
+  const RTCScene scene = s.scene;
+  engines[0].mode = "x1";
+  engines[0].trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
+    trace_single(scene, set, begin, end, answers);
+  };
+  const auto packets = [=](RTCIntersectContextFlags flags) {
+    return [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
+      trace_packets(scene, flags, set, begin, end, answers);
+    };
+  };
+  engines[1].mode = "x8-coherent";
+  engines[1].trace = packets(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+  engines[2].mode = "x8-incoherent";
+  engines[2].trace = packets(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+  return engines;
+}
+
+std::string EmbreePeer::version() { return RTC_VERSION_STRING; }
+
+}  // namespace scarp::bench

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Embree 3.13 on the same samples, used as its documentation recommends: ROBUST scenes, no filter functions, denormals off in
+// the threads that trace, packets laid out beforehand.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bench/engine.h"
+#include "bench/fields.h"
+
+namespace scarp::bench {
+
+enum class EmbreeSurface { triangles, grid };
+enum class EmbreeQuality { medium, high };
+/// Throws Error listing the names when it is neither "medium" nor "high".
+EmbreeQuality find_embree_quality(std::string_view name);
+
+/// A scene over a field; outlives the engines made from it.
+class EmbreePeer {
+ public:
+  /// Builds the scene and takes the time, making its vertices and indices included. Throws Error with Embree's own words.
+  EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality);
+  ~EmbreePeer();
+  EmbreePeer(const EmbreePeer&) = delete;
+  EmbreePeer& operator=(const EmbreePeer&) = delete;
+
+  /// Its modes x1, x8-coherent and x8-incoherent.
+  std::vector<Engine> engines() const;
+
+  /// "3.13.5"
+  static std::string version();
+
+ private:
+  struct Scene;
+  std::unique_ptr<Scene> scene_;
+};
+
+}  // namespace scarp::bench

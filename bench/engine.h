@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// What the protocol measures: something that answers many rays.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include "bench/rays.h"
+#include "scarp/march/marches.h"
+
+namespace scarp::bench {
+
+/// The answer to a ray: t of the hit, kMiss, or kBlocked where only "is it blocked" was asked.
+constexpr float kMiss = std::numeric_limits<float>::infinity();
+constexpr float kBlocked = -std::numeric_limits<float>::infinity();
+
+struct Engine {
+  std::string name;  ///< "scarp", "embree-tri", "embree-grid"
+  std::string mode;  ///< the march, or "x1", "x8-coherent", "x8-incoherent"
+  double bytes = 0;  ///< what has to stay in memory for tracing: samples or vertices, and the acceleration structure
+  double peak_bytes = 0;  ///< the most that was in use while it was built
+  double build_s = 0;     ///< from samples to ready for tracing
+  /// Answers rays [begin, end) of a set, begin a multiple of 8, into answers[0 ...]. Called from several threads.
+  std::function<void(const RaySet& set, std::int64_t begin, std::int64_t end, float* answers)> trace;
+
+  // For the judge, null in peers, whose surface is another one.
+  std::function<Hit(const Ray& ray, MarchStats& stats)> closest;  ///< as the closest-hit function says
+  std::function<bool(const Ray& ray)> blocked;                    ///< as the function says that trace uses for any_hit
+};
+
+/// The same ray in the form of the library.
+inline Ray library_ray(const BenchRay& from) {
+  Ray ray;
+  ray.origin = {from.ox, from.oy, from.oz};
+  ray.direction = {from.dx, from.dy, from.dz};
+  ray.t_max = from.t_max;
+  return ray;
+}
+
+}  // namespace scarp::bench

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// `scarp-bench heights`: all marches beside Embree, five classes of rays, one run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "bench/commands.h"
+#include "bench/embree_peer.h"
+#include "bench/judge.h"
+#include "bench/scarp_engine.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+
+namespace scarp::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// All engines over one field.
+class Contest {
+ public:
+  Contest(const BenchField& ground, const HeightsOptions& options) : scarp_(ground.field) {
+    const EmbreeQuality quality = find_embree_quality(options.embree_quality);
+    for (const std::string& name : options.engines) {
+      if (name == "scarp") {
+        add(scarp_.engines());
+      } else if (name == "embree-tri") {
+        triangles_.emplace(ground.field, EmbreeSurface::triangles, quality);
+        add(triangles_->engines());
+      } else if (name == "embree-grid") {
+        grid_.emplace(ground.field, EmbreeSurface::grid, quality);
+        add(grid_->engines());
+      } else {
+        throw Error(fmt::format("engine '{}': unknown; there are: scarp, embree-tri, embree-grid", name));
+      }
+    }
+  }
+
+  const std::vector<Engine>& engines() const { return engines_; }
+  HeightTarget target() const { return scarp_.target(); }
+
+ private:
+  void add(std::vector<Engine> engines) {
+    for (Engine& engine : engines) engines_.push_back(std::move(engine));
+  }
+
+  ScarpGround scarp_;
+  std::optional<EmbreePeer> triangles_, grid_;
+  std::vector<Engine> engines_;
+};
+
+Json row_of(const Engine& engine, const RaySet& set, const Timing& timing, const std::optional<Judgement>& judged,
+            const HeightField& field) {
+  const double samples = static_cast<double>(field.cols()) * field.rows();
+  Json row;
+  row["class"] = name_of(set.ray_class);
+  row["engine"] = engine.name;
+  row["mode"] = engine.mode;
+  row["mrays_per_s"] = timing.mrays_per_s;
+  row["mrays_per_cpu_s"] = timing.mrays_per_cpu_s;
+  row["bytes_per_sample"] = engine.bytes / samples;
+  row["peak_bytes_per_sample"] = engine.peak_bytes / samples;
+  row["build_s"] = engine.build_s;
+  row["lost"] = set.must_hit ? Json(timing.rays - timing.hits) : Json();
+  row["miss_rate"] = judged ? Json(judged->miss_rate) : Json();
+  row["false_rate"] = judged ? Json(judged->false_rate) : Json();
+  row["error_p99"] = judged && judged->error_p99 ? Json(*judged->error_p99) : Json();
+  row["exhausted"] = judged ? Json(judged->exhausted) : Json();
+  row["steps_per_ray"] = judged ? Json(judged->steps) : Json();
+  row["cell_tests_per_ray"] = judged ? Json(judged->cell_tests) : Json();
+  row["judged"] = judged ? Json(judged->judged) : Json();
+  row["rays"] = timing.rays;
+  row["hit_share"] = static_cast<double>(timing.hits) / static_cast<double>(timing.rays);
+  row["spread"] = timing.spread;
+  row["busy"] = timing.busy;
+  return row;
+}
+
+void print(const std::vector<Json>& rows) {
+  // By processor time: single rays against Embree's triangles.
+  double yardstick = 0;
+  for (const Json& row : rows) {
+    if (row["engine"] == "embree-tri" && row["mode"] == "x1") yardstick = row["mrays_per_cpu_s"];
+  }
+  std::vector<std::vector<std::string>> lines{{"class", "engine", "mode", "Mrays/s", "x tri x1", "busy", "B/sample", "build s", "hits %",
+                                               "lost", "missed %", "false %", "error p99", "steps", "rays"}};
+  const auto percent = [](const Json& share) { return share.is_null() ? std::string("-") : short_number(100 * share.get<double>()); };
+  for (const Json& row : rows) {
+    const double speed = row["mrays_per_s"], effort = row["mrays_per_cpu_s"];
+    lines.push_back({row["class"], row["engine"], row["mode"], short_number(speed),
+                     yardstick > 0 ? fmt::format("{:.2f}", effort / yardstick) : "-", fmt::format("{:.2f}", row["busy"].get<double>()),
+                     short_number(row["bytes_per_sample"]), short_number(row["build_s"]),
+                     fmt::format("{:.3f}", 100 * row["hit_share"].get<double>()), short_number(row["lost"]), percent(row["miss_rate"]),
+                     percent(row["false_rate"]), short_number(row["error_p99"], 2), short_number(row["steps_per_ray"]),
+                     short_number(row["rays"])});
+  }
+  print_table(lines, 3);
+}
+
+void contest(const BenchField& ground, double exaggeration, const HeightsOptions& options, const std::vector<RayClass>& classes,
+             Json& all_rows) {
+  const TraceOptions& trace = options.trace;
+  const int build_threads = *std::max_element(trace.threads.begin(), trace.threads.end());
+  fmt::print("\n{} x {} samples, {}, exaggeration {}: relief {:.1f} cells, mean slope {:.1f} degrees\n", ground.field.cols(),
+             ground.field.rows(), ground.name, exaggeration, ground.relief, ground.mean_slope_deg);
+  std::fflush(stdout);
+  const std::vector<RaySet> sets = make_rays(ground, classes, trace.rays, trace.ray_seed);
+  std::optional<Contest> engines;
+  {
+    const ThreadLimit limit(build_threads);
+    engines.emplace(ground, options);
+  }
+  for (const RaySet& set : sets) {
+    const Judge judge(engines->target(), set, trace.judged, trace.ray_seed);
+    std::vector<std::optional<Judgement>> judged;
+    for (const Engine& engine : engines->engines()) {
+      judged.push_back(engine.closest ? std::optional(judge.judge(engine)) : std::nullopt);
+    }
+    for (const int threads : trace.threads) {
+      const auto timings = measure(engines->engines(), set, {threads, trace.repeats, trace.pass_limit_s});
+      std::vector<Json> rows;
+      for (std::size_t e = 0; e < timings.size(); ++e) {
+        Json row;
+        row["size"] = ground.field.cols();
+        row["threads"] = threads;
+        row.update(row_of(engines->engines()[e], set, timings[e], judged[e], ground.field));
+        row["build_threads"] = build_threads;
+        row["field"] = ground.name;
+        row["exaggeration"] = exaggeration;
+        row["relief"] = ground.relief;
+        row["mean_slope_deg"] = ground.mean_slope_deg;
+        rows.push_back(row);
+        all_rows.push_back(std::move(row));
+      }
+      fmt::print("\n{} thread{}\n", threads, threads == 1 ? "" : "s");
+      print(rows);
+    }
+  }
+}
+
+}  // namespace
+
+void run_heights(const HeightsOptions& options, const ReportOptions& report) {
+  std::vector<RayClass> classes;
+  for (const std::string& name : options.classes) classes.push_back(find_ray_class(name));
+  Json rows = Json::array();
+  // A file has its own size.
+  const std::vector<int> sizes = options.trace.field.dem.empty() ? options.sizes : std::vector<int>{0};
+  for (const int size : sizes) {
+    FieldOptions field = options.trace.field;
+    field.size = size;
+    const BenchField ground = load_field(field);
+    for (const double exaggeration : options.trace.exaggerations) {
+      contest(exaggerated(ground, exaggeration), exaggeration, options, classes, rows);
+    }
+  }
+  write_json(report, rows);
+}
+
+}  // namespace scarp::bench

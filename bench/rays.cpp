@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+#include "bench/rays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "bench/random.h"
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/march/max_mip.h"
+
+namespace scarp::bench {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::int64_t kRaysPerPiece = 4096;
+constexpr int kTile = 8;
+
+// Each class has random numbers of its own: leaving one out changes none of the others.
+std::uint64_t class_seed(std::uint64_t seed, RayClass ray_class) { return seed * 16 + static_cast<std::uint64_t>(ray_class); }
+
+BenchRay make_ray(dvec3 origin, dvec3 direction, float t_max = kInfinity) {
+  return {static_cast<float>(origin.x),    static_cast<float>(origin.y),    static_cast<float>(origin.z),
+          static_cast<float>(direction.x), static_cast<float>(direction.y), static_cast<float>(direction.z), t_max};
+}
+
+// Compass azimuth and altitude as a direction.
+dvec3 direction_to(double azimuth, double altitude) {
+  return {std::sin(azimuth) * std::cos(altitude), std::cos(azimuth) * std::cos(altitude), std::sin(altitude)};
+}
+
+// The beginning of a ray from the surface near (x, y): in float numbers, kLift above both surfaces there.
+dvec3 lifted(const HeightField& field, double x, double y) {
+  // Rounding to float may leave the field by a hair.
+  const double fx = std::min(static_cast<double>(static_cast<float>(x)), field.width());
+  const double fy = std::min(static_cast<double>(static_cast<float>(y)), field.depth());
+  const double z = std::max(field.height(fx, fy).value(), triangle_height(field, fx, fy).value()) + kLift;
+  float fz = static_cast<float>(z);
+  if (fz < z) fz = std::nextafter(fz, kInfinity);
+  return {fx, fy, fz};
+}
+
+std::vector<BenchRay> primary_rays(const HeightField& field, int width, int height) {
+  // From above the southern border over the middle of the field, the horizon in the upper part of the picture.
+  const double extent = std::max(field.width(), field.depth());
+  const dvec3 eye(0.5 * field.width(), 0.02 * field.depth(), field.max_height() + 0.05 * extent);
+  const dvec3 target(0.5 * field.width(), 0.5 * field.depth(), 0.5 * (field.min_height() + field.max_height()));
+  const dvec3 forward = normalize(target - eye), right = normalize(cross(forward, dvec3(0, 0, 1))), up = cross(right, forward);
+  const double half_height = std::tan(45.0 / 2 * kPi / 180), half_width = half_height * width / height;
+  std::vector<BenchRay> rays;
+  rays.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (int tile_y = 0; tile_y < height; tile_y += kTile) {
+    for (int tile_x = 0; tile_x < width; tile_x += kTile) {
+      for (int y = tile_y; y < std::min(tile_y + kTile, height); ++y) {
+        for (int x = tile_x; x < std::min(tile_x + kTile, width); ++x) {
+          const double sx = ((x + 0.5) / width * 2 - 1) * half_width, sy = (1 - (y + 0.5) / height * 2) * half_height;
+          rays.push_back(make_ray(eye, normalize(forward + sx * right + sy * up)));
+        }
+      }
+    }
+  }
+  return rays;
+}
+
+// One ray for each primary ray that hits, in their order.
+template <class MakeRay>
+std::vector<BenchRay> rays_from_hits(const HeightField& field, const std::vector<BenchRay>& primary, const MakeRay& make) {
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  std::vector<BenchRay> rays(primary.size());
+  std::vector<char> hits(primary.size());
+  parallel_for(static_cast<std::int64_t>(primary.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      const BenchRay& from = primary[static_cast<std::size_t>(i)];
+      Ray ray;
+      ray.origin = {from.ox, from.oy, from.oz};
+      ray.direction = {from.dx, from.dy, from.dz};
+      const Hit hit = march_max_mip(target, ray);
+      if (!hit) continue;
+      hits[static_cast<std::size_t>(i)] = 1;
+      const dvec3 at = field.world_from_grid(hit.cell.col + hit.u, hit.cell.row + hit.v, 0);
+      rays[static_cast<std::size_t>(i)] = make(i, lifted(field, at.x, at.y), hit);
+    }
+  });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i]) rays[kept++] = rays[i];
+  }
+  rays.resize(kept);
+  return rays;
+}
+
+// Cosine-distributed about a unit normal.
+dvec3 cosine_direction(Random& random, dvec3 normal) {
+  const double radius = std::sqrt(random.uniform()), angle = random.uniform(0, 2 * kPi);
+  const dvec3 side = normalize(cross(normal, std::abs(normal.x) < 0.5 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+  return radius * std::cos(angle) * side + radius * std::sin(angle) * cross(normal, side) +
+         std::sqrt(std::max(0.0, 1 - radius * radius)) * normal;
+}
+
+std::vector<BenchRay> grazing_rays(const HeightField& field, std::int64_t count, std::uint64_t seed) {
+  std::vector<BenchRay> rays;
+  for (std::int64_t i = 0; i < count; ++i) {
+    Random random(seed, static_cast<std::uint64_t>(i));
+    const double x = random.uniform(0, field.width()), y = random.uniform(0, field.depth());
+    rays.push_back(make_ray(lifted(field, x, y), direction_to(random.uniform(0, 2 * kPi), 3 * kPi / 180)));
+  }
+  return rays;
+}
+
+// Aimed at places where surfaces are sewn together. In plan the coordinates are multiples of 2^-10, so the ray stands
+// exactly over its target at t = 1 (over square cells); its height there is that of the surface to half a float32 step of the
+// origin's height.
+std::vector<BenchRay> node_rays(const HeightField& field, std::int64_t count, std::uint64_t seed) {
+  constexpr double kGrid = 0x1p-10;
+  std::vector<BenchRay> rays;
+  for (std::int64_t i = 0; i < count; ++i) {
+    Random random(seed, static_cast<std::uint64_t>(i));
+    for (;;) {
+      const int col = random.below(field.cell_cols()), row = random.below(field.cell_rows());
+      const double along = (1 + random.below(1022)) * kGrid;
+      double u = 0, v = 0;
+      switch (i % 4) {
+        case 0: break;                              // a node
+        case 1: u = along; break;                   // an edge from column to column
+        case 2: v = along; break;                   // an edge from row to row
+        default: u = 1 - along, v = along; break;   // the diagonal that the triangles share
+      }
+      const dvec3 plan = field.world_from_grid(col + u, row + v, 0);
+      const dvec3 target(plan.x, plan.y, field.height(plan.x, plan.y).value());
+      const double above = 600, lean = std::min(0.4 * above, 0.25 * std::min(field.width(), field.depth()));
+      const auto snap = [&](double value) { return std::round(value / kGrid) * kGrid; };
+      const dvec3 origin(target.x + snap(random.uniform(-lean, lean)), target.y + snap(random.uniform(-lean, lean)),
+                         static_cast<float>(std::max(target.z + above, field.max_height() + 1)));
+      const dvec3 direction = target - origin;
+      // On to below the lowest sample. Only a ray that is over the field from first to last must hit.
+      const float t_max = static_cast<float>((origin.z - field.min_height() + 1) / -direction.z);
+      const dvec3 end = origin + direction * static_cast<double>(t_max);
+      const auto over_field = [&](dvec3 p) { return p.x > 0 && p.x < field.width() && p.y > 0 && p.y < field.depth(); };
+      if (!over_field(origin) || !over_field(end)) continue;
+      rays.push_back(make_ray(origin, direction, t_max));
+      break;
+    }
+  }
+  return rays;
+}
+
+std::vector<RayPacket> packets_of(const std::vector<BenchRay>& rays) {
+  std::vector<RayPacket> packets((rays.size() + 7) / 8);
+  for (std::size_t i = 0; i < packets.size() * 8; ++i) {
+    RayPacket& packet = packets[i / 8];
+    const std::size_t lane = i % 8;
+    const BenchRay& ray = rays[std::min(i, rays.size() - 1)];
+    packet.ox[lane] = ray.ox, packet.oy[lane] = ray.oy, packet.oz[lane] = ray.oz;
+    packet.dx[lane] = ray.dx, packet.dy[lane] = ray.dy, packet.dz[lane] = ray.dz;
+    packet.t_max[lane] = ray.t_max;
+    packet.valid[lane] = i < rays.size() ? -1 : 0;
+  }
+  return packets;
+}
+
+}  // namespace
+
+std::string_view name_of(RayClass ray_class) {
+  switch (ray_class) {
+    case RayClass::primary: return "primary";
+    case RayClass::shadow: return "shadow";
+    case RayClass::grazing: return "grazing";
+    case RayClass::ao: return "ao";
+    case RayClass::nodes: break;
+  }
+  return "nodes";
+}
+
+RayClass find_ray_class(std::string_view name) {
+  for (const RayClass ray_class : kRayClasses) {
+    if (name_of(ray_class) == name) return ray_class;
+  }
+  throw Error(fmt::format("ray class '{}': unknown; there are: primary, shadow, grazing, ao, nodes", name));
+}
+
+std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayClass>& classes, const RayCounts& counts,
+                              std::uint64_t seed) {
+  const HeightField& field = ground.field;
+  const std::vector<BenchRay> primary = primary_rays(field, counts.width, counts.height);
+  const dvec3 sun = direction_to(315 * kPi / 180, 20 * kPi / 180);
+  std::vector<RaySet> sets;
+  for (const RayClass ray_class : kRayClasses) {
+    if (std::find(classes.begin(), classes.end(), ray_class) == classes.end()) continue;
+    RaySet set{ray_class, false, false, {}, {}};
+    const std::uint64_t own_seed = class_seed(seed, ray_class);
+    switch (ray_class) {
+      case RayClass::primary: set.rays = primary; break;
+      case RayClass::shadow:
+        set.any_hit = true;
+        set.rays = rays_from_hits(field, primary, [&](std::int64_t, dvec3 from, const Hit&) { return make_ray(from, sun); });
+        break;
+      case RayClass::grazing:
+        set.any_hit = true;
+        set.rays = grazing_rays(field, counts.grazing, own_seed);
+        break;
+      case RayClass::ao:
+        set.any_hit = true;
+        set.rays = rays_from_hits(field, primary, [&](std::int64_t i, dvec3 from, const Hit& hit) {
+          Random random(own_seed, static_cast<std::uint64_t>(i));
+          return make_ray(from, cosine_direction(random, field.normal(hit.cell, hit.u, hit.v)));
+        });
+        break;
+      case RayClass::nodes:
+        set.must_hit = true;
+        set.rays = node_rays(field, counts.nodes, own_seed);
+        break;
+    }
+    if (set.rays.empty()) {
+      throw Error(fmt::format("ray class '{}': no primary ray hits {}; it needs at least one", name_of(ray_class), ground.name));
+    }
+    set.packets = packets_of(set.rays);
+    sets.push_back(std::move(set));
+  }
+  return sets;
+}
+
+}  // namespace scarp::bench

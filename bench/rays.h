@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// The rays that are measured. Origins and directions are float32 numbers, so that an engine in double and one in float
+// trace bit-identical rays.
+//
+//   primary   a pinhole camera over the southern border; pixels in tiles of 8 x 8
+//   shadow    from the primary hits to a sun 20 degrees high; in their order
+//   ao        from the primary hits, cosine-distributed about the surface normal; in their order
+//   grazing   from random points of the surface, 3 degrees above the horizon, any azimuth
+//   nodes     from far above at nodes, points of edges and points of diagonals, ending below the ground: each must hit
+//
+// Rays from the surface begin a little above both surfaces, the bilinear one and the two triangles (kLift), so that no
+// engine profits from a rule of its own about rays that begin on its surface.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "bench/fields.h"
+
+namespace scarp::bench {
+
+/// Height above the higher of the two surfaces at which rays from the surface begin, in cells.
+constexpr double kLift = 0.01;
+
+enum class RayClass { primary, shadow, grazing, ao, nodes };
+constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao, RayClass::nodes};
+std::string_view name_of(RayClass ray_class);
+/// Throws Error listing the classes when there is no such one.
+RayClass find_ray_class(std::string_view name);
+
+/// A ray with t in [0, t_max].
+struct BenchRay {
+  float ox, oy, oz;
+  float dx, dy, dz;
+  float t_max;
+};
+
+/// Eight rays side by side, as packet engines want them; the last packet of a set may have invalid ones (valid 0, else -1).
+struct alignas(32) RayPacket {
+  float ox[8], oy[8], oz[8];
+  float dx[8], dy[8], dz[8];
+  float t_max[8];
+  int valid[8];
+};
+
+struct RaySet {
+  RayClass ray_class;
+  bool any_hit;   ///< whether the question is "is it blocked" or "where is the first hit"
+  bool must_hit;  ///< whether every ray hits
+  std::vector<BenchRay> rays;
+  std::vector<RayPacket> packets;  ///< the same rays
+
+  std::int64_t size() const { return static_cast<std::int64_t>(rays.size()); }
+};
+
+struct RayCounts {
+  int width = 1920;  ///< pixels of the camera, multiples of 8
+  int height = 1080;
+  std::int64_t grazing = 1 << 20;
+  std::int64_t nodes = 1 << 20;
+};
+
+/// The classes asked for, in the order of kRayClasses. Deterministic by seed.
+std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayClass>& classes, const RayCounts& counts,
+                              std::uint64_t seed);
+
+}  // namespace scarp::bench

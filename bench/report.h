@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Results for programs and for people: the JSON of all commands, and plain tables.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace scarp::bench {
+
+/// What every command is asked about its output.
+struct ReportOptions {
+  std::string command;  ///< as typed
+  std::string json;     ///< a file to write; empty: none
+};
+
+/// {machine, command, date, rows}. Throws Error when the file cannot be written; then no file is left or changed.
+void write_json(const ReportOptions& options, const nlohmann::ordered_json& rows);
+
+/// A number with so many significant digits, in as few characters as that takes; "-" for null.
+std::string short_number(const nlohmann::ordered_json& value, int digits = 3);
+
+/// A table of text: the first row is the head. The first `left` columns are set to the left, the others to the right.
+void print_table(const std::vector<std::vector<std::string>>& lines, std::size_t left);
+
+/// Processor, cores, system, compiler, Embree: one line.
+std::string machine();
+
+}  // namespace scarp::bench

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "bench/scarp_engine.h"
+
+#include "bench/protocol.h"
+#include "scarp/march/max_mip.h"
+
+namespace scarp::bench {
+namespace {
+
+double sample_bytes(const HeightField& field) {
+  const double bytes = field.sample_type() == SampleType::float32 ? 4 : 2;
+  return bytes * field.cols() * field.rows();
+}
+
+// Compiled for the two functions that it is given: no call through std::function per ray.
+template <class Closest, class Blocked>
+void set_functions(Engine& engine, const Closest& closest, const Blocked& blocked) {
+  engine.trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
+    const BenchRay* rays = set.rays.data();
+    if (set.any_hit) {
+      for (std::int64_t i = begin; i < end; ++i) *answers++ = blocked(library_ray(rays[i])) ? kBlocked : kMiss;
+    } else {
+      for (std::int64_t i = begin; i < end; ++i) {
+        const Hit hit = closest(library_ray(rays[i]), nullptr);
+        *answers++ = hit ? static_cast<float>(hit.t) : kMiss;
+      }
+    }
+  };
+  engine.closest = [=](const Ray& ray, MarchStats& stats) { return closest(ray, &stats); };
+  engine.blocked = blocked;
+}
+
+}  // namespace
+
+ScarpGround::ScarpGround(const HeightField& field)
+    : field_(field), pyramid_([&] {
+        const Stopwatch watch;
+        MaxPyramid pyramid(field);
+        build_s_ = watch.wall_s();
+        return pyramid;
+      }()) {}
+
+Engine ScarpGround::engine(const MarchEntry& march, const MarchSettings& settings) const {
+  Engine engine;
+  engine.name = "scarp";
+  engine.mode = march.name;
+  engine.bytes = sample_bytes(field_) + (march.needs_pyramid ? static_cast<double>(pyramid_.bytes()) : 0);
+  engine.peak_bytes = engine.bytes;
+  engine.build_s = march.needs_pyramid ? build_s_ : 0;
+  const HeightTarget to = target();
+  const HeightMarch cpu = march.cpu;
+  const auto closest = [=](const Ray& ray, MarchStats* stats) { return cpu(to, ray, settings, stats); };
+  if (cpu == march_max_mip) {
+    set_functions(engine, closest, [=](const Ray& ray) { return occluded_max_mip(to, ray); });
+  } else {
+    set_functions(engine, closest, [=](const Ray& ray) { return closest(ray, nullptr).status == HitStatus::hit; });
+  }
+  return engine;
+}
+
+std::vector<Engine> ScarpGround::engines() const {
+  std::vector<Engine> engines;
+  for (const MarchEntry& march : marches()) {
+    if (march.name != "exhaustive") engines.push_back(engine(march));
+  }
+  return engines;
+}
+
+}  // namespace scarp::bench

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// The marches of Scarp as engines.
+#pragma once
+
+#include <vector>
+
+#include "bench/engine.h"
+#include "bench/fields.h"
+
+namespace scarp::bench {
+
+/// A field ready for all marches; outlives the engines made from it.
+class ScarpGround {
+ public:
+  /// Builds the pyramid and takes the time.
+  explicit ScarpGround(const HeightField& field);
+  ScarpGround(const ScarpGround&) = delete;
+  ScarpGround& operator=(const ScarpGround&) = delete;
+
+  /// One march of the table under the given settings. Rays that only ask whether they are blocked go to the march's own
+  /// function for that where there is one.
+  Engine engine(const MarchEntry& march, const MarchSettings& settings = {}) const;
+
+  /// Every march of the table but the judge.
+  std::vector<Engine> engines() const;
+
+  HeightTarget target() const { return {&field_, &pyramid_}; }
+
+ private:
+  HeightField field_;
+  double build_s_ = 0;
+  MaxPyramid pyramid_;
+};
+
+}  // namespace scarp::bench

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Heights in memory of one's own, a pyramid over them, and a ray.
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/field/height_field.h"
+#include "scarp/march/max_mip.h"
+
+int main() {
+  // 513 x 513 heights in metres, 10 m apart, rows from north to south: waves 160 m from trough to crest.
+  const int side = 513;
+  std::vector<float> heights;
+  for (int row = 0; row < side; ++row) {
+    for (int col = 0; col < side; ++col) {
+      heights.push_back(static_cast<float>(40.0 * (std::sin(0.05 * col) + std::cos(0.04 * row))));
+    }
+  }
+
+  // The field looks at the samples and copies nothing. The pyramid is built once per field.
+  const auto field = scarp::HeightField::view(heights.data(), side, side, side, {.cell_x = 10.0, .cell_y = 10.0});
+  const scarp::MaxPyramid pyramid(field);
+
+  // From 500 m above the south-west corner to the north-east, 1 m down on 9.9 m. x east, y north, z up.
+  scarp::Ray ray;
+  ray.origin = {0, 0, 500};
+  ray.direction = {7, 7, -1};
+  const scarp::Hit hit = scarp::march_max_mip({&field, &pyramid}, ray);
+  if (!hit) {
+    std::puts("the ray meets no ground");
+    return 1;
+  }
+  const scarp::dvec3 point = ray.at(hit.t);
+  std::printf("hit at (%.2f, %.2f, %.2f) m in cell (%d, %d)\n", point.x, point.y, point.z, hit.cell.col, hit.cell.row);
+  return 0;
+}

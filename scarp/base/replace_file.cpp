@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/base/replace_file.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+
+namespace fs = std::filesystem;
+
+ReplaceFile::ReplaceFile(std::string path) : path_(std::move(path)) {
+  if (path_.empty()) throw Error("output: the file name is empty; name a file");
+  const fs::path target(path_);
+  std::error_code ignored;
+  if (fs::is_directory(target, ignored)) throw Error(fmt::format("output '{}': is a directory; name a file", path_));
+  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder, ignored)) {
+    throw Error(fmt::format("output '{}': the folder '{}' does not exist; create it first", path_, folder.string()));
+  }
+  if (fs::exists(target, ignored) && ::access(path_.c_str(), W_OK) != 0) {
+    throw Error(fmt::format("output '{}': exists and is write-protected; choose another name", path_));
+  }
+  temporary_ = (folder / fmt::format(".{}.{}.part{}", target.stem().string(), ::getpid(), target.extension().string())).string();
+  // Opened here, so that an unwritable folder is found before hours of work and not after them.
+  if (!std::ofstream(temporary_, std::ios::binary)) {
+    throw Error(fmt::format("output '{}': the folder '{}' cannot be written to; choose another one", path_, folder.string()));
+  }
+}
+
+ReplaceFile::~ReplaceFile() {
+  if (temporary_.empty()) return;
+  std::error_code ignored;
+  fs::remove(temporary_, ignored);
+}
+
+void ReplaceFile::commit() {
+  std::error_code error;
+  fs::rename(temporary_, path_, error);
+  if (error) throw Error(fmt::format("output '{}': cannot be moved into place: {}", path_, error.message()));
+  temporary_.clear();
+}
+
+}  // namespace scarp

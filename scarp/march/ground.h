@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// What the sampling marches (naive, relaxed) need of a height field: the ray inside its bounds, and how far above the ground
+// a point of it is.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scarp/march/marches.h"
+
+namespace scarp {
+
+template <class T>
+class Ground {
+ public:
+  Ground(const HeightField& field, const SampleGrid<T>& grid, const Ray& ray)
+      : field_(field), grid_(grid), ray_(ray), local_(field.grid_from_world(ray)),
+        metres_(field.settings().scale * field.settings().exaggeration), speed_(length(ray.direction)) {
+    t_enter = ray.t_min;
+    t_exit = ray.t_max;
+    clip(0, grid.cols - 1.0, local_.origin.x, local_.direction.x);
+    clip(0, grid.rows - 1.0, local_.origin.y, local_.direction.y);
+    // Upright rays never leave sideways: they are followed as far as there is ground.
+    if (std::isinf(t_exit)) clip(field.min_sample(), field.max_sample(), local_.origin.z, local_.direction.z);
+  }
+
+  double t_enter, t_exit;  ///< the ray inside the field's bounds; empty when t_enter > t_exit
+
+  bool crosses() const { return t_enter <= t_exit && std::isfinite(t_exit) && speed_ > 0; }
+  double metres_per_t() const { return speed_; }
+
+  struct Sample {
+    bool valid = false;   ///< false over holes
+    double clearance = 0; ///< metres that the ray is above the ground, vertically
+    Cell cell;
+    double u = 0, v = 0;
+  };
+  Sample at(double t) const {
+    const double col = std::clamp(local_.origin.x + local_.direction.x * t, 0.0, grid_.cols - 1.0);
+    const double row = std::clamp(local_.origin.y + local_.direction.y * t, 0.0, grid_.rows - 1.0);
+    Sample sample;
+    sample.cell = {std::min(static_cast<int>(col), grid_.cols - 2), std::min(static_cast<int>(row), grid_.rows - 2)};
+    sample.u = col - sample.cell.col;
+    sample.v = row - sample.cell.row;
+    if (grid_.is_hole(sample.cell.col, sample.cell.row)) return sample;
+    const T *north = grid_.row(sample.cell.row) + sample.cell.col, *south = north + grid_.row_stride;
+    const double h0 = north[0] + sample.u * (static_cast<double>(north[1]) - north[0]);
+    const double h1 = south[0] + sample.u * (static_cast<double>(south[1]) - south[0]);
+    sample.valid = true;
+    sample.clearance = (local_.origin.z + local_.direction.z * t - (h0 + sample.v * (h1 - h0))) * metres_;
+    return sample;
+  }
+
+  Hit hit(double t, const Sample& sample) const {
+    Hit hit;
+    hit.status = HitStatus::hit;
+    hit.t = t;
+    hit.cell = sample.cell;
+    hit.u = sample.u;
+    hit.v = sample.v;
+    hit.height = ray_.at(t).z;
+    return hit;
+  }
+
+ private:
+  void clip(double low, double high, double o, double d) {
+    if (d == 0) {
+      if (!(o >= low && o <= high)) t_exit = -std::numeric_limits<double>::infinity();
+      return;
+    }
+    const double a = (low - o) / d, b = (high - o) / d;
+    t_enter = std::max(t_enter, std::min(a, b));
+    t_exit = std::min(t_exit, std::max(a, b));
+  }
+
+  const HeightField& field_;
+  const SampleGrid<T>& grid_;
+  const Ray& ray_;
+  GridRay local_;
+  double metres_;  // per sample unit
+  double speed_;   // metres per t
+};
+
+}  // namespace scarp

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// The ONE table of marching techniques. Command line, benchmarks, tests and documentation all read it: a technique that is
+// listed here is tested against the oracle from that moment on.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/base/ray.h"
+#include "scarp/field/height_field.h"
+
+namespace scarp {
+
+/// What a march promises about the surface that the field defines.
+enum class Guarantee {
+  exact,         ///< the first hit, never lost, within the rounding that doc/dev/numerics.md derives
+  conservative,  ///< never passes through the surface; may stop before it or give up (exhausted)
+  approximate,   ///< may pass through the surface or stop before it
+};
+
+std::string_view name_of(Guarantee guarantee);
+
+/// `naive`: t += max(step_factor * |h|, min_step * t_exit), stops where h < tolerance * t.
+struct NaiveSettings {
+  double step_factor = 0.7;    ///< of the vertical distance h, > 0
+  double min_step = 1.0 / 512; ///< least step, as a share of the ray's length to the field's border, > 0
+  double tolerance = 0.001;    ///< height above ground that counts as a hit, per unit of distance, >= 0
+  int max_steps = 1024;        ///< >= 1
+};
+
+/// `relaxed`: t += step_factor * h, stops where |h| < tolerance * t.
+struct RelaxedSettings {
+  double step_factor = 0.4;   ///< of the vertical distance h, > 0
+  double tolerance = 0.0015;  ///< height off the ground that counts as a hit, per unit of distance, > 0
+  int max_steps = 300;        ///< >= 1
+};
+
+/// `max-mip-bisect`: halvings of the interval in the finest cell.
+struct BisectSettings {
+  int halvings = 16;  ///< 1..60
+};
+
+struct MarchSettings {
+  NaiveSettings naive;
+  RelaxedSettings relaxed;
+  BisectSettings bisect;
+};
+
+/// Throws Error naming the first setting out of its range.
+void validate(const MarchSettings& settings);
+
+/// What is marched. The pyramid may be null for marches that do not need one.
+struct HeightTarget {
+  const HeightField* field = nullptr;
+  const MaxPyramid* pyramid = nullptr;
+};
+
+/// A ray in world space against a height field: the closest hit. `stats`, when given, is overwritten.
+using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats);
+
+/// A row of the table.
+struct MarchEntry {
+  std::string_view name;         ///< as typed: "max-mip"
+  std::string_view fields;       ///< kinds of field that it takes
+  Guarantee guarantee;
+  bool needs_pyramid;
+  HeightMarch cpu;               ///< scalar C++
+  HeightMarch simd;              ///< null: none
+  bool gpu;                      ///< whether a Vulkan realisation exists
+  std::string_view parameters;   ///< its settings with their defaults, for people
+  std::string_view description;  ///< one line
+};
+
+/// All of them, the oracle first.
+std::span<const MarchEntry> marches();
+/// Throws Error listing the names when there is no such march.
+const MarchEntry& find_march(std::string_view name);
+
+}  // namespace scarp

@@ -1,0 +1,386 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/max_mip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scarp/march/grid_axis.h"
+
+namespace scarp {
+namespace {
+
+// What is done in a cell that the ray hits.
+enum class Refine { closed_form, bisect, none };
+
+double lerp(double a, double b, double f) { return a + f * (b - a); }
+
+// The height of a crossing between two nodes. Rounding must not lift it above the higher one: the pyramid bounds the nodes.
+double edge_height(double a, double b, double f) { return std::min(lerp(a, b, std::clamp(f, 0.0, 1.0)), std::max(a, b)); }
+
+// (ray height - surface height) along the ray inside one bilinear cell: f(s) = a s^2 + b s + c, s = t - t_in.
+struct CellQuadratic {
+  double a, b, c;
+  double surface;  // height at s = 0
+
+  CellQuadratic(const CellHeights& h, double u, double v, double du, double dv, double z, double dz) {
+    const double hu = h.h10 - h.h00, hv = h.h01 - h.h00, twist = (h.h11 - h.h10) - hv;
+    a = -twist * du * dv;
+    b = dz - (hu * du + hv * dv + twist * (u * dv + v * du));
+    surface = h.h00 + hu * u + hv * v + twist * u * v;
+    c = z - surface;
+  }
+
+  double at(double s) const { return (a * s + b) * s + c; }
+
+  // The root that a ray going downwards through zero meets: where f falls. Without cancellation, as in Ramsey et al. 2004.
+  double falling_root() const {
+    const double root = std::sqrt(std::max(0.0, b * b - 4 * a * c));
+    return b < 0 ? 2 * c / (root - b) : -(b + root) / (2 * a);
+  }
+  // Starting and ending above zero in [0, length]: whether it comes down to zero in between.
+  bool dips(double length) const { return a > 0 && b < 0 && -b < 2 * a * length && b * b >= 4 * a * c; }
+  double vertex_value() const { return c - b * b / (4 * a); }
+  // Starting and ending below zero: whether it rises above zero in between.
+  bool peaks(double length) const { return a < 0 && b > 0 && b < -2 * a * length && b * b > 4 * a * c; }
+};
+
+// Where the ray is, as far as known, at the entry of the current cell.
+enum class Side { unknown, above, below };
+
+// How the ray came to where it is: through a line of constant column (x) or row (y), or not through a line.
+enum class Through { point, x_line, y_line };
+
+template <class T, bool Holes, Refine refine>
+class Walk {
+ public:
+  Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray, const GridRay& local,
+       int halvings)
+      : field_(field), grid_(grid), levels_(pyramid.levels().data()), top_(pyramid.level_count() - 1),
+        maxima_(pyramid.level<T>(0).data), x_(local.origin.x, local.direction.x, grid.cols - 1),
+        y_(local.origin.y, local.direction.y, grid.rows - 1), z_(local.origin.z), dz_(local.direction.z), t_in_(ray.t_min),
+        t_end_(ray.t_max), strict_(ray.start == RayStart::on_surface), halvings_(halvings), ray_(ray) {}
+
+  Hit run() {
+    if (strict_) {
+      if (!leave_start_cell()) return answer_;
+    } else {
+      if (!enter()) return answer_;
+      if (!x_.moves() && !y_.moves()) return vertical();
+    }
+    return walk();
+  }
+
+  MarchStats stats;
+
+ private:
+  double ray_height(double t) const { return z_ + dz_ * t; }
+
+  CellHeights heights(int col, int row) const {
+    const T *north = grid_.row(row) + col, *south = north + grid_.row_stride;
+    return {static_cast<double>(north[0]), static_cast<double>(north[1]), static_cast<double>(south[0]),
+            static_cast<double>(south[1])};
+  }
+
+  CellQuadratic quadratic(const CellHeights& h, double t) const {
+    return {h, std::clamp(x_.at(t) - col_, 0.0, 1.0), std::clamp(y_.at(t) - row_, 0.0, 1.0), x_.direction, y_.direction,
+            ray_height(t), dz_};
+  }
+
+  // How far the ray is above the surface where it comes into or leaves the current cell. At a line, both neighbours compute
+  // the same value from the same two nodes.
+  double clearance(const CellHeights& h, Through through, bool leaving, double t) const {
+    switch (through) {
+      case Through::x_line: {
+        const bool high = (x_.ahead == 1) == leaving;
+        return ray_height(t) - edge_height(high ? h.h10 : h.h00, high ? h.h11 : h.h01, y_.at(t) - row_);
+      }
+      case Through::y_line: {
+        const bool high = (y_.ahead == 1) == leaving;
+        return ray_height(t) - edge_height(high ? h.h01 : h.h00, high ? h.h11 : h.h10, x_.at(t) - col_);
+      }
+      case Through::point: break;
+    }
+    return quadratic(h, t).c;
+  }
+
+  // Clips the ray to the field and to the highest sample; finds the first cell.
+  bool enter() {
+    t_in_ = std::max({t_in_, x_.enter_time(), y_.enter_time()});
+    // A coarse block may reach beyond the last row or column; the ray's end does not.
+    t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
+    // A ray along an axis is inside the strip or it is not; written so that NaN is a miss.
+    const bool beside = (!x_.moves() && !(x_.origin >= 0 && x_.origin <= x_.cells)) ||
+                        (!y_.moves() && !(y_.origin >= 0 && y_.origin <= y_.cells));
+    if (beside || !(t_in_ <= t_end_)) return false;
+    col_ = x_.cell_after(t_in_);
+    row_ = y_.cell_after(t_in_);
+    const double highest = field_.max_sample();
+    if (ray_height(t_in_) > highest) {
+      if (!(dz_ < 0)) return false;
+      // Down to the highest sample, less the two roundings of the quotient; from there back to where the cell begins, so that
+      // a peak which the ray just touches is still ahead.
+      const double quotient = (highest - z_) / dz_, t_top = quotient - 2 * kUnit * std::abs(quotient);
+      if (t_top > t_end_) return false;
+      if (t_top > t_in_) {
+        col_ = x_.cell_before(t_top);
+        row_ = y_.cell_before(t_top);
+        t_in_ = std::max({t_in_, x_.line_time(col_ + 1 - x_.ahead), y_.line_time(row_ + 1 - y_.ahead)});
+      }
+      side_ = Side::above;
+    }
+    // Found on rays from cameras and from the ground: a root start costs steps, level 0 forgoes the first wide skips.
+    level_ = std::min(kStartLevel, top_);
+    return true;
+  }
+
+  // A ray that begins on the surface: its height is that of the surface, the root at the start is divided out of the
+  // quadratic, and what is left decides. False: answered.
+  bool leave_start_cell() {
+    col_ = ray_.start_cell.col;
+    row_ = ray_.start_cell.row;
+    if (!x_.inside(col_) || !y_.inside(row_) || (Holes && grid_.is_hole(col_, row_))) return false;
+    const CellHeights h = heights(col_, row_);
+    const CellQuadratic start = quadratic(h, t_in_);
+    z_ = start.surface - dz_ * t_in_;
+    t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
+    const double tx = x_.line_time(col_ + x_.ahead), ty = y_.line_time(row_ + y_.ahead);
+    const double length = std::min({tx, ty, t_end_}) - t_in_;
+    ++stats.cell_tests;
+    if (length > 0) {
+      // f(s) = s (a s + b): below right after the start, or after the second root; if anywhere by more than rounding.
+      const bool dips = start.a > 0 && start.b < 0 && -start.b < 2 * start.a * length;
+      const double lowest = dips ? -start.b * start.b / (4 * start.a) : length * (start.a * length + start.b);
+      if (lowest < 0 && is_hit(lowest, t_in_)) return answer(start.b < 0 || start.a == 0 ? 0.0 : start.b / -start.a), false;
+    }
+    side_ = Side::above;
+    level_ = 0;
+    return std::min(tx, ty) < t_end_ && advance(tx <= ty, std::min(tx, ty), tx <= ty ? col_ + x_.ahead : row_ + y_.ahead);
+  }
+
+  // Straight up or down: one cell, one height.
+  Hit vertical() {
+    if (Holes && grid_.is_hole(col_, row_)) return answer_;
+    ++stats.cell_tests;
+    const double above = quadratic(heights(col_, row_), t_in_).c, surface = ray_height(t_in_) - above;
+    if (above < 0 && side_ != Side::above) {
+      answer_.status = HitStatus::below;
+    } else if (above <= 0) {
+      answer(0.0);
+    } else if (ray_height(t_end_) <= surface) {
+      answer((surface - z_) / dz_ - t_in_);
+    }
+    return answer_;
+  }
+
+  Hit walk() {
+    const bool falling = dz_ < 0;
+    const double highest = field_.max_sample();
+    for (;;) {
+      const Level& level = levels_[level_];
+      const int block_col = col_ >> level_, block_row = row_ >> level_;
+      const int line_x = (block_col + x_.ahead) << level_, line_y = (block_row + y_.ahead) << level_;
+      const double tx = x_.line_time(line_x), ty = y_.line_time(line_y);
+      const bool through_x = tx <= ty;  // a tie: first through the line of constant column
+      const double t_line = through_x ? tx : ty;
+      const double t_out = std::min(t_line, t_end_);
+      // The ray's height is linear, and so it is after rounding: lowest at one end of the block.
+      const double lowest = ray_height(falling ? t_out : t_in_);
+      const T maximum = maxima_[level.begin + static_cast<std::ptrdiff_t>(block_row) * level.cols + block_col];
+      ++stats.steps;
+      if (lowest > static_cast<double>(maximum)) {
+        // Above all of the block. Where it has holes, the last cell may be one: the next begins with a question.
+        if (Holes) {
+          side_ = Side::unknown;
+        } else if (side_ != Side::below ||
+                   ray_height(falling ? t_in_ : t_out) - static_cast<double>(maximum) > rounding_of_clearance(t_out)) {
+          side_ = Side::above;
+        }
+        begun_ = true;
+        if (lowest > highest && !falling) return answer_;
+      } else if (level_ > 0) {
+        --level_;
+        ++stats.level_changes;
+        continue;
+      } else {
+        if (test_cell(through_x, t_line)) return answer_;
+        begun_ = true;
+      }
+      if (!(t_line < t_end_) || !advance(through_x, t_line, through_x ? line_x : line_y)) return answer_;
+    }
+  }
+
+  // Steps over a line of the current level; false outside the field. Crossing into another parent goes one level up.
+  bool advance(bool through_x, double t, int line) {
+    if (through_x) {
+      col_ = line + x_.ahead - 1;
+      if (!x_.inside(col_)) return false;
+      if (level_ > 0) row_ = y_.cell_before(t);
+      through_ = Through::x_line;
+    } else {
+      row_ = line + y_.ahead - 1;
+      if (!y_.inside(row_)) return false;
+      if (level_ > 0) col_ = x_.cell_after(t);
+      through_ = Through::y_line;
+    }
+    t_in_ = t;
+    if (((line >> level_) & 1) == 0 && level_ < top_) {
+      ++level_;
+      ++stats.level_changes;
+    }
+    return true;
+  }
+
+  // The surface of the current cell; true: answered. Otherwise side_ is that of the way out.
+  bool test_cell(bool through_x, double t_line) {
+    if (Holes && grid_.is_hole(col_, row_)) {
+      // Passing the corner of a hole is not leaving the ground.
+      if (t_line > t_in_) side_ = Side::unknown;
+      return false;
+    }
+    ++stats.cell_tests;
+    const CellHeights h = heights(col_, row_);
+    if (side_ == Side::unknown) {
+      const double in = clearance(h, through_, false, t_in_);
+      if (in == 0 && !strict_) return answer(0.0), true;
+      side_ = in >= 0 ? Side::above : Side::below;
+      if (side_ == Side::below && !begun_) answer_.status = HitStatus::below;
+    }
+    const bool ends_inside = t_line > t_end_;
+    const double t_out = std::min(t_line, t_end_), length = t_out - t_in_;
+    const Through exit = ends_inside ? Through::point : through_x ? Through::x_line : Through::y_line;
+    const double out = clearance(h, exit, true, t_out);
+    if (side_ == Side::above) {
+      if (out <= 0 && is_hit(out, t_out)) return hit_in_cell(quadratic(h, t_in_), length), true;
+      if constexpr (refine == Refine::bisect) return false;
+      const CellQuadratic f = quadratic(h, t_in_);
+      if (f.dips(length) && is_hit(f.vertex_value(), t_in_)) return hit_in_cell(f, length), true;
+      return false;
+    }
+    if (out > rounding_of_clearance(t_out)) {
+      side_ = Side::above;
+      return false;
+    }
+    if constexpr (refine == Refine::bisect) return false;
+    const CellQuadratic f = quadratic(h, t_in_);
+    if (f.peaks(length)) return hit_in_cell(f, length), true;
+    return false;
+  }
+
+  // The most that rounding can add to a clearance (doc/dev/numerics.md), for the two places where a sign alone is not enough:
+  // a ray from below has risen only beyond it (else one that rises through a node could be seen above at one line and, by
+  // rounding, not above at the next: a hit from below), and a ray from the surface is strictly below only beyond it.
+  double rounding_of_clearance(double t) const {
+    const double low = field_.min_sample(), high = field_.max_sample();
+    const double sideways = std::abs(x_.origin) + std::abs(x_.direction * t) + std::abs(y_.origin) + std::abs(y_.direction * t);
+    const double upright = std::abs(z_) + std::abs(dz_ * t) + std::max(std::abs(low), std::abs(high));
+    return kRoundings * kUnit * (upright + sideways * (high - low));
+  }
+
+  // Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly below.
+  bool is_hit(double clearance, double t) const { return !strict_ || clearance < -rounding_of_clearance(t); }
+
+  // The signs have decided that there is a hit in the cell; the quadratic only says where.
+  void hit_in_cell(const CellQuadratic& f, double length) {
+    if constexpr (refine == Refine::bisect) {
+      double low = 0, high = length;
+      for (int i = 0; i < halvings_; ++i) {
+        const double middle = 0.5 * (low + high);
+        (f.at(middle) > 0 ? low : high) = middle;
+      }
+      answer(high);
+    } else if constexpr (refine == Refine::closed_form) {
+      const double s = f.falling_root();
+      answer(s >= 0 ? std::min(s, length) : 0.0);
+    } else {
+      answer_.status = HitStatus::hit;
+    }
+  }
+
+  // A hit at t_in + s in the current cell.
+  void answer(double s) {
+    answer_.status = HitStatus::hit;
+    if constexpr (refine != Refine::none) {
+      const double t = std::clamp(t_in_ + s, ray_.t_min, ray_.t_max);
+      answer_.t = t;
+      answer_.cell = {col_, row_};
+      answer_.u = std::clamp(x_.at(t) - col_, 0.0, 1.0);
+      answer_.v = std::clamp(y_.at(t) - row_, 0.0, 1.0);
+      answer_.height = field_.height_from_sample(ray_height(t));
+    }
+  }
+
+  using Level = MaxPyramid::Level;
+  static constexpr int kStartLevel = 4;
+  static constexpr double kUnit = 0x1p-53;      // unit roundoff of double
+  static constexpr double kRoundings = 16;  // numerics.md counts 11 on the way to a clearance
+
+  const HeightField& field_;
+  const SampleGrid<T>& grid_;
+  const Level* levels_;
+  int top_;
+  const T* maxima_;
+  GridAxis x_, y_;
+  double z_, dz_;  // ray height in sample units
+  double t_in_, t_end_;
+  bool strict_;
+  int halvings_;
+  const Ray& ray_;
+
+  int col_ = 0, row_ = 0;  // the cell that the ray is in: this is the state, times are derived from it
+  int level_ = 0;
+  Side side_ = Side::unknown;
+  Through through_ = Through::point;
+  bool begun_ = false;  // whether anything has been left behind: only the first cell can say that the ray began below
+  Hit answer_;
+};
+
+template <Refine refine>
+Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* stats) {
+  const HeightField& field = *target.field;
+  Hit hit;
+  if (stats) *stats = {};
+  if (!field.has_cells() || field.all_nodata()) return hit;
+  // Directions of extreme length are brought near 1 by a power of two, which rounds nothing; t goes back by the same.
+  GridRay local = field.grid_from_world(ray);
+  Ray scaled = ray;
+  const double longest = std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
+  int exponent = 0;
+  if (!(longest > 0x1p-500 && longest < 0x1p500)) {
+    if (!(longest > 0) || !std::isfinite(longest)) return hit;
+    exponent = std::ilogb(longest);
+    for (int axis = 0; axis < 3; ++axis) local.direction[axis] = std::ldexp(local.direction[axis], -exponent);
+    scaled.t_min = std::ldexp(ray.t_min, exponent);
+    scaled.t_max = std::ldexp(ray.t_max, exponent);
+  }
+  field.visit([&](const auto& grid) {
+    using T = std::remove_cvref_t<decltype(grid.data[0])>;
+    const auto run = [&](auto walk) {
+      hit = walk.run();
+      if (stats) *stats = walk.stats;
+    };
+    if (grid.has_holes) {
+      run(Walk<T, true, refine>(field, grid, *target.pyramid, scaled, local, halvings));
+    } else {
+      run(Walk<T, false, refine>(field, grid, *target.pyramid, scaled, local, halvings));
+    }
+  });
+  if (exponent != 0 && hit) hit.t = std::ldexp(hit.t, -exponent);
+  return hit;
+}
+
+}  // namespace
+
+Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats) {
+  return march<Refine::closed_form>(target, ray, 0, stats);
+}
+
+Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
+  return march<Refine::bisect>(target, ray, settings.bisect.halvings, stats);
+}
+
+bool occluded_max_mip(const HeightTarget& target, const Ray& ray) {
+  return march<Refine::none>(target, ray, 0, nullptr).status == HitStatus::hit;
+}
+
+}  // namespace scarp

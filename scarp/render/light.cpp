@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/light.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/trigonometric.hpp>
+
+#include "scarp/base/error.h"
+#include "scarp/render/compass.h"
+
+namespace scarp {
+namespace {
+
+// Light of the sky on level ground; the sun gives what lacks to white.
+constexpr vec3 kSky(0.27f, 0.32f, 0.39f);
+// Below sin(30 degrees) the sun is not made stronger any more: level ground darkens in the evening.
+constexpr double kLowestFullSun = 0.5;
+
+}  // namespace
+
+void validate(const SunSettings& settings) {
+  if (!std::isfinite(settings.azimuth_deg)) {
+    throw Error(fmt::format("sun: the azimuth is {}; it must be a finite number of degrees", settings.azimuth_deg));
+  }
+  if (!(settings.altitude_deg > 0 && settings.altitude_deg <= 90)) {
+    throw Error(fmt::format("sun: the altitude is {}; it must be above 0 and at most 90 degrees", settings.altitude_deg));
+  }
+}
+
+Light::Light(const SunSettings& settings, double grid_north_azimuth)
+    : to_sun_(towards(glm::radians(settings.azimuth_deg), glm::radians(settings.altitude_deg), grid_north_azimuth)),
+      sky_side_(normalize(dvec3(0, 0, 1) + 0.7 * towards(glm::radians(settings.azimuth_deg), 0, grid_north_azimuth))),
+      sun_((vec3(1.0f) - kSky) / static_cast<float>(std::max(to_sun_.z, kLowestFullSun))),
+      sky_(kSky) {}
+
+vec3 Light::on(const dvec3& normal, bool in_sun) const {
+  const double sky = (1 + dot(normal, sky_side_)) / (1 + sky_side_.z);
+  const double sun = in_sun ? std::max(0.0, dot(normal, to_sun_)) : 0.0;
+  return static_cast<float>(sky) * sky_ + static_cast<float>(sun) * sun_;
+}
+
+}  // namespace scarp

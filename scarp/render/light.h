@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// The light on the ground: a sun at a compass azimuth and altitude, and the sky around it.
+//
+// Level ground in full sun has the brightness 1 in every channel (for a sun at 30 degrees or more), so colours of a ramp
+// stay what they are there; slopes are brighter or darker. Shadowed ground has the sky's light alone, bluish, and more of it
+// where it turns towards the sun's side: shadowed slopes still read.
+#pragma once
+
+#include "scarp/base/vec.h"
+
+namespace scarp {
+
+/// The sun. Its rays are parallel.
+struct SunSettings {
+  double azimuth_deg = 315;  ///< compass azimuth, clockwise from true north; finite
+  double altitude_deg = 45;  ///< above the horizon; above 0, at most 90
+};
+
+/// Throws Error naming the first setting out of its range.
+void validate(const SunSettings& settings);
+
+class Light {
+ public:
+  Light(const SunSettings& settings, double grid_north_azimuth);
+
+  /// Unit vector.
+  const dvec3& to_sun() const { return to_sun_; }
+  /// Light on a surface with this unit normal, in linear light.
+  vec3 on(const dvec3& normal, bool in_sun) const;
+
+ private:
+  dvec3 to_sun_;
+  dvec3 sky_side_;  // where the sky is brightest
+  vec3 sun_;        // on a surface that faces the sun
+  vec3 sky_;        // on level ground
+};
+
+}  // namespace scarp

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// A picture of a terrain scene, in one of several looks.
+//
+//   shaded  colours by height, sun with exact hard shadows, sky, a block below the terrain
+//   height  grey, linear in height from the field's lowest (1) to its highest point (255); misses are black (0)
+//   steps   what the march cost: steps per ray as a ramp from the least to the most in the picture
+//   error   where the march is wrong, see error_look.h
+//
+// Only `shaded` takes several samples per pixel; the others show one ray's answer, through the middle of the pixel.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "scarp/render/camera.h"
+#include "scarp/render/error_look.h"
+#include "scarp/render/film.h"
+#include "scarp/render/light.h"
+#include "scarp/scene/terrain_scene.h"
+
+namespace scarp {
+
+enum class Look { shaded, height, steps, error };
+
+/// "shaded", "height", "steps", "error".
+std::string_view name_of(Look look);
+/// Throws Error listing the names when there is no such look.
+Look find_look(std::string_view name);
+
+/// How a picture is made. Where it is seen from is the camera's matter.
+struct PictureSettings {
+  int width = 1280;   ///< pixels, 1..65536; width * height at most 2^28
+  int height = 720;
+  Look look = Look::shaded;
+  int aa = 2;         ///< aa x aa samples per pixel in `shaded`; 1..16
+  std::string ramp;   ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
+  SunSettings sun;
+  bool shadows = true;
+  bool plinth = true;           ///< walls down to a common base, in `shaded`
+  double haze = 0.1;            ///< share of haze over a distance as long as the field's diagonal; 0..0.95
+  double error_tolerance = 0.1; ///< of `error`, along the ray, in shorter sides of a cell; >= 0
+};
+
+/// Throws Error naming the first setting out of its range.
+void validate(const PictureSettings& settings);
+
+/// What a camera should have in the picture: the field, with the block below it when `plinth` is on, whatever the look, so
+/// that pictures of several looks lie on one another.
+Box picture_box(const HeightField& field, bool plinth);
+
+/// What was found besides the picture.
+struct StepRange {
+  std::uint32_t least = 0;
+  std::uint32_t most = 0;
+  double mean = 0;
+};
+
+struct Picture {
+  Image image;
+  std::optional<StepRange> steps;      ///< of `steps`
+  std::optional<ErrorCounts> errors;   ///< of `error`
+};
+
+/// `camera` must have been made for the settings' width and height. Throws Error when a setting is out of its range or the
+/// scene has nothing to see (no cells, no valid samples), Interrupted when progress asks for it.
+Picture render_picture(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
+                       const PictureSettings& settings, const Progress& progress = {});
+
+}  // namespace scarp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The block that a terrain model is cut out of: vertical walls from its border, and from the edges of its holes, down to a
+// common base. The surface itself is a sheet; walls are a matter of pictures and no part of any march.
+//
+//        __/\_            A ray that passes from outside (or from over a hole) into a valid cell, below the surface's edge
+//   ____/     \___        and above the base, meets a wall there. Cells are walked one after another; a field without
+//   |#############|       holes has walls at its border alone, so its first cell decides.
+//   |#############|  base
+#pragma once
+
+#include <optional>
+
+#include "scarp/base/ray.h"
+#include "scarp/field/height_field.h"
+
+namespace scarp {
+
+/// Height of the base that suits a field: below its lowest point by a share of its size.
+double plinth_base(const HeightField& field);
+
+class Plinth {
+ public:
+  /// `base` in metres, below the field's lowest point. The field must have valid samples.
+  Plinth(const HeightField& field, double base);
+
+  struct Wall {
+    double t;      ///< in lengths of the ray's direction
+    dvec3 normal;  ///< unit, level, towards the ray's side
+  };
+  /// The first wall that the ray meets from outside within its range. The surface may be met before it; a ray that meets
+  /// the surface between two walls is followed no further.
+  std::optional<Wall> intersect(const Ray& ray) const;
+
+ private:
+  HeightField field_;
+  double base_sample_;  // in sample units
+};
+
+}  // namespace scarp

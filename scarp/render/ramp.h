@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Colours for values. Colour arithmetic is in linear light; tables and pictures are sRGB.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "scarp/base/vec.h"
+
+namespace scarp {
+
+/// Names of all ramps: viridis, magma, inferno, plasma, cividis, grey, hypsometric.
+std::span<const std::string_view> ramp_names();
+
+/// A ramp laid over a range of values. `hypsometric` breaks at sea level: blues up to 0 (elevation models store the
+/// sea as 0), land colours above, each scaled to its own part of the range; the others run from end to end.
+class Ramp {
+ public:
+  /// Throws Error listing the names when there is no such ramp. low <= high.
+  Ramp(std::string_view name, double low, double high);
+
+  /// In linear light, 0..1. Values outside the range have the colour of its nearer end.
+  vec3 operator()(double value) const;
+
+ private:
+  struct Piece {
+    double low, high;
+    std::vector<vec3> colours;  // evenly spaced from low to high
+  };
+  std::vector<Piece> pieces_;  // from low to high; a value belongs to the first one that ends at or above it
+};
+
+/// sRGB 0..1 to linear light, and back to a byte (rounded, clamped).
+vec3 linear_from_srgb(vec3 srgb);
+unsigned char srgb_byte(float linear);
+
+}  // namespace scarp

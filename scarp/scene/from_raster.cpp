@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/from_raster.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <variant>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+
+HeightField height_field_from(Raster raster, double exaggeration) {
+  HeightFieldSettings settings;
+  settings.cell_x = raster.georeference.cell_x_m;
+  settings.cell_y = raster.georeference.cell_y_m;
+  settings.scale = raster.scale;
+  settings.offset = raster.offset;
+  settings.exaggeration = exaggeration;
+  settings.nodata = raster.nodata;
+  try {
+    return std::visit(
+        [&](auto&& samples) { return HeightField::own(std::move(samples), raster.cols, raster.rows, settings); },
+        std::move(raster.samples));
+  } catch (const Error& error) {
+    throw Error(fmt::format("raster '{}': {}", raster.path, error.what()));
+  }
+}
+
+}  // namespace scarp

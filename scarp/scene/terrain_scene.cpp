@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/terrain_scene.h"
+
+#include <utility>
+
+#include "scarp/march/max_mip.h"
+
+namespace scarp {
+
+TerrainScene::TerrainScene(HeightField field, const MarchEntry& march, const MarchSettings& settings)
+    : field_(std::move(field)), march_(&march), settings_(settings) {
+  validate(settings_);
+  if (march.needs_pyramid) pyramid_.emplace(field_);
+}
+
+Hit TerrainScene::closest_hit(const Ray& ray, MarchStats* stats) const {
+  return march_->cpu(target(), ray, settings_, stats);
+}
+
+bool TerrainScene::occluded(const Ray& ray) const {
+  if (march_->cpu == march_max_mip) return occluded_max_mip(target(), ray);
+  return static_cast<bool>(closest_hit(ray));
+}
+
+}  // namespace scarp

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/gdal_dataset.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "scarp/base/error.h"
+#include "scarp/source/band_samples.h"
+#include "scarp/source/raster_place.h"
+#include "scarp/source/vertical_unit.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::size_t kWarningsWorthANote = 3;
+constexpr int kSubdatasetsListed = 6;
+
+// A container without bands of its own (netCDF, HDF5): name what is in it.
+[[noreturn]] void refuse_container(GDALDataset& dataset) {
+  char** names = dataset.GetMetadata("SUBDATASETS");
+  std::string list;
+  int count = 0;
+  for (int i = 1;; ++i) {
+    const char* name = CSLFetchNameValue(names, fmt::format("SUBDATASET_{}_NAME", i).c_str());
+    if (!name) break;
+    if (++count <= kSubdatasetsListed) list += fmt::format("{}{}", list.empty() ? "" : ", ", name);
+  }
+  if (count == 0) throw Error("holds no raster band");
+  if (count > kSubdatasetsListed) list += fmt::format(" and {} more", count - kSubdatasetsListed);
+  throw Error(fmt::format("holds {} rasters and no band of its own; open one of them: {}", count, list));
+}
+
+int choose_band(GDALDataset& dataset, int wanted) {
+  const int count = dataset.GetRasterCount();
+  if (count == 0) refuse_container(dataset);
+  if (wanted != 0) {
+    if (wanted < 1 || wanted > count)
+      throw Error(fmt::format("band {} does not exist; it has {}: --band 1..{}", wanted, count, count));
+    return wanted;
+  }
+  int heights = 0, chosen = 0;
+  bool colours = false;
+  for (int b = 1; b <= count; ++b) {
+    const GDALColorInterp meaning = dataset.GetRasterBand(b)->GetColorInterpretation();
+    if (meaning == GCI_AlphaBand) continue;
+    ++heights;
+    if (chosen == 0) chosen = b;
+    colours = colours || meaning == GCI_RedBand || meaning == GCI_CyanBand || meaning == GCI_YCbCr_YBand;
+  }
+  if (heights != 1) {
+    throw Error(fmt::format("{} with {} bands; one band of heights is needed: choose one with --band 1..{}",
+                            colours ? "is a colour photograph" : "is a raster", count, count));
+  }
+  if (dataset.GetRasterBand(chosen)->GetColorTable()) {
+    throw Error(
+        "its samples are indices into a palette of colours, no heights; say --band 1 if they are heights all the same");
+  }
+  return chosen;
+}
+
+RasterWindow choose_window(GDALDataset& dataset, const std::optional<RasterWindow>& wanted) {
+  const int cols = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
+  if (!wanted) return {0, 0, cols, rows};
+  const RasterWindow& w = *wanted;
+  if (w.col < 0 || w.row < 0 || w.cols < 1 || w.rows < 1 || w.cols > cols - w.col || w.rows > rows - w.row) {
+    throw Error(fmt::format("the window {},{},{},{} does not lie in its {} x {} samples; --window COL,ROW,COLS,ROWS",
+                            w.col, w.row, w.cols, w.rows, cols, rows));
+  }
+  return w;
+}
+
+// Metres per vertical unit, from what is said first: the caller, the band, the vertical CRS.
+double choose_vertical_unit(GDALRasterBand& band, const RasterPlace& place, const std::string& wanted, Raster& raster) {
+  if (!wanted.empty()) {
+    const auto metres = metres_per_vertical_unit(wanted);
+    if (!metres)
+      throw Error(
+          fmt::format("the vertical unit '{}' is not known; m, ft, us-ft, km, dm, cm, mm, yd and fathom are", wanted));
+    raster.vertical_unit = wanted;
+    return *metres;
+  }
+  const std::string own = band.GetUnitType();
+  if (!own.empty()) {
+    raster.vertical_unit = own;
+    if (const auto metres = metres_per_vertical_unit(own)) return *metres;
+    raster.notes.push_back(fmt::format(
+        "the vertical unit '{}' is no length known here: metres are assumed; say --unit if they are not", own));
+    return 1;
+  }
+  if (place.vertical_unit > 0) {
+    raster.vertical_unit = place.vertical_unit_name;
+    return place.vertical_unit;
+  }
+  return 1;
+}
+
+void find_heights(GDALRasterBand& band, const RasterPlace& place, const RasterOptions& options, Raster& raster) {
+  raster.scale = options.scale ? *options.scale : band.GetScale();
+  raster.offset = options.offset ? *options.offset : band.GetOffset();
+  if (!std::isfinite(raster.scale) || raster.scale == 0 || !std::isfinite(raster.offset)) {
+    throw Error(
+        fmt::format("its heights are sample * {} + {}, which are none; give finite --scale (not 0) and --offset",
+                    raster.scale, raster.offset));
+  }
+  const double unit = choose_vertical_unit(band, place, options.unit, raster);
+  if (unit != 1) {
+    raster.scale *= unit;
+    raster.offset *= unit;
+    raster.notes.push_back(fmt::format("heights are in '{}' and become metres: x {:.10g}", raster.vertical_unit, unit));
+  }
+}
+
+// A Raster's scale is above 0: with a negative one the heights are computed here.
+void apply_negative_scale(Raster& raster) {
+  std::visit(
+      [&](const auto& samples) {
+        std::vector<float> heights(samples.size());
+        std::transform(samples.begin(), samples.end(), heights.begin(), [&](auto sample) {
+          if (raster.nodata && sample == *raster.nodata) return std::numeric_limits<float>::quiet_NaN();
+          return static_cast<float>(static_cast<double>(sample) * raster.scale + raster.offset);
+        });
+        raster.samples = std::move(heights);
+      },
+      decltype(raster.samples)(std::move(raster.samples)));
+  raster.notes.push_back(
+      fmt::format("heights fall with the samples (x {:g}): they became float32 in metres", raster.scale));
+  raster.scale = 1;
+  raster.offset = 0;
+  raster.nodata.reset();
+}
+
+void flip(Raster& raster, bool rows, bool cols) {
+  std::visit(
+      [&](auto& samples) {
+        const auto begin = samples.begin();
+        for (std::ptrdiff_t north = 0, south = raster.rows - 1; rows && north < south; ++north, --south) {
+          std::swap_ranges(begin + north * raster.cols, begin + (north + 1) * raster.cols, begin + south * raster.cols);
+        }
+        for (std::ptrdiff_t row = 0; cols && row < raster.rows; ++row) {
+          std::reverse(begin + row * raster.cols, begin + (row + 1) * raster.cols);
+        }
+      },
+      raster.samples);
+}
+
+}  // namespace
+
+Raster read_dataset(GDALDataset& dataset, const RasterOptions& options, GdalSession& session,
+                    const Progress& progress) {
+  GDALRasterBand& band = *dataset.GetRasterBand(choose_band(dataset, options.band));
+  const RasterWindow window = choose_window(dataset, options.window);
+  Raster raster;
+  raster.cols = window.cols;
+  raster.rows = window.rows;
+  raster.file_type = GDALGetDataTypeName(band.GetRasterDataType());
+
+  // What can be refused without reading is refused first.
+  RasterPlace place = find_place(dataset, window, options);
+  raster.georeference = place.georeference;
+  find_heights(band, place, options, raster);
+  BandSamples read = read_band(band, window, options.nodata, session, progress);
+  raster.samples = std::move(read.samples);
+  raster.nodata = read.nodata;
+  if (raster.scale < 0) apply_negative_scale(raster);
+  flip(raster, place.flip_rows, place.flip_cols);
+
+  raster.notes.insert(raster.notes.end(), read.notes.begin(), read.notes.end());
+  raster.notes.insert(raster.notes.end(), place.notes.begin(), place.notes.end());
+  const auto& warnings = session.warnings();
+  for (std::size_t i = 0; i < std::min(warnings.size(), kWarningsWorthANote); ++i)
+    raster.notes.push_back("GDAL: " + warnings[i]);
+  return raster;
+}
+
+}  // namespace scarp

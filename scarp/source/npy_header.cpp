@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/npy_header.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::string_view kMagic = "\x93NUMPY";
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(fmt::format("its .npy header is damaged: {}; save the array again with numpy.save", what));
+}
+
+// Reads the dictionary, a literal of Python's, from left to right.
+class Literal {
+ public:
+  explicit Literal(std::string_view text) : text_(text) {}
+
+  bool take(char c) {
+    skip_blanks();
+    if (at_ >= text_.size() || text_[at_] != c) return false;
+    ++at_;
+    return true;
+  }
+  void expect(char c) {
+    if (!take(c)) refuse(fmt::format("'{}' expected at byte {} of its dictionary", c, at_));
+  }
+  bool looking_at(char c) {
+    skip_blanks();
+    return at_ < text_.size() && text_[at_] == c;
+  }
+  std::string quoted() {
+    skip_blanks();
+    if (at_ >= text_.size() || (text_[at_] != '\'' && text_[at_] != '"')) refuse("a text in quotes is expected");
+    const char quote = text_[at_++];
+    const std::size_t end = text_.find(quote, at_);
+    if (end == std::string_view::npos) refuse("a text has no closing quote");
+    const std::string value(text_.substr(at_, end - at_));
+    at_ = end + 1;
+    return value;
+  }
+  bool boolean() {
+    skip_blanks();
+    for (const std::string_view word : {"True", "False"}) {
+      if (text_.substr(at_, word.size()) == word) {
+        at_ += word.size();
+        return word == "True";
+      }
+    }
+    refuse("True or False is expected for 'fortran_order'");
+  }
+  std::int64_t integer() {
+    skip_blanks();
+    const std::size_t begin = at_;
+    std::int64_t value = 0;
+    for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9'; ++at_) {
+      if (value > (std::numeric_limits<std::int64_t>::max() - 9) / 10) refuse("an extent is beyond 64 bits");
+      value = value * 10 + (text_[at_] - '0');
+    }
+    if (at_ == begin) refuse("a whole number >= 0 is expected in 'shape'");
+    // Python 2 wrote long integers with a letter.
+    if (at_ < text_.size() && text_[at_] == 'L') ++at_;
+    return value;
+  }
+  void end() {
+    skip_blanks();
+    if (at_ != text_.size()) refuse("something follows its dictionary");
+  }
+
+ private:
+  void skip_blanks() {
+    while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\t' || text_[at_] == '\n' || text_[at_] == '\r'))
+      ++at_;
+  }
+  std::string_view text_;
+  std::size_t at_ = 0;
+};
+
+void parse_descr(std::string_view descr, NpyHeader& header) {
+  header.descr = descr;
+  std::size_t at = 0;
+  if (!descr.empty() && std::string_view("<>|=").find(descr[0]) != std::string_view::npos) {
+    // '=' is the machine's own order, which NumPy never writes: files have a fixed one.
+    if (descr[0] == '=') refuse(fmt::format("the sample type '{}' has no byte order", descr));
+    header.big_endian = descr[0] == '>';
+    at = 1;
+  }
+  if (at == descr.size()) refuse(fmt::format("the sample type '{}' is not known", descr));
+  header.kind = descr[at++];
+  header.bytes = 0;
+  for (; at < descr.size() && descr[at] >= '0' && descr[at] <= '9' && header.bytes < 1000; ++at)
+    header.bytes = header.bytes * 10 + (descr[at] - '0');
+}
+
+std::uint32_t byte(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
+
+}  // namespace
+
+std::int64_t npy_data_begin(std::string_view preamble) {
+  if (preamble.substr(0, kMagic.size()) != kMagic) throw Error("is no .npy array: it does not begin with \\x93NUMPY");
+  if (preamble.size() < kNpyPreambleBytes) refuse("it ends too early");
+  const std::uint32_t major = byte(preamble, 6);
+  if (major < 1 || major > 3)
+    throw Error(fmt::format("is a .npy array of version {}.{}; 1.0, 2.0 and 3.0 are known", major, byte(preamble, 7)));
+  std::int64_t length = byte(preamble, 8) | byte(preamble, 9) << 8;
+  if (major > 1) length |= static_cast<std::int64_t>(byte(preamble, 10) << 16 | byte(preamble, 11) << 24);
+  if (length > kLargestNpyHeader) refuse(fmt::format("a length of {} bytes", length));
+  return (major == 1 ? 10 : 12) + length;
+}
+
+NpyHeader parse_npy_header(std::string_view bytes) {
+  NpyHeader header;
+  header.data_begin = npy_data_begin(bytes);
+  if (static_cast<std::int64_t>(bytes.size()) < header.data_begin) refuse("it ends too early");
+  const std::size_t begin = byte(bytes, 6) == 1 ? 10 : 12;
+  Literal literal(bytes.substr(begin, static_cast<std::size_t>(header.data_begin) - begin));
+  bool has_descr = false, has_order = false, has_shape = false;
+  literal.expect('{');
+  while (!literal.take('}')) {
+    const std::string key = literal.quoted();
+    literal.expect(':');
+    if (key == "descr") {
+      if (literal.looking_at('[') || literal.looking_at('{') || literal.looking_at('(')) {
+        throw Error("is an array of structures; an array of plain numbers is needed: save one field of it");
+      }
+      parse_descr(literal.quoted(), header);
+      has_descr = true;
+    } else if (key == "fortran_order") {
+      header.fortran_order = literal.boolean();
+      has_order = true;
+    } else if (key == "shape") {
+      header.shape.clear();
+      literal.expect('(');
+      while (!literal.take(')')) {
+        header.shape.push_back(literal.integer());
+        if (!literal.take(',')) {
+          literal.expect(')');
+          break;
+        }
+      }
+      has_shape = true;
+    } else {
+      refuse(fmt::format("the entry '{}' is not known", key));
+    }
+    if (!literal.take(',')) {
+      literal.expect('}');
+      break;
+    }
+  }
+  literal.end();
+  if (!has_descr || !has_order || !has_shape) refuse("'descr', 'fortran_order' and 'shape' are needed");
+  return header;
+}
+
+}  // namespace scarp

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// Units of height by the many names that files give them.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+namespace scarp {
+
+/// Metres per unit: "m", "Metres", "ft", "US survey foot", "us-ft", "km", ...; nothing for a name that is no length
+/// known here.
+std::optional<double> metres_per_vertical_unit(std::string_view name);
+
+}  // namespace scarp

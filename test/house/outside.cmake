@@ -1,0 +1,36 @@
+# Installs the built tree and builds a project outside of it against what was installed:
+#   cmake -D ROOT=<checkout> -D BUILD=<build folder> -D WORK=<scratch folder>
+#         -D GENERATOR=... -D CXX=<compiler> -D TYPE=<build type> -D FLAGS=<compiler flags> -P outside.cmake
+cmake_minimum_required(VERSION 3.25)
+
+function(run)
+  execute_process(COMMAND ${ARGN} OUTPUT_VARIABLE output ERROR_VARIABLE output RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "failed (${status}): ${command}\n${output}")
+  endif()
+endfunction()
+
+# outside(COMPONENT options...): configures, builds and runs the program that links scarp::COMPONENT.
+function(outside component)
+  set(folder ${WORK}/${component})
+  run(${CMAKE_COMMAND} -S ${ROOT}/test/house/outside -B ${folder} -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${WORK}/prefix
+      -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=${TYPE} -D CMAKE_CXX_FLAGS=${FLAGS} -D COMPONENT=${component} ${ARGN})
+  run(${CMAKE_COMMAND} --build ${folder})
+  execute_process(COMMAND ${folder}/outside_${component} WORKING_DIRECTORY ${folder} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK})
+run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+outside(core -D CMAKE_DISABLE_FIND_PACKAGE_GDAL=ON -D CMAKE_DISABLE_FIND_PACKAGE_PROJ=ON -D CMAKE_DISABLE_FIND_PACKAGE_PNG=ON)
+outside(scarp)
+
+# The core program is linked with nothing of GDAL's; the installed command line runs from where it is.
+file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${WORK}/core/outside_core RESOLVED_DEPENDENCIES_VAR libraries
+     UNRESOLVED_DEPENDENCIES_VAR unresolved CONFLICTING_DEPENDENCIES_PREFIX conflicting)
+if(libraries MATCHES "libgdal|libproj|libpng")
+  message(FATAL_ERROR "a program that links scarp::core needs ${libraries}")
+endif()
+if(EXISTS ${BUILD}/bin/scarp)
+  run(${WORK}/prefix/bin/scarp --help)
+endif()

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+// Files that are no rasters of heights: one line each, and nothing on stderr.
+#include <cmath>
+
+#include "source/files.h"
+
+namespace scarp {
+namespace {
+
+using namespace test;
+
+// Fails when anything is printed while a test runs: GDAL and PROJ like to talk.
+class DamagedFiles : public Files {
+ protected:
+  void SetUp() override { ::testing::internal::CaptureStderr(); }
+  void TearDown() override { EXPECT_EQ("", ::testing::internal::GetCapturedStderr()); }
+
+  std::string copy_as(const std::string& tiff, const char* driver_name, const std::string& name,
+                      std::vector<const char*> options = {}) {
+    options.push_back(nullptr);
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(driver_name);
+    if (!driver) return {};
+    const GDALDatasetUniquePtr source(GDALDataset::Open(tiff.c_str()));
+    const GDALDatasetUniquePtr copy(driver->CreateCopy(path(name).c_str(), source.get(), FALSE,
+                                                       const_cast<char**>(options.data()), nullptr, nullptr));
+    EXPECT_TRUE(copy);
+    return path(name);
+  }
+
+  std::string slope(GDALDataType type = GDT_Int16, std::vector<const char*> options = {}) {
+    std::vector<double> values(200 * 150);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i * 7919 % 1000) + 1;
+    return write_tiff("slope.tif", type, 200, 150, values, {}, 1, std::move(options));
+  }
+
+  void cut(const std::string& file, double share) {
+    std::filesystem::resize_file(
+        file, static_cast<std::uintmax_t>(static_cast<double>(std::filesystem::file_size(file)) * share));
+  }
+};
+
+TEST_F(DamagedFiles, AMissingFileIsNamed) { expect_says(read_error(path("none.tif")), "does not exist"); }
+TEST_F(DamagedFiles, AnEmptyNameIsRefused) { expect_says(read_error(""), "empty"); }
+TEST_F(DamagedFiles, ADirectoryIsNamed) {
+  expect_says(read_error(folder_.string()), "is a directory");
+  std::filesystem::create_directory(path("d.npy"));
+  expect_says(read_error(path("d.npy")), "is a directory");
+}
+TEST_F(DamagedFiles, AnEmptyFileIsNamed) {
+  for (const char* name : {"e.tif", "e.npy", "e.npz", "N00E010.hgt"})
+    expect_says(read_error(write_bytes(name, "")), "0 bytes", fmt::format("{}", name));
+}
+TEST_F(DamagedFiles, AGitLfsPointerIsNamed) {
+  const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n";
+  for (const char* name : {"p.tif", "p.npy", "p.npz"})
+    expect_says(read_error(write_bytes(name, pointer)), "git lfs pull", fmt::format("{}", name));
+}
+TEST_F(DamagedFiles, AnythingElseIsNoRaster) {
+  expect_says(read_error(write_bytes("t.tif", "hello")), "is no raster");
+  expect_says(read_error(write_bytes("t.tif", std::string(5000, '\0'))), "is no raster");
+  expect_says(read_error(write_bytes("N00E010.hgt", std::string(5000, '\1'))), ".hgt");
+}
+
+TEST_F(DamagedFiles, CutOffFilesAreRefusedAtAnyLength) {
+  for (const double share : {0.1, 0.5, 0.97}) {
+    std::string file = slope();
+    cut(file, share);
+    expect_says(read_error(file), "raster '", fmt::format("{}", share));
+    file = slope(GDT_Float32, {"TILED=YES", "BLOCKXSIZE=64", "BLOCKYSIZE=64", "COMPRESS=DEFLATE"});
+    cut(file, share);
+    expect_says(read_error(file), "raster '", fmt::format("{}", share));
+    for (const auto& [driver, name] : std::vector<std::pair<const char*, const char*>>{
+             {"AAIGrid", "a.asc"}, {"PNG", "a.png"}, {"EHdr", "a.bil"}, {"ENVI", "a.img"}, {"netCDF", "a.nc"}}) {
+      const std::string source = slope(std::string(driver) == "PNG" ? GDT_UInt16 : GDT_Int16);
+      file = copy_as(source, driver, name);
+      if (file.empty()) continue;
+      EXPECT_NO_THROW(read_raster(file, {})) << name;
+      cut(file, share);
+      expect_says(read_error(file), "raster '", fmt::format("{} {}", name, share));
+    }
+  }
+}
+
+TEST_F(DamagedFiles, NetcdfOfEveryKindIsReadWhole) {
+  for (const char* format : {"FORMAT=NC", "FORMAT=NC2", "FORMAT=NC4", "FORMAT=NC4C"}) {
+    const std::string file = copy_as(slope(), "netCDF", "a.nc", {format});
+    if (file.empty()) GTEST_SKIP() << "this GDAL has no netCDF";
+    const Raster raster = read_raster(file, {});
+    EXPECT_EQ(doubles(read_raster(path("slope.tif"), {})), doubles(raster)) << format;
+  }
+}
+
+TEST_F(DamagedFiles, ANetcdfOfSeveralVariablesListsThem) {
+  GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("netCDF");
+  if (!driver) GTEST_SKIP() << "this GDAL has no netCDF";
+  {
+    const GDALDatasetUniquePtr two(
+        GDALDataset::Open(write_tiff("two.tif", GDT_Int16, 2, 2, {1, 2, 3, 4}, {}, 2).c_str()));
+    const GDALDatasetUniquePtr copy(
+        driver->CreateCopy(path("two.nc").c_str(), two.get(), FALSE, nullptr, nullptr, nullptr));
+  }
+  const std::string text = read_error(path("two.nc"));
+  expect_says(text, "Band1");
+  expect_says(text, "NETCDF:");
+  EXPECT_EQ(4, read_raster("NETCDF:\"" + path("two.nc") + "\":Band2", {}).rows * 2);
+}
+
+TEST_F(DamagedFiles, APhotographIsRefusedWithARemedy) {
+  const std::string file = write_tiff("rgb.tif", GDT_Byte, 2, 2, {1, 2, 3, 4}, {}, 3, {"PHOTOMETRIC=RGB"});
+  const std::string text = read_error(file);
+  expect_says(text, "photograph");
+  expect_says(text, "--band");
+  RasterOptions options;
+  options.band = 2;
+  EXPECT_EQ((std::vector<double>{1, 2, 3, 4}), doubles(read_raster(file, options)));
+  options.band = 4;
+  expect_says(read_error(file, options), "band 4 does not exist");
+}
+
+TEST_F(DamagedFiles, SeveralBandsNeedAChoice) {
+  expect_says(read_error(write_tiff("two.tif", GDT_Int16, 2, 2, {1, 2, 3, 4}, {}, 2)), "choose one with --band 1..2");
+}
+
+TEST_F(DamagedFiles, APaletteIsRefused) {
+  const std::string file = write_tiff("p.tif", GDT_Byte, 2, 2, {1, 2, 3, 4}, [](GDALDataset& d) {
+    GDALColorTable colours;
+    const GDALColorEntry red{255, 0, 0, 255};
+    colours.SetColorEntry(1, &red);
+    d.GetRasterBand(1)->SetColorTable(&colours);
+  });
+  expect_says(read_error(file), "palette");
+  RasterOptions options;
+  options.band = 1;
+  EXPECT_NO_THROW(read_raster(file, options));
+}
+
+TEST_F(DamagedFiles, AKeyIsForArchivesOnly) {
+  RasterOptions options;
+  options.key = "height";
+  expect_says(read_error(slope(), options), ".npz");
+}
+
+TEST_F(DamagedFiles, MoreSamplesThanMemoryAreRefusedBeforeTheyAreMade) {
+  // A sparse file: 100 GB would be needed for 200,000 x 130,000 floats, the file has some MB.
+  const std::string file = path("huge.vrt");
+  write_bytes("huge.vrt",
+              "<VRTDataset rasterXSize=\"2000000\" rasterYSize=\"2000000\"><VRTRasterBand dataType=\"Float32\" "
+              "band=\"1\"/></VRTDataset>");
+  const std::string text = read_error(file);
+  expect_says(text, "2000000 x 2000000");
+  expect_says(text, "--window");
+  RasterOptions options;
+  options.window = {1999990, 1999990, 10, 10};
+  EXPECT_EQ(10, read_raster(file, options).cols);
+}
+
+}  // namespace
+}  // namespace scarp

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// Small files for the tests of readers, in a folder that goes away with the test.
+#pragma once
+
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scarp/base/error.h"
+#include "scarp/source/gdal_errors.h"
+#include "scarp/source/read_raster.h"
+
+namespace scarp::test {
+
+class Files : public ::testing::Test {
+ protected:
+  Files() {
+    GDALAllRegister();
+    std::string name = (std::filesystem::temp_directory_path() / "scarp-source-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~Files() override { std::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  std::string write_bytes(const std::string& name, const std::string& bytes) const {
+    std::ofstream(path(name), std::ios::binary) << bytes;
+    return path(name);
+  }
+
+  std::string bytes_of(const std::string& file) const {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  /// A GeoTIFF whose bands all hold `samples`; `edit` sees the dataset before it is closed.
+  std::string write_tiff(const std::string& name, GDALDataType type, int cols, int rows, std::vector<double> samples,
+                         const std::function<void(GDALDataset&)>& edit = {}, int bands = 1,
+                         std::vector<const char*> options = {}) const {
+    options.push_back(nullptr);
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    GDALDatasetUniquePtr dataset(
+        driver->Create(path(name).c_str(), cols, rows, bands, type, const_cast<char**>(options.data())));
+    for (int b = 1; b <= bands; ++b) {
+      EXPECT_EQ(CE_None, dataset->GetRasterBand(b)->RasterIO(GF_Write, 0, 0, cols, rows, samples.data(), cols, rows,
+                                                             GDT_Float64, 0, 0, nullptr));
+    }
+    if (edit) edit(*dataset);
+    return path(name);
+  }
+
+  std::filesystem::path folder_;
+};
+
+/// The samples as doubles, whatever their type.
+inline std::vector<double> doubles(const Raster& raster) {
+  return std::visit([](const auto& s) { return std::vector<double>(s.begin(), s.end()); }, raster.samples);
+}
+
+template <class T>
+bool holds(const Raster& raster) {
+  return std::holds_alternative<std::vector<T>>(raster.samples);
+}
+
+inline bool has_note(const Raster& raster, const std::string& part) {
+  for (const std::string& note : raster.notes) {
+    if (note.find(part) != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// The text of the Error that `f` throws: one line that names `path`; fails the test when it throws none.
+inline std::string error_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Interrupted&) {
+    ADD_FAILURE() << "interrupted";
+  } catch (const Error& error) {
+    const std::string text = error.what();
+    EXPECT_EQ(std::string::npos, text.find('\n')) << text;
+    return text;
+  }
+  ADD_FAILURE() << "no error";
+  return {};
+}
+
+inline std::string read_error(const std::string& path, const RasterOptions& options = {}) {
+  const std::string text = error_of([&] { read_raster(path, options); });
+  EXPECT_NE(std::string::npos, text.find("raster '" + path + "'")) << text;
+  return text;
+}
+
+inline void expect_says(const std::string& text, const std::string& part, const std::string& where = {}) {
+  EXPECT_NE(std::string::npos, text.find(part)) << "expected '" << part << "' in: " << text << " " << where;
+}
+
+}  // namespace scarp::test

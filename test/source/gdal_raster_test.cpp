@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: MIT
+// Samples, holes, heights: what comes out of sound files.
+#include <cmath>
+#include <limits>
+
+#include "source/files.h"
+
+namespace scarp {
+namespace {
+
+using namespace test;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+class GdalRaster : public Files {};
+
+std::function<void(GDALDataset&)> nodata(double value) {
+  return [value](GDALDataset& d) { d.GetRasterBand(1)->SetNoDataValue(value); };
+}
+
+TEST_F(GdalRaster, KeepsInt16UInt16AndFloat32) {
+  const std::vector<double> values{1, 2, 300, 4, 5, 6};
+  EXPECT_TRUE(holds<std::int16_t>(read_raster(write_tiff("a.tif", GDT_Int16, 3, 2, values), {})));
+  EXPECT_TRUE(holds<std::uint16_t>(read_raster(write_tiff("b.tif", GDT_UInt16, 3, 2, values), {})));
+  const Raster raster = read_raster(write_tiff("c.tif", GDT_Float32, 3, 2, values), {});
+  EXPECT_TRUE(holds<float>(raster));
+  EXPECT_EQ(values, doubles(raster));
+  EXPECT_EQ(3, raster.cols);
+  EXPECT_EQ(2, raster.rows);
+  EXPECT_EQ("Float32", raster.file_type);
+  EXPECT_EQ(path("c.tif"), raster.path);
+}
+
+TEST_F(GdalRaster, WidensBytesAndSaysSo) {
+  const Raster bytes = read_raster(write_tiff("a.tif", GDT_Byte, 2, 2, {0, 1, 200, 255}), {});
+  EXPECT_TRUE(holds<std::uint16_t>(bytes));
+  EXPECT_TRUE(has_note(bytes, "kept as uint16"));
+  EXPECT_EQ((std::vector<double>{0, 1, 200, 255}), doubles(bytes));
+}
+
+TEST_F(GdalRaster, ReadsSignedBytesWithTheirSign) {
+  // -128 and 5 as bytes, with GDAL's remark that they are signed.
+  const std::string file = write_tiff(
+      "a.tif", GDT_Byte, 2, 2, {128, 5, 255, 0},
+      [](GDALDataset& d) { d.GetRasterBand(1)->SetMetadataItem("PIXELTYPE", "SIGNEDBYTE", "IMAGE_STRUCTURE"); }, 1,
+      {"PIXELTYPE=SIGNEDBYTE"});
+  const Raster raster = read_raster(file, {});
+  EXPECT_TRUE(holds<std::int16_t>(raster));
+  EXPECT_EQ((std::vector<double>{-128, 5, -1, 0}), doubles(raster));
+}
+
+TEST_F(GdalRaster, NarrowsWideTypesAndNamesTheRounding) {
+  const Raster whole = read_raster(write_tiff("a.tif", GDT_Int32, 2, 1, {16777216, -5}), {});
+  EXPECT_TRUE(holds<float>(whole));
+  EXPECT_TRUE(has_note(whole, "none was rounded"));
+  const Raster rounded = read_raster(write_tiff("b.tif", GDT_UInt32, 2, 1, {16777217, 5}), {});
+  EXPECT_TRUE(has_note(rounded, "rounded by 1 at most"));
+  EXPECT_TRUE(has_note(read_raster(write_tiff("c.tif", GDT_Float64, 2, 1, {0.1, 5}), {}),
+                       "Float64 samples became float32, rounded by 1.49e-09"));
+}
+
+TEST_F(GdalRaster, RefusesComplexSamples) {
+  expect_says(read_error(write_tiff("a.tif", GDT_CFloat32, 2, 1, {1, 2})), "complex");
+}
+
+TEST_F(GdalRaster, KeepsTheNodataValue) {
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {-32768, 7}, nodata(-32768)), {});
+  EXPECT_EQ(-32768, raster.nodata);
+}
+
+TEST_F(GdalRaster, NodataOfTheCallerWins) {
+  RasterOptions options;
+  options.nodata = 7;
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {-32768, 7}, nodata(-32768)), options);
+  EXPECT_EQ(7, raster.nodata);
+  options.nodata = kNan;
+  EXPECT_FALSE(read_raster(path("a.tif"), options).nodata.has_value());
+}
+
+TEST_F(GdalRaster, NodataThatTheTypeCannotHoldIsNone) {
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_UInt16, 2, 1, {1, 7}, nodata(-9999)), {});
+  EXPECT_FALSE(raster.nodata.has_value());
+  EXPECT_TRUE(has_note(raster, "cannot occur"));
+}
+
+TEST_F(GdalRaster, NodataNearTheLargestFloatIsFoundThoughItsTextIsRounded) {
+  const double exact = -std::numeric_limits<float>::max();
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Float32, 2, 1, {exact, 7}, nodata(-3.402823e+38)), {});
+  ASSERT_TRUE(raster.nodata.has_value());
+  EXPECT_EQ(static_cast<float>(*raster.nodata), std::get<std::vector<float>>(raster.samples)[0]);
+  EXPECT_EQ(7, doubles(raster)[1]);
+}
+
+TEST_F(GdalRaster, DoubleNodataBeyondFloatBecomesNan) {
+  const Raster raster = read_raster(
+      write_tiff("a.tif", GDT_Float64, 2, 1, {-1.7976931348623157e308, 7}, nodata(-1.7976931348623157e308)), {});
+  EXPECT_TRUE(std::isnan(doubles(raster)[0]));
+  EXPECT_FALSE(raster.nodata.has_value());
+}
+
+TEST_F(GdalRaster, NanIsAHoleWithANote) {
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Float32, 2, 1, {kNan, 7}), {});
+  EXPECT_TRUE(std::isnan(doubles(raster)[0]));
+  EXPECT_TRUE(has_note(raster, "1 samples are NaN"));
+}
+
+TEST_F(GdalRaster, InfiniteSamplesAreRefusedWithTheirPlace) {
+  const std::string text = read_error(write_tiff("a.tif", GDT_Float32, 2, 2, {1, 2, 3, kInf}));
+  expect_says(text, "column 1, row 1");
+  expect_says(text, "--nodata=inf");
+  expect_says(read_error(write_tiff("b.tif", GDT_Float64, 2, 2, {1, -kInf, 3, 4})), "column 1, row 0");
+  expect_says(read_error(write_tiff("c.tif", GDT_Float64, 2, 2, {1, 1e300, 3, 4})), "beyond float32");
+}
+
+TEST_F(GdalRaster, InfiniteSamplesAreHolesWhenNodataSaysSo) {
+  RasterOptions options;
+  options.nodata = kInf;
+  const std::string file = write_tiff("a.tif", GDT_Float32, 2, 2, {1, 2, 3, kInf});
+  const Raster raster = read_raster(file, options);
+  EXPECT_EQ(3, doubles(raster)[2]);
+  EXPECT_TRUE(std::isnan(doubles(raster)[3]));
+  options.nodata = -kInf;
+  expect_says(error_of([&] { read_raster(file, options); }), "infinite");
+}
+
+TEST_F(GdalRaster, AllNodataIsRefused) {
+  expect_says(read_error(write_tiff("a.tif", GDT_Int16, 2, 1, {-1, -1}, nodata(-1))), "all 2 x 1 samples are nodata");
+  expect_says(read_error(write_tiff("b.tif", GDT_Float32, 2, 1, {kNan, kNan})), "nodata");
+}
+
+TEST_F(GdalRaster, UndeclaredNodataIsSuspected) {
+  EXPECT_TRUE(has_note(read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {-9999, 5}), {}), "--nodata=-9999"));
+}
+
+TEST_F(GdalRaster, AMaskMakesHolesInFloat32) {
+  const GdalOption inside("GDAL_TIFF_INTERNAL_MASK", "YES");
+  const std::string file = write_tiff("a.tif", GDT_Int16, 2, 2, {1, 2, 3, 4}, [](GDALDataset& d) {
+    d.CreateMaskBand(GMF_PER_DATASET);
+    std::uint8_t mask[] = {255, 0, 255, 255};
+    EXPECT_EQ(CE_None,
+              d.GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, 0, 2, 2, mask, 2, 2, GDT_Byte, 0, 0, nullptr));
+  });
+  const Raster raster = read_raster(file, {});
+  ASSERT_TRUE(holds<float>(raster));
+  EXPECT_TRUE(std::isnan(doubles(raster)[1]));
+  EXPECT_EQ(4, doubles(raster)[3]);
+  EXPECT_TRUE(has_note(raster, "mask"));
+}
+
+TEST_F(GdalRaster, AnAlphaBandMakesHolesAndIsNoBandOfHeights) {
+  const std::string file = write_tiff(
+      "a.tif", GDT_UInt16, 2, 1, {10, 20},
+      [](GDALDataset& d) {
+        d.GetRasterBand(2)->SetColorInterpretation(GCI_AlphaBand);
+        std::uint16_t alpha[] = {65535, 0};
+        EXPECT_EQ(CE_None, d.GetRasterBand(2)->RasterIO(GF_Write, 0, 0, 2, 1, alpha, 2, 1, GDT_UInt16, 0, 0, nullptr));
+      },
+      2, {"ALPHA=YES"});
+  const Raster raster = read_raster(file, {});
+  EXPECT_EQ(10, doubles(raster)[0]);
+  EXPECT_TRUE(std::isnan(doubles(raster)[1]));
+}
+
+TEST_F(GdalRaster, AMaskThatHidesNothingChangesNothing) {
+  const GdalOption inside("GDAL_TIFF_INTERNAL_MASK", "YES");
+  const std::string file = write_tiff("a.tif", GDT_Int16, 2, 1, {1, 2}, [](GDALDataset& d) {
+    d.CreateMaskBand(GMF_PER_DATASET);
+    EXPECT_EQ(CE_None, d.GetRasterBand(1)->GetMaskBand()->Fill(255));
+  });
+  EXPECT_TRUE(holds<std::int16_t>(read_raster(file, {})));
+}
+
+TEST_F(GdalRaster, ScaleAndOffsetAreKept) {
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {1, 2},
+                                               [](GDALDataset& d) {
+                                                 d.GetRasterBand(1)->SetScale(0.5);
+                                                 d.GetRasterBand(1)->SetOffset(-100);
+                                               }),
+                                    {});
+  EXPECT_EQ(0.5, raster.scale);
+  EXPECT_EQ(-100, raster.offset);
+  RasterOptions options;
+  options.scale = 3;
+  EXPECT_EQ(3, read_raster(path("a.tif"), options).scale);
+}
+
+TEST_F(GdalRaster, ANegativeScaleBecomesHeights) {
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, 3, 1, {1, 2, -9},
+                                               [](GDALDataset& d) {
+                                                 d.GetRasterBand(1)->SetScale(-2);
+                                                 d.GetRasterBand(1)->SetOffset(10);
+                                                 d.GetRasterBand(1)->SetNoDataValue(-9);
+                                               }),
+                                    {});
+  EXPECT_EQ(1, raster.scale);
+  EXPECT_EQ(0, raster.offset);
+  EXPECT_EQ(8, doubles(raster)[0]);
+  EXPECT_EQ(6, doubles(raster)[1]);
+  EXPECT_TRUE(std::isnan(doubles(raster)[2]));
+}
+
+TEST_F(GdalRaster, AScaleOfZeroIsRefused) {
+  RasterOptions options;
+  options.scale = 0;
+  expect_says(read_error(write_tiff("a.tif", GDT_Int16, 2, 1, {1, 2}), options), "--scale");
+}
+
+TEST_F(GdalRaster, FeetBecomeMetres) {
+  const auto unit = [](const char* name) { return [name](GDALDataset& d) { d.GetRasterBand(1)->SetUnitType(name); }; };
+  const Raster feet = read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {1, 2}, unit("ft")), {});
+  EXPECT_DOUBLE_EQ(0.3048, feet.scale);
+  EXPECT_TRUE(has_note(feet, "become metres"));
+  EXPECT_DOUBLE_EQ(1200.0 / 3937,
+                   read_raster(write_tiff("b.tif", GDT_Int16, 2, 1, {1, 2}, unit("US survey foot")), {}).scale);
+  const Raster odd = read_raster(write_tiff("c.tif", GDT_Int16, 2, 1, {1, 2}, unit("furlong")), {});
+  EXPECT_EQ(1, odd.scale);
+  EXPECT_TRUE(has_note(odd, "furlong"));
+  RasterOptions options;
+  options.unit = "ft";
+  EXPECT_DOUBLE_EQ(0.3048, read_raster(path("c.tif"), options).scale);
+  options.unit = "furlong";
+  expect_says(read_error(path("c.tif"), options), "'furlong' is not known");
+}
+
+TEST_F(GdalRaster, AWindowIsAPartOfTheFile) {
+  RasterOptions options;
+  options.window = {1, 1, 2, 1};
+  const std::string file = write_tiff("a.tif", GDT_Int16, 3, 2, {1, 2, 3, 4, 5, 6});
+  const Raster raster = read_raster(file, options);
+  EXPECT_EQ((std::vector<double>{5, 6}), doubles(raster));
+  EXPECT_EQ(2, raster.cols);
+  for (const RasterWindow bad :
+       {RasterWindow{-1, 0, 2, 1}, {2, 0, 2, 1}, {0, 0, 0, 1}, {0, 0, 3, 3}, {1, 0, 2147483647, 1}}) {
+    options.window = bad;
+    expect_says(read_error(file, options), "does not lie in its 3 x 2 samples");
+  }
+}
+
+TEST_F(GdalRaster, OneSampleIsARaster) {
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Int16, 1, 1, {5}), {});
+  EXPECT_EQ((std::vector<double>{5}), doubles(raster));
+}
+
+TEST_F(GdalRaster, PiecesOfAFileWithBlocksOfAnySizeFitTogether) {
+  const int cols = 3000, rows = 1700;
+  std::vector<double> values(static_cast<std::size_t>(cols) * rows);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i % 32749);
+  RasterOptions options;
+  options.window = {7, 101, 2900, 1501};
+  for (const char* block : {"BLOCKYSIZE=1", "BLOCKYSIZE=37", "TILED=YES"}) {
+    const Raster raster = read_raster(write_tiff("a.tif", GDT_Float64, cols, rows, values, {}, 1, {block}), options);
+    const auto& samples = std::get<std::vector<float>>(raster.samples);
+    for (int row : {0, 1, 250, 348, 349, 500, 1500}) {
+      for (int col : {0, 2899}) {
+        EXPECT_EQ(values[static_cast<std::size_t>(row + 101) * cols + static_cast<std::size_t>(col) + 7],
+                  samples[static_cast<std::size_t>(row) * 2900 + static_cast<std::size_t>(col)])
+            << block << row;
+      }
+    }
+  }
+}
+
+TEST_F(GdalRaster, ProgressEndsAtOneAndStopsTheReading) {
+  const std::string file = write_tiff("a.tif", GDT_Int16, 3, 2, {1, 2, 3, 4, 5, 6});
+  double last = 0;
+  read_raster(file, {}, [&](double share) { return last = share, true; });
+  EXPECT_EQ(1, last);
+  EXPECT_THROW(read_raster(file, {}, [](double) { return false; }), Interrupted);
+}
+
+}  // namespace
+}  // namespace scarp

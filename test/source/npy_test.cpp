@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/npy.h"
+
+#include <cpl_vsi.h>
+
+#include <cstdint>
+
+#include "source/files.h"
+#include "source/npy_bytes.h"
+
+namespace scarp {
+namespace {
+
+using namespace test;
+
+class Npy : public Files {
+ protected:
+  std::string write_npy(const std::string& name, const std::string& descr, const std::string& shape,
+                        const std::string& samples, bool fortran = false) {
+    return write_bytes(name, npy_bytes(npy_dictionary(descr, shape, fortran), samples));
+  }
+  // A .npz with compressed members.
+  std::string write_npz(const std::string& name, const std::vector<std::pair<std::string, std::string>>& members) {
+    const std::string archive = "/vsizip/{" + path(name) + "}";
+    // The archive stays open between its members, or only the first one would be in it.
+    VSILFILE* whole = VSIFOpenL(archive.c_str(), "wb");
+    for (const auto& [member, bytes] : members) {
+      VSILFILE* file = VSIFOpenL((archive + "/" + member).c_str(), "wb");
+      if (!file) break;
+      EXPECT_EQ(bytes.size(), VSIFWriteL(bytes.data(), 1, bytes.size(), file));
+      VSIFCloseL(file);
+    }
+    VSIFCloseL(whole);
+    return path(name);
+  }
+};
+
+const std::vector<double> kValues{1, 2, 3, 4, 5, 100};
+
+TEST_F(Npy, AllTypesAndByteOrdersAreRead) {
+  struct Case {
+    const char* descr;
+    std::string samples;
+  };
+  for (const Case& c : {Case{"|i1", sample_bytes<std::int8_t>(kValues)},
+                        {"|u1", sample_bytes<std::uint8_t>(kValues)},
+                        {"<i2", sample_bytes<std::int16_t>(kValues)},
+                        {">i2", sample_bytes<std::int16_t>(kValues, true)},
+                        {"<u2", sample_bytes<std::uint16_t>(kValues)},
+                        {">u2", sample_bytes<std::uint16_t>(kValues, true)},
+                        {"<i4", sample_bytes<std::int32_t>(kValues)},
+                        {">u4", sample_bytes<std::uint32_t>(kValues, true)},
+                        {"<f4", sample_bytes<float>(kValues)},
+                        {">f4", sample_bytes<float>(kValues, true)},
+                        {"<f8", sample_bytes<double>(kValues)},
+                        {">f8", sample_bytes<double>(kValues, true)}}) {
+    const Raster raster = read_raster(write_npy("a.npy", c.descr, "(2, 3)", c.samples), {});
+    EXPECT_EQ(3, raster.cols) << c.descr;
+    EXPECT_EQ(2, raster.rows) << c.descr;
+    EXPECT_EQ(kValues, doubles(raster)) << c.descr;
+    EXPECT_FALSE(raster.georeference.present);
+  }
+  EXPECT_TRUE(
+      holds<std::int16_t>(read_raster(write_npy("a.npy", "<i2", "(2, 3)", sample_bytes<std::int16_t>(kValues)), {})));
+  EXPECT_TRUE(holds<float>(read_raster(write_npy("a.npy", ">f4", "(2, 3)", sample_bytes<float>(kValues, true)), {})));
+}
+
+TEST_F(Npy, SignedBytesKeepTheirSign) {
+  EXPECT_EQ((std::vector<double>{-1, -128}),
+            doubles(read_raster(write_npy("a.npy", "|i1", "(1, 2)", sample_bytes<std::int8_t>({-1, -128})), {})));
+  EXPECT_EQ((std::vector<double>{-1, -128}),
+            doubles(read_raster(write_npy("a.npy", "|i1", "(1, 2)", sample_bytes<std::int8_t>({-1, -128}), true), {})));
+}
+
+TEST_F(Npy, FortranOrderIsTheSameArray) {
+  // The array [[1, 2, 3], [4, 5, 100]], column by column.
+  const std::vector<double> columns{1, 4, 2, 5, 3, 100};
+  EXPECT_EQ(kValues,
+            doubles(read_raster(write_npy("a.npy", "<i2", "(2, 3)", sample_bytes<std::int16_t>(columns), true), {})));
+  const std::string file = write_npy("a.npy", ">f8", "(2, 3)", sample_bytes<double>(columns, true), true);
+  EXPECT_EQ(kValues, doubles(read_raster(file, {})));
+  RasterOptions options;
+  options.window = {1, 1, 2, 1};
+  EXPECT_EQ((std::vector<double>{5, 100}), doubles(read_raster(file, options)));
+}
+
+TEST_F(Npy, ExtentsOfOneAreLeftOutOfThree) {
+  const std::string samples = sample_bytes<std::int16_t>(kValues);
+  EXPECT_EQ(kValues, doubles(read_raster(write_npy("a.npy", "<i2", "(1, 2, 3)", samples), {})));
+  const Raster raster = read_raster(write_npy("a.npy", "<i2", "(2, 3, 1)", samples), {});
+  EXPECT_EQ(3, raster.cols);
+  EXPECT_TRUE(has_note(raster, "2 x 3 x 1"));
+}
+
+TEST_F(Npy, OtherShapesAreRefused) {
+  const std::string samples = sample_bytes<std::int16_t>(kValues);
+  for (const char* shape : {"()", "(6,)", "(1, 1, 6, 1)", "(2, 3, 1, 1)"}) {
+    expect_says(read_error(write_npy("a.npy", "<i2", shape, samples)), "two dimensions", fmt::format("{}", shape));
+  }
+  expect_says(read_error(write_npy("a.npy", "<i2", "(0, 6)", samples)), "without samples");
+}
+
+TEST_F(Npy, OtherTypesAreRefusedByName) {
+  for (const char* descr : {"|b1", "<c8", "|O", "<f2", "<i8", "<u8", "<f16", "|S5", "<U7", "|V4", "<M8[ns]"}) {
+    const std::string text = read_error(write_npy("a.npy", descr, "(2, 3)", std::string(1000, '\0')));
+    expect_says(text, descr);
+    expect_says(text, "f4");
+  }
+  expect_says(read_error(write_bytes(
+                  "a.npy", npy_bytes("{'descr': [('z', '<f4')], 'fortran_order': False, 'shape': (2, 3), }", ""))),
+              "structures");
+}
+
+TEST_F(Npy, ShorterFilesThanTheHeaderSaysAreRefusedBeforeAllocation) {
+  const std::string samples = sample_bytes<std::int16_t>(kValues);
+  expect_says(read_error(write_npy("a.npy", "<i2", "(2, 4)", samples)), "cut off");
+  expect_says(read_error(write_npy("a.npy", "<i2", "(1000000000, 1000000000)", samples)), "cut off");
+  expect_says(read_error(write_npy("a.npy", "<i2", "(9000000000000000000, 9000000000000000000)", samples)),
+              "extents up to");
+  expect_says(read_error(write_bytes("b.npy", "\x93NUMPY")), "ends too early");
+  expect_says(read_error(write_bytes("b.npy", npy_bytes(npy_dictionary("<i2", "(2, 3)"), "").substr(0, 40))),
+              "ends too early");
+  expect_says(read_error(write_bytes("b.npy", "hello, world, this is text")), "is no .npy");
+}
+
+TEST_F(Npy, TheOnlyRasterOfAnArchiveIsFound) {
+  const std::string height = npy_bytes(npy_dictionary("<i2", "(2, 3)"), sample_bytes<std::int16_t>(kValues));
+  const std::string number = npy_bytes(npy_dictionary("<f8", "()"), sample_bytes<double>({30}));
+  const std::string file = write_npz("a.npz", {{"height.npy", height}, {"dx.npy", number}});
+  EXPECT_EQ(kValues, doubles(read_raster(file, {})));
+  RasterOptions options;
+  options.key = "height";
+  EXPECT_EQ(kValues, doubles(read_raster(file, options)));
+  options.key = "dx";
+  expect_says(read_error(file, options), "two dimensions");
+  options.key = "nothing";
+  const std::string text = read_error(file, options);
+  expect_says(text, "height (2 x 3)");
+  expect_says(text, "dx (a single number)");
+}
+
+TEST_F(Npy, SeveralRastersOfAnArchiveNeedAKey) {
+  const std::string a = npy_bytes(npy_dictionary("<i2", "(2, 3)"), sample_bytes<std::int16_t>(kValues));
+  const std::string file = write_npz("a.npz", {{"a.npy", a}, {"b.npy", a}});
+  const std::string text = read_error(file);
+  expect_says(text, "--key");
+  expect_says(text, "a (2 x 3), b (2 x 3)");
+}
+
+TEST_F(Npy, AFortranArrayInAnArchiveIsRead) {
+  const std::string a =
+      npy_bytes(npy_dictionary("<i2", "(2, 3)", true), sample_bytes<std::int16_t>({1, 4, 2, 5, 3, 100}));
+  EXPECT_EQ(kValues, doubles(read_raster(write_npz("a.npz", {{"a.npy", a}}), {})));
+}
+
+TEST_F(Npy, ADamagedArchiveIsRefused) {
+  expect_says(read_error(write_bytes("a.npz", "hello, world")), "is no .npz");
+  std::vector<double> noise(40000);
+  for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<double>(i * i * 7919 % 65521);
+  const std::string a = npy_bytes(npy_dictionary("<u2", "(200, 200)"), sample_bytes<std::uint16_t>(noise));
+  const std::string file = write_npz("b.npz", {{"a.npy", a}});
+  EXPECT_NO_THROW(read_raster(file, {}));
+  std::string bytes = bytes_of(file);
+  write_bytes("cut.npz", bytes.substr(0, bytes.size() / 2));
+  expect_says(read_error(path("cut.npz")), "raster '");
+  bytes.replace(bytes.size() / 2, 2000, 2000, '\xff');
+  write_bytes("bad.npz", bytes);
+  expect_says(read_error(path("bad.npz")), "raster '");
+}
+
+TEST_F(Npy, BoundsAndCrsPlaceIt) {
+  RasterOptions options;
+  options.bounds = {10, 45, 10.3, 45.2};
+  options.crs = "EPSG:4326";
+  const Raster raster = read_raster(write_npy("a.npy", "<i2", "(2, 3)", sample_bytes<std::int16_t>(kValues)), options);
+  EXPECT_TRUE(raster.georeference.present);
+  EXPECT_NEAR(10.05, raster.georeference.map_from_node[0], 1e-12);
+  EXPECT_NEAR(45.15, raster.georeference.map_from_node[3], 1e-12);
+  EXPECT_NEAR(0.1 * 111320 * 0.7061, raster.georeference.cell_x_m, 20);
+}
+
+TEST_F(Npy, NamesWithBlanksAndAmpersandsWork) {
+  EXPECT_EQ(kValues, doubles(read_raster(
+                         write_npy("a & <b> 'c'.NPY", "<i2", "(2, 3)", sample_bytes<std::int16_t>(kValues)), {})));
+}
+
+}  // namespace
+}  // namespace scarp

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// Geotransform and CRS of a file, seen through the reader.
+#include <ogr_spatialref.h>
+
+#include <array>
+#include <cmath>
+
+#include "source/files.h"
+
+namespace scarp {
+namespace {
+
+using namespace test;
+
+std::function<void(GDALDataset&)> placed(std::array<double, 6> map, const char* crs = nullptr) {
+  return [map, crs](GDALDataset& d) mutable {
+    d.SetGeoTransform(map.data());
+    if (!crs) return;
+    OGRSpatialReference srs;
+    EXPECT_EQ(OGRERR_NONE, srs.SetFromUserInput(crs));
+    srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    d.SetSpatialRef(&srs);
+  };
+}
+
+class RasterPlaceTest : public Files {
+ protected:
+  Raster read(const std::function<void(GDALDataset&)>& edit, const RasterOptions& options = {}) {
+    return read_raster(write_tiff("a.tif", GDT_Int16, 3, 2, {1, 2, 3, 4, 5, 6}, edit), options);
+  }
+  std::string error(const std::function<void(GDALDataset&)>& edit, const RasterOptions& options = {}) {
+    return read_error(write_tiff("a.tif", GDT_Int16, 3, 2, {1, 2, 3, 4, 5, 6}, edit), options);
+  }
+};
+
+TEST_F(RasterPlaceTest, SamplesStandAtTheMiddlesOfPixels) {
+  const Georeference geo = read(placed({500000, 30, 0, 5000000, 0, -20}, "EPSG:32610")).georeference;
+  EXPECT_TRUE(geo.present);
+  EXPECT_EQ((std::array<double, 6>{500015, 30, 0, 4999990, 0, -20}), geo.map_from_node);
+  EXPECT_EQ("WGS 84 / UTM zone 10N (EPSG:32610)", geo.crs_name);
+  EXPECT_NEAR(30 / 0.9996, geo.cell_x_m, 1e-4);
+  EXPECT_NEAR(20 / 0.9996, geo.cell_y_m, 1e-4);
+  EXPECT_NE(std::string::npos, geo.cell_size_found.find("0.9996"));
+  EXPECT_NE(std::string::npos, geo.crs_wkt.find("UTM zone 10N"));
+}
+
+TEST_F(RasterPlaceTest, PixelIsPointIsNotShiftedTwice) {
+  const auto edit = [](GDALDataset& d) {
+    d.SetMetadataItem("AREA_OR_POINT", "Point");
+    placed({500000, 30, 0, 5000000, 0, -30}, "EPSG:32610")(d);
+  };
+  EXPECT_EQ(500015, read(edit).georeference.map_from_node[0]);
+}
+
+TEST_F(RasterPlaceTest, AWindowMovesThePlace) {
+  RasterOptions options;
+  options.window = {1, 1, 2, 1};
+  const Georeference geo = read(placed({500000, 30, 0, 5000000, 0, -20}, "EPSG:32610"), options).georeference;
+  EXPECT_EQ((std::array<double, 6>{500045, 30, 0, 4999970, 0, -20}), geo.map_from_node);
+}
+
+TEST_F(RasterPlaceTest, SouthUpIsFlipped) {
+  const Raster raster = read(placed({500000, 30, 0, 4999960, 0, 20}, "EPSG:32610"));
+  EXPECT_EQ((std::vector<double>{4, 5, 6, 1, 2, 3}), doubles(raster));
+  EXPECT_EQ((std::array<double, 6>{500015, 30, 0, 4999990, 0, -20}), raster.georeference.map_from_node);
+  EXPECT_TRUE(has_note(raster, "south to north"));
+}
+
+TEST_F(RasterPlaceTest, AWindowOfASouthUpFileIsThatOfTheFile) {
+  RasterOptions options;
+  options.window = {0, 1, 3, 1};
+  const Raster raster = read(placed({500000, 30, 0, 4999960, 0, 20}, "EPSG:32610"), options);
+  EXPECT_EQ((std::vector<double>{4, 5, 6}), doubles(raster));
+  EXPECT_EQ(4999990, raster.georeference.map_from_node[3]);
+}
+
+TEST_F(RasterPlaceTest, WestwardColumnsAreFlipped) {
+  const Raster raster = read(placed({500090, -30, 0, 5000000, 0, -20}, "EPSG:32610"));
+  EXPECT_EQ((std::vector<double>{3, 2, 1, 6, 5, 4}), doubles(raster));
+  EXPECT_EQ((std::array<double, 6>{500015, 30, 0, 4999990, 0, -20}), raster.georeference.map_from_node);
+}
+
+TEST_F(RasterPlaceTest, RotatedIsRefusedWithARemedy) {
+  expect_says(error(placed({500000, 30, 5, 5000000, 5, -30}, "EPSG:32610")), "gdalwarp");
+  expect_says(error(placed({500000, 0, 30, 5000000, 30, 0}, "EPSG:32610")), "gdalwarp");
+  // A rotation that moves no sample by a thousandth of a cell is noise.
+  EXPECT_NO_THROW(read(placed({500000, 30, 1e-9, 5000000, 1e-9, -30}, "EPSG:32610")));
+}
+
+TEST_F(RasterPlaceTest, DegreesLieOnAPlane) {
+  const Georeference geo = read(placed({10, 0.001, 0, 45.001, 0, -0.001}, "EPSG:4326")).georeference;
+  EXPECT_NEAR(78.847, geo.cell_x_m, 0.001);  // 0.001 degree at 45 N on WGS 84 (tables of the ellipsoid)
+  EXPECT_NEAR(111.132, geo.cell_y_m, 0.001);
+  EXPECT_EQ("WGS 84 (EPSG:4326)", geo.crs_name);
+}
+
+TEST_F(RasterPlaceTest, AWholeHemisphereIsNoPlaneAndSaysSo) {
+  EXPECT_TRUE(has_note(read(placed({0, 1, 0, 80, 0, -40}, "EPSG:4326")), "wider"));
+}
+
+TEST_F(RasterPlaceTest, MapsInFeetBecomeMetres) {
+  const Raster raster = read(placed({6600000, 100, 0, 1900000, 0, -100}, "EPSG:2225"));
+  EXPECT_NEAR(30.48, raster.georeference.cell_x_m, 0.01);
+  EXPECT_EQ(1, raster.scale);  // horizontal feet say nothing about heights
+}
+
+TEST_F(RasterPlaceTest, AVerticalCrsInFeetCountsForHeights) {
+  // NAVD88 height (ftUS) is EPSG:6360.
+  const Raster raster = read(placed({500000, 30, 0, 5000000, 0, -30}, "EPSG:26910+6360"));
+  EXPECT_DOUBLE_EQ(1200.0 / 3937, raster.scale);
+  EXPECT_EQ(std::string::npos, raster.georeference.crs_wkt.find("NAVD88"));
+  RasterOptions options;
+  options.unit = "m";
+  EXPECT_EQ(1, read_raster(path("a.tif"), options).scale);
+}
+
+TEST_F(RasterPlaceTest, WithoutGeoreferenceCellsAreOneMetre) {
+  const Raster raster = read({});
+  EXPECT_FALSE(raster.georeference.present);
+  EXPECT_EQ(1, raster.georeference.cell_x_m);
+  EXPECT_EQ((std::array<double, 6>{0, 1, 0, 0, 0, -1}), raster.georeference.map_from_node);
+  EXPECT_TRUE(has_note(raster, "no georeference"));
+}
+
+TEST_F(RasterPlaceTest, WithoutCrsMapUnitsAreMetres) {
+  const Raster raster = read(placed({1000, 30, 0, 2000, 0, -30}));
+  EXPECT_TRUE(raster.georeference.present);
+  EXPECT_EQ(30, raster.georeference.cell_x_m);
+  EXPECT_TRUE(has_note(raster, "taken as metres"));
+  EXPECT_TRUE(has_note(read(placed({10, 0.001, 0, 45, 0, -0.001})), "EPSG:4326"));
+}
+
+TEST_F(RasterPlaceTest, CrsAndBoundsOfTheCallerWin) {
+  RasterOptions options;
+  options.crs = "EPSG:4326";
+  EXPECT_NEAR(78.847, read(placed({10, 0.001, 0, 45.001, 0, -0.001}), options).georeference.cell_x_m, 0.001);
+  options.bounds = {10, 44.999, 10.003, 45.001};
+  EXPECT_NEAR(78.847, read(placed({1, 2, 0, 3, 0, -4}), options).georeference.cell_x_m, 0.001);
+}
+
+TEST_F(RasterPlaceTest, WrongCrsAndBoundsAreRefused) {
+  RasterOptions options;
+  options.crs = "EPSG:999999";
+  expect_says(error({}, options), "'EPSG:999999' is not known");
+  options.crs = "EPSG:4326";
+  expect_says(error({}, options), "--bounds");
+  expect_says(error(placed({500000, 30, 0, 5000000, 0, -30}), options), "latitude");
+  options.bounds = {10, 45, 9, 46};
+  expect_says(error({}, options), "west < east");
+  options.bounds = {10, 46, 11, 45};
+  expect_says(error({}, options), "south < north");
+  options.bounds = {10, std::nan(""), 11, 45};
+  expect_says(error({}, options), "--bounds W,S,E,N");
+}
+
+TEST_F(RasterPlaceTest, ALocalSystemIsTakenAsItIs) {
+  const Raster raster = read(
+      placed({0, 10, 0, 0, 0, -10}, "LOCAL_CS[\"site\",UNIT[\"foot\",0.3048],AXIS[\"x\",EAST],AXIS[\"y\",NORTH]]"));
+  EXPECT_NEAR(3.048, raster.georeference.cell_x_m, 1e-12);
+  EXPECT_TRUE(has_note(raster, "local coordinate system"));
+}
+
+TEST_F(RasterPlaceTest, GroundControlPointsNeedAWarp) {
+  const auto edit = [](GDALDataset& d) {
+    GDAL_GCP points[3];
+    GDALInitGCPs(3, points);
+    const double at[3][4] = {{0, 0, 10, 45}, {3, 0, 11, 45}, {0, 2, 10, 44.5}};
+    for (int i = 0; i < 3; ++i) {
+      points[i].dfGCPPixel = at[i][0];
+      points[i].dfGCPLine = at[i][1];
+      points[i].dfGCPX = at[i][2];
+      points[i].dfGCPY = at[i][3];
+    }
+    OGRSpatialReference srs;
+    srs.SetWellKnownGeogCS("WGS84");
+    EXPECT_EQ(CE_None, d.SetGCPs(3, points, &srs));
+    GDALDeinitGCPs(3, points);
+  };
+  expect_says(error(edit), "gdalwarp");
+}
+
+}  // namespace
+}  // namespace scarp
