@@ -68,6 +68,8 @@ Json row_of(const Engine& engine, const RaySet& set, const Timing& timing, const
   row["miss_rate"] = judged ? Json(judged->miss_rate) : Json();
   row["false_rate"] = judged ? Json(judged->false_rate) : Json();
   row["error_p99"] = judged && judged->error_p99 ? Json(*judged->error_p99) : Json();
+  row["late_rate"] = judged ? Json(judged->late_rate) : Json();
+  row["early_rate"] = judged ? Json(judged->early_rate) : Json();
   row["exhausted"] = judged ? Json(judged->exhausted) : Json();
   row["steps_per_ray"] = judged ? Json(judged->steps) : Json();
   row["cell_tests_per_ray"] = judged ? Json(judged->cell_tests) : Json();

@@ -55,7 +55,7 @@ Judgement Judge::judge(const Engine& engine) const {
 
   Judgement result;
   result.judged = static_cast<std::int64_t>(sample_.size());
-  std::int64_t hits = 0, missed = 0, invented = 0, exhausted = 0;
+  std::int64_t hits = 0, missed = 0, invented = 0, late = 0, early = 0, exhausted = 0;
   double steps = 0, cell_tests = 0;
   std::vector<double> errors;
   for (std::size_t k = 0; k < sample_.size(); ++k) {
@@ -68,11 +68,16 @@ Judgement Judge::judge(const Engine& engine) const {
     steps += answer.stats.steps;
     cell_tests += answer.stats.cell_tests;
     if (hit && std::isfinite(answer.t) && !answer.exhausted) {
-      errors.push_back(std::abs(answer.t - truth_[k].t) * length(library_ray(set_.rays[sample_[k]]).direction));
+      const double behind = (answer.t - truth_[k].t) * length(library_ray(set_.rays[sample_[k]]).direction);
+      late += behind > kNear;
+      early += behind < -kNear;
+      errors.push_back(std::abs(behind));
     }
   }
   result.miss_rate = share(missed, hits);
   result.false_rate = share(invented, result.judged - hits);
+  result.late_rate = share(late, hits);
+  result.early_rate = share(early, hits);
   result.exhausted = share(exhausted, result.judged);
   result.steps = steps / static_cast<double>(result.judged);
   result.cell_tests = cell_tests / static_cast<double>(result.judged);

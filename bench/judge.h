@@ -10,11 +10,16 @@
 
 namespace scarp::bench {
 
+/// Along the ray, in cells: how far off a hit may be reported and still be that hit.
+constexpr double kNear = 1.0;
+
 struct Judgement {
   std::int64_t judged = 0;         ///< rays in the sample
   double miss_rate = 0;            ///< share of the judge's hits that the engine does not report
   double false_rate = 0;           ///< share of the judge's misses that the engine reports as hits
-  std::optional<double> error_p99; ///< 99th percentile of |t - t of the judge| in cells where both hit; null: neither does
+  std::optional<double> error_p99;  ///< 99th percentile of |t - t of the judge| in cells where both hit; null: neither does
+  double late_rate = 0;   ///< share of the judge's hits that are reported, but more than kNear behind: the first hit was lost
+  double early_rate = 0;  ///< the same before it
   double exhausted = 0;            ///< share of rays that the engine gave up; they count as not reported
   double steps = 0;                ///< mean positions looked at per ray, MarchStats::steps
   double cell_tests = 0;           ///< mean cells intersected per ray

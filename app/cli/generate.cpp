@@ -57,7 +57,11 @@ void add_generate(CLI::App& program) {
                    fmt::format("N or NxM samples, columns first, up to {0} x {0}", kLargestProceduralSide))
       ->required();
   command->add_option("-o,--output", o.output, "the GeoTIFF to write")->required();
-  command->add_option("--seed", o.terrain.seed, "which terrain; any whole number from 0")->capture_default_str();
+  command->add_option("--seed", o.terrain.seed, "which terrain; any whole number from 0")
+      ->check([](const std::string& text) {
+        return text.starts_with('-') ? "'" + text + "': expected a whole number from 0" : std::string();
+      })
+      ->capture_default_str();
   command->add_option("--kind", o.kind, "fbm (rolling mountains) or ridged (sharp crests)")->capture_default_str();
   command->add_option("--cell", o.terrain.cell_m, "metres from sample to sample; above 0")->capture_default_str();
   command->add_option("--wavelength", o.terrain.wavelength,

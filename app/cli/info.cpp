@@ -30,7 +30,7 @@ struct InfoOptions {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-// Everything there is to say, once: the text and the JSON are made of this. Keys are explained in doc/user.
+// Everything there is to say, once: the text and the JSON are made of this.
 Json describe(const InfoOptions& options) {
   Raster raster = read_raster(options.input, options.raster, terminal_progress("read"));
   stop_if_interrupted();

@@ -35,7 +35,7 @@ MapBounds bounds_from(const std::string& text) {
 void add_raster_options(CLI::App& command, RasterOptions& options) {
   const std::string group = "What the file does not say";
   command.add_option("--band", options.band, "band to read, from 1 (the only one)")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(1, 65536))
       ->group(group);
   command.add_option("--key", options.key, "array of a .npz file (the only one with two dimensions)")->group(group);
   command

@@ -41,12 +41,13 @@ struct CellQuadratic {
   // Starting and ending above zero in [0, length]: whether it comes down to zero in between.
   bool dips(double length) const { return a > 0 && b < 0 && -b < 2 * a * length && b * b >= 4 * a * c; }
   double vertex_value() const { return c - b * b / (4 * a); }
-  // Starting and ending below zero: whether it rises above zero in between.
-  bool peaks(double length) const { return a < 0 && b > 0 && b < -2 * a * length && b * b > 4 * a * c; }
+  // Whether it has its highest point in between.
+  bool peaks(double length) const { return a < 0 && b > 0 && b < -2 * a * length; }
 };
 
-// Where the ray is, as far as known, at the entry of the current cell.
-enum class Side { unknown, above, below };
+// Where the ray is, as far as known, at the entry of the current cell. `doubtful`: it was below and has since passed a block
+// with holes no more than rounding above it; above only if visibly so.
+enum class Side { unknown, above, below, doubtful };
 
 // How the ray came to where it is: through a line of constant column (x) or row (y), or not through a line.
 enum class Through { point, x_line, y_line };
@@ -189,12 +190,13 @@ class Walk {
       const T maximum = maxima_[level.begin + static_cast<std::ptrdiff_t>(block_row) * level.cols + block_col];
       ++stats.steps;
       if (lowest > static_cast<double>(maximum)) {
-        // Above all of the block. Where it has holes, the last cell may be one: the next begins with a question.
-        if (Holes) {
-          side_ = Side::unknown;
-        } else if (side_ != Side::below ||
-                   ray_height(falling ? t_in_ : t_out) - static_cast<double>(maximum) > rounding_of_clearance(t_out)) {
-          side_ = Side::above;
+        // Above all of the block. Where it has holes, the last cell may be one: the next begins with a question. A ray that
+        // was below has come out, if by more than rounding.
+        const bool out = side_ != Side::below && side_ != Side::doubtful;
+        if (out || ray_height(falling ? t_in_ : t_out) - static_cast<double>(maximum) > rounding_of_clearance(t_out)) {
+          side_ = Holes ? Side::unknown : Side::above;
+        } else if (Holes) {
+          side_ = Side::doubtful;
         }
         begun_ = true;
         if (lowest > highest && !falling) return answer_;
@@ -245,6 +247,8 @@ class Walk {
       if (in == 0 && !strict_) return answer(0.0), true;
       side_ = in >= 0 ? Side::above : Side::below;
       if (side_ == Side::below && !begun_) answer_.status = HitStatus::below;
+    } else if (side_ == Side::doubtful) {
+      side_ = clearance(h, through_, false, t_in_) > rounding_of_clearance(t_in_) ? Side::above : Side::below;
     }
     const bool ends_inside = t_line > t_end_;
     const double t_out = std::min(t_line, t_end_), length = t_out - t_in_;
@@ -263,7 +267,7 @@ class Walk {
     }
     if constexpr (refine == Refine::bisect) return false;
     const CellQuadratic f = quadratic(h, t_in_);
-    if (f.peaks(length)) return hit_in_cell(f, length), true;
+    if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_)) return hit_in_cell(f, length), true;
     return false;
   }
 

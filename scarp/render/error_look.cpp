@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <vector>
 
 #include "scarp/render/light.h"
@@ -26,6 +25,7 @@ constexpr std::array<Style, kVerdicts> kStyles{{
     {"early", "blue", {0.15f, 0.40f, 0.92f}},
     {"late", "orange", {0.98f, 0.55f, 0.05f}},
     {"gave up", "yellow", {0.98f, 0.92f, 0.20f}},
+    {"not judged", "brown", {0.30f, 0.25f, 0.22f}},
 }};
 
 const Style& style_of(Verdict verdict) { return kStyles[static_cast<std::size_t>(verdict)]; }
@@ -36,6 +36,7 @@ std::string_view name_of(Verdict verdict) { return style_of(verdict).name; }
 std::string_view colour_name_of(Verdict verdict) { return style_of(verdict).colour_name; }
 
 Verdict judge(const Hit& answer, const Hit& truth, double tolerance) {
+  if (truth.status == HitStatus::below) return Verdict::not_judged;
   if (answer.status == HitStatus::exhausted) return Verdict::gave_up;
   if (!truth) return answer ? Verdict::invented : Verdict::right_miss;
   if (!answer) return Verdict::lost;

@@ -8,10 +8,12 @@
 //   blue       early: the march stopped before the ground, or at something nearer
 //   orange     late: the march hit behind the first ground
 //   yellow     gave up: the march came to its step limit
+//   brown      not judged: the ray comes in below the surface (through the border, a hole, or from an eye under ground)
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <string_view>
 
 #include "scarp/render/camera.h"
 #include "scarp/render/film.h"
@@ -19,8 +21,8 @@
 
 namespace scarp {
 
-enum class Verdict { right_hit, right_miss, lost, invented, early, late, gave_up };
-constexpr int kVerdicts = 7;
+enum class Verdict { right_hit, right_miss, lost, invented, early, late, gave_up, not_judged };
+constexpr int kVerdicts = 8;
 
 /// "right hit", "lost", ...
 std::string_view name_of(Verdict verdict);

@@ -122,11 +122,16 @@ Picture render_steps(const TerrainScene& scene, const Camera& camera, const Pict
                      const Progress& progress) {
   const auto width = static_cast<std::size_t>(settings.width);
   std::vector<std::uint32_t> steps(width * static_cast<std::size_t>(settings.height));
+  std::optional<Plinth> plinth;
+  if (settings.plinth) plinth.emplace(scene.field(), plinth_base(scene.field()));
   for_each_pixel(
       settings.width, settings.height,
       [&](int x, int y) {
+        Ray ray = camera.ray(x + 0.5, y + 0.5);
+        const auto wall = plinth ? plinth->intersect(ray) : std::nullopt;
+        if (wall) ray.t_max = wall->t;
         MarchStats stats;
-        scene.closest_hit(camera.ray(x + 0.5, y + 0.5), &stats);
+        scene.closest_hit(ray, &stats);
         steps[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = stats.steps;
       },
       progress);

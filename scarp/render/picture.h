@@ -3,7 +3,7 @@
 //
 //   shaded  colours by height, sun with exact hard shadows, sky, a block below the terrain
 //   height  grey, linear in height from the field's lowest (1) to its highest point (255); misses are black (0)
-//   steps   what the march cost: steps per ray as a ramp from the least to the most in the picture
+//   steps   what the march cost: steps per ray as a ramp from the least to the most in the picture; rays end at the block
 //   error   where the march is wrong, see error_look.h
 //
 // Only `shaded` takes several samples per pixel; the others show one ray's answer, through the middle of the pixel.
@@ -30,16 +30,16 @@ Look find_look(std::string_view name);
 
 /// How a picture is made. Where it is seen from is the camera's matter.
 struct PictureSettings {
-  int width = 1280;   ///< pixels, 1..65536; width * height at most 2^28
-  int height = 720;
+  int width = 1280;  ///< pixels, 1..65536; width * height at most 2^28
+  int height = 720;  ///< pixels, 1..65536
   Look look = Look::shaded;
-  int aa = 2;         ///< aa x aa samples per pixel in `shaded`; 1..16
-  std::string ramp;   ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
-  SunSettings sun;
-  bool shadows = true;
-  bool plinth = true;           ///< walls down to a common base, in `shaded`
-  double haze = 0.1;            ///< share of haze over a distance as long as the field's diagonal; 0..0.95
-  double error_tolerance = 0.1; ///< of `error`, along the ray, in shorter sides of a cell; >= 0
+  int aa = 2;                    ///< aa x aa samples per pixel in `shaded`; 1..16
+  std::string ramp{};            ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
+  SunSettings sun{};
+  bool shadows = true;           ///< exact hard shadows; false: hill shade only
+  bool plinth = true;            ///< walls down to a common base, seen in `shaded`, ending the rays of `steps`
+  double haze = 0.1;             ///< share of haze over a distance as long as the field's diagonal; 0..0.95
+  double error_tolerance = 0.1;  ///< of `error`, along the ray, in shorter sides of a cell; >= 0
 };
 
 /// Throws Error naming the first setting out of its range.

@@ -69,7 +69,7 @@ class Judge {
     asked_ = true;
     // A hit has to be on the surface, and not on the way out of the ground...
     const double reached = hit ? t : HUGE_VAL;
-    if (hit && !(is_on_surface(hit, t) && (begins_at(t) || !was_below(t)))) return false;
+    if (hit && !(is_on_surface(hit, t) && (begins_at(t) || side_before(t) >= 0))) return false;
     // ... and no answer may pass a hit that the ray and all of its neighbours have for certain.
     Random random(1);
     if (reached <= first_certain_hit(ray_, reached) + slack) return true;
@@ -123,7 +123,7 @@ class Judge {
     for (;;) {
       const Hit hit = march_exhaustive({&field_, nullptr}, ray);
       if (!hit) return HUGE_VAL;
-      if (begins_at(hit.t) || !was_below(hit.t)) return hit.t < enough && std::isfinite(enough) && skims(hit.t, enough) ? enough : hit.t;
+      if (begins_at(hit.t) || side_before(hit.t) > 0) return hit.t < enough && std::isfinite(enough) && skims(hit.t, enough) ? enough : hit.t;
       ray.t_min = hit.t + (hit.t - just_before(hit.t));
     }
   }
@@ -158,11 +158,18 @@ class Judge {
     return false;
   }
 
-  // Whether the ray was below the surface just before t: then t is a way out of the ground and no hit.
-  bool was_below(double t) const {
-    const dvec3 p = ray_.at(just_before(t));
-    const auto place = field_.place(p.x, p.y);
-    return p.z - field_.height(p.x, p.y).value() < -2 * rounding(field_.cell_heights(place->cell).value());
+  // On which side the ray was before t, as soon as it can be told from rounding: 1 above, -1 below (then t is a way out of
+  // the ground and no hit), 0 it cannot be told.
+  int side_before(double t) const {
+    for (double cells = 0x1p-20; cells < 1; cells *= 4) {
+      const dvec3 p = ray_.at(t - cells * (t - just_before(t)) * 0x1p20);
+      const auto place = field_.place(p.x, p.y);
+      const auto h = place ? field_.cell_heights(place->cell) : std::nullopt;
+      if (!h) return 0;
+      const double clearance = p.z - field_.height(p.x, p.y).value();
+      if (std::abs(clearance) > 2 * rounding(*h)) return clearance > 0 ? 1 : -1;
+    }
+    return 0;
   }
 
   bool is_in_its_cell(const Hit& hit) const {

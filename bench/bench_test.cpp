@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// scarp-bench runs from end to end and writes what README.md promises. No time is judged here.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+namespace {
+
+using nlohmann::json;
+
+// The JSON that a command writes.
+json output_of(const std::string& arguments) {
+  const std::filesystem::path file = std::filesystem::temp_directory_path() / fmt::format("scarp-bench-test-{}.json", getpid());
+  const std::string command = fmt::format("'{}' {} --json '{}' > /dev/null", SCARP_BENCH_PROGRAM, arguments, file.string());
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  std::ifstream stream(file);
+  json all = json::parse(stream, nullptr, false);
+  std::filesystem::remove(file);
+  EXPECT_FALSE(all.is_discarded()) << "no JSON from: " << command;
+  return all;
+}
+
+void expect_fields(const json& object, const std::set<std::string>& fields) {
+  for (const std::string& field : fields) EXPECT_TRUE(object.contains(field)) << field;
+}
+
+void expect_head(const json& all) {
+  expect_fields(all, {"machine", "command", "date", "rows"});
+  EXPECT_TRUE(all["machine"].is_string());
+  EXPECT_EQ(all["command"].get<std::string>().substr(0, 12), "scarp-bench ");
+  EXPECT_FALSE(all["rows"].empty());
+}
+
+TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
+  const json all = output_of("heights --sizes 129 --rays small --repeats 1 --threads 1,2");
+  expect_head(all);
+  std::set<std::string> engines, classes;
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"size", "class", "engine", "mode", "threads", "mrays_per_s", "mrays_per_cpu_s", "bytes_per_sample",
+                        "peak_bytes_per_sample", "build_s", "build_threads", "lost", "miss_rate", "false_rate", "error_p99", "late_rate",
+                        "early_rate", "exhausted", "steps_per_ray", "cell_tests_per_ray", "judged", "rays", "hit_share", "spread", "busy",
+                        "field", "exaggeration", "relief", "mean_slope_deg"});
+    const std::string engine = row["engine"], ray_class = row["class"];
+    SCOPED_TRACE(fmt::format("{} {} {}", ray_class, engine, row["mode"].get<std::string>()));
+    engines.insert(engine);
+    classes.insert(ray_class);
+    EXPECT_GT(row["mrays_per_s"], 0.0);
+    EXPECT_GT(row["bytes_per_sample"], 0.0);
+    EXPECT_EQ(row["lost"].is_null(), ray_class != "nodes");
+    EXPECT_EQ(row["miss_rate"].is_null(), engine != "scarp");
+    if (row["mode"] == "max-mip") {
+      EXPECT_EQ(row["miss_rate"], 0.0);
+      EXPECT_EQ(row["false_rate"], 0.0);
+      EXPECT_LT(row["error_p99"], 1e-6);
+      if (ray_class == "nodes") {
+        EXPECT_EQ(row["lost"], 0);
+      }
+    }
+  }
+  EXPECT_EQ(engines, (std::set<std::string>{"scarp", "embree-tri", "embree-grid"}));
+  EXPECT_EQ(classes, (std::set<std::string>{"primary", "shadow", "grazing", "ao", "nodes"}));
+}
+
+TEST(ScarpBench, EnginesAgreeOnWhatIsHit) {
+  // Another surface, the same rays: shares of hits differ by little, or an engine has got other rays.
+  std::map<std::string, double> max_mip;
+  const json all = output_of("heights --sizes 129 --rays small --repeats 1");
+  for (const json& row : all["rows"]) {
+    if (row["mode"] == "max-mip") max_mip[row["class"]] = row["hit_share"];
+  }
+  for (const json& row : all["rows"]) {
+    if (row["engine"] == "scarp") continue;
+    EXPECT_NEAR(row["hit_share"].get<double>(), max_mip.at(row["class"]), 0.02) << row.dump();
+  }
+}
+
+TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
+  const json all = output_of("naive --size 129 --exaggerations 1,4 --rays small --repeats 1");
+  expect_head(all);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"size", "class", "engine", "mode", "threads", "exaggeration", "mrays_per_s", "mrays_per_cpu_s", "max_mip_ratio",
+                        "article_ratio", "step_factor", "min_step", "tolerance", "miss_rate", "late_rate", "early_rate", "false_rate",
+                        "error_p99", "exhausted", "steps_per_ray", "judged", "rays", "spread", "busy", "field", "relief",
+                        "mean_slope_deg"});
+    if (row["mode"] == "naive-fair") {
+      EXPECT_LT(row["miss_rate"], 0.001);
+      EXPECT_EQ(row["exhausted"], 0.0);
+    }
+  }
+}
+
+TEST(ScarpBench, PyramidWritesTheDocumentedFields) {
+  const json all = output_of("pyramid --sizes 2,129 --repeats 1");
+  expect_head(all);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"size", "sample_type", "threads", "build_s", "gsamples_per_s", "bytes_per_sample", "busy"});
+  }
+}
+
+TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
+  const auto fails = [](const std::string& arguments) {
+    return std::system(fmt::format("'{}' {} > /dev/null 2>&1", SCARP_BENCH_PROGRAM, arguments).c_str()) != 0;
+  };
+  EXPECT_TRUE(fails(""));
+  EXPECT_TRUE(fails("heights --sizes 1"));
+  EXPECT_TRUE(fails("heights --classes sideways"));
+  EXPECT_TRUE(fails("heights --engines none"));
+  EXPECT_TRUE(fails("heights --dem /nowhere.tif --rays small"));
+  EXPECT_TRUE(fails("pyramid --sizes 2 --repeats 1 --json /nowhere/out.json"));
+}
+
+}  // namespace

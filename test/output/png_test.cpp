@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/output/png.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <random>
+#include <vector>
+
+#include "output/read_png.h"
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Png : public testing::Test {
+ protected:
+  Png() {
+    std::string name = (fs::temp_directory_path() / "scarp-png-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+  }
+  ~Png() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder_), fs::directory_iterator()); }
+
+  fs::path folder_;
+};
+
+// Bytes that no compressor makes small.
+std::vector<std::uint8_t> noise(int width, int height) {
+  std::mt19937 random(1);
+  std::vector<std::uint8_t> bytes(3 * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
+  return bytes;
+}
+
+TEST_F(Png, WhatIsWrittenIsReadBack) {
+  for (const auto& [width, height] : {std::pair(1, 1), {17, 3}, {3, 17}, {64, 64}}) {
+    const auto bytes = noise(width, height);
+    write_png(path("a.png"), {bytes.data(), width, height});
+    const test::Rgb read = test::read_png(path("a.png"));
+    EXPECT_EQ(read.width, width);
+    EXPECT_EQ(read.height, height);
+    EXPECT_EQ(read.bytes, bytes) << width << " x " << height;
+  }
+  EXPECT_EQ(files(), 1) << "temporary files were left behind";
+}
+
+TEST_F(Png, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
+  const auto small = noise(2, 2), large = noise(200, 200);
+  write_png(path("a.png"), {small.data(), 2, 2});
+  // A limit on the size of files stands for the full disk: write() fails in the same way.
+  struct rlimit before {};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
+  struct rlimit limit = before;
+  limit.rlim_cur = 10000;
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+  std::string message;
+  try {
+    write_png(path("a.png"), {large.data(), 200, 200});
+  } catch (const Error& error) {
+    message = error.what();
+  }
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  std::signal(SIGXFSZ, old_handler);
+  EXPECT_NE(message.find("a.png"), std::string::npos) << "message: '" << message << "'";
+  EXPECT_EQ(test::read_png(path("a.png")).width, 2);
+  EXPECT_EQ(files(), 1) << "temporary files were left behind";
+}
+
+TEST_F(Png, APictureWithoutPixelsIsRefused) {
+  const std::uint8_t byte = 0;
+  EXPECT_THROW(write_png(path("a.png"), {&byte, 0, 1}), Error);
+  EXPECT_THROW(write_png(path("a.png"), {nullptr, 1, 1}), Error);
+  EXPECT_EQ(files(), 0);
+}
+
+}  // namespace
+}  // namespace scarp
