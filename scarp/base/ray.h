@@ -30,7 +30,7 @@ struct Ray {
   double t_min = 0.0;                                      ///< finite, >= 0 or negative alike
   double t_max = std::numeric_limits<double>::infinity();  ///< >= t_min; infinity is allowed
   RayStart start = RayStart::free;
-  Cell start_cell;  ///< used by on_surface only: the cell that holds the point at t_min
+  Cell start_cell{};  ///< used by on_surface only: the cell that holds the point at t_min
 
   dvec3 at(double t) const { return origin + t * direction; }
 };

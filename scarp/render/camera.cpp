@@ -16,6 +16,8 @@ namespace {
 
 // Share of the picture that automatic framing leaves free on each side.
 constexpr double kMargin = 0.03;
+// Least distance from the box, as a share of its diagonal: a level view of flat ground would fit from its very border.
+constexpr double kLeastDistance = 0.05;
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
   if (!good) throw Error(fmt::format("view: {} is {}; it must be {}", what, value, range));
@@ -84,14 +86,17 @@ Camera Camera::framed(const Box& box, const ViewSettings& settings, double grid_
   camera.height_ = height;
 
   const dvec3 middle = box.middle();
+  double nearest_corner = std::numeric_limits<double>::infinity();
   Across sideways{camera.half_width_ * (1 - 2 * kMargin)}, upwards{camera.half_height_ * (1 - 2 * kMargin)};
   for (int i = 0; i < 8; ++i) {
     const dvec3 from_middle = box.corner(i) - middle;
     const double depth = dot(from_middle, camera.forward_);
+    nearest_corner = std::min(nearest_corner, depth);
     sideways.include(dot(from_middle, camera.right_), depth);
     upwards.include(dot(from_middle, camera.up_), depth);
   }
-  const double depth = std::min(sideways.nearest_depth(), upwards.nearest_depth());
+  const double depth = std::min({sideways.nearest_depth(), upwards.nearest_depth(),
+                                 nearest_corner - kLeastDistance * length(box.high - box.low)});
   camera.eye_ = middle + sideways.middle() * camera.right_ + upwards.middle() * camera.up_ +
                 settings.distance * depth * camera.forward_;
   return camera;

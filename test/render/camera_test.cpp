@@ -71,9 +71,11 @@ TEST(Camera, FramingHasAllCornersInThePictureAndWastesNone) {
           const Camera camera =
               Camera::framed(box, {.azimuth_deg = azimuth, .elevation_deg = elevation}, 0.1, width, height);
           double left = 1, right = 1, above = 1, below = 1;  // free shares of the picture
+          double nearest = std::numeric_limits<double>::infinity();
           for (int i = 0; i < 8; ++i) {
             const auto pixel = camera.pixel(box.corner(i));
             ASSERT_TRUE(pixel) << azimuth << ", " << elevation;
+            nearest = std::min(nearest, dot(box.corner(i) - camera.eye(), camera.forward()));
             left = std::min(left, pixel->x / width);
             right = std::min(right, 1 - pixel->x / width);
             above = std::min(above, pixel->y / height);
@@ -82,6 +84,10 @@ TEST(Camera, FramingHasAllCornersInThePictureAndWastesNone) {
           // The margin is 3 % at least; in one direction it is just that on both sides.
           constexpr double kMargin = 0.03, kRounding = 1e-6;
           EXPECT_GE(std::min({left, right, above, below}), kMargin - kRounding);
+          // Unless the camera would come too near: never within 5 % of the diagonal.
+          const double least_distance = 0.05 * length(box.high - box.low);
+          EXPECT_GE(nearest, least_distance * (1 - kRounding));
+          if (nearest < least_distance * (1 + kRounding)) continue;
           EXPECT_LE(std::min(std::max(left, right), std::max(above, below)), kMargin + kRounding)
               << width << " x " << height << " from " << azimuth << ", " << elevation;
         }

@@ -111,15 +111,32 @@ TEST(Picture, HeightIsLinearFromOneAndMissesAreBlack) {
 }
 
 TEST(Picture, StepsCountWhatTheMarchReports) {
-  const HeightField field = wall();
-  PictureSettings settings = map_settings(field);
+  const TerrainScene scene(wall(), find_march("max-mip"));
+  PictureSettings settings;
+  settings.width = 40;
+  settings.height = 30;
   settings.look = Look::steps;
-  const Picture picture = map_of(field, settings);
+  settings.ramp = "grey";
+  settings.plinth = false;
+  const Camera camera = Camera::framed(picture_box(scene.field(), false), {.azimuth_deg = 160}, 0, 40, 30);
+  const Picture picture = render_picture(scene, camera, 0, settings);
   ASSERT_TRUE(picture.steps);
-  EXPECT_GE(picture.steps->least, 1u);
-  EXPECT_GE(picture.steps->most, picture.steps->least);
-  EXPECT_GE(picture.steps->mean, picture.steps->least);
-  EXPECT_LE(picture.steps->mean, picture.steps->most);
+  double sum = 0;
+  std::uint32_t most = 0;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      MarchStats stats;
+      scene.closest_hit(camera.ray(x + 0.5, y + 0.5), &stats);
+      sum += stats.steps;
+      if (stats.steps >= most) {
+        most = stats.steps;
+        EXPECT_EQ(red(picture.image, x, y) == 255, most == picture.steps->most);
+      }
+    }
+  }
+  EXPECT_EQ(picture.steps->most, most);
+  EXPECT_EQ(picture.steps->least, 0u) << "rays beside the field";
+  EXPECT_NEAR(picture.steps->mean, sum / (40 * 30), 1e-9);
 }
 
 // From the south, just above the ground, towards a spike in the middle of a plain.

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// The command line from outside: what it prints, what it leaves, how it ends.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <string>
+#include <thread>
+
+#include "cli/program.h"
+#include "output/read_png.h"
+#include "scarp/output/png.h"
+
+namespace scarp {
+namespace {
+
+using test::run;
+using Names = std::vector<std::string>;
+
+class Cli : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return scratch_.path(name); }
+  std::string write(const std::string& name, const std::string& bytes) const { return scratch_.write(name, bytes); }
+
+  // An ESRI ASCII grid.
+  std::string grid(const std::string& name, int cols, int rows, const std::string& samples) const {
+    return write(name, fmt::format("ncols {}\nnrows {}\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -9999\n{}\n", cols, rows, samples));
+  }
+  std::string good() const { return grid("good.asc", 4, 3, "1 2 3 4\n2 3 4 5\n3 9 5 6"); }
+
+  // render must fail on this input: one line on stderr that has the fragment, nothing on stdout, no file left.
+  void expect_refused(const std::string& input, const std::string& fragment) {
+    const Names before = scratch_.files();
+    const auto result = run({"render", input, "-o", path("out.png")});
+    EXPECT_EQ(result.status, 1) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_EQ(result.err.find("scarp: "), 0u) << result.err;
+    EXPECT_NE(result.err.find(fragment), std::string::npos) << "'" << fragment << "' is not in: " << result.err;
+    EXPECT_EQ(scratch_.files(), before);
+  }
+
+  test::Scratch scratch_;
+};
+
+TEST_F(Cli, RenderWritesAPictureAndOneLine) {
+  const auto result = run({"render", good(), "-o", path("out.png"), "--size", "64x48"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(test::lines(result.out), 1) << result.out;
+  EXPECT_EQ(result.out.find(path("out.png") + ": 64 x 48 pixels; read "), 0u) << result.out;
+  const test::Rgb picture = test::read_png(path("out.png"));
+  EXPECT_EQ(picture.width, 64);
+  EXPECT_EQ(picture.height, 48);
+  EXPECT_EQ(scratch_.files(), (Names{"good.asc", "out.png"}));
+}
+
+TEST_F(Cli, EveryLookAndMarchRuns) {
+  good();
+  for (const std::string march : {"exhaustive", "naive", "relaxed", "max-mip", "max-mip-bisect"}) {
+    for (const std::string look : {"shaded", "height", "steps", "error"}) {
+      const auto result = run({"render", path("good.asc"), "-o", path("out.png"), "--size", "32x24", "--march", march, "--look", look});
+      EXPECT_EQ(result.status, 0) << march << " " << look << ": " << result.err;
+    }
+  }
+}
+
+TEST_F(Cli, AMapHasTheShapeOfTheGround) {
+  const auto result = run({"render", good(), "-o", path("out.png"), "--top"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const test::Rgb picture = test::read_png(path("out.png"));
+  EXPECT_EQ(picture.width, 1280);
+  EXPECT_EQ(picture.height, 853) << "3 x 2 cells";
+}
+
+TEST_F(Cli, FindingsOfALookArePrinted) {
+  const auto steps = run({"render", good(), "-o", path("out.png"), "--size", "32x24", "--look", "steps"});
+  EXPECT_NE(steps.out.find("steps per ray: "), std::string::npos) << steps.out;
+  const auto error = run({"render", path("good.asc"), "-o", path("out.png"), "--size", "32x24", "--look", "error"});
+  EXPECT_NE(error.out.find("lost        red        0\n"), std::string::npos) << error.out;
+}
+
+TEST_F(Cli, AGitLfsPointerIsRecognised) {
+  expect_refused(write("dem.tif", "version https://git-lfs.github.com/spec/v1\n"
+                                  "oid sha256:4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345678\n"),
+                 "Git LFS");
+}
+
+TEST_F(Cli, APhotographIsNoElevationModel) {
+  const std::vector<std::uint8_t> photo(3 * 20 * 10, 90);
+  write_png(path("photo.png"), {photo.data(), 20, 10});
+  expect_refused(path("photo.png"), "photo.png");
+}
+
+TEST_F(Cli, AnEmptyFileIsRefused) { expect_refused(write("dem.tif", ""), "empty"); }
+
+TEST_F(Cli, ATruncatedFileIsRefused) {
+  ASSERT_EQ(run({"generate", "--size", "600", "-o", path("whole.tif")}).status, 0);
+  const std::string whole = test::text_of(path("whole.tif"));
+  ASSERT_GT(whole.size(), 100000u);
+  expect_refused(write("half.tif", whole.substr(0, whole.size() / 2)), "half.tif");
+}
+
+TEST_F(Cli, ARasterOfNodataAloneIsRefused) {
+  expect_refused(grid("void.asc", 3, 2, "-9999 -9999 -9999\n-9999 -9999 -9999"), "nodata");
+}
+
+TEST_F(Cli, InfiniteSamplesAreRefused) {
+  // A .npy of 2 x 2 float32: 1, 2, 3, infinity.
+  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2), }";
+  header.resize(117, ' ');
+  header += '\n';
+  const std::string samples("\0\0\x80\x3f\0\0\0\x40\0\0\x40\x40\0\0\x80\x7f", 16);
+  expect_refused(write("inf.npy", std::string("\x93NUMPY\x01\0", 8) + std::string("\x76\0", 2) + header + samples), "infinite");
+}
+
+TEST_F(Cli, ARotatedRasterIsRefusedWithTheRemedy) {
+  good();
+  expect_refused(write("rotated.vrt",
+                       R"(<VRTDataset rasterXSize="4" rasterYSize="3"><GeoTransform>0,1,0.5,0,0.5,-1</GeoTransform>
+<VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename relativeToVRT="1">good.asc</SourceFilename>
+<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>)"),
+                 "gdalwarp");
+}
+
+TEST_F(Cli, ARasterWithoutCellsIsRefused) {
+  expect_refused(grid("point.asc", 1, 1, "5"), "cells");
+  expect_refused(grid("row.asc", 5, 1, "5 6 7 8 9"), "cells");
+  expect_refused(grid("column.asc", 1, 3, "5\n6\n7"), "cells");
+}
+
+TEST_F(Cli, AFolderIsNoRaster) { expect_refused(scratch_.path(""), "director"); }
+
+TEST_F(Cli, AMissingFileIsNamed) { expect_refused(path("nowhere.tif"), "nowhere.tif"); }
+
+TEST_F(Cli, AnUnwritableOutputIsFoundBeforeTheWork) {
+  good();
+  const Names before = scratch_.files();
+  for (const std::string& output : {path("no/such/folder/out.png"), path(""), std::string("/proc/out.png"), path("out.jpg")}) {
+    // The input does not exist either: the output is looked at first.
+    const auto result = run({"render", path("missing.tif"), "-o", output});
+    EXPECT_EQ(result.status, 1) << output;
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("output '"), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(scratch_.files(), before);
+}
+
+TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
+  good();
+  const Names before = scratch_.files();
+  const struct {
+    Names options;
+    std::string fragment;
+  } cases[] = {
+      {{"--no-such-option"}, "--no-such-option"},
+      {{"--size", "0x0"}, "1 to 65536"},
+      {{"--size", "-5x10"}, "1 to 65536"},
+      {{"--size", "1000000x1000000"}, "1 to 65536"},
+      {{"--size", "60000x60000"}, "at most"},
+      {{"--size", "640"}, "WIDTHxHEIGHT"},
+      {{"--size", "64.5x48"}, "WIDTHxHEIGHT"},
+      {{"--size", "axb"}, "WIDTHxHEIGHT"},
+      {{"--size", "1e300x1"}, "WIDTHxHEIGHT"},
+      {{"--sun", "nan,45"}, "AZIMUTH,ALTITUDE"},
+      {{"--sun", "315"}, "AZIMUTH,ALTITUDE"},
+      {{"--sun", "315,-5"}, "above 0"},
+      {{"--view", "1,2,3,4"}, "AZIMUTH,ELEVATION"},
+      {{"--view", "0,120"}, "0 to 90"},
+      {{"--view", "0,30,0"}, "above 0"},
+      {{"--eye", "1,2"}, "X,Y,Z"},
+      {{"--eye", "1,2,inf"}, "X,Y,Z"},
+      {{"--eye", "1,2,3", "--target", "1,2,3"}, "same point"},
+      {{"--target", "1,2,3"}, "--eye"},
+      {{"--fov", "nan"}, "1 to 150"},
+      {{"--fov", "0"}, "1 to 150"},
+      {{"--top", "--view", "0,30"}, "--view"},
+      {{"--exaggeration", "0"}, "above 0"},
+      {{"--exaggeration", "nan"}, "above 0"},
+      {{"--exaggeration", "-2"}, "above 0"},
+      {{"--exaggeration", "much"}, "much"},
+      {{"--march", "fast"}, "max-mip"},
+      {{"--look", "pretty"}, "shaded"},
+      {{"--ramp", "jet"}, "viridis"},
+      {{"--aa", "0"}, "1 to 16"},
+      {{"--aa", "x"}, "x"},
+      {{"--haze", "2"}, "0 to 0.95"},
+      {{"--threads", "-1"}, "0"},
+      {{"--naive-min-step", "0"}, "above 0"},
+      {{"--relaxed-tolerance", "nan"}, "above 0"},
+      {{"--bisect-halvings", "99"}, "1 to 60"},
+      {{"--error-tolerance", "-1"}, "0 or more"},
+      {{"second.asc"}, "second.asc"},
+  };
+  for (const auto& c : cases) {
+    Names arguments{"render", path("good.asc"), "-o", path("out.png")};
+    arguments.insert(arguments.end(), c.options.begin(), c.options.end());
+    const auto result = run(arguments);
+    const std::string what = fmt::format("{}: {}", fmt::join(c.options, " "), result.err);
+    EXPECT_TRUE(result.status == 1 || result.status == 2) << result.status << ", " << what;
+    EXPECT_EQ(result.out, "") << what;
+    EXPECT_EQ(test::lines(result.err), 1) << what;
+    EXPECT_NE(result.err.find(c.fragment), std::string::npos) << "'" << c.fragment << "' is not in: " << what;
+  }
+  EXPECT_EQ(scratch_.files(), before);
+}
+
+TEST_F(Cli, WhatIsNeededIsAskedFor) {
+  for (const Names& arguments : {Names{"render"}, {"render", good()}, {"render", "-o", path("out.png")}, {"paint"}, {"--paint"}}) {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("--help"), std::string::npos) << result.err;
+  }
+}
+
+TEST_F(Cli, HelpAndVersion) {
+  const auto bare = run({});
+  EXPECT_EQ(bare.status, 2);
+  EXPECT_NE(bare.err.find("render"), std::string::npos);
+  EXPECT_EQ(bare.out, "");
+  const auto help = run({"--help"});
+  EXPECT_EQ(help.status, 0);
+  for (const char* command : {"render", "info", "generate", "marches"}) {
+    EXPECT_NE(help.out.find(command), std::string::npos);
+    EXPECT_EQ(run({command, "--help"}).status, 0);
+  }
+  const auto version = run({"--version"});
+  EXPECT_EQ(version.status, 0);
+  EXPECT_EQ(version.out.find("scarp "), 0u) << version.out;
+}
+
+TEST_F(Cli, MarchesAreListedOnceEach) {
+  const auto plain = run({"marches"}), markdown = run({"marches", "--markdown"});
+  EXPECT_EQ(plain.status, 0);
+  EXPECT_EQ(markdown.status, 0);
+  for (const char* name : {"exhaustive", "naive", "relaxed", "max-mip", "max-mip-bisect"}) {
+    EXPECT_NE(plain.out.find(fmt::format("\n{} ", name)), std::string::npos) << plain.out;
+    EXPECT_NE(markdown.out.find(fmt::format("\n| `{}` |", name)), std::string::npos) << markdown.out;
+  }
+}
+
+TEST_F(Cli, AFullStandardOutputIsAFailure) {
+  test::Program program({"marches"}, "/dev/full");
+  EXPECT_EQ(program.result().status, 1);
+}
+
+// Ends a long render with a signal; it must be gone soon and leave nothing.
+class Interrupt : public Cli, public testing::WithParamInterface<int> {};
+
+TEST_P(Interrupt, LeavesNothing) {
+  good();
+  const auto begin = std::chrono::steady_clock::now();
+  test::Program program({"render", path("good.asc"), "-o", path("out.png"), "--size", "8000x8000", "--aa", "16"});
+  const auto waited = [&] { return std::chrono::steady_clock::now() - begin; };
+  while (scratch_.files().size() < 2 && waited() < std::chrono::seconds(20)) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  ASSERT_EQ(scratch_.files().size(), 2u) << "the output was never begun";
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  ::kill(program.pid(), GetParam());
+  const auto result = program.result();
+  EXPECT_EQ(result.status, 128 + GetParam()) << result.err;
+  EXPECT_EQ(result.err, "scarp: interrupted\n");
+  EXPECT_EQ(scratch_.files(), Names{"good.asc"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, testing::Values(SIGINT, SIGTERM));
+
+}  // namespace
+}  // namespace scarp

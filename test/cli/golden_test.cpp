@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// The picture of the demo, smaller, against the one that was looked at and found good. After a change that is meant to be
+// seen: look at the new picture, which a failing test leaves in the build folder, and copy it to test/golden/.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+#include "cli/program.h"
+#include "output/read_png.h"
+#include "scarp/output/png.h"
+
+namespace scarp {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A byte may round the other way where the mathematical library's pow, exp, sin or cos differs in its last bit.
+constexpr int kRounding = 2;
+// And a ray may pass the other side of a crest or a shadow's edge: that changes one of a pixel's four samples, at most from
+// white to black, and does so in few pixels.
+constexpr int kMaxDifference = 140;
+constexpr double kMaxShare = 0.001;
+
+TEST(Golden, TheDemosPicture) {
+  const std::string dem = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
+  if (!fs::exists(dem)) GTEST_SKIP() << "'" << dem << "' is missing; it comes with Debian's package python-matplotlib-data";
+  const test::Scratch scratch;
+  const std::string picture = scratch.path("jacksboro.png");
+  const auto result = test::run({"render", dem, "-o", picture, "--key", "elevation", "--crs", "EPSG:4326",
+                                 "--bounds=-84.41375,36.44625,-84.07791666666667,36.73291666666667", "--size", "480x270",
+                                 "--exaggeration", "2", "--view", "195,30", "--sun", "300,30"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const test::Rgb now = test::read_png(picture);
+  const fs::path kept = fs::path(SCARP_FAILED_IMAGES) / "jacksboro_now.png";
+  const std::string golden_path = (fs::path(SCARP_SOURCE_DIR) / "test" / "golden" / "jacksboro.png").string();
+  fs::copy_file(picture, kept, fs::copy_options::overwrite_existing);
+  ASSERT_TRUE(fs::exists(golden_path)) << "the picture is " << kept;
+  const test::Rgb golden = test::read_png(golden_path);
+  ASSERT_EQ(now.width, golden.width);
+  ASSERT_EQ(now.height, golden.height);
+
+  int largest = 0;
+  std::int64_t differing = 0;
+  std::vector<std::uint8_t> difference(now.bytes.size());
+  for (std::size_t pixel = 0; pixel < now.bytes.size(); pixel += 3) {
+    int here = 0;
+    for (std::size_t i = pixel; i < pixel + 3; ++i) here = std::max(here, std::abs(now.bytes[i] - golden.bytes[i]));
+    largest = std::max(largest, here);
+    differing += here > kRounding;
+    // Amplified, so that one sees it.
+    std::fill_n(difference.begin() + static_cast<std::ptrdiff_t>(pixel), 3, static_cast<std::uint8_t>(std::min(255, 8 * here)));
+  }
+  const double share = static_cast<double>(differing) / (static_cast<double>(now.width) * now.height);
+  EXPECT_LE(largest, kMaxDifference);
+  EXPECT_LE(share, kMaxShare);
+  if (HasFailure()) {
+    const std::string shown = (fs::path(SCARP_FAILED_IMAGES) / "jacksboro_difference.png").string();
+    write_png(shown, {difference.data(), now.width, now.height});
+    ADD_FAILURE() << "differences, 8 times as bright: " << shown << "; the picture itself: " << kept;
+  } else {
+    fs::remove(kept);
+  }
+}
+
+}  // namespace
+}  // namespace scarp

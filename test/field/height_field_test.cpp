@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/field/height_field.h"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// 3 x 2 samples, north row first.
+HeightField small(const HeightFieldSettings& settings = {}) { return HeightField::own<float>({1, 2, 4, 8, 16, 32}, 3, 2, settings); }
+
+std::string message(auto&& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(HeightField, PutsTheSouthWestSampleAtTheOriginAndRowsSouthwards) {
+  const HeightField field = small({.cell_x = 10, .cell_y = 5});
+  EXPECT_DOUBLE_EQ(field.width(), 20);
+  EXPECT_DOUBLE_EQ(field.depth(), 5);
+  EXPECT_DOUBLE_EQ(field.height(0, 0).value(), 8);
+  EXPECT_DOUBLE_EQ(field.height(0, 5).value(), 1);
+  EXPECT_DOUBLE_EQ(field.height(20, 0).value(), 32);
+  EXPECT_DOUBLE_EQ(field.height(20, 5).value(), 4);
+  EXPECT_EQ(field.world_from_grid(2, 1, 32), dvec3(20, 0, 32));
+}
+
+TEST(HeightField, IsBilinearInACell) {
+  const HeightField field = small();
+  EXPECT_DOUBLE_EQ(field.height(0.25, 0.5).value(), 0.5 * ((0.75 * 8 + 0.25 * 16) + (0.75 * 1 + 0.25 * 2)));
+}
+
+TEST(HeightField, HasNoHeightOutsideAndForNaN) {
+  const HeightField field = small();
+  for (const auto& [x, y] : std::vector<std::pair<double, double>>{{-1e-9, 0.5}, {2.1, 0.5}, {1, 1.0001}, {1, -0.1}, {std::nan(""), 0.5}}) {
+    EXPECT_FALSE(field.height(x, y)) << x << ", " << y;
+  }
+}
+
+TEST(HeightField, ScalesOffsetsAndExaggeratesSamples) {
+  const HeightField field = small({.scale = 0.5, .offset = 100, .exaggeration = 2});
+  EXPECT_DOUBLE_EQ(field.height(0, 0).value(), (8 * 0.5 + 100) * 2);
+  EXPECT_DOUBLE_EQ(field.min_height(), 201);
+  EXPECT_DOUBLE_EQ(field.max_height(), 232);
+}
+
+TEST(HeightField, MakesAHoleOfEveryCellThatTouchesNodata) {
+  const HeightField field = HeightField::own<std::int16_t>({1, 2, 3, 4, -9999, 6, 7, 8, 9, 10, 11, 12}, 4, 3, {.nodata = -9999});
+  EXPECT_EQ(field.nodata_count(), 1);
+  EXPECT_EQ(field.min_sample(), 1);
+  for (const Cell cell : {Cell{0, 0}, Cell{0, 1}}) EXPECT_FALSE(field.cell_heights(cell));
+  for (const Cell cell : {Cell{1, 0}, Cell{2, 1}}) EXPECT_TRUE(field.cell_heights(cell));
+}
+
+TEST(HeightField, TakesNaNAsAHoleWhateverTheNodataValue) {
+  const HeightField field = HeightField::own<float>({1, kNaN, -5, 4}, 2, 2, {.nodata = -5});
+  EXPECT_EQ(field.nodata_count(), 2);
+  EXPECT_EQ(field.max_sample(), 4);
+}
+
+TEST(HeightField, IgnoresANodataValueThatTheSampleTypeCannotHold) {
+  EXPECT_EQ(HeightField::own<std::uint16_t>({1, 2, 3, 4}, 2, 2, {.nodata = -9999}).nodata_count(), 0);
+  EXPECT_EQ(HeightField::own<std::int16_t>({1, 2, 3, 4}, 2, 2, {.nodata = 2.5}).nodata_count(), 0);
+  EXPECT_EQ(HeightField::own<float>({1, 2, 3, 4}, 2, 2, {.nodata = 1e300}).nodata_count(), 0);
+}
+
+TEST(HeightField, RefusesWhatItCannotBeInOneLine) {
+  EXPECT_NE(message([] { HeightField::own<float>({1, 2, 3}, 2, 2); }).find("3 samples given for 2 x 2"), std::string::npos);
+  EXPECT_NE(message([] { HeightField::own<float>({}, 0, 0); }).find("at least 1 x 1"), std::string::npos);
+  EXPECT_NE(message([] { small({.cell_x = 0}); }).find("cell_x"), std::string::npos);
+  EXPECT_NE(message([] { small({.scale = -1}); }).find("scale"), std::string::npos);
+  EXPECT_NE(message([] { small({.exaggeration = std::nan("")}); }).find("exaggeration"), std::string::npos);
+  EXPECT_NE(message([] { HeightField::own<float>({1, 2, 3, HUGE_VALF}, 2, 2); }).find("column 1, row 1 is infinite"), std::string::npos);
+}
+
+TEST(HeightField, TakesAnInfinityThatIsDeclaredNodata) {
+  EXPECT_EQ(HeightField::own<float>({1, 2, 3, HUGE_VALF}, 2, 2, {.nodata = HUGE_VAL}).nodata_count(), 1);
+}
+
+TEST(HeightField, ViewsTheCallersMemoryWithAnyStrideAndCopiesNothing) {
+  std::array<float, 12> memory{0, 1, 2, -1, 3, 4, 5, -1, 6, 7, 8, -1};
+  const HeightField field = HeightField::view(memory.data(), 3, 3, 4);
+  EXPECT_DOUBLE_EQ(field.height(0, 0).value(), 6);
+  EXPECT_EQ(field.min_sample(), 0);
+  const HeightField flipped = HeightField::view(memory.data() + 8, 3, 3, -4);
+  EXPECT_DOUBLE_EQ(flipped.height(0, 0).value(), 0);
+  memory[8] = 60;
+  EXPECT_DOUBLE_EQ(field.height(0, 0).value(), 60);
+}
+
+TEST(HeightField, HasNoCellsWithASingleRowOrColumn) {
+  EXPECT_FALSE(HeightField::own<float>({1, 2, 3}, 3, 1).has_cells());
+  EXPECT_FALSE(HeightField::own<float>({1, 2, 3}, 1, 3).has_cells());
+  EXPECT_FALSE(HeightField::own<float>({1, 2, 3}, 3, 1).height(1, 0));
+}
+
+TEST(HeightField, PointsItsNormalUphillBackwards) {
+  // Rises by 3 m per metre to the east and by 2 to the north.
+  std::vector<float> samples;
+  for (int row = 0; row < 4; ++row) {
+    for (int col = 0; col < 5; ++col) samples.push_back(static_cast<float>(3 * col - 2 * row));
+  }
+  const HeightField field = HeightField::own(samples, 5, 4);
+  EXPECT_EQ(field.gradient(1.5, 1.5).value(), dvec2(3, 2));
+  const dvec3 expected = normalize(dvec3(-3, -2, 1));
+  for (const dvec3& n : {field.normal({1, 1}, 0.3, 0.6), field.shading_normal({1, 1}, 0.3, 0.6), field.shading_normal({0, 2}, 0, 1)}) {
+    EXPECT_NEAR(length(n - expected), 0, 4 * 0x1p-52);
+  }
+}
+
+RC_GTEST_PROP(HeightField, GradientIsTheDifferenceQuotientOfTheHeight, ()) {
+  const auto value = [] { return static_cast<float>(*rc::gen::inRange(-1000, 1000)); };
+  const HeightField field = HeightField::own<float>({value(), value(), value(), value()}, 2, 2, {.cell_x = 3, .cell_y = 7, .scale = 0.25});
+  const double x = *rc::gen::inRange(1, 99) * 0.03, y = *rc::gen::inRange(1, 99) * 0.07;
+  const dvec2 slope = field.gradient(x, y).value();
+  // Along one axis a bilinear surface is linear: central differences are exact but for the rounding of heights up to 250 m
+  // over a step of 1/64 m.
+  const double d = 0x1p-6, rounding = 8 * 250 * 0x1p-52 / d;
+  RC_ASSERT(std::abs((field.height(x + d, y).value() - field.height(x - d, y).value()) / (2 * d) - slope.x) < rounding);
+  RC_ASSERT(std::abs((field.height(x, y + d).value() - field.height(x, y - d).value()) / (2 * d) - slope.y) < rounding);
+}
+
+}  // namespace
+}  // namespace scarp

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// naive and relaxed: they do what their texts say, including what they are known to get wrong.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "scarp/base/error.h"
+#include "scarp/march/marches.h"
+#include "scarp/march/naive.h"
+#include "scarp/march/relaxed.h"
+
+namespace scarp {
+namespace {
+
+HeightField flat() { return HeightField::own(std::vector<float>(101 * 101, 0.f), 101, 101); }
+
+// One wall of a single column on flat ground.
+HeightField wall() {
+  std::vector<float> samples(101 * 101, 0.f);
+  for (std::size_t row = 0; row < 101; ++row) samples[101 * row + 60] = 50;
+  return HeightField::own(samples, 101, 101);
+}
+
+TEST(Naive, StopsWithinItsToleranceAboveAPlane) {
+  const HeightField field = flat();
+  MarchSettings settings;
+  const Ray ray{{10, 50, 30}, {0.8, 0, -0.6}};
+  MarchStats stats;
+  const Hit hit = march_naive({&field, nullptr}, ray, settings, &stats);
+  ASSERT_TRUE(hit);
+  EXPECT_LT(hit.height, settings.naive.tolerance * hit.t);
+  EXPECT_NEAR(hit.height, 30 - 0.6 * hit.t, 1e-12);
+  EXPECT_NEAR(hit.t, 50, settings.naive.tolerance * 50 / 0.6 + settings.naive.min_step * 112.5);
+  EXPECT_GT(stats.steps, 3u);
+}
+
+TEST(Naive, StepsOverAThinWallWithLongStepsAndFindsItWithShortOnes) {
+  const HeightField field = wall();
+  const Ray ray{{0, 50.5, 20}, {1, 0, 0}};
+  MarchSettings settings;
+  settings.naive.min_step = 0.1;
+  EXPECT_FALSE(march_naive({&field, nullptr}, ray, settings));
+  settings.naive.step_factor = settings.naive.min_step = 1e-3;
+  EXPECT_TRUE(march_naive({&field, nullptr}, ray, settings));
+}
+
+TEST(Naive, ReportsUsedUpStepsAsExhausted) {
+  const HeightField field = flat();
+  MarchSettings settings;
+  settings.naive.max_steps = 3;
+  settings.naive.step_factor = 1e-6;
+  const Hit hit = march_naive({&field, nullptr}, {{0, 50, 20}, {1, 0, 0}}, settings);
+  EXPECT_EQ(hit.status, HitStatus::exhausted);
+  EXPECT_TRUE(std::isfinite(hit.t));
+}
+
+TEST(Relaxed, ClosesInOnAPlane) {
+  const HeightField field = flat();
+  const Hit hit = march_relaxed({&field, nullptr}, {{10, 50, 30}, {0.8, 0, -0.6}});
+  ASSERT_TRUE(hit);
+  EXPECT_LT(std::abs(hit.height), 0.0015 * hit.t);
+  EXPECT_NEAR(hit.t, 50, 0.0015 * 50 / 0.6);
+}
+
+TEST(Relaxed, FollowsItsRecurrence) {
+  // Over a plane h shrinks by 1 - 0.4 * 0.6 a step: the number of steps is known.
+  const HeightField field = flat();
+  MarchStats stats;
+  march_relaxed({&field, nullptr}, {{10, 50, 30}, {0.8, 0, -0.6}}, {}, &stats);
+  double t = 0;
+  std::uint32_t steps = 1;
+  for (; std::abs(30 - 0.6 * t) >= 0.0015 * t; ++steps) t += 0.4 * (30 - 0.6 * t);
+  EXPECT_EQ(stats.steps, steps);
+}
+
+TEST(Relaxed, ReportsUsedUpStepsAsExhaustedAndNotAsAHit) {
+  // Level flight at a height that 300 steps of 0.4 h do not bring to the border.
+  const HeightField field = flat();
+  EXPECT_EQ(march_relaxed({&field, nullptr}, {{0, 50, 0.5}, {1, 0, 0}}).status, HitStatus::exhausted);
+}
+
+TEST(Relaxed, SaysBelowWhenItStartsBelow) {
+  const HeightField field = flat();
+  EXPECT_EQ(march_relaxed({&field, nullptr}, {{50, 50, -5}, {1, 0, 0}}).status, HitStatus::below);
+}
+
+TEST(SamplingMarches, DoNotDependOnTheLengthOfTheDirection) {
+  const HeightField field = wall();
+  for (const auto march : {march_naive, march_relaxed}) {
+    const Hit one = march({&field, nullptr}, {{0, 20, 40}, {1, 0.3, -0.5}}, {}, nullptr);
+    const Hit four = march({&field, nullptr}, {{0, 20, 40}, {4, 1.2, -2}}, {}, nullptr);
+    ASSERT_EQ(one.status, four.status);
+    EXPECT_DOUBLE_EQ(one.t, 4 * four.t);
+  }
+}
+
+TEST(MarchTable, NamesAreUniqueAndFoundAndTheOracleIsFirst) {
+  EXPECT_EQ(marches().front().name, "exhaustive");
+  for (const MarchEntry& entry : marches()) EXPECT_EQ(&find_march(entry.name), &entry);
+  try {
+    find_march("max mip");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("'max mip'"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("relaxed"), std::string::npos);
+  }
+}
+
+TEST(MarchSettings, AreCheckedOneByOne) {
+  EXPECT_NO_THROW(validate({}));
+  const auto refused = [](auto&& change) {
+    MarchSettings settings;
+    change(settings);
+    try {
+      validate(settings);
+    } catch (const Error&) {
+      return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.min_step = 0; }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.step_factor = std::nan(""); }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.tolerance = -1; }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.max_steps = 0; }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.relaxed.tolerance = 0; }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.relaxed.max_steps = -3; }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.bisect.halvings = 61; }));
+}
+
+}  // namespace
+}  // namespace scarp
