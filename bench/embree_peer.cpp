@@ -60,7 +60,8 @@ void fill(RTCRay8& to, const RayPacket& from) {
   std::memcpy(to.dir_y, from.dy, sizeof from.dy), std::memcpy(to.dir_z, from.dz, sizeof from.dz);
   std::memcpy(to.tfar, from.t_max, sizeof from.t_max);
   std::memset(to.tnear, 0, sizeof to.tnear), std::memset(to.time, 0, sizeof to.time);
-  std::memset(to.mask, 0xff, sizeof to.mask), std::memset(to.id, 0, sizeof to.id), std::memset(to.flags, 0, sizeof to.flags);
+  std::memset(to.mask, 0xff, sizeof to.mask), std::memset(to.id, 0, sizeof to.id),
+      std::memset(to.flags, 0, sizeof to.flags);
 }
 
 RTCIntersectContext context_with(RTCIntersectContextFlags flags) {
@@ -92,8 +93,8 @@ void trace_single(RTCScene scene, const RaySet& set, std::int64_t begin, std::in
   }
 }
 
-void trace_packets(RTCScene scene, RTCIntersectContextFlags flags, const RaySet& set, std::int64_t begin, std::int64_t end,
-                   float* answers) {
+void trace_packets(RTCScene scene, RTCIntersectContextFlags flags, const RaySet& set, std::int64_t begin,
+                   std::int64_t end, float* answers) {
   const DenormalsOff denormals_off;
   RTCIntersectContext context = context_with(flags);
   if (set.any_hit) {
@@ -177,7 +178,8 @@ struct EmbreePeer::Scene {
 
   void check(std::string_view what) const {
     if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) {
-      throw Error(fmt::format("Embree, {}: error {}; too little memory is the usual cause", what, static_cast<int>(error)));
+      throw Error(
+          fmt::format("Embree, {}: error {}; too little memory is the usual cause", what, static_cast<int>(error)));
     }
   }
 
@@ -208,8 +210,8 @@ EmbreePeer::EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQu
   const std::size_t vertex_count = static_cast<std::size_t>(field.cols()) * static_cast<std::size_t>(field.rows());
   const bool grid = surface == EmbreeSurface::grid;
   RTCGeometry geometry = rtcNewGeometry(s.device, grid ? RTC_GEOMETRY_TYPE_GRID : RTC_GEOMETRY_TYPE_TRIANGLE);
-  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s.vertices.data(), 0, 3 * sizeof(float),
-                             vertex_count);
+  rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, s.vertices.data(), 0,
+                             3 * sizeof(float), vertex_count);
   if (grid) {
     auto* one = static_cast<RTCGrid*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_GRID, 0, RTC_FORMAT_GRID, sizeof(RTCGrid), 1));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Embree 3.13 on the same samples, used as its documentation recommends: ROBUST scenes, no filter functions, denormals off in
-// the threads that trace, packets laid out beforehand.
+// Embree 3.13 on the same samples, used as its documentation recommends: ROBUST scenes, no filter functions, denormals
+// off in the threads that trace, packets laid out beforehand.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,8 @@ EmbreeQuality find_embree_quality(std::string_view name);
 /// A scene over a field; outlives the engines made from it.
 class EmbreePeer {
  public:
-  /// Builds the scene and takes the time, making its vertices and indices included. Throws Error with Embree's own words.
+  /// Builds the scene and takes the time, making its vertices and indices included. Throws Error with Embree's own
+  /// words.
   EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality);
   ~EmbreePeer();
   EmbreePeer(const EmbreePeer&) = delete;

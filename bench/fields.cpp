@@ -62,10 +62,12 @@ BenchField from_file(const std::string& path) {
   raster.scale /= cell_m;
   raster.offset /= cell_m;
   HeightField field = height_field_from(std::move(raster));
-  if (!field.has_cells()) throw Error(fmt::format("DEM '{}': {} x {} samples; at least 2 x 2 are needed", path, field.cols(), field.rows()));
+  if (!field.has_cells())
+    throw Error(fmt::format("DEM '{}': {} x {} samples; at least 2 x 2 are needed", path, field.cols(), field.rows()));
   if (field.nodata_count() > 0) {
-    throw Error(fmt::format("DEM '{}': {} samples are nodata, over which engines differ; fill them first, for example with gdal_fillnodata",
-                            path, field.nodata_count()));
+    throw Error(fmt::format(
+        "DEM '{}': {} samples are nodata, over which engines differ; fill them first, for example with gdal_fillnodata",
+        path, field.nodata_count()));
   }
   return described(std::move(field), path);
 #else
@@ -75,14 +77,15 @@ BenchField from_file(const std::string& path) {
 
 }  // namespace
 
-BenchField load_field(const FieldOptions& options) { return options.dem.empty() ? procedural(options) : from_file(options.dem); }
+BenchField load_field(const FieldOptions& options) {
+  return options.dem.empty() ? procedural(options) : from_file(options.dem);
+}
 
 BenchField exaggerated(const BenchField& ground, double exaggeration) {
   HeightFieldSettings settings = ground.field.settings();
   settings.exaggeration *= exaggeration;
-  HeightField field = ground.field.visit([&](const auto& grid) {
-    return HeightField::view(grid.data, grid.cols, grid.rows, grid.row_stride, settings);
-  });
+  HeightField field = ground.field.visit(
+      [&](const auto& grid) { return HeightField::view(grid.data, grid.cols, grid.rows, grid.row_stride, settings); });
   return described(std::move(field), ground.name);
 }
 

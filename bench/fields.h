@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ground that is measured: procedural or a real DEM, always in cells. One world unit is the distance of two columns,
-// so that all engines see the same small numbers and an error in t is an error in cells.
+// The ground that is measured: procedural or a real DEM, always in cells. One world unit is the distance of two
+// columns, so that all engines see the same small numbers and an error in t is an error in cells.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct FieldOptions {
   int size = 2049;              ///< samples per side of a procedural DEM, >= 33
   std::string kind = "ridged";  ///< "ridged" or "fbm"
   std::uint64_t seed = 1;
-  std::string dem;              ///< a raster file instead of a procedural DEM
+  std::string dem;  ///< a raster file instead of a procedural DEM
 };
 
 /// A field and what readers of a result want to know about it.

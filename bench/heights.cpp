@@ -87,27 +87,30 @@ void print(const std::vector<Json>& rows) {
   for (const Json& row : rows) {
     if (row["engine"] == "embree-tri" && row["mode"] == "x1") yardstick = row["mrays_per_cpu_s"];
   }
-  std::vector<std::vector<std::string>> lines{{"class", "engine", "mode", "Mrays/s", "x tri x1", "busy", "B/sample", "build s", "hits %",
-                                               "lost", "missed %", "false %", "error p99", "steps", "rays"}};
-  const auto percent = [](const Json& share) { return share.is_null() ? std::string("-") : short_number(100 * share.get<double>()); };
+  std::vector<std::vector<std::string>> lines{{"class", "engine", "mode", "Mrays/s", "x tri x1", "busy", "B/sample",
+                                               "build s", "hits %", "lost", "missed %", "false %", "error p99", "steps",
+                                               "rays"}};
+  const auto percent = [](const Json& share) {
+    return share.is_null() ? std::string("-") : short_number(100 * share.get<double>());
+  };
   for (const Json& row : rows) {
     const double speed = row["mrays_per_s"], effort = row["mrays_per_cpu_s"];
     lines.push_back({row["class"], row["engine"], row["mode"], short_number(speed),
-                     yardstick > 0 ? fmt::format("{:.2f}", effort / yardstick) : "-", fmt::format("{:.2f}", row["busy"].get<double>()),
-                     short_number(row["bytes_per_sample"]), short_number(row["build_s"]),
-                     fmt::format("{:.3f}", 100 * row["hit_share"].get<double>()), short_number(row["lost"]), percent(row["miss_rate"]),
-                     percent(row["false_rate"]), short_number(row["error_p99"], 2), short_number(row["steps_per_ray"]),
-                     short_number(row["rays"])});
+                     yardstick > 0 ? fmt::format("{:.2f}", effort / yardstick) : "-",
+                     fmt::format("{:.2f}", row["busy"].get<double>()), short_number(row["bytes_per_sample"]),
+                     short_number(row["build_s"]), fmt::format("{:.3f}", 100 * row["hit_share"].get<double>()),
+                     short_number(row["lost"]), percent(row["miss_rate"]), percent(row["false_rate"]),
+                     short_number(row["error_p99"], 2), short_number(row["steps_per_ray"]), short_number(row["rays"])});
   }
   print_table(lines, 3);
 }
 
-void contest(const BenchField& ground, double exaggeration, const HeightsOptions& options, const std::vector<RayClass>& classes,
-             Json& all_rows) {
+void contest(const BenchField& ground, double exaggeration, const HeightsOptions& options,
+             const std::vector<RayClass>& classes, Json& all_rows) {
   const TraceOptions& trace = options.trace;
   const int build_threads = *std::max_element(trace.threads.begin(), trace.threads.end());
-  fmt::print("\n{} x {} samples, {}, exaggeration {}: relief {:.1f} cells, mean slope {:.1f} degrees\n", ground.field.cols(),
-             ground.field.rows(), ground.name, exaggeration, ground.relief, ground.mean_slope_deg);
+  fmt::print("\n{} x {} samples, {}, exaggeration {}: relief {:.1f} cells, mean slope {:.1f} degrees\n",
+             ground.field.cols(), ground.field.rows(), ground.name, exaggeration, ground.relief, ground.mean_slope_deg);
   std::fflush(stdout);
   const std::vector<RaySet> sets = make_rays(ground, classes, trace.rays, trace.ray_seed);
   std::optional<Contest> engines;

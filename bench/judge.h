@@ -14,15 +14,17 @@ namespace scarp::bench {
 constexpr double kNear = 1.0;
 
 struct Judgement {
-  std::int64_t judged = 0;         ///< rays in the sample
-  double miss_rate = 0;            ///< share of the judge's hits that the engine does not report
-  double false_rate = 0;           ///< share of the judge's misses that the engine reports as hits
-  std::optional<double> error_p99;  ///< 99th percentile of |t - t of the judge| in cells where both hit; null: neither does
-  double late_rate = 0;   ///< share of the judge's hits that are reported, but more than kNear behind: the first hit was lost
+  std::int64_t judged = 0;  ///< rays in the sample
+  double miss_rate = 0;     ///< share of the judge's hits that the engine does not report
+  double false_rate = 0;    ///< share of the judge's misses that the engine reports as hits
+  std::optional<double>
+      error_p99;  ///< 99th percentile of |t - t of the judge| in cells where both hit; null: neither does
+  double late_rate =
+      0;  ///< share of the judge's hits that are reported, but more than kNear behind: the first hit was lost
   double early_rate = 0;  ///< the same before it
-  double exhausted = 0;            ///< share of rays that the engine gave up; they count as not reported
-  double steps = 0;                ///< mean positions looked at per ray, MarchStats::steps
-  double cell_tests = 0;           ///< mean cells intersected per ray
+  double exhausted = 0;   ///< share of rays that the engine gave up; they count as not reported
+  double steps = 0;       ///< mean positions looked at per ray, MarchStats::steps
+  double cell_tests = 0;  ///< mean cells intersected per ray
 };
 
 class Judge {
@@ -30,8 +32,8 @@ class Judge {
   /// Asks the judge, on all threads.
   Judge(const HeightTarget& target, const RaySet& set, std::int64_t sample_size, std::uint64_t seed);
 
-  /// For engines that have `closest` and `blocked`. Where the set only asks whether rays are blocked, the answer comes from
-  /// `blocked`, t and the cost from `closest`.
+  /// For engines that have `closest` and `blocked`. Where the set only asks whether rays are blocked, the answer comes
+  /// from `blocked`, t and the cost from `closest`.
   Judgement judge(const Engine& engine) const;
 
  private:

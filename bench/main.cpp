@@ -16,25 +16,38 @@ constexpr int kLeastSize = 33, kMostSize = 32767;  // Embree's grids end there
 
 void add_trace_options(CLI::App& command, TraceOptions& trace) {
   command.add_option("--dem", trace.field.dem, "a raster file without holes, instead of a procedural DEM");
-  command.add_option("--kind", trace.field.kind, "procedural DEM")->check(CLI::IsMember({"ridged", "fbm"}))->capture_default_str();
+  command.add_option("--kind", trace.field.kind, "procedural DEM")
+      ->check(CLI::IsMember({"ridged", "fbm"}))
+      ->capture_default_str();
   command.add_option("--seed", trace.field.seed, "of the procedural DEM")->capture_default_str();
   command.add_option("--exaggerations", trace.exaggerations, "vertical, one or several")
-      ->delimiter(',')->check(CLI::PositiveNumber)->capture_default_str();
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command.add_option("--threads", trace.threads, "numbers of threads, one or several")
-      ->delimiter(',')->check(CLI::Range(1, 1024))->capture_default_str();
-  command.add_option("--repeats", trace.repeats, "counted passes per engine")->check(CLI::Range(1, 1000))->capture_default_str();
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command.add_option("--repeats", trace.repeats, "counted passes per engine")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   command.add_option("--ray-seed", trace.ray_seed, "of the rays")->capture_default_str();
   command.add_option("--judged", trace.judged, "rays per class that the oracle answers, too")
-      ->check(CLI::Range(1, 100'000'000))->capture_default_str();
-  command.add_option("--pass-limit", trace.pass_limit_s, "seconds; an engine that takes longer for a pass traces part of the rays")
-      ->check(CLI::PositiveNumber)->capture_default_str();
+      ->check(CLI::Range(1, 100'000'000))
+      ->capture_default_str();
+  command
+      .add_option("--pass-limit", trace.pass_limit_s,
+                  "seconds; an engine that takes longer for a pass traces part of the rays")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command
       .add_option_function<std::string>(
           "--rays",
           [&trace](const std::string& size) {
             if (size == "small") trace.rays = {160, 88, 4096, 4096};
           },
-          "full: 1920 x 1080 pixels and 2^20 rays for each other class; small: 160 x 88 and 2^12, to see that all works")
+          "full: 1920 x 1080 pixels and 2^20 rays for each other class; small: 160 x 88 and 2^12, to see that all "
+          "works")
       ->check(CLI::IsMember({"full", "small"}));
 }
 
@@ -51,31 +64,45 @@ int run(int argc, char** argv) {
   HeightsOptions heights;
   CLI::App* heights_command = app.add_subcommand("heights", "all marches beside Embree in five classes of rays");
   heights_command->add_option("--sizes", heights.sizes, "samples per side of the procedural DEM, one or several")
-      ->delimiter(',')->check(CLI::Range(kLeastSize, kMostSize))->capture_default_str();
+      ->delimiter(',')
+      ->check(CLI::Range(kLeastSize, kMostSize))
+      ->capture_default_str();
   heights_command->add_option("--classes", heights.classes, "of rays")
-      ->delimiter(',')->check(CLI::IsMember(heights.classes))->capture_default_str();
+      ->delimiter(',')
+      ->check(CLI::IsMember(heights.classes))
+      ->capture_default_str();
   heights_command->add_option("--engines", heights.engines, "to measure")
-      ->delimiter(',')->check(CLI::IsMember(heights.engines))->capture_default_str();
+      ->delimiter(',')
+      ->check(CLI::IsMember(heights.engines))
+      ->capture_default_str();
   heights_command->add_option("--embree-quality", heights.embree_quality, "of Embree's build")
-      ->check(CLI::IsMember({"medium", "high"}))->capture_default_str();
+      ->check(CLI::IsMember({"medium", "high"}))
+      ->capture_default_str();
   add_trace_options(*heights_command, heights.trace);
   add_json_option(*heights_command, report);
 
   NaiveOptions naive;
   naive.trace.exaggerations = {1, 4, 16};
-  CLI::App* naive_command = app.add_subcommand("naive", "the max-mip article's comparison, naive made as fine as it takes");
+  CLI::App* naive_command =
+      app.add_subcommand("naive", "the max-mip article's comparison, naive made as fine as it takes");
   naive_command->add_option("--size", naive.trace.field.size, "samples per side of the procedural DEM")
-      ->check(CLI::Range(kLeastSize, kMostSize))->capture_default_str();
+      ->check(CLI::Range(kLeastSize, kMostSize))
+      ->capture_default_str();
   naive_command->add_option("--miss-limit", naive.miss_limit, "share of the hits that naive may miss")
-      ->check(CLI::Range(0.0, 1.0))->capture_default_str();
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   add_trace_options(*naive_command, naive.trace);
   add_json_option(*naive_command, report);
 
   PyramidOptions pyramid;
   CLI::App* pyramid_command = app.add_subcommand("pyramid", "how fast the pyramid of maxima is built");
   pyramid_command->add_option("--sizes", pyramid.sizes, "samples per side, one or several")
-      ->delimiter(',')->check(CLI::Range(2, 65536))->capture_default_str();
-  pyramid_command->add_option("--repeats", pyramid.repeats, "counted builds")->check(CLI::Range(1, 1000))->capture_default_str();
+      ->delimiter(',')
+      ->check(CLI::Range(2, 65536))
+      ->capture_default_str();
+  pyramid_command->add_option("--repeats", pyramid.repeats, "counted builds")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   add_json_option(*pyramid_command, report);
 
   CLI11_PARSE(app, argc, argv);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench naive`: what the max-mip article compares, 55.066 ms without and 9.074 ms with the pyramid, asked fairly:
-// naive marching is first made as fine as it takes to be right, at the least cost that it takes, then timed.
+// `scarp-bench naive`: what the max-mip article compares, 55.066 ms without and 9.074 ms with the pyramid, asked
+// fairly: naive marching is first made as fine as it takes to be right, at the least cost that it takes, then timed.
 //
-// Two things let naive step through ground: the least step, which it must take, and the share of the vertical distance that
-// it trusts to be free. On steep ground the second alone loses hits at any least step, so both are searched.
+// Two things let naive step through ground: the least step, which it must take, and the share of the vertical distance
+// that it trusts to be free. On steep ground the second alone loses hits at any least step, so both are searched.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ using Json = nlohmann::ordered_json;
 constexpr double kArticleRatio = 55.066 / 9.074;
 constexpr double kCoarsestStep = 1.0 / 64, kFinestStep = 1.0 / (1 << 20);
 constexpr int kFactorHalvings = 6;
-// The height above ground that counts as a hit, against the least step: small enough that what naive reports early stays
-// a matter of the step, as its misses are.
+// The height above ground that counts as a hit, against the least step: small enough that what naive reports early
+// stays a matter of the step, as its misses are.
 constexpr double kTolerancePerStep = 1.0 / 16;
 
 struct Contender {
@@ -43,8 +43,8 @@ Contender naive_with(const ScarpGround& scarp, const Judge& judge, const char* m
   return contender;
 }
 
-// The settings at which naive is good and takes the fewest steps: for each factor, halved from 0.7 on, the coarsest least
-// step, halved from 1/64 on, at which it is good. Nothing when there are none.
+// The settings at which naive is good and takes the fewest steps: for each factor, halved from 0.7 on, the coarsest
+// least step, halved from 1/64 on, at which it is good. Nothing when there are none.
 std::optional<Contender> cheapest(const ScarpGround& scarp, const Judge& judge, const char* mode,
                                   const std::function<bool(const Judgement&)>& good) {
   std::optional<Contender> best;
@@ -86,7 +86,8 @@ class Comparison {
       add(cheapest(scarp, judge, "naive-fair", [&](const Judgement& j) { return j.miss_rate < limit; }));
       if (!set.any_hit) {
         // In a picture, ground that was stepped through is a hole even where something is hit behind it.
-        add(cheapest(scarp, judge, "naive-no-holes", [&](const Judgement& j) { return j.miss_rate + j.late_rate < limit; }));
+        add(cheapest(scarp, judge, "naive-no-holes",
+                     [&](const Judgement& j) { return j.miss_rate + j.late_rate < limit; }));
       }
       for (const int threads : trace.threads) measure_all(ground, exaggeration, set, contenders, threads);
     }
@@ -95,24 +96,26 @@ class Comparison {
   const Json& rows() const { return rows_; }
 
   void print() const {
-    std::vector<std::vector<std::string>> lines{{"class", "mode", "exagg.", "thr", "factor", "least step", "Mrays/s", "max-mip is",
-                                                 "missed %", "late %", "early %", "false %", "error p99", "steps", "given up %", "busy"}};
+    std::vector<std::vector<std::string>> lines{{"class", "mode", "exagg.", "thr", "factor", "least step", "Mrays/s",
+                                                 "max-mip is", "missed %", "late %", "early %", "false %", "error p99",
+                                                 "steps", "given up %", "busy"}};
     const auto percent = [](const Json& share) { return short_number(100 * share.get<double>()); };
     for (const Json& row : rows_) {
       lines.push_back({row["class"], row["mode"], short_number(row["exaggeration"]), short_number(row["threads"]),
                        short_number(row["step_factor"]),
                        row["min_step"].is_null() ? "-" : fmt::format("1/{:.0f}", 1 / row["min_step"].get<double>()),
                        short_number(row["mrays_per_s"]), fmt::format("{:.2f} x", row["max_mip_ratio"].get<double>()),
-                       percent(row["miss_rate"]), percent(row["late_rate"]), percent(row["early_rate"]), percent(row["false_rate"]),
-                       short_number(row["error_p99"], 2), short_number(row["steps_per_ray"]), percent(row["exhausted"]),
+                       percent(row["miss_rate"]), percent(row["late_rate"]), percent(row["early_rate"]),
+                       percent(row["false_rate"]), short_number(row["error_p99"], 2),
+                       short_number(row["steps_per_ray"]), percent(row["exhausted"]),
                        fmt::format("{:.2f}", row["busy"].get<double>())});
     }
     print_table(lines, 2);
   }
 
  private:
-  void measure_all(const BenchField& ground, double exaggeration, const RaySet& set, const std::vector<Contender>& contenders,
-                   int threads) {
+  void measure_all(const BenchField& ground, double exaggeration, const RaySet& set,
+                   const std::vector<Contender>& contenders, int threads) {
     std::vector<Engine> engines;
     for (const Contender& contender : contenders) engines.push_back(contender.engine);
     const auto timings = measure(engines, set, {threads, options_.trace.repeats, options_.trace.pass_limit_s});
@@ -159,11 +162,12 @@ class Comparison {
 
 void run_naive(const NaiveOptions& options, const ReportOptions& report) {
   const BenchField ground = load_field(options.trace.field);
-  fmt::print("{} x {} samples, {}: relief {:.1f} cells, mean slope {:.1f} degrees\n", ground.field.cols(), ground.field.rows(),
-             ground.name, ground.relief, ground.mean_slope_deg);
+  fmt::print("{} x {} samples, {}: relief {:.1f} cells, mean slope {:.1f} degrees\n", ground.field.cols(),
+             ground.field.rows(), ground.name, ground.relief, ground.mean_slope_deg);
   std::fflush(stdout);
   Comparison comparison(options);
-  for (const double exaggeration : options.trace.exaggerations) comparison.run(exaggerated(ground, exaggeration), exaggeration);
+  for (const double exaggeration : options.trace.exaggerations)
+    comparison.run(exaggerated(ground, exaggeration), exaggeration);
   comparison.print();
   fmt::print("the article: 55.066 ms without, 9.074 ms with the pyramid: {:.2f} x\n", kArticleRatio);
   write_json(report, comparison.rows());

@@ -24,7 +24,8 @@ std::int64_t nanoseconds(clockid_t clock) {
 struct Selection {
   std::int64_t ray_count, blocks, all_blocks;
 
-  explicit Selection(const RaySet& set) : ray_count(set.size()), blocks((ray_count + kBlock - 1) / kBlock), all_blocks(blocks) {}
+  explicit Selection(const RaySet& set)
+      : ray_count(set.size()), blocks((ray_count + kBlock - 1) / kBlock), all_blocks(blocks) {}
 
   std::int64_t begin(std::int64_t block) const { return block * all_blocks / blocks * kBlock; }
   std::int64_t end(std::int64_t block) const { return std::min(begin(block) + kBlock, ray_count); }
@@ -47,7 +48,8 @@ std::int64_t count_hits(const Selection& selection, const std::vector<float>& an
   std::int64_t hits = 0;
   for (std::int64_t block = 0; block < selection.blocks; ++block) {
     const float* from = answers.data() + block * kBlock;
-    hits += std::count_if(from, from + (selection.end(block) - selection.begin(block)), [](float t) { return t != kMiss; });
+    hits +=
+        std::count_if(from, from + (selection.end(block) - selection.begin(block)), [](float t) { return t != kMiss; });
   }
   return hits;
 }

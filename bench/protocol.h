@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How time is taken: every engine warmed up by a whole pass, then passes of all engines in turn (A, B, C, A, B, C, ...), so
-// that what disturbs the machine disturbs all of them; the median counts.
+// How time is taken: every engine warmed up by a whole pass, then passes of all engines in turn (A, B, C, A, B, C,
+// ...), so that what disturbs the machine disturbs all of them; the median counts.
 #pragma once
 
 #include <cstdint>
@@ -32,11 +32,12 @@ struct ProtocolOptions {
 
 /// What one engine did with one set of rays.
 struct Timing {
-  double mrays_per_s = 0;      ///< median pass, by the wall clock
-  double mrays_per_cpu_s = 0;  ///< median pass, by the processor time of all threads: what others on the machine disturb least
-  double spread = 0;           ///< (slowest - fastest pass) / median pass, by the wall clock
-  double busy = 0;             ///< processor time / (wall time * threads) of all counted passes; well below 1: not alone
-  std::int64_t rays = 0;   ///< traced per pass
+  double mrays_per_s = 0;  ///< median pass, by the wall clock
+  double mrays_per_cpu_s =
+      0;              ///< median pass, by the processor time of all threads: what others on the machine disturb least
+  double spread = 0;  ///< (slowest - fastest pass) / median pass, by the wall clock
+  double busy = 0;    ///< processor time / (wall time * threads) of all counted passes; well below 1: not alone
+  std::int64_t rays = 0;  ///< traced per pass
   std::int64_t hits = 0;
 };
 

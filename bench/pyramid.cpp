@@ -58,14 +58,15 @@ void run_pyramid(const PyramidOptions& options, const ReportOptions& report) {
   std::vector<int> threads{1};
   if (all > 1) threads.push_back(all);
   Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{{"samples", "type", "threads", "build s", "Gsamples/s", "B/sample", "busy"}};
+  std::vector<std::vector<std::string>> lines{
+      {"samples", "type", "threads", "build s", "Gsamples/s", "B/sample", "busy"}};
   for (const int size : options.sizes) {
     for (const HeightField& field : {noise_field<float>(size), noise_field<std::int16_t>(size)}) {
       for (const int count : threads) {
         const Json row = measure_build(field, count, options.repeats);
         lines.push_back({fmt::format("{0} x {0}", size), row["sample_type"], short_number(row["threads"]),
-                         short_number(row["build_s"]), short_number(row["gsamples_per_s"]), short_number(row["bytes_per_sample"]),
-                         fmt::format("{:.2f}", row["busy"].get<double>())});
+                         short_number(row["build_s"]), short_number(row["gsamples_per_s"]),
+                         short_number(row["bytes_per_sample"]), fmt::format("{:.2f}", row["busy"].get<double>())});
         rows.push_back(row);
       }
     }

@@ -23,11 +23,18 @@ constexpr std::int64_t kRaysPerPiece = 4096;
 constexpr int kTile = 8;
 
 // Each class has random numbers of its own: leaving one out changes none of the others.
-std::uint64_t class_seed(std::uint64_t seed, RayClass ray_class) { return seed * 16 + static_cast<std::uint64_t>(ray_class); }
+std::uint64_t class_seed(std::uint64_t seed, RayClass ray_class) {
+  return seed * 16 + static_cast<std::uint64_t>(ray_class);
+}
 
 BenchRay make_ray(dvec3 origin, dvec3 direction, float t_max = kInfinity) {
-  return {static_cast<float>(origin.x),    static_cast<float>(origin.y),    static_cast<float>(origin.z),
-          static_cast<float>(direction.x), static_cast<float>(direction.y), static_cast<float>(direction.z), t_max};
+  return {static_cast<float>(origin.x),
+          static_cast<float>(origin.y),
+          static_cast<float>(origin.z),
+          static_cast<float>(direction.x),
+          static_cast<float>(direction.y),
+          static_cast<float>(direction.z),
+          t_max};
 }
 
 // Compass azimuth and altitude as a direction.
@@ -51,7 +58,8 @@ std::vector<BenchRay> primary_rays(const HeightField& field, int width, int heig
   const double extent = std::max(field.width(), field.depth());
   const dvec3 eye(0.5 * field.width(), 0.02 * field.depth(), field.max_height() + 0.05 * extent);
   const dvec3 target(0.5 * field.width(), 0.5 * field.depth(), 0.5 * (field.min_height() + field.max_height()));
-  const dvec3 forward = normalize(target - eye), right = normalize(cross(forward, dvec3(0, 0, 1))), up = cross(right, forward);
+  const dvec3 forward = normalize(target - eye), right = normalize(cross(forward, dvec3(0, 0, 1))),
+              up = cross(right, forward);
   const double half_height = std::tan(45.0 / 2 * kPi / 180), half_width = half_height * width / height;
   std::vector<BenchRay> rays;
   rays.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -70,7 +78,8 @@ std::vector<BenchRay> primary_rays(const HeightField& field, int width, int heig
 
 // One ray for each primary ray that hits, in their order.
 template <class MakeRay>
-std::vector<BenchRay> rays_from_hits(const HeightField& field, const std::vector<BenchRay>& primary, const MakeRay& make) {
+std::vector<BenchRay> rays_from_hits(const HeightField& field, const std::vector<BenchRay>& primary,
+                                     const MakeRay& make) {
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
   std::vector<BenchRay> rays(primary.size());
@@ -115,8 +124,8 @@ std::vector<BenchRay> grazing_rays(const HeightField& field, std::int64_t count,
 }
 
 // Aimed at places where surfaces are sewn together. In plan the coordinates are multiples of 2^-10, so the ray stands
-// exactly over its target at t = 1 (over square cells); its height there is that of the surface to half a float32 step of the
-// origin's height.
+// exactly over its target at t = 1 (over square cells); its height there is that of the surface to half a float32 step
+// of the origin's height.
 std::vector<BenchRay> node_rays(const HeightField& field, std::int64_t count, std::uint64_t seed) {
   constexpr double kGrid = 0x1p-10;
   std::vector<BenchRay> rays;
@@ -127,10 +136,17 @@ std::vector<BenchRay> node_rays(const HeightField& field, std::int64_t count, st
       const double along = (1 + random.below(1022)) * kGrid;
       double u = 0, v = 0;
       switch (i % 4) {
-        case 0: break;                              // a node
-        case 1: u = along; break;                   // an edge from column to column
-        case 2: v = along; break;                   // an edge from row to row
-        default: u = 1 - along, v = along; break;   // the diagonal that the triangles share
+        case 0:
+          break;  // a node
+        case 1:
+          u = along;
+          break;  // an edge from column to column
+        case 2:
+          v = along;
+          break;  // an edge from row to row
+        default:
+          u = 1 - along, v = along;
+          break;  // the diagonal that the triangles share
       }
       const dvec3 plan = field.world_from_grid(col + u, row + v, 0);
       const dvec3 target(plan.x, plan.y, field.height(plan.x, plan.y).value());
@@ -169,11 +185,16 @@ std::vector<RayPacket> packets_of(const std::vector<BenchRay>& rays) {
 
 std::string_view name_of(RayClass ray_class) {
   switch (ray_class) {
-    case RayClass::primary: return "primary";
-    case RayClass::shadow: return "shadow";
-    case RayClass::grazing: return "grazing";
-    case RayClass::ao: return "ao";
-    case RayClass::nodes: break;
+    case RayClass::primary:
+      return "primary";
+    case RayClass::shadow:
+      return "shadow";
+    case RayClass::grazing:
+      return "grazing";
+    case RayClass::ao:
+      return "ao";
+    case RayClass::nodes:
+      break;
   }
   return "nodes";
 }
@@ -196,10 +217,13 @@ std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayCla
     RaySet set{ray_class, false, false, {}, {}};
     const std::uint64_t own_seed = class_seed(seed, ray_class);
     switch (ray_class) {
-      case RayClass::primary: set.rays = primary; break;
+      case RayClass::primary:
+        set.rays = primary;
+        break;
       case RayClass::shadow:
         set.any_hit = true;
-        set.rays = rays_from_hits(field, primary, [&](std::int64_t, dvec3 from, const Hit&) { return make_ray(from, sun); });
+        set.rays =
+            rays_from_hits(field, primary, [&](std::int64_t, dvec3 from, const Hit&) { return make_ray(from, sun); });
         break;
       case RayClass::grazing:
         set.any_hit = true;
@@ -218,7 +242,8 @@ std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayCla
         break;
     }
     if (set.rays.empty()) {
-      throw Error(fmt::format("ray class '{}': no primary ray hits {}; it needs at least one", name_of(ray_class), ground.name));
+      throw Error(fmt::format("ray class '{}': no primary ray hits {}; it needs at least one", name_of(ray_class),
+                              ground.name));
     }
     set.packets = packets_of(set.rays);
     sets.push_back(std::move(set));

@@ -24,7 +24,8 @@ namespace scarp::bench {
 constexpr double kLift = 0.01;
 
 enum class RayClass { primary, shadow, grazing, ao, nodes };
-constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao, RayClass::nodes};
+constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao,
+                                    RayClass::nodes};
 std::string_view name_of(RayClass ray_class);
 /// Throws Error listing the classes when there is no such one.
 RayClass find_ray_class(std::string_view name);
@@ -36,7 +37,8 @@ struct BenchRay {
   float t_max;
 };
 
-/// Eight rays side by side, as packet engines want them; the last packet of a set may have invalid ones (valid 0, else -1).
+/// Eight rays side by side, as packet engines want them; the last packet of a set may have invalid ones (valid 0, else
+/// -1).
 struct alignas(32) RayPacket {
   float ox[8], oy[8], oz[8];
   float dx[8], dy[8], dz[8];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The subcommands of `scarp`. Each adds itself, its options and its help to the program; it runs when it was called, and
-// throws scarp::Error when it fails.
+// The subcommands of `scarp`. Each adds itself, its options and its help to the program; it runs when it was called,
+// and throws scarp::Error when it fails.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,8 @@
 namespace scarp::cli {
 namespace {
 
-constexpr std::array<std::string_view, 6> kHeads = {"name", "guarantee", "fields", "runs on", "parameters", "description"};
+constexpr std::array<std::string_view, 6> kHeads = {"name",    "guarantee",  "fields",
+                                                    "runs on", "parameters", "description"};
 using Row = std::array<std::string, kHeads.size()>;
 
 Row row_of(const MarchEntry& march) {
@@ -21,8 +23,12 @@ Row row_of(const MarchEntry& march) {
   if (march.cpu != nullptr) runs_on += "cpu";
   if (march.simd != nullptr) runs_on += ", simd";
   if (march.gpu) runs_on += ", gpu";
-  return {std::string(march.name), std::string(name_of(march.guarantee)), std::string(march.fields), runs_on,
-          march.parameters.empty() ? "-" : std::string(march.parameters), std::string(march.description)};
+  return {std::string(march.name),
+          std::string(name_of(march.guarantee)),
+          std::string(march.fields),
+          runs_on,
+          march.parameters.empty() ? "-" : std::string(march.parameters),
+          std::string(march.description)};
 }
 
 void print_markdown(const std::vector<Row>& rows) {

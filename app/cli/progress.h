@@ -8,8 +8,8 @@
 
 namespace scarp::cli {
 
-/// From now on the first SIGINT or SIGTERM makes every terminal_progress() ask for a stop, so that files half written are
-/// removed on the way out; a second one ends the program at once.
+/// From now on the first SIGINT or SIGTERM makes every terminal_progress() ask for a stop, so that files half written
+/// are removed on the way out; a second one ends the program at once.
 void catch_interrupts();
 
 /// The signal that was caught, or 0.

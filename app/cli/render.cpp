@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/numbers.h"
@@ -59,7 +61,8 @@ int whole(double number, const RenderOptions& options) {
 }
 
 dvec3 point_from(const std::string& text, std::string_view option) {
-  const auto p = numbers_from(text, ',', 3, 3, option, "X,Y,Z in metres from the south-west sample, for example 500,-2000,1800");
+  const auto p =
+      numbers_from(text, ',', 3, 3, option, "X,Y,Z in metres from the south-west sample, for example 500,-2000,1800");
   return {p[0], p[1], p[2]};
 }
 
@@ -83,7 +86,8 @@ ViewSettings settle(RenderOptions& options) {
   view.fov_deg = options.fov_deg;
   if (!options.view.empty()) {
     const auto numbers = numbers_from(options.view, ',', 2, 3, "--view",
-                                      "AZIMUTH,ELEVATION[,DISTANCE] in degrees and multiples of the framed distance, for example 205,35 or 205,35,0.5");
+                                      "AZIMUTH,ELEVATION[,DISTANCE] in degrees and multiples of the framed distance, "
+                                      "for example 205,35 or 205,35,0.5");
     view.azimuth_deg = numbers[0];
     view.elevation_deg = numbers[1];
     if (numbers.size() == 3) view.distance = numbers[2];
@@ -94,7 +98,8 @@ ViewSettings settle(RenderOptions& options) {
     throw Error(fmt::format("--exaggeration {}: it must be above 0", options.exaggeration));
   }
   std::string extension = std::filesystem::path(options.output).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   if (!options.output.empty() && extension != ".png") {
     throw Error(fmt::format("output '{}': pictures are written as PNG; let the name end in .png", options.output));
   }
@@ -153,7 +158,8 @@ void run(RenderOptions options) {
                             options.input, field.cols(), field.rows()));
   }
   if (field.all_nodata()) {
-    throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", options.input));
+    throw Error(
+        fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", options.input));
   }
   const TerrainScene scene(std::move(field), march, options.march_settings);
   stop_if_interrupted();
@@ -163,11 +169,12 @@ void run(RenderOptions options) {
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   const Camera camera = camera_of(options, view, box, grid_north_azimuth);
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
-  const Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
+  const Picture picture =
+      render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
   const double render_s = watch.lap();
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
-  fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s\n", options.output, picture.image.width,
-             picture.image.height, read_s, build_s, render_s);
+  fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s\n", options.output,
+             picture.image.width, picture.image.height, read_s, build_s, render_s);
   print_findings(picture);
 }
 
@@ -178,10 +185,12 @@ void add_march_options(CLI::App& command, MarchSettings& march) {
   };
   add("--naive-step-factor", march.naive.step_factor, "share of the vertical distance that naive steps; above 0");
   add("--naive-min-step", march.naive.min_step, "its least step, a share of the ray's way out; above 0, at most 1");
-  add("--naive-tolerance", march.naive.tolerance, "height above ground that it takes for a hit, per distance; 0 or more");
+  add("--naive-tolerance", march.naive.tolerance,
+      "height above ground that it takes for a hit, per distance; 0 or more");
   add("--naive-max-steps", march.naive.max_steps, "its limit of steps; 1 or more");
   add("--relaxed-step-factor", march.relaxed.step_factor, "share of the vertical distance that relaxed steps; above 0");
-  add("--relaxed-tolerance", march.relaxed.tolerance, "height off the ground that it takes for a hit, per distance; above 0");
+  add("--relaxed-tolerance", march.relaxed.tolerance,
+      "height off the ground that it takes for a hit, per distance; above 0");
   add("--relaxed-max-steps", march.relaxed.max_steps, "its limit of steps; 1 or more");
   add("--bisect-halvings", march.bisect.halvings, "halvings of max-mip-bisect; 1 to 60");
 }
@@ -196,27 +205,48 @@ void add_render(CLI::App& program) {
   command->add_option("-o,--output", o.output, "the picture, .png")->required();
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels (1280x720; with --top the shape of the ground)");
   command->add_option("--look", o.look, "shaded, height, steps, error")->capture_default_str();
-  command->add_option("--ramp", o.picture.ramp, fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
+  command->add_option("--ramp", o.picture.ramp,
+                      fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
   command->add_option("--exaggeration", o.exaggeration, "heights times this; above 0")->capture_default_str();
   command->add_option("--sun", o.sun, "AZIMUTH,ALTITUDE of the sun in degrees, compass and above the horizon (315,45)");
   command->add_flag("--no-shadows", o.no_shadows, "hill shade only");
   command->add_flag("--no-plinth", o.no_plinth, "no walls below the terrain's border");
-  command->add_option("--haze", o.picture.haze, "share of haze over a distance as long as the field's diagonal, 0 to 0.95")->capture_default_str();
-  command->add_option("--aa", o.picture.aa, "N x N samples per pixel of the shaded look, 1 to 16")->capture_default_str();
-  command->add_option("--error-tolerance", o.picture.error_tolerance, "of the error look, in sides of a cell along the ray")->capture_default_str();
+  command
+      ->add_option("--haze", o.picture.haze, "share of haze over a distance as long as the field's diagonal, 0 to 0.95")
+      ->capture_default_str();
+  command->add_option("--aa", o.picture.aa, "N x N samples per pixel of the shaded look, 1 to 16")
+      ->capture_default_str();
+  command
+      ->add_option("--error-tolerance", o.picture.error_tolerance,
+                   "of the error look, in sides of a cell along the ray")
+      ->capture_default_str();
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
 
   const std::string from = "Where from";
-  CLI::Option* view = command->add_option("--view", o.view,
-      "AZIMUTH,ELEVATION[,DISTANCE]: the camera stands at that compass azimuth and elevation in degrees; distance in "
-      "multiples of the one at which all just fits (190,35,1)")->group(from);
-  CLI::Option* eye = command->add_option("--eye", o.eye, "X,Y,Z in metres: x east, y north from the south-west sample, z up, exaggerated")->group(from);
+  CLI::Option* view = command
+                          ->add_option("--view", o.view,
+                                       "AZIMUTH,ELEVATION[,DISTANCE]: the camera stands at that compass azimuth and "
+                                       "elevation in degrees; distance in "
+                                       "multiples of the one at which all just fits (190,35,1)")
+                          ->group(from);
+  CLI::Option* eye =
+      command
+          ->add_option("--eye", o.eye, "X,Y,Z in metres: x east, y north from the south-west sample, z up, exaggerated")
+          ->group(from);
   command->add_option("--target", o.target, "X,Y,Z that the eye looks at (the middle)")->group(from)->needs(eye);
-  CLI::Option* fov = command->add_option("--fov", o.fov_deg, "vertical angle of view in degrees, 1 to 150")->group(from)->capture_default_str();
-  command->add_flag("--top", o.top, "a map: straight down, no perspective, grid north up")->group(from)->excludes(view)->excludes(eye)->excludes(fov);
+  CLI::Option* fov = command->add_option("--fov", o.fov_deg, "vertical angle of view in degrees, 1 to 150")
+                         ->group(from)
+                         ->capture_default_str();
+  command->add_flag("--top", o.top, "a map: straight down, no perspective, grid north up")
+      ->group(from)
+      ->excludes(view)
+      ->excludes(eye)
+      ->excludes(fov);
   view->excludes(eye);
 
-  command->add_option("--march", o.march, "technique, see 'scarp marches'")->group("Settings of marches")->capture_default_str();
+  command->add_option("--march", o.march, "technique, see 'scarp marches'")
+      ->group("Settings of marches")
+      ->capture_default_str();
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);
   command->callback([options] { run(*options); });

@@ -45,9 +45,8 @@ struct CellQuadratic {
   bool peaks(double length) const { return a < 0 && b > 0 && b < -2 * a * length; }
 };
 
-// Where the ray is, as far as known, at the entry of the current cell. `doubtful`: it was below and has since passed a block
-// with holes no more than rounding above it; above only if visibly so.
-enum class Side { unknown, above, below, doubtful };
+// Where the ray is, as far as known, at the entry of the current cell. Without holes it is unknown in the first cell only.
+enum class Side { unknown, above, below };
 
 // How the ray came to where it is: through a line of constant column (x) or row (y), or not through a line.
 enum class Through { point, x_line, y_line };
@@ -57,8 +56,8 @@ class Walk {
  public:
   Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray, const GridRay& local,
        int halvings)
-      : field_(field), grid_(grid), levels_(pyramid.levels().data()), top_(pyramid.level_count() - 1),
-        maxima_(pyramid.level<T>(0).data), x_(local.origin.x, local.direction.x, grid.cols - 1),
+      : field_(field), grid_(grid), levels_(pyramid.levels().data()), top_(pyramid.top_level()),
+        maxima_(pyramid.level<T>(1).data), x_(local.origin.x, local.direction.x, grid.cols - 1),
         y_(local.origin.y, local.direction.y, grid.rows - 1), z_(local.origin.z), dz_(local.direction.z), t_in_(ray.t_min),
         t_end_(ray.t_max), strict_(ray.start == RayStart::on_surface), halvings_(halvings), ray_(ray) {}
 
@@ -114,8 +113,10 @@ class Walk {
     const bool beside = (!x_.moves() && !(x_.origin >= 0 && x_.origin <= x_.cells)) ||
                         (!y_.moves() && !(y_.origin >= 0 && y_.origin <= y_.cells));
     if (beside || !(t_in_ <= t_end_)) return false;
-    col_ = x_.cell_after(t_in_);
-    row_ = y_.cell_after(t_in_);
+    // A ray that begins between the lowest and the highest ground is likely to begin near the ground, where wide skips are
+    // not to be had; one that comes from outside crosses open air first, though blocks that span the field are seldom free.
+    const int from_outside = std::max(top_ - 3, 0);
+    level_ = t_in_ == ray_.t_min ? 0 : from_outside;
     const double highest = field_.max_sample();
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
@@ -123,15 +124,17 @@ class Walk {
       // a peak which the ray just touches is still ahead.
       const double quotient = (highest - z_) / dz_, t_top = quotient - 2 * kUnit * std::abs(quotient);
       if (t_top > t_end_) return false;
+      side_ = Side::above;
+      level_ = from_outside;
       if (t_top > t_in_) {
         col_ = x_.cell_before(t_top);
         row_ = y_.cell_before(t_top);
         t_in_ = std::max({t_in_, x_.line_time(col_ + 1 - x_.ahead), y_.line_time(row_ + 1 - y_.ahead)});
+        return true;
       }
-      side_ = Side::above;
     }
-    // Found on rays from cameras and from the ground: a root start costs steps, level 0 forgoes the first wide skips.
-    level_ = std::min(kStartLevel, top_);
+    col_ = x_.cell_after(t_in_);
+    row_ = y_.cell_after(t_in_);
     return true;
   }
 
@@ -178,7 +181,6 @@ class Walk {
     const bool falling = dz_ < 0;
     const double highest = field_.max_sample();
     for (;;) {
-      const Level& level = levels_[level_];
       const int block_col = col_ >> level_, block_row = row_ >> level_;
       const int line_x = (block_col + x_.ahead) << level_, line_y = (block_row + y_.ahead) << level_;
       const double tx = x_.line_time(line_x), ty = y_.line_time(line_y);
@@ -187,29 +189,38 @@ class Walk {
       const double t_out = std::min(t_line, t_end_);
       // The ray's height is linear, and so it is after rounding: lowest at one end of the block.
       const double lowest = ray_height(falling ? t_out : t_in_);
-      const T maximum = maxima_[level.begin + static_cast<std::ptrdiff_t>(block_row) * level.cols + block_col];
       ++stats.steps;
-      if (lowest > static_cast<double>(maximum)) {
-        // Above all of the block. Where it has holes, the last cell may be one: the next begins with a question. A ray that
-        // was below has come out, if by more than rounding.
-        const bool out = side_ != Side::below && side_ != Side::doubtful;
-        if (out || ray_height(falling ? t_in_ : t_out) - static_cast<double>(maximum) > rounding_of_clearance(t_out)) {
-          side_ = Holes ? Side::unknown : Side::above;
-        } else if (Holes) {
-          side_ = Side::doubtful;
+      if (level_ > 0) {
+        const Level& level = levels_[level_ - 1];
+        const double maximum = maxima_[level.begin + static_cast<std::ptrdiff_t>(block_row) * level.cols + block_col];
+        if (!above(lowest, maximum)) {
+          --level_;
+          ++stats.level_changes;
+          continue;
         }
-        begun_ = true;
-        if (lowest > highest && !falling) return answer_;
-      } else if (level_ > 0) {
-        --level_;
-        ++stats.level_changes;
-        continue;
+        // Where there are holes, the last cell may be one: the next begins with a question.
+        side_ = Holes ? Side::unknown : Side::above;
+      } else if (Holes && grid_.is_hole(col_, row_)) {
+        // Passing the corner of a hole is not leaving the ground.
+        if (t_line > t_in_) side_ = Side::unknown;
       } else {
-        if (test_cell(through_x, t_line)) return answer_;
-        begun_ = true;
+        const CellHeights h = heights(col_, row_);
+        const double maximum = std::max(std::max(h.h00, h.h10), std::max(h.h01, h.h11));
+        if (above(lowest, maximum)) {
+          side_ = Side::above;
+        } else if (test_cell(h, through_x, t_line, t_out)) {
+          return answer_;
+        }
       }
+      if (Holes) begun_ = true;
+      if (!falling && lowest > highest) return answer_;
       if (!(t_line < t_end_) || !advance(through_x, t_line, through_x ? line_x : line_y)) return answer_;
     }
+  }
+
+  // Whether the ray is above all of a block. One that was below has to be so by more than rounding: see test_cell().
+  bool above(double lowest, double maximum) const {
+    return lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_in_));
   }
 
   // Steps over a line of the current level; false outside the field. Crossing into another parent goes one level up.
@@ -218,13 +229,12 @@ class Walk {
       col_ = line + x_.ahead - 1;
       if (!x_.inside(col_)) return false;
       if (level_ > 0) row_ = y_.cell_before(t);
-      through_ = Through::x_line;
     } else {
       row_ = line + y_.ahead - 1;
       if (!y_.inside(row_)) return false;
       if (level_ > 0) col_ = x_.cell_after(t);
-      through_ = Through::y_line;
     }
+    if (Holes) through_ = through_x ? Through::x_line : Through::y_line;
     t_in_ = t;
     if (((line >> level_) & 1) == 0 && level_ < top_) {
       ++level_;
@@ -234,25 +244,16 @@ class Walk {
   }
 
   // The surface of the current cell; true: answered. Otherwise side_ is that of the way out.
-  bool test_cell(bool through_x, double t_line) {
-    if (Holes && grid_.is_hole(col_, row_)) {
-      // Passing the corner of a hole is not leaving the ground.
-      if (t_line > t_in_) side_ = Side::unknown;
-      return false;
-    }
+  bool test_cell(const CellHeights& h, bool through_x, double t_line, double t_out) {
     ++stats.cell_tests;
-    const CellHeights h = heights(col_, row_);
     if (side_ == Side::unknown) {
       const double in = clearance(h, through_, false, t_in_);
       if (in == 0 && !strict_) return answer(0.0), true;
       side_ = in >= 0 ? Side::above : Side::below;
       if (side_ == Side::below && !begun_) answer_.status = HitStatus::below;
-    } else if (side_ == Side::doubtful) {
-      side_ = clearance(h, through_, false, t_in_) > rounding_of_clearance(t_in_) ? Side::above : Side::below;
     }
-    const bool ends_inside = t_line > t_end_;
-    const double t_out = std::min(t_line, t_end_), length = t_out - t_in_;
-    const Through exit = ends_inside ? Through::point : through_x ? Through::x_line : Through::y_line;
+    const double length = t_out - t_in_;
+    const Through exit = t_line > t_end_ ? Through::point : through_x ? Through::x_line : Through::y_line;
     const double out = clearance(h, exit, true, t_out);
     if (side_ == Side::above) {
       if (out <= 0 && is_hit(out, t_out)) return hit_in_cell(quadratic(h, t_in_), length), true;
@@ -315,7 +316,6 @@ class Walk {
   }
 
   using Level = MaxPyramid::Level;
-  static constexpr int kStartLevel = 4;
   static constexpr double kUnit = 0x1p-53;      // unit roundoff of double
   static constexpr double kRoundings = 16;  // numerics.md counts 11 on the way to a clearance
 
@@ -335,7 +335,7 @@ class Walk {
   int level_ = 0;
   Side side_ = Side::unknown;
   Through through_ = Through::point;
-  bool begun_ = false;  // whether anything has been left behind: only the first cell can say that the ray began below
+  bool begun_ = false;  // with holes: whether anything has been left behind; only the first cell can say that the ray began below
   Hit answer_;
 };
 
@@ -345,17 +345,19 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
   Hit hit;
   if (stats) *stats = {};
   if (!field.has_cells() || field.all_nodata()) return hit;
-  // Directions of extreme length are brought near 1 by a power of two, which rounds nothing; t goes back by the same.
-  GridRay local = field.grid_from_world(ray);
-  Ray scaled = ray;
+  const GridRay local = field.grid_from_world(ray);
   const double longest = std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
-  int exponent = 0;
   if (!(longest > 0x1p-500 && longest < 0x1p500)) {
     if (!(longest > 0) || !std::isfinite(longest)) return hit;
-    exponent = std::ilogb(longest);
-    for (int axis = 0; axis < 3; ++axis) local.direction[axis] = std::ldexp(local.direction[axis], -exponent);
+    // A direction of extreme length is brought near 1 by a power of two, which rounds nothing; t goes back by the same.
+    const int exponent = std::ilogb(longest);
+    Ray scaled = ray;
+    for (int axis = 0; axis < 3; ++axis) scaled.direction[axis] = std::ldexp(ray.direction[axis], -exponent);
     scaled.t_min = std::ldexp(ray.t_min, exponent);
     scaled.t_max = std::ldexp(ray.t_max, exponent);
+    hit = march<refine>(target, scaled, halvings, stats);
+    if (hit) hit.t = std::ldexp(hit.t, -exponent);
+    return hit;
   }
   field.visit([&](const auto& grid) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
@@ -364,12 +366,11 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
       if (stats) *stats = walk.stats;
     };
     if (grid.has_holes) {
-      run(Walk<T, true, refine>(field, grid, *target.pyramid, scaled, local, halvings));
+      run(Walk<T, true, refine>(field, grid, *target.pyramid, ray, local, halvings));
     } else {
-      run(Walk<T, false, refine>(field, grid, *target.pyramid, scaled, local, halvings));
+      run(Walk<T, false, refine>(field, grid, *target.pyramid, ray, local, halvings));
     }
   });
-  if (exponent != 0 && hit) hit.t = std::ldexp(hit.t, -exponent);
   return hit;
 }
 

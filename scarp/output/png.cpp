@@ -10,8 +10,8 @@ namespace scarp {
 
 void write_png(ReplaceFile& file, const std::string& path, const RgbView& picture) {
   if (picture.data == nullptr || picture.width < 1 || picture.height < 1) {
-    throw Error(fmt::format("output '{}': the picture has {} x {} pixels; at least 1 x 1 are needed", path, picture.width,
-                            picture.height));
+    throw Error(fmt::format("output '{}': the picture has {} x {} pixels; at least 1 x 1 are needed", path,
+                            picture.width, picture.height));
   }
   // libpng's simplified interface: it returns errors instead of jumping over C++ frames.
   png_image image{};

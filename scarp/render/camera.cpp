@@ -23,7 +23,9 @@ void require(bool good, std::string_view what, double value, std::string_view ra
   if (!good) throw Error(fmt::format("view: {} is {}; it must be {}", what, value, range));
 }
 
-void require_fov(double fov_deg) { require(fov_deg >= 1 && fov_deg <= 150, "the angle of view", fov_deg, "1 to 150 degrees"); }
+void require_fov(double fov_deg) {
+  require(fov_deg >= 1 && fov_deg <= 150, "the angle of view", fov_deg, "1 to 150 degrees");
+}
 
 bool finite(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -47,7 +49,8 @@ struct Across {
 
 void validate(const ViewSettings& settings) {
   require(std::isfinite(settings.azimuth_deg), "the azimuth", settings.azimuth_deg, "a finite number of degrees");
-  require(settings.elevation_deg >= 0 && settings.elevation_deg <= 90, "the elevation", settings.elevation_deg, "0 to 90 degrees");
+  require(settings.elevation_deg >= 0 && settings.elevation_deg <= 90, "the elevation", settings.elevation_deg,
+          "0 to 90 degrees");
   require(std::isfinite(settings.distance) && settings.distance > 0, "the distance", settings.distance,
           "above 0 (1: the whole field just fits)");
   require_fov(settings.fov_deg);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Where a picture is seen from: pixels to rays, points to pixels.
 //
-//   pixel coordinates: (0, 0) is the picture's upper left corner, x to the right, y down; pixel (i, j) has its centre at
-//   (i + 0.5, j + 0.5). World coordinates: metres, x east, y north from the field's south-west sample, z up.
+//   pixel coordinates: (0, 0) is the picture's upper left corner, x to the right, y down; pixel (i, j) has its centre
+//   at (i + 0.5, j + 0.5). World coordinates: metres, x east, y north from the field's south-west sample, z up.
 //
-// Automatic framing has a closed form. With the camera's axes fixed, a point with the camera coordinates (a, b, c) is inside
-// the picture of an eye (x, y, z) when |a - x| <= p (c - z) and |b - y| <= q (c - z), p and q being the tangents of half the
-// angles of view. The corners of a box thus bound x and y from both sides, linearly in z; the nearest eye is the largest z
-// that leaves both intervals something, and the middle of the wider one centres the field.
+// Automatic framing has a closed form. With the camera's axes fixed, a point with the camera coordinates (a, b, c) is
+// inside the picture of an eye (x, y, z) when |a - x| <= p (c - z) and |b - y| <= q (c - z), p and q being the tangents
+// of half the angles of view. The corners of a box thus bound x and y from both sides, linearly in z; the nearest eye
+// is the largest z that leaves both intervals something, and the middle of the wider one centres the field.
 #pragma once
 
 #include <optional>

@@ -15,7 +15,9 @@ constexpr int kTile = 16;
 }  // namespace
 
 Image::Image(int image_width, int image_height)
-    : width(image_width), height(image_height), rgb(3 * static_cast<std::size_t>(image_width) * static_cast<std::size_t>(image_height)) {}
+    : width(image_width),
+      height(image_height),
+      rgb(3 * static_cast<std::size_t>(image_width) * static_cast<std::size_t>(image_height)) {}
 
 void set_pixel(Image& image, int x, int y, vec3 linear) {
   std::uint8_t* rgb = image.pixel(x, y);

@@ -25,7 +25,8 @@ void validate(const SunSettings& settings) {
     throw Error(fmt::format("sun: the azimuth is {}; it must be a finite number of degrees", settings.azimuth_deg));
   }
   if (!(settings.altitude_deg > 0 && settings.altitude_deg <= 90)) {
-    throw Error(fmt::format("sun: the altitude is {}; it must be above 0 and at most 90 degrees", settings.altitude_deg));
+    throw Error(
+        fmt::format("sun: the altitude is {}; it must be above 0 and at most 90 degrees", settings.altitude_deg));
   }
 }
 

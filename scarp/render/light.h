@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The light on the ground: a sun at a compass azimuth and altitude, and the sky around it.
 //
-// Level ground in full sun has the brightness 1 in every channel (for a sun at 30 degrees or more), so colours of a ramp
-// stay what they are there; slopes are brighter or darker. Shadowed ground has the sky's light alone, bluish, and more of it
-// where it turns towards the sun's side: shadowed slopes still read.
+// Level ground in full sun has the brightness 1 in every channel (for a sun at 30 degrees or more), so colours of a
+// ramp stay what they are there; slopes are brighter or darker. Shadowed ground has the sky's light alone, bluish, and
+// more of it where it turns towards the sun's side: shadowed slopes still read.
 #pragma once
 
 #include "scarp/base/vec.h"

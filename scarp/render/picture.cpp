@@ -36,6 +36,32 @@ std::string_view ramp_of(const PictureSettings& settings) {
   return settings.look == Look::steps ? "viridis" : "hypsometric";
 }
 
+// What a ray of the camera meets: ground, or else perhaps a wall.
+struct Sight {
+  Hit hit;
+  std::optional<Plinth::Wall> wall;
+};
+
+std::optional<Plinth> plinth_of(const HeightField& field, const PictureSettings& settings) {
+  if (!settings.plinth) return {};
+  return Plinth(field, plinth_base(field));
+}
+
+// Rays are not marched where the block hides the field: below its base and behind its outer walls.
+Sight look(const TerrainScene& scene, const std::optional<Plinth>& plinth, Ray ray, MarchStats* stats = nullptr) {
+  Sight sight;
+  if (plinth) {
+    if (plinth->passes_below(ray)) return sight;
+    sight.wall = plinth->intersect(ray);
+    if (sight.wall) {
+      if (sight.wall->outermost) return sight;
+      ray.t_max = sight.wall->t;
+    }
+  }
+  sight.hit = scene.closest_hit(ray, stats);
+  return sight;
+}
+
 // Everything that one ray of the look `shaded` needs; colours are in linear light.
 class Shader {
  public:
@@ -45,8 +71,8 @@ class Shader {
         ramp_(ramp_of(settings), field_.min_height(), field_.max_height()),
         light_(settings.sun, grid_north_azimuth),
         shadows_(settings.shadows),
-        earth_(linear_from_srgb(kEarth)) {
-    if (settings.plinth) plinth_.emplace(field_, plinth_base(field_));
+        earth_(linear_from_srgb(kEarth)),
+        plinth_(plinth_of(field_, settings)) {
     // Haze lies over the field, not between it and a camera that stands back.
     const Box box = picture_box(field_, settings.plinth);
     const dvec3 nearest = glm::clamp(camera.eye(), box.low, box.high);
@@ -54,17 +80,15 @@ class Shader {
     haze_per_metre_ = -std::log(1 - settings.haze) / length(box.high - box.low);
   }
 
-  vec3 colour(Ray ray) const {
-    // The wall first: what lies behind it need not be marched.
-    const auto wall = plinth_ ? plinth_->intersect(ray) : std::nullopt;
-    if (wall) ray.t_max = wall->t;
-    if (const Hit hit = scene_.closest_hit(ray)) {
+  vec3 colour(const Ray& ray) const {
+    const Sight sight = look(scene_, plinth_, ray);
+    if (const Hit& hit = sight.hit) {
       const dvec3 normal = field_.shading_normal(hit.cell, hit.u, hit.v);
       return in_haze(ramp_(ground_height(hit)) * light_.on(normal, in_sun(ray, hit, normal)), hit.t);
     }
-    if (!wall) return sky_colour(ray.direction.z);
-    const auto lit = static_cast<float>(std::max(0.0, dot(wall->normal, light_.to_sun())));
-    return in_haze(earth_ * (kUnlitWall + (1 - kUnlitWall) * lit), wall->t);
+    if (!sight.wall) return sky_colour(ray.direction.z);
+    const auto lit = static_cast<float>(std::max(0.0, dot(sight.wall->normal, light_.to_sun())));
+    return in_haze(earth_ * (kUnlitWall + (1 - kUnlitWall) * lit), sight.wall->t);
   }
 
  private:
@@ -105,11 +129,12 @@ class Shader {
 Image render_height(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings,
                     const Progress& progress) {
   Image image(settings.width, settings.height);
+  const std::optional<Plinth> plinth = plinth_of(scene.field(), settings);
   const double low = scene.field().min_height(), relief = scene.field().max_height() - low;
   for_each_pixel(
       settings.width, settings.height,
       [&](int x, int y) {
-        const Hit hit = scene.closest_hit(camera.ray(x + 0.5, y + 0.5));
+        const Hit hit = look(scene, plinth, camera.ray(x + 0.5, y + 0.5)).hit;
         if (!hit) return;
         const double share = relief > 0 ? std::clamp((hit.height - low) / relief, 0.0, 1.0) : 1.0;
         std::fill_n(image.pixel(x, y), 3, static_cast<std::uint8_t>(std::lround(1 + 254 * share)));
@@ -122,22 +147,19 @@ Picture render_steps(const TerrainScene& scene, const Camera& camera, const Pict
                      const Progress& progress) {
   const auto width = static_cast<std::size_t>(settings.width);
   std::vector<std::uint32_t> steps(width * static_cast<std::size_t>(settings.height));
-  std::optional<Plinth> plinth;
-  if (settings.plinth) plinth.emplace(scene.field(), plinth_base(scene.field()));
+  const std::optional<Plinth> plinth = plinth_of(scene.field(), settings);
   for_each_pixel(
       settings.width, settings.height,
       [&](int x, int y) {
-        Ray ray = camera.ray(x + 0.5, y + 0.5);
-        const auto wall = plinth ? plinth->intersect(ray) : std::nullopt;
-        if (wall) ray.t_max = wall->t;
         MarchStats stats;
-        scene.closest_hit(ray, &stats);
+        look(scene, plinth, camera.ray(x + 0.5, y + 0.5), &stats);
         steps[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = stats.steps;
       },
       progress);
   const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
   const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
-  Picture picture{Image(settings.width, settings.height), StepRange{*least, *most, sum / static_cast<double>(steps.size())}, {}};
+  Picture picture{
+      Image(settings.width, settings.height), StepRange{*least, *most, sum / static_cast<double>(steps.size())}, {}};
   const Ramp ramp(ramp_of(settings), *least, *most);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     set_pixel(picture.image, static_cast<int>(i % width), static_cast<int>(i / width), ramp(steps[i]));
@@ -161,8 +183,8 @@ void validate(const PictureSettings& settings) {
   require(settings.height >= 1 && settings.height <= kMaxSide, "the height", settings.height, "1 to 65536 pixels");
   const std::int64_t pixels = std::int64_t{settings.width} * settings.height;
   if (pixels > kMaxPixels) {
-    throw Error(fmt::format("picture: {} x {} are {} pixels; at most {} are made at once", settings.width, settings.height,
-                            pixels, kMaxPixels));
+    throw Error(fmt::format("picture: {} x {} are {} pixels; at most {} are made at once", settings.width,
+                            settings.height, pixels, kMaxPixels));
   }
   require(settings.aa >= 1 && settings.aa <= 16, "the number of samples per side (aa)", settings.aa, "1 to 16");
   require(settings.haze >= 0 && settings.haze <= 0.95, "the haze", settings.haze, "0 to 0.95");
@@ -186,17 +208,22 @@ Picture render_picture(const TerrainScene& scene, const Camera& camera, double g
   }
   if (field.all_nodata()) throw Error("picture: all samples of the field are nodata; there is nothing to see");
   switch (settings.look) {
-    case Look::height: return {render_height(scene, camera, settings, progress), {}, {}};
-    case Look::steps: return render_steps(scene, camera, settings, progress);
+    case Look::height:
+      return {render_height(scene, camera, settings, progress), {}, {}};
+    case Look::steps:
+      return render_steps(scene, camera, settings, progress);
     case Look::error: {
-      ErrorPicture error = render_error(scene, camera, settings.width, settings.height, settings.error_tolerance, progress);
+      ErrorPicture error =
+          render_error(scene, camera, settings.width, settings.height, settings.error_tolerance, progress);
       return {std::move(error.image), {}, error.counts};
     }
-    case Look::shaded: break;
+    case Look::shaded:
+      break;
   }
   const Shader shader(scene, camera, grid_north_azimuth, settings);
-  return {develop(settings.width, settings.height, settings.aa,
-                  [&](double x, double y) { return shader.colour(camera.ray(x, y)); }, progress),
+  return {develop(
+              settings.width, settings.height, settings.aa,
+              [&](double x, double y) { return shader.colour(camera.ray(x, y)); }, progress),
           {},
           {}};
 }

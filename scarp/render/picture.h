@@ -3,9 +3,10 @@
 //
 //   shaded  colours by height, sun with exact hard shadows, sky, a block below the terrain
 //   height  grey, linear in height from the field's lowest (1) to its highest point (255); misses are black (0)
-//   steps   what the march cost: steps per ray as a ramp from the least to the most in the picture; rays end at the block
+//   steps   what the march cost: steps per ray as a ramp from the least to the most in the picture
 //   error   where the march is wrong, see error_look.h
 //
+// The block hides what lies behind its walls and below its base; only `shaded` shows it, and in `error` there is none.
 // Only `shaded` takes several samples per pixel; the others show one ray's answer, through the middle of the pixel.
 #pragma once
 
@@ -33,11 +34,11 @@ struct PictureSettings {
   int width = 1280;  ///< pixels, 1..65536; width * height at most 2^28
   int height = 720;  ///< pixels, 1..65536
   Look look = Look::shaded;
-  int aa = 2;                    ///< aa x aa samples per pixel in `shaded`; 1..16
-  std::string ramp{};            ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
+  int aa = 2;          ///< aa x aa samples per pixel in `shaded`; 1..16
+  std::string ramp{};  ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
   SunSettings sun{};
   bool shadows = true;           ///< exact hard shadows; false: hill shade only
-  bool plinth = true;            ///< walls down to a common base, seen in `shaded`, ending the rays of `steps`
+  bool plinth = true;            ///< a block below the terrain: walls down to a common base
   double haze = 0.1;             ///< share of haze over a distance as long as the field's diagonal; 0..0.95
   double error_tolerance = 0.1;  ///< of `error`, along the ray, in shorter sides of a cell; >= 0
 };
@@ -45,8 +46,8 @@ struct PictureSettings {
 /// Throws Error naming the first setting out of its range.
 void validate(const PictureSettings& settings);
 
-/// What a camera should have in the picture: the field, with the block below it when `plinth` is on, whatever the look, so
-/// that pictures of several looks lie on one another.
+/// What a camera should have in the picture: the field, with the block below it when `plinth` is on, whatever the look,
+/// so that pictures of several looks lie on one another.
 Box picture_box(const HeightField& field, bool plinth);
 
 /// What was found besides the picture.
@@ -58,12 +59,12 @@ struct StepRange {
 
 struct Picture {
   Image image;
-  std::optional<StepRange> steps;      ///< of `steps`
-  std::optional<ErrorCounts> errors;   ///< of `error`
+  std::optional<StepRange> steps;     ///< of `steps`
+  std::optional<ErrorCounts> errors;  ///< of `error`
 };
 
-/// `camera` must have been made for the settings' width and height. Throws Error when a setting is out of its range or the
-/// scene has nothing to see (no cells, no valid samples), Interrupted when progress asks for it.
+/// `camera` must have been made for the settings' width and height. Throws Error when a setting is out of its range or
+/// the scene has nothing to see (no cells, no valid samples), Interrupted when progress asks for it.
 Picture render_picture(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
                        const PictureSettings& settings, const Progress& progress = {});
 

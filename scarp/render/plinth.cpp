@@ -15,10 +15,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kOfRelief = 0.15;
 constexpr double kOfSide = 0.03;
 
-// Whether the ray is on or under the edge of a cell where it crosses it, at t. The edge belongs to the cell's near or far
-// side across axis `across` (0: columns, 1: rows) and runs along the other one.
-bool under_edge(const CellHeights& h, const std::array<int, 2>& cell, const GridRay& ray, std::size_t across, bool far_side,
-                double t) {
+// Whether the ray is on or under the edge of a cell where it crosses it, at t. The edge belongs to the cell's near or
+// far side across axis `across` (0: columns, 1: rows) and runs along the other one.
+bool under_edge(const CellHeights& h, const std::array<int, 2>& cell, const GridRay& ray, std::size_t across,
+                bool far_side, double t) {
   const std::size_t along = 1 - across;
   const int axis = static_cast<int>(along);
   const double f = std::clamp(ray.origin[axis] + t * ray.direction[axis] - cell[along], 0.0, 1.0);
@@ -82,7 +82,7 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
   const bool has_holes = field_.nodata_count() > 0;
   double t = t_in;
   std::size_t crossed = side == 1 ? 1 : 0;
-  bool from_outside = side == 0 || side == 1;
+  bool from_outside = side == 0 || side == 1, outermost = from_outside;
   while (t <= t_out) {
     const auto heights = field_.cell_heights({cell[0], cell[1]});
     if (heights && from_outside) {
@@ -91,7 +91,7 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
         dvec3 normal(0.0);
         // Rows count southwards, y northwards.
         normal[static_cast<int>(crossed)] = crossed == 0 ? -step[crossed] : step[crossed];
-        return Wall{t, normal};
+        return Wall{t, normal, outermost};
       }
     }
     if (!has_holes) return {};
@@ -100,11 +100,24 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
     // Under the surface without a wall before: the ray came through the surface, and has met it there.
     if (heights && under_edge(*heights, cell, local, crossed, step[crossed] > 0, t)) return {};
     from_outside = !heights;
+    outermost = false;
     cell[crossed] += step[crossed];
     if (cell[crossed] < 0 || cell[crossed] >= cells[crossed]) return {};
     next[crossed] = crossing_ahead(crossed);
   }
   return {};
+}
+
+bool Plinth::passes_below(const Ray& ray) const {
+  const GridRay local = field_.grid_from_world(ray);
+  if (!(local.direction.z < 0)) return false;
+  double t_in = ray.t_min;
+  for (int axis = 0; axis < 2; ++axis) {
+    const double o = local.origin[axis], d = local.direction[axis];
+    const double far_side = axis == 0 ? field_.cols() - 1.0 : field_.rows() - 1.0;
+    if (d != 0) t_in = std::max(t_in, std::min(-o / d, (far_side - o) / d));
+  }
+  return local.origin.z + t_in * local.direction.z < base_sample_;
 }
 
 }  // namespace scarp

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The block that a terrain model is cut out of: vertical walls from its border, and from the edges of its holes, down to a
-// common base. The surface itself is a sheet; walls are a matter of pictures and no part of any march.
+// The block that a terrain model is cut out of: vertical walls from its border, and from the edges of its holes, down
+// to a common base. The surface itself is a sheet; walls are a matter of pictures and no part of any march.
 //
-//        __/\_            A ray that passes from outside (or from over a hole) into a valid cell, below the surface's edge
-//   ____/     \___        and above the base, meets a wall there. Cells are walked one after another; a field without
-//   |#############|       holes has walls at its border alone, so its first cell decides.
+//        __/\_            A ray that comes from outside (or from over a hole) into a valid cell, below the edge of the
+//   ____/     \___        surface and above the base, meets a wall there. Cells are walked one after another; a field
+//   |#############|       without holes has walls at its border alone, so its first cell decides.
 //   |#############|  base
 #pragma once
 
@@ -24,12 +24,16 @@ class Plinth {
   Plinth(const HeightField& field, double base);
 
   struct Wall {
-    double t;      ///< in lengths of the ray's direction
-    dvec3 normal;  ///< unit, level, towards the ray's side
+    double t;        ///< in lengths of the ray's direction
+    dvec3 normal;    ///< unit, level, towards the ray's side
+    bool outermost;  ///< at the field's border: nothing can be met before it
   };
-  /// The first wall that the ray meets from outside within its range. The surface may be met before it; a ray that meets
-  /// the surface between two walls is followed no further.
+  /// The first wall that the ray meets from outside within its range. The surface may be met before it; a ray that
+  /// meets the surface between two walls is followed no further.
   std::optional<Wall> intersect(const Ray& ray) const;
+
+  /// Whether a ray falls past the block: it comes over or under the field's ground below the base, and never rises.
+  bool passes_below(const Ray& ray) const;
 
  private:
   HeightField field_;

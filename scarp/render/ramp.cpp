@@ -14,7 +14,8 @@
 namespace scarp {
 namespace {
 
-constexpr std::array<std::string_view, 7> kNames = {"viridis", "magma", "inferno", "plasma", "cividis", "grey", "hypsometric"};
+constexpr std::array<std::string_view, 7> kNames = {"viridis", "magma", "inferno",    "plasma",
+                                                    "cividis", "grey",  "hypsometric"};
 
 // A colour of a hand-made ramp at a share of its way.
 struct Stop {
@@ -32,9 +33,7 @@ constexpr std::array kGrey = {Stop{0.0, 0x000000}, Stop{1.0, 0xffffff}};
 // Entries of a ramp made from stops: steps far below what 8 bits show.
 constexpr int kEntries = 1024;
 
-vec3 srgb_from_rgb(std::uint32_t rgb) {
-  return vec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.0f;
-}
+vec3 srgb_from_rgb(std::uint32_t rgb) { return vec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.0f; }
 
 std::vector<vec3> from_table(const RampTable& table) {
   std::vector<vec3> colours;

@@ -1,31 +1,34 @@
 // SPDX-License-Identifier: MIT
 // The numbers are matplotlib's (lib/matplotlib/_cm_listed.py), rounded to 8 bits.
 //
-// viridis, magma, inferno, plasma: Nathaniel J. Smith, Stefan van der Walt and (viridis) Eric Firing, released under CC0 1.0.
+// viridis, magma, inferno, plasma: Nathaniel J. Smith, Stefan van der Walt and (viridis) Eric Firing, released under
+// CC0 1.0.
 //
-// cividis: J. R. Nunez, C. R. Anderton, R. S. Renslow, "Optimizing colormaps with consideration for color vision deficiency
-// to enable accurate interpretation of scientific data", PLOS ONE 13(7), 2018. Its table comes with this notice:
+// cividis: J. R. Nunez, C. R. Anderton, R. S. Renslow, "Optimizing colormaps with consideration for color vision
+// deficiency to enable accurate interpretation of scientific data", PLOS ONE 13(7), 2018. Its table comes with this
+// notice:
 //
 //   Copyright (c) 2017, Battelle Memorial Institute
 //
 //   1. Battelle Memorial Institute (hereinafter Battelle) hereby grants permission to any person or entity lawfully
-//   obtaining a copy of this software and associated documentation files (hereinafter "the Software") to redistribute and
-//   use the Software in source and binary forms, with or without modification. Such person or entity may use, copy,
+//   obtaining a copy of this software and associated documentation files (hereinafter "the Software") to redistribute
+//   and use the Software in source and binary forms, with or without modification. Such person or entity may use, copy,
 //   modify, merge, publish, distribute, sublicense, and/or sell copies of the Software, and may permit others to do so,
 //   subject to the following conditions:
 //   + Redistributions of source code must retain the above copyright notice, this list of conditions and the following
 //     disclaimers.
-//   + Redistributions in binary form must reproduce the above copyright notice, this list of conditions and the following
+//   + Redistributions in binary form must reproduce the above copyright notice, this list of conditions and the
+//   following
 //     disclaimer in the documentation and/or other materials provided with the distribution.
 //   + Other than as used herein, neither the name Battelle Memorial Institute or Battelle may be used in any form
 //     whatsoever without the express written consent of Battelle.
-//   2. THIS SOFTWARE IS PROVIDED BY THE COPYRIGHT HOLDERS AND CONTRIBUTORS "AS IS" AND ANY EXPRESS OR IMPLIED WARRANTIES,
-//   INCLUDING, BUT NOT LIMITED TO, THE IMPLIED WARRANTIES OF MERCHANTABILITY AND FITNESS FOR A PARTICULAR PURPOSE ARE
-//   DISCLAIMED. IN NO EVENT SHALL BATTELLE OR CONTRIBUTORS BE LIABLE FOR ANY DIRECT, INDIRECT, INCIDENTAL, SPECIAL,
-//   EXEMPLARY, OR CONSEQUENTIAL DAMAGES (INCLUDING, BUT NOT LIMITED TO, PROCUREMENT OF SUBSTITUTE GOODS OR SERVICES; LOSS
-//   OF USE, DATA, OR PROFITS; OR BUSINESS INTERRUPTION) HOWEVER CAUSED AND ON ANY THEORY OF LIABILITY, WHETHER IN CONTRACT,
-//   STRICT LIABILITY, OR TORT (INCLUDING NEGLIGENCE OR OTHERWISE) ARISING IN ANY WAY OUT OF THE USE OF THIS SOFTWARE, EVEN
-//   IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE.
+//   2. THIS SOFTWARE IS PROVIDED BY THE COPYRIGHT HOLDERS AND CONTRIBUTORS "AS IS" AND ANY EXPRESS OR IMPLIED
+//   WARRANTIES, INCLUDING, BUT NOT LIMITED TO, THE IMPLIED WARRANTIES OF MERCHANTABILITY AND FITNESS FOR A PARTICULAR
+//   PURPOSE ARE DISCLAIMED. IN NO EVENT SHALL BATTELLE OR CONTRIBUTORS BE LIABLE FOR ANY DIRECT, INDIRECT, INCIDENTAL,
+//   SPECIAL, EXEMPLARY, OR CONSEQUENTIAL DAMAGES (INCLUDING, BUT NOT LIMITED TO, PROCUREMENT OF SUBSTITUTE GOODS OR
+//   SERVICES; LOSS OF USE, DATA, OR PROFITS; OR BUSINESS INTERRUPTION) HOWEVER CAUSED AND ON ANY THEORY OF LIABILITY,
+//   WHETHER IN CONTRACT, STRICT LIABILITY, OR TORT (INCLUDING NEGLIGENCE OR OTHERWISE) ARISING IN ANY WAY OUT OF THE
+//   USE OF THIS SOFTWARE, EVEN IF ADVISED OF THE POSSIBILITY OF SUCH DAMAGE.
 #include "scarp/render/ramp_tables.h"
 
 namespace scarp {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What rays see that meet nothing: a clear sky above, haze at the horizon, and below it a pale ground that a terrain model
-// stands out against.
+// What rays see that meet nothing: a clear sky above, haze at the horizon, and below it a pale ground that a terrain
+// model stands out against.
 #pragma once
 
 #include "scarp/base/vec.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A height field, what its march needs, and the march itself, behind the two questions that renderers ask: what does a ray
-// hit first, and does it hit anything at all?
+// A height field, what its march needs, and the march itself, behind the two questions that renderers ask: what does a
+// ray hit first, and does it hit anything at all?
 #pragma once
 
 #include <optional>

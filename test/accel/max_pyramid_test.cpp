@@ -35,7 +35,7 @@ void expect_tight(const HeightField& field) {
   field.visit([&](const auto& grid) {
     if constexpr (std::is_same_v<std::remove_cvref_t<decltype(grid.data[0])>, T>) {
       std::size_t entries = 0;
-      for (int l = 0; l < pyramid.level_count(); ++l) {
+      for (int l = 1; l <= pyramid.top_level(); ++l) {
         const auto level = pyramid.level<T>(l);
         ASSERT_EQ(level.cols, (field.cell_cols() + (1 << l) - 1) >> l);
         ASSERT_EQ(level.rows, (field.cell_rows() + (1 << l) - 1) >> l);
@@ -82,7 +82,7 @@ TEST(MaxPyramid, LeavesHolesOut) {
 }
 
 TEST(MaxPyramid, HasNoLevelsWithoutCells) {
-  EXPECT_EQ(MaxPyramid(HeightField::own(noise<float>(5, 1), 5, 1)).level_count(), 0);
+  EXPECT_EQ(MaxPyramid(HeightField::own(noise<float>(5, 1), 5, 1)).top_level(), 0);
 }
 
 RC_GTEST_PROP(MaxPyramid, BoundsTheSurfaceBetweenTheSamples, ()) {
@@ -91,7 +91,7 @@ RC_GTEST_PROP(MaxPyramid, BoundsTheSurfaceBetweenTheSamples, ()) {
   const MaxPyramid pyramid(field);
   const double x = *rc::gen::inRange(0, 10001) * 1e-4 * field.width(), y = *rc::gen::inRange(0, 10001) * 1e-4 * field.depth();
   const auto place = field.place(x, y).value();
-  for (int l = 0; l < pyramid.level_count(); ++l) {
+  for (int l = 1; l <= pyramid.top_level(); ++l) {
     RC_ASSERT(static_cast<double>(pyramid.level<float>(l).at(place.cell.col >> l, place.cell.row >> l)) >= field.height(x, y).value());
   }
 }

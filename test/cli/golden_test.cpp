@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The picture of the demo, smaller, against the one that was looked at and found good. After a change that is meant to be
-// seen: look at the new picture, which a failing test leaves in the build folder, and copy it to test/golden/.
+// The picture of the demo, smaller, against the one that was looked at and found good. After a change that is meant to
+// be seen: look at the new picture, which a failing test leaves in the build folder, and copy it to test/golden/.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,19 +19,20 @@ namespace fs = std::filesystem;
 
 // A byte may round the other way where the mathematical library's pow, exp, sin or cos differs in its last bit.
 constexpr int kRounding = 2;
-// And a ray may pass the other side of a crest or a shadow's edge: that changes one of a pixel's four samples, at most from
-// white to black, and does so in few pixels.
+// And a ray may pass the other side of a crest or a shadow's edge: that changes one of a pixel's four samples, at most
+// from white to black, and does so in few pixels.
 constexpr int kMaxDifference = 140;
 constexpr double kMaxShare = 0.001;
 
 TEST(Golden, TheDemosPicture) {
   const std::string dem = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
-  if (!fs::exists(dem)) GTEST_SKIP() << "'" << dem << "' is missing; it comes with Debian's package python-matplotlib-data";
+  if (!fs::exists(dem))
+    GTEST_SKIP() << "'" << dem << "' is missing; it comes with Debian's package python-matplotlib-data";
   const test::Scratch scratch;
   const std::string picture = scratch.path("jacksboro.png");
   const auto result = test::run({"render", dem, "-o", picture, "--key", "elevation", "--crs", "EPSG:4326",
-                                 "--bounds=-84.41375,36.44625,-84.07791666666667,36.73291666666667", "--size", "480x270",
-                                 "--exaggeration", "2", "--view", "195,30", "--sun", "300,30"});
+                                 "--bounds=-84.41375,36.44625,-84.07791666666667,36.73291666666667", "--size",
+                                 "480x270", "--exaggeration", "2", "--view", "195,30", "--sun", "300,30"});
   ASSERT_EQ(result.status, 0) << result.err;
   const test::Rgb now = test::read_png(picture);
   const fs::path kept = fs::path(SCARP_FAILED_IMAGES) / "jacksboro_now.png";
@@ -51,7 +52,8 @@ TEST(Golden, TheDemosPicture) {
     largest = std::max(largest, here);
     differing += here > kRounding;
     // Amplified, so that one sees it.
-    std::fill_n(difference.begin() + static_cast<std::ptrdiff_t>(pixel), 3, static_cast<std::uint8_t>(std::min(255, 8 * here)));
+    std::fill_n(difference.begin() + static_cast<std::ptrdiff_t>(pixel), 3,
+                static_cast<std::uint8_t>(std::min(255, 8 * here)));
   }
   const double share = static_cast<double>(differing) / (static_cast<double>(now.width) * now.height);
   EXPECT_LE(largest, kMaxDifference);

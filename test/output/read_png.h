@@ -27,8 +27,10 @@ inline Rgb read_png(const std::string& path) {
   image.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_file(&image, path.c_str())) throw std::runtime_error(path + ": " + image.message);
   image.format = PNG_FORMAT_RGB;
-  Rgb rgb{static_cast<int>(image.width), static_cast<int>(image.height), std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image))};
-  if (!png_image_finish_read(&image, nullptr, rgb.bytes.data(), 0, nullptr)) throw std::runtime_error(path + ": " + image.message);
+  Rgb rgb{static_cast<int>(image.width), static_cast<int>(image.height),
+          std::vector<std::uint8_t>(PNG_IMAGE_SIZE(image))};
+  if (!png_image_finish_read(&image, nullptr, rgb.bytes.data(), 0, nullptr))
+    throw std::runtime_error(path + ": " + image.message);
   return rgb;
 }
 

@@ -138,8 +138,14 @@ TEST(Camera, TopKeepsPixelsSquare) {
 
 TEST(Camera, SettingsOutOfRangeAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const ViewSettings& bad : {ViewSettings{.azimuth_deg = nan}, {.elevation_deg = 91}, {.elevation_deg = nan},
-                                  {.distance = 0}, {.distance = nan}, {.fov_deg = 0}, {.fov_deg = 180}, {.fov_deg = nan}}) {
+  for (const ViewSettings& bad : {ViewSettings{.azimuth_deg = nan},
+                                  {.elevation_deg = 91},
+                                  {.elevation_deg = nan},
+                                  {.distance = 0},
+                                  {.distance = nan},
+                                  {.fov_deg = 0},
+                                  {.fov_deg = 180},
+                                  {.fov_deg = nan}}) {
     EXPECT_THROW(Camera::framed(kBox, bad, 0, 100, 100), Error);
   }
   EXPECT_THROW(Camera::look_at({1, 2, 3}, {1, 2, 3}, 30, 100, 100), Error);

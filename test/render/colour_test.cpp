@@ -35,7 +35,8 @@ TEST(Ramp, HypsometricBreaksAtSeaLevel) {
 TEST(Ramp, HypsometricScalesEachPartToItself) {
   const auto same = [](vec3 a, vec3 b) { return length(a - b) < 1e-6f; };
   EXPECT_TRUE(same(Ramp("hypsometric", -10, 2000)(1000), Ramp("hypsometric", -9000, 2000)(1000)));
-  EXPECT_TRUE(same(Ramp("hypsometric", 300, 700)(300), Ramp("hypsometric", -50, 700)(1e-12))) << "dry land starts at its lowest";
+  EXPECT_TRUE(same(Ramp("hypsometric", 300, 700)(300), Ramp("hypsometric", -50, 700)(1e-12)))
+      << "dry land starts at its lowest";
   EXPECT_TRUE(same(Ramp("hypsometric", -3000, -1000)(-3000), Ramp("hypsometric", -3000, 4000)(-3000)));
   EXPECT_TRUE(bluish(Ramp("hypsometric", 0, 0)(0))) << "nothing but sea";
 }
@@ -51,7 +52,8 @@ TEST(Ramp, TablesRunFromEndToEnd) {
 
 TEST(Ramp, EveryNameWorksOnEveryRange) {
   for (const std::string_view name : ramp_names()) {
-    for (const auto& [low, high] : {std::pair(0.0, 0.0), {-5.0, -5.0}, {7.0, 7.0}, {-1.0, 1.0}, {-4.0, 0.0}, {0.0, 9.0}}) {
+    for (const auto& [low, high] :
+         {std::pair(0.0, 0.0), {-5.0, -5.0}, {7.0, 7.0}, {-1.0, 1.0}, {-4.0, 0.0}, {0.0, 9.0}}) {
       const Ramp ramp(name, low, high);
       for (const double value : {low, high, 0.5 * (low + high)}) {
         const vec3 colour = ramp(value);
@@ -113,9 +115,7 @@ TEST(Sky, IsBlueAtTheZenithAndPaleAtTheHorizon) {
   EXPECT_EQ(sky_colour(0), haze_colour());
 }
 
-TEST(Sky, HasNoEdgeAtTheHorizon) {
-  EXPECT_LT(length(sky_colour(1e-4) - sky_colour(-1e-4)), 1e-3f);
-}
+TEST(Sky, HasNoEdgeAtTheHorizon) { EXPECT_LT(length(sky_colour(1e-4) - sky_colour(-1e-4)), 1e-3f); }
 
 }  // namespace
 }  // namespace scarp

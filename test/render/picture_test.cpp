@@ -35,7 +35,8 @@ PictureSettings map_settings(const HeightField& field) {
   return settings;
 }
 
-Picture map_of(const HeightField& field, const PictureSettings& settings, double grid_north = 0, std::string_view march = "max-mip") {
+Picture map_of(const HeightField& field, const PictureSettings& settings, double grid_north = 0,
+               std::string_view march = "max-mip") {
   const Camera camera = Camera::top(picture_box(field, false), settings.width, settings.height);
   return render_picture(TerrainScene(field, find_march(march)), camera, grid_north, settings);
 }
@@ -87,7 +88,8 @@ TEST(Picture, LevelGroundInTheSunHasTheColourOfItsRamp) {
 }
 
 TEST(Picture, HolesShowTheSky) {
-  const HeightField field = field_of(9, 30, [](std::vector<float>& samples, int side) { samples[static_cast<std::size_t>(4 * side + 4)] = kNaN; });
+  const HeightField field = field_of(
+      9, 30, [](std::vector<float>& samples, int side) { samples[static_cast<std::size_t>(4 * side + 4)] = kNaN; });
   const Image image = map_of(field, map_settings(field)).image;
   EXPECT_NE(red(image, 40, 40), red(image, 10, 10));
   // Outside of the field, in a wider picture, is the same sky.
@@ -141,7 +143,8 @@ TEST(Picture, StepsCountWhatTheMarchReports) {
 
 // From the south, just above the ground, towards a spike in the middle of a plain.
 Picture errors_at_a_spike(std::string_view march, const MarchSettings& march_settings = {}) {
-  const HeightField field = field_of(65, 0, [](std::vector<float>& samples, int side) { samples[static_cast<std::size_t>(32 * side + 32)] = 20; });
+  const HeightField field = field_of(
+      65, 0, [](std::vector<float>& samples, int side) { samples[static_cast<std::size_t>(32 * side + 32)] = 20; });
   PictureSettings settings;
   settings.width = settings.height = 64;
   settings.look = Look::error;
@@ -179,8 +182,17 @@ TEST(ErrorLook, AnExactMarchHasNoErrors) {
 }
 
 TEST(ErrorLook, TheVerdictIsByStatusThenByDistance) {
-  const auto hit = [](double t) { Hit h; h.status = HitStatus::hit; h.t = t; return h; };
-  const auto other = [](HitStatus status) { Hit h; h.status = status; return h; };
+  const auto hit = [](double t) {
+    Hit h;
+    h.status = HitStatus::hit;
+    h.t = t;
+    return h;
+  };
+  const auto other = [](HitStatus status) {
+    Hit h;
+    h.status = status;
+    return h;
+  };
   const Hit miss = other(HitStatus::miss), below = other(HitStatus::below), exhausted = other(HitStatus::exhausted);
   EXPECT_EQ(judge(hit(5), hit(5.1), 0.2), Verdict::right_hit);
   EXPECT_EQ(judge(hit(4.8), hit(5.1), 0.2), Verdict::early);
@@ -200,7 +212,8 @@ TEST(Picture, ThePlinthStandsBelowTheBorder) {
   PictureSettings settings;
   settings.width = 200;
   settings.height = 100;
-  const Camera camera = Camera::framed(picture_box(field, true), {.azimuth_deg = 180, .elevation_deg = 20}, 0, 200, 100);
+  const Camera camera =
+      Camera::framed(picture_box(field, true), {.azimuth_deg = 180, .elevation_deg = 20}, 0, 200, 100);
   const auto p = camera.pixel({10, 0, 100 - 0.3}).value();
   const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
   const Image with = render_picture(scene, camera, 0, settings).image;
@@ -211,16 +224,26 @@ TEST(Picture, ThePlinthStandsBelowTheBorder) {
 }
 
 TEST(Picture, ANameOfALookIsFoundAndAnUnknownOneListsThem) {
-  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error}) EXPECT_EQ(find_look(name_of(look)), look);
+  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error})
+    EXPECT_EQ(find_look(name_of(look)), look);
   EXPECT_THROW(find_look("pretty"), Error);
 }
 
 TEST(Picture, SettingsOutOfRangeAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const PictureSettings& bad :
-       {PictureSettings{.width = 0}, {.width = -5}, {.height = 0}, {.width = 1000000, .height = 1000000}, {.width = 65536, .height = 65536},
-        {.aa = 0}, {.aa = 17}, {.ramp = "jet"}, {.haze = nan}, {.haze = 1}, {.error_tolerance = -1}, {.error_tolerance = nan},
-        {.sun = {315, -1}}}) {
+  for (const PictureSettings& bad : {PictureSettings{.width = 0},
+                                     {.width = -5},
+                                     {.height = 0},
+                                     {.width = 1000000, .height = 1000000},
+                                     {.width = 65536, .height = 65536},
+                                     {.aa = 0},
+                                     {.aa = 17},
+                                     {.ramp = "jet"},
+                                     {.haze = nan},
+                                     {.haze = 1},
+                                     {.error_tolerance = -1},
+                                     {.error_tolerance = nan},
+                                     {.sun = {315, -1}}}) {
     EXPECT_THROW(validate(bad), Error);
   }
   EXPECT_NO_THROW(validate(PictureSettings{}));
@@ -241,7 +264,9 @@ TEST(Picture, StopsWhenItIsAskedTo) {
     PictureSettings settings = map_settings(field);
     settings.look = look;
     const Camera camera = Camera::top(picture_box(field, false), settings.width, settings.height);
-    EXPECT_THROW(render_picture(TerrainScene(field, find_march("max-mip")), camera, 0, settings, [](double) { return false; }), Interrupted);
+    EXPECT_THROW(
+        render_picture(TerrainScene(field, find_march("max-mip")), camera, 0, settings, [](double) { return false; }),
+        Interrupted);
   }
 }
 

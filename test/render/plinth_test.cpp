@@ -52,8 +52,25 @@ TEST(Plinth, TheyReachFromTheBaseToTheSurface) {
   EXPECT_FALSE(meets(25, 7.001));
 }
 
+TEST(Plinth, EveryWallFollowsItsOwnEdge) {
+  // One cell, 0..1 m, with four different corners: north-west 10, north-east 20, south-west 30, south-east 40.
+  const Plinth plinth(HeightField::own<float>({10, 20, 30, 40}, 2, 2), 0);
+  const struct {
+    dvec3 origin, direction;
+    double edge;  // height of the wall where the ray arrives, a quarter of the way along it
+  } cases[] = {{{0.25, -1, 0}, {0, 1, 0}, 32.5},
+               {{0.25, 2, 0}, {0, -1, 0}, 12.5},
+               {{-1, 0.25, 0}, {1, 0, 0}, 25},
+               {{2, 0.25, 0}, {-1, 0, 0}, 35}};
+  for (const auto& c : cases) {
+    EXPECT_TRUE(plinth.intersect(ray_of(c.origin + dvec3(0, 0, c.edge - 0.01), c.direction))) << c.edge;
+    EXPECT_FALSE(plinth.intersect(ray_of(c.origin + dvec3(0, 0, c.edge + 0.01), c.direction))) << c.edge;
+  }
+}
+
 TEST(Plinth, HeightsAreExaggeratedMetres) {
-  const HeightField field = HeightField::own<std::int16_t>({10, 10, 10, 10}, 2, 2, {.scale = 0.5, .offset = 100, .exaggeration = 2});
+  const HeightField field =
+      HeightField::own<std::int16_t>({10, 10, 10, 10}, 2, 2, {.scale = 0.5, .offset = 100, .exaggeration = 2});
   const Plinth plinth(field, 150);
   EXPECT_TRUE(plinth.intersect(ray_of({0.5, -1, 209}, {0, 1, 0})));
   EXPECT_FALSE(plinth.intersect(ray_of({0.5, -1, 211}, {0, 1, 0})));
@@ -87,6 +104,25 @@ TEST(Plinth, HolesHaveWallsToo) {
   EXPECT_FALSE(plinth.intersect(ray_of({3, 1.3, 6}, {0.1, 0, -2})));
   // A ray through the surface has met that and not the hole's wall behind.
   EXPECT_FALSE(plinth.intersect(ray_of({0.2, 1.3, 5.5}, {1, 0, -1})));
+}
+
+TEST(Plinth, OnlyWallsOfTheBorderAreOutermost) {
+  std::vector<float> samples(21, 5.0f);
+  samples[3] = samples[10] = samples[17] = kNaN;
+  const Plinth plinth(HeightField::own(samples, 7, 3), 0);
+  EXPECT_TRUE(plinth.intersect(ray_of({-2, 1.3, 3}, {1, 0, 0}))->outermost);
+  EXPECT_FALSE(plinth.intersect(ray_of({2.5, 1.3, 6}, {1, 0, -2}))->outermost);
+  // In through the border over a hole: the wall is inside.
+  EXPECT_FALSE(plinth.intersect(ray_of({2.5, -1, 4}, {0.5, 1, 0}))->outermost);
+}
+
+TEST(Plinth, RaysThatFallPastItAreKnown) {
+  const Plinth plinth(block(), 1);
+  EXPECT_TRUE(plinth.passes_below(ray_of({12, -40, 2}, {0, 1, -0.03})));
+  EXPECT_FALSE(plinth.passes_below(ray_of({12, -40, 2}, {0, 1, -0.02}))) << "meets the wall";
+  EXPECT_FALSE(plinth.passes_below(ray_of({12, -40, 0}, {0, 1, 0.1}))) << "rises";
+  EXPECT_FALSE(plinth.passes_below(ray_of({12, 7, 50}, {0, 0, -1}))) << "comes from above";
+  EXPECT_TRUE(plinth.passes_below(ray_of({12, 7, 0.5}, {0, 0, -1})));
 }
 
 TEST(Plinth, ItsBaseLiesBelowTheField) {
