@@ -2,7 +2,6 @@
 #include "bench/scarp_engine.h"
 
 #include "bench/protocol.h"
-#include "scarp/march/max_mip.h"
 
 namespace scarp::bench {
 namespace {
@@ -50,8 +49,8 @@ Engine ScarpGround::engine(const MarchEntry& march, const MarchSettings& setting
   const HeightTarget to = target();
   const HeightMarch cpu = march.cpu;
   const auto closest = [=](const Ray& ray, MarchStats* stats) { return cpu(to, ray, settings, stats); };
-  if (cpu == march_max_mip) {
-    set_functions(engine, closest, [=](const Ray& ray) { return occluded_max_mip(to, ray); });
+  if (const HeightOcclusion occluded = march.cpu_occluded) {
+    set_functions(engine, closest, [=](const Ray& ray) { return occluded(to, ray); });
   } else {
     set_functions(engine, closest, [=](const Ray& ray) { return closest(ray, nullptr).status == HitStatus::hit; });
   }

@@ -19,10 +19,8 @@ struct GridAxis {
   int step;   // +1 or -1
   int ahead;  // 1 if the line left through has a higher number than the cell, else 0
   int cells;
-  double rounding;  // of a position, in cells
 
   GridAxis(double o, double d, int cell_count) : origin(o), direction(d), time_origin(o), per_direction(1 / d), cells(cell_count) {
-    rounding = 8 * 0x1p-53 * (std::abs(o) + cell_count);
     step = d < 0 ? -1 : 1;
     ahead = d < 0 ? 0 : 1;
     if (std::isinf(per_direction)) {
@@ -45,25 +43,19 @@ struct GridAxis {
   // The cell at a position, clamped to the grid; NaN goes to 0.
   int cell_at(double position) const { return static_cast<int>(std::min(std::max(0.0, position), cells - 1.0)); }
 
-  // The cell at time t by the order of line times alone. Lines crossed exactly at t are behind the cell (cell_after) or still
-  // ahead of it (cell_before). Away from lines the position says it: a line's time, taken back to a position, is off by at
-  // most 8 roundings of what goes into it (numerics.md).
+  // The cell at time t by the order of line times alone; the position is only where to look first. Lines crossed exactly at t
+  // are behind the cell (cell_after) or still ahead of it (cell_before).
   int cell_after(double t) const {
-    const double p = at(t);
-    const int cell = cell_at(p);
-    return away_from_lines(p - cell) ? cell : ordered_cell(cell, t, true);
+    return ordered_cell(t, [&](int line) { return line_time(line) <= t; });
   }
   int cell_before(double t) const {
-    const double p = at(t);
-    const int cell = cell_at(p);
-    return away_from_lines(p - cell) ? cell : ordered_cell(cell, t, false);
+    return ordered_cell(t, [&](int line) { return line_time(line) < t; });
   }
 
  private:
-  bool away_from_lines(double fraction) const { return fraction > rounding && fraction < 1 - rounding; }
-
-  int ordered_cell(int cell, double t, bool after) const {
-    const auto behind = [&](int line) { return line_time(line) < t || (after && line_time(line) == t); };
+  template <class Behind>
+  int ordered_cell(double t, Behind behind) const {
+    int cell = cell_at(at(t));
     while (inside(cell + step) && behind(cell + ahead)) cell += step;
     while (inside(cell - step) && !behind(cell + 1 - ahead)) cell -= step;
     return cell;

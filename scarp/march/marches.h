@@ -59,6 +59,9 @@ struct HeightTarget {
 /// A ray in world space against a height field: the closest hit. `stats`, when given, is overwritten.
 using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats);
 
+/// Whether the closest hit is a hit, without computing where.
+using HeightOcclusion = bool (*)(const HeightTarget& target, const Ray& ray);
+
 /// A row of the table.
 struct MarchEntry {
   std::string_view name;         ///< as typed: "max-mip"
@@ -66,6 +69,7 @@ struct MarchEntry {
   Guarantee guarantee;
   bool needs_pyramid;
   HeightMarch cpu;               ///< scalar C++
+  HeightOcclusion cpu_occluded;  ///< null: none of its own, ask cpu
   HeightMarch simd;              ///< null: none
   bool gpu;                      ///< whether a Vulkan realisation exists
   std::string_view parameters;   ///< its settings with their defaults, for people

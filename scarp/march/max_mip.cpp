@@ -24,12 +24,14 @@ struct CellQuadratic {
   double surface;  // height at s = 0
 
   CellQuadratic(const CellHeights& h, double u, double v, double du, double dv, double z, double dz) {
-    const double hu = h.h10 - h.h00, hv = h.h01 - h.h00, twist = (h.h11 - h.h10) - hv;
-    a = -twist * du * dv;
+    const double hu = h.h10 - h.h00, hv = h.h01 - h.h00, twist = (h.h11 - h.h01) - hu;
+    a = curvature(h, du, dv);
     b = dz - (hu * du + hv * dv + twist * (u * dv + v * du));
     surface = h.h00 + hu * u + hv * v + twist * u * v;
     c = z - surface;
   }
+
+  static double curvature(const CellHeights& h, double du, double dv) { return ((h.h10 - h.h00) - (h.h11 - h.h01)) * du * dv; }
 
   double at(double s) const { return (a * s + b) * s + c; }
 
@@ -55,17 +57,17 @@ template <class T, bool Holes, Refine refine>
 class Walk {
  public:
   Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray, const GridRay& local,
-       int halvings)
+       int halvings, Hit& answer)
       : field_(field), grid_(grid), levels_(pyramid.levels().data()), top_(pyramid.top_level()),
         maxima_(pyramid.level<T>(1).data), x_(local.origin.x, local.direction.x, grid.cols - 1),
         y_(local.origin.y, local.direction.y, grid.rows - 1), z_(local.origin.z), dz_(local.direction.z), t_in_(ray.t_min),
-        t_end_(ray.t_max), strict_(ray.start == RayStart::on_surface), halvings_(halvings), ray_(ray) {}
+        t_end_(ray.t_max), strict_(ray.start == RayStart::on_surface), halvings_(halvings), ray_(ray), answer_(answer) {}
 
-  Hit run() {
+  void run() {
     if (strict_) {
-      if (!leave_start_cell()) return answer_;
+      if (!leave_start_cell()) return;
     } else {
-      if (!enter()) return answer_;
+      if (!enter()) return;
       if (!x_.moves() && !y_.moves()) return vertical();
     }
     return walk();
@@ -159,12 +161,17 @@ class Walk {
     }
     side_ = Side::above;
     level_ = 0;
-    return std::min(tx, ty) < t_end_ && advance(tx <= ty, std::min(tx, ty), tx <= ty ? col_ + x_.ahead : row_ + y_.ahead);
+    t_in_ = std::min(tx, ty);
+    after_x_ = tx <= ty;
+    if (Holes) through_ = after_x_ ? Through::x_line : Through::y_line;
+    (after_x_ ? col_ : row_) += after_x_ ? x_.step : y_.step;
+    return t_in_ < t_end_ && x_.inside(col_) && y_.inside(row_);
   }
 
   // Straight up or down: one cell, one height.
-  Hit vertical() {
-    if (Holes && grid_.is_hole(col_, row_)) return answer_;
+  void vertical() {
+    ++stats.steps;
+    if (Holes && grid_.is_hole(col_, row_)) return;
     ++stats.cell_tests;
     const double above = quadratic(heights(col_, row_), t_in_).c, surface = ray_height(t_in_) - above;
     if (above < 0 && side_ != Side::above) {
@@ -174,73 +181,90 @@ class Walk {
     } else if (ray_height(t_end_) <= surface) {
       answer((surface - z_) / dz_ - t_in_);
     }
-    return answer_;
   }
 
-  Hit walk() {
+  // The walk keeps, in locals, the block at the current level and the times at which the ray leaves it through its two far
+  // lines. One level down is a question to the line in the middle: is it behind? No cell is ever found from a position.
+  void walk() {
     const bool falling = dz_ < 0;
-    const double highest = field_.max_sample();
+    const double highest = field_.max_sample(), t_end = t_end_;
+    const GridAxis x = x_, y = y_;
+    int level = level_, col = col_ >> level, row = row_ >> level;
+    double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
+    std::uint32_t steps = 0, level_changes = 0;
     for (;;) {
-      const int block_col = col_ >> level_, block_row = row_ >> level_;
-      const int line_x = (block_col + x_.ahead) << level_, line_y = (block_row + y_.ahead) << level_;
-      const double tx = x_.line_time(line_x), ty = y_.line_time(line_y);
       const bool through_x = tx <= ty;  // a tie: first through the line of constant column
       const double t_line = through_x ? tx : ty;
-      const double t_out = std::min(t_line, t_end_);
+      const double t_out = std::min(t_line, t_end);
       // The ray's height is linear, and so it is after rounding: lowest at one end of the block.
-      const double lowest = ray_height(falling ? t_out : t_in_);
-      ++stats.steps;
-      if (level_ > 0) {
-        const Level& level = levels_[level_ - 1];
-        const double maximum = maxima_[level.begin + static_cast<std::ptrdiff_t>(block_row) * level.cols + block_col];
-        if (!above(lowest, maximum)) {
-          --level_;
-          ++stats.level_changes;
+      const double lowest = ray_height(falling ? t_out : t_in);
+      ++steps;
+      if (level > 0) {
+        const Level& at = levels_[level - 1];
+        const double maximum = maxima_[at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col];
+        if (!above(lowest, maximum, t_in)) {
+          --level;
+          ++level_changes;
+          // After a line of constant column, rows' lines of the same time are still ahead: the order of ties.
+          const double middle_x = x.line_time((2 * col + 1) << level), middle_y = y.line_time((2 * row + 1) << level);
+          const bool behind_x = middle_x <= t_in, behind_y = after_x_ ? middle_y < t_in : middle_y <= t_in;
+          col = std::min(2 * col + (behind_x ? x.ahead : 1 - x.ahead), (x.cells - 1) >> level);
+          row = std::min(2 * row + (behind_y ? y.ahead : 1 - y.ahead), (y.cells - 1) >> level);
+          tx = behind_x ? tx : middle_x;
+          ty = behind_y ? ty : middle_y;
           continue;
         }
         // Where there are holes, the last cell may be one: the next begins with a question.
         side_ = Holes ? Side::unknown : Side::above;
-      } else if (Holes && grid_.is_hole(col_, row_)) {
+      } else if (Holes && grid_.is_hole(col, row)) {
         // Passing the corner of a hole is not leaving the ground.
-        if (t_line > t_in_) side_ = Side::unknown;
+        if (t_line > t_in) side_ = Side::unknown;
+        if (lost(t_in)) break;
       } else {
-        const CellHeights h = heights(col_, row_);
+        const CellHeights h = heights(col, row);
         const double maximum = std::max(std::max(h.h00, h.h10), std::max(h.h01, h.h11));
-        if (above(lowest, maximum)) {
+        if (above(lowest, maximum, t_in)) {
           side_ = Side::above;
-        } else if (test_cell(h, through_x, t_line, t_out)) {
-          return answer_;
+        } else {
+          col_ = col, row_ = row, t_in_ = t_in;
+          if (test_cell(h, through_x, t_line, t_out)) break;
         }
       }
       if (Holes) begun_ = true;
-      if (!falling && lowest > highest) return answer_;
-      if (!(t_line < t_end_) || !advance(through_x, t_line, through_x ? line_x : line_y)) return answer_;
+      if ((!falling && lowest > highest) || !(t_line < t_end)) break;
+      t_in = t_line;
+      after_x_ = through_x;
+      if (Holes) through_ = through_x ? Through::x_line : Through::y_line;
+      bool new_parent;
+      if (through_x) {
+        col += x.step;
+        if (static_cast<unsigned>(col) > static_cast<unsigned>((x.cells - 1) >> level)) break;
+        new_parent = (col & 1) != x.ahead;
+      } else {
+        row += y.step;
+        if (static_cast<unsigned>(row) > static_cast<unsigned>((y.cells - 1) >> level)) break;
+        new_parent = (row & 1) != y.ahead;
+      }
+      if (new_parent && level < top_) {
+        ++level;
+        ++level_changes;
+        col >>= 1;
+        row >>= 1;
+        tx = x.line_time((col + x.ahead) << level);
+        ty = y.line_time((row + y.ahead) << level);
+      } else if (through_x) {
+        tx = x.line_time((col + x.ahead) << level);
+      } else {
+        ty = y.line_time((row + y.ahead) << level);
+      }
     }
+    stats.steps += steps;
+    stats.level_changes += level_changes;
   }
 
   // Whether the ray is above all of a block. One that was below has to be so by more than rounding: see test_cell().
-  bool above(double lowest, double maximum) const {
-    return lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_in_));
-  }
-
-  // Steps over a line of the current level; false outside the field. Crossing into another parent goes one level up.
-  bool advance(bool through_x, double t, int line) {
-    if (through_x) {
-      col_ = line + x_.ahead - 1;
-      if (!x_.inside(col_)) return false;
-      if (level_ > 0) row_ = y_.cell_before(t);
-    } else {
-      row_ = line + y_.ahead - 1;
-      if (!y_.inside(row_)) return false;
-      if (level_ > 0) col_ = x_.cell_after(t);
-    }
-    if (Holes) through_ = through_x ? Through::x_line : Through::y_line;
-    t_in_ = t;
-    if (((line >> level_) & 1) == 0 && level_ < top_) {
-      ++level_;
-      ++stats.level_changes;
-    }
-    return true;
+  bool above(double lowest, double maximum, double t_in) const {
+    return lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_in));
   }
 
   // The surface of the current cell; true: answered. Otherwise side_ is that of the way out.
@@ -258,6 +282,8 @@ class Walk {
     if (side_ == Side::above) {
       if (out <= 0 && is_hit(out, t_out)) return hit_in_cell(quadratic(h, t_in_), length), true;
       if constexpr (refine == Refine::bisect) return false;
+      // Only where the clearance along the ray is a cup can the ray come down and go up again.
+      if (!(CellQuadratic::curvature(h, x_.direction, y_.direction) > 0)) return false;
       const CellQuadratic f = quadratic(h, t_in_);
       if (f.dips(length) && is_hit(f.vertex_value(), t_in_)) return hit_in_cell(f, length), true;
       return false;
@@ -269,8 +295,12 @@ class Walk {
     if constexpr (refine == Refine::bisect) return false;
     const CellQuadratic f = quadratic(h, t_in_);
     if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_)) return hit_in_cell(f, length), true;
-    return false;
+    return lost(t_out);
   }
+
+  // Whether a ray that is not above can never be so again: falling, and under the lowest ground.
+  bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample(); }
+
 
   // The most that rounding can add to a clearance (doc/dev/numerics.md), for the two places where a sign alone is not enough:
   // a ray from below has risen only beyond it (else one that rises through a node could be seen above at one line and, by
@@ -335,8 +365,9 @@ class Walk {
   int level_ = 0;
   Side side_ = Side::unknown;
   Through through_ = Through::point;
+  bool after_x_ = false;  // whether the last line crossed was one of constant column
   bool begun_ = false;  // with holes: whether anything has been left behind; only the first cell can say that the ray began below
-  Hit answer_;
+  Hit& answer_;
 };
 
 template <Refine refine>
@@ -361,14 +392,14 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
   }
   field.visit([&](const auto& grid) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
-    const auto run = [&](auto walk) {
-      hit = walk.run();
+    const auto run = [&](auto&& walk) {
+      walk.run();
       if (stats) *stats = walk.stats;
     };
     if (grid.has_holes) {
-      run(Walk<T, true, refine>(field, grid, *target.pyramid, ray, local, halvings));
+      run(Walk<T, true, refine>(field, grid, *target.pyramid, ray, local, halvings, hit));
     } else {
-      run(Walk<T, false, refine>(field, grid, *target.pyramid, ray, local, halvings));
+      run(Walk<T, false, refine>(field, grid, *target.pyramid, ray, local, halvings, hit));
     }
   });
   return hit;

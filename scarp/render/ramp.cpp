@@ -14,8 +14,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::array<std::string_view, 7> kNames = {"viridis", "magma", "inferno",    "plasma",
-                                                    "cividis", "grey",  "hypsometric"};
+constexpr std::array<std::string_view, 6> kNames = {"viridis", "magma", "inferno", "plasma", "grey", "hypsometric"};
 
 // A colour of a hand-made ramp at a share of its way.
 struct Stop {
@@ -66,7 +65,6 @@ Ramp::Ramp(std::string_view name, double low, double high) {
   if (name == "magma") pieces_.push_back({low, high, from_table(kMagma)});
   if (name == "inferno") pieces_.push_back({low, high, from_table(kInferno)});
   if (name == "plasma") pieces_.push_back({low, high, from_table(kPlasma)});
-  if (name == "cividis") pieces_.push_back({low, high, from_table(kCividis)});
   if (name == "grey") pieces_.push_back({low, high, from_stops(kGrey)});
   if (name == "hypsometric") {
     // A sea without any depth, all of it at 0, has the colour of the shore: any lower end gives that.

@@ -10,7 +10,7 @@
 
 namespace scarp {
 
-/// Names of all ramps: viridis, magma, inferno, plasma, cividis, grey, hypsometric.
+/// Names of all ramps: viridis, magma, inferno, plasma, grey, hypsometric.
 std::span<const std::string_view> ramp_names();
 
 /// A ramp laid over a range of values. `hypsometric` breaks at sea level: blues up to 0 (elevation models store the

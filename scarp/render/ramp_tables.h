@@ -10,6 +10,6 @@ namespace scarp {
 /// 256 colours from low to high, 0xRRGGBB in sRGB.
 using RampTable = std::array<std::uint32_t, 256>;
 
-extern const RampTable kViridis, kMagma, kInferno, kPlasma, kCividis;
+extern const RampTable kViridis, kMagma, kInferno, kPlasma;
 
 }  // namespace scarp

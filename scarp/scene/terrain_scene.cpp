@@ -3,8 +3,6 @@
 
 #include <utility>
 
-#include "scarp/march/max_mip.h"
-
 namespace scarp {
 
 TerrainScene::TerrainScene(HeightField field, const MarchEntry& march, const MarchSettings& settings)
@@ -18,7 +16,7 @@ Hit TerrainScene::closest_hit(const Ray& ray, MarchStats* stats) const {
 }
 
 bool TerrainScene::occluded(const Ray& ray) const {
-  if (march_->cpu == march_max_mip) return occluded_max_mip(target(), ray);
+  if (march_->cpu_occluded) return march_->cpu_occluded(target(), ray);
   return static_cast<bool>(closest_hit(ray));
 }
 
