@@ -84,7 +84,11 @@ class Comparison {
         if (contender) contenders.push_back(std::move(*contender));
       };
       add(cheapest(scarp, judge, "naive-fair", [&](const Judgement& j) { return j.miss_rate < limit; }));
-      if (!set.any_hit) {
+      if (set.any_hit) {
+        // A shadow that is not there is as wrong as one that is missing.
+        add(cheapest(scarp, judge, "naive-right",
+                     [&](const Judgement& j) { return j.miss_rate + j.false_rate < limit; }));
+      } else {
         // In a picture, ground that was stepped through is a hole even where something is hit behind it.
         add(cheapest(scarp, judge, "naive-no-holes",
                      [&](const Judgement& j) { return j.miss_rate + j.late_rate < limit; }));

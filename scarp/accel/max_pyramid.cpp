@@ -54,7 +54,8 @@ void build_first(const SampleGrid<T>& grid, T* out, int cols, int rows) {
       maxima_of_cells(grid, 2 * row, north.data());
       const bool pair = 2 * row + 1 < fine_rows;
       if (pair) maxima_of_cells(grid, 2 * row + 1, south.data());
-      maxima_of_pairs(north.data(), pair ? south.data() : north.data(), fine_cols, out + static_cast<std::ptrdiff_t>(row) * cols);
+      maxima_of_pairs(north.data(), pair ? south.data() : north.data(), fine_cols,
+                      out + static_cast<std::ptrdiff_t>(row) * cols);
     }
   });
 }
@@ -90,8 +91,8 @@ MaxPyramid::MaxPyramid(const HeightField& field) : type_(field.sample_type()) {
     build_first(grid, data.get(), levels_[0].cols, levels_[0].rows);
     for (std::size_t l = 1; l < levels_.size(); ++l) {
       const Level &fine = levels_[l - 1], &coarse = levels_[l];
-      build_coarser(PyramidLevel<T>{data.get() + fine.begin, fine.cols, fine.rows}, data.get() + coarse.begin, coarse.cols,
-                    coarse.rows);
+      build_coarser(PyramidLevel<T>{data.get() + fine.begin, fine.cols, fine.rows}, data.get() + coarse.begin,
+                    coarse.cols, coarse.rows);
     }
     data_ = std::shared_ptr<const void>(data, data.get());
   });

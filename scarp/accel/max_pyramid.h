@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Maximum mipmap of a height field: for every block of 2^level x 2^level cells, a height that no point of the surface in
-// it exceeds.
+// Maximum mipmap of a height field: for every block of 2^level x 2^level cells, a height that no point of the surface
+// in it exceeds.
 //
-//   level 0: the cells themselves, the maximum of FOUR corner samples each (a bilinear surface stays below them). Not stored:
+//   level 0: the cells themselves, the maximum of FOUR corner samples each (a bilinear surface stays below them). Not
+//   stored:
 //            who looks at a cell needs its samples anyway, and a quarter of the memory holds all other levels
 //   level l: (n + 1) / 2 entries per side for n at level l-1, so odd sizes keep their last row and column
 //   top:     one entry, on level 1 at least

@@ -17,7 +17,8 @@ struct Georeference {
   std::string crs_name;  ///< short, for people: "WGS 84 / UTM zone 10N (EPSG:32610)"; empty when unknown
   double cell_x_m = 1;   ///< true length of a step of one column on the ground at the raster's centre, metres, > 0
   double cell_y_m = 1;   ///< the same for one row
-  /// Compass azimuth of the raster's "up" (decreasing row) at its centre, radians, 0 = true north (meridian convergence).
+  /// Compass azimuth of the raster's "up" (decreasing row) at its centre, radians, 0 = true north (meridian
+  /// convergence).
   double grid_north_azimuth = 0;
   std::string cell_size_found;  ///< how the two lengths were found, one line for people
 };

@@ -10,7 +10,8 @@
 namespace scarp {
 
 /// Calls body(begin, end) for pieces of [0, count) of at most `grain` (>= 1), in any order, on all threads that the
-/// process may use. Reports progress and throws Interrupted when it is asked to stop; lets the body's exceptions through.
+/// process may use. Reports progress and throws Interrupted when it is asked to stop; lets the body's exceptions
+/// through.
 void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body,
                   const Progress& progress = {});
 

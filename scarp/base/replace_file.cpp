@@ -27,10 +27,12 @@ ReplaceFile::ReplaceFile(std::string path) : path_(std::move(path)) {
   if (fs::exists(target, ignored) && ::access(path_.c_str(), W_OK) != 0) {
     throw Error(fmt::format("output '{}': exists and is write-protected; choose another name", path_));
   }
-  temporary_ = (folder / fmt::format(".{}.{}.part{}", target.stem().string(), ::getpid(), target.extension().string())).string();
+  temporary_ =
+      (folder / fmt::format(".{}.{}.part{}", target.stem().string(), ::getpid(), target.extension().string())).string();
   // Opened here, so that an unwritable folder is found before hours of work and not after them.
   if (!std::ofstream(temporary_, std::ios::binary)) {
-    throw Error(fmt::format("output '{}': the folder '{}' cannot be written to; choose another one", path_, folder.string()));
+    throw Error(
+        fmt::format("output '{}': the folder '{}' cannot be written to; choose another one", path_, folder.string()));
   }
 }
 

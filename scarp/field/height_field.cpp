@@ -54,8 +54,8 @@ Extent scan(const SampleGrid<T>& grid) {
         }
         if constexpr (std::is_floating_point_v<T>) {
           if (std::isinf(sample)) {
-            throw Error(fmt::format("height field: the sample at column {}, row {} is infinite; mark such samples as nodata",
-                                    col, row));
+            throw Error(fmt::format(
+                "height field: the sample at column {}, row {} is infinite; mark such samples as nodata", col, row));
           }
         }
         low = std::min(low, sample);
@@ -87,17 +87,27 @@ double lerp(double a, double b, double f) { return a + f * (b - a); }
 
 std::string_view name_of(SampleType type) {
   switch (type) {
-    case SampleType::int16: return "int16";
-    case SampleType::uint16: return "uint16";
-    case SampleType::float32: break;
+    case SampleType::int16:
+      return "int16";
+    case SampleType::uint16:
+      return "uint16";
+    case SampleType::float32:
+      break;
   }
   return "float32";
 }
 
 HeightField::HeightField(SampleType type, const void* data, int cols, int rows, std::ptrdiff_t row_stride,
                          const HeightFieldSettings& settings, std::shared_ptr<const void> owner)
-    : type_(type), data_(data), owner_(std::move(owner)), cols_(cols), rows_(rows), row_stride_(row_stride), settings_(settings) {
-  if (cols < 1 || rows < 1) throw Error(fmt::format("height field: {} x {} samples; at least 1 x 1 are needed", cols, rows));
+    : type_(type),
+      data_(data),
+      owner_(std::move(owner)),
+      cols_(cols),
+      rows_(rows),
+      row_stride_(row_stride),
+      settings_(settings) {
+  if (cols < 1 || rows < 1)
+    throw Error(fmt::format("height field: {} x {} samples; at least 1 x 1 are needed", cols, rows));
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   require(positive(settings.cell_x), "cell_x", settings.cell_x, "finite and above 0");
   require(positive(settings.cell_y), "cell_y", settings.cell_y, "finite and above 0");
@@ -143,8 +153,8 @@ HeightField HeightField::own(std::vector<T> samples, int cols, int rows, const H
   return HeightField(type_of<T>(), data, cols, rows, cols, settings, std::move(owner));
 }
 
-#define SCARP_INSTANTIATE(T)                                                                                      \
-  template HeightField HeightField::view<T>(const T*, int, int, std::ptrdiff_t, const HeightFieldSettings&);      \
+#define SCARP_INSTANTIATE(T)                                                                                 \
+  template HeightField HeightField::view<T>(const T*, int, int, std::ptrdiff_t, const HeightFieldSettings&); \
   template HeightField HeightField::own<T>(std::vector<T>, int, int, const HeightFieldSettings&);
 SCARP_INSTANTIATE(std::int16_t)
 SCARP_INSTANTIATE(std::uint16_t)
@@ -202,11 +212,14 @@ dvec3 HeightField::shading_normal(Cell cell, double u, double v) const {
   return visit([&](const auto& grid) {
     // Difference over the widest span of valid samples around a node, along one axis.
     const auto slope = [&](int col, int row, int dcol, int drow) {
-      const auto valid = [&](int c, int r) { return c >= 0 && c < cols_ && r >= 0 && r < rows_ && !grid.is_nodata(grid.at(c, r)); };
+      const auto valid = [&](int c, int r) {
+        return c >= 0 && c < cols_ && r >= 0 && r < rows_ && !grid.is_nodata(grid.at(c, r));
+      };
       const int ahead = valid(col + dcol, row + drow) ? 1 : 0, behind = valid(col - dcol, row - drow) ? 1 : 0;
       if (ahead + behind == 0) return 0.0;
       return (static_cast<double>(grid.at(col + ahead * dcol, row + ahead * drow)) -
-              static_cast<double>(grid.at(col - behind * dcol, row - behind * drow))) / (ahead + behind);
+              static_cast<double>(grid.at(col - behind * dcol, row - behind * drow))) /
+             (ahead + behind);
     };
     dvec2 sum(0.0);
     for (int dr = 0; dr < 2; ++dr) {

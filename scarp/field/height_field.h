@@ -57,11 +57,11 @@ struct SampleGrid {
 
 /// How samples become a surface in metres.
 struct HeightFieldSettings {
-  double cell_x = 1.0;        ///< metres from one column to the next, > 0
-  double cell_y = 1.0;        ///< metres from one row to the next, > 0
-  double scale = 1.0;         ///< z = (sample * scale + offset) * exaggeration; > 0
-  double offset = 0.0;        ///< metres
-  double exaggeration = 1.0;  ///< > 0
+  double cell_x = 1.0;                          ///< metres from one column to the next, > 0
+  double cell_y = 1.0;                          ///< metres from one row to the next, > 0
+  double scale = 1.0;                           ///< z = (sample * scale + offset) * exaggeration; > 0
+  double offset = 0.0;                          ///< metres
+  double exaggeration = 1.0;                    ///< > 0
   std::optional<double> nodata = std::nullopt;  ///< sample value of a hole; NaN is one in float32 anyway
 };
 
@@ -109,12 +109,14 @@ class HeightField {
   double width() const { return (cols_ - 1) * settings_.cell_x; }
   double depth() const { return (rows_ - 1) * settings_.cell_y; }
 
-  double height_from_sample(double s) const { return (s * settings_.scale + settings_.offset) * settings_.exaggeration; }
+  double height_from_sample(double s) const {
+    return (s * settings_.scale + settings_.offset) * settings_.exaggeration;
+  }
 
   GridRay grid_from_world(const Ray& ray) const {
-    return {{ray.origin.x * per_cell_x_, (rows_ - 1) - ray.origin.y * per_cell_y_,
-             (ray.origin.z - z_offset_) * per_scale_},
-            {ray.direction.x * per_cell_x_, -ray.direction.y * per_cell_y_, ray.direction.z * per_scale_}};
+    return {
+        {ray.origin.x * per_cell_x_, (rows_ - 1) - ray.origin.y * per_cell_y_, (ray.origin.z - z_offset_) * per_scale_},
+        {ray.direction.x * per_cell_x_, -ray.direction.y * per_cell_y_, ray.direction.z * per_scale_}};
   }
   /// World position of a point in grid units.
   dvec3 world_from_grid(double col, double row, double sample) const {
@@ -133,8 +135,8 @@ class HeightField {
   std::optional<CellHeights> cell_heights(Cell cell) const;
   /// Surface height in metres at a world position; nothing outside and over holes.
   std::optional<double> height(double x, double y) const;
-  /// Slope (dz/dx, dz/dy) in metres per metre in world space, x east, y north, at a place in a cell. The cell must exist
-  /// and be no hole.
+  /// Slope (dz/dx, dz/dy) in metres per metre in world space, x east, y north, at a place in a cell. The cell must
+  /// exist and be no hole.
   dvec2 gradient(Cell cell, double u, double v) const;
   std::optional<dvec2> gradient(double x, double y) const;
   /// Unit normal of the surface (upwards) from the gradient; steps from cell to cell.
@@ -147,9 +149,12 @@ class HeightField {
   template <class F>
   decltype(auto) visit(F&& f) const {
     switch (type_) {
-      case SampleType::int16: return f(grid<std::int16_t>());
-      case SampleType::uint16: return f(grid<std::uint16_t>());
-      case SampleType::float32: break;
+      case SampleType::int16:
+        return f(grid<std::int16_t>());
+      case SampleType::uint16:
+        return f(grid<std::uint16_t>());
+      case SampleType::float32:
+        break;
     }
     return f(grid<float>());
   }

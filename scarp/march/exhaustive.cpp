@@ -19,8 +19,8 @@ struct Span {
 
 Span common(Span a, Span b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
 
-// When o + d t lies in [low, low + size]. Neighbouring strips compute their common border alike, so their spans meet exactly.
-// A ray that does not move along the axis belongs to [low, low + size), the last strip of all being closed.
+// When o + d t lies in [low, low + size]. Neighbouring strips compute their common border alike, so their spans meet
+// exactly. A ray that does not move along the axis belongs to [low, low + size), the last strip of all being closed.
 Span strip(double o, double d, double low, double size, bool last) {
   if (d == 0) return o >= low && (o < low + size || (last && o == low + size)) ? Span{} : Span{1, 0};
   const double a = (low - o) / d, b = (low + size - o) / d;
@@ -80,15 +80,17 @@ class Ground {
     p.b = dz_ - gu * dx_ - gv * dy_;
     p.c = oz_ + dz_ * span.begin - surface(*h, u, v);
     // An upright ray may have no end: then the sign of its movement tells on which side it ends.
-    p.last = std::isinf(span.end) ? std::copysign(kInfinity, dz_)
-                                  : oz_ + dz_ * span.end - surface(*h, inside(ox_ + dx_ * span.end - cell.col),
-                                                                   inside(oy_ + dy_ * span.end - cell.row));
+    p.last = std::isinf(span.end)
+                 ? std::copysign(kInfinity, dz_)
+                 : oz_ + dz_ * span.end -
+                       surface(*h, inside(ox_ + dx_ * span.end - cell.col), inside(oy_ + dy_ * span.end - cell.row));
     return p;
   }
 
   // What rounding can add to f around t: 16 units in the last place of all that goes into it.
   double rounding(double t) const {
-    const double heights = std::max(std::abs(field_.min_sample()), std::abs(field_.max_sample())) + std::abs(oz_) + std::abs(dz_ * t);
+    const double heights =
+        std::max(std::abs(field_.min_sample()), std::abs(field_.max_sample())) + std::abs(oz_) + std::abs(dz_ * t);
     const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t);
     return 16 * 0x1p-53 * (heights + places * (field_.max_sample() - field_.min_sample()));
   }
@@ -119,7 +121,8 @@ class Ground {
 
   // Where the ray comes over the field.
   double entry(double t_min) const {
-    return std::max({t_min, strip(ox_, dx_, 0, field_.cell_cols(), true).begin, strip(oy_, dy_, 0, field_.cell_rows(), true).begin});
+    return std::max({t_min, strip(ox_, dx_, 0, field_.cell_cols(), true).begin,
+                     strip(oy_, dy_, 0, field_.cell_rows(), true).begin});
   }
 
   Hit hit(const Piece& piece, double s) const {
@@ -144,8 +147,8 @@ class Ground {
   double ox_, oy_, oz_, dx_, dy_, dz_;  // the ray in cells and sample units
 };
 
-// First s in the piece at which a ray that comes from above is on or below the surface. A ray that began on the surface has
-// to be below by more than `depth`, what rounding can pretend; a touch is no hit for it.
+// First s in the piece at which a ray that comes from above is on or below the surface. A ray that began on the surface
+// has to be below by more than `depth`, what rounding can pretend; a touch is no hit for it.
 std::optional<double> descent(const Piece& p, std::optional<double> depth) {
   const auto below = [&](double f) { return depth ? f < -*depth : f <= 0; };
   if (!depth && p.c <= 0) return 0;
@@ -190,7 +193,8 @@ Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSett
       // f = s (a s + b): the root at the start is no hit.
       reached = p.span.end;
       if (p.length() == 0) continue;
-      const double lowest = p.a > 0 && p.vertex() ? (p.a * *p.vertex() + p.b) * *p.vertex() : (p.a * p.length() + p.b) * p.length();
+      const double lowest =
+          p.a > 0 && p.vertex() ? (p.a * *p.vertex() + p.b) * *p.vertex() : (p.a * p.length() + p.b) * p.length();
       if (!(lowest < -ground.rounding(ray.t_min))) continue;
       return ground.hit(p, p.b < 0 || p.a == 0 ? 0 : -p.b / p.a);
     }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// `exhaustive`: the judge of all other marches. Every cell that the ray's shadow on the ground touches is intersected on its
-// own, in double, row by row of the raster, with no accelerator; the pieces are then read in the order of t.
+// `exhaustive`: the judge of all other marches. Every cell that the ray's shadow on the ground touches is intersected
+// on its own, in double, row by row of the raster, with no accelerator; the pieces are then read in the order of t.
 //
 // Guarantee: exact (to rounding). Shares no code with the other marches, on purpose: a mistake must not be made twice.
-// Cost: O(columns + rows) cells per ray and a sort; hundreds of times slower than max-mip. For tests and error pictures.
+// Cost: O(columns + rows) cells per ray and a sort; hundreds of times slower than max-mip. For tests and error
+// pictures.
 #pragma once
 
 #include "scarp/march/marches.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the sampling marches (naive, relaxed) need of a height field: the ray inside its bounds, and how far above the ground
-// a point of it is.
+// What the sampling marches (naive, relaxed) need of a height field: the ray inside its bounds, and how far above the
+// ground a point of it is.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,12 @@ template <class T>
 class Ground {
  public:
   Ground(const HeightField& field, const SampleGrid<T>& grid, const Ray& ray)
-      : field_(field), grid_(grid), ray_(ray), local_(field.grid_from_world(ray)),
-        metres_(field.settings().scale * field.settings().exaggeration), speed_(length(ray.direction)) {
+      : field_(field),
+        grid_(grid),
+        ray_(ray),
+        local_(field.grid_from_world(ray)),
+        metres_(field.settings().scale * field.settings().exaggeration),
+        speed_(length(ray.direction)) {
     t_enter = ray.t_min;
     t_exit = ray.t_max;
     clip(0, grid.cols - 1.0, local_.origin.x, local_.direction.x);
@@ -31,8 +35,8 @@ class Ground {
   double metres_per_t() const { return speed_; }
 
   struct Sample {
-    bool valid = false;   ///< false over holes
-    double clearance = 0; ///< metres that the ray is above the ground, vertically
+    bool valid = false;    ///< false over holes
+    double clearance = 0;  ///< metres that the ray is above the ground, vertically
     Cell cell;
     double u = 0, v = 0;
   };

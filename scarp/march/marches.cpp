@@ -27,8 +27,9 @@ constexpr std::array kMarches = {
                "the shader writers' t += 0.4 h: closes in on calm ground, steps through steep ground"},
     MarchEntry{"max-mip", "height field", Guarantee::exact, true, march_max_mip, occluded_max_mip, nullptr, false, "",
                "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
-    MarchEntry{"max-mip-bisect", "height field", Guarantee::approximate, true, march_max_mip_bisect, nullptr, nullptr, false,
-               "16 halvings", "the same walk with the paper's binary search in the cell; passes rays that dip into a cell"},
+    MarchEntry{"max-mip-bisect", "height field", Guarantee::approximate, true, march_max_mip_bisect, nullptr, nullptr,
+               false, "16 halvings",
+               "the same walk with the paper's binary search in the cell; passes rays that dip into a cell"},
 };
 
 void require(bool good, std::string_view name, double value, std::string_view range) {
@@ -41,9 +42,12 @@ bool positive(double x) { return std::isfinite(x) && x > 0; }
 
 std::string_view name_of(Guarantee guarantee) {
   switch (guarantee) {
-    case Guarantee::exact: return "exact";
-    case Guarantee::conservative: return "conservative";
-    case Guarantee::approximate: break;
+    case Guarantee::exact:
+      return "exact";
+    case Guarantee::conservative:
+      return "conservative";
+    case Guarantee::approximate:
+      break;
   }
   return "approximate";
 }
@@ -58,7 +62,8 @@ void validate(const MarchSettings& settings) {
   require(positive(relaxed.step_factor), "relaxed step factor", relaxed.step_factor, "above 0");
   require(positive(relaxed.tolerance), "relaxed tolerance", relaxed.tolerance, "above 0");
   require(relaxed.max_steps >= 1, "relaxed step limit", relaxed.max_steps, "1 or more");
-  require(settings.bisect.halvings >= 1 && settings.bisect.halvings <= 60, "bisect halvings", settings.bisect.halvings, "1 to 60");
+  require(settings.bisect.halvings >= 1 && settings.bisect.halvings <= 60, "bisect halvings", settings.bisect.halvings,
+          "1 to 60");
 }
 
 std::span<const MarchEntry> marches() { return kMarches; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ONE table of marching techniques. Command line, benchmarks, tests and documentation all read it: a technique that is
-// listed here is tested against the oracle from that moment on.
+// The ONE table of marching techniques. Command line, benchmarks, tests and documentation all read it: a technique that
+// is listed here is tested against the oracle from that moment on.
 #pragma once
 
 #include <span>
@@ -23,10 +23,10 @@ std::string_view name_of(Guarantee guarantee);
 
 /// `naive`: t += max(step_factor * |h|, min_step * t_exit), stops where h < tolerance * t.
 struct NaiveSettings {
-  double step_factor = 0.7;    ///< of the vertical distance h, > 0
-  double min_step = 1.0 / 512; ///< least step, as a share of the ray's length to the field's border, > 0
-  double tolerance = 0.001;    ///< height above ground that counts as a hit, per unit of distance, >= 0
-  int max_steps = 1024;        ///< >= 1
+  double step_factor = 0.7;     ///< of the vertical distance h, > 0
+  double min_step = 1.0 / 512;  ///< least step, as a share of the ray's length to the field's border, > 0
+  double tolerance = 0.001;     ///< height above ground that counts as a hit, per unit of distance, >= 0
+  int max_steps = 1024;         ///< >= 1
 };
 
 /// `relaxed`: t += step_factor * h, stops where |h| < tolerance * t.
@@ -57,15 +57,16 @@ struct HeightTarget {
 };
 
 /// A ray in world space against a height field: the closest hit. `stats`, when given, is overwritten.
-using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats);
+using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings,
+                            MarchStats* stats);
 
 /// Whether the closest hit is a hit, without computing where.
 using HeightOcclusion = bool (*)(const HeightTarget& target, const Ray& ray);
 
 /// A row of the table.
 struct MarchEntry {
-  std::string_view name;         ///< as typed: "max-mip"
-  std::string_view fields;       ///< kinds of field that it takes
+  std::string_view name;    ///< as typed: "max-mip"
+  std::string_view fields;  ///< kinds of field that it takes
   Guarantee guarantee;
   bool needs_pyramid;
   HeightMarch cpu;               ///< scalar C++

@@ -15,8 +15,11 @@ enum class Refine { closed_form, bisect, none };
 
 double lerp(double a, double b, double f) { return a + f * (b - a); }
 
-// The height of a crossing between two nodes. Rounding must not lift it above the higher one: the pyramid bounds the nodes.
-double edge_height(double a, double b, double f) { return std::min(lerp(a, b, std::clamp(f, 0.0, 1.0)), std::max(a, b)); }
+// The height of a crossing between two nodes. Rounding must not lift it above the higher one: the pyramid bounds the
+// nodes.
+double edge_height(double a, double b, double f) {
+  return std::min(lerp(a, b, std::clamp(f, 0.0, 1.0)), std::max(a, b));
+}
 
 // (ray height - surface height) along the ray inside one bilinear cell: f(s) = a s^2 + b s + c, s = t - t_in.
 struct CellQuadratic {
@@ -31,11 +34,14 @@ struct CellQuadratic {
     c = z - surface;
   }
 
-  static double curvature(const CellHeights& h, double du, double dv) { return ((h.h10 - h.h00) - (h.h11 - h.h01)) * du * dv; }
+  static double curvature(const CellHeights& h, double du, double dv) {
+    return ((h.h10 - h.h00) - (h.h11 - h.h01)) * du * dv;
+  }
 
   double at(double s) const { return (a * s + b) * s + c; }
 
-  // The root that a ray going downwards through zero meets: where f falls. Without cancellation, as in Ramsey et al. 2004.
+  // The root that a ray going downwards through zero meets: where f falls. Without cancellation, as in Ramsey et al.
+  // 2004.
   double falling_root() const {
     const double root = std::sqrt(std::max(0.0, b * b - 4 * a * c));
     return b < 0 ? 2 * c / (root - b) : -(b + root) / (2 * a);
@@ -47,7 +53,8 @@ struct CellQuadratic {
   bool peaks(double length) const { return a < 0 && b > 0 && b < -2 * a * length; }
 };
 
-// Where the ray is, as far as known, at the entry of the current cell. Without holes it is unknown in the first cell only.
+// Where the ray is, as far as known, at the entry of the current cell. Without holes it is unknown in the first cell
+// only.
 enum class Side { unknown, above, below };
 
 // How the ray came to where it is: through a line of constant column (x) or row (y), or not through a line.
@@ -56,12 +63,23 @@ enum class Through { point, x_line, y_line };
 template <class T, bool Holes, Refine refine>
 class Walk {
  public:
-  Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray, const GridRay& local,
-       int halvings, Hit& answer)
-      : field_(field), grid_(grid), levels_(pyramid.levels().data()), top_(pyramid.top_level()),
-        maxima_(pyramid.level<T>(1).data), x_(local.origin.x, local.direction.x, grid.cols - 1),
-        y_(local.origin.y, local.direction.y, grid.rows - 1), z_(local.origin.z), dz_(local.direction.z), t_in_(ray.t_min),
-        t_end_(ray.t_max), strict_(ray.start == RayStart::on_surface), halvings_(halvings), ray_(ray), answer_(answer) {}
+  Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray,
+       const GridRay& local, int halvings, Hit& answer)
+      : field_(field),
+        grid_(grid),
+        levels_(pyramid.levels().data()),
+        top_(pyramid.top_level()),
+        maxima_(pyramid.level<T>(1).data),
+        x_(local.origin.x, local.direction.x, grid.cols - 1),
+        y_(local.origin.y, local.direction.y, grid.rows - 1),
+        z_(local.origin.z),
+        dz_(local.direction.z),
+        t_in_(ray.t_min),
+        t_end_(ray.t_max),
+        strict_(ray.start == RayStart::on_surface),
+        halvings_(halvings),
+        ray_(ray),
+        answer_(answer) {}
 
   void run() {
     if (strict_) {
@@ -85,12 +103,17 @@ class Walk {
   }
 
   CellQuadratic quadratic(const CellHeights& h, double t) const {
-    return {h, std::clamp(x_.at(t) - col_, 0.0, 1.0), std::clamp(y_.at(t) - row_, 0.0, 1.0), x_.direction, y_.direction,
-            ray_height(t), dz_};
+    return {h,
+            std::clamp(x_.at(t) - col_, 0.0, 1.0),
+            std::clamp(y_.at(t) - row_, 0.0, 1.0),
+            x_.direction,
+            y_.direction,
+            ray_height(t),
+            dz_};
   }
 
-  // How far the ray is above the surface where it comes into or leaves the current cell. At a line, both neighbours compute
-  // the same value from the same two nodes.
+  // How far the ray is above the surface where it comes into or leaves the current cell. At a line, both neighbours
+  // compute the same value from the same two nodes.
   double clearance(const CellHeights& h, Through through, bool leaving, double t) const {
     switch (through) {
       case Through::x_line: {
@@ -101,7 +124,8 @@ class Walk {
         const bool high = (y_.ahead == 1) == leaving;
         return ray_height(t) - edge_height(high ? h.h01 : h.h00, high ? h.h11 : h.h10, x_.at(t) - col_);
       }
-      case Through::point: break;
+      case Through::point:
+        break;
     }
     return quadratic(h, t).c;
   }
@@ -115,15 +139,16 @@ class Walk {
     const bool beside = (!x_.moves() && !(x_.origin >= 0 && x_.origin <= x_.cells)) ||
                         (!y_.moves() && !(y_.origin >= 0 && y_.origin <= y_.cells));
     if (beside || !(t_in_ <= t_end_)) return false;
-    // A ray that begins between the lowest and the highest ground is likely to begin near the ground, where wide skips are
-    // not to be had; one that comes from outside crosses open air first, though blocks that span the field are seldom free.
+    // A ray that begins between the lowest and the highest ground is likely to begin near the ground, where wide skips
+    // are not to be had; one that comes from outside crosses open air first, though blocks that span the field are
+    // seldom free.
     const int from_outside = std::max(top_ - 3, 0);
     level_ = t_in_ == ray_.t_min ? 0 : from_outside;
     const double highest = field_.max_sample();
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
-      // Down to the highest sample, less the two roundings of the quotient; from there back to where the cell begins, so that
-      // a peak which the ray just touches is still ahead.
+      // Down to the highest sample, less the two roundings of the quotient; from there back to where the cell begins,
+      // so that a peak which the ray just touches is still ahead.
       const double quotient = (highest - z_) / dz_, t_top = quotient - 2 * kUnit * std::abs(quotient);
       if (t_top > t_end_) return false;
       side_ = Side::above;
@@ -157,7 +182,8 @@ class Walk {
       // f(s) = s (a s + b): below right after the start, or after the second root; if anywhere by more than rounding.
       const bool dips = start.a > 0 && start.b < 0 && -start.b < 2 * start.a * length;
       const double lowest = dips ? -start.b * start.b / (4 * start.a) : length * (start.a * length + start.b);
-      if (lowest < 0 && is_hit(lowest, t_in_)) return answer(start.b < 0 || start.a == 0 ? 0.0 : start.b / -start.a), false;
+      if (lowest < 0 && is_hit(lowest, t_in_))
+        return answer(start.b < 0 || start.a == 0 ? 0.0 : start.b / -start.a), false;
     }
     side_ = Side::above;
     level_ = 0;
@@ -183,8 +209,9 @@ class Walk {
     }
   }
 
-  // The walk keeps, in locals, the block at the current level and the times at which the ray leaves it through its two far
-  // lines. One level down is a question to the line in the middle: is it behind? No cell is ever found from a position.
+  // The walk keeps, in locals, the block at the current level and the times at which the ray leaves it through its two
+  // far lines. One level down is a question to the line in the middle: is it behind? No cell is ever found from a
+  // position.
   void walk() {
     const bool falling = dz_ < 0;
     const double highest = field_.max_sample(), t_end = t_end_;
@@ -301,18 +328,20 @@ class Walk {
   // Whether a ray that is not above can never be so again: falling, and under the lowest ground.
   bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample(); }
 
-
-  // The most that rounding can add to a clearance (doc/dev/numerics.md), for the two places where a sign alone is not enough:
-  // a ray from below has risen only beyond it (else one that rises through a node could be seen above at one line and, by
-  // rounding, not above at the next: a hit from below), and a ray from the surface is strictly below only beyond it.
+  // The most that rounding can add to a clearance (doc/dev/numerics.md), for the two places where a sign alone is not
+  // enough: a ray from below has risen only beyond it (else one that rises through a node could be seen above at one
+  // line and, by rounding, not above at the next: a hit from below), and a ray from the surface is strictly below only
+  // beyond it.
   double rounding_of_clearance(double t) const {
     const double low = field_.min_sample(), high = field_.max_sample();
-    const double sideways = std::abs(x_.origin) + std::abs(x_.direction * t) + std::abs(y_.origin) + std::abs(y_.direction * t);
+    const double sideways =
+        std::abs(x_.origin) + std::abs(x_.direction * t) + std::abs(y_.origin) + std::abs(y_.direction * t);
     const double upright = std::abs(z_) + std::abs(dz_ * t) + std::max(std::abs(low), std::abs(high));
     return kRoundings * kUnit * (upright + sideways * (high - low));
   }
 
-  // Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly below.
+  // Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly
+  // below.
   bool is_hit(double clearance, double t) const { return !strict_ || clearance < -rounding_of_clearance(t); }
 
   // The signs have decided that there is a hit in the cell; the quadratic only says where.
@@ -346,7 +375,7 @@ class Walk {
   }
 
   using Level = MaxPyramid::Level;
-  static constexpr double kUnit = 0x1p-53;      // unit roundoff of double
+  static constexpr double kUnit = 0x1p-53;  // unit roundoff of double
   static constexpr double kRoundings = 16;  // numerics.md counts 11 on the way to a clearance
 
   const HeightField& field_;
@@ -366,7 +395,8 @@ class Walk {
   Side side_ = Side::unknown;
   Through through_ = Through::point;
   bool after_x_ = false;  // whether the last line crossed was one of constant column
-  bool begun_ = false;  // with holes: whether anything has been left behind; only the first cell can say that the ray began below
+  bool begun_ =
+      false;  // with holes: whether anything has been left behind; only the first cell can say that the ray began below
   Hit& answer_;
 };
 
@@ -377,7 +407,8 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
   if (stats) *stats = {};
   if (!field.has_cells() || field.all_nodata()) return hit;
   const GridRay local = field.grid_from_world(ray);
-  const double longest = std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
+  const double longest =
+      std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
   if (!(longest > 0x1p-500 && longest < 0x1p500)) {
     if (!(longest > 0) || !std::isfinite(longest)) return hit;
     // A direction of extreme length is brought near 1 by a power of two, which rounds nothing; t goes back by the same.

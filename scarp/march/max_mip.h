@@ -6,16 +6,16 @@
 //        /\       ---   level 0:  [ ][ ][ ][ ] in a cell: intersect its bilinear surface
 //   ____/  \__/\____
 //
-// The integer cell is the state. Every crossing of a grid line has one time, t = (line - origin) / direction, whoever asks
-// for it; the order of these times alone decides which cells are visited, on every level. A hit is a change of sign of
-// (ray height - surface height) between two crossings, and each crossing is computed once: a ray that is above at one
-// crossing and below at a later one cannot slip through a node, an edge or a diagonal. A cell with + at both ends is also
-// tested at the vertex of its quadratic.
+// The integer cell is the state. Every crossing of a grid line has one time, t = (line - origin) / direction, whoever
+// asks for it; the order of these times alone decides which cells are visited, on every level. A hit is a change of
+// sign of (ray height - surface height) between two crossings, and each crossing is computed once: a ray that is above
+// at one crossing and below at a later one cannot slip through a node, an edge or a diagonal. A cell with + at both
+// ends is also tested at the vertex of its quadratic.
 //
 // Guarantee: exact. Never loses a hit; vertical error as derived in doc/dev/numerics.md.
-// Source: A. Tevs, I. Ihrke, H.-P. Seidel, I3D 2008 (see accel/max_pyramid.h); the closed form of the bilinear cell as in
-// S. D. Ramsey, K. Potter, C. Hansen, "Ray bilinear patch intersections", JGT 9(3), 2004.
-// Cost: some 5 to 25 blocks per ray on mountains, 1 or 2 cells.
+// Source: A. Tevs, I. Ihrke, H.-P. Seidel, I3D 2008 (see accel/max_pyramid.h); the closed form of the bilinear cell as
+// in S. D. Ramsey, K. Potter, C. Hansen, "Ray bilinear patch intersections", JGT 9(3), 2004. Cost: some 5 to 25 blocks
+// per ray on mountains, 1 or 2 cells.
 #pragma once
 
 #include "scarp/march/marches.h"
@@ -23,11 +23,12 @@
 namespace scarp {
 
 /// Closest hit; conventions as in ray.h. Needs the field's pyramid.
-Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {}, MarchStats* stats = nullptr);
+Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
+                  MarchStats* stats = nullptr);
 
-/// The same walk with the refinement of the paper instead of the closed form: where the signs at the ends of a cell differ,
-/// settings.bisect.halvings halvings of the interval. Guarantee: approximate — a ray that dips into a cell and leaves it
-/// again is not seen, and t is off by up to the interval / 2^halvings.
+/// The same walk with the refinement of the paper instead of the closed form: where the signs at the ends of a cell
+/// differ, settings.bisect.halvings halvings of the interval. Guarantee: approximate — a ray that dips into a cell and
+/// leaves it again is not seen, and t is off by up to the interval / 2^halvings.
 Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                          MarchStats* stats = nullptr);
 

@@ -40,9 +40,8 @@ Hit march_naive(const HeightTarget& target, const Ray& ray, const MarchSettings&
   MarchStats counted;
   Hit hit;
   if (target.field->has_cells() && !target.field->all_nodata()) {
-    hit = target.field->visit([&](const auto& grid) {
-      return march(Ground(*target.field, grid, ray), ray, settings.naive, counted);
-    });
+    hit = target.field->visit(
+        [&](const auto& grid) { return march(Ground(*target.field, grid, ray), ray, settings.naive, counted); });
   }
   if (stats) *stats = counted;
   return hit;

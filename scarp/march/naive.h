@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
-// `naive`: steps by the vertical distance h between ray and ground, never less than a share of the ray's length; a hit is
-// where h has become small, and the tolerance grows with distance.
+// `naive`: steps by the vertical distance h between ray and ground, never less than a share of the ray's length; a hit
+// is where h has become small, and the tolerance grows with distance.
 //
 //   t = t_enter;   h = ray height - ground;   h < tolerance * t: hit;   t += max(step_factor * |h|, min_step * t_exit)
 //
-// Guarantee: approximate. The vertical distance is no distance: steep ground is stepped over (holes in the picture), and
-// rays that graze the ground stop before it. The baseline of the max-mip article, in which this march took 55.066 ms and
-// max-mip 9.074 ms.
-// Cost: at most 1 / min_step steps that are forced, plus those that h asks for; one height per step.
+// Guarantee: approximate. The vertical distance is no distance: steep ground is stepped over (holes in the picture),
+// and rays that graze the ground stop before it. The baseline of the max-mip article, in which this march took 55.066
+// ms and max-mip 9.074 ms. Cost: at most 1 / min_step steps that are forced, plus those that h asks for; one height per
+// step.
 #pragma once
 
 #include "scarp/march/marches.h"
 
 namespace scarp {
 
-/// Closest hit as this march finds it. t lies in the ray's range and inside the field; `height` is the height of the ray's
-/// point there. A ray that begins on the surface takes its first step unseen. Uses settings.naive; no pyramid.
-Hit march_naive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {}, MarchStats* stats = nullptr);
+/// Closest hit as this march finds it. t lies in the ray's range and inside the field; `height` is the height of the
+/// ray's point there. A ray that begins on the surface takes its first step unseen. Uses settings.naive; no pyramid.
+Hit march_naive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
+                MarchStats* stats = nullptr);
 
 }  // namespace scarp

@@ -10,11 +10,13 @@ namespace scarp {
 namespace {
 
 template <class T>
-Hit march(const Ground<T>& ground, const HeightField& field, const Ray& ray, const RelaxedSettings& settings, MarchStats& stats) {
+Hit march(const Ground<T>& ground, const HeightField& field, const Ray& ray, const RelaxedSettings& settings,
+          MarchStats& stats) {
   Hit hit;
   if (!ground.crosses()) return hit;
   const double per_metre = 1 / ground.metres_per_t();
-  // The length of a cell: the stride over a hole, where there is no height to go by, and the first step off the surface.
+  // The length of a cell: the stride over a hole, where there is no height to go by, and the first step off the
+  // surface.
   const double cell = std::min(field.settings().cell_x, field.settings().cell_y) * per_metre;
   const bool on_surface = ray.start == RayStart::on_surface;
   double t = ground.t_enter + (on_surface ? cell : 0.0);

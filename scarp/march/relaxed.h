@@ -4,10 +4,9 @@
 // The factor below 1 stands for the slope that nobody computed: on calm ground the march closes in on the surface from
 // above, on steep ground it steps through and comes back (h < 0 steps backwards).
 //
-// Guarantee: approximate. Stops within the tolerance of a surface, perhaps not of the first one. Other than in its source,
-// used-up steps are reported as exhausted and not as a hit.
-// Source: R. Ma, "Heightfield Raycast", procedural_shader_framework; the constants go back to I. Quilez, "Elevated", 2009.
-// Cost: up to 300 heights per ray.
+// Guarantee: approximate. Stops within the tolerance of a surface, perhaps not of the first one. Other than in its
+// source, used-up steps are reported as exhausted and not as a hit. Source: R. Ma, "Heightfield Raycast",
+// procedural_shader_framework; the constants go back to I. Quilez, "Elevated", 2009. Cost: up to 300 heights per ray.
 #pragma once
 
 #include "scarp/march/marches.h"
@@ -15,6 +14,7 @@
 namespace scarp {
 
 /// Closest hit as this march finds it, in [t_min, t_max] and inside the field. Uses settings.relaxed; no pyramid.
-Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {}, MarchStats* stats = nullptr);
+Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
+                  MarchStats* stats = nullptr);
 
 }  // namespace scarp

@@ -23,7 +23,8 @@ T brute_force(const SampleGrid<T>& grid, int level, int col, int row) {
   T highest = lowest<T>();
   for (int r = row << level; r < std::min((row + 1) << level, grid.rows - 1); ++r) {
     for (int c = col << level; c < std::min((col + 1) << level, grid.cols - 1); ++c) {
-      if (!grid.is_hole(c, r)) highest = std::max({highest, grid.at(c, r), grid.at(c + 1, r), grid.at(c, r + 1), grid.at(c + 1, r + 1)});
+      if (!grid.is_hole(c, r))
+        highest = std::max({highest, grid.at(c, r), grid.at(c + 1, r), grid.at(c, r + 1), grid.at(c + 1, r + 1)});
     }
   }
   return highest;
@@ -41,7 +42,8 @@ void expect_tight(const HeightField& field) {
         ASSERT_EQ(level.rows, (field.cell_rows() + (1 << l) - 1) >> l);
         entries += static_cast<std::size_t>(level.cols) * level.rows;
         for (int row = 0; row < level.rows; ++row) {
-          for (int col = 0; col < level.cols; ++col) ASSERT_EQ(level.at(col, row), brute_force(grid, l, col, row)) << l << ": " << col << ", " << row;
+          for (int col = 0; col < level.cols; ++col)
+            ASSERT_EQ(level.at(col, row), brute_force(grid, l, col, row)) << l << ": " << col << ", " << row;
         }
       }
       EXPECT_EQ(pyramid.bytes(), entries * sizeof(T));
@@ -60,7 +62,8 @@ std::vector<T> noise(int cols, int rows) {
 }
 
 TEST(MaxPyramid, EqualsTheMaximumOfEachBlockAtAnySize) {
-  for (const auto& [cols, rows] : std::vector<std::pair<int, int>>{{2, 2}, {2, 9}, {3, 3}, {4, 4}, {5, 17}, {16, 16}, {17, 17}, {13, 29}, {64, 3}, {65, 33}, {101, 97}}) {
+  for (const auto& [cols, rows] : std::vector<std::pair<int, int>>{
+           {2, 2}, {2, 9}, {3, 3}, {4, 4}, {5, 17}, {16, 16}, {17, 17}, {13, 29}, {64, 3}, {65, 33}, {101, 97}}) {
     SCOPED_TRACE(std::to_string(cols) + " x " + std::to_string(rows));
     expect_tight<float>(HeightField::own(noise<float>(cols, rows), cols, rows));
     expect_tight<std::int16_t>(HeightField::own(noise<std::int16_t>(cols, rows), cols, rows));
@@ -89,10 +92,12 @@ RC_GTEST_PROP(MaxPyramid, BoundsTheSurfaceBetweenTheSamples, ()) {
   const int cols = *rc::gen::inRange(2, 40), rows = *rc::gen::inRange(2, 40);
   const HeightField field = HeightField::own(noise<float>(cols, rows), cols, rows);
   const MaxPyramid pyramid(field);
-  const double x = *rc::gen::inRange(0, 10001) * 1e-4 * field.width(), y = *rc::gen::inRange(0, 10001) * 1e-4 * field.depth();
+  const double x = *rc::gen::inRange(0, 10001) * 1e-4 * field.width(),
+               y = *rc::gen::inRange(0, 10001) * 1e-4 * field.depth();
   const auto place = field.place(x, y).value();
   for (int l = 1; l <= pyramid.top_level(); ++l) {
-    RC_ASSERT(static_cast<double>(pyramid.level<float>(l).at(place.cell.col >> l, place.cell.row >> l)) >= field.height(x, y).value());
+    RC_ASSERT(static_cast<double>(pyramid.level<float>(l).at(place.cell.col >> l, place.cell.row >> l)) >=
+              field.height(x, y).value());
   }
 }
 

@@ -32,7 +32,8 @@ RC_GTEST_PROP(SlopeBound, IsNeverExceededAndIsAttainedAtACorner, ()) {
   for (int row = 0; row < 2; ++row) {
     for (int col = 0; col < 3; ++col) {
       for (int i = 0; i <= 8; ++i) {
-        for (int j = 0; j <= 8; ++j) steepest = std::max(steepest, length(field.gradient(Cell{col, row}, i / 8.0, j / 8.0)));
+        for (int j = 0; j <= 8; ++j)
+          steepest = std::max(steepest, length(field.gradient(Cell{col, row}, i / 8.0, j / 8.0)));
       }
     }
   }

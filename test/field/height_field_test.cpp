@@ -17,7 +17,9 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 // 3 x 2 samples, north row first.
-HeightField small(const HeightFieldSettings& settings = {}) { return HeightField::own<float>({1, 2, 4, 8, 16, 32}, 3, 2, settings); }
+HeightField small(const HeightFieldSettings& settings = {}) {
+  return HeightField::own<float>({1, 2, 4, 8, 16, 32}, 3, 2, settings);
+}
 
 std::string message(auto&& f) {
   try {
@@ -46,7 +48,8 @@ TEST(HeightField, IsBilinearInACell) {
 
 TEST(HeightField, HasNoHeightOutsideAndForNaN) {
   const HeightField field = small();
-  for (const auto& [x, y] : std::vector<std::pair<double, double>>{{-1e-9, 0.5}, {2.1, 0.5}, {1, 1.0001}, {1, -0.1}, {std::nan(""), 0.5}}) {
+  for (const auto& [x, y] :
+       std::vector<std::pair<double, double>>{{-1e-9, 0.5}, {2.1, 0.5}, {1, 1.0001}, {1, -0.1}, {std::nan(""), 0.5}}) {
     EXPECT_FALSE(field.height(x, y)) << x << ", " << y;
   }
 }
@@ -59,7 +62,8 @@ TEST(HeightField, ScalesOffsetsAndExaggeratesSamples) {
 }
 
 TEST(HeightField, MakesAHoleOfEveryCellThatTouchesNodata) {
-  const HeightField field = HeightField::own<std::int16_t>({1, 2, 3, 4, -9999, 6, 7, 8, 9, 10, 11, 12}, 4, 3, {.nodata = -9999});
+  const HeightField field =
+      HeightField::own<std::int16_t>({1, 2, 3, 4, -9999, 6, 7, 8, 9, 10, 11, 12}, 4, 3, {.nodata = -9999});
   EXPECT_EQ(field.nodata_count(), 1);
   EXPECT_EQ(field.min_sample(), 1);
   for (const Cell cell : {Cell{0, 0}, Cell{0, 1}}) EXPECT_FALSE(field.cell_heights(cell));
@@ -79,12 +83,18 @@ TEST(HeightField, IgnoresANodataValueThatTheSampleTypeCannotHold) {
 }
 
 TEST(HeightField, RefusesWhatItCannotBeInOneLine) {
-  EXPECT_NE(message([] { HeightField::own<float>({1, 2, 3}, 2, 2); }).find("3 samples given for 2 x 2"), std::string::npos);
+  EXPECT_NE(message([] {
+              HeightField::own<float>({1, 2, 3}, 2, 2);
+            }).find("3 samples given for 2 x 2"),
+            std::string::npos);
   EXPECT_NE(message([] { HeightField::own<float>({}, 0, 0); }).find("at least 1 x 1"), std::string::npos);
   EXPECT_NE(message([] { small({.cell_x = 0}); }).find("cell_x"), std::string::npos);
   EXPECT_NE(message([] { small({.scale = -1}); }).find("scale"), std::string::npos);
   EXPECT_NE(message([] { small({.exaggeration = std::nan("")}); }).find("exaggeration"), std::string::npos);
-  EXPECT_NE(message([] { HeightField::own<float>({1, 2, 3, HUGE_VALF}, 2, 2); }).find("column 1, row 1 is infinite"), std::string::npos);
+  EXPECT_NE(message([] {
+              HeightField::own<float>({1, 2, 3, HUGE_VALF}, 2, 2);
+            }).find("column 1, row 1 is infinite"),
+            std::string::npos);
 }
 
 TEST(HeightField, TakesAnInfinityThatIsDeclaredNodata) {
@@ -117,18 +127,20 @@ TEST(HeightField, PointsItsNormalUphillBackwards) {
   const HeightField field = HeightField::own(samples, 5, 4);
   EXPECT_EQ(field.gradient(1.5, 1.5).value(), dvec2(3, 2));
   const dvec3 expected = normalize(dvec3(-3, -2, 1));
-  for (const dvec3& n : {field.normal({1, 1}, 0.3, 0.6), field.shading_normal({1, 1}, 0.3, 0.6), field.shading_normal({0, 2}, 0, 1)}) {
+  for (const dvec3& n :
+       {field.normal({1, 1}, 0.3, 0.6), field.shading_normal({1, 1}, 0.3, 0.6), field.shading_normal({0, 2}, 0, 1)}) {
     EXPECT_NEAR(length(n - expected), 0, 4 * 0x1p-52);
   }
 }
 
 RC_GTEST_PROP(HeightField, GradientIsTheDifferenceQuotientOfTheHeight, ()) {
   const auto value = [] { return static_cast<float>(*rc::gen::inRange(-1000, 1000)); };
-  const HeightField field = HeightField::own<float>({value(), value(), value(), value()}, 2, 2, {.cell_x = 3, .cell_y = 7, .scale = 0.25});
+  const HeightField field =
+      HeightField::own<float>({value(), value(), value(), value()}, 2, 2, {.cell_x = 3, .cell_y = 7, .scale = 0.25});
   const double x = *rc::gen::inRange(1, 99) * 0.03, y = *rc::gen::inRange(1, 99) * 0.07;
   const dvec2 slope = field.gradient(x, y).value();
-  // Along one axis a bilinear surface is linear: central differences are exact but for the rounding of heights up to 250 m
-  // over a step of 1/64 m.
+  // Along one axis a bilinear surface is linear: central differences are exact but for the rounding of heights up to
+  // 250 m over a step of 1/64 m.
   const double d = 0x1p-6, rounding = 8 * 250 * 0x1p-52 / d;
   RC_ASSERT(std::abs((field.height(x + d, y).value() - field.height(x - d, y).value()) / (2 * d) - slope.x) < rounding);
   RC_ASSERT(std::abs((field.height(x, y + d).value() - field.height(x, y - d).value()) / (2 * d) - slope.y) < rounding);

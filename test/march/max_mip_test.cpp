@@ -21,8 +21,12 @@ struct Terrain {
   HeightField field;
   MaxPyramid pyramid{field};
 
-  Hit cast(const Ray& ray, MarchStats* stats = nullptr) const { return march_max_mip({&field, &pyramid}, ray, {}, stats); }
-  Hit cast(dvec3 origin, dvec3 direction, double t_min = 0, double t_max = HUGE_VAL) const { return cast(Ray{origin, direction, t_min, t_max}); }
+  Hit cast(const Ray& ray, MarchStats* stats = nullptr) const {
+    return march_max_mip({&field, &pyramid}, ray, {}, stats);
+  }
+  Hit cast(dvec3 origin, dvec3 direction, double t_min = 0, double t_max = HUGE_VAL) const {
+    return cast(Ray{origin, direction, t_min, t_max});
+  }
 };
 
 Terrain flat(float height = 2) { return {HeightField::own(std::vector<float>(64, height), 8, 8)}; }
@@ -32,7 +36,8 @@ Terrain hills() {
   std::vector<float> samples;
   for (int row = 0; row < 193; ++row) {
     for (int col = 0; col < 257; ++col) {
-      samples.push_back(static_cast<float>(12 * std::sin(0.11 * col) * std::cos(0.07 * row) + 3 * std::sin(0.9 * col + 0.4 * row)));
+      samples.push_back(
+          static_cast<float>(12 * std::sin(0.11 * col) * std::cos(0.07 * row) + 3 * std::sin(0.9 * col + 0.4 * row)));
     }
   }
   return {HeightField::own(samples, 257, 193)};
@@ -83,8 +88,9 @@ TEST(MaxMip, CountsATouchOfACrestAsAHit) {
 }
 
 TEST(MaxMip, SeesADipInsideASaddleCell) {
-  // Corners 0 and 4 crosswise: along the high diagonal the surface is a valley of height 4 - 8 u (1 - u), lowest 2; along the
-  // low diagonal a hill up to 2. A ray over the hill at 1.5 is above at both ends of the cell and below in between.
+  // Corners 0 and 4 crosswise: along the high diagonal the surface is a valley of height 4 - 8 u (1 - u), lowest 2;
+  // along the low diagonal a hill up to 2. A ray over the hill at 1.5 is above at both ends of the cell and below in
+  // between.
   const Terrain saddle{HeightField::own<float>({4, 0, 0, 4}, 2, 2)};
   const Hit hit = saddle.cast({0, 0, 1.5}, {1, 1, 0});
   ASSERT_TRUE(hit);
@@ -145,7 +151,8 @@ TEST(MaxMip, DoesNotHitThePlaneOnWhichARayStarts) {
   const Terrain plane{HeightField::own(samples, 40, 40, {.cell_x = 7.3, .cell_y = 5.1, .scale = 0.3, .offset = 1e4})};
   Random random(4);
   for (int i = 0; i < 20'000; ++i) {
-    const double x = uniform(random, 0.1, 0.9) * plane.field.width(), y = uniform(random, 0.1, 0.9) * plane.field.depth();
+    const double x = uniform(random, 0.1, 0.9) * plane.field.width(),
+                 y = uniform(random, 0.1, 0.9) * plane.field.depth();
     const auto place = plane.field.place(x, y).value();
     const dvec2 slope = plane.field.gradient(place.cell, place.u, place.v);
     const double azimuth = uniform(random, 0, 6.3);
@@ -176,7 +183,8 @@ TEST(MaxMip, HitsTheSecondRootOfTheStartCell) {
 
 TEST(MaxMip, MissesAFieldWithoutCellsOrData) {
   EXPECT_EQ((Terrain{HeightField::own<float>({1, 2, 3}, 3, 1)}).cast({1, 0, 9}, {0, 0, -1}).status, HitStatus::miss);
-  EXPECT_EQ((Terrain{HeightField::own<float>({kNaN, kNaN, kNaN, kNaN}, 2, 2)}).cast({0.5, 0.5, 9}, {0, 0, -1}).status, HitStatus::miss);
+  EXPECT_EQ((Terrain{HeightField::own<float>({kNaN, kNaN, kNaN, kNaN}, 2, 2)}).cast({0.5, 0.5, 9}, {0, 0, -1}).status,
+            HitStatus::miss);
   EXPECT_EQ(flat().cast({1, 1, 9}, {0, 0, 0}).status, HitStatus::miss);
   EXPECT_EQ(flat().cast({1, 1, 9}, {std::nan(""), 0, -1}).status, HitStatus::miss);
   EXPECT_EQ(flat().cast({std::nan(""), 1, 9}, {0.1, 0, -1}).status, HitStatus::miss);
@@ -192,7 +200,10 @@ TEST(MaxMip, TakesFewStepsOverOpenGround) {
 
 Ray any_ray(const HeightField& field) {
   Random random(static_cast<std::uint64_t>(*rc::gen::inRange(0, 1 << 30)));
-  const auto point = [&] { return dvec3(uniform(random, -0.2, 1.2) * field.width(), uniform(random, -0.2, 1.2) * field.depth(), uniform(random, -10, 30)); };
+  const auto point = [&] {
+    return dvec3(uniform(random, -0.2, 1.2) * field.width(), uniform(random, -0.2, 1.2) * field.depth(),
+                 uniform(random, -10, 30));
+  };
   const dvec3 from = point();
   return {from, point() - from};
 }
@@ -205,7 +216,8 @@ RC_GTEST_PROP(MaxMip, ALaterStartNeverFindsAnEarlierHit, ()) {
   const Hit later = terrain.cast(ray);
   if (later) {
     RC_ASSERT(later.t >= ray.t_min);
-    // Rounding, 1e-13 m here, moves a root by itself over the closing slope; slopes below 1e-4 are not drawn in practice.
+    // Rounding, 1e-13 m here, moves a root by itself over the closing slope; slopes below 1e-4 are not drawn in
+    // practice.
     if (first) RC_ASSERT(later.t >= first.t - 1e-9);
     RC_ASSERT(first || first.status == HitStatus::below);
   }
@@ -225,8 +237,8 @@ RC_GTEST_PROP(MaxMip, EndsWhereItHits, ()) {
 }
 
 RC_GTEST_PROP(MaxMip, MirrorsWithTheField, ()) {
-  // West and east swapped. Coordinates are small multiples of 1/8 and directions powers of two: up to the last square root all
-  // arithmetic is exact, touches included, and so must be the answer.
+  // West and east swapped. Coordinates are small multiples of 1/8 and directions powers of two: up to the last square
+  // root all arithmetic is exact, touches included, and so must be the answer.
   Random random(static_cast<std::uint64_t>(*rc::gen::inRange(0, 1 << 30)));
   std::vector<float> samples, mirrored;
   for (int row = 0; row < 9; ++row) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Every march of the table against the exhaustive one, on spiteful fields and rays.
 //
-// Two correct programs may round differently. What they may differ in is bounded: a ray moved by the rounding of its own
-// coordinates (numerics.md: delta) is as good as the ray itself. So an exact march must agree with the judge, or, where it
-// does not, pass no hit that the ray and all its neighbours within delta have for certain, and a hit of its own must lie on
-// the surface and not on the way out of the ground. How often neighbours had to be asked is counted, so that this cannot
-// become a way out.
+// Two correct programs may round differently. What they may differ in is bounded: a ray moved by the rounding of its
+// own coordinates (numerics.md: delta) is as good as the ray itself. So an exact march must agree with the judge, or,
+// where it does not, pass no hit that the ray and all its neighbours within delta have for certain, and a hit of its
+// own must lie on the surface and not on the way out of the ground. How often neighbours had to be asked is counted, so
+// that this cannot become a way out.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -36,14 +36,16 @@ constexpr double kRoundings = 32;
 constexpr int kNeighbours = 256;
 
 std::string text(const Ray& ray) {
-  return fmt::format("origin ({:a}, {:a}, {:a}) direction ({:a}, {:a}, {:a}) t [{:a}, {:a}] {} cell ({}, {})", ray.origin.x, ray.origin.y,
-                     ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, ray.t_min, ray.t_max,
-                     ray.start == RayStart::free ? "free" : "on surface", ray.start_cell.col, ray.start_cell.row);
+  return fmt::format("origin ({:a}, {:a}, {:a}) direction ({:a}, {:a}, {:a}) t [{:a}, {:a}] {} cell ({}, {})",
+                     ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z,
+                     ray.t_min, ray.t_max, ray.start == RayStart::free ? "free" : "on surface", ray.start_cell.col,
+                     ray.start_cell.row);
 }
 
 std::string text(const Hit& hit) {
   static constexpr const char* kNames[] = {"miss", "hit", "below", "exhausted"};
-  return fmt::format("{} t={:a} cell ({}, {}) u={} v={}", kNames[static_cast<int>(hit.status)], hit.t, hit.cell.col, hit.cell.row, hit.u, hit.v);
+  return fmt::format("{} t={:a} cell ({}, {}) u={} v={}", kNames[static_cast<int>(hit.status)], hit.t, hit.cell.col,
+                     hit.cell.row, hit.u, hit.v);
 }
 
 class Judge {
@@ -65,7 +67,8 @@ class Judge {
     if (hit.status == HitStatus::hit && !is_in_its_cell(hit)) return false;
     const double t = std::ldexp(hit.t, exponent_);
     const double slack = kRoundings * kUnit * (std::abs(t) + span() / length(ray_.direction));
-    if (hit.status == nominal_.status && (hit.status != HitStatus::hit || std::abs(t - nominal_.t) <= slack)) return true;
+    if (hit.status == nominal_.status && (hit.status != HitStatus::hit || std::abs(t - nominal_.t) <= slack))
+      return true;
     asked_ = true;
     // A hit has to be on the surface, and not on the way out of the ground...
     const double reached = hit ? t : HUGE_VAL;
@@ -107,14 +110,16 @@ class Judge {
   // Vertical effect of delta in a cell, metres.
   double rounding(const CellHeights& h) const {
     const HeightFieldSettings& to = field_.settings();
-    const double relief = (std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11})) * to.scale * to.exaggeration;
+    const double relief =
+        (std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11})) * to.scale * to.exaggeration;
     return delta() * (1 + relief / to.cell_x + relief / to.cell_y);
   }
 
   bool is_on_surface(const Hit& hit, double t) const {
     const CellHeights h = field_.cell_heights(hit.cell).value();
     const double u = hit.u, v = hit.v;
-    const double surface = field_.height_from_sample((h.h00 * (1 - u) + h.h10 * u) * (1 - v) + (h.h01 * (1 - u) + h.h11 * u) * v);
+    const double surface =
+        field_.height_from_sample((h.h00 * (1 - u) + h.h10 * u) * (1 - v) + (h.h01 * (1 - u) + h.h11 * u) * v);
     return std::abs(ray_.at(t).z - surface) <= rounding(h);
   }
 
@@ -123,7 +128,8 @@ class Judge {
     for (;;) {
       const Hit hit = march_exhaustive({&field_, nullptr}, ray);
       if (!hit) return HUGE_VAL;
-      if (begins_at(hit.t) || side_before(hit.t) > 0) return hit.t < enough && std::isfinite(enough) && skims(hit.t, enough) ? enough : hit.t;
+      if (begins_at(hit.t) || side_before(hit.t) > 0)
+        return hit.t < enough && std::isfinite(enough) && skims(hit.t, enough) ? enough : hit.t;
       ray.t_min = hit.t + (hit.t - just_before(hit.t));
     }
   }
@@ -146,20 +152,21 @@ class Judge {
     return t - 0x1p-20 * std::min(field_.settings().cell_x, field_.settings().cell_y) / length(ray_.direction);
   }
 
-  // Whether the ray comes into being at t: at its start, over the border, out of a hole (that may be touched at a corner
-  // only). A touch there is a hit, and one that a shift of any size turns into something else.
+  // Whether the ray comes into being at t: at its start, over the border, out of a hole (that may be touched at a
+  // corner only). A touch there is a hit, and one that a shift of any size turns into something else.
   bool begins_at(double t) const {
     if (just_before(t) < ray_.t_min) return true;
     const dvec3 before = ray_.at(just_before(t)), p = ray_.at(t);
     const double dx = 0x1p-20 * field_.settings().cell_x, dy = 0x1p-20 * field_.settings().cell_y;
-    for (const dvec2 q : {dvec2(before.x, before.y), dvec2(p.x - dx, p.y - dy), dvec2(p.x + dx, p.y - dy), dvec2(p.x - dx, p.y + dy), dvec2(p.x + dx, p.y + dy)}) {
+    for (const dvec2 q : {dvec2(before.x, before.y), dvec2(p.x - dx, p.y - dy), dvec2(p.x + dx, p.y - dy),
+                          dvec2(p.x - dx, p.y + dy), dvec2(p.x + dx, p.y + dy)}) {
       if (!field_.height(q.x, q.y)) return true;
     }
     return false;
   }
 
-  // On which side the ray was before t, as soon as it can be told from rounding: 1 above, -1 below (then t is a way out of
-  // the ground and no hit), 0 it cannot be told.
+  // On which side the ray was before t, as soon as it can be told from rounding: 1 above, -1 below (then t is a way out
+  // of the ground and no hit), 0 it cannot be told.
   int side_before(double t) const {
     for (double cells = 0x1p-20; cells < 1; cells *= 4) {
       const dvec3 p = ray_.at(t - cells * (t - just_before(t)) * 0x1p20);
@@ -173,8 +180,9 @@ class Judge {
   }
 
   bool is_in_its_cell(const Hit& hit) const {
-    return hit.cell.col >= 0 && hit.cell.col < field_.cell_cols() && hit.cell.row >= 0 && hit.cell.row < field_.cell_rows() &&
-           hit.u >= 0 && hit.u <= 1 && hit.v >= 0 && hit.v <= 1 && field_.cell_heights(hit.cell).has_value();
+    return hit.cell.col >= 0 && hit.cell.col < field_.cell_cols() && hit.cell.row >= 0 &&
+           hit.cell.row < field_.cell_rows() && hit.u >= 0 && hit.u <= 1 && hit.v >= 0 && hit.v <= 1 &&
+           field_.cell_heights(hit.cell).has_value();
   }
 
   const HeightField& field_;
@@ -210,8 +218,8 @@ TEST_P(Oracle, ExactMarchesAgreeWithTheJudge) {
         }
         if (march.guarantee == Guarantee::exact && !judge.accepts(hit)) {
           ++bad;
-          ADD_FAILURE() << march.name << " on " << fields.name << ", ray " << rays.name << ": " << text(ray) << "\n  judge " << text(judge.nominal())
-                        << "\n  march " << text(hit);
+          ADD_FAILURE() << march.name << " on " << fields.name << ", ray " << rays.name << ": " << text(ray)
+                        << "\n  judge " << text(judge.nominal()) << "\n  march " << text(hit);
         }
       }
       const bool occluded = occluded_max_mip(target, ray);

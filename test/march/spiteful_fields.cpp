@@ -30,53 +30,94 @@ HeightField rough(Size size, Random& random, const HeightFieldSettings& settings
 
 }  // namespace
 
-double uniform(Random& random, double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
 int whole(Random& random, int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); }
 
 const std::vector<FieldKind>& spiteful_fields() {
   static const std::vector<FieldKind> kinds = {
-      {"flat", [](Random& r) { const double h = whole(r, -3, 3); return make<float>({9, 8}, {}, [h](int, int) { return h; }); }},
-      {"tilted plane", [](Random& r) {
+      {"flat",
+       [](Random& r) {
+         const double h = whole(r, -3, 3);
+         return make<float>({9, 8}, {}, [h](int, int) { return h; });
+       }},
+      {"tilted plane",
+       [](Random& r) {
          const double a = uniform(r, -2, 2), b = uniform(r, -2, 2);
          return make<float>({12, 10}, {}, [=](int c, int q) { return a * c + b * q; });
        }},
-      {"rough, power of two plus one", [](Random& r) { return rough({17, 17}, r); }},
-      {"rough, power of two", [](Random& r) { return rough({16, 32}, r); }},
-      {"rough, prime sizes", [](Random& r) { return rough({13, 23}, r); }},
-      {"rough, long strip", [](Random& r) { return rough({61, 3}, r); }},
-      {"rough, oblong cells", [](Random& r) {
+      {"rough, power of two plus one",
+       [](Random& r) {
+         return rough({17, 17}, r);
+       }},
+      {"rough, power of two",
+       [](Random& r) {
+         return rough({16, 32}, r);
+       }},
+      {"rough, prime sizes",
+       [](Random& r) {
+         return rough({13, 23}, r);
+       }},
+      {"rough, long strip",
+       [](Random& r) {
+         return rough({61, 3}, r);
+       }},
+      {"rough, oblong cells",
+       [](Random& r) {
          HeightFieldSettings settings;
          settings.cell_x = 6.72, settings.cell_y = 0.61, settings.exaggeration = 2.5;
          return rough({11, 14}, r, settings);
        }},
-      {"cliff", [](Random& r) {
+      {"cliff",
+       [](Random& r) {
          const int at = whole(r, 1, 9);
          return make<float>({11, 11}, {}, [=](int c, int) { return c < at ? 0.0 : 1000.0; });
        }},
-      {"spike", [](Random& r) {
+      {"spike",
+       [](Random& r) {
          const int c0 = whole(r, 0, 12), r0 = whole(r, 0, 10);
          return make<float>({13, 11}, {}, [=](int c, int q) { return c == c0 && q == r0 ? 500.0 : 0.0; });
        }},
-      {"pits and saddles", [](Random&) { return make<float>({10, 10}, {}, [](int c, int q) { return (c + q) % 2 ? 4.0 : 0.0; }); }},
-      {"holes", [](Random& r) {
+      {"pits and saddles",
+       [](Random&) {
+         return make<float>({10, 10}, {}, [](int c, int q) { return (c + q) % 2 ? 4.0 : 0.0; });
+       }},
+      {"holes",
+       [](Random& r) {
          return make<float>({15, 13}, {}, [&](int, int) {
            return uniform(r, 0, 1) < 0.15 ? std::numeric_limits<double>::quiet_NaN() : uniform(r, 0, 5);
          });
        }},
-      {"int16 with nodata and scale", [](Random& r) {
+      {"int16 with nodata and scale",
+       [](Random& r) {
          HeightFieldSettings settings;
          settings.cell_x = settings.cell_y = 30, settings.scale = 0.1, settings.offset = 100, settings.nodata = -32768;
-         return make<std::int16_t>({14, 12}, settings, [&](int, int) { return uniform(r, 0, 1) < 0.1 ? -32768 : whole(r, -400, 400); });
+         return make<std::int16_t>({14, 12}, settings,
+                                   [&](int, int) { return uniform(r, 0, 1) < 0.1 ? -32768 : whole(r, -400, 400); });
        }},
-      {"uint16 over its range", [](Random& r) {
-         return make<std::uint16_t>({9, 9}, {.cell_x = 900, .cell_y = 1100}, [&](int, int) { return whole(r, 0, 65535); });
+      {"uint16 over its range",
+       [](Random& r) {
+         return make<std::uint16_t>({9, 9}, {.cell_x = 900, .cell_y = 1100},
+                                    [&](int, int) { return whole(r, 0, 65535); });
        }},
-      {"high above the datum", [](Random& r) {
-         return make<float>({12, 12}, {.cell_x = 0.5, .cell_y = 0.5, .offset = 1e6}, [&](int, int) { return uniform(r, 0, 3); });
+      {"high above the datum",
+       [](Random& r) {
+         return make<float>({12, 12}, {.cell_x = 0.5, .cell_y = 0.5, .offset = 1e6},
+                            [&](int, int) { return uniform(r, 0, 3); });
        }},
-      {"one cell", [](Random& r) { return rough({2, 2}, r, {}, 2); }},
-      {"one sample", [](Random& r) { return rough({1, 1}, r); }},
-      {"one row", [](Random& r) { return rough({9, 1}, r); }},
+      {"one cell",
+       [](Random& r) {
+         return rough({2, 2}, r, {}, 2);
+       }},
+      {"one sample",
+       [](Random& r) {
+         return rough({1, 1}, r);
+       }},
+      {"one row",
+       [](Random& r) {
+         return rough({9, 1}, r);
+       }},
   };
   return kinds;
 }
