@@ -17,9 +17,14 @@ namespace fs = std::filesystem;
 
 ReplaceFile::ReplaceFile(std::string path) : path_(std::move(path)) {
   if (path_.empty()) throw Error("output: the file name is empty; name a file");
-  const fs::path target(path_);
   std::error_code ignored;
+  // A link is followed, or else the rename would put the file in the link's place.
+  if (fs::is_symlink(path_, ignored)) path_ = fs::weakly_canonical(path_, ignored).string();
+  const fs::path target(path_);
   if (fs::is_directory(target, ignored)) throw Error(fmt::format("output '{}': is a directory; name a file", path_));
+  if (fs::exists(target, ignored) && !fs::is_regular_file(target, ignored)) {
+    throw Error(fmt::format("output '{}': is a device or the like and no file; name a file", path_));
+  }
   const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, ignored)) {
     throw Error(fmt::format("output '{}': the folder '{}' does not exist; create it first", path_, folder.string()));

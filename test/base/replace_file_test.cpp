@@ -80,6 +80,21 @@ TEST_F(ReplaceFileTest, CommitPutsTheFileInPlaceAndLeavesNothingElse) {
   EXPECT_EQ(files(), 1);
 }
 
+TEST_F(ReplaceFileTest, FollowsALinkAndKeepsIt) {
+  write(path("a.png"), "old");
+  fs::create_symlink("a.png", path("link.png"));
+  ReplaceFile file(path("link.png"));
+  write(file.temporary_path(), "new");
+  file.commit();
+  EXPECT_TRUE(fs::is_symlink(path("link.png")));
+  EXPECT_EQ(read(path("a.png")), "new");
+}
+
+TEST_F(ReplaceFileTest, RefusesADevice) {
+  EXPECT_NE(refusal("/dev/null").find("'/dev/null': is a device"), std::string::npos);
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
 TEST_F(ReplaceFileTest, CommitReplacesWhatWasThere) {
   write(path("a.png"), "old");
   ReplaceFile file(path("a.png"));
