@@ -75,7 +75,8 @@ class Comparison {
     const ScarpGround scarp(ground.field);
     const TraceOptions& trace = options_.trace;
     const double limit = options_.miss_limit;
-    for (const RaySet& set : make_rays(ground, {RayClass::primary, RayClass::shadow}, trace.rays, trace.ray_seed)) {
+    for (const RaySet& set :
+         make_rays(ground, {RayClass::primary, RayClass::shadow, RayClass::grazing}, trace.rays, trace.ray_seed)) {
       const Judge judge(scarp.target(), set, trace.judged, trace.ray_seed);
       std::vector<Contender> contenders{{scarp.engine(find_march("max-mip")), std::nullopt, {}}};
       contenders[0].judged = judge.judge(contenders[0].engine);
