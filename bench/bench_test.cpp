@@ -86,7 +86,7 @@ TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
     if (row["mode"] == "max-mip") {
       EXPECT_EQ(row["miss_rate"], 0.0);
       EXPECT_EQ(row["false_rate"], 0.0);
-      EXPECT_LT(row["error_p99"], 1e-6);
+      EXPECT_LT(row["error_p99"], 1e-3);  // of a cell: what is promised
       if (ray_class == "nodes") {
         EXPECT_EQ(row["lost"], 0);
       }
