@@ -2,6 +2,7 @@
 #include "scarp/accel/max_pyramid.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "scarp/base/parallel.h"
@@ -10,71 +11,123 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kEntriesPerPiece = 1 << 16;
+constexpr int kTopCode = 65535;
 
-std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntriesPerPiece / cols); }
+std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntriesPerPiece / std::max(cols, 1)); }
 
+// From samples to codes, outwards.
 template <class T>
-constexpr T lowest() {
-  if constexpr (std::is_floating_point_v<T>) return -std::numeric_limits<T>::infinity();
-  return std::numeric_limits<T>::lowest();
-}
+struct Coder {
+  HeightCode code;
+  double per_step;
 
-// One row of cells: the maximum of each cell's four corners.
-template <class T>
-void maxima_of_cells(const SampleGrid<T>& grid, int row, T* maxima) {
-  const T *north = grid.row(row), *south = grid.row(row + 1);
-  const int cols = grid.cols - 1;
-  for (int col = 0; col < cols; ++col) {
-    maxima[col] = std::max(std::max(north[col], north[col + 1]), std::max(south[col], south[col + 1]));
+  explicit Coder(const HeightCode& to) : code(to), per_step(1 / to.step) {}
+
+  std::uint16_t above(T sample) const {
+    if constexpr (std::is_integral_v<T>) {
+      return static_cast<std::uint16_t>(sample - std::numeric_limits<T>::lowest());
+    } else {
+      // The quotient may be rounded to either side: what counts is the height that the code stands for. A block of
+      // holes has -infinity here, and the lowest code.
+      const double height = static_cast<double>(sample);
+      const double near = std::clamp(std::ceil((height - code.base) * per_step), 0.0, double{kTopCode});
+      const auto first = static_cast<std::uint16_t>(static_cast<int>(near));
+      return static_cast<std::uint16_t>(first + (code.height(first) < height && first < kTopCode));
+    }
   }
+  std::uint16_t below(T sample) const {
+    if constexpr (std::is_integral_v<T>) {
+      return static_cast<std::uint16_t>(sample - std::numeric_limits<T>::lowest());
+    } else {
+      const double height = static_cast<double>(sample);
+      const double near = std::clamp(std::floor((height - code.base) * per_step), 0.0, double{kTopCode});
+      const auto first = static_cast<std::uint16_t>(static_cast<int>(near));
+      return static_cast<std::uint16_t>(first - (code.height(first) > height && first > 0));
+    }
+  }
+};
+
+// One row of cells, columns [begin, end): the extremes of each cell's four corners. Holes: lowest for both, so that
+// they raise no maximum and leave no minimum.
+template <class T>
+void extremes_of_cells(const SampleGrid<T>& grid, int row, int begin, int end, T* highest, T* lowest) {
+  constexpr T kHole =
+      std::numeric_limits<T>::has_infinity ? -std::numeric_limits<T>::infinity() : std::numeric_limits<T>::lowest();
+  const T *north = grid.row(row), *south = grid.row(grid.south(row));
+  const auto extremes = [&](int col, int east) {
+    highest[col - begin] = std::max(std::max(north[col], north[east]), std::max(south[col], south[east]));
+    lowest[col - begin] = std::min(std::min(north[col], north[east]), std::min(south[col], south[east]));
+  };
+  const int plain_end = std::min(end, grid.cols - 1);
+  for (int col = begin; col < plain_end; ++col) extremes(col, col + 1);
+  if (plain_end < end) extremes(plain_end, grid.east(plain_end));
   if (!grid.has_holes) return;
-  for (int col = 0; col < cols; ++col) {
-    if (grid.is_hole(col, row)) maxima[col] = lowest<T>();
+  for (int col = begin; col < end; ++col) {
+    if (grid.is_hole(col, row)) highest[col - begin] = lowest[col - begin] = kHole;
   }
 }
 
-// One row of a coarser level from two of the finer one (twice the same at an odd end).
-template <class T>
-void maxima_of_pairs(const T* north, const T* south, int fine_cols, T* maxima) {
+// A row of coarser entries from two finer ones (twice the same at an odd end). An odd last column stands alone.
+template <class T, class Pick>
+void pick_of_four(const T* north, const T* south, int fine_cols, T* coarse, Pick pick) {
   const int pairs = fine_cols / 2;
   for (int col = 0; col < pairs; ++col) {
-    maxima[col] = std::max(std::max(north[2 * col], north[2 * col + 1]), std::max(south[2 * col], south[2 * col + 1]));
+    coarse[col] = pick(pick(north[2 * col], north[2 * col + 1]), pick(south[2 * col], south[2 * col + 1]));
   }
-  // An odd last column stands alone.
-  if (fine_cols % 2 != 0) maxima[pairs] = std::max(north[2 * pairs], south[2 * pairs]);
+  if (fine_cols % 2 != 0) coarse[pairs] = pick(north[2 * pairs], south[2 * pairs]);
 }
+constexpr auto kHigher = [](auto a, auto b) { return std::max(a, b); };
+constexpr auto kLower = [](auto a, auto b) { return std::min(a, b); };
+
+// Entries [col_begin, col_end) x [row_begin, row_end) of a level.
+struct Part {
+  int col_begin, row_begin, col_end, row_end;
+};
 
 // Level 1, from the samples; the rows of cells in between live for a moment only.
 template <class T>
-void build_first(const SampleGrid<T>& grid, T* out, int cols, int rows) {
-  const int fine_cols = grid.cols - 1, fine_rows = grid.rows - 1;
-  parallel_for(rows, rows_per_piece(cols), [&](std::int64_t begin, std::int64_t end) {
-    std::vector<T> north(static_cast<std::size_t>(fine_cols)), south(north.size());
-    for (int row = static_cast<int>(begin); row < end; ++row) {
-      maxima_of_cells(grid, 2 * row, north.data());
-      const bool pair = 2 * row + 1 < fine_rows;
-      if (pair) maxima_of_cells(grid, 2 * row + 1, south.data());
-      maxima_of_pairs(north.data(), pair ? south.data() : north.data(), fine_cols,
-                      out + static_cast<std::ptrdiff_t>(row) * cols);
+void build_first(const SampleGrid<T>& grid, const Coder<T>& coder, const Part& part, int cols, std::uint16_t* maxima,
+                 std::uint16_t* minima) {
+  const int begin = 2 * part.col_begin, end = std::min(2 * part.col_end, grid.cell_cols);
+  const int width = part.col_end - part.col_begin;
+  parallel_for(part.row_end - part.row_begin, rows_per_piece(width), [&](std::int64_t first, std::int64_t last) {
+    const auto cells = static_cast<std::size_t>(end - begin);
+    std::vector<T> highest(2 * cells), lowest(2 * cells), high(static_cast<std::size_t>(width)), low(high.size());
+    for (int row = part.row_begin + static_cast<int>(first); row < part.row_begin + last; ++row) {
+      extremes_of_cells(grid, 2 * row, begin, end, highest.data(), lowest.data());
+      const std::size_t second = 2 * row + 1 < grid.cell_rows ? cells : 0;
+      if (second) extremes_of_cells(grid, 2 * row + 1, begin, end, highest.data() + cells, lowest.data() + cells);
+      pick_of_four(highest.data(), highest.data() + second, end - begin, high.data(), kHigher);
+      pick_of_four(lowest.data(), lowest.data() + second, end - begin, low.data(), kLower);
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row) * cols + part.col_begin;
+      for (int col = 0; col < width; ++col) {
+        maxima[at + col] = coder.above(high[static_cast<std::size_t>(col)]);
+        minima[at + col] = coder.below(low[static_cast<std::size_t>(col)]);
+      }
     }
   });
 }
 
-// A coarser level from the finer one.
-template <class T>
-void build_coarser(const PyramidLevel<T>& fine, T* out, int cols, int rows) {
-  parallel_for(rows, rows_per_piece(cols), [&](std::int64_t begin, std::int64_t end) {
-    for (int row = static_cast<int>(begin); row < end; ++row) {
-      const T* north = fine.data + static_cast<std::ptrdiff_t>(2 * row) * fine.cols;
-      const T* south = 2 * row + 1 < fine.rows ? north + fine.cols : north;
-      maxima_of_pairs(north, south, fine.cols, out + static_cast<std::ptrdiff_t>(row) * cols);
-    }
-  });
+// A coarser level of maxima or minima from the finer one.
+template <class Pick>
+void build_coarser(const std::uint16_t* fine, const MaxPyramid::Level& finer, const Part& part, int cols,
+                   std::uint16_t* coarse, Pick pick) {
+  const int begin = 2 * part.col_begin, end = std::min(2 * part.col_end, finer.cols);
+  parallel_for(part.row_end - part.row_begin, rows_per_piece(part.col_end - part.col_begin),
+               [&](std::int64_t first, std::int64_t last) {
+                 for (int row = part.row_begin + static_cast<int>(first); row < part.row_begin + last; ++row) {
+                   const std::uint16_t* north = fine + static_cast<std::ptrdiff_t>(2 * row) * finer.cols + begin;
+                   const std::uint16_t* south = 2 * row + 1 < finer.rows ? north + finer.cols : north;
+                   pick_of_four(north, south, end - begin,
+                                coarse + static_cast<std::ptrdiff_t>(row) * cols + part.col_begin, pick);
+                 }
+               });
 }
 
 }  // namespace
 
-MaxPyramid::MaxPyramid(const HeightField& field) : type_(field.sample_type()) {
+MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange>& reserve)
+    : shared_(std::make_shared<Shared>()) {
   if (!field.has_cells()) return;
   std::ptrdiff_t entries = 0;
   for (int cols = field.cell_cols(), rows = field.cell_rows(); levels_.empty() || cols > 1 || rows > 1;) {
@@ -83,19 +136,78 @@ MaxPyramid::MaxPyramid(const HeightField& field) : type_(field.sample_type()) {
     levels_.push_back({entries, cols, rows});
     entries += static_cast<std::ptrdiff_t>(cols) * rows;
   }
-  field.visit([&](const auto& grid) {
-    using T = std::remove_cvref_t<decltype(grid.data[0])>;
-    // Not zeroed: each entry is written below, by the thread that makes it.
-    const std::shared_ptr<T[]> data(new T[static_cast<std::size_t>(entries)]);
-    bytes_ = static_cast<std::size_t>(entries) * sizeof(T);
-    build_first(grid, data.get(), levels_[0].cols, levels_[0].rows);
-    for (std::size_t l = 1; l < levels_.size(); ++l) {
-      const Level &fine = levels_[l - 1], &coarse = levels_[l];
-      build_coarser(PyramidLevel<T>{data.get() + fine.begin, fine.cols, fine.rows}, data.get() + coarse.begin,
-                    coarse.cols, coarse.rows);
+  entries_ = static_cast<std::size_t>(entries);
+  // Not zeroed: each entry is written by the thread that makes it.
+  shared_->maxima.reset(new std::uint16_t[entries_]);
+  shared_->minima.reset(new std::uint16_t[entries_]);
+  set_range(field, reserve);
+  build(field, {0, 0, field.cell_cols(), field.cell_rows()});
+}
+
+void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleRange>& reserve) {
+  HeightCode& code = shared_->code;
+  if (field.sample_type() != SampleType::float32) {
+    code = {field.sample_type() == SampleType::int16 ? -32768.0 : 0.0, 1};
+    return;
+  }
+  SampleRange range{0, 0};
+  if (!field.all_nodata()) range = {field.min_sample(), field.max_sample()};
+  if (reserve) range = {std::min(range.low, reserve->low), std::max(range.high, reserve->high)};
+  shared_->range = range;
+  // The lowest sample gets code 1, half a step clear of rounding, since code 0 says that there is no minimum; the step
+  // grows until the highest code stands for no less than the highest sample.
+  double step = (range.high - range.low) / (kTopCode - 2);
+  if (!(step > 0)) step = std::max(std::abs(range.low), 1.0) * 0x1p-20;
+  do {
+    code = {range.low - 1.5 * step, step};
+    step *= 1 + 0x1p-20;
+  } while (code.height(kTopCode) < range.high);
+}
+
+void MaxPyramid::update(const HeightField& field, const CellBox& changed) {
+  if (levels_.empty()) return;
+  const bool coded = field.sample_type() != SampleType::float32 || field.all_nodata() ||
+                     (field.min_sample() >= shared_->range.low && field.max_sample() <= shared_->range.high);
+  if (!coded) {
+    set_range(field, shared_->range);
+    return build(field, {0, 0, field.cell_cols(), field.cell_rows()});
+  }
+  build(field, changed);
+  // What lies beyond the seam is at the other side.
+  const int cols = field.cell_cols(), rows = field.cell_rows();
+  if (changed.col_begin < 0) build(field, {cols - 1, changed.row_begin, cols, changed.row_end});
+  if (changed.row_begin < 0) build(field, {changed.col_begin, rows - 1, changed.col_end, rows});
+  if (changed.col_begin < 0 && changed.row_begin < 0) build(field, {cols - 1, rows - 1, cols, rows});
+}
+
+void MaxPyramid::build(const HeightField& field, CellBox changed) {
+  std::uint16_t *maxima = shared_->maxima.get(), *minima = shared_->minima.get();
+  Part part{std::max(changed.col_begin, 0), std::max(changed.row_begin, 0), changed.col_end, changed.row_end};
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    part = {part.col_begin / 2, part.row_begin / 2, (part.col_end + 1) / 2, (part.row_end + 1) / 2};
+    const Level& level = levels_[l];
+    if (l == 0) {
+      field.visit([&](const auto& grid) {
+        using T = std::remove_cvref_t<decltype(grid.data[0])>;
+        build_first(grid, Coder<T>(shared_->code), part, level.cols, maxima, minima);
+      });
+      continue;
     }
-    data_ = std::shared_ptr<const void>(data, data.get());
-  });
+    const Level& finer = levels_[l - 1];
+    build_coarser(maxima + finer.begin, finer, part, level.cols, maxima + level.begin, kHigher);
+    build_coarser(minima + finer.begin, finer, part, level.cols, minima + level.begin, kLower);
+  }
+}
+
+double MaxPyramid::maximum(int level, int col, int row) const {
+  const Level& at = levels_[static_cast<std::size_t>(level - 1)];
+  return code().height(maxima()[at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col]);
+}
+
+double MaxPyramid::minimum(int level, int col, int row) const {
+  const Level& at = levels_[static_cast<std::size_t>(level - 1)];
+  const std::uint16_t lowest = minima()[at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col];
+  return lowest == kNoMinimum ? -std::numeric_limits<double>::infinity() : code().height(lowest);
 }
 
 }  // namespace scarp

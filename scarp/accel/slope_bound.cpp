@@ -14,19 +14,20 @@ double slope_bound(const HeightField& field) {
   const HeightFieldSettings& settings = field.settings();
   const double metres = settings.scale * settings.exaggeration;
   constexpr std::int64_t kRowsPerPiece = 64;
+  const bool bilinear = settings.surface == Surface::bilinear;
   double bound = 0;
   std::mutex merging;
   field.visit([&](const auto& grid) {
     parallel_for(field.cell_rows(), kRowsPerPiece, [&](std::int64_t begin, std::int64_t end) {
       double steepest = 0;
       for (int row = static_cast<int>(begin); row < end; ++row) {
-        const auto *north = grid.row(row), *south = grid.row(row + 1);
         for (int col = 0; col < field.cell_cols(); ++col) {
           if (grid.is_hole(col, row)) continue;
-          const double h00 = north[col], h10 = north[col + 1], h01 = south[col], h11 = south[col + 1];
-          const double along_x = std::max(std::abs(h10 - h00), std::abs(h11 - h01)) / settings.cell_x;
-          const double along_y = std::max(std::abs(h01 - h00), std::abs(h11 - h10)) / settings.cell_y;
-          steepest = std::max(steepest, along_x * along_x + along_y * along_y);
+          const CellHeights h = grid.cell(col, row);
+          const double north = (h.h10 - h.h00) / settings.cell_x, south = (h.h11 - h.h01) / settings.cell_x;
+          const double west = (h.h01 - h.h00) / settings.cell_y, east = (h.h11 - h.h10) / settings.cell_y;
+          steepest = std::max({steepest, north * north + west * west, south * south + east * east});
+          if (bilinear) steepest = std::max({steepest, north * north + east * east, south * south + west * west});
         }
       }
       const std::scoped_lock lock(merging);

@@ -39,7 +39,8 @@ enum class HitStatus : std::uint8_t {
   miss,
   hit,
   below,      ///< the ray began below the surface and never came from above to it
-  exhausted,  ///< an iteration limit was reached: nothing is known beyond t
+  exhausted,  ///< a limit was reached (of steps, or of countable cells where a field wraps round): nothing is known
+              ///< beyond t
 };
 
 /// The answer to a closest-hit question. All but `status` and, for `exhausted`, `t` is set for hits only.
@@ -50,6 +51,7 @@ struct Hit {
   double u = 0.0;       ///< position in the cell towards col+1, 0..1
   double v = 0.0;       ///< position in the cell towards row+1, 0..1
   double height = 0.0;  ///< height of the ray's point at t, metres in world space
+  bool wall = false;    ///< whether the wall under a border or a hole's rim was hit, not the surface (solid fields)
 
   explicit operator bool() const { return status == HitStatus::hit; }
 };

@@ -5,15 +5,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <mutex>
 
 #include "scarp/base/error.h"
-#include "scarp/base/parallel.h"
 
 namespace scarp {
 namespace {
-
-constexpr std::int64_t kRowsPerPiece = 64;
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
   if (!good) throw Error(fmt::format("height field: {} is {}; it must be {}", what, value, range));
@@ -28,50 +24,6 @@ bool representable(double value) {
     return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
            value == std::floor(value);
   }
-}
-
-struct Extent {
-  double min = std::numeric_limits<double>::infinity();
-  double max = -std::numeric_limits<double>::infinity();
-  std::int64_t nodata = 0;
-};
-
-// One pass over all samples: range, holes, and the refusal of infinities.
-template <class T>
-Extent scan(const SampleGrid<T>& grid) {
-  Extent whole;
-  std::mutex merging;
-  parallel_for(grid.rows, kRowsPerPiece, [&](std::int64_t begin, std::int64_t end) {
-    Extent piece;
-    for (int row = static_cast<int>(begin); row < end; ++row) {
-      const T* samples = grid.row(row);
-      T low = std::numeric_limits<T>::max(), high = std::numeric_limits<T>::lowest();
-      for (int col = 0; col < grid.cols; ++col) {
-        const T sample = samples[col];
-        if (grid.is_nodata(sample)) {
-          ++piece.nodata;
-          continue;
-        }
-        if constexpr (std::is_floating_point_v<T>) {
-          if (std::isinf(sample)) {
-            throw Error(fmt::format(
-                "height field: the sample at column {}, row {} is infinite; mark such samples as nodata", col, row));
-          }
-        }
-        low = std::min(low, sample);
-        high = std::max(high, sample);
-      }
-      if (low <= high) {
-        piece.min = std::min(piece.min, static_cast<double>(low));
-        piece.max = std::max(piece.max, static_cast<double>(high));
-      }
-    }
-    const std::scoped_lock lock(merging);
-    whole.min = std::min(whole.min, piece.min);
-    whole.max = std::max(whole.max, piece.max);
-    whole.nodata += piece.nodata;
-  });
-  return whole;
 }
 
 template <class T>
@@ -98,14 +50,8 @@ std::string_view name_of(SampleType type) {
 }
 
 HeightField::HeightField(SampleType type, const void* data, int cols, int rows, std::ptrdiff_t row_stride,
-                         const HeightFieldSettings& settings, std::shared_ptr<const void> owner)
-    : type_(type),
-      data_(data),
-      owner_(std::move(owner)),
-      cols_(cols),
-      rows_(rows),
-      row_stride_(row_stride),
-      settings_(settings) {
+                         const HeightFieldSettings& settings, std::shared_ptr<void> owner)
+    : type_(type), data_(data), cols_(cols), rows_(rows), row_stride_(row_stride), settings_(settings) {
   if (cols < 1 || rows < 1)
     throw Error(fmt::format("height field: {} x {} samples; at least 1 x 1 are needed", cols, rows));
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
@@ -119,22 +65,19 @@ HeightField::HeightField(SampleType type, const void* data, int cols, int rows, 
   z_offset_ = settings.offset * settings.exaggeration;
   per_scale_ = 1 / (settings.scale * settings.exaggeration);
 
-  // With nodata_count_ above 0 the scan looks for nodata; afterwards it is the true count.
-  nodata_count_ = 1;
-  const Extent extent = visit([&](auto grid) {
+  may_have_holes_ = type == SampleType::float32;
+  if (may_have_holes_) nodata_ = std::numeric_limits<double>::quiet_NaN();
+  visit_unknown([&](auto grid) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
-    grid.has_holes = std::is_floating_point_v<T>;
-    if constexpr (std::is_floating_point_v<T>) nodata_ = std::numeric_limits<double>::quiet_NaN();
     if (settings.nodata && representable<T>(*settings.nodata)) {
       nodata_ = *settings.nodata;
-      grid.has_holes = true;
+      may_have_holes_ = true;
     }
-    grid.nodata = static_cast<T>(nodata_);
-    return scan(grid);
   });
-  nodata_count_ = extent.nodata;
-  min_sample_ = extent.min;
-  max_sample_ = extent.max;
+  state_ =
+      visit_unknown([&](const auto& grid) { return std::make_shared<State>(std::move(owner), TileExtents(grid)); });
+  visit_unknown(
+      [&](const auto& grid) { require_shared_border(grid, [&](int col, int row) { return grid.at(col, row); }); });
 }
 
 template <class T>
@@ -148,14 +91,83 @@ HeightField HeightField::own(std::vector<T> samples, int cols, int rows, const H
   if (std::int64_t{cols} * rows != static_cast<std::int64_t>(samples.size())) {
     throw Error(fmt::format("height field: {} samples given for {} x {}", samples.size(), cols, rows));
   }
-  auto owner = std::make_shared<const std::vector<T>>(std::move(samples));
+  auto owner = std::make_shared<std::vector<T>>(std::move(samples));
   const T* data = owner->data();
   return HeightField(type_of<T>(), data, cols, rows, cols, settings, std::move(owner));
 }
 
+void HeightField::require_inside(const SampleRect& rect) const {
+  if (rect.cols < 1 || rect.rows < 1 || rect.col < 0 || rect.row < 0 || rect.cols > cols_ - rect.col ||
+      rect.rows > rows_ - rect.row) {
+    throw Error(fmt::format("height field: rectangle of {} x {} samples at column {}, row {}: not inside the {} x {}",
+                            rect.cols, rect.rows, rect.col, rect.row, cols_, rows_));
+  }
+}
+
+template <class T, class Sample>
+void HeightField::require_shared_border(const SampleGrid<T>& grid, const Sample& sample) const {
+  if (settings_.wrap != Wrap::shared_border) return;
+  const auto require_same = [&](int col, int row, int other_col, int other_row) {
+    const T a = sample(col, row), b = sample(other_col, other_row);
+    if (a == b || (grid.is_nodata(a) && grid.is_nodata(b))) return;
+    throw Error(fmt::format(
+        "height field: the border is not shared: the sample at column {}, row {} is {}, at column {}, row {} {}; "
+        "they must be equal, or the field be periodic without a shared border",
+        col, row, a, other_col, other_row, b));
+  };
+  for (int row = 0; row < rows_; ++row) require_same(0, row, cols_ - 1, row);
+  for (int col = 0; col < cols_; ++col) require_same(col, 0, col, rows_ - 1);
+}
+
+CellBox HeightField::cells_of(const SampleRect& rect) const {
+  const int first = settings_.wrap == Wrap::none ? 0 : -1;
+  // In a shared border the first sample is the last one too; both are in the rectangle or the border is torn.
+  return {std::max(rect.col - 1, first), std::max(rect.row - 1, first), std::min(rect.col + rect.cols, cell_cols()),
+          std::min(rect.row + rect.rows, cell_rows())};
+}
+
+CellBox HeightField::samples_changed(const SampleRect& rect) {
+  require_inside(rect);
+  visit_unknown([&](const auto& grid) {
+    refuse_infinite(grid, rect);
+    require_shared_border(grid, [&](int col, int row) { return grid.at(col, row); });
+    state_->extents.update(grid, rect);
+  });
+  return cells_of(rect);
+}
+
+template <class T>
+CellBox HeightField::set_samples(const SampleRect& rect, const T* samples, std::ptrdiff_t stride) {
+  require_inside(rect);
+  if (type_of<T>() != type_) {
+    throw Error(
+        fmt::format("height field: samples of type {} given for a field of {}", name_of(type_of<T>()), name_of(type_)));
+  }
+  if (!state_->owner) {
+    throw Error("height field: its samples are the caller's: write them there, then call samples_changed()");
+  }
+  // All that can be wrong is found before anything is overwritten.
+  const SampleGrid<T> grid = this->grid<T>(may_have_holes_);
+  SampleGrid<T> edit = grid;
+  edit.data = samples;
+  edit.row_stride = stride;
+  refuse_infinite(edit, {0, 0, rect.cols, rect.rows});
+  require_shared_border(grid, [&](int col, int row) {
+    const int c = col - rect.col, r = row - rect.row;
+    return c >= 0 && c < rect.cols && r >= 0 && r < rect.rows ? edit.at(c, r) : grid.at(col, row);
+  });
+  T* to = static_cast<T*>(const_cast<void*>(data_));
+  for (int row = 0; row < rect.rows; ++row) {
+    std::copy_n(samples + row * stride, rect.cols, to + (rect.row + row) * row_stride_ + rect.col);
+  }
+  state_->extents.update(grid, rect);
+  return cells_of(rect);
+}
+
 #define SCARP_INSTANTIATE(T)                                                                                 \
   template HeightField HeightField::view<T>(const T*, int, int, std::ptrdiff_t, const HeightFieldSettings&); \
-  template HeightField HeightField::own<T>(std::vector<T>, int, int, const HeightFieldSettings&);
+  template HeightField HeightField::own<T>(std::vector<T>, int, int, const HeightFieldSettings&);            \
+  template CellBox HeightField::set_samples<T>(const SampleRect&, const T*, std::ptrdiff_t);
 SCARP_INSTANTIATE(std::int16_t)
 SCARP_INSTANTIATE(std::uint16_t)
 SCARP_INSTANTIATE(float)
@@ -163,20 +175,22 @@ SCARP_INSTANTIATE(float)
 
 std::optional<HeightField::Place> HeightField::place(double x, double y) const {
   if (!has_cells()) return {};
-  const double col = x * per_cell_x_, row = (rows_ - 1) - y * per_cell_y_;
+  double col = x * per_cell_x_, row = (rows_ - 1) - y * per_cell_y_;
+  const int cols = cell_cols(), rows = cell_rows();
+  if (wraps()) {
+    col -= std::floor(col / cols) * cols;
+    row -= std::floor(row / rows) * rows;
+  }
   // Written so that NaN is outside.
-  if (!(col >= 0 && col <= cols_ - 1 && row >= 0 && row <= rows_ - 1)) return {};
-  const Cell cell{std::min(static_cast<int>(col), cols_ - 2), std::min(static_cast<int>(row), rows_ - 2)};
+  if (!(col >= 0 && col <= cols && row >= 0 && row <= rows)) return {};
+  const Cell cell{std::min(static_cast<int>(col), cols - 1), std::min(static_cast<int>(row), rows - 1)};
   return Place{cell, col - cell.col, row - cell.row};
 }
 
 std::optional<CellHeights> HeightField::cell_heights(Cell cell) const {
   return visit([&](const auto& grid) -> std::optional<CellHeights> {
     if (grid.is_hole(cell.col, cell.row)) return {};
-    const auto* north = grid.row(cell.row) + cell.col;
-    const auto* south = grid.row(cell.row + 1) + cell.col;
-    return CellHeights{static_cast<double>(north[0]), static_cast<double>(north[1]), static_cast<double>(south[0]),
-                       static_cast<double>(south[1])};
+    return grid.cell(cell.col, cell.row);
   });
 }
 
@@ -185,15 +199,19 @@ std::optional<double> HeightField::height(double x, double y) const {
   if (!at) return {};
   const auto h = cell_heights(at->cell);
   if (!h) return {};
-  return height_from_sample(lerp(lerp(h->h00, h->h10, at->u), lerp(h->h01, h->h11, at->u), at->v));
+  return height_from_sample(height_in_cell(settings_.surface, *h, at->u, at->v));
 }
 
 dvec2 HeightField::gradient(Cell cell, double u, double v) const {
   const CellHeights h = cell_heights(cell).value();
   const double metres = settings_.scale * settings_.exaggeration;
+  // In triangles the slope is that of one or the other side of the cell.
+  const bool south_east = u + v > 1;
+  const bool flat = settings_.surface == Surface::triangles;
+  const double along_row = lerp(h.h10 - h.h00, h.h11 - h.h01, flat ? south_east : v);
+  const double along_col = lerp(h.h01 - h.h00, h.h11 - h.h10, flat ? south_east : u);
   // Rows count southwards: the slope to the north is the negative of the one along rows.
-  return {lerp(h.h10 - h.h00, h.h11 - h.h01, v) * metres * per_cell_x_,
-          -lerp(h.h01 - h.h00, h.h11 - h.h10, u) * metres * per_cell_y_};
+  return {along_row * metres * per_cell_x_, -along_col * metres * per_cell_y_};
 }
 
 std::optional<dvec2> HeightField::gradient(double x, double y) const {
@@ -212,14 +230,19 @@ dvec3 HeightField::shading_normal(Cell cell, double u, double v) const {
   return visit([&](const auto& grid) {
     // Difference over the widest span of valid samples around a node, along one axis.
     const auto slope = [&](int col, int row, int dcol, int drow) {
-      const auto valid = [&](int c, int r) {
-        return c >= 0 && c < cols_ && r >= 0 && r < rows_ && !grid.is_nodata(grid.at(c, r));
+      // A shared border is one node: the one beyond it is the second of the other side.
+      const auto wrapped = [&](int i, int samples, int cells) {
+        return wraps() && (i < 0 || i >= samples) ? (i + cells) % cells : i;
       };
-      const int ahead = valid(col + dcol, row + drow) ? 1 : 0, behind = valid(col - dcol, row - drow) ? 1 : 0;
-      if (ahead + behind == 0) return 0.0;
-      return (static_cast<double>(grid.at(col + ahead * dcol, row + ahead * drow)) -
-              static_cast<double>(grid.at(col - behind * dcol, row - behind * drow))) /
-             (ahead + behind);
+      const auto sample = [&](int steps) -> std::optional<double> {
+        const int c = wrapped(col + steps * dcol, cols_, grid.cell_cols),
+                  r = wrapped(row + steps * drow, rows_, grid.cell_rows);
+        if (c < 0 || c >= cols_ || r < 0 || r >= rows_ || grid.is_nodata(grid.at(c, r))) return {};
+        return static_cast<double>(grid.at(c, r));
+      };
+      const auto ahead = sample(1), behind = sample(-1), here = sample(0);
+      if (!ahead && !behind) return 0.0;
+      return ((ahead ? *ahead : *here) - (behind ? *behind : *here)) / (ahead && behind ? 2 : 1);
     };
     dvec2 sum(0.0);
     for (int dr = 0; dr < 2; ++dr) {

@@ -27,10 +27,12 @@ Span strip(double o, double d, double low, double size, bool last) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-// The part of the ray over one cell, and ray height - surface height there: f = a s^2 + b s + c, s = t - span.begin.
+// The part of the ray over one cell or triangle, and ray height - surface height there: f = a s^2 + b s + c, s = t -
+// span.begin.
 struct Piece {
   Span span;
   Cell cell;
+  double col, row;       // of the cell, in a field that wraps round of the copy that the ray is over
   double a, b, c, last;  // last: f at the span's end
 
   double length() const { return span.end - span.begin; }
@@ -69,22 +71,71 @@ class Ground {
 
   void move_height(double by) { oz_ += by; }
 
-  std::optional<Piece> piece(Cell cell, Span span) const {
+  // The pieces over the cell at (col, row), which in a field that wraps round may be in any copy: one, or one for each
+  // triangle, or none over a hole.
+  void add_pieces(double col, double row, Span span, std::vector<Piece>& to) const {
+    const Cell cell{within(col, field_.cell_cols()), within(row, field_.cell_rows())};
     const auto h = field_.cell_heights(cell);
-    if (!h) return {};
-    Piece p{span, cell, 0, 0, 0, 0};
-    const double u = inside(ox_ + dx_ * span.begin - cell.col), v = inside(oy_ + dy_ * span.begin - cell.row);
-    const double gu = (h->h10 - h->h00) * (1 - v) + (h->h11 - h->h01) * v;
-    const double gv = (h->h01 - h->h00) * (1 - u) + (h->h11 - h->h10) * u;
-    p.a = -(h->h00 - h->h10 - h->h01 + h->h11) * dx_ * dy_;
+    if (!h) return;
+    if (field_.settings().surface == Surface::bilinear) {
+      to.push_back(bilinear_piece(*h, cell, col, row, span));
+      return;
+    }
+    // Where x + y is that of the diagonal the ray goes from one triangle to the other.
+    const double across = dx_ + dy_, parting = (col + row + 1 - ox_ - oy_) / across;
+    if (across != 0 && parting > span.begin && parting < span.end) {
+      to.push_back(triangle_piece(*h, cell, col, row, {span.begin, parting}));
+      to.push_back(triangle_piece(*h, cell, col, row, {parting, span.end}));
+    } else {
+      to.push_back(triangle_piece(*h, cell, col, row, span));
+    }
+  }
+
+  Piece bilinear_piece(const CellHeights& h, Cell cell, double col, double row, Span span) const {
+    Piece p{span, cell, col, row, 0, 0, 0, 0};
+    const double u = inside(ox_ + dx_ * span.begin - col), v = inside(oy_ + dy_ * span.begin - row);
+    const double gu = (h.h10 - h.h00) * (1 - v) + (h.h11 - h.h01) * v;
+    const double gv = (h.h01 - h.h00) * (1 - u) + (h.h11 - h.h10) * u;
+    p.a = -(h.h00 - h.h10 - h.h01 + h.h11) * dx_ * dy_;
     p.b = dz_ - gu * dx_ - gv * dy_;
-    p.c = oz_ + dz_ * span.begin - surface(*h, u, v);
+    p.c = oz_ + dz_ * span.begin - bilinear(h, u, v);
     // An upright ray may have no end: then the sign of its movement tells on which side it ends.
     p.last = std::isinf(span.end)
                  ? std::copysign(kInfinity, dz_)
                  : oz_ + dz_ * span.end -
-                       surface(*h, inside(ox_ + dx_ * span.end - cell.col), inside(oy_ + dy_ * span.end - cell.row));
+                       bilinear(h, inside(ox_ + dx_ * span.end - col), inside(oy_ + dy_ * span.end - row));
     return p;
+  }
+
+  Piece triangle_piece(const CellHeights& h, Cell cell, double col, double row, Span span) const {
+    Piece p{span, cell, col, row, 0, 0, 0, 0};
+    const double middle = std::isinf(span.end) ? span.begin : 0.5 * (span.begin + span.end);
+    const bool upper = (ox_ + dx_ * middle - col) + (oy_ + dy_ * middle - row) <= 1;
+    const double gu = upper ? h.h10 - h.h00 : h.h11 - h.h01, gv = upper ? h.h01 - h.h00 : h.h11 - h.h10;
+    const auto clearance = [&](double t) {
+      const double u = inside(ox_ + dx_ * t - col), v = inside(oy_ + dy_ * t - row);
+      const double ground =
+          upper ? h.h00 * (1 - u - v) + h.h10 * u + h.h01 * v : h.h11 * (u + v - 1) + h.h01 * (1 - u) + h.h10 * (1 - v);
+      return oz_ + dz_ * t - ground;
+    };
+    p.b = dz_ - gu * dx_ - gv * dy_;
+    p.c = clearance(span.begin);
+    p.last = std::isinf(span.end) ? std::copysign(kInfinity, dz_) : clearance(span.end);
+    return p;
+  }
+
+  // The surface right under a point of the cell; nothing over a hole.
+  std::optional<double> clearance_at(Cell cell, double t) const {
+    const auto h = field_.cell_heights(cell);
+    if (!h) return {};
+    const auto copy = [&](double position, int c, int cells) {
+      return field_.wraps() ? c + std::round((position - c - 0.5) / cells) * cells : c;
+    };
+    const double col = copy(ox_ + dx_ * t, cell.col, field_.cell_cols());
+    const double row = copy(oy_ + dy_ * t, cell.row, field_.cell_rows());
+    const Span here{t, t};
+    return field_.settings().surface == Surface::bilinear ? bilinear_piece(*h, cell, col, row, here).c
+                                                          : triangle_piece(*h, cell, col, row, here).c;
   }
 
   // What rounding can add to f around t: 16 units in the last place of all that goes into it.
@@ -95,34 +146,38 @@ class Ground {
     return 16 * 0x1p-53 * (heights + places * (field_.max_sample() - field_.min_sample()));
   }
 
-  // All pieces of the ray, in the order of t.
+  // All pieces of the ray, in the order of t. The range is finite in a field that wraps round.
   std::vector<Piece> pieces(Span range) const {
     std::vector<Piece> found;
     const int cols = field_.cell_cols(), rows = field_.cell_rows();
-    for (int row = 0; row < rows; ++row) {
-      const Span over_row = common(range, strip(oy_, dy_, row, 1, row == rows - 1));
+    const bool wraps = field_.wraps();
+    const auto touched = [&](double o, double d, Span over, int cells) {
+      const double from = d == 0 ? o : o + d * over.begin, to = d == 0 ? o : o + d * over.end;
+      const double first = std::floor(std::min(from, to)) - 1, last = std::floor(std::max(from, to)) + 1;
+      return wraps ? Span{first, last} : Span{std::clamp(first, 0.0, cells - 1.0), std::clamp(last, 0.0, cells - 1.0)};
+    };
+    const Span over_rows = touched(oy_, dy_, range, rows);
+    for (double row = over_rows.begin; row <= over_rows.end; ++row) {
+      const Span over_row = common(range, strip(oy_, dy_, row, 1, !wraps && row == rows - 1));
       if (over_row.empty()) continue;
       // Columns that the ray can touch in this row, one more on either side for rounding.
-      const auto column = [&](double t) { return std::clamp(dx_ == 0 ? ox_ : ox_ + dx_ * t, 0.0, cols - 1.0); };
-      const double a = column(over_row.begin), b = column(over_row.end);
-      const int first = std::max(0, static_cast<int>(std::min(a, b)) - 1);
-      const int last = std::min(cols - 1, static_cast<int>(std::max(a, b)) + 1);
-      for (int col = first; col <= last; ++col) {
-        const Span over_cell = common(over_row, strip(ox_, dx_, col, 1, col == cols - 1));
-        if (over_cell.empty()) continue;
-        if (auto p = piece({col, row}, over_cell)) found.push_back(*p);
+      const Span over_cols = touched(ox_, dx_, over_row, cols);
+      for (double col = over_cols.begin; col <= over_cols.end; ++col) {
+        const Span over_cell = common(over_row, strip(ox_, dx_, col, 1, !wraps && col == cols - 1));
+        if (!over_cell.empty()) add_pieces(col, row, over_cell, found);
       }
     }
-    std::sort(found.begin(), found.end(), [](const Piece& p, const Piece& q) {
+    std::stable_sort(found.begin(), found.end(), [](const Piece& p, const Piece& q) {
       return p.span.begin != q.span.begin ? p.span.begin < q.span.begin : p.span.end < q.span.end;
     });
     return found;
   }
 
-  // Where the ray comes over the field.
-  double entry(double t_min) const {
-    return std::max({t_min, strip(ox_, dx_, 0, field_.cell_cols(), true).begin,
-                     strip(oy_, dy_, 0, field_.cell_rows(), true).begin});
+  // When the ray's line comes over the field; long ago where the field has no border.
+  double border() const {
+    if (field_.wraps()) return -kInfinity;
+    return std::max(strip(ox_, dx_, 0, field_.cell_cols(), true).begin,
+                    strip(oy_, dy_, 0, field_.cell_rows(), true).begin);
   }
 
   Hit hit(const Piece& piece, double s) const {
@@ -130,15 +185,16 @@ class Ground {
     hit.status = HitStatus::hit;
     hit.t = piece.span.begin + std::clamp(s, 0.0, piece.length());
     hit.cell = piece.cell;
-    hit.u = inside(ox_ + dx_ * hit.t - piece.cell.col);
-    hit.v = inside(oy_ + dy_ * hit.t - piece.cell.row);
+    hit.u = inside(ox_ + dx_ * hit.t - piece.col);
+    hit.v = inside(oy_ + dy_ * hit.t - piece.row);
     hit.height = field_.height_from_sample(oz_ + dz_ * hit.t);
     return hit;
   }
 
  private:
   static double inside(double x) { return std::clamp(x, 0.0, 1.0); }
-  static double surface(const CellHeights& h, double u, double v) {
+  static int within(double cell, int cells) { return static_cast<int>(cell - std::floor(cell / cells) * cells); }
+  static double bilinear(const CellHeights& h, double u, double v) {
     return (h.h00 * (1 - u) + h.h10 * u) * (1 - v) + (h.h01 * (1 - u) + h.h11 * u) * v;
   }
 
@@ -169,48 +225,83 @@ std::optional<double> descent_after_rise(const Piece& p) {
   return p.roots() ? p.roots()->end : p.length();
 }
 
-}  // namespace
-
-Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats) {
-  const HeightField& field = *target.field;
-  if (stats) *stats = {};
-  Hit answer;
-  if (!field.has_cells()) return answer;
+// Goes along the ray; found(hit) says whether to go on. Returns below when the ray began so, else miss.
+template <class Found>
+HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, const Found& found) {
+  HitStatus without = HitStatus::miss;
+  if (!field.has_cells()) return without;
   Ground ground(field, ray);
   const bool on_surface = ray.start == RayStart::on_surface;
   enum class Side { unknown, above, below } side = Side::unknown;
   if (on_surface) {
-    const auto start = ground.piece(ray.start_cell, {ray.t_min, ray.t_min});
-    if (!start) return answer;
-    ground.move_height(-start->c);
+    const auto start = ground.clearance_at(ray.start_cell, ray.t_min);
+    if (!start) return without;
+    ground.move_height(-*start);
     side = Side::above;
   }
   const auto pieces = ground.pieces({ray.t_min, ray.t_max});
   if (stats) stats->steps = stats->cell_tests = static_cast<std::uint32_t>(pieces.size());
+  const double entry = std::max(ray.t_min, ground.border());
   double reached = on_surface ? ray.t_min : -kInfinity;
+  bool first = on_surface;
   for (const Piece& p : pieces) {
-    if (on_surface && p.cell == ray.start_cell && p.span.begin <= ray.t_min) {
+    if (first && p.cell == ray.start_cell && p.span.begin <= ray.t_min) {
       // f = s (a s + b): the root at the start is no hit.
       reached = p.span.end;
       if (p.length() == 0) continue;
-      const double lowest =
-          p.a > 0 && p.vertex() ? (p.a * *p.vertex() + p.b) * *p.vertex() : (p.a * p.length() + p.b) * p.length();
+      first = false;
+      const double last = (p.a * p.length() + p.b) * p.length();
+      const double lowest = p.a > 0 && p.vertex() ? (p.a * *p.vertex() + p.b) * *p.vertex() : last;
       if (!(lowest < -ground.rounding(ray.t_min))) continue;
-      return ground.hit(p, p.b < 0 || p.a == 0 ? 0 : -p.b / p.a);
+      if (!found(ground.hit(p, p.b < 0 || p.a == 0 ? 0 : -p.b / p.a))) return without;
+      if (last <= 0) side = Side::below;
+      continue;
     }
     if (p.span.begin > reached) side = Side::unknown;  // a hole lies in between, or nothing at all yet
     reached = std::max(reached, p.span.end);
     if (side == Side::unknown) {
-      if (p.c < 0 && &p == &pieces.front() && p.span.begin <= ground.entry(ray.t_min)) answer.status = HitStatus::below;
       side = p.c < 0 ? Side::below : Side::above;
+      if (side == Side::below && &p == &pieces.front() && p.span.begin <= entry) without = HitStatus::below;
+      // Through the border or out of a hole, unless it began in this cell.
+      const bool came_in = p.span.begin > ray.t_min || ground.border() >= ray.t_min;
+      if (side == Side::below && field.settings().solid && came_in) {
+        Hit hit = ground.hit(p, 0);
+        hit.wall = true;
+        if (!found(hit)) return without;
+      }
     }
     if (side == Side::below && p.c > 0) side = Side::above;
     const auto depth = on_surface ? std::optional(ground.rounding(p.span.begin)) : std::nullopt;
     const auto s = side == Side::above ? descent(p, depth) : descent_after_rise(p);
-    if (s) return ground.hit(p, *s);
+    if (s) {
+      if (!found(ground.hit(p, *s))) return without;
+      side = Side::below;
+    }
     if (side == Side::below && p.last > 0) side = Side::above;
   }
+  return without;
+}
+
+}  // namespace
+
+Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats) {
+  if (stats) *stats = {};
+  Hit answer;
+  const HitStatus without = follow(*target.field, ray, stats, [&](const Hit& hit) {
+    answer = hit;
+    return false;
+  });
+  if (!answer) answer.status = without;
   return answer;
+}
+
+HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
+  hits.clear();
+  const HitStatus without = follow(*target.field, ray, nullptr, [&](const Hit& hit) {
+    hits.push_back(hit);
+    return true;
+  });
+  return hits.empty() ? without : HitStatus::hit;
 }
 
 }  // namespace scarp

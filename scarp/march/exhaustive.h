@@ -7,12 +7,17 @@
 // pictures.
 #pragma once
 
+#include <vector>
+
 #include "scarp/march/marches.h"
 
 namespace scarp {
 
-/// Closest hit; conventions as in ray.h. The pyramid is not used.
+/// Closest hit; conventions as in ray.h. The pyramid is not used. In a field that wraps round t_max must be finite.
 Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                      MarchStats* stats = nullptr);
+
+/// All hits in the ray's range, in the order of t, as all_hits_max_mip gives them. Returns hit, or why there is none.
+HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits);
 
 }  // namespace scarp

@@ -3,65 +3,108 @@
 //
 // Every line k has ONE time, (k - origin) * (1 / direction), whatever cell or level asks. Rounding keeps these times in
 // the order of k, so cells found through them follow one another without gap or overlap.
+//
+// A grid that wraps round has a line for every integer. Cells and lines are then counted within one copy of the grid,
+// from its first line on, and the copy is part of the state; what is computed from a line is computed from its integer,
+// so neighbours on the two sides of a seam agree as all others do.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace scarp {
 
-struct GridAxis {
-  double origin;       // in cells
-  double direction;    // cells per t
-  double time_origin;  // origin, as line_time() takes it
+class GridAxis {
+ public:
+  double origin;     // in cells
+  double direction;  // cells per t
   double per_direction;
   int step;   // +1 or -1
   int ahead;  // 1 if the line left through has a higher number than the cell, else 0
   int cells;
 
-  GridAxis(double o, double d, int cell_count)
-      : origin(o), direction(d), time_origin(o), per_direction(1 / d), cells(cell_count) {
+  GridAxis(double o, double d, int cell_count, bool wraps)
+      : origin(o), direction(d), per_direction(1 / d), cells(cell_count), time_origin_(o), wraps_(wraps) {
     step = d < 0 ? -1 : 1;
     ahead = d < 0 ? 0 : 1;
     if (std::isinf(per_direction)) {
       // No movement along this axis (or less than 2^-1022 cells per t): the lines on the near side are crossed at -inf,
-      // those on the far side at +inf. A ray along a line belongs to the cell after it, on the last line to the last
-      // cell.
+      // those on the far side at +inf. A ray along a line belongs to the cell after it, on the last line of a grid that
+      // does not wrap to the last cell.
       direction = 0;
       step = ahead = 1;
       per_direction = std::numeric_limits<double>::infinity();
-      time_origin = cell_at(o) + 0.5;
+      if (wraps_) set_copy(static_cast<std::int64_t>(std::floor(o)));
+      time_origin_ = static_cast<double>(first_ + near(o)) + 0.5;
     }
   }
 
   bool moves() const { return direction != 0; }
   double at(double t) const { return origin + direction * t; }
-  double line_time(int line) const { return (line - time_origin) * per_direction; }
+  /// Place in a cell at time t, 0..1.
+  double place(double t, int cell) const { return std::clamp(at(t) - static_cast<double>(first_ + cell), 0.0, 1.0); }
+  double line_time(int line) const { return global_line_time(first_ + line); }
+  /// When the ray comes into and leaves this copy of the grid.
   double enter_time() const { return line_time(ahead ? 0 : cells); }
   double exit_time() const { return line_time(ahead ? cells : 0); }
   bool inside(int cell) const { return static_cast<unsigned>(cell) < static_cast<unsigned>(cells); }
-
-  // The cell at a position, clamped to the grid; NaN goes to 0.
-  int cell_at(double position) const { return static_cast<int>(std::min(std::max(0.0, position), cells - 1.0)); }
+  /// The number of a line among all lines of the plane.
+  std::int64_t global_line(int line) const { return first_ + line; }
 
   // The cell at time t by the order of line times alone; the position is only where to look first. Lines crossed
-  // exactly at t are behind the cell (cell_after) or still ahead of it (cell_before).
-  int cell_after(double t) const {
-    return ordered_cell(t, [&](int line) { return line_time(line) <= t; });
+  // exactly at t are behind the cell (after) or still ahead of it (before). In a grid that wraps round, the copy
+  // becomes that of the cell.
+  int cell_after(double t) {
+    return ordered_cell(t, [&](std::int64_t line) { return global_line_time(line) <= t; });
   }
-  int cell_before(double t) const {
-    return ordered_cell(t, [&](int line) { return line_time(line) < t; });
+  int cell_before(double t) {
+    return ordered_cell(t, [&](std::int64_t line) { return global_line_time(line) < t; });
+  }
+  // The copy in which `cell` is at time t.
+  void choose_copy(double t, int cell) {
+    if (wraps_) first_ = static_cast<std::int64_t>(std::round((at(t) - cell - 0.5) / cells)) * cells;
+  }
+  // Goes on to the next copy; returns the first cell there.
+  int enter_next_copy() {
+    first_ += step * std::int64_t{cells};
+    return ahead ? 0 : cells - 1;
   }
 
  private:
-  template <class Behind>
-  int ordered_cell(double t, Behind behind) const {
-    int cell = cell_at(at(t));
-    while (inside(cell + step) && behind(cell + ahead)) cell += step;
-    while (inside(cell - step) && !behind(cell + 1 - ahead)) cell -= step;
-    return cell;
+  double global_line_time(std::int64_t line) const {
+    return (static_cast<double>(line) - time_origin_) * per_direction;
   }
+
+  // The cell of this copy that is nearest to a position; NaN goes to 0.
+  int near(double position) const {
+    return static_cast<int>(std::min(std::max(0.0, position - static_cast<double>(first_)), cells - 1.0));
+  }
+  void set_copy(std::int64_t global_cell) {
+    const std::int64_t within = ((global_cell % cells) + cells) % cells;
+    first_ = global_cell - within;
+  }
+
+  template <class Behind>
+  int ordered_cell(double t, Behind behind) {
+    if (!wraps_) {
+      int cell = near(at(t));
+      while (inside(cell + step) && behind(cell + ahead)) cell += step;
+      while (inside(cell - step) && !behind(cell + 1 - ahead)) cell -= step;
+      return cell;
+    }
+    if (!moves()) return near(origin);
+    auto cell = static_cast<std::int64_t>(std::floor(at(t)));
+    while (behind(cell + ahead)) cell += step;
+    while (!behind(cell + 1 - ahead)) cell -= step;
+    set_copy(cell);
+    return static_cast<int>(cell - first_);
+  }
+
+  double time_origin_;      // origin, as the times of lines take it
+  std::int64_t first_ = 0;  // the first line of this copy of the grid
+  bool wraps_;
 };
 
 }  // namespace scarp

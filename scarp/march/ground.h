@@ -23,8 +23,10 @@ class Ground {
         speed_(length(ray.direction)) {
     t_enter = ray.t_min;
     t_exit = ray.t_max;
-    clip(0, grid.cols - 1.0, local_.origin.x, local_.direction.x);
-    clip(0, grid.rows - 1.0, local_.origin.y, local_.direction.y);
+    if (!field.wraps()) {
+      clip(0, grid.cell_cols, local_.origin.x, local_.direction.x);
+      clip(0, grid.cell_rows, local_.origin.y, local_.direction.y);
+    }
     // Upright rays never leave sideways: they are followed as far as there is ground.
     if (std::isinf(t_exit)) clip(field.min_sample(), field.max_sample(), local_.origin.z, local_.direction.z);
   }
@@ -41,18 +43,18 @@ class Ground {
     double u = 0, v = 0;
   };
   Sample at(double t) const {
-    const double col = std::clamp(local_.origin.x + local_.direction.x * t, 0.0, grid_.cols - 1.0);
-    const double row = std::clamp(local_.origin.y + local_.direction.y * t, 0.0, grid_.rows - 1.0);
+    const double col = over_field(local_.origin.x + local_.direction.x * t, grid_.cell_cols);
+    const double row = over_field(local_.origin.y + local_.direction.y * t, grid_.cell_rows);
     Sample sample;
-    sample.cell = {std::min(static_cast<int>(col), grid_.cols - 2), std::min(static_cast<int>(row), grid_.rows - 2)};
+    sample.cell = {std::min(static_cast<int>(col), grid_.cell_cols - 1),
+                   std::min(static_cast<int>(row), grid_.cell_rows - 1)};
     sample.u = col - sample.cell.col;
     sample.v = row - sample.cell.row;
     if (grid_.is_hole(sample.cell.col, sample.cell.row)) return sample;
-    const T *north = grid_.row(sample.cell.row) + sample.cell.col, *south = north + grid_.row_stride;
-    const double h0 = north[0] + sample.u * (static_cast<double>(north[1]) - north[0]);
-    const double h1 = south[0] + sample.u * (static_cast<double>(south[1]) - south[0]);
+    const double ground =
+        height_in_cell(field_.settings().surface, grid_.cell(sample.cell.col, sample.cell.row), sample.u, sample.v);
     sample.valid = true;
-    sample.clearance = (local_.origin.z + local_.direction.z * t - (h0 + sample.v * (h1 - h0))) * metres_;
+    sample.clearance = (local_.origin.z + local_.direction.z * t - ground) * metres_;
     return sample;
   }
 
@@ -68,6 +70,10 @@ class Ground {
   }
 
  private:
+  double over_field(double position, int cells) const {
+    if (field_.wraps()) position -= std::floor(position / cells) * cells;
+    return std::clamp(position, 0.0, static_cast<double>(cells));
+  }
   void clip(double low, double high, double o, double d) {
     if (d == 0) {
       if (!(o >= low && o <= high)) t_exit = -std::numeric_limits<double>::infinity();

@@ -17,18 +17,18 @@ namespace scarp {
 namespace {
 
 constexpr std::array kMarches = {
-    MarchEntry{"exhaustive", "height field", Guarantee::exact, false, march_exhaustive, nullptr, nullptr, false, "",
-               "every cell under the ray on its own, in double: the judge of the others, slow"},
-    MarchEntry{"naive", "height field", Guarantee::approximate, false, march_naive, nullptr, nullptr, false,
+    MarchEntry{"exhaustive", "height field", Guarantee::exact, false, false, march_exhaustive, nullptr, nullptr, false,
+               "", "every cell under the ray on its own, in double: the judge of the others, slow"},
+    MarchEntry{"naive", "height field", Guarantee::approximate, false, false, march_naive, nullptr, nullptr, false,
                "step factor 0.7, least step 1/512 of the way out, tolerance 0.001 of the distance, 1024 steps",
                "steps by the vertical distance to the ground; steps over steep ground"},
-    MarchEntry{"relaxed", "height field", Guarantee::approximate, false, march_relaxed, nullptr, nullptr, false,
+    MarchEntry{"relaxed", "height field", Guarantee::approximate, false, false, march_relaxed, nullptr, nullptr, false,
                "step factor 0.4, tolerance 0.0015 of the distance, 300 steps",
                "the shader writers' t += 0.4 h: closes in on calm ground, steps through steep ground"},
-    MarchEntry{"max-mip", "height field", Guarantee::exact, true, march_max_mip, occluded_max_mip, nullptr, false, "",
-               "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
-    MarchEntry{"max-mip-bisect", "height field", Guarantee::approximate, true, march_max_mip_bisect, nullptr, nullptr,
-               false, "16 halvings",
+    MarchEntry{"max-mip", "height field", Guarantee::exact, true, false, march_max_mip, occluded_max_mip, nullptr,
+               false, "", "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
+    MarchEntry{"max-mip-bisect", "height field", Guarantee::approximate, true, false, march_max_mip_bisect, nullptr,
+               nullptr, false, "16 halvings",
                "the same walk with the paper's binary search in the cell; passes rays that dip into a cell"},
 };
 

@@ -3,6 +3,7 @@
 // is listed here is tested against the oracle from that moment on.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -54,6 +55,8 @@ void validate(const MarchSettings& settings);
 struct HeightTarget {
   const HeightField* field = nullptr;
   const MaxPyramid* pyramid = nullptr;
+  /// slope_bound(*field), metres per metre; needed by marches with needs_slope.
+  double slope = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// A ray in world space against a height field: the closest hit. `stats`, when given, is overwritten.
@@ -69,6 +72,7 @@ struct MarchEntry {
   std::string_view fields;  ///< kinds of field that it takes
   Guarantee guarantee;
   bool needs_pyramid;
+  bool needs_slope;              ///< whether it asks for HeightTarget::slope
   HeightMarch cpu;               ///< scalar C++
   HeightOcclusion cpu_occluded;  ///< null: none of its own, ask cpu
   HeightMarch simd;              ///< null: none

@@ -10,13 +10,15 @@
 // asks for it; the order of these times alone decides which cells are visited, on every level. A hit is a change of
 // sign of (ray height - surface height) between two crossings, and each crossing is computed once: a ray that is above
 // at one crossing and below at a later one cannot slip through a node, an edge or a diagonal. A cell with + at both
-// ends is also tested at the vertex of its quadratic.
+// ends is also tested at the vertex of its quadratic; one of two triangles at its diagonal.
 //
 // Guarantee: exact. Never loses a hit; vertical error as derived in doc/dev/numerics.md.
 // Source: A. Tevs, I. Ihrke, H.-P. Seidel, I3D 2008 (see accel/max_pyramid.h); the closed form of the bilinear cell as
 // in S. D. Ramsey, K. Potter, C. Hansen, "Ray bilinear patch intersections", JGT 9(3), 2004. Cost: some 5 to 25 blocks
 // per ray on mountains, 1 or 2 cells.
 #pragma once
+
+#include <vector>
 
 #include "scarp/march/marches.h"
 
@@ -32,7 +34,13 @@ Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSetting
 Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                          MarchStats* stats = nullptr);
 
-/// Whether anything is hit in the ray's range: march_max_mip(...).status == hit, without computing where.
+/// Whether anything is hit in the ray's range: march_max_mip(...).status == hit, without computing where. A ray that
+/// was above at the entry of a block without holes, and comes under the block's minimum, is answered there.
 bool occluded_max_mip(const HeightTarget& target, const Ray& ray);
+
+/// All hits in the ray's range, in the order of t: each time that the ray goes from above to on or below the surface
+/// (at most once per cell), and through walls into solid ground. `hits` is overwritten; the first is that of
+/// march_max_mip. Returns hit, or why there is none.
+HitStatus all_hits_max_mip(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits);
 
 }  // namespace scarp

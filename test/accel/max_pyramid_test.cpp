@@ -12,62 +12,99 @@
 namespace scarp {
 namespace {
 
-template <class T>
-T lowest() {
-  return std::numeric_limits<T>::has_infinity ? -std::numeric_limits<T>::infinity() : std::numeric_limits<T>::lowest();
-}
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// The maximum over a block's cells, straight from the samples.
-template <class T>
-T brute_force(const SampleGrid<T>& grid, int level, int col, int row) {
-  T highest = lowest<T>();
-  for (int r = row << level; r < std::min((row + 1) << level, grid.rows - 1); ++r) {
-    for (int c = col << level; c < std::min((col + 1) << level, grid.cols - 1); ++c) {
-      if (!grid.is_hole(c, r))
-        highest = std::max({highest, grid.at(c, r), grid.at(c + 1, r), grid.at(c, r + 1), grid.at(c + 1, r + 1)});
+struct Bounds {
+  double low = kInfinity, high = -kInfinity;
+  bool hole = false;
+};
+
+// The extremes over a block's cells, straight from the samples.
+Bounds brute_force(const HeightField& field, int level, int col, int row) {
+  Bounds bounds;
+  for (int r = row << level; r < std::min((row + 1) << level, field.cell_rows()); ++r) {
+    for (int c = col << level; c < std::min((col + 1) << level, field.cell_cols()); ++c) {
+      const auto h = field.cell_heights({c, r});
+      if (!h) {
+        bounds.hole = true;
+        continue;
+      }
+      bounds.low = std::min({bounds.low, h->h00, h->h10, h->h01, h->h11});
+      bounds.high = std::max({bounds.high, h->h00, h->h10, h->h01, h->h11});
     }
   }
-  return highest;
+  return bounds;
 }
 
-template <class T>
-void expect_tight(const HeightField& field) {
-  const MaxPyramid pyramid(field);
-  field.visit([&](const auto& grid) {
-    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(grid.data[0])>, T>) {
-      std::size_t entries = 0;
-      for (int l = 1; l <= pyramid.top_level(); ++l) {
-        const auto level = pyramid.level<T>(l);
-        ASSERT_EQ(level.cols, (field.cell_cols() + (1 << l) - 1) >> l);
-        ASSERT_EQ(level.rows, (field.cell_rows() + (1 << l) - 1) >> l);
-        entries += static_cast<std::size_t>(level.cols) * level.rows;
-        for (int row = 0; row < level.rows; ++row) {
-          for (int col = 0; col < level.cols; ++col)
-            ASSERT_EQ(level.at(col, row), brute_force(grid, l, col, row)) << l << ": " << col << ", " << row;
+// Each entry bounds its block, and by less than one step of the code.
+void expect_tight(const HeightField& field, const MaxPyramid& pyramid) {
+  const double step = pyramid.code().step;
+  const bool exact = field.sample_type() != SampleType::float32;
+  std::size_t entries = 0;
+  for (int l = 1; l <= pyramid.top_level(); ++l) {
+    const auto& level = pyramid.levels()[static_cast<std::size_t>(l - 1)];
+    ASSERT_EQ(level.cols, (field.cell_cols() + (1 << l) - 1) >> l);
+    ASSERT_EQ(level.rows, (field.cell_rows() + (1 << l) - 1) >> l);
+    entries += static_cast<std::size_t>(level.cols) * level.rows;
+    for (int row = 0; row < level.rows; ++row) {
+      for (int col = 0; col < level.cols; ++col) {
+        SCOPED_TRACE(testing::Message() << "level " << l << ": " << col << ", " << row);
+        const Bounds true_bounds = brute_force(field, l, col, row);
+        const double high = pyramid.maximum(l, col, row), low = pyramid.minimum(l, col, row);
+        if (true_bounds.high == -kInfinity) {
+          ASSERT_EQ(high, pyramid.code().height(0));
+        } else {
+          ASSERT_GE(high, true_bounds.high);
+          ASSERT_LT(high - true_bounds.high, exact ? step : 2 * step);
+        }
+        if (true_bounds.hole) {
+          ASSERT_EQ(low, -kInfinity);
+        } else if (low == -kInfinity) {
+          ASSERT_EQ(true_bounds.low, pyramid.code().height(0));  // as low as codes go
+        } else {
+          ASSERT_LE(low, true_bounds.low);
+          ASSERT_LT(true_bounds.low - low, exact ? step : 2 * step);
         }
       }
-      EXPECT_EQ(pyramid.bytes(), entries * sizeof(T));
     }
-  });
+  }
+  EXPECT_EQ(pyramid.bytes(), 2 * entries * sizeof(std::uint16_t));
   EXPECT_EQ(pyramid.levels().back().cols, 1);
   EXPECT_EQ(pyramid.levels().back().rows, 1);
 }
 
 template <class T>
-std::vector<T> noise(int cols, int rows) {
+std::vector<T> noise(int cols, int rows, double scale = 1) {
   std::mt19937 random(7);
   std::vector<T> samples(static_cast<std::size_t>(cols) * rows);
-  for (T& s : samples) s = static_cast<T>(random() % 1000);
+  for (T& s : samples) s = static_cast<T>(scale * static_cast<double>(random() % 1000));
   return samples;
 }
 
-TEST(MaxPyramid, EqualsTheMaximumOfEachBlockAtAnySize) {
-  for (const auto& [cols, rows] : std::vector<std::pair<int, int>>{
-           {2, 2}, {2, 9}, {3, 3}, {4, 4}, {5, 17}, {16, 16}, {17, 17}, {13, 29}, {64, 3}, {65, 33}, {101, 97}}) {
-    SCOPED_TRACE(std::to_string(cols) + " x " + std::to_string(rows));
-    expect_tight<float>(HeightField::own(noise<float>(cols, rows), cols, rows));
-    expect_tight<std::int16_t>(HeightField::own(noise<std::int16_t>(cols, rows), cols, rows));
-    expect_tight<std::uint16_t>(HeightField::own(noise<std::uint16_t>(cols, rows), cols, rows));
+const std::vector<std::pair<int, int>> kSizes{{2, 2},   {2, 9},   {3, 3},  {4, 4},   {5, 17},  {16, 16},
+                                              {17, 17}, {13, 29}, {64, 3}, {65, 33}, {101, 97}};
+
+TEST(MaxPyramid, BoundsEachBlockTightlyAtAnySize) {
+  for (const auto& [cols, rows] : kSizes) {
+    for (const Wrap wrap : {Wrap::none, Wrap::periodic}) {
+      SCOPED_TRACE(testing::Message() << cols << " x " << rows);
+      const auto check = [&](const HeightField& field) { expect_tight(field, MaxPyramid(field)); };
+      check(HeightField::own(noise<float>(cols, rows, 0.37), cols, rows, {.wrap = wrap}));
+      check(HeightField::own(noise<std::int16_t>(cols, rows), cols, rows, {.wrap = wrap}));
+      check(HeightField::own(noise<std::uint16_t>(cols, rows), cols, rows, {.wrap = wrap}));
+    }
+  }
+}
+
+TEST(MaxPyramid, BoundsHeightsThatCodesDoNotMeet) {
+  // Far above the datum, tiny, huge, and all the same.
+  for (const double offset : {0.0, 1e6, -3e30}) {
+    for (const double scale : {0.0, 1e-7, 1.0 / 3, 1e30}) {
+      auto samples = noise<float>(33, 18, scale);
+      for (float& s : samples) s = static_cast<float>(static_cast<double>(s) + offset);
+      const HeightField field = HeightField::own(samples, 33, 18);
+      expect_tight(field, MaxPyramid(field));
+    }
   }
 }
 
@@ -80,8 +117,12 @@ TEST(MaxPyramid, LeavesHolesOut) {
     ints[at] = 9999;  // higher than all: a hole that is taken for ground would show
     floats[at] = i % 2 ? std::numeric_limits<float>::quiet_NaN() : 9999.f;
   }
-  expect_tight<std::int16_t>(HeightField::own(ints, 21, 19, {.nodata = 9999}));
-  expect_tight<float>(HeightField::own(floats, 21, 19, {.nodata = 9999}));
+  for (const Wrap wrap : {Wrap::none, Wrap::periodic}) {
+    const HeightField a = HeightField::own(ints, 21, 19, {.nodata = 9999, .wrap = wrap});
+    expect_tight(a, MaxPyramid(a));
+    const HeightField b = HeightField::own(floats, 21, 19, {.nodata = 9999, .wrap = wrap});
+    expect_tight(b, MaxPyramid(b));
+  }
 }
 
 TEST(MaxPyramid, HasNoLevelsWithoutCells) {
@@ -90,15 +131,93 @@ TEST(MaxPyramid, HasNoLevelsWithoutCells) {
 
 RC_GTEST_PROP(MaxPyramid, BoundsTheSurfaceBetweenTheSamples, ()) {
   const int cols = *rc::gen::inRange(2, 40), rows = *rc::gen::inRange(2, 40);
-  const HeightField field = HeightField::own(noise<float>(cols, rows), cols, rows);
+  const Surface surface = *rc::gen::element(Surface::bilinear, Surface::triangles);
+  const HeightField field = HeightField::own(noise<float>(cols, rows), cols, rows, {.surface = surface});
   const MaxPyramid pyramid(field);
   const double x = *rc::gen::inRange(0, 10001) * 1e-4 * field.width(),
                y = *rc::gen::inRange(0, 10001) * 1e-4 * field.depth();
   const auto place = field.place(x, y).value();
   for (int l = 1; l <= pyramid.top_level(); ++l) {
-    RC_ASSERT(static_cast<double>(pyramid.level<float>(l).at(place.cell.col >> l, place.cell.row >> l)) >=
-              field.height(x, y).value());
+    RC_ASSERT(pyramid.maximum(l, place.cell.col >> l, place.cell.row >> l) >= field.height(x, y).value());
+    RC_ASSERT(pyramid.minimum(l, place.cell.col >> l, place.cell.row >> l) <= field.height(x, y).value());
   }
+}
+
+std::vector<std::uint16_t> entries(const MaxPyramid& pyramid) {
+  const std::size_t count = pyramid.bytes() / (2 * sizeof(std::uint16_t));
+  std::vector<std::uint16_t> all(pyramid.maxima(), pyramid.maxima() + count);
+  all.insert(all.end(), pyramid.minima(), pyramid.minima() + count);
+  return all;
+}
+
+template <class T>
+void expect_update_equals_build(const HeightFieldSettings& settings) {
+  std::mt19937 random(9);
+  const auto below = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  const int cols = 37, rows = 29;
+  // Samples 0 and 999 stay in, so that a pyramid built anew has the same range.
+  auto samples = noise<T>(cols, rows);
+  if (settings.wrap == Wrap::shared_border) {
+    for (int row = 0; row < rows; ++row)
+      samples[static_cast<std::size_t>(row * cols + cols - 1)] = samples[static_cast<std::size_t>(row * cols)];
+    for (int col = 0; col < cols; ++col)
+      samples[static_cast<std::size_t>((rows - 1) * cols + col)] = samples[static_cast<std::size_t>(col)];
+  }
+  samples[static_cast<std::size_t>(14 * cols + 18)] = T{0};
+  samples[static_cast<std::size_t>(14 * cols + 19)] = T{999};
+  HeightField field = HeightField::own(samples, cols, rows, settings);
+  MaxPyramid pyramid(field);
+  for (int i = 0; i < 200; ++i) {
+    SampleRect rect{below(cols), below(rows), 1, 1};
+    rect.cols = 1 + below(cols - rect.col);
+    rect.rows = 1 + below(rows - rect.row);
+    if (settings.wrap == Wrap::shared_border) rect = {1, 1, 1 + below(cols - 2), 1 + below(rows - 2)};
+    std::vector<T> edit(static_cast<std::size_t>(rect.cols) * rect.rows);
+    for (int r = 0; r < rect.rows; ++r) {
+      for (int c = 0; c < rect.cols; ++c) {
+        T sample = below(12) == 0 ? T{500} : static_cast<T>(below(1000));
+        if (rect.row + r == 14 && (rect.col + c == 18 || rect.col + c == 19))
+          sample = rect.col + c == 18 ? T{0} : T{999};
+        edit[static_cast<std::size_t>(r * rect.cols + c)] = sample;
+      }
+    }
+    const CellBox changed = field.set_samples(rect, edit.data(), rect.cols);
+    pyramid.update(field, changed);
+    ASSERT_EQ(entries(pyramid), entries(MaxPyramid(field))) << "edit " << i;
+  }
+}
+
+TEST(MaxPyramid, AnUpdateIsABuildOfWhatChanged) {
+  for (const Wrap wrap : {Wrap::none, Wrap::periodic, Wrap::shared_border}) {
+    for (const std::optional<double> nodata : {std::optional<double>(), std::optional<double>(500)}) {
+      expect_update_equals_build<float>({.nodata = nodata, .wrap = wrap});
+      expect_update_equals_build<std::int16_t>({.nodata = nodata, .wrap = wrap});
+      expect_update_equals_build<std::uint16_t>({.nodata = nodata, .wrap = wrap});
+    }
+  }
+}
+
+TEST(MaxPyramid, AnUpdateTouchesNothingElse) {
+  HeightField field = HeightField::own(noise<std::int16_t>(65, 65), 65, 65);
+  MaxPyramid pyramid(field);
+  // An entry spoilt far from the edit stays spoilt.
+  const_cast<std::uint16_t*>(pyramid.maxima())[0] = 12345;
+  const std::int16_t sample = 7;
+  pyramid.update(field, field.set_samples({60, 60, 1, 1}, &sample, 1));
+  EXPECT_EQ(pyramid.maxima()[0], 12345);
+}
+
+TEST(MaxPyramid, IsBuiltAnewWhenSamplesLeaveTheRangeOfItsCodes) {
+  HeightField field = HeightField::own(noise<float>(40, 30), 40, 30);
+  MaxPyramid pyramid(field), reserved(field, SampleRange{-6000, 6000});
+  const double step = reserved.code().step;
+  const std::vector<float> edit{5000.f, -5000.f};
+  const CellBox changed = field.set_samples({20, 10, 2, 1}, edit.data(), 2);
+  pyramid.update(field, changed);
+  reserved.update(field, changed);
+  expect_tight(field, pyramid);
+  expect_tight(field, reserved);
+  EXPECT_EQ(reserved.code().step, step);  // the range was reserved: no need
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Lowest and highest sample and the number of nodata, kept per tile, so that after an edit only its tiles are looked
+// at.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "scarp/field/sample_grid.h"
+
+namespace scarp {
+
+/// In sample units. Samples are int16, uint16 or float32, which a float holds all.
+struct SampleExtent {
+  float min = std::numeric_limits<float>::infinity();
+  float max = -std::numeric_limits<float>::infinity();
+  std::int64_t nodata = 0;
+
+  void merge(const SampleExtent& other);
+};
+
+class TileExtents {
+ public:
+  /// Looks at all samples, on all threads. Throws Error naming the first infinite one.
+  template <class T>
+  explicit TileExtents(const SampleGrid<T>& grid);
+
+  /// Looks at the tiles of a rectangle again. Samples must be finite or nodata.
+  template <class T>
+  void update(const SampleGrid<T>& grid, const SampleRect& changed);
+
+  const SampleExtent& whole() const { return whole_; }
+
+ private:
+  static constexpr int kSide = 64;  // samples along a tile
+  template <class T>
+  void scan_tile_row(const SampleGrid<T>& grid, int tile_row, int first, int last);
+  void gather();
+
+  int tile_cols_ = 0, tile_rows_ = 0;
+  std::vector<SampleExtent> tiles_;  // rows of tiles
+  std::vector<SampleExtent> rows_;   // each row of tiles as one
+  SampleExtent whole_;
+};
+
+/// Throws Error naming the first infinite sample of a rectangle that is not marked as nodata.
+template <class T>
+void refuse_infinite(const SampleGrid<T>& grid, const SampleRect& rect);
+
+}  // namespace scarp
