@@ -19,9 +19,6 @@ std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntrie
 template <class T>
 struct Coder {
   HeightCode code;
-  double per_step;
-
-  explicit Coder(const HeightCode& to) : code(to), per_step(1 / to.step) {}
 
   std::uint16_t above(T sample) const {
     if constexpr (std::is_integral_v<T>) {
@@ -30,7 +27,7 @@ struct Coder {
       // The quotient may be rounded to either side: what counts is the height that the code stands for. A block of
       // holes has -infinity here, and the lowest code.
       const double height = static_cast<double>(sample);
-      const double near = std::clamp(std::ceil((height - code.base) * per_step), 0.0, double{kTopCode});
+      const double near = std::clamp(std::ceil((height - code.base) * code.per_step), 0.0, double{kTopCode});
       const auto first = static_cast<std::uint16_t>(static_cast<int>(near));
       return static_cast<std::uint16_t>(first + (code.height(first) < height && first < kTopCode));
     }
@@ -40,7 +37,7 @@ struct Coder {
       return static_cast<std::uint16_t>(sample - std::numeric_limits<T>::lowest());
     } else {
       const double height = static_cast<double>(sample);
-      const double near = std::clamp(std::floor((height - code.base) * per_step), 0.0, double{kTopCode});
+      const double near = std::clamp(std::floor((height - code.base) * code.per_step), 0.0, double{kTopCode});
       const auto first = static_cast<std::uint16_t>(static_cast<int>(near));
       return static_cast<std::uint16_t>(first - (code.height(first) > height && first > 0));
     }
@@ -147,7 +144,7 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
 void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleRange>& reserve) {
   HeightCode& code = shared_->code;
   if (field.sample_type() != SampleType::float32) {
-    code = {field.sample_type() == SampleType::int16 ? -32768.0 : 0.0, 1};
+    code = {field.sample_type() == SampleType::int16 ? -32768.0 : 0.0, 1, 1};
     return;
   }
   SampleRange range{0, 0};
@@ -159,7 +156,7 @@ void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleR
   double step = (range.high - range.low) / (kTopCode - 2);
   if (!(step > 0)) step = std::max(std::abs(range.low), 1.0) * 0x1p-20;
   do {
-    code = {range.low - 1.5 * step, step};
+    code = {range.low - 1.5 * step, step, 1 / step};
     step *= 1 + 0x1p-20;
   } while (code.height(kTopCode) < range.high);
 }
@@ -189,7 +186,7 @@ void MaxPyramid::build(const HeightField& field, CellBox changed) {
     if (l == 0) {
       field.visit([&](const auto& grid) {
         using T = std::remove_cvref_t<decltype(grid.data[0])>;
-        build_first(grid, Coder<T>(shared_->code), part, level.cols, maxima, minima);
+        build_first(grid, Coder<T>{shared_->code}, part, level.cols, maxima, minima);
       });
       continue;
     }

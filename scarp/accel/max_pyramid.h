@@ -30,7 +30,8 @@ namespace scarp {
 /// Heights as 16-bit codes.
 struct HeightCode {
   double base = 0;
-  double step = 1;  ///< sample units, > 0
+  double step = 1;      ///< sample units, > 0
+  double per_step = 1;  ///< 1 / step, rounded
 
   /// In sample units. Who builds codes and who reads them computes just this.
   double height(std::uint16_t code) const { return base + step * code; }

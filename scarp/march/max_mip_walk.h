@@ -11,7 +11,10 @@
 #include "scarp/march/grid_axis.h"
 #include "scarp/march/marches.h"
 
+// Internal linkage, though in a header: included by one file, which lets the compiler put functions that are called
+// once into their caller. With them outside, the walk keeps its state in memory, and a ray takes a tenth longer.
 namespace scarp::max_mip {
+namespace {
 
 /// What is asked: the closest hit in closed form or by halving, whether there is one, or all of them.
 enum class Ask { closest, bisected, any, all };
@@ -208,8 +211,12 @@ class Walk {
   bool walk() {
     const bool falling = dz_ < 0;
     const GridAxis x = x_, y = y_;
-    const HeightCode code = code_;
-    const double highest = field_.max_sample();
+    // The ray's height as a code, less what rounding can add to it: the pyramid is compared without decoding it.
+    const double per_step = code_.per_step, highest = field_.max_sample();
+    const double farthest = std::max(std::abs(t_in_), std::abs(t_end_));
+    const double upright = std::abs(z_) + std::abs(dz_) * farthest + std::abs(code_.base) + std::abs(highest);
+    const double code_z = (z_ - code_.base - kCodeRoundings * kUnit * upright) * per_step, code_dz = dz_ * per_step;
+    const double highest_code = (highest - code_.base) * per_step;
     // A coarse block may reach beyond the last row or column; the walk does not.
     const double t_end = wraps_ ? std::min({t_end_, x.exit_time(), y.exit_time()}) : t_end_;
     int level = level_, col = col_ >> level, row = row_ >> level;
@@ -220,19 +227,20 @@ class Walk {
       const bool through_x = tx <= ty;  // a tie: first through the line of constant column
       const double t_line = through_x ? tx : ty;
       const double t_out = std::min(t_line, t_end);
-      // The ray's height is linear, and so it is after rounding: lowest at one end of the block.
-      const double lowest = ray_height(falling ? t_out : t_in);
+      // The ray's height is linear: lowest at one end of the block.
+      const double t_lowest = falling ? t_out : t_in, lowest_code = code_z + code_dz * t_lowest;
       ++steps;
       if (level > 0) {
         const Level& at = levels_[level - 1];
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
-        if (above(lowest, code.height(maxima_[entry]), t_in)) {
+        const double maximum = maxima_[entry];
+        if (lowest_code > maximum && (side_ != Side::below || risen_above(maxima_[entry], t_lowest))) {
           // Where there are holes, the last cell may be one: the next begins with a question.
           side_ = Holes ? Side::unknown : Side::above;
         } else if (side_ == Side::below && under(ray_height(falling ? t_in : t_out), minima_[entry])) {
           if (lost(t_out)) break;
         } else {
-          if (ask == Ask::any && side_ == Side::above && falls_under(lowest, minima_[entry], t_out)) {
+          if (ask == Ask::any && falling && side_ == Side::above && falls_under(minima_[entry], t_lowest)) {
             answer_.status = HitStatus::hit;
             break;
           }
@@ -254,7 +262,8 @@ class Walk {
       } else {
         const CellHeights h = grid_.cell(col, row);
         const double maximum = std::max(std::max(h.h00, h.h10), std::max(h.h01, h.h11));
-        if (above(lowest, maximum, t_in)) {
+        const double lowest = ray_height(t_lowest);
+        if (lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_lowest))) {
           side_ = Side::above;
         } else {
           col_ = col, row_ = row, t_in_ = t_in;
@@ -262,7 +271,7 @@ class Walk {
         }
       }
       if (Holes) begun_ = true;
-      if (!falling && lowest > highest) break;
+      if (!falling && lowest_code > highest_code) break;
       if (!(t_line < t_end)) {
         left = t_end < t_end_;
         break;
@@ -313,9 +322,9 @@ class Walk {
     level_ = std::min(level_ + 1, top_);
   }
 
-  // Whether the ray is above all of a block. One that was below has to be so by more than rounding: see test_cell().
-  bool above(double lowest, double maximum, double t_in) const {
-    return lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_in));
+  // Whether a ray that was below is above all of a block by more than rounding: see test_cell().
+  bool risen_above(std::uint16_t maximum, double t_lowest) const {
+    return ray_height(t_lowest) - code_.height(maximum) > rounding_of_clearance(t_lowest);
   }
 
   // Whether a ray that is below stays so over all of a block, which then has no holes.
@@ -325,8 +334,9 @@ class Walk {
 
   // Whether a ray that was above has, at its lowest point over a block without holes, come under all of the block: it
   // has been through the surface, wherever. By more than rounding, so that closest() finds the hit, too.
-  bool falls_under(double lowest, std::uint16_t minimum, double t) const {
-    return under(lowest, minimum) && code_.height(minimum) - lowest > rounding_of_clearance(t);
+  bool falls_under(std::uint16_t minimum, double t_lowest) const {
+    const double lowest = ray_height(t_lowest);
+    return under(lowest, minimum) && code_.height(minimum) - lowest > rounding_of_clearance(t_lowest);
   }
 
   // The surface of the current cell; true: answered. Otherwise side_ is that of the way out.
@@ -456,7 +466,8 @@ class Walk {
 
   using Level = MaxPyramid::Level;
   static constexpr double kUnit = 0x1p-53;  // unit roundoff of double
-  static constexpr double kRoundings = 16;  // numerics.md counts 11 on the way to a clearance
+  static constexpr double kRoundings = 16;     // numerics.md counts 11 on the way to a clearance
+  static constexpr double kCodeRoundings = 8;  // and 6 on the way to a code
 
   const HeightField& field_;
   const SampleGrid<T>& grid_;
@@ -483,4 +494,5 @@ class Walk {
   std::vector<Hit>* all_;
 };
 
+}  // namespace
 }  // namespace scarp::max_mip
