@@ -64,14 +64,11 @@ std::string names_of(const Imf::ChannelList& channels) {
   return names;
 }
 
-bool has_several(const Imf::ChannelList& channels) {
-  auto it = channels.begin();
-  return it != channels.end() && ++it != channels.end();
-}
+// OpenEXR opens no image without channels.
+bool has_several(const Imf::ChannelList& channels) { return ++channels.begin() != channels.end(); }
 
 std::string choose_channel(const Imf::ChannelList& channels, const std::string& wanted) {
   const std::string names = names_of(channels);
-  if (names.empty()) throw Error("is an EXR without channels; one channel of heights is needed");
   if (!wanted.empty()) {
     if (channels.findChannel(wanted)) return wanted;
     throw Error(fmt::format("has no channel '{}'; --channel takes one of: {}", wanted, names));

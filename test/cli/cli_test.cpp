@@ -134,7 +134,7 @@ TEST_F(Cli, ARasterWithoutCellsIsRefused) {
   expect_refused(grid("column.asc", 1, 3, "5\n6\n7"), "cells");
 }
 
-TEST_F(Cli, AFolderIsNoRaster) { expect_refused(scratch_.path(""), "director"); }
+TEST_F(Cli, AFolderIsNoRaster) { expect_refused(scratch_.path(""), "folder without a raster"); }
 
 TEST_F(Cli, AMissingFileIsNamed) { expect_refused(path("nowhere.tif"), "nowhere.tif"); }
 
