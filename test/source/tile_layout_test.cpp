@@ -2,7 +2,7 @@
 #include "scarp/source/tile_layout.h"
 
 #include <gtest/gtest.h>
-#include <rapidcheck.h>
+#include <rapidcheck/gtest.h>
 
 #include <vector>
 
@@ -29,27 +29,25 @@ TEST(TileLayout, LargeExtentsDoNotOverflow) {
   EXPECT_EQ(covered_samples({{0, 0, kSide, kSide}, {kSide, kSide, kSide, kSide}}), 2.0 * kSide * kSide);
 }
 
-TEST(TileLayout, AgreesWithCountingSamples) {
-  rc::check([] {
-    std::vector<TileRect> tiles(*rc::gen::inRange<std::size_t>(1, 9));
-    for (TileRect& tile : tiles) {
-      tile = {*rc::gen::inRange(-9, 9), *rc::gen::inRange(-9, 9), *rc::gen::inRange(1, 8), *rc::gen::inRange(1, 8)};
+RC_GTEST_PROP(TileLayout, AgreesWithCountingSamples, ()) {
+  std::vector<TileRect> tiles(*rc::gen::inRange<std::size_t>(1, 9));
+  for (TileRect& tile : tiles) {
+    tile = {*rc::gen::inRange(-9, 9), *rc::gen::inRange(-9, 9), *rc::gen::inRange(1, 8), *rc::gen::inRange(1, 8)};
+  }
+  int counted = 0;
+  const TileRect all = bounding_rect(tiles);
+  for (int row = -20; row < 20; ++row) {
+    for (int col = -20; col < 20; ++col) {
+      const auto inside = [&](const TileRect& t) {
+        return col >= t.col && col < t.col + t.cols && row >= t.row && row < t.row + t.rows;
+      };
+      bool any = false;
+      for (const TileRect& tile : tiles) any = any || inside(tile);
+      counted += any;
+      RC_ASSERT(!any || inside(all));
     }
-    int counted = 0;
-    const TileRect all = bounding_rect(tiles);
-    for (int row = -20; row < 20; ++row) {
-      for (int col = -20; col < 20; ++col) {
-        const auto inside = [&](const TileRect& t) {
-          return col >= t.col && col < t.col + t.cols && row >= t.row && row < t.row + t.rows;
-        };
-        bool any = false;
-        for (const TileRect& tile : tiles) any = any || inside(tile);
-        counted += any;
-        RC_ASSERT(!any || inside(all));
-      }
-    }
-    RC_ASSERT(covered_samples(tiles) == counted);
-  });
+  }
+  RC_ASSERT(covered_samples(tiles) == counted);
 }
 
 }  // namespace
