@@ -65,19 +65,19 @@ void add_raster_options(CLI::App& command, RasterOptions& options) {
   command.add_option("--nodata", options.nodata, "sample value that marks a hole; nan: none but NaN does")
       ->group(group);
   command.add_option("--unit", options.unit, "vertical unit: m, ft, us-ft, km, dm, cm, mm, yd, fathom")->group(group);
-  const CLI::Option* offset = command.add_option("--offset", options.offset, "see --scale")->group(group);
   command
       .add_option_function<std::string>(
           "--scale",
-          [&options, offset](const std::string& text) {
+          [&command, &options](const std::string& text) {
             const auto n = numbers_from(text, ',', 1, 2, "--scale", "S[,OFFSET], for example 0.1 or 0.1,-10000");
-            if (n.size() == 2 && offset->count() > 0)
+            if (n.size() == 2 && command.count("--offset") > 0)
               throw Error(fmt::format("--scale '{}' has an offset already; leave out --offset", text));
             options.scale = n[0];
             if (n.size() == 2) options.offset = n[1];
           },
           "S[,OFFSET]: height = sample * S + OFFSET, in the vertical unit; not 0")
       ->group(group);
+  command.add_option("--offset", options.offset, "see --scale")->group(group);
   command
       .add_option_function<std::string>(
           "--height-range", [&options](const std::string& text) { options.height_range = height_range_from(text); },

@@ -145,6 +145,12 @@ bool can_mark(const Tile& tile, double value) {
   return !clamped && !rounded;
 }
 
+// The sample value that marks holes in the tiles, and may mark those between them.
+std::optional<double> mark_of_holes(const Tile& tile, const RasterOptions& options) {
+  const std::optional<double> value = options.nodata ? options.nodata : tile.nodata;
+  return value && !std::isnan(*value) && can_mark(tile, *value) ? value : std::nullopt;
+}
+
 // A type that holds all samples of `type` and NaN.
 GDALDataType type_with_nan(GDALDataType type) {
   return GDALDataTypeIsFloating(type) ? type : GDALGetDataTypeSizeBits(type) <= 16 ? GDT_Float32 : GDT_Float64;
@@ -175,8 +181,7 @@ void add_source(GDALRasterBand& band, const std::string& xml, const GdalSession&
 void add_heights(GDALDataset& dataset, const std::vector<Tile>& tiles, const std::vector<TileRect>& places, bool gaps,
                  const RasterOptions& options, const GdalSession& session) {
   const Tile& first = tiles.front();
-  std::optional<double> mark = options.nodata ? options.nodata : first.nodata;
-  if (mark && (std::isnan(*mark) || !can_mark(first, *mark))) mark.reset();
+  const std::optional<double> mark = mark_of_holes(first, options);
   const bool masked = std::any_of(tiles.begin(), tiles.end(), [](const Tile& tile) { return tile.masked; });
   const bool nan = masked || (gaps && !mark);
   GDALRasterBand& band = add_band(dataset, nan ? type_with_nan(first.type) : first.type, session);
