@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/progress.h"
@@ -23,7 +24,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
-  std::string input;
+  std::vector<std::string> inputs;
   RasterOptions raster;
   bool json = false;
 };
@@ -32,7 +33,7 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 
 // Everything there is to say, once: the text and the JSON are made of this.
 Json describe(const InfoOptions& options) {
-  Raster raster = read_raster(options.input, options.raster, terminal_progress("read"));
+  Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
   stop_if_interrupted();
   const Georeference geo = raster.georeference;
   Json info;
@@ -110,7 +111,7 @@ std::string text_of(const Json& info) {
 void add_info(CLI::App& program) {
   CLI::App* command = program.add_subcommand("info", "Say what is in a raster of heights, as scarp will use it");
   const auto options = std::make_shared<InfoOptions>();
-  command->add_option("IN", options->input, "raster of heights: anything GDAL reads, .npy, .npz")->required();
+  add_raster_inputs(*command, options->inputs);
   command->add_flag("--json", options->json, "one JSON object instead of text");
   add_raster_options(*command, options->raster);
   command->callback([options] {

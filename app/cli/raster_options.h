@@ -3,13 +3,18 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "scarp/source/raster_options.h"
 
 namespace scarp::cli {
 
-/// Adds --band, --window, --nodata, --scale, --offset, --unit, --crs, --bounds and --key. `options` must live until the
-/// subcommand has run.
+/// Adds IN, one or several files or folders: what read_tiles() takes. `inputs` must live until the subcommand has run.
+void add_raster_inputs(CLI::App& command, std::vector<std::string>& inputs);
+
+/// Adds --band, --window, --nodata, --scale, --offset, --height-range, --unit, --crs, --bounds, --encoding, --raw,
+/// --channel and --key. `options` must live until the subcommand has run.
 void add_raster_options(CLI::App& command, RasterOptions& options);
 
 }  // namespace scarp::cli

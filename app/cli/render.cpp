@@ -29,7 +29,8 @@ namespace {
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {
-  std::string input, output;
+  std::vector<std::string> inputs;
+  std::string output;
   RasterOptions raster;
   double exaggeration = 1;
   std::string march = "max-mip";
@@ -146,20 +147,20 @@ void run(RenderOptions options) {
   ReplaceFile file(options.output);
 
   Watch watch;
-  Raster raster = read_raster(options.input, options.raster, terminal_progress("read"));
+  Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
   stop_if_interrupted();
   const double read_s = watch.lap();
   const double grid_north_azimuth = raster.georeference.grid_north_azimuth;
   const std::vector<std::string> notes = raster.notes;
+  const std::string path = raster.path;
 
   HeightField field = height_field_from(std::move(raster), options.exaggeration);
   if (!field.has_cells()) {
-    throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed",
-                            options.input, field.cols(), field.rows()));
+    throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed", path,
+                            field.cols(), field.rows()));
   }
   if (field.all_nodata()) {
-    throw Error(
-        fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", options.input));
+    throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", path));
   }
   const TerrainScene scene(std::move(field), march, options.march_settings);
   stop_if_interrupted();
@@ -201,7 +202,7 @@ void add_render(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "Render an elevation model into a PNG picture");
   const auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
-  command->add_option("IN", o.input, "raster of heights: anything GDAL reads, .npy, .npz")->required();
+  add_raster_inputs(*command, o.inputs);
   command->add_option("-o,--output", o.output, "the picture, .png")->required();
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels (1280x720; with --top the shape of the ground)");
   command->add_option("--look", o.look, "shaded, height, steps, error")->capture_default_str();

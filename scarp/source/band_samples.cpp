@@ -182,7 +182,20 @@ bool looks_like_nodata(double lowest) {
   return lowest == -32768 || lowest == -32767 || lowest == -9999 || (lowest < -1e30 && std::isfinite(lowest));
 }
 
-std::optional<double> nodata_of(GDALRasterBand& band, bool signed_bytes) {
+template <class T>
+bool holds(double value) {
+  return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
+         value == std::floor(value);
+}
+
+}  // namespace
+
+bool is_signed_byte(GDALRasterBand& band) {
+  const char* pixel_type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  return band.GetRasterDataType() == GDT_Byte && pixel_type && std::string_view(pixel_type) == "SIGNEDBYTE";
+}
+
+std::optional<double> nodata_of(GDALRasterBand& band) {
   int has = 0;
   double value = 0;
   switch (band.GetRasterDataType()) {
@@ -196,16 +209,13 @@ std::optional<double> nodata_of(GDALRasterBand& band, bool signed_bytes) {
       value = band.GetNoDataValue(&has);
   }
   if (!has) return {};
-  return signed_bytes && value > 127 ? value - 256 : value;
+  return is_signed_byte(band) && value > 127 ? value - 256 : value;
 }
 
-template <class T>
-bool holds(double value) {
-  return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
-         value == std::floor(value);
+bool has_own_mask(GDALRasterBand& band) {
+  const int flags = band.GetMaskFlags();
+  return !(flags & GMF_ALL_VALID) && (!(flags & GMF_NODATA) || (flags & GMF_PER_DATASET));
 }
-
-}  // namespace
 
 void refuse_beyond_memory(const RasterWindow& window, int bytes_per_sample) {
   const double needed = static_cast<double>(window.cols) * window.rows * bytes_per_sample, have = free_memory_bytes();
@@ -237,12 +247,10 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
     throw Error(fmt::format(
         "its samples are complex numbers ({}), no heights; convert them with gdal_translate -ot Float32", type_name));
   }
-  // GDAL before 3.7 knows signed bytes only as a remark on Byte.
-  const char* pixel_type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
-  const bool signed_bytes = type == GDT_Byte && pixel_type && std::string_view(pixel_type) == "SIGNEDBYTE";
+  const bool signed_bytes = is_signed_byte(band);
 
   BandSamples read;
-  read.nodata = nodata ? nodata : nodata_of(band, signed_bytes);
+  read.nodata = nodata ? nodata : nodata_of(band);
   if (read.nodata && std::isnan(*read.nodata)) read.nodata.reset();
   Findings found;
   const auto integers = [&]<class T>(T, GDALDataType as, std::string_view becomes) {
@@ -280,12 +288,11 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
     }
   }
   // A mask that only repeats the nodata value says nothing new, and a nodata value of the caller's wins over it.
-  const int flags = band.GetMaskFlags();
-  if (!(flags & GMF_ALL_VALID) && (!(flags & GMF_NODATA) || (flags & GMF_PER_DATASET))) {
+  if (has_own_mask(band)) {
     const std::int64_t hidden = apply_mask(*band.GetMaskBand(), window, read, session);
     if (hidden > 0)
-      read.notes.push_back(
-          fmt::format("{} samples are holes by the file's {}", hidden, flags & GMF_ALPHA ? "alpha band" : "mask"));
+      read.notes.push_back(fmt::format("{} samples are holes by the file's {}", hidden,
+                                       band.GetMaskFlags() & GMF_ALPHA ? "alpha band" : "mask"));
   }
   if (found.nan > 0) read.notes.push_back(fmt::format("{} samples are NaN: holes", found.nan));
   if (all_holes(read)) {

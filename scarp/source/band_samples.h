@@ -42,6 +42,15 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
 void read_rows(GDALRasterBand& band, const RasterWindow& window, int row, int rows, GDALDataType type, void* out,
                GdalSession& session);
 
+/// Whether the samples are signed bytes, which GDAL before 3.7 knows only as a remark on Byte.
+bool is_signed_byte(GDALRasterBand& band);
+
+/// The band's own nodata value, in the sign of its samples.
+std::optional<double> nodata_of(GDALRasterBand& band);
+
+/// Whether the band has a mask that says more than its nodata value.
+bool has_own_mask(GDALRasterBand& band);
+
 /// Throws Error when the window's samples need more memory than is free.
 void refuse_beyond_memory(const RasterWindow& window, int bytes_per_sample);
 

@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string_view>
 
 #include "scarp/base/error.h"
 #include "scarp/source/band_samples.h"
+#include "scarp/source/decoded_dataset.h"
 #include "scarp/source/raster_place.h"
 #include "scarp/source/vertical_unit.h"
 
@@ -31,34 +33,6 @@ constexpr int kSubdatasetsListed = 6;
   if (count == 0) throw Error("holds no raster band");
   if (count > kSubdatasetsListed) list += fmt::format(" and {} more", count - kSubdatasetsListed);
   throw Error(fmt::format("holds {} rasters and no band of its own; open one of them: {}", count, list));
-}
-
-int choose_band(GDALDataset& dataset, int wanted) {
-  const int count = dataset.GetRasterCount();
-  if (count == 0) refuse_container(dataset);
-  if (wanted != 0) {
-    if (wanted < 1 || wanted > count)
-      throw Error(fmt::format("band {} does not exist; it has {}: --band 1..{}", wanted, count, count));
-    return wanted;
-  }
-  int heights = 0, chosen = 0;
-  bool colours = false;
-  for (int b = 1; b <= count; ++b) {
-    const GDALColorInterp meaning = dataset.GetRasterBand(b)->GetColorInterpretation();
-    if (meaning == GCI_AlphaBand) continue;
-    ++heights;
-    if (chosen == 0) chosen = b;
-    colours = colours || meaning == GCI_RedBand || meaning == GCI_CyanBand || meaning == GCI_YCbCr_YBand;
-  }
-  if (heights != 1) {
-    throw Error(fmt::format("{} with {} bands; one band of heights is needed: choose one with --band 1..{}",
-                            colours ? "is a colour photograph" : "is a raster", count, count));
-  }
-  if (dataset.GetRasterBand(chosen)->GetColorTable()) {
-    throw Error(
-        "its samples are indices into a palette of colours, no heights; say --band 1 if they are heights all the same");
-  }
-  return chosen;
 }
 
 RasterWindow choose_window(GDALDataset& dataset, const std::optional<RasterWindow>& wanted) {
@@ -148,14 +122,73 @@ void flip(Raster& raster, bool rows, bool cols) {
 
 }  // namespace
 
-Raster read_dataset(GDALDataset& dataset, const RasterOptions& options, GdalSession& session,
-                    const Progress& progress) {
-  GDALRasterBand& band = *dataset.GetRasterBand(choose_band(dataset, options.band));
+int height_band(GDALDataset& dataset, int wanted) {
+  const int count = dataset.GetRasterCount();
+  if (count == 0) refuse_container(dataset);
+  if (wanted != 0) {
+    if (wanted < 1 || wanted > count)
+      throw Error(fmt::format("band {} does not exist; it has {}: --band 1..{}", wanted, count, count));
+    return wanted;
+  }
+  int heights = 0, chosen = 0;
+  bool colours = false;
+  for (int b = 1; b <= count; ++b) {
+    const GDALColorInterp meaning = dataset.GetRasterBand(b)->GetColorInterpretation();
+    if (meaning == GCI_AlphaBand) continue;
+    ++heights;
+    if (chosen == 0) chosen = b;
+    colours = colours || meaning == GCI_RedBand || meaning == GCI_CyanBand || meaning == GCI_YCbCr_YBand;
+  }
+  if (heights != 1) {
+    throw Error(
+        fmt::format("{} with {} bands; one band of heights is needed: choose one with --band 1..{}{}",
+                    colours ? "is a colour photograph" : "is a raster", count, count,
+                    colours ? ", or say --encoding terrain-rgb or terrarium if its colours encode heights" : ""));
+  }
+  if (dataset.GetRasterBand(chosen)->GetColorTable()) {
+    throw Error(
+        "its samples are indices into a palette of colours, no heights; say --band 1 if they are heights all the same");
+  }
+  return chosen;
+}
+
+void settle_height_range(RasterOptions& options, GDALDataType type, bool signed_byte) {
+  if (!options.height_range) return;
+  const HeightRange range = *options.height_range;
+  if (options.scale || options.offset)
+    throw Error("--height-range and --scale or --offset say the same thing twice; leave out one of them");
+  if (options.encoding != HeightEncoding::none)
+    throw Error("--height-range does not go with --encoding, which has a scale of its own; leave out one of them");
+  if (!(std::isfinite(range.low) && std::isfinite(range.high) && range.low < range.high))
+    throw Error(fmt::format("the height range {},{} is empty; --height-range LOW,HIGH with LOW < HIGH is needed",
+                            range.low, range.high));
+  const bool floating = GDALDataTypeIsFloating(type);
+  if (!floating && (signed_byte || GDALDataTypeIsSigned(type)))
+    throw Error(
+        fmt::format("its samples are signed ({}), for which --height-range has no meaning; say --scale "
+                    "S,OFFSET",
+                    GDALGetDataTypeName(type)));
+  const double greatest = floating ? 1 : std::exp2(GDALGetDataTypeSizeBits(type)) - 1;
+  options.scale = (range.high - range.low) / greatest;
+  options.offset = range.low;
+  options.height_range.reset();
+}
+
+Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession& session, const Progress& progress) {
+  RasterOptions options = given;
+  std::unique_ptr<DecodedDataset> decoded;
+  if (options.encoding != HeightEncoding::none) {
+    if (options.band != 0) throw Error("--encoding reads three bands at once; leave out --band");
+    decoded = std::make_unique<DecodedDataset>(stored, options.encoding);
+  }
+  GDALDataset& dataset = decoded ? *decoded : stored;
+  GDALRasterBand& band = *dataset.GetRasterBand(height_band(dataset, options.band));
+  settle_height_range(options, band.GetRasterDataType(), is_signed_byte(band));
   const RasterWindow window = choose_window(dataset, options.window);
   Raster raster;
   raster.cols = window.cols;
   raster.rows = window.rows;
-  raster.file_type = GDALGetDataTypeName(band.GetRasterDataType());
+  raster.file_type = decoded ? std::string(name_of(options.encoding)) : GDALGetDataTypeName(band.GetRasterDataType());
 
   // What can be refused without reading is refused first.
   RasterPlace place = find_place(dataset, window, options);

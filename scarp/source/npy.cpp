@@ -4,18 +4,19 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
-#include <filesystem>
 #include <limits>
 #include <memory>
-#include <new>
 #include <string_view>
 
 #include "scarp/base/error.h"
 #include "scarp/source/band_samples.h"
 #include "scarp/source/file_check.h"
+#include "scarp/source/file_extension.h"
 #include "scarp/source/gdal_dataset.h"
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/npy_header.h"
+#include "scarp/source/raster_name.h"
+#include "scarp/source/raw_band.h"
 
 namespace scarp {
 namespace {
@@ -24,25 +25,8 @@ struct FileCloser {
   void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
 
-bool ends_with(const std::string& path, std::string_view extension) {
-  return path.size() >= extension.size() && EQUAL(path.c_str() + path.size() - extension.size(), extension.data());
-}
-
-std::string full_path(const std::string& path) {
-  return path.starts_with("/vsi") ? path : std::filesystem::absolute(path).string();
-}
-
 // /vsizip wants the archive's full name, in braces when it does not end in .zip.
 std::string archive_folder(const std::string& path) { return "/vsizip/{" + full_path(path) + "}"; }
-
-std::int64_t file_bytes(const std::string& path) {
-  VSIStatBufL status;
-  if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG | VSI_STAT_SIZE_FLAG) != 0) {
-    throw Error("does not exist; name a raster file");
-  }
-  if (VSI_ISDIR(status.st_mode)) throw Error("is a directory; a raster file is needed");
-  return static_cast<std::int64_t>(status.st_size);
-}
 
 NpyHeader read_header(const std::string& path, const GdalSession& session) {
   const std::unique_ptr<VSILFILE, FileCloser> file(VSIFOpenL(path.c_str(), "rb"));
@@ -74,31 +58,8 @@ std::optional<std::pair<std::int64_t, std::int64_t>> raster_shape(const NpyHeade
   return std::pair(shape[0], shape[1]);
 }
 
-GDALDataType sample_type(const NpyHeader& header, bool& signed_bytes) {
-  signed_bytes = false;
-  switch (header.kind) {
-    case 'i':
-      // GDAL knows signed bytes since 3.7; before, as a remark on Byte.
-      if (header.bytes == 1) {
-        const GDALDataType type = GDALGetDataTypeByName("Int8");
-        signed_bytes = type == GDT_Unknown;
-        return signed_bytes ? GDT_Byte : type;
-      }
-      if (header.bytes == 2) return GDT_Int16;
-      if (header.bytes == 4) return GDT_Int32;
-      break;
-    case 'u':
-      if (header.bytes == 1) return GDT_Byte;
-      if (header.bytes == 2) return GDT_UInt16;
-      if (header.bytes == 4) return GDT_UInt32;
-      break;
-    case 'f':
-      if (header.bytes == 4) return GDT_Float32;
-      if (header.bytes == 8) return GDT_Float64;
-      break;
-    default:
-      break;
-  }
+RawSampleType sample_type(const NpyHeader& header) {
+  if (const auto type = raw_sample_type(header.kind, header.bytes)) return *type;
   const std::string_view word = header.kind == 'b'   ? "true and false"
                                 : header.kind == 'c' ? "complex numbers"
                                 : header.kind == 'O' ? "Python objects"
@@ -116,7 +77,7 @@ std::string choose_member(const std::string& path, const std::string& key, const
   std::string all;
   for (int i = 0; i < members.size(); ++i) {
     const std::string member = members[i];
-    if (!ends_with(member, ".npy")) continue;
+    if (!has_extension(member, ".npy")) continue;
     const std::string name = member.substr(0, member.size() - 4);
     if (!key.empty() && (name == key || member == key)) return folder + "/" + member;
     const NpyHeader header = read_header(folder + "/" + member, session);
@@ -130,30 +91,6 @@ std::string choose_member(const std::string& path, const std::string& key, const
     throw Error(fmt::format("holds {} arrays with two dimensions; choose one with --key: {}", rasters.size(), all));
   }
   return folder + "/" + rasters.front();
-}
-
-std::string xml_text(const std::string& text) {
-  char* escaped = CPLEscapeString(text.c_str(), static_cast<int>(text.size()), CPLES_XML);
-  std::string result = escaped;
-  CPLFree(escaped);
-  return result;
-}
-
-// A virtual dataset whose one band is the array's memory image. Arrays in Fortran order appear transposed.
-GDALDatasetUniquePtr open_raw(const std::string& file, const NpyHeader& header, int cols, int rows, GDALDataType type,
-                              bool signed_bytes) {
-  const std::string xml = fmt::format(
-      "<VRTDataset rasterXSize=\"{0}\" rasterYSize=\"{1}\"><VRTRasterBand dataType=\"{2}\" band=\"1\" "
-      "subClass=\"VRTRawRasterBand\">{3}"
-      "<SourceFilename "
-      "relativeToVRT=\"0\">{4}</SourceFilename><ImageOffset>{5}</ImageOffset><PixelOffset>{6}</PixelOffset>"
-      "<LineOffset>{7}</LineOffset><ByteOrder>{8}</ByteOrder></VRTRasterBand></VRTDataset>",
-      cols, rows, GDALGetDataTypeName(type),
-      signed_bytes ? "<Metadata domain=\"IMAGE_STRUCTURE\"><MDI key=\"PIXELTYPE\">SIGNEDBYTE</MDI></Metadata>" : "",
-      xml_text(file), header.data_begin, header.bytes, std::int64_t{header.bytes} * cols,
-      header.big_endian ? "MSB" : "LSB");
-  return GDALDatasetUniquePtr(
-      GDALDataset::Open(xml.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
 }
 
 // Arrays in Fortran order lie in the file column by column. A packed file can be read forwards only, so they are read
@@ -192,8 +129,7 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
   if (!shape)
     throw Error(fmt::format("is an array of {}; two dimensions (rows, columns) are needed", shape_text(header)));
   const auto [rows, cols] = *shape;
-  bool signed_bytes = false;
-  const GDALDataType type = sample_type(header, signed_bytes);
+  const RawSampleType type = sample_type(header);
   if (rows < 1 || cols < 1) throw Error(fmt::format("is an array of {}, without samples", shape_text(header)));
   // GDAL counts the bytes of a line in 32 bits.
   const std::int64_t most = std::numeric_limits<int>::max() / header.bytes;
@@ -210,8 +146,9 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
   std::vector<std::uint8_t> whole;
   const int file_cols = static_cast<int>(header.fortran_order ? rows : cols),
             file_rows = static_cast<int>(header.fortran_order ? cols : rows);
-  GDALDatasetUniquePtr dataset = open_raw(file, header, file_cols, file_rows, type, signed_bytes);
-  if (!dataset) throw Error(fmt::format("cannot be opened as a raw band: {}", session.reason("GDAL gives no reason")));
+  // The memory image of an array in Fortran order is that of its transpose.
+  GDALDatasetUniquePtr dataset =
+      open_raw_band({file, file_cols, file_rows, type, header.bytes, header.big_endian, header.data_begin}, session);
   if (header.fortran_order) dataset = open_fortran(*dataset, header, whole, session);
   Raster raster = read_dataset(*dataset, options, session, progress);
   if (header.shape.size() == 3)
@@ -221,32 +158,21 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
 
 }  // namespace
 
-bool is_npy_path(const std::string& path) { return ends_with(path, ".npy") || ends_with(path, ".npz"); }
+bool is_npy_path(const std::string& path) { return has_extension(path, ".npy") || has_extension(path, ".npz"); }
 
 Raster read_npy(const std::string& path, const RasterOptions& options, const Progress& progress) {
   GdalSession session;
-  // Newer GDAL reads raw bands of virtual datasets only where it is told to.
-  const GdalOption raw("GDAL_VRT_RAWRASTERBAND_ALLOWED_SOURCE", "ALL");
-  try {
+  return read_named(path, [&] {
     file_bytes(path);
     check_file(path);
-    const bool archive = ends_with(path, ".npz");
+    const bool archive = has_extension(path, ".npz");
     if (!archive && !options.key.empty())
       throw Error("--key names an array in a .npz file, which this is not; leave it out");
     const std::string file = archive ? choose_member(path, options.key, session) : full_path(path);
     RasterOptions of_array = options;
     of_array.key.clear();
-    Raster raster = read_array(file, of_array, session, progress);
-    raster.path = path;
-    return raster;
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const Error& error) {
-    throw Error(fmt::format("raster '{}': {}", path, error.what()));
-  } catch (const std::bad_alloc&) {
-    throw Error(fmt::format(
-        "raster '{}': its samples do not fit into memory; read a part with --window COL,ROW,COLS,ROWS", path));
-  }
+    return read_array(file, of_array, session, progress);
+  });
 }
 
 }  // namespace scarp

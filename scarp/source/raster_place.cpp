@@ -5,7 +5,6 @@
 #include <ogr_spatialref.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -14,12 +13,6 @@
 
 namespace scarp {
 namespace {
-
-// A rotation that moves no sample by more than this share of a cell is rounding in the file: 1e-3 cell is the sideways
-// accuracy that Scarp promises.
-constexpr double kLargestDriftInCells = 1e-3;
-
-using GeoTransform = std::array<double, 6>;  // GDAL's: of the outer pixel edges
 
 std::string bounds_text(const MapBounds& b) { return fmt::format("{},{},{},{}", b.west, b.south, b.east, b.north); }
 
@@ -38,22 +31,6 @@ std::optional<GeoTransform> geotransform_of(GDALDataset& dataset, const RasterOp
   }
   if (dataset.GetGeoTransform(map.data()) != CE_None) return {};
   return map;
-}
-
-void check_geotransform(const GeoTransform& map, int cols, int rows) {
-  for (const double x : map) {
-    if (!std::isfinite(x)) throw Error("its geotransform is not finite; give its outer edges with --bounds W,S,E,N");
-  }
-  // Drift of the far corner across the grid, in cells.
-  const double across_cols = std::abs(map[2]) * rows / std::abs(map[1]),
-               across_rows = std::abs(map[4]) * cols / std::abs(map[5]);
-  if (map[2] != 0 || map[4] != 0) {
-    if (!(across_cols <= kLargestDriftInCells && across_rows <= kLargestDriftInCells)) {
-      throw Error("its geotransform is rotated or sheared; make it north-up first: gdalwarp IN OUT.tif");
-    }
-  }
-  if (map[1] == 0 || map[5] == 0)
-    throw Error("its geotransform has cells without size; give its outer edges with --bounds W,S,E,N");
 }
 
 std::optional<OGRSpatialReference> crs_of(GDALDataset& dataset, const RasterOptions& options) {
@@ -118,6 +95,22 @@ void note_latitude_span(const OGRSpatialReference& crs, double north, double sou
 }
 
 }  // namespace
+
+void check_geotransform(const GeoTransform& map, int cols, int rows) {
+  for (const double x : map) {
+    if (!std::isfinite(x)) throw Error("its geotransform is not finite; give its outer edges with --bounds W,S,E,N");
+  }
+  // Drift of the far corner across the grid, in cells.
+  const double across_cols = std::abs(map[2]) * rows / std::abs(map[1]),
+               across_rows = std::abs(map[4]) * cols / std::abs(map[5]);
+  if (map[2] != 0 || map[4] != 0) {
+    if (!(across_cols <= kLargestDriftInCells && across_rows <= kLargestDriftInCells)) {
+      throw Error("its geotransform is rotated or sheared; make it north-up first: gdalwarp IN OUT.tif");
+    }
+  }
+  if (map[1] == 0 || map[5] == 0)
+    throw Error("its geotransform has cells without size; give its outer edges with --bounds W,S,E,N");
+}
 
 RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const RasterOptions& options) {
   RasterPlace place;

@@ -5,6 +5,7 @@
 
 #include <gdal_priv.h>
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,16 @@ struct RasterPlace {
   std::string vertical_unit_name;  ///< its name
   std::vector<std::string> notes;
 };
+
+/// GDAL's six numbers: map = (m[0] + m[1] col + m[2] row, m[3] + m[4] col + m[5] row), of the edges of pixels.
+using GeoTransform = std::array<double, 6>;
+
+/// What moves no sample by more than this share of a cell is rounding in the file: 1e-3 cell is the sideways accuracy
+/// that Scarp promises.
+inline constexpr double kLargestDriftInCells = 1e-3;
+
+/// Throws Error whose text has no file name: not finite, rotated, cells without size.
+void check_geotransform(const GeoTransform& map, int cols, int rows);
 
 /// Throws Error whose text has no file name: a rotated or degenerate geotransform, a CRS that cannot be used.
 RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const RasterOptions& options);

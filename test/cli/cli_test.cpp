@@ -134,7 +134,7 @@ TEST_F(Cli, ARasterWithoutCellsIsRefused) {
   expect_refused(grid("column.asc", 1, 3, "5\n6\n7"), "cells");
 }
 
-TEST_F(Cli, AFolderIsNoRaster) { expect_refused(scratch_.path(""), "director"); }
+TEST_F(Cli, AFolderWithoutRastersIsRefused) { expect_refused(scratch_.path(""), "folder without a raster"); }
 
 TEST_F(Cli, AMissingFileIsNamed) { expect_refused(path("nowhere.tif"), "nowhere.tif"); }
 
@@ -196,7 +196,19 @@ TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
       {{"--relaxed-tolerance", "nan"}, "above 0"},
       {{"--bisect-halvings", "99"}, "1 to 60"},
       {{"--error-tolerance", "-1"}, "0 or more"},
-      {{"second.asc"}, "second.asc"},
+      {{"second.asc"}, "raster 'second.asc': does not exist"},
+      {{"--scale", "1,2,3"}, "S[,OFFSET]"},
+      {{"--scale", "0"}, "not 0"},
+      {{"--scale", "2,5", "--offset", "7"}, "leave out --offset"},
+      {{"--scale", "2", "--height-range", "0,1"}, "twice"},
+      {{"--height-range", "5"}, "LOW,HIGH"},
+      {{"--height-range", "5,nan"}, "LOW,HIGH"},
+      {{"--height-range", "5,4"}, "LOW < HIGH"},
+      {{"--encoding", "rgb"}, "terrain-rgb or terrarium"},
+      {{"--encoding", "terrarium"}, "it has 1 band"},
+      {{"--raw", "4x3"}, "COLSxROWS:TYPE"},
+      {{"--raw", "4x3:u16le"}, "--raw 4x3:u16le needs 24"},
+      {{"--channel", "Y"}, ".exr"},
   };
   for (const auto& c : cases) {
     Names arguments{"render", path("good.asc"), "-o", path("out.png")};
@@ -219,6 +231,32 @@ TEST_F(Cli, WhatIsNeededIsAskedFor) {
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
     EXPECT_NE(result.err.find("--help"), std::string::npos) << result.err;
   }
+}
+
+TEST_F(Cli, TilesAndTheirGapsAreOneField) {
+  const std::string west = good(), east = write("tiles.asc",
+                                                "ncols 2\nnrows 3\nxllcorner 60\nyllcorner 0\ncellsize 10\n"
+                                                "NODATA_value -9999\n1 2\n2 3\n3 9\n");
+  for (const Names& inputs : {Names{west, east}, {scratch_.path("")}}) {
+    Names arguments{"info", "--json"};
+    arguments.insert(arguments.end(), inputs.begin(), inputs.end());
+    const auto info = run(arguments);
+    EXPECT_EQ(info.status, 0) << info.err;
+    EXPECT_NE(info.out.find("\"cols\": 8,"), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find("\"nodata_count\": 6,"), std::string::npos) << info.out;
+    EXPECT_NE(info.out.find("6 samples (25 %) are holes"), std::string::npos) << info.out;
+  }
+  const auto picture = run({"render", west, east, "-o", path("out.png"), "--size", "32x24"});
+  EXPECT_EQ(picture.status, 0) << picture.err;
+  EXPECT_NE(picture.err.find("note: the tiles leave gaps"), std::string::npos) << picture.err;
+}
+
+TEST_F(Cli, RawSamplesAreReadAsTheyAreSaidToBe) {
+  const std::string file = write("heights.raw", std::string("head\x01\x00\x02\x00\x03\x00\x00\x01", 12));
+  const auto info = run({"info", "--json", file, "--raw", "2x2:u16le+4", "--scale", "0.5,100"});
+  EXPECT_EQ(info.status, 0) << info.err;
+  EXPECT_NE(info.out.find("\"min_m\": 100.5,"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("\"max_m\": 228.0,"), std::string::npos) << info.out;
 }
 
 TEST_F(Cli, HelpAndVersion) {

@@ -42,7 +42,7 @@ class DamagedFiles : public Files {
 TEST_F(DamagedFiles, AMissingFileIsNamed) { expect_says(read_error(path("none.tif")), "does not exist"); }
 TEST_F(DamagedFiles, AnEmptyNameIsRefused) { expect_says(read_error(""), "empty"); }
 TEST_F(DamagedFiles, ADirectoryIsNamed) {
-  expect_says(read_error(folder_.string()), "is a directory");
+  expect_says(read_error(folder_.string()), "is a folder without a raster");
   std::filesystem::create_directory(path("d.npy"));
   expect_says(read_error(path("d.npy")), "is a directory");
 }

@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/tile_set.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "scarp/base/error.h"
+#include "scarp/source/band_samples.h"
+#include "scarp/source/decoded_dataset.h"
+#include "scarp/source/gdal_dataset.h"
+#include "scarp/source/raster_place.h"
+#include "scarp/source/raw_band.h"
+#include "scarp/source/tile_layout.h"
+#include "scarp/source/xml_text.h"
+
+namespace scarp {
+namespace {
+
+// What one file brings along.
+struct Tile {
+  std::string path;
+  int band = 1;   // the first to read
+  int bands = 1;  // one, or with an encoding three or four
+  GDALDataType type = GDT_Unknown;
+  std::optional<double> nodata;
+  bool masked = false;
+  double scale = 1, offset = 0;
+  std::string unit;
+  OGRSpatialReference crs;
+  bool has_crs = false;
+  GeoTransform map{};
+  int cols = 0, rows = 0;
+};
+
+Tile look_at(const std::string& path, const RasterOptions& options, const GdalSession& session) {
+  const GDALDatasetUniquePtr dataset = open_gdal_raster(path, session);
+  Tile tile;
+  tile.path = path;
+  tile.cols = dataset->GetRasterXSize();
+  tile.rows = dataset->GetRasterYSize();
+  if (options.encoding == HeightEncoding::none) {
+    tile.band = height_band(*dataset, options.band);
+  } else {
+    const DecodedDataset colours(*dataset, options.encoding);  // refuses what is none
+    tile.bands = dataset->GetRasterCount();
+  }
+  GDALRasterBand& band = *dataset->GetRasterBand(tile.band);
+  tile.type = band.GetRasterDataType();
+  if (is_signed_byte(band))
+    throw Error(
+        "its samples are signed bytes, which GDAL before 3.7 does not put together; convert it first: gdal_translate "
+        "-ot Int16 IN OUT.tif");
+  // Among colours a nodata value marks one of the bytes and no height.
+  if (tile.bands == 1) tile.nodata = nodata_of(band);
+  tile.masked = tile.bands == 1 && has_own_mask(band);
+  tile.scale = band.GetScale();
+  tile.offset = band.GetOffset();
+  tile.unit = band.GetUnitType();
+  if (const OGRSpatialReference* crs = dataset->GetSpatialRef()) {
+    tile.crs = *crs;
+    tile.has_crs = true;
+  }
+  if (dataset->GetGeoTransform(tile.map.data()) != CE_None)
+    throw Error(
+        "has no georeference, by which a tile finds its place; give it one first: gdal_translate -a_ullr W N E S "
+        "-a_srs "
+        "CRS IN OUT.tif");
+  check_geotransform(tile.map, tile.cols, tile.rows);
+  if (tile.map[1] < 0 || tile.map[5] > 0)
+    throw Error(
+        "its rows or columns run against the map, tiles must be north-up; make it so first: gdalwarp IN OUT.tif");
+  return tile;
+}
+
+bool same_value(std::optional<double> a, std::optional<double> b) {
+  return a == b || (a && b && std::isnan(*a) && std::isnan(*b));
+}
+
+std::string text_of(std::optional<double> nodata) { return nodata ? fmt::format("{}", *nodata) : "none"; }
+
+std::string text_of(const Tile& tile) {
+  const char* name = tile.has_crs ? tile.crs.GetName() : nullptr;
+  return name ? name : "none";
+}
+
+// Throws Error when the tile does not go with the first one.
+void compare(const Tile& first, const Tile& tile, const RasterOptions& options) {
+  const auto differ = [&](std::string_view what, const std::string& its, const std::string& others,
+                          std::string_view remedy) {
+    throw Error(fmt::format("its {} is {}, that of '{}' is {}; tiles of one raster must agree: {}", what, its,
+                            first.path, others, remedy));
+  };
+  const char* const ignore_axes[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
+  if (tile.has_crs != first.has_crs || (tile.has_crs && !tile.crs.IsSame(&first.crs, ignore_axes)))
+    differ("CRS", text_of(tile), text_of(first), "gdalwarp -t_srs CRS IN OUT.tif");
+  if (tile.type != first.type)
+    differ("sample type", GDALGetDataTypeName(tile.type), GDALGetDataTypeName(first.type),
+           "gdal_translate -ot TYPE IN OUT.tif");
+  if (tile.bands != first.bands)
+    differ("number of bands", fmt::format("{}", tile.bands), fmt::format("{}", first.bands),
+           "gdal_translate -b 1 -b 2 -b 3 IN OUT.tif");
+  if (!options.nodata && !same_value(tile.nodata, first.nodata))
+    differ("nodata value", text_of(tile.nodata), text_of(first.nodata), "say --nodata, or gdal_translate -a_nodata");
+  if (tile.scale != first.scale || tile.offset != first.offset)
+    differ("scale", fmt::format("x {} + {}", tile.scale, tile.offset),
+           fmt::format("x {} + {}", first.scale, first.offset), "gdal_translate -unscale -ot Float32 IN OUT.tif");
+  if (tile.unit != first.unit)
+    differ("vertical unit", fmt::format("'{}'", tile.unit), fmt::format("'{}'", first.unit), "convert one of them");
+  // Over the width or height of the tile, its cells must not drift off those of the first.
+  if (std::abs(tile.map[1] - first.map[1]) * tile.cols > kLargestDriftInCells * first.map[1] ||
+      std::abs(tile.map[5] - first.map[5]) * tile.rows > kLargestDriftInCells * -first.map[5]) {
+    differ("cell size", fmt::format("{} x {}", tile.map[1], -tile.map[5]),
+           fmt::format("{} x {}", first.map[1], -first.map[5]), "gdalwarp -tr X Y -tap IN OUT.tif");
+  }
+}
+
+// Where the tile lies, in whole samples from the first one's north-west sample.
+TileRect rect_of(const Tile& first, const Tile& tile) {
+  const double col = (tile.map[0] - first.map[0]) / first.map[1], row = (tile.map[3] - first.map[3]) / first.map[5];
+  // Farther than that no raster reaches: its extents are ints.
+  constexpr double kMost = std::numeric_limits<int>::max();
+  if (!(std::abs(col) < kMost && std::abs(row) < kMost))
+    throw Error(fmt::format("is too far from '{}' for one raster: {:.3g} x {:.3g} samples", first.path, col, row));
+  const double drift = std::max(std::abs(col - std::round(col)), std::abs(row - std::round(row)));
+  if (drift > kLargestDriftInCells)
+    throw Error(
+        fmt::format("lies {:.3g} of a cell beside the samples of '{}', and nothing is resampled here; put both on one "
+                    "grid: gdalwarp -tr X Y -tap IN OUT.tif",
+                    drift, first.path));
+  return {std::llround(col), std::llround(row), tile.cols, tile.rows};
+}
+
+// Whether samples of the tiles' type can have this value.
+bool can_mark(const Tile& tile, double value) {
+  if (GDALDataTypeIsFloating(tile.type)) return true;
+  if (std::isnan(value)) return false;
+  int clamped = FALSE, rounded = FALSE;
+  GDALAdjustValueToDataType(tile.type, value, &clamped, &rounded);
+  return !clamped && !rounded;
+}
+
+// The sample value that marks holes in the tiles, and may mark those between them.
+std::optional<double> mark_of_holes(const Tile& tile, const RasterOptions& options) {
+  const std::optional<double> value = options.nodata ? options.nodata : tile.nodata;
+  return value && !std::isnan(*value) && can_mark(tile, *value) ? value : std::nullopt;
+}
+
+// A type that holds all samples of `type` and NaN.
+GDALDataType type_with_nan(GDALDataType type) {
+  return GDALDataTypeIsFloating(type) ? type : GDALGetDataTypeSizeBits(type) <= 16 ? GDT_Float32 : GDT_Float64;
+}
+
+// The elements that tell GDAL which part of which file goes where.
+std::string source_xml(const Tile& tile, const TileRect& at, int band, std::string_view kind, const std::string& more) {
+  return fmt::format(
+      "<{0}><SourceFilename relativeToVRT=\"0\">{1}</SourceFilename><SourceBand>{2}</SourceBand><SourceProperties "
+      "RasterXSize=\"{3}\" RasterYSize=\"{4}\" DataType=\"{5}\"/><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"{3}\" "
+      "ySize=\"{4}\"/><DstRect xOff=\"{6}\" yOff=\"{7}\" xSize=\"{3}\" ySize=\"{4}\"/>{8}</{0}>",
+      kind, xml_text(full_path(tile.path)), band, tile.cols, tile.rows, GDALGetDataTypeName(tile.type), at.col, at.row,
+      more);
+}
+
+GDALRasterBand& add_band(GDALDataset& dataset, GDALDataType type, const GdalSession& session) {
+  if (dataset.AddBand(type, nullptr) != CE_None)
+    throw Error(fmt::format("cannot be put together: {}", session.reason("GDAL gives no reason")));
+  return *dataset.GetRasterBand(dataset.GetRasterCount());
+}
+
+void add_source(GDALRasterBand& band, const std::string& xml, const GdalSession& session) {
+  if (band.SetMetadataItem("source_0", xml.c_str(), "new_vrt_sources") != CE_None)
+    throw Error(fmt::format("cannot be put together: {}", session.reason("GDAL gives no reason")));
+}
+
+// The band of heights. Holes of a later tile let an earlier one through.
+void add_heights(GDALDataset& dataset, const std::vector<Tile>& tiles, const std::vector<TileRect>& places, bool gaps,
+                 const RasterOptions& options, const GdalSession& session) {
+  const Tile& first = tiles.front();
+  const std::optional<double> mark = mark_of_holes(first, options);
+  const bool masked = std::any_of(tiles.begin(), tiles.end(), [](const Tile& tile) { return tile.masked; });
+  const bool nan = masked || (gaps && !mark);
+  GDALRasterBand& band = add_band(dataset, nan ? type_with_nan(first.type) : first.type, session);
+  if (nan) {
+    band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
+  } else if (mark) {
+    band.SetNoDataValue(*mark);
+  }
+  band.SetScale(first.scale);
+  band.SetOffset(first.offset);
+  band.SetUnitType(first.unit.c_str());
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    std::string holes;
+    if (mark) holes += fmt::format("<NODATA>{}</NODATA>", *mark);
+    if (tiles[i].masked) holes += "<UseMaskBand>true</UseMaskBand>";
+    add_source(band,
+               source_xml(tiles[i], places[i], tiles[i].band, holes.empty() ? "SimpleSource" : "ComplexSource", holes),
+               session);
+  }
+}
+
+// Three bands of colours and, where the tiles have it or gaps need it, alpha.
+void add_colours(GDALDataset& dataset, const std::vector<Tile>& tiles, const std::vector<TileRect>& places, bool gaps,
+                 const GdalSession& session) {
+  const bool alpha = tiles.front().bands == 4;
+  for (int b = 1; b <= 3; ++b) {
+    GDALRasterBand& band = add_band(dataset, GDT_Byte, session);
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+      add_source(band,
+                 source_xml(tiles[i], places[i], b, alpha ? "ComplexSource" : "SimpleSource",
+                            alpha ? "<UseMaskBand>true</UseMaskBand>" : ""),
+                 session);
+    }
+  }
+  if (!alpha && !gaps) return;
+  GDALRasterBand& band = add_band(dataset, GDT_Byte, session);
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    // Without alpha of its own a tile is opaque: any of its bands times 0 plus 255.
+    add_source(band,
+               source_xml(tiles[i], places[i], alpha ? 4 : 1, "ComplexSource",
+                          alpha ? "<NODATA>0</NODATA>" : "<ScaleOffset>255</ScaleOffset><ScaleRatio>0</ScaleRatio>"),
+               session);
+  }
+}
+
+}  // namespace
+
+bool is_tile_folder(const std::string& path) {
+  VSIStatBufL status;
+  if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG) != 0) return false;
+  return VSI_ISDIR(status.st_mode) && !GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, nullptr, nullptr);
+}
+
+std::vector<std::string> rasters_in(const std::string& folder, std::vector<std::string>& notes) {
+  const CPLStringList entries(VSIReadDir(folder.c_str()));
+  std::vector<std::string> found, others;
+  // Files that belong to a raster: overviews, masks, what a virtual raster is made of.
+  std::set<std::string> parts;
+  for (int i = 0; i < entries.size(); ++i) {
+    const std::string name = entries[i];
+    const std::string path = CPLFormFilename(folder.c_str(), name.c_str(), nullptr);
+    VSIStatBufL status;
+    if (name.starts_with('.') || VSIStatL(path.c_str(), &status) != 0 || !VSI_ISREG(status.st_mode)) continue;
+    if (!GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, nullptr, nullptr)) {
+      others.push_back(path);
+      continue;
+    }
+    found.push_back(path);
+    const GDALDatasetUniquePtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+    const CPLStringList files(dataset ? dataset->GetFileList() : nullptr);
+    for (int f = 1; f < files.size(); ++f) parts.insert(files[f]);
+  }
+  std::erase_if(found, [&](const std::string& path) { return parts.contains(path); });
+  std::erase_if(others, [&](const std::string& path) { return parts.contains(path); });
+  std::sort(found.begin(), found.end());
+  std::sort(others.begin(), others.end());
+  if (found.empty()) {
+    throw Error(
+        fmt::format("raster '{}': is a folder without a raster that GDAL {} can read; its subfolders are not "
+                    "searched",
+                    folder, GDALVersionInfo("RELEASE_NAME")));
+  }
+  if (!others.empty()) {
+    notes.push_back(fmt::format("left out as no rasters: {}{}", others.front(),
+                                others.size() == 1 ? "" : fmt::format(" and {} more", others.size() - 1)));
+  }
+  return found;
+}
+
+TileSet open_tile_set(const std::vector<std::string>& files, const RasterOptions& options, const GdalSession& session,
+                      std::vector<std::string>& notes) {
+  std::vector<Tile> tiles;
+  std::vector<TileRect> places;
+  for (const std::string& file : files) {
+    try {
+      tiles.push_back(look_at(file, options, session));
+      compare(tiles.front(), tiles.back(), options);
+      places.push_back(rect_of(tiles.front(), tiles.back()));
+    } catch (const Error& error) {
+      throw Error(fmt::format("raster '{}': {}", file, error.what()));
+    }
+  }
+  const TileRect all = bounding_rect(places);
+  for (TileRect& place : places) {
+    place.col -= all.col;
+    place.row -= all.row;
+  }
+  if (all.cols > std::numeric_limits<int>::max() || all.rows > std::numeric_limits<int>::max())
+    throw Error(
+        fmt::format("raster '{}': together with the others it makes {} x {} samples, more than a raster can have",
+                    files.front(), all.cols, all.rows));
+  const double samples = static_cast<double>(all.cols) * static_cast<double>(all.rows);
+  const double gaps = samples - covered_samples(places);
+
+  GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("VRT");
+  GDALDatasetUniquePtr dataset(
+      driver ? driver->Create("", static_cast<int>(all.cols), static_cast<int>(all.rows), 0, GDT_Byte, nullptr)
+             : nullptr);
+  if (!dataset) throw Error(fmt::format("tiles cannot be put together: {}", session.reason("this GDAL has no VRT")));
+  const Tile& first = tiles.front();
+  GeoTransform map = first.map;
+  map[0] += static_cast<double>(all.col) * map[1];
+  map[3] += static_cast<double>(all.row) * map[5];
+  dataset->SetGeoTransform(map.data());
+  if (first.has_crs) dataset->SetSpatialRef(&first.crs);
+  if (first.bands == 1) {
+    add_heights(*dataset, tiles, places, gaps > 0, options, session);
+  } else {
+    add_colours(*dataset, tiles, places, gaps > 0, session);
+  }
+  notes.push_back(fmt::format("{} tiles are one raster of {} x {} samples", tiles.size(), all.cols, all.rows));
+  if (gaps > 0)
+    notes.push_back(
+        fmt::format("the tiles leave gaps: {:.0f} samples ({:.3g} %) are holes", gaps, 100 * gaps / samples));
+  return {std::move(dataset), first.type};
+}
+
+}  // namespace scarp

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Text inside the XML of virtual datasets.
+#pragma once
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+
+#include <string>
+
+namespace scarp {
+
+/// The text with its <, > and & (and quotes) escaped.
+inline std::string xml_text(const std::string& text) {
+  char* escaped = CPLEscapeString(text.c_str(), static_cast<int>(text.size()), CPLES_XML);
+  std::string result = escaped;
+  CPLFree(escaped);
+  return result;
+}
+
+}  // namespace scarp

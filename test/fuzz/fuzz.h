@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// What the fuzz targets share. A target is one file that defines LLVMFuzzerTestOneInput() and aborts on what must not
+// be; libFuzzer calls it with inputs of its own invention, replay.cpp with those of test/fuzz/corpus.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <string_view>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+namespace scarp::fuzz {
+
+/// Aborts when the message is empty. (Bytes of the input may be in it: the command line makes it one line.)
+inline void expect_message(const std::exception& error) {
+  if (std::string_view(error.what()).empty()) std::abort();
+}
+
+}  // namespace scarp::fuzz
