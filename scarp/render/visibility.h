@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// How much of the sky and of the sun's disc a point of the ground sees, by sampling with any-hit rays. The rays start
+// on the surface of their cell: no offset, so nothing is lit through a ridge and a plane does not shade itself.
+//
+// Two normals meet here. The surface decides what is visible: rays are traced against it alone. The shading normal,
+// which is continuous from cell to cell, decides what the light counts. Where they disagree, the sky's samples round
+// the shading normal that point under the cell's own tangent plane are not counted at all: nothing stands in their way,
+// the ground only turns; counted as blocked, they would print the facets of the grid. Samples of the sun under the
+// surface are in its shadow.
+#pragma once
+
+#include "scarp/render/sample_pattern.h"
+#include "scarp/scene/terrain_scene.h"
+
+namespace scarp {
+
+/// A point on the ground, in world space.
+struct GroundPoint {
+  dvec3 position;
+  Cell cell;
+  dvec3 normal;          ///< unit, of the surface
+  dvec3 shading_normal;  ///< unit
+};
+
+/// Of what is visible from a hit of a ray.
+GroundPoint ground_point(const HeightField& field, const Ray& ray, const Hit& hit);
+
+/// Samples of one picture sample: points [first, first + count) of a pixel. count >= 1.
+struct SampleRange {
+  PixelPoints points;
+  std::uint32_t first = 0;
+  std::uint32_t count = 1;
+};
+
+/// Ambient occlusion: the share of the sky round the shading normal, weighted with the cosine, that ground closer than
+/// `distance` metres hides; 0..1. The standard error is at most 1 / (2 sqrt(count)), that of unstratified samples.
+double sky_occlusion(const TerrainScene& scene, const GroundPoint& point, double distance, const SampleRange& samples);
+
+/// The mean over the sun's disc, of angular radius `radius` in radians round the unit vector `to_sun`, of the cosine
+/// between shading normal and ray, hidden parts and parts behind the normal counting nothing; 0..1. One ray to the
+/// middle when the radius is 0.
+double sun_cosine(const TerrainScene& scene, const GroundPoint& point, const dvec3& to_sun, double radius,
+                  const SampleRange& samples);
+
+/// Whether ground is between the point and something infinitely far in a direction.
+bool hidden(const TerrainScene& scene, const GroundPoint& point, const dvec3& direction);
+
+}  // namespace scarp
