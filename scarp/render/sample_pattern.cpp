@@ -61,7 +61,8 @@ std::uint32_t permuted(std::uint32_t digit, std::uint32_t random) {
 dvec2 PixelPoints::operator[](std::uint32_t i) const {
   // Sobol's points are linear in the bits of their index over xor, so a block's first point is computed only once.
   const std::uint32_t x = x_ ^ reverse_bits(i), y = y_ ^ sobol_y(i);
-  return {owen_scramble(x, seed_x_) * kUnit, owen_scramble(y, seed_y_) * kUnit};
+  // Middles of 2^-32: no point is on the square's rim, which is where hemispheres touch the ground.
+  return {(owen_scramble(x, seed_x_) + 0.5) * kUnit, (owen_scramble(y, seed_y_) + 0.5) * kUnit};
 }
 
 SamplePattern::SamplePattern(std::uint32_t seed, std::uint32_t points_per_pixel)

@@ -22,7 +22,7 @@ namespace scarp {
 /// The points of one pixel for one purpose.
 class PixelPoints {
  public:
-  /// Point i in [0, 1) x [0, 1); i below the pattern's points per pixel.
+  /// Point i inside the unit square, never on its rim; i below the pattern's points per pixel.
   dvec2 operator[](std::uint32_t i) const;
 
  private:

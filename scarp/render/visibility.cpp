@@ -26,15 +26,13 @@ GroundPoint ground_point(const HeightField& field, const Ray& ray, const Hit& hi
 }
 
 double sky_occlusion(const TerrainScene& scene, const GroundPoint& point, double distance, const SampleRange& samples) {
-  const Frame frame(point.shading_normal);
-  int sky = 0, blocked = 0;
+  const Frame frame(point.normal);
+  int blocked = 0;
   for (std::uint32_t i = samples.first; i < samples.first + samples.count; ++i) {
     const dvec3 direction = frame.to_world(cosine_weighted(samples.points[i]));
-    if (dot(direction, point.normal) <= 0) continue;
-    ++sky;
     if (hidden_within(scene, point, direction, distance)) ++blocked;
   }
-  return sky > 0 ? static_cast<double>(blocked) / sky : 0.0;
+  return blocked / static_cast<double>(samples.count);
 }
 
 double sun_cosine(const TerrainScene& scene, const GroundPoint& point, const dvec3& to_sun, double radius,

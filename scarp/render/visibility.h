@@ -2,11 +2,11 @@
 // How much of the sky and of the sun's disc a point of the ground sees, by sampling with any-hit rays. The rays start
 // on the surface of their cell: no offset, so nothing is lit through a ridge and a plane does not shade itself.
 //
-// Two normals meet here. The surface decides what is visible: rays are traced against it alone. The shading normal,
-// which is continuous from cell to cell, decides what the light counts. Where they disagree, the sky's samples round
-// the shading normal that point under the cell's own tangent plane are not counted at all: nothing stands in their way,
-// the ground only turns; counted as blocked, they would print the facets of the grid. Samples of the sun under the
-// surface are in its shadow.
+// Two normals meet here. What is visible is a matter of the surface alone: the sky is that over its own tangent plane,
+// and whatever ray goes below it is blocked. How bright visible light makes the ground is a matter of the shading
+// normal, which is continuous from cell to cell. Occlusion round the surface's normal has no seams either: both sides
+// of a hollow crease hide the same share of each other's sky, and those of a ridge hide nothing. Round the shading
+// normal a ridge would be dark and the foot of a cliff bright.
 #pragma once
 
 #include "scarp/render/sample_pattern.h"
@@ -32,8 +32,9 @@ struct SampleRange {
   std::uint32_t count = 1;
 };
 
-/// Ambient occlusion: the share of the sky round the shading normal, weighted with the cosine, that ground closer than
-/// `distance` metres hides; 0..1. The standard error is at most 1 / (2 sqrt(count)), that of unstratified samples.
+/// Ambient occlusion: the share of the sky over the tangent plane, weighted with the cosine to its normal, that ground
+/// closer than `distance` metres hides; 0..1. The standard error is at most 1 / (2 sqrt(count)), that of unstratified
+/// samples.
 double sky_occlusion(const TerrainScene& scene, const GroundPoint& point, double distance, const SampleRange& samples);
 
 /// The mean over the sun's disc, of angular radius `radius` in radians round the unit vector `to_sun`, of the cosine
