@@ -59,6 +59,10 @@ std::uint32_t permuted(std::uint32_t digit, std::uint32_t random) {
 }  // namespace
 
 dvec2 PixelPoints::operator[](std::uint32_t i) const {
+  // 64 bits: a shift by all 32 of them, for a pixel of one point, must give nothing.
+  const int unused = 32 - index_bits_;
+  const auto shuffled = owen_scramble(static_cast<std::uint32_t>(std::uint64_t{i} << unused), seed_order_);
+  i = static_cast<std::uint32_t>(std::uint64_t{shuffled} >> unused);
   // Sobol's points are linear in the bits of their index over xor, so a block's first point is computed only once.
   const std::uint32_t x = x_ ^ reverse_bits(i), y = y_ ^ sobol_y(i);
   // Middles of 2^-32: no point is on the square's rim, which is where hemispheres touch the ground.
@@ -84,6 +88,8 @@ PixelPoints SamplePattern::pixel(int x, int y, std::uint32_t purpose) const {
   PixelPoints points;
   points.x_ = reverse_bits(first);
   points.y_ = sobol_y(first);
+  points.index_bits_ = index_bits_;
+  points.seed_order_ = mix(mix(random, 3), static_cast<std::uint32_t>(place));
   points.seed_x_ = mix(random, 1);
   points.seed_y_ = mix(random, 2);
   return points;

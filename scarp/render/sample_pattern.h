@@ -10,6 +10,9 @@
 //   pixels   take blocks of ONE sequence, in Morton order with its digits shuffled (Ahmed and Wonka 2020): neighbours
 //            share out what is left over, so the error of the picture is blue noise, which the eye averages
 //
+//            and take their points in a shuffled order, again nested (Burley 2020): else the upper left corner of every
+//            pixel would look at the same part of the sun
+//
 // A pixel's samples may be drawn in several goes, one after another: each go is stratified, and all of them together.
 #pragma once
 
@@ -28,7 +31,8 @@ class PixelPoints {
  private:
   friend class SamplePattern;
   std::uint32_t x_ = 0, y_ = 0;  // of the pixel's first point, before scrambling
-  std::uint32_t seed_x_ = 0, seed_y_ = 0;
+  std::uint32_t seed_x_ = 0, seed_y_ = 0, seed_order_ = 0;
+  int index_bits_ = 0;
 };
 
 class SamplePattern {

@@ -84,14 +84,16 @@ TEST_F(ExrFile, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
   struct rlimit before {};
   ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
   const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  // A limit on the size of files stands for the full disk: within the header, among the lines, before the last byte.
-  for (const rlim_t limit_of_size : {rlim_t{100}, size / 2, size - 1}) {
+  // A limit on the size of files stands for the full disk: within the header, among the lines, before the last byte;
+  // and for a picture so small that nothing of it reaches the disk before the file is closed.
+  for (const auto& [side, limit_of_size] :
+       {std::pair(200, rlim_t{100}), {200, size / 2}, {200, size - 1}, {3, rlim_t{100}}}) {
     struct rlimit limit = before;
     limit.rlim_cur = limit_of_size;
     ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
     std::string message;
     try {
-      write_exr(path("a.exr"), {200, 200, {{"Z", depth.data()}}});
+      write_exr(path("a.exr"), {side, side, {{"Z", depth.data()}}});
     } catch (const Error& error) {
       message = error.what();
     }

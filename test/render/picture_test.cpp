@@ -120,6 +120,23 @@ TEST(Picture, SamplesDependOnPixelAndSeedAndNotOnThreads) {
   EXPECT_NE(with_threads(1), one);
 }
 
+TEST(Picture, SamplesOfAPixelDrawPointsOfTheirOwn) {
+  // Where half of a wide sun is seen, one ray to it finds it or not. With the same ray for all four samples of a pixel
+  // half of the pixels would be dark; with rays of their own, spread as well as four can be, none is.
+  const HeightField field = wall();
+  PictureSettings settings = map_settings(field);
+  settings.ramp = "viridis";
+  settings.sun = {270, 45, 20};
+  settings.aa = 2;
+  settings.samples = 1;
+  settings.ao_distance = 0;
+  const Image image = map_of(field, settings).image;
+  const int dark = red(image, 122, 100);
+  int found_dark = 0;
+  for (int y = 50; y < 150; ++y) found_dark += red(image, 140, y) == dark;
+  EXPECT_LT(found_dark, 10);
+}
+
 TEST(Picture, OcclusionDarkensTheFootOfAWallInItsShadow) {
   const HeightField field = wall();
   PictureSettings settings = map_settings(field);
