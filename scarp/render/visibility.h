@@ -4,9 +4,9 @@
 //
 // Two normals meet here. What is visible is a matter of the surface alone: the sky is that over its own tangent plane,
 // and whatever ray goes below it is blocked. How bright visible light makes the ground is a matter of the shading
-// normal, which is continuous from cell to cell. Occlusion round the surface's normal has no seams either: both sides
-// of a hollow crease hide the same share of each other's sky, and those of a ridge hide nothing. Round the shading
-// normal a ridge would be dark and the foot of a cliff bright.
+// normal, which is continuous from cell to cell. Occlusion round the surface's normal steps little from cell to cell:
+// both sides of a hollow crease hide the same share of each other's sky, and those of a ridge hide nothing. Round the
+// shading normal a ridge would be dark.
 #pragma once
 
 #include "scarp/render/sample_pattern.h"
