@@ -1,5 +1,5 @@
 # The two targets that others link, and their way into an installed tree:
-#   scarp::core   base, field, accel, march: needs neither GDAL nor libpng
+#   scarp::core   base, field, accel, march: needs neither GDAL, libpng nor OpenEXR
 #   scarp::scarp  all stations
 # find_package(scarp COMPONENTS core) reads scarp-core-targets.cmake alone and asks for nothing that core does not use.
 include(CMakePackageConfigHelpers)

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/exr_output.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
@@ -37,6 +38,7 @@ struct RenderOptions {
   MarchSettings march_settings;
   PictureSettings picture;
   std::string size, look = "shaded", sun, view, eye, target;
+  bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg;
   bool top = false, no_shadows = false, no_plinth = false;
   int threads = 0;
@@ -80,7 +82,8 @@ ViewSettings settle(RenderOptions& options) {
   }
   if (!options.sun.empty()) {
     const auto sun = numbers_from(options.sun, ',', 2, 2, "--sun", "AZIMUTH,ALTITUDE in degrees, for example 315,45");
-    picture.sun = {sun[0], sun[1]};
+    picture.sun.azimuth_deg = sun[0];
+    picture.sun.altitude_deg = sun[1];
   }
   validate(picture);
   ViewSettings view;
@@ -101,8 +104,18 @@ ViewSettings settle(RenderOptions& options) {
   std::string extension = std::filesystem::path(options.output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  if (!options.output.empty() && extension != ".png") {
-    throw Error(fmt::format("output '{}': pictures are written as PNG; let the name end in .png", options.output));
+  options.exr = extension == ".exr";
+  if (options.exr) {
+    require_exr(options.output);
+    if (picture.look != Look::shaded) {
+      throw Error(
+          fmt::format("--look {}: EXR holds the look 'shaded' with depth, position and steps as channels of "
+                      "their own; leave --look out, or let the name of the output end in .png",
+                      options.look));
+    }
+  } else if (!options.output.empty() && extension != ".png") {
+    throw Error(fmt::format("output '{}': pictures are written as PNG or EXR; let the name end in .png or .exr",
+                            options.output));
   }
   return view;
 }
@@ -170,12 +183,23 @@ void run(RenderOptions options) {
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   const Camera camera = camera_of(options, view, box, grid_north_azimuth);
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  const auto print_times = [&](double render_s) {
+    fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s\n", options.output,
+               options.picture.width, options.picture.height, read_s, build_s, render_s);
+  };
+  if (options.exr) {
+    const PictureLayers layers =
+        render_layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
+    const double render_s = watch.lap();
+    write_layers(file, options.output, layers, camera);
+    print_times(render_s);
+    return;
+  }
   const Picture picture =
       render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
   const double render_s = watch.lap();
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
-  fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s\n", options.output,
-             picture.image.width, picture.image.height, read_s, build_s, render_s);
+  print_times(render_s);
   print_findings(picture);
 }
 
@@ -199,18 +223,34 @@ void add_march_options(CLI::App& command, MarchSettings& march) {
 }  // namespace
 
 void add_render(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("render", "Render an elevation model into a PNG picture");
+  CLI::App* command = program.add_subcommand("render", "Render an elevation model into a picture");
   const auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
   add_raster_inputs(*command, o.inputs);
-  command->add_option("-o,--output", o.output, "the picture, .png")->required();
+  command
+      ->add_option("-o,--output", o.output,
+                   "the picture: .png, or .exr in linear light with depth, normal, position and steps")
+      ->required();
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels (1280x720; with --top the shape of the ground)");
   command->add_option("--look", o.look, "shaded, height, steps, error")->capture_default_str();
   command->add_option("--ramp", o.picture.ramp,
                       fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
   command->add_option("--exaggeration", o.exaggeration, "heights times this; above 0")->capture_default_str();
   command->add_option("--sun", o.sun, "AZIMUTH,ALTITUDE of the sun in degrees, compass and above the horizon (315,45)");
-  command->add_flag("--no-shadows", o.no_shadows, "hill shade only");
+  command->add_flag("--no-shadows", o.no_shadows, "hill shade only: the sun shines through the ground");
+  command
+      ->add_option(
+          "--samples", o.picture.samples,
+          "rays to the sun's disc for soft shadows, and as many to the sky for ambient occlusion, per sample of "
+          "the shaded look: 1 to 4096, best a power of 2; 0: hard shadows alone")
+      ->capture_default_str();
+  command
+      ->add_option("--sun-size", o.picture.sun.size_deg,
+                   "apparent diameter of the sun in degrees for --samples, 0 to 90; 0: hard shadows")
+      ->capture_default_str();
+  command->add_option("--ao-distance", o.picture.ao_distance,
+                      "metres within which ground hides the sky (the whole field); 0: no ambient occlusion");
+  command->add_option("--seed", o.picture.seed, "of the pattern of --samples")->capture_default_str();
   command->add_flag("--no-plinth", o.no_plinth, "no walls below the terrain's border");
   command
       ->add_option("--haze", o.picture.haze, "share of haze over a distance as long as the field's diagonal, 0 to 0.95")

@@ -141,4 +141,23 @@ std::optional<dvec2> Camera::pixel(const dvec3& p_world) const {
   return dvec2((1 + x) * width_ / 2, (1 - y) * height_ / 2);
 }
 
+glm::dmat4 Camera::camera_from_world() const {
+  // The axes are orthonormal: the inverse turns by the transpose. GLM's matrices are written down column by column.
+  const dvec3 eye(dot(right_, eye_), dot(up_, eye_), dot(forward_, eye_));
+  return {right_.x, up_.x, forward_.x, 0, right_.y, up_.y,  forward_.y, 0,
+          right_.z, up_.z, forward_.z, 0, -eye.x,   -eye.y, -eye.z,     1};
+}
+
+glm::dmat4 Camera::ndc_from_world() const {
+  glm::dmat4 ndc_from_camera(1.0);
+  ndc_from_camera[0][0] = 1 / half_width_;
+  ndc_from_camera[1][1] = 1 / half_height_;
+  if (!orthographic_) {
+    ndc_from_camera[2][3] = 1;
+    ndc_from_camera[3][2] = -1;
+    ndc_from_camera[3][3] = 0;
+  }
+  return ndc_from_camera * camera_from_world();
+}
+
 }  // namespace scarp

@@ -10,6 +10,7 @@
 // is the largest z that leaves both intervals something, and the middle of the wider one centres the field.
 #pragma once
 
+#include <glm/mat4x4.hpp>
 #include <optional>
 
 #include "scarp/base/ray.h"
@@ -54,6 +55,12 @@ class Camera {
   Ray ray(double pixel_x, double pixel_y) const;
   /// Where a point appears, inside the picture or not; nothing for points that are not in front of the camera.
   std::optional<dvec2> pixel(const dvec3& p_world) const;
+
+  /// Camera coordinates of world points: x to the right, y up, z metres along the view axis (left-handed).
+  glm::dmat4 camera_from_world() const;
+  /// Homogeneous coordinates that divide to x and y in [-1, 1] from the picture's left to right and bottom to top. z
+  /// divides to 1 - 1 m / depth in perspective, and is the depth in metres of an orthographic camera.
+  glm::dmat4 ndc_from_world() const;
 
   const dvec3& eye() const { return eye_; }
   const dvec3& forward() const { return forward_; }

@@ -41,19 +41,18 @@ void for_each_pixel(int width, int height, const std::function<void(int, int)>& 
       progress);
 }
 
+vec3 mean_colour(int x, int y, int aa, const PointColour& colour) {
+  vec3 sum(0.0f);
+  for (int j = 0; j < aa; ++j) {
+    for (int i = 0; i < aa; ++i) sum += colour({x + (i + 0.5) / aa, y + (j + 0.5) / aa, x, y, j * aa + i});
+  }
+  return sum * (1.0f / static_cast<float>(aa * aa));
+}
+
 Image develop(int width, int height, int aa, const PointColour& colour, const Progress& progress) {
   Image image(width, height);
-  const float share = 1.0f / static_cast<float>(aa * aa);
   for_each_pixel(
-      width, height,
-      [&](int x, int y) {
-        vec3 sum(0.0f);
-        for (int j = 0; j < aa; ++j) {
-          for (int i = 0; i < aa; ++i) sum += colour(x + (i + 0.5) / aa, y + (j + 0.5) / aa);
-        }
-        set_pixel(image, x, y, sum * share);
-      },
-      progress);
+      width, height, [&](int x, int y) { set_pixel(image, x, y, mean_colour(x, y, aa, colour)); }, progress);
   return image;
 }
 

@@ -30,10 +30,20 @@ void set_pixel(Image& image, int x, int y, vec3 linear);
 /// Calls body(x, y) once for every pixel, tile by tile on all threads. Throws Interrupted when progress asks for it.
 void for_each_pixel(int width, int height, const std::function<void(int, int)>& body, const Progress& progress);
 
-/// Colour of the point (x, y) of the picture in linear light; pixel (i, j) covers [i, i+1) x [j, j+1).
-using PointColour = std::function<vec3(double x, double y)>;
+/// A place in a picture whose colour is asked for; pixel (i, j) covers [i, i+1) x [j, j+1).
+struct PicturePoint {
+  double x, y;
+  int pixel_x, pixel_y;
+  int index;  ///< of the point in its pixel, from 0
+};
 
-/// The mean of aa x aa evenly spaced points in every pixel.
+/// Colour of a point of the picture in linear light.
+using PointColour = std::function<vec3(const PicturePoint&)>;
+
+/// The mean of aa x aa evenly spaced points in pixel (x, y), in linear light.
+vec3 mean_colour(int x, int y, int aa, const PointColour& colour);
+
+/// That of every pixel.
 Image develop(int width, int height, int aa, const PointColour& colour, const Progress& progress);
 
 }  // namespace scarp

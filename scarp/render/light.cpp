@@ -28,18 +28,25 @@ void validate(const SunSettings& settings) {
     throw Error(
         fmt::format("sun: the altitude is {}; it must be above 0 and at most 90 degrees", settings.altitude_deg));
   }
+  if (!(settings.size_deg >= 0 && settings.size_deg <= 90)) {
+    throw Error(fmt::format("sun: the size is {}; it must be 0 to 90 degrees", settings.size_deg));
+  }
 }
 
 Light::Light(const SunSettings& settings, double grid_north_azimuth)
     : to_sun_(towards(glm::radians(settings.azimuth_deg), glm::radians(settings.altitude_deg), grid_north_azimuth)),
+      sun_radius_(glm::radians(settings.size_deg) / 2),
       sky_side_(normalize(dvec3(0, 0, 1) + 0.7 * towards(glm::radians(settings.azimuth_deg), 0, grid_north_azimuth))),
       sun_((vec3(1.0f) - kSky) / static_cast<float>(std::max(to_sun_.z, kLowestFullSun))),
       sky_(kSky) {}
 
 vec3 Light::on(const dvec3& normal, bool in_sun) const {
-  const double sky = (1 + dot(normal, sky_side_)) / (1 + sky_side_.z);
-  const double sun = in_sun ? std::max(0.0, dot(normal, to_sun_)) : 0.0;
-  return static_cast<float>(sky) * sky_ + static_cast<float>(sun) * sun_;
+  return on(normal, in_sun ? std::max(0.0, dot(normal, to_sun_)) : 0.0, 1.0);
+}
+
+vec3 Light::on(const dvec3& normal, double sun_cosine, double sky_share) const {
+  const double sky = sky_share * (1 + dot(normal, sky_side_)) / (1 + sky_side_.z);
+  return static_cast<float>(sky) * sky_ + static_cast<float>(sun_cosine) * sun_;
 }
 
 }  // namespace scarp

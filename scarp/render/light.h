@@ -10,10 +10,10 @@
 
 namespace scarp {
 
-/// The sun. Its rays are parallel.
 struct SunSettings {
   double azimuth_deg = 315;  ///< compass azimuth, clockwise from true north; finite
-  double altitude_deg = 45;  ///< above the horizon; above 0, at most 90
+  double altitude_deg = 45;  ///< of its middle above the horizon; above 0, at most 90
+  double size_deg = 0.533;   ///< apparent diameter, for soft shadows; 0 (a point) to 90
 };
 
 /// Throws Error naming the first setting out of its range.
@@ -23,13 +23,19 @@ class Light {
  public:
   Light(const SunSettings& settings, double grid_north_azimuth);
 
-  /// Unit vector.
+  /// Unit vector to the middle of the sun's disc.
   const dvec3& to_sun() const { return to_sun_; }
+  /// Angular radius of the disc.
+  double sun_radius() const { return sun_radius_; }
   /// Light on a surface with this unit normal, in linear light.
   vec3 on(const dvec3& normal, bool in_sun) const;
+  /// The same from what the surface sees: `sun_cosine` is the mean cosine to the visible part of the sun's disc, 0..1,
+  /// `sky_share` the unoccluded share of the sky, 0..1.
+  vec3 on(const dvec3& normal, double sun_cosine, double sky_share) const;
 
  private:
   dvec3 to_sun_;
+  double sun_radius_;
   dvec3 sky_side_;  // where the sky is brightest
   vec3 sun_;        // on a surface that faces the sun
   vec3 sky_;        // on level ground

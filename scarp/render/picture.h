@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A picture of a terrain scene, in one of several looks.
 //
-//   shaded  colours by height, sun with exact hard shadows, sky, a block below the terrain
+//   shaded  colours by height, sun with exact hard shadows (or, with `samples`, soft ones and ambient occlusion), sky,
+//   a
+//           block below the terrain
 //   height  grey, linear in height from the field's lowest (1) to its highest point (255); misses are black (0)
 //   steps   what the march cost: steps per ray as a ramp from the least to the most in the picture
 //   error   where the march is wrong, see error_look.h
@@ -10,6 +12,8 @@
 // Only `shaded` takes several samples per pixel; the others show one ray's answer, through the middle of the pixel.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -29,6 +33,9 @@ std::string_view name_of(Look look);
 /// Throws Error listing the names when there is no such look.
 Look find_look(std::string_view name);
 
+/// As far as there is ground.
+constexpr double kWholeField = std::numeric_limits<double>::infinity();
+
 /// How a picture is made. Where it is seen from is the camera's matter.
 struct PictureSettings {
   int width = 1280;  ///< pixels, 1..65536; width * height at most 2^28
@@ -37,10 +44,14 @@ struct PictureSettings {
   int aa = 2;          ///< aa x aa samples per pixel in `shaded`; 1..16
   std::string ramp{};  ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
   SunSettings sun{};
-  bool shadows = true;           ///< exact hard shadows; false: hill shade only
-  bool plinth = true;            ///< a block below the terrain: walls down to a common base
-  double haze = 0.1;             ///< share of haze over a distance as long as the field's diagonal; 0..0.95
-  double error_tolerance = 0.1;  ///< of `error`, along the ray, in shorter sides of a cell; >= 0
+  bool shadows = true;  ///< of the sun; false: it shines through the ground
+  int samples = 0;      ///< rays to the sun's disc, and to the sky, per sample of `shaded`; 0..4096; 0: exact hard
+                        ///< shadows of the disc's middle and no ambient occlusion
+  double ao_distance = kWholeField;  ///< metres within which ground hides the sky, >= 0; 0: no ambient occlusion
+  std::uint32_t seed = 0;            ///< of the samples' pattern
+  bool plinth = true;                ///< a block below the terrain: walls down to a common base
+  double haze = 0.1;                 ///< share of haze over a distance as long as the field's diagonal; 0..0.95
+  double error_tolerance = 0.1;      ///< of `error`, along the ray, in shorter sides of a cell; >= 0
 };
 
 /// Throws Error naming the first setting out of its range.

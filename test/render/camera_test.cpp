@@ -24,6 +24,13 @@ void expect_round_trip(const Camera& camera, int width, int height) {
       ASSERT_TRUE(pixel);
       EXPECT_NEAR(pixel->x, x * width, 1e-6);
       EXPECT_NEAR(pixel->y, y * height, 1e-6);
+      const glm::dvec4 point(ray.at(12345), 1);
+      const glm::dvec4 seen = camera.camera_from_world() * point, ndc = camera.ndc_from_world() * point;
+      EXPECT_NEAR(seen.z, dot(ray.at(12345) - camera.eye(), camera.forward()), 1e-6);
+      EXPECT_EQ(seen.w, 1);
+      EXPECT_NEAR(ndc.x / ndc.w, 2 * x - 1, 1e-9);
+      EXPECT_NEAR(ndc.y / ndc.w, 1 - 2 * y, 1e-9);
+      EXPECT_NEAR(ndc.z / ndc.w, ndc.w == 1 ? seen.z : 1 - 1 / seen.z, 1e-6);
     }
   }
 }

@@ -22,14 +22,15 @@ TEST(Film, EveryPixelIsVisitedOnce) {
 TEST(Film, SamplesAreMixedInLinearLight) {
   // The left half of each pixel is black, the right one white: half the light is 188 in sRGB, not 128.
   const Image image =
-      develop(2, 1, 2, [](double x, double) { return vec3(x - static_cast<int>(x) < 0.5 ? 0.0f : 1.0f); }, {});
+      develop(2, 1, 2, [](const PicturePoint& p) { return vec3(p.x - p.pixel_x < 0.5 ? 0.0f : 1.0f); }, {});
   EXPECT_EQ(int{image.pixel(0, 0)[0]}, 188);
   EXPECT_EQ(int{image.pixel(1, 0)[2]}, 188);
 }
 
 TEST(Film, OneSampleIsTheMiddleOfThePixel) {
-  const Image image = develop(
-      3, 2, 1, [](double x, double y) { return vec3(x == 2.5 ? 1.0f : 0.0f, y == 1.5 ? 1.0f : 0.0f, 0.0f); }, {});
+  const Image image =
+      develop(3, 2, 1,
+              [](const PicturePoint& p) { return vec3(p.x == 2.5 ? 1.0f : 0.0f, p.y == 1.5 ? 1.0f : 0.0f, 0.0f); }, {});
   EXPECT_EQ(int{image.pixel(2, 0)[0]}, 255);
   EXPECT_EQ(int{image.pixel(1, 0)[0]}, 0);
   EXPECT_EQ(int{image.pixel(0, 1)[1]}, 255);

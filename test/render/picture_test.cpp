@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
 
 namespace scarp {
 namespace {
@@ -85,6 +86,77 @@ TEST(Picture, LevelGroundInTheSunHasTheColourOfItsRamp) {
   EXPECT_EQ(int{image.pixel(20, 20)[0]}, 0x78);
   EXPECT_EQ(int{image.pixel(20, 20)[1]}, 0x9b);
   EXPECT_EQ(int{image.pixel(20, 20)[2]}, 0x74);
+}
+
+TEST(Picture, SamplesLeaveLevelGroundInTheSunAsItIs) {
+  const HeightField field = field_of(5, 30, nothing);
+  PictureSettings settings = map_settings(field);
+  settings.ramp = "hypsometric";
+  settings.samples = 16;
+  const Image image = map_of(field, settings).image;
+  for (const auto& [x, y] : {std::pair(20, 20), {0, 0}, {39, 39}}) {
+    // The mean cosine over the samples of the sun's disc is not quite that of its middle.
+    EXPECT_NEAR(image.pixel(x, y)[0], 0x78, 1);
+    EXPECT_NEAR(image.pixel(x, y)[1], 0x9b, 1);
+    EXPECT_NEAR(image.pixel(x, y)[2], 0x74, 1);
+  }
+}
+
+TEST(Picture, SamplesDependOnPixelAndSeedAndNotOnThreads) {
+  const HeightField field = wall();
+  PictureSettings settings = map_settings(field);
+  settings.width = settings.height = 60;
+  settings.aa = 2;
+  settings.samples = 5;
+  settings.sun.size_deg = 20;
+  const auto with_threads = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return map_of(field, settings).image.rgb;
+  };
+  const auto one = with_threads(1);
+  EXPECT_EQ(with_threads(4), one);
+  EXPECT_EQ(with_threads(0), one);
+  settings.seed = 1;
+  EXPECT_NE(with_threads(1), one);
+}
+
+TEST(Picture, SamplesOfAPixelDrawPointsOfTheirOwn) {
+  // Where half of a wide sun is seen, one ray to it finds it or not. With the same ray for all four samples of a pixel
+  // half of the pixels would be dark; with rays of their own, spread as well as four can be, none is.
+  const HeightField field = wall();
+  PictureSettings settings = map_settings(field);
+  settings.ramp = "viridis";
+  settings.sun = {270, 45, 20};
+  settings.aa = 2;
+  settings.samples = 1;
+  settings.ao_distance = 0;
+  const Image image = map_of(field, settings).image;
+  const int dark = red(image, 122, 100);
+  int found_dark = 0;
+  for (int y = 50; y < 150; ++y) found_dark += red(image, 140, y) == dark;
+  EXPECT_LT(found_dark, 10);
+}
+
+TEST(Picture, OcclusionDarkensTheFootOfAWallInItsShadow) {
+  const HeightField field = wall();
+  PictureSettings settings = map_settings(field);
+  settings.ramp = "viridis";
+  settings.sun = {270, 45};
+  settings.samples = 16;
+  const auto row = [&] {
+    std::vector<int> reds;
+    const Image image = map_of(field, settings).image;
+    // Beyond x = 12 m the shading normal is upright, and before 13.9 m the shadow is whole.
+    for (const double x : {12.2, 13.8, 19.0}) reds.push_back(red(image, static_cast<int>(10 * x), 100));
+    return reds;
+  };
+  const auto with = row();
+  settings.ao_distance = 0;
+  const auto without = row();
+  EXPECT_LT(with[0], with[1]);
+  EXPECT_LT(with[1], without[1]);
+  EXPECT_EQ(without[0], without[1]) << "without occlusion a shadow is even";
+  EXPECT_LT(without[1], with[2]) << "level ground in the sun";
 }
 
 TEST(Picture, HolesShowTheSky) {
@@ -243,7 +315,14 @@ TEST(Picture, SettingsOutOfRangeAreRefused) {
                                      {.haze = 1},
                                      {.error_tolerance = -1},
                                      {.error_tolerance = nan},
-                                     {.sun = {315, -1}}}) {
+                                     {.samples = -1},
+                                     {.samples = 4097},
+                                     {.ao_distance = -1},
+                                     {.ao_distance = nan},
+                                     {.sun = {315, -1}},
+                                     {.sun = {315, 45, -1}},
+                                     {.sun = {315, 45, nan}},
+                                     {.sun = {315, 45, 91}}}) {
     EXPECT_THROW(validate(bad), Error);
   }
   EXPECT_NO_THROW(validate(PictureSettings{}));

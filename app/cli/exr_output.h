@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Pictures of many layers into OpenEXR files, under the channel names that compositing programs look for.
+#pragma once
+
+#include <string>
+
+#include "scarp/base/replace_file.h"
+#include "scarp/render/layers.h"
+
+namespace scarp::cli {
+
+/// Throws Error in a build without OpenEXR.
+void require_exr(const std::string& path);
+
+/// R, G, B (half), Z, N.X, N.Y, N.Z, P.X, P.Y, P.Z (float) and steps (uint), worldToCamera and worldToNDC in the
+/// header. Writes into the place that `file` has reserved and commits it; throws Error as write_exr() does.
+void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera);
+
+}  // namespace scarp::cli

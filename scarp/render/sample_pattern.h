@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Where in the unit square the samples of a pixel lie: low-discrepancy points, the same on every run and for every
+// number of threads, because they are a function of pixel and seed alone.
+//
+//   points   the first two dimensions of Sobol's sequence (Sobol 1967), a (0,2)-sequence: of 2^m consecutive points
+//   from
+//            a multiple of 2^m on, every elementary interval of area 2^-m holds exactly one
+//   random   Owen's nested uniform scrambling (Owen 1995), by hashing (Laine and Karras 2011; the hash is Vegdahl's of
+//            2021): unbiased, and the intervals keep their one point each
+//   pixels   take blocks of ONE sequence, in Morton order with its digits shuffled (Ahmed and Wonka 2020): neighbours
+//            share out what is left over, so the error of the picture is blue noise, which the eye averages
+//
+//            and take their points in a shuffled order, again nested (Burley 2020): else the upper left corner of every
+//            pixel would look at the same part of the sun
+//
+// A pixel's samples may be drawn in several goes, one after another: each go is stratified, and all of them together.
+#pragma once
+
+#include <cstdint>
+
+#include "scarp/base/vec.h"
+
+namespace scarp {
+
+/// The points of one pixel for one purpose.
+class PixelPoints {
+ public:
+  /// Point i inside the unit square, never on its rim; i below the pattern's points per pixel.
+  dvec2 operator[](std::uint32_t i) const;
+
+ private:
+  friend class SamplePattern;
+  std::uint32_t x_ = 0, y_ = 0;  // of the pixel's first point, before scrambling
+  std::uint32_t seed_x_ = 0, seed_y_ = 0, seed_order_ = 0;
+  int index_bits_ = 0;
+};
+
+class SamplePattern {
+ public:
+  /// `points_per_pixel`, 1..2^26, is the most that is asked of a pixel for one purpose.
+  SamplePattern(std::uint32_t seed, std::uint32_t points_per_pixel);
+
+  /// The points of pixel (x, y), 0..65535 each. Purposes (any numbers) are independent of one another.
+  PixelPoints pixel(int x, int y, std::uint32_t purpose) const;
+
+ private:
+  std::uint32_t seed_;
+  int index_bits_;  // of a pixel's block of the sequence
+};
+
+}  // namespace scarp

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// `scarp render -o OUT.exr` from outside.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "cli/program.h"
+#include "output/read_exr.h"
+
+namespace scarp {
+namespace {
+
+class ExrOutput : public testing::Test {
+ protected:
+  // The plane z = 100 + x / 10 - y / 5 over 3 x 2 cells of 10 m.
+  std::string plane() const {
+    return scratch_.write("plane.asc",
+                          "ncols 4\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 10\n"
+                          "96 97 98 99\n98 99 100 101\n100 101 102 103\n");
+  }
+  std::string out() const { return scratch_.path("out.exr"); }
+
+  test::Scratch scratch_;
+};
+
+TEST_F(ExrOutput, HasTheChannelsThatCompositorsLookFor) {
+  const auto result = test::run({"render", plane(), "-o", out(), "--size", "40x30"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(test::lines(result.out), 1) << result.out;
+  const test::Exr exr = test::read_exr(out());
+  EXPECT_EQ(exr.width, 40);
+  EXPECT_EQ(exr.height, 30);
+  std::set<std::string> names;
+  for (const auto& [name, channel] : exr.channels) {
+    names.insert(name);
+    const bool colour = name == "R" || name == "G" || name == "B";
+    EXPECT_EQ(channel.type, colour ? Imf::HALF : name == "steps" ? Imf::UINT : Imf::FLOAT) << name;
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"B", "G", "N.X", "N.Y", "N.Z", "P.X", "P.Y", "P.Z", "R", "Z", "steps"}));
+}
+
+TEST_F(ExrOutput, LiesWhereItsMatricesSay) {
+  for (const std::vector<std::string>& from :
+       {std::vector<std::string>{"--view", "200,50"}, {"--top"}, {"--eye", "-3,-20,160", "--target", "15,10,99"}}) {
+    std::vector<std::string> arguments{"render", plane(), "-o", out(), "--size", "40x30", "--no-plinth"};
+    arguments.insert(arguments.end(), from.begin(), from.end());
+    const auto result = test::run(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+    const test::Exr exr = test::read_exr(out());
+    const auto values = [&](const char* name) { return exr.channels.at(name).values; };
+    const auto x = values("P.X"), y = values("P.Y"), z = values("P.Z"), depth = values("Z");
+    // Positions and matrices are floats of some 100 m, and products of them are summed.
+    constexpr double kRounding = 200 * 8 * 6e-8;
+    int hits = 0;
+    for (int j = 0; j < exr.height; ++j) {
+      for (int i = 0; i < exr.width; ++i) {
+        const auto k = static_cast<std::size_t>(j * exr.width + i);
+        if (std::isinf(depth[k])) continue;
+        ++hits;
+        EXPECT_NEAR(z[k], 100 + x[k] / 10 - y[k] / 5, kRounding);
+        const Imath::V3d position(x[k], y[k], z[k]);
+        Imath::V3d in_camera, in_picture;
+        Imath::M44d(exr.matrices.at("worldToCamera")).multVecMatrix(position, in_camera);
+        EXPECT_NEAR(in_camera.z, depth[k], kRounding);
+        Imath::M44d(exr.matrices.at("worldToNDC")).multVecMatrix(position, in_picture);
+        // A pixel is worth more than a metre here.
+        EXPECT_NEAR((in_picture.x + 1) / 2 * exr.width, i + 0.5, exr.width * kRounding);
+        EXPECT_NEAR((1 - in_picture.y) / 2 * exr.height, j + 0.5, exr.height * kRounding);
+      }
+    }
+    EXPECT_GT(hits, exr.width * exr.height / 10) << from.front();
+  }
+}
+
+TEST_F(ExrOutput, WhatDoesNotWorkIsOneLineAndLeavesNothing) {
+  const std::string input = plane();
+  std::filesystem::create_symlink("/dev/full", scratch_.path("full.exr"));
+  const auto before = scratch_.files();
+  const struct {
+    std::vector<std::string> arguments;
+    std::string fragment;
+  } cases[] = {
+      {{"-o", out(), "--look", "steps"}, "channels"},
+      {{"-o", scratch_.path("no/folder/out.exr")}, "folder"},
+      {{"-o", "/proc/out.exr"}, "/proc"},
+      {{"-o", scratch_.path("full.exr")}, "device"},
+      {{"-o", scratch_.path("out.tiff")}, ".exr"},
+  };
+  for (const auto& c : cases) {
+    std::vector<std::string> arguments{"render", input, "--size", "8x8"};
+    arguments.insert(arguments.end(), c.arguments.begin(), c.arguments.end());
+    const auto result = test::run(arguments);
+    EXPECT_EQ(result.status, 1) << result.err;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(c.fragment), std::string::npos) << result.err;
+    EXPECT_EQ(scratch_.files(), before);
+  }
+}
+
+}  // namespace
+}  // namespace scarp
