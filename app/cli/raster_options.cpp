@@ -32,7 +32,7 @@ MapBounds bounds_from(const std::string& text) {
 
 }  // namespace
 
-void add_raster_options(CLI::App& command, RasterOptions& options) {
+void add_raster_options(CLI::App& command, RasterOptions& options, const std::string& crs_option) {
   const std::string group = "What the file does not say";
   command.add_option("--band", options.band, "band to read, from 1 (the only one)")
       ->check(CLI::Range(1, 65536))
@@ -49,7 +49,7 @@ void add_raster_options(CLI::App& command, RasterOptions& options) {
   command.add_option("--scale", options.scale, "height = sample * scale + offset, in the vertical unit; not 0")
       ->group(group);
   command.add_option("--offset", options.offset, "see --scale")->group(group);
-  command.add_option("--crs", options.crs, "coordinate reference system, for example EPSG:4326")->group(group);
+  command.add_option(crs_option, options.crs, "coordinate reference system, for example EPSG:4326")->group(group);
   command
       .add_option_function<std::string>(
           "--bounds", [&options](const std::string& text) { options.bounds = bounds_from(text); },

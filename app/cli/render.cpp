@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/field_options.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
@@ -31,7 +32,7 @@ namespace {
 struct RenderOptions {
   std::string input, output;
   RasterOptions raster;
-  double exaggeration = 1;
+  FieldOptions field;
   std::string march = "max-mip";
   MarchSettings march_settings;
   PictureSettings picture;
@@ -94,9 +95,6 @@ ViewSettings settle(RenderOptions& options) {
   }
   validate(view);
   validate(options.march_settings);
-  if (!(std::isfinite(options.exaggeration) && options.exaggeration > 0)) {
-    throw Error(fmt::format("--exaggeration {}: it must be above 0", options.exaggeration));
-  }
   std::string extension = std::filesystem::path(options.output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
@@ -152,7 +150,7 @@ void run(RenderOptions options) {
   const double grid_north_azimuth = raster.georeference.grid_north_azimuth;
   const std::vector<std::string> notes = raster.notes;
 
-  HeightField field = height_field_from(std::move(raster), options.exaggeration);
+  HeightField field = height_field_from(std::move(raster), options.field);
   if (!field.has_cells()) {
     throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed",
                             options.input, field.cols(), field.rows()));
@@ -207,7 +205,7 @@ void add_render(CLI::App& program) {
   command->add_option("--look", o.look, "shaded, height, steps, error")->capture_default_str();
   command->add_option("--ramp", o.picture.ramp,
                       fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
-  command->add_option("--exaggeration", o.exaggeration, "heights times this; above 0")->capture_default_str();
+  add_field_options(*command, o.field);
   command->add_option("--sun", o.sun, "AZIMUTH,ALTITUDE of the sun in degrees, compass and above the horizon (315,45)");
   command->add_flag("--no-shadows", o.no_shadows, "hill shade only");
   command->add_flag("--no-plinth", o.no_plinth, "no walls below the terrain's border");
