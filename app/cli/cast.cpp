@@ -38,6 +38,25 @@ constexpr std::size_t kPiece = 1 << 16;
 
 constexpr std::string_view kRasterCrs = "--raster-crs";
 
+// What the help says below the options.
+constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order:
+  x,y,z                 the origin
+  dx,dy,dz              its direction; t counts in its length
+  or tx,ty,tz           a target instead: there t is 1, and there the ray ends
+  t_min,t_max           if you like: the range of t (0 to infinity; 0 to 1 with a target)
+  start_col,start_row   if you like: the ray starts on the surface of this cell
+  others                are copied to the hits
+Rays, .npy: float32 or float64 of N x 6 or N x 8: x,y,z,dx,dy,dz[,t_min,t_max]; or structures with fields of these names.
+
+Coordinates (--crs); z is always metres, as scarp has the heights of the raster:
+  local    metres east and north of the south-west sample
+  map      units of the raster's CRS; dx,dy are in these units, too, dz in metres
+  lonlat   longitude and latitude in degrees, WGS 84; dx,dy,dz are metres east, north and up
+
+Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, the cell col,row and the place u,v in it, the unit
+normal nx,ny,nz (east, north, up), wall (0 or 1). With --any: ray, blocked.
+Example: printf 'x,y,z,dx,dy,dz\n500,500,9000,0,0,-1\n' | scarp cast dem.tif --rays - --crs local)";
+
 struct CastOptions {
   std::string input, rays, output, coordinates;
   RasterOptions raster;
@@ -221,15 +240,14 @@ void run(const CastOptions& options) {
   HitTable out(options.output, options.any ? TableKind::blocked : TableKind::hits, table.carried);
   Raster raster = read(options);
   stop_if_interrupted();
-  for (const std::string& note : raster.notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
+  std::vector<std::string> notes = raster.notes;
   const CoordinateFrame frame = frame_of(options, raster);
   const std::vector<Ray> rays = rays_in_local(table, frame);
   const HeightField field = height_field_from(std::move(raster), options.field);
   check(table, rays, field);
-  if (!field.has_cells() || field.all_nodata()) {
-    fmt::print(stderr, "note: {}: every ray misses\n",
-               field.has_cells() ? "all samples are nodata" : "a single row or column has no cells");
-  }
+  if (!field.has_cells()) notes.push_back("a single row or column has no cells: every ray misses");
+  if (field.all_nodata()) notes.push_back("all samples are nodata: every ray misses; is the nodata value right?");
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
   stop_if_interrupted();
 
   Caster caster(options, field, march, frame, table, out);
@@ -259,25 +277,17 @@ void add_cast(CLI::App& program) {
   const auto options = std::make_shared<CastOptions>();
   CastOptions& o = *options;
   command->add_option("IN", o.input, "raster of heights: anything GDAL reads, .npy, .npz")->required();
-  command
-      ->add_option("--rays", o.rays,
-                   "CSV with the columns x,y,z and dx,dy,dz (a direction) or tx,ty,tz (a target, where t is 1 and the "
-                   "ray ends); as you like t_min,t_max, start_col,start_row (the ray starts on the surface of that "
-                   "cell), and others, which are copied. Or .npy, float32 or float64, N x 6 or N x 8: "
-                   "x,y,z,dx,dy,dz[,t_min,t_max]. -: standard input")
-      ->required();
+  command->add_option("--rays", o.rays, "table of rays, .csv or .npy; -: CSV from standard input")->required();
   command->add_option("-o,--output", o.output, "the table of hits, .csv or .npy (CSV to standard output)");
   command->add_option("--crs", o.coordinates,
-                      "coordinates of the rays and of the hits (map; local for rasters without georeference); z is "
-                      "always metres. local: metres east and north of the south-west sample. map: units of the "
-                      "raster's CRS; dx,dy count in them, too. lonlat: longitude, latitude in degrees (WGS 84); "
-                      "dx,dy,dz are metres east, north, up");
+                      "coordinates of rays and hits: local, map or lonlat (map; local where the raster has no place)");
   CLI::Option* any = command->add_flag("--any", o.any, "only whether anything is in the way: ray,blocked (0 or 1)");
   command->add_flag("--all", o.all, "all hits of each ray in the order of t, not the first only")->excludes(any);
   command->add_option("--march", o.march, "technique, see 'scarp marches'")->capture_default_str();
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
   add_field_options(*command, o.field);
   add_raster_options(*command, o.raster, std::string(kRasterCrs));
+  command->footer(kTables);
   command->callback([options] { run(*options); });
 }
 

@@ -13,6 +13,7 @@
 #include <cstring>
 #include <filesystem>
 #include <memory>
+#include <span>
 
 #include "scarp/base/error.h"
 #include "scarp/source/csv_rows.h"
@@ -69,12 +70,8 @@ void check(const RayRow& row, RayAim aim, const Place& place) {
 // Which field of a row is which column.
 class Header {
  public:
-  explicit Header(const std::vector<std::string_view>& fields) : fields_(fields.size()) {
+  explicit Header(std::span<const std::string_view> fields) : fields_(fields.size()) {
     places_.fill(kNone);
-    double number = 0;
-    if (parse(trimmed(fields.front()), number)) {
-      throw Error(fmt::format("its first line is no header but numbers; {}", kNeeded));
-    }
     for (std::size_t i = 0; i < fields.size(); ++i) {
       const std::string_view name = trimmed(fields[i]);
       const auto known = std::find(kNames.begin(), kNames.end(), name);
@@ -175,15 +172,117 @@ class Row {
   std::size_t number_;
 };
 
-// The i-th number of an array.
-template <class Float, class Bits>
-double number_at(std::string_view bytes, std::size_t i, bool big_endian) {
+// A number of an array at these bytes.
+template <class Number, class Bits>
+double number_at(const char* bytes, bool big_endian) {
   Bits bits = 0;
   for (std::size_t k = 0; k < sizeof(Bits); ++k) {
-    const auto byte = static_cast<unsigned char>(bytes[i * sizeof(Bits) + k]);
-    bits |= static_cast<Bits>(Bits{byte} << (8 * (big_endian ? sizeof(Bits) - 1 - k : k)));
+    const auto byte = static_cast<unsigned char>(bytes[k]);
+    bits = static_cast<Bits>(bits | Bits{byte} << (8 * (big_endian ? sizeof(Bits) - 1 - k : k)));
   }
-  return std::bit_cast<Float>(bits);
+  return static_cast<double>(std::bit_cast<Number>(bits));
+}
+
+using NumberReader = double (*)(const char* bytes, bool big_endian);
+
+// Null for what is no number.
+NumberReader reader_of(char kind, int bytes) {
+  switch (kind) {
+    case 'f':
+      if (bytes == 4) return number_at<float, std::uint32_t>;
+      if (bytes == 8) return number_at<double, std::uint64_t>;
+      break;
+    case 'i':
+      if (bytes == 1) return number_at<std::int8_t, std::uint8_t>;
+      if (bytes == 2) return number_at<std::int16_t, std::uint16_t>;
+      if (bytes == 4) return number_at<std::int32_t, std::uint32_t>;
+      if (bytes == 8) return number_at<std::int64_t, std::uint64_t>;
+      break;
+    case 'u':
+      if (bytes == 1) return number_at<std::uint8_t, std::uint8_t>;
+      if (bytes == 2) return number_at<std::uint16_t, std::uint16_t>;
+      if (bytes == 4) return number_at<std::uint32_t, std::uint32_t>;
+      if (bytes == 8) return number_at<std::uint64_t, std::uint64_t>;
+      break;
+    default:
+      break;
+  }
+  return nullptr;
+}
+
+// The number of rays behind the header, which says that each takes `bytes`.
+std::size_t rays_of(const NpyHeader& header, std::string_view behind, std::int64_t bytes) {
+  // In double: the product cannot overflow.
+  const double needed = static_cast<double>(header.shape[0]) * static_cast<double>(bytes);
+  if (static_cast<double>(behind.size()) < needed) {
+    throw Error(fmt::format("is cut off: {} rays need {:.0f} bytes behind the header, it has {}", header.shape[0],
+                            needed, behind.size()));
+  }
+  return static_cast<std::size_t>(header.shape[0]);
+}
+
+RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t rays) {
+  std::vector<std::string_view> names;
+  for (const NpyField& field : header.fields) names.push_back(field.name);
+  const Header columns(names);
+  std::array<NumberReader, column_count> readers{};
+  for (std::size_t c = 0; c < column_count; ++c) {
+    if (!columns.has(static_cast<Column>(c))) continue;
+    const NpyField& field = header.fields[columns[static_cast<Column>(c)]];
+    readers[c] = reader_of(field.kind, field.bytes);
+    if (!readers[c]) throw Error(fmt::format("its field '{}' is no number of i1 to i8, u1 to u8, f4, f8", field.name));
+  }
+  RayTable table;
+  table.aim = columns.aim();
+  const bool targets = table.aim == RayAim::target;
+  table.rows.resize(rays);
+  for (std::size_t i = 0; i < rays; ++i) {
+    const char* const structure = data + i * static_cast<std::size_t>(header.bytes);
+    const auto number = [&](Column column) {
+      const NpyField& field = header.fields[columns[column]];
+      return readers[column](structure + field.begin, field.big_endian);
+    };
+    const auto whole = [&](Column column) {
+      const double value = number(column);
+      if (value != std::floor(value) || !(std::abs(value) <= std::numeric_limits<int>::max())) {
+        throw Error(fmt::format("{}: {} in field '{}' is not a whole number", place_of(0, i), value, kNames[column]));
+      }
+      return static_cast<int>(value);
+    };
+    RayRow& row = table.rows[i];
+    row.origin = {number(x), number(y), number(z)};
+    row.aim = targets ? dvec3(number(tx), number(ty), number(tz)) : dvec3(number(dx), number(dy), number(dz));
+    if (columns.has(t_min)) row.t_min = number(t_min);
+    if (columns.has(t_max) || targets) row.t_max = columns.has(t_max) ? number(t_max) : 1.0;
+    if (columns.has(start_col)) {
+      row.start = RayStart::on_surface;
+      row.start_cell = {whole(start_col), whole(start_row)};
+    }
+    check(row, table.aim, [&] { return place_of(0, i); });
+  }
+  return table;
+}
+
+RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays) {
+  const NumberReader reader = reader_of(header.kind, header.bytes);
+  const auto columns = static_cast<std::size_t>(header.shape[1]), bytes = static_cast<std::size_t>(header.bytes);
+  RayTable table;
+  table.rows.resize(rays);
+  for (std::size_t i = 0; i < rays; ++i) {
+    const auto number = [&](std::size_t column) {
+      const std::size_t at = header.fortran_order ? column * rays + i : i * columns + column;
+      return reader(data + at * bytes, header.big_endian);
+    };
+    RayRow& row = table.rows[i];
+    row.origin = {number(0), number(1), number(2)};
+    row.aim = {number(3), number(4), number(5)};
+    if (columns == 8) {
+      row.t_min = number(6);
+      row.t_max = number(7);
+    }
+    check(row, table.aim, [&] { return place_of(0, i); });
+  }
+  return table;
 }
 
 struct FileCloser {
@@ -220,6 +319,9 @@ RayTable parse_ray_csv(std::string_view bytes) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("is UTF-16; save it as UTF-8");
   CsvRows rows(bytes);
   if (!rows.next()) throw Error(fmt::format("is empty; a header is needed, in which {}", kNeeded));
+  if (double number = 0; parse(trimmed(rows.fields().front()), number)) {
+    throw Error(fmt::format("its first line is no header but numbers; {}", kNeeded));
+  }
   const Header header(rows.fields());
   RayTable table;
   table.aim = header.aim();
@@ -232,8 +334,16 @@ RayTable parse_ray_csv(std::string_view bytes) {
 }
 
 RayTable parse_ray_npy(std::string_view bytes) {
-  const NpyHeader header = parse_npy_header(bytes);
+  const NpyHeader header = parse_npy_table_header(bytes);
   const auto& shape = header.shape;
+  const std::string_view behind = bytes.substr(static_cast<std::size_t>(header.data_begin));
+  if (!header.fields.empty()) {
+    if (shape.size() != 1) {
+      throw Error(
+          fmt::format("is an array of structures of shape ({}); one dimension is needed", fmt::join(shape, ", ")));
+    }
+    return parse_structures(header, behind.data(), rays_of(header, behind, header.bytes));
+  }
   if (header.kind != 'f' || (header.bytes != 4 && header.bytes != 8)) {
     throw Error(fmt::format("holds numbers of type '{}'; float32 and float64 are read", header.descr));
   }
@@ -241,32 +351,7 @@ RayTable parse_ray_npy(std::string_view bytes) {
     throw Error(fmt::format("is an array of shape ({}); (N, 6) or (N, 8) is needed: x,y,z,dx,dy,dz[,t_min,t_max]",
                             fmt::join(shape, ", ")));
   }
-  const std::string_view numbers = bytes.substr(static_cast<std::size_t>(header.data_begin));
-  // In double: the product cannot overflow.
-  const double needed = static_cast<double>(shape[0]) * static_cast<double>(shape[1] * header.bytes);
-  if (static_cast<double>(numbers.size()) < needed) {
-    throw Error(fmt::format("is cut off: {} rays need {:.0f} bytes behind the header, it has {}", shape[0], needed,
-                            numbers.size()));
-  }
-  const auto rays = static_cast<std::size_t>(shape[0]), columns = static_cast<std::size_t>(shape[1]);
-  RayTable table;
-  table.rows.resize(rays);
-  for (std::size_t i = 0; i < rays; ++i) {
-    const auto number = [&](std::size_t column) {
-      const std::size_t at = header.fortran_order ? column * rays + i : i * columns + column;
-      return header.bytes == 4 ? double{number_at<float, std::uint32_t>(numbers, at, header.big_endian)}
-                               : number_at<double, std::uint64_t>(numbers, at, header.big_endian);
-    };
-    RayRow& row = table.rows[i];
-    row.origin = {number(0), number(1), number(2)};
-    row.aim = {number(3), number(4), number(5)};
-    if (columns == 8) {
-      row.t_min = number(6);
-      row.t_max = number(7);
-    }
-    check(row, table.aim, [&] { return place_of(0, i); });
-  }
-  return table;
+  return parse_plain(header, behind.data(), rays_of(header, behind, shape[1] * header.bytes));
 }
 
 RayTable read_rays(const std::string& path) {

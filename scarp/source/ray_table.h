@@ -9,7 +9,8 @@
 // outside of quotes; quotes as in RFC 4180; lines end with LF, CR LF or CR; a byte order mark of UTF-8 and blank lines
 // are passed over. Numbers have a decimal point.
 //
-// An array holds float32 or float64, (N, 6) or (N, 8): x, y, z, dx, dy, dz[, t_min, t_max].
+// An array holds float32 or float64, (N, 6) or (N, 8): x, y, z, dx, dy, dz[, t_min, t_max]; or N structures with fields
+// of the names above, numbers all of them. Its other fields are passed over.
 //
 // Coordinates are those of the table: coordinates.h turns them into metres of a field.
 #pragma once
