@@ -95,6 +95,8 @@ ViewSettings settle(RenderOptions& options) {
   }
   validate(view);
   validate(options.march_settings);
+  if (options.field.wrap != Wrap::none)
+    throw Error("--wrap: a picture shows a field once, with its borders; leave it out");
   std::string extension = std::filesystem::path(options.output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });

@@ -261,6 +261,20 @@ TEST_F(Cast, SurfaceOptionsReachTheRays) {
   EXPECT_EQ(number(cast("x,y,z,dx,dy,dz\n15,35,-3,0,-1,0\n", {"--solid"}), "ny"), 1);
 }
 
+TEST_F(Cast, RenderTakesTheSameSurfacesButNoWrap) {
+  hills();
+  const Names arguments = {"render", path("hills.asc"), "-o", path("out.png"), "--size", "32x24"};
+  const auto with = [&](const Names& more) {
+    Names all = arguments;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  };
+  EXPECT_EQ(with({"--surface", "triangles", "--solid"}).status, 0);
+  const auto wrapped = with({"--wrap", "periodic"});
+  EXPECT_EQ(wrapped.status, 1);
+  EXPECT_NE(wrapped.err.find("--wrap"), std::string::npos) << wrapped.err;
+}
+
 TEST_F(Cast, RaysStartOnTheSurface) {
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
   // Along the plane: touching is a hit for a free ray, none for one that starts on it.
