@@ -219,9 +219,10 @@ class Caster {
   double seconds_ = 0;
 };
 
-void run(const CastOptions& options) {
+void run(CastOptions options) {
+  if (options.output == "-") options.output.clear();
   const MarchEntry& march = find_march(options.march);
-  all_hits_of(options, march);
+  all_hits_of(options, march);  // refuses before files are read
   if (!options.coordinates.empty()) {
     try {
       find_coordinates(options.coordinates);
@@ -247,7 +248,6 @@ void run(const CastOptions& options) {
   check(table, rays, field);
   if (!field.has_cells()) notes.push_back("a single row or column has no cells: every ray misses");
   if (field.all_nodata()) notes.push_back("all samples are nodata: every ray misses; is the nodata value right?");
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
   stop_if_interrupted();
 
   Caster caster(options, field, march, frame, table, out);
@@ -263,6 +263,8 @@ void run(const CastOptions& options) {
     if (!progress(static_cast<double>(first + count) / static_cast<double>(rays.size()))) throw Interrupted();
   }
   out.commit();
+  // Last: who fails says one line alone.
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
   if (::isatty(STDERR_FILENO) != 0) {
     fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s\n", rays.size(), caster.hits(),
                options.any ? "blocked" : "hits", caster.seconds(),
@@ -278,7 +280,7 @@ void add_cast(CLI::App& program) {
   CastOptions& o = *options;
   command->add_option("IN", o.input, "raster of heights: anything GDAL reads, .npy, .npz")->required();
   command->add_option("--rays", o.rays, "table of rays, .csv or .npy; -: CSV from standard input")->required();
-  command->add_option("-o,--output", o.output, "the table of hits, .csv or .npy (CSV to standard output)");
+  command->add_option("-o,--output", o.output, "the table of hits, .csv or .npy; -: CSV to standard output (-)");
   command->add_option("--crs", o.coordinates,
                       "coordinates of rays and hits: local, map or lonlat (map; local where the raster has no place)");
   CLI::Option* any = command->add_flag("--any", o.any, "only whether anything is in the way: ray,blocked (0 or 1)");

@@ -143,30 +143,44 @@ TEST_F(Cast, LonlatNodesHaveTheirSamples) {
       [&](int col, int row) { return std::pair(west + cell * col, south + cell * (kRows - 1 - row)); }, true);
 }
 
-TEST_F(Cast, TheMapsOfHitsAgree) {
-  // The same rays, given in local coordinates and in those that the program said for their hits.
-  const Names place = {"--raster-crs", "EPSG:32616", "--bounds=721000,4030000,721150,4030120"};
-  const auto cast = [&](const std::string& table, const std::string& crs) {
-    Names arguments = {"cast", hills(), "--rays", rays(table), "--crs", crs};
-    arguments.insert(arguments.end(), place.begin(), place.end());
-    const auto result = run(arguments);
+TEST_F(Cast, OnePlaceInThreeWords) {
+  // UTM zone 16N (721085, 4030060) is this longitude and latitude by Krueger's series; nodes are 30 m apart, the
+  // south-west one at (721015, 4030015).
+  const double west = 721015, south = 4030015, x = 721085, y = 4030060;
+  const auto cast = [&](const std::string& place, const std::string& crs) {
+    const auto result = run({"cast", hills(), "--rays", rays(fmt::format("x,y,z,dx,dy,dz\n{},900,0,0,-1\n", place)),
+                             "--crs", crs, "--raster-crs", "EPSG:32616", "--bounds=721000,4030000,721150,4030120"});
     EXPECT_EQ(result.status, 0) << result.err;
-    return rows_of(result.out);
+    const auto rows = rows_of(result.out);
+    return rows.empty() ? Row() : rows[0];
   };
-  const auto local = cast("x,y,z,dx,dy,dz\n25,33,900,0,0,-1\n", "local");
-  for (const char* crs : {"map", "lonlat"}) {
-    // A vertical ray in the other coordinates, far off: where does local (25, 33) lie? By its own answer.
-    const bool lonlat = std::string(crs) == "lonlat";
-    const auto first = cast(lonlat ? "x,y,z,tx,ty,tz\n-84.53459,36.38989,900,-84.53459,36.38989,0\n"
-                                   : "x,y,z,tx,ty,tz\n721050,4030060,900,721050,4030060,0\n",
-                            crs);
-    ASSERT_EQ(first.at(0).at("status"), "hit") << crs;
-    const auto again =
-        cast(fmt::format("x,y,z,tx,ty,tz\n{0},{1},900,{0},{1},0\n", first[0].at("x"), first[0].at("y")), crs);
-    EXPECT_NEAR(number(first[0], "z"), number(again.at(0), "z"), 1e-6);
-    EXPECT_NEAR(number(first[0], "u"), number(again[0], "u"), 1e-6);
+  const double north = sample(2, 1) + (sample(3, 1) - sample(2, 1)) / 3.0,
+               below = sample(2, 2) + (sample(3, 2) - sample(2, 2)) / 3.0;
+  // The series are good to some micrometres, and the slope is about 1.
+  constexpr double kSeries = 1e-5;
+  const Row map = cast(fmt::format("{},{}", x, y), "map"), lonlat = cast("-84.535001630948,36.390278541168", "lonlat");
+  for (const Row& row : {map, lonlat}) {
+    EXPECT_EQ(row.at("col") + row.at("row"), "21");
+    EXPECT_NEAR(number(row, "u"), 1.0 / 3, kSeries);
+    EXPECT_NEAR(number(row, "z"), (north + below) / 2, kSeries);
   }
-  EXPECT_EQ(local.at(0).at("status"), "hit");
+  // Local metres are the ground's: those of the map times one scale, 1.0002 here.
+  const double scale = 1.0002;
+  const Row local = cast(fmt::format("{},{}", (x - west) * scale, (y - south) * scale), "local");
+  EXPECT_NEAR(number(local, "u"), 1.0 / 3, 0.001);
+  EXPECT_NEAR(number(local, "v"), 0.5, 0.001);
+}
+
+TEST_F(Cast, AHitWithoutLongitudeIsSaid) {
+  // The Earth from far away: the corners of this map show the sky behind it.
+  hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
+  const auto result =
+      run({"cast", path("hills.asc"), "--rays", rays("x,y,z,dx,dy,dz\n0,0,1000,6000,6000,-1\n"), "--crs", "lonlat",
+           "--raster-crs", "+proj=ortho +lat_0=0 +lon_0=0 +ellps=WGS84", "--bounds=-9000000,-9000000,9000000,9000000"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(test::lines(result.err), 1) << result.err;
+  EXPECT_NE(result.err.find("line 2 (ray 0): its hit is at a place that has no longitude"), std::string::npos)
+      << result.err;
 }
 
 TEST_F(Cast, CarriedColumnsAndEveryStatus) {
