@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <limits>
@@ -127,6 +128,20 @@ void check(const RayTable& table, std::span<const Ray> rays, const HeightField& 
       throw Error(fmt::format("{}: {}", table.where(i), text));
     }
   }
+}
+
+// A word for tables in other coordinates than said, of which nothing is hit: where the raster lies. Empty when a ray
+// begins over it, as all do where it goes on for ever.
+std::string place_of_raster(std::span<const Ray> rays, const HeightField& field, const CoordinateFrame& frame) {
+  const auto over = [&](const Ray& ray) {
+    return ray.origin.x >= 0 && ray.origin.x <= field.width() && ray.origin.y >= 0 && ray.origin.y <= field.depth();
+  };
+  std::array corners = {dvec3(0.0), dvec3(field.width(), field.depth(), 0.0)};
+  if (field.wraps() || std::any_of(rays.begin(), rays.end(), over) || frame.from_local(corners)) return {};
+  return fmt::format(
+      "nothing was hit, and no ray begins over the raster: in {} coordinates x {:.8g} to {:.8g}, "
+      "y {:.8g} to {:.8g}; are the rays in these (--crs)?",
+      name_of(frame.coordinates()), corners[0].x, corners[1].x, corners[0].y, corners[1].y);
 }
 
 // Answers rays and writes what they met, piece by piece.
@@ -265,6 +280,10 @@ void run(CastOptions options) {
   out.commit();
   // Last: who fails says one line alone.
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
+  if (caster.hits() == 0 && !rays.empty()) {
+    const std::string note = place_of_raster(rays, field, frame);
+    if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
+  }
   if (::isatty(STDERR_FILENO) != 0) {
     fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s\n", rays.size(), caster.hits(),
                options.any ? "blocked" : "hits", caster.seconds(),

@@ -386,6 +386,16 @@ TEST_F(Cast, WrongOptionsAreRefused) {
   EXPECT_NE(run({"cast", path("missing.tif"), "--rays", path("rays.csv")}).err.find("missing.tif"), std::string::npos);
 }
 
+TEST_F(Cast, RaysFarOffTheRasterAreToldWhereItLies) {
+  const auto note_of = [&](const std::string& ray) {
+    return run({"cast", hills(), "--rays", rays("x,y,z,dx,dy,dz\n" + ray + "\n")}).err;
+  };
+  const std::string note = "map coordinates x 1000 to 1040, y 2000 to 2030";
+  EXPECT_NE(note_of("15,15,500,0,0,-1").find(note), std::string::npos);
+  EXPECT_EQ(note_of("1015,2015,500,0,0,1").find(note), std::string::npos) << "over it";
+  EXPECT_EQ(note_of("990,2015,500,1,0,-10").find("nothing was hit"), std::string::npos) << "a hit";
+}
+
 TEST_F(Cast, AFieldWithoutCellsSaysThatEveryRayMisses) {
   const auto result = run({"cast", write("row.asc", "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n"),
                            "--rays", rays("x,y,z,dx,dy,dz\n1,0.5,9,0,0,-1\n")});

@@ -45,8 +45,8 @@ TEST(FromRaster, HeightsAreMetresTimesTheExaggeration) {
 }
 
 TEST(FromRaster, OptionsReachTheField) {
-  const HeightField field = height_field_from(
-      raster_of<float>({1, 2, 3, 4}, 2, 2), {.surface = Surface::triangles, .wrap = Wrap::periodic, .solid = true});
+  const HeightField field = height_field_from(raster_of<float>({1, 2, 3, 4}, 2, 2),
+                                              {.surface = Surface::triangles, .wrap = Wrap::periodic, .solid = true});
   EXPECT_EQ(field.settings().surface, Surface::triangles);
   EXPECT_EQ(field.settings().wrap, Wrap::periodic);
   EXPECT_TRUE(field.settings().solid);
