@@ -28,10 +28,11 @@ int fail(std::string text, int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("Exact ray marching of terrain: elevation models in, pictures out.", "scarp");
+  CLI::App program("Exact ray marching of terrain: elevation models in, pictures and hits out.", "scarp");
   program.set_version_flag("--version", "scarp " SCARP_VERSION);
   program.require_subcommand(0, 1);
   scarp::cli::add_render(program);
+  scarp::cli::add_cast(program);
   scarp::cli::add_info(program);
   scarp::cli::add_generate(program);
   scarp::cli::add_marches(program);

@@ -51,7 +51,7 @@ void add_raster_inputs(CLI::App& command, std::vector<std::string>& inputs) {
       ->required();
 }
 
-void add_raster_options(CLI::App& command, RasterOptions& options) {
+void add_raster_options(CLI::App& command, RasterOptions& options, const std::string& crs_option) {
   const std::string group = "What the file does not say";
   command.add_option("--band", options.band, "band to read, from 1 (the only one)")
       ->check(CLI::Range(1, 65536))
@@ -96,7 +96,7 @@ void add_raster_options(CLI::App& command, RasterOptions& options) {
       ->group(group);
   command.add_option("--channel", options.channel, "channel of an .exr file (the only one, else Y, else R)")
       ->group(group);
-  command.add_option("--crs", options.crs, "coordinate reference system, for example EPSG:4326")->group(group);
+  command.add_option(crs_option, options.crs, "coordinate reference system, for example EPSG:4326")->group(group);
   command
       .add_option_function<std::string>(
           "--bounds", [&options](const std::string& text) { options.bounds = bounds_from(text); },

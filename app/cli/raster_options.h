@@ -14,7 +14,8 @@ namespace scarp::cli {
 void add_raster_inputs(CLI::App& command, std::vector<std::string>& inputs);
 
 /// Adds --band, --window, --nodata, --scale, --offset, --height-range, --unit, --crs, --bounds, --encoding, --raw,
-/// --channel and --key. `options` must live until the subcommand has run.
-void add_raster_options(CLI::App& command, RasterOptions& options);
+/// --channel and --key. `options` must live until the subcommand has run. `crs_option` replaces --crs where that means
+/// something else.
+void add_raster_options(CLI::App& command, RasterOptions& options, const std::string& crs_option = "--crs");
 
 }  // namespace scarp::cli

@@ -14,6 +14,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/exr_output.h"
+#include "app/cli/field_options.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
@@ -33,7 +34,7 @@ struct RenderOptions {
   std::vector<std::string> inputs;
   std::string output;
   RasterOptions raster;
-  double exaggeration = 1;
+  FieldOptions field;
   std::string march = "max-mip";
   MarchSettings march_settings;
   PictureSettings picture;
@@ -98,9 +99,8 @@ ViewSettings settle(RenderOptions& options) {
   }
   validate(view);
   validate(options.march_settings);
-  if (!(std::isfinite(options.exaggeration) && options.exaggeration > 0)) {
-    throw Error(fmt::format("--exaggeration {}: it must be above 0", options.exaggeration));
-  }
+  if (options.field.wrap != Wrap::none)
+    throw Error("--wrap: a picture shows a field once, with its borders; leave it out");
   std::string extension = std::filesystem::path(options.output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
@@ -167,7 +167,7 @@ void run(RenderOptions options) {
   const std::vector<std::string> notes = raster.notes;
   const std::string path = raster.path;
 
-  HeightField field = height_field_from(std::move(raster), options.exaggeration);
+  HeightField field = height_field_from(std::move(raster), options.field);
   if (!field.has_cells()) {
     throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed", path,
                             field.cols(), field.rows()));
@@ -235,7 +235,7 @@ void add_render(CLI::App& program) {
   command->add_option("--look", o.look, "shaded, height, steps, error")->capture_default_str();
   command->add_option("--ramp", o.picture.ramp,
                       fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
-  command->add_option("--exaggeration", o.exaggeration, "heights times this; above 0")->capture_default_str();
+  add_field_options(*command, o.field);
   command->add_option("--sun", o.sun, "AZIMUTH,ALTITUDE of the sun in degrees, compass and above the horizon (315,45)");
   command->add_flag("--no-shadows", o.no_shadows, "hill shade only: the sun shines through the ground");
   command

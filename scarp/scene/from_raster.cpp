@@ -10,14 +10,17 @@
 
 namespace scarp {
 
-HeightField height_field_from(Raster raster, double exaggeration) {
+HeightField height_field_from(Raster raster, const FieldOptions& options) {
   HeightFieldSettings settings;
   settings.cell_x = raster.georeference.cell_x_m;
   settings.cell_y = raster.georeference.cell_y_m;
   settings.scale = raster.scale;
   settings.offset = raster.offset;
-  settings.exaggeration = exaggeration;
+  settings.exaggeration = options.exaggeration;
   settings.nodata = raster.nodata;
+  settings.surface = options.surface;
+  settings.wrap = options.wrap;
+  settings.solid = options.solid;
   try {
     return std::visit(
         [&](auto&& samples) { return HeightField::own(std::move(samples), raster.cols, raster.rows, settings); },

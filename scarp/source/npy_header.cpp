@@ -11,6 +11,9 @@ namespace scarp {
 namespace {
 
 constexpr std::string_view kMagic = "\x93NUMPY";
+constexpr const char* kNested =
+    "has a field that is an array or a structure itself; fields of plain numbers are needed";
+constexpr int kLargestStructure = 1 << 20;  // bytes; sums of field sizes stay far from overflow
 
 [[noreturn]] void refuse(const std::string& what) {
   throw Error(fmt::format("its .npy header is damaged: {}; save the array again with numpy.save", what));
@@ -81,8 +84,9 @@ class Literal {
   std::size_t at_ = 0;
 };
 
-void parse_descr(std::string_view descr, NpyHeader& header) {
-  header.descr = descr;
+// Type is NpyHeader or NpyField: both have kind, bytes and big_endian.
+template <class Type>
+void parse_descr(std::string_view descr, Type& header) {
   std::size_t at = 0;
   if (!descr.empty() && std::string_view("<>|=").find(descr[0]) != std::string_view::npos) {
     // '=' is the machine's own order, which NumPy never writes: files have a fixed one.
@@ -97,23 +101,36 @@ void parse_descr(std::string_view descr, NpyHeader& header) {
     header.bytes = header.bytes * 10 + (descr[at] - '0');
 }
 
-std::uint32_t byte(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
-
-}  // namespace
-
-std::int64_t npy_data_begin(std::string_view preamble) {
-  if (preamble.substr(0, kMagic.size()) != kMagic) throw Error("is no .npy array: it does not begin with \\x93NUMPY");
-  if (preamble.size() < kNpyPreambleBytes) refuse("it ends too early");
-  const std::uint32_t major = byte(preamble, 6);
-  if (major < 1 || major > 3)
-    throw Error(fmt::format("is a .npy array of version {}.{}; 1.0, 2.0 and 3.0 are known", major, byte(preamble, 7)));
-  std::int64_t length = byte(preamble, 8) | byte(preamble, 9) << 8;
-  if (major > 1) length |= static_cast<std::int64_t>(byte(preamble, 10) << 16 | byte(preamble, 11) << 24);
-  if (length > kLargestNpyHeader) refuse(fmt::format("a length of {} bytes", length));
-  return (major == 1 ? 10 : 12) + length;
+// A list of pairs: [('x', '<f8'), ('y', '<f8')].
+void parse_structure(Literal& literal, NpyHeader& header) {
+  header.kind = 'V';
+  header.bytes = 0;
+  literal.expect('[');
+  while (!literal.take(']')) {
+    NpyField& field = header.fields.emplace_back();
+    literal.expect('(');
+    if (literal.looking_at('(')) throw Error("has a field with a title; name its fields plainly");
+    field.name = literal.quoted();
+    literal.expect(',');
+    if (literal.looking_at('[')) throw Error(kNested);
+    parse_descr(literal.quoted(), field);
+    if (literal.take(',') && !literal.looking_at(')')) throw Error(kNested);
+    literal.expect(')');
+    // NumPy counts the letters of a text, which have four bytes each.
+    field.begin = header.bytes;
+    header.bytes += field.kind == 'U' ? 4 * field.bytes : field.bytes;
+    if (header.bytes > kLargestStructure) refuse(fmt::format("a structure of more than {} bytes", kLargestStructure));
+    if (!literal.take(',')) {
+      literal.expect(']');
+      break;
+    }
+  }
+  if (header.fields.empty()) refuse("a structure without fields");
 }
 
-NpyHeader parse_npy_header(std::string_view bytes) {
+std::uint32_t byte(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
+
+NpyHeader parse(std::string_view bytes, bool structures) {
   NpyHeader header;
   header.data_begin = npy_data_begin(bytes);
   if (static_cast<std::int64_t>(bytes.size()) < header.data_begin) refuse("it ends too early");
@@ -125,10 +142,14 @@ NpyHeader parse_npy_header(std::string_view bytes) {
     const std::string key = literal.quoted();
     literal.expect(':');
     if (key == "descr") {
-      if (literal.looking_at('[') || literal.looking_at('{') || literal.looking_at('(')) {
+      if (structures && literal.looking_at('[')) {
+        parse_structure(literal, header);
+      } else if (literal.looking_at('[') || literal.looking_at('{') || literal.looking_at('(')) {
         throw Error("is an array of structures; an array of plain numbers is needed: save one field of it");
+      } else {
+        header.descr = literal.quoted();
+        parse_descr(header.descr, header);
       }
-      parse_descr(literal.quoted(), header);
       has_descr = true;
     } else if (key == "fortran_order") {
       header.fortran_order = literal.boolean();
@@ -156,5 +177,23 @@ NpyHeader parse_npy_header(std::string_view bytes) {
   if (!has_descr || !has_order || !has_shape) refuse("'descr', 'fortran_order' and 'shape' are needed");
   return header;
 }
+
+}  // namespace
+
+std::int64_t npy_data_begin(std::string_view preamble) {
+  if (preamble.substr(0, kMagic.size()) != kMagic) throw Error("is no .npy array: it does not begin with \\x93NUMPY");
+  if (preamble.size() < kNpyPreambleBytes) refuse("it ends too early");
+  const std::uint32_t major = byte(preamble, 6);
+  if (major < 1 || major > 3)
+    throw Error(fmt::format("is a .npy array of version {}.{}; 1.0, 2.0 and 3.0 are known", major, byte(preamble, 7)));
+  std::int64_t length = byte(preamble, 8) | byte(preamble, 9) << 8;
+  if (major > 1) length |= static_cast<std::int64_t>(byte(preamble, 10) << 16 | byte(preamble, 11) << 24);
+  if (length > kLargestNpyHeader) refuse(fmt::format("a length of {} bytes", length));
+  return (major == 1 ? 10 : 12) + length;
+}
+
+NpyHeader parse_npy_header(std::string_view bytes) { return parse(bytes, false); }
+
+NpyHeader parse_npy_table_header(std::string_view bytes) { return parse(bytes, true); }
 
 }  // namespace scarp

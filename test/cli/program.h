@@ -53,7 +53,8 @@ inline std::string text_of(const std::string& path) {
 /// A running `scarp`; its output goes into files of a folder of its own.
 class Program {
  public:
-  explicit Program(std::vector<std::string> arguments, const char* out_path = nullptr) {
+  explicit Program(std::vector<std::string> arguments, const char* out_path = nullptr,
+                   const std::string& in_path = "/dev/null") {
     arguments.insert(arguments.begin(), SCARP_PROGRAM);
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -61,6 +62,7 @@ class Program {
     const std::string out = out_path != nullptr ? out_path : streams_.path("out"), err = streams_.path("err");
     ::posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_addopen(&actions, 0, in_path.c_str(), O_RDONLY, 0);
     ::posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     const int error = ::posix_spawn(&pid_, SCARP_PROGRAM, &actions, nullptr, argv.data(), environ);

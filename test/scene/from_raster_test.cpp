@@ -39,9 +39,17 @@ TEST(FromRaster, HeightsAreMetresTimesTheExaggeration) {
   Raster raster = raster_of<std::int16_t>({10, 20, 30, 40}, 2, 2);
   raster.scale = 0.5;
   raster.offset = 100;
-  const HeightField field = height_field_from(std::move(raster), 3.0);
+  const HeightField field = height_field_from(std::move(raster), {.exaggeration = 3.0});
   EXPECT_DOUBLE_EQ(field.min_height(), 315);
   EXPECT_DOUBLE_EQ(field.max_height(), 360);
+}
+
+TEST(FromRaster, OptionsReachTheField) {
+  const HeightField field = height_field_from(raster_of<float>({1, 2, 3, 4}, 2, 2),
+                                              {.surface = Surface::triangles, .wrap = Wrap::periodic, .solid = true});
+  EXPECT_EQ(field.settings().surface, Surface::triangles);
+  EXPECT_EQ(field.settings().wrap, Wrap::periodic);
+  EXPECT_TRUE(field.settings().solid);
 }
 
 TEST(FromRaster, TheNodataValueMarksHoles) {

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: MIT
+// `scarp cast`: rays of a table against an elevation model, hits out.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/field_options.h"
+#include "app/cli/progress.h"
+#include "app/cli/raster_options.h"
+#include "scarp/accel/slope_bound.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/march/exhaustive.h"
+#include "scarp/march/max_mip.h"
+#include "scarp/march/queries.h"
+#include "scarp/output/hit_table.h"
+#include "scarp/scene/from_raster.h"
+#include "scarp/source/coordinates.h"
+#include "scarp/source/ray_table.h"
+#include "scarp/source/read_raster.h"
+
+namespace scarp::cli {
+namespace {
+
+// Rays are answered and written by the piece: a table of any length needs the memory of its rays, not of its hits.
+constexpr std::size_t kPiece = 1 << 16;
+
+constexpr std::string_view kRasterCrs = "--raster-crs";
+
+// What the help says below the options.
+constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order:
+  x,y,z                 the origin
+  dx,dy,dz              its direction; t counts in its length
+  or tx,ty,tz           a target instead: there t is 1, and there the ray ends
+  t_min,t_max           if you like: the range of t (0 to infinity; 0 to 1 with a target)
+  start_col,start_row   if you like: the ray starts on the surface of this cell
+  others                are copied to the hits
+Rays, .npy: float32 or float64 of N x 6 or N x 8: x,y,z,dx,dy,dz[,t_min,t_max]; or structures with fields of these names.
+
+Coordinates (--crs); z is always metres, as scarp has the heights of the raster:
+  local    metres east and north of the south-west sample
+  map      units of the raster's CRS; dx,dy are in these units, too, dz in metres
+  lonlat   longitude and latitude in degrees, WGS 84; dx,dy,dz are metres east, north and up
+
+Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, the cell col,row and the place u,v in it, the unit
+normal nx,ny,nz (east, north, up), wall (0 or 1). With --any: ray, blocked.
+Example: printf 'x,y,z,dx,dy,dz\n500,500,9000,0,0,-1\n' | scarp cast dem.tif --rays - --crs local)";
+
+struct CastOptions {
+  std::vector<std::string> inputs;
+  std::string rays, output, coordinates;
+  RasterOptions raster;
+  FieldOptions field;
+  std::string march = "max-mip";
+  bool any = false, all = false;
+  int threads = 0;
+};
+
+using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&);
+
+// The march's function for all hits, null when those are not asked for.
+AllHits all_hits_of(const CastOptions& options, const MarchEntry& march) {
+  if (!options.all) return nullptr;
+  if (march.name == "max-mip") return all_hits_max_mip;
+  if (march.name == "exhaustive") return all_hits_exhaustive;
+  throw Error(fmt::format("--all --march {}: all hits are found by max-mip and exhaustive only", march.name));
+}
+
+// Readers of rasters speak of --crs, which says here what the coordinates of the rays are.
+std::string in_words_of_cast(std::string text) {
+  constexpr std::string_view kTheirs = "--crs";
+  for (std::size_t at = 0; (at = text.find(kTheirs, at)) != std::string::npos; at += kRasterCrs.size()) {
+    text.replace(at, kTheirs.size(), kRasterCrs);
+  }
+  return text;
+}
+
+Raster read(const CastOptions& options) {
+  try {
+    return read_tiles(options.inputs, options.raster, terminal_progress("read"));
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(in_words_of_cast(error.what()));
+  }
+}
+
+CoordinateFrame frame_of(const CastOptions& options, const Raster& raster) {
+  const bool georeferenced = raster.georeference.present;
+  const Coordinates coordinates = !options.coordinates.empty() ? find_coordinates(options.coordinates)
+                                  : georeferenced              ? Coordinates::map
+                                                               : Coordinates::local;
+  try {
+    return {raster.georeference, raster.cols, raster.rows, coordinates};
+  } catch (const Error& error) {
+    throw Error(fmt::format("raster '{}': {}", raster.path, error.what()));
+  }
+}
+
+// A wall stands on the side of its cell through which the ray came in: the one that the hit lies on.
+dvec3 wall_normal(const Ray& ray, const Hit& hit) {
+  const dvec3& d = ray.direction;
+  const double from_x = d.x > 0 ? hit.u : 1 - hit.u, from_y = d.y > 0 ? 1 - hit.v : hit.v;
+  if (d.y == 0 || (d.x != 0 && from_x <= from_y)) return {d.x > 0 ? -1 : 1, 0, 0};
+  return {0, d.y > 0 ? -1 : 1, 0};
+}
+
+void check(const RayTable& table, std::span<const Ray> rays, const HeightField& field) {
+  constexpr std::string_view kPrefix = "ray: ";
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    try {
+      validate(rays[i], field);
+    } catch (const Error& error) {
+      // Here the ray has a name.
+      std::string_view text = error.what();
+      if (text.starts_with(kPrefix)) text.remove_prefix(kPrefix.size());
+      throw Error(fmt::format("{}: {}", table.where(i), text));
+    }
+  }
+}
+
+// A word for tables in other coordinates than said, of which nothing is hit: where the raster lies. Empty when a ray
+// begins over it, as all do where it goes on for ever.
+std::string place_of_raster(std::span<const Ray> rays, const HeightField& field, const CoordinateFrame& frame) {
+  const auto over = [&](const Ray& ray) {
+    return ray.origin.x >= 0 && ray.origin.x <= field.width() && ray.origin.y >= 0 && ray.origin.y <= field.depth();
+  };
+  std::array corners = {dvec3(0.0), dvec3(field.width(), field.depth(), 0.0)};
+  if (field.wraps() || std::any_of(rays.begin(), rays.end(), over) || frame.from_local(corners)) return {};
+  return fmt::format(
+      "nothing was hit, and no ray begins over the raster: in {} coordinates x {:.8g} to {:.8g}, "
+      "y {:.8g} to {:.8g}; are the rays in these (--crs)?",
+      name_of(frame.coordinates()), corners[0].x, corners[1].x, corners[0].y, corners[1].y);
+}
+
+// Answers rays and writes what they met, piece by piece.
+class Caster {
+ public:
+  Caster(const CastOptions& options, const HeightField& field, const MarchEntry& march, const CoordinateFrame& frame,
+         const RayTable& table, HitTable& out)
+      : field_(field), march_(march), frame_(frame), table_(table), out_(out), all_(all_hits_of(options, march)) {
+    if (march.needs_pyramid) pyramid_.emplace(field);
+    target_ = {&field_, pyramid_ ? &*pyramid_ : nullptr,
+               march.needs_slope ? slope_bound(field) : std::numeric_limits<double>::quiet_NaN()};
+  }
+
+  void blocked(std::size_t first, std::span<const Ray> rays) {
+    std::vector<std::uint8_t> answers(rays.size());
+    timed([&] { occluded(target_, rays, answers, march_); });
+    hits_ += static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1));
+    out_.add(static_cast<std::int64_t>(first), answers);
+  }
+
+  void hits(std::size_t first, std::span<const Ray> rays) {
+    std::vector<std::vector<Hit>> found(rays.size());
+    if (all_) {
+      constexpr std::int64_t kGrain = 256;
+      timed([&] {
+        parallel_for(static_cast<std::int64_t>(rays.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+          for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+            const HitStatus status = all_(target_, rays[i], found[i]);
+            if (found[i].empty()) found[i].emplace_back().status = status;
+          }
+        });
+      });
+    } else {
+      std::vector<Hit> closest(rays.size());
+      timed([&] { closest_hits(target_, rays, closest, march_); });
+      for (std::size_t i = 0; i < rays.size(); ++i) found[i] = {closest[i]};
+    }
+    write(first, rays, found);
+  }
+
+  std::size_t hits() const { return hits_; }
+  double seconds() const { return seconds_; }
+
+ private:
+  template <class Work>
+  void timed(const Work& work) {
+    const auto begin = std::chrono::steady_clock::now();
+    work();
+    seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+  void write(std::size_t first, std::span<const Ray> rays, const std::vector<std::vector<Hit>>& found) {
+    std::vector<HitRow> rows;
+    std::vector<dvec3> positions;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      for (const Hit& hit : found[i]) {
+        HitRow& row = rows.emplace_back();
+        row.ray = static_cast<std::int64_t>(first + i);
+        row.hit = hit;
+        if (!hit) continue;
+        ++hits_;
+        const dvec3 at = rays[i].at(hit.t);
+        positions.push_back({at.x, at.y, hit.height});
+        row.normal =
+            frame_.normal_from_local(hit.wall ? wall_normal(rays[i], hit) : field_.normal(hit.cell, hit.u, hit.v));
+      }
+    }
+    const auto failed = frame_.from_local(positions);
+    std::size_t next = 0;
+    for (HitRow& row : rows) {
+      if (!row.hit) continue;
+      if (failed == next) {
+        throw Error(fmt::format("{}: its hit is at a place that has no longitude and latitude; use --crs map",
+                                table_.where(static_cast<std::size_t>(row.ray))));
+      }
+      row.position = positions[next++];
+    }
+    out_.add(rows);
+  }
+
+  const HeightField& field_;
+  const MarchEntry& march_;
+  const CoordinateFrame& frame_;
+  const RayTable& table_;
+  HitTable& out_;
+  AllHits all_;
+  std::optional<MaxPyramid> pyramid_;
+  HeightTarget target_;
+  std::size_t hits_ = 0;
+  double seconds_ = 0;
+};
+
+void run(CastOptions options) {
+  if (options.output == "-") options.output.clear();
+  const MarchEntry& march = find_march(options.march);
+  all_hits_of(options, march);  // refuses before files are read
+  if (!options.coordinates.empty()) {
+    try {
+      find_coordinates(options.coordinates);
+    } catch (const Error&) {
+      throw Error(
+          fmt::format("--crs '{}': expected local, map or lonlat, the coordinates of the rays; the CRS of the "
+                      "raster is named with {}",
+                      options.coordinates, kRasterCrs));
+    }
+  }
+  const ThreadLimit limit(options.threads);
+  // Who reads the table may go away, as `head` does: then the program ends as others do, without a word.
+  if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);
+
+  const RayTable table = read_rays(options.rays);
+  HitTable out(options.output, options.any ? TableKind::blocked : TableKind::hits, table.carried);
+  Raster raster = read(options);
+  stop_if_interrupted();
+  std::vector<std::string> notes = raster.notes;
+  const CoordinateFrame frame = frame_of(options, raster);
+  const std::vector<Ray> rays = rays_in_local(table, frame);
+  const HeightField field = height_field_from(std::move(raster), options.field);
+  check(table, rays, field);
+  if (!field.has_cells()) notes.push_back("a single row or column has no cells: every ray misses");
+  if (field.all_nodata()) notes.push_back("all samples are nodata: every ray misses; is the nodata value right?");
+  stop_if_interrupted();
+
+  Caster caster(options, field, march, frame, table, out);
+  const Progress progress = terminal_progress("cast");
+  for (std::size_t first = 0; first < rays.size(); first += kPiece) {
+    const std::size_t count = std::min(kPiece, rays.size() - first);
+    const std::span<const Ray> piece = std::span(rays).subspan(first, count);
+    if (options.any) {
+      caster.blocked(first, piece);
+    } else {
+      caster.hits(first, piece);
+    }
+    if (!progress(static_cast<double>(first + count) / static_cast<double>(rays.size()))) throw Interrupted();
+  }
+  out.commit();
+  // Last: who fails says one line alone.
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
+  if (caster.hits() == 0 && !rays.empty()) {
+    const std::string note = place_of_raster(rays, field, frame);
+    if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
+  }
+  if (::isatty(STDERR_FILENO) != 0) {
+    fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s\n", rays.size(), caster.hits(),
+               options.any ? "blocked" : "hits", caster.seconds(),
+               static_cast<double>(rays.size()) / std::max(caster.seconds(), 1e-9) * 1e-6);
+  }
+}
+
+}  // namespace
+
+void add_cast(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("cast", "Say what rays of a table meet on an elevation model");
+  const auto options = std::make_shared<CastOptions>();
+  CastOptions& o = *options;
+  add_raster_inputs(*command, o.inputs);
+  command->add_option("--rays", o.rays, "table of rays, .csv or .npy; -: CSV from standard input")->required();
+  command->add_option("-o,--output", o.output, "the table of hits, .csv or .npy; -: CSV to standard output (-)");
+  command->add_option("--crs", o.coordinates,
+                      "coordinates of rays and hits: local, map or lonlat (map; local where the raster has no place)");
+  CLI::Option* any = command->add_flag("--any", o.any, "only whether anything is in the way: ray,blocked (0 or 1)");
+  command->add_flag("--all", o.all, "all hits of each ray in the order of t, not the first only")->excludes(any);
+  command->add_option("--march", o.march, "technique, see 'scarp marches'")->capture_default_str();
+  command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
+  add_field_options(*command, o.field);
+  add_raster_options(*command, o.raster, std::string(kRasterCrs));
+  command->footer(kTables);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/output/hit_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <iterator>
+#include <limits>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::array<std::string_view, 4> kStatusNames = {"miss", "hit", "below", "exhausted"};
+constexpr std::array<std::string_view, 14> kHitColumns = {"ray", "status", "t", "x",  "y",  "z",  "col",
+                                                          "row", "u",      "v", "nx", "ny", "nz", "wall"};
+constexpr std::array<std::string_view, 2> kBlockedColumns = {"ray", "blocked"};
+constexpr std::size_t kStatusColumn = 1;
+
+std::span<const std::string_view> columns_of(TableKind kind) {
+  if (kind == TableKind::hits) return kHitColumns;
+  return kBlockedColumns;
+}
+
+// Written to the file in pieces of this size.
+constexpr std::size_t kPiece = 1 << 20;
+
+// As RFC 4180 wants it: in quotes where the text has a separator, a quote or the end of a line.
+void append_quoted(std::string& out, std::string_view text) {
+  if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
+    out += text;
+    return;
+  }
+  out += '"';
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  out += '"';
+}
+
+void append_little_endian(std::string& out, double number) {
+  const auto bits = std::bit_cast<std::uint64_t>(number);
+  for (int i = 0; i < 8; ++i) out += static_cast<char>(bits >> (8 * i) & 0xff);
+}
+
+// The header of an array of `rows` structures. Its length does not depend on `rows`: it is written again at the end.
+std::string npy_header(std::span<const std::string_view> columns, std::int64_t rows) {
+  std::string fields;
+  for (const std::string_view name : columns) fields += fmt::format("('{}', '<f8'), ", name);
+  constexpr std::string_view kMagic("\x93NUMPY\x01\x00", 8);
+  constexpr std::size_t kAlignment = 64;
+  constexpr int kWidestCount = std::numeric_limits<std::int64_t>::digits10 + 1;
+  const std::string count = fmt::format("{}", rows);
+  std::string dictionary = fmt::format("{{'descr': [{}], 'fortran_order': False, 'shape': ({},), }}",
+                                       std::string_view(fields).substr(0, fields.size() - 2), count);
+  dictionary.append(kWidestCount - count.size(), ' ');
+  const std::size_t unpadded = kMagic.size() + 2 + dictionary.size() + 1;
+  dictionary.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
+  dictionary += '\n';
+  std::string header(kMagic);
+  header += static_cast<char>(dictionary.size() & 0xff);
+  header += static_cast<char>(dictionary.size() >> 8 & 0xff);
+  return header + dictionary;
+}
+
+bool is_npy(const std::string& path) {
+  if (path.empty()) return false;
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension == ".npy") return true;
+  if (extension == ".csv") return false;
+  throw Error(fmt::format("output '{}': tables are written as CSV or .npy; let the name end in .csv or .npy", path));
+}
+
+}  // namespace
+
+std::string_view name_of(HitStatus status) { return kStatusNames[static_cast<std::size_t>(status)]; }
+
+void HitTable::FileCloser::operator()(std::FILE* file) const {
+  if (file != stdout) std::fclose(file);
+}
+
+HitTable::HitTable(const std::string& path, TableKind kind, const TextColumns& carried)
+    : path_(path), kind_(kind), carried_(carried), npy_(is_npy(path)) {
+  const auto columns = columns_of(kind);
+  for (const std::string& name : carried.names) {
+    if (!npy_ && std::find(columns.begin(), columns.end(), name) != columns.end()) {
+      refuse(fmt::format("the rays bring a column '{}', which is one of its own; give it another name", name));
+    }
+  }
+  if (path.empty()) {
+    file_.reset(stdout);
+  } else {
+    place_ = std::make_unique<ReplaceFile>(path);
+    file_.reset(std::fopen(place_->temporary_path().c_str(), "wb"));
+    if (!file_) refuse(std::strerror(errno));
+  }
+  put_header();
+}
+
+HitTable::~HitTable() = default;
+
+void HitTable::refuse(std::string_view what) const {
+  throw Error(fmt::format("output '{}': {}", path_.empty() ? "-" : path_, what));
+}
+
+void HitTable::put_header() {
+  const auto columns = columns_of(kind_);
+  if (npy_) {
+    text_ += npy_header(columns, rows_);
+    return;
+  }
+  for (const std::string& name : carried_.names) {
+    append_quoted(text_, name);
+    text_ += ',';
+  }
+  text_ += fmt::format("{}\n", fmt::join(columns, ","));
+}
+
+void HitTable::put(std::int64_t ray, std::span<const double> numbers) {
+  ++rows_;
+  if (npy_) {
+    for (const double number : numbers) append_little_endian(text_, number);
+  } else {
+    for (std::size_t i = 0; i < carried_.names.size(); ++i) {
+      append_quoted(text_, carried_.at(static_cast<std::size_t>(ray), i));
+      text_ += ',';
+    }
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      if (i > 0) text_ += ',';
+      if (kind_ == TableKind::hits && i == kStatusColumn) {
+        text_ += kStatusNames[static_cast<std::size_t>(numbers[i])];
+      } else if (!std::isnan(numbers[i])) {
+        fmt::format_to(std::back_inserter(text_), "{}", numbers[i]);
+      }
+    }
+    text_ += '\n';
+  }
+  if (text_.size() >= kPiece) flush();
+}
+
+void HitTable::add(std::span<const HitRow> rows) {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  for (const HitRow& row : rows) {
+    const Hit& hit = row.hit;
+    std::array<double, kHitColumns.size()> numbers;
+    numbers.fill(kNone);
+    numbers[0] = static_cast<double>(row.ray);
+    numbers[1] = static_cast<double>(hit.status);
+    if (hit.status == HitStatus::exhausted && std::isfinite(hit.t)) numbers[2] = hit.t;
+    if (hit) {
+      numbers = {numbers[0],
+                 numbers[1],
+                 hit.t,
+                 row.position.x,
+                 row.position.y,
+                 row.position.z,
+                 static_cast<double>(hit.cell.col),
+                 static_cast<double>(hit.cell.row),
+                 hit.u,
+                 hit.v,
+                 row.normal.x,
+                 row.normal.y,
+                 row.normal.z,
+                 hit.wall ? 1.0 : 0.0};
+    }
+    put(row.ray, numbers);
+  }
+}
+
+void HitTable::add(std::int64_t first_ray, std::span<const std::uint8_t> blocked) {
+  for (const std::uint8_t answer : blocked) {
+    put(first_ray, std::array{static_cast<double>(first_ray), static_cast<double>(answer)});
+    ++first_ray;
+  }
+}
+
+void HitTable::flush() {
+  if (std::fwrite(text_.data(), 1, text_.size(), file_.get()) != text_.size()) {
+    refuse("cannot be written; is the disk full?");
+  }
+  text_.clear();
+}
+
+void HitTable::commit() {
+  flush();
+  if (npy_) {
+    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) refuse(std::strerror(errno));
+    text_ = npy_header(columns_of(kind_), rows_);
+    flush();
+  }
+  if (std::fflush(file_.get()) != 0) refuse("cannot be written; is the disk full?");
+  if (!place_) return;
+  if (std::fclose(file_.release()) != 0) refuse("cannot be written; is the disk full?");
+  place_->commit();
+}
+
+}  // namespace scarp

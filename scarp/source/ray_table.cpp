@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/ray_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "scarp/base/error.h"
+#include "scarp/source/csv_rows.h"
+#include "scarp/source/npy_header.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::string_view kNeeded = "x,y,z and either dx,dy,dz or tx,ty,tz are needed";
+
+enum Column : std::size_t { x, y, z, dx, dy, dz, tx, ty, tz, t_min, t_max, start_col, start_row, column_count };
+constexpr std::array<std::string_view, column_count> kNames = {
+    "x", "y", "z", "dx", "dy", "dz", "tx", "ty", "tz", "t_min", "t_max", "start_col", "start_row"};
+
+std::string place_of(std::int64_t line, std::size_t row) {
+  return line > 0 ? fmt::format("line {} (ray {})", line, row) : fmt::format("ray {}", row);
+}
+
+// A field as it can stand in a message of one line.
+std::string shown(std::string_view text) {
+  constexpr std::size_t kLongest = 40;
+  std::string result(text.substr(0, kLongest));
+  std::replace_if(
+      result.begin(), result.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
+  return text.size() > kLongest ? result + "..." : result;
+}
+
+template <class Number>
+bool parse(std::string_view text, Number& number) {
+  // std::from_chars knows no plus.
+  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && rest == text.data() + text.size() && !text.empty();
+}
+
+// What is true of a row wherever it comes from; `place` is asked for only when it is not.
+template <class Place>
+void check(const RayRow& row, RayAim aim, const Place& place) {
+  const auto finite = [](const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
+  const auto refuse = [&](std::string_view what) { throw Error(fmt::format("{}: {}", place(), what)); };
+  if (!finite(row.origin)) refuse("its origin is not finite");
+  if (aim == RayAim::direction) {
+    if (!finite(row.aim)) refuse("its direction is not finite");
+    if (row.aim == dvec3(0.0)) refuse("its direction is zero");
+  } else {
+    if (!finite(row.aim)) refuse("its target is not finite");
+    if (row.aim == row.origin) refuse("its target is its origin");
+  }
+  if (!std::isfinite(row.t_min) || std::isnan(row.t_max) || row.t_max < row.t_min) {
+    refuse(fmt::format("its range is {} to {}; t_min must be finite and t_max no less", row.t_min, row.t_max));
+  }
+}
+
+// Which field of a row is which column.
+class Header {
+ public:
+  explicit Header(std::span<const std::string_view> fields) : fields_(fields.size()) {
+    places_.fill(kNone);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const std::string_view name = trimmed(fields[i]);
+      const auto known = std::find(kNames.begin(), kNames.end(), name);
+      if (known == kNames.end()) {
+        carried_.push_back(i);
+        continue;
+      }
+      std::size_t& place = places_[static_cast<std::size_t>(known - kNames.begin())];
+      if (place != kNone) throw Error(fmt::format("its header has the column '{}' twice", name));
+      place = i;
+    }
+    const bool directions = has(dx) || has(dy) || has(dz), targets = has(tx) || has(ty) || has(tz);
+    if (directions && targets) throw Error("its header has directions and targets; dx,dy,dz or tx,ty,tz is needed");
+    require({x, y, z});
+    if (targets) {
+      require({tx, ty, tz});
+    } else {
+      require({dx, dy, dz});
+    }
+    if (has(start_col) != has(start_row)) require({start_col, start_row});
+    aim_ = targets ? RayAim::target : RayAim::direction;
+  }
+
+  RayAim aim() const { return aim_; }
+  bool has(Column column) const { return places_[column] != kNone; }
+  std::size_t operator[](Column column) const { return places_[column]; }
+  std::size_t fields() const { return fields_; }
+  const std::vector<std::size_t>& carried() const { return carried_; }
+
+ private:
+  static constexpr std::size_t kNone = std::string_view::npos;
+
+  void require(std::initializer_list<Column> columns) const {
+    for (const Column column : columns) {
+      if (!has(column)) throw Error(fmt::format("its header has no column '{}'; {}", kNames[column], kNeeded));
+    }
+  }
+
+  std::array<std::size_t, column_count> places_{};
+  std::vector<std::size_t> carried_;
+  std::size_t fields_;
+  RayAim aim_ = RayAim::direction;
+};
+
+// The fields of one row as numbers.
+class Row {
+ public:
+  Row(const Header& header, const CsvRows& rows, std::size_t number) : header_(header), rows_(rows), number_(number) {
+    if (rows.fields().size() != header.fields()) {
+      refuse(fmt::format("{} fields, the header has {}", rows.fields().size(), header.fields()));
+    }
+  }
+
+  std::string place() const { return place_of(rows_.line(), number_); }
+  double number(Column column) const {
+    double value = 0;
+    if (text(column).empty()) refuse(fmt::format("column '{}' is empty; a number is needed", kNames[column]));
+    if (!parse(text(column), value)) {
+      refuse(fmt::format("'{}' in column '{}' is not a number", shown(text(column)), kNames[column]));
+    }
+    return value;
+  }
+  double number(Column column, double otherwise) const { return given(column) ? number(column) : otherwise; }
+  dvec3 vector(Column first, Column second, Column third) const {
+    return {number(first), number(second), number(third)};
+  }
+  int whole(Column column) const {
+    int value = 0;
+    if (!parse(text(column), value)) {
+      refuse(fmt::format("'{}' in column '{}' is not a whole number", shown(text(column)), kNames[column]));
+    }
+    return value;
+  }
+  bool given(Column column) const { return header_.has(column) && !text(column).empty(); }
+
+  RayRow ray() const {
+    const bool targets = header_.aim() == RayAim::target;
+    RayRow row;
+    row.line = rows_.line();
+    row.origin = vector(x, y, z);
+    row.aim = targets ? vector(tx, ty, tz) : vector(dx, dy, dz);
+    row.t_min = number(t_min, row.t_min);
+    row.t_max = number(t_max, targets ? 1.0 : row.t_max);
+    if (given(start_col) || given(start_row)) {
+      row.start = RayStart::on_surface;
+      row.start_cell = {whole(start_col), whole(start_row)};
+    }
+    check(row, header_.aim(), [&] { return place(); });
+    return row;
+  }
+
+ private:
+  std::string_view text(Column column) const { return trimmed(rows_.fields()[header_[column]]); }
+  [[noreturn]] void refuse(const std::string& what) const { throw Error(fmt::format("{}: {}", place(), what)); }
+
+  const Header& header_;
+  const CsvRows& rows_;
+  std::size_t number_;
+};
+
+// A number of an array at these bytes.
+template <class Number, class Bits>
+double number_at(const char* bytes, bool big_endian) {
+  Bits bits = 0;
+  for (std::size_t k = 0; k < sizeof(Bits); ++k) {
+    const auto byte = static_cast<unsigned char>(bytes[k]);
+    bits = static_cast<Bits>(bits | Bits{byte} << (8 * (big_endian ? sizeof(Bits) - 1 - k : k)));
+  }
+  return static_cast<double>(std::bit_cast<Number>(bits));
+}
+
+using NumberReader = double (*)(const char* bytes, bool big_endian);
+
+// Null for what is no number.
+NumberReader reader_of(char kind, int bytes) {
+  switch (kind) {
+    case 'f':
+      if (bytes == 4) return number_at<float, std::uint32_t>;
+      if (bytes == 8) return number_at<double, std::uint64_t>;
+      break;
+    case 'i':
+      if (bytes == 1) return number_at<std::int8_t, std::uint8_t>;
+      if (bytes == 2) return number_at<std::int16_t, std::uint16_t>;
+      if (bytes == 4) return number_at<std::int32_t, std::uint32_t>;
+      if (bytes == 8) return number_at<std::int64_t, std::uint64_t>;
+      break;
+    case 'u':
+      if (bytes == 1) return number_at<std::uint8_t, std::uint8_t>;
+      if (bytes == 2) return number_at<std::uint16_t, std::uint16_t>;
+      if (bytes == 4) return number_at<std::uint32_t, std::uint32_t>;
+      if (bytes == 8) return number_at<std::uint64_t, std::uint64_t>;
+      break;
+    default:
+      break;
+  }
+  return nullptr;
+}
+
+// The number of rays behind the header, which says that each takes `bytes`.
+std::size_t rays_of(const NpyHeader& header, std::string_view behind, std::int64_t bytes) {
+  // In double: the product cannot overflow.
+  const double needed = static_cast<double>(header.shape[0]) * static_cast<double>(bytes);
+  if (static_cast<double>(behind.size()) < needed) {
+    throw Error(fmt::format("is cut off: {} rays need {:.0f} bytes behind the header, it has {}", header.shape[0],
+                            needed, behind.size()));
+  }
+  return static_cast<std::size_t>(header.shape[0]);
+}
+
+RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t rays) {
+  std::vector<std::string_view> names;
+  for (const NpyField& field : header.fields) names.push_back(field.name);
+  const Header columns(names);
+  std::array<NumberReader, column_count> readers{};
+  for (std::size_t c = 0; c < column_count; ++c) {
+    if (!columns.has(static_cast<Column>(c))) continue;
+    const NpyField& field = header.fields[columns[static_cast<Column>(c)]];
+    readers[c] = reader_of(field.kind, field.bytes);
+    if (!readers[c]) throw Error(fmt::format("its field '{}' is no number of i1 to i8, u1 to u8, f4, f8", field.name));
+  }
+  RayTable table;
+  table.aim = columns.aim();
+  const bool targets = table.aim == RayAim::target;
+  table.rows.resize(rays);
+  for (std::size_t i = 0; i < rays; ++i) {
+    const char* const structure = data + i * static_cast<std::size_t>(header.bytes);
+    const auto number = [&](Column column) {
+      const NpyField& field = header.fields[columns[column]];
+      return readers[column](structure + field.begin, field.big_endian);
+    };
+    const auto whole = [&](Column column) {
+      const double value = number(column);
+      if (value != std::floor(value) || !(std::abs(value) <= std::numeric_limits<int>::max())) {
+        throw Error(fmt::format("{}: {} in field '{}' is not a whole number", place_of(0, i), value, kNames[column]));
+      }
+      return static_cast<int>(value);
+    };
+    RayRow& row = table.rows[i];
+    row.origin = {number(x), number(y), number(z)};
+    row.aim = targets ? dvec3(number(tx), number(ty), number(tz)) : dvec3(number(dx), number(dy), number(dz));
+    if (columns.has(t_min)) row.t_min = number(t_min);
+    if (columns.has(t_max) || targets) row.t_max = columns.has(t_max) ? number(t_max) : 1.0;
+    if (columns.has(start_col)) {
+      row.start = RayStart::on_surface;
+      row.start_cell = {whole(start_col), whole(start_row)};
+    }
+    check(row, table.aim, [&] { return place_of(0, i); });
+  }
+  return table;
+}
+
+RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays) {
+  const NumberReader reader = reader_of(header.kind, header.bytes);
+  const auto columns = static_cast<std::size_t>(header.shape[1]), bytes = static_cast<std::size_t>(header.bytes);
+  RayTable table;
+  table.rows.resize(rays);
+  for (std::size_t i = 0; i < rays; ++i) {
+    const auto number = [&](std::size_t column) {
+      const std::size_t at = header.fortran_order ? column * rays + i : i * columns + column;
+      return reader(data + at * bytes, header.big_endian);
+    };
+    RayRow& row = table.rows[i];
+    row.origin = {number(0), number(1), number(2)};
+    row.aim = {number(3), number(4), number(5)};
+    if (columns == 8) {
+      row.t_min = number(6);
+      row.t_max = number(7);
+    }
+    check(row, table.aim, [&] { return place_of(0, i); });
+  }
+  return table;
+}
+
+struct FileCloser {
+  void operator()(std::FILE* file) const {
+    if (file != stdin) std::fclose(file);
+  }
+};
+
+std::string bytes_of(const std::string& path) {
+  std::error_code ignored;
+  if (path != "-" && std::filesystem::is_directory(path, ignored)) throw Error("is a directory; a file is needed");
+  const std::unique_ptr<std::FILE, FileCloser> file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
+  if (!file) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
+  constexpr std::size_t kPiece = 1 << 20;
+  std::string bytes;
+  for (;;) {
+    const std::size_t size = bytes.size();
+    bytes.resize(size + kPiece);
+    const std::size_t got = std::fread(bytes.data() + size, 1, kPiece, file.get());
+    bytes.resize(size + got);
+    if (got < kPiece) break;
+  }
+  if (std::ferror(file.get())) throw Error(fmt::format("cannot be read: {}", std::strerror(errno)));
+  return bytes;
+}
+
+}  // namespace
+
+std::string RayTable::where(std::size_t row) const {
+  return fmt::format("rays '{}': {}", path, place_of(rows[row].line, row));
+}
+
+RayTable parse_ray_csv(std::string_view bytes) {
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("is UTF-16; save it as UTF-8");
+  CsvRows rows(bytes);
+  if (!rows.next()) throw Error(fmt::format("is empty; a header is needed, in which {}", kNeeded));
+  if (double number = 0; parse(trimmed(rows.fields().front()), number)) {
+    throw Error(fmt::format("its first line is no header but numbers; {}", kNeeded));
+  }
+  const Header header(rows.fields());
+  RayTable table;
+  table.aim = header.aim();
+  for (const std::size_t i : header.carried()) table.carried.names.emplace_back(trimmed(rows.fields()[i]));
+  while (rows.next()) {
+    table.rows.push_back(Row(header, rows, table.rows.size()).ray());
+    for (const std::size_t i : header.carried()) table.carried.cells.emplace_back(rows.fields()[i]);
+  }
+  return table;
+}
+
+RayTable parse_ray_npy(std::string_view bytes) {
+  const NpyHeader header = parse_npy_table_header(bytes);
+  const auto& shape = header.shape;
+  const std::string_view behind = bytes.substr(static_cast<std::size_t>(header.data_begin));
+  if (!header.fields.empty()) {
+    if (shape.size() != 1) {
+      throw Error(
+          fmt::format("is an array of structures of shape ({}); one dimension is needed", fmt::join(shape, ", ")));
+    }
+    return parse_structures(header, behind.data(), rays_of(header, behind, header.bytes));
+  }
+  if (header.kind != 'f' || (header.bytes != 4 && header.bytes != 8)) {
+    throw Error(fmt::format("holds numbers of type '{}'; float32 and float64 are read", header.descr));
+  }
+  if (shape.size() != 2 || (shape[1] != 6 && shape[1] != 8)) {
+    throw Error(fmt::format("is an array of shape ({}); (N, 6) or (N, 8) is needed: x,y,z,dx,dy,dz[,t_min,t_max]",
+                            fmt::join(shape, ", ")));
+  }
+  return parse_plain(header, behind.data(), rays_of(header, behind, shape[1] * header.bytes));
+}
+
+RayTable read_rays(const std::string& path) {
+  try {
+    const std::string bytes = bytes_of(path);
+    const bool npy = bytes.starts_with("\x93NUMPY") || (path.ends_with(".npy") && !bytes.empty());
+    RayTable table = npy ? parse_ray_npy(bytes) : parse_ray_csv(bytes);
+    table.path = path;
+    return table;
+  } catch (const Error& error) {
+    throw Error(fmt::format("rays '{}': {}", path, error.what()));
+  }
+}
+
+}  // namespace scarp

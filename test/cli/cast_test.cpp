@@ -1,0 +1,408 @@
+// SPDX-License-Identifier: MIT
+// `scarp cast` from outside: tables of rays in, tables of hits out.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <sstream>
+#include <string>
+
+#include "cli/program.h"
+
+namespace scarp {
+namespace {
+
+using test::run;
+using Names = std::vector<std::string>;
+using Row = std::map<std::string, std::string>;
+
+// Of a CSV without quotes.
+std::vector<Row> rows_of(const std::string& csv) {
+  const auto fields = [](const std::string& line) {
+    Names result(1);
+    for (const char c : line) {
+      if (c == ',') {
+        result.emplace_back();
+      } else {
+        result.back() += c;
+      }
+    }
+    return result;
+  };
+  std::istringstream in(csv);
+  std::string line;
+  std::getline(in, line);
+  const Names names = fields(line);
+  std::vector<Row> rows;
+  while (std::getline(in, line)) {
+    const Names values = fields(line);
+    EXPECT_EQ(values.size(), names.size()) << line;
+    Row& row = rows.emplace_back();
+    for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i) row[names[i]] = values[i];
+  }
+  return rows;
+}
+
+double number(const Row& row, const std::string& column) { return std::strtod(row.at(column).c_str(), nullptr); }
+
+class Cast : public testing::Test {
+ protected:
+  std::string path(const std::string& name) const { return scratch_.path(name); }
+  std::string write(const std::string& name, const std::string& bytes) const { return scratch_.write(name, bytes); }
+  std::string rays(const std::string& bytes) const { return write("rays.csv", bytes); }
+
+  static int sample(int col, int row) { return 100 + 7 * col * col - 3 * row * col + 11 * row; }
+  static constexpr int kCols = 5, kRows = 4;
+
+  // An ESRI ASCII grid, node (0, 3) at map (1000, 2000), cells of 10.
+  std::string hills(const std::string& samples = "") const {
+    std::string text = samples;
+    for (int row = 0; samples.empty() && row < kRows; ++row) {
+      for (int col = 0; col < kCols; ++col) text += fmt::format("{} ", sample(col, row));
+      text += "\n";
+    }
+    return write("hills.asc", fmt::format("ncols {}\nnrows {}\nxllcenter 1000\nyllcenter 2000\ncellsize 10\n"
+                                          "NODATA_value -9999\n{}\n",
+                                          kCols, kRows, text));
+  }
+
+  // `cast` of hills must fail: one line on stderr that has the fragment, nothing on stdout, no file left.
+  void expect_refused(const Names& options, const std::string& fragment) {
+    hills();
+    const Names before = scratch_.files();
+    Names arguments = {"cast", path("hills.asc"), "-o", path("hits.csv")};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto result = run(arguments);
+    EXPECT_TRUE(result.status == 1 || result.status == 2) << result.status;
+    EXPECT_EQ(result.out, "");
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_EQ(result.err.find("scarp: "), 0u) << result.err;
+    EXPECT_NE(result.err.find(fragment), std::string::npos) << "'" << fragment << "' is not in: " << result.err;
+    EXPECT_EQ(scratch_.files(), before);
+  }
+  void expect_rays_refused(const std::string& table, const std::string& fragment, Names options = {}) {
+    options.insert(options.end(), {"--rays", rays(table)});
+    expect_refused(options, fragment);
+  }
+
+  // A straight look down at each node, its place given by `place(col, row)`; `inner`: not at those on the border.
+  template <class Place>
+  std::vector<Row> look_down(const Names& options, const Place& place, bool inner = false) {
+    std::string table = "col_in,row_in,x,y,z,dx,dy,dz\n";
+    const int margin = inner ? 1 : 0;
+    for (int row = margin; row < kRows - margin; ++row) {
+      for (int col = margin; col < kCols - margin; ++col) {
+        const auto [x, y] = place(col, row);
+        table += fmt::format("{},{},{},{},4096,0,0,-0.5\n", col, row, x, y);
+      }
+    }
+    Names arguments = {"cast", hills(), "--rays", rays(table)};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::vector<Row> rows = rows_of(result.out);
+    EXPECT_EQ(rows.size(), static_cast<std::size_t>((kCols - 2 * margin) * (kRows - 2 * margin)));
+    for (const Row& row : rows) {
+      const int col = std::stoi(row.at("col_in")), raster_row = std::stoi(row.at("row_in"));
+      const auto [x, y] = place(col, raster_row);
+      EXPECT_EQ(row.at("status"), "hit");
+      EXPECT_EQ(number(row, "x"), x);
+      EXPECT_EQ(number(row, "y"), y);
+      EXPECT_EQ(number(row, "z"), sample(col, raster_row)) << row.at("z");
+      EXPECT_EQ(number(row, "t"), 2 * (4096 - sample(col, raster_row))) << row.at("t");
+      EXPECT_EQ(number(row, "col") + number(row, "u"), col);
+      EXPECT_EQ(number(row, "row") + number(row, "v"), raster_row);
+      EXPECT_EQ(row.at("wall"), "0");
+    }
+    return rows;
+  }
+
+  test::Scratch scratch_;
+};
+
+TEST_F(Cast, LocalNodesHaveTheirSamples) {
+  look_down({"--crs", "local"}, [](int col, int row) { return std::pair(10.0 * col, 10.0 * (kRows - 1 - row)); });
+}
+
+TEST_F(Cast, MapNodesHaveTheirSamples) {
+  const auto place = [](int col, int row) { return std::pair(1000 + 10.0 * col, 2000 + 10.0 * (kRows - 1 - row)); };
+  const auto asked = look_down({"--crs", "map"}, place), by_default = look_down({}, place);
+  EXPECT_EQ(asked, by_default) << "a raster with a place has map coordinates";
+}
+
+TEST_F(Cast, LonlatNodesHaveTheirSamples) {
+  // Cells of 1/1024 degree: nodes and edges are numbers without rounding.
+  const double west = -84.5, south = 36.25, cell = 1.0 / 1024;
+  const std::string bounds = fmt::format("--bounds={},{},{},{}", west - cell / 2, south - cell / 2,
+                                         west + (kCols - 0.5) * cell, south + (kRows - 0.5) * cell);
+  // Their cells on the ground are no such numbers: a node of the border may come to lie a rounding outside.
+  look_down(
+      {"--crs", "lonlat", "--raster-crs", "EPSG:4326", bounds},
+      [&](int col, int row) { return std::pair(west + cell * col, south + cell * (kRows - 1 - row)); }, true);
+}
+
+TEST_F(Cast, OnePlaceInThreeWords) {
+  // UTM zone 16N (721085, 4030060) is this longitude and latitude by Krueger's series; nodes are 30 m apart, the
+  // south-west one at (721015, 4030015).
+  const double west = 721015, south = 4030015, x = 721085, y = 4030060;
+  const auto cast = [&](const std::string& place, const std::string& crs) {
+    const auto result = run({"cast", hills(), "--rays", rays(fmt::format("x,y,z,dx,dy,dz\n{},900,0,0,-1\n", place)),
+                             "--crs", crs, "--raster-crs", "EPSG:32616", "--bounds=721000,4030000,721150,4030120"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto rows = rows_of(result.out);
+    return rows.empty() ? Row() : rows[0];
+  };
+  const double north = sample(2, 1) + (sample(3, 1) - sample(2, 1)) / 3.0,
+               below = sample(2, 2) + (sample(3, 2) - sample(2, 2)) / 3.0;
+  // The series are good to some micrometres, and the slope is about 1.
+  constexpr double kSeries = 1e-5;
+  const Row map = cast(fmt::format("{},{}", x, y), "map"), lonlat = cast("-84.535001630948,36.390278541168", "lonlat");
+  for (const Row& row : {map, lonlat}) {
+    EXPECT_EQ(row.at("col") + row.at("row"), "21");
+    EXPECT_NEAR(number(row, "u"), 1.0 / 3, kSeries);
+    EXPECT_NEAR(number(row, "z"), (north + below) / 2, kSeries);
+  }
+  // Local metres are the ground's: those of the map times one scale, 1.0002 here.
+  const double scale = 1.0002;
+  const Row local = cast(fmt::format("{},{}", (x - west) * scale, (y - south) * scale), "local");
+  EXPECT_NEAR(number(local, "u"), 1.0 / 3, 0.001);
+  EXPECT_NEAR(number(local, "v"), 0.5, 0.001);
+}
+
+TEST_F(Cast, AHitWithoutLongitudeIsSaid) {
+  // The Earth from far away: the corners of this map show the sky behind it.
+  hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
+  const auto result =
+      run({"cast", path("hills.asc"), "--rays", rays("x,y,z,dx,dy,dz\n0,0,1000,6000,6000,-1\n"), "--crs", "lonlat",
+           "--raster-crs", "+proj=ortho +lat_0=0 +lon_0=0 +ellps=WGS84", "--bounds=-9000000,-9000000,9000000,9000000"});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_EQ(test::lines(result.err), 1) << result.err;
+  EXPECT_NE(result.err.find("line 2 (ray 0): its hit is at a place that has no longitude"), std::string::npos)
+      << result.err;
+}
+
+TEST_F(Cast, CarriedColumnsAndEveryStatus) {
+  hills();
+  const auto result = run({"cast", path("hills.asc"), "--crs", "local", "--rays",
+                           rays("name;x;y;z;dx;dy;dz;t_max\r\nhit;15;15;500;0;0;-1;\r\nup;15;15;500;0;0;1;\r\n"
+                                "short;15;15;500;0;0;-1;10\r\nunder;15;15;1;0;0;-1;\r\n")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const auto rows = rows_of(result.out);
+  ASSERT_EQ(rows.size(), 4u);
+  const char* expected[][2] = {{"hit", "hit"}, {"up", "miss"}, {"short", "miss"}, {"under", "below"}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_EQ(rows[i].at("name"), expected[i][0]);
+    EXPECT_EQ(rows[i].at("ray"), std::to_string(i));
+    EXPECT_EQ(rows[i].at("status"), expected[i][1]);
+    EXPECT_EQ(rows[i].at("t").empty(), i != 0);
+  }
+}
+
+TEST_F(Cast, MarchesAnswerTheSame) {
+  std::string table = "x,y,z,dx,dy,dz\n";
+  for (int i = 0; i < 50; ++i)
+    table += fmt::format("{},{},{},{},{},-20\n", i % 7 * 6, i % 5 * 6, 300, i % 9 - 4, i % 4 - 2);
+  hills();
+  rays(table);
+  const auto exact = rows_of(run({"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv")}).out);
+  const auto judge = rows_of(
+      run({"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv"), "--march", "exhaustive"}).out);
+  const auto any = rows_of(run({"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv"), "--any"}).out);
+  ASSERT_EQ(exact.size(), 50u);
+  ASSERT_EQ(judge.size(), 50u);
+  ASSERT_EQ(any.size(), 50u);
+  int hits = 0;
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_EQ(exact[i].at("status"), judge[i].at("status"));
+    EXPECT_EQ(any[i].at("blocked"), exact[i].at("status") == "hit" ? "1" : "0");
+    if (exact[i].at("status") != "hit") continue;
+    ++hits;
+    EXPECT_NEAR(number(exact[i], "t"), number(judge[i], "t"), 1e-9);
+  }
+  EXPECT_GT(hits, 10);
+}
+
+TEST_F(Cast, AllHitsStandInTheOrderOfT) {
+  // Two ridges along the way.
+  hills("1 9 1 9 1\n1 9 1 9 1\n1 9 1 9 1\n1 9 1 9 1");
+  rays("x,y,z,dx,dy,dz\n-5,15,5,1,0,0\n-5,15,20,1,0,0\n");
+  for (const char* march : {"max-mip", "exhaustive"}) {
+    const auto rows = rows_of(
+        run({"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv"), "--all", "--march", march}).out);
+    ASSERT_EQ(rows.size(), 3u) << march;
+    EXPECT_EQ(number(rows[0], "t"), 10);
+    EXPECT_EQ(number(rows[1], "t"), 30);
+    EXPECT_EQ(rows[1].at("ray"), "0");
+    EXPECT_EQ(rows[2].at("ray"), "1");
+    EXPECT_EQ(rows[2].at("status"), "miss");
+  }
+  expect_rays_refused("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n", "max-mip and exhaustive only", {"--all", "--march", "naive"});
+  expect_rays_refused("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n", "--any", {"--all", "--any"});
+}
+
+TEST_F(Cast, SurfaceOptionsReachTheRays) {
+  hills("0 0 0 0 0\n0 0 0 0 0\n0 0 8 0 0\n0 0 0 0 0");
+  const auto cast = [&](const std::string& table, const Names& options) {
+    Names arguments = {"cast", path("hills.asc"), "--crs", "local", "--rays", rays(table)};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto rows = rows_of(result.out);
+    return rows.empty() ? Row() : rows[0];
+  };
+  // The middle of the cell whose south-east corner is the peak: a quarter of it bilinear; the diagonal of the triangles
+  // joins the two other corners.
+  const std::string down = "x,y,z,dx,dy,dz\n15,15,100,0,0,-1\n";
+  EXPECT_EQ(number(cast(down, {}), "z"), 2);
+  EXPECT_EQ(number(cast(down, {"--surface", "triangles"}), "z"), 0);
+  EXPECT_EQ(number(cast(down, {"--exaggeration", "3"}), "z"), 6);
+  const std::string beyond = "x,y,z,dx,dy,dz,t_max\n65,15,100,0,0,-1,200\n";
+  EXPECT_EQ(cast(beyond, {}).at("status"), "miss");
+  EXPECT_EQ(number(cast(beyond, {"--wrap", "periodic"}), "z"), 2) << "period 5 cells";
+  const std::string from_west = "x,y,z,dx,dy,dz\n-5,15,-3,2,0,0\n";
+  EXPECT_NE(cast(from_west, {}).at("status"), "hit");
+  const Row wall = cast(from_west, {"--solid"});
+  EXPECT_EQ(wall.at("status"), "hit");
+  EXPECT_EQ(wall.at("wall"), "1");
+  EXPECT_EQ(number(wall, "t"), 2.5);
+  EXPECT_EQ(number(wall, "nx"), -1);
+  EXPECT_EQ(number(wall, "nz"), 0);
+  const Row south = cast("x,y,z,dx,dy,dz\n15,-5,-3,0.5,1,0\n", {"--solid"});
+  EXPECT_EQ(number(south, "ny"), -1);
+  EXPECT_EQ(number(cast("x,y,z,dx,dy,dz\n45,15,-3,-1,0.25,0\n", {"--solid"}), "nx"), 1);
+  EXPECT_EQ(number(cast("x,y,z,dx,dy,dz\n15,35,-3,0,-1,0\n", {"--solid"}), "ny"), 1);
+}
+
+TEST_F(Cast, RenderTakesTheSameSurfacesButNoWrap) {
+  hills();
+  const Names arguments = {"render", path("hills.asc"), "-o", path("out.png"), "--size", "32x24"};
+  const auto with = [&](const Names& more) {
+    Names all = arguments;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  };
+  EXPECT_EQ(with({"--surface", "triangles", "--solid"}).status, 0);
+  const auto wrapped = with({"--wrap", "periodic"});
+  EXPECT_EQ(wrapped.status, 1);
+  EXPECT_NE(wrapped.err.find("--wrap"), std::string::npos) << wrapped.err;
+}
+
+TEST_F(Cast, RaysStartOnTheSurface) {
+  hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
+  // Along the plane: touching is a hit for a free ray, none for one that starts on it.
+  const auto result = run({"cast", path("hills.asc"), "--crs", "local", "--rays",
+                           rays("x,y,z,dx,dy,dz,start_col,start_row\n15,15,0,1,0,0,,\n15,15,0,1,0,0,1,1\n")});
+  const auto rows = rows_of(result.out);
+  ASSERT_EQ(rows.size(), 2u) << result.err;
+  EXPECT_EQ(rows[0].at("status"), "hit");
+  EXPECT_EQ(rows[1].at("status"), "miss");
+}
+
+TEST_F(Cast, FilesAndStreams) {
+  const std::string table = "x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n";
+  const Names arguments = {"cast", hills(), "--crs", "local", "--rays"};
+  const auto with = [&](Names more) {
+    more.insert(more.begin(), arguments.begin(), arguments.end());
+    return more;
+  };
+  const auto to_stdout = run(with({rays(table)}));
+  const auto to_file = run(with({path("rays.csv"), "-o", path("hits.csv")}));
+  EXPECT_EQ(to_file.status, 0) << to_file.err;
+  EXPECT_EQ(to_file.out, "");
+  EXPECT_EQ(test::text_of(path("hits.csv")), to_stdout.out);
+  EXPECT_EQ(test::Program(with({"-"}), nullptr, path("rays.csv")).result().out, to_stdout.out);
+  EXPECT_NE(test::Program(with({"-"})).result().err.find("rays '-': is empty"), std::string::npos);
+  EXPECT_EQ(run(with({path("rays.csv"), "-o", path("hits.npy")})).status, 0);
+  EXPECT_EQ(test::text_of(path("hits.npy")).size() % 64, 14 * 8 % 64u);
+  // What one cast wrote, the next one reads: a table whose fields it knows or passes over.
+  EXPECT_NE(run(with({path("hits.npy")})).err.find("no column 'dx'"), std::string::npos);
+  EXPECT_EQ(run(with({rays("x,y,z,dx,dy,dz\n")})).out, "ray,status,t,x,y,z,col,row,u,v,nx,ny,nz,wall\n");
+}
+
+TEST_F(Cast, AReaderThatGoesAwayIsNoFailure) {
+  std::string table = "x,y,z,dx,dy,dz\n";
+  for (int i = 0; i < 100000; ++i) table += "15,15,500,0,0,-1\n";
+  const std::string command = fmt::format("'{}' cast '{}' --crs local --rays '{}' 2> '{}' | head -n 1 > '{}'",
+                                          SCARP_PROGRAM, hills(), rays(table), path("err"), path("out"));
+  // The second shell starts it with SIGPIPE ignored, as some daemons do.
+  for (const std::string& line : {command, "trap '' PIPE; " + command}) {
+    EXPECT_EQ(std::system(line.c_str()), 0);
+    EXPECT_EQ(test::text_of(path("err")).find("scarp: "), std::string::npos) << test::text_of(path("err"));
+    EXPECT_EQ(test::lines(test::text_of(path("out"))), 1);
+  }
+}
+
+TEST_F(Cast, AFullDiskIsAFailure) {
+  test::Program program({"cast", hills(), "--rays", rays("x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n")}, "/dev/full");
+  const auto result = program.result();
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("cannot be written"), std::string::npos) << result.err;
+}
+
+TEST_F(Cast, BadRaysAreOneLineWithFileAndRow) {
+  const std::string header = "x,y,z,dx,dy,dz\n", good = "15,15,500,0,0,-1\n";
+  std::string six = header;
+  for (int i = 0; i < 6; ++i) six += good;
+  expect_rays_refused(six + "15,15,500,0,0\n", fmt::format("rays '{}': line 8 (ray 6): 5 fields", path("rays.csv")));
+  expect_rays_refused(six + "15,15,500,0,0,-1,3\n", "line 8 (ray 6): 7 fields");
+  expect_rays_refused(header + "15,15,500,0,0,0\n", "line 2 (ray 0): its direction is zero");
+  expect_rays_refused(header + "15,nan,500,0,0,-1\n", "line 2 (ray 0): its origin is not finite");
+  expect_rays_refused(header + "15,15,500,0,0,nan\n", "line 2 (ray 0): its direction is not finite");
+  expect_rays_refused(header + "15,15,high,0,0,-1\n", "'high' in column 'z'");
+  expect_rays_refused("", "is empty");
+  expect_rays_refused("x,y,z\n1,2,3\n", "no column 'dx'");
+  expect_rays_refused(header + good + good, "line 2 (ray 0): its range has no end", {"--wrap", "periodic"});
+  const std::string on_surface = "x,y,z,dx,dy,dz,start_col,start_row\n15,15,0,0,0,1,";
+  expect_rays_refused(on_surface + "4,0\n", "line 2 (ray 0): it starts on the surface of cell (4, 0)");
+  expect_rays_refused("ray,x,y,z,dx,dy,dz\n1,15,15,500,0,0,-1\n", "column 'ray'");
+  expect_rays_refused(header + "-184,36,500,0,0,-1\n1015,2015,500,0,0,-1\n", "line 3 (ray 1): (1015, 2015)",
+                      {"--crs", "lonlat", "--raster-crs", "EPSG:32616"});
+  expect_refused({"--rays", path("no.csv")}, "cannot be opened");
+  expect_refused({"--rays", path("")}, "is a directory");
+  expect_refused({"--rays", write("rays.npy", "\x93NUMPY")}, "rays.npy");
+}
+
+TEST_F(Cast, WrongOptionsAreRefused) {
+  const std::string good = "x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n";
+  expect_refused({}, "--rays");
+  expect_rays_refused(good, "--raster-crs", {"--crs", "EPSG:4326"});
+  expect_rays_refused(good, "give one", {"--crs", "lonlat"});
+  expect_rays_refused(good, "bilinear or triangles", {"--surface", "spline"});
+  expect_rays_refused(good, "none, periodic or shared", {"--wrap", "mirror"});
+  expect_rays_refused(good, "not shared", {"--wrap", "shared"});
+  expect_rays_refused(good, "above 0", {"--exaggeration", "0"});
+  expect_rays_refused(good, "unknown", {"--march", "quick"});
+  expect_rays_refused(good, "give the right --raster-crs or --bounds", {"--raster-crs", "EPSG:4326"});
+  hills();
+  rays(good);
+  for (const std::string output : {"hits.txt", "no/hits.csv"}) {
+    const auto result = run({"cast", path("hills.asc"), "--rays", path("rays.csv"), "-o", path(output)});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("output '"), std::string::npos) << result.err;
+  }
+  EXPECT_NE(run({"cast", path("missing.tif"), "--rays", path("rays.csv")}).err.find("missing.tif"), std::string::npos);
+}
+
+TEST_F(Cast, RaysFarOffTheRasterAreToldWhereItLies) {
+  const auto note_of = [&](const std::string& ray) {
+    return run({"cast", hills(), "--rays", rays("x,y,z,dx,dy,dz\n" + ray + "\n")}).err;
+  };
+  const std::string note = "map coordinates x 1000 to 1040, y 2000 to 2030";
+  EXPECT_NE(note_of("15,15,500,0,0,-1").find(note), std::string::npos);
+  EXPECT_EQ(note_of("1015,2015,500,0,0,1").find(note), std::string::npos) << "over it";
+  EXPECT_EQ(note_of("990,2015,500,1,0,-10").find("nothing was hit"), std::string::npos) << "a hit";
+}
+
+TEST_F(Cast, AFieldWithoutCellsSaysThatEveryRayMisses) {
+  const auto result = run({"cast", write("row.asc", "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n"),
+                           "--rays", rays("x,y,z,dx,dy,dz\n1,0.5,9,0,0,-1\n")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("every ray misses"), std::string::npos) << result.err;
+  EXPECT_EQ(rows_of(result.out).at(0).at("status"), "miss");
+}
+
+}  // namespace
+}  // namespace scarp

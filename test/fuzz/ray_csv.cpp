@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// Any bytes as a table of rays in CSV: understood, or refused with an Error of one line.
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "scarp/base/error.h"
+#include "scarp/source/ray_table.h"
+
+namespace {
+
+void require(bool good) {
+  if (!good) std::abort();
+}
+
+bool finite(const scarp::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const scarp::RayTable table = scarp::parse_ray_csv({reinterpret_cast<const char*>(data), size});
+    require(table.carried.cells.size() == table.rows.size() * table.carried.names.size());
+    for (const scarp::RayRow& row : table.rows) {
+      require(finite(row.origin) && finite(row.aim) && row.line >= 1);
+      require(std::isfinite(row.t_min) && row.t_max >= row.t_min);
+      require(table.aim == scarp::RayAim::target ? row.aim != row.origin : row.aim != scarp::dvec3(0.0));
+    }
+  } catch (const scarp::Error& error) {
+    const std::string_view text = error.what();
+    require(!text.empty() && text.find_first_of("\r\n") == std::string_view::npos);
+  }
+  return 0;
+}
