@@ -2,6 +2,7 @@
 #include "bench/scarp_engine.h"
 
 #include "bench/protocol.h"
+#include "scarp/accel/slope_bound.h"
 
 namespace scarp::bench {
 namespace {
@@ -37,7 +38,8 @@ ScarpGround::ScarpGround(const HeightField& field)
         MaxPyramid pyramid(field);
         build_s_ = watch.wall_s();
         return pyramid;
-      }()) {}
+      }()),
+      slope_bound_(slope_bound(field)) {}
 
 Engine ScarpGround::engine(const MarchEntry& march, const MarchSettings& settings) const {
   Engine engine;

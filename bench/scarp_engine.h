@@ -24,12 +24,13 @@ class ScarpGround {
   /// Every march of the table but the judge.
   std::vector<Engine> engines() const;
 
-  HeightTarget target() const { return {&field_, &pyramid_}; }
+  HeightTarget target() const { return {&field_, &pyramid_, slope_bound_}; }
 
  private:
   HeightField field_;
   double build_s_ = 0;
   MaxPyramid pyramid_;
+  double slope_bound_;
 };
 
 }  // namespace scarp::bench

@@ -17,6 +17,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/field_options.h"
+#include "app/cli/march_options.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
 #include "scarp/accel/slope_bound.h"
@@ -64,6 +65,7 @@ struct CastOptions {
   RasterOptions raster;
   FieldOptions field;
   std::string march = "max-mip";
+  MarchSettings march_settings;
   bool any = false, all = false;
   int threads = 0;
 };
@@ -150,7 +152,7 @@ class Caster {
  public:
   Caster(const CastOptions& options, const HeightField& field, const MarchEntry& march, const CoordinateFrame& frame,
          const RayTable& table, HitTable& out)
-      : field_(field), march_(march), frame_(frame), table_(table), out_(out), all_(all_hits_of(options, march)) {
+      : field_(field), march_(march), settings_(options.march_settings), frame_(frame), table_(table), out_(out), all_(all_hits_of(options, march)) {
     if (march.needs_pyramid) pyramid_.emplace(field);
     target_ = {&field_, pyramid_ ? &*pyramid_ : nullptr,
                march.needs_slope ? slope_bound(field) : std::numeric_limits<double>::quiet_NaN()};
@@ -158,7 +160,7 @@ class Caster {
 
   void blocked(std::size_t first, std::span<const Ray> rays) {
     std::vector<std::uint8_t> answers(rays.size());
-    timed([&] { occluded(target_, rays, answers, march_); });
+    timed([&] { occluded(target_, rays, answers, march_, settings_); });
     hits_ += static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1));
     out_.add(static_cast<std::int64_t>(first), answers);
   }
@@ -177,7 +179,7 @@ class Caster {
       });
     } else {
       std::vector<Hit> closest(rays.size());
-      timed([&] { closest_hits(target_, rays, closest, march_); });
+      timed([&] { closest_hits(target_, rays, closest, march_, settings_); });
       for (std::size_t i = 0; i < rays.size(); ++i) found[i] = {closest[i]};
     }
     write(first, rays, found);
@@ -225,6 +227,7 @@ class Caster {
 
   const HeightField& field_;
   const MarchEntry& march_;
+  MarchSettings settings_;
   const CoordinateFrame& frame_;
   const RayTable& table_;
   HitTable& out_;
@@ -239,6 +242,7 @@ void run(CastOptions options) {
   if (options.output == "-") options.output.clear();
   const MarchEntry& march = find_march(options.march);
   all_hits_of(options, march);  // refuses before files are read
+  validate(options.march_settings);
   if (!options.coordinates.empty()) {
     try {
       find_coordinates(options.coordinates);
@@ -308,6 +312,7 @@ void add_cast(CLI::App& program) {
   command->add_option("--march", o.march, "technique, see 'scarp marches'")->capture_default_str();
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
   add_field_options(*command, o.field);
+  add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster, std::string(kRasterCrs));
   command->footer(kTables);
   command->callback([options] { run(*options); });

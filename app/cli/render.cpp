@@ -15,6 +15,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
+#include "app/cli/march_options.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
@@ -201,23 +202,6 @@ void run(RenderOptions options) {
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
   print_times(render_s);
   print_findings(picture);
-}
-
-void add_march_options(CLI::App& command, MarchSettings& march) {
-  const std::string group = "Settings of marches";
-  const auto add = [&](const char* name, auto& value, const char* help) {
-    command.add_option(name, value, help)->group(group)->capture_default_str();
-  };
-  add("--naive-step-factor", march.naive.step_factor, "share of the vertical distance that naive steps; above 0");
-  add("--naive-min-step", march.naive.min_step, "its least step, a share of the ray's way out; above 0, at most 1");
-  add("--naive-tolerance", march.naive.tolerance,
-      "height above ground that it takes for a hit, per distance; 0 or more");
-  add("--naive-max-steps", march.naive.max_steps, "its limit of steps; 1 or more");
-  add("--relaxed-step-factor", march.relaxed.step_factor, "share of the vertical distance that relaxed steps; above 0");
-  add("--relaxed-tolerance", march.relaxed.tolerance,
-      "height off the ground that it takes for a hit, per distance; above 0");
-  add("--relaxed-max-steps", march.relaxed.max_steps, "its limit of steps; 1 or more");
-  add("--bisect-halvings", march.bisect.halvings, "halvings of max-mip-bisect; 1 to 60");
 }
 
 }  // namespace

@@ -35,6 +35,16 @@ class Ground {
 
   bool crosses() const { return t_enter <= t_exit && std::isfinite(t_exit) && speed_ > 0; }
   double metres_per_t() const { return speed_; }
+  /// The t in which the ray goes as far as a cell is long, its shorter side.
+  double cell_time() const { return std::min(field_.settings().cell_x, field_.settings().cell_y) / speed_; }
+
+  /// When the ray, over `cell` at t, leaves the block of 2^level x 2^level cells that holds it: a little later, so that
+  /// it has, but by no more than 2^-20 of a cell, which is far beyond rounding and far below any tolerance.
+  double leave_time(Cell cell, int level, double t) const {
+    const double x = time_to_border(local_.origin.x, local_.direction.x, cell.col, grid_.cell_cols, level, t);
+    const double y = time_to_border(local_.origin.y, local_.direction.y, cell.row, grid_.cell_rows, level, t);
+    return t + std::max(0.0, std::min(x, y)) + 0x1p-20 * cell_time();
+  }
 
   struct Sample {
     bool valid = false;    ///< false over holes
@@ -70,6 +80,11 @@ class Ground {
   }
 
  private:
+  double time_to_border(double o, double d, int cell, int cells, int level, double t) const {
+    if (d == 0) return std::numeric_limits<double>::infinity();
+    const int near = (cell >> level) << level, far = std::min(near + (1 << level), cells);
+    return ((d > 0 ? far : near) - over_field(o + d * t, cells)) / d;
+  }
   double over_field(double position, int cells) const {
     if (field_.wraps()) position -= std::floor(position / cells) * cells;
     return std::clamp(position, 0.0, static_cast<double>(cells));

@@ -9,6 +9,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/exhaustive.h"
+#include "scarp/march/lipschitz.h"
 #include "scarp/march/max_mip.h"
 #include "scarp/march/naive.h"
 #include "scarp/march/relaxed.h"
@@ -25,6 +26,9 @@ constexpr std::array kMarches = {
     MarchEntry{"relaxed", "height field", Guarantee::approximate, false, false, march_relaxed, nullptr, nullptr, false,
                "step factor 0.4, tolerance 0.0015 of the distance, 300 steps",
                "the shader writers' t += 0.4 h: closes in on calm ground, steps through steep ground"},
+    MarchEntry{"lipschitz", "height field", Guarantee::conservative, true, true, march_lipschitz, nullptr, nullptr, false,
+               "shrink factor 1/sqrt(1 + c^2), c the slope bound, tolerance 0.0005 of the distance, 1024 steps",
+               "steps by a distance that the steepest slope allows; never passes, slow near steep ground"},
     MarchEntry{"max-mip", "height field", Guarantee::exact, true, false, march_max_mip, occluded_max_mip, nullptr,
                false, "", "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
     MarchEntry{"max-mip-bisect", "height field", Guarantee::approximate, true, false, march_max_mip_bisect, nullptr,
@@ -62,6 +66,12 @@ void validate(const MarchSettings& settings) {
   require(positive(relaxed.step_factor), "relaxed step factor", relaxed.step_factor, "above 0");
   require(positive(relaxed.tolerance), "relaxed tolerance", relaxed.tolerance, "above 0");
   require(relaxed.max_steps >= 1, "relaxed step limit", relaxed.max_steps, "1 or more");
+  const auto& lipschitz = settings.lipschitz;
+  require(lipschitz.shrink >= 0 && lipschitz.shrink <= 1, "lipschitz shrink factor", lipschitz.shrink,
+          "above 0 and at most 1, or 0 for that of the slope bound");
+  require(std::isfinite(lipschitz.tolerance) && lipschitz.tolerance >= 0, "lipschitz tolerance", lipschitz.tolerance,
+          "0 or more");
+  require(lipschitz.max_steps >= 1, "lipschitz step limit", lipschitz.max_steps, "1 or more");
   require(settings.bisect.halvings >= 1 && settings.bisect.halvings <= 60, "bisect halvings", settings.bisect.halvings,
           "1 to 60");
 }

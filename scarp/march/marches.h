@@ -37,6 +37,13 @@ struct RelaxedSettings {
   int max_steps = 300;        ///< >= 1
 };
 
+/// `lipschitz`: t += shrink * h, stops where shrink * h <= tolerance * t.
+struct LipschitzSettings {
+  double shrink = 0;          ///< of the vertical distance h, above 0 and at most 1; 0: 1 / sqrt(1 + c^2), c the slope bound
+  double tolerance = 0.0005;  ///< distance to the ground that counts as a hit, per unit of distance travelled, >= 0
+  int max_steps = 1024;       ///< >= 1
+};
+
 /// `max-mip-bisect`: halvings of the interval in the finest cell.
 struct BisectSettings {
   int halvings = 16;  ///< 1..60
@@ -45,6 +52,7 @@ struct BisectSettings {
 struct MarchSettings {
   NaiveSettings naive;
   RelaxedSettings relaxed;
+  LipschitzSettings lipschitz;
   BisectSettings bisect;
 };
 

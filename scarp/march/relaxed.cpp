@@ -10,14 +10,12 @@ namespace scarp {
 namespace {
 
 template <class T>
-Hit march(const Ground<T>& ground, const HeightField& field, const Ray& ray, const RelaxedSettings& settings,
-          MarchStats& stats) {
+Hit march(const Ground<T>& ground, const Ray& ray, const RelaxedSettings& settings, MarchStats& stats) {
   Hit hit;
   if (!ground.crosses()) return hit;
   const double per_metre = 1 / ground.metres_per_t();
-  // The length of a cell: the stride over a hole, where there is no height to go by, and the first step off the
-  // surface.
-  const double cell = std::min(field.settings().cell_x, field.settings().cell_y) * per_metre;
+  // The stride over a hole, where there is no height to go by, and the first step off the surface.
+  const double cell = ground.cell_time();
   const bool on_surface = ray.start == RayStart::on_surface;
   double t = ground.t_enter + (on_surface ? cell : 0.0);
   for (int step = 0; t <= ground.t_exit; ++step) {
@@ -52,7 +50,7 @@ Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSetting
   Hit hit;
   if (target.field->has_cells() && !target.field->all_nodata()) {
     hit = target.field->visit([&](const auto& grid) {
-      return march(Ground(*target.field, grid, ray), *target.field, ray, settings.relaxed, counted);
+      return march(Ground(*target.field, grid, ray), ray, settings.relaxed, counted);
     });
   }
   if (stats) *stats = counted;

@@ -3,12 +3,15 @@
 
 #include <utility>
 
+#include "scarp/accel/slope_bound.h"
+
 namespace scarp {
 
 TerrainScene::TerrainScene(HeightField field, const MarchEntry& march, const MarchSettings& settings)
     : field_(std::move(field)), march_(&march), settings_(settings) {
   validate(settings_);
   if (march.needs_pyramid) pyramid_.emplace(field_);
+  if (march.needs_slope) slope_ = slope_bound(field_);
 }
 
 Hit TerrainScene::closest_hit(const Ray& ray, MarchStats* stats) const {

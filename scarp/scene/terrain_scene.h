@@ -3,6 +3,7 @@
 // ray hit first, and does it hit anything at all?
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "scarp/march/marches.h"
@@ -24,12 +25,13 @@ class TerrainScene {
   const MarchEntry& march() const { return *march_; }
 
  private:
-  HeightTarget target() const { return {&field_, pyramid_ ? &*pyramid_ : nullptr}; }
+  HeightTarget target() const { return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_}; }
 
   HeightField field_;
   const MarchEntry* march_;
   MarchSettings settings_;
   std::optional<MaxPyramid> pyramid_;
+  double slope_ = std::numeric_limits<double>::quiet_NaN();  // only where the march asks for it
 };
 
 }  // namespace scarp

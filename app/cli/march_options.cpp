@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/march_options.h"
+
+namespace scarp::cli {
+
+void add_march_options(CLI::App& command, MarchSettings& march) {
+  const std::string group = "Settings of marches";
+  const auto add = [&](const char* name, auto& value, const char* help) {
+    command.add_option(name, value, help)->group(group)->capture_default_str();
+  };
+  add("--naive-step-factor", march.naive.step_factor, "share of the vertical distance that naive steps; above 0");
+  add("--naive-min-step", march.naive.min_step, "its least step, a share of the ray's way out; above 0, at most 1");
+  add("--naive-tolerance", march.naive.tolerance,
+      "height above ground that it takes for a hit, per distance; 0 or more");
+  add("--naive-max-steps", march.naive.max_steps, "its limit of steps; 1 or more");
+  add("--relaxed-step-factor", march.relaxed.step_factor, "share of the vertical distance that relaxed steps; above 0");
+  add("--relaxed-tolerance", march.relaxed.tolerance,
+      "height off the ground that it takes for a hit, per distance; above 0");
+  add("--relaxed-max-steps", march.relaxed.max_steps, "its limit of steps; 1 or more");
+  add("--shrink", march.lipschitz.shrink,
+      "share of the vertical distance that lipschitz steps; above 0, at most 1; 0: what the steepest slope allows");
+  add("--lipschitz-tolerance", march.lipschitz.tolerance,
+      "distance to the ground that it takes for a hit, per distance travelled; 0 or more");
+  add("--lipschitz-max-steps", march.lipschitz.max_steps, "its limit of steps; 1 or more");
+  add("--bisect-halvings", march.bisect.halvings, "halvings of max-mip-bisect; 1 to 60");
+}
+
+}  // namespace scarp::cli

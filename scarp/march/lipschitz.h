@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// `lipschitz`: sphere tracing of a height field. The vertical distance h to the ground is no distance, but with a bound
+// c on the ground's slope h / sqrt(1 + c^2) is one that nothing is nearer than, and a step by it is safe.
+//
+//            o  h above the ground: the nearest ground can rise towards the ray by c per metre, and no more,
+//           /|\                     so a ball of radius h / sqrt(1 + c^2) is free of it
+//          / | \      shrink = 1 / sqrt(1 + c^2)
+//    _____/__|__\____
+//
+// c is slope_bound() of the field, or given (settings.lipschitz.shrink). Across a hole there is no such bound: the
+// ground may stand at any height on its far side. So no step leaves the largest block of the pyramid round the point
+// that has no hole, and over a hole a step goes to the edge of its cell.
+//
+// Guarantee: conservative. A hit is reported above the ground, within the tolerance; where the ray comes too close to
+// go on, or out of a hole under the ground, it is given up (exhausted). A ray that begins on the surface steps off it
+// by one cell, which is not looked at. Source: J. C. Hart, "Sphere tracing", The Visual Computer 12, 1996; the factor
+// for height functions as in the founding text on Lipschitz bounds. Cost: up to 1024 heights per ray, most on steep
+// fields, where c is that of the steepest cell.
+#pragma once
+
+#include "scarp/march/marches.h"
+
+namespace scarp {
+
+/// Closest hit; conventions as in ray.h. Uses settings.lipschitz, and target.slope unless a shrink factor is set there.
+/// Throws Error when both are missing.
+Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
+                    MarchStats* stats = nullptr);
+
+}  // namespace scarp

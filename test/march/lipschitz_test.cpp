@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// lipschitz: it never passes the surface, on any field and ray, and says so when it gives up.
+#include "scarp/march/lipschitz.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "march/spiteful.h"
+#include "scarp/accel/slope_bound.h"
+#include "scarp/base/error.h"
+#include "scarp/march/exhaustive.h"
+
+namespace scarp::test {
+namespace {
+
+TEST(Lipschitz, ClosesInOnASlopeFromAbove) {
+  std::vector<float> samples;
+  for (int row = 0; row < 64; ++row) {
+    for (int col = 0; col < 64; ++col) samples.push_back(static_cast<float>(2 * col));
+  }
+  const HeightField field = HeightField::own(samples, 64, 64);
+  const MaxPyramid pyramid(field);
+  const double slope = slope_bound(field);
+  EXPECT_NEAR(slope, 2, 1e-12);
+  MarchStats stats;
+  const Ray ray{{5, 30, 60}, {1, 0, 0}};
+  const Hit hit = march_lipschitz({&field, &pyramid, slope}, ray, {}, &stats);
+  ASSERT_TRUE(hit);
+  // The plane is met at x = 30. Where the march stops, shrink * h <= tolerance * t, and h = 2 (30 - x).
+  EXPECT_LE(hit.t, 25);
+  EXPECT_GE(hit.t, 25 - 0.0005 * 25 * std::sqrt(5.0) / 2);
+  EXPECT_GT(stats.steps, 3u);
+}
+
+TEST(Lipschitz, TakesAShrinkFactorInsteadOfTheSlope) {
+  const HeightField field = HeightField::own(std::vector<float>(81, 0.f), 9, 9);
+  const MaxPyramid pyramid(field);
+  MarchSettings settings;
+  EXPECT_THROW(march_lipschitz({&field, &pyramid}, {{0, 4, 9}, {0.5, 0, -1}}, settings), Error);
+  settings.lipschitz.shrink = 0.5;
+  EXPECT_TRUE(march_lipschitz({&field, &pyramid}, {{0, 4, 9}, {0.5, 0, -1}}, settings));
+  settings.lipschitz.max_steps = 2;
+  EXPECT_EQ(march_lipschitz({&field, &pyramid}, {{0, 4, 9}, {0.5, 0, -1}}, settings).status, HitStatus::exhausted);
+  settings.lipschitz.shrink = 1.5;
+  EXPECT_THROW(validate(settings), Error);
+}
+
+TEST(Lipschitz, NeverPassesTheSurface) {
+#ifdef NDEBUG
+  constexpr int kFields = 40;
+#else
+  constexpr int kFields = 4;
+#endif
+  constexpr int kRays = 50;
+  int hits = 0, exhausted = 0, judged_hits = 0;
+  for (const FieldKind& fields : spiteful_fields()) {
+    for (const RayKind& rays : spiteful_rays()) {
+      // Their squares overflow: the sampling marches are not made for them.
+      if (rays.name == "a direction of extreme length") continue;
+      Random random(17);
+      for (int f = 0; f < kFields; ++f) {
+        const HeightField field = fields.make(random);
+        const MaxPyramid pyramid(field);
+        const HeightTarget target{&field, &pyramid, slope_bound(field)};
+        for (int i = 0; i < kRays; ++i) {
+          const Ray ray = rays.make(field, random);
+          // From the surface the first cell is not looked at.
+          if (ray.start == RayStart::on_surface) continue;
+          const Hit hit = march_lipschitz(target, ray), judge = march_exhaustive(target, ray);
+          hits += bool(hit), exhausted += hit.status == HitStatus::exhausted, judged_hits += bool(judge);
+          if (!judge || hit.status == HitStatus::exhausted || hit.status == HitStatus::below) continue;
+          // 2^-18 of a cell: what leaving a block by a little may pass at the rim of a hole. A ray that the judge lets
+          // touch within rounding (32 roundings, as in oracle_test.cpp) may be let by.
+          const double cell = std::max(field.settings().cell_x, field.settings().cell_y) / length(ray.direction);
+          if (hit && hit.t <= judge.t + 0x1p-18 * cell) continue;
+          Ray before = ray;
+          before.t_max = hit ? std::min(hit.t, ray.t_max) : ray.t_max;
+          const dvec3 after = ray.at(judge.t + 0x1p-10 * cell);
+          const auto ground = field.height(after.x, after.y);
+          const double reach = std::abs(after.z) + length(ray.origin) + field.width() + field.depth();
+          EXPECT_FALSE(ground && after.z < *ground - 0x1p-48 * reach * (1 + target.slope) &&
+                       judge.t + 0x1p-10 * cell < before.t_max)
+              << fields.name << ", " << rays.name << ": passed t = " << judge.t << ", got "
+              << (hit ? fmt::format("{}", hit.t) : "a miss");
+        }
+      }
+    }
+  }
+  // Most hits are found, not given up.
+  EXPECT_GT(hits, judged_hits / 2);
+  RecordProperty("hits", hits);
+  RecordProperty("exhausted", exhausted);
+}
+
+}  // namespace
+}  // namespace scarp::test
