@@ -29,7 +29,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kPiece = 1024;  // rays over one field and of one class; their answers stay in a core's cache
-constexpr std::size_t kDumped = 10;
+constexpr std::size_t kDumped = 2000;
 
 struct Count {
   std::int64_t rays = 0, hits = 0, must_hit = 0, lost = 0, wrong = 0, contradictions = 0, judged = 0, ties = 0;

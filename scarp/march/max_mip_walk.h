@@ -10,6 +10,7 @@
 #include "scarp/march/cell_surface.h"
 #include "scarp/march/grid_axis.h"
 #include "scarp/march/marches.h"
+#include "scarp/march/rounding.h"
 
 namespace scarp::max_mip {
 
@@ -183,7 +184,7 @@ class Walk {
     const double last = length * (f.a * length + f.b), lowest = dips ? -f.b * f.b / (4 * f.a) : last;
     if (!(lowest < 0 && is_hit(lowest, t_in_))) return false;
     if (answer(f.b < 0 || f.a == 0 ? 0.0 : f.b / -f.a)) return true;
-    if (last <= 0) side_ = Side::below;
+    if (last <= rounding_of_clearance(t_in_ + length)) side_ = Side::below;
     return false;
   }
 
@@ -364,7 +365,11 @@ class Walk {
       // Only where the clearance along the ray is a cup can the ray come down and go up again.
       if (!(CellQuadratic::curvature(h, x_.direction, y_.direction) > 0)) return false;
       const CellQuadratic f = quadratic(h, t_in_);
-      return f.dips(length) && is_hit(f.vertex_value(), t_in_) && hit_in_cell(f, length);
+      if (!f.dips(length) || !is_hit(f.vertex_value(), t_in_)) return false;
+      if (hit_in_cell(f, length)) return true;
+      // All hits: after this one it has risen only beyond rounding, as any ray from below.
+      if (out <= rounding_of_clearance(t_out)) side_ = Side::below;
+      return false;
     }
     if (out > rounding_of_clearance(t_out)) {
       side_ = Side::above;
@@ -408,16 +413,12 @@ class Walk {
   // Whether a ray that is not above can never be so again: falling, and under the lowest ground.
   bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample(); }
 
-  // The most that rounding can add to a clearance (doc/dev/numerics.md), for the places where a sign alone is not
-  // enough: a ray from below has risen only beyond it (else one that rises through a node could be seen above at one
-  // line and, by rounding, not above at the next: a hit from below), a ray from the surface is strictly below only
-  // beyond it, and so is a ray under a block.
+  // For the places where a sign alone is not enough: a ray from below has risen only beyond it (else one that rises
+  // through a node could be seen above at one line and, by rounding, not above at the next: a hit from below), a ray
+  // from the surface is strictly below only beyond it, and so is a ray under a block.
   double rounding_of_clearance(double t) const {
-    const double low = field_.min_sample(), high = field_.max_sample();
-    const double sideways =
-        std::abs(x_.origin) + std::abs(x_.direction * t) + std::abs(y_.origin) + std::abs(y_.direction * t);
-    const double upright = std::abs(z_) + std::abs(dz_ * t) + std::max(std::abs(low), std::abs(high));
-    return kRoundings * kUnit * (upright + sideways * (high - low));
+    return scarp::rounding_of_clearance(
+        field_, {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}, t);
   }
 
   // Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly
@@ -456,7 +457,6 @@ class Walk {
 
   using Level = MaxPyramid::Level;
   static constexpr double kUnit = 0x1p-53;  // unit roundoff of double
-  static constexpr double kRoundings = 16;  // numerics.md counts 11 on the way to a clearance
 
   const HeightField& field_;
   const SampleGrid<T>& grid_;
