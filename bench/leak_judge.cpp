@@ -62,9 +62,13 @@ LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
     c0_ = clearance(t0_);
   }
   if (!c0_ || hugs_border() || holes_between(t0_, t1_)) return;
-  const auto c1 = clearance(t1_);
-  must_hit_ = (on_surface_ || *c0_ > bound(t0_)) && c1 && *c1 < -under(t1_);
-  if (field_.settings().solid && from_outside_ && *c0_ < -bound(t0_)) must_hit_ = true;
+  // The border is crossed at a time that rounding moves: the more, the more slowly the ray crosses it.
+  const Real in = t0_ + late_, out = t1_ - early_;
+  if (!(in <= out)) return;
+  const auto c0 = on_surface_ ? c0_ : clearance(in), c1 = clearance(out);
+  begins_above_ = c0 && (on_surface_ || *c0 > bound(in));
+  must_hit_ = begins_above_ && c1 && *c1 < -under(out);
+  if (field_.settings().solid && from_outside_ && *c0_ < -bound(t0_) && c0 && *c0 < -bound(in)) must_hit_ = true;
 }
 
 // The part of the ray over the field.
@@ -75,7 +79,10 @@ void LeakJudge::clip() {
       return;
     }
     const Real a = -o / d, b = (cells - o) / d;
-    if (std::min(a, b) > t0_) t0_ = std::min(a, b), from_outside_ = true;
+    const Real e = sideways(std::max(std::abs(a), std::abs(b))) / std::abs(d);
+    if (std::min(a, b) > t0_ - e) from_outside_ = from_outside_ || std::min(a, b) > t0_, late_ = std::max(late_, e);
+    if (std::max(a, b) < t1_ + e) early_ = std::max(early_, e);
+    t0_ = std::max(t0_, std::min(a, b));
     t1_ = std::min(t1_, std::max(a, b));
   };
   axis(ox_, dx_, field_.cell_cols());
@@ -209,7 +216,7 @@ const char* LeakJudge::lost(const Hit& hit, double share) const {
   if (!(t0_ <= t1_) || !c0_) return nullptr;
   if (!hit) return must_hit_ ? "a ray that must hit" : nullptr;
   const Real from = t0_, t = from + share * (hit.t - from);
-  if (!(on_surface_ || *c0_ > bound(from)) || hugs_border() || holes_between(from, t)) return nullptr;
+  if (!begins_above_ || t > t1_ - early_ || holes_between(from, t)) return nullptr;
   const auto c = clearance(t);
   return c && *c < -under(t) ? "a hit before the one that is told" : nullptr;
 }
@@ -251,7 +258,8 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   if (speed > 0 && before * speed < 0x1p-20L) {
     const Real q = t - kBack / speed;
     const auto previous = q >= t0_ ? place_at(q) : std::nullopt;
-    if (previous) {
+    // Where there is a hole within rounding, the ray may have come out of it.
+    if (previous && !holes_between(t, t)) {
       const Real u = x(t) - previous->col, v = y(t) - previous->row;
       const bool reaches = std::min(u, v) >= -e && std::max(u, v) <= 1 + e;
       if (reaches && risen(*previous, t, std::min(t - q, time_in_cell(*previous, q, true) + (t - q))) > 2 * b + std::abs(c))

@@ -92,7 +92,8 @@ class LeakJudge {
   Real ox_, oy_, oz_, dx_, dy_, dz_;  // in cells and sample units
   Real low_, high_, offset_;          // of the samples, in sample units
   Real t0_, t1_;                      // over the field; empty when t0_ > t1_
-  bool from_outside_ = false;
+  Real late_ = 0, early_ = 0;         // how much rounding may move these
+  bool from_outside_ = false, begins_above_ = false;
   std::optional<Real> c0_;  // clearance at t0_
   bool must_hit_ = false;
 };

@@ -202,7 +202,7 @@ class Leaks {
   void judge_difference(const LeakJudge& judge, const Hit& truth, const Hit& hit, Count& sum, const Fails& fails) const {
     if (truth && (!hit || truth.t < hit.t) && !judge.false_hit(truth) && judge.cut_behind(truth) && judge.cut_before(truth)) {
       fails(sum.lost, "a hit that the exhaustive march finds");
-    } else if (hit && judge.cut_behind(hit) && judge.cut_before(hit)) {
+    } else if (hit && (!truth || hit.t < truth.t) && judge.cut_behind(hit) && judge.cut_before(hit)) {
       fails(sum.wrong, "a hit that the exhaustive march does not find");
     } else {
       ++sum.ties;

@@ -264,7 +264,9 @@ class Walk {
       }
       if (Holes) begun_ = true;
       if (!falling && lowest > highest) break;
-      if (!(t_line < t_end)) {
+      // The seam comes last of the lines that are crossed at once: columns before rows there, too.
+      const bool column_first = wraps_ && through_x && t_line == t_end && t_end < x.exit_time();
+      if (!(t_line < t_end) && !column_first) {
         left = t_end < t_end_;
         break;
       }
@@ -377,7 +379,13 @@ class Walk {
     }
     if constexpr (ask == Ask::bisected) return false;
     const CellQuadratic f = quadratic(h, t_in_);
-    if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_) && hit_in_cell(f, length)) return true;
+    if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_)) {
+      // It has come out in between, and goes on as any ray from above.
+      side_ = Side::above;
+      if (!(out <= 0 && is_hit(out, t_out))) return false;
+      if (hit_in_cell(f, length)) return true;
+      side_ = Side::below;
+    }
     return lost(t_out);
   }
 
