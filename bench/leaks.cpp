@@ -64,17 +64,19 @@ struct Job {
 class Leaks {
  public:
   Leaks(const LeaksOptions& options, const std::vector<LeakField>& fields) : options_(options) {
-    // Neighbouring pieces are of all fields and classes in turn: any stretch of the run is a fair sample of it.
-    for (const LeakField& ground : fields) {
-      for (const LeakClass leak_class : kLeakClasses) {
-        if (suits(leak_class, ground)) jobs_.push_back({leak_class, &ground});
+    double for_embree_share = 0;  // of all rays
+    for (const LeakClass leak_class : kLeakClasses) {
+      auto& suited = grounds_[static_cast<std::size_t>(leak_class)];
+      std::ptrdiff_t have_embree = 0;
+      for (const LeakField& ground : fields) {
+        if (!suits(leak_class, ground)) continue;
+        suited.push_back(&ground);
+        have_embree += for_embree({leak_class, &ground});
       }
+      for_embree_share += 0.5 * static_cast<double>(have_embree) / static_cast<double>(suited.size()) / std::size(kLeakClasses);
     }
     pieces_ = (options.rays + kPiece - 1) / kPiece;
-    std::int64_t candidates = 0;
-    for (const Job& job : jobs_) candidates += for_embree(job);
-    const double per_piece = static_cast<double>(candidates) / static_cast<double>(jobs_.size()) * kPiece / 2;
-    const double all = per_piece * static_cast<double>(pieces_);
+    const double all = for_embree_share * static_cast<double>(options.rays);
     embree_share_ = all > 0 ? std::min(1.0, static_cast<double>(options.embree_rays) / all) : 0;
   }
 
@@ -103,8 +105,17 @@ class Leaks {
     return job.ground->embree && job.leak_class <= LeakClass::diagonals;
   }
 
+  // Pieces are of all classes in turn, and of each class over all of its fields: any stretch of the run is a fair
+  // sample of it.
+  Job job_of(std::int64_t piece) const {
+    constexpr auto kClasses = static_cast<std::int64_t>(std::size(kLeakClasses));
+    const auto leak_class = static_cast<std::size_t>(piece % kClasses);
+    const auto& suited = grounds_[leak_class];
+    return {kLeakClasses[leak_class], suited[static_cast<std::size_t>(piece / kClasses) % suited.size()]};
+  }
+
   void run_piece(std::int64_t piece) {
-    const Job& job = jobs_[static_cast<std::size_t>(piece % static_cast<std::int64_t>(jobs_.size()))];
+    const Job job = job_of(piece);
     const std::int64_t begin = piece * kPiece, count = std::min(kPiece, options_.rays - begin);
     const HeightTarget target = job.ground->target();
     std::vector<Ray> rays;
@@ -215,7 +226,7 @@ class Leaks {
   }
 
   const LeaksOptions& options_;
-  std::vector<Job> jobs_;
+  std::array<std::vector<const LeakField*>, std::size(kLeakClasses)> grounds_;  // that suit each class
   std::int64_t pieces_ = 0;
   double embree_share_ = 0;
   std::mutex mutex_;

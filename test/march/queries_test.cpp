@@ -14,6 +14,12 @@
 namespace scarp::test {
 namespace {
 
+// Bit for bit; exhaustive has no t, NaN, for directions of extreme length.
+bool identical(const Hit& a, const Hit& b) {
+  const auto same = [](double x, double y) { return x == y || (x != x && y != y); };
+  return same(a.t, b.t) && a.cell == b.cell && same(a.u, b.u) && same(a.v, b.v) && same(a.height, b.height);
+}
+
 TEST(Queries, ABatchAnswersAsItsRaysDo) {
   Random random(5);
   for (const FieldKind& fields : spiteful_fields()) {
@@ -33,12 +39,7 @@ TEST(Queries, ABatchAnswersAsItsRaysDo) {
         const Hit one = march.cpu(target, rays[i], {}, nullptr);
         ASSERT_EQ(hits[i].status, one.status) << march.name << " on " << fields.name << ", ray " << i;
         ASSERT_EQ(blocked[i], one.status == HitStatus::hit ? 1 : 0) << march.name << " on " << fields.name << ", ray " << i;
-        if (!one) continue;
-        ASSERT_EQ(hits[i].t, one.t);
-        ASSERT_EQ(hits[i].cell, one.cell);
-        ASSERT_EQ(hits[i].u, one.u);
-        ASSERT_EQ(hits[i].v, one.v);
-        ASSERT_EQ(hits[i].height, one.height);
+        ASSERT_TRUE(!one || identical(hits[i], one)) << march.name << " on " << fields.name << ", ray " << i;
       }
     }
   }
