@@ -59,14 +59,13 @@ Json measure(const EditsOptions& options) {
 
 void run_edits(const EditsOptions& options, const ReportOptions& report) {
   if (options.rect > options.size) {
-    throw Error(fmt::format("edits: a rectangle of {0} x {0} does not fit into {1} x {1} samples", options.rect,
-                            options.size));
+    throw Error(
+        fmt::format("edits: a rectangle of {0} x {0} does not fit into {1} x {1} samples", options.rect, options.size));
   }
   Json rows = Json::array();
   rows.push_back(measure<float>(options));
   rows.push_back(measure<std::int16_t>(options));
-  std::vector<std::vector<std::string>> lines{
-      {"samples", "rectangle", "type", "median us", "p99 us", "rebuild us"}};
+  std::vector<std::vector<std::string>> lines{{"samples", "rectangle", "type", "median us", "p99 us", "rebuild us"}};
   for (const Json& row : rows) {
     lines.push_back({fmt::format("{0} x {0}", row["size"].get<int>()), fmt::format("{0} x {0}", row["rect"].get<int>()),
                      row["sample_type"], short_number(row["median_us"]), short_number(row["p99_us"]),

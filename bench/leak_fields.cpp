@@ -73,7 +73,8 @@ std::vector<LeakField> make_leak_fields(std::uint64_t seed, int large, bool embr
   const auto add = [&](std::string name, HeightField field, std::optional<ProceduralDem> generator = std::nullopt) {
     LeakField& added = fields.emplace_back(LeakField{std::move(name), std::move(field), std::move(generator)});
     added.rim = rim_of(added.field);
-    const bool same_triangles = !added.field.wraps() && added.field.nodata_count() == 0 && !added.field.settings().solid;
+    const bool same_triangles =
+        !added.field.wraps() && added.field.nodata_count() == 0 && !added.field.settings().solid;
     if (embree && same_triangles) {
       added.embree = std::make_unique<EmbreePeer>(added.field, EmbreeSurface::triangles, EmbreeQuality::high);
     }
@@ -101,7 +102,8 @@ std::vector<LeakField> make_leak_fields(std::uint64_t seed, int large, bool embr
     Random r = random();
     std::vector<double> steps;
     for (int i = 0; i < 65; ++i) steps.push_back(r.below(2) * 1000.0);
-    add("cliffs", make<float>(65, 63, {}, [&](int c, int q) { return steps[static_cast<std::size_t>((c + q / 16) % 65)]; }));
+    add("cliffs",
+        make<float>(65, 63, {}, [&](int c, int q) { return steps[static_cast<std::size_t>((c + q / 16) % 65)]; }));
   }
   {
     Random r = random();
@@ -131,8 +133,7 @@ std::vector<LeakField> make_leak_fields(std::uint64_t seed, int large, bool embr
     Random r = random();
     std::vector<int> tile;
     for (int i = 0; i < 64 * 48; ++i) tile.push_back(r.below(40) - 20);
-    add("int16, shared border",
-        make<std::int16_t>(65, 49, {.wrap = Wrap::shared_border}, [&](int c, int q) {
+    add("int16, shared border", make<std::int16_t>(65, 49, {.wrap = Wrap::shared_border}, [&](int c, int q) {
           return tile[static_cast<std::size_t>(64 * shared(q, 48) + shared(c, 64))];
         }));
   }

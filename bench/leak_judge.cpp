@@ -14,7 +14,8 @@ constexpr Real kRoundings = 16;   // numerics.md
 constexpr Real kCounted = 11;     // of these are counted there
 
 Real height(const CellHeights& h, Real u, Real v) {
-  const Real north = h.h00 + u * (static_cast<Real>(h.h10) - h.h00), south = h.h01 + u * (static_cast<Real>(h.h11) - h.h01);
+  const Real north = h.h00 + u * (static_cast<Real>(h.h10) - h.h00),
+             south = h.h01 + u * (static_cast<Real>(h.h11) - h.h01);
   return north + v * (south - north);
 }
 
@@ -91,8 +92,7 @@ void LeakJudge::clip() {
 
 // What rounding does to a position in plan, in cells.
 LeakJudge::Real LeakJudge::sideways(Real t) const {
-  return kRoundings * kUnit *
-         (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t) + field_.rows());
+  return kRoundings * kUnit * (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t) + field_.rows());
 }
 
 LeakJudge::Real LeakJudge::bound(Real t) const {
@@ -118,7 +118,8 @@ bool LeakJudge::holes_between(Real from, Real to) const {
   const auto first = [&](Real a, Real b) { return static_cast<int>(std::ceil(std::min(a, b) - e)) - 1; };
   const auto last = [&](Real a, Real b) { return static_cast<int>(std::floor(std::max(a, b) + e)) + 1; };
   CellBox box{first(x(from), x(to)), first(y(from), y(to)), last(x(from), x(to)), last(y(from), y(to))};
-  if (wraps_ && (box.col_begin < 0 || box.row_begin < 0 || box.col_end > field_.cell_cols() || box.row_end > field_.cell_rows()))
+  if (wraps_ &&
+      (box.col_begin < 0 || box.row_begin < 0 || box.col_end > field_.cell_cols() || box.row_end > field_.cell_rows()))
     return true;
   box = {std::clamp(box.col_begin, 0, field_.cell_cols()), std::clamp(box.row_begin, 0, field_.cell_rows()),
          std::clamp(box.col_end, 0, field_.cell_cols()), std::clamp(box.row_end, 0, field_.cell_rows())};
@@ -233,8 +234,8 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   if (!place) return "in a hole";
   const Real t = hit.t, e = sideways(t), b = bound(t);
   if (std::abs(x(t) - place->col - hit.u) > e || std::abs(y(t) - place->row - hit.v) > e) return "not where the ray is";
-  const Real ground = triangles_ ? height_of_triangle(place->h, south_east(*place, t), hit.u, hit.v)
-                                 : height(place->h, hit.u, hit.v);
+  const Real ground =
+      triangles_ ? height_of_triangle(place->h, south_east(*place, t), hit.u, hit.v) : height(place->h, hit.u, hit.v);
   const Real c = z(t) - ground;
   if (hit.wall) {
     if (!field_.settings().solid) return "a wall in a sheet";
@@ -246,8 +247,9 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
 
   if (on_surface_) {
     // At the start the clearance is zero by definition; there and later it has to fall.
-    const Real asked = kRoundings * kUnit * (std::abs(oz_) + std::abs(dz_ * t) + std::max(std::abs(low_), std::abs(high_)) +
-                                             (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t)) * (high_ - low_));
+    const Real asked = kRoundings * kUnit *
+                       (std::abs(oz_) + std::abs(dz_ * t) + std::max(std::abs(low_), std::abs(high_)) +
+                        (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t)) * (high_ - low_));
     if (deepest(*place, t) < asked - kCounted / kRoundings * b) return "never strictly below";
   }
   const Real before = time_in_cell(*place, t, true);
@@ -262,7 +264,8 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
     if (previous && !holes_between(t, t)) {
       const Real u = x(t) - previous->col, v = y(t) - previous->row;
       const bool reaches = std::min(u, v) >= -e && std::max(u, v) <= 1 + e;
-      if (reaches && risen(*previous, t, std::min(t - q, time_in_cell(*previous, q, true) + (t - q))) > 2 * b + std::abs(c))
+      if (reaches &&
+          risen(*previous, t, std::min(t - q, time_in_cell(*previous, q, true) + (t - q))) > 2 * b + std::abs(c))
         return "a way out of the ground";
     }
   }

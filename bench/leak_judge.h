@@ -26,7 +26,8 @@ class LeakJudge {
   bool must_hit() const { return must_hit_; }
 
   /// Why an answer has lost a hit, or null: it tells none, or one behind a place where a ray from above is already
-  /// under the ground by more than B, no hole being in between. The place is somewhere before the hit, by `share` (0..1).
+  /// under the ground by more than B, no hole being in between. The place is somewhere before the hit, by `share`
+  /// (0..1).
   const char* lost(const Hit& hit, double share) const;
 
   /// Why a told hit is none, or null.
@@ -44,8 +45,8 @@ class LeakJudge {
   /// `miss` for one that began below by more than B.
   const char* false_status(const Hit& hit) const;
 
-  /// A time behind a hit at which the ray is below by more than 2 B and has been falling since, in the hit's cell: a ray
-  /// cut there still hits. And one before it, from which it has been falling from more than 2 B above: cut there it
+  /// A time behind a hit at which the ray is below by more than 2 B and has been falling since, in the hit's cell: a
+  /// ray cut there still hits. And one before it, from which it has been falling from more than 2 B above: cut there it
   /// does not hit, if nothing was hit before. Nothing where rounding leaves no room.
   std::optional<double> cut_behind(const Hit& hit) const;
   std::optional<double> cut_before(const Hit& hit) const;

@@ -190,7 +190,9 @@ class Maker {
 
   // A power of two from which all ground is below; so heights of targets stay exact when it is added.
   double height_above() const { return std::exp2(std::ceil(std::log2(1.25 * relief_ + 0.1))); }
-  double lean(double high) { return round_to_grid(r_.uniform(-0.5, 0.5) * std::min(high, 0.25 * std::min(f_.width(), f_.depth()))); }
+  double lean(double high) {
+    return round_to_grid(r_.uniform(-0.5, 0.5) * std::min(high, 0.25 * std::min(f_.width(), f_.depth())));
+  }
 
   static Ray along(dvec3 from, dvec3 direction, double t_max) {
     Ray ray;
@@ -266,8 +268,9 @@ class Maker {
 }  // namespace
 
 std::string_view name_of(LeakClass leak_class) {
-  constexpr std::string_view kNames[] = {"nodes", "edges", "diagonals", "axis",  "vertical", "tangent", "two-nodes", "border",
-                                         "rims",  "seam",  "below",     "plane", "saddles",  "surface", "far",       "any"};
+  constexpr std::string_view kNames[] = {"nodes",     "edges",   "diagonals", "axis", "vertical", "tangent",
+                                         "two-nodes", "border",  "rims",      "seam", "below",    "plane",
+                                         "saddles",   "surface", "far",       "any"};
   static_assert(std::size(kNames) == std::size(kLeakClasses));
   return kNames[static_cast<std::size_t>(leak_class)];
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The rays of `scarp-bench leaks`. Each is a function of seed, index, class and field alone: threads change nothing, and
-// one ray can be had again without the others.
+// The rays of `scarp-bench leaks`. Each is a function of seed, index, class and field alone: threads change nothing,
+// and one ray can be had again without the others.
 #pragma once
 
 #include <cstdint>
@@ -30,10 +30,10 @@ enum class LeakClass : std::uint8_t {
   far,        ///< at nodes from 10^5 to 10^7 m away
   any,        ///< from anywhere to anywhere
 };
-constexpr LeakClass kLeakClasses[] = {LeakClass::nodes,   LeakClass::edges,     LeakClass::diagonals, LeakClass::axis,
-                                      LeakClass::vertical, LeakClass::tangent,  LeakClass::two_nodes, LeakClass::border,
-                                      LeakClass::rims,    LeakClass::seam,      LeakClass::below,     LeakClass::plane,
-                                      LeakClass::saddles, LeakClass::surface,   LeakClass::far,       LeakClass::any};
+constexpr LeakClass kLeakClasses[] = {LeakClass::nodes,    LeakClass::edges,   LeakClass::diagonals, LeakClass::axis,
+                                      LeakClass::vertical, LeakClass::tangent, LeakClass::two_nodes, LeakClass::border,
+                                      LeakClass::rims,     LeakClass::seam,    LeakClass::below,     LeakClass::plane,
+                                      LeakClass::saddles,  LeakClass::surface, LeakClass::far,       LeakClass::any};
 std::string_view name_of(LeakClass leak_class);
 
 /// Whether the class is about that kind of ground at all: rims need holes, the seam a field that wraps round.

@@ -30,7 +30,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kPiece = 1024;  // rays over one field and of one class; their answers stay in a core's cache
 constexpr std::size_t kDumped = 10;
-constexpr std::uint64_t kAskedMore = 4;  // one ray in so many is also asked for all hits, and cut behind and before its hit
+constexpr std::uint64_t kAskedMore =
+    4;  // one ray in so many is also asked for all hits, and cut behind and before its hit
 
 struct Count {
   std::int64_t rays = 0, hits = 0, must_hit = 0, lost = 0, wrong = 0, contradictions = 0, judged = 0, ties = 0;
@@ -52,8 +53,8 @@ bool identical(const Hit& a, const Hit& b) {
 std::string text(const Hit& hit) {
   static constexpr const char* kNames[] = {"miss", "hit", "below", "exhausted"};
   if (!hit) return kNames[static_cast<int>(hit.status)];
-  return fmt::format("{} at t {:a} in cell {} {} at {} {}", hit.wall ? "wall" : "hit", hit.t, hit.cell.col, hit.cell.row,
-                     hit.u, hit.v);
+  return fmt::format("{} at t {:a} in cell {} {} at {} {}", hit.wall ? "wall" : "hit", hit.t, hit.cell.col,
+                     hit.cell.row, hit.u, hit.v);
 }
 
 struct Job {
@@ -73,7 +74,8 @@ class Leaks {
         suited.push_back(&ground);
         have_embree += for_embree({leak_class, &ground});
       }
-      for_embree_share += 0.5 * static_cast<double>(have_embree) / static_cast<double>(suited.size()) / std::size(kLeakClasses);
+      for_embree_share +=
+          0.5 * static_cast<double>(have_embree) / static_cast<double>(suited.size()) / std::size(kLeakClasses);
     }
     pieces_ = (options.rays + kPiece - 1) / kPiece;
     const double all = for_embree_share * static_cast<double>(options.rays);
@@ -101,9 +103,7 @@ class Leaks {
   }
 
  private:
-  static bool for_embree(const Job& job) {
-    return job.ground->embree && job.leak_class <= LeakClass::diagonals;
-  }
+  static bool for_embree(const Job& job) { return job.ground->embree && job.leak_class <= LeakClass::diagonals; }
 
   // Pieces are of all classes in turn, and of each class over all of its fields: any stretch of the run is a fair
   // sample of it.
@@ -205,8 +205,10 @@ class Leaks {
   // exhaustive march: those it tells before are lost when they pass the same judgements and the ray is under the ground
   // behind them.
   template <class Fails>
-  void judge_difference(const LeakJudge& judge, const Hit& truth, const Hit& hit, Count& sum, const Fails& fails) const {
-    if (truth && (!hit || truth.t < hit.t) && !judge.false_hit(truth) && judge.cut_behind(truth) && judge.cut_before(truth)) {
+  void judge_difference(const LeakJudge& judge, const Hit& truth, const Hit& hit, Count& sum,
+                        const Fails& fails) const {
+    if (truth && (!hit || truth.t < hit.t) && !judge.false_hit(truth) && judge.cut_behind(truth) &&
+        judge.cut_before(truth)) {
       fails(sum.lost, "a hit that the exhaustive march finds");
     } else if (hit && (!truth || hit.t < truth.t) && judge.cut_behind(hit) && judge.cut_before(hit)) {
       fails(sum.wrong, "a hit that the exhaustive march does not find");
@@ -219,9 +221,9 @@ class Leaks {
 
   void keep(std::int64_t index, const Job& job, const Ray& ray, const char* why, const std::string& answered) {
     const std::scoped_lock lock(mutex_);
-    failures_.try_emplace(index, RayDump{job.ground->field, job.ground->generator, ray,
-                                         fmt::format("{} over '{}': {}", name_of(job.leak_class), job.ground->name, why),
-                                         answered});
+    failures_.try_emplace(
+        index, RayDump{job.ground->field, job.ground->generator, ray,
+                       fmt::format("{} over '{}': {}", name_of(job.leak_class), job.ground->name, why), answered});
     if (failures_.size() > kDumped) failures_.erase(std::prev(failures_.end()));
   }
 
@@ -268,8 +270,8 @@ void run_leaks(const LeaksOptions& options, const ReportOptions& report) {
     rows.push_back(row_of(name_of(leak_class), count));
   }
   rows.push_back(row_of("all", total));
-  std::vector<std::vector<std::string>> lines{{"class", "rays", "hits %", "must hit", "lost", "false", "contrad.", "judged",
-                                               "ties", "embree rays", "embree lost", "%"}};
+  std::vector<std::vector<std::string>> lines{{"class", "rays", "hits %", "must hit", "lost", "false", "contrad.",
+                                               "judged", "ties", "embree rays", "embree lost", "%"}};
   for (const Json& row : rows) {
     const auto percent = [](const Json& share) {
       return share.is_null() ? std::string("-") : short_number(100 * share.get<double>());

@@ -106,7 +106,8 @@ int run(int argc, char** argv) {
   add_json_option(*pyramid_command, report);
 
   LeaksOptions leaks;
-  CLI::App* leaks_command = app.add_subcommand("leaks", "very many rays at what engines lose; fails when Scarp loses one");
+  CLI::App* leaks_command =
+      app.add_subcommand("leaks", "very many rays at what engines lose; fails when Scarp loses one");
   // Written as 1e9, too.
   double leak_rays = static_cast<double>(leaks.rays), embree_rays = static_cast<double>(leaks.embree_rays);
   leaks_command->add_option("--rays", leak_rays, "in all")->check(CLI::Range(1.0, 1e15))->capture_default_str();
@@ -131,7 +132,9 @@ int run(int argc, char** argv) {
   edits_command->add_option("--rect", edits.rect, "samples per side of the rectangle that is edited")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();
-  edits_command->add_option("--edits", edits.edits, "counted edits")->check(CLI::Range(1, 100000))->capture_default_str();
+  edits_command->add_option("--edits", edits.edits, "counted edits")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
   add_json_option(*edits_command, report);
 
   CLI11_PARSE(app, argc, argv);

@@ -70,12 +70,13 @@ class Replay {
     if (march.guarantee == Guarantee::exact) {
       if (!same(judge_, hit)) wrong = "differs";
       if (any && *any != static_cast<bool>(hit)) wrong = "contradicts itself";
-      if (all && (all->empty() == static_cast<bool>(hit) || (hit && all->front().t != hit.t))) wrong = "contradicts itself";
+      if (all && (all->empty() == static_cast<bool>(hit) || (hit && all->front().t != hit.t)))
+        wrong = "contradicts itself";
     }
     agrees_ = agrees_ && *wrong == 0;
     const auto told = [&](const auto& value) { return hit ? fmt::format("{:.6g}", value) : std::string("-"); };
-    lines_.push_back({std::string(march.name), std::string(scarp::name_of(march.guarantee)), std::string(name_of(hit.status)),
-                      hit ? fmt::format("{:.17g}", hit.t) : "-",
+    lines_.push_back({std::string(march.name), std::string(scarp::name_of(march.guarantee)),
+                      std::string(name_of(hit.status)), hit ? fmt::format("{:.17g}", hit.t) : "-",
                       hit ? fmt::format("{} {}", hit.cell.col, hit.cell.row) : "-", told(hit.u), told(hit.v),
                       hit.wall ? "wall" : told(hit ? clearance(hit) : 0), any ? (*any ? "hit" : "none") : "-",
                       all ? std::to_string(all->size()) : "-", wrong});
@@ -102,7 +103,8 @@ class Replay {
       const auto ground = field.height(p.x, p.y);
       const double metres = field.settings().scale * field.settings().exaggeration;
       // Both the answer and this look at it round.
-      if (ground && std::abs(p.z - *ground) > 2 * metres * rounding_of_clearance(field, field.grid_from_world(dump_.ray), t))
+      if (ground &&
+          std::abs(p.z - *ground) > 2 * metres * rounding_of_clearance(field, field.grid_from_world(dump_.ray), t))
         return false;
     }
     return true;
@@ -134,8 +136,8 @@ void replay(const std::string& path) {
 }  // namespace
 
 void add_replay(CLI::App& program) {
-  CLI::App* command =
-      program.add_subcommand("replay", "Send rays out of a text file through all marches; fails when exact ones differ");
+  CLI::App* command = program.add_subcommand(
+      "replay", "Send rays out of a text file through all marches; fails when exact ones differ");
   const auto path = std::make_shared<std::string>();
   command->add_option("FILE", *path, "rays as scarp-bench leaks and the tests write them (scarp/scene/ray_dump.h)")
       ->required();

@@ -24,7 +24,8 @@ struct IsNodata {
 template <>
 struct IsNodata<float> {
   // 0 and -0 are equal.
-  explicit IsNodata(float value) : mask(value == 0 ? kMagnitude : -1), nodata(std::bit_cast<std::int32_t>(value) & mask) {}
+  explicit IsNodata(float value)
+      : mask(value == 0 ? kMagnitude : -1), nodata(std::bit_cast<std::int32_t>(value) & mask) {}
   bool operator()(float sample) const {
     const auto bits = std::bit_cast<std::int32_t>(sample);
     return ((bits & mask) == nodata) | ((bits & kMagnitude) > kInfinite);

@@ -425,8 +425,7 @@ class Walk {
   // through a node could be seen above at one line and, by rounding, not above at the next: a hit from below), a ray
   // from the surface is strictly below only beyond it, and so is a ray under a block.
   double rounding_of_clearance(double t) const {
-    return scarp::rounding_of_clearance(
-        field_, {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}, t);
+    return scarp::rounding_of_clearance(field_, {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}, t);
   }
 
   // Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly

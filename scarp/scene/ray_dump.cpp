@@ -36,9 +36,11 @@ std::string text_of(const RayDump& dump) {
     text += fmt::format("{} {:a}\n", key, value);
   }
   if (to.nodata) text += fmt::format("nodata {:a}\n", *to.nodata);
-  text += fmt::format("surface {}\nwrap {}\nsolid {}\n", name_of(to.surface), name_of(to.wrap), to.solid ? "yes" : "no");
+  text +=
+      fmt::format("surface {}\nwrap {}\nsolid {}\n", name_of(to.surface), name_of(to.wrap), to.solid ? "yes" : "no");
   if (const auto& dem = dump.generator) {
-    return text + fmt::format("generate {} {} {:a} {:a}\n", scarp::name_of(dem->kind), dem->seed, dem->cell_m, dem->wavelength);
+    return text + fmt::format("generate {} {} {:a} {:a}\n", scarp::name_of(dem->kind), dem->seed, dem->cell_m,
+                              dem->wavelength);
   }
   field.visit([&](const auto& grid) {
     for (int row = 0; row < grid.rows; ++row) {
@@ -58,9 +60,9 @@ std::string text_of(const RayDump& dump) {
 }
 
 std::string text_of(const Ray& ray, const std::string& expected, const std::string& answered) {
-  std::string text = fmt::format("\nray\norigin {:a} {:a} {:a}\ndirection {:a} {:a} {:a}\nrange {:a} {:a}\n", ray.origin.x,
-                                 ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, ray.t_min,
-                                 ray.t_max);
+  std::string text =
+      fmt::format("\nray\norigin {:a} {:a} {:a}\ndirection {:a} {:a} {:a}\nrange {:a} {:a}\n", ray.origin.x,
+                  ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z, ray.t_min, ray.t_max);
   text += ray.start == RayStart::free ? "start free\n"
                                       : fmt::format("start on_surface {} {}\n", ray.start_cell.col, ray.start_cell.row);
   if (!expected.empty()) text += "expected " + expected + "\n";
@@ -253,7 +255,8 @@ class Reader {
     if (field_) return;
     const std::size_t count = static_cast<std::size_t>(cols_) * static_cast<std::size_t>(rows_);
     if (!generator_ && samples_.size() != count) {
-      fail(fmt::format("{} of {} rows of samples before the ray", samples_.size() / static_cast<std::size_t>(cols_), rows_));
+      fail(fmt::format("{} of {} rows of samples before the ray", samples_.size() / static_cast<std::size_t>(cols_),
+                       rows_));
     }
     with_line([&] {
       switch (type_) {
@@ -264,7 +267,8 @@ class Reader {
           field_ = HeightField::own(samples_as<std::uint16_t>(), cols_, rows_, settings_);
           break;
         case SampleType::float32:
-          field_ = HeightField::own(generator_ ? generate_dem(*generator_) : samples_as<float>(), cols_, rows_, settings_);
+          field_ =
+              HeightField::own(generator_ ? generate_dem(*generator_) : samples_as<float>(), cols_, rows_, settings_);
       }
     });
   }

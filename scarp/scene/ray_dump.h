@@ -38,8 +38,8 @@ struct RayDump {
   std::string answered;
 };
 
-/// Writes the rays into one file; consecutive ones over the same field (copies of one) share its text. Throws Error when
-/// the file cannot be written; then no file is left or changed.
+/// Writes the rays into one file; consecutive ones over the same field (copies of one) share its text. Throws Error
+/// when the file cannot be written; then no file is left or changed.
 void write_ray_dumps(const std::string& path, std::span<const RayDump> dumps);
 
 /// Reads what write_ray_dumps() writes, or what people have written in that form; at least one ray. Throws Error naming

@@ -15,15 +15,17 @@ const std::string kField = "scarp-rays 1\nfield float32 3 2\nrow 0 4 0\nrow 0 4 
 
 TEST(Replay, PutsAllMarchesSideBySide) {
   const test::Scratch scratch;
-  const std::string file = scratch.write(
-      "rays.txt", kField + "ray\norigin -1 0.5 3\ndirection 1 0 0\nrange 0 9\nexpected a hit\nanswered miss\n"
-                           "ray\norigin 1 0.5 9\ndirection 0 0 0x1p+0\n");
+  const std::string file =
+      scratch.write("rays.txt", kField +
+                                    "ray\norigin -1 0.5 3\ndirection 1 0 0\nrange 0 9\nexpected a hit\nanswered miss\n"
+                                    "ray\norigin 1 0.5 9\ndirection 0 0 0x1p+0\n");
   const auto result = run({"replay", file});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");
-  for (const std::string part : {"ray 1 over 3 x 2 samples of float32", "expected: a hit", "answered: miss",
-                                 "exhaustive      exact        hit     1.75 ", "max-mip         exact        hit     1.75 ",
-                                 "naive", "relaxed", "max-mip-bisect", "ray 2 over", "miss"}) {
+  for (const std::string part :
+       {"ray 1 over 3 x 2 samples of float32", "expected: a hit", "answered: miss",
+        "exhaustive      exact        hit     1.75 ", "max-mip         exact        hit     1.75 ", "naive", "relaxed",
+        "max-mip-bisect", "ray 2 over", "miss"}) {
     EXPECT_NE(result.out.find(part), std::string::npos) << part << " is not in:\n" << result.out;
   }
 }

@@ -41,8 +41,9 @@ class EmbreeScene {
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
     const int cols = field.cols(), rows = field.rows();
-    auto* vertex = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                               3 * sizeof(float), static_cast<std::size_t>(cols * rows)));
+    auto* vertex =
+        static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                    3 * sizeof(float), static_cast<std::size_t>(cols * rows)));
     field.visit([&](const auto& grid) {
       for (int row = 0; row < rows; ++row) {
         for (int col = 0; col < cols; ++col) {
@@ -133,7 +134,9 @@ const std::vector<RayClass>& classes() {
          return float_ray(eye, to - eye, 4);
        }},
       {"shadow", false,
-       [](const HeightField& f, Random& r) { return float_ray(off_the_ground(f, r), {-0.664, 0.664, 0.342}, 400); }},
+       [](const HeightField& f, Random& r) {
+         return float_ray(off_the_ground(f, r), {-0.664, 0.664, 0.342}, 400);
+       }},
       {"grazing", false,
        [](const HeightField& f, Random& r) {
          const double azimuth = uniform(r, 0, 6.2832);

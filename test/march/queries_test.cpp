@@ -38,7 +38,8 @@ TEST(Queries, ABatchAnswersAsItsRaysDo) {
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const Hit one = march.cpu(target, rays[i], {}, nullptr);
         ASSERT_EQ(hits[i].status, one.status) << march.name << " on " << fields.name << ", ray " << i;
-        ASSERT_EQ(blocked[i], one.status == HitStatus::hit ? 1 : 0) << march.name << " on " << fields.name << ", ray " << i;
+        ASSERT_EQ(blocked[i], one.status == HitStatus::hit ? 1 : 0)
+            << march.name << " on " << fields.name << ", ray " << i;
         ASSERT_TRUE(!one || identical(hits[i], one)) << march.name << " on " << fields.name << ", ray " << i;
       }
     }

@@ -152,14 +152,16 @@ TEST_F(RayDumps, AreRefusedInOneLineThatNamesTheLine) {
   EXPECT_EQ(refusal(head + "field int16 1 1\ncell_x 0\nrow 1\nray\n"),
             "line 5: height field: cell_x is 0; it must be finite and above 0");
   EXPECT_EQ(refusal(head + "field float32 1 1\nrow inf\nray\n").substr(0, 6), "line 4");
-  EXPECT_EQ(refusal(head + "field int16 1 1\nwrap round\n"), "line 3: wrap 'round': there are: none, periodic, shared_border");
+  EXPECT_EQ(refusal(head + "field int16 1 1\nwrap round\n"),
+            "line 3: wrap 'round': there are: none, periodic, shared_border");
   EXPECT_EQ(refusal(head + "field int16 1 1\ncolour red\n"), "line 3: 'colour' is no line of a field");
   EXPECT_EQ(refusal(head + field + "ray\norigin 1 2\n"), "line 6: origin '' is no number");
   EXPECT_EQ(refusal(head + field + "ray\ncell_x 1\n"), "line 6: 'cell_x' is no line of a ray");
   EXPECT_EQ(refusal(head + field + "ray\ndirection 0 0 0\n"), "line 6: ray: its direction is zero");
   EXPECT_EQ(refusal(head + field + "ray\nstart on_surface 5 0\n"),
             "line 6: ray: it starts on the surface of cell (5, 0), which does not exist");
-  EXPECT_EQ(refusal(head + "field float32 2 2\ngenerate hills 1 1 0\n"), "line 3: kind 'hills': there are: fbm, ridged");
+  EXPECT_EQ(refusal(head + "field float32 2 2\ngenerate hills 1 1 0\n"),
+            "line 3: kind 'hills': there are: fbm, ridged");
   EXPECT_EQ(refusal(head + "field float32 2 2\ngenerate fbm 1 1 0\nrow 1 2\n"),
             "line 4: the samples are generated; there can be no rows");
   EXPECT_THROW(read_ray_dumps("/nowhere/rays.txt"), Error);
