@@ -34,7 +34,32 @@ struct IsNodata<float> {
   std::int32_t mask, nodata;
 };
 
-// Lowest and highest of a run: most have no holes, and of those compilers make vector instructions.
+template <class T>
+void include(T low, T high, SampleExtent& extent) {
+  extent.min = std::min(extent.min, static_cast<float>(low));
+  extent.max = std::max(extent.max, static_cast<float>(high));
+}
+
+// Lowest and highest of a run without holes, in lanes side by side, so that compilers make vector instructions of it:
+// they may not reorder one chain of float comparisons.
+template <class T>
+void extend_valid(const T* run, int count, SampleExtent& extent) {
+  constexpr int kLanes = 16;
+  T low[kLanes], high[kLanes];
+  std::fill(low, low + kLanes, run[0]);
+  std::fill(high, high + kLanes, run[0]);
+  int i = 0;
+  for (; i + kLanes <= count; i += kLanes) {
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const T sample = run[i + lane];
+      low[lane] = sample < low[lane] ? sample : low[lane];
+      high[lane] = sample > high[lane] ? sample : high[lane];
+    }
+  }
+  for (; i < count; ++i) include(run[i], run[i], extent);
+  include(*std::min_element(low, low + kLanes), *std::max_element(high, high + kLanes), extent);
+}
+
 template <class T>
 void extend(const SampleGrid<T>& grid, const T* run, int count, SampleExtent& extent) {
   int holes = 0;
@@ -43,29 +68,10 @@ void extend(const SampleGrid<T>& grid, const T* run, int count, SampleExtent& ex
     for (int i = 0; i < count; ++i) holes += is_nodata(run[i]);
   }
   extent.nodata += holes;
-  if (holes == count) return;
-  // In lanes side by side: the compiler may not reorder one chain of float comparisons.
-  constexpr int kLanes = 16;
-  T low[kLanes], high[kLanes];
-  std::fill(low, low + kLanes, std::numeric_limits<T>::max());
-  std::fill(high, high + kLanes, std::numeric_limits<T>::lowest());
-  const auto look = [&](T sample, int lane) {
-    low[lane] = sample < low[lane] ? sample : low[lane];
-    high[lane] = sample > high[lane] ? sample : high[lane];
-  };
-  if (holes > 0) {
-    for (int i = 0; i < count; ++i) {
-      if (!grid.is_nodata(run[i])) look(run[i], 0);
-    }
-  } else {
-    int i = 0;
-    for (; i + kLanes <= count; i += kLanes) {
-      for (int lane = 0; lane < kLanes; ++lane) look(run[i + lane], lane);
-    }
-    for (; i < count; ++i) look(run[i], 0);
+  if (holes == 0) return extend_valid(run, count, extent);
+  for (int i = 0; i < count; ++i) {
+    if (!grid.is_nodata(run[i])) include(run[i], run[i], extent);
   }
-  extent.min = std::min(extent.min, static_cast<float>(*std::min_element(low, low + kLanes)));
-  extent.max = std::max(extent.max, static_cast<float>(*std::max_element(high, high + kLanes)));
 }
 
 }  // namespace
