@@ -135,6 +135,36 @@ TEST(ScarpBench, PyramidWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, LeaksFindsNoneAndIsTheSameEachTime) {
+  const json all = output_of("leaks --rays 200000 --large 129 --seed 5 --judge-every 64 --dump /nowhere/none");
+  expect_head(all);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"class", "rays", "hit_share", "must_hit", "lost", "false", "contradictions", "judged", "ties",
+                        "embree_rays", "embree_lost", "embree_lost_share", "seed"});
+    SCOPED_TRACE(row.dump());
+    EXPECT_GT(row["rays"], 0);
+    EXPECT_EQ(row["lost"], 0);
+    EXPECT_EQ(row["false"], 0);
+    EXPECT_EQ(row["contradictions"], 0);
+  }
+  const json& total = all["rows"].back();
+  EXPECT_EQ(total["rays"], 200000);
+  EXPECT_GT(total["must_hit"], 50000);
+  EXPECT_GT(total["judged"], 1000);
+  EXPECT_GT(total["embree_lost"], 0) << "rays that no engine loses prove nothing";
+  const json again = output_of("leaks --rays 200000 --large 129 --seed 5 --judge-every 64 --dump /nowhere/none");
+  EXPECT_EQ(again["rows"], all["rows"]);
+}
+
+TEST(ScarpBench, EditsWritesTheDocumentedFields) {
+  const json all = output_of("edits --size 129 --rect 16 --edits 5");
+  expect_head(all);
+  EXPECT_EQ(all["rows"].size(), 2u);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"size", "rect", "sample_type", "edits", "median_us", "p99_us", "rebuild_us"});
+  }
+}
+
 TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   const auto fails = [](const std::string& arguments) {
     return std::system(fmt::format("'{}' {} > /dev/null 2>&1", SCARP_BENCH_PROGRAM, arguments).c_str()) != 0;
@@ -144,6 +174,8 @@ TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   EXPECT_TRUE(fails("heights --classes sideways"));
   EXPECT_TRUE(fails("heights --engines none"));
   EXPECT_TRUE(fails("heights --dem /nowhere.tif --rays small"));
+  EXPECT_TRUE(fails("leaks --rays 0"));
+  EXPECT_TRUE(fails("edits --size 100 --rect 101"));
   EXPECT_TRUE(fails("pyramid --sizes 2 --repeats 1 --json /nowhere/out.json"));
 }
 

@@ -49,4 +49,24 @@ struct PyramidOptions {
 };
 void run_pyramid(const PyramidOptions& options, const ReportOptions& report);
 
+/// `leaks`: rays aimed at what engines lose, each judged.
+struct LeaksOptions {
+  std::int64_t rays = 10'000'000;
+  std::uint64_t seed = 1;
+  int large = 2049;                       ///< side of the large field, in samples
+  std::int64_t judge_every = 4096;        ///< each so many-th ray over a small field is also answered by exhaustive
+  std::int64_t embree_rays = 10'000'000;  ///< at most about so many are also given to Embree; 0: none
+  std::string dump;                       ///< file for the first failing rays; empty: leaks-SEED.txt
+};
+/// Throws Error, after the report, when a ray was lost, false or contradictory.
+void run_leaks(const LeaksOptions& options, const ReportOptions& report);
+
+/// `edits`: how soon an edit of a rectangle is visible to queries.
+struct EditsOptions {
+  int size = 16385;  ///< samples per side
+  int rect = 256;    ///< samples per side of the rectangle
+  int edits = 200;
+};
+void run_edits(const EditsOptions& options, const ReportOptions& report);
+
 }  // namespace scarp::bench

@@ -105,10 +105,46 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*pyramid_command, report);
 
+  LeaksOptions leaks;
+  CLI::App* leaks_command =
+      app.add_subcommand("leaks", "very many rays at what engines lose; fails when Scarp loses one");
+  // Written as 1e9, too.
+  double leak_rays = static_cast<double>(leaks.rays), embree_rays = static_cast<double>(leaks.embree_rays);
+  leaks_command->add_option("--rays", leak_rays, "in all")->check(CLI::Range(1.0, 1e15))->capture_default_str();
+  leaks_command->add_option("--seed", leaks.seed, "of fields and rays")->capture_default_str();
+  leaks_command->add_option("--large", leaks.large, "samples per side of the large field")
+      ->check(CLI::Range(kLeastSize, kMostSize))
+      ->capture_default_str();
+  leaks_command->add_option("--judge-every", leaks.judge_every, "one in so many is also answered by exhaustive")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
+      ->capture_default_str();
+  leaks_command->add_option("--embree-rays", embree_rays, "at most about so many are also given to Embree")
+      ->check(CLI::Range(0.0, 1e15))
+      ->capture_default_str();
+  leaks_command->add_option("--dump", leaks.dump, "file for the first failing rays (leaks-SEED.txt)");
+  add_json_option(*leaks_command, report);
+
+  EditsOptions edits;
+  CLI::App* edits_command = app.add_subcommand("edits", "how soon an edit is visible to queries");
+  edits_command->add_option("--size", edits.size, "samples per side")
+      ->check(CLI::Range(2, 65536))
+      ->capture_default_str();
+  edits_command->add_option("--rect", edits.rect, "samples per side of the rectangle that is edited")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
+  edits_command->add_option("--edits", edits.edits, "counted edits")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  add_json_option(*edits_command, report);
+
   CLI11_PARSE(app, argc, argv);
+  leaks.rays = static_cast<std::int64_t>(leak_rays);
+  leaks.embree_rays = static_cast<std::int64_t>(embree_rays);
   if (*heights_command) run_heights(heights, report);
   if (*naive_command) run_naive(naive, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
+  if (*leaks_command) run_leaks(leaks, report);
+  if (*edits_command) run_edits(edits, report);
   return 0;
 }
 

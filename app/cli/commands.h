@@ -12,5 +12,6 @@ void add_cast(CLI::App& program);
 void add_info(CLI::App& program);
 void add_generate(CLI::App& program);
 void add_marches(CLI::App& program);
+void add_replay(CLI::App& program);
 
 }  // namespace scarp::cli

@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
   scarp::cli::add_info(program);
   scarp::cli::add_generate(program);
   scarp::cli::add_marches(program);
+  scarp::cli::add_replay(program);
   if (argc < 2) {
     std::fputs(program.help().c_str(), stderr);
     return kWrongUsage;

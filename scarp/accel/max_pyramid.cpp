@@ -20,6 +20,9 @@ template <class T>
 struct Coder {
   HeightCode code;
 
+  // Between codes, as a number that conversion cuts off downwards: cheaper than floor and ceil of libm.
+  double place(double height) const { return std::clamp((height - code.base) * code.per_step, 0.0, double{kTopCode}); }
+
   std::uint16_t above(T sample) const {
     if constexpr (std::is_integral_v<T>) {
       return static_cast<std::uint16_t>(sample - std::numeric_limits<T>::lowest());
@@ -27,8 +30,9 @@ struct Coder {
       // The quotient may be rounded to either side: what counts is the height that the code stands for. A block of
       // holes has -infinity here, and the lowest code.
       const double height = static_cast<double>(sample);
-      const double near = std::clamp(std::ceil((height - code.base) * code.per_step), 0.0, double{kTopCode});
-      const auto first = static_cast<std::uint16_t>(static_cast<int>(near));
+      const double near = place(height);
+      const auto down = static_cast<std::uint16_t>(near);
+      const auto first = static_cast<std::uint16_t>(down + (down < near));
       return static_cast<std::uint16_t>(first + (code.height(first) < height && first < kTopCode));
     }
   }
@@ -37,8 +41,7 @@ struct Coder {
       return static_cast<std::uint16_t>(sample - std::numeric_limits<T>::lowest());
     } else {
       const double height = static_cast<double>(sample);
-      const double near = std::clamp(std::floor((height - code.base) * code.per_step), 0.0, double{kTopCode});
-      const auto first = static_cast<std::uint16_t>(static_cast<int>(near));
+      const auto first = static_cast<std::uint16_t>(place(height));
       return static_cast<std::uint16_t>(first - (code.height(first) > height && first > 0));
     }
   }

@@ -47,6 +47,8 @@ struct HandOver {
 void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body,
                   const Progress& progress) {
   if (count <= 0) return;
+  // One piece: nobody else need be woken for it.
+  if (count <= grain && !progress) return body(0, count);
   tbb::task_group_context context;
   std::atomic<std::int64_t> done{0};
   std::atomic<bool> stopped{false};

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "scarp/base/error.h"
@@ -12,30 +13,65 @@
 namespace scarp {
 namespace {
 
-// Lowest and highest of a run, in lanes side by side: the compiler may not reorder one chain of float comparisons.
+// SampleGrid::is_nodata of a grid with holes. For float in integers: a comparison of floats may raise a flag, which
+// keeps compilers from taking it out of a branch.
 template <class T>
-void extend(const SampleGrid<T>& grid, const T* run, int count, SampleExtent& extent) {
+struct IsNodata {
+  explicit IsNodata(T value) : nodata(value) {}
+  bool operator()(T sample) const { return sample == nodata; }
+  T nodata;
+};
+template <>
+struct IsNodata<float> {
+  // 0 and -0 are equal.
+  explicit IsNodata(float value)
+      : mask(value == 0 ? kMagnitude : -1), nodata(std::bit_cast<std::int32_t>(value) & mask) {}
+  bool operator()(float sample) const {
+    const auto bits = std::bit_cast<std::int32_t>(sample);
+    return ((bits & mask) == nodata) | ((bits & kMagnitude) > kInfinite);
+  }
+  static constexpr std::int32_t kMagnitude = 0x7fffffff, kInfinite = 0x7f800000;
+  std::int32_t mask, nodata;
+};
+
+template <class T>
+void include(T low, T high, SampleExtent& extent) {
+  extent.min = std::min(extent.min, static_cast<float>(low));
+  extent.max = std::max(extent.max, static_cast<float>(high));
+}
+
+// Lowest and highest of a run without holes, in lanes side by side, so that compilers make vector instructions of it:
+// they may not reorder one chain of float comparisons.
+template <class T>
+void extend_valid(const T* run, int count, SampleExtent& extent) {
   constexpr int kLanes = 16;
-  constexpr T kTop = std::numeric_limits<T>::max(), kBottom = std::numeric_limits<T>::lowest();
   T low[kLanes], high[kLanes];
-  std::fill(low, low + kLanes, kTop);
-  std::fill(high, high + kLanes, kBottom);
-  int valid = 0;
-  const auto look = [&](T sample, int lane) {
-    const bool good = !grid.is_nodata(sample);
-    valid += good;
-    low[lane] = std::min(low[lane], good ? sample : kTop);
-    high[lane] = std::max(high[lane], good ? sample : kBottom);
-  };
+  std::fill(low, low + kLanes, run[0]);
+  std::fill(high, high + kLanes, run[0]);
   int i = 0;
   for (; i + kLanes <= count; i += kLanes) {
-    for (int lane = 0; lane < kLanes; ++lane) look(run[i + lane], lane);
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const T sample = run[i + lane];
+      low[lane] = sample < low[lane] ? sample : low[lane];
+      high[lane] = sample > high[lane] ? sample : high[lane];
+    }
   }
-  for (; i < count; ++i) look(run[i], 0);
-  extent.nodata += count - valid;
-  if (valid == 0) return;
-  extent.min = std::min(extent.min, static_cast<float>(*std::min_element(low, low + kLanes)));
-  extent.max = std::max(extent.max, static_cast<float>(*std::max_element(high, high + kLanes)));
+  for (; i < count; ++i) include(run[i], run[i], extent);
+  include(*std::min_element(low, low + kLanes), *std::max_element(high, high + kLanes), extent);
+}
+
+template <class T>
+void extend(const SampleGrid<T>& grid, const T* run, int count, SampleExtent& extent) {
+  int holes = 0;
+  if (grid.has_holes) {
+    const IsNodata<T> is_nodata(grid.nodata);
+    for (int i = 0; i < count; ++i) holes += is_nodata(run[i]);
+  }
+  extent.nodata += holes;
+  if (holes == 0) return extend_valid(run, count, extent);
+  for (int i = 0; i < count; ++i) {
+    if (!grid.is_nodata(run[i])) include(run[i], run[i], extent);
+  }
 }
 
 }  // namespace
@@ -92,6 +128,11 @@ template <class T>
 void refuse_infinite(const SampleGrid<T>& grid, const SampleRect& rect) {
   if constexpr (std::is_floating_point_v<T>) {
     for (int row = rect.row; row < rect.row + rect.rows; ++row) {
+      // Without a branch per sample: infinities are rare.
+      int beyond = 0;
+      const T* run = grid.row(row) + rect.col;
+      for (int i = 0; i < rect.cols; ++i) beyond += std::abs(run[i]) > std::numeric_limits<T>::max();
+      if (beyond == 0) continue;
       for (int col = rect.col; col < rect.col + rect.cols; ++col) {
         const T sample = grid.at(col, row);
         if (std::isinf(sample) && !grid.is_nodata(sample)) {

@@ -218,10 +218,15 @@ std::optional<double> descent(const Piece& p, std::optional<double> depth) {
   return p.a < 0 ? roots->end : roots->begin;
 }
 
-// The same for a ray that is below at the piece's begin: it has to rise first.
-std::optional<double> descent_after_rise(const Piece& p) {
+// Whether a ray that is below at the piece's begin comes out in between.
+bool rises_inside(const Piece& p) {
   const auto vertex = p.vertex();
-  if (p.last > 0 || !vertex || p.a > 0 || (p.a * *vertex + p.b) * *vertex + p.c <= 0) return {};
+  return vertex && p.a < 0 && (p.a * *vertex + p.b) * *vertex + p.c > 0;
+}
+
+// The first s at which such a ray is back on or below the surface, as descent().
+std::optional<double> descent_after_rise(const Piece& p, std::optional<double> depth) {
+  if (!(depth ? p.last < -*depth : p.last <= 0)) return {};
   return p.roots() ? p.roots()->end : p.length();
 }
 
@@ -272,7 +277,9 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
     }
     if (side == Side::below && p.c > 0) side = Side::above;
     const auto depth = on_surface ? std::optional(ground.rounding(p.span.begin)) : std::nullopt;
-    const auto s = side == Side::above ? descent(p, depth) : descent_after_rise(p);
+    const bool rises = side == Side::below && rises_inside(p);
+    const auto s = side == Side::above ? descent(p, depth) : rises ? descent_after_rise(p, depth) : std::nullopt;
+    if (rises) side = Side::above;
     if (s) {
       if (!found(ground.hit(p, *s))) return without;
       side = Side::below;

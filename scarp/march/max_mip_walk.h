@@ -10,6 +10,7 @@
 #include "scarp/march/cell_surface.h"
 #include "scarp/march/grid_axis.h"
 #include "scarp/march/marches.h"
+#include "scarp/march/rounding.h"
 
 // Internal linkage, though in a header: included by one file, which lets the compiler put functions that are called
 // once into their caller. With them outside, the walk keeps its state in memory, and a ray takes a tenth longer.
@@ -186,7 +187,7 @@ class Walk {
     const double last = length * (f.a * length + f.b), lowest = dips ? -f.b * f.b / (4 * f.a) : last;
     if (!(lowest < 0 && is_hit(lowest, t_in_))) return false;
     if (answer(f.b < 0 || f.a == 0 ? 0.0 : f.b / -f.a)) return true;
-    if (last <= 0) side_ = Side::below;
+    if (last <= rounding_of_clearance(t_in_ + length)) side_ = Side::below;
     return false;
   }
 
@@ -272,7 +273,9 @@ class Walk {
       }
       if (Holes) begun_ = true;
       if (!falling && lowest_code > highest_code) break;
-      if (!(t_line < t_end)) {
+      // The seam comes last of the lines that are crossed at once: columns before rows there, too.
+      const bool column_first = wraps_ && through_x && t_line == t_end && t_end < x.exit_time();
+      if (!(t_line < t_end) && !column_first) {
         left = t_end < t_end_;
         break;
       }
@@ -374,7 +377,11 @@ class Walk {
       // Only where the clearance along the ray is a cup can the ray come down and go up again.
       if (!(CellQuadratic::curvature(h, x_.direction, y_.direction) > 0)) return false;
       const CellQuadratic f = quadratic(h, t_in_);
-      return f.dips(length) && is_hit(f.vertex_value(), t_in_) && hit_in_cell(f, length);
+      if (!f.dips(length) || !is_hit(f.vertex_value(), t_in_)) return false;
+      if (hit_in_cell(f, length)) return true;
+      // All hits: after this one it has risen only beyond rounding, as any ray from below.
+      if (out <= rounding_of_clearance(t_out)) side_ = Side::below;
+      return false;
     }
     if (out > rounding_of_clearance(t_out)) {
       side_ = Side::above;
@@ -382,7 +389,13 @@ class Walk {
     }
     if constexpr (ask == Ask::bisected) return false;
     const CellQuadratic f = quadratic(h, t_in_);
-    if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_) && hit_in_cell(f, length)) return true;
+    if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_)) {
+      // It has come out in between, and goes on as any ray from above.
+      side_ = Side::above;
+      if (!(out <= 0 && is_hit(out, t_out))) return false;
+      if (hit_in_cell(f, length)) return true;
+      side_ = Side::below;
+    }
     return lost(t_out);
   }
 
@@ -418,16 +431,11 @@ class Walk {
   // Whether a ray that is not above can never be so again: falling, and under the lowest ground.
   bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample(); }
 
-  // The most that rounding can add to a clearance (doc/dev/numerics.md), for the places where a sign alone is not
-  // enough: a ray from below has risen only beyond it (else one that rises through a node could be seen above at one
-  // line and, by rounding, not above at the next: a hit from below), a ray from the surface is strictly below only
-  // beyond it, and so is a ray under a block.
+  // For the places where a sign alone is not enough: a ray from below has risen only beyond it (else one that rises
+  // through a node could be seen above at one line and, by rounding, not above at the next: a hit from below), a ray
+  // from the surface is strictly below only beyond it, and so is a ray under a block.
   double rounding_of_clearance(double t) const {
-    const double low = field_.min_sample(), high = field_.max_sample();
-    const double sideways =
-        std::abs(x_.origin) + std::abs(x_.direction * t) + std::abs(y_.origin) + std::abs(y_.direction * t);
-    const double upright = std::abs(z_) + std::abs(dz_ * t) + std::max(std::abs(low), std::abs(high));
-    return kRoundings * kUnit * (upright + sideways * (high - low));
+    return scarp::rounding_of_clearance(field_, {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}, t);
   }
 
   // Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly
@@ -466,8 +474,7 @@ class Walk {
 
   using Level = MaxPyramid::Level;
   static constexpr double kUnit = 0x1p-53;  // unit roundoff of double
-  static constexpr double kRoundings = 16;     // numerics.md counts 11 on the way to a clearance
-  static constexpr double kCodeRoundings = 8;  // and 6 on the way to a code
+  static constexpr double kCodeRoundings = 8;  // 6 on the way to a code, see numerics.md
 
   const HeightField& field_;
   const SampleGrid<T>& grid_;

@@ -146,5 +146,23 @@ RC_GTEST_PROP(HeightField, GradientIsTheDifferenceQuotientOfTheHeight, ()) {
   RC_ASSERT(std::abs((field.height(x, y + d).value() - field.height(x, y - d).value()) / (2 * d) - slope.y) < rounding);
 }
 
+TEST(HeightField, CountsHolesInLongRowsOfAnyKind) {
+  // Rows longer than what is looked at as one, with holes here and there; 0 marks -0, too.
+  constexpr int kCols = 150;
+  std::vector<float> samples(2 * kCols, 3);
+  samples[5] = 0, samples[70] = -0.0f, samples[149] = std::numeric_limits<float>::quiet_NaN(), samples[160] = -7;
+  samples[299] = std::numeric_limits<float>::infinity();
+  EXPECT_THROW(HeightField::own(samples, kCols, 2, {.nodata = 0}), Error);
+  samples[299] = 9;
+  const HeightField field = HeightField::own(samples, kCols, 2, {.nodata = 0});
+  EXPECT_EQ(field.nodata_count(), 3);
+  EXPECT_EQ(field.min_sample(), -7);
+  EXPECT_EQ(field.max_sample(), 9);
+  const HeightField all_holes = HeightField::own(std::vector<float>(2 * kCols, -0.0f), kCols, 2, {.nodata = 0});
+  EXPECT_TRUE(all_holes.all_nodata());
+  samples[299] = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(HeightField::own(samples, kCols, 2, {.nodata = HUGE_VAL}).nodata_count(), 2) << "an infinite one and NaN";
+}
+
 }  // namespace
 }  // namespace scarp

@@ -226,6 +226,48 @@ RC_GTEST_PROP(MaxMip, ALaterStartNeverFindsAnEarlierHit, ()) {
   }
 }
 
+TEST(MaxMip, CrossesAColumnLineAndTheSeamAtOnce) {
+  // An odd number of rows: the last blocks are narrower than their fellows. Towards lower rows and through a node of
+  // the seam, at which the ray also comes into the next column. The cell behind it must not be left out.
+  constexpr int kSide = 7;
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    std::vector<float> samples(kSide * kSide, 0);
+    samples[6 * kSide + 4] = samples[6 * kSide + 5] = 10;  // one wall, in row 6: right behind the seam
+    const Terrain terrain{HeightField::own(samples, kSide, kSide, {.surface = surface, .wrap = Wrap::periodic})};
+    // From (3, 1) through the node (4, 0) on to (5, -1), which is (5, 6).
+    const dvec3 from = terrain.field.world_from_grid(3, 1, 5), to = terrain.field.world_from_grid(5, -1, 5);
+    const Hit hit = terrain.cast(from, to - from, 0, 2);
+    ASSERT_TRUE(hit);
+    EXPECT_EQ(hit.cell, (Cell{4, 6}));
+    EXPECT_DOUBLE_EQ(hit.t, 0.75);
+  }
+}
+
+TEST(MaxMip, CountsAWayOutAtANodeAsNoHit) {
+  // Through the ground and out again at a node, where the clearance is zero but for rounding: one hit each.
+  Random random(5);
+  std::vector<float> samples;
+  for (int i = 0; i < 65 * 65; ++i) samples.push_back(static_cast<float>(uniform(random, 0, 6)));
+  const Terrain terrain{HeightField::own(samples, 65, 65)};
+  const HeightTarget target{&terrain.field, &terrain.pyramid};
+  std::vector<Hit> hits;
+  for (int i = 0; i < 20'000; ++i) {
+    const int col = whole(random, 8, 56), row = whole(random, 8, 56);
+    const float z = terrain.field.visit([&](const auto& grid) { return static_cast<float>(grid.at(col, row)); });
+    Ray ray;
+    ray.direction = {whole(random, -256, 256) / 64.0, whole(random, -256, 256) / 64.0, -8};
+    ray.origin = terrain.field.world_from_grid(col, row, z) - ray.direction;
+    ray.t_max = 2;
+    ASSERT_EQ(all_hits_max_mip(target, ray, hits), HitStatus::hit);
+    for (const Hit& hit : hits) {
+      // Just before each hit the ray is above the ground, by more than what it falls in that time.
+      const dvec3 before = ray.at(hit.t - 0x1p-16);
+      const auto ground = terrain.field.height(before.x, before.y);
+      ASSERT_TRUE(!ground || before.z > *ground) << "hit at " << hit.t << " from below, at node " << col << ", " << row;
+    }
+  }
+}
+
 RC_GTEST_PROP(MaxMip, EndsWhereItHits, ()) {
   // Cut short before the hit, the ray misses; cut right behind it, it hits at the same place.
   static const Terrain terrain = hills();

@@ -8,6 +8,7 @@
 // that this cannot become a way out.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,7 @@
 #include "march/spiteful.h"
 #include "scarp/march/exhaustive.h"
 #include "scarp/march/max_mip.h"
+#include "scarp/scene/ray_dump.h"
 
 namespace scarp::test {
 namespace {
@@ -46,6 +48,14 @@ std::string text(const Hit& hit) {
   static constexpr const char* kNames[] = {"miss", "hit", "below", "exhausted"};
   return fmt::format("{} t={:a} cell ({}, {}) u={} v={}", kNames[static_cast<int>(hit.status)], hit.t, hit.cell.col,
                      hit.cell.row, hit.u, hit.v);
+}
+
+// Writes a ray on which a march failed, for `scarp replay`; returns the file.
+std::string dumped(const HeightField& field, const Ray& ray, const Hit& judge, const Hit& march) {
+  static int count = 0;
+  const std::string path = fmt::format("{}march-oracle-{}-{}.txt", testing::TempDir(), ::getpid(), ++count);
+  write_ray_dumps(path, std::vector{RayDump{field, {}, ray, text(judge), text(march)}});
+  return path;
 }
 
 class Judge {
@@ -219,7 +229,8 @@ TEST_P(Oracle, ExactMarchesAgreeWithTheJudge) {
         if (march.guarantee == Guarantee::exact && !judge.accepts(hit)) {
           ++bad;
           ADD_FAILURE() << march.name << " on " << fields.name << ", ray " << rays.name << ": " << text(ray)
-                        << "\n  judge " << text(judge.nominal()) << "\n  march " << text(hit);
+                        << "\n  judge " << text(judge.nominal()) << "\n  march " << text(hit) << "\n  scarp replay "
+                        << dumped(field, ray, judge.nominal(), hit);
         }
       }
       const bool occluded = occluded_max_mip(target, ray);

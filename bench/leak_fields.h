@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// The grounds of `scarp-bench leaks`: every kind that engines are known to lose rays on, small enough to stay in a
+// core's cache, and one large one.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/embree_peer.h"
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/field/height_field.h"
+#include "scarp/source/procedural_dem.h"
+
+namespace scarp::bench {
+
+/// How many holes are among the cells of a rectangle, in O(1).
+class HoleCounts {
+ public:
+  explicit HoleCounts(const HeightField& field);
+  /// Cells [col_begin, col_end) x [row_begin, row_end), inside the field.
+  bool any(const CellBox& box) const;
+
+ private:
+  int stride_ = 0;
+  std::vector<std::int32_t> sums_;  // of the cells north-west of a node; empty without holes
+};
+
+/// A node of the grid.
+struct Node {
+  int col, row;
+};
+
+struct LeakField {
+  std::string name;
+  HeightField field;
+  std::optional<ProceduralDem> generator;  ///< where the samples are those of a procedural DEM
+  MaxPyramid pyramid{field};
+  HoleCounts holes{field};
+  std::vector<Node> rim{};  ///< nodes with a height and with a hole beside them
+  /// Embree's triangles over the same samples: for fields with an end and without holes, in float32 alike.
+  std::unique_ptr<EmbreePeer> embree{};
+
+  HeightTarget target() const { return {&field, &pyramid}; }
+};
+
+/// All grounds, with Embree where asked for. Deterministic by seed; `large` is the side of the large one, in samples.
+std::vector<LeakField> make_leak_fields(std::uint64_t seed, int large, bool embree);
+
+}  // namespace scarp::bench

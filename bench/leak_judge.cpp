@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: MIT
+#include "bench/leak_judge.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace scarp::bench {
+namespace {
+
+using Real = long double;
+
+constexpr Real kUnit = 0x1p-53L;  // of the marches' doubles
+constexpr Real kRoundings = 16;   // numerics.md
+constexpr Real kCounted = 11;     // of these are counted there
+
+Real height(const CellHeights& h, Real u, Real v) {
+  const Real north = h.h00 + u * (static_cast<Real>(h.h10) - h.h00),
+             south = h.h01 + u * (static_cast<Real>(h.h11) - h.h01);
+  return north + v * (south - north);
+}
+
+Real height_of_triangle(const CellHeights& h, bool south_east, Real u, Real v) {
+  if (!south_east) return h.h00 + u * (static_cast<Real>(h.h10) - h.h00) + v * (static_cast<Real>(h.h01) - h.h00);
+  return h.h11 + (1 - u) * (static_cast<Real>(h.h01) - h.h11) + (1 - v) * (static_cast<Real>(h.h10) - h.h11);
+}
+
+Real clamped(Real x) { return std::clamp<Real>(x, 0, 1); }
+int within(Real cell, int cells) {
+  const auto c = static_cast<std::int64_t>(cell) % cells;
+  return static_cast<int>(c < 0 ? c + cells : c);
+}
+
+}  // namespace
+
+LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
+    : ground_(ground),
+      field_(ground.field),
+      ray_(ray),
+      triangles_(field_.settings().surface == Surface::triangles),
+      wraps_(field_.wraps()),
+      on_surface_(ray.start == RayStart::on_surface) {
+  const HeightFieldSettings& to = field_.settings();
+  ox_ = ray.origin.x / Real{to.cell_x};
+  oy_ = field_.rows() - 1 - ray.origin.y / Real{to.cell_y};
+  oz_ = (ray.origin.z / Real{to.exaggeration} - to.offset) / to.scale;
+  dx_ = ray.direction.x / Real{to.cell_x};
+  dy_ = -ray.direction.y / Real{to.cell_y};
+  dz_ = ray.direction.z / (Real{to.exaggeration} * to.scale);
+  low_ = field_.min_sample(), high_ = field_.max_sample();
+  offset_ = std::abs(to.offset) / Real{to.scale};
+  const GridRay local = field_.grid_from_world(ray);
+  exact_plan_ = local.origin.x == ox_ && local.origin.y == oy_ && local.direction.x == dx_ && local.direction.y == dy_;
+  t0_ = ray.t_min, t1_ = ray.t_max;
+  if (!wraps_) clip();
+  if (!(t0_ <= t1_)) return;
+  if (on_surface_) {
+    const CellHeights h = *field_.cell_heights(ray.start_cell);
+    const Real u = clamped(x(t0_) - ray.start_cell.col), v = clamped(y(t0_) - ray.start_cell.row);
+    const bool south_east = u + v > 1;
+    oz_ = (triangles_ ? height_of_triangle(h, south_east, u, v) : height(h, u, v)) - dz_ * t0_;
+    c0_ = 0;
+  } else {
+    c0_ = clearance(t0_);
+  }
+  if (!c0_ || hugs_border() || holes_between(t0_, t1_)) return;
+  // The border is crossed at a time that rounding moves: the more, the more slowly the ray crosses it.
+  const Real in = t0_ + late_, out = t1_ - early_;
+  if (!(in <= out)) return;
+  const auto c0 = on_surface_ ? c0_ : clearance(in), c1 = clearance(out);
+  begins_above_ = c0 && (on_surface_ || *c0 > bound(in));
+  must_hit_ = begins_above_ && c1 && *c1 < -under(out);
+  if (field_.settings().solid && from_outside_ && *c0_ < -bound(t0_) && c0 && *c0 < -bound(in)) must_hit_ = true;
+}
+
+// The part of the ray over the field.
+void LeakJudge::clip() {
+  const auto axis = [&](Real o, Real d, int cells) {
+    if (d == 0) {
+      if (!(o >= 0 && o <= cells)) t1_ = t0_ - 1;
+      return;
+    }
+    const Real a = -o / d, b = (cells - o) / d;
+    const Real e = sideways(std::max(std::abs(a), std::abs(b))) / std::abs(d);
+    if (std::min(a, b) > t0_ - e) from_outside_ = from_outside_ || std::min(a, b) > t0_, late_ = std::max(late_, e);
+    if (std::max(a, b) < t1_ + e) early_ = std::max(early_, e);
+    t0_ = std::max(t0_, std::min(a, b));
+    t1_ = std::min(t1_, std::max(a, b));
+  };
+  axis(ox_, dx_, field_.cell_cols());
+  axis(oy_, dy_, field_.cell_rows());
+}
+
+// What rounding does to a position in plan, in cells.
+LeakJudge::Real LeakJudge::sideways(Real t) const {
+  return kRoundings * kUnit * (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t) + field_.rows());
+}
+
+LeakJudge::Real LeakJudge::bound(Real t) const {
+  const Real upright = std::abs(oz_) + std::abs(dz_ * t) + std::max(std::abs(low_), std::abs(high_)) + offset_;
+  return kRoundings * kUnit * upright + sideways(t) * (high_ - low_);
+}
+
+// How far below the surface a ray is for certain seen as a hit: one from the surface has to be below by B as computed.
+LeakJudge::Real LeakJudge::under(Real t) const { return (on_surface_ ? 2 : 1) * bound(t); }
+
+// Whether a ray is so near to the border, all along, that rounding may put it outside.
+bool LeakJudge::hugs_border() const {
+  if (wraps_ || exact_plan_) return false;
+  const Real e = sideways(std::max(std::abs(t0_), std::abs(t1_)));
+  const auto hugs = [&](Real a, Real b, int cells) { return std::max(a, b) <= e || std::min(a, b) >= cells - e; };
+  return hugs(x(t0_), x(t1_), field_.cell_cols()) || hugs(y(t0_), y(t1_), field_.cell_rows());
+}
+
+// Whether there may be a hole under the ray: in the box of its ends, all cells that are touched counted.
+bool LeakJudge::holes_between(Real from, Real to) const {
+  if (field_.nodata_count() == 0) return false;
+  const Real e = sideways(std::max(std::abs(from), std::abs(to)));
+  const auto first = [&](Real a, Real b) { return static_cast<int>(std::ceil(std::min(a, b) - e)) - 1; };
+  const auto last = [&](Real a, Real b) { return static_cast<int>(std::floor(std::max(a, b) + e)) + 1; };
+  CellBox box{first(x(from), x(to)), first(y(from), y(to)), last(x(from), x(to)), last(y(from), y(to))};
+  if (wraps_ &&
+      (box.col_begin < 0 || box.row_begin < 0 || box.col_end > field_.cell_cols() || box.row_end > field_.cell_rows()))
+    return true;
+  box = {std::clamp(box.col_begin, 0, field_.cell_cols()), std::clamp(box.row_begin, 0, field_.cell_rows()),
+         std::clamp(box.col_end, 0, field_.cell_cols()), std::clamp(box.row_end, 0, field_.cell_rows())};
+  return ground_.holes.any(box);
+}
+
+std::optional<LeakJudge::Place> LeakJudge::place_at(Real t) const {
+  const auto cell = [&](Real position, int cells) {
+    const Real c = static_cast<Real>(std::floor(static_cast<double>(position)));
+    return wraps_ ? c : std::clamp<Real>(c, 0, cells - 1);
+  };
+  const Real col = cell(x(t), field_.cell_cols()), row = cell(y(t), field_.cell_rows());
+  const auto h = field_.cell_heights({within(col, field_.cell_cols()), within(row, field_.cell_rows())});
+  if (!h) return {};
+  return Place{col, row, *h};
+}
+
+std::optional<LeakJudge::Place> LeakJudge::place_of(const Hit& hit) const {
+  const auto h = field_.cell_heights(hit.cell);
+  if (!h) return {};
+  const auto copy = [&](Real position, int cell, double place, int cells) {
+    if (!wraps_) return static_cast<Real>(cell);
+    return cell + cells * static_cast<Real>(std::round(static_cast<double>((position - place - cell) / cells)));
+  };
+  return Place{copy(x(hit.t), hit.cell.col, hit.u, field_.cell_cols()),
+               copy(y(hit.t), hit.cell.row, hit.v, field_.cell_rows()), *h};
+}
+
+std::optional<LeakJudge::Real> LeakJudge::clearance(Real t) const {
+  const auto place = place_at(t);
+  if (!place) return {};
+  const Real u = clamped(x(t) - place->col), v = clamped(y(t) - place->row);
+  return z(t) - (triangles_ ? height_of_triangle(place->h, u + v > 1, u, v) : height(place->h, u, v));
+}
+
+LeakJudge::Piece LeakJudge::piece(const Place& place, Real t, bool south_east) const {
+  const CellHeights& h = place.h;
+  const Real u = x(t) - place.col, v = y(t) - place.row;
+  if (triangles_) {
+    const Real hu = south_east ? static_cast<Real>(h.h11) - h.h01 : static_cast<Real>(h.h10) - h.h00;
+    const Real hv = south_east ? static_cast<Real>(h.h11) - h.h10 : static_cast<Real>(h.h01) - h.h00;
+    return {z(t) - height_of_triangle(h, south_east, u, v), dz_ - hu * dx_ - hv * dy_, 0};
+  }
+  const Real hu = static_cast<Real>(h.h10) - h.h00, hv = static_cast<Real>(h.h01) - h.h00;
+  const Real twist = static_cast<Real>(h.h11) - h.h01 - hu;
+  return {z(t) - height(h, u, v), dz_ - (hu + twist * v) * dx_ - (hv + twist * u) * dy_, -twist * dx_ * dy_};
+}
+
+// How long the ray has been in the cell (or triangle) at t, or will be; within its own range.
+LeakJudge::Real LeakJudge::time_in_cell(const Place& place, Real t, bool back) const {
+  Real time = back ? t - t0_ : t1_ - t;
+  const auto axis = [&](Real position, Real d) {
+    if (d == 0) return;
+    const Real way = (d > 0) == back ? position : 1 - position;
+    time = std::min(time, std::max<Real>(way, 0) / std::abs(d));
+  };
+  axis(x(t) - place.col, dx_);
+  axis(y(t) - place.row, dy_);
+  return std::max<Real>(time, 0);
+}
+
+// How much the clearance has risen without a break in the time `length` up to t, in one cell: of a parabola that falls
+// first, the part behind its lowest point.
+LeakJudge::Real LeakJudge::risen(const Place& place, Real t, Real length) const {
+  bool upper = false;
+  if (triangles_) {
+    // No further than the diagonal.
+    const Real since = (x(t) - place.col + y(t) - place.row - 1) / (dx_ + dy_);
+    if (since > 0) length = std::min(length, since);
+    upper = south_east(place, t - length / 2);
+  }
+  const Piece f = piece(place, t, upper);
+  if (!(f.b > 0)) return 0;
+  if (f.a > 0) length = std::min(length, f.b / (2 * f.a));
+  return f.b * length - f.a * length * length;
+}
+
+// How deep the ray comes under the surface from t on, without a break, in one cell.
+LeakJudge::Real LeakJudge::deepest(const Place& place, Real t) const {
+  Real length = time_in_cell(place, t, false);
+  bool upper = false;
+  if (triangles_) {
+    // No further than the diagonal, when it is ahead.
+    const Real ahead = 1 - (x(t) - place.col + y(t) - place.row), closing = dx_ + dy_;
+    if (ahead / closing > 0 && std::abs(ahead) > 2 * sideways(t)) length = std::min(length, ahead / closing);
+    upper = south_east(place, t + length / 2);
+  }
+  const Piece f = piece(place, t, upper);
+  if (f.a > 0) length = std::min(length, std::max<Real>(0, -f.b / (2 * f.a)));
+  return -(f.f + f.b * length + f.a * length * length);
+}
+
+const char* LeakJudge::lost(const Hit& hit, double share) const {
+  if (hit.status == HitStatus::exhausted) return "given up";
+  if (!(t0_ <= t1_) || !c0_) return nullptr;
+  if (!hit) return must_hit_ ? "a ray that must hit" : nullptr;
+  const Real from = t0_, t = from + share * (hit.t - from);
+  if (!begins_above_ || t > t1_ - early_ || holes_between(from, t)) return nullptr;
+  const auto c = clearance(t);
+  return c && *c < -under(t) ? "a hit before the one that is told" : nullptr;
+}
+
+const char* LeakJudge::false_hit(const Hit& hit) const {
+  if (!hit) return nullptr;
+  const Cell cell = hit.cell;
+  if (!(hit.t >= ray_.t_min && hit.t <= ray_.t_max)) return "t outside the ray's range";
+  if (!(hit.u >= 0 && hit.u <= 1 && hit.v >= 0 && hit.v <= 1) || cell.col < 0 || cell.row < 0 ||
+      cell.col >= field_.cell_cols() || cell.row >= field_.cell_rows()) {
+    return "no place of the field";
+  }
+  const auto place = place_of(hit);
+  if (!place) return "in a hole";
+  const Real t = hit.t, e = sideways(t), b = bound(t);
+  if (std::abs(x(t) - place->col - hit.u) > e || std::abs(y(t) - place->row - hit.v) > e) return "not where the ray is";
+  const Real ground =
+      triangles_ ? height_of_triangle(place->h, south_east(*place, t), hit.u, hit.v) : height(place->h, hit.u, hit.v);
+  const Real c = z(t) - ground;
+  if (hit.wall) {
+    if (!field_.settings().solid) return "a wall in a sheet";
+    if (c > b) return "a wall above the ground";
+    const bool at_side = std::min({hit.u, 1 - hit.u, hit.v, 1 - hit.v}) <= e;
+    return at_side ? nullptr : "a wall inside the ground";
+  }
+  if (std::abs(c) > 2 * b) return "not on the surface";
+
+  if (on_surface_) {
+    // At the start the clearance is zero by definition; there and later it has to fall.
+    const Real asked = kRoundings * kUnit *
+                       (std::abs(oz_) + std::abs(dz_ * t) + std::max(std::abs(low_), std::abs(high_)) +
+                        (std::abs(ox_) + std::abs(dx_ * t) + std::abs(oy_) + std::abs(dy_ * t)) * (high_ - low_));
+    if (deepest(*place, t) < asked - kCounted / kRoundings * b) return "never strictly below";
+  }
+  const Real before = time_in_cell(*place, t, true);
+  if (risen(*place, t, before) > 2 * b + std::abs(c)) return "a way out of the ground";
+  // At the entry of its cell: the ray came through the cell before, if no other lies in between.
+  constexpr Real kBack = 0x1p-8L;  // of a cell
+  const Real speed = std::max(std::abs(dx_), std::abs(dy_));
+  if (speed > 0 && before * speed < 0x1p-20L) {
+    const Real q = t - kBack / speed;
+    const auto previous = q >= t0_ ? place_at(q) : std::nullopt;
+    // Where there is a hole within rounding, the ray may have come out of it.
+    if (previous && !holes_between(t, t)) {
+      const Real u = x(t) - previous->col, v = y(t) - previous->row;
+      const bool reaches = std::min(u, v) >= -e && std::max(u, v) <= 1 + e;
+      if (reaches &&
+          risen(*previous, t, std::min(t - q, time_in_cell(*previous, q, true) + (t - q))) > 2 * b + std::abs(c))
+        return "a way out of the ground";
+    }
+  }
+  return nullptr;
+}
+
+const char* LeakJudge::false_status(const Hit& hit) const {
+  if (hit || !c0_ || hugs_border()) return nullptr;
+  // Only where the first cell is sure.
+  if (holes_between(t0_, t0_)) return nullptr;
+  const Real b = bound(t0_);
+  if (hit.status == HitStatus::below && (on_surface_ || *c0_ > b)) return "began above, not below";
+  if (hit.status == HitStatus::miss && !on_surface_ && *c0_ < -b) return "began below, not told";
+  return nullptr;
+}
+
+std::optional<double> LeakJudge::cut_behind(const Hit& hit) const {
+  const auto place = place_of(hit);
+  if (!place || hit.wall) return {};
+  const Real length = time_in_cell(*place, hit.t, false) / 2;
+  const double t = static_cast<double>(hit.t + length);
+  const Piece f = piece(*place, hit.t, south_east(*place, hit.t + length / 2));
+  if (triangles_ && south_east(*place, hit.t) != south_east(*place, t)) return {};
+  if (f.b > 0 || f.b + 2 * f.a * length > 0) return {};
+  if (f.f + f.b * length + f.a * length * length > -2 * bound(t)) return {};
+  return t < ray_.t_max ? std::optional(t) : std::nullopt;
+}
+
+std::optional<double> LeakJudge::cut_before(const Hit& hit) const {
+  const auto place = place_of(hit);
+  if (!place || hit.wall) return {};
+  const Real length = time_in_cell(*place, hit.t, true) / 2;
+  const double t = static_cast<double>(hit.t - length);
+  const Piece f = piece(*place, hit.t, south_east(*place, hit.t - length / 2));
+  if (triangles_ && south_east(*place, hit.t) != south_east(*place, t)) return {};
+  if (f.b > 0 || f.b - 2 * f.a * length > 0) return {};
+  if (f.f - f.b * length + f.a * length * length < 2 * bound(t)) return {};
+  return t > ray_.t_min ? std::optional(t) : std::nullopt;
+}
+
+bool LeakJudge::same(const Hit& a, const Hit& b) const {
+  if (a.status != b.status) return false;
+  if (!a) return true;
+  for (int i = 0; i <= kProbes; ++i) {
+    const Real t = a.t + (Real{b.t} - a.t) * i / kProbes;
+    const auto c = clearance(t);
+    if (c && std::abs(*c) > 2 * bound(t)) return a.wall && b.wall && a.cell == b.cell;
+  }
+  return true;
+}
+
+}  // namespace scarp::bench

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// What can be said for certain about one ray in O(1), without a march: whether it must hit, and whether a hit that is
+// told can be one.
+//
+// All is computed in 64-bit-mantissa long double from world coordinates, so the judge's own rounding is 2^-11 of the
+// marches'. B below is what rounding may add to a clearance in a march: 16 u (abs(o_z) + abs(d_z t) + max abs(sample) +
+// (abs(o_x) + abs(d_x t) + abs(o_y) + abs(d_y t)) (highest - lowest)), doc/dev/numerics.md. What lies inside B of a
+// decision is not judged.
+#pragma once
+
+#include <optional>
+
+#include "bench/leak_fields.h"
+#include "scarp/base/ray.h"
+
+namespace scarp::bench {
+
+class LeakJudge {
+ public:
+  LeakJudge(const LeakField& ground, const Ray& ray);
+
+  /// Whether the ray hits for certain: above the ground by more than B where it begins (or from the surface, which is
+  /// above by definition), under it by more than B where it ends, and no hole under any cell that it can touch in
+  /// between: the clearance is continuous, so it goes through zero. Or, in solid ground, in through the border under
+  /// the surface.
+  bool must_hit() const { return must_hit_; }
+
+  /// Why an answer has lost a hit, or null: it tells none, or one behind a place where a ray from above is already
+  /// under the ground by more than B, no hole being in between. The place is somewhere before the hit, by `share`
+  /// (0..1).
+  const char* lost(const Hit& hit, double share) const;
+
+  /// Why a told hit is none, or null.
+  ///  - It is not where the ray is: cell, u and v against ray.at(t), by more than the sideways part of B.
+  ///  - It is not on the surface: there the clearance is at most 2 B, one for the signs that decided and one for the
+  ///    root (a backward-stable formula: the exact root for coefficients off by some u of their size).
+  ///  - It is a way out: along the piece of the cell before it, where the clearance is one parabola, the ray has risen
+  ///    without a break from more than 2 B below. Where the hit is at the entry of its cell, the cell before is asked.
+  ///  - The ray is from the surface and in that cell never strictly below: by 5/16 B at least, since a hit needs a
+  ///    computed clearance below -B and numerics.md counts 11 of its 16 roundings.
+  ///  - A wall: not at a border or rim, or above the ground there by more than B.
+  const char* false_hit(const Hit& hit) const;
+
+  /// Why the status of an answer without a hit is wrong, or null: `below` for a ray that began above by more than B,
+  /// `miss` for one that began below by more than B.
+  const char* false_status(const Hit& hit) const;
+
+  /// A time behind a hit at which the ray is below by more than 2 B and has been falling since, in the hit's cell: a
+  /// ray cut there still hits. And one before it, from which it has been falling from more than 2 B above: cut there it
+  /// does not hit, if nothing was hit before. Nothing where rounding leaves no room.
+  std::optional<double> cut_behind(const Hit& hit) const;
+  std::optional<double> cut_before(const Hit& hit) const;
+
+  /// Whether two answers may both be right: the same status and, along all of the way between the two hits, a ray
+  /// within 2 B of the surface at `kProbes` places.
+  bool same(const Hit& a, const Hit& b) const;
+  static constexpr int kProbes = 8;
+
+ private:
+  using Real = long double;
+  // The clearance around a time over one cell (or triangle): f(t + s) = f + b s + a s^2.
+  struct Piece {
+    Real f, b, a;
+  };
+  // A cell in the copy of the field that the ray is over.
+  struct Place {
+    Real col, row;
+    CellHeights h;
+  };
+
+  Real x(Real t) const { return ox_ + dx_ * t; }
+  Real y(Real t) const { return oy_ + dy_ * t; }
+  Real z(Real t) const { return oz_ + dz_ * t; }
+  Real sideways(Real t) const;
+  Real bound(Real t) const;
+  Real under(Real t) const;
+  void clip();
+  bool hugs_border() const;
+  bool holes_between(Real from, Real to) const;
+  std::optional<Place> place_at(Real t) const;
+  std::optional<Place> place_of(const Hit& hit) const;
+  std::optional<Real> clearance(Real t) const;
+  Piece piece(const Place& place, Real t, bool south_east) const;
+  bool south_east(const Place& place, Real t) const { return x(t) - place.col + (y(t) - place.row) > 1; }
+  Real time_in_cell(const Place& place, Real t, bool back) const;
+  Real risen(const Place& place, Real t, Real length) const;
+  Real deepest(const Place& place, Real t) const;
+
+  const LeakField& ground_;
+  const HeightField& field_;
+  const Ray& ray_;
+  bool triangles_, wraps_, exact_plan_, on_surface_;
+  Real ox_, oy_, oz_, dx_, dy_, dz_;  // in cells and sample units
+  Real low_, high_, offset_;          // of the samples, in sample units
+  Real t0_, t1_;                      // over the field; empty when t0_ > t1_
+  Real late_ = 0, early_ = 0;         // how much rounding may move these
+  bool from_outside_ = false, begins_above_ = false;
+  std::optional<Real> c0_;  // clearance at t0_
+  bool must_hit_ = false;
+};
+
+}  // namespace scarp::bench

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// The rays of `scarp-bench leaks`. Each is a function of seed, index, class and field alone: threads change nothing,
+// and one ray can be had again without the others.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "bench/leak_fields.h"
+#include "bench/random.h"
+#include "scarp/base/ray.h"
+
+namespace scarp::bench {
+
+enum class LeakClass : std::uint8_t {
+  nodes,      ///< from above at nodes, ending below all ground
+  edges,      ///< the same at points of edges
+  diagonals,  ///< the same at points of both diagonals
+  axis,       ///< parallel to an axis, most of them along a grid line
+  vertical,   ///< straight up and down, over nodes, edges and anywhere
+  tangent,    ///< level, at the height of a node that they pass
+  two_nodes,  ///< through two nodes
+  border,     ///< beginning on the border, along it, through its nodes and corners
+  rims,       ///< at nodes beside holes, and past them
+  seam,       ///< at nodes and edges of the seam, copies away
+  below,      ///< beginning below the ground
+  plane,      ///< from the surface of a plane, in it and a hair beside it
+  saddles,    ///< from the surface of saddles
+  surface,    ///< from the surface, anywhere
+  far,        ///< at nodes from 10^5 to 10^7 m away
+  any,        ///< from anywhere to anywhere
+};
+constexpr LeakClass kLeakClasses[] = {LeakClass::nodes,    LeakClass::edges,   LeakClass::diagonals, LeakClass::axis,
+                                      LeakClass::vertical, LeakClass::tangent, LeakClass::two_nodes, LeakClass::border,
+                                      LeakClass::rims,     LeakClass::seam,    LeakClass::below,     LeakClass::plane,
+                                      LeakClass::saddles,  LeakClass::surface, LeakClass::far,       LeakClass::any};
+std::string_view name_of(LeakClass leak_class);
+
+/// Whether the class is about that kind of ground at all: rims need holes, the seam a field that wraps round.
+bool suits(LeakClass leak_class, const LeakField& ground);
+
+/// A ray of the class; its range is finite. Of the classes nodes, edges and diagonals, `in_float32` rays consist of
+/// float32 numbers, so that an engine in float gets the same; the others meet their point at t = 1 exactly, where the
+/// field's own numbers allow it.
+Ray make_leak_ray(LeakClass leak_class, const LeakField& ground, Random& random, bool in_float32);
+
+}  // namespace scarp::bench

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// One ray over one field as text: all that it takes to ask the same question elsewhere, to the bit.
+//
+//   scarp-rays 1                          first line: what this is, and its version
+//   # anything                            lines like this and empty ones are skipped
+//   field float32 3 2                     begins a field: type of the samples, columns, rows
+//   cell_x 0x1p+0                         the settings, in any order; what is left out has its default:
+//   ...                                   cell_y scale offset exaggeration nodata surface wrap solid
+//   row 0x1p+0 nan 0x1.8p+1               the samples, from north to south, one line for each row; or
+//   generate ridged 1 0x1p+0 0x0p+0       instead of rows, a procedural DEM: kind, seed, cell in metres, wavelength
+//   ray                                   begins a ray over the field above; several may follow one another
+//   origin 0x1p+0 0x1p-1 0x1p+3
+//   direction 0x0p+0 0x0p+0 -0x1p+0
+//   range 0x0p+0 inf                      t_min and t_max
+//   start on_surface 0 1                  or: start free, the default
+//   expected a hit                        for people; so is `answered`
+//
+// Numbers are decimal or, to the last bit, hexadecimal (C's %a).
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "scarp/base/ray.h"
+#include "scarp/field/height_field.h"
+#include "scarp/source/procedural_dem.h"
+
+namespace scarp {
+
+struct RayDump {
+  HeightField field;
+  /// Where the samples are those of a procedural DEM in metres of its cell: they are then not written out.
+  std::optional<ProceduralDem> generator;
+  Ray ray;
+  std::string expected;  ///< for people: one line; may be empty
+  std::string answered;
+};
+
+/// Writes the rays into one file; consecutive ones over the same field (copies of one) share its text. Throws Error
+/// when the file cannot be written; then no file is left or changed.
+void write_ray_dumps(const std::string& path, std::span<const RayDump> dumps);
+
+/// Reads what write_ray_dumps() writes, or what people have written in that form; at least one ray. Throws Error naming
+/// the file and the line.
+std::vector<RayDump> read_ray_dumps(const std::string& path);
+
+}  // namespace scarp
