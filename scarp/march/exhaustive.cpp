@@ -146,6 +146,13 @@ class Ground {
     return 16 * 0x1p-53 * (heights + places * (field_.max_sample() - field_.min_sample()));
   }
 
+  // The same for times: how far a place can be off, by the speed over the ground.
+  double rounding_of_time(double t) const {
+    const double speed = std::max(std::abs(dx_), std::abs(dy_));
+    const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t);
+    return speed > 0 ? 16 * 0x1p-53 * places / speed : 0;
+  }
+
   // All pieces of the ray, in the order of t. The range is finite in a field that wraps round.
   std::vector<Piece> pieces(Span range) const {
     std::vector<Piece> found;
@@ -242,12 +249,14 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
   const auto pieces = ground.pieces({ray.t_min, ray.t_max});
   if (stats) stats->steps = stats->cell_tests = static_cast<std::uint32_t>(pieces.size());
   const double entry = std::max(ray.t_min, ground.border());
-  double reached = on_surface ? ray.t_min : -kInfinity;
+  // A ray from the surface may come over its cell a rounding later.
+  const double start = on_surface ? ray.t_min + ground.rounding_of_time(ray.t_min) : -kInfinity;
+  double reached = start;
   bool first = on_surface;
   for (const Piece& p : pieces) {
-    if (first && p.cell == ray.start_cell && p.span.begin <= ray.t_min) {
+    if (first && p.cell == ray.start_cell && p.span.begin <= start) {
       // f = s (a s + b): the root at the start is no hit.
-      reached = p.span.end;
+      reached = std::max(reached, p.span.end);
       if (p.length() == 0) continue;
       first = false;
       const double last = (p.a * p.length() + p.b) * p.length();
@@ -261,7 +270,9 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
     reached = std::max(reached, p.span.end);
     if (side == Side::unknown) {
       side = p.c < 0 ? Side::below : Side::above;
-      if (side == Side::below && &p == &pieces.front() && p.span.begin <= entry) without = HitStatus::below;
+      if (side == Side::below && !on_surface && &p == &pieces.front() && p.span.begin <= entry) {
+        without = HitStatus::below;
+      }
       // Through the border or out of a hole, unless it began in this cell.
       const bool came_in = p.span.begin > ray.t_min || ground.border() >= ray.t_min;
       if (side == Side::below && field.settings().solid && came_in) {

@@ -144,8 +144,8 @@ class Walk {
     col_ = ray_.start_cell.col;
     row_ = ray_.start_cell.row;
     if (!x_.inside(col_) || !y_.inside(row_) || (Holes && grid_.is_hole(col_, row_))) return false;
-    x_.choose_copy(t_in_, col_);
-    y_.choose_copy(t_in_, row_);
+    x_.begin_in(col_, t_in_);
+    y_.begin_in(row_, t_in_);
     const CellHeights h = grid_.cell(col_, row_);
     z_ = surface(h, t_in_) - dz_ * t_in_;
     if (!wraps_) t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
@@ -183,7 +183,7 @@ class Walk {
     const double last = length * (f.a * length + f.b), lowest = dips ? -f.b * f.b / (4 * f.a) : last;
     if (!(lowest < 0 && is_hit(lowest, t_in_))) return false;
     if (answer(f.b < 0 || f.a == 0 ? 0.0 : f.b / -f.a)) return true;
-    if (last <= 0) side_ = Side::below;
+    if (last <= rounding_of_clearance(t_in_)) side_ = Side::below;
     return false;
   }
 
@@ -238,9 +238,11 @@ class Walk {
           }
           --level;
           ++level_changes;
-          // After a line of constant column, rows' lines of the same time are still ahead: the order of ties.
+          // After a line of constant column, rows' lines of the same time are still ahead: the order of ties. The near
+          // side of a narrow last block is the seam, which was crossed to come here.
           const double middle_x = x.line_time((2 * col + 1) << level), middle_y = y.line_time((2 * row + 1) << level);
-          const bool behind_x = middle_x <= t_in, behind_y = after_x_ ? middle_y < t_in : middle_y <= t_in;
+          const bool entered = !y.ahead && ((2 * row + 1) << level) >= y.cells;
+          const bool behind_x = middle_x <= t_in, behind_y = after_x_ && !entered ? middle_y < t_in : middle_y <= t_in;
           col = std::min(2 * col + (behind_x ? x.ahead : 1 - x.ahead), (x.cells - 1) >> level);
           row = std::min(2 * row + (behind_y ? y.ahead : 1 - y.ahead), (y.cells - 1) >> level);
           tx = behind_x ? tx : middle_x;
@@ -364,7 +366,10 @@ class Walk {
       // Only where the clearance along the ray is a cup can the ray come down and go up again.
       if (!(CellQuadratic::curvature(h, x_.direction, y_.direction) > 0)) return false;
       const CellQuadratic f = quadratic(h, t_in_);
-      return f.dips(length) && is_hit(f.vertex_value(), t_in_) && hit_in_cell(f, length);
+      if (!(f.dips(length) && is_hit(f.vertex_value(), t_in_))) return false;
+      if (hit_in_cell(f, length)) return true;
+      if (out <= rounding_of_clearance(t_out)) side_ = Side::below;
+      return false;
     }
     if (out > rounding_of_clearance(t_out)) {
       side_ = Side::above;
@@ -405,8 +410,9 @@ class Walk {
     return answer(t_begin - t_in_ + (s >= 0 ? std::min(s, t_out - t_begin) : t_out - t_begin));
   }
 
-  // Whether a ray that is not above can never be so again: falling, and under the lowest ground.
-  bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample(); }
+  // Whether a ray that is not above can never hit again: falling, and under the lowest ground, with no holes' walls
+  // ahead.
+  bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample() && !(Holes && solid_); }
 
   // The most that rounding can add to a clearance (doc/dev/numerics.md), for the places where a sign alone is not
   // enough: a ray from below has risen only beyond it (else one that rises through a node could be seen above at one
