@@ -151,14 +151,30 @@ class Judge {
 
   // Whether who follows a ray and first tells of a hit at `reached` passes none that the ray and its neighbours have
   // for certain.
-  bool passes_nothing(const Ray& ray, double reached) const {
+  bool passes_nothing(Ray ray, double reached) const {
     const double latest = reached - slack(std::isfinite(reached) ? reached : 0);
-    if (latest <= first_certain_hit(ray, reached)) return true;
-    Random random(1);
-    for (int i = 0; i < kNeighbours; ++i) {
-      if (latest <= first_certain_hit(neighbour(ray, random), reached)) return true;
+    for (;;) {
+      const double certain = first_certain_hit(ray, reached);
+      if (latest <= certain) return true;
+      const auto some_neighbour = [&](const Ray& part, double without) {
+        Random random(1);
+        for (int i = 0; i < kNeighbours; ++i) {
+          if (without <= first_certain_hit(neighbour(part, random), without)) return true;
+        }
+        return false;
+      };
+      if (some_neighbour(ray, latest)) return true;
+      // Between two corners of rims, on either side, no moved ray can pass; past each of them alone, one can.
+      const double step = 4 * (certain - just_before(certain));
+      if (!is_at_rim(ray_.at(certain))) return false;
+      Ray part = ray;
+      if (certain - step > ray.t_min) part.t_min = certain - step, part.start = RayStart::free;
+      part.t_max = std::min(ray.t_max, certain + step);
+      if (!some_neighbour(part, HUGE_VAL)) return false;
+      if (!(certain + step < ray.t_max)) return true;
+      ray.t_min = certain + step;
+      ray.start = RayStart::free;
     }
-    return false;
   }
 
   // The same for who tells of none. It is below where the ray visibly comes in so, and only there.
@@ -186,7 +202,8 @@ class Judge {
     if (ray.start == RayStart::free) {
       for (int axis = 0; axis < 3; ++axis) ray.origin[axis] += shift();
     } else {
-      // The start is on the surface by definition; the direction is what rounding moves.
+      // The start is on the surface by definition; where on it, and the direction, is what rounding moves.
+      for (int axis = 0; axis < 2; ++axis) ray.origin[axis] += shift();
       const double extent = std::max(field_.settings().cell_x, field_.settings().cell_y);
       for (int axis = 0; axis < 3; ++axis) ray.direction[axis] += shift() / extent;
     }
@@ -249,25 +266,25 @@ class Judge {
   // corner only). A touch there is a hit, and one that a shift of any size turns into something else.
   bool begins_at(double t) const {
     if (just_before(t) < ray_.t_min) return true;
-    const dvec3 before = ray_.at(just_before(t)), p = ray_.at(t);
+    const dvec3 before = ray_.at(just_before(t));
+    return !field_.height(before.x, before.y) || is_at_rim(ray_.at(t));
+  }
+
+  // Whether the field ends, or a hole begins, within a millionth of a cell.
+  bool is_at_rim(const dvec3& p) const {
     const double dx = 0x1p-20 * field_.settings().cell_x, dy = 0x1p-20 * field_.settings().cell_y;
-    for (const dvec2 q : {dvec2(before.x, before.y), dvec2(p.x - dx, p.y - dy), dvec2(p.x + dx, p.y - dy),
-                          dvec2(p.x - dx, p.y + dy), dvec2(p.x + dx, p.y + dy)}) {
-      if (!field_.height(q.x, q.y)) return true;
-    }
-    return false;
+    return !(field_.height(p.x - dx, p.y - dy) && field_.height(p.x + dx, p.y - dy) &&
+             field_.height(p.x - dx, p.y + dy) && field_.height(p.x + dx, p.y + dy));
   }
 
   // On which side the ray was before t, as soon as it can be told from rounding: 1 above, -1 below (then t is a way out
   // of the ground and no hit), 0 it cannot be told.
   int side_before(double t) const {
     for (double cells = 0x1p-20; cells < 1; cells *= 4) {
-      const dvec3 p = ray_.at(t - cells * (t - just_before(t)) * 0x1p20);
-      const auto place = field_.place(p.x, p.y);
-      const auto h = place ? field_.cell_heights(place->cell) : std::nullopt;
-      if (!h) return 0;
-      const double clearance = p.z - field_.height(p.x, p.y).value();
-      if (std::abs(clearance) > 2 * rounding(*h)) return clearance > 0 ? 1 : -1;
+      const double before = t - cells * (t - just_before(t)) * 0x1p20;
+      const dvec3 p = ray_.at(before);
+      if (!field_.height(p.x, p.y)) return 0;
+      if (const int found = side(before, 0)) return found;
     }
     return 0;
   }
@@ -282,14 +299,27 @@ class Judge {
         if (d != 0) t = std::max(t, std::min(-o / d, (size[axis] - o) / d));
       }
     }
-    // A little further in, to be over it for certain.
-    t += t - just_before(t);
+    // A few steps further in, to be over it for certain.
+    t += 4 * (t - just_before(t));
+    const dvec3 p = ray_.at(t);
+    return t <= ray_.t_max && !is_at_rim(p) && !is_at_rim(ray_.at(std::max(ray_.t_min, t - 8 * (t - just_before(t)))))
+               ? side(t, 0x1p-17)
+               : 0;
+  }
+
+  // On which side of the surface the ray is at t; 0 where that is not visible, or what the surface rises within some
+  // cells could change it.
+  int side(double t, double cells) const {
     const dvec3 p = ray_.at(t);
     const auto place = field_.place(p.x, p.y);
-    const auto h = place && t <= ray_.t_max ? field_.cell_heights(place->cell) : std::nullopt;
+    const auto h = place ? field_.cell_heights(place->cell) : std::nullopt;
     if (!h) return 0;
-    const double clearance = p.z - field_.height(p.x, p.y).value(), steepest = 0x1p-19 * (std::abs(h->h10 - h->h00) + std::abs(h->h01 - h->h00) + std::abs(h->h11 - h->h01) + std::abs(h->h11 - h->h10)) * field_.settings().scale * field_.settings().exaggeration + std::abs(ray_.direction.z) * (t - just_before(t));
-    return clearance > steepest ? 1 : clearance < -steepest ? -1 : 0;
+    const double relief = std::max({h->h00, h->h10, h->h01, h->h11}) - std::min({h->h00, h->h10, h->h01, h->h11});
+    const double change = cells * (2 * relief * field_.settings().scale * field_.settings().exaggeration +
+                                   std::abs(ray_.direction.z) * (t - just_before(t)) * 0x1p20);
+    const double clearance = p.z - field_.height(p.x, p.y).value();
+    if (std::abs(clearance) <= 2 * rounding(*h) + change) return 0;
+    return clearance > 0 ? 1 : -1;
   }
 
   bool is_in_its_cell(const Hit& hit) const {
@@ -333,11 +363,15 @@ TEST_P(Oracle, ExactMarchesAgreeWithTheJudge) {
       const auto fail = [&](std::string_view what, std::string_view answer) {
         ++bad;
         for (int k = -6; k <= 6 && std::getenv("PROFILE") && !all.empty(); ++k) {
-          const double t0=std::ldexp(all.back().t, judge.exponent_);
-          const double t = t0 + (k<0?-1:k>0?1:0)* (t0 - judge.just_before(t0))*std::pow(10., std::abs(k)-1);
+          const double t0 = std::ldexp(all.back().t, judge.exponent_);
+          const double t = t0 + (k < 0   ? -1
+                                 : k > 0 ? 1
+                                         : 0) *
+                                    (t0 - judge.just_before(t0)) * std::pow(10., std::abs(k) - 1);
           const dvec3 p = judge.ray_.at(t);
-          const auto pl=field.place(p.x,p.y);
-          fmt::print("t={} clearance {} cell {} {} u {} v {}\n", t, p.z - field.height(p.x, p.y).value_or(1e9), pl?pl->cell.col:-1, pl?pl->cell.row:-1, pl?pl->u:0, pl?pl->v:0);
+          const auto pl = field.place(p.x, p.y);
+          fmt::print("t={} clearance {} cell {} {} u {} v {}\n", t, p.z - field.height(p.x, p.y).value_or(1e9),
+                     pl ? pl->cell.col : -1, pl ? pl->cell.row : -1, pl ? pl->u : 0, pl ? pl->v : 0);
         }
         ADD_FAILURE() << what << " on " << fields.name << ", ray " << kind.name << ": " << text(ray) << "\n  judge "
                       << text(judge.nominal()) << "\n  march " << answer;
