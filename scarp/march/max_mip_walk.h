@@ -267,7 +267,11 @@ class Walk {
       if (!falling && lowest > highest) break;
       if (!(t_line < t_end)) {
         left = t_end < t_end_;
-        break;
+        // A line of constant column that is crossed together with the seam of the rows comes first, too.
+        const bool another_column =
+            static_cast<unsigned>(col + x.step) <= static_cast<unsigned>((x.cells - 1) >> level);
+        if (!(left && through_x && t_line == t_end && another_column)) break;
+        left = false;
       }
       t_in = t_line;
       after_x_ = through_x;
