@@ -225,10 +225,15 @@ std::optional<double> descent(const Piece& p, std::optional<double> depth) {
   return p.a < 0 ? roots->end : roots->begin;
 }
 
-// The same for a ray that is below at the piece's begin: it has to rise first.
-std::optional<double> descent_after_rise(const Piece& p) {
+// Whether a ray that is below at the piece's begin comes above within it.
+bool peaks(const Piece& p) {
   const auto vertex = p.vertex();
-  if (p.last > 0 || !vertex || p.a > 0 || (p.a * *vertex + p.b) * *vertex + p.c <= 0) return {};
+  return vertex && p.a < 0 && (p.a * *vertex + p.b) * *vertex + p.c > 0;
+}
+
+// The same as descent() for such a ray: after the peak.
+std::optional<double> descent_after_peak(const Piece& p, std::optional<double> depth) {
+  if (depth ? !(p.last < -*depth) : p.last > 0) return {};
   return p.roots() ? p.roots()->end : p.length();
 }
 
@@ -259,7 +264,7 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
       reached = std::max(reached, p.span.end);
       if (p.length() == 0) continue;
       first = false;
-      const double last = (p.a * p.length() + p.b) * p.length();
+      const double last = std::isinf(p.length()) ? p.last : (p.a * p.length() + p.b) * p.length();
       const double lowest = p.a > 0 && p.vertex() ? (p.a * *p.vertex() + p.b) * *p.vertex() : last;
       if (!(lowest < -ground.rounding(ray.t_min))) continue;
       if (!found(ground.hit(p, p.b < 0 || p.a == 0 ? 0 : -p.b / p.a))) return without;
@@ -283,12 +288,13 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
     }
     if (side == Side::below && p.c > 0) side = Side::above;
     const auto depth = on_surface ? std::optional(ground.rounding(p.span.begin)) : std::nullopt;
-    const auto s = side == Side::above ? descent(p, depth) : descent_after_rise(p);
+    const bool rises = side == Side::below && peaks(p);
+    const auto s = side == Side::above ? descent(p, depth) : rises ? descent_after_peak(p, depth) : std::nullopt;
     if (s) {
       if (!found(ground.hit(p, *s))) return without;
       side = Side::below;
     }
-    if (side == Side::below && p.last > 0) side = Side::above;
+    if (side == Side::below && (p.last > 0 || (rises && !s))) side = Side::above;
   }
   return without;
 }

@@ -153,6 +153,11 @@ class Walk {
     const double t_line = std::min(tx, ty), t_out = std::min(t_line, t_end_);
     ++stats.cell_tests;
     side_ = Side::above;
+    if (!x_.moves() && !y_.moves()) {
+      // Straight down is below at once; the range may have no end.
+      if (dz_ < 0 && t_end_ > t_in_ && is_hit(dz_ * (t_end_ - t_in_), t_in_)) answer(0.0);
+      return false;
+    }
     if (t_out > t_in_) {
       if (triangles_) {
         const Through exit = t_line > t_end_ ? Through::point : tx <= ty ? Through::x_line : Through::y_line;
@@ -227,8 +232,13 @@ class Walk {
         const Level& at = levels_[level - 1];
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
         if (above(lowest, code.height(maxima_[entry]), t_in)) {
-          // Where there are holes, the last cell may be one: the next begins with a question.
-          side_ = Holes ? Side::unknown : Side::above;
+          // Where there are holes, the last cell may be one: the next begins with a question. Passing a block's corner
+          // is not leaving the ground.
+          if (!Holes) {
+            side_ = Side::above;
+          } else if (t_line > t_in) {
+            side_ = Side::unknown;
+          }
         } else if (side_ == Side::below && under(ray_height(falling ? t_in : t_out), minima_[entry])) {
           if (lost(t_out)) break;
         } else {
@@ -381,7 +391,13 @@ class Walk {
     }
     if constexpr (ask == Ask::bisected) return false;
     const CellQuadratic f = quadratic(h, t_in_);
-    if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_) && hit_in_cell(f, length)) return true;
+    if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_)) {
+      if (!is_hit(out, t_out)) {
+        side_ = Side::above;
+        return false;
+      }
+      if (hit_in_cell(f, length)) return true;
+    }
     return lost(t_out);
   }
 
