@@ -236,7 +236,7 @@ class Walk {
           // is not leaving the ground.
           if (!Holes) {
             side_ = Side::above;
-          } else if (t_line > t_in) {
+          } else if (t_out > t_in) {
             side_ = Side::unknown;
           }
         } else if (side_ == Side::below && under(ray_height(falling ? t_in : t_out), minima_[entry])) {
