@@ -146,11 +146,11 @@ class Ground {
     return 16 * 0x1p-53 * (heights + places * (field_.max_sample() - field_.min_sample()));
   }
 
-  // The same for times: how far a place can be off, by the speed over the ground.
+  // The same for the times of lines: a quotient for the origin, a difference and a quotient.
   double rounding_of_time(double t) const {
     const double speed = std::max(std::abs(dx_), std::abs(dy_));
     const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t);
-    return speed > 0 ? 16 * 0x1p-53 * places / speed : 0;
+    return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
   // All pieces of the ray, in the order of t. The range is finite in a field that wraps round.
