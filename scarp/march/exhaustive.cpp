@@ -146,6 +146,13 @@ class Ground {
     return 16 * 0x1p-53 * (heights + places * (field_.max_sample() - field_.min_sample()));
   }
 
+  // The same for the times of lines: a quotient for the origin, a difference and a quotient.
+  double rounding_of_time(double t) const {
+    const double speed = std::max(std::abs(dx_), std::abs(dy_));
+    const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t);
+    return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
+  }
+
   // All pieces of the ray, in the order of t. The range is finite in a field that wraps round.
   std::vector<Piece> pieces(Span range) const {
     std::vector<Piece> found;
@@ -247,15 +254,17 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
   const auto pieces = ground.pieces({ray.t_min, ray.t_max});
   if (stats) stats->steps = stats->cell_tests = static_cast<std::uint32_t>(pieces.size());
   const double entry = std::max(ray.t_min, ground.border());
-  double reached = on_surface ? ray.t_min : -kInfinity;
+  // A ray from the surface may come over its cell a rounding later.
+  const double start = on_surface ? ray.t_min + ground.rounding_of_time(ray.t_min) : -kInfinity;
+  double reached = start;
   bool first = on_surface;
   for (const Piece& p : pieces) {
-    if (first && p.cell == ray.start_cell && p.span.begin <= ray.t_min) {
+    if (first && p.cell == ray.start_cell && p.span.begin <= start) {
       // f = s (a s + b): the root at the start is no hit.
-      reached = p.span.end;
+      reached = std::max(reached, p.span.end);
       if (p.length() == 0) continue;
       first = false;
-      const double last = (p.a * p.length() + p.b) * p.length();
+      const double last = std::isinf(p.length()) ? p.last : (p.a * p.length() + p.b) * p.length();
       const double lowest = p.a > 0 && p.vertex() ? (p.a * *p.vertex() + p.b) * *p.vertex() : last;
       if (!(lowest < -ground.rounding(ray.t_min))) continue;
       if (!found(ground.hit(p, p.b < 0 || p.a == 0 ? 0 : -p.b / p.a))) return without;
@@ -266,7 +275,9 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
     reached = std::max(reached, p.span.end);
     if (side == Side::unknown) {
       side = p.c < 0 ? Side::below : Side::above;
-      if (side == Side::below && &p == &pieces.front() && p.span.begin <= entry) without = HitStatus::below;
+      if (side == Side::below && !on_surface && &p == &pieces.front() && p.span.begin <= entry) {
+        without = HitStatus::below;
+      }
       // Through the border or out of a hole, unless it began in this cell.
       const bool came_in = p.span.begin > ray.t_min || ground.border() >= ray.t_min;
       if (side == Side::below && field.settings().solid && came_in) {
@@ -284,7 +295,7 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
       if (!found(ground.hit(p, *s))) return without;
       side = Side::below;
     }
-    if (side == Side::below && p.last > 0) side = Side::above;
+    if (side == Side::below && (p.last > 0 || (rises && !s))) side = Side::above;
   }
   return without;
 }

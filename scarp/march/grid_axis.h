@@ -62,9 +62,11 @@ class GridAxis {
   int cell_before(double t) {
     return ordered_cell(t, [&](std::int64_t line) { return global_line_time(line) < t; });
   }
-  // The copy in which `cell` is at time t.
-  void choose_copy(double t, int cell) {
+  // Puts the ray into `cell` at time t; in a grid that wraps round into the copy that it is over then. A ray along a
+  // line belongs to the cell that it is said to begin in.
+  void begin_in(int cell, double t) {
     if (wraps_) first_ = static_cast<std::int64_t>(std::round((at(t) - cell - 0.5) / cells)) * cells;
+    if (!moves()) time_origin_ = static_cast<double>(first_ + cell) + 0.5;
   }
   // Goes on to the next copy; returns the first cell there.
   int enter_next_copy() {

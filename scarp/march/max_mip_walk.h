@@ -148,8 +148,8 @@ class Walk {
     col_ = ray_.start_cell.col;
     row_ = ray_.start_cell.row;
     if (!x_.inside(col_) || !y_.inside(row_) || (Holes && grid_.is_hole(col_, row_))) return false;
-    x_.choose_copy(t_in_, col_);
-    y_.choose_copy(t_in_, row_);
+    x_.begin_in(col_, t_in_);
+    y_.begin_in(row_, t_in_);
     const CellHeights h = grid_.cell(col_, row_);
     z_ = surface(h, t_in_) - dz_ * t_in_;
     if (!wraps_) t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
@@ -157,6 +157,11 @@ class Walk {
     const double t_line = std::min(tx, ty), t_out = std::min(t_line, t_end_);
     ++stats.cell_tests;
     side_ = Side::above;
+    if (!x_.moves() && !y_.moves()) {
+      // Straight down is below at once; the range may have no end.
+      if (dz_ < 0 && t_end_ > t_in_ && is_hit(dz_ * (t_end_ - t_in_), t_in_)) answer(0.0);
+      return false;
+    }
     if (t_out > t_in_) {
       if (triangles_) {
         const Through exit = t_line > t_end_ ? Through::point : tx <= ty ? Through::x_line : Through::y_line;
@@ -236,8 +241,13 @@ class Walk {
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
         const double maximum = maxima_[entry];
         if (lowest_code > maximum && (side_ != Side::below || risen_above(maxima_[entry], t_lowest))) {
-          // Where there are holes, the last cell may be one: the next begins with a question.
-          side_ = Holes ? Side::unknown : Side::above;
+          // Where there are holes, the last cell may be one: the next begins with a question. Passing a block's corner
+          // is not leaving the ground.
+          if (!Holes) {
+            side_ = Side::above;
+          } else if (t_out > t_in) {
+            side_ = Side::unknown;
+          }
         } else if (side_ == Side::below && under(ray_height(falling ? t_in : t_out), minima_[entry])) {
           if (lost(t_out)) break;
         } else {
@@ -247,9 +257,11 @@ class Walk {
           }
           --level;
           ++level_changes;
-          // After a line of constant column, rows' lines of the same time are still ahead: the order of ties.
+          // After a line of constant column, rows' lines of the same time are still ahead: the order of ties. The near
+          // side of a narrow last block is the seam, which was crossed to come here.
           const double middle_x = x.line_time((2 * col + 1) << level), middle_y = y.line_time((2 * row + 1) << level);
-          const bool behind_x = middle_x <= t_in, behind_y = after_x_ ? middle_y < t_in : middle_y <= t_in;
+          const bool entered = !y.ahead && ((2 * row + 1) << level) >= y.cells;
+          const bool behind_x = middle_x <= t_in, behind_y = after_x_ && !entered ? middle_y < t_in : middle_y <= t_in;
           col = std::min(2 * col + (behind_x ? x.ahead : 1 - x.ahead), (x.cells - 1) >> level);
           row = std::min(2 * row + (behind_y ? y.ahead : 1 - y.ahead), (y.cells - 1) >> level);
           tx = behind_x ? tx : middle_x;
@@ -273,11 +285,13 @@ class Walk {
       }
       if (Holes) begun_ = true;
       if (!falling && lowest_code > highest_code) break;
-      // The seam comes last of the lines that are crossed at once: columns before rows there, too.
-      const bool column_first = wraps_ && through_x && t_line == t_end && t_end < x.exit_time();
-      if (!(t_line < t_end) && !column_first) {
+      if (!(t_line < t_end)) {
         left = t_end < t_end_;
-        break;
+        // A line of constant column that is crossed together with the seam of the rows comes first, too.
+        const bool another_column =
+            static_cast<unsigned>(col + x.step) <= static_cast<unsigned>((x.cells - 1) >> level);
+        if (!(left && through_x && t_line == t_end && another_column)) break;
+        left = false;
       }
       t_in = t_line;
       after_x_ = through_x;
@@ -428,8 +442,9 @@ class Walk {
     return answer(t_begin - t_in_ + (s >= 0 ? std::min(s, t_out - t_begin) : t_out - t_begin));
   }
 
-  // Whether a ray that is not above can never be so again: falling, and under the lowest ground.
-  bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample(); }
+  // Whether a ray that is not above can never hit again: falling, and under the lowest ground, with no holes' walls
+  // ahead.
+  bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample() && !(Holes && solid_); }
 
   // For the places where a sign alone is not enough: a ray from below has risen only beyond it (else one that rises
   // through a node could be seen above at one line and, by rounding, not above at the next: a hit from below), a ray

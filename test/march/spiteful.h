@@ -17,14 +17,20 @@ using Random = std::mt19937_64;
 double uniform(Random& random, double low, double high);
 int whole(Random& random, int low, int high);  // both ends included
 
+/// What a field has, and what a kind of rays aims at: a sum of these.
+enum Feature : unsigned { kPlain = 0, kHoles = 1, kTriangles = 2, kWraps = 4 };
+
 struct FieldKind {
   std::string_view name;
   std::function<HeightField(Random&)> make;
+  unsigned has = kPlain;
 };
 
+/// Over a field that wraps round the range of all rays has an end.
 struct RayKind {
   std::string_view name;
   std::function<Ray(const HeightField&, Random&)> make;
+  unsigned aims_at = kPlain;
 };
 
 const std::vector<FieldKind>& spiteful_fields();

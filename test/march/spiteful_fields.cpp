@@ -24,8 +24,31 @@ HeightField make(Size size, const HeightFieldSettings& settings, Height&& height
   return HeightField::own(std::move(samples), size.cols, size.rows, settings);
 }
 
+HeightFieldSettings with(Surface surface, Wrap wrap = Wrap::none, bool solid = false) {
+  HeightFieldSettings settings;
+  settings.surface = surface;
+  settings.wrap = wrap;
+  settings.solid = solid;
+  return settings;
+}
+
+template <std::size_t N>
+Size one_of(const Size (&sizes)[N], Random& random) {
+  return sizes[whole(random, 0, N - 1)];
+}
+
 HeightField rough(Size size, Random& random, const HeightFieldSettings& settings = {}, double relief = 6) {
   return make<float>(size, settings, [&](int, int) { return uniform(random, 0, relief); });
+}
+
+HeightField with_holes(Size size, Random& random, const HeightFieldSettings& settings) {
+  return make<float>(size, settings, [&](int, int) {
+    return uniform(random, 0, 1) < 0.15 ? std::numeric_limits<double>::quiet_NaN() : uniform(random, 0, 5);
+  });
+}
+
+HeightField pits(Size size, const HeightFieldSettings& settings) {
+  return make<float>(size, settings, [](int c, int q) { return (c + q) % 2 ? 4.0 : 0.0; });
 }
 
 }  // namespace
@@ -81,21 +104,21 @@ const std::vector<FieldKind>& spiteful_fields() {
        }},
       {"pits and saddles",
        [](Random&) {
-         return make<float>({10, 10}, {}, [](int c, int q) { return (c + q) % 2 ? 4.0 : 0.0; });
+         return pits({10, 10}, {});
        }},
       {"holes",
        [](Random& r) {
-         return make<float>({15, 13}, {}, [&](int, int) {
-           return uniform(r, 0, 1) < 0.15 ? std::numeric_limits<double>::quiet_NaN() : uniform(r, 0, 5);
-         });
-       }},
+         return with_holes({15, 13}, r, {});
+       },
+       kHoles},
       {"int16 with nodata and scale",
        [](Random& r) {
          HeightFieldSettings settings;
          settings.cell_x = settings.cell_y = 30, settings.scale = 0.1, settings.offset = 100, settings.nodata = -32768;
          return make<std::int16_t>({14, 12}, settings,
                                    [&](int, int) { return uniform(r, 0, 1) < 0.1 ? -32768 : whole(r, -400, 400); });
-       }},
+       },
+       kHoles},
       {"uint16 over its range",
        [](Random& r) {
          return make<std::uint16_t>({9, 9}, {.cell_x = 900, .cell_y = 1100},
@@ -117,6 +140,93 @@ const std::vector<FieldKind>& spiteful_fields() {
       {"one row",
        [](Random& r) {
          return rough({9, 1}, r);
+       }},
+      {"triangles",
+       [](Random& r) {
+         return rough(one_of({{13, 23}, {16, 16}, {17, 9}, {2, 2}}, r), r, with(Surface::triangles));
+       },
+       kTriangles},
+      {"triangles, oblong cells",
+       [](Random& r) {
+         HeightFieldSettings settings = with(Surface::triangles);
+         settings.cell_x = 0.37, settings.cell_y = 5.2, settings.exaggeration = 2.5, settings.offset = -40;
+         return rough({11, 14}, r, settings);
+       },
+       kTriangles},
+      {"triangles, pits and ridges",
+       [](Random&) {
+         return pits({10, 10}, with(Surface::triangles));
+       },
+       kTriangles},
+      {"triangles with holes",
+       [](Random& r) {
+         return with_holes({13, 12}, r, with(Surface::triangles));
+       },
+       kTriangles | kHoles},
+      {"periodic",
+       [](Random& r) {
+         return rough(one_of({{13, 7}, {5, 11}, {8, 8}, {3, 3}}, r), r, with(Surface::bilinear, Wrap::periodic));
+       },
+       kWraps},
+      {"periodic, tiny",
+       [](Random& r) {
+         return rough(one_of({{1, 1}, {1, 2}, {2, 2}, {1, 7}, {5, 1}}, r), r, with(Surface::bilinear, Wrap::periodic));
+       },
+       kWraps},
+      {"periodic with holes, oblong cells",
+       [](Random& r) {
+         HeightFieldSettings settings = with(Surface::bilinear, Wrap::periodic);
+         settings.cell_x = 3.1, settings.cell_y = 0.7;
+         return with_holes({9, 7}, r, settings);
+       },
+       kWraps | kHoles},
+      {"shared border",
+       [](Random& r) {
+         const Size size = one_of({{12, 9}, {6, 4}, {2, 5}, {9, 9}}, r);
+         Samples<float> samples;
+         for (int i = 0; i < size.cols * size.rows; ++i) samples.push_back(static_cast<float>(uniform(r, 0, 6)));
+         const auto at = [&](int col, int row) -> float& {
+           return samples[static_cast<std::size_t>(row * size.cols + col)];
+         };
+         for (int row = 0; row < size.rows; ++row) at(size.cols - 1, row) = at(0, row);
+         for (int col = 0; col < size.cols; ++col) at(col, size.rows - 1) = at(col, 0);
+         return HeightField::own(std::move(samples), size.cols, size.rows,
+                                 with(Surface::bilinear, Wrap::shared_border));
+       },
+       kWraps},
+      {"periodic triangles",
+       [](Random& r) {
+         return rough(one_of({{7, 6}, {5, 5}, {1, 3}, {4, 8}}, r), r, with(Surface::triangles, Wrap::periodic));
+       },
+       kWraps | kTriangles},
+      {"int16 periodic with nodata",
+       [](Random& r) {
+         HeightFieldSettings settings = with(Surface::bilinear, Wrap::periodic);
+         settings.cell_x = settings.cell_y = 30, settings.scale = 0.1, settings.nodata = -9999;
+         return make<std::int16_t>({7, 10}, settings,
+                                   [&](int, int) { return uniform(r, 0, 1) < 0.05 ? -9999 : whole(r, -400, 400); });
+       },
+       kWraps | kHoles},
+      {"solid with holes",
+       [](Random& r) {
+         return with_holes({14, 11}, r, with(Surface::bilinear, Wrap::none, true));
+       },
+       kHoles},
+      {"solid triangles with holes",
+       [](Random& r) {
+         return with_holes({10, 13}, r, with(Surface::triangles, Wrap::none, true));
+       },
+       kTriangles | kHoles},
+      {"solid periodic with holes",
+       [](Random& r) {
+         return with_holes({6, 9}, r, with(Surface::bilinear, Wrap::periodic, true));
+       },
+       kWraps | kHoles},
+      {"solid cliff",
+       [](Random& r) {
+         const int at = whole(r, 1, 9);
+         return make<float>({11, 11}, with(Surface::bilinear, Wrap::none, true),
+                            [=](int c, int) { return c < at ? 0.0 : 1000.0; });
        }},
   };
   return kinds;

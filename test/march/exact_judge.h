@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// What a ray meets, in rational arithmetic: no rounding, so ties are ties. For small fields.
+//
+// The chain of cells, what counts as a hit and the order of ties are those that ray.h, height_field.h and
+// doc/dev/numerics.md state; nothing here is shared with the marches. Signs are exact. A root that is no rational is
+// not computed: it is compared with rationals, by signs.
+#pragma once
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <vector>
+
+#include "scarp/field/height_field.h"
+
+namespace scarp::test {
+
+using Rational = boost::multiprecision::cpp_rational;
+
+/// A hit: where f(t - begin) = (a s + b) s + c, the clearance, falls to zero in [begin, end]; at `begin` for walls and
+/// for touches there.
+struct ExactHit {
+  Rational begin, end, a, b, c;
+  bool at_begin = false;
+  bool wall = false;
+
+  /// Whether the hit is at t or before.
+  bool not_after(const Rational& t) const;
+  /// Whether it is within `tolerance` > 0 of t.
+  bool is_at(double t, double tolerance) const;
+};
+
+struct ExactAnswer {
+  HitStatus status = HitStatus::miss;
+  std::vector<ExactHit> hits;  ///< in the order of t
+};
+
+/// All hits of a ray, whose range is finite where the field wraps round.
+ExactAnswer cast_exactly(const HeightField& field, const Ray& ray);
+
+}  // namespace scarp::test
