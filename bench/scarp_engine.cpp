@@ -33,7 +33,8 @@ void set_functions(Engine& engine, const Closest& closest, const Blocked& blocke
 }  // namespace
 
 ScarpGround::ScarpGround(const HeightField& field)
-    : field_(field), pyramid_([&] {
+    : field_(field),
+      pyramid_([&] {
         const Stopwatch watch;
         MaxPyramid pyramid(field);
         build_s_ = watch.wall_s();

@@ -152,7 +152,13 @@ class Caster {
  public:
   Caster(const CastOptions& options, const HeightField& field, const MarchEntry& march, const CoordinateFrame& frame,
          const RayTable& table, HitTable& out)
-      : field_(field), march_(march), settings_(options.march_settings), frame_(frame), table_(table), out_(out), all_(all_hits_of(options, march)) {
+      : field_(field),
+        march_(march),
+        settings_(options.march_settings),
+        frame_(frame),
+        table_(table),
+        out_(out),
+        all_(all_hits_of(options, march)) {
     if (march.needs_pyramid) pyramid_.emplace(field);
     target_ = {&field_, pyramid_ ? &*pyramid_ : nullptr,
                march.needs_slope ? slope_bound(field) : std::numeric_limits<double>::quiet_NaN()};

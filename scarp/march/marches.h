@@ -39,7 +39,7 @@ struct RelaxedSettings {
 
 /// `lipschitz`: t += shrink * h, stops where shrink * h <= tolerance * t.
 struct LipschitzSettings {
-  double shrink = 0;          ///< of the vertical distance h, above 0 and at most 1; 0: 1 / sqrt(1 + c^2), c the slope bound
+  double shrink = 0;  ///< of the vertical distance h, above 0 and at most 1; 0: 1 / sqrt(1 + c^2), c the slope bound
   double tolerance = 0.0005;  ///< distance to the ground that counts as a hit, per unit of distance travelled, >= 0
   int max_steps = 1024;       ///< >= 1
 };

@@ -13,7 +13,8 @@
 #include "scarp/march/rounding.h"
 
 // Internal linkage, though in a header: included by one file, which lets the compiler put functions that are called
-// once into their caller. With them outside, the walk keeps its state in memory, and a ray takes a tenth longer.
+// once into their caller. With them outside, the walk keeps its state in memory, and a ray takes a tenth longer; for
+// the same reason the usual way through a cell is inlined, and the rare ones are not.
 namespace scarp::max_mip {
 namespace {
 
@@ -260,7 +261,7 @@ class Walk {
           // After a line of constant column, rows' lines of the same time are still ahead: the order of ties. The near
           // side of a narrow last block is the seam, which was crossed to come here.
           const double middle_x = x.line_time((2 * col + 1) << level), middle_y = y.line_time((2 * row + 1) << level);
-          const bool entered = !y.ahead && ((2 * row + 1) << level) >= y.cells;
+          const bool entered = wraps_ && !y.ahead && ((2 * row + 1) << level) >= y.cells;
           const bool behind_x = middle_x <= t_in, behind_y = after_x_ && !entered ? middle_y < t_in : middle_y <= t_in;
           col = std::min(2 * col + (behind_x ? x.ahead : 1 - x.ahead), (x.cells - 1) >> level);
           row = std::min(2 * row + (behind_y ? y.ahead : 1 - y.ahead), (y.cells - 1) >> level);
@@ -357,7 +358,7 @@ class Walk {
   }
 
   // The surface of the current cell; true: answered. Otherwise side_ is that of the way out.
-  bool test_cell(const CellHeights& h, bool through_x, double t_line, double t_out) {
+  [[gnu::always_inline]] bool test_cell(const CellHeights& h, bool through_x, double t_line, double t_out) {
     ++stats.cell_tests;
     if (side_ == Side::unknown && find_side(h)) return true;
     const Through exit = t_line > t_end_ ? Through::point : through_x ? Through::x_line : Through::y_line;
@@ -365,21 +366,24 @@ class Walk {
     return triangles_ ? test_triangles(h, out, t_out) : test_bilinear(h, out, t_out);
   }
 
-  // Begins with the question where the ray is; true: that is the answer.
-  bool find_side(const CellHeights& h) {
+  // Begins with the question where the ray is; true: that is the answer. There is no crossing before this one to agree
+  // with. A ray that comes over a rim within rounding of it touches it, whatever the sign: else one through the corner
+  // of a hole, above on the one side, could be below on the other.
+  [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);
-    if (in == 0 && !strict_) {
+    const bool on_rim = in <= 0 && -in <= rounding_of_clearance(t_in_);
+    if (on_rim && !strict_) {
       side_ = Side::below;
       return answer(0.0);
     }
-    side_ = in >= 0 ? Side::above : Side::below;
+    side_ = in >= 0 || on_rim ? Side::above : Side::below;
     if (side_ == Side::above) return false;
     if (solid_ && (begun_ || from_outside_)) return answer(0.0, true);
     if (!begun_ && answer_.status == HitStatus::miss) answer_.status = HitStatus::below;
     return false;
   }
 
-  bool test_bilinear(const CellHeights& h, double out, double t_out) {
+  [[gnu::always_inline]] bool test_bilinear(const CellHeights& h, double out, double t_out) {
     const double length = t_out - t_in_;
     if (side_ == Side::above) {
       if (out <= 0 && is_hit(out, t_out)) {
@@ -415,7 +419,7 @@ class Walk {
 
   // Two triangles: the signs at the way in, at the diagonal, if it is crossed, and at the way out; in between the
   // clearance is linear.
-  bool test_triangles(const CellHeights& h, double out, double t_out) {
+  [[gnu::noinline]] bool test_triangles(const CellHeights& h, double out, double t_out) {
     const double sum = static_cast<double>(x_.global_line(col_) + y_.global_line(row_) + 1);
     const double t_diagonal = (sum - (x_.origin + y_.origin)) / (x_.direction + y_.direction);
     double t_begin = t_in_;
@@ -488,7 +492,7 @@ class Walk {
   }
 
   using Level = MaxPyramid::Level;
-  static constexpr double kUnit = 0x1p-53;  // unit roundoff of double
+  static constexpr double kUnit = 0x1p-53;     // unit roundoff of double
   static constexpr double kCodeRoundings = 8;  // 6 on the way to a code, see numerics.md
 
   const HeightField& field_;

@@ -3,15 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/ground_order.h"
 
 namespace scarp {
 namespace {
 
 constexpr std::int64_t kRaysPerPiece = 256;
+constexpr std::size_t kRaysAtOnce = 1 << 22;  // what is put in order together
+constexpr std::size_t kAhead = 6;
 
 void require_same_length(std::size_t rays, std::size_t answers) {
   if (rays != answers) throw Error(fmt::format("batch: {} rays, room for {} answers", rays, answers));
@@ -19,12 +24,26 @@ void require_same_length(std::size_t rays, std::size_t answers) {
 
 bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// Calls answer(i) for each ray, on all threads.
+void prefetch(const Ray& ray) {
+  __builtin_prefetch(&ray);
+  __builtin_prefetch(reinterpret_cast<const char*>(&ray) + 64);  // the next cache line
+}
+
+// Calls answer(i) for each ray, on all threads, those over one tile of ground together where that pays.
 template <class Answer>
-void for_each_ray(std::size_t rays, const Answer& answer) {
-  parallel_for(static_cast<std::int64_t>(rays), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
-    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) answer(i);
-  });
+void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Answer& answer) {
+  for (std::size_t first = 0; first < rays.size(); first += kRaysAtOnce) {
+    const std::span<const Ray> part = rays.subspan(first, std::min(kRaysAtOnce, rays.size() - first));
+    const std::vector<std::uint32_t> order = ground_order(field, part);
+    parallel_for(static_cast<std::int64_t>(part.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
+      const auto last = static_cast<std::size_t>(end);
+      for (auto i = static_cast<std::size_t>(begin); i < last; ++i) {
+        // In another order than they lie, rays have to be sent for early.
+        if (!order.empty() && i + kAhead < last) prefetch(part[order[i + kAhead]]);
+        answer(first + (order.empty() ? i : order[i]));
+      }
+    });
+  }
 }
 
 }  // namespace
@@ -32,13 +51,13 @@ void for_each_ray(std::size_t rays, const Answer& answer) {
 void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits, const MarchEntry& march,
                   const MarchSettings& settings) {
   require_same_length(rays.size(), hits.size());
-  for_each_ray(rays.size(), [&](std::size_t i) { hits[i] = march.cpu(target, rays[i], settings, nullptr); });
+  for_each_ray(*target.field, rays, [&](std::size_t i) { hits[i] = march.cpu(target, rays[i], settings, nullptr); });
 }
 
 void occluded(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
               const MarchEntry& march, const MarchSettings& settings) {
   require_same_length(rays.size(), blocked.size());
-  for_each_ray(rays.size(), [&](std::size_t i) {
+  for_each_ray(*target.field, rays, [&](std::size_t i) {
     blocked[i] = march.cpu_occluded ? march.cpu_occluded(target, rays[i])
                                     : march.cpu(target, rays[i], settings, nullptr).status == HitStatus::hit;
   });

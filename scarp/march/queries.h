@@ -5,8 +5,8 @@
 //   hits out  [ h0 h1 h2 h3 ... ]        in which they were found
 //
 // One call answers all rays, on all threads. Large batches of rays without order over large fields are answered in the
-// order of the ground that they begin over, so that neighbours in time are neighbours in memory; see queries.cpp for
-// when that pays.
+// order of the ground that they begin over, so that neighbours in time are neighbours in memory; ground_order.h says
+// when.
 #pragma once
 
 #include <cstdint>

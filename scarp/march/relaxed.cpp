@@ -49,9 +49,8 @@ Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSetting
   MarchStats counted;
   Hit hit;
   if (target.field->has_cells() && !target.field->all_nodata()) {
-    hit = target.field->visit([&](const auto& grid) {
-      return march(Ground(*target.field, grid, ray), ray, settings.relaxed, counted);
-    });
+    hit = target.field->visit(
+        [&](const auto& grid) { return march(Ground(*target.field, grid, ray), ray, settings.relaxed, counted); });
   }
   if (stats) *stats = counted;
   return hit;

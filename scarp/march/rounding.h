@@ -10,15 +10,17 @@
 namespace scarp {
 
 /// The most that rounding adds to ray height - surface height at time t, in sample units, on the way from world
-/// coordinates to a march's clearance: 16 u times the quantities that go into it.
+/// coordinates to a march's clearance: 16 u times the quantities that go into it, those that the ray was shifted by on
+/// its way into the grid included.
 inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t) {
   constexpr double kUnit = 0x1p-53;  // unit roundoff of double
   constexpr double kRoundings = 16;  // numerics.md counts 11
   const double low = field.min_sample(), high = field.max_sample();
-  const double sideways =
-      std::abs(ray.origin.x) + std::abs(ray.direction.x * t) + std::abs(ray.origin.y) + std::abs(ray.direction.y * t);
-  const double upright =
-      std::abs(ray.origin.z) + std::abs(ray.direction.z * t) + std::max(std::abs(low), std::abs(high));
+  const double sideways = std::abs(ray.origin.x) + std::abs(ray.direction.x * t) + std::abs(ray.origin.y) +
+                          std::abs(ray.direction.y * t) + field.rows();
+  const double upright = std::abs(ray.origin.z) + std::abs(ray.direction.z * t) +
+                         std::max(std::abs(low), std::abs(high)) +
+                         std::abs(field.settings().offset) / field.settings().scale;
   return kRoundings * kUnit * (upright + sideways * (high - low));
 }
 

@@ -98,7 +98,7 @@ vec3 Shader::light_on(const Ray& ray, const Hit& hit, const PicturePoint& point)
   const auto samples = [&](std::uint32_t purpose) {
     const auto count = static_cast<std::uint32_t>(settings_.samples);
     return PatternRange{pattern_.pixel(point.pixel_x, point.pixel_y, purpose),
-                       count * static_cast<std::uint32_t>(point.index), count};
+                        count * static_cast<std::uint32_t>(point.index), count};
   };
   double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = 1;
   if (settings_.shadows && settings_.samples > 0) {

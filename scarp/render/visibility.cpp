@@ -25,7 +25,8 @@ GroundPoint ground_point(const HeightField& field, const Ray& ray, const Hit& hi
   return {ray.at(hit.t), hit.cell, field.normal(hit.cell, hit.u, hit.v), field.shading_normal(hit.cell, hit.u, hit.v)};
 }
 
-double sky_occlusion(const TerrainScene& scene, const GroundPoint& point, double distance, const PatternRange& samples) {
+double sky_occlusion(const TerrainScene& scene, const GroundPoint& point, double distance,
+                     const PatternRange& samples) {
   const Frame frame(point.normal);
   int blocked = 0;
   for (std::uint32_t i = samples.first; i < samples.first + samples.count; ++i) {

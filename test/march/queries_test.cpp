@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
 #include "march/spiteful.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
+#include "scarp/march/ground_order.h"
+#include "scarp/march/max_mip.h"
 
 namespace scarp::test {
 namespace {
@@ -85,6 +88,65 @@ TEST(Queries, RaysFromOutsideAreChecked) {
   EXPECT_FALSE(refused(field, from(0)));
   EXPECT_TRUE(refused(field, from(1)));
   EXPECT_TRUE(refused(field, from(2)));
+}
+
+// A field that no cache holds: large batches over it are answered in another order.
+HeightField large() {
+  const int cols = 4200, rows = 2100;
+  std::vector<std::int16_t> samples;
+  samples.reserve(static_cast<std::size_t>(cols) * rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) samples.push_back(static_cast<std::int16_t>((col * 7919 + row * 104729) % 97));
+  }
+  return HeightField::own(std::move(samples), cols, rows);
+}
+
+std::vector<Ray> anywhere(const HeightField& field, std::size_t count, Random& random) {
+  std::vector<Ray> rays(count);
+  for (Ray& ray : rays) {
+    ray.origin = {uniform(random, 0, field.width()), uniform(random, 0, field.depth()), uniform(random, 50, 300)};
+    ray.direction = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 0.2)};
+  }
+  return rays;
+}
+
+TEST(Queries, AnswersStandWhereTheirRaysStandWhateverTheOrder) {
+  const HeightField field = large();
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  Random random(23);
+  const std::vector<Ray> rays = anywhere(field, 20000, random);
+
+  std::vector<std::uint32_t> order = ground_order(field, rays);
+  ASSERT_EQ(order.size(), rays.size());
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> blocked(rays.size());
+  closest_hits(target, rays, hits);
+  occluded(target, rays, blocked);
+  int found = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Hit hit = march_max_mip(target, rays[i]);
+    found += bool(hit);
+    ASSERT_EQ(hits[i].status, hit.status);
+    ASSERT_EQ(hits[i].t, hit.t);
+    ASSERT_EQ(blocked[i] != 0, bool(hit));
+  }
+  EXPECT_GT(found, 5000);
+
+  // Each ray once; and, in the new order, there is nothing left to put in order.
+  std::vector<Ray> ordered;
+  for (const std::uint32_t i : order) ordered.push_back(rays[i]);
+  EXPECT_TRUE(ground_order(field, ordered).empty());
+  std::sort(order.begin(), order.end());
+  for (std::size_t i = 0; i < order.size(); ++i) ASSERT_EQ(order[i], i);
+}
+
+TEST(Queries, IsLeftInItsOrderWhereAnotherIsNotWorthIt) {
+  const HeightField field = large();
+  Random random(24);
+  EXPECT_TRUE(ground_order(field, anywhere(field, 100, random)).empty());
+  const HeightField small = HeightField::own(std::vector<float>(10000, 0.f), 100, 100);
+  EXPECT_TRUE(ground_order(small, anywhere(small, 20000, random)).empty());
 }
 
 }  // namespace

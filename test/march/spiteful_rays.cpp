@@ -283,7 +283,7 @@ const std::vector<RayKind>& endless_rays() {
          Ray ray = towards(anywhere_in(f, r), anywhere_in(f, r));
          ray.origin.z = high(f) + uniform(r, 0, 0.5) * tall(f);
          ray.direction.z = -uniform(r, 0, 0.1) * tall(f);
-         return ended(f, r, ray, 60);
+         return ended(f, r, ray, 12);
        },
        kWraps},
   };

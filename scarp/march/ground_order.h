@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// The order in which a batch of rays is answered fastest: that of the ground that they begin over.
+//
+//   tiles of ground in Morton order    0 1 4 5
+//                                      2 3 6 7     rays over one tile together: the samples and the entries of the
+//                                      8 9 ...     pyramid that one has fetched, the next finds in the cache
+//
+// Source: G. M. Morton, 1966, for the order of the tiles; M. Pharr, C. Kolb, R. Gershbein, P. Hanrahan, "Rendering
+// complex scenes with memory-coherent ray tracing", SIGGRAPH 1997, for the idea. Cost: one pass over the rays and a
+// counting sort, some 20 ns per ray.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "scarp/base/ray.h"
+#include "scarp/field/height_field.h"
+
+namespace scarp {
+
+/// Indices of the rays (at most 2^32) in the order of the tiles over which they come to the ground's height; empty
+/// where the order given is as good: for few rays, fields that fit into a cache, and rays of which most begin near the
+/// one before.
+std::vector<std::uint32_t> ground_order(const HeightField& field, std::span<const Ray> rays);
+
+}  // namespace scarp
