@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/fields.h"
@@ -68,5 +69,12 @@ struct EditsOptions {
   int edits = 200;
 };
 void run_edits(const EditsOptions& options, const ReportOptions& report);
+
+/// `extents`: the largest fields, int16, beside windows cut out of them.
+struct ExtentsOptions {
+  std::vector<std::pair<int, int>> sizes{{65536, 512}, {65536, 65536}};  ///< columns and rows
+  std::int64_t windows = 256;                                            ///< each with 256 rays
+};
+void run_extents(const ExtentsOptions& options, const ReportOptions& report);
 
 }  // namespace scarp::bench

@@ -1,18 +1,29 @@
 // SPDX-License-Identifier: MIT
 // scarp-bench: Scarp beside its peers, on the same rays in the same run. What is measured and how: bench/README.md.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <string>
 #include <thread>
 
 #include "bench/commands.h"
+#include "scarp/base/error.h"
 
 namespace {
 
 using namespace scarp::bench;
 
 constexpr int kLeastSize = 33, kMostSize = 32767;  // Embree's grids end there
+
+std::pair<int, int> size_from(const std::string& text) {
+  int cols = 0, rows = 0, end = 0;
+  if (std::sscanf(text.c_str(), "%dx%d%n", &cols, &rows, &end) != 2 || text.c_str()[end] != '\0' ||
+      std::max(cols, rows) > 65536 || std::min(cols, rows) < 1) {
+    throw scarp::Error("--sizes '" + text + "': expected COLSxROWS, each at most 65536, for example 65536x512");
+  }
+  return {cols, rows};
+}
 
 void add_trace_options(CLI::App& command, TraceOptions& trace) {
   command.add_option("--dem", trace.field.dem, "a raster file without holes, instead of a procedural DEM");
@@ -137,6 +148,17 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*edits_command, report);
 
+  ExtentsOptions extents;
+  std::vector<std::string> extent_sizes{"65536x512", "65536x65536"};
+  CLI::App* extents_command = app.add_subcommand("extents", "the largest fields, beside windows cut out of them");
+  extents_command->add_option("--sizes", extent_sizes, "COLSxROWS, one or several; 65536x65536 takes 15 GB")
+      ->delimiter(',')
+      ->capture_default_str();
+  extents_command->add_option("--windows", extents.windows, "windows, of 256 rays each")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  add_json_option(*extents_command, report);
+
   CLI11_PARSE(app, argc, argv);
   leaks.rays = static_cast<std::int64_t>(leak_rays);
   leaks.embree_rays = static_cast<std::int64_t>(embree_rays);
@@ -145,6 +167,11 @@ int run(int argc, char** argv) {
   if (*pyramid_command) run_pyramid(pyramid, report);
   if (*leaks_command) run_leaks(leaks, report);
   if (*edits_command) run_edits(edits, report);
+  if (*extents_command) {
+    extents.sizes.clear();
+    for (const std::string& text : extent_sizes) extents.sizes.push_back(size_from(text));
+    run_extents(extents, report);
+  }
   return 0;
 }
 

@@ -11,44 +11,49 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kEntriesPerPiece = 1 << 16;
-constexpr int kTopCode = 65535;
+constexpr double kTopCode = 65535;
 
 std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntriesPerPiece / std::max(cols, 1)); }
 
-// From samples to codes, outwards.
+// From samples to codes, outwards. For floats the quotient may be rounded to either side: what counts is the height
+// that the code stands for. All in double and without branches, of which compilers make vector instructions. A block of
+// holes has -infinity here, and the lowest code.
+double code_place(const HeightCode& code, double height) {
+  const double place = (height - code.base) * code.per_step;
+  const double above = place > 0 ? place : 0;
+  return above < kTopCode ? above : kTopCode;
+}
+double whole(double place) { return static_cast<double>(static_cast<int>(place)); }
+
 template <class T>
-struct Coder {
-  HeightCode code;
-
-  // Between codes, as a number that conversion cuts off downwards: cheaper than floor and ceil of libm.
-  double place(double height) const { return std::clamp((height - code.base) * code.per_step, 0.0, double{kTopCode}); }
-
-  std::uint16_t above(T sample) const {
+void encode_above(const HeightCode& code, const T* samples, int count, std::uint16_t* codes) {
+  for (int i = 0; i < count; ++i) {
     if constexpr (std::is_integral_v<T>) {
-      return static_cast<std::uint16_t>(sample - std::numeric_limits<T>::lowest());
+      codes[i] = static_cast<std::uint16_t>(samples[i] - std::numeric_limits<T>::lowest());
     } else {
-      // The quotient may be rounded to either side: what counts is the height that the code stands for. A block of
-      // holes has -infinity here, and the lowest code.
-      const double height = static_cast<double>(sample);
-      const double near = place(height);
-      const auto down = static_cast<std::uint16_t>(near);
-      const auto first = static_cast<std::uint16_t>(down + (down < near));
-      return static_cast<std::uint16_t>(first + (code.height(first) < height && first < kTopCode));
+      const double height = static_cast<double>(samples[i]), place = code_place(code, height);
+      const double down = whole(place), first = down + (down < place ? 1.0 : 0.0);
+      const double good = first + (code.base + code.step * first < height ? 1.0 : 0.0);
+      codes[i] = static_cast<std::uint16_t>(static_cast<int>(good < kTopCode ? good : kTopCode));
     }
   }
-  std::uint16_t below(T sample) const {
+}
+
+template <class T>
+void encode_below(const HeightCode& code, const T* samples, int count, std::uint16_t* codes) {
+  for (int i = 0; i < count; ++i) {
     if constexpr (std::is_integral_v<T>) {
-      return static_cast<std::uint16_t>(sample - std::numeric_limits<T>::lowest());
+      codes[i] = static_cast<std::uint16_t>(samples[i] - std::numeric_limits<T>::lowest());
     } else {
-      const double height = static_cast<double>(sample);
-      const auto first = static_cast<std::uint16_t>(place(height));
-      return static_cast<std::uint16_t>(first - (code.height(first) > height && first > 0));
+      const double height = static_cast<double>(samples[i]), first = whole(code_place(code, height));
+      const double good = first - (code.base + code.step * first > height ? 1.0 : 0.0);
+      codes[i] = static_cast<std::uint16_t>(static_cast<int>(good > 0 ? good : 0.0));
     }
   }
-};
+}
 
-// One row of cells, columns [begin, end): the extremes of each cell's four corners. Holes: lowest for both, so that
-// they raise no maximum and leave no minimum.
+// One row of cells, columns [begin, end), of a field with holes: the extremes of each cell's four corners; for holes
+// the lowest for both, so that they raise no maximum and leave no minimum.
 template <class T>
 void extremes_of_cells(const SampleGrid<T>& grid, int row, int begin, int end, T* highest, T* lowest) {
   constexpr T kHole =
@@ -61,7 +66,6 @@ void extremes_of_cells(const SampleGrid<T>& grid, int row, int begin, int end, T
   const int plain_end = std::min(end, grid.cols - 1);
   for (int col = begin; col < plain_end; ++col) extremes(col, col + 1);
   if (plain_end < end) extremes(plain_end, grid.east(plain_end));
-  if (!grid.has_holes) return;
   for (int col = begin; col < end; ++col) {
     if (grid.is_hole(col, row)) highest[col - begin] = lowest[col - begin] = kHole;
   }
@@ -84,26 +88,59 @@ struct Part {
   int col_begin, row_begin, col_end, row_end;
 };
 
-// Level 1, from the samples; the rows of cells in between live for a moment only.
+// Extremes of blocks of 2 x 2 cells where there are no holes: of 3 x 3 samples, first down each column of samples, then
+// across. `south` is `middle` at an odd end of the field.
 template <class T>
-void build_first(const SampleGrid<T>& grid, const Coder<T>& coder, const Part& part, int cols, std::uint16_t* maxima,
+void extremes_of_samples(const SampleGrid<T>& grid, const T* north, const T* middle, const T* south, int begin, int end,
+                         T* highest, T* lowest, T* high, T* low) {
+  const int plain = std::min(end + 1, grid.cols) - begin;
+  for (int i = 0; i < plain; ++i) {
+    const T a = north[begin + i], b = middle[begin + i], c = south[begin + i];
+    const T most = a > b ? a : b, least = a < b ? a : b;
+    highest[i] = most > c ? most : c;
+    lowest[i] = least < c ? least : c;
+  }
+  if (end == grid.cols) {
+    // The last cell of a field that wraps round ends at the first column.
+    highest[plain] = std::max({north[0], middle[0], south[0]});
+    lowest[plain] = std::min({north[0], middle[0], south[0]});
+  }
+  const int pairs = (end - begin) / 2;
+  for (int i = 0; i < pairs; ++i) {
+    high[i] = std::max({highest[2 * i], highest[2 * i + 1], highest[2 * i + 2]});
+    low[i] = std::min({lowest[2 * i], lowest[2 * i + 1], lowest[2 * i + 2]});
+  }
+  if ((end - begin) % 2 != 0) {
+    high[pairs] = std::max(highest[2 * pairs], highest[2 * pairs + 1]);
+    low[pairs] = std::min(lowest[2 * pairs], lowest[2 * pairs + 1]);
+  }
+}
+
+// Level 1, from the samples; the rows in between live for a moment only.
+template <class T>
+void build_first(const SampleGrid<T>& grid, const HeightCode& code, const Part& part, int cols, std::uint16_t* maxima,
                  std::uint16_t* minima) {
   const int begin = 2 * part.col_begin, end = std::min(2 * part.col_end, grid.cell_cols);
   const int width = part.col_end - part.col_begin;
   parallel_for(part.row_end - part.row_begin, rows_per_piece(width), [&](std::int64_t first, std::int64_t last) {
     const auto cells = static_cast<std::size_t>(end - begin);
-    std::vector<T> highest(2 * cells), lowest(2 * cells), high(static_cast<std::size_t>(width)), low(high.size());
+    std::vector<T> highest(2 * cells + 1), lowest(2 * cells + 1), high(static_cast<std::size_t>(width)),
+        low(high.size());
     for (int row = part.row_begin + static_cast<int>(first); row < part.row_begin + last; ++row) {
-      extremes_of_cells(grid, 2 * row, begin, end, highest.data(), lowest.data());
       const std::size_t second = 2 * row + 1 < grid.cell_rows ? cells : 0;
-      if (second) extremes_of_cells(grid, 2 * row + 1, begin, end, highest.data() + cells, lowest.data() + cells);
-      pick_of_four(highest.data(), highest.data() + second, end - begin, high.data(), kHigher);
-      pick_of_four(lowest.data(), lowest.data() + second, end - begin, low.data(), kLower);
-      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row) * cols + part.col_begin;
-      for (int col = 0; col < width; ++col) {
-        maxima[at + col] = coder.above(high[static_cast<std::size_t>(col)]);
-        minima[at + col] = coder.below(low[static_cast<std::size_t>(col)]);
+      if (grid.has_holes) {
+        extremes_of_cells(grid, 2 * row, begin, end, highest.data(), lowest.data());
+        if (second) extremes_of_cells(grid, 2 * row + 1, begin, end, highest.data() + cells, lowest.data() + cells);
+        pick_of_four(highest.data(), highest.data() + second, end - begin, high.data(), kHigher);
+        pick_of_four(lowest.data(), lowest.data() + second, end - begin, low.data(), kLower);
+      } else {
+        const int middle = grid.south(2 * row), beyond = second ? grid.south(middle) : middle;
+        extremes_of_samples(grid, grid.row(2 * row), grid.row(middle), grid.row(beyond), begin, end, highest.data(),
+                            lowest.data(), high.data(), low.data());
       }
+      const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row) * cols + part.col_begin;
+      encode_above(code, high.data(), width, maxima + at);
+      encode_below(code, low.data(), width, minima + at);
     }
   });
 }
@@ -161,7 +198,7 @@ void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleR
   do {
     code = {range.low - 1.5 * step, step, 1 / step};
     step *= 1 + 0x1p-20;
-  } while (code.height(kTopCode) < range.high);
+  } while (code.height(static_cast<std::uint16_t>(kTopCode)) < range.high);
 }
 
 void MaxPyramid::update(const HeightField& field, const CellBox& changed) {
@@ -188,8 +225,7 @@ void MaxPyramid::build(const HeightField& field, CellBox changed) {
     const Level& level = levels_[l];
     if (l == 0) {
       field.visit([&](const auto& grid) {
-        using T = std::remove_cvref_t<decltype(grid.data[0])>;
-        build_first(grid, Coder<T>{shared_->code}, part, level.cols, maxima, minima);
+        build_first(grid, shared_->code, part, level.cols, maxima, minima);
       });
       continue;
     }
