@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "scarp/base/error.h"
@@ -80,6 +82,13 @@ class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path), in_(path) {
     if (!in_) throw Error(fmt::format("'{}': cannot be opened", path));
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) {
+      throw Error(fmt::format("'{}': is a directory; a file is needed", path));
+    }
+    if (in_.peek() == std::ifstream::traits_type::eof()) {
+      throw Error(fmt::format("'{}': is empty; the first line must be '{}'", path, kHead));
+    }
   }
 
   std::vector<RayDump> read() {
