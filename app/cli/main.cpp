@@ -25,16 +25,14 @@ int fail(std::string text, int status) {
   return status;
 }
 
-// "--seed 'x': expected a whole number from 0" for a value that CLI11 could not convert.
+// "--fov 'x': expected a number" for a value that CLI11 could not convert.
 std::string unconverted(const CLI::ConversionError& error, const CLI::App& called) {
   for (const CLI::Option* option : called.get_options()) {
-    const std::string name = option->get_name(), type = option->get_type_name();
+    const std::string name = option->get_name();
     const std::string before = "Could not convert: " + name + " = ", text = error.what();
     if (!text.starts_with(before)) continue;
     return name + " '" + text.substr(before.size()) + "': expected " +
-           (type == "FLOAT"  ? "a number"
-            : type == "UINT" ? "a whole number from 0"
-                             : "a whole number");
+           (option->get_type_name() == "FLOAT" ? "a number" : "a whole number");
   }
   return error.what();
 }

@@ -86,9 +86,6 @@ class Reader {
     if (std::filesystem::is_directory(path, ignored)) {
       throw Error(fmt::format("'{}': is a directory; a file is needed", path));
     }
-    if (in_.peek() == std::ifstream::traits_type::eof()) {
-      throw Error(fmt::format("'{}': is empty; the first line must be '{}'", path, kHead));
-    }
   }
 
   std::vector<RayDump> read() {
@@ -120,7 +117,7 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("'{}', line {}: {}", path_, number_, what));
+    throw Error(fmt::format("'{}', line {}: {}", path_, std::max(1, number_), what));
   }
 
   // The next line with anything to read; false at the end.
