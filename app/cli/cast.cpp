@@ -26,6 +26,7 @@
 #include "scarp/march/exhaustive.h"
 #include "scarp/march/max_mip.h"
 #include "scarp/march/queries.h"
+#include "scarp/march/wall.h"
 #include "scarp/output/hit_table.h"
 #include "scarp/scene/from_raster.h"
 #include "scarp/source/coordinates.h"
@@ -109,14 +110,6 @@ CoordinateFrame frame_of(const CastOptions& options, const Raster& raster) {
   } catch (const Error& error) {
     throw Error(fmt::format("raster '{}': {}", raster.path, error.what()));
   }
-}
-
-// A wall stands on the side of its cell through which the ray came in: the one that the hit lies on.
-dvec3 wall_normal(const Ray& ray, const Hit& hit) {
-  const dvec3& d = ray.direction;
-  const double from_x = d.x > 0 ? hit.u : 1 - hit.u, from_y = d.y > 0 ? 1 - hit.v : hit.v;
-  if (d.y == 0 || (d.x != 0 && from_x <= from_y)) return {d.x > 0 ? -1 : 1, 0, 0};
-  return {0, d.y > 0 ? -1 : 1, 0};
 }
 
 void check(const RayTable& table, std::span<const Ray> rays, const HeightField& field) {

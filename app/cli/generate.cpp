@@ -2,8 +2,12 @@
 // `scarp generate`: procedural terrain of any size as a GeoTIFF.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -37,6 +41,14 @@ void run(GenerateOptions options) {
   const auto kind = terrain_kind(options.kind);
   if (!kind) throw Error(fmt::format("--kind '{}': expected fbm or ridged", options.kind));
   terrain.kind = *kind;
+  // A name that ends in .png is a slip: what is there is a picture, and no program would open the new file as one.
+  std::string extension = std::filesystem::path(options.output).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (!options.output.empty() && extension != ".tif" && extension != ".tiff") {
+    throw Error(
+        fmt::format("output '{}': terrain is written as GeoTIFF; let the name end in .tif or .tiff", options.output));
+  }
   const ThreadLimit limit(options.threads);
 
   const auto begin = std::chrono::steady_clock::now();
@@ -59,11 +71,14 @@ void add_generate(CLI::App& program) {
   command->add_option("-o,--output", o.output, "the GeoTIFF to write")->required();
   command->add_option("--seed", o.terrain.seed, "which terrain; any whole number from 0")
       ->check([](const std::string& text) {
-        return text.starts_with('-') ? "'" + text + "': expected a whole number from 0" : std::string();
+        return check_whole_number(text, std::numeric_limits<decltype(o.terrain.seed)>::max());
       })
       ->capture_default_str();
   command->add_option("--kind", o.kind, "fbm (rolling mountains) or ridged (sharp crests)")->capture_default_str();
-  command->add_option("--cell", o.terrain.cell_m, "metres from sample to sample; above 0")->capture_default_str();
+  command
+      ->add_option("--cell", o.terrain.cell_m,
+                   fmt::format("metres from sample to sample; above 0, at most {}", kLargestProceduralCell))
+      ->capture_default_str();
   command->add_option("--wavelength", o.terrain.wavelength,
                       "of the largest features, in samples, from 2 (the lesser of 1024 and half the longer side)");
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();

@@ -25,6 +25,37 @@ int fail(std::string text, int status) {
   return status;
 }
 
+// "--fov 'x': expected a number" for a value that CLI11 could not convert.
+std::string unconverted(const CLI::ConversionError& error, const CLI::App& called) {
+  for (const CLI::Option* option : called.get_options()) {
+    const std::string name = option->get_name();
+    const std::string before = "Could not convert: " + name + " = ", text = error.what();
+    if (!text.starts_with(before)) continue;
+    return name + " '" + text.substr(before.size()) + "': expected " +
+           (option->get_type_name() == "FLOAT" ? "a number" : "a whole number");
+  }
+  return error.what();
+}
+
+std::string wrong_usage(const CLI::ParseError& error, const CLI::App& called) {
+  if (const auto* conversion = dynamic_cast<const CLI::ConversionError*>(&error)) {
+    return unconverted(*conversion, called);
+  }
+  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
+    // What is missing was perhaps given, under a name that is wrong.
+    for (const std::string& argument : called.remaining()) {
+      if (argument.starts_with('-')) return "The following argument was not expected: " + argument;
+    }
+  }
+  return error.what();
+}
+
+int flush_output() {
+  // Who has flushed before, as CLI11 does, has had the error, too.
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  return fail("standard output cannot be written; is the disk full?", kFailed);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -44,13 +75,16 @@ int main(int argc, char** argv) {
   scarp::cli::catch_interrupts();
   try {
     program.parse(argc, argv);
-    if (std::fflush(stdout) != 0) return fail("standard output cannot be written; is the disk full?", kFailed);
-    return 0;
+    return flush_output();
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return program.exit(error);  // --help, --version
-    const auto called = program.get_subcommands();
-    const std::string help = called.empty() ? "scarp --help" : "scarp " + called.front()->get_name() + " --help";
-    return fail(std::string(error.what()) + "; '" + help + "' tells what there is", kWrongUsage);
+    if (error.get_exit_code() == 0) {  // --help, --version
+      program.exit(error);
+      return flush_output();
+    }
+    const auto subcommands = program.get_subcommands();
+    const CLI::App& called = subcommands.empty() ? program : *subcommands.front();
+    const std::string help = subcommands.empty() ? "scarp --help" : "scarp " + called.get_name() + " --help";
+    return fail(wrong_usage(error, called) + "; '" + help + "' tells what there is", kWrongUsage);
   } catch (const scarp::Interrupted& error) {
     return fail(error.what(), kSignalled + scarp::cli::caught_signal());
   } catch (const std::bad_alloc&) {

@@ -29,4 +29,12 @@ std::vector<double> numbers_from(std::string_view text, char separator, std::siz
   return numbers;
 }
 
+std::string check_whole_number(const std::string& text, std::uint64_t most) {
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [rest, error] = std::from_chars(text.data(), end, number);
+  if (error == std::errc() && rest == end && number <= most) return {};
+  return fmt::format("'{}': expected a whole number from 0 to {}", text, most);
+}
+
 }  // namespace scarp::cli

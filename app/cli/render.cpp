@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -234,7 +235,11 @@ void add_render(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--ao-distance", o.picture.ao_distance,
                       "metres within which ground hides the sky (the whole field); 0: no ambient occlusion");
-  command->add_option("--seed", o.picture.seed, "of the pattern of --samples")->capture_default_str();
+  command->add_option("--seed", o.picture.seed, "of the pattern of --samples")
+      ->check([](const std::string& text) {
+        return check_whole_number(text, std::numeric_limits<decltype(o.picture.seed)>::max());
+      })
+      ->capture_default_str();
   command->add_flag("--no-plinth", o.no_plinth, "no walls below the terrain's border");
   command
       ->add_option("--haze", o.picture.haze, "share of haze over a distance as long as the field's diagonal, 0 to 0.95")

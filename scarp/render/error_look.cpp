@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "scarp/march/wall.h"
 #include "scarp/render/light.h"
 #include "scarp/render/ramp.h"
 
@@ -60,7 +61,11 @@ ErrorPicture render_error(const TerrainScene& scene, const Camera& camera, int w
         const Verdict verdict = judge(scene.closest_hit(ray), truth, picture.counts.tolerance_m);
         vec3 colour = linear_from_srgb(style_of(verdict).srgb);
         // Unshadowed relief behind all colours of ground, so that one sees where the errors are.
-        if (truth) colour *= light.on(field.shading_normal(truth.cell, truth.u, truth.v), true);
+        if (truth) {
+          const dvec3 normal =
+              truth.wall ? wall_normal(ray, truth) : field.shading_normal(truth.cell, truth.u, truth.v);
+          colour *= light.on(normal, true);
+        }
         set_pixel(picture.image, x, y, colour);
         verdicts[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = verdict;
       },

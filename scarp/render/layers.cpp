@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "scarp/base/error.h"
+#include "scarp/march/wall.h"
 #include "scarp/render/shader.h"
 
 namespace scarp {
@@ -46,7 +47,9 @@ PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, dou
         if (!sight.hit && !sight.wall) return;
         const dvec3 position = ray.at(sight.hit ? sight.hit.t : sight.wall->t);
         layers.depth[i] = static_cast<float>(dot(position - camera.eye(), camera.forward()));
-        layers.normal[i] = sight.hit ? field.normal(sight.hit.cell, sight.hit.u, sight.hit.v) : sight.wall->normal;
+        layers.normal[i] = !sight.hit       ? sight.wall->normal
+                           : sight.hit.wall ? wall_normal(ray, sight.hit)
+                                            : field.normal(sight.hit.cell, sight.hit.u, sight.hit.v);
         layers.position[i] = position;
       },
       progress);

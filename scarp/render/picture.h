@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A picture of a terrain scene, in one of several looks.
 //
-//   shaded  colours by height, sun with exact hard shadows (or, with `samples`, soft ones and ambient occlusion), sky,
-//   a
-//           block below the terrain
+//   shaded  colours by height, sun with exact hard shadows (or, with `samples`, soft ones and ambient occlusion),
+//           sky, a block below the terrain
 //   height  grey, linear in height from the field's lowest (1) to its highest point (255); misses are black (0)
 //   steps   what the march cost: steps per ray as a ramp from the least to the most in the picture
 //   error   where the march is wrong, see error_look.h

@@ -8,13 +8,14 @@
 #include <glm/common.hpp>
 
 #include "scarp/base/error.h"
+#include "scarp/march/wall.h"
 #include "scarp/render/sky.h"
 #include "scarp/render/visibility.h"
 
 namespace scarp {
 namespace {
 
-// The cut earth of the plinth, sRGB: flat, and darker on walls that the sun does not see.
+// The cut earth of the plinth and of solid ground, sRGB: flat, and darker on walls that the sun does not see.
 constexpr vec3 kEarth(0.64f, 0.58f, 0.53f);
 constexpr float kUnlitWall = 0.55f;
 
@@ -80,10 +81,18 @@ Shader::Shader(const TerrainScene& scene, const Camera& camera, double grid_nort
 vec3 Shader::colour(const PicturePoint& point) const {
   const Ray ray = camera_.ray(point.x, point.y);
   const Sight sight = look(scene_, plinth_, ray);
-  if (const Hit& hit = sight.hit) return in_haze(ramp_(ground_height(hit)) * light_on(ray, hit, point), hit.t);
+  if (const Hit& hit = sight.hit) {
+    const vec3 colour =
+        hit.wall ? wall_colour(wall_normal(ray, hit)) : ramp_(ground_height(hit)) * light_on(ray, hit, point);
+    return in_haze(colour, hit.t);
+  }
   if (!sight.wall) return sky_colour(ray.direction.z);
-  const auto lit = static_cast<float>(std::max(0.0, dot(sight.wall->normal, light_.to_sun())));
-  return in_haze(earth_ * (kUnlitWall + (1 - kUnlitWall) * lit), sight.wall->t);
+  return in_haze(wall_colour(sight.wall->normal), sight.wall->t);
+}
+
+vec3 Shader::wall_colour(const dvec3& normal) const {
+  const auto lit = static_cast<float>(std::max(0.0, dot(normal, light_.to_sun())));
+  return earth_ * (kUnlitWall + (1 - kUnlitWall) * lit);
 }
 
 // Of the surface, where hit.height is that of the ray: they differ by rounding, and a sea at 0 must not be speckled.

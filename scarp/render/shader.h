@@ -45,6 +45,7 @@ class Shader {
 
  private:
   double ground_height(const Hit& hit) const;
+  vec3 wall_colour(const dvec3& normal) const;
   vec3 light_on(const Ray& ray, const Hit& hit, const PicturePoint& point) const;
   vec3 in_haze(vec3 colour, double t) const;
 

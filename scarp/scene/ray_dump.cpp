@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "scarp/base/error.h"
@@ -80,6 +82,10 @@ class Reader {
  public:
   explicit Reader(const std::string& path) : path_(path), in_(path) {
     if (!in_) throw Error(fmt::format("'{}': cannot be opened", path));
+    std::error_code ignored;
+    if (std::filesystem::is_directory(path, ignored)) {
+      throw Error(fmt::format("'{}': is a directory; a file is needed", path));
+    }
   }
 
   std::vector<RayDump> read() {
@@ -111,7 +117,7 @@ class Reader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("'{}', line {}: {}", path_, number_, what));
+    throw Error(fmt::format("'{}', line {}: {}", path_, std::max(1, number_), what));
   }
 
   // The next line with anything to read; false at the end.

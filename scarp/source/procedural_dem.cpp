@@ -161,8 +161,9 @@ void validate(const ProceduralDem& s) {
     throw Error(fmt::format("procedural terrain: {} x {} samples; 1 x 1 to {} x {} are possible", s.cols, s.rows,
                             kLargestProceduralSide, kLargestProceduralSide));
   }
-  if (!(s.cell_m > 0 && std::isfinite(s.cell_m))) {
-    throw Error(fmt::format("procedural terrain: cells of {} m; a finite length above 0 is needed", s.cell_m));
+  if (!(s.cell_m > 0 && s.cell_m <= kLargestProceduralCell)) {
+    throw Error(fmt::format("procedural terrain: cells of {} m; above 0 and at most {} m are possible", s.cell_m,
+                            kLargestProceduralCell));
   }
   if (s.wavelength != 0 && !(s.wavelength >= kFinestWavelength && s.wavelength <= kLargestWavelength)) {
     throw Error(fmt::format("procedural terrain: a wavelength of {} cells; {} to {} are possible, 0 chooses one",

@@ -34,13 +34,15 @@ std::string_view name_of(TerrainKind kind);
 std::optional<TerrainKind> terrain_kind(std::string_view name);
 
 inline constexpr int kLargestProceduralSide = 65536;
+/// Metres; with it the highest mountains are far from the largest float32.
+inline constexpr int kLargestProceduralCell = 1000000;
 
 struct ProceduralDem {
   int cols = 1025;         ///< samples, 1..65536
   int rows = 1025;         ///< samples, 1..65536
   std::uint64_t seed = 1;  ///< any
   TerrainKind kind = TerrainKind::fbm;
-  double cell_m = 30;     ///< metres from sample to sample, > 0; relief is in proportion, so that slopes stay
+  double cell_m = 30;     ///< metres from sample to sample, > 0, <= 1000000; relief is in proportion: slopes stay
   double wavelength = 0;  ///< of the largest features, in cells, >= 2; 0: min(1024, half the longer side)
 };
 

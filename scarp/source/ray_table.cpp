@@ -91,7 +91,11 @@ class Header {
     } else {
       require({dx, dy, dz});
     }
-    if (has(start_col) != has(start_row)) require({start_col, start_row});
+    if (has(start_col) != has(start_row)) {
+      throw Error(fmt::format("its header has no column '{}', which goes with '{}'",
+                              kNames[has(start_col) ? start_row : start_col],
+                              kNames[has(start_col) ? start_col : start_row]));
+    }
     aim_ = targets ? RayAim::target : RayAim::direction;
   }
 

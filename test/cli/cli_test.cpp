@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 
@@ -59,7 +61,7 @@ TEST_F(Cli, RenderWritesAPictureAndOneLine) {
 
 TEST_F(Cli, EveryLookAndMarchRuns) {
   good();
-  for (const std::string march : {"exhaustive", "naive", "relaxed", "max-mip", "max-mip-bisect"}) {
+  for (const std::string march : {"exhaustive", "naive", "relaxed", "lipschitz", "max-mip", "max-mip-bisect"}) {
     for (const std::string look : {"shaded", "height", "steps", "error"}) {
       const auto result =
           run({"render", path("good.asc"), "-o", path("out.png"), "--size", "32x24", "--march", march, "--look", look});
@@ -197,7 +199,12 @@ TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
       {{"--sun-size", "nan"}, "0 to 90"},
       {{"--ao-distance", "-1"}, "0 or more"},
       {{"--ao-distance", "nan"}, "0 or more"},
-      {{"--seed", "-3"}, "-3"},
+      {{"--seed", "-3"}, "0 to 4294967295"},
+      {{"--seed", "4294967296"}, "0 to 4294967295"},
+      {{"--naive-max-steps", "1e9"}, "--naive-max-steps '1e9': expected a whole number"},
+      {{"--nodata", "x"}, "--nodata 'x': expected a number"},
+      {{"--lipschitz-max-steps", "0"}, "1 or more"},
+      {{"--shrink", "1.5"}, "at most 1"},
       {{"--haze", "2"}, "0 to 0.95"},
       {{"--threads", "-1"}, "0"},
       {{"--naive-min-step", "0"}, "above 0"},
@@ -232,12 +239,73 @@ TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
 }
 
 TEST_F(Cli, WhatIsNeededIsAskedFor) {
-  for (const Names& arguments :
-       {Names{"render"}, {"render", good()}, {"render", "-o", path("out.png")}, {"paint"}, {"--paint"}}) {
+  for (const Names& arguments : {Names{"render"},
+                                 {"render", "--paint"},
+                                 {"render", good()},
+                                 {"render", "-o", path("out.png")},
+                                 {"paint"},
+                                 {"--paint"}}) {
     const auto result = run(arguments);
     EXPECT_EQ(result.status, 2) << result.err;
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
     EXPECT_NE(result.err.find("--help"), std::string::npos) << result.err;
+  }
+}
+
+TEST_F(Cli, AWrongNameIsToldBeforeWhatIsMissing) {
+  EXPECT_NE(run({"render", "--ouput", "x.png"}).err.find("--ouput"), std::string::npos);
+}
+
+TEST_F(Cli, GenerateRefusesWhatItCannotDo) {
+  const struct {
+    Names options;
+    std::string fragment;
+  } cases[] = {
+      {{"--size", "0"}, "1 to 65536"},
+      {{"--size", "70000"}, "1 to 65536"},
+      {{"--size", "2x"}, "N or NxM"},
+      {{"--size", "8", "--kind", "hills"}, "fbm or ridged"},
+      {{"--size", "8", "--cell", "nan"}, "above 0"},
+      {{"--size", "8", "--cell", "1e300"}, "at most 1000000"},
+      {{"--size", "8", "--cell", "far"}, "--cell 'far': expected a number"},
+      {{"--size", "8", "--seed", "1.5"}, "whole number from 0"},
+      {{"--size", "8", "--seed", "18446744073709551616"}, "0 to 18446744073709551615"},
+      {{"--size", "8", "-o", path("out.png")}, ".tif"},
+      {{"--size", "8", "-o", path("none/out.tif")}, "does not exist"},
+  };
+  for (const auto& c : cases) {
+    Names arguments{"generate"};
+    arguments.insert(arguments.end(), c.options.begin(), c.options.end());
+    if (std::find(arguments.begin(), arguments.end(), "-o") == arguments.end()) {
+      arguments.insert(arguments.end(), {"-o", path("out.tif")});
+    }
+    const auto result = run(arguments);
+    const std::string what = fmt::format("{}: {}", fmt::join(c.options, " "), result.err);
+    EXPECT_TRUE(result.status == 1 || result.status == 2) << what;
+    EXPECT_EQ(result.out, "") << what;
+    EXPECT_EQ(test::lines(result.err), 1) << what;
+    EXPECT_NE(result.err.find(c.fragment), std::string::npos) << "'" << c.fragment << "' is not in: " << what;
+    EXPECT_EQ(scratch_.files(), Names{}) << what;
+  }
+}
+
+// Samples and pyramid together: 4 bytes where the file has 16 bits, 7 where it has float32.
+TEST_F(Cli, SamplesStayAsSmallAsTheyAreInTheFile) {
+  constexpr int kSide = 64;
+  const struct {
+    std::string raw, type;
+    int bytes;
+    double most;
+  } cases[] = {{"i16le", "int16", 2, 4}, {"u16le", "uint16", 2, 4}, {"f32le", "float32", 4, 7}};
+  for (const auto& c : cases) {
+    const std::string file = write("heights.raw", std::string(static_cast<std::size_t>(kSide * kSide * c.bytes), '\0'));
+    const auto result = run({"info", "--json", file, "--raw", fmt::format("{0}x{0}:{1}", kSide, c.raw)});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto info = nlohmann::json::parse(result.out);
+    EXPECT_EQ(info.at("sample_type"), c.type);
+    const double bytes = info.at("bytes_per_sample");
+    EXPECT_GT(bytes, c.bytes) << "there is a pyramid";
+    EXPECT_LE(bytes, c.most) << c.type;
   }
 }
 
@@ -274,8 +342,8 @@ TEST_F(Cli, HelpAndVersion) {
   EXPECT_EQ(bare.out, "");
   const auto help = run({"--help"});
   EXPECT_EQ(help.status, 0);
-  for (const char* command : {"render", "info", "generate", "marches"}) {
-    EXPECT_NE(help.out.find(command), std::string::npos);
+  for (const char* command : {"render", "cast", "info", "generate", "marches", "replay"}) {
+    EXPECT_NE(help.out.find(fmt::format("\n  {} ", command)), std::string::npos) << command << ": " << help.out;
     EXPECT_EQ(run({command, "--help"}).status, 0);
   }
   const auto version = run({"--version"});
@@ -287,15 +355,19 @@ TEST_F(Cli, MarchesAreListedOnceEach) {
   const auto plain = run({"marches"}), markdown = run({"marches", "--markdown"});
   EXPECT_EQ(plain.status, 0);
   EXPECT_EQ(markdown.status, 0);
-  for (const char* name : {"exhaustive", "naive", "relaxed", "max-mip", "max-mip-bisect"}) {
+  for (const char* name : {"exhaustive", "naive", "relaxed", "lipschitz", "max-mip", "max-mip-bisect"}) {
     EXPECT_NE(plain.out.find(fmt::format("\n{} ", name)), std::string::npos) << plain.out;
     EXPECT_NE(markdown.out.find(fmt::format("\n| `{}` |", name)), std::string::npos) << markdown.out;
   }
 }
 
 TEST_F(Cli, AFullStandardOutputIsAFailure) {
-  test::Program program({"marches"}, "/dev/full");
-  EXPECT_EQ(program.result().status, 1);
+  for (const char* word : {"marches", "--help", "--version"}) {
+    test::Program program({word}, "/dev/full");
+    const auto result = program.result();
+    EXPECT_EQ(result.status, 1) << word;
+    EXPECT_NE(result.err.find("standard output"), std::string::npos) << word << ": " << result.err;
+  }
 }
 
 // Ends a long render with a signal; it must be gone soon and leave nothing.

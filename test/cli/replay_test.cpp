@@ -39,12 +39,13 @@ TEST(Replay, RefusesBadInputInOneLine) {
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
     EXPECT_NE(result.err.find(fragment), std::string::npos) << result.err;
   };
-  expect_refused("", "line 0: the first line must be");
+  expect_refused("", "line 1: the first line must be");
   expect_refused(kField, "there is no ray in it");
   expect_refused(kField + "ray\norigin 1 2 east\n", "line 6: origin 'east' is no number");
   expect_refused(kField + "ray\ndirection 0 0 0\n", "ray: its direction is zero");
   expect_refused("scarp-rays 1\nfield float32 3000000 3000000\nray\n", "0 of 3000000 rows");
   EXPECT_EQ(run({"replay", scratch.path("none.txt")}).status, 1);
+  EXPECT_NE(run({"replay", scratch.path("")}).err.find("is a directory"), std::string::npos);
   EXPECT_EQ(run({"replay"}).status, 2);
 }
 

@@ -102,6 +102,26 @@ TEST(Layers, WallsOfTheBlockCountAsMet) {
   }
 }
 
+TEST(Layers, WallsOfSolidGroundAreNoSurface) {
+  HeightFieldSettings solid;
+  solid.solid = true;
+  std::vector<float> samples(33 * 33);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = 7 + static_cast<float>(i % 33 % 3);
+  const TerrainScene scene(HeightField::own(std::move(samples), 33, 33, solid), find_march("max-mip"));
+  // Level, from the south, below the ground's border: the wall at y = 0.
+  const Camera camera = Camera::look_at({16, -20, 6.6}, {16, 0, 6.6}, 2, kWidth, kHeight);
+  PictureSettings settings = small();
+  settings.haze = 0;  // it depends on the size of the block
+  const PictureLayers layers = render_layers(scene, camera, 0, settings);
+  settings.plinth = true;
+  const PictureLayers block = render_layers(scene, camera, 0, settings);
+  for (std::size_t i = 0; i < layers.depth.size(); ++i) {
+    EXPECT_FLOAT_EQ(layers.depth[i], 20);
+    EXPECT_EQ(layers.normal[i], vec3(0, -1, 0));
+    EXPECT_EQ(layers.colour[i], block.colour[i]) << "that of the block's wall";
+  }
+}
+
 TEST(Layers, GoWithTheLookShadedAlone) {
   const TerrainScene scene(plane(), find_march("max-mip"));
   const Camera camera = Camera::top(picture_box(scene.field(), false), kWidth, kHeight);

@@ -134,7 +134,7 @@ TEST_F(RayDumps, GenerateWhatWasGenerated) {
 TEST_F(RayDumps, AreRefusedInOneLineThatNamesTheLine) {
   const std::string head = "scarp-rays 1\n", field = "field float32 2 2\nrow 1 2\nrow 3 4\n";
   EXPECT_EQ(refusal(head + field + "ray\ndirection 0 0 -1\n"), "accepted");
-  EXPECT_EQ(refusal(""), "line 0: the first line must be 'scarp-rays 1'");
+  EXPECT_EQ(refusal(""), "line 1: the first line must be 'scarp-rays 1'");
   EXPECT_EQ(refusal("P6\n"), "line 1: the first line must be 'scarp-rays 1'");
   EXPECT_EQ(refusal(head), "line 1: there is no ray in it");
   EXPECT_EQ(refusal(head + "ray\n"), "line 2: a ray without a field; a line 'field TYPE COLUMNS ROWS' must come first");

@@ -118,6 +118,7 @@ TEST(ProceduralDemHeights, NeedSettingsInTheirRange) {
   broken([](ProceduralDem& s) { s.rows = 65537; });
   broken([](ProceduralDem& s) { s.cell_m = 0; });
   broken([](ProceduralDem& s) { s.cell_m = std::nan(""); });
+  broken([](ProceduralDem& s) { s.cell_m = 1e300; });
   broken([](ProceduralDem& s) { s.wavelength = 1; });
   broken([](ProceduralDem& s) { s.wavelength = std::nan(""); });
 }

@@ -146,7 +146,7 @@ TEST(RayCsv, BadHeadersAreRefused) {
   expect_csv_refused("lon,lat,z,dx,dy,dz\n", "no column 'x'");
   expect_csv_refused("x,y,z,x,dx,dy,dz\n", "column 'x' twice");
   expect_csv_refused("x,y,z,dx,dy,dz,tx,ty,tz\n", "directions and targets");
-  expect_csv_refused("x,y,z,dx,dy,dz,start_row\n", "no column 'start_col'");
+  expect_csv_refused("x,y,z,dx,dy,dz,start_row\n", "no column 'start_col', which goes with 'start_row'");
   expect_csv_refused(std::string("\xFF\xFEx\0,\0", 6), "UTF-16");
 }
 
