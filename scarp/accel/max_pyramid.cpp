@@ -224,9 +224,7 @@ void MaxPyramid::build(const HeightField& field, CellBox changed) {
     part = {part.col_begin / 2, part.row_begin / 2, (part.col_end + 1) / 2, (part.row_end + 1) / 2};
     const Level& level = levels_[l];
     if (l == 0) {
-      field.visit([&](const auto& grid) {
-        build_first(grid, shared_->code, part, level.cols, maxima, minima);
-      });
+      field.visit([&](const auto& grid) { build_first(grid, shared_->code, part, level.cols, maxima, minima); });
       continue;
     }
     const Level& finer = levels_[l - 1];

@@ -68,6 +68,10 @@ class GridAxis {
     if (wraps_) first_ = static_cast<std::int64_t>(std::round((at(t) - cell - 0.5) / cells)) * cells;
     if (!moves()) time_origin_ = static_cast<double>(first_ + cell) + 0.5;
   }
+  // The cell of this copy that is nearest to a position; NaN goes to 0.
+  int near(double position) const {
+    return static_cast<int>(std::min(std::max(0.0, position - static_cast<double>(first_)), cells - 1.0));
+  }
   // Goes on to the next copy; returns the first cell there.
   int enter_next_copy() {
     first_ += step * std::int64_t{cells};
@@ -79,10 +83,6 @@ class GridAxis {
     return (static_cast<double>(line) - time_origin_) * per_direction;
   }
 
-  // The cell of this copy that is nearest to a position; NaN goes to 0.
-  int near(double position) const {
-    return static_cast<int>(std::min(std::max(0.0, position - static_cast<double>(first_)), cells - 1.0));
-  }
   void set_copy(std::int64_t global_cell) {
     const std::int64_t within = ((global_cell % cells) + cells) % cells;
     first_ = global_cell - within;

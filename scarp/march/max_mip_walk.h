@@ -197,6 +197,32 @@ class Walk {
     return false;
   }
 
+  // Whether a ray that is above at t is, at some point further on, under all of a block: without holes it has been
+  // through the surface before, wherever. A look at the minima of one level at ever longer steps, which a cache holds;
+  // rays along the ground are mostly stopped by hills that are wider than a block. True: answered.
+  bool goes_under(double t) {
+    if (wraps_ || top_ < kProbeLevel) return false;
+    const Level& at = levels_[kProbeLevel - 1];
+    const double t_last = dz_ > 0 ? std::min(t_end_, (field_.max_sample() - z_) / dz_) : t_end_;
+    const double t_per_cell = 1 / std::max(std::abs(x_.direction), std::abs(y_.direction));
+    if (!(t_last - t > kShortWay * t_per_cell)) return false;
+    const double code_z = (z_ - code_.base) * code_.per_step, code_dz = dz_ * code_.per_step;
+    double step = kFirstProbe * t_per_cell;
+    for (int i = 0; i < kProbes; ++i) {
+      t += step;
+      step *= kProbeGrowth;
+      if (!(t < t_last)) return false;
+      const std::ptrdiff_t row = y_.near(y_.at(t)) >> kProbeLevel, col = x_.near(x_.at(t)) >> kProbeLevel;
+      const std::uint16_t minimum = minima_[at.begin + row * at.cols + col];
+      // The position is rounded, too, and that of the next block then as good: the bound covers it.
+      if (code_z + code_dz * t < minimum && falls_under(minimum, t)) {
+        answer_.status = HitStatus::hit;
+        return true;
+      }
+    }
+    return false;
+  }
+
   // Straight up or down: one cell, one height.
   void vertical() {
     ++stats.steps;
@@ -295,6 +321,7 @@ class Walk {
         left = false;
       }
       t_in = t_line;
+      if (ask == Ask::any && !Holes && steps == kPatience && side_ == Side::above && goes_under(t_in)) break;
       after_x_ = through_x;
       if (Holes) through_ = through_x ? Through::x_line : Through::y_line;
       bool new_parent;
@@ -350,11 +377,11 @@ class Walk {
     return minimum != MaxPyramid::kNoMinimum && highest < code_.height(minimum);
   }
 
-  // Whether a ray that was above has, at its lowest point over a block without holes, come under all of the block: it
-  // has been through the surface, wherever. By more than rounding, so that closest() finds the hit, too.
-  bool falls_under(std::uint16_t minimum, double t_lowest) const {
-    const double lowest = ray_height(t_lowest);
-    return under(lowest, minimum) && code_.height(minimum) - lowest > rounding_of_clearance(t_lowest);
+  // Whether a ray that was above before has at t, over a block without holes, come under all of the block: it has been
+  // through the surface, wherever. By more than rounding, so that closest() finds the hit, too.
+  bool falls_under(std::uint16_t minimum, double t) const {
+    const double height = ray_height(t);
+    return under(height, minimum) && code_.height(minimum) - height > 2 * rounding_of_clearance(t);
   }
 
   // The surface of the current cell; true: answered. Otherwise side_ is that of the way out.
@@ -492,8 +519,14 @@ class Walk {
   }
 
   using Level = MaxPyramid::Level;
-  static constexpr double kUnit = 0x1p-53;     // unit roundoff of double
-  static constexpr double kCodeRoundings = 8;  // 6 on the way to a code, see numerics.md
+  // When and where any-hit looks ahead; from a search over the rays of scarp-bench (decisions.md).
+  static constexpr std::uint32_t kPatience = 3;  // steps of the walk before: half of the rays need no more
+  static constexpr int kProbeLevel = 3;          // blocks of 8 x 8 cells
+  static constexpr int kProbes = 24;
+  static constexpr double kFirstProbe = 8, kProbeGrowth = 1.2;  // steps in cells
+  static constexpr double kShortWay = 128;                      // cells up to which the walk is as fast
+  static constexpr double kUnit = 0x1p-53;                      // unit roundoff of double
+  static constexpr double kCodeRoundings = 8;                   // 6 on the way to a code, see numerics.md
 
   const HeightField& field_;
   const SampleGrid<T>& grid_;
