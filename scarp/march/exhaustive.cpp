@@ -140,9 +140,10 @@ class Ground {
 
   // What rounding can add to f around t: 16 units in the last place of all that goes into it.
   double rounding(double t) const {
-    const double heights =
-        std::max(std::abs(field_.min_sample()), std::abs(field_.max_sample())) + std::abs(oz_) + std::abs(dz_ * t);
-    const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t);
+    const HeightFieldSettings& to = field_.settings();
+    const double heights = std::max(std::abs(field_.min_sample()), std::abs(field_.max_sample())) + std::abs(oz_) +
+                           std::abs(dz_ * t) + std::abs(to.offset) / to.scale;
+    const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t) + field_.rows();
     return 16 * 0x1p-53 * (heights + places * (field_.max_sample() - field_.min_sample()));
   }
 

@@ -398,7 +398,8 @@ class Walk {
   // of a hole, above on the one side, could be below on the other.
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);
-    const bool on_rim = in <= 0 && -in <= rounding_of_clearance(t_in_);
+    const double relief = std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
+    const bool on_rim = in <= 0 && -in <= scarp::rounding_of_clearance(field_, grid_ray(), t_in_, relief);
     if (on_rim && !strict_) {
       side_ = Side::below;
       return answer(0.0);
@@ -480,9 +481,8 @@ class Walk {
   // For the places where a sign alone is not enough: a ray from below has risen only beyond it (else one that rises
   // through a node could be seen above at one line and, by rounding, not above at the next: a hit from below), a ray
   // from the surface is strictly below only beyond it, and so is a ray under a block.
-  double rounding_of_clearance(double t) const {
-    return scarp::rounding_of_clearance(field_, {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}, t);
-  }
+  double rounding_of_clearance(double t) const { return scarp::rounding_of_clearance(field_, grid_ray(), t); }
+  GridRay grid_ray() const { return {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}; }
 
   // Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly
   // below.

@@ -12,7 +12,8 @@ namespace scarp {
 /// The most that rounding adds to ray height - surface height at time t, in sample units, on the way from world
 /// coordinates to a march's clearance: 16 u times the quantities that go into it, those that the ray was shifted by on
 /// its way into the grid included.
-inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t) {
+/// `relief` is how far heights differ where the ray is: in its cell, or in the whole field.
+inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t, double relief) {
   constexpr double kUnit = 0x1p-53;  // unit roundoff of double
   constexpr double kRoundings = 16;  // numerics.md counts 11
   const double low = field.min_sample(), high = field.max_sample();
@@ -21,7 +22,10 @@ inline double rounding_of_clearance(const HeightField& field, const GridRay& ray
   const double upright = std::abs(ray.origin.z) + std::abs(ray.direction.z * t) +
                          std::max(std::abs(low), std::abs(high)) +
                          std::abs(field.settings().offset) / field.settings().scale;
-  return kRoundings * kUnit * (upright + sideways * (high - low));
+  return kRoundings * kUnit * (upright + sideways * relief);
+}
+inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t) {
+  return rounding_of_clearance(field, ray, t, field.max_sample() - field.min_sample());
 }
 
 }  // namespace scarp
