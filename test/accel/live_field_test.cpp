@@ -104,8 +104,9 @@ void expect_whole_epochs() {
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(torn, 0);
   EXPECT_EQ(backwards, 0);
-  EXPECT_EQ(live.read().epoch(), static_cast<std::uint64_t>(kEdits));
-  EXPECT_TRUE(equal(answers(live.read().field(), live.read().pyramid(), asked), expected[kEdits % 2]));
+  const auto reading = live.read();
+  EXPECT_EQ(reading.epoch(), static_cast<std::uint64_t>(kEdits));
+  EXPECT_TRUE(equal(answers(reading.field(), reading.pyramid(), asked), expected[kEdits % 2]));
 }
 
 TEST(LiveField, EveryBatchSeesOneEpoch) {
