@@ -131,16 +131,19 @@ TEST_F(TileSet, GapsBetweenTilesWithoutNodataAreNanThatNoSampleCanBe) {
   const struct {
     GDALDataType type;
     std::vector<double> samples;
-  } cases[] = {{GDT_Byte, {0, 255, 1, 2}},         {GDT_Int16, {-32768, 32767, 0, 1}},
-               {GDT_UInt16, {0, 65535, 1, 2}},     {GDT_Int32, {-16777216, 16777216, 0, 1}},
-               {GDT_Float32, {-1e30, 1e30, 0, 1}}, {GDT_Float64, {-1e30f, 1e30f, 0, 1}}};
+  } cases[] = {{GDT_Byte, {0, 255, 1, 2}},
+               {GDT_Int16, {-32768, 32767, 0, 1}},
+               {GDT_UInt16, {0, 65535, 1, 2}},
+               {GDT_Int32, {-16777216, 16777216, 0, 1}},
+               {GDT_Float32, {-0x1p100, 0x1p100, 0, 1}},
+               {GDT_Float64, {-0x1p100, 0x1p100, 0, 1}}};
   for (const auto& c : cases) {
     const Raster raster =
         read_tiles({tile("a.tif", 0, 0, c.samples, c.type), tile("b.tif", 4, 0, c.samples, c.type)}, {});
     EXPECT_TRUE(holds<float>(raster));
     EXPECT_EQ(GDALGetDataTypeName(c.type), raster.file_type);
-    const auto f = [&](std::size_t i) { return static_cast<double>(static_cast<float>(c.samples[i])); };
-    expect_samples(raster, {f(0), f(1), kNan, kNan, f(0), f(1), f(2), f(3), kNan, kNan, f(2), f(3)});
+    const std::vector<double>& f = c.samples;
+    expect_samples(raster, {f[0], f[1], kNan, kNan, f[0], f[1], f[2], f[3], kNan, kNan, f[2], f[3]});
     EXPECT_TRUE(has_note(raster, "gaps: 4 samples (33.3 %)"));
   }
 }
