@@ -128,6 +128,8 @@ double RoundingJudge::sideways(double t) const {
 double RoundingJudge::delta(int col, int row, double t) const {
   const double steep = relief(col, row);
   const double flat = std::max(std::abs(direction_.x), std::abs(direction_.y));
+  // A march takes the bound of where it leaves the cell.
+  if (flat > 0) t += 1 / flat;
   const double s = std::min(t - begin_, flat > 0 ? tile_ / flat : HUGE_VAL);
   const double world = std::abs(origin_.z) + std::abs(direction_.z * t) +
                        std::max(std::abs(field_.min_sample()), std::abs(field_.max_sample())) +
