@@ -1,7 +1,6 @@
-# scarp_shaders(STATION FILE.comp ...): compiles compute shaders of the current folder to SPIR-V and lets the station's
-# C++ files include the words: scarp/STATION/FILE.comp becomes #include "scarp/STATION/FILE.comp.inc", numbers with commas
-# between. A shader is compiled again when a file that it includes has changed, and so is the C++ that embeds it.
-function(scarp_shaders station)
+# scarp_shaders(TARGET FILE.comp ...): compiles compute shaders of the current folder to SPIR-V and lets the target's C++
+# files include the words: scarp/accel/FILE.comp becomes #include "scarp/accel/FILE.comp.inc", numbers with commas between. A shader is compiled again when a file that it includes has changed, and so is the C++ that embeds it.
+function(scarp_shaders target)
   set(folder ${PROJECT_BINARY_DIR}/shaders)
   set(results "")
   foreach(file IN LISTS ARGN)
@@ -18,6 +17,6 @@ function(scarp_shaders station)
       VERBATIM)
     list(APPEND results ${out})
   endforeach()
-  target_sources(scarp_${station} PRIVATE ${results})
-  target_include_directories(scarp_${station} PRIVATE ${folder})
+  target_sources(${target} PRIVATE ${results})
+  target_include_directories(${target} PRIVATE ${folder})
 endfunction()
