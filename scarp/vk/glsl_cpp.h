@@ -9,9 +9,9 @@
 //   SCARP_FN uint entry_of(Level level, uint col, uint row) { return level.begin + row * level.cols + col; }
 //   SCARP_GLSL_END
 //
-// Structs hold float, int, uint, their vectors and Address; no bool, no matrix, no 64-bit number. In C++ all of it is in
-// namespace scarp::glsl. Functions that must run in C++, too, do without swizzles. A shader that includes such a file
-// enables GL_GOOGLE_include_directive, and GL_EXT_scalar_block_layout for its blocks.
+// Structs hold float, int, uint, their vectors and Address; no bool, no matrix, no 64-bit number. In C++ all of it is
+// in namespace scarp::glsl. Functions that must run in C++, too, do without swizzles. A shader that includes such a
+// file enables GL_GOOGLE_include_directive, and GL_EXT_scalar_block_layout for its blocks.
 #ifndef SCARP_VK_GLSL_CPP_H
 #define SCARP_VK_GLSL_CPP_H
 

@@ -8,15 +8,16 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(sees_base base)
+set(sees_vk base vk)
 set(sees_source base source)
 set(sees_field base field)
-set(sees_accel base field accel)
-set(sees_march base field accel march)
-set(sees_scene base source field accel march scene)
-set(sees_render base source field accel march scene render)
+set(sees_accel base vk field accel)
+set(sees_march base vk field accel march)
+set(sees_scene base vk source field accel march scene)
+set(sees_render base vk source field accel march scene render)
 set(sees_output base output)
-set(stations base source field accel march scene render output)
-set(core_stations base field accel march)
+set(stations base vk source field accel march scene render output)
+set(core_stations base vk field accel march)
 set(max_lines 700)
 
 # check(ROOT PUBLIC_HEADERS RESULT): a list of breaches, one line each.
