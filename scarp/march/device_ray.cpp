@@ -28,6 +28,28 @@ Pair pair(double x) {
 
 bool inside(double o, int cells) { return o >= 0 && o <= cells; }
 
+// A ray as two floats per number. Times beyond kScarpNever are told as that.
+void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec3& direction, double length) {
+  const Pair u = pair(place.x), v = pair(place.y), z = pair(height);
+  out.cell = {cell.col, cell.row};
+  out.place = {u.high, v.high};
+  out.place_low = {u.low, v.low};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Pair d = pair(direction[axis]);
+    out.direction[axis] = d.high;
+    out.direction_low[axis] = d.low;
+    if (axis < 2 && direction[axis] != 0) {
+      const double never{glsl::kScarpNever};
+      out.per_direction[axis] = static_cast<float>(std::clamp(1 / direction[axis], -never, never));
+    }
+  }
+  const Pair end = pair(std::min(length, double{glsl::kScarpNever}));
+  out.z = z.high;
+  out.z_low = z.low;
+  out.end = end.high;
+  out.end_low = end.low;
+}
+
 }  // namespace
 
 glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyramid) {
@@ -64,7 +86,6 @@ DeviceRay device_ray(const HeightField& field, const Ray& ray) {
   result.per_time = std::ldexp(1.0, -exponent);
   const bool strict = ray.start == RayStart::on_surface;
   glsl::ScarpRay& out = result.ray;
-  out = {};
 
   if (field.wraps()) {
     for (int axis = 0; axis < 2; ++axis) {
@@ -108,9 +129,10 @@ DeviceRay device_ray(const HeightField& field, const Ray& ray) {
     before = top > begin;
     begin = std::max(begin, top);
   }
-  if (!strict) cell = before ? Cell{x.cell_before(begin), y.cell_before(begin)} : Cell{x.cell_after(begin), y.cell_after(begin)};
+  if (!strict)
+    cell = before ? Cell{x.cell_before(begin), y.cell_before(begin)} : Cell{x.cell_after(begin), y.cell_after(begin)};
 
-  const Pair u = pair(x.place(begin, cell.col)), v = pair(y.place(begin, cell.row));
+  const double u = x.place(begin, cell.col), v = y.place(begin, cell.row);
   // What is left of the way: only walls are met above or below all ground.
   const double height = z + dz * begin, relief = std::max(highest - lowest, 1.0);
   const bool walls = field.settings().solid && field.nodata_count() > 0;
@@ -135,20 +157,63 @@ DeviceRay device_ray(const HeightField& field, const Ray& ray) {
     result.per_time = std::ldexp(result.per_time, -upright);
   }
 
-  out.cell = {cell.col, cell.row};
-  out.place = {u.high, v.high};
-  out.place_low = {u.low, v.low};
+  pack(out, cell, {u, v}, height, direction, length);
+  result.begin = begin;
+  result.marches = true;
+  return result;
+}
+
+DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray) {
+  DeviceRay result;
+  if (!field.has_cells() || field.all_nodata()) return result;
+  GridRay local = field.grid_from_world(ray);
+  const double longest =
+      std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
+  if (!(longest > 0) || !std::isfinite(longest)) return result;
+  const int exponent = std::ilogb(longest);
+  dvec3 world;
   for (int axis = 0; axis < 3; ++axis) {
-    const Pair d = pair(direction[axis]);
-    out.direction[axis] = d.high;
-    out.direction_low[axis] = d.low;
-    if (axis < 2) out.per_direction[axis] = direction[axis] == 0 ? 0.0F : static_cast<float>(1 / direction[axis]);
+    local.direction[axis] = std::ldexp(local.direction[axis], -exponent);
+    world[axis] = std::ldexp(ray.direction[axis], -exponent);
   }
-  const Pair start = pair(height), finish = pair(std::min(length, double{glsl::kScarpNever}));
-  out.z = start.high;
-  out.z_low = start.low;
-  out.end = finish.high;
-  out.end_low = finish.low;
+  const double first = std::ldexp(ray.t_min, exponent);
+  double begin = first, end = std::ldexp(ray.t_max, exponent);
+  const auto clip = [&](double low, double high, double o, double d) {
+    if (d == 0) {
+      if (!(o >= low && o <= high)) end = -HUGE_VAL;
+      return;
+    }
+    const double a = (low - o) / d, b = (high - o) / d;
+    begin = std::max(begin, std::min(a, b));
+    end = std::min(end, std::max(a, b));
+  };
+  const int cells[] = {field.cell_cols(), field.cell_rows()};
+  if (!field.wraps()) {
+    for (int axis = 0; axis < 2; ++axis) clip(0, cells[axis], local.origin[axis], local.direction[axis]);
+  }
+  if (std::isinf(end)) clip(field.min_sample(), field.max_sample(), local.origin.z, local.direction.z);
+  if (!(begin <= end) || std::isinf(end)) return result;
+  int cell[2];
+  double place[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    double position = local.origin[axis] + local.direction[axis] * begin;
+    if (field.wraps()) position -= std::floor(position / cells[axis]) * cells[axis];
+    position = std::clamp(position, 0.0, static_cast<double>(cells[axis]));
+    cell[axis] = std::min(static_cast<int>(position), cells[axis] - 1);
+    place[axis] = position - cell[axis];
+  }
+  glsl::ScarpRay& out = result.ray;
+  if (ray.start == RayStart::on_surface) out.flags |= glsl::kScarpOnSurface;
+  if (begin > first) out.flags |= glsl::kScarpFromOutside;
+  pack(out, {cell[0], cell[1]}, {place[0], place[1]}, local.origin.z + local.direction.z * begin, local.direction,
+       end - begin);
+  const HeightFieldSettings& settings = field.settings();
+  const double speed = length(world);
+  out.travelled = static_cast<float>(begin - first);
+  out.exit = static_cast<float>(end - begin);
+  out.per_height = static_cast<float>(settings.scale * settings.exaggeration / speed);
+  out.cell_time = static_cast<float>(std::min(settings.cell_x, settings.cell_y) / speed);
+  result.per_time = std::ldexp(1.0, -exponent);
   result.begin = begin;
   result.marches = true;
   return result;

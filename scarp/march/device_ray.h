@@ -18,15 +18,17 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
 
 /// A ray on its way to a march in single precision.
 struct DeviceRay {
-  glsl::ScarpRay ray;
+  glsl::ScarpRay ray{};
   double begin = 0;      ///< t = (begin + time) * per_time for a time that the march tells
   double per_time = 1;   ///< a power of two
   bool marches = false;  ///< whether there is anything to march: else `known` is the answer
   HitStatus known = HitStatus::miss;
 };
 
-/// `ray` must be valid (validate() of march/queries.h).
+/// For max-mip, clipped to the highest sample, too. `ray` must be valid (validate() of march/queries.h).
 DeviceRay device_ray(const HeightField& field, const Ray& ray);
+/// For the marches that take samples along the ray: it begins where they do, at the border or where its range begins.
+DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray);
 
 /// The answer that belongs to a ray.
 Hit hit_from_device(const Ray& ray, const DeviceRay& prepared, const glsl::ScarpHit& answer);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `fixed-step` for shaders: the march of fixed_step.h in single precision. Guarantee: approximate, as there. Text of C++
-// and of GLSL, GLSL ES 3.0 included; who includes it has defined what cell_surface.glsl.h asks for.
+// `fixed-step` for shaders: the march of fixed_step.h in single precision. Guarantee: approximate, as there. Text of
+// C++ and of GLSL, GLSL ES 3.0 included; who includes it has defined what cell_surface.glsl.h asks for.
 #ifndef SCARP_MARCH_FIXED_STEP_GLSL_H
 #define SCARP_MARCH_FIXED_STEP_GLSL_H
 
@@ -25,7 +25,7 @@ SCARP_FN ScarpHit scarp_fixed_step(ScarpField field, ScarpRay ray, ScarpFixedSte
   float s_before = 0.0f;
   float clearance_before = 0.0f;
   float step = settings.step * ray.cell_time;
-  for (int i = on_surface ? 1 : 0; ; ++i) {
+  for (int i = on_surface ? 1 : 0;; ++i) {
     if (i == settings.max_steps) {
       scarp_give_up(s_before, hit);
       return hit;
@@ -56,8 +56,7 @@ SCARP_FN ScarpHit scarp_fixed_step(ScarpField field, ScarpRay ray, ScarpFixedSte
       scarp_tell_point(point, s, kScarpHit, hit);
       return hit;
     } else {
-      if (!known && (field.flags & kScarpSolid) != 0u &&
-          (hit.steps > 1u || (ray.flags & kScarpFromOutside) != 0u)) {
+      if (!known && (field.flags & kScarpSolid) != 0u && (hit.steps > 1u || (ray.flags & kScarpFromOutside) != 0u)) {
         scarp_tell_point(point, s, kScarpWall, hit);
         return hit;
       }

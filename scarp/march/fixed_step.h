@@ -5,17 +5,17 @@
 //        _____  \ x        interpolated: between the last two samples, where a straight line between their clearances
 //   ____/     \_/ o\_      crosses zero
 //
-// Guarantee: approximate. What is thinner than a step is stepped over. The last sample is where the ray leaves the field
-// or its range ends; samples are counted, not summed up. Source: the ray caster for semi-voxel terrain of the founding
-// texts, first plain, then interpolating the last two samples. Cost: one height per step.
+// Guarantee: approximate. What is thinner than a step is stepped over. The last sample is where the ray leaves the
+// field or its range ends; samples are counted, not summed up. Source: the ray caster for semi-voxel terrain of the
+// founding texts, first plain, then interpolating the last two samples. Cost: one height per step.
 #pragma once
 
 #include "scarp/march/marches.h"
 
 namespace scarp {
 
-/// Closest hit as this march finds it, in [t_min, t_max] and inside the field. Walls of solid ground are hit at the first
-/// sample behind them. Uses settings.fixed_step; no pyramid.
+/// Closest hit as this march finds it, in [t_min, t_max] and inside the field. Walls of solid ground are hit at the
+/// first sample behind them. Uses settings.fixed_step; no pyramid.
 Hit march_fixed_step(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                      MarchStats* stats = nullptr);
 

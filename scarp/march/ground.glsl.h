@@ -20,7 +20,7 @@ struct ScarpPoint {
   bool valid;       ///< false over holes
   float clearance;  ///< sample units that the ray is above the ground, vertically
   ivec2 cell;
-  vec2 place;       ///< in it, 0..1
+  vec2 place;  ///< in it, 0..1
 };
 
 /// Cells from the begin of one copy of the field, 0 up to `cells`, last one included; and the place in the cell.
@@ -49,10 +49,8 @@ SCARP_FN void scarp_over_field(ScarpTwoFloat way, int cell, int cells, bool wrap
 /// it.
 SCARP_FN ScarpPoint scarp_point(ScarpField field, ScarpRay ray, float s) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
-  ScarpTwoFloat x =
-      scarp_two_line(0.0f, ray.place.x, ray.place_low.x, ray.direction.x, ray.direction_low.x, s);
-  ScarpTwoFloat y =
-      scarp_two_line(0.0f, ray.place.y, ray.place_low.y, ray.direction.y, ray.direction_low.y, s);
+  ScarpTwoFloat x = scarp_two_line(0.0f, ray.place.x, ray.place_low.x, ray.direction.x, ray.direction_low.x, s);
+  ScarpTwoFloat y = scarp_two_line(0.0f, ray.place.y, ray.place_low.y, ray.direction.y, ray.direction_low.y, s);
   ScarpTwoFloat z = scarp_two_line(0.0f, ray.z, ray.z_low, ray.direction.z, ray.direction_low.z, s);
   ScarpPoint point;
   int col;

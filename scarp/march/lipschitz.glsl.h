@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `lipschitz` for shaders: the march of lipschitz.h in single precision. Guarantee: conservative, as there, but for
-// rounding (doc/dev/numerics.md, "Single precision"). Text of C++ and of GLSL, GLSL ES 3.0 included; who includes it has
-// defined what cell_surface.glsl.h asks for, and, for fields with holes, scarp_minimum of max_mip.glsl.h.
+// rounding (doc/dev/numerics.md, "Single precision"). Text of C++ and of GLSL, GLSL ES 3.0 included; who includes it
+// has defined what cell_surface.glsl.h asks for, and, for fields with holes, scarp_minimum of max_mip.glsl.h.
 #ifndef SCARP_MARCH_LIPSCHITZ_GLSL_H
 #define SCARP_MARCH_LIPSCHITZ_GLSL_H
 
@@ -53,10 +53,14 @@ SCARP_FN ScarpHit scarp_lipschitz(ScarpField field, ScarpRay ray, ScarpLipschitz
       s = scarp_leave_time(field, ray, point, 0, s);
     } else if (point.clearance < 0.0f) {
       // Under the ground: there from the start, or out of a hole.
-      if (on_surface && i == 0) scarp_tell_point(point, s, kScarpHit, hit);
-      else if ((field.flags & kScarpSolid) != 0u && s + ray.travelled > 0.0f) scarp_tell_point(point, s, kScarpWall, hit);
-      else if (i == 0) hit.status = kScarpBelow;
-      else scarp_give_up(s, hit);
+      if (on_surface && i == 0)
+        scarp_tell_point(point, s, kScarpHit, hit);
+      else if ((field.flags & kScarpSolid) != 0u && s + ray.travelled > 0.0f)
+        scarp_tell_point(point, s, kScarpWall, hit);
+      else if (i == 0)
+        hit.status = kScarpBelow;
+      else
+        scarp_give_up(s, hit);
       return hit;
     } else if (free <= settings.tolerance * (s + ray.travelled)) {
       scarp_tell_point(point, s, kScarpHit, hit);

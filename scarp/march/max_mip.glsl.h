@@ -11,8 +11,8 @@
 // over. So a ray cannot slip through a node, an edge or a diagonal.
 //
 // Guarantee: exact, but for rounding: decisions are those of the surface and a ray that are moved by no more than the
-// bound delta of doc/dev/numerics.md ("Single precision"), some 2^-10 of a cell at a tile's far side. any-hit and closest-hit
-// always agree. Source: see max_mip.h.
+// bound delta of doc/dev/numerics.md ("Single precision"), some 2^-10 of a cell at a tile's far side. any-hit and
+// closest-hit always agree. Source: see max_mip.h.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included. Who includes it has defined, before, scarp_sample and scarp_is_nodata
 // (cell_surface.glsl.h), and
@@ -36,12 +36,12 @@ const int kScarpBelowGround = 2;
 struct ScarpWalk {
   ScarpFrame frame;
   int level;
-  int col, row;     // of the block on this level
-  float t_in;       // when the ray came into it, local
-  int side;         // kScarpUnknown and so on, at t_in
-  int through;      // how it came into it
-  bool begun;       // whether anything has been left behind; only the first cell can say that the ray began below
-  float relief;     // of the cell that a ray from the surface began in: its height is as exact as that allows
+  int col, row;  // of the block on this level
+  float t_in;    // when the ray came into it, local
+  int side;      // kScarpUnknown and so on, at t_in
+  int through;   // how it came into it
+  bool begun;    // whether anything has been left behind; only the first cell can say that the ray began below
+  float relief;  // of the cell that a ray from the surface began in: its height is as exact as that allows
 };
 
 /// A hit in the cell where the walk stands, at local time t, or at its wall.
@@ -53,7 +53,8 @@ SCARP_FN void scarp_tell(ScarpRay ray, ScarpWalk walk, float t, int status, SCAR
   hit.time_low = t;
 }
 
-/// Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly below.
+/// Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly
+/// below.
 SCARP_FN bool scarp_is_hit(ScarpRay ray, float clearance, float rounding) {
   return clearance <= 0.0f && ((ray.flags & kScarpOnSurface) == 0u || clearance < -rounding);
 }
@@ -68,8 +69,7 @@ SCARP_FN bool scarp_lost(ScarpField field, ScarpFrame frame, ScarpRay ray, float
 /// there is no crossing before to agree with. Within rounding of the rim a free ray touches it. True: answered.
 SCARP_FN bool scarp_find_side(ScarpField field, ScarpRay ray, ScarpCell cell, float rounding,
                               SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
-  float in_above =
-      scarp_clearance(field, walk.frame, ray, cell, walk.col, walk.row, walk.through, false, walk.t_in);
+  float in_above = scarp_clearance(field, walk.frame, ray, cell, walk.col, walk.row, walk.through, false, walk.t_in);
   bool on_rim = in_above <= 0.0f && -in_above <= rounding;
   if (on_rim && (ray.flags & kScarpOnSurface) == 0u) {
     scarp_tell(ray, walk, walk.t_in, kScarpHit, hit);
@@ -85,8 +85,8 @@ SCARP_FN bool scarp_find_side(ScarpField field, ScarpRay ray, ScarpCell cell, fl
   return false;
 }
 
-/// The bilinear surface of the current cell, with clearance `out_above` at t_out; true: answered, else walk.side is that
-/// of the way out.
+/// The bilinear surface of the current cell, with clearance `out_above` at t_out; true: answered, else walk.side is
+/// that of the way out.
 SCARP_FN bool scarp_test_bilinear(ScarpRay ray, ScarpCell cell, float out_above, float t_out, float rounding,
                                   SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
   float length = t_out - walk.t_in;
@@ -129,15 +129,14 @@ SCARP_FN bool scarp_test_triangles(ScarpRay ray, ScarpCell cell, float out_above
   float u = scarp_place_x(walk.frame, ray, walk.t_in, walk.col);
   float v = scarp_place_y(walk.frame, ray, walk.t_in, walk.row);
   float beyond_in = (u + v) - 1.0f;
-  float beyond_out = (scarp_place_x(walk.frame, ray, t_out, walk.col) - 1.0f) +
-                     scarp_place_y(walk.frame, ray, t_out, walk.row);
+  float beyond_out =
+      (scarp_place_x(walk.frame, ray, t_out, walk.col) - 1.0f) + scarp_place_y(walk.frame, ray, t_out, walk.row);
   float t_begin = walk.t_in;
   float above = scarp_ray_height(walk.frame, ray, t_begin) - scarp_triangle(cell, beyond_in > 0.0f, u, v);
   if ((beyond_in < 0.0f && beyond_out > 0.0f) || (beyond_in > 0.0f && beyond_out < 0.0f)) {
     float t = t_begin + (t_out - t_begin) * (beyond_in / (beyond_in - beyond_out));
-    SCARP_PRECISE float crossing =
-        scarp_ray_height(walk.frame, ray, t) -
-        scarp_edge_height(cell.h10, cell.h01, scarp_place_y(walk.frame, ray, t, walk.row));
+    SCARP_PRECISE float crossing = scarp_ray_height(walk.frame, ray, t) -
+                                   scarp_edge_height(cell.h10, cell.h01, scarp_place_y(walk.frame, ray, t, walk.row));
     if (scarp_test_triangle(ray, t_begin, above, crossing, t, rounding, walk, hit)) return true;
     t_begin = t;
     above = crossing;
@@ -219,8 +218,10 @@ SCARP_FN bool scarp_step(ScarpField field, ScarpRay ray, bool through_x, int top
   int end = through_x ? walk.frame.end.x : walk.frame.end.y;
   walk.through = through_x ? kScarpLineX : kScarpLineY;
   if (next >= begin >> walk.level && next <= (end - 1) >> walk.level) {
-    if (through_x) walk.col = next;
-    else walk.row = next;
+    if (through_x)
+      walk.col = next;
+    else
+      walk.row = next;
     if (walk.level < top && (next & 1) != ahead) {
       // Into another parent.
       walk.level += 1;
@@ -236,8 +237,10 @@ SCARP_FN bool scarp_step(ScarpField field, ScarpRay ray, bool through_x, int top
   if (line == (forwards ? cells : 0)) {
     if ((field.flags & kScarpWraps) == 0u) return false;
     line = forwards ? 0 : cells;
-    if (through_x) lap.x += forwards ? cells : -cells;
-    else lap.y += forwards ? cells : -cells;
+    if (through_x)
+      lap.x += forwards ? cells : -cells;
+    else
+      lap.y += forwards ? cells : -cells;
     if (abs(lap.x) > kScarpFarthestCell || abs(lap.y) > kScarpFarthestCell) {
       hit.status = kScarpExhausted;
       hit.time = walk.frame.s0;
@@ -316,8 +319,10 @@ SCARP_FN ScarpHit scarp_max_mip(ScarpField field, ScarpRay ray, bool any) {
       if (skips && walk.side != kScarpBelowGround) {
         // Where there are holes, the last cell may be one: the next begins with a question. Passing a block's corner is
         // not leaving the ground.
-        if (!holes) walk.side = kScarpAboveGround;
-        else if (t_out > walk.t_in) walk.side = kScarpUnknown;
+        if (!holes)
+          walk.side = kScarpAboveGround;
+        else if (t_out > walk.t_in)
+          walk.side = kScarpUnknown;
       } else {
         float code = 0.0f;
         float minimum = 0.0f;
@@ -349,7 +354,7 @@ SCARP_FN ScarpHit scarp_max_mip(ScarpField field, ScarpRay ray, bool any) {
           float t_middle_x = scarp_line_x(walk.frame, ray, middle_col);
           float t_middle_y = scarp_line_y(walk.frame, ray, middle_row);
           bool behind_x = middle_col >= field.cells.x ? ahead_x == 0 : t_middle_x <= walk.t_in;
-          bool behind_y = middle_row >= field.cells.y ? ahead_y == 0
+          bool behind_y = middle_row >= field.cells.y   ? ahead_y == 0
                           : walk.through == kScarpLineX ? t_middle_y < walk.t_in
                                                         : t_middle_y <= walk.t_in;
           walk.col = 2 * walk.col + (behind_x ? ahead_x : 1 - ahead_x);

@@ -2,10 +2,11 @@
 // A ray over a height field in single precision: the field and the ray as a shader is given them, and the frame of
 // reference in which floats are exact enough.
 //
-//   +-----------+-----------+     A frame is a tile of the grid, 1,024 cells wide at most. In it the ray begins anew: at
-//   |           | o---      |     time s0 it is at o, and times, columns, rows and heights count from there. o comes from
-//   |        __-+-          |     the ray's own numbers in twice a float's precision, never from the frame before, so
-//   |    _--    |           |     nothing accumulates; and s0 is a float, whatever it was computed from: it has no error.
+//   +-----------+-----------+     A frame is a tile of the grid, 1,024 cells wide at most. In it the ray begins anew:
+//   at |           | o---      |     time s0 it is at o, and times, columns, rows and heights count from there. o comes
+//   from |        __-+-          |     the ray's own numbers in twice a float's precision, never from the frame before,
+//   so |    _--    |           |     nothing accumulates; and s0 is a float, whatever it was computed from: it has no
+//   error.
 //   +-----------+-----------+
 //
 // Units: x in columns, y in rows (southwards), z in sample units. Time s counts from the ray's begin, in lengths of its
@@ -27,15 +28,15 @@ const uint kScarpSolid = 8u;      ///< there is rock under the sheet
 
 /// What a march has to know of a height field besides its samples and bounds. All in sample units.
 struct ScarpField {
-  ivec2 cells;           ///< columns and rows of cells, at least 1
-  ivec2 samples;         ///< columns and rows of samples; as many as cells where the last is followed by the first
-  int top_level;         ///< of the pyramid, at least 1; 0: there is none
-  uint flags;            ///< kScarpTriangles and so on
-  float code_base;       ///< height of a pyramid entry: code_base + code_base_low + code_step * code
+  ivec2 cells;      ///< columns and rows of cells, at least 1
+  ivec2 samples;    ///< columns and rows of samples; as many as cells where the last is followed by the first
+  int top_level;    ///< of the pyramid, at least 1; 0: there is none
+  uint flags;       ///< kScarpTriangles and so on
+  float code_base;  ///< height of a pyramid entry: code_base + code_base_low + code_step * code
   float code_base_low;
   float code_step;
-  float lowest;          ///< sample
-  float highest;         ///< sample
+  float lowest;   ///< sample
+  float highest;  ///< sample
 };
 
 const uint kScarpOnSurface = 1u;    ///< begins on the surface of its cell: above it by definition, z is not read
@@ -46,22 +47,22 @@ const uint kScarpUpright = 8u;      ///< straight up or down: direction.x and .y
 /// A ray that begins over the field. Whoever has doubles gives all numbers as two floats (march/device_ray.h); the low
 /// parts may be zero.
 struct ScarpRay {
-  ivec2 cell;            ///< over which it begins
-  vec2 place;            ///< where in it, 0..1, both ends included
+  ivec2 cell;  ///< over which it begins
+  vec2 place;  ///< where in it, 0..1, both ends included
   vec2 place_low;
-  vec3 direction;        ///< the larger of abs x, abs y is 1 to 2, unless it is upright: then abs z is
+  vec3 direction;  ///< the larger of abs x, abs y is 1 to 2, unless it is upright: then abs z is
   vec3 direction_low;
-  vec2 per_direction;    ///< 1 / direction; anything where that is 0
-  float z;               ///< at its begin
+  vec2 per_direction;  ///< 1 / direction; anything where that is 0
+  float z;             ///< at its begin
   float z_low;
-  float end;             ///< the last time, included; at most kScarpNever
+  float end;  ///< the last time, included; at most kScarpNever
   float end_low;
-  uint flags;            ///< kScarpOnSurface and so on
+  uint flags;  ///< kScarpOnSurface and so on
   // For the marches that take samples along the ray (ground.glsl.h).
-  float travelled;       ///< time from the begin of the ray's range to this ray's
-  float exit;            ///< when it leaves the field or its range ends
-  float per_height;      ///< time in which the ray goes as far as one sample unit is high
-  float cell_time;       ///< time in which it goes as far as a cell is long, its shorter side
+  float travelled;   ///< time from the begin of the ray's range to this ray's
+  float exit;        ///< when it leaves the field or its range ends
+  float per_height;  ///< time in which the ray goes as far as one sample unit is high
+  float cell_time;   ///< time in which it goes as far as a cell is long, its shorter side
 };
 
 const int kScarpMiss = 0;
@@ -72,13 +73,13 @@ const int kScarpWall = 4;       ///< a hit, of the wall under a border or a hole
 
 /// The answer. Cell, place and time mean something for hits (the time for exhausted, too).
 struct ScarpHit {
-  int status;        ///< kScarpMiss and so on
+  int status;  ///< kScarpMiss and so on
   ivec2 cell;
-  vec2 place;        ///< in the cell, 0..1
-  float time;        ///< time + time_low is the ray's time there
+  vec2 place;  ///< in the cell, 0..1
+  float time;  ///< time + time_low is the ray's time there
   float time_low;
-  uint steps;        ///< blocks, cells or points looked at
-  uint fetches;      ///< samples and entries of the pyramid read
+  uint steps;    ///< blocks, cells or points looked at
+  uint fetches;  ///< samples and entries of the pyramid read
 };
 
 /// Later than any time.
@@ -92,15 +93,15 @@ const int kScarpFarthestCell = 8388608;
 
 /// The ray in a tile.
 struct ScarpFrame {
-  ivec2 begin;   ///< the tile's first column and row
-  ivec2 end;     ///< its last ones + 1
-  ivec2 lap;     ///< the first column and row of this copy of the field; 0 but where it wraps round
-  vec2 o;        ///< where the ray is at local time 0, counted from `begin`
+  ivec2 begin;  ///< the tile's first column and row
+  ivec2 end;    ///< its last ones + 1
+  ivec2 lap;    ///< the first column and row of this copy of the field; 0 but where it wraps round
+  vec2 o;       ///< where the ray is at local time 0, counted from `begin`
   vec2 o_low;
-  float s0;      ///< the ray's time at local time 0
-  float base;    ///< heights count from it
-  float z;       ///< the ray's height at local time 0, counted from `base`
-  float t_end;   ///< the ray's end, in local time
+  float s0;     ///< the ray's time at local time 0
+  float base;   ///< heights count from it
+  float z;      ///< the ray's height at local time 0, counted from `base`
+  float t_end;  ///< the ray's end, in local time
 };
 
 SCARP_FN ScarpHit scarp_no_hit() {
@@ -115,8 +116,8 @@ SCARP_FN ScarpHit scarp_no_hit() {
   return hit;
 }
 
-/// The frame of the tile that holds `cell` of the copy of the field that begins at `lap`; local time 0 is the ray's time
-/// s0. Error of o: 2^-45 of the cells from the ray's begin.
+/// The frame of the tile that holds `cell` of the copy of the field that begins at `lap`; local time 0 is the ray's
+/// time s0. Error of o: 2^-45 of the cells from the ray's begin.
 SCARP_FN ScarpFrame scarp_frame(ScarpField field, ScarpRay ray, ivec2 cell, ivec2 lap, float s0) {
   ScarpFrame frame;
   frame.begin = ivec2((cell.x >> kScarpTileLevel) << kScarpTileLevel, (cell.y >> kScarpTileLevel) << kScarpTileLevel);

@@ -38,8 +38,10 @@ SCARP_FN ScarpHit scarp_relaxed(ScarpField field, ScarpRay ray, ScarpRelaxed set
       return hit;
     } else if (h < 0.0f && i == 0) {
       // Below at the first look: the way back would leave the ray's range.
-      if (on_surface) scarp_tell_point(point, s, kScarpHit, hit);
-      else hit.status = kScarpBelow;
+      if (on_surface)
+        scarp_tell_point(point, s, kScarpHit, hit);
+      else
+        hit.status = kScarpBelow;
       return hit;
     } else {
       s = max(s + settings.step_factor * h, 0.0f);

@@ -23,7 +23,8 @@ RoundingJudge::RoundingJudge(const HeightField& field, const Ray& ray, double ti
     : field_(field), ray_(ray), tile_(tile), strict_(ray.start == RayStart::on_surface) {
   if (!field.has_cells() || field.all_nodata()) return;
   const GridRay local = field.grid_from_world(ray);
-  const double longest = std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
+  const double longest =
+      std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
   const int exponent = std::ilogb(longest);
   origin_ = local.origin;
   for (int axis = 0; axis < 3; ++axis) direction_[axis] = std::ldexp(local.direction[axis], -exponent);
@@ -50,8 +51,8 @@ RoundingJudge::RoundingJudge(const HeightField& field, const Ray& ray, double ti
   if (std::isinf(end_)) {
     // Upright: until nothing more is met.
     const double relief = field.max_sample() - field.min_sample() + 1;
-    end_ = begin_ + (std::abs(origin_.z + direction_.z * begin_ - field.min_sample()) + 2 * relief) /
-                        std::abs(direction_.z);
+    end_ = begin_ +
+           (std::abs(origin_.z + direction_.z * begin_ - field.min_sample()) + 2 * relief) / std::abs(direction_.z);
   }
   if (!(begin_ <= end_)) return;
   meets_field_ = true;
@@ -185,7 +186,8 @@ void RoundingJudge::add_piece(double begin, double end) {
   if (is_ground(col, row)) {
     // The clearance is a parabola: its extreme.
     const double c = clearance(col, row, begin), m = clearance(col, row, middle), last = clearance(col, row, end);
-    const double length = end - begin, a = 2 * (c - 2 * m + last) / (length * length), b = (last - c) / length - a * length;
+    const double length = end - begin, a = 2 * (c - 2 * m + last) / (length * length),
+                 b = (last - c) / length - a * length;
     const double vertex = -b / (2 * a);
     if (length > 0 && vertex > 0 && vertex < length) add_event(col, row, begin + vertex, false, begin, end);
   }
@@ -231,7 +233,22 @@ RoundingJudge::Beliefs RoundingJudge::follow(double until) const {
   return now;
 }
 
-bool RoundingJudge::may_miss() const { return !meets_field_ || follow(HUGE_VAL).any(); }
+RoundingJudge::Bounds RoundingJudge::clearance_at(double t) const {
+  t *= scale_;
+  const double x = at(0, t), y = at(1, t), e = 2 * sideways(t);
+  Bounds bounds{HUGE_VAL, -HUGE_VAL};
+  for (const double dx : {-e, e}) {
+    for (const double dy : {-e, e}) {
+      const int col = static_cast<int>(std::floor(x + dx)), row = static_cast<int>(std::floor(y + dy));
+      if (!is_ground(col, row)) return {};
+      const double f = clearance(col, row, t), d = delta(col, row, t);
+      bounds.low = std::min(bounds.low, f - d);
+      bounds.high = std::max(bounds.high, f + d);
+    }
+  }
+  const double metres = field_.settings().scale * field_.settings().exaggeration;
+  return {bounds.low * metres, bounds.high * metres};
+}
 
 std::string RoundingJudge::objection(const Hit& hit) const {
   if (!hit) {
@@ -247,8 +264,9 @@ std::string RoundingJudge::objection(const Hit& hit) const {
   }
   const double t = hit.t * scale_;
   if (!(hit.t >= ray_.t_min && hit.t <= ray_.t_max)) return "out of the ray's range";
-  if (hit.cell.col < 0 || hit.cell.col >= field_.cell_cols() || hit.cell.row < 0 || hit.cell.row >= field_.cell_rows() ||
-      !(hit.u >= 0 && hit.u <= 1 && hit.v >= 0 && hit.v <= 1) || !field_.cell_heights(hit.cell)) {
+  if (hit.cell.col < 0 || hit.cell.col >= field_.cell_cols() || hit.cell.row < 0 ||
+      hit.cell.row >= field_.cell_rows() || !(hit.u >= 0 && hit.u <= 1 && hit.v >= 0 && hit.v <= 1) ||
+      !field_.cell_heights(hit.cell)) {
     return "a place that does not exist";
   }
   // The copy of the cell that the ray is over.

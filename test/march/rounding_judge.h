@@ -8,6 +8,7 @@
 // judge keeps the SET of what a march may believe. An answer is wrong when no belief leads to it.
 #pragma once
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -22,8 +23,15 @@ class RoundingJudge {
 
   /// Empty when a march may answer so, else why not.
   std::string objection(const Hit& hit) const;
-  /// Whether it may tell that nothing, or that something is hit.
-  bool may_miss() const;
+  /// Whether a march may tell of nothing on the way up to t.
+  bool may_pass(double t) const { return !meets_field_ || follow(t * scale_).any(); }
+  bool may_miss() const { return may_pass(HUGE_VAL); }
+  /// How far (vertically, metres) the ray is above the surface at t as a march may see it, at least and at most; over
+  /// holes and outside, or where that is not certain, anything.
+  struct Bounds {
+    double low = -HUGE_VAL, high = HUGE_VAL;
+  };
+  Bounds clearance_at(double t) const;
 
  private:
   struct Place {
@@ -35,10 +43,10 @@ class RoundingJudge {
     int col, row;
     enum What { ground, hole } what;
     double clearance, delta;
-    bool enters;      // begins a piece of a cell
-    bool touches_hole;   // a hole or border is as near as sideways rounding
-    bool may_leave;   // the ray may be taken to have left the field here
-    bool brief;       // a piece no longer than sideways rounding
+    bool enters;        // begins a piece of a cell
+    bool touches_hole;  // a hole or border is as near as sideways rounding
+    bool may_leave;     // the ray may be taken to have left the field here
+    bool brief;         // a piece no longer than sideways rounding
   };
   struct Beliefs {
     bool unknown = false, above = false, below = false, gone = false;
