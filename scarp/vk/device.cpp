@@ -19,7 +19,7 @@ std::vector<DeviceDescription> described(const std::vector<vk::raii::PhysicalDev
 
 vk::raii::PhysicalDevice chosen(const VulkanInstance& instance, const std::string& choice) {
   const auto devices = instance.physical_devices();
-  if (devices.empty()) throw Error("Vulkan: no driver is installed (Debian, for any CPU: mesa-vulkan-drivers)");
+  if (devices.empty()) throw Error(kNoDriver);
   return devices[choose_device(described(devices), choice)];
 }
 
@@ -61,8 +61,8 @@ std::string vulkan_failure(vk::Result result, const std::string& device, const s
       return fmt::format("{}: out of device memory while {}", where, what);
     case vk::Result::eErrorOutOfHostMemory:
       return fmt::format("{}: out of memory while {}", where, what);
-    case vk::Result::eErrorIncompatibleDriver:
-      return fmt::format("{}: the driver cannot do what was asked for while {}", where, what);
+    case vk::Result::eErrorIncompatibleDriver:  // what the loader says where there is none
+      return kNoDriver;
     default:
       return fmt::format("{}: {} while {}", where, vk::to_string(result), what);
   }

@@ -124,7 +124,7 @@ DeviceList list_devices() {
     list.why_none = error.what();
     return list;
   }
-  if (list.devices.empty()) list.why_none = "Vulkan: no driver is installed (Debian, for any CPU: mesa-vulkan-drivers)";
+  if (list.devices.empty()) list.why_none = kNoDriver;
   return list;
 }
 

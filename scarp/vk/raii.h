@@ -19,6 +19,8 @@
 
 namespace scarp {
 
+constexpr const char* kNoDriver = "Vulkan: no driver is installed (Debian, for any CPU: mesa-vulkan-drivers)";
+
 /// What a failure of Vulkan means for who asked for `what`; `device` names the device.
 std::string vulkan_failure(vk::Result result, const std::string& device, const std::string& what);
 

@@ -21,16 +21,16 @@ struct DeviceUnderTest {
 
 inline const DeviceUnderTest& device_under_test() {
   static const DeviceUnderTest under_test = [] {
+    // The leak sanitizer can tell whose memory it is only while the driver is loaded (see lavapipe.lsan).
+    for (const char* module : {"libvulkan.so.1", "libvulkan_lvp.so", "libVkLayer_khronos_validation.so"}) {
+      ::dlopen(module, RTLD_NOW | RTLD_NODELETE);
+    }
     DeviceUnderTest found;
     const DeviceList list = list_devices();
     bool usable = false;
     for (const DeviceDescription& device : list.devices) usable |= device.usable();
     if (usable) {
       found.device.emplace(DeviceSettings{.validation = true});
-      // The leak sanitizer can tell whose memory it is only while the driver is loaded.
-      for (const char* module : {"libvulkan.so.1", "libvulkan_lvp.so", "libVkLayer_khronos_validation.so"}) {
-        ::dlopen(module, RTLD_NOW | RTLD_NOLOAD | RTLD_NODELETE);
-      }
     } else {
       found.why_none = list.devices.empty() ? list.why_none : "no usable Vulkan device";
     }
