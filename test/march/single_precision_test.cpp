@@ -11,6 +11,7 @@
 #include "march/glsl_host.h"
 #include "march/rounding_judge.h"
 #include "march/spiteful.h"
+#include "march/spiteful_text.h"
 #include "scarp/march/device_ray.h"
 #include "scarp/march/max_mip.glsl.h"
 #include "scarp/march/max_mip.h"
@@ -24,23 +25,6 @@ constexpr int kRaysPerPair = 10'000;
 constexpr int kRaysPerPair = 500;
 #endif
 constexpr int kRaysPerField = 250;
-
-std::string text(const Ray& ray) {
-  return fmt::format("origin ({:a}, {:a}, {:a}) direction ({:a}, {:a}, {:a}) t [{:a}, {:a}] {} cell ({}, {})",
-                     ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z,
-                     ray.t_min, ray.t_max, ray.start == RayStart::free ? "free" : "on surface", ray.start_cell.col,
-                     ray.start_cell.row);
-}
-
-std::string text(const Hit& hit) {
-  static constexpr const char* kNames[] = {"miss", "hit", "below", "exhausted"};
-  return fmt::format("{}{} t={} cell ({}, {}) u={} v={}", kNames[static_cast<int>(hit.status)], hit.wall ? " wall" : "",
-                     hit.t, hit.cell.col, hit.cell.row, hit.u, hit.v);
-}
-
-struct Pair {
-  std::size_t field, ray;
-};
 
 class SinglePrecision : public testing::TestWithParam<Pair> {};
 
@@ -83,24 +67,6 @@ TEST_P(SinglePrecision, MaxMipDecidesAsTheSurfaceDoes) {
   if (kind.name == "random" || kind.name == "from above") {
     EXPECT_LE(other_status, kRaysPerPair / 1000);
   }
-}
-
-std::vector<Pair> pairs() {
-  std::vector<Pair> pairs;
-  for (std::size_t field = 0; field < spiteful_fields().size(); ++field) {
-    for (std::size_t ray = 0; ray < spiteful_rays().size(); ++ray) {
-      const unsigned needed = spiteful_rays()[ray].aims_at;
-      if ((spiteful_fields()[field].has & needed) == needed) pairs.push_back({field, ray});
-    }
-  }
-  return pairs;
-}
-
-std::string name_of_pair(const testing::TestParamInfo<Pair>& info) {
-  std::string name =
-      fmt::format("{}__{}", spiteful_fields()[info.param.field].name, spiteful_rays()[info.param.ray].name);
-  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Spiteful, SinglePrecision, testing::ValuesIn(pairs()), name_of_pair);
