@@ -94,7 +94,7 @@ std::vector<std::size_t> all_fields() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Spiteful, ParityOnDevice, testing::ValuesIn(all_fields()),
-                         [](const auto& info) { return test_name(std::string(spiteful_fields()[info.param].name)); });
+                         [](const auto& of) { return test_name(std::string(spiteful_fields()[of.param].name)); });
 
 class QueriesOnDevice : public OnDevice {};
 

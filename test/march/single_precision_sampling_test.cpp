@@ -81,7 +81,7 @@ TEST_P(SinglePrecisionSampling, KeepsItsRule) {
 
 INSTANTIATE_TEST_SUITE_P(Marches, SinglePrecisionSampling,
                          testing::Values("naive", "relaxed", "lipschitz", "fixed-step", "fixed-step, plain"),
-                         [](const auto& info) { return test_name(info.param); });
+                         [](const auto& of) { return test_name(of.param); });
 
 }  // namespace
 }  // namespace scarp::test
