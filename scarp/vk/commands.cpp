@@ -24,12 +24,19 @@ struct Commands::Impl {
 
   void begin() {
     if (recording) return;
+    finish();  // a run that nobody waited for to its end
     commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     // What earlier runs and copies have written is there; Vulkan wants it said.
     full_barrier(commands);
     timestamps.reset(commands);
     recording = true;
     passes.clear();
+  }
+
+  void finish() {
+    if (!running) return;
+    device->wait(fence, passes.empty() ? "a run" : "'" + passes.back().name + "'");
+    running = false;
   }
 
   std::shared_ptr<Device::Impl> device;
@@ -107,8 +114,7 @@ void Commands::run() {
     all.recording = false;
     all.device->submit(all.commands, all.fence);
     all.running = true;
-    all.device->wait(all.fence, all.passes.empty() ? "a run" : "'" + all.passes.back().name + "'");
-    all.running = false;
+    all.finish();
     const auto times = all.timestamps.read(all.passes.size());
     for (std::size_t i = 0; i < times.size(); ++i) all.passes[i].nanoseconds = times[i];
   });

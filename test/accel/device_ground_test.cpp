@@ -176,6 +176,12 @@ TEST_F(DeviceGrounds, AnUpdateMakesNothingElseAnew) {
   EXPECT_EQ(ground.passes()[0].name, "max_pyramid");
 }
 
+// More samples than one storage buffer of lavapipe holds (128 MiB), and a level wider than one dispatch.
+TEST_F(DeviceGrounds, PyramidsOfLongFieldsAreTheCpusToo) {
+  const int cols = 17'500'000;
+  expect_same(HeightField::own(noise<float>(cols, 2), cols, 2));
+}
+
 // What a shader reads through ground_buffers.glsl.h: four heights of each cell, and whether it is a hole.
 TEST_F(DeviceGrounds, ShadersReadTheSamplesOfTheField) {
   struct Push {
