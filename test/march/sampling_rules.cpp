@@ -35,7 +35,7 @@ std::string sampling_objection(std::string_view march, const MarchSettings& sett
                                double slope, const Ray& ray, const RoundingJudge& judge, const Hit& hit) {
   // Lengths that doubles cannot square are beyond these marches in double, too.
   const double metres_per_t = length(ray.direction);
-  if (!(metres_per_t > 0) || !std::isfinite(metres_per_t)) return {};
+  if (!(metres_per_t > 0x1p-500 && std::isfinite(metres_per_t))) return {};
   const bool on_surface = ray.start == RayStart::on_surface;
   if (hit && !(hit.t >= ray.t_min && hit.t <= ray.t_max)) return "out of the ray's range";
   if (hit && !(hit.cell.col >= 0 && hit.cell.col < field.cell_cols() && hit.cell.row >= 0 &&
