@@ -104,39 +104,6 @@ struct ScarpFrame {
   float t_end;  ///< the ray's end, in local time
 };
 
-/// A ray for hosts without doubles, from a place over the field: z in sample units; the direction in columns, rows and
-/// sample units is brought to the length that ScarpRay asks for, and times are of that (`end` too). As exact as floats are,
-/// and as 1 / direction is computed: the same bound, where the division is right to 2.5 units as in Vulkan. `exit` and what
-/// follows it, for the marches that take samples, are those of square cells of 1 sample unit.
-SCARP_FN ScarpRay scarp_ray(ivec2 cell, vec2 place, float z, vec3 direction, float end, uint flags) {
-  float speed = max(abs(direction.x), abs(direction.y));
-  ScarpRay ray;
-  ray.flags = flags;
-  if (!(speed > 0.0f)) {
-    speed = abs(direction.z);
-    ray.flags |= kScarpUpright;
-  }
-  float per_speed = 1.0f / speed;
-  ray.cell = cell;
-  ray.place = place;
-  ray.place_low = vec2(0.0f, 0.0f);
-  ray.direction = vec3(direction.x * per_speed, direction.y * per_speed, direction.z * per_speed);
-  ray.direction_low = vec3(0.0f, 0.0f, 0.0f);
-  ray.per_direction = vec2(ray.direction.x == 0.0f ? 0.0f : clamp(1.0f / ray.direction.x, -kScarpNever, kScarpNever),
-                           ray.direction.y == 0.0f ? 0.0f : clamp(1.0f / ray.direction.y, -kScarpNever, kScarpNever));
-  ray.z = z;
-  ray.z_low = 0.0f;
-  ray.end = end;
-  ray.end_low = 0.0f;
-  ray.travelled = 0.0f;
-  ray.exit = end;
-  float length_of = sqrt(ray.direction.x * ray.direction.x + ray.direction.y * ray.direction.y +
-                         ray.direction.z * ray.direction.z);
-  ray.per_height = 1.0f / length_of;
-  ray.cell_time = 1.0f / length_of;
-  return ray;
-}
-
 SCARP_FN ScarpHit scarp_no_hit() {
   ScarpHit hit;
   hit.status = kScarpMiss;

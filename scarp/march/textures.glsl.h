@@ -3,9 +3,11 @@
 // the marches ask of their host (cell_surface.glsl.h, max_mip.glsl.h), answered by texelFetch.
 //
 //   scarp_heights   32-bit float, one channel: texel (col, row) is the sample there
-//   scarp_bounds    32-bit float, two channels, with mipmaps: at mip level l - 1, texel (col, row) holds the maximum and
-//                   the minimum code of block (col, row) of level l, as accel/max_pyramid.h makes them. Its sides are powers
-//                   of two no less than those of level 1, so that every level has room; what lies beyond means nothing
+//   scarp_bounds    32-bit float, two channels, with mipmaps: at mip level l - 1, texel (col, row) holds the maximum
+//   and
+//                   the minimum code of block (col, row) of level l, as accel/max_pyramid.h makes them. Its sides are
+//                   powers of two no less than those of level 1, so that every level has room; what lies beyond means
+//                   nothing
 //
 // GLSL, GLSL ES 3.0 included. Who includes it has declared, before,
 //   uniform highp sampler2D scarp_heights, scarp_bounds;   no filter is used

@@ -9,7 +9,7 @@
 namespace scarp::test {
 namespace {
 
-constexpr double kFloat = 0x1p-24, kDouble = 0x1p-53;
+constexpr double kFloat = 0x1p-24;
 // What numerics.md counts, rounded up to a power of two.
 constexpr double kRoundings = 16;
 // Of the ray from world coordinates on, as for the marches in double.
@@ -19,8 +19,8 @@ constexpr double kCertain = 2;
 
 }  // namespace
 
-RoundingJudge::RoundingJudge(const HeightField& field, const Ray& ray, double tile)
-    : field_(field), ray_(ray), tile_(tile), strict_(ray.start == RayStart::on_surface) {
+RoundingJudge::RoundingJudge(const HeightField& field, const Ray& ray, double tile, double world_unit)
+    : field_(field), ray_(ray), tile_(tile), world_unit_(world_unit), strict_(ray.start == RayStart::on_surface) {
   if (!field.has_cells() || field.all_nodata()) return;
   const GridRay local = field.grid_from_world(ray);
   const double longest =
@@ -44,7 +44,7 @@ RoundingJudge::RoundingJudge(const HeightField& field, const Ray& ray, double ti
       begin_ = std::max(begin_, std::min(a, b));
       end_ = std::min(end_, std::max(a, b));
     }
-    from_outside_ = begin_ > first + kWorldRoundings * kDouble * std::abs(first);
+    from_outside_ = begin_ > first + kWorldRoundings * world_unit_ * std::abs(first);
     may_be_from_outside_ = begin_ >= first;
     if (begin_ - first <= 4 * sideways(begin_)) may_be_from_outside_ = true;
   }
@@ -123,7 +123,7 @@ double RoundingJudge::sideways(double t) const {
   const double way = std::min(std::abs(direction_.x * (t - begin_)) + std::abs(direction_.y * (t - begin_)), 2 * tile_);
   const double world = std::abs(origin_.x) + std::abs(direction_.x * t) + std::abs(origin_.y) +
                        std::abs(direction_.y * t) + field_.rows();
-  return kRoundings * kFloat * (way + 1) + kWorldRoundings * kDouble * world;
+  return kRoundings * kFloat * (way + 1) + kWorldRoundings * world_unit_ * world;
 }
 
 double RoundingJudge::delta(int col, int row, double t) const {
@@ -136,7 +136,7 @@ double RoundingJudge::delta(int col, int row, double t) const {
                        std::max(std::abs(field_.min_sample()), std::abs(field_.max_sample())) +
                        std::abs(field_.settings().offset) / field_.settings().scale;
   return kRoundings * kFloat * (2 * std::abs(direction_.z * s) + steep) + sideways(t) * steep +
-         kWorldRoundings * kDouble * world;
+         kWorldRoundings * world_unit_ * world;
 }
 
 // Whether a piece of the ray in a cell comes within sideways rounding of a hole or border; or, border_only, keeps as

@@ -19,7 +19,8 @@ namespace scarp::test {
 class RoundingJudge {
  public:
   /// `ray` is valid. `tile` is how many cells a march goes before its numbers begin anew; at most 1,024.
-  RoundingJudge(const HeightField& field, const Ray& ray, double tile = 1024);
+  /// `world_unit` is the unit roundoff of what clipped the ray to the field.
+  RoundingJudge(const HeightField& field, const Ray& ray, double tile = 1024, double world_unit = 0x1p-53);
 
   /// Empty when a march may answer so, else why not.
   std::string objection(const Hit& hit) const;
@@ -70,7 +71,7 @@ class RoundingJudge {
   const HeightField& field_;
   const Ray& ray_;
   dvec3 origin_, direction_;
-  double begin_ = 0, end_ = 0, scale_ = 1, tile_;
+  double begin_ = 0, end_ = 0, scale_ = 1, tile_, world_unit_;
   bool strict_, from_outside_ = false, may_be_from_outside_ = false, meets_field_ = false;
   double start_relief_ = 0;
   std::vector<Event> events_;

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "march/glsl_host.h"
@@ -12,6 +13,7 @@
 #include "march/spiteful.h"
 #include "march/spiteful_text.h"
 #include "scarp/march/device_ray.h"
+#include "scarp/march/float_ray.glsl.h"
 #include "scarp/march/max_mip.glsl.h"
 #include "scarp/march/max_mip.h"
 
@@ -75,6 +77,45 @@ TEST_P(SinglePrecision, MaxMipDecidesAsTheSurfaceDoes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Spiteful, SinglePrecision, testing::ValuesIn(pairs()), name_of_pair);
+
+// Rays that a shader makes: begin and direction in floats, clipped to the field in floats.
+TEST(SinglePrecisionFromFloats, MaxMipDecidesAsTheSurfaceDoes) {
+  for (const FieldKind& fields : spiteful_fields()) {
+    for (const std::size_t kind : {0, 1, 2, 3}) {
+      Random random(kind);
+      const HeightField field = fields.make(random);
+      const MaxPyramid pyramid(field);
+      if (!field.has_cells() || field.all_nodata()) continue;
+      glsl::host_field = &field;
+      glsl::host_pyramid = &pyramid;
+      const glsl::ScarpField ground = device_field(field, &pyramid);
+      for (int i = 0; i < 100; ++i) {
+        const Ray made = spiteful_rays()[kind].make(field, random);
+        const GridRay local = field.grid_from_world(made);
+        const glsl::vec3 origin(local.origin), direction(local.direction);
+        const double speed = std::max(std::abs(double{direction.x}), std::abs(double{direction.y}));
+        if (!(speed > 0)) continue;
+        const auto end = static_cast<float>(std::min(made.t_max * speed, double{glsl::kScarpNever}));
+        // The same ray in the world, but for doubles' rounding.
+        Ray ray;
+        ray.origin = field.world_from_grid(origin.x, origin.y, origin.z);
+        ray.direction = field.world_from_grid(origin.x + double{direction.x}, origin.y + double{direction.y},
+                                              origin.z + double{direction.z}) -
+                        ray.origin;
+        ray.t_max = end < glsl::kScarpNever ? end / speed : HUGE_VAL;
+        DeviceRay prepared;
+        prepared.marches = glsl::scarp_ray_from(ground, origin, direction, end, prepared.ray);
+        prepared.begin = double{prepared.ray.travelled};
+        prepared.per_time = 1 / speed;
+        glsl::ScarpHit answer{};
+        if (prepared.marches) answer = glsl::scarp_max_mip(ground, prepared.ray, false);
+        const Hit hit = hit_from_device(ray, prepared, answer);
+        ASSERT_EQ(RoundingJudge(field, ray, 1024, 0x1p-24).objection(hit), "")
+            << fields.name << ", " << spiteful_rays()[kind].name << ": " << text(ray) << "\n  " << text(hit);
+      }
+    }
+  }
+}
 
 TEST(SinglePrecisionAcrossTiles, MaxMipDecidesAsTheSurfaceDoes) {
   for (std::size_t field = 0; field < wide_fields().size(); ++field) {

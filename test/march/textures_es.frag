@@ -11,6 +11,7 @@ uniform int march;
 out vec4 colour;
 
 #include "scarp/march/textures.glsl.h"
+#include "scarp/march/float_ray.glsl.h"
 #include "scarp/march/max_mip.glsl.h"
 #include "scarp/march/naive.glsl.h"
 #include "scarp/march/fixed_step.glsl.h"
@@ -28,7 +29,8 @@ void main() {
   field.code_step = 1.0;
   field.lowest = 0.0;
   field.highest = 1.0;
-  ScarpRay ray = scarp_ray(ivec2(gl_FragCoord.xy), fract(gl_FragCoord.xy), 1.0, vec3(1.0, 0.25, -0.125), kScarpNever, 0u);
+  ScarpRay ray;
+  if (!scarp_ray_from(field, vec3(gl_FragCoord.xy, 9.0), vec3(1.0, 0.25, -0.125), kScarpNever, ray)) discard;
   ScarpHit hit;
   if (march == 0) hit = scarp_max_mip(field, ray, false);
   else if (march == 1) hit = scarp_naive(field, ray, ScarpNaive(0.7, 0.01, 0.001, 100));
