@@ -1,5 +1,5 @@
-# Puts a shader and all that it includes into one file, for hosts without #include:
-#   cmake -D ROOT=<folder that include paths start from> -D FILE=<shader> -D OUT=<result> -P FlattenGlsl.cmake
+# Puts shaders and all that they include into one file, for hosts without #include:
+#   cmake -D ROOT=<folder that include paths start from> -D FILES=<a,b,...> -D OUT=<result> -P FlattenGlsl.cmake
 # Each file comes once, where it is first asked for. What is for C++ alone is left out.
 cmake_minimum_required(VERSION 3.25)
 
@@ -44,7 +44,10 @@ function(flatten file)
   set(text "${text}" PARENT_SCOPE)
 endfunction()
 
-flatten(${FILE})
+string(REPLACE "," ";" FILES "${FILES}")
+foreach(file IN LISTS FILES)
+  flatten(${file})
+endforeach()
 string(REPLACE "@semicolon@" ";" text "${text}")
 string(REPLACE "@open@" "[" text "${text}")
 string(REPLACE "@close@" "]" text "${text}")
