@@ -46,6 +46,8 @@ constexpr double kUnit = 0x1p-53;
 constexpr double kRoundings = 32;
 constexpr int kNeighbours = 256;
 
+using test::text;
+
 std::string text(const std::vector<Hit>& hits) {
   std::string all;
   for (const Hit& hit : hits) all += "\n    " + text(hit);
