@@ -19,10 +19,10 @@ constexpr int kRowsAhead = 4;
 std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntriesPerPiece / std::max(cols, 1)); }
 
 // From samples to codes, outwards. Floats are moved by kClear of a step first, more than all that rounding does. Let M
-// be the greatest magnitude that codes have to hold. No step is below kLeastStep * M, and neighbouring floats are 2^-24
-// M apart at least, so that their 65,533rd part is not, either. A place, at most 2^16 steps, is off by 4 * 2^-53 of
-// itself; the height that a code stands for by 2^-51 M, which is 2^-11 steps. All in double and without branches, of
-// which compilers make vector instructions. A block of holes has -infinity here, and the lowest code.
+// be the greatest magnitude that codes have to hold: no step is below kLeastStep * M, which two neighbouring floats do
+// not ask for either. A place, at most 2^16 steps, is off by 4 * 2^-53 of itself; the height that a code stands for by
+// 2^-51 M, which is 2^-11 steps. All in double and without branches, of which compilers make vector instructions. A
+// block of holes has -infinity here, and the lowest code.
 constexpr double kClear = 0x1p-8, kLeastStep = 0x1p-40;
 
 template <class T>
@@ -194,7 +194,7 @@ void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleR
   // grows until the highest code stands for no less than the highest sample.
   const double magnitude = std::max(std::abs(range.low), std::abs(range.high));
   double step = std::max((range.high - range.low) / (kTopCode - 2), kLeastStep * magnitude);
-  if (!(step > 0)) step = 1;
+  if (!(step > 0)) step = 0x1p-20;
   do {
     code = {range.low - 1.5 * step, step, 1 / step};
     step *= 1 + 0x1p-20;
