@@ -123,6 +123,18 @@ TEST(MaxPyramid, BoundsHeightsOfARangeThatIsNarrowerThanRounding) {
   }
 }
 
+TEST(MaxPyramid, BoundsHeightsThatAreThoseOfCodesButForRounding) {
+  std::mt19937 random(10);
+  std::uniform_real_distribution<double> some(0.001, 0.01);
+  const HeightField flat = HeightField::own(std::vector<float>(9, 1.0f), 3, 3);
+  for (int i = 0; i < 200; ++i) {
+    // A range in which the sample's height is that of code m.
+    const double step = some(random), m = 2 + static_cast<double>(random() % 65000);
+    const double low = 1 - step * m + 1.5 * step;
+    expect_tight(flat, MaxPyramid(flat, SampleRange{low, low + 65533 * step}));
+  }
+}
+
 TEST(MaxPyramid, LeavesHolesOut) {
   auto ints = noise<std::int16_t>(21, 19);
   auto floats = noise<float>(21, 19);
