@@ -16,6 +16,12 @@ namespace {
 using Key = std::uint32_t;
 
 Key key_of(float sample) { return glsl::float_key(std::bit_cast<std::uint32_t>(sample)); }
+constexpr float kHighest = std::numeric_limits<float>::max();
+
+// Of a float about as high as a place on the scale of codes.
+Key key_near(const HeightCode& code, double place) {
+  return key_of(static_cast<float>(std::clamp(code.base + code.step * place, -double{kHighest}, double{kHighest})));
+}
 float sample_of(Key key) { return std::bit_cast<float>(glsl::float_bits(key)); }
 
 // The greatest key in [low, high] for which `holds`, which is true for all keys up to one and for none beyond; low must
@@ -75,20 +81,20 @@ std::uint16_t code_below(const HeightCode& code, Key key) {
 
 std::vector<std::uint32_t> code_tables(const HeightCode& code) {
   constexpr int kCodes = static_cast<int>(glsl::kPyramidCodes);
-  constexpr float kHighest = std::numeric_limits<float>::max();
   const Key least = key_of(-kHighest), greatest = key_of(kHighest);
   std::vector<std::uint32_t> tables(2 * static_cast<std::size_t>(kCodes));
   parallel_for(kCodes, 1 << 12, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t at = begin; at < end; ++at) {
       const auto wanted = static_cast<std::uint16_t>(at);
-      const double height = std::clamp(code.height(wanted), -double{kHighest}, double{kHighest});
-      const Key guess = key_of(static_cast<float>(height));
       // A block that is all holes has the key 0, and no sample may be below the ceiling of code 0.
       const auto above = [&](Key key) { return code_above(code, key) <= wanted; };
-      tables[static_cast<std::size_t>(at)] = above(least) ? last_key(least, greatest, guess, above) : 0;
+      tables[static_cast<std::size_t>(at)] =
+          above(least) ? last_key(least, greatest, key_near(code, wanted - kClear), above) : 0;
       const auto below = [&](Key key) { return code_below(code, key) < wanted; };
-      const std::size_t floor = static_cast<std::size_t>(kCodes + at);
-      tables[floor] = wanted == 0 ? 0 : below(least) ? last_key(least, greatest, guess, below) + 1 : least;
+      tables[static_cast<std::size_t>(kCodes + at)] =
+          wanted == 0    ? 0
+          : below(least) ? last_key(least, greatest, key_near(code, wanted + kClear), below) + 1
+                         : least;
     }
   });
   return tables;

@@ -24,8 +24,9 @@ HeightCode height_code(SampleType type, const SampleRange& range) {
   if (type != SampleType::float32) return {type == SampleType::int16 ? -32768.0 : 0.0, 1, 1};
   // The lowest sample gets code 1, half a step clear of rounding, since code 0 says that there is no minimum; the step
   // grows until the highest code stands for no less than the highest sample.
-  double step = (range.high - range.low) / (kTopCode - 2);
-  if (!(step > 0)) step = std::max(std::abs(range.low), 1.0) * 0x1p-20;
+  const double magnitude = std::max(std::abs(range.low), std::abs(range.high));
+  double step = std::max((range.high - range.low) / (kTopCode - 2), kLeastStep * magnitude);
+  if (!(step > 0)) step = 0x1p-20;
   HeightCode code;
   do {
     code = {range.low - 1.5 * step, step, 1 / step};

@@ -44,15 +44,15 @@ void add_cell(Ground ground, uint col, uint row, inout Extremes extremes) {
 uint ceiling(uint code) { return GroundWords(push.codes).words[code]; }
 uint floor_of(uint code) { return GroundWords(push.codes).words[kPyramidCodes + code]; }
 
-// Where a code is likely to be; only the tables say.
-uint guess_code(Ground ground, uint key) {
-  float place = (uintBitsToFloat(float_bits(key)) - ground.is.code_base) * ground.is.code_per_step;
+// The code that a key is likely to have, `beyond` its place; only the tables know.
+uint guess_code(Ground ground, uint key, float beyond) {
+  float place = (uintBitsToFloat(float_bits(key)) - ground.is.code_base) * ground.is.code_per_step + beyond;
   return min(uint(clamp(place, 0.0, 65535.0)), kPyramidCodes - 1u);
 }
 
 // The least code whose ceiling is not below the key.
 uint code_above(Ground ground, uint key) {
-  uint guess = guess_code(ground, key), low = 0u, high = kPyramidCodes - 1u;
+  uint guess = guess_code(ground, key, 1.0), low = 0u, high = kPyramidCodes - 1u;
   if (key <= ceiling(guess)) {
     if (guess == 0u || key > ceiling(guess - 1u)) return guess;
     high = guess - 1u;
@@ -73,7 +73,7 @@ uint code_above(Ground ground, uint key) {
 
 // The greatest code whose floor is not above the key.
 uint code_below(Ground ground, uint key) {
-  uint guess = guess_code(ground, key), low = 0u, high = kPyramidCodes - 1u;
+  uint guess = guess_code(ground, key, 0.0), low = 0u, high = kPyramidCodes - 1u;
   if (key >= floor_of(guess)) {
     if (guess == high || key < floor_of(guess + 1u)) return guess;
     low = guess + 1u;

@@ -6,11 +6,14 @@
 
 #include "scarp/accel/height_encode.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/prefetch.h"
 
 namespace scarp {
 namespace {
 
 constexpr std::int64_t kEntriesPerPiece = 1 << 16;
+// Rows of codes that are asked for ahead of the one at work: more would keep a processor from other requests.
+constexpr int kRowsAhead = 4;
 
 std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntriesPerPiece / std::max(cols, 1)); }
 
@@ -84,6 +87,11 @@ void build_first(const SampleGrid<T>& grid, const HeightCode& code, const CellBo
     std::vector<T> highest(2 * cells + 1), lowest(2 * cells + 1), high(static_cast<std::size_t>(width)),
         low(high.size());
     for (int row = part.row_begin + static_cast<int>(first); row < part.row_begin + last; ++row) {
+      if (row + kRowsAhead < part.row_begin + last) {
+        const std::ptrdiff_t ahead = static_cast<std::ptrdiff_t>(row + kRowsAhead) * cols + part.col_begin;
+        prefetch_for_write(maxima + ahead, width);
+        prefetch_for_write(minima + ahead, width);
+      }
       const std::size_t second = 2 * row + 1 < grid.cell_rows ? cells : 0;
       if (grid.has_holes) {
         extremes_of_cells(grid, 2 * row, begin, end, highest.data(), lowest.data());

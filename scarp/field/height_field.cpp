@@ -175,7 +175,7 @@ SCARP_INSTANTIATE(float)
 
 std::optional<HeightField::Place> HeightField::place(double x, double y) const {
   if (!has_cells()) return {};
-  double col = x * per_cell_x_, row = (rows_ - 1) - y * per_cell_y_;
+  double col = col_from_x(x), row = row_from_y(y);
   const int cols = cell_cols(), rows = cell_rows();
   if (wraps()) {
     col -= std::floor(col / cols) * cols;

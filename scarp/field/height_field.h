@@ -14,6 +14,7 @@
 // place.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -130,9 +131,8 @@ class HeightField {
   }
 
   GridRay grid_from_world(const Ray& ray) const {
-    return {
-        {ray.origin.x * per_cell_x_, (rows_ - 1) - ray.origin.y * per_cell_y_, (ray.origin.z - z_offset_) * per_scale_},
-        {ray.direction.x * per_cell_x_, -ray.direction.y * per_cell_y_, ray.direction.z * per_scale_}};
+    return {{col_from_x(ray.origin.x), row_from_y(ray.origin.y), (ray.origin.z - z_offset_) * per_scale_},
+            {ray.direction.x * per_cell_x_, -ray.direction.y * per_cell_y_, ray.direction.z * per_scale_}};
   }
   /// World position of a point in grid units.
   dvec3 world_from_grid(double col, double row, double sample) const {
@@ -213,6 +213,16 @@ class HeightField {
   template <class T, class Sample>
   void require_shared_border(const SampleGrid<T>& grid, const Sample& sample) const;
   CellBox cells_of(const SampleRect& rect) const;
+
+  // A position on the border stays there: rounding must not carry it out of the field.
+  double col_from_x(double x) const {
+    const double col = x * per_cell_x_;
+    return !wraps() && x <= width() ? std::min(col, static_cast<double>(cell_cols())) : col;
+  }
+  double row_from_y(double y) const {
+    const double row = (rows_ - 1) - y * per_cell_y_;
+    return !wraps() && y <= depth() ? std::max(row, 0.0) : row;
+  }
 
   SampleType type_ = SampleType::float32;
   const void* data_ = nullptr;

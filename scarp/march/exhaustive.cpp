@@ -301,13 +301,37 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
   return without;
 }
 
+// The products of a very long or very short direction's components do not fit a double: it is followed as one of a
+// length near 1, and t given back in its own. By powers of two, so that nothing is rounded.
+class OfUsualLength {
+ public:
+  explicit OfUsualLength(const Ray& ray) : ray_(ray) {
+    const dvec3& d = ray.direction;
+    std::frexp(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), &exponent_);
+    if (std::abs(exponent_) < 128) exponent_ = 0;
+    for (int axis = 0; axis < 3; ++axis) ray_.direction[axis] = std::ldexp(d[axis], -exponent_);
+    ray_.t_min = std::ldexp(ray.t_min, exponent_);
+    ray_.t_max = std::ldexp(ray.t_max, exponent_);
+  }
+  const Ray& ray() const { return ray_; }
+  Hit in_own_length(Hit hit) const {
+    hit.t = std::ldexp(hit.t, -exponent_);
+    return hit;
+  }
+
+ private:
+  Ray ray_;
+  int exponent_ = 0;
+};
+
 }  // namespace
 
 Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats) {
   if (stats) *stats = {};
   Hit answer;
-  const HitStatus without = follow(*target.field, ray, stats, [&](const Hit& hit) {
-    answer = hit;
+  const OfUsualLength usual(ray);
+  const HitStatus without = follow(*target.field, usual.ray(), stats, [&](const Hit& hit) {
+    answer = usual.in_own_length(hit);
     return false;
   });
   if (!answer) answer.status = without;
@@ -316,8 +340,9 @@ Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSett
 
 HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
   hits.clear();
-  const HitStatus without = follow(*target.field, ray, nullptr, [&](const Hit& hit) {
-    hits.push_back(hit);
+  const OfUsualLength usual(ray);
+  const HitStatus without = follow(*target.field, usual.ray(), nullptr, [&](const Hit& hit) {
+    hits.push_back(usual.in_own_length(hit));
     return true;
   });
   return hits.empty() ? without : HitStatus::hit;

@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "march/spiteful.h"
+#include "scarp/march/exhaustive.h"
 
 namespace scarp::test {
 namespace {
@@ -121,6 +123,42 @@ TEST(MaxMip, MissesBeforeAndAfterTheRaysRange) {
   EXPECT_TRUE(flat().cast({1, 1, 10}, {0, 1, -4}, 2, 3)) << "the range is closed";
   EXPECT_EQ(flat().cast({1, 1, 10}, {0, 1, -4}, 2.001, 3).status, HitStatus::below);
   EXPECT_TRUE(flat().cast({1, 1, -2}, {0, -1, -2}, -4, 0)) << "t may be negative";
+}
+
+TEST(MaxMip, CountsTInTheLengthOfExtremeDirectionsAsTheOracleDoes) {
+  const Terrain terrain = hills();
+  const HeightTarget target{&terrain.field, &terrain.pyramid};
+  Ray ray{{20.3, 30.7, 40}, {0.75, 0.5, -0.25}};
+  const Hit usual = march_exhaustive(target, ray);
+  ASSERT_TRUE(usual);
+  for (const int exponent : {-900, -600, 600, 1000}) {
+    for (int axis = 0; axis < 3; ++axis) ray.direction[axis] = std::ldexp(dvec3(0.75, 0.5, -0.25)[axis], exponent);
+    const Hit oracle = march_exhaustive(target, ray), walked = march_max_mip(target, ray);
+    EXPECT_EQ(oracle.t, std::ldexp(usual.t, -exponent));
+    EXPECT_EQ(walked.cell, oracle.cell);
+    EXPECT_DOUBLE_EQ(walked.t, oracle.t);
+  }
+}
+
+TEST(MaxMip, HitsTheBorderFromAboveWhateverTheCellSize) {
+  std::mt19937 random(3);
+  for (int i = 0; i < 2000; ++i) {
+    HeightFieldSettings settings;
+    settings.cell_x = std::uniform_real_distribution(0.1, 100.0)(random);
+    settings.cell_y = std::uniform_real_distribution(0.1, 100.0)(random);
+    const int cols = 2 + static_cast<int>(random() % 40), rows = 2 + static_cast<int>(random() % 40);
+    const HeightField field =
+        HeightField::own(std::vector<float>(static_cast<std::size_t>(cols) * rows, 5.0f), cols, rows, settings);
+    const MaxPyramid pyramid(field);
+    for (const dvec3& corner : {field.world_from_grid(cols - 1, 0, 9), field.world_from_grid(cols - 1, rows - 1, 9),
+                                field.world_from_grid(0, 0, 9)}) {
+      Ray down;
+      down.origin = corner;
+      down.direction = {0, 0, -1};
+      ASSERT_TRUE(march_max_mip({&field, &pyramid}, down)) << cols << " x " << rows << " cells of " << settings.cell_x;
+      ASSERT_EQ(field.height(corner.x, corner.y), 5.0);
+    }
+  }
 }
 
 TEST(MaxMip, DoesNotFollowARayBeyondTheBorder) {

@@ -156,6 +156,26 @@ TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
   EXPECT_NE(error_of([&] { DeviceBuffer(device(), 6, "a word and a half"); }), "no error");
 }
 
+// The tests' silence would mean nothing if nobody listened: two copies to one place without a barrier between them, and
+// one beyond the end of a buffer.
+TEST_F(OpenDevice, TellsWhatValidationSays) {
+  const Device watched({.validation = true});
+  const DeviceBuffer from(watched, 64, "from"), to(watched, 64, "to");
+  const Device::Impl& open = *watched.impl();
+  const vk::raii::CommandBuffers commands(open.device, {*open.pool, vk::CommandBufferLevel::ePrimary, 1});
+  const auto copy = [&](std::uint64_t bytes) {
+    commands[0].copyBuffer(*from.impl().buffer, *to.impl().buffer, vk::BufferCopy(0, 0, bytes));
+  };
+  commands[0].begin(vk::CommandBufferBeginInfo());
+  copy(64);
+  EXPECT_EQ(watched.validation_messages().size(), 0u);
+  copy(64);
+  ASSERT_EQ(watched.validation_messages().size(), 1u);
+  EXPECT_NE(watched.validation_messages()[0].find("SYNC-HAZARD-WRITE"), std::string::npos);
+  copy(128);
+  EXPECT_GT(watched.validation_messages().size(), 1u);
+}
+
 TEST_F(OpenDevice, StopsWaitingAfterTheTimeout) {
   const Device hurried({.timeout_s = 1e-6});
   DeviceBuffer words(hurried, 4 << 20, "words");
