@@ -50,31 +50,10 @@ void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec
   out.end_low = end.low;
 }
 
-}  // namespace
-
-glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyramid) {
-  const HeightFieldSettings& settings = field.settings();
-  glsl::ScarpField result{};
-  result.cells = {field.cell_cols(), field.cell_rows()};
-  result.samples = {field.cols(), field.rows()};
-  result.flags = (settings.surface == Surface::triangles ? glsl::kScarpTriangles : 0) |
-                 (field.nodata_count() > 0 ? glsl::kScarpHoles : 0) | (field.wraps() ? glsl::kScarpWraps : 0) |
-                 (settings.solid ? glsl::kScarpSolid : 0);
-  result.lowest = static_cast<float>(field.min_sample());
-  result.highest = static_cast<float>(field.max_sample());
-  if (pyramid) {
-    const Pair base = pair(pyramid->code().base);
-    result.top_level = pyramid->top_level();
-    result.code_base = base.high;
-    result.code_base_low = base.low;
-    result.code_step = static_cast<float>(pyramid->code().step);
-  }
-  return result;
-}
-
-DeviceRay device_ray(const HeightField& field, const Ray& ray) {
+// A ray for max-mip.
+template <bool Wraps>
+DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   DeviceRay result;
-  if (!field.has_cells() || field.all_nodata()) return result;
   GridRay local = field.grid_from_world(ray);
   // The longer horizontal component, or that of an upright ray, is brought to 1 to 2 by a power of two: exactly.
   double speed = std::max(std::abs(local.direction.x), std::abs(local.direction.y));
@@ -87,7 +66,7 @@ DeviceRay device_ray(const HeightField& field, const Ray& ray) {
   const bool strict = ray.start == RayStart::on_surface;
   glsl::ScarpRay& out = result.ray;
 
-  if (field.wraps()) {
+  if constexpr (Wraps) {
     for (int axis = 0; axis < 2; ++axis) {
       for (const double t : {first, last}) {
         if (!(std::abs(local.origin[axis] + local.direction[axis] * t) < kFarthestCell)) {
@@ -98,8 +77,8 @@ DeviceRay device_ray(const HeightField& field, const Ray& ray) {
       }
     }
   }
-  GridAxis x(local.origin.x, local.direction.x, field.cell_cols(), field.wraps());
-  GridAxis y(local.origin.y, local.direction.y, field.cell_rows(), field.wraps());
+  GridAxis<Wraps> x(local.origin.x, local.direction.x, field.cell_cols());
+  GridAxis<Wraps> y(local.origin.y, local.direction.y, field.cell_rows());
   double begin = first, end = last, way = last;
   Cell cell = ray.start_cell;
   if (strict) {
@@ -107,7 +86,7 @@ DeviceRay device_ray(const HeightField& field, const Ray& ray) {
     y.begin_in(cell.row, begin);
     out.flags |= glsl::kScarpOnSurface;
   }
-  if (!field.wraps()) {
+  if constexpr (!Wraps) {
     if ((!x.moves() && !inside(local.origin.x, x.cells)) || (!y.moves() && !inside(local.origin.y, y.cells)))
       return result;
     const double border = std::max(x.enter_time(), y.enter_time());
@@ -142,11 +121,13 @@ DeviceRay device_ray(const HeightField& field, const Ray& ray) {
   if (!std::isfinite(way)) end = low_way;
   const double exit = way;
   way = std::min(way, low_way);
-  const auto stands = [&](const GridAxis& axis) { return std::abs(axis.direction) * (way - begin) < kStandstill; };
+  const auto stands = [&](const GridAxis<Wraps>& axis) {
+    return std::abs(axis.direction) * (way - begin) < kStandstill;
+  };
   dvec3 direction{stands(x) ? 0 : x.direction, stands(y) ? 0 : y.direction, dz};
   // Who stands still does not come to a border by himself.
-  if (direction.x == 0 && x.moves() && !field.wraps()) end = std::min(end, x.exit_time());
-  if (direction.y == 0 && y.moves() && !field.wraps()) end = std::min(end, y.exit_time());
+  if (direction.x == 0 && x.moves() && !Wraps) end = std::min(end, x.exit_time());
+  if (direction.y == 0 && y.moves() && !Wraps) end = std::min(end, y.exit_time());
   double length = std::max(end - begin, 0.0);
   if ((direction.x == 0 && direction.y == 0) || std::abs(dz) > kSteepest) {
     out.flags |= glsl::kScarpUpright;
@@ -161,6 +142,33 @@ DeviceRay device_ray(const HeightField& field, const Ray& ray) {
   result.begin = begin;
   result.marches = true;
   return result;
+}
+
+}  // namespace
+
+glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyramid) {
+  const HeightFieldSettings& settings = field.settings();
+  glsl::ScarpField result{};
+  result.cells = {field.cell_cols(), field.cell_rows()};
+  result.samples = {field.cols(), field.rows()};
+  result.flags = (settings.surface == Surface::triangles ? glsl::kScarpTriangles : 0) |
+                 (field.nodata_count() > 0 ? glsl::kScarpHoles : 0) | (field.wraps() ? glsl::kScarpWraps : 0) |
+                 (settings.solid ? glsl::kScarpSolid : 0);
+  result.lowest = static_cast<float>(field.min_sample());
+  result.highest = static_cast<float>(field.max_sample());
+  if (pyramid) {
+    const Pair base = pair(pyramid->code().base);
+    result.top_level = pyramid->top_level();
+    result.code_base = base.high;
+    result.code_base_low = base.low;
+    result.code_step = static_cast<float>(pyramid->code().step);
+  }
+  return result;
+}
+
+DeviceRay device_ray(const HeightField& field, const Ray& ray) {
+  if (!field.has_cells() || field.all_nodata()) return {};
+  return field.wraps() ? on_grid<true>(field, ray) : on_grid<false>(field, ray);
 }
 
 DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray) {

@@ -178,6 +178,8 @@ TEST(MarchSettings, AreCheckedOneByOne) {
   EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.step_factor = std::nan(""); }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.tolerance = -1; }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.max_steps = 0; }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.fixed_step.step = 0; }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.fixed_step.max_steps = 0; }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.relaxed.tolerance = 0; }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.relaxed.max_steps = -3; }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.bisect.halvings = 61; }));
