@@ -44,47 +44,59 @@ DeviceQueries& queries(std::string_view march) {
       .first->second;
 }
 
+// Casts rays of all kinds over a field with all marches that run on devices.
+void check(const Device& device, const FieldKind& fields, const std::vector<RayKind>& ray_kinds, int rays_per_kind,
+           Random& random) {
+  const HeightField field = fields.make(random);
+  const DeviceGround ground(device, field);
+  const DeviceTarget target{&field, &ground, slope_bound(field)};
+  std::vector<Ray> rays;
+  std::vector<std::string_view> kinds;
+  for (const RayKind& kind : ray_kinds) {
+    if ((fields.has & kind.aims_at) != kind.aims_at) continue;
+    for (int i = 0; i < rays_per_kind; ++i) {
+      rays.push_back(kind.make(field, random));
+      kinds.push_back(kind.name);
+    }
+  }
+  std::vector<RoundingJudge> judges;
+  judges.reserve(rays.size());
+  for (const Ray& ray : rays) judges.emplace_back(field, ray);
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> blocked(rays.size());
+  for (const MarchEntry& march : marches()) {
+    if (!march.gpu) continue;
+    queries(march.name).closest_hits(target, rays, hits);
+    queries(march.name).occluded(target, rays, blocked);
+    int bad = 0;
+    for (std::size_t i = 0; i < rays.size() && bad < 3; ++i) {
+      std::string objection =
+          march.guarantee == Guarantee::exact
+              ? judges[i].objection(hits[i])
+              : sampling_objection(march.name, {}, field, target.slope, rays[i], judges[i], hits[i]);
+      if (blocked[i] != static_cast<bool>(hits[i])) objection += " any-hit contradicts closest-hit";
+      if (objection.empty()) continue;
+      ++bad;
+      ADD_FAILURE() << march.name << ": " << objection << "\n  on " << fields.name << ", ray " << kinds[i] << ": "
+                    << text(rays[i]) << "\n  " << text(hits[i]);
+    }
+  }
+}
+
 class ParityOnDevice : public OnDevice, public testing::WithParamInterface<std::size_t> {};
 
 TEST_P(ParityOnDevice, AnswersAreThoseOfTheSurface) {
-  const FieldKind& fields = spiteful_fields()[GetParam()];
   Random random(GetParam());
-  for (int f = 0; f < kFieldsPerKind; ++f) {
-    const HeightField field = fields.make(random);
-    const DeviceGround ground(device(), field);
-    const DeviceTarget target{&field, &ground, slope_bound(field)};
-    std::vector<Ray> rays;
-    std::vector<std::string_view> kinds;
-    std::vector<RoundingJudge> judges;
-    for (const RayKind& kind : spiteful_rays()) {
-      if ((fields.has & kind.aims_at) != kind.aims_at) continue;
-      for (int i = 0; i < kRaysPerKind; ++i) {
-        rays.push_back(kind.make(field, random));
-        kinds.push_back(kind.name);
-      }
-    }
-    judges.reserve(rays.size());
-    for (const Ray& ray : rays) judges.emplace_back(field, ray);
-    std::vector<Hit> hits(rays.size());
-    std::vector<std::uint8_t> blocked(rays.size());
-    for (const MarchEntry& march : marches()) {
-      if (!march.gpu) continue;
-      queries(march.name).closest_hits(target, rays, hits);
-      queries(march.name).occluded(target, rays, blocked);
-      int bad = 0;
-      for (std::size_t i = 0; i < rays.size() && bad < 3; ++i) {
-        std::string objection =
-            march.guarantee == Guarantee::exact
-                ? judges[i].objection(hits[i])
-                : sampling_objection(march.name, {}, field, target.slope, rays[i], judges[i], hits[i]);
-        if (blocked[i] != static_cast<bool>(hits[i])) objection += " any-hit contradicts closest-hit";
-        if (objection.empty()) continue;
-        ++bad;
-        ADD_FAILURE() << march.name << ": " << objection << "\n  on " << fields.name << ", ray " << kinds[i] << ": "
-                      << text(rays[i]) << "\n  " << text(hits[i]);
-      }
-    }
+  for (int i = 0; i < kFieldsPerKind; ++i) {
+    check(device(), spiteful_fields()[GetParam()], spiteful_rays(), kRaysPerKind, random);
   }
+}
+
+class ParityAcrossTiles : public OnDevice {};
+
+TEST_F(ParityAcrossTiles, AnswersAreThoseOfTheSurface) {
+  Random random(1);
+  for (const FieldKind& fields : wide_fields()) check(device(), fields, rays_across_tiles(), kRaysPerKind / 2, random);
 }
 
 std::vector<std::size_t> all_fields() {

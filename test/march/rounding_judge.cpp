@@ -139,6 +139,17 @@ double RoundingJudge::delta(int col, int row, double t) const {
          kWorldRoundings * world_unit_ * world;
 }
 
+// Whether a ray from the surface comes truly below it at t or on the rest of the cell there: its march takes off the
+// whole bound.
+bool RoundingJudge::comes_below(double t, double off) const {
+  for (const Event& event : events_) {
+    if (event.t < t - off) continue;
+    if (event.what == Event::hole || event.touches_hole || event.clearance < 0) return true;
+    if (!event.enters && event.t > t + off) return false;
+  }
+  return false;
+}
+
 // Whether a piece of the ray in a cell comes within sideways rounding of a hole or border; or, border_only, keeps as
 // near as that to the border.
 bool RoundingJudge::near(int col, int row, double begin, double end, bool border_only) const {
@@ -286,6 +297,7 @@ std::string RoundingJudge::objection(const Hit& hit) const {
   if (hit.wall ? f > d : std::abs(f) > d) return fmt::format("clearance {} there, bound {}", f, d);
   // Just before: what lies between is less than the bounds.
   const double speed = std::max(std::abs(direction_.x), std::abs(direction_.y));
+  if (strict_ && !hit.wall && speed > 0 && !comes_below(t, off / speed)) return "hits what it starts on";
   const Beliefs before = follow(speed > 0 ? t - off / speed : t);
   if (hit.wall && !before.unknown && !events_.empty() && t > begin_ + off / speed) return "a wall where there is none";
   // It may have come out since.

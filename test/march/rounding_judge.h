@@ -61,6 +61,7 @@ class RoundingJudge {
   CellHeights heights(int col, int row) const;
   double relief(int col, int row) const;
   double clearance(int col, int row, double t) const;
+  bool comes_below(double t, double off) const;
   double sideways(double t) const;
   double delta(int col, int row, double t) const;
   void add_piece(double begin, double end);
