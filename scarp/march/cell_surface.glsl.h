@@ -4,7 +4,7 @@
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included. Who includes it has defined, before,
 //   float scarp_sample(int col, int row)       the sample at a node of the grid
-//   bool scarp_is_nodata(float sample)         whether that is the value of a hole; not asked without kScarpHoles
+//   bool scarp_is_nodata(float value)         whether that is the value of a hole; not asked without kScarpHoles
 #ifndef SCARP_MARCH_CELL_SURFACE_GLSL_H
 #define SCARP_MARCH_CELL_SURFACE_GLSL_H
 
