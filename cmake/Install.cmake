@@ -1,10 +1,13 @@
 # The two targets that others link, and their way into an installed tree:
-#   scarp::core   base, field, accel, march: needs neither GDAL, libpng nor OpenEXR
+#   scarp::core   base, vk, field, accel, march: needs neither GDAL, libpng nor OpenEXR
 #   scarp::scarp  all stations
 # find_package(scarp COMPONENTS core) reads scarp-core-targets.cmake alone and asks for nothing that core does not use.
 include(CMakePackageConfigHelpers)
 
 set(core_stations scarp_base scarp_field scarp_accel scarp_march)
+if(SCARP_VULKAN)
+  list(APPEND core_stations scarp_vk)
+endif()
 get_property(other_stations GLOBAL PROPERTY SCARP_STATIONS)
 list(REMOVE_ITEM other_stations ${core_stations})
 

@@ -13,5 +13,6 @@ void add_info(CLI::App& program);
 void add_generate(CLI::App& program);
 void add_marches(CLI::App& program);
 void add_replay(CLI::App& program);
+void add_devices(CLI::App& program);  // with SCARP_VULKAN
 
 }  // namespace scarp::cli

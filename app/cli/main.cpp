@@ -68,6 +68,9 @@ int main(int argc, char** argv) {
   scarp::cli::add_generate(program);
   scarp::cli::add_marches(program);
   scarp::cli::add_replay(program);
+#ifdef SCARP_VULKAN
+  scarp::cli::add_devices(program);
+#endif
   if (argc < 2) {
     std::fputs(program.help().c_str(), stderr);
     return kWrongUsage;

@@ -2,9 +2,9 @@
 #include "scarp/accel/max_pyramid.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
+#include "scarp/accel/height_encode.h"
 #include "scarp/base/parallel.h"
 #include "scarp/base/prefetch.h"
 
@@ -12,39 +12,10 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kEntriesPerPiece = 1 << 16;
-constexpr double kTopCode = 65535;
 // Rows of codes that are asked for ahead of the one at work: more would keep a processor from other requests.
 constexpr int kRowsAhead = 4;
 
 std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntriesPerPiece / std::max(cols, 1)); }
-
-// From samples to codes, outwards. Floats are moved by kClear of a step first, more than all that rounding does. Let M
-// be the greatest magnitude that codes have to hold: no step is below kLeastStep * M, which two neighbouring floats do
-// not ask for either. A place, at most 2^16 steps, is off by 4 * 2^-53 of itself; the height that a code stands for by
-// 2^-51 M, which is 2^-11 steps. All in double and without branches, of which compilers make vector instructions. A
-// block of holes has -infinity here, and the lowest code.
-constexpr double kClear = 0x1p-8, kLeastStep = 0x1p-40;
-
-template <class T>
-void encode(const HeightCode& code, double beyond, const T* samples, int count, std::uint16_t* codes) {
-  for (int i = 0; i < count; ++i) {
-    if constexpr (std::is_integral_v<T>) {
-      codes[i] = static_cast<std::uint16_t>(samples[i] - std::numeric_limits<T>::lowest());
-    } else {
-      const double place = (static_cast<double>(samples[i]) - code.base) * code.per_step + beyond;
-      const double above = place > 0 ? place : 0;
-      codes[i] = static_cast<std::uint16_t>(static_cast<int>(above < kTopCode ? above : kTopCode));
-    }
-  }
-}
-template <class T>
-void encode_above(const HeightCode& code, const T* samples, int count, std::uint16_t* codes) {
-  encode(code, 1 + kClear, samples, count, codes);
-}
-template <class T>
-void encode_below(const HeightCode& code, const T* samples, int count, std::uint16_t* codes) {
-  encode(code, -kClear, samples, count, codes);
-}
 
 // One row of cells, columns [begin, end), of a field with holes: the extremes of each cell's four corners; for holes
 // the lowest for both, so that they raise no maximum and leave no minimum.
@@ -77,11 +48,6 @@ void pick_of_four(const T* north, const T* south, int fine_cols, T* coarse, Pick
 constexpr auto kHigher = [](auto a, auto b) { return std::max(a, b); };
 constexpr auto kLower = [](auto a, auto b) { return std::min(a, b); };
 
-// Entries [col_begin, col_end) x [row_begin, row_end) of a level.
-struct Part {
-  int col_begin, row_begin, col_end, row_end;
-};
-
 // Extremes of blocks of 2 x 2 cells where there are no holes: of 3 x 3 samples, first down each column of samples, then
 // across. `south` is `middle` at an odd end of the field.
 template <class T>
@@ -112,8 +78,8 @@ void extremes_of_samples(const SampleGrid<T>& grid, const T* north, const T* mid
 
 // Level 1, from the samples; the rows in between live for a moment only.
 template <class T>
-void build_first(const SampleGrid<T>& grid, const HeightCode& code, const Part& part, int cols, std::uint16_t* maxima,
-                 std::uint16_t* minima) {
+void build_first(const SampleGrid<T>& grid, const HeightCode& code, const CellBox& part, int cols,
+                 std::uint16_t* maxima, std::uint16_t* minima) {
   const int begin = 2 * part.col_begin, end = std::min(2 * part.col_end, grid.cell_cols);
   const int width = part.col_end - part.col_begin;
   parallel_for(part.row_end - part.row_begin, rows_per_piece(width), [&](std::int64_t first, std::int64_t last) {
@@ -146,7 +112,7 @@ void build_first(const SampleGrid<T>& grid, const HeightCode& code, const Part& 
 
 // A coarser level of maxima or minima from the finer one.
 template <class Pick>
-void build_coarser(const std::uint16_t* fine, const MaxPyramid::Level& finer, const Part& part, int cols,
+void build_coarser(const std::uint16_t* fine, const MaxPyramid::Level& finer, const CellBox& part, int cols,
                    std::uint16_t* coarse, Pick pick) {
   const int begin = 2 * part.col_begin, end = std::min(2 * part.col_end, finer.cols);
   parallel_for(part.row_end - part.row_begin, rows_per_piece(part.col_end - part.col_begin),
@@ -164,15 +130,9 @@ void build_coarser(const std::uint16_t* fine, const MaxPyramid::Level& finer, co
 
 MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange>& reserve)
     : shared_(std::make_shared<Shared>()) {
-  if (!field.has_cells()) return;
-  std::ptrdiff_t entries = 0;
-  for (int cols = field.cell_cols(), rows = field.cell_rows(); levels_.empty() || cols > 1 || rows > 1;) {
-    cols = (cols + 1) / 2;
-    rows = (rows + 1) / 2;
-    levels_.push_back({entries, cols, rows});
-    entries += static_cast<std::ptrdiff_t>(cols) * rows;
-  }
-  entries_ = static_cast<std::size_t>(entries);
+  levels_ = pyramid_levels(field);
+  if (levels_.empty()) return;
+  entries_ = static_cast<std::size_t>(levels_.back().begin + 1);
   // Not zeroed: each entry is written by the thread that makes it.
   shared_->maxima.reset(new std::uint16_t[entries_]);
   shared_->minima.reset(new std::uint16_t[entries_]);
@@ -181,47 +141,24 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
 }
 
 void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleRange>& reserve) {
-  HeightCode& code = shared_->code;
-  if (field.sample_type() != SampleType::float32) {
-    code = {field.sample_type() == SampleType::int16 ? -32768.0 : 0.0, 1, 1};
-    return;
-  }
-  SampleRange range{0, 0};
-  if (!field.all_nodata()) range = {field.min_sample(), field.max_sample()};
-  if (reserve) range = {std::min(range.low, reserve->low), std::max(range.high, reserve->high)};
-  shared_->range = range;
-  // The lowest sample gets code 1, half a step clear of rounding, since code 0 says that there is no minimum; the step
-  // grows until the highest code stands for no less than the highest sample.
-  const double magnitude = std::max(std::abs(range.low), std::abs(range.high));
-  double step = std::max((range.high - range.low) / (kTopCode - 2), kLeastStep * magnitude);
-  if (!(step > 0)) step = 0x1p-20;
-  do {
-    code = {range.low - 1.5 * step, step, 1 / step};
-    step *= 1 + 0x1p-20;
-  } while (code.height(static_cast<std::uint16_t>(kTopCode)) < range.high);
+  shared_->range = code_range(field, reserve);
+  shared_->code = height_code(field.sample_type(), shared_->range);
 }
 
 void MaxPyramid::update(const HeightField& field, const CellBox& changed) {
   if (levels_.empty()) return;
-  const bool coded = field.sample_type() != SampleType::float32 || field.all_nodata() ||
-                     (field.min_sample() >= shared_->range.low && field.max_sample() <= shared_->range.high);
-  if (!coded) {
+  if (!is_in_range(field, shared_->range)) {
     set_range(field, shared_->range);
     return build(field, {0, 0, field.cell_cols(), field.cell_rows()});
   }
-  build(field, changed);
-  // What lies beyond the seam is at the other side.
-  const int cols = field.cell_cols(), rows = field.cell_rows();
-  if (changed.col_begin < 0) build(field, {cols - 1, changed.row_begin, cols, changed.row_end});
-  if (changed.row_begin < 0) build(field, {changed.col_begin, rows - 1, changed.col_end, rows});
-  if (changed.col_begin < 0 && changed.row_begin < 0) build(field, {cols - 1, rows - 1, cols, rows});
+  for (const CellBox& part : parts_inside(field, changed)) build(field, part);
 }
 
-void MaxPyramid::build(const HeightField& field, CellBox changed) {
+void MaxPyramid::build(const HeightField& field, const CellBox& changed) {
   std::uint16_t *maxima = shared_->maxima.get(), *minima = shared_->minima.get();
-  Part part{std::max(changed.col_begin, 0), std::max(changed.row_begin, 0), changed.col_end, changed.row_end};
+  CellBox part = changed;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    part = {part.col_begin / 2, part.row_begin / 2, (part.col_end + 1) / 2, (part.row_end + 1) / 2};
+    part = coarser(part);
     const Level& level = levels_[l];
     if (l == 0) {
       field.visit([&](const auto& grid) { build_first(grid, shared_->code, part, level.cols, maxima, minima); });

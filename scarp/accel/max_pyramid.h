@@ -23,25 +23,11 @@
 #include <optional>
 #include <vector>
 
+#include "scarp/accel/height_code.h"
+#include "scarp/accel/pyramid_levels.h"
 #include "scarp/field/height_field.h"
 
 namespace scarp {
-
-/// Heights as 16-bit codes.
-struct HeightCode {
-  double base = 0;
-  double step = 1;      ///< sample units, > 0
-  double per_step = 1;  ///< 1 / step, rounded
-
-  /// In sample units. Who builds codes and who reads them computes just this.
-  double height(std::uint16_t code) const { return base + step * code; }
-};
-
-/// Sample values, in sample units.
-struct SampleRange {
-  double low = 0;
-  double high = 0;
-};
 
 /// Cheap to copy: copies share the levels and see one another's updates. Built from a field, it does not refer to it
 /// afterwards. Nothing but update() changes a pyramid; while it runs, no query may.
@@ -62,12 +48,7 @@ class MaxPyramid {
   int top_level() const { return static_cast<int>(levels_.size()); }
   std::size_t bytes() const { return 2 * entries_ * sizeof(std::uint16_t); }
 
-  /// Where a level begins, in entries from the begin of level 1, and its size.
-  struct Level {
-    std::ptrdiff_t begin;
-    int cols;
-    int rows;
-  };
+  using Level = PyramidLevel;
   /// Levels 1, 2, ...; their entries lie in rows from north to south, no padding.
   const std::vector<Level>& levels() const { return levels_; }
   const HeightCode& code() const { return shared_->code; }
@@ -88,7 +69,7 @@ class MaxPyramid {
   };
 
   void set_range(const HeightField& field, const std::optional<SampleRange>& reserve);
-  void build(const HeightField& field, CellBox changed);
+  void build(const HeightField& field, const CellBox& changed);
 
   std::vector<Level> levels_;
   std::size_t entries_ = 0;

@@ -23,13 +23,13 @@ endfunction()
 file(REMOVE_RECURSE ${WORK})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 outside(core -D CMAKE_DISABLE_FIND_PACKAGE_GDAL=ON -D CMAKE_DISABLE_FIND_PACKAGE_PROJ=ON -D CMAKE_DISABLE_FIND_PACKAGE_PNG=ON
-        -D CMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON)
+        -D CMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON -D CMAKE_DISABLE_FIND_PACKAGE_Vulkan=ON)
 outside(scarp)
 
 # The core program is linked with nothing of GDAL's; the installed command line runs from where it is.
 file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${WORK}/core/outside_core RESOLVED_DEPENDENCIES_VAR libraries
      UNRESOLVED_DEPENDENCIES_VAR unresolved CONFLICTING_DEPENDENCIES_PREFIX conflicting)
-if(libraries MATCHES "libgdal|libproj|libpng|libOpenEXR")
+if(libraries MATCHES "libgdal|libproj|libpng|libOpenEXR|libvulkan")
   message(FATAL_ERROR "a program that links scarp::core needs ${libraries}")
 endif()
 if(EXISTS ${BUILD}/bin/scarp)

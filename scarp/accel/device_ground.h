@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// A height field in the memory of a Vulkan device: its samples and its pyramid, which the device makes itself. Shaders
+// read it through ground_buffers.glsl.h, from one address:
+//
+//   const DeviceGround ground(device, field);
+//   push.ground = ground.address();               // Address in the push constants of the shader
+//   Ground(push.ground) ... ground_cell(...)      // in GLSL
+//
+// Memory: the samples as they are (an odd row of 16-bit samples is padded), and 4/3 bytes per cell. Any size whose
+// samples fit into one allocation of the device, up to 2^31 - 1 words of samples.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scarp/accel/ground_buffers.glsl.h"
+#include "scarp/accel/height_code.h"
+#include "scarp/accel/max_pyramid_vk.h"
+#include "scarp/field/height_field.h"
+#include "scarp/vk/commands.h"
+#include "scarp/vk/device.h"
+#include "scarp/vk/memory.h"
+
+namespace scarp {
+
+class DeviceGround {
+ public:
+  /// Copies the samples and builds the pyramid. `reserve` as in MaxPyramid. Throws Error: no memory for it (how much
+  /// was asked), the device is lost.
+  DeviceGround(const Device& device, const HeightField& field,
+               const std::optional<SampleRange>& reserve = std::nullopt);
+
+  /// After an edit of the same field: copies the samples around `changed` and makes the entries over it again, as
+  /// MaxPyramid::update() does; all of them when float samples have left the range of the codes.
+  void update(const HeightField& field, const CellBox& changed);
+
+  /// Of the GroundBuffers.
+  std::uint64_t address() const { return header_.address(); }
+  /// What is there.
+  const glsl::GroundBuffers& layout() const { return layout_; }
+  const HeightCode& code() const { return code_; }
+  const std::vector<PyramidLevel>& levels() const { return levels_; }
+  /// On the device.
+  std::uint64_t bytes() const;
+  /// All entries, level 1 first: maximum code | minimum code << 16.
+  std::vector<std::uint32_t> read_pyramid() const;
+  /// The passes of the last build or update, in order.
+  const std::vector<PassTime>& passes() const { return commands_.passes(); }
+
+ private:
+  void set_range(const SampleRange& range, SampleType type);
+  void copy_samples(const HeightField& field, const SampleRect& rect);
+  void build(const HeightField& field, const CellBox& changed);
+
+  std::vector<PyramidLevel> levels_;
+  SampleRange range_;
+  HeightCode code_;
+  glsl::GroundBuffers layout_{};
+  DeviceBuffer samples_, pyramid_, header_;
+  std::optional<DeviceBuffer> codes_;  // float samples only
+  PyramidPasses passes_;
+  Commands commands_;
+};
+
+}  // namespace scarp

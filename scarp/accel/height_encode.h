@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Private to the station: samples made into codes.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+#include "scarp/accel/height_code.h"
+
+namespace scarp {
+
+constexpr double kTopCode = 65535;
+
+// From samples to codes, outwards. Floats are moved by kClear of a step first, more than all that rounding does. Let M
+// be the greatest magnitude that codes have to hold: no step is below kLeastStep * M, which two neighbouring floats do
+// not ask for either. A place, at most 2^16 steps, is off by 4 * 2^-53 of itself; the height that a code stands for by
+// 2^-51 M, which is 2^-11 steps. All in double and without branches, of which compilers make vector instructions. A
+// block of holes has -infinity here, and the lowest code.
+constexpr double kClear = 0x1p-8, kLeastStep = 0x1p-40;
+
+template <class T>
+void encode(const HeightCode& code, double beyond, const T* samples, int count, std::uint16_t* codes) {
+  for (int i = 0; i < count; ++i) {
+    if constexpr (std::is_integral_v<T>) {
+      codes[i] = static_cast<std::uint16_t>(samples[i] - std::numeric_limits<T>::lowest());
+    } else {
+      const double place = (static_cast<double>(samples[i]) - code.base) * code.per_step + beyond;
+      const double above = place > 0 ? place : 0;
+      codes[i] = static_cast<std::uint16_t>(static_cast<int>(above < kTopCode ? above : kTopCode));
+    }
+  }
+}
+template <class T>
+void encode_above(const HeightCode& code, const T* samples, int count, std::uint16_t* codes) {
+  encode(code, 1 + kClear, samples, count, codes);
+}
+template <class T>
+void encode_below(const HeightCode& code, const T* samples, int count, std::uint16_t* codes) {
+  encode(code, -kClear, samples, count, codes);
+}
+
+}  // namespace scarp

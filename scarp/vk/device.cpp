@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/vk/device.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scarp/vk/raii.h"
+#include "scarp/vk/staging.h"
+
+namespace scarp {
+namespace {
+
+std::vector<DeviceDescription> described(const std::vector<vk::raii::PhysicalDevice>& devices) {
+  std::vector<DeviceDescription> all;
+  for (const vk::raii::PhysicalDevice& device : devices) all.push_back(describe(device));
+  return all;
+}
+
+vk::raii::PhysicalDevice chosen(const VulkanInstance& instance, const std::string& choice) {
+  const auto devices = instance.physical_devices();
+  if (devices.empty()) throw Error(kNoDriver);
+  return devices[choose_device(described(devices), choice)];
+}
+
+// The first family that computes; one with timestamps where there is a choice.
+std::uint32_t compute_family(const vk::raii::PhysicalDevice& physical) {
+  const auto families = physical.getQueueFamilyProperties();
+  std::optional<std::uint32_t> best;
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
+    if (!(families[i].queueFlags & vk::QueueFlagBits::eCompute)) continue;
+    if (!best || (families[*best].timestampValidBits == 0 && families[i].timestampValidBits > 0)) best = i;
+  }
+  return best.value();
+}
+
+vk::raii::Device open(const vk::raii::PhysicalDevice& physical, std::uint32_t family,
+                      const DeviceAbilities& abilities) {
+  const float priority = 1;
+  const vk::DeviceQueueCreateInfo queue({}, family, 1, &priority);
+  vk::StructureChain<vk::DeviceCreateInfo, vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features> create;
+  create.get<vk::DeviceCreateInfo>().setQueueCreateInfos(queue);
+  create.get<vk::PhysicalDeviceFeatures2>()
+      .features.setShaderFloat64(abilities.float64)
+      .setShaderInt64(abilities.int64);
+  create.get<vk::PhysicalDeviceVulkan12Features>().setScalarBlockLayout(true).setBufferDeviceAddress(true);
+  return {physical, create.get<vk::DeviceCreateInfo>()};
+}
+
+}  // namespace
+
+std::string vulkan_failure(vk::Result result, const std::string& device, const std::string& what) {
+  const std::string where = device.empty() ? "Vulkan" : fmt::format("device '{}'", device);
+  switch (result) {
+    case vk::Result::eErrorDeviceLost:
+      return fmt::format(
+          "{}: lost while {}: its driver has given up, as after a pass that ran too long; run it again, or on another "
+          "device ('scarp devices')",
+          where, what);
+    case vk::Result::eErrorOutOfDeviceMemory:
+      return fmt::format("{}: out of device memory while {}", where, what);
+    case vk::Result::eErrorOutOfHostMemory:
+      return fmt::format("{}: out of memory while {}", where, what);
+    case vk::Result::eErrorIncompatibleDriver:  // what the loader says where there is none
+      return kNoDriver;
+    default:
+      return fmt::format("{}: {} while {}", where, vk::to_string(result), what);
+  }
+}
+
+Device::Impl::Impl(const DeviceSettings& chosen_settings, VulkanInstance opened)
+    : settings(chosen_settings),
+      instance(std::move(opened)),
+      physical(chosen(instance, settings.choice)),
+      queue_family(compute_family(physical)),
+      memory(physical.getMemoryProperties()),
+      device(open(physical, queue_family, (description = describe(physical)).abilities)),
+      queue(device, queue_family, 0),
+      pool(device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family}) {
+  timestamp_bits = physical.getQueueFamilyProperties()[queue_family].timestampValidBits;
+  timestamp_period_ns = static_cast<double>(physical.getProperties().limits.timestampPeriod);
+}
+
+Device::Impl::~Impl() = default;
+
+void Device::Impl::submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence) {
+  const vk::CommandBuffer buffer = *commands;
+  queue.submit(vk::SubmitInfo().setCommandBuffers(buffer), *fence);
+}
+
+void Device::Impl::wait(const vk::raii::Fence& fence, const std::string& what) {
+  const auto limit = static_cast<std::uint64_t>(settings.timeout_s * 1e9);
+  if (device.waitForFences(*fence, true, limit) == vk::Result::eTimeout) {
+    throw Error(fmt::format("device '{}': {} has not finished within {:g} s", name(), what, settings.timeout_s));
+  }
+  device.resetFences(*fence);
+}
+
+std::optional<std::uint32_t> Device::Impl::memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const {
+  for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i) {
+    if ((allowed >> i & 1u) != 0 && (memory.memoryTypes[i].propertyFlags & flags) == flags) return i;
+  }
+  return std::nullopt;
+}
+
+Device::Device(const DeviceSettings& settings) {
+  // 10^9 s in nanoseconds is still far from the 64 bits of Vulkan's limits.
+  if (!(settings.timeout_s > 0 && settings.timeout_s <= 1e9)) {
+    throw Error(fmt::format("device: a timeout of {} s, above 0 and up to 1e9 expected", settings.timeout_s));
+  }
+  VulkanInstance instance(settings.validation);
+  guarded("", "opening device '" + settings.choice + "'",
+          [&] { impl_ = std::make_shared<Impl>(settings, std::move(instance)); });
+}
+
+const DeviceDescription& Device::description() const { return impl_->description; }
+
+std::vector<std::string> Device::validation_messages() const { return impl_->instance.messages(); }
+
+void full_barrier(const vk::raii::CommandBuffer& commands) {
+  using Stage = vk::PipelineStageFlagBits;
+  using Access = vk::AccessFlagBits;
+  const auto stages = Stage::eComputeShader | Stage::eTransfer;
+  const vk::MemoryBarrier barrier(
+      Access::eShaderWrite | Access::eTransferWrite,
+      Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead | Access::eTransferWrite);
+  commands.pipelineBarrier(stages, stages, {}, barrier, {}, {});
+}
+
+}  // namespace scarp

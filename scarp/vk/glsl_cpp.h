@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// The one piece of glue by which a `*.glsl.h` is C++ and GLSL at once: everything else in such a file is plain text of
+// both languages.
+//
+//   #include "scarp/vk/glsl_cpp.h"
+//   SCARP_GLSL_BEGIN
+//   struct Level { uint begin; uint cols; uint rows; };                         // layout(scalar) in GLSL
+//   const uint kThreads = 64u;
+//   SCARP_FN uint entry_of(Level level, uint col, uint row) { return level.begin + row * level.cols + col; }
+//   SCARP_GLSL_END
+//
+// Structs hold float, int, uint, their vectors and Address; no bool, no matrix, no 64-bit number. In C++ all of it is
+// in namespace scarp::glsl. Functions that must run in C++, too, do without swizzles. A shader that includes such a
+// file enables GL_GOOGLE_include_directive, and GL_EXT_scalar_block_layout for its blocks.
+#ifndef SCARP_VK_GLSL_CPP_H
+#define SCARP_VK_GLSL_CPP_H
+
+#ifdef __cplusplus
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+
+namespace scarp::glsl {
+
+using uint = std::uint32_t;
+using glm::ivec2, glm::ivec3, glm::ivec4;
+using glm::uvec2, glm::uvec3, glm::uvec4;
+using glm::vec2, glm::vec3, glm::vec4;
+using std::abs, std::ceil, std::floor, std::max, std::min, std::sqrt;
+
+/// Where a buffer lies in the device's memory (DeviceBuffer::address()); low word first, so that GLSL needs no 64-bit
+/// integers.
+struct Address {
+  uint low = 0, high = 0;
+  Address() = default;
+  Address(std::uint64_t address)  // NOLINT: meant to be implicit
+      : low(static_cast<uint>(address)), high(static_cast<uint>(address >> 32)) {}
+};
+
+}  // namespace scarp::glsl
+
+#define SCARP_GLSL_BEGIN namespace scarp::glsl {
+#define SCARP_GLSL_END }
+#define SCARP_FN inline
+#define SCARP_OUT(type) type&
+#define SCARP_INOUT(type) type&
+
+#else
+
+#define SCARP_GLSL_BEGIN
+#define SCARP_GLSL_END
+#define SCARP_FN
+#define SCARP_OUT(type) out type
+#define SCARP_INOUT(type) inout type
+// A reference is made of it: SomeBuffer(address), with GL_EXT_buffer_reference_uvec2.
+#define Address uvec2
+
+#endif
+
+#endif

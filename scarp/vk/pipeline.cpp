@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/vk/pipeline.h"
+
+#include <fmt/format.h>
+
+#include "scarp/vk/raii.h"
+
+namespace scarp {
+namespace {
+
+vk::raii::PipelineLayout make_layout(const Device::Impl& device, std::uint32_t push_bytes) {
+  const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, push_bytes);
+  vk::PipelineLayoutCreateInfo create;
+  if (push_bytes > 0) create.setPushConstantRanges(push);
+  return {device.device, create};
+}
+
+vk::raii::Pipeline make_pipeline(const Device::Impl& device, const vk::raii::PipelineLayout& layout,
+                                 std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> constants) {
+  const vk::raii::ShaderModule module(device.device, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
+  std::vector<vk::SpecializationMapEntry> entries;
+  for (std::uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, 4});
+  const vk::SpecializationInfo specialisation(static_cast<std::uint32_t>(entries.size()), entries.data(),
+                                              constants.size_bytes(), constants.data());
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
+                                                &specialisation);
+  return {device.device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout)};
+}
+
+}  // namespace
+
+ComputePipeline::ComputePipeline(const Device& device, std::span<const std::uint32_t> spirv, const std::string& name,
+                                 std::uint32_t push_bytes, std::span<const std::uint32_t> constants) {
+  const std::shared_ptr<Device::Impl>& open = device.impl();
+  if (push_bytes % 4 != 0 || push_bytes > kMaxPushBytes) {
+    throw Error(fmt::format("shader '{}': {} bytes of push constants; a multiple of 4 up to {} expected", name,
+                            push_bytes, kMaxPushBytes));
+  }
+  guarded(open->name(), "making the shader '" + name + "'", [&] {
+    vk::raii::PipelineLayout layout = make_layout(*open, push_bytes);
+    vk::raii::Pipeline pipeline = make_pipeline(*open, layout, spirv, constants);
+    impl_.reset(new Impl{open, name, push_bytes, std::move(layout), std::move(pipeline)});
+  });
+}
+ComputePipeline::ComputePipeline(ComputePipeline&&) noexcept = default;
+ComputePipeline& ComputePipeline::operator=(ComputePipeline&&) noexcept = default;
+ComputePipeline::~ComputePipeline() = default;
+
+const std::string& ComputePipeline::name() const { return impl_->name; }
+
+}  // namespace scarp

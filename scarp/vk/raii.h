@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Private to the station: what the public headers hide, in terms of Vulkan-Hpp. Nothing of vk:: leaves the station, its
+// exceptions least of all.
+#pragma once
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "scarp/base/error.h"
+#include "scarp/vk/device.h"
+#include "scarp/vk/memory.h"
+#include "scarp/vk/pipeline.h"
+
+namespace scarp {
+
+constexpr const char* kNoDriver = "Vulkan: no driver is installed (Debian, for any CPU: mesa-vulkan-drivers)";
+
+/// What a failure of Vulkan means for who asked for `what`; `device` names the device.
+std::string vulkan_failure(vk::Result result, const std::string& device, const std::string& what);
+
+/// Calls `f`, and turns what Vulkan-Hpp throws into Error.
+template <class F>
+decltype(auto) guarded(const std::string& device, const std::string& what, F&& f) {
+  try {
+    return std::forward<F>(f)();
+  } catch (const vk::SystemError& error) {
+    throw Error(vulkan_failure(static_cast<vk::Result>(error.code().value()), device, what));
+  }
+}
+
+/// The loader and an instance of it, with the validation layer where that was asked for.
+class VulkanInstance {
+ public:
+  /// Throws Error: no loader; no validation layer.
+  explicit VulkanInstance(bool validation);
+
+  std::vector<vk::raii::PhysicalDevice> physical_devices() const;
+  std::vector<std::string> messages() const;
+
+ private:
+  struct Messages {
+    std::mutex mutex;
+    std::vector<std::string> texts;
+  };
+  static VkBool32 VKAPI_PTR collect(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                    VkDebugUtilsMessageTypeFlagsEXT types,
+                                    const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages);
+
+  std::unique_ptr<Messages> messages_;  // the messenger writes to it until it is gone
+  std::optional<vk::raii::Context> context_;
+  std::optional<vk::raii::Instance> instance_;
+  std::optional<vk::raii::DebugUtilsMessengerEXT> messenger_;
+};
+
+DeviceDescription describe(const vk::raii::PhysicalDevice& device);
+
+class StagingRing;
+
+struct Device::Impl {
+  Impl(const DeviceSettings& settings, VulkanInstance instance);
+  ~Impl();
+
+  void submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence);
+  /// Waits, and makes the fence ready for the next time. Throws Error when it takes longer than the settings allow.
+  void wait(const vk::raii::Fence& fence, const std::string& what);
+  const std::string& name() const { return description.name; }
+  /// The memory type for a buffer; the first that has all `flags`.
+  std::optional<std::uint32_t> memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const;
+
+  DeviceSettings settings;
+  DeviceDescription description;
+  VulkanInstance instance;
+  vk::raii::PhysicalDevice physical;
+  std::uint32_t queue_family = 0;
+  std::uint32_t timestamp_bits = 0;
+  double timestamp_period_ns = 1;
+  vk::PhysicalDeviceMemoryProperties memory;
+  vk::raii::Device device;
+  vk::raii::Queue queue;
+  vk::raii::CommandPool pool;
+  std::unique_ptr<StagingRing> staging;  // made when first used
+};
+
+struct DeviceBuffer::Impl {
+  std::shared_ptr<Device::Impl> device;
+  std::string name;
+  std::uint64_t bytes;
+  vk::raii::DeviceMemory memory;  // goes after the buffer
+  vk::raii::Buffer buffer;
+  std::uint64_t address;
+};
+
+struct ComputePipeline::Impl {
+  std::shared_ptr<Device::Impl> device;
+  std::string name;
+  std::uint32_t push_bytes;
+  vk::raii::PipelineLayout layout;
+  vk::raii::Pipeline pipeline;
+};
+
+/// All that was recorded before is done, and its writes are seen, before what comes after begins.
+void full_barrier(const vk::raii::CommandBuffer& commands);
+
+}  // namespace scarp

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// What happens without a device, with one that lacks something, is out of memory, or is lost.
+#include "scarp/vk/device.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+
+#include "scarp/vk/commands.h"
+#include "scarp/vk/raii.h"
+#include "test/vk/device_under_test.h"
+#include "test/vk/twice.glsl.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::uint32_t kTwice[] = {
+#include "test/vk/twice.comp.inc"
+};
+
+DeviceDescription described(const std::string& name, DeviceKind kind, const std::string& missing = "") {
+  DeviceDescription device;
+  device.name = name;
+  device.kind = kind;
+  device.missing = missing;
+  return device;
+}
+
+std::string error_of(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(DeviceChoice, TakesTheBestThatFits) {
+  const std::vector<DeviceDescription> devices = {
+      described("llvmpipe (LLVM 15)", DeviceKind::cpu), described("Old card", DeviceKind::discrete_gpu, "Vulkan 1.2"),
+      described("Intel UHD", DeviceKind::integrated_gpu), described("NVIDIA H200", DeviceKind::discrete_gpu),
+      described("NVIDIA H200 second", DeviceKind::discrete_gpu)};
+  EXPECT_EQ(choose_device(devices, "auto"), 3u);
+  EXPECT_EQ(choose_device(devices, "gpu"), 3u);
+  EXPECT_EQ(choose_device(devices, "cpu"), 0u);
+  EXPECT_EQ(choose_device(devices, "uhd"), 2u);
+  EXPECT_EQ(choose_device(devices, "h200 SEC"), 4u);
+  EXPECT_EQ(error_of([&] { choose_device(devices, "old"); }), "device 'old': 'Old card' lacks Vulkan 1.2");
+  EXPECT_EQ(error_of([&] {
+              choose_device({devices.begin(), devices.begin() + 2}, "radeon");
+            }),
+            "device 'radeon': no Vulkan device fits; there are: 'llvmpipe (LLVM 15)' (CPU), 'Old card' (discrete GPU)");
+  EXPECT_EQ(choose_device({devices.begin(), devices.begin() + 1}, "auto"), 0u);
+  EXPECT_EQ(error_of([&] {
+              choose_device({devices.begin(), devices.begin() + 1}, "gpu");
+            }),
+            "device 'gpu': no Vulkan device fits; there are: 'llvmpipe (LLVM 15)' (CPU)");
+}
+
+TEST(DeviceAbility, NamesTheFirstThatIsMissing) {
+  DeviceAbilities all{.api_major = 1,
+                      .api_minor = 2,
+                      .compute_queue = true,
+                      .scalar_block_layout = true,
+                      .buffer_device_address = true};
+  EXPECT_EQ(missing_ability(all), "");
+  EXPECT_EQ(missing_ability({.api_major = 1, .api_minor = 1}), "Vulkan 1.2 (it has 1.1)");
+  const auto without = [&](bool DeviceAbilities::*ability) {
+    DeviceAbilities abilities = all;
+    abilities.*ability = false;
+    return missing_ability(abilities);
+  };
+  EXPECT_EQ(without(&DeviceAbilities::compute_queue), "a queue that computes");
+  EXPECT_EQ(without(&DeviceAbilities::scalar_block_layout), "the feature scalarBlockLayout");
+  EXPECT_EQ(without(&DeviceAbilities::buffer_device_address), "the feature bufferDeviceAddress");
+}
+
+// What Vulkan throws becomes one line; here it is thrown in place of the driver.
+TEST(DeviceFailure, BecomesOneLine) {
+  const auto failing = [](const auto& failure) {
+    return error_of([&] { guarded("Card", "computing", [&] { throw failure; }); });
+  };
+  EXPECT_EQ(failing(vk::DeviceLostError("x")),
+            "device 'Card': lost while computing: its driver has given up, as after a pass that ran too long; run it "
+            "again, or on another device ('scarp devices')");
+  EXPECT_EQ(failing(vk::OutOfDeviceMemoryError("x")), "device 'Card': out of device memory while computing");
+  EXPECT_EQ(failing(vk::OutOfHostMemoryError("x")), "device 'Card': out of memory while computing");
+  EXPECT_EQ(failing(vk::TooManyObjectsError("x")), "device 'Card': ErrorTooManyObjects while computing");
+}
+
+// In a process of its own: the loader reads its environment once.
+std::string in_child(const char* variable, const std::function<std::string()>& f) {
+  int ends[2];
+  if (::pipe(ends) != 0) return "no pipe";
+  const ::pid_t child = ::fork();
+  if (child == 0) {
+    ::setenv(variable, "/nonexistent", 1);
+    ::setenv("VK_ICD_FILENAMES", "/nonexistent", 1);
+    const std::string text = f();
+    const bool written = ::write(ends[1], text.data(), text.size()) == static_cast<::ssize_t>(text.size());
+    ::_exit(written ? 0 : 1);
+  }
+  ::close(ends[1]);
+  std::string text;
+  char buffer[512];
+  for (::ssize_t n; (n = ::read(ends[0], buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<std::size_t>(n));
+  ::close(ends[0]);
+  ::waitpid(child, nullptr, 0);
+  return text;
+}
+
+TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
+  const auto list = [] {
+    const DeviceList devices = list_devices();
+    return std::to_string(devices.devices.size()) + ": " + devices.why_none;
+  };
+  const std::string none = "Vulkan: no driver is installed (Debian, for any CPU: mesa-vulkan-drivers)";
+  const std::string no_loader = "Vulkan: no loader, libvulkan.so.1 cannot be opened (Debian: libvulkan1)";
+  const std::string listed = in_child("VK_DRIVER_FILES", list);
+  EXPECT_TRUE(listed == "0: " + none || listed == "0: " + no_loader) << listed;
+  const std::string opened = in_child("VK_DRIVER_FILES", [] { return error_of([] { Device device; }); });
+  EXPECT_TRUE(opened == none || opened == no_loader) << opened;
+}
+
+TEST(DeviceSettingsTest, ATimeoutIsASpanOfTime) {
+  for (const double seconds : {0.0, -1.0, std::nan(""), 1e10}) {
+    EXPECT_NE(error_of([&] { Device device({.timeout_s = seconds}); }).find("timeout"), std::string::npos);
+  }
+}
+
+class OpenDevice : public test::OnDevice {};
+
+TEST_F(OpenDevice, IsTheOneThatIsListed) {
+  const DeviceDescription& open = device().description();
+  EXPECT_TRUE(open.usable());
+  EXPECT_GT(open.memory_bytes, 0u);
+  EXPECT_GE(open.max_allocation_bytes, 1u << 30);  // what Vulkan 1.1 grants
+  bool listed = false;
+  for (const DeviceDescription& other : list_devices().devices) listed |= other.name == open.name;
+  EXPECT_TRUE(listed);
+  EXPECT_EQ(Device({.choice = open.name}).description().name, open.name);
+  EXPECT_EQ(error_of([] {
+              Device device({.choice = "no such device"});
+            }).find("device 'no such device': no Vulkan device fits; there are: '"),
+            0u);
+}
+
+TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
+  const std::string error = error_of([&] { DeviceBuffer(device(), 1ull << 50, "a continent"); });
+  EXPECT_NE(error.find("no memory for a continent (1073741824.0 MiB): "), std::string::npos) << error;
+  EXPECT_NE(error_of([&] { DeviceBuffer(device(), 0, "nothing"); }), "no error");
+  EXPECT_NE(error_of([&] { DeviceBuffer(device(), 6, "a word and a half"); }), "no error");
+}
+
+// The tests' silence would mean nothing if nobody listened: two copies to one place without a barrier between them, and
+// one beyond the end of a buffer.
+TEST_F(OpenDevice, TellsWhatValidationSays) {
+  const Device watched({.validation = true});
+  const DeviceBuffer from(watched, 64, "from"), to(watched, 64, "to");
+  const Device::Impl& open = *watched.impl();
+  const vk::raii::CommandBuffers commands(open.device, {*open.pool, vk::CommandBufferLevel::ePrimary, 1});
+  const auto copy = [&](std::uint64_t bytes) {
+    commands[0].copyBuffer(*from.impl().buffer, *to.impl().buffer, vk::BufferCopy(0, 0, bytes));
+  };
+  commands[0].begin(vk::CommandBufferBeginInfo());
+  copy(64);
+  EXPECT_EQ(watched.validation_messages().size(), 0u);
+  copy(64);
+  ASSERT_EQ(watched.validation_messages().size(), 1u);
+  EXPECT_NE(watched.validation_messages()[0].find("SYNC-HAZARD-WRITE"), std::string::npos);
+  copy(128);
+  EXPECT_GT(watched.validation_messages().size(), 1u);
+}
+
+TEST_F(OpenDevice, StopsWaitingAfterTheTimeout) {
+  const Device hurried({.timeout_s = 1e-6});
+  DeviceBuffer words(hurried, 4 << 20, "words");
+  const std::uint32_t constants[] = {64, 1};
+  const ComputePipeline pipeline(hurried, kTwice, "slow", sizeof(glsl::TwicePush), constants);
+  Commands commands(hurried);
+  commands.dispatch(pipeline, glsl::TwicePush{words.address(), words.address(), 1 << 20, 200}, {1 << 14, 1, 1});
+  EXPECT_NE(error_of([&] { commands.run(); }).find("'slow' has not finished within 1e-06 s"), std::string::npos);
+  // Another run waits for the first; whoever lets go of it waits for it, too.
+  EXPECT_NE(error_of([&] { commands.fill(words, 0, 4, 0); }).find("has not finished"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace scarp
