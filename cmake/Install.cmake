@@ -38,6 +38,32 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/scarp-config-versio
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/scarp-config-version.cmake
         DESTINATION ${package_folder})
 
+# The shader texts: as they are, for hosts with #include, under the paths that they include one another by; and each
+# march with all that it needs in one file, for pasting.
+set(shader_folder ${CMAKE_INSTALL_DATADIR}/scarp/glsl)
+set(marches_as_text max_mip naive fixed_step relaxed lipschitz)
+set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/ground_buffers.glsl.h)
+foreach(name ${marches_as_text} two_float ray_frame float_ray cell_surface ground textures)
+  list(APPEND shader_texts scarp/march/${name}.glsl.h)
+endforeach()
+foreach(text IN LISTS shader_texts)
+  cmake_path(GET text PARENT_PATH folder)
+  install(FILES ${text} DESTINATION ${shader_folder}/${folder})
+endforeach()
+set(flat_texts "")
+list(TRANSFORM shader_texts PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE all_texts)
+foreach(name IN LISTS marches_as_text)
+  set(flat ${PROJECT_BINARY_DIR}/glsl/${name}.glsl)
+  set(flatten ${CMAKE_CURRENT_SOURCE_DIR}/cmake/FlattenGlsl.cmake)
+  add_custom_command(OUTPUT ${flat}
+    COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D OUT=${flat}
+            -D FILES=${PROJECT_SOURCE_DIR}/scarp/march/float_ray.glsl.h,${PROJECT_SOURCE_DIR}/scarp/march/${name}.glsl.h -P ${flatten}
+    DEPENDS ${all_texts} ${flatten} VERBATIM)
+  list(APPEND flat_texts ${flat})
+endforeach()
+add_custom_target(scarp_flat_texts ALL DEPENDS ${flat_texts})
+install(FILES ${flat_texts} DESTINATION ${shader_folder})
+
 # The command line's target comes into being after this file was read.
 function(scarp_install_app)
   if(TARGET scarp)

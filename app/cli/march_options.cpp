@@ -13,6 +13,10 @@ void add_march_options(CLI::App& command, MarchSettings& march) {
   add("--naive-tolerance", march.naive.tolerance,
       "height above ground that it takes for a hit, per distance; 0 or more");
   add("--naive-max-steps", march.naive.max_steps, "its limit of steps; 1 or more");
+  add("--fixed-step", march.fixed_step.step, "the step of fixed-step, in cells; above 0");
+  add("--fixed-step-interpolate", march.fixed_step.interpolate,
+      "whether it puts the hit between the last two samples, or on the last; true or false");
+  add("--fixed-step-max-steps", march.fixed_step.max_steps, "its limit of steps; 1 or more");
   add("--relaxed-step-factor", march.relaxed.step_factor, "share of the vertical distance that relaxed steps; above 0");
   add("--relaxed-tolerance", march.relaxed.tolerance,
       "height off the ground that it takes for a hit, per distance; above 0");

@@ -9,6 +9,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/exhaustive.h"
+#include "scarp/march/fixed_step.h"
 #include "scarp/march/lipschitz.h"
 #include "scarp/march/max_mip.h"
 #include "scarp/march/naive.h"
@@ -20,17 +21,20 @@ namespace {
 constexpr std::array kMarches = {
     MarchEntry{"exhaustive", "height field", Guarantee::exact, false, false, march_exhaustive, nullptr, nullptr, false,
                "", "every cell under the ray on its own, in double: the judge of the others, slow"},
-    MarchEntry{"naive", "height field", Guarantee::approximate, false, false, march_naive, nullptr, nullptr, false,
+    MarchEntry{"naive", "height field", Guarantee::approximate, false, false, march_naive, nullptr, nullptr, true,
                "step factor 0.7, least step 1/512 of the way out, tolerance 0.001 of the distance, 1024 steps",
                "steps by the vertical distance to the ground; steps over steep ground"},
-    MarchEntry{"relaxed", "height field", Guarantee::approximate, false, false, march_relaxed, nullptr, nullptr, false,
+    MarchEntry{"fixed-step", "height field", Guarantee::approximate, false, false, march_fixed_step, nullptr, nullptr,
+               true, "step 0.5 cells, interpolating, 16384 steps",
+               "a sample at every step, a hit where one is not above; passes what is thinner than a step"},
+    MarchEntry{"relaxed", "height field", Guarantee::approximate, false, false, march_relaxed, nullptr, nullptr, true,
                "step factor 0.4, tolerance 0.0015 of the distance, 300 steps",
                "the shader writers' t += 0.4 h: closes in on calm ground, steps through steep ground"},
     MarchEntry{"lipschitz", "height field", Guarantee::conservative, true, true, march_lipschitz, nullptr, nullptr,
-               false, "shrink factor 1/sqrt(1 + c^2), c the slope bound, tolerance 0.0005 of the distance, 1024 steps",
+               true, "shrink factor 1/sqrt(1 + c^2), c the slope bound, tolerance 0.0005 of the distance, 1024 steps",
                "steps by a distance that the steepest slope allows; never passes, slow near steep ground"},
-    MarchEntry{"max-mip", "height field", Guarantee::exact, true, false, march_max_mip, occluded_max_mip, nullptr,
-               false, "", "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
+    MarchEntry{"max-mip", "height field", Guarantee::exact, true, false, march_max_mip, occluded_max_mip, nullptr, true,
+               "", "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
     MarchEntry{"max-mip-bisect", "height field", Guarantee::approximate, true, false, march_max_mip_bisect, nullptr,
                nullptr, false, "16 halvings",
                "the same walk with the paper's binary search in the cell; passes rays that dip into a cell"},
@@ -62,6 +66,9 @@ void validate(const MarchSettings& settings) {
   require(positive(naive.min_step) && naive.min_step <= 1, "naive least step", naive.min_step, "above 0 and at most 1");
   require(std::isfinite(naive.tolerance) && naive.tolerance >= 0, "naive tolerance", naive.tolerance, "0 or more");
   require(naive.max_steps >= 1, "naive step limit", naive.max_steps, "1 or more");
+  const auto& fixed_step = settings.fixed_step;
+  require(positive(fixed_step.step), "fixed-step step", fixed_step.step, "above 0");
+  require(fixed_step.max_steps >= 1, "fixed-step step limit", fixed_step.max_steps, "1 or more");
   const auto& relaxed = settings.relaxed;
   require(positive(relaxed.step_factor), "relaxed step factor", relaxed.step_factor, "above 0");
   require(positive(relaxed.tolerance), "relaxed tolerance", relaxed.tolerance, "above 0");

@@ -30,6 +30,13 @@ struct NaiveSettings {
   int max_steps = 1024;         ///< >= 1
 };
 
+/// `fixed-step`: a sample every `step`, a hit where one is no longer above the ground.
+struct FixedStepSettings {
+  double step = 0.5;        ///< cells, their shorter side, > 0
+  bool interpolate = true;  ///< whether the hit is put between the last two samples, or on the last
+  int max_steps = 16384;    ///< >= 1
+};
+
 /// `relaxed`: t += step_factor * h, stops where |h| < tolerance * t.
 struct RelaxedSettings {
   double step_factor = 0.4;   ///< of the vertical distance h, > 0
@@ -51,6 +58,7 @@ struct BisectSettings {
 
 struct MarchSettings {
   NaiveSettings naive;
+  FixedStepSettings fixed_step;
   RelaxedSettings relaxed;
   LipschitzSettings lipschitz;
   BisectSettings bisect;

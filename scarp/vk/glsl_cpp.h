@@ -30,7 +30,7 @@ using uint = std::uint32_t;
 using glm::ivec2, glm::ivec3, glm::ivec4;
 using glm::uvec2, glm::uvec3, glm::uvec4;
 using glm::vec2, glm::vec3, glm::vec4;
-using std::abs, std::ceil, std::floor, std::max, std::min, std::sqrt;
+using std::abs, std::ceil, std::clamp, std::floor, std::max, std::min, std::sqrt;
 
 /// Where a buffer lies in the device's memory (DeviceBuffer::address()); low word first, so that GLSL needs no 64-bit
 /// integers.
@@ -48,6 +48,8 @@ struct Address {
 #define SCARP_FN inline
 #define SCARP_OUT(type) type&
 #define SCARP_INOUT(type) type&
+// No fusing and no reordering: the flags of the build see to it in C++, and GLSL ES 3.0 has no word for it.
+#define SCARP_PRECISE
 
 #else
 
@@ -56,6 +58,11 @@ struct Address {
 #define SCARP_FN
 #define SCARP_OUT(type) out type
 #define SCARP_INOUT(type) inout type
+#ifdef GL_ES
+#define SCARP_PRECISE
+#else
+#define SCARP_PRECISE precise
+#endif
 // A reference is made of it: SomeBuffer(address), with GL_EXT_buffer_reference_uvec2.
 #define Address uvec2
 

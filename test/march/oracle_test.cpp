@@ -21,6 +21,7 @@
 #include <string>
 
 #include "march/spiteful.h"
+#include "march/spiteful_text.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/march/exhaustive.h"
 #include "scarp/march/max_mip.h"
@@ -45,18 +46,7 @@ constexpr double kUnit = 0x1p-53;
 constexpr double kRoundings = 32;
 constexpr int kNeighbours = 256;
 
-std::string text(const Ray& ray) {
-  return fmt::format("origin ({:a}, {:a}, {:a}) direction ({:a}, {:a}, {:a}) t [{:a}, {:a}] {} cell ({}, {})",
-                     ray.origin.x, ray.origin.y, ray.origin.z, ray.direction.x, ray.direction.y, ray.direction.z,
-                     ray.t_min, ray.t_max, ray.start == RayStart::free ? "free" : "on surface", ray.start_cell.col,
-                     ray.start_cell.row);
-}
-
-std::string text(const Hit& hit) {
-  static constexpr const char* kNames[] = {"miss", "hit", "below", "exhausted"};
-  return fmt::format("{}{} t={:a} cell ({}, {}) u={} v={}", kNames[static_cast<int>(hit.status)],
-                     hit.wall ? " wall" : "", hit.t, hit.cell.col, hit.cell.row, hit.u, hit.v);
-}
+using test::text;
 
 std::string text(const std::vector<Hit>& hits) {
   std::string all;
@@ -364,10 +354,6 @@ class Judge {
   bool asked_ = false;
 };
 
-struct Pair {
-  std::size_t field, ray;
-};
-
 class Oracle : public testing::TestWithParam<Pair> {};
 
 TEST_P(Oracle, ExactMarchesAgreeWithTheJudge) {
@@ -421,25 +407,6 @@ TEST_P(Oracle, ExactMarchesAgreeWithTheJudge) {
   if (kind.name == "random" || kind.name == "from above") {
     EXPECT_LE(asked, kRaysPerPair / 1000);
   }
-}
-
-// All rays over all fields that have what they aim at.
-std::vector<Pair> pairs() {
-  std::vector<Pair> pairs;
-  for (std::size_t field = 0; field < spiteful_fields().size(); ++field) {
-    for (std::size_t ray = 0; ray < spiteful_rays().size(); ++ray) {
-      const unsigned needed = spiteful_rays()[ray].aims_at;
-      if ((spiteful_fields()[field].has & needed) == needed) pairs.push_back({field, ray});
-    }
-  }
-  return pairs;
-}
-
-std::string name_of_pair(const testing::TestParamInfo<Pair>& info) {
-  std::string name =
-      fmt::format("{}__{}", spiteful_fields()[info.param.field].name, spiteful_rays()[info.param.ray].name);
-  for (char& c : name) c = std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(Spiteful, Oracle, testing::ValuesIn(pairs()), name_of_pair);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// naive and relaxed: they do what their texts say, including what they are known to get wrong.
+// naive, fixed-step and relaxed: they do what their texts say, including what they are known to get wrong.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/march/fixed_step.h"
 #include "scarp/march/marches.h"
 #include "scarp/march/naive.h"
 #include "scarp/march/relaxed.h"
@@ -53,6 +54,60 @@ TEST(Naive, ReportsUsedUpStepsAsExhausted) {
   const Hit hit = march_naive({&field, nullptr}, {{0, 50, 20}, {1, 0, 0}}, settings);
   EXPECT_EQ(hit.status, HitStatus::exhausted);
   EXPECT_TRUE(std::isfinite(hit.t));
+}
+
+TEST(FixedStep, PutsTheHitOnASampleOrBetweenTwo) {
+  const HeightField field = flat();
+  const Ray ray{{10, 50, 30}, {0.8, 0, -0.6}};
+  MarchSettings settings;
+  settings.fixed_step.step = 0.7;
+  MarchStats stats;
+  const Hit between = march_fixed_step({&field, nullptr}, ray, settings, &stats);
+  ASSERT_TRUE(between);
+  EXPECT_NEAR(between.t, 50, 1e-12);
+  EXPECT_EQ(stats.steps, 73u);  // samples at 0, 0.7, ..., 50.4
+  settings.fixed_step.interpolate = false;
+  const Hit sample = march_fixed_step({&field, nullptr}, ray, settings);
+  ASSERT_TRUE(sample);
+  EXPECT_NEAR(sample.t, 50.4, 1e-12);
+}
+
+TEST(FixedStep, StepsOverAThinWallWithLongStepsAndFindsItWithShortOnes) {
+  const HeightField field = wall();
+  const Ray ray{{0, 50.5, 20}, {1, 0, 0}};
+  MarchSettings settings;
+  settings.fixed_step.step = 8;
+  EXPECT_FALSE(march_fixed_step({&field, nullptr}, ray, settings));
+  settings.fixed_step.step = 0.5;
+  const Hit hit = march_fixed_step({&field, nullptr}, ray, settings);
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit.t, 59.4, 1e-9);  // the wall rises by 50 from 59 to 60
+}
+
+TEST(FixedStep, LooksAtTheEndOfTheRaysRange) {
+  const HeightField field = flat();
+  Ray ray{{10, 50, 30}, {0.8, 0, -0.6}};
+  MarchSettings settings;
+  settings.fixed_step.step = 40;
+  ray.t_max = 50;
+  EXPECT_TRUE(march_fixed_step({&field, nullptr}, ray, settings));
+  ray.t_max = 49.9;
+  EXPECT_EQ(march_fixed_step({&field, nullptr}, ray, settings).status, HitStatus::miss);
+}
+
+TEST(FixedStep, TellsBelowWallsAndUsedUpSteps) {
+  const HeightField field = flat();
+  EXPECT_EQ(march_fixed_step({&field, nullptr}, {{10, 50, -1}, {1, 0, 0}}, {}).status, HitStatus::below);
+  MarchSettings settings;
+  settings.fixed_step.max_steps = 3;
+  EXPECT_EQ(march_fixed_step({&field, nullptr}, {{10, 50, 9}, {1, 0, 0}}, settings).status, HitStatus::exhausted);
+  HeightFieldSettings solid;
+  solid.solid = true;
+  const HeightField rock = HeightField::own(std::vector<float>(101 * 101, 0.f), 101, 101, solid);
+  const Hit hit = march_fixed_step({&rock, nullptr}, {{-10, 50, -1}, {1, 0, 0}}, {});
+  ASSERT_TRUE(hit);
+  EXPECT_TRUE(hit.wall);
+  EXPECT_EQ(hit.t, 10);
 }
 
 TEST(Relaxed, ClosesInOnAPlane) {
@@ -123,6 +178,8 @@ TEST(MarchSettings, AreCheckedOneByOne) {
   EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.step_factor = std::nan(""); }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.tolerance = -1; }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.naive.max_steps = 0; }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.fixed_step.step = 0; }));
+  EXPECT_TRUE(refused([](MarchSettings& s) { s.fixed_step.max_steps = 0; }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.relaxed.tolerance = 0; }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.relaxed.max_steps = -3; }));
   EXPECT_TRUE(refused([](MarchSettings& s) { s.bisect.halvings = 61; }));

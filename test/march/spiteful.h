@@ -34,6 +34,10 @@ struct RayKind {
 };
 
 const std::vector<FieldKind>& spiteful_fields();
+/// Fields of more than one tile of 1,024 cells, on which marches in single precision begin anew.
+const std::vector<FieldKind>& wide_fields();
 const std::vector<RayKind>& spiteful_rays();
+/// Rays over wide fields: long ways, through nodes and along lines where tiles meet.
+const std::vector<RayKind>& rays_across_tiles();
 
 }  // namespace scarp::test

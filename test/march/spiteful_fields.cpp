@@ -232,4 +232,33 @@ const std::vector<FieldKind>& spiteful_fields() {
   return kinds;
 }
 
+const std::vector<FieldKind>& wide_fields() {
+  static const std::vector<FieldKind> kinds = {
+      {"wide, rough",
+       [](Random& r) {
+         return rough({2600, 6}, r);
+       }},
+      {"tall, rough, high samples",
+       [](Random& r) {
+         return make<float>({5, 2060}, {}, [&](int, int) { return 1e4 + uniform(r, 0, 4); });
+       }},
+      {"wide with holes, solid",
+       [](Random& r) {
+         return with_holes({1100, 9}, r, with(Surface::bilinear, Wrap::none, true));
+       },
+       kHoles},
+      {"wide triangles",
+       [](Random& r) {
+         return rough({2049, 5}, r, with(Surface::triangles));
+       },
+       kTriangles},
+      {"wide, periodic",
+       [](Random& r) {
+         return rough({1030, 4}, r, with(Surface::bilinear, Wrap::periodic));
+       },
+       kWraps},
+  };
+  return kinds;
+}
+
 }  // namespace scarp::test

@@ -292,6 +292,39 @@ const std::vector<RayKind>& endless_rays() {
 
 }  // namespace
 
+const std::vector<RayKind>& rays_across_tiles() {
+  // A node where tiles meet, or next to one, as near as the field allows.
+  static const auto corner = [](const HeightField& f, Random& r) {
+    const int col = std::min(1024 * whole(r, 0, 2) + whole(r, -1, 1), f.cols() - 1);
+    const int row = std::min(1024 * whole(r, 0, 2) + whole(r, -1, 1), f.rows() - 1);
+    return point(f, r, std::max(col, 0), std::max(row, 0));
+  };
+  static const auto ending = [](const HeightField& f, Random& r, const Ray& ray) { return ended(f, r, ray, 2); };
+  static const std::vector<RayKind> kinds = {
+      {"along the field, grazing",
+       [](const HeightField& f, Random& r) {
+         dvec3 from = anywhere_in(f, r), to = anywhere_in(f, r);
+         from.z = low(f) + uniform(r, 0.8, 1.1) * tall(f);
+         to.z = low(f) + uniform(r, 0.2, 1.1) * tall(f);
+         return ending(f, r, towards(from, to));
+       }},
+      {"through a corner of tiles",
+       [](const HeightField& f, Random& r) { return ending(f, r, through(f, r, corner(f, r))); }},
+      {"between corners of tiles",
+       [](const HeightField& f, Random& r) {
+         return ending(f, r, along(r, corner(f, r), corner(f, r) + dvec3(0, 0, 1e-3)));
+       }},
+      {"from the surface, along the field",
+       [](const HeightField& f, Random& r) {
+         Ray ray = towards(above(f, r), anywhere_in(f, r));
+         on_surface(f, r, ray);
+         ray.direction = {uniform(r, -1, 1) * f.width(), uniform(r, -1, 1) * f.depth(), uniform(r, 0, 3) * tall(f)};
+         return ending(f, r, ray);
+       }},
+  };
+  return kinds;
+}
+
 const std::vector<RayKind>& spiteful_rays() {
   static const std::vector<RayKind> kinds = [] {
     std::vector<RayKind> ended_rays = endless_rays();

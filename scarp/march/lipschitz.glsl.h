@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// `lipschitz` for shaders: the march of lipschitz.h in single precision. Guarantee: conservative, as there, but for
+// rounding (doc/dev/numerics.md, "Single precision"). Text of C++ and of GLSL, GLSL ES 3.0 included; who includes it
+// has defined what cell_surface.glsl.h asks for, and, for fields with holes, scarp_minimum of max_mip.glsl.h.
+#ifndef SCARP_MARCH_LIPSCHITZ_GLSL_H
+#define SCARP_MARCH_LIPSCHITZ_GLSL_H
+
+#include "scarp/march/ground.glsl.h"
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+/// LipschitzSettings of marches.h.
+struct ScarpLipschitz {
+  float shrink;  ///< 1 / sqrt(1 + c^2), c the field's slope bound
+  float tolerance;
+  int max_steps;
+};
+
+/// Time until the ray leaves cell numbers [begin, end) of an axis, from a place in cell number `cell`.
+SCARP_FN float scarp_time_to_border(int begin, int end, int cell, float place, float direction, float per_direction) {
+  if (direction == 0.0f) return kScarpNever;
+  return (float((direction > 0.0f ? end : begin) - cell) - place) * per_direction;
+}
+
+/// When the ray, over a point at s, leaves the block of 2^level x 2^level cells that holds it: a little later, so that
+/// it has, by 2^-20 of a cell and what s rounds by.
+SCARP_FN float scarp_leave_time(ScarpField field, ScarpRay ray, ScarpPoint point, int level, float s) {
+  int col = (point.cell.x >> level) << level;
+  int row = (point.cell.y >> level) << level;
+  float x = scarp_time_to_border(col, min(col + (1 << level), field.cells.x), point.cell.x, point.place.x,
+                                 ray.direction.x, ray.per_direction.x);
+  float y = scarp_time_to_border(row, min(row + (1 << level), field.cells.y), point.cell.y, point.place.y,
+                                 ray.direction.y, ray.per_direction.y);
+  return s + (max(0.0f, min(x, y)) + 9.5367431640625e-7f * ray.cell_time + 4.0f * kScarpUnit * s);
+}
+
+/// What the march finds first.
+SCARP_FN ScarpHit scarp_lipschitz(ScarpField field, ScarpRay ray, ScarpLipschitz settings) {
+  ScarpHit hit = scarp_no_hit();
+  bool on_surface = (ray.flags & kScarpOnSurface) != 0u;
+  float s = on_surface ? ray.cell_time : 0.0f;
+  for (int i = 0; s <= ray.exit; ++i) {
+    if (i == settings.max_steps) {
+      scarp_give_up(s, hit);
+      return hit;
+    }
+    hit.steps += 1u;
+    hit.fetches += 4u;
+    ScarpPoint point = scarp_point(field, ray, s);
+    float free = point.clearance * settings.shrink * ray.per_height;
+    if (!point.valid) {
+      s = scarp_leave_time(field, ray, point, 0, s);
+    } else if (point.clearance < 0.0f) {
+      // Under the ground: there from the start, or out of a hole.
+      if (on_surface && i == 0)
+        scarp_tell_point(point, s, kScarpHit, hit);
+      else if ((field.flags & kScarpSolid) != 0u && s + ray.travelled > 0.0f)
+        scarp_tell_point(point, s, kScarpWall, hit);
+      else if (i == 0)
+        hit.status = kScarpBelow;
+      else
+        scarp_give_up(s, hit);
+      return hit;
+    } else if (free <= settings.tolerance * (s + ray.travelled)) {
+      scarp_tell_point(point, s, kScarpHit, hit);
+      return hit;
+    } else if ((field.flags & kScarpHoles) == 0u) {
+      s += free;
+    } else {
+      // No further than the largest block round the point that has no hole; level 0 is the cell.
+      int level = 0;
+      while (level < field.top_level) {
+        hit.fetches += 1u;
+        if (scarp_minimum(level + 1, point.cell.x >> (level + 1), point.cell.y >> (level + 1)) == 0.0f) break;
+        ++level;
+      }
+      s = min(s + free, scarp_leave_time(field, ray, point, level, s));
+    }
+  }
+  return hit;
+}
+
+SCARP_GLSL_END
+
+#endif

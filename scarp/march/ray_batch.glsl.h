@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// A batch of rays on a device: what the compute shaders of the marches and the C++ that calls them (queries_vk.h) agree
+// upon, and the ground as the marches ask for it (cell_surface.glsl.h, max_mip.glsl.h), from
+// accel/ground_buffers.glsl.h.
+//
+//   RayBatch ──rays──▶ ScarpRay ScarpRay ...     one invocation each
+//       │  └──hits───▶ ScarpHit ScarpHit ...     the answers, in the same order
+//       └────ground──▶ GroundBuffers
+#ifndef SCARP_MARCH_RAY_BATCH_GLSL_H
+#define SCARP_MARCH_RAY_BATCH_GLSL_H
+
+#include "scarp/accel/ground_buffers.glsl.h"
+#include "scarp/march/ray_frame.glsl.h"
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+// Specialisation constants of all marches.
+const uint kBatchThreads = 0u;     // of a workgroup
+const uint kBatchAny = 1u;         // whether anything is hit, instead of what first: max-mip only
+const uint kBatchStatistics = 2u;  // whether steps and fetches are told, or zeros
+
+/// The push constants of all marches. Settings that a march has none of mean nothing.
+struct RayBatch {
+  Address ground;
+  Address rays;
+  Address hits;
+  uint count;
+  float step;       ///< naive, relaxed: step factor; fixed-step: the step, in cells; lipschitz: shrink factor
+  float min_step;   ///< naive
+  float tolerance;  ///< naive, relaxed, lipschitz
+  int max_steps;    ///< all but max-mip
+  int interpolate;  ///< fixed-step: 0 or 1
+};
+
+#ifndef __cplusplus
+
+layout(local_size_x_id = 0) in;
+layout(constant_id = 1) const bool batch_any = false;
+layout(constant_id = 2) const bool batch_statistics = false;
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRays { ScarpRay rays[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer BatchHits { ScarpHit hits[]; };
+layout(push_constant, scalar) uniform Push { RayBatch batch; };
+
+float scarp_sample(int col, int row) {
+  Ground ground = Ground(batch.ground);
+  return ground_sample_value(ground, ground_sample_bits(ground, uint(col), uint(row)));
+}
+
+// All nodata floats are stored as one NaN, which is known by its bits: comparisons of NaN are the compiler's.
+bool scarp_is_nodata(float value) {
+  Ground ground = Ground(batch.ground);
+  if (ground.is.sample_type == kGroundFloat32) return (floatBitsToUint(value) & 0x7fffffffu) > 0x7f800000u;
+  return value == ground_sample_value(ground, ground.is.hole);
+}
+
+float scarp_maximum(int level, int col, int row) {
+  return float(ground_maximum(ground_entry(Ground(batch.ground), uint(level), uint(col), uint(row))));
+}
+float scarp_minimum(int level, int col, int row) {
+  return float(ground_minimum(ground_entry(Ground(batch.ground), uint(level), uint(col), uint(row))));
+}
+
+ScarpField batch_field() {
+  Ground ground = Ground(batch.ground);
+  ScarpField field;
+  field.cells = ivec2(ground.is.cell_cols, ground.is.cell_rows);
+  field.samples = ivec2(ground.is.cols, ground.is.rows);
+  field.top_level = int(ground.is.top_level);
+  field.flags = (ground.is.triangles != 0u ? kScarpTriangles : 0u) | (ground.is.has_holes != 0u ? kScarpHoles : 0u) |
+                (ground.is.wrap != kGroundWrapNone ? kScarpWraps : 0u) | (ground.is.solid != 0u ? kScarpSolid : 0u);
+  field.code_base = ground.is.code_base;
+  field.code_base_low = ground.is.code_base_low;
+  field.code_step = ground.is.code_step;
+  field.lowest = ground.is.min_sample;
+  field.highest = ground.is.max_sample;
+  return field;
+}
+
+// Writes the answer to ray i.
+void batch_answer(uint i, ScarpHit hit) {
+  if (!batch_statistics) {
+    hit.steps = 0u;
+    hit.fetches = 0u;
+  }
+  BatchHits(batch.hits).hits[i] = hit;
+}
+
+#endif
+
+SCARP_GLSL_END
+
+#endif

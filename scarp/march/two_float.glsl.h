@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Numbers of twice a float's precision, as sums of two floats: for the few places where a float would not do.
+//
+//   value = high + low,  |low| <= half a unit in the last place of high: 48 bits
+//
+// Text of C++ and of GLSL (scarp/vk/glsl_cpp.h), GLSL ES 3.0 included. Source: T. J. Dekker, "A floating-point
+// technique for extending the available precision", Numerische Mathematik 18, 1971; D. E. Knuth, TAOCP 2, 4.2.2. No
+// fused multiply-add is needed. A compiler that reassociates floating-point sums (some of GLSL ES 3.0, which has no
+// `precise`) turns low into zero: the result is then that of plain floats.
+#ifndef SCARP_MARCH_TWO_FLOAT_GLSL_H
+#define SCARP_MARCH_TWO_FLOAT_GLSL_H
+
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+/// high + low.
+struct ScarpTwoFloat {
+  float high, low;
+};
+
+/// a + b without rounding.
+SCARP_FN ScarpTwoFloat scarp_two_sum(float a, float b) {
+  SCARP_PRECISE float sum = a + b;
+  SCARP_PRECISE float b_part = sum - a;
+  SCARP_PRECISE float a_part = sum - b_part;
+  SCARP_PRECISE float low = (a - a_part) + (b - b_part);
+  ScarpTwoFloat result;
+  result.high = sum;
+  result.low = low;
+  return result;
+}
+
+/// The high half of a float: 12 bits, so that products of halves are exact. |a| below 2^115.
+SCARP_FN float scarp_high_half(float a) {
+  SCARP_PRECISE float scaled = a * 4097.0f;  // 2^12 + 1
+  SCARP_PRECISE float rest = scaled - a;
+  SCARP_PRECISE float half_a = scaled - rest;
+  return half_a;
+}
+
+/// a * b without rounding, unless it underflows.
+SCARP_FN ScarpTwoFloat scarp_two_product(float a, float b) {
+  SCARP_PRECISE float product = a * b;
+  float a1 = scarp_high_half(a);
+  float b1 = scarp_high_half(b);
+  SCARP_PRECISE float a0 = a - a1;
+  SCARP_PRECISE float b0 = b - b1;
+  SCARP_PRECISE float low = ((a1 * b1 - product) + a1 * b0 + a0 * b1) + a0 * b0;
+  ScarpTwoFloat result;
+  result.high = product;
+  result.low = low;
+  return result;
+}
+
+/// start + slope * t to about 2^-46 of the largest term; `whole` is added exactly.
+SCARP_FN ScarpTwoFloat scarp_two_line(float whole, float start, float start_low, float slope, float slope_low,
+                                      float t) {
+  ScarpTwoFloat way = scarp_two_product(slope, t);
+  ScarpTwoFloat sum = scarp_two_sum(whole, way.high);
+  ScarpTwoFloat all = scarp_two_sum(sum.high, start);
+  SCARP_PRECISE float low = (sum.low + all.low) + ((way.low + slope_low * t) + start_low);
+  return scarp_two_sum(all.high, low);
+}
+
+SCARP_GLSL_END
+
+#endif

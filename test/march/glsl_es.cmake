@@ -1,0 +1,46 @@
+# The marches over textures keep to GLSL ES 3.0:
+#   cmake -D ROOT=<checkout> -D WORK=<folder> -D VALIDATOR=<glslangValidator> -D FLAT=<max_mip.glsl> -P glsl_es.cmake
+cmake_minimum_required(VERSION 3.25)
+
+# check(FILE GOOD): compiles a fragment shader with all that it includes.
+function(check file good)
+  execute_process(COMMAND ${CMAKE_COMMAND} -D ROOT=${ROOT} -D FILES=${file} -D OUT=${WORK}/flat.frag
+                          -P ${ROOT}/cmake/FlattenGlsl.cmake COMMAND_ERROR_IS_FATAL ANY)
+  execute_process(COMMAND ${VALIDATOR} -S frag ${WORK}/flat.frag RESULT_VARIABLE failed OUTPUT_VARIABLE said)
+  if(good AND failed)
+    message(FATAL_ERROR "${file} is not GLSL ES 3.0:\n${said}")
+  elseif(NOT good AND NOT failed)
+    message(FATAL_ERROR "the check is broken: it takes what GLSL ES 3.0 does not have")
+  endif()
+endfunction()
+
+check(${ROOT}/test/march/textures_es.frag TRUE)
+
+# The text that is installed for pasting, after what a host defines.
+file(READ ${FLAT} march)
+file(WRITE ${WORK}/pasted.frag "#version 300 es
+precision highp float;
+precision highp int;
+uniform highp sampler2D heights;
+out vec4 colour;
+float scarp_sample(int col, int row) { return texelFetch(heights, ivec2(col, row), 0).x; }
+bool scarp_is_nodata(float value) { return false; }
+float scarp_maximum(int level, int col, int row) { return texelFetch(heights, ivec2(col, row), level).x; }
+float scarp_minimum(int level, int col, int row) { return texelFetch(heights, ivec2(col, row), level).x; }
+${march}
+uniform int top;
+void main() {
+  ScarpField field;
+  field.cells = ivec2(63, 63);
+  field.samples = ivec2(64, 64);
+  field.top_level = top;
+  field.flags = 0u;
+  field.code_base = field.code_base_low = field.lowest = 0.0;
+  field.code_step = field.highest = 1.0;
+  ScarpRay ray = scarp_ray(ivec2(1, 2), vec2(0.5, 0.5), 3.0, vec3(1.0, 0.5, -0.5), kScarpNever, 0u);
+  colour = vec4(scarp_max_mip(field, ray, true).time);
+}
+")
+check(${WORK}/pasted.frag TRUE)
+file(WRITE ${WORK}/bad.frag "#version 300 es\nprecision highp float;\nout vec4 colour;\nvoid main() { precise double x = 1.0; colour = vec4(x); }\n")
+check(${WORK}/bad.frag FALSE)

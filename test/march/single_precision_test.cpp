@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// The shader text of max-mip, compiled as C++ with floats, on the oracle's fields and rays: no GPU is needed to know
+// that its decisions are right. RoundingJudge says what an answer may be.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "march/glsl_host.h"
+#include "march/rounding_judge.h"
+#include "march/spiteful.h"
+#include "march/spiteful_text.h"
+#include "scarp/march/device_ray.h"
+#include "scarp/march/float_ray.glsl.h"
+#include "scarp/march/max_mip.glsl.h"
+#include "scarp/march/max_mip.h"
+
+namespace scarp::test {
+namespace {
+
+#ifdef NDEBUG
+constexpr int kRaysPerPair = 2'500, kWideRays = 500;
+#else
+constexpr int kRaysPerPair = 250, kWideRays = 50;
+#endif
+constexpr int kRaysPerField = 250;
+
+// Casts rays of a kind over fields of a kind; returns how many have another status than in double.
+int check(const FieldKind& fields, const RayKind& kind, std::size_t seed, int rays) {
+  Random random(seed);
+  int other_status = 0, bad = 0;
+  for (int done = 0; done < rays && bad < 3; done += kRaysPerField) {
+    const HeightField field = fields.make(random);
+    const MaxPyramid pyramid(field);
+    glsl::host_field = &field;
+    glsl::host_pyramid = &pyramid;
+    for (int i = 0; i < std::min(rays, kRaysPerField) && bad < 3; ++i) {
+      const Ray ray = kind.make(field, random);
+      const DeviceRay prepared = device_ray(field, ray);
+      glsl::ScarpHit answer{}, any{};
+      if (prepared.marches) {
+        const glsl::ScarpField ground = device_field(field, &pyramid);
+        answer = glsl::scarp_max_mip(ground, prepared.ray, false);
+        any = glsl::scarp_max_mip(ground, prepared.ray, true);
+      }
+      const Hit hit = hit_from_device(ray, prepared, answer);
+      const bool blocked = prepared.marches && (any.status == glsl::kScarpHit || any.status == glsl::kScarpWall);
+      const RoundingJudge judge(field, ray);
+      const Hit exact = march_max_mip({&field, &pyramid}, ray);
+      other_status += exact.status != hit.status;
+      std::string objection = judge.objection(hit);
+      if (objection.empty() && blocked != static_cast<bool>(hit)) objection = "any-hit contradicts closest-hit";
+      // The judge must be no stricter than double precision.
+      const std::string self = judge.objection(exact);
+      if (!self.empty()) objection += " / the march in double: " + self;
+      if (objection.empty()) continue;
+      ++bad;
+      ADD_FAILURE() << objection << "\n  on " << fields.name << ", ray " << kind.name << ": " << text(ray)
+                    << "\n  in double " << text(exact) << "\n  in single " << text(hit);
+    }
+  }
+  return other_status;
+}
+
+class SinglePrecision : public testing::TestWithParam<Pair> {};
+
+TEST_P(SinglePrecision, MaxMipDecidesAsTheSurfaceDoes) {
+  const auto [field, ray] = GetParam();
+  const RayKind& kind = spiteful_rays()[ray];
+  const int others = check(spiteful_fields()[field], kind, 1000 * field + ray, kRaysPerPair);
+  // Rays that were not aimed at anything meet a rounding tie once in a blue moon.
+  if (kind.name == "random" || kind.name == "from above") {
+    EXPECT_LE(others, kRaysPerPair / 1000);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Spiteful, SinglePrecision, testing::ValuesIn(pairs()), name_of_pair);
+
+// Rays that a shader makes: begin and direction in floats, clipped to the field in floats.
+TEST(SinglePrecisionFromFloats, MaxMipDecidesAsTheSurfaceDoes) {
+  for (const FieldKind& fields : spiteful_fields()) {
+    for (const std::size_t kind : {0, 1, 2, 3}) {
+      Random random(kind);
+      const HeightField field = fields.make(random);
+      const MaxPyramid pyramid(field);
+      if (!field.has_cells() || field.all_nodata()) continue;
+      glsl::host_field = &field;
+      glsl::host_pyramid = &pyramid;
+      const glsl::ScarpField ground = device_field(field, &pyramid);
+      for (int i = 0; i < 100; ++i) {
+        const Ray made = spiteful_rays()[kind].make(field, random);
+        const GridRay local = field.grid_from_world(made);
+        const glsl::vec3 origin(local.origin), direction(local.direction);
+        const double speed = std::max(std::abs(double{direction.x}), std::abs(double{direction.y}));
+        if (!(speed > 0)) continue;
+        const auto end = static_cast<float>(std::min(made.t_max * speed, double{glsl::kScarpNever}));
+        // The same ray in the world, but for doubles' rounding.
+        Ray ray;
+        ray.origin = field.world_from_grid(origin.x, origin.y, origin.z);
+        ray.direction = field.world_from_grid(origin.x + double{direction.x}, origin.y + double{direction.y},
+                                              origin.z + double{direction.z}) -
+                        ray.origin;
+        ray.t_max = end < glsl::kScarpNever ? end / speed : HUGE_VAL;
+        DeviceRay prepared;
+        prepared.marches = glsl::scarp_ray_from(ground, origin, direction, end, prepared.ray);
+        prepared.begin = double{prepared.ray.travelled};
+        prepared.per_time = 1 / speed;
+        glsl::ScarpHit answer{};
+        if (prepared.marches) answer = glsl::scarp_max_mip(ground, prepared.ray, false);
+        const Hit hit = hit_from_device(ray, prepared, answer);
+        ASSERT_EQ(RoundingJudge(field, ray, 1024, 0x1p-24).objection(hit), "")
+            << fields.name << ", " << spiteful_rays()[kind].name << ": " << text(ray) << "\n  " << text(hit);
+      }
+    }
+  }
+}
+
+TEST(SinglePrecisionAcrossTiles, MaxMipDecidesAsTheSurfaceDoes) {
+  for (std::size_t field = 0; field < wide_fields().size(); ++field) {
+    for (std::size_t ray = 0; ray < rays_across_tiles().size(); ++ray) {
+      check(wide_fields()[field], rays_across_tiles()[ray], 100 * field + ray, kWideRays);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace scarp::test
