@@ -97,7 +97,7 @@ const std::vector<VoxelGridKind>& spiteful_voxel_grids() {
        }},
       {"sticks", [](Random& r) {
          const int every = whole(r, 2, 7);
-         return made(random_size(r, 40),
+         return made(random_size(r, 24),
                      [&](const ivec3& v) { return (v.x % every == 0) + (v.y % every == 0) + (v.z % every == 0) == 2; });
        }}};
   return kinds;
