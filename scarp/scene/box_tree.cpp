@@ -137,9 +137,8 @@ BoxTree::BoxTree(std::span<const WorldBox> boxes) {
   for (const WorldBox& box : boxes) box_ = around(box_, box);
   middle_ = 0.5 * (box_.low + box_.high);
   const dvec3 half = box_.high - middle_;
-  const double padding = std::max({half.x, half.y, half.z}) * kPadding;
-  box_ = {box_.low - padding, box_.high + padding};
-  Builder builder{boxes, std::vector<std::uint32_t>(boxes.size()), nodes_, middle_, padding};
+  padding_ = std::max({half.x, half.y, half.z}) * kPadding;
+  Builder builder{boxes, std::vector<std::uint32_t>(boxes.size()), nodes_, middle_, padding_};
   std::iota(builder.order.begin(), builder.order.end(), 0u);
   nodes_.reserve(boxes.size() / 2 + 1);
   builder.build(builder.range(0, static_cast<std::uint32_t>(boxes.size())), 0);

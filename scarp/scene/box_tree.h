@@ -66,6 +66,7 @@ class BoxTree {
 
   std::vector<Node> nodes_;
   WorldBox box_;
+  double padding_ = 0;
   dvec3 middle_{0.0};
 };
 
@@ -75,18 +76,17 @@ void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
   // Where the ray comes into the box around everything, and where it leaves it.
   double t_in = ray.t_min, t_out = ray.t_max, longest = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double direction = ray.direction[axis];
+    const double direction = ray.direction[axis], low = box_.low[axis] - padding_, high = box_.high[axis] + padding_;
     longest = std::max(longest, std::abs(direction));
     if (direction == 0) {
-      if (ray.origin[axis] < box_.low[axis] || ray.origin[axis] > box_.high[axis]) return;
+      if (ray.origin[axis] < low || ray.origin[axis] > high) return;
       continue;
     }
-    const double a = (box_.low[axis] - ray.origin[axis]) / direction,
-                 b = (box_.high[axis] - ray.origin[axis]) / direction;
+    const double a = (low - ray.origin[axis]) / direction, b = (high - ray.origin[axis]) / direction;
     t_in = std::max(t_in, std::min(a, b));
     t_out = std::min(t_out, std::max(a, b));
   }
-  // The box is larger than what is in it: a ray that rounding keeps out touches nothing.
+  // The box is padded: a ray that rounding keeps out touches nothing.
   if (!(t_in <= t_out)) return;
   const dvec3 from = ray.origin + t_in * ray.direction - middle_;
 
