@@ -15,9 +15,10 @@ bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) &&
 
 VoxelFace face_of(int axis, int step) { return static_cast<VoxelFace>(2 * axis + (step < 0 ? 1 : 0)); }
 
-// The voxel of a place along one axis, 0 <= low <= place <= high.
+// The voxel of a place along one axis, 0 <= place. Places are not negative, so conversions round down.
 int voxel_at(double place, int step) {
-  return step > 0 ? static_cast<int>(std::floor(place)) : static_cast<int>(std::ceil(place)) - 1;
+  const int voxel = static_cast<int>(place);
+  return step < 0 && voxel == place ? voxel - 1 : voxel;
 }
 
 }  // namespace
@@ -42,27 +43,29 @@ ivec3 normal_of(VoxelFace face) {
 
 VoxelDirection::VoxelDirection(const dvec3& direction) : given(direction), inverse(1.0 / direction) {
   const double longest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+  auto& [speed, slowness, step, t_per_s] = quantised;
   for (int axis = 0; axis < 3; ++axis) {
-    speed[axis] = std::llround(std::abs(direction[axis]) / longest * (1 << kDirectionBits));
+    speed[axis] = static_cast<std::int64_t>(std::abs(direction[axis]) / longest * (1 << kDirectionBits) + 0.5);
     slowness[axis] = 1 / static_cast<double>(speed[axis]);
     step[axis] = direction[axis] < 0 ? -1 : 1;
   }
   t_per_s = static_cast<double>(1 << (kDirectionBits - kPlaceBits)) / longest;
 }
 
-std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box) {
+std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& ray_direction, const VoxelBox& box) {
+  const QuantisedDirection& direction = ray_direction.quantised;
   // Clip to the box. Of planes that are crossed at once the last one, z, is that by which the ray comes in.
   double t = ray.t_min, t_out = ray.t_max;
   int entered = -1;
   for (int axis = 0; axis < 3; ++axis) {
     const double origin = ray.origin[axis];
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
-    if (direction.given[axis] == 0) {
+    if (ray_direction.given[axis] == 0) {
       if (!(origin >= low && origin < high)) return {};
       continue;
     }
-    const double t_near = ((step > 0 ? low : high) - origin) * direction.inverse[axis];
-    const double t_far = ((step > 0 ? high : low) - origin) * direction.inverse[axis];
+    const double t_near = ((step > 0 ? low : high) - origin) * ray_direction.inverse[axis];
+    const double t_far = ((step > 0 ? high : low) - origin) * ray_direction.inverse[axis];
     bool outside = false;
     if (ray.start_voxel) {
       const int start = (*ray.start_voxel)[axis];
@@ -84,8 +87,9 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
   for (int axis = 0; axis < 3; ++axis) {
     const int low = box.low[axis], high = box.high[axis], step = direction.step[axis];
     // Not beyond the box, where only rounding can take it.
-    double place = ray.origin[axis] + t * direction.given[axis];
-    place = std::fmin(std::fmax(place, low), high);
+    double place = ray.origin[axis] + t * ray_direction.given[axis];
+    place = place > low ? place : low;
+    place = place < high ? place : high;
     int& voxel = result->voxel[axis];
     if (axis == entered) {
       place = step > 0 ? low : high;
@@ -98,9 +102,10 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
       if (voxel < low || voxel >= high) return {};
     }
     const double distance = step > 0 ? voxel + 1 - place : place - voxel;
-    result->to_plane[axis] = direction.speed[axis] == 0
-                                 ? QuantisedRay::kNever
-                                 : std::clamp<std::int64_t>(std::llround(distance * kVoxelPlaces), 0, kVoxelPlaces);
+    result->to_plane[axis] =
+        direction.speed[axis] == 0
+            ? QuantisedRay::kNever
+            : std::clamp<std::int64_t>(static_cast<std::int64_t>(distance * kVoxelPlaces + 0.5), 0, kVoxelPlaces);
   }
   return result;
 }

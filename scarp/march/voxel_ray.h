@@ -66,25 +66,30 @@ struct VoxelHit {
 constexpr int kPlaceBits = 20, kDirectionBits = 28;
 constexpr std::int64_t kVoxelPlaces = std::int64_t{1} << kPlaceBits;
 
-/// Quantised once for all boxes that a ray meets without turning.
+/// A direction on whole numbers.
+struct QuantisedDirection {
+  std::array<std::int64_t, 3> speed;  ///< of each axis, 0..2^28, one of them 2^28
+  std::array<double, 3> slowness;     ///< 1 / speed
+  std::array<int, 3> step;            ///< 1 or -1
+  double t_per_s;                     ///< t for s = n / d as above
+};
+
+/// Computed once for all boxes that a ray meets without turning.
 struct VoxelDirection {
   dvec3 given;
-  dvec3 inverse;                      // 1 / given; not finite where that is zero
-  std::array<std::int64_t, 3> speed;  // of each axis, 0..2^28, one of them 2^28
-  std::array<double, 3> slowness;     // 1 / speed
-  std::array<int, 3> step;            // 1 or -1
-  double t_per_s;                     // t for s = n / d as above
+  dvec3 inverse;  ///< 1 / given; not finite where that is zero
+  QuantisedDirection quantised;
 
   explicit VoxelDirection(const dvec3& direction);
 };
 
 /// A ray from where it comes into a box.
 struct QuantisedRay {
-  VoxelDirection direction;
-  ivec3 voxel;                           // the first one, in the box
-  std::array<std::int64_t, 3> to_plane;  // 0..2^20, to the next plane of each axis; kNever where speed is 0
-  VoxelFace face;                        // by which it came into the box; inside: it began there
-  double t;                              // of the place
+  QuantisedDirection direction;
+  ivec3 voxel;                           ///< the first one, in the box
+  std::array<std::int64_t, 3> to_plane;  ///< 0..2^20, to the next plane of each axis; kNever where speed is 0
+  VoxelFace face;                        ///< by which it came into the box; inside: it began there
+  double t;                              ///< of the place
   double t_max;
 
   static constexpr std::int64_t kNever = std::int64_t{1} << 32;

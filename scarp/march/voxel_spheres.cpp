@@ -11,7 +11,7 @@ namespace {
 
 // How far a ray goes along its longest axis, in 2^-20 voxel, while it travels one voxel: rounded down, so that it never
 // travels more than it may.
-std::int64_t travel_per_voxel(const VoxelDirection& direction) {
+std::int64_t travel_per_voxel(const QuantisedDirection& direction) {
   double square = 0;
   for (const std::int64_t speed : direction.speed) square += static_cast<double>(speed) * static_cast<double>(speed);
   const std::int64_t length = static_cast<std::int64_t>(std::sqrt(square)) + 2;

@@ -47,14 +47,14 @@ class VoxelWalk {
     }
     const int axis = first(out);
     const std::int64_t distance = out[axis], speed = speed_[axis];
+    const double slowness = ray_.direction.slowness[axis];
+    // Along each axis all planes with next + k 2^20 over its speed no later than distance over speed; those of a higher
+    // axis that would be crossed at once with the last one are crossed after it.
     for (int i = 0; i < 3; ++i) {
-      if (i == axis) continue;
-      // Planes with next + k 2^20 over speed_i before distance over speed; at once is before in the lower axis.
       const std::int64_t ahead = distance * speed_[i] - next_[i] * speed - (i > axis ? 1 : 0);
-      if (ahead < 0) continue;
-      advance(i, quotient(ahead >> kPlaceBits, axis) + 1);
+      const std::int64_t planes = quotient(ahead >> kPlaceBits, speed, slowness) + 1;
+      advance(i, ahead < 0 ? 0 : planes);
     }
-    advance(axis, (distance - next_[axis]) / kVoxelPlaces + 1);
     axis_ = axis;
     return in_box();
   }
@@ -112,13 +112,11 @@ class VoxelWalk {
   bool in_box() const { return voxel_[axis_] >= box_.low[axis_] && voxel_[axis_] < box_.high[axis_]; }
   double t() const { return axis_ < 0 ? ray_.t : ray_.t_at(axis_, next_[axis_] - kVoxelPlaces); }
 
-  // a / speed_[axis], rounded down, for 0 <= a < 2^53: by a product, corrected.
-  std::int64_t quotient(std::int64_t a, int axis) const {
-    auto q = static_cast<std::int64_t>(static_cast<double>(a) * ray_.direction.slowness[axis]);
-    const std::int64_t rest = a - q * speed_[axis];
-    if (rest < 0) --q;
-    if (rest >= speed_[axis]) ++q;
-    return q;
+  // a / speed, rounded down, for 0 <= a < 2^53: by a product, corrected.
+  static std::int64_t quotient(std::int64_t a, std::int64_t speed, double slowness) {
+    const auto q = static_cast<std::int64_t>(static_cast<double>(a) * slowness);
+    const std::int64_t rest = a - q * speed;
+    return q - (rest < 0 ? 1 : 0) + (rest >= speed ? 1 : 0);
   }
 
   const QuantisedRay& ray_;

@@ -53,9 +53,12 @@ class BoxTree {
   // With one level per split, at most 32 of them unbalanced and 32 in halves.
   static constexpr int kMaxDepth = 64;
 
+  // Four numbers in one register: the vectors of GCC and clang, whose operators work number by number.
+  using Four = float __attribute__((vector_size(16)));
+
   struct Node {
-    std::array<std::array<float, kWide>, 3> low, high;  // per axis; low above high where there is no child
-    std::array<std::uint32_t, kWide> child;             // a node, or kLeaf and an object
+    std::array<Four, 3> low, high;           // per axis; low above high where there is no child
+    std::array<std::uint32_t, kWide> child;  // a node, or kLeaf and an object
   };
   struct Builder;
 
@@ -82,7 +85,8 @@ void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
       if (ray.origin[axis] < low || ray.origin[axis] > high) return;
       continue;
     }
-    const double a = (low - ray.origin[axis]) / direction, b = (high - ray.origin[axis]) / direction;
+    const double inverse = 1 / direction, a = (low - ray.origin[axis]) * inverse,
+                 b = (high - ray.origin[axis]) * inverse;
     t_in = std::max(t_in, std::min(a, b));
     t_out = std::min(t_out, std::max(a, b));
   }
@@ -91,11 +95,15 @@ void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
   const dvec3 from = ray.origin + t_in * ray.direction - middle_;
 
   // From here on in float, the longest component of the direction being 1, t counting from the border.
-  std::array<float, 3> origin, inverse;
+  std::array<float, 3> origin, inwards, outwards;
+  std::array<bool, 3> down;
+  const double per_longest = 1 / longest;
   for (int axis = 0; axis < 3; ++axis) {
     origin[axis] = static_cast<float>(from[axis]);
-    const auto direction = static_cast<float>(ray.direction[axis] / longest);
-    inverse[axis] = std::abs(direction) * kSteepest < 1 ? std::copysign(kSteepest, direction) : 1 / direction;
+    const auto direction = static_cast<float>(ray.direction[axis] * per_longest);
+    inwards[axis] = std::abs(direction) * kSteepest < 1 ? std::copysign(kSteepest, direction) : 1 / direction;
+    outwards[axis] = inwards[axis] * kRounding;
+    down[axis] = std::signbit(direction);
   }
   const auto end_of = [&](double t) { return static_cast<float>((t - t_in) * longest) * kRounding; };
   float end = end_of(t_out);
@@ -115,22 +123,18 @@ void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
       continue;
     }
     const Node& node = nodes_[entry.child];
-    std::array<float, kWide> near{}, far;
-    far.fill(end);
+    Four near{}, far = near + end;
     for (int axis = 0; axis < 3; ++axis) {
-      const bool down = std::signbit(inverse[axis]);
-      const auto& in = down ? node.high[axis] : node.low[axis];
-      const auto& out = down ? node.low[axis] : node.high[axis];
-      for (int i = 0; i < kWide; ++i) {
-        const float a = (in[i] - origin[axis]) * inverse[axis], b = (out[i] - origin[axis]) * inverse[axis] * kRounding;
-        near[i] = near[i] > a ? near[i] : a;
-        far[i] = far[i] < b ? far[i] : b;
-      }
+      const Four in = ((down[axis] ? node.high : node.low)[axis] - origin[axis]) * inwards[axis];
+      const Four out = ((down[axis] ? node.low : node.high)[axis] - origin[axis]) * outwards[axis];
+      near = near > in ? near : in;
+      far = far < out ? far : out;
     }
+    const auto met = near <= far;
     // The nearest child is to be on top.
     const int first = size;
     for (int i = 0; i < kWide; ++i) {
-      if (!(near[i] <= far[i])) continue;
+      if (!met[i]) continue;
       int at = size++;
       for (; at > first && stack[at - 1].t < near[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {near[i], node.child[i]};
