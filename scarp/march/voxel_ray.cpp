@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/march/voxel_ray.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/base/error.h"
-
 namespace scarp {
 namespace {
-
-bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 VoxelFace face_of(int axis, int step) { return static_cast<VoxelFace>(2 * axis + (step < 0 ? 1 : 0)); }
 
@@ -22,16 +16,6 @@ int voxel_at(double place, int step) {
 }
 
 }  // namespace
-
-void validate(const VoxelRay& ray) {
-  if (!finite(ray.origin)) throw Error("ray: its origin is not finite");
-  if (!finite(ray.direction)) throw Error("ray: its direction is not finite");
-  if (ray.direction == dvec3(0.0)) throw Error("ray: its direction is zero");
-  if (!std::isfinite(ray.t_min) || std::isnan(ray.t_max) || ray.t_max < ray.t_min) {
-    throw Error(
-        fmt::format("ray: its range is {} to {}; t_min must be finite and t_max no less", ray.t_min, ray.t_max));
-  }
-}
 
 ivec3 normal_of(VoxelFace face) {
   ivec3 normal(0);

@@ -41,9 +41,6 @@ struct VoxelRay {
   std::optional<ivec3> start_voxel{};
 };
 
-/// Throws Error, in one line, when a ray cannot be followed.
-void validate(const VoxelRay& ray);
-
 /// The face by which a ray came into a voxel: 2 * axis + (1 where the ray goes towards lower coordinates).
 enum class VoxelFace : std::uint8_t { low_x, high_x, low_y, high_y, low_z, high_z, inside };
 
