@@ -165,6 +165,34 @@ TEST(ScarpBench, EditsWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, VoxelsWritesTheDocumentedFieldsAndMarchesAgree) {
+  const json all = output_of("voxels --sets standard,degenerate --thousands 1 --stride 64 --repeats 1");
+  expect_head(all);
+  std::map<std::string, double> hits;
+  for (const json& row : all["rows"]) {
+    if (row["table"] == "build") {
+      expect_fields(row, {"set", "builder", "us", "bytes"});
+      continue;
+    }
+    expect_fields(row, {"set", "objects", "march", "box", "ms_per_frame", "mrays_per_cpu_s", "steps_per_ray",
+                        "boxes_per_ray", "hit_share", "bytes_per_object", "bytes_per_object_lossless",
+                        "mib_per_1k_distinct", "mib_per_1k_lossless", "mib_per_1k_instanced", "scene_build_s"});
+    const double share = row["hit_share"];
+    EXPECT_EQ(hits.try_emplace(row["set"], share).first->second, share) << row["march"];
+  }
+  EXPECT_EQ(hits.size(), 2u);
+}
+
+TEST(ScarpBench, VoxelLeaksFindsNone) {
+  const json all = output_of("voxel-leaks --rays 50000 --judge-every 8");
+  expect_head(all);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"kind", "rays", "hits", "judged", "wrong"});
+    EXPECT_EQ(row["wrong"], 0);
+    EXPECT_GT(row["hits"], 1000);
+  }
+}
+
 TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   const auto fails = [](const std::string& arguments) {
     return std::system(fmt::format("'{}' {} > /dev/null 2>&1", SCARP_BENCH_PROGRAM, arguments).c_str()) != 0;

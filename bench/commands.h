@@ -77,4 +77,22 @@ struct ExtentsOptions {
 };
 void run_extents(const ExtentsOptions& options, const ReportOptions& report);
 
+/// `voxels`: the founding post's tables for the marches of voxel grids.
+struct VoxelsOptions {
+  std::vector<std::string> sets{"standard", "degenerate", "empty", "far-wall"};
+  std::vector<int> thousands{1, 4, 16};  ///< of objects, 1..16
+  int stride = 4;                        ///< one ray in stride x stride pixels of 1920 x 1080
+  int repeats = 3;
+  double pass_limit_s = 10;  ///< a slower technique traces part of the rays
+};
+void run_voxels(const VoxelsOptions& options, const ReportOptions& report);
+
+/// `voxel-leaks`: all voxel marches on very many rays.
+struct VoxelLeaksOptions {
+  std::int64_t rays = 10'000'000;
+  std::uint64_t seed = 1;
+  int judge_every = 64;  ///< one in so many is also answered by voxel-exhaustive
+};
+void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report);
+
 }  // namespace scarp::bench

@@ -159,13 +159,54 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*extents_command, report);
 
+  VoxelsOptions voxels;
+  CLI::App* voxels_command =
+      app.add_subcommand("voxels", "the founding post's tables: 1k to 16k objects of 32^3 voxels");
+  voxels_command->add_option("--sets", voxels.sets, "of objects")
+      ->delimiter(',')
+      ->check(CLI::IsMember(voxels.sets))
+      ->capture_default_str();
+  voxels_command->add_option("--thousands", voxels.thousands, "thousands of objects, one or several")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  voxels_command->add_option("--stride", voxels.stride, "one ray in N x N pixels of 1920 x 1080")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
+  voxels_command->add_option("--repeats", voxels.repeats, "counted passes")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  voxels_command
+      ->add_option("--pass-limit", voxels.pass_limit_s,
+                   "seconds; a technique that takes longer traces part of the rays")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  add_json_option(*voxels_command, report);
+
+  VoxelLeaksOptions voxel_leaks;
+  double voxel_leak_rays = static_cast<double>(voxel_leaks.rays);
+  CLI::App* voxel_leaks_command =
+      app.add_subcommand("voxel-leaks", "very many rays at voxel grids; fails when marches differ");
+  voxel_leaks_command->add_option("--rays", voxel_leak_rays, "in all")
+      ->check(CLI::Range(1.0, 1e15))
+      ->capture_default_str();
+  voxel_leaks_command->add_option("--seed", voxel_leaks.seed, "of grids and rays")->capture_default_str();
+  voxel_leaks_command
+      ->add_option("--judge-every", voxel_leaks.judge_every, "one in so many is also answered by voxel-exhaustive")
+      ->check(CLI::Range(1, 1 << 30))
+      ->capture_default_str();
+  add_json_option(*voxel_leaks_command, report);
+
   CLI11_PARSE(app, argc, argv);
+  voxel_leaks.rays = static_cast<std::int64_t>(voxel_leak_rays);
   leaks.rays = static_cast<std::int64_t>(leak_rays);
   leaks.embree_rays = static_cast<std::int64_t>(embree_rays);
   if (*heights_command) run_heights(heights, report);
   if (*naive_command) run_naive(naive, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
   if (*leaks_command) run_leaks(leaks, report);
+  if (*voxels_command) run_voxels(voxels, report);
+  if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*edits_command) run_edits(edits, report);
   if (*extents_command) {
     extents.sizes.clear();

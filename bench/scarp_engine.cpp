@@ -62,7 +62,7 @@ Engine ScarpGround::engine(const MarchEntry& march, const MarchSettings& setting
 
 std::vector<Engine> ScarpGround::engines() const {
   std::vector<Engine> engines;
-  for (const MarchEntry& march : marches()) {
+  for (const MarchEntry& march : height_marches()) {
     if (march.name == "exhaustive") continue;
     engines.push_back(engine(march));
     if (!march.cpu_occluded) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp info`: what is in a raster, as Scarp will use it.
+// `scarp info`: what is in a raster or a voxel model, as Scarp will use it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
+#include "app/cli/vox_input.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/scene/from_raster.h"
@@ -26,6 +27,7 @@ using Json = nlohmann::ordered_json;
 struct InfoOptions {
   std::vector<std::string> inputs;
   RasterOptions raster;
+  VoxSceneOptions vox;
   bool json = false;
 };
 
@@ -109,15 +111,19 @@ std::string text_of(const Json& info) {
 }  // namespace
 
 void add_info(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("info", "Say what is in a raster of heights, as scarp will use it");
+  CLI::App* command =
+      program.add_subcommand("info", "Say what is in a raster of heights or a voxel model, as scarp will use it");
   const auto options = std::make_shared<InfoOptions>();
   add_raster_inputs(*command, options->inputs);
   command->add_flag("--json", options->json, "one JSON object instead of text");
   add_raster_options(*command, options->raster);
+  add_vox_options(*command, options->vox);
   command->callback([options] {
-    const Json info = describe(*options);
+    const bool vox = is_vox_input(options->inputs);
+    const Json info = vox ? describe_vox(options->inputs.front(), options->vox) : describe(*options);
     // File names may hold any bytes; JSON may not.
-    fmt::print("{}", options->json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : text_of(info));
+    const auto json = [&] { return info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; };
+    fmt::print("{}", options->json ? json() : vox ? vox_text_of(info) : text_of(info));
   });
 }
 

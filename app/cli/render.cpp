@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp render`: an elevation model in, a picture out.
+// `scarp render`: an elevation model or a voxel model in, a picture out.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,12 +20,15 @@
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
+#include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/output/png.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/ramp.h"
+#include "scarp/render/voxel_picture.h"
 #include "scarp/scene/from_raster.h"
+#include "scarp/scene/from_vox.h"
 #include "scarp/source/read_raster.h"
 
 namespace scarp::cli {
@@ -37,7 +40,8 @@ struct RenderOptions {
   std::string output;
   RasterOptions raster;
   FieldOptions field;
-  std::string march = "max-mip";
+  VoxSceneOptions vox;
+  std::string march;  // empty: the fastest exact one
   MarchSettings march_settings;
   PictureSettings picture;
   std::string size, look = "shaded", sun, view, eye, target;
@@ -152,12 +156,37 @@ void print_findings(const Picture& picture) {
   }
 }
 
-void run(RenderOptions options) {
-  const ViewSettings view = settle(options);
-  const MarchEntry& march = find_march(options.march);
-  if (!options.eye.empty()) point_from(options.eye, "--eye");
-  if (!options.target.empty()) point_from(options.target, "--target");
-  const ThreadLimit limit(options.threads);
+void print_times(const RenderOptions& options, double read_s, double build_s, double render_s) {
+  fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s\n", options.output,
+             options.picture.width, options.picture.height, read_s, build_s, render_s);
+}
+
+void render_vox(RenderOptions options, const ViewSettings& view) {
+  if (options.exr) throw Error(fmt::format("output '{}': pictures of voxels are written as PNG", options.output));
+  const FromVoxOptions from{options.vox, options.march.empty() ? FromVoxOptions{}.march : options.march};
+  find_voxel_march(from.march);
+  // From over the default camera's shoulder: walls that face it are lit.
+  if (options.sun.empty()) options.picture.sun.azimuth_deg = 235;
+  ReplaceFile file(options.output);
+  Watch watch;
+  const VoxFile document = read_vox(options.inputs.front());
+  stop_if_interrupted();
+  const double read_s = watch.lap();
+  const VoxelScene scene = voxel_scene_from(document, from);
+  stop_if_interrupted();
+  const double build_s = watch.lap();
+  const Box box = picture_box(scene);
+  if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
+  const Camera camera = camera_of(options, view, box, 0);
+  const Picture picture = render_voxels(scene, camera, options.picture, terminal_progress("render"));
+  const double render_s = watch.lap();
+  write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  print_times(options, read_s, build_s, render_s);
+  print_findings(picture);
+}
+
+void render_terrain(RenderOptions options, const ViewSettings& view) {
+  const MarchEntry& march = find_march(options.march.empty() ? "max-mip" : options.march);
   // Reserved first: an unwritable place is found before the work and not after it.
   ReplaceFile file(options.output);
 
@@ -185,30 +214,38 @@ void run(RenderOptions options) {
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   const Camera camera = camera_of(options, view, box, grid_north_azimuth);
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
-  const auto print_times = [&](double render_s) {
-    fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s\n", options.output,
-               options.picture.width, options.picture.height, read_s, build_s, render_s);
-  };
   if (options.exr) {
     const PictureLayers layers =
         render_layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
     const double render_s = watch.lap();
     write_layers(file, options.output, layers, camera);
-    print_times(render_s);
+    print_times(options, read_s, build_s, render_s);
     return;
   }
   const Picture picture =
       render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
   const double render_s = watch.lap();
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
-  print_times(render_s);
+  print_times(options, read_s, build_s, render_s);
   print_findings(picture);
+}
+
+void run(RenderOptions options) {
+  const ViewSettings view = settle(options);
+  if (!options.eye.empty()) point_from(options.eye, "--eye");
+  if (!options.target.empty()) point_from(options.target, "--target");
+  const ThreadLimit limit(options.threads);
+  if (is_vox_input(options.inputs)) {
+    render_vox(std::move(options), view);
+  } else {
+    render_terrain(std::move(options), view);
+  }
 }
 
 }  // namespace
 
 void add_render(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("render", "Render an elevation model into a picture");
+  CLI::App* command = program.add_subcommand("render", "Render an elevation model or a voxel model into a picture");
   const auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
   add_raster_inputs(*command, o.inputs);
@@ -221,7 +258,9 @@ void add_render(CLI::App& program) {
   command->add_option("--ramp", o.picture.ramp,
                       fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
   add_field_options(*command, o.field);
-  command->add_option("--sun", o.sun, "AZIMUTH,ALTITUDE of the sun in degrees, compass and above the horizon (315,45)");
+  command->add_option(
+      "--sun", o.sun,
+      "AZIMUTH,ALTITUDE of the sun in degrees, compass and above the horizon (315,45; of voxels 235,45)");
   command->add_flag("--no-shadows", o.no_shadows, "hill shade only: the sun shines through the ground");
   command
       ->add_option(
@@ -274,11 +313,11 @@ void add_render(CLI::App& program) {
       ->excludes(fov);
   view->excludes(eye);
 
-  command->add_option("--march", o.march, "technique, see 'scarp marches'")
-      ->group("Settings of marches")
-      ->capture_default_str();
+  command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks)")
+      ->group("Settings of marches");
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);
+  add_vox_options(*command, o.vox);
   command->callback([options] { run(*options); });
 }
 

@@ -34,7 +34,7 @@ class Replay {
       : dump_(dump), pyramid_(dump.field), target_{&dump.field, &pyramid_, slope_bound(dump.field)} {
     lines_.push_back({"march", "guarantee", "status", "t", "cell", "u", "v", "clearance", "any", "hits", ""});
     judge_ = march_exhaustive(target_, dump.ray);
-    for (const MarchEntry& march : marches()) add(march);
+    for (const MarchEntry& march : height_marches()) add(march);
   }
 
   bool agrees() const { return agrees_; }

@@ -15,14 +15,15 @@ namespace {
 
 using Key = std::uint32_t;
 
-Key key_of(float sample) { return glsl::float_key(std::bit_cast<std::uint32_t>(sample)); }
 constexpr float kHighest = std::numeric_limits<float>::max();
+
+Key key_of(float sample) { return glsl::float_key(std::bit_cast<std::uint32_t>(sample)); }
+float sample_of(Key key) { return std::bit_cast<float>(glsl::float_bits(key)); }
 
 // Of a float about as high as a place on the scale of codes.
 Key key_near(const HeightCode& code, double place) {
   return key_of(static_cast<float>(std::clamp(code.base + code.step * place, -double{kHighest}, double{kHighest})));
 }
-float sample_of(Key key) { return std::bit_cast<float>(glsl::float_bits(key)); }
 
 // The greatest key in [low, high] for which `holds`, which is true for all keys up to one and for none beyond; low must
 // be such a key. Looks near `guess` first, at steps that double.

@@ -27,18 +27,26 @@ uint key_of(uint type, uint bits) {
   return type == kGroundInt16 ? bits ^ 0x8000u : bits;
 }
 
-void add_cell(Ground ground, uint col, uint row, inout Extremes extremes) {
-  uint east = ground_east(ground, col), south = ground_south(ground, row);
-  uvec4 bits = uvec4(ground_sample_bits(ground, col, row), ground_sample_bits(ground, east, row),
-                     ground_sample_bits(ground, col, south), ground_sample_bits(ground, east, south));
-  if (ground.is.has_holes != 0u && any(equal(bits, uvec4(ground.is.hole)))) {
+// Three samples of a row as keys.
+uvec3 keys_of_row(GroundWords samples, uint type, uint begin, uvec3 col) {
+  if (type == kGroundFloat32) {
+    return uvec3(key_of(type, samples.words[begin + col.x]), key_of(type, samples.words[begin + col.y]),
+                 key_of(type, samples.words[begin + col.z]));
+  }
+  uvec3 words = uvec3(samples.words[begin + (col.x >> 1)], samples.words[begin + (col.y >> 1)],
+                      samples.words[begin + (col.z >> 1)]);
+  uvec3 bits = words >> ((col & 1u) * 16u) & 0xffffu;
+  return uvec3(key_of(type, bits.x), key_of(type, bits.y), key_of(type, bits.z));
+}
+
+void add_cell(uvec2 north, uvec2 south, uint hole, inout Extremes extremes) {
+  if (any(equal(north, uvec2(hole))) || any(equal(south, uvec2(hole)))) {
     extremes.lowest = 0u;
     return;
   }
-  uint type = ground.is.sample_type;
-  uvec4 keys = uvec4(key_of(type, bits.x), key_of(type, bits.y), key_of(type, bits.z), key_of(type, bits.w));
-  extremes.highest = max(extremes.highest, max(max(keys.x, keys.y), max(keys.z, keys.w)));
-  extremes.lowest = min(extremes.lowest, min(min(keys.x, keys.y), min(keys.z, keys.w)));
+  uvec2 high = max(north, south), low = min(north, south);
+  extremes.highest = max(extremes.highest, max(high.x, high.y));
+  extremes.lowest = min(extremes.lowest, min(low.x, low.y));
 }
 
 uint ceiling(uint code) { return GroundWords(push.codes).words[code]; }
@@ -56,6 +64,7 @@ uint code_above(Ground ground, uint key) {
   if (key <= ceiling(guess)) {
     if (guess == 0u || key > ceiling(guess - 1u)) return guess;
     high = guess - 1u;
+    if (high == 0u || key > ceiling(high - 1u)) return high;
   } else {
     low = guess + 1u;
     if (key <= ceiling(low)) return low;
@@ -77,6 +86,7 @@ uint code_below(Ground ground, uint key) {
   if (key >= floor_of(guess)) {
     if (guess == high || key < floor_of(guess + 1u)) return guess;
     low = guess + 1u;
+    if (low == high || key < floor_of(low + 1u)) return low;
   } else {
     high = guess - 1u;
     if (key >= floor_of(high)) return high;
@@ -92,14 +102,29 @@ uint code_below(Ground ground, uint key) {
   return low;
 }
 
-// Level 1: two cells by two, fewer at an odd end.
+// Level 1: two cells by two, of three samples by three; fewer at an odd end, where the last two samples are the same.
 uint entry_from_samples(Ground ground, uvec2 at) {
+  uvec2 first = 2u * at;
+  bool wide = first.x + 1u < ground.is.cell_cols, high = first.y + 1u < ground.is.cell_rows;
+  uint east = ground_east(ground, first.x), south = ground_south(ground, first.y);
+  uvec3 cols = uvec3(first.x, east, wide ? ground_east(ground, east) : east);
+  uvec3 rows = uvec3(first.y, south, high ? ground_south(ground, south) : south) * ground.is.sample_words;
+  GroundWords samples = GroundWords(ground.is.samples);
+  uint type = ground.is.sample_type;
+  uvec3 a = keys_of_row(samples, type, rows.x, cols), b = keys_of_row(samples, type, rows.y, cols),
+        c = keys_of_row(samples, type, rows.z, cols);
   Extremes extremes = Extremes(0u, 0xffffffffu);
-  uvec2 end = min(2u * at + 2u, uvec2(ground.is.cell_cols, ground.is.cell_rows));
-  for (uint row = 2u * at.y; row < end.y; ++row) {
-    for (uint col = 2u * at.x; col < end.x; ++col) add_cell(ground, col, row, extremes);
+  if (ground.is.has_holes == 0u) {
+    uvec3 most = max(max(a, b), c), least = min(min(a, b), c);
+    extremes = Extremes(max(max(most.x, most.y), most.z), min(min(least.x, least.y), least.z));
+  } else {
+    uint hole = key_of(type, ground.is.hole);
+    add_cell(a.xy, b.xy, hole, extremes);
+    if (wide) add_cell(a.yz, b.yz, hole, extremes);
+    if (high) add_cell(b.xy, c.xy, hole, extremes);
+    if (wide && high) add_cell(b.yz, c.yz, hole, extremes);
   }
-  if (ground.is.sample_type == kGroundFloat32) {
+  if (type == kGroundFloat32) {
     extremes.highest = code_above(ground, extremes.highest);
     extremes.lowest = code_below(ground, extremes.lowest);
   }

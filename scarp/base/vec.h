@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Vectors: GLM's, in double, under the names that GLSL gives them.
+// Vectors: GLM's, in double, and whole numbers for voxels, under the names that GLSL gives them.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -15,6 +15,7 @@ using glm::normalize;
 
 using dvec2 = glm::dvec2;
 using dvec3 = glm::dvec3;
+using ivec3 = glm::ivec3;
 using vec3 = glm::vec3;
 
 }  // namespace scarp

@@ -14,9 +14,21 @@
 #include "scarp/march/max_mip.h"
 #include "scarp/march/naive.h"
 #include "scarp/march/relaxed.h"
+#include "scarp/march/voxel_bricks.h"
+#include "scarp/march/voxel_cubes.h"
+#include "scarp/march/voxel_exhaustive.h"
+#include "scarp/march/voxel_octants.h"
+#include "scarp/march/voxel_planes.h"
+#include "scarp/march/voxel_spheres.h"
 
 namespace scarp {
 namespace {
+
+constexpr MarchEntry voxel_march(std::string_view name, VoxelAccelerator needs, VoxelMarch cpu, VoxelOcclusion occluded,
+                                 std::string_view description) {
+  return {name,  "voxel grid", Guarantee::exact, false, false,    nullptr, nullptr, nullptr,
+          false, "",           description,      cpu,   occluded, needs};
+}
 
 constexpr std::array kMarches = {
     MarchEntry{"exhaustive", "height field", Guarantee::exact, false, false, march_exhaustive, nullptr, nullptr, false,
@@ -38,13 +50,40 @@ constexpr std::array kMarches = {
     MarchEntry{"max-mip-bisect", "height field", Guarantee::approximate, true, false, march_max_mip_bisect, nullptr,
                nullptr, false, "16 halvings",
                "the same walk with the paper's binary search in the cell; passes rays that dip into a cell"},
+    voxel_march("voxel-exhaustive", VoxelAccelerator::none, march_voxel_exhaustive, nullptr,
+                "every solid voxel on its own, in rationals: the judge of the voxel marches, slow"),
+    voxel_march("voxel-planes", VoxelAccelerator::none, march_voxel_planes, occluded_voxel_planes,
+                "from plane to plane, voxel by voxel"),
+    voxel_march("voxel-spheres", VoxelAccelerator::spheres, march_voxel_spheres, occluded_voxel_spheres,
+                "over the empty sphere around each voxel"),
+    voxel_march("voxel-cubes", VoxelAccelerator::cubes, march_voxel_cubes, occluded_voxel_cubes,
+                "out of the largest empty cube around each voxel"),
+    voxel_march("voxel-octants", VoxelAccelerator::octants, march_voxel_octants, occluded_voxel_octants,
+                "out of the largest empty cube ahead of each voxel, one for each octant of directions"),
+    voxel_march("voxel-bricks", VoxelAccelerator::bricks, march_voxel_bricks, occluded_voxel_bricks,
+                "out of empty blocks of 2 to 16 voxels, told by bit masks; the smallest memory"),
 };
+
+constexpr std::size_t kHeightMarches = [] {
+  std::size_t count = 0;
+  while (kMarches[count].fields == "height field") ++count;
+  return count;
+}();
 
 void require(bool good, std::string_view name, double value, std::string_view range) {
   if (!good) throw Error(fmt::format("march setting {}: is {}; it must be {}", name, value, range));
 }
 
 bool positive(double x) { return std::isfinite(x) && x > 0; }
+
+const MarchEntry& find_in(std::span<const MarchEntry> entries, std::string_view name) {
+  std::string names;
+  for (const MarchEntry& entry : entries) {
+    if (entry.name == name) return entry;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
+  }
+  throw Error(fmt::format("march '{}': unknown; there are: {}", name, names));
+}
 
 }  // namespace
 
@@ -84,14 +123,10 @@ void validate(const MarchSettings& settings) {
 }
 
 std::span<const MarchEntry> marches() { return kMarches; }
+std::span<const MarchEntry> height_marches() { return marches().first(kHeightMarches); }
+std::span<const MarchEntry> voxel_marches() { return marches().subspan(kHeightMarches); }
 
-const MarchEntry& find_march(std::string_view name) {
-  std::string names;
-  for (const MarchEntry& entry : kMarches) {
-    if (entry.name == name) return entry;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
-  }
-  throw Error(fmt::format("march '{}': unknown; there are: {}", name, names));
-}
+const MarchEntry& find_march(std::string_view name) { return find_in(height_marches(), name); }
+const MarchEntry& find_voxel_march(std::string_view name) { return find_in(voxel_marches(), name); }
 
 }  // namespace scarp

@@ -10,6 +10,7 @@
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/ray.h"
 #include "scarp/field/height_field.h"
+#include "scarp/march/voxel_target.h"
 
 namespace scarp {
 
@@ -82,6 +83,9 @@ using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const Ma
 /// Whether the closest hit is a hit, without computing where.
 using HeightOcclusion = bool (*)(const HeightTarget& target, const Ray& ray);
 
+/// What a voxel march needs of VoxelTarget besides the grid.
+enum class VoxelAccelerator { none, spheres, cubes, octants, bricks };
+
 /// A row of the table.
 struct MarchEntry {
   std::string_view name;    ///< as typed: "max-mip"
@@ -89,17 +93,27 @@ struct MarchEntry {
   Guarantee guarantee;
   bool needs_pyramid;
   bool needs_slope;              ///< whether it asks for HeightTarget::slope
-  HeightMarch cpu;               ///< scalar C++
+  HeightMarch cpu;               ///< scalar C++; null: takes no height fields
   HeightOcclusion cpu_occluded;  ///< null: none of its own, ask cpu
   HeightMarch simd;              ///< null: none
   bool gpu;                      ///< whether a Vulkan realisation exists
   std::string_view parameters;   ///< its settings with their defaults, for people
   std::string_view description;  ///< one line
+  // Those of voxel grids, which have none of the height fields' functions above.
+  VoxelMarch voxel_cpu = nullptr;  ///< scalar C++
+  VoxelOcclusion voxel_cpu_occluded = nullptr;
+  VoxelAccelerator voxel_accelerator = VoxelAccelerator::none;
 };
 
-/// All of them, the oracle first.
+/// The whole table: height fields, then voxel grids.
 std::span<const MarchEntry> marches();
-/// Throws Error listing the names when there is no such march.
+/// The part of it that takes height fields, the oracle first.
+std::span<const MarchEntry> height_marches();
+/// The part that takes voxel grids, the oracle first.
+std::span<const MarchEntry> voxel_marches();
+/// Of height_marches(). Throws Error listing their names when there is no such march.
 const MarchEntry& find_march(std::string_view name);
+/// Of voxel_marches(), likewise.
+const MarchEntry& find_voxel_march(std::string_view name);
 
 }  // namespace scarp

@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
-#include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/render/ramp.h"
 #include "scarp/render/shader.h"
+#include "scarp/render/step_look.h"
 
 namespace scarp {
 namespace {
@@ -45,26 +44,13 @@ Image render_height(const TerrainScene& scene, const Camera& camera, const Pictu
 
 Picture render_steps(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings,
                      const Progress& progress) {
-  const auto width = static_cast<std::size_t>(settings.width);
-  std::vector<std::uint32_t> steps(width * static_cast<std::size_t>(settings.height));
   const std::optional<Plinth> plinth = plinth_of(scene.field(), settings);
-  for_each_pixel(
-      settings.width, settings.height,
-      [&](int x, int y) {
-        MarchStats stats;
-        look(scene, plinth, camera.ray(x + 0.5, y + 0.5), &stats);
-        steps[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = stats.steps;
-      },
-      progress);
-  const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
-  const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
-  Picture picture{
-      Image(settings.width, settings.height), StepRange{*least, *most, sum / static_cast<double>(steps.size())}, {}};
-  const Ramp ramp(ramp_of(settings), *least, *most);
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    set_pixel(picture.image, static_cast<int>(i % width), static_cast<int>(i / width), ramp(steps[i]));
-  }
-  return picture;
+  const auto steps_of = [&](int x, int y) {
+    MarchStats stats;
+    look(scene, plinth, camera.ray(x + 0.5, y + 0.5), &stats);
+    return stats.steps;
+  };
+  return picture_of_steps(settings, steps_of, progress);
 }
 
 }  // namespace

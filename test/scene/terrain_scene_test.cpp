@@ -26,7 +26,7 @@ TEST(TerrainScene, OccludedIsWhetherThereIsAHitWithEveryMarch) {
   const HeightField field = waves(40);
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> place(-5, 45), height(-6, 8), way(-1, 1);
-  for (const MarchEntry& march : marches()) {
+  for (const MarchEntry& march : height_marches()) {
     const TerrainScene scene(field, march);
     int hits = 0;
     for (int i = 0; i < 2000; ++i) {

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// `scarp-bench voxel-leaks`: very many rays at voxel grids. All marches have to give the same voxel, face and t, and
+// one ray in some is answered by the judge, too.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <vector>
+
+#include "bench/commands.h"
+#include "bench/random.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/scene/voxel_model.h"
+
+namespace scarp::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::int64_t kRaysPerGrid = 4096;
+constexpr int kRayKinds = 6;
+constexpr std::array<const char*, kRayKinds> kRayNames = {
+    "anyhow",         "through corners",      "lattice directions",
+    "along the axes", "nearly along a plane", "from 10^7 voxels away"};
+
+VoxelGrid random_grid(Random& random) {
+  constexpr std::array<double, 4> kShares = {0.005, 0.05, 0.4, 0.9};
+  const double share = kShares[static_cast<std::size_t>(random.below(4))];
+  VoxelGrid grid(ivec3(1 + random.below(32), 1 + random.below(32), 1 + random.below(32)), 8);
+  grid.edit(grid.box(), [&](const ivec3&, const VoxelGrid::Voxel&) {
+    return random.uniform() < share ? VoxelGrid::Voxel(1 + static_cast<std::uint32_t>(random.below(255)))
+                                    : VoxelGrid::Voxel();
+  });
+  return grid;
+}
+
+VoxelRay random_ray(const VoxelGrid& grid, int kind, Random& random) {
+  dvec3 place, direction;
+  for (int axis = 0; axis < 3; ++axis) {
+    place[axis] = random.uniform() * grid.size()[axis];
+    direction[axis] = random.uniform(-1, 1);
+  }
+  double before = random.uniform(0, 60);
+  const int axis = random.below(3);
+  switch (kind) {
+    case 1:
+      place = dvec3(std::round(place.x), std::round(place.y), std::round(place.z));
+      break;
+    case 2:
+      place = dvec3(std::round(place.x), std::round(place.y), std::round(place.z));
+      for (int i = 0; i < 3; ++i) direction[i] = random.below(5) - 2;
+      before = random.below(60);
+      break;
+    case 3:
+      direction = dvec3(0.0);
+      direction[axis] = random.below(2) ? 1 : -1;
+      if (random.below(2)) place[random.below(3)] = random.below(33);
+      break;
+    case 4:
+      direction[axis] = std::ldexp(random.uniform(-1, 1), -20 - random.below(20));
+      place[axis] = std::round(place[axis]) + std::ldexp(random.uniform(-1, 1), -15 - random.below(30));
+      break;
+    case 5:
+      before = 1e7;
+      break;
+    default:
+      break;
+  }
+  if (dot(direction, direction) == 0) direction = {1, 1, 1};
+  VoxelRay ray;
+  ray.origin = place - before * direction;
+  ray.direction = direction;
+  return ray;
+}
+
+struct Counts {
+  std::int64_t rays = 0, hits = 0, judged = 0, wrong = 0;
+};
+
+}  // namespace
+
+void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report) {
+  const auto exact = voxel_marches().subspan(1);
+  std::array<Counts, kRayKinds> total;
+  std::string first_wrong;
+  std::mutex mutex;
+  const std::int64_t grids = (options.rays + kRaysPerGrid - 1) / kRaysPerGrid;
+  parallel_for(grids, 4, [&](std::int64_t begin, std::int64_t end) {
+    std::array<Counts, kRayKinds> counts;
+    for (std::int64_t index = begin; index < end; ++index) {
+      Random random(options.seed, static_cast<std::uint64_t>(index));
+      const VoxelGrid grid = random_grid(random);
+      std::vector<VoxelModel> models;
+      for (const MarchEntry& march : exact) models.emplace_back(grid, march);
+      for (std::int64_t i = 0; i < kRaysPerGrid; ++i) {
+        const int kind = static_cast<int>(i % kRayKinds);
+        Counts& count = counts[static_cast<std::size_t>(kind)];
+        const VoxelRay ray = random_ray(grid, kind, random);
+        ++count.rays;
+        if (grid.bounds().empty()) continue;
+        const auto quantised = quantise(ray, grid.bounds());
+        if (!quantised) continue;
+        const VoxelHit hit = exact[0].voxel_cpu(models[0].target(), *quantised, nullptr);
+        count.hits += hit ? 1 : 0;
+        bool right = true;
+        for (std::size_t m = 1; m < exact.size(); ++m)
+          right = right && exact[m].voxel_cpu(models[m].target(), *quantised, nullptr) == hit;
+        if (random.below(options.judge_every) == 0) {
+          ++count.judged;
+          right = right && voxel_marches()[0].voxel_cpu(models[0].target(), *quantised, nullptr) == hit;
+        }
+        if (right) continue;
+        ++count.wrong;
+        const std::lock_guard lock(mutex);
+        if (first_wrong.empty())
+          first_wrong = fmt::format("grid {}, ray {} ({})", index, i, kRayNames[static_cast<std::size_t>(kind)]);
+      }
+    }
+    const std::lock_guard lock(mutex);
+    for (std::size_t i = 0; i < total.size(); ++i) {
+      total[i].rays += counts[i].rays;
+      total[i].hits += counts[i].hits;
+      total[i].judged += counts[i].judged;
+      total[i].wrong += counts[i].wrong;
+    }
+  });
+
+  Json rows = Json::array();
+  std::vector<std::vector<std::string>> lines{{"rays", "count", "hits", "judged", "wrong"}};
+  std::int64_t wrong = 0;
+  for (std::size_t i = 0; i < total.size(); ++i) {
+    const Counts& c = total[i];
+    wrong += c.wrong;
+    rows.push_back(
+        {{"kind", kRayNames[i]}, {"rays", c.rays}, {"hits", c.hits}, {"judged", c.judged}, {"wrong", c.wrong}});
+    lines.push_back(
+        {kRayNames[i], short_number(c.rays), short_number(c.hits), short_number(c.judged), short_number(c.wrong)});
+  }
+  print_table(lines, 1);
+  write_json(report, rows);
+  if (wrong > 0)
+    throw Error(fmt::format("voxel-leaks: {} rays were answered differently; the first: {}", wrong, first_wrong));
+}
+
+}  // namespace scarp::bench

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// The objects and the camera of C. Leak, "Raymarching voxel rendering": 32 x n x 32 objects of 32^3 voxels, side by
+// side.
+//
+// Space is the post's: y up, the eye at (-16, 0, -16) looking along (1, 0, 1), 45 degrees high and 16 : 9; a voxel has
+// the side 0.25, an object 8. Rays and objects know no up, so nothing has to be turned.
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scarp/scene/voxel_scene.h"
+
+namespace scarp::bench {
+
+/// standard: a ball of radius 15.5, each voxel with a colour of its own. degenerate: one voxel, in the far corner.
+/// empty: none. far-wall: a layer at the end of z.
+inline constexpr std::array<std::string_view, 4> kVoxelSets = {"standard", "degenerate", "empty", "far-wall"};
+
+constexpr int kObjectSide = 32;
+
+/// One object of a set, entries in RGB.
+VoxelGrid voxel_object(std::string_view set);
+
+/// 1,024 n places for model 0.
+std::vector<VoxelPlace> object_places(int n);
+
+/// Rays through the middles of every `stride`-th pixel of a picture of 1920 x 1080, row by row.
+std::vector<Ray> camera_rays(int stride);
+
+}  // namespace scarp::bench

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/accel/empty_cubes.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "scarp/accel/voxel_rows.h"
+
+namespace scarp {
+namespace {
+
+// Above this number of voxels counting each of them once per round takes longer than two passes.
+constexpr std::size_t kBitParallelVoxels = std::size_t{1} << 18;
+
+// Eight bytes, 1 where the bit is 0.
+constexpr std::array<std::uint64_t, 256> make_zeros() {
+  std::array<std::uint64_t, 256> zeros{};
+  for (unsigned bits = 0; bits < 256; ++bits) {
+    for (unsigned i = 0; i < 8; ++i) zeros[bits] |= std::uint64_t{~bits >> i & 1} << (8 * i);
+  }
+  return zeros;
+}
+constexpr std::array<std::uint64_t, 256> kZeros = make_zeros();
+
+std::uint8_t one_more(std::uint8_t distance) {
+  return static_cast<std::uint8_t>(distance + (distance < EmptyCubes::kFarthest ? 1 : 0));
+}
+
+// The distances of a region and of the voxels around it, x fastest, so that each voxel of the region has 26 neighbours.
+struct Padded {
+  ivec3 size;
+  std::vector<std::uint8_t> bytes;
+
+  explicit Padded(const ivec3& inner)
+      : size(inner + 2),
+        bytes(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z),
+              EmptyCubes::kFarthest) {}
+  std::uint8_t* row(int y, int z) {
+    return bytes.data() +
+           static_cast<std::size_t>(size.x) *
+               (static_cast<std::size_t>(y) + static_cast<std::size_t>(size.y) * static_cast<std::size_t>(z));
+  }
+  // The least of a row's neighbours in four rows that have been done, and of itself.
+  void relax(int y, int z, const std::array<const std::uint8_t*, 4>& done, std::vector<std::uint8_t>& least) {
+    std::uint8_t* const here = row(y, z);
+    for (int x = 0; x < size.x; ++x)
+      least[x] = std::min(std::min(done[0][x], done[1][x]), std::min(done[2][x], done[3][x]));
+    for (int x = 1; x < size.x - 1; ++x)
+      here[x] = std::min(here[x], one_more(std::min(std::min(least[x - 1], least[x]), least[x + 1])));
+  }
+};
+
+}  // namespace
+
+EmptyCubes::EmptyCubes(const VoxelGrid& grid, CubeBuilder builder)
+    : distances_(glm::min(grid.size(), kMaxAcceleratedSide), 1, kFarthest) {
+  require_accelerable(grid, "empty cubes");
+  const bool small = distances_.bytes() <= kBitParallelVoxels;
+  if (builder == CubeBuilder::summed_area) {
+    summed_area(grid);
+  } else if (builder == CubeBuilder::bit_parallel || (builder == CubeBuilder::fastest && small)) {
+    bit_parallel(grid);
+  } else {
+    two_pass(grid, grid.box());
+  }
+}
+
+void EmptyCubes::update(const VoxelGrid& grid, const VoxelBox& changed) {
+  if (changed.empty()) return;
+  // A voxel changes where its nearest solid one was in the box, or is there now and nearer than before: no farther than
+  // its distance before the edit. A box whose surroundings are all nearer to something else than to it bounds that.
+  int reach = 1;
+  for (;; reach *= 2) {
+    const VoxelBox region = intersection(changed.grown(reach), grid.box());
+    if (region == grid.box() || reach >= kFarthest) break;
+    // The outermost voxels of the region: none of them may be as far from solid ones as from the edit.
+    bool nearer = true;
+    for (int axis = 0; axis < 3 && nearer; ++axis) {
+      for (const bool up : {false, true}) {
+        VoxelBox side = region;
+        (up ? side.low : side.high)[axis] = up ? region.high[axis] - 1 : region.low[axis] + 1;
+        const int away = up ? side.low[axis] - (changed.high[axis] - 1) : changed.low[axis] - side.low[axis];
+        // On the grid's own border nothing lies beyond.
+        if (up ? region.high[axis] == grid.size()[axis] : region.low[axis] == 0) continue;
+        for_each_voxel(side, [&](const ivec3& v) { nearer = nearer && distances_[v] < away; });
+      }
+    }
+    if (nearer) break;
+  }
+  two_pass(grid, intersection(changed.grown(std::min(reach, kFarthest)), grid.box()));
+}
+
+void EmptyCubes::two_pass(const VoxelGrid& grid, const VoxelBox& region) {
+  const ivec3 inner = region.high - region.low;
+  Padded work(inner);
+  const VoxelBox seen = intersection(region.grown(1), grid.box());
+  for_each_voxel(seen, [&](const ivec3& v) {
+    const ivec3 at = v - region.low + 1;
+    work.row(at.y, at.z)[at.x] = !region.contains(v) ? distances_[v]
+                                 : grid.solid(v)     ? std::uint8_t{0}
+                                                     : std::uint8_t{kFarthest};
+  });
+  std::vector<std::uint8_t> least(static_cast<std::size_t>(work.size.x));
+  for (int z = 1; z <= inner.z; ++z) {
+    for (int y = 1; y <= inner.y; ++y) {
+      work.relax(y, z, {work.row(y - 1, z), work.row(y - 1, z - 1), work.row(y, z - 1), work.row(y + 1, z - 1)}, least);
+      std::uint8_t* const row = work.row(y, z);
+      for (int x = 1; x <= inner.x; ++x) row[x] = std::min(row[x], one_more(row[x - 1]));
+    }
+  }
+  for (int z = inner.z; z >= 1; --z) {
+    for (int y = inner.y; y >= 1; --y) {
+      work.relax(y, z, {work.row(y + 1, z), work.row(y - 1, z + 1), work.row(y, z + 1), work.row(y + 1, z + 1)}, least);
+      std::uint8_t* const row = work.row(y, z);
+      for (int x = inner.x; x >= 1; --x) row[x] = std::min(row[x], one_more(row[x + 1]));
+      std::memcpy(distances_.at(region.low + ivec3(0, y - 1, z - 1)), row + 1, static_cast<std::size_t>(inner.x));
+    }
+  }
+}
+
+void EmptyCubes::bit_parallel(const VoxelGrid& grid) {
+  VoxelRows rows(grid);
+  const ivec3& size = grid.size();
+  const std::size_t groups = (static_cast<std::size_t>(size.x) + 7) / 8;
+  // Eight counters to a word, each row begins a new one.
+  std::vector<std::uint64_t> counters(groups * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
+  for (int round = 0; round < kFarthest && !rows.full(); ++round) {
+    if (round > 0 && grid.solid_count() > 0) rows.dilate();
+    std::uint64_t* counter = counters.data();
+    for (std::size_t begin = 0; begin < rows.words.size(); begin += rows.words_per_row) {
+      for (std::size_t i = 0; i < groups; ++i) *counter++ += kZeros[rows.words[begin + i / 8] >> (8 * (i % 8)) & 255];
+    }
+  }
+  const std::uint64_t* counter = counters.data();
+  for (int z = 0; z < size.z; ++z) {
+    for (int y = 0; y < size.y; ++y, counter += groups)
+      std::memcpy(distances_.at({0, y, z}), counter, static_cast<std::size_t>(size.x));
+  }
+}
+
+void EmptyCubes::summed_area(const VoxelGrid& grid) {
+  const ivec3 size = grid.size(), corners = size + 1;
+  std::vector<std::int64_t> sums(static_cast<std::size_t>(corners.x) * static_cast<std::size_t>(corners.y) *
+                                 static_cast<std::size_t>(corners.z));
+  const auto sum = [&](int x, int y, int z) -> std::int64_t& {
+    return sums[static_cast<std::size_t>(x) +
+                static_cast<std::size_t>(corners.x) *
+                    (static_cast<std::size_t>(y) + static_cast<std::size_t>(corners.y) * static_cast<std::size_t>(z))];
+  };
+  for_each_voxel(grid.box(), [&](const ivec3& v) {
+    const auto [x, y, z] = std::array{v.x, v.y, v.z};
+    sum(x + 1, y + 1, z + 1) = grid.solid(v) + sum(x, y + 1, z + 1) + sum(x + 1, y, z + 1) + sum(x + 1, y + 1, z) -
+                               sum(x, y, z + 1) - sum(x, y + 1, z) - sum(x + 1, y, z) + sum(x, y, z);
+  });
+  const auto solid_in = [&](const VoxelBox& box) {
+    const VoxelBox b = intersection(box, grid.box());
+    return sum(b.high.x, b.high.y, b.high.z) - sum(b.low.x, b.high.y, b.high.z) - sum(b.high.x, b.low.y, b.high.z) -
+           sum(b.high.x, b.high.y, b.low.z) + sum(b.low.x, b.low.y, b.high.z) + sum(b.low.x, b.high.y, b.low.z) +
+           sum(b.high.x, b.low.y, b.low.z) - sum(b.low.x, b.low.y, b.low.z);
+  };
+  for_each_voxel(grid.box(), [&](const ivec3& v) {
+    // The least radius whose cube is not empty.
+    int empty = -1, full = kFarthest;
+    while (full - empty > 1) {
+      const int radius = (empty + full) / 2;
+      (solid_in(VoxelBox{v, v + 1}.grown(radius)) == 0 ? empty : full) = radius;
+    }
+    distances_[v] = static_cast<std::uint8_t>(full);
+  });
+}
+
+}  // namespace scarp

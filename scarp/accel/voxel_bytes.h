@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// A byte per voxel, or several: what accelerators of voxel grids store.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "scarp/field/voxel_grid.h"
+
+namespace scarp {
+
+/// Accelerators with bytes per voxel are built for grids up to this side.
+constexpr int kMaxAcceleratedSide = 512;
+
+/// Throws Error naming `what` when the grid is larger.
+void require_accelerable(const VoxelGrid& grid, std::string_view what);
+
+/// x fastest. `per_voxel` bytes stand together.
+class VoxelBytes {
+ public:
+  VoxelBytes(const ivec3& size, int per_voxel, std::uint8_t value)
+      : size_(size),
+        per_voxel_(per_voxel),
+        bytes_(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z) *
+                   static_cast<std::size_t>(per_voxel),
+               value) {}
+
+  std::size_t index(const ivec3& voxel) const {
+    return (static_cast<std::size_t>(voxel.x) +
+            static_cast<std::size_t>(size_.x) *
+                (static_cast<std::size_t>(voxel.y) +
+                 static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(voxel.z))) *
+           static_cast<std::size_t>(per_voxel_);
+  }
+  std::uint8_t operator[](const ivec3& voxel) const { return bytes_[index(voxel)]; }
+  std::uint8_t& operator[](const ivec3& voxel) { return bytes_[index(voxel)]; }
+  const std::uint8_t* at(const ivec3& voxel) const { return bytes_.data() + index(voxel); }
+  std::uint8_t* at(const ivec3& voxel) { return bytes_.data() + index(voxel); }
+
+  const ivec3& size() const { return size_; }
+  VoxelBox box() const { return {ivec3(0), size_}; }
+  std::size_t bytes() const { return bytes_.size(); }
+  friend bool operator==(const VoxelBytes&, const VoxelBytes&) = default;
+
+ private:
+  ivec3 size_;
+  int per_voxel_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace scarp

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/field/voxel_grid.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+constexpr int kVoxelsPerBrick = 64;
+
+// Bits of a mask below `bit`.
+constexpr std::uint64_t below(int bit) { return (std::uint64_t{1} << bit) - 1; }
+
+std::uint32_t packed(const std::vector<std::uint64_t>& words, std::size_t place, int bits) {
+  const std::size_t first = place * static_cast<std::size_t>(bits), word = first / 64, shift = first % 64;
+  std::uint64_t value = words[word] >> shift;
+  if (shift + static_cast<std::size_t>(bits) > 64) value |= words[word + 1] << (64 - shift);
+  return static_cast<std::uint32_t>(value & below(bits));
+}
+
+void pack_at(std::vector<std::uint64_t>& words, std::size_t place, int bits, std::uint32_t entry) {
+  const std::size_t first = place * static_cast<std::size_t>(bits), word = first / 64, shift = first % 64;
+  words[word] |= std::uint64_t{entry} << shift;
+  if (shift + static_cast<std::size_t>(bits) > 64) words[word + 1] |= std::uint64_t{entry} >> (64 - shift);
+}
+
+bool valid_side(int side) { return side >= 1 && side <= VoxelGrid::kMaxSide; }
+
+// The first layer of voxels of a brick along each axis.
+constexpr std::uint64_t kLowX = 0x1111111111111111u, kLowY = 0x000f000f000f000fu, kLowZ = 0x000000000000ffffu;
+
+}  // namespace
+
+// Entries by brick of the page and bit; those of empty voxels and of dropped ones mean nothing.
+struct VoxelGrid::PageVoxels {
+  std::array<std::uint64_t, kPageBricks> solid{}, coloured{};
+  std::vector<std::uint32_t> entries = std::vector<std::uint32_t>(kPageBricks * kVoxelsPerBrick);
+};
+
+VoxelGrid::VoxelGrid(const ivec3& size, int entry_bits)
+    : size_(size), bricks_((size + 3) / 4), entry_bits_(entry_bits) {
+  if (!valid_side(size.x) || !valid_side(size.y) || !valid_side(size.z)) {
+    throw Error(
+        fmt::format("voxel grid: {} x {} x {} voxels; each side must be 1 to {}", size.x, size.y, size.z, kMaxSide));
+  }
+  if (entry_bits < 1 || entry_bits > kMaxEntryBits) {
+    throw Error(fmt::format("voxel grid: {} bits per entry; 1 to {} are possible", entry_bits, kMaxEntryBits));
+  }
+  const std::size_t bricks = brick_index(bricks_ - 1) + 1;
+  masks_.resize(bricks);
+  pages_.resize((bricks + kPageBricks - 1) / kPageBricks);
+}
+
+std::size_t VoxelGrid::bytes() const {
+  std::size_t sum = sizeof(*this) + (masks_.size() + coloured_.size()) * sizeof(std::uint64_t);
+  for (const Page& page : pages_) sum += sizeof(page) + page.words.size() * sizeof(std::uint64_t);
+  return sum;
+}
+
+std::uint32_t VoxelGrid::entry(const ivec3& voxel) const {
+  const std::span<const std::uint64_t> masks = entry_masks();
+  const std::size_t brick = brick_index(voxel >> 2);
+  const int bit = bit_of(voxel);
+  if (!(masks[brick] >> bit & 1)) return 0;
+  const Page& page = pages_[brick / kPageBricks];
+  std::size_t rank = page.rank_from[brick % kPageBricks / kRankBricks];
+  for (std::size_t i = brick - brick % kRankBricks; i < brick; ++i) rank += std::popcount(masks[i]);
+  rank += std::popcount(masks[brick] & below(bit));
+  return packed(page.words, rank, entry_bits_);
+}
+
+VoxelGrid::PageVoxels VoxelGrid::unpack(std::size_t page) const {
+  PageVoxels voxels;
+  const std::size_t first = page * kPageBricks, count = std::min<std::size_t>(kPageBricks, masks_.size() - first);
+  std::size_t rank = 0;
+  for (std::size_t brick = 0; brick < count; ++brick) {
+    voxels.solid[brick] = masks_[first + brick];
+    voxels.coloured[brick] = entry_masks()[first + brick];
+    for (std::uint64_t rest = voxels.coloured[brick]; rest != 0; rest &= rest - 1)
+      voxels.entries[brick * kVoxelsPerBrick + std::countr_zero(rest)] =
+          packed(pages_[page].words, rank++, entry_bits_);
+  }
+  return voxels;
+}
+
+void VoxelGrid::pack(std::size_t page, const PageVoxels& voxels) {
+  const std::size_t first = page * kPageBricks, count = std::min<std::size_t>(kPageBricks, masks_.size() - first);
+  std::size_t entries = 0;
+  for (std::size_t brick = 0; brick < count; ++brick) {
+    if (brick % kRankBricks == 0) pages_[page].rank_from[brick / kRankBricks] = static_cast<std::uint16_t>(entries);
+    entries += std::popcount(voxels.coloured[brick]);
+    solid_count_ += std::popcount(voxels.solid[brick]) - std::popcount(masks_[first + brick]);
+    masks_[first + brick] = voxels.solid[brick];
+    if (!coloured_.empty()) coloured_[first + brick] = voxels.coloured[brick];
+  }
+  std::vector<std::uint64_t> words((entries * static_cast<std::size_t>(entry_bits_) + 63) / 64);
+  std::size_t rank = 0;
+  for (std::size_t brick = 0; brick < count; ++brick) {
+    for (std::uint64_t rest = voxels.coloured[brick]; rest != 0; rest &= rest - 1)
+      pack_at(words, rank++, entry_bits_, voxels.entries[brick * kVoxelsPerBrick + std::countr_zero(rest)]);
+  }
+  pages_[page].words = std::move(words);
+}
+
+void VoxelGrid::require_entry(std::uint32_t entry) const {
+  if (entry > below(entry_bits_))
+    throw Error(fmt::format("voxel grid: the entry {} does not fit into {} bits", entry, entry_bits_));
+}
+
+VoxelBox VoxelGrid::edit(const VoxelBox& box, const Change& change) {
+  const VoxelBox inside = intersection(box, this->box());
+  if (inside.empty()) return {};
+  const VoxelBox bricks{inside.low >> 2, ((inside.high - 1) >> 2) + 1};
+  // Bricks come in the order of their indices, so each page is unpacked once, and packed when it is left.
+  std::size_t page = pages_.size();
+  PageVoxels voxels;
+  VoxelBox changed, added, removed;
+  for_each_voxel(bricks, [&](const ivec3& brick) {
+    const std::size_t index = brick_index(brick);
+    if (index / kPageBricks != page) {
+      if (page < pages_.size()) pack(page, voxels);
+      page = index / kPageBricks;
+      voxels = unpack(page);
+    }
+    const std::size_t in_page = index % kPageBricks;
+    for_each_voxel(intersection({4 * brick, 4 * brick + 4}, inside), [&](const ivec3& voxel) {
+      const int bit = bit_of(voxel);
+      const std::uint64_t flag = std::uint64_t{1} << bit;
+      std::uint32_t& entry = voxels.entries[in_page * kVoxelsPerBrick + static_cast<std::size_t>(bit)];
+      Voxel before;
+      if (voxels.solid[in_page] & flag) before = voxels.coloured[in_page] & flag ? entry : 0;
+      const Voxel after = change(voxel, before);
+      if (after == before) return;
+      if (after) require_entry(*after);
+      voxels.solid[in_page] = after ? voxels.solid[in_page] | flag : voxels.solid[in_page] & ~flag;
+      voxels.coloured[in_page] = after ? voxels.coloured[in_page] | flag : voxels.coloured[in_page] & ~flag;
+      entry = after.value_or(0);
+      changed = around(changed, {voxel, voxel + 1});
+      if (!before) added = around(added, {voxel, voxel + 1});
+      if (!after) removed = around(removed, {voxel, voxel + 1});
+    });
+  });
+  pack(page, voxels);
+  bounds_ = around(bounds_, added);
+  // What was cleared matters only where it touches the bounds.
+  const bool inner =
+      glm::all(glm::lessThan(bounds_.low, removed.low)) && glm::all(glm::greaterThan(bounds_.high, removed.high));
+  if (!removed.empty() && !inner) bounds_ = scan_bounds();
+  return changed;
+}
+
+VoxelBox VoxelGrid::set(const ivec3& voxel, std::uint32_t entry) { return fill({voxel, voxel + 1}, entry); }
+VoxelBox VoxelGrid::clear(const ivec3& voxel) { return clear(VoxelBox{voxel, voxel + 1}); }
+
+VoxelBox VoxelGrid::fill(const VoxelBox& box, std::uint32_t entry) {
+  require_entry(entry);
+  return edit(box, [&](const ivec3&, const Voxel&) { return Voxel(entry); });
+}
+
+VoxelBox VoxelGrid::clear(const VoxelBox& box) {
+  return edit(box, [](const ivec3&, const Voxel&) { return Voxel(); });
+}
+
+VoxelBox VoxelGrid::paint(const VoxelBox& box, std::uint32_t entry) {
+  require_entry(entry);
+  return edit(box, [&](const ivec3&, const Voxel& before) { return before ? Voxel(entry) : before; });
+}
+
+VoxelBox VoxelGrid::scan_bounds() const {
+  VoxelBox bounds;
+  std::size_t index = 0;
+  for_each_voxel({ivec3(0), bricks_}, [&](const ivec3& brick) {
+    const std::uint64_t mask = masks_[index++];
+    if (mask == 0) return;
+    // Where along each axis the brick has solid voxels: four bits.
+    const auto occupied = [&](std::uint64_t layer, int shift) {
+      unsigned bits = 0;
+      for (int i = 0; i < 4; ++i) bits |= (mask >> (shift * i) & layer ? 1u : 0u) << i;
+      return bits;
+    };
+    const std::array<unsigned, 3> along = {occupied(kLowX, 1), occupied(kLowY, 4), occupied(kLowZ, 16)};
+    VoxelBox box;
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = 4 * brick[axis] + std::countr_zero(along[axis]);
+      box.high[axis] = 4 * brick[axis] + std::bit_width(along[axis]);
+    }
+    bounds = around(bounds, box);
+  });
+  return bounds;
+}
+
+VoxelBox VoxelGrid::combine(const VoxelGrid& other, MaskOp op) {
+  if (other.size_ != size_ || other.entry_bits_ != entry_bits_) {
+    throw Error(fmt::format(
+        "voxel grid: {} x {} x {} voxels of {} bits and {} x {} x {} of {} cannot be combined; they "
+        "must be alike",
+        size_.x, size_.y, size_.z, entry_bits_, other.size_.x, other.size_.y, other.size_.z, other.entry_bits_));
+  }
+  VoxelBox changed;
+  for (std::size_t page = 0; page < pages_.size(); ++page) {
+    PageVoxels mine = unpack(page);
+    const PageVoxels theirs = other.unpack(page);
+    bool touched = false;
+    for (std::size_t brick = 0; brick < kPageBricks; ++brick) {
+      const std::uint64_t before = mine.solid[brick], after = op(before, theirs.solid[brick]);
+      if (after == before) continue;
+      touched = true;
+      for (std::uint64_t rest = after & ~before; rest != 0; rest &= rest - 1) {
+        const std::size_t place = brick * kVoxelsPerBrick + std::countr_zero(rest);
+        mine.entries[place] = theirs.entries[place];
+      }
+      mine.solid[brick] = after;
+      mine.coloured[brick] = (mine.coloured[brick] & after) | (theirs.coloured[brick] & after & ~before);
+      const auto index = static_cast<int>(page * kPageBricks + brick);
+      const ivec3 at(index % bricks_.x, index / bricks_.x % bricks_.y, index / bricks_.x / bricks_.y);
+      changed = around(changed, intersection({4 * at, 4 * at + 4}, box()));
+    }
+    if (touched) {
+      if (!other.coloured_.empty() && coloured_.empty()) coloured_ = masks_;
+      pack(page, mine);
+    }
+  }
+  if (!changed.empty()) bounds_ = scan_bounds();
+  return changed;
+}
+
+VoxelBox VoxelGrid::unite(const VoxelGrid& other) {
+  return combine(other, [](std::uint64_t a, std::uint64_t b) { return a | b; });
+}
+
+VoxelBox VoxelGrid::intersect(const VoxelGrid& other) {
+  return combine(other, [](std::uint64_t a, std::uint64_t b) { return a & b; });
+}
+
+VoxelBox VoxelGrid::subtract(const VoxelGrid& other) {
+  return combine(other, [](std::uint64_t a, std::uint64_t b) { return a & ~b; });
+}
+
+void VoxelGrid::drop_hidden_entries() {
+  const auto neighbour = [&](const ivec3& brick, const ivec3& by) {
+    const ivec3 at = brick + by;
+    return VoxelBox{ivec3(0), bricks_}.contains(at) ? mask(at) : 0;
+  };
+  std::vector<std::uint64_t> seen(masks_.size());
+  std::size_t index = 0;
+  for_each_voxel({ivec3(0), bricks_}, [&](const ivec3& brick) {
+    const std::uint64_t m = masks_[index];
+    // Bit v of each: whether the neighbour of v on that side is solid.
+    const std::uint64_t to_x = ((m >> 1) & ~(kLowX << 3)) | (neighbour(brick, {1, 0, 0}) & kLowX) << 3,
+                        from_x = ((m << 1) & ~kLowX) | (neighbour(brick, {-1, 0, 0}) >> 3 & kLowX),
+                        to_y = ((m >> 4) & ~(kLowY << 12)) | (neighbour(brick, {0, 1, 0}) & kLowY) << 12,
+                        from_y = ((m << 4) & ~kLowY) | (neighbour(brick, {0, -1, 0}) >> 12 & kLowY),
+                        to_z = m >> 16 | (neighbour(brick, {0, 0, 1}) & kLowZ) << 48,
+                        from_z = m << 16 | neighbour(brick, {0, 0, -1}) >> 48;
+    seen[index++] = m & ~(to_x & from_x & to_y & from_y & to_z & from_z);
+  });
+  for (std::size_t page = 0; page < pages_.size(); ++page) {
+    PageVoxels voxels = unpack(page);
+    const std::size_t first = page * kPageBricks, count = std::min<std::size_t>(kPageBricks, masks_.size() - first);
+    for (std::size_t brick = 0; brick < count; ++brick) voxels.coloured[brick] &= seen[first + brick];
+    pack(page, voxels);
+  }
+  if (coloured_.empty()) coloured_ = std::move(seen);
+}
+
+}  // namespace scarp

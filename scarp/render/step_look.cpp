@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/step_look.h"
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "scarp/render/ramp.h"
+#include "scarp/render/shader.h"
+
+namespace scarp {
+
+Picture picture_of_steps(const PictureSettings& settings, const std::function<std::uint32_t(int, int)>& steps_of,
+                         const Progress& progress) {
+  const auto width = static_cast<std::size_t>(settings.width);
+  std::vector<std::uint32_t> steps(width * static_cast<std::size_t>(settings.height));
+  for_each_pixel(
+      settings.width, settings.height,
+      [&](int x, int y) { steps[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = steps_of(x, y); },
+      progress);
+  const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
+  const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
+  Picture picture{
+      Image(settings.width, settings.height), StepRange{*least, *most, sum / static_cast<double>(steps.size())}, {}};
+  const Ramp ramp(ramp_of(settings), *least, *most);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    set_pixel(picture.image, static_cast<int>(i % width), static_cast<int>(i / width), ramp(steps[i]));
+  }
+  return picture;
+}
+
+}  // namespace scarp

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/box_tree.h"
+
+#include <glm/common.hpp>
+#include <numeric>
+
+namespace scarp {
+namespace {
+
+constexpr int kBins = 16;
+constexpr int kUnbalanced = 32;  // levels after which ranges are halved
+
+// Roundings in float on the way from a coordinate to a difference: less than 4 units of 2^-24 of the largest one.
+constexpr double kPadding = 0x1p-21;
+
+double half_area(const WorldBox& box) {
+  const dvec3 size = glm::max(box.high - box.low, dvec3(0.0));
+  return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+}  // namespace
+
+WorldBox around(const WorldBox& a, const WorldBox& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
+
+// Ranges of objects, split until one is left.
+struct BoxTree::Builder {
+  struct Range {
+    std::uint32_t begin, end;
+    WorldBox box;
+
+    std::uint32_t count() const { return end - begin; }
+  };
+
+  std::span<const WorldBox> boxes;
+  std::vector<std::uint32_t> order;
+  std::vector<Node>& nodes;
+  dvec3 middle;
+  double padding;
+
+  dvec3 centre(std::uint32_t object) const { return 0.5 * (boxes[object].low + boxes[object].high); }
+
+  Range range(std::uint32_t begin, std::uint32_t end) const {
+    Range range{begin, end, {}};
+    for (std::uint32_t i = begin; i < end; ++i) range.box = around(range.box, boxes[order[i]]);
+    return range;
+  }
+
+  // Where to part a range: at the best of the bins' borders along the longest side of its centres, or in halves.
+  std::uint32_t split(const Range& whole, int depth) {
+    WorldBox centres;
+    for (std::uint32_t i = whole.begin; i < whole.end; ++i) {
+      const dvec3 c = centre(order[i]);
+      centres = around(centres, {c, c});
+    }
+    const dvec3 size = centres.high - centres.low;
+    const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto begin = order.begin() + whole.begin, end = order.begin() + whole.end;
+    if (!(size[axis] > 0) || depth >= kUnbalanced) {
+      const std::uint32_t half = whole.begin + whole.count() / 2;
+      std::nth_element(begin, order.begin() + half, end,
+                       [&](std::uint32_t a, std::uint32_t b) { return centre(a)[axis] < centre(b)[axis]; });
+      return half;
+    }
+    const auto bin = [&](std::uint32_t object) {
+      return std::min(kBins - 1, static_cast<int>(kBins * (centre(object)[axis] - centres.low[axis]) / size[axis]));
+    };
+    std::array<WorldBox, kBins> bin_box;
+    std::array<std::uint32_t, kBins> bin_count{};
+    for (auto i = begin; i != end; ++i) {
+      const int b = bin(*i);
+      bin_box[b] = around(bin_box[b], boxes[*i]);
+      ++bin_count[b];
+    }
+    // Cost of all bins from b on; then of those before.
+    std::array<double, kBins> after{};
+    WorldBox box;
+    std::uint32_t count = 0;
+    for (int b = kBins - 1; b > 0; --b) {
+      box = around(box, bin_box[b]);
+      count += bin_count[b];
+      after[b] = count * half_area(box);
+    }
+    box = {};
+    count = 0;
+    int best = 1;
+    double least = std::numeric_limits<double>::infinity();
+    for (int b = 1; b < kBins; ++b) {
+      box = around(box, bin_box[b - 1]);
+      count += bin_count[b - 1];
+      if (count == 0 || count == whole.count()) continue;
+      const double cost = count * half_area(box) + after[b];
+      if (cost < least) {
+        least = cost;
+        best = b;
+      }
+    }
+    const auto middle_of = std::partition(begin, end, [&](std::uint32_t object) { return bin(object) < best; });
+    return static_cast<std::uint32_t>(middle_of - order.begin());
+  }
+
+  // The node for a range; its children are the parts after three splits, each time of the largest part.
+  std::uint32_t build(const Range& whole, int depth) {
+    std::array<Range, kWide> parts{whole};
+    int count = 1;
+    while (count < kWide) {
+      int largest = -1;
+      for (int i = 0; i < count; ++i) {
+        if (parts[i].count() > 1 && (largest < 0 || half_area(parts[i].box) > half_area(parts[largest].box)))
+          largest = i;
+      }
+      if (largest < 0) break;
+      const Range part = parts[largest];
+      const std::uint32_t at = split(part, depth);
+      parts[largest] = range(part.begin, at);
+      parts[count++] = range(at, part.end);
+    }
+    const auto index = static_cast<std::uint32_t>(nodes.size());
+    nodes.emplace_back();
+    for (int i = 0; i < kWide; ++i) {
+      Node& node = nodes[index];
+      const bool used = i < count;
+      for (int axis = 0; axis < 3; ++axis) {
+        constexpr float kInfinity = std::numeric_limits<float>::infinity();
+        node.low[axis][i] = used ? static_cast<float>(parts[i].box.low[axis] - middle[axis] - padding) : kInfinity;
+        node.high[axis][i] = used ? static_cast<float>(parts[i].box.high[axis] - middle[axis] + padding) : -kInfinity;
+      }
+      if (!used) continue;
+      const std::uint32_t child = parts[i].count() == 1 ? kLeaf | order[parts[i].begin] : build(parts[i], depth + 1);
+      nodes[index].child[i] = child;
+    }
+    return index;
+  }
+};
+
+BoxTree::BoxTree(std::span<const WorldBox> boxes) {
+  if (boxes.empty()) return;
+  for (const WorldBox& box : boxes) box_ = around(box_, box);
+  middle_ = 0.5 * (box_.low + box_.high);
+  const dvec3 half = box_.high - middle_;
+  padding_ = std::max({half.x, half.y, half.z}) * kPadding;
+  Builder builder{boxes, std::vector<std::uint32_t>(boxes.size()), nodes_, middle_, padding_};
+  std::iota(builder.order.begin(), builder.order.end(), 0u);
+  nodes_.reserve(boxes.size() / 2 + 1);
+  builder.build(builder.range(0, static_cast<std::uint32_t>(boxes.size())), 0);
+  nodes_.shrink_to_fit();
+}
+
+}  // namespace scarp

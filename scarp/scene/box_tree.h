@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+// A hierarchy of boxes: which of many objects a ray may meet, about from the nearest on.
+//
+// Four children to a node, so that one test looks at four boxes. Boxes are kept in float, relative to the middle of all
+// and larger than they are by more than what is rounded on the way: a ray is never kept from a box that it touches.
+// Rays begin where they come into the box around everything, so it does not matter from how far away they come.
+//
+// Sources: H. Dammertz, J. Hanika, A. Keller, "Shallow bounding volume hierarchies for fast SIMD ray tracing of
+// incoherent rays", EGSR 2008; T. Ize, "Robust BVH ray traversal", JCGT 2013; I. Wald, "On fast construction of
+// SAH-based bounding volume hierarchies", 2007 (16 bins). Cost: 112 bytes per node, a node per 3 objects.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "scarp/base/ray.h"
+
+namespace scarp {
+
+/// A box in world space, closed; empty to begin with.
+struct WorldBox {
+  dvec3 low{std::numeric_limits<double>::infinity()};
+  dvec3 high{-std::numeric_limits<double>::infinity()};
+};
+
+/// The least box around both.
+WorldBox around(const WorldBox& a, const WorldBox& b);
+
+class BoxTree {
+ public:
+  BoxTree() = default;
+  /// Boxes must be finite and not empty, fewer than 2^31.
+  explicit BoxTree(std::span<const WorldBox> boxes);
+
+  /// Calls visit(object) for each object whose box the ray may meet at or before t_max; visit returns the t_max from
+  /// then on, no larger than before.
+  template <class Visit>
+  void traverse(const Ray& ray, const Visit& visit) const;
+
+  /// Around all boxes.
+  const WorldBox& box() const { return box_; }
+  std::size_t bytes() const { return sizeof(*this) + nodes_.size() * sizeof(Node); }
+
+ private:
+  static constexpr int kWide = 4;
+  static constexpr std::uint32_t kLeaf = 0x8000'0000;
+  // With one level per split, at most 32 of them unbalanced and 32 in halves.
+  static constexpr int kMaxDepth = 64;
+
+  // Four numbers in one register: the vectors of GCC and clang, whose operators work number by number.
+  using Four = float __attribute__((vector_size(16)));
+
+  struct Node {
+    std::array<Four, 3> low, high;           // per axis; low above high where there is no child
+    std::array<std::uint32_t, kWide> child;  // a node, or kLeaf and an object
+  };
+  struct Builder;
+
+  // What a product and a difference in float round, with room: Ize has 2 * 3 units for a factor.
+  static constexpr float kRounding = 1 + 0x1p-20f;
+  // Steeper than any direction that can be told from one along a side.
+  static constexpr float kSteepest = 0x1p60f;
+
+  std::vector<Node> nodes_;
+  WorldBox box_;
+  double padding_ = 0;
+  dvec3 middle_{0.0};
+};
+
+template <class Visit>
+void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  // Where the ray comes into the box around everything, and where it leaves it.
+  double t_in = ray.t_min, t_out = ray.t_max, longest = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double direction = ray.direction[axis], low = box_.low[axis] - padding_, high = box_.high[axis] + padding_;
+    longest = std::max(longest, std::abs(direction));
+    if (direction == 0) {
+      if (ray.origin[axis] < low || ray.origin[axis] > high) return;
+      continue;
+    }
+    const double inverse = 1 / direction, a = (low - ray.origin[axis]) * inverse,
+                 b = (high - ray.origin[axis]) * inverse;
+    t_in = std::max(t_in, std::min(a, b));
+    t_out = std::min(t_out, std::max(a, b));
+  }
+  // The box is padded: a ray that rounding keeps out touches nothing.
+  if (!(t_in <= t_out)) return;
+  const dvec3 from = ray.origin + t_in * ray.direction - middle_;
+
+  // From here on in float, the longest component of the direction being 1, t counting from the border.
+  std::array<float, 3> origin, inwards, outwards;
+  std::array<bool, 3> down;
+  const double per_longest = 1 / longest;
+  for (int axis = 0; axis < 3; ++axis) {
+    origin[axis] = static_cast<float>(from[axis]);
+    const auto direction = static_cast<float>(ray.direction[axis] * per_longest);
+    inwards[axis] = std::abs(direction) * kSteepest < 1 ? std::copysign(kSteepest, direction) : 1 / direction;
+    outwards[axis] = inwards[axis] * kRounding;
+    down[axis] = std::signbit(direction);
+  }
+  const auto end_of = [&](double t) { return static_cast<float>((t - t_in) * longest) * kRounding; };
+  float end = end_of(t_out);
+
+  struct Entry {
+    float t;
+    std::uint32_t child;
+  };
+  std::array<Entry, (kWide - 1) * kMaxDepth + kWide> stack;
+  int size = 0;
+  stack[size++] = {0, 0};
+  while (size > 0) {
+    const Entry entry = stack[--size];
+    if (entry.t > end) continue;
+    if (entry.child & kLeaf) {
+      end = std::min(end, end_of(visit(entry.child & ~kLeaf)));
+      continue;
+    }
+    const Node& node = nodes_[entry.child];
+    Four near{}, far = near + end;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Four in = ((down[axis] ? node.high : node.low)[axis] - origin[axis]) * inwards[axis];
+      const Four out = ((down[axis] ? node.low : node.high)[axis] - origin[axis]) * outwards[axis];
+      near = near > in ? near : in;
+      far = far < out ? far : out;
+    }
+    const auto met = near <= far;
+    // The nearest child is to be on top.
+    const int first = size;
+    for (int i = 0; i < kWide; ++i) {
+      if (!met[i]) continue;
+      int at = size++;
+      for (; at > first && stack[at - 1].t < near[i]; --at) stack[at] = stack[at - 1];
+      stack[at] = {near[i], node.child[i]};
+    }
+  }
+}
+
+}  // namespace scarp

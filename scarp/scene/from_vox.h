@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// The scene of a .vox file as objects in a world of metres, a voxel 1 m, z up as in the file.
+#pragma once
+
+#include <string_view>
+
+#include "scarp/scene/voxel_scene.h"
+#include "scarp/source/vox_scene.h"
+
+namespace scarp {
+
+struct FromVoxOptions {
+  VoxSceneOptions scene{};
+  std::string_view march = "voxel-bricks";  ///< of voxel_marches()
+};
+
+/// Entries are palette indices. Where instances overlap, one voxel is left in each place, that which MagicaVoxel shows:
+/// of the instance that comes first in files from version 200 on, and last in those before. An instance that loses
+/// voxels so has a model of its own. Throws Error: no such march, more overlaps than can be settled.
+VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options = {});
+
+}  // namespace scarp

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// A voxel grid with all that its march needs, and the colours that its entries stand for.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "scarp/accel/brick_masks.h"
+#include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/empty_spheres.h"
+#include "scarp/accel/octant_cubes.h"
+#include "scarp/march/marches.h"
+
+namespace scarp {
+
+/// Red, green, blue; sRGB.
+using VoxelColour = std::array<std::uint8_t, 3>;
+
+/// Immutable once it is in a scene.
+class VoxelModel {
+ public:
+  /// Which part of the grid rays are followed in.
+  enum class Extent {
+    bounds,  ///< the box around its solid voxels
+    grid,    ///< all of it, as in the founding post
+  };
+
+  /// Builds what the march, a row of voxel_marches(), needs. Without a palette the entries are RGB, red in the lowest
+  /// 8 bits. Throws Error when the grid is too large for the march.
+  VoxelModel(VoxelGrid grid, const MarchEntry& march, std::vector<VoxelColour> palette = {},
+             Extent extent = Extent::bounds);
+
+  const VoxelGrid& grid() const { return grid_; }
+  const MarchEntry& march() const { return *march_; }
+  /// The voxels that rays are followed in; empty when none is solid.
+  const VoxelBox& box() const { return box_; }
+  VoxelTarget target() const;
+
+  /// Black for entries beyond the palette.
+  VoxelColour colour(std::uint32_t entry) const;
+
+  /// Changes the grid and what was built from it. `edit(grid)` returns the dirty box.
+  template <class Edit>
+  void edit(const Edit& edit) {
+    update(edit(grid_));
+  }
+
+  /// Memory that it takes, with all that was built.
+  std::size_t bytes() const;
+
+ private:
+  void update(const VoxelBox& changed);
+
+  VoxelGrid grid_;
+  const MarchEntry* march_;
+  std::vector<VoxelColour> palette_;
+  Extent extent_;
+  VoxelBox box_;
+  std::optional<EmptySpheres> spheres_;
+  std::optional<EmptyCubes> cubes_;
+  std::optional<OctantCubes> octants_;
+  std::optional<BrickMasks> bricks_;
+};
+
+}  // namespace scarp

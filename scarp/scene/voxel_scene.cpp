@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/voxel_scene.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+#include <glm/matrix.hpp>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+// How far the columns of a matrix may be from orthogonal and alike, relative to their squares: many roundings of turns
+// that were multiplied, and no shear that could be meant.
+constexpr double kRigid = 1e-9;
+
+void require_rigid(const glm::dmat3& m, std::size_t place) {
+  const double square = dot(m[0], m[0]);
+  bool good = std::isfinite(square) && square > 0;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j <= i; ++j) good = good && std::abs(dot(m[i], m[j]) - (i == j ? square : 0)) <= kRigid * square;
+  }
+  if (!good)
+    throw Error(fmt::format("voxel scene: object {}: its matrix must be a rotation times a scale above 0", place));
+}
+
+WorldBox world_box(const VoxelPlace& place, const VoxelBox& box) {
+  WorldBox world;
+  for (int corner = 0; corner < 8; ++corner) {
+    const ivec3 at(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                   corner & 4 ? box.high.z : box.low.z);
+    const dvec3 p = place.world_from_grid * dvec3(at) + place.origin;
+    world = around(world, {p, p});
+  }
+  return world;
+}
+
+}  // namespace
+
+VoxelScene::VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places)
+    : models_(std::move(models)) {
+  for (const auto& model : models_) targets_.push_back(model->target());
+  std::unordered_map<std::string, std::uint32_t> turns;
+  std::vector<WorldBox> boxes;
+  for (const VoxelPlace& place : places) {
+    const std::size_t index = objects_.size();
+    if (place.model >= models_.size())
+      throw Error(fmt::format("voxel scene: object {}: its model {} does not exist; there are {}", index, place.model,
+                              models_.size()));
+    const dvec3& origin = place.origin;
+    if (!std::isfinite(origin.x + origin.y + origin.z))
+      throw Error(fmt::format("voxel scene: object {}: its place is not finite", index));
+    require_rigid(place.world_from_grid, index);
+    const std::string key(reinterpret_cast<const char*>(&place.world_from_grid), sizeof(place.world_from_grid));
+    const auto [turn, fresh] = turns.try_emplace(key, static_cast<std::uint32_t>(turns_.size()));
+    if (fresh) turns_.push_back({glm::inverse(place.world_from_grid), place.world_from_grid});
+    objects_.push_back({origin, place.model, turn->second});
+    const VoxelBox& box = models_[place.model]->box();
+    if (box.empty()) continue;
+    in_tree_.push_back(static_cast<std::uint32_t>(index));
+    boxes.push_back(world_box(place, box));
+  }
+  objects_.shrink_to_fit();
+  in_tree_.shrink_to_fit();
+  tree_ = BoxTree(boxes);
+}
+
+// A world ray on its way through the objects; what neighbouring objects share is computed once.
+struct VoxelScene::Query {
+  const VoxelScene& scene;
+  const Ray& ray;
+  std::uint32_t turn;
+  VoxelDirection direction;
+
+  Query(const VoxelScene& in, const Ray& world_ray)
+      : scene(in),
+        ray(world_ray),
+        turn(in.objects_[in.in_tree_[0]].turn),
+        direction(in.turns_[turn].grid_from_world * world_ray.direction) {}
+
+  std::optional<QuantisedRay> quantised(const Object& object, double t_max, const std::optional<ivec3>& start_voxel) {
+    const Turn& to = scene.turns_[object.turn];
+    if (object.turn != turn) {
+      turn = object.turn;
+      direction = VoxelDirection(to.grid_from_world * ray.direction);
+    }
+    const VoxelRay in_grid{to.grid_from_world * (ray.origin - object.origin), direction.given, ray.t_min, t_max,
+                           start_voxel};
+    return quantise(in_grid, direction, scene.targets_[object.model].box);
+  }
+};
+
+VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, VoxelSceneStats* stats) const {
+  VoxelSceneHit best;
+  if (in_tree_.empty()) return best;
+  Query query(*this, ray);
+  double t_max = ray.t_max;
+  tree_.traverse(ray, [&](std::uint32_t in_tree) {
+    const std::uint32_t index = in_tree_[in_tree];
+    const Object& object = objects_[index];
+    const auto quantised = query.quantised(object, t_max, std::nullopt);
+    if (!quantised) return t_max;
+    MarchStats steps;
+    const VoxelHit hit =
+        models_[object.model]->march().voxel_cpu(targets_[object.model], *quantised, stats ? &steps : nullptr);
+    if (stats) {
+      ++stats->boxes;
+      stats->steps += steps.steps;
+    }
+    if (hit && (!best || hit.t < best.hit.t || index < best.object)) {
+      best = {hit, index};
+      t_max = hit.t;
+    }
+    return t_max;
+  });
+  return best;
+}
+
+bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
+  if (in_tree_.empty()) return false;
+  Query query(*this, ray);
+  bool blocked = false;
+  tree_.traverse(ray, [&](std::uint32_t in_tree) {
+    const std::uint32_t index = in_tree_[in_tree];
+    const Object& object = objects_[index];
+    std::optional<ivec3> start;
+    if (from && from->object == index) start = from->hit.voxel + normal_of(from->hit.face);
+    const auto quantised = query.quantised(object, ray.t_max, start);
+    const MarchEntry& march = models_[object.model]->march();
+    if (quantised) {
+      blocked = march.voxel_cpu_occluded
+                    ? march.voxel_cpu_occluded(targets_[object.model], *quantised)
+                    : static_cast<bool>(march.voxel_cpu(targets_[object.model], *quantised, nullptr));
+    }
+    return blocked ? -std::numeric_limits<double>::infinity() : ray.t_max;
+  });
+  return blocked;
+}
+
+dvec3 VoxelScene::normal(const VoxelSceneHit& hit) const {
+  if (hit.hit.face == VoxelFace::inside) return dvec3(0.0);
+  return normalize(turns_[objects_[hit.object].turn].world_from_grid * dvec3(normal_of(hit.hit.face)));
+}
+
+VoxelColour VoxelScene::colour(const VoxelSceneHit& hit) const {
+  return models_[objects_[hit.object].model]->colour(hit.hit.entry);
+}
+
+std::size_t VoxelScene::bytes() const {
+  return sizeof(*this) - sizeof(tree_) + objects_.size() * sizeof(Object) + turns_.size() * sizeof(Turn) +
+         in_tree_.size() * sizeof(std::uint32_t) + targets_.size() * sizeof(VoxelTarget) + tree_.bytes();
+}
+
+}  // namespace scarp

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// Many voxel objects in one world: models, each in as many places as one likes, turned, moved and scaled.
+//
+// Rays are answered in the space of each model that they may meet, quantised there (voxel_ray.h). t counts in the
+// length of the world's direction throughout. Of hits at the same t that of the object that was placed first counts.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scarp/scene/box_tree.h"
+#include "scarp/scene/voxel_model.h"
+
+namespace scarp {
+
+/// Where a model stands: p_world = world_from_grid * p_grid + origin.
+struct VoxelPlace {
+  std::uint32_t model = 0;          ///< index of the scene's models
+  glm::dmat3 world_from_grid{1.0};  ///< a rotation or reflection times a scale: the metres of a voxel's side, > 0
+  dvec3 origin{0.0};                ///< metres, of the grid's corner (0, 0, 0)
+};
+
+struct VoxelSceneHit {
+  VoxelHit hit;
+  std::uint32_t object = 0;  ///< index of the places
+
+  explicit operator bool() const { return static_cast<bool>(hit); }
+};
+
+/// What a ray cost besides its steps.
+struct VoxelSceneStats {
+  std::uint32_t steps = 0;
+  std::uint32_t boxes = 0;  ///< of objects that the ray came into
+};
+
+/// Immutable. Questions may be asked from many threads at once.
+class VoxelScene {
+ public:
+  /// Throws Error, naming the place: a model that is not there, a matrix that is no rotation with a scale. Models are
+  /// shared with the caller, who may not change them any more.
+  VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places);
+
+  /// The ray counts as one that starts free. `stats`, when given, is added to.
+  VoxelSceneHit closest_hit(const Ray& ray, VoxelSceneStats* stats = nullptr) const;
+  /// Whether anything is in the way.
+  bool occluded(const Ray& ray) const { return occluded(ray, nullptr); }
+  /// The same for a ray that starts on the face that another one hit, on its outer side. It cannot hit that voxel
+  /// again.
+  bool occluded_from(const VoxelSceneHit& hit, const Ray& ray) const { return occluded(ray, &hit); }
+
+  /// Outward unit normal in world space of the face that was hit; zero for a ray that began in the voxel.
+  dvec3 normal(const VoxelSceneHit& hit) const;
+  VoxelColour colour(const VoxelSceneHit& hit) const;
+
+  /// Around all solid voxels (or grids); empty when there are none.
+  const WorldBox& box() const { return tree_.box(); }
+  std::size_t objects() const { return objects_.size(); }
+  /// Of the objects and the hierarchy over them, without the models.
+  std::size_t bytes() const;
+
+ private:
+  // An object; turns are shared by all that have the same one.
+  struct Object {
+    dvec3 origin;
+    std::uint32_t model, turn;
+  };
+  struct Turn {
+    glm::dmat3 grid_from_world, world_from_grid;
+  };
+  struct Query;
+
+  bool occluded(const Ray& ray, const VoxelSceneHit* from) const;
+
+  std::vector<std::shared_ptr<const VoxelModel>> models_;
+  std::vector<VoxelTarget> targets_;
+  std::vector<Object> objects_;
+  std::vector<Turn> turns_;
+  std::vector<std::uint32_t> in_tree_;  // objects that have something to hit, in the order of the tree's numbers
+  BoxTree tree_;
+};
+
+}  // namespace scarp

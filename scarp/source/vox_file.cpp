@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/vox_file.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "scarp/base/error.h"
+#include "scarp/base/replace_file.h"
+#include "scarp/source/vox_bytes.h"
+#include "scarp/source/vox_scene.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::string_view kMagic = "VOX ";
+constexpr std::string_view kLfsPointer = "version https://git-lfs";
+constexpr std::size_t kHeaderBytes = 20;  // up to the children of MAIN
+constexpr int kMaxSide = 256;
+
+VoxModel parse_size(VoxBytes& bytes) {
+  VoxModel model;
+  for (int axis = 0; axis < 3; ++axis) model.size[axis] = bytes.number();
+  for (int axis = 0; axis < 3; ++axis) {
+    if (model.size[axis] < 1 || model.size[axis] > kMaxSide) {
+      throw Error(fmt::format("a model of {} x {} x {} voxels; each side must be 1 to {}", model.size.x, model.size.y,
+                              model.size.z, kMaxSide));
+    }
+  }
+  return model;
+}
+
+void parse_voxels(VoxBytes& bytes, VoxModel& model) {
+  const auto count = static_cast<std::uint32_t>(bytes.number());
+  if (bytes.left() != std::uint64_t{4} * count)
+    throw Error(fmt::format("{} voxels need {} bytes, there are {}", count, std::uint64_t{4} * count, bytes.left()));
+  model.voxels.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::string_view raw = bytes.take(4);
+    const VoxVoxel voxel{static_cast<std::uint8_t>(raw[0]), static_cast<std::uint8_t>(raw[1]),
+                         static_cast<std::uint8_t>(raw[2]), static_cast<std::uint8_t>(raw[3])};
+    if (voxel.x >= model.size.x || voxel.y >= model.size.y || voxel.z >= model.size.z) {
+      throw Error(fmt::format("the voxel ({}, {}, {}) lies outside of the model's {} x {} x {}", voxel.x, voxel.y,
+                              voxel.z, model.size.x, model.size.y, model.size.z));
+    }
+    if (voxel.index == 0)
+      throw Error(
+          fmt::format("the voxel ({}, {}, {}) has palette index 0, which means empty", voxel.x, voxel.y, voxel.z));
+    model.voxels.push_back(voxel);
+  }
+}
+
+VoxTransform parse_transform(VoxBytes& bytes) {
+  VoxTransform node;
+  node.child = bytes.number();
+  node.reserved = bytes.number();
+  node.layer = bytes.number();
+  const std::size_t count = bytes.count(4);
+  if (count == 0) throw Error("a transform without frames; one is needed");
+  node.frames.clear();
+  for (std::size_t i = 0; i < count; ++i) node.frames.push_back(bytes.attributes());
+  return node;
+}
+
+VoxGroup parse_group(VoxBytes& bytes) {
+  VoxGroup node;
+  const std::size_t count = bytes.count(4);
+  for (std::size_t i = 0; i < count; ++i) node.children.push_back(bytes.number());
+  return node;
+}
+
+VoxShape parse_shape(VoxBytes& bytes) {
+  VoxShape node;
+  const std::size_t count = bytes.count(8);
+  if (count == 0) throw Error("a shape without models; one is needed");
+  node.models.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    const int model = bytes.number();
+    node.models.push_back({model, bytes.attributes()});
+  }
+  return node;
+}
+
+// Reads the children of MAIN one after the other.
+class Parser {
+ public:
+  VoxFile file;
+
+  void chunk(std::string_view name, VoxBytes& bytes) {
+    if (model_ && name != "XYZI") throw Error("a SIZE is not followed by its XYZI");
+    if (name == "PACK") {
+      file.pack = true;
+      packed_ = bytes.number();
+    } else if (name == "SIZE") {
+      model_ = parse_size(bytes);
+    } else if (name == "XYZI") {
+      if (!model_) throw Error("voxels without a SIZE before them");
+      parse_voxels(bytes, *model_);
+      file.models.push_back(std::move(*model_));
+      model_.reset();
+    } else if (name == "nTRN" || name == "nGRP" || name == "nSHP") {
+      VoxNode node;
+      node.id = bytes.number();
+      node.attributes = bytes.attributes();
+      if (name == "nTRN") node.content = parse_transform(bytes);
+      if (name == "nGRP") node.content = parse_group(bytes);
+      if (name == "nSHP") node.content = parse_shape(bytes);
+      file.nodes.push_back(std::move(node));
+    } else if (name == "LAYR") {
+      VoxLayer layer;
+      layer.id = bytes.number();
+      layer.attributes = bytes.attributes();
+      layer.reserved = bytes.number();
+      file.layers.push_back(std::move(layer));
+    } else if (name == "RGBA") {
+      file.palette.emplace();
+      for (VoxColour& colour : *file.palette) {
+        for (std::uint8_t& channel : colour) channel = static_cast<std::uint8_t>(bytes.take(1)[0]);
+      }
+    } else if (name == "IMAP") {
+      file.index_map.emplace();
+      for (std::uint8_t& index : *file.index_map) index = static_cast<std::uint8_t>(bytes.take(1)[0]);
+    } else if (name == "MATL") {
+      VoxMaterial material;
+      material.id = bytes.number();
+      material.attributes = bytes.attributes();
+      file.materials.push_back(std::move(material));
+    } else {
+      return;
+    }
+    known_ = true;
+  }
+
+  // Whether the last chunk was one of those above.
+  bool known() { return std::exchange(known_, false); }
+
+  void finish() const {
+    if (model_) throw Error("the last SIZE is not followed by its XYZI");
+    if (file.pack && packed_ != static_cast<std::int64_t>(file.models.size()))
+      throw Error(fmt::format("PACK says {} models, there are {}", packed_, file.models.size()));
+    check_vox_scene(file);
+  }
+
+ private:
+  std::optional<VoxModel> model_;  // whose XYZI is to come
+  int packed_ = 0;
+  bool known_ = false;
+};
+
+// The version; the bytes up to the children of MAIN have been looked at.
+int parse_header(std::string_view bytes, std::uint64_t file_bytes) {
+  if (bytes.empty()) throw Error("is empty (0 bytes); a MagicaVoxel file is needed");
+  if (bytes.substr(0, kLfsPointer.size()) == kLfsPointer)
+    throw Error("is a Git LFS pointer, not the file itself; fetch it with: git lfs pull");
+  if (bytes.substr(0, kMagic.size()) != kMagic) {
+    std::string begin;
+    for (const char byte : bytes.substr(0, kMagic.size()))
+      begin += fmt::format("{}{:02x}", begin.empty() ? "" : " ", static_cast<unsigned char>(byte));
+    throw Error(fmt::format("is no MagicaVoxel file: it begins with the bytes {}, not with 'VOX '", begin));
+  }
+  if (bytes.size() < kHeaderBytes)
+    throw Error(fmt::format("is cut off: it has {} bytes, the header alone needs {}", bytes.size(), kHeaderBytes));
+  VoxBytes header(bytes.substr(kMagic.size()));
+  const int version = header.number();
+  if (version != 150 && version != 200) throw Error(fmt::format("has version {}; 150 and 200 are read", version));
+  if (header.take(4) != "MAIN") throw Error("does not begin with the chunk MAIN");
+  const auto content = static_cast<std::uint32_t>(header.number()),
+             children = static_cast<std::uint32_t>(header.number());
+  if (std::uint64_t{content} + children > file_bytes - kHeaderBytes) {
+    throw Error(fmt::format("is cut off: its header says {} bytes, it has {}",
+                            kHeaderBytes + std::uint64_t{content} + children, file_bytes));
+  }
+  return version;
+}
+
+}  // namespace
+
+const VoxPalette& VoxFile::colours() const { return palette ? *palette : vox_default_palette(); }
+
+const VoxPalette& vox_default_palette() {
+  static const VoxPalette palette = [] {
+    VoxPalette colours{};
+    std::size_t count = 0;
+    // 255, 204, ..., 0 in red, green, blue; black, the last one, is none of them.
+    for (int i = 0; i < 215; ++i, ++count) {
+      const auto level = [](int step) { return static_cast<std::uint8_t>(255 - 51 * step); };
+      colours[count] = {level(i / 36), level(i / 6 % 6), level(i % 6), 255};
+    }
+    // Sixteenths of full light that are no fifths of it: ee dd bb aa 88 77 55 44 22 11.
+    for (int channels = 0; channels < 4; ++channels) {
+      for (int level = 14; level > 0; --level) {
+        if (level % 3 == 0) continue;
+        VoxColour& colour = colours[count++];
+        colour[3] = 255;
+        for (int i = 0; i < 3; ++i) {
+          if (channels == 3 || channels == i) colour[i] = static_cast<std::uint8_t>(17 * level);
+        }
+      }
+    }
+    return colours;
+  }();
+  return palette;
+}
+
+std::optional<std::string_view> find_attribute(const VoxAttributes& attributes, std::string_view name) {
+  std::optional<std::string_view> found;
+  for (const auto& [key, value] : attributes) {
+    if (key == name) found = value;
+  }
+  return found;
+}
+
+VoxFile parse_vox(std::string_view bytes) {
+  Parser parser;
+  parser.file.version = parse_header(bytes, bytes.size());
+  VoxBytes header(bytes.substr(12));
+  const auto content = static_cast<std::uint32_t>(header.number()),
+             children = static_cast<std::uint32_t>(header.number());
+  VoxBytes rest(bytes.substr(kHeaderBytes + content, children));
+  while (rest.left() > 0) {
+    const std::uint64_t at = kHeaderBytes + std::uint64_t{content} + children - rest.left();
+    std::string where = fmt::format("at byte {}", at);
+    try {
+      const std::string_view name = rest.take(4);
+      where = fmt::format("chunk {} {}", printable(name), where);
+      const auto own = static_cast<std::uint32_t>(rest.number()), inner = static_cast<std::uint32_t>(rest.number());
+      VoxBytes chunk(rest.take(own));
+      const std::string_view before = chunk.rest(), below = rest.take(inner);
+      parser.chunk(name, chunk);
+      if (!parser.known()) {
+        parser.file.others.push_back({std::string(name), std::string(before), std::string(below)});
+      } else if (chunk.left() > 0 || !below.empty()) {
+        throw Error(fmt::format("has {} bytes more than it needs", chunk.left() + below.size()));
+      }
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", where, error.what()));
+    }
+  }
+  parser.finish();
+  return std::move(parser.file);
+}
+
+VoxFile read_vox(const std::string& path) {
+  try {
+    std::ifstream in(path, std::ios::binary | std::ios::ate);
+    if (!in) throw Error("cannot be opened; is the name right?");
+    const std::streamoff length = in.tellg();
+    if (length < 0) throw Error("cannot be read; is it a file?");
+    const auto size = static_cast<std::uint64_t>(length);
+    in.seekg(0);
+    // Nothing of the file's size is allocated before its beginning has been looked at.
+    std::string bytes(std::min<std::uint64_t>(size, 64), '\0');
+    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    if (!in) throw Error("cannot be read; is it a file?");
+    parse_header(bytes, size);
+    const std::size_t begin = bytes.size();
+    bytes.resize(size);
+    in.read(bytes.data() + begin, static_cast<std::streamsize>(size - begin));
+    if (!in) throw Error("cannot be read to its end");
+    return parse_vox(bytes);
+  } catch (const Error& error) {
+    throw Error(fmt::format("vox '{}': {}", path, error.what()));
+  }
+}
+
+void write_vox(const std::string& path, const VoxFile& file) {
+  const std::string bytes = vox_bytes(file);
+  ReplaceFile place(path);
+  std::ofstream out(place.temporary_path(), std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", path));
+  place.commit();
+}
+
+}  // namespace scarp

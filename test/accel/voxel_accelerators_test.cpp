@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+// The accelerators of voxel grids against their definitions by brute force, and after edits against being built anew.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "march/spiteful_voxels.h"
+#include "scarp/accel/brick_masks.h"
+#include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/empty_spheres.h"
+#include "scarp/accel/octant_cubes.h"
+#include "scarp/base/error.h"
+
+namespace scarp::test {
+namespace {
+
+std::vector<ivec3> solid_voxels(const VoxelGrid& grid) {
+  std::vector<ivec3> voxels;
+  for_each_voxel(grid.box(), [&](const ivec3& v) {
+    if (grid.solid(v)) voxels.push_back(v);
+  });
+  return voxels;
+}
+
+int chebyshev(const ivec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+int cube_distance(const std::vector<ivec3>& solid, const ivec3& v) {
+  int least = EmptyCubes::kFarthest;
+  for (const ivec3& s : solid) least = std::min(least, chebyshev(s - v));
+  return least;
+}
+
+int sphere_distance(const std::vector<ivec3>& solid, const ivec3& v) {
+  std::int64_t least = std::int64_t{EmptySpheres::kFarthest} * EmptySpheres::kFarthest;
+  for (const ivec3& s : solid) {
+    if (s == v) return EmptySpheres::kSolid;
+    const ivec3 gap = glm::max(glm::abs(s - v) - 1, 0);
+    least = std::min<std::int64_t>(least, gap.x * gap.x + gap.y * gap.y + gap.z * gap.z);
+  }
+  int distance = 0;
+  while ((distance + 1) * (distance + 1) <= least) ++distance;
+  return distance;
+}
+
+int octant_side(const std::vector<ivec3>& solid, const ivec3& v, int octant) {
+  int least = OctantCubes::kLargest;
+  for (const ivec3& s : solid) {
+    ivec3 ahead = s - v;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (octant >> axis & 1) ahead[axis] = -ahead[axis];
+    }
+    if (ahead.x >= 0 && ahead.y >= 0 && ahead.z >= 0) least = std::min(least, chebyshev(ahead));
+  }
+  return least;
+}
+
+class VoxelAccelerators : public testing::TestWithParam<VoxelGridKind> {};
+
+TEST_P(VoxelAccelerators, AreWhatTheirDefinitionsSay) {
+  Random random(11);
+  for (int i = 0; i < 3; ++i) {
+    VoxelGrid grid = GetParam().make(random);
+    while (grid.size().x * grid.size().y * grid.size().z > 4000) grid = GetParam().make(random);
+    const EmptyCubes cubes(grid);
+    const EmptySpheres spheres(grid);
+    const OctantCubes octants(grid);
+    const BrickMasks bricks(grid);
+    const std::vector<ivec3> solid = solid_voxels(grid);
+    for_each_voxel(grid.box(), [&](const ivec3& v) {
+      ASSERT_EQ(cubes.distance(v), cube_distance(solid, v));
+      ASSERT_EQ(spheres.distance(v), sphere_distance(solid, v));
+      for (int octant = 0; octant < 8; ++octant) ASSERT_EQ(octants.side(v, octant), octant_side(solid, v, octant));
+      if (grid.solid(v)) {
+        ASSERT_TRUE(bricks.sector(v >> 4) >> VoxelGrid::bit_of(v >> 2) & 1);
+      }
+    });
+  }
+}
+
+TEST_P(VoxelAccelerators, AllBuildersOfCubesAgree) {
+  Random random(12);
+  for (int i = 0; i < 4; ++i) {
+    const VoxelGrid grid = GetParam().make(random);
+    const EmptyCubes two_pass(grid, CubeBuilder::two_pass);
+    EXPECT_TRUE(two_pass == EmptyCubes(grid, CubeBuilder::bit_parallel));
+    EXPECT_TRUE(two_pass == EmptyCubes(grid, CubeBuilder::summed_area));
+  }
+}
+
+TEST_P(VoxelAccelerators, FollowEditsAsIfBuiltAnew) {
+  Random random(13);
+  for (int i = 0; i < 3; ++i) {
+    VoxelGrid grid = GetParam().make(random);
+    EmptyCubes cubes(grid);
+    EmptySpheres spheres(grid);
+    OctantCubes octants(grid);
+    BrickMasks bricks(grid);
+    for (int edit = 0; edit < 8; ++edit) {
+      const VoxelBox changed = random_edit(grid, random);
+      cubes.update(grid, changed);
+      spheres.update(grid, changed);
+      octants.update(grid, changed);
+      bricks.update(grid, changed);
+      ASSERT_TRUE(cubes == EmptyCubes(grid));
+      ASSERT_TRUE(spheres == EmptySpheres(grid));
+      ASSERT_TRUE(octants == OctantCubes(grid));
+      ASSERT_TRUE(bricks == BrickMasks(grid));
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, VoxelAccelerators, testing::ValuesIn(spiteful_voxel_grids()), [](const auto& kind) {
+  std::string name(kind.param.name);
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+});
+
+TEST(VoxelAccelerators, CountNoFartherThanAByte) {
+  VoxelGrid grid({400, 3, 3}, 1);
+  EXPECT_EQ(EmptyCubes(grid).distance({200, 1, 1}), 255);
+  EXPECT_EQ(EmptySpheres(grid).distance({200, 1, 1}), 254);
+  grid.set({399, 1, 1}, 1);
+  for (const CubeBuilder builder : {CubeBuilder::two_pass, CubeBuilder::bit_parallel, CubeBuilder::summed_area}) {
+    const EmptyCubes cubes(grid, builder);
+    EXPECT_EQ(cubes.distance({0, 1, 1}), 255);
+    EXPECT_EQ(cubes.distance({145, 0, 0}), 254);
+  }
+  const EmptySpheres spheres(grid);
+  EXPECT_EQ(spheres.distance({0, 1, 1}), 254);
+  EXPECT_EQ(spheres.distance({200, 1, 1}), 198);
+  EXPECT_EQ(OctantCubes(grid).side({200, 1, 1}, 0), 199);
+  EXPECT_EQ(OctantCubes(grid).side({200, 1, 1}, 1), 255);
+}
+
+TEST(VoxelAccelerators, RefuseGridsThatAreTooLarge) {
+  const VoxelGrid grid({513, 1, 1}, 1);
+  EXPECT_THROW((EmptyCubes(grid)), Error);
+  EXPECT_THROW((EmptySpheres(grid)), Error);
+  EXPECT_THROW((OctantCubes(grid)), Error);
+  EXPECT_NO_THROW((BrickMasks(grid)));
+}
+
+// Above the size at which the builder changes.
+TEST(VoxelAccelerators, OfALargeGridAgreeToo) {
+  VoxelGrid grid({100, 90, 70}, 1);
+  grid.fill_sphere({20, 70, 30}, 9, 1);
+  grid.fill({{90, 3, 60}, {95, 30, 61}}, 1);
+  const EmptyCubes cubes(grid);
+  EXPECT_TRUE(cubes == EmptyCubes(grid, CubeBuilder::bit_parallel));
+  EXPECT_TRUE(cubes == EmptyCubes(grid, CubeBuilder::summed_area));
+}
+
+}  // namespace
+}  // namespace scarp::test

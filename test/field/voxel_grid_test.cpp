@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/field/voxel_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "march/spiteful_voxels.h"
+#include "scarp/base/error.h"
+#include "scarp/field/rotate_voxels.h"
+
+namespace scarp::test {
+namespace {
+
+// What a grid should be: a table of optional entries.
+struct Model {
+  ivec3 size;
+  std::vector<VoxelGrid::Voxel> voxels;
+
+  explicit Model(const VoxelGrid& grid) : size(grid.size()) {
+    for_each_voxel(grid.box(), [&](const ivec3& v) {
+      voxels.push_back(grid.solid(v) ? VoxelGrid::Voxel(grid.entry(v)) : VoxelGrid::Voxel());
+    });
+  }
+  VoxelGrid::Voxel& at(const ivec3& v) { return voxels[static_cast<std::size_t>(v.x + size.x * (v.y + size.y * v.z))]; }
+
+  void expect(const VoxelGrid& grid) {
+    std::int64_t solid = 0;
+    VoxelBox bounds;
+    for_each_voxel(grid.box(), [&](const ivec3& v) {
+      ASSERT_EQ(grid.solid(v), at(v).has_value());
+      if (!at(v)) return;
+      ASSERT_EQ(grid.entry(v), *at(v)) << v.x << ' ' << v.y << ' ' << v.z;
+      ++solid;
+      bounds = around(bounds, {v, v + 1});
+    });
+    EXPECT_EQ(grid.solid_count(), solid);
+    EXPECT_EQ(grid.bounds(), bounds);
+  }
+};
+
+using Grids = testing::TestWithParam<VoxelGridKind>;
+
+TEST_P(Grids, EditsChangeWhatTheySayAndNothingElse) {
+  Random random(3);
+  for (int round = 0; round < 4; ++round) {
+    VoxelGrid grid = GetParam().make(random);
+    for (int i = 0; i < 12; ++i) {
+      Model before(grid);
+      const VoxelBox dirty = random_edit(grid, random);
+      Model after(grid);
+      after.expect(grid);
+      VoxelBox changed;
+      for_each_voxel(grid.box(), [&](const ivec3& v) {
+        if (before.at(v) != after.at(v)) changed = around(changed, {v, v + 1});
+      });
+      EXPECT_EQ(dirty, changed);
+    }
+  }
+}
+
+TEST_P(Grids, TurnAndTurnBack) {
+  Random random(4);
+  const VoxelGrid grid = GetParam().make(random);
+  for (const LatticeRotation& turn : lattice_rotations()) {
+    const VoxelGrid turned = rotated(grid, turn);
+    Model(grid).expect(rotated(turned, turn.inverse()));
+    for_each_voxel(grid.box(), [&](const ivec3& v) {
+      const ivec3 at = rotated_voxel(v, grid.size(), turn);
+      ASSERT_EQ(turned.solid(at), grid.solid(v));
+      // The middle of a voxel turns with the middle of the grid.
+      ASSERT_EQ(dvec3(at) + 0.5 - 0.5 * dvec3(turned.size()), turn(dvec3(v) + 0.5 - 0.5 * dvec3(grid.size())));
+    });
+  }
+}
+
+TEST_P(Grids, CombineVoxelByVoxel) {
+  Random random(5);
+  for (int i = 0; i < 5; ++i) {
+    const VoxelGrid a = GetParam().make(random);
+    VoxelGrid b(a.size(), 8);
+    b.fill_sphere(0.5 * dvec3(a.size()), 4, 200);
+    using Op = std::function<VoxelGrid::Voxel(VoxelGrid::Voxel, VoxelGrid::Voxel)>;
+    const auto check = [&](VoxelBox (VoxelGrid::*combine)(const VoxelGrid&), const Op& op) {
+      VoxelGrid result = a;
+      (result.*combine)(b);
+      Model expected(a), other(b);
+      for_each_voxel(a.box(), [&](const ivec3& v) { expected.at(v) = op(expected.at(v), other.at(v)); });
+      expected.expect(result);
+    };
+    check(&VoxelGrid::unite, [](auto x, auto y) { return x ? x : y; });
+    check(&VoxelGrid::intersect, [](auto x, auto y) { return y ? x : VoxelGrid::Voxel(); });
+    check(&VoxelGrid::subtract, [](auto x, auto y) { return y ? VoxelGrid::Voxel() : x; });
+  }
+}
+
+TEST_P(Grids, KeepTheEntriesThatCanBeSeen) {
+  Random random(6);
+  VoxelGrid grid = GetParam().make(random);
+  Model expected(grid);
+  for_each_voxel(grid.box(), [&](const ivec3& v) {
+    bool hidden = grid.solid(v);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int by : {-1, 1}) {
+        ivec3 neighbour = v;
+        neighbour[axis] += by;
+        hidden = hidden && grid.box().contains(neighbour) && grid.solid(neighbour);
+      }
+    }
+    if (hidden) expected.at(v) = 0;
+  });
+  const std::size_t bytes = grid.bytes(), masks = grid.masks().size_bytes();
+  grid.drop_hidden_entries();
+  expected.expect(grid);
+  EXPECT_LE(grid.bytes(), bytes + masks);
+  const VoxelGrid once = grid;
+  grid.drop_hidden_entries();
+  expected.expect(grid);
+  random_edit(grid, random);
+  Model(grid).expect(grid);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Grids, testing::ValuesIn(spiteful_voxel_grids()), [](const auto& kind) {
+  std::string name(kind.param.name);
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+});
+
+TEST(VoxelGrid, PacksEntriesOfEachWidth) {
+  for (int bits = 1; bits <= VoxelGrid::kMaxEntryBits; ++bits) {
+    VoxelGrid grid({17, 33, 5}, bits);
+    const std::uint32_t all = (1u << bits) - 1;
+    const auto entry = [&](const ivec3& v) {
+      return static_cast<std::uint32_t>(v.x * 7919 + v.y * 104729 + v.z * 31) & all;
+    };
+    grid.edit(grid.box(), [&](const ivec3& v, const VoxelGrid::Voxel&) { return VoxelGrid::Voxel(entry(v)); });
+    for_each_voxel(grid.box(), [&](const ivec3& v) { ASSERT_EQ(grid.entry(v), entry(v)) << bits; });
+    EXPECT_THROW(grid.set({0, 0, 0}, all + 1), Error);
+  }
+}
+
+TEST(VoxelGrid, RefusesSizesOutOfRange) {
+  EXPECT_THROW(VoxelGrid({0, 1, 1}), Error);
+  EXPECT_THROW(VoxelGrid({1, 2049, 1}), Error);
+  EXPECT_THROW(VoxelGrid({1, 1, 1}, 0), Error);
+  EXPECT_THROW(VoxelGrid({1, 1, 1}, 25), Error);
+  EXPECT_NO_THROW(VoxelGrid({2048, 1, 1}));
+  VoxelGrid grid({4, 4, 4});
+  EXPECT_THROW(grid.unite(VoxelGrid({4, 4, 5})), Error);
+}
+
+// The post's object: 32^3, each solid voxel with a colour of its own.
+TEST(VoxelGrid, HoldsTheStandardObjectInFewBytes) {
+  VoxelGrid grid({32, 32, 32}, 24);
+  grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
+    const dvec3 from_middle = dvec3(v) + 0.5 - 16.0;
+    return dot(from_middle, from_middle) - 0.1 <= 15.5 * 15.5
+               ? VoxelGrid::Voxel(static_cast<std::uint32_t>(v.x | v.y << 8 | v.z << 16))
+               : VoxelGrid::Voxel();
+  });
+  EXPECT_EQ(grid.solid_count(), 15'408);
+  EXPECT_LT(grid.bytes() * 1024, 50u << 20);
+  grid.drop_hidden_entries();
+  EXPECT_LT(grid.bytes() * 1024, 16u << 20);
+}
+
+}  // namespace
+}  // namespace scarp::test

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// Any bytes as a .vox file: a document that its own bytes give again, or refused with an Error of one line.
+#include "scarp/source/vox_file.h"
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "fuzz/fuzz.h"
+#include "scarp/base/error.h"
+#include "scarp/source/vox_scene.h"
+
+namespace {
+
+void require(bool good) {
+  if (!good) std::abort();
+}
+
+void expect_one_line(const scarp::Error& error) {
+  const std::string_view text = error.what();
+  require(!text.empty() && text.find_first_of("\r\n") == std::string_view::npos);
+}
+
+void parse(std::string_view bytes) {
+  try {
+    const scarp::VoxFile file = scarp::parse_vox(bytes);
+    require(scarp::parse_vox(scarp::vox_bytes(file)) == file);
+    for (const scarp::VoxModel& model : file.models) {
+      for (const scarp::VoxVoxel& voxel : model.voxels)
+        require(voxel.x < model.size.x && voxel.y < model.size.y && voxel.z < model.size.z && voxel.index > 0);
+    }
+    try {
+      for (const scarp::VoxInstance& instance : scarp::vox_instances(file))
+        require(instance.model >= 0 && static_cast<std::size_t>(instance.model) < file.models.size());
+    } catch (const scarp::Error& error) {
+      expect_one_line(error);
+    }
+  } catch (const scarp::Error& error) {
+    expect_one_line(error);
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  parse(bytes);
+  // A length that fits is hard to guess: the same bytes as the children of a whole MAIN.
+  std::string file("VOX \xc8\0\0\0MAIN\0\0\0\0", 16);
+  for (int i = 0; i < 4; ++i) file += static_cast<char>(size >> (8 * i) & 255);
+  file += bytes;
+  parse(file);
+  return 0;
+}

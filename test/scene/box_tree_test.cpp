@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/box_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+namespace scarp {
+namespace {
+
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+dvec3 point(Random& random, double size) {
+  return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
+}
+
+// Whether the ray meets the closed box, in long double.
+bool meets(const Ray& ray, const WorldBox& box) {
+  long double t_in = ray.t_min, t_out = ray.t_max;
+  for (int axis = 0; axis < 3; ++axis) {
+    const long double o = ray.origin[axis], d = ray.direction[axis];
+    if (d == 0) {
+      if (o < box.low[axis] || o > box.high[axis]) return false;
+      continue;
+    }
+    const long double a = (box.low[axis] - o) / d, b = (box.high[axis] - o) / d;
+    t_in = std::max(t_in, std::min(a, b));
+    t_out = std::min(t_out, std::max(a, b));
+  }
+  return t_in <= t_out;
+}
+
+std::vector<WorldBox> random_boxes(Random& random, int count, double spread, double size) {
+  std::vector<WorldBox> boxes;
+  for (int i = 0; i < count; ++i) {
+    const dvec3 at = point(random, spread), half = glm::abs(point(random, size));
+    boxes.push_back({at - half, at + half});
+  }
+  return boxes;
+}
+
+void expect_no_box_is_lost(const std::vector<WorldBox>& boxes, const Ray& ray) {
+  const BoxTree tree(boxes);
+  std::set<std::uint32_t> visited;
+  tree.traverse(ray, [&](std::uint32_t object) {
+    EXPECT_TRUE(visited.insert(object).second);
+    return ray.t_max;
+  });
+  for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+    if (meets(ray, boxes[i])) {
+      EXPECT_TRUE(visited.contains(i)) << i;
+    }
+  }
+}
+
+TEST(BoxTree, LosesNoBox) {
+  Random random(1);
+  for (int i = 0; i < 3000; ++i) {
+    const int count = static_cast<int>(uniform(random, 1, 40));
+    const double spread = std::pow(10.0, uniform(random, -3, 6));
+    const auto boxes = random_boxes(random, count, spread, spread * uniform(random, 0, 0.3));
+    Ray ray;
+    ray.direction = point(random, std::pow(10.0, uniform(random, -6, 6)));
+    if (i % 3 == 0) ray.direction[i / 3 % 3] = 0;
+    // At a corner of a box, a grazing touch.
+    const WorldBox& target = boxes[static_cast<std::size_t>(i) % boxes.size()];
+    ray.origin =
+        (i % 2 ? target.low : target.high) - uniform(random, 0, 10) * spread / length(ray.direction) * ray.direction;
+    if (i % 5 == 0) ray.origin = point(random, spread);
+    expect_no_box_is_lost(boxes, ray);
+  }
+}
+
+TEST(BoxTree, FindsBoxesFromFarAway) {
+  Random random(2);
+  const auto boxes = random_boxes(random, 200, 100, 5);
+  for (int i = 0; i < 200; ++i) {
+    Ray ray;
+    ray.direction = normalize(point(random, 1));
+    ray.origin = boxes[static_cast<std::size_t>(i)].low + 0.5 - 1e7 * ray.direction;
+    expect_no_box_is_lost(boxes, ray);
+  }
+}
+
+TEST(BoxTree, VisitsNoBoxBeyondTheEnd) {
+  std::vector<WorldBox> row;
+  for (int i = 0; i < 1000; ++i) row.push_back({dvec3(10.0 * i, 0, 0), dvec3(10.0 * i + 1, 1, 1)});
+  const BoxTree tree(row);
+  Ray ray;
+  ray.origin = {-1, 0.5, 0.5};
+  ray.direction = {1, 0, 0};
+  int visits = 0;
+  tree.traverse(ray, [&](std::uint32_t object) {
+    EXPECT_EQ(object, static_cast<std::uint32_t>(visits));  // nearest first
+    return ++visits == 3 ? 15.0 : ray.t_max;
+  });
+  EXPECT_EQ(visits, 3);
+}
+
+TEST(BoxTree, TakesManyBoxesInOnePlace) {
+  const std::vector<WorldBox> same(5000, WorldBox{dvec3(1.0), dvec3(2.0)});
+  Ray ray;
+  ray.origin = {1.5, 1.5, 9};
+  int visits = 0;
+  BoxTree(same).traverse(ray, [&](std::uint32_t) {
+    ++visits;
+    return ray.t_max;
+  });
+  EXPECT_EQ(visits, 5000);
+  BoxTree().traverse(ray, [&](std::uint32_t) { return ADD_FAILURE(), 0.0; });
+}
+
+}  // namespace
+}  // namespace scarp

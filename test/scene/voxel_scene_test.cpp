@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/voxel_scene.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <random>
+
+#include "scarp/base/error.h"
+#include "scarp/scene/from_vox.h"
+
+namespace scarp {
+namespace {
+
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+dvec3 direction(Random& random) {
+  for (;;) {
+    const dvec3 d(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+    if (dot(d, d) > 0.01 && dot(d, d) < 1) return normalize(d);
+  }
+}
+
+std::shared_ptr<const VoxelModel> model(int size, double share, std::string_view march, Random& random) {
+  VoxelGrid grid(ivec3(size), 8);
+  grid.edit(grid.box(), [&](const ivec3&, const VoxelGrid::Voxel&) {
+    return uniform(random, 0, 1) < share ? VoxelGrid::Voxel(1 + random() % 255) : VoxelGrid::Voxel();
+  });
+  return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(march));
+}
+
+glm::dmat3 turned(Random& random, double scale) {
+  return glm::dmat3(glm::rotate(glm::dmat4(1), uniform(random, 0, 6), direction(random))) * scale;
+}
+
+// Each object on its own, by the oracle.
+VoxelSceneHit one_by_one(const std::vector<std::shared_ptr<const VoxelModel>>& models,
+                         const std::vector<VoxelPlace>& places, const Ray& ray) {
+  VoxelSceneHit best;
+  for (std::uint32_t i = 0; i < places.size(); ++i) {
+    const VoxelScene alone(models, std::vector{places[i]});
+    const VoxelSceneHit hit = alone.closest_hit(ray);
+    if (hit && (!best || hit.hit.t < best.hit.t)) best = {hit.hit, i};
+  }
+  return best;
+}
+
+TEST(VoxelScene, FindsTheNearestOfTurnedAndOverlappingObjects) {
+  Random random(1);
+  int hits = 0;
+  for (int round = 0; round < 20; ++round) {
+    const std::vector models = {model(8, 0.2, "voxel-bricks", random), model(5, 0.5, "voxel-cubes", random),
+                                model(3, 0.9, "voxel-octants", random)};
+    std::vector<VoxelPlace> places;
+    for (int i = 0; i < 25; ++i) {
+      const double scale = round % 2 ? 1 : uniform(random, 0.1, 3);
+      const dvec3 at(uniform(random, -20, 20), uniform(random, -20, 20), uniform(random, -20, 20));
+      places.push_back({static_cast<std::uint32_t>(i % 3), i % 4 ? turned(random, scale) : glm::dmat3(1.0), at});
+    }
+    const VoxelScene scene(models, places);
+    for (int i = 0; i < 40; ++i) {
+      Ray ray;
+      ray.direction = direction(random) * uniform(random, 0.1, 10);
+      ray.origin = dvec3(uniform(random, -30, 30), uniform(random, -30, 30), uniform(random, -30, 30));
+      const VoxelSceneHit expected = one_by_one(models, places, ray), hit = scene.closest_hit(ray);
+      ASSERT_EQ(static_cast<bool>(hit), static_cast<bool>(expected));
+      ASSERT_EQ(scene.occluded(ray), static_cast<bool>(expected));
+      if (!hit) continue;
+      ++hits;
+      // The object is the same; t up to that of a ray quantised where it comes in, whatever else is in the scene.
+      ASSERT_EQ(hit.object, expected.object);
+      ASSERT_EQ(hit.hit, expected.hit);
+      EXPECT_NEAR(length(scene.normal(hit)), hit.hit.face == VoxelFace::inside ? 0 : 1, 1e-12);
+      EXPECT_LE(dot(scene.normal(hit), ray.direction), hit.hit.face == VoxelFace::inside ? 0.0 : 1e-12);
+    }
+  }
+  EXPECT_GT(hits, 100);
+}
+
+TEST(VoxelScene, HitsWhatStandsAMillionMetresAway) {
+  Random random(2);
+  VoxelPlace place{0, turned(random, 0.25), dvec3(1e6, -2e6, 3e6)};
+  VoxelGrid grid(ivec3(9), 1);
+  grid.fill(grid.box(), 1);
+  const VoxelScene scene({std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))},
+                         std::vector{place});
+  Ray ray;
+  ray.direction = place.world_from_grid * dvec3(4.5) + place.origin;
+  const VoxelSceneHit hit = scene.closest_hit(ray);
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit.hit.t, 1, 1e-5);
+}
+
+// A shadow ray starts in the empty voxel before the face, by number, and is not stopped by the voxel that it leaves.
+TEST(VoxelScene, ShadowRaysDoNotHitWhatTheyLeave) {
+  Random random(3);
+  VoxelGrid grid(ivec3(40), 1);
+  grid.fill_sphere(dvec3(20), 19.5, 1);
+  const VoxelScene scene({std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))},
+                         std::vector{VoxelPlace{0, turned(random, 0.1), dvec3(100)}});
+  const dvec3 middle = 0.5 * (scene.box().low + scene.box().high);
+  int free = 0;
+  for (int i = 0; i < 2000; ++i) {
+    Ray ray;
+    ray.direction = direction(random);
+    ray.origin = middle - 10.0 * ray.direction;
+    const VoxelSceneHit hit = scene.closest_hit(ray);
+    ASSERT_TRUE(hit);
+    // Straight out of the ball: nothing is in the way.
+    Ray out;
+    out.origin = ray.at(hit.hit.t);
+    out.direction = scene.normal(hit);
+    free += scene.occluded_from(hit, out) ? 0 : 1;
+  }
+  EXPECT_EQ(free, 2000);
+}
+
+TEST(VoxelScene, RefusesWhatIsNoPlace) {
+  Random random(4);
+  const std::vector models = {model(3, 0.5, "voxel-planes", random)};
+  const auto refused = [&](const VoxelPlace& place) { EXPECT_THROW(VoxelScene(models, std::vector{place}), Error); };
+  refused({1, glm::dmat3(1.0), dvec3(0)});
+  refused({0, glm::dmat3(0.0), dvec3(0)});
+  refused({0, glm::dmat3(1, 0, 0, 0, 2, 0, 0, 0, 1), dvec3(0)});
+  refused({0, glm::dmat3(1, 0, 0, 1, 1, 0, 0, 0, 1), dvec3(0)});
+  refused({0, glm::dmat3(1.0), dvec3(std::nan(""))});
+  EXPECT_FALSE(VoxelScene({}, {}).closest_hit(Ray{}));
+}
+
+TEST(VoxelModel, FollowsEdits) {
+  for (const MarchEntry& march : voxel_marches()) {
+    VoxelModel model(VoxelGrid(ivec3(20), 8), march);
+    EXPECT_TRUE(model.box().empty());
+    model.edit([](VoxelGrid& grid) { return grid.fill({{5, 5, 5}, {9, 9, 9}}, 3); });
+    model.edit([](VoxelGrid& grid) { return grid.clear(VoxelBox{{5, 5, 8}, {9, 9, 9}}); });
+    VoxelRay ray;
+    ray.origin = {6.5, 6.5, 30};
+    const auto quantised = quantise(ray, model.box());
+    ASSERT_TRUE(quantised);
+    const VoxelHit hit = march.voxel_cpu(model.target(), *quantised, nullptr);
+    ASSERT_TRUE(hit) << march.name;
+    EXPECT_EQ(hit.voxel, ivec3(6, 6, 7));
+    EXPECT_EQ(hit.t, 22);
+    EXPECT_EQ(model.colour(hit.entry), (VoxelColour{3, 0, 0}));
+  }
+}
+
+VoxFile two_cubes(int version) {
+  VoxFile file;
+  file.version = version;
+  VoxModel red{{4, 4, 4}, {}}, green{{4, 4, 4}, {}};
+  for (std::uint8_t i = 0; i < 64; ++i) {
+    const auto x = static_cast<std::uint8_t>(i & 3), y = static_cast<std::uint8_t>(i >> 2 & 3),
+               z = static_cast<std::uint8_t>(i >> 4);
+    red.voxels.push_back({x, y, z, 1});
+    green.voxels.push_back({x, y, z, 2});
+  }
+  file.models = {red, green};
+  file.palette.emplace();
+  (*file.palette)[0] = {255, 0, 0, 255};
+  (*file.palette)[1] = {0, 255, 0, 255};
+  file.nodes = {{0, {}, VoxGroup{{1, 3}}},
+                {1, {}, VoxTransform{2, -1, -1, {{}}}},
+                {2, {}, VoxShape{{{0, {}}}}},
+                {3, {}, VoxTransform{4, -1, -1, {{{"_t", "2 0 0"}}}}},
+                {4, {}, VoxShape{{{1, {}}}}}};
+  return file;
+}
+
+// From version 200 on the first of two is seen where they overlap, before the last.
+TEST(FromVox, ShowsOneVoxelWhereTwoOverlap) {
+  for (const int version : {150, 200}) {
+    const VoxelScene scene = voxel_scene_from(two_cubes(version));
+    EXPECT_EQ(scene.box().low, dvec3(-2)) << version;
+    const auto colour_at = [&](double x) {
+      Ray ray;
+      ray.origin = {x, 0.5, 10};
+      const VoxelSceneHit hit = scene.closest_hit(ray);
+      EXPECT_TRUE(hit);
+      EXPECT_EQ(hit.hit.t, 8);
+      return scene.colour(hit);
+    };
+    EXPECT_EQ(colour_at(-1.5), (VoxelColour{255, 0, 0}));
+    EXPECT_EQ(colour_at(3.5), (VoxelColour{0, 255, 0}));
+    EXPECT_EQ(colour_at(1.5), version == 200 ? (VoxelColour{255, 0, 0}) : (VoxelColour{0, 255, 0}));
+  }
+}
+
+// All turns of an odd and an even side: a model stays within half a voxel of its pivot, voxel by voxel.
+TEST(FromVox, PutsTurnedVoxelsWhereTheFileSays) {
+  for (int bits = 0; bits < 128; ++bits) {
+    VoxFile file;
+    file.version = 200;
+    file.models = {{{3, 4, 2}, {{2, 0, 1, 9}}}};
+    file.nodes = {{0, {}, VoxTransform{1, -1, -1, {{{"_t", "10 20 30"}, {"_r", std::to_string(bits)}}}}},
+                  {1, {}, VoxShape{}}};
+    std::vector<VoxInstance> instances;
+    try {
+      instances = vox_instances(file);
+    } catch (const Error&) {
+      continue;  // no rotation
+    }
+    const VoxelScene scene = voxel_scene_from(file);
+    const dvec3 middle = instances[0].turn(dvec3(2.5, 0.5, 1.5) - dvec3(1, 2, 1)) + dvec3(10, 20, 30);
+    Ray ray;
+    ray.origin = middle + dvec3(0, 0, 5);
+    const VoxelSceneHit hit = scene.closest_hit(ray);
+    ASSERT_TRUE(hit) << bits;
+    EXPECT_EQ(hit.hit.t, 4.5);
+    EXPECT_EQ(hit.hit.voxel, ivec3(2, 0, 1));
+    EXPECT_EQ(scene.normal(hit), dvec3(0, 0, 1));
+  }
+}
+
+}  // namespace
+}  // namespace scarp

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/vox_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "scarp/base/error.h"
+#include "scarp/source/vox_scene.h"
+
+namespace scarp {
+namespace {
+
+VoxFile cube_file() {
+  VoxFile file;
+  file.version = 200;
+  file.models = {{{3, 2, 1}, {{0, 0, 0, 1}, {2, 1, 0, 255}}}};
+  return file;
+}
+
+// A root transform, a group, and under it so many transforms with a shape each.
+VoxFile scene_file(const std::vector<VoxAttributes>& frames) {
+  VoxFile file = cube_file();
+  VoxGroup group;
+  file.nodes = {{0, {}, VoxTransform{1}}, {1, {}, VoxGroup{}}};
+  int id = 2;
+  for (const VoxAttributes& frame : frames) {
+    group.children.push_back(id);
+    file.nodes.push_back({id, {}, VoxTransform{id + 1, -1, 0, {frame}}});
+    file.nodes.push_back({id + 1, {}, VoxShape{}});
+    id += 2;
+  }
+  file.nodes[1].content = group;
+  return file;
+}
+
+std::string message_of(const auto& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string parse_message(const std::string& bytes) {
+  return message_of([&] { parse_vox(bytes); });
+}
+
+std::string scene_message(const VoxFile& file) {
+  return message_of([&] { vox_bytes(file); });
+}
+
+TEST(VoxFile, ReadsWhatItWrites) {
+  VoxFile file = scene_file({{{"_t", "1 2 3"}, {"_r", "40"}}, {}});
+  file.layers = {{0, {{"_name", "walls"}}, -1}, {1, {{"_hidden", "1"}}, -1}};
+  file.palette.emplace();
+  (*file.palette)[3] = {1, 2, 3, 4};
+  file.index_map.emplace();
+  file.materials = {{7, {{"_type", "_emit"}, {"_emit", "0.4"}}}};
+  file.others = {{"NOTE", std::string("\1\0\0\0", 4), ""}, {"XXXX", "abc", "de"}};
+  file.pack = true;
+  EXPECT_EQ(parse_vox(vox_bytes(file)), file);
+}
+
+TEST(VoxFile, HasTheDefaultPaletteOfTheFormat) {
+  const VoxPalette& palette = vox_default_palette();
+  EXPECT_EQ(palette[0], (VoxColour{255, 255, 255, 255}));
+  EXPECT_EQ(palette[1], (VoxColour{255, 255, 204, 255}));
+  EXPECT_EQ(palette[6], (VoxColour{255, 204, 255, 255}));
+  EXPECT_EQ(palette[214], (VoxColour{0, 0, 51, 255}));
+  EXPECT_EQ(palette[215], (VoxColour{238, 0, 0, 255}));
+  EXPECT_EQ(palette[224], (VoxColour{17, 0, 0, 255}));
+  EXPECT_EQ(palette[225], (VoxColour{0, 238, 0, 255}));
+  EXPECT_EQ(palette[235], (VoxColour{0, 0, 238, 255}));
+  EXPECT_EQ(palette[254], (VoxColour{17, 17, 17, 255}));
+  EXPECT_EQ(&cube_file().colours(), &palette);
+}
+
+TEST(VoxFile, RefusesWhatIsNone) {
+  const std::string good = vox_bytes(cube_file());
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "is empty", parse_message(""));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "begins with the bytes ff d8 ff e0",
+                      parse_message("\xff\xd8\xff\xe0 JFIF, a picture"));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "git lfs pull",
+                      parse_message("version https://git-lfs.github.com/spec/v1\n"));
+  std::string version = good;
+  version[4] = 77;
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "has version 77", parse_message(version));
+  // Whatever is missing: an error, in one line.
+  for (std::size_t length = 0; length < good.size(); ++length) {
+    const std::string message = parse_message(good.substr(0, length));
+    EXPECT_NE(message, "no error") << length;
+    EXPECT_EQ(message.find('\n'), std::string::npos);
+  }
+}
+
+TEST(VoxFile, RefusesSizesThatLie) {
+  const std::string good = vox_bytes(cube_file());
+  const auto with = [&](std::size_t at, unsigned value) {
+    std::string bytes = good;
+    for (std::size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<char>(value >> (8 * i) & 255);
+    return parse_message(bytes);
+  };
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "is cut off", with(16, 0x7fffffff));       // of MAIN
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "is cut off", with(24, 0xfffffff0));       // of SIZE
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "each side must be", with(32, 1u << 30));  // x
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "each side must be", with(32, 0));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "lies outside", with(32, 2));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "2147483648 voxels need", with(56, 1u << 31));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "voxels need", with(56, 1));
+  std::string empty = good;
+  empty[63] = 0;
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "palette index 0", parse_message(empty));
+}
+
+TEST(VoxFile, RefusesScenesThatCannotBe) {
+  VoxFile cyclic = scene_file({{}});
+  std::get<VoxTransform>(cyclic.nodes[2].content).child = 1;
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "contains itself", scene_message(cyclic));
+  VoxFile missing = scene_file({{}});
+  std::get<VoxShape>(missing.nodes[3].content).models[0].model = 1;
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "its model 1 does not exist", scene_message(missing));
+  VoxFile orphan = scene_file({{}});
+  std::get<VoxTransform>(orphan.nodes[2].content).child = 9;
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "its child 9 does not exist", scene_message(orphan));
+  VoxFile twice = scene_file({{}});
+  twice.nodes[3].id = 2;
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "two nodes have the number 2", scene_message(twice));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "none of the lattice's", scene_message(scene_file({{{"_r", "5"}}})));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "a whole number is needed", scene_message(scene_file({{{"_r", "x"}}})));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "'x y z'", scene_message(scene_file({{{"_t", "1 2"}}})));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "is the most", scene_message(scene_file({{{"_t", "1 2 99999999"}}})));
+}
+
+// Each level of groups holds the next one twice: 2^40 models in 100 nodes.
+TEST(VoxFile, RefusesMoreInstancesThanThereCanBe) {
+  VoxFile file = cube_file();
+  for (int level = 0; level < 40; ++level) {
+    file.nodes.push_back({3 * level, {}, VoxGroup{{3 * level + 1, 3 * level + 2}}});
+    file.nodes.push_back({3 * level + 1, {}, VoxTransform{3 * level + 3}});
+    file.nodes.push_back({3 * level + 2, {}, VoxTransform{3 * level + 3}});
+  }
+  file.nodes.push_back({120, {}, VoxShape{}});
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "more than 1048576 models", message_of([&] { vox_instances(file); }));
+}
+
+TEST(VoxScene, TurnsAndMovesFromTheInsideOut) {
+  // Row 0 takes y, row 1 takes -x: a quarter turn clockwise about z.
+  VoxFile file = scene_file({{{"_t", "10 0 0"}, {"_r", std::to_string(1 | 0 << 2 | 1 << 5)}}});
+  std::get<VoxTransform>(file.nodes[0].content).frames = {
+      {{"_t", "0 0 100"}, {"_r", std::to_string(1 | 0 << 2 | 1 << 5)}}};
+  const std::vector<VoxInstance> instances = vox_instances(file);
+  ASSERT_EQ(instances.size(), 1u);
+  EXPECT_EQ(instances[0].move, ivec3(0, -10, 100));
+  EXPECT_EQ(instances[0].turn(ivec3(1, 2, 3)), ivec3(-1, -2, 3));
+}
+
+TEST(VoxScene, LeavesOutWhatIsHidden) {
+  VoxFile file = scene_file({{}, {}, {}});
+  file.nodes[2].attributes = {{"_hidden", "1"}};
+  file.layers = {{0, {}, -1}, {4, {{"_hidden", "1"}}, -1}};
+  std::get<VoxTransform>(file.nodes[4].content).layer = 4;
+  EXPECT_EQ(vox_instances(file).size(), 1u);
+  EXPECT_EQ(vox_instances(file, {.frame = 0, .hidden = true}).size(), 3u);
+}
+
+TEST(VoxScene, FollowsFrames) {
+  VoxFile file = scene_file({{}});
+  std::get<VoxTransform>(file.nodes[2].content).frames = {{{"_t", "1 0 0"}}, {{"_f", "5"}, {"_t", "2 0 0"}}};
+  EXPECT_EQ(vox_instances(file)[0].move.x, 1);
+  EXPECT_EQ(vox_instances(file, {.frame = 4})[0].move.x, 1);
+  EXPECT_EQ(vox_instances(file, {.frame = 5})[0].move.x, 2);
+}
+
+TEST(VoxFile, IsWrittenWholeOrNotAtAll) {
+  const auto path = (std::filesystem::path(testing::TempDir()) / "written.vox").string();
+  write_vox(path, cube_file());
+  EXPECT_EQ(read_vox(path), cube_file());
+  VoxFile bad = cube_file();
+  bad.models[0].voxels[0].index = 0;
+  EXPECT_THROW(write_vox(path, bad), Error);
+  EXPECT_EQ(read_vox(path), cube_file());
+  std::filesystem::remove(path);
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "cannot be opened", message_of([&] { read_vox(path); }));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "cannot be", message_of([&] { read_vox(testing::TempDir()); }));
+}
+
+// Files as people have them: those of ../shared/data/vox beside the checkout. The bytes come back as they were.
+TEST(VoxFile, ReadsRealFiles) {
+  const auto folder = std::filesystem::path(SCARP_SOURCE_DIR) / ".." / "shared" / "data" / "vox";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data beside the checkout (../shared/data/vox)";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const VoxFile file = read_vox(entry.path().string());
+    std::ifstream in(entry.path(), std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_EQ(vox_bytes(file), bytes) << entry.path();
+    EXPECT_GE(vox_instances(file).size(), 1u);
+  }
+}
+
+}  // namespace
+}  // namespace scarp
