@@ -23,7 +23,7 @@ namespace {
 #ifdef NDEBUG
 constexpr int kRaysPerPair = 2'500, kWideRays = 500;
 #else
-constexpr int kRaysPerPair = 250, kWideRays = 50;
+constexpr int kRaysPerPair = 100, kWideRays = 20;
 #endif
 constexpr int kRaysPerField = 250;
 
