@@ -56,6 +56,7 @@ struct Padded {
 EmptyCubes::EmptyCubes(const VoxelGrid& grid, CubeBuilder builder)
     : distances_(glm::min(grid.size(), kMaxAcceleratedSide), 1, kFarthest) {
   require_accelerable(grid, "empty cubes");
+  if (grid.solid_count() == 0) return;
   const bool small = distances_.bytes() <= kBitParallelVoxels;
   if (builder == CubeBuilder::summed_area) {
     summed_area(grid);
@@ -126,7 +127,7 @@ void EmptyCubes::bit_parallel(const VoxelGrid& grid) {
   // Eight counters to a word, each row begins a new one.
   std::vector<std::uint64_t> counters(groups * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
   for (int round = 0; round < kFarthest && !rows.full(); ++round) {
-    if (round > 0 && grid.solid_count() > 0) rows.dilate();
+    if (round > 0) rows.dilate();
     std::uint64_t* counter = counters.data();
     for (std::size_t begin = 0; begin < rows.words.size(); begin += rows.words_per_row) {
       for (std::size_t i = 0; i < groups; ++i) *counter++ += kZeros[rows.words[begin + i / 8] >> (8 * (i % 8)) & 255];

@@ -260,6 +260,8 @@ void VoxelGrid::drop_hidden_entries() {
                         from_z = m << 16 | neighbour(brick, {0, 0, -1}) >> 48;
     seen[index++] = m & ~(to_x & from_x & to_y & from_y & to_z & from_z);
   });
+  // Where nothing is hidden, which voxels have an entry need not be kept.
+  if (seen == masks_) return;
   for (std::size_t page = 0; page < pages_.size(); ++page) {
     PageVoxels voxels = unpack(page);
     const std::size_t first = page * kPageBricks, count = std::min<std::size_t>(kPageBricks, masks_.size() - first);
