@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scarp/march/max_mip_resume.h"
 #include "scarp/march/max_mip_walk.h"
 
 namespace scarp {
 namespace {
 
 using max_mip::Ask;
+using max_mip::kNotClear;
 
 // Beyond this many cells doubles no longer tell one cell from the next.
 constexpr double kFarthestCell = 0x1p51;
@@ -25,7 +27,8 @@ bool countable(const GridRay& local, const Ray& ray) {
 }
 
 template <Ask ask>
-Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* stats, std::vector<Hit>* all) {
+Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_clear, MarchStats* stats,
+          std::vector<Hit>* all) {
   const HeightField& field = *target.field;
   Hit hit;
   if (stats) *stats = {};
@@ -41,7 +44,7 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
     for (int axis = 0; axis < 3; ++axis) scaled.direction[axis] = std::ldexp(ray.direction[axis], -exponent);
     scaled.t_min = std::ldexp(ray.t_min, exponent);
     scaled.t_max = std::ldexp(ray.t_max, exponent);
-    hit = march<ask>(target, scaled, halvings, stats, all);
+    hit = march<ask>(target, scaled, halvings, kNotClear, stats, all);
     if (hit) hit.t = std::ldexp(hit.t, -exponent);
     if (all) {
       for (Hit& one : *all) one.t = std::ldexp(one.t, -exponent);
@@ -60,9 +63,9 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
       if (stats) *stats = walk.stats;
     };
     if (grid.has_holes) {
-      run(max_mip::Walk<T, true, ask>(field, grid, *target.pyramid, ray, local, halvings, hit, all));
+      run(max_mip::Walk<T, true, ask>(field, grid, *target.pyramid, ray, local, halvings, t_clear, hit, all));
     } else {
-      run(max_mip::Walk<T, false, ask>(field, grid, *target.pyramid, ray, local, halvings, hit, all));
+      run(max_mip::Walk<T, false, ask>(field, grid, *target.pyramid, ray, local, halvings, t_clear, hit, all));
     }
   });
   return hit;
@@ -71,20 +74,28 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
 }  // namespace
 
 Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats) {
-  return march<Ask::closest>(target, ray, 0, stats, nullptr);
+  return march<Ask::closest>(target, ray, 0, kNotClear, stats, nullptr);
 }
 
 Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  return march<Ask::bisected>(target, ray, settings.bisect.halvings, stats, nullptr);
+  return march<Ask::bisected>(target, ray, settings.bisect.halvings, kNotClear, stats, nullptr);
 }
 
 bool occluded_max_mip(const HeightTarget& target, const Ray& ray) {
-  return march<Ask::any>(target, ray, 0, nullptr, nullptr).status == HitStatus::hit;
+  return march<Ask::any>(target, ray, 0, kNotClear, nullptr, nullptr).status == HitStatus::hit;
+}
+
+Hit resume_max_mip(const HeightTarget& target, const Ray& ray, double t_clear) {
+  return march<Ask::closest>(target, ray, 0, t_clear, nullptr, nullptr);
+}
+
+bool resume_occluded_max_mip(const HeightTarget& target, const Ray& ray, double t_clear) {
+  return march<Ask::any>(target, ray, 0, t_clear, nullptr, nullptr).status == HitStatus::hit;
 }
 
 HitStatus all_hits_max_mip(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
   hits.clear();
-  return march<Ask::all>(target, ray, 0, nullptr, &hits).status;
+  return march<Ask::all>(target, ray, 0, kNotClear, nullptr, &hits).status;
 }
 
 }  // namespace scarp

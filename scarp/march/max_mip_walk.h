@@ -31,9 +31,10 @@ enum class Through { point, x_line, y_line };
 template <class T, bool Holes, Ask ask>
 class Walk {
  public:
-  /// `all` is where the hits go when all are asked for.
+  /// `all` is where the hits go when all are asked for. Up to `t_clear` the ray is known to be above the ground by more
+  /// than rounding: the walk begins in the cell that holds it.
   Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray,
-       const GridRay& local, int halvings, Hit& answer, std::vector<Hit>* all)
+       const GridRay& local, int halvings, double t_clear, Hit& answer, std::vector<Hit>* all)
       : field_(field),
         grid_(grid),
         levels_(pyramid.levels().data()),
@@ -52,6 +53,7 @@ class Walk {
         solid_(field.settings().solid),
         wraps_(field.wraps()),
         halvings_(halvings),
+        t_clear_(t_clear),
         ray_(ray),
         answer_(answer),
         all_(all) {}
@@ -59,6 +61,7 @@ class Walk {
   void run() {
     if (strict_) {
       if (!leave_start_cell()) return;
+      if (t_clear_ > t_in_ && !skip_to(t_clear_)) return;
     } else {
       if (!enter()) return;
       if (!x_.moves() && !y_.moves()) return vertical();
@@ -123,23 +126,32 @@ class Walk {
     const int from_outside = std::max(top_ - 3, 0);
     level_ = t_in_ == ray_.t_min ? 0 : from_outside;
     const double highest = field_.max_sample();
+    if (t_clear_ > t_in_) {
+      level_ = 0;
+      return skip_to(t_clear_);
+    }
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
-      // Down to the highest sample, less the two roundings of the quotient; from there back to where the cell begins,
-      // so that a peak which the ray just touches is still ahead.
+      // Down to the highest sample, less the two roundings of the quotient.
       const double quotient = (highest - z_) / dz_, t_top = quotient - 2 * kUnit * std::abs(quotient);
       if (t_top > t_end_) return false;
       side_ = Side::above;
       level_ = from_outside;
-      if (t_top > t_in_) {
-        col_ = x_.cell_before(t_top);
-        row_ = y_.cell_before(t_top);
-        t_in_ = std::max({t_in_, x_.line_time(col_ + 1 - x_.ahead), y_.line_time(row_ + 1 - y_.ahead)});
-        return true;
-      }
+      if (t_top > t_in_) return skip_to(t_top);
     }
     col_ = x_.cell_after(t_in_);
     row_ = y_.cell_after(t_in_);
+    return true;
+  }
+
+  // On to the cell that holds a time up to which the ray is above the ground, and back to where that cell begins, so
+  // that a peak which the ray just touches is still ahead. False: the ray ends before.
+  bool skip_to(double t) {
+    if (t > t_end_) return false;
+    side_ = Side::above;
+    col_ = x_.cell_before(t);
+    row_ = y_.cell_before(t);
+    t_in_ = std::max({t_in_, x_.line_time(col_ + 1 - x_.ahead), y_.line_time(row_ + 1 - y_.ahead)});
     return true;
   }
 
@@ -539,6 +551,7 @@ class Walk {
   double t_in_, t_end_;
   bool strict_, triangles_, solid_, wraps_;
   int halvings_;
+  double t_clear_;
   const Ray& ray_;
 
   int col_ = 0, row_ = 0;  // the cell that the ray is in: this is the state, times are derived from it
