@@ -123,7 +123,7 @@ HWY_INLINE VI fetch(const std::uint32_t* HWY_RESTRICT from, VI at) {
   return hn::Load(di, reinterpret_cast<const std::int32_t*>(word));
 }
 
-template <class T>
+template <bool any, class T>
 HWY_INLINE void node_step(const Ground<T>& g, Packet& p) {
   const VI zero = hn::Zero(di), one = hn::Set(di, 1);
   const MI walking = hn::And(hn::Eq(p.st, zero), hn::Gt(p.l, zero));
@@ -145,15 +145,18 @@ HWY_INLINE void node_step(const Ground<T>& g, Packet& p) {
   const VI at = hn::Add(begin, hn::Add(hn::Mul(row, cols), col));
   const VI word = fetch(g.words, at);
   const VF highest = hn::ConvertTo(df, hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, word))));
-  const VF lowest = hn::ConvertTo(df, hn::And(word, hn::Set(di, 0xffff)));
   const MI clear = hn::And(walking, hn::RebindMask(di, hn::Gt(low, highest)));
-  const VF margin = hn::MulAdd(hn::Set(df, g.m1x2), e.te, p.m2);
-  const MI hit = hn::And(hn::And(walking, hn::Ne(p.seen, zero)), hn::RebindMask(di, hn::Lt(hn::Add(low, margin), lowest)));
   const MI ends = hn::And(clear, hn::RebindMask(di, hn::Ge(e.te, p.tend)));
   const MI on = hn::AndNot(ends, clear);
-  const MI down = hn::AndNot(hn::Or(clear, hit), walking);
   p.st = hn::IfThenElse(ends, one, p.st);
-  p.st = hn::IfThenElse(hit, hn::Set(di, kHit), p.st);
+  MI down = hn::AndNot(clear, walking);
+  if constexpr (any) {
+    const VF lowest = hn::ConvertTo(df, hn::And(word, hn::Set(di, 0xffff)));
+    const VF margin = hn::MulAdd(hn::Set(df, g.m1x2), e.te, p.m2);
+    const MI hit = hn::And(hn::And(walking, hn::Ne(p.seen, zero)), hn::RebindMask(di, hn::Lt(hn::Add(low, margin), lowest)));
+    p.st = hn::IfThenElse(hit, hn::Set(di, kHit), p.st);
+    down = hn::AndNot(hit, down);
+  }
   p.seen = hn::IfThenElse(clear, one, p.seen);
   p.l = hn::IfThenElse(down, hn::Sub(p.l, one), p.l);
   p.advance(on, e, hn::Set(di, g.top));
@@ -164,7 +167,7 @@ HWY_INLINE VF sample_codes(const Ground<float>& g, VI at) {
   return hn::Mul(hn::Sub(h, hn::Set(df, static_cast<float>(g.base))), hn::Set(df, static_cast<float>(g.per_step)));
 }
 
-template <class T>
+template <bool any, class T>
 HWY_INLINE void leaf_step(const Ground<T>& g, Packet& p) {
   const VI zero = hn::Zero(di), one = hn::Set(di, 1);
   const MI leaf = hn::And(hn::Eq(p.st, zero), hn::Eq(p.l, zero));
@@ -219,6 +222,14 @@ HWY_INLINE void leaf_step(const Ground<T>& g, Packet& p) {
   const VF bend = hn::Mul(hn::Mul(hn::Sub(u1, u0), hn::Sub(v1, v0)), hn::Mul(c, hn::Set(df, -0.25f)));
   const VF least = hn::Sub(hn::Min(in, out), hn::Max(bend, f0));
   const MI clear = hn::And(leaf, hn::RebindMask(di, hn::Gt(least, f0)));
+  if constexpr (!any) {
+    p.seen = hn::IfThenElse(clear, one, p.seen);
+    const MI ends = hn::And(clear, hn::RebindMask(di, hn::Ge(e.te, p.tend)));
+    p.st = hn::IfThenElse(ends, one, p.st);
+    p.st = hn::IfThenElse(hn::AndNot(clear, leaf), hn::Set(di, kUnsure), p.st);
+    p.advance(hn::AndNot(ends, clear), e, hn::Set(di, g.top));
+    return;
+  }
   const MI above = hn::And(leaf, hn::RebindMask(di, hn::Gt(in, f0)));
   p.seen = hn::IfThenElse(above, one, p.seen);
   const MI hit = hn::And(hn::And(leaf, hn::Ne(p.seen, zero)), hn::RebindMask(di, hn::Lt(hn::Add(out, hn::MulAdd(hn::Set(df, g.m1x2), e.te, p.m2)), f0)));
@@ -246,7 +257,7 @@ using VD = hn::Vec<decltype(dd)>;
 
 // All that is the same for the rays of a field.
 struct Frame {
-  double cols, rows, highest, base, per_step, relief_codes, relief, upright, all_rows;
+  double cols, rows, highest, base, per_step, relief_codes, relief, upright, all_rows, relief_per_cell;
   std::int32_t mask, shift_x, shift_y, cols_1, rows_1, from_outside;
 };
 
@@ -321,12 +332,23 @@ HWY_NOINLINE void prepare(const Frame& f, const Rays& r, Lanes& a) {
   }
 }
 
-template <class T, int K>
+// Rays that may hit in a cell.
+struct Candidates {
+  std::size_t count = 0;
+  std::int32_t ray[N], col[N], row[N], seen[N];
+  double t_clear[N];
+};
+
+template <bool any, class T, int K>
 class Batch {
  public:
-  Batch(const HeightTarget& target, const SampleGrid<T>& grid, std::span<const Ray> rays, std::uint8_t* blocked)
-      : target_(target), field_(*target.field), rays_(rays), blocked_(blocked) {
+  using Answer = std::conditional_t<any, std::uint8_t, Hit>;
+  Batch(const HeightTarget& target, const SampleGrid<T>& grid, std::span<const Ray> rays, Answer* answers)
+      : target_(target), field_(*target.field), rays_(rays), answers_(answers) {
     const MaxPyramid& pyramid = *target.pyramid;
+    bilinear_ = field_.settings().surface == Surface::bilinear;
+    candidates_.count = 0;
+    std::memset(candidates_.t_clear, 0, sizeof candidates_.t_clear);
     g_.words = lab.words;
     g_.samples = grid.data;
     g_.stride = static_cast<std::int32_t>(grid.row_stride);
@@ -340,7 +362,7 @@ class Batch {
     const std::int32_t side = static_cast<std::int32_t>(std::bit_ceil(static_cast<unsigned>(std::max(g_.cols_1, g_.rows_1) + 1)));
     f_ = {g_.cols_1 + 1.0, g_.rows_1 + 1.0, high, g_.base, g_.per_step, relief_codes, high - low,
           std::max(std::abs(low), std::abs(high)) + std::abs(field_.settings().offset) / field_.settings().scale,
-          static_cast<double>(field_.rows()), side - 1, side - 1 - g_.cols_1, side - 1 - g_.rows_1, g_.cols_1, g_.rows_1, std::max(g_.top - 3, 0)};
+          static_cast<double>(field_.rows()), lab.relief_per_cell, side - 1, side - 1 - g_.cols_1, side - 1 - g_.rows_1, g_.cols_1, g_.rows_1, std::max(g_.top - 3, 0)};
   }
 
   void run() {
@@ -354,7 +376,7 @@ class Batch {
     const VI zero = hn::Zero(di);
     const std::size_t leaf_wait = static_cast<std::size_t>(lab.leaf_wait), wait_refill = static_cast<std::size_t>(lab.refill);
     for (;;) {
-      for (int k = 0; k < K; ++k) node_step(g_, p[k]);
+      for (int k = 0; k < K; ++k) node_step<any>(g_, p[k]);
       ++steps_;
       std::size_t live = 0;
       for (int k = 0; k < K; ++k) {
@@ -366,7 +388,7 @@ class Batch {
         if (leaves >= leaf_wait || (leaves > 0 && leaves == n)) {
           ++leaf_steps_;
           leaf_lanes_ += leaves;
-          leaf_step(g_, p[k]);
+          leaf_step<any>(g_, p[k]);
         }
         live += n;
         if (N - n >= wait_refill && (!empty_ || n == 0)) {
@@ -386,6 +408,9 @@ class Batch {
         for (int k = 0; k < K; ++k) p[k].load(lanes_[k]);
       }
     }
+    if constexpr (!any) {
+      if (candidates_.count > 0) find_hits();
+    }
     lab.node_steps += steps_ * N * K, lab.node_lanes += node_lanes_, lab.leaf_steps += leaf_steps_ * N, lab.leaf_lanes += leaf_lanes_;
   }
 
@@ -394,14 +419,121 @@ class Batch {
   void answer(const Lanes& a, std::size_t j) {
     const std::int32_t ray = a.ray[j];
     if (ray < 0) return;
-    bool hit = a.st[j] == kHit;
-    const bool doubtful = a.doubt[j] < kNever;
-    if (a.st[j] == kUnsure || (!hit && doubtful)) {
-      ++lab.resumed;
-      const double t_clear = doubtful ? a.t0[j] + static_cast<double>(a.doubt[j]) * a.t_per_tau[j] : max_mip::kNotClear;
-      hit = resume_occluded_max_mip(target_, rays_[static_cast<std::size_t>(ray)], t_clear);
+    if constexpr (any) {
+      bool hit = a.st[j] == kHit;
+      const bool doubtful = a.doubt[j] < kNever;
+      if (a.st[j] == kUnsure || (!hit && doubtful)) {
+        ++lab.resumed;
+        const double t_clear = doubtful ? a.t0[j] + static_cast<double>(a.doubt[j]) * a.t_per_tau[j] : max_mip::kNotClear;
+        hit = resume_occluded_max_mip(target_, rays_[static_cast<std::size_t>(ray)], t_clear);
+      }
+      answers_[ray] = hit;
+    } else {
+      if (a.st[j] == kMiss) {
+        answers_[ray] = Hit{};
+        return;
+      }
+      Candidates& c = candidates_;
+      const std::size_t i = c.count++;
+      c.ray[i] = ray, c.col[i] = a.X[j] ^ a.mx[j], c.row[i] = a.Y[j] ^ a.my[j], c.seen[i] = a.seen[j];
+      c.t_clear[i] = a.t0[j] + static_cast<double>(a.T[j]) * a.t_per_tau[j];
+      if (c.count == N) find_hits();
     }
-    blocked_[ray] = hit;
+  }
+
+  // Hits in the cells of the candidates as march_max_mip() computes them, bit for bit; where that needs more than the
+  // usual way through a cell, it is asked.
+  HWY_NOINLINE void find_hits() {
+    Candidates& c = candidates_;
+    alignas(64) double ox[N], oy[N], oz[N], dx[N], dy[N], dz[N], t_min[N], t_max[N], col[N], row[N], h00[N], h10[N],
+        h01[N], h11[N], t[N], u[N], v[N], height[N], found[N];
+    for (std::size_t i = 0; i < N; ++i) {
+      const std::size_t k = i < c.count ? i : 0;
+      const Ray& ray = rays_[static_cast<std::size_t>(c.ray[k])];
+      const GridRay local = field_.grid_from_world(ray);
+      ox[i] = local.origin.x, oy[i] = local.origin.y, oz[i] = local.origin.z;
+      dx[i] = local.direction.x, dy[i] = local.direction.y, dz[i] = local.direction.z;
+      t_min[i] = ray.t_min, t_max[i] = ray.t_max, col[i] = c.col[k], row[i] = c.row[k];
+      const T *north = g_.samples + std::ptrdiff_t{c.row[k]} * g_.stride + c.col[k], *south = north + g_.stride;
+      h00[i] = static_cast<double>(north[0]), h10[i] = static_cast<double>(north[1]);
+      h01[i] = static_cast<double>(south[0]), h11[i] = static_cast<double>(south[1]);
+    }
+    for (std::size_t h = 0; h < N; h += hn::MaxLanes(dd)) {
+      const auto at = [h](const double* from) HWY_ATTR { return hn::Load(dd, from + h); };
+      const VD zero = hn::Zero(dd), one = hn::Set(dd, 1), two = hn::Set(dd, 2), four = hn::Set(dd, 4);
+      const VD vox = at(ox), voy = at(oy), z = at(oz), vdx = at(dx), vdy = at(dy), vdz = at(dz);
+      const VD vcol = at(col), vrow = at(row), vt_min = at(t_min), vt_max = at(t_max);
+      const VD a00 = at(h00), a10 = at(h10), a01 = at(h01), a11 = at(h11);
+      const auto back_x = hn::Lt(vdx, zero), back_y = hn::Lt(vdy, zero);
+      const VD per_x = hn::Div(one, vdx), per_y = hn::Div(one, vdy);
+      const auto line = [](VD k, VD o, VD per) HWY_ATTR { return hn::Mul(hn::Sub(k, o), per); };
+      const VD next_x = hn::Add(vcol, one), next_y = hn::Add(vrow, one);
+      const VD tx_in = line(hn::IfThenElse(back_x, next_x, vcol), vox, per_x);
+      const VD ty_in = line(hn::IfThenElse(back_y, next_y, vrow), voy, per_y);
+      const VD tx = line(hn::IfThenElse(back_x, vcol, next_x), vox, per_x);
+      const VD ty = line(hn::IfThenElse(back_y, vrow, next_y), voy, per_y);
+      const VD exit_x = line(hn::IfThenElse(back_x, zero, hn::Set(dd, f_.cols)), vox, per_x);
+      const VD exit_y = line(hn::IfThenElse(back_y, zero, hn::Set(dd, f_.rows)), voy, per_y);
+      const VD t_in = hn::Max(vt_min, hn::Max(tx_in, ty_in)), t_end = hn::Min(vt_max, hn::Min(exit_x, exit_y));
+      const VD t_line = hn::Min(tx, ty), t_out = hn::Min(t_line, t_end), length = hn::Sub(t_out, t_in);
+      const auto place = [&](VD o, VD d, VD time, VD cell) HWY_ATTR {
+        return hn::Min(hn::Max(hn::Sub(hn::Add(o, hn::Mul(d, time)), cell), zero), one);
+      };
+      // CellQuadratic at t_in
+      const VD u0 = place(vox, vdx, t_in, vcol), v0 = place(voy, vdy, t_in, vrow);
+      const VD hu = hn::Sub(a10, a00), hv = hn::Sub(a01, a00), twist = hn::Sub(hn::Sub(a11, a01), hu);
+      const VD a = hn::Mul(hn::Mul(hn::Sub(hn::Sub(a10, a00), hn::Sub(a11, a01)), vdx), vdy);
+      const VD b = hn::Sub(vdz, hn::Add(hn::Add(hn::Mul(hu, vdx), hn::Mul(hv, vdy)),
+                                        hn::Mul(twist, hn::Add(hn::Mul(u0, vdy), hn::Mul(v0, vdx)))));
+      const VD surface = hn::Add(hn::Add(hn::Add(a00, hn::Mul(hu, u0)), hn::Mul(hv, v0)), hn::Mul(hn::Mul(twist, u0), v0));
+      const VD z_in = hn::Add(z, hn::Mul(vdz, t_in)), z_out = hn::Add(z, hn::Mul(vdz, t_out));
+      const VD cc = hn::Sub(z_in, surface);
+      // clearance() where it leaves through a line
+      const auto edge = [&](VD p, VD q, VD w) HWY_ATTR {
+        return hn::Min(hn::Max(hn::Add(p, hn::Mul(w, hn::Sub(q, p))), hn::Min(p, q)), hn::Max(p, q));
+      };
+      const VD on_x = edge(hn::IfThenElse(back_x, a00, a10), hn::IfThenElse(back_x, a01, a11), place(voy, vdy, t_out, vrow));
+      const VD on_y = edge(hn::IfThenElse(back_y, a00, a01), hn::IfThenElse(back_y, a10, a11), place(vox, vdx, t_out, vcol));
+      const VD out = hn::Sub(z_out, hn::IfThenElse(hn::Le(tx, ty), on_x, on_y));
+      const VD t_far = hn::Max(hn::Abs(t_in), hn::Abs(t_out));
+      const VD upright = hn::Add(hn::Set(dd, f_.upright), hn::Add(hn::Abs(z), hn::Abs(hn::Mul(vdz, t_far))));
+      const VD sides = hn::Add(hn::Abs(vdx), hn::Abs(vdy));
+      const VD wide = hn::Add(hn::Add(hn::Add(hn::Abs(vox), hn::Abs(voy)), hn::Set(dd, f_.all_rows)), hn::Mul(sides, t_far));
+      const VD rounding = hn::Mul(hn::Set(dd, 64 * 0x1p-53), hn::Add(upright, hn::Mul(wide, hn::Set(dd, f_.relief))));
+      // Above until it comes into the cell: known up to t_clear, and from there on because of how steep ground is.
+      const VD gap = hn::Max(hn::Sub(t_in, at(c.t_clear)), zero);
+      const VD steepest = hn::Add(hn::Abs(vdz), hn::Mul(sides, hn::Set(dd, f_.relief_per_cell)));
+      const auto above = hn::Gt(cc, hn::Add(hn::Mul(gap, steepest), rounding));
+      const auto usual = hn::And(hn::And(above, hn::Lt(t_in, t_line)), hn::And(hn::Le(t_line, t_end), hn::And(hn::Ne(vdx, zero), hn::Ne(vdy, zero))));
+      const VD highest = hn::Max(hn::Max(a00, a10), hn::Max(a01, a11));
+      const VD lowest = hn::IfThenElse(hn::Lt(vdz, zero), z_out, z_in);
+      const VD square = hn::Mul(b, b), ac4 = hn::Mul(hn::Mul(four, a), cc);
+      const auto dips = hn::And(hn::And(hn::Gt(a, zero), hn::Lt(b, zero)),
+                                hn::And(hn::Lt(hn::Neg(b), hn::Mul(hn::Mul(two, a), length)), hn::Ge(square, ac4)));
+      const auto hit = hn::And(hn::And(usual, hn::Not(hn::Gt(lowest, highest))), hn::Or(hn::Le(out, zero), dips));
+      const VD root = hn::Sqrt(hn::Max(zero, hn::Sub(square, ac4)));
+      const auto falls = hn::Lt(b, zero);
+      const VD s = hn::Div(hn::IfThenElse(falls, hn::Mul(two, cc), hn::Neg(hn::Add(b, root))),
+                           hn::IfThenElse(falls, hn::Sub(root, b), hn::Mul(two, a)));
+      const VD in_cell = hn::IfThenElseZero(hn::Ge(s, zero), hn::Min(s, length));
+      const VD time = hn::Min(hn::Max(hn::Add(t_in, in_cell), vt_min), vt_max);
+      hn::Store(time, dd, t + h);
+      hn::Store(place(vox, vdx, time, vcol), dd, u + h), hn::Store(place(voy, vdy, time, vrow), dd, v + h);
+      hn::Store(hn::Add(z, hn::Mul(vdz, time)), dd, height + h);
+      hn::Store(hn::IfThenElseZero(hit, one), dd, found + h);
+    }
+    for (std::size_t i = 0; i < c.count; ++i) {
+      Hit& to = answers_[c.ray[i]];
+      const Ray& ray = rays_[static_cast<std::size_t>(c.ray[i])];
+      if (found[i] != 0 && ray.start == RayStart::free && bilinear_) {
+        to.status = HitStatus::hit, to.t = t[i], to.cell = {c.col[i], c.row[i]}, to.u = u[i], to.v = v[i];
+        to.height = field_.height_from_sample(height[i]), to.wall = false;
+      } else {
+        ++lab.resumed;
+        to = resume_max_mip(target_, ray, c.seen[i] ? c.t_clear[i] : max_mip::kNotClear);
+      }
+    }
+    c.count = 0;
   }
 
   // The next rays, through their first cell.
@@ -425,9 +557,11 @@ class Batch {
     prepare(f_, r_, fresh_);
     Packet p;
     p.load(fresh_);
-    for (int i = 0; i < lab.first; ++i) {
-      leaf_step(g_, p);
-      for (int k = 0; k < lab.first_nodes; ++k) node_step(g_, p);
+    if (any) {
+      for (int i = 0; i < lab.first; ++i) {
+        leaf_step<any>(g_, p);
+        for (int k = 0; k < lab.first_nodes; ++k) node_step<any>(g_, p);
+      }
     }
     p.store(fresh_);
     fresh_next_ = 0;
@@ -465,11 +599,13 @@ class Batch {
   const HeightTarget& target_;
   const HeightField& field_;
   std::span<const Ray> rays_;
-  std::uint8_t* blocked_;
+  Answer* answers_;
+  Candidates candidates_;
   std::size_t next_ = 0;
   bool empty_ = false;
   Ground<T> g_;
   Frame f_;
+  bool bilinear_;
   Rays r_;
   Lanes fresh_;
   std::size_t fresh_next_ = N;
@@ -477,16 +613,22 @@ class Batch {
   std::uint64_t steps_ = 0, node_lanes_ = 0, leaf_steps_ = 0, leaf_lanes_ = 0;
 };
 
-void Occluded(const HeightTarget& target, std::span<const Ray> rays, std::uint8_t* blocked) {
+template <bool any, class Answer>
+void trace(const HeightTarget& target, std::span<const Ray> rays, Answer* answers) {
   target.field->visit([&](const auto& grid) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
     if constexpr (std::is_same_v<T, float>) {
-      if (lab.packets == 1) Batch<T, 1>(target, grid, rays, blocked).run();
-      if (lab.packets == 2) Batch<T, 2>(target, grid, rays, blocked).run();
-      if (lab.packets == 3) Batch<T, 3>(target, grid, rays, blocked).run();
-      if (lab.packets == 4) Batch<T, 4>(target, grid, rays, blocked).run();
+      if (lab.packets == 1) Batch<any, T, 1>(target, grid, rays, answers).run();
+      if (lab.packets == 2) Batch<any, T, 2>(target, grid, rays, answers).run();
+      if (lab.packets == 3) Batch<any, T, 3>(target, grid, rays, answers).run();
     }
   });
+}
+void Occluded(const HeightTarget& target, std::span<const Ray> rays, std::uint8_t* blocked) {
+  trace<true>(target, rays, blocked);
+}
+void Closest(const HeightTarget& target, std::span<const Ray> rays, Hit* hits) {
+  trace<false>(target, rays, hits);
 }
 
 }  // namespace HWY_NAMESPACE
@@ -497,6 +639,10 @@ HWY_AFTER_NAMESPACE();
 namespace scarp {
 SimdLab lab;
 HWY_EXPORT(Occluded);
+HWY_EXPORT(Closest);
+void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, Hit* hits) {
+  HWY_DYNAMIC_DISPATCH(Closest)(target, rays, hits);
+}
 void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::uint8_t* blocked) {
   HWY_DYNAMIC_DISPATCH(Occluded)(target, rays, blocked);
 }

@@ -19,4 +19,6 @@ extern SimdLab lab;
 
 void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::uint8_t* blocked);
 
+void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, Hit* hits);
+
 }  // namespace scarp
