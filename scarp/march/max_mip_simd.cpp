@@ -45,6 +45,7 @@ struct Lanes {
 template <class T>
 struct Ground {
   const std::uint32_t* words;
+  const std::uint16_t *maxima, *minima;
   const T* samples;
   std::int32_t stride, cols_1, rows_1, top;
   double base, per_step;
@@ -143,8 +144,15 @@ HWY_INLINE void node_step(const Ground<T>& g, Packet& p) {
     begin = hn::GatherIndex(di, g.begin, lm);
   }
   const VI at = hn::Add(begin, hn::Add(hn::Mul(row, cols), col));
-  const VI word = fetch(g.words, at);
-  const VF highest = hn::ConvertTo(df, hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, word))));
+  VI word = at;
+  VF highest;
+  if (lab.planes) {
+    highest = hn::ConvertTo(df, hn::And(hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(g.maxima), hn::Add(at, at)), hn::Set(di, 0xffff)));
+    if (any) word = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(g.minima), hn::Add(at, at));
+  } else {
+    word = fetch(g.words, at);
+    highest = hn::ConvertTo(df, hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, word))));
+  }
   const MI clear = hn::And(walking, hn::RebindMask(di, hn::Gt(low, highest)));
   const MI ends = hn::And(clear, hn::RebindMask(di, hn::Ge(e.te, p.tend)));
   const MI on = hn::AndNot(ends, clear);
@@ -285,6 +293,7 @@ HWY_NOINLINE void prepare(const Frame& f, const Rays& r, Lanes& a) {
     const VD exit_y = hn::IfThenElse(still_y, far, hn::Mul(hn::Sub(rows, oy), per_y));
     VD t_in = hn::Max(t_min, hn::Max(enter_x, enter_y));
     VD t_end = hn::Min(hn::Load(dd, r.t_max + h), hn::Min(exit_x, exit_y));
+    const VD t_border = t_in, t_exit = t_end;
     const VD highest = hn::Set(dd, f.highest);
     const auto falls = hn::Lt(dz, zero), from_above = hn::Gt(hn::Add(oz, hn::Mul(dz, t_in)), highest);
     const VD quotient = hn::Div(hn::Sub(highest, oz), dz);
@@ -297,9 +306,14 @@ HWY_NOINLINE void prepare(const Frame& f, const Rays& r, Lanes& a) {
     const VD rounding = hn::Mul(hn::Set(dd, 64 * 0x1p-53), hn::Add(upright, hn::Mul(wide, hn::Set(dd, f.relief))));
     const VD t_over = hn::Div(hn::Sub(hn::Add(highest, rounding), oz), dz);
     t_end = hn::IfThenElse(hn::Gt(dz, zero), hn::Min(t_end, t_over), t_end);
-    const auto good = hn::And(hn::And(hn::Lt(t_in, t_end), hn::Not(hn::AndNot(falls, from_above))),
-                              hn::And(hn::And(hn::Gt(longest, hn::Set(dd, 0x1p-300)), hn::Lt(longest, hn::Set(dd, 0x1p300))),
-                                      hn::Lt(hn::Mul(hn::Abs(dz), per_longest), hn::Set(dd, 0x1p30))));
+    const auto sound = hn::And(hn::And(hn::Gt(longest, hn::Set(dd, 0x1p-300)), hn::Lt(longest, hn::Set(dd, 0x1p300))),
+                               hn::Lt(hn::Mul(hn::Abs(dz), per_longest), hn::Set(dd, 0x1p30)));
+    const auto good = hn::And(hn::And(hn::Lt(t_in, t_end), hn::Not(hn::AndNot(falls, from_above))), sound);
+    // Above all ground from begin to end, or beside the field.
+    const VD over = hn::Add(highest, rounding);
+    const auto is_over = hn::And(hn::Gt(hn::Add(oz, hn::Mul(dz, t_in)), over), hn::Or(hn::Not(falls), hn::Gt(hn::Add(oz, hn::Mul(dz, t_end)), over)));
+    const auto is_beside = hn::Gt(hn::Sub(t_border, t_exit), hn::Mul(hn::Set(dd, 0x1p-40), hn::Add(hn::Abs(t_border), hn::Abs(t_exit))));
+    const auto misses = hn::And(sound, hn::Or(hn::And(is_over, hn::Lt(t_border, t_exit)), is_beside));
     const VD x = hn::Add(ox, hn::Mul(dx, t_in)), y = hn::Add(oy, hn::Mul(dy, t_in));
     const VD cell_x = hn::Min(hn::Max(hn::Floor(x), zero), hn::Sub(cols, one));
     const VD cell_y = hn::Min(hn::Max(hn::Floor(y), zero), hn::Sub(rows, one));
@@ -325,7 +339,7 @@ HWY_NOINLINE void prepare(const Frame& f, const Rays& r, Lanes& a) {
     put_whole(hn::Add(shift_x, hn::Sub(cols, one)), a.xl), put_whole(hn::Add(shift_y, hn::Sub(rows, one)), a.yl);
     put_whole(hn::IfThenElseZero(hn::Ne(t_in, t_min), hn::Set(dd, f.from_outside)), a.l);
     put_whole(hn::IfThenElseZero(from_above, one), a.seen);
-    put_whole(hn::IfThenElse(good, zero, hn::Set(dd, kUnsure)), a.st);
+    put_whole(hn::IfThenElse(misses, hn::Set(dd, kMiss), hn::IfThenElse(good, zero, hn::Set(dd, kUnsure))), a.st);
   }
   for (std::size_t j = 0; j < N; ++j) {
     a.bx[j] = a.X[j], a.by[j] = a.Y[j], a.T[j] = 0, a.doubt[j] = kNever, a.seen[j] |= r.seen[j];
@@ -350,6 +364,7 @@ class Batch {
     candidates_.count = 0;
     std::memset(candidates_.t_clear, 0, sizeof candidates_.t_clear);
     g_.words = lab.words;
+    g_.maxima = pyramid.maxima(), g_.minima = pyramid.minima();
     g_.samples = grid.data;
     g_.stride = static_cast<std::int32_t>(grid.row_stride);
     g_.cols_1 = grid.cell_cols - 1, g_.rows_1 = grid.cell_rows - 1;

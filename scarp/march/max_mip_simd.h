@@ -12,7 +12,7 @@ namespace scarp {
 struct SimdLab {
   const std::uint32_t* words = nullptr;  // max << 16 | min
   double relief_per_cell = 0;            // sample units
-  int first = 1, first_nodes = 1, gather = 0, packets = 2, leaf_wait = 4, refill = 4;
+  int planes = 0, first = 1, first_nodes = 1, gather = 0, packets = 2, leaf_wait = 4, refill = 4;
   std::uint64_t node_steps = 0, node_lanes = 0, leaf_steps = 0, leaf_lanes = 0, resumed = 0, unprepared = 0, refills = 0;
 };
 extern SimdLab lab;
