@@ -6,50 +6,44 @@
 #include <limits>
 
 #include "scarp/base/parallel.h"
+#include "scarp/base/prefetch.h"
 
 namespace scarp {
 namespace {
 
 constexpr std::int64_t kEntriesPerPiece = 1 << 16;
 constexpr double kTopCode = 65535;
+// Rows of codes that are asked for ahead of the one at work: more would keep a processor from other requests.
+constexpr int kRowsAhead = 4;
 
 std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntriesPerPiece / std::max(cols, 1)); }
 
-// From samples to codes, outwards. For floats the quotient may be rounded to either side: what counts is the height
-// that the code stands for. All in double and without branches, of which compilers make vector instructions. A block of
-// holes has -infinity here, and the lowest code.
-double code_place(const HeightCode& code, double height) {
-  const double place = (height - code.base) * code.per_step;
-  const double above = place > 0 ? place : 0;
-  return above < kTopCode ? above : kTopCode;
-}
-double whole(double place) { return static_cast<double>(static_cast<int>(place)); }
+// From samples to codes, outwards. Floats are moved by kClear of a step first, more than all that rounding does. Let M
+// be the greatest magnitude that codes have to hold: no step is below kLeastStep * M, which two neighbouring floats do
+// not ask for either. A place, at most 2^16 steps, is off by 4 * 2^-53 of itself; the height that a code stands for by
+// 2^-51 M, which is 2^-11 steps. All in double and without branches, of which compilers make vector instructions. A
+// block of holes has -infinity here, and the lowest code.
+constexpr double kClear = 0x1p-8, kLeastStep = 0x1p-40;
 
+template <class T>
+void encode(const HeightCode& code, double beyond, const T* samples, int count, std::uint16_t* codes) {
+  for (int i = 0; i < count; ++i) {
+    if constexpr (std::is_integral_v<T>) {
+      codes[i] = static_cast<std::uint16_t>(samples[i] - std::numeric_limits<T>::lowest());
+    } else {
+      const double place = (static_cast<double>(samples[i]) - code.base) * code.per_step + beyond;
+      const double above = place > 0 ? place : 0;
+      codes[i] = static_cast<std::uint16_t>(static_cast<int>(above < kTopCode ? above : kTopCode));
+    }
+  }
+}
 template <class T>
 void encode_above(const HeightCode& code, const T* samples, int count, std::uint16_t* codes) {
-  for (int i = 0; i < count; ++i) {
-    if constexpr (std::is_integral_v<T>) {
-      codes[i] = static_cast<std::uint16_t>(samples[i] - std::numeric_limits<T>::lowest());
-    } else {
-      const double height = static_cast<double>(samples[i]), place = code_place(code, height);
-      const double down = whole(place), first = down + (down < place ? 1.0 : 0.0);
-      const double good = first + (code.base + code.step * first < height ? 1.0 : 0.0);
-      codes[i] = static_cast<std::uint16_t>(static_cast<int>(good < kTopCode ? good : kTopCode));
-    }
-  }
+  encode(code, 1 + kClear, samples, count, codes);
 }
-
 template <class T>
 void encode_below(const HeightCode& code, const T* samples, int count, std::uint16_t* codes) {
-  for (int i = 0; i < count; ++i) {
-    if constexpr (std::is_integral_v<T>) {
-      codes[i] = static_cast<std::uint16_t>(samples[i] - std::numeric_limits<T>::lowest());
-    } else {
-      const double height = static_cast<double>(samples[i]), first = whole(code_place(code, height));
-      const double good = first - (code.base + code.step * first > height ? 1.0 : 0.0);
-      codes[i] = static_cast<std::uint16_t>(static_cast<int>(good > 0 ? good : 0.0));
-    }
-  }
+  encode(code, -kClear, samples, count, codes);
 }
 
 // One row of cells, columns [begin, end), of a field with holes: the extremes of each cell's four corners; for holes
@@ -127,6 +121,11 @@ void build_first(const SampleGrid<T>& grid, const HeightCode& code, const Part& 
     std::vector<T> highest(2 * cells + 1), lowest(2 * cells + 1), high(static_cast<std::size_t>(width)),
         low(high.size());
     for (int row = part.row_begin + static_cast<int>(first); row < part.row_begin + last; ++row) {
+      if (row + kRowsAhead < part.row_begin + last) {
+        const std::ptrdiff_t ahead = static_cast<std::ptrdiff_t>(row + kRowsAhead) * cols + part.col_begin;
+        prefetch_for_write(maxima + ahead, width);
+        prefetch_for_write(minima + ahead, width);
+      }
       const std::size_t second = 2 * row + 1 < grid.cell_rows ? cells : 0;
       if (grid.has_holes) {
         extremes_of_cells(grid, 2 * row, begin, end, highest.data(), lowest.data());
@@ -193,8 +192,9 @@ void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleR
   shared_->range = range;
   // The lowest sample gets code 1, half a step clear of rounding, since code 0 says that there is no minimum; the step
   // grows until the highest code stands for no less than the highest sample.
-  double step = (range.high - range.low) / (kTopCode - 2);
-  if (!(step > 0)) step = std::max(std::abs(range.low), 1.0) * 0x1p-20;
+  const double magnitude = std::max(std::abs(range.low), std::abs(range.high));
+  double step = std::max((range.high - range.low) / (kTopCode - 2), kLeastStep * magnitude);
+  if (!(step > 0)) step = 0x1p-20;
   do {
     code = {range.low - 1.5 * step, step, 1 / step};
     step *= 1 + 0x1p-20;

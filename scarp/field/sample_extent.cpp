@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -13,65 +14,105 @@
 namespace scarp {
 namespace {
 
-// SampleGrid::is_nodata of a grid with holes. For float in integers: a comparison of floats may raise a flag, which
-// keeps compilers from taking it out of a branch.
+// SampleGrid::is_nodata in three kinds, so that each sample is asked no more than needed. kCompares: whether a nodata
+// sample takes part in comparisons, as NaN does not.
+struct NoHoles {
+  static constexpr bool kCompares = false;
+  bool operator()(auto) const { return false; }
+};
+// Of floats in integers: a comparison of floats may raise a flag, which keeps compilers from taking it out of a branch.
+struct IsNaN {
+  static constexpr bool kCompares = false;
+  static constexpr std::int32_t kMagnitude = 0x7fffffff, kInfinite = 0x7f800000;
+  bool operator()(float sample) const { return (std::bit_cast<std::int32_t>(sample) & kMagnitude) > kInfinite; }
+};
 template <class T>
 struct IsNodata {
+  static constexpr bool kCompares = true;
   explicit IsNodata(T value) : nodata(value) {}
   bool operator()(T sample) const { return sample == nodata; }
   T nodata;
 };
 template <>
 struct IsNodata<float> {
+  static constexpr bool kCompares = true;
   // 0 and -0 are equal.
   explicit IsNodata(float value)
-      : mask(value == 0 ? kMagnitude : -1), nodata(std::bit_cast<std::int32_t>(value) & mask) {}
+      : mask(value == 0 ? IsNaN::kMagnitude : -1), nodata(std::bit_cast<std::int32_t>(value) & mask) {}
   bool operator()(float sample) const {
-    const auto bits = std::bit_cast<std::int32_t>(sample);
-    return ((bits & mask) == nodata) | ((bits & kMagnitude) > kInfinite);
+    return ((std::bit_cast<std::int32_t>(sample) & mask) == nodata) | IsNaN()(sample);
   }
-  static constexpr std::int32_t kMagnitude = 0x7fffffff, kInfinite = 0x7f800000;
   std::int32_t mask, nodata;
 };
 
-template <class T>
-void include(T low, T high, SampleExtent& extent) {
-  extent.min = std::min(extent.min, static_cast<float>(low));
-  extent.max = std::max(extent.max, static_cast<float>(high));
-}
+// Lowest and highest sample and the number of nodata of each column of a tile. Columns lie side by side, so that
+// compilers make vector instructions of it: they may not reorder one chain of float comparisons.
+template <class T, int kSide>
+class ColumnExtents {
+ public:
+  ColumnExtents() {
+    std::fill(low_, low_ + kSide, std::numeric_limits<T>::max());
+    std::fill(high_, high_ + kSide, std::numeric_limits<T>::lowest());
+  }
 
-// Lowest and highest of a run without holes, in lanes side by side, so that compilers make vector instructions of it:
-// they may not reorder one chain of float comparisons.
-template <class T>
-void extend_valid(const T* run, int count, SampleExtent& extent) {
-  constexpr int kLanes = 16;
-  T low[kLanes], high[kLanes];
-  std::fill(low, low + kLanes, run[0]);
-  std::fill(high, high + kLanes, run[0]);
-  int i = 0;
-  for (; i + kLanes <= count; i += kLanes) {
-    for (int lane = 0; lane < kLanes; ++lane) {
-      const T sample = run[i + lane];
-      low[lane] = sample < low[lane] ? sample : low[lane];
-      high[lane] = sample > high[lane] ? sample : high[lane];
+  // kRows rows at once, from `run` on: each saves a way through memory for what is kept here.
+  template <int kRows, class Nodata>
+  void extend(const SampleGrid<T>& grid, const Nodata& is_nodata, const T* run, int cols) {
+    for (int i = 0; i < cols; ++i) {
+      T low = low_[i], high = high_[i];
+      Count holes = holes_[i];
+      for (int row = 0; row < kRows; ++row) {
+        const T sample = run[row * grid.row_stride + i];
+        const bool hole = is_nodata(sample), left_out = Nodata::kCompares && hole;
+        const T lowest = left_out ? std::numeric_limits<T>::max() : sample;
+        const T highest = left_out ? std::numeric_limits<T>::lowest() : sample;
+        low = lowest < low ? lowest : low;
+        high = highest > high ? highest : high;
+        holes = static_cast<Count>(holes + hole);
+      }
+      low_[i] = low;
+      high_[i] = high;
+      holes_[i] = holes;
     }
   }
-  for (; i < count; ++i) include(run[i], run[i], extent);
-  include(*std::min_element(low, low + kLanes), *std::max_element(high, high + kLanes), extent);
+
+  SampleExtent merged(int cols, int rows) const {
+    SampleExtent extent;
+    for (int i = 0; i < cols; ++i) {
+      extent.nodata += holes_[i];
+      if (holes_[i] == rows) continue;
+      extent.min = std::min(extent.min, static_cast<float>(low_[i]));
+      extent.max = std::max(extent.max, static_cast<float>(high_[i]));
+    }
+    return extent;
+  }
+
+ private:
+  using Count = std::conditional_t<sizeof(T) == 2, std::int16_t, std::int32_t>;  // in as many lanes as samples
+  T low_[kSide], high_[kSide];
+  Count holes_[kSide] = {};
+};
+
+template <int kSide, class T, class Nodata>
+SampleExtent extent_of_tile(const SampleGrid<T>& grid, const Nodata& is_nodata, const SampleRect& tile) {
+  constexpr int kRows = 4;
+  ColumnExtents<T, kSide> columns;
+  const int end = tile.row + tile.rows;
+  int row = tile.row;
+  for (; row + kRows <= end; row += kRows) {
+    columns.template extend<kRows>(grid, is_nodata, grid.row(row) + tile.col, tile.cols);
+  }
+  for (; row < end; ++row) columns.template extend<1>(grid, is_nodata, grid.row(row) + tile.col, tile.cols);
+  return columns.merged(tile.cols, tile.rows);
 }
 
-template <class T>
-void extend(const SampleGrid<T>& grid, const T* run, int count, SampleExtent& extent) {
-  int holes = 0;
-  if (grid.has_holes) {
-    const IsNodata<T> is_nodata(grid.nodata);
-    for (int i = 0; i < count; ++i) holes += is_nodata(run[i]);
+template <int kSide, class T>
+SampleExtent extent_of_tile(const SampleGrid<T>& grid, const SampleRect& tile) {
+  if (!grid.has_holes) return extent_of_tile<kSide>(grid, NoHoles(), tile);
+  if constexpr (std::is_floating_point_v<T>) {
+    if (std::isnan(grid.nodata)) return extent_of_tile<kSide>(grid, IsNaN(), tile);
   }
-  extent.nodata += holes;
-  if (holes == 0) return extend_valid(run, count, extent);
-  for (int i = 0; i < count; ++i) {
-    if (!grid.is_nodata(run[i])) include(run[i], run[i], extent);
-  }
+  return extent_of_tile<kSide>(grid, IsNodata<T>(grid.nodata), tile);
 }
 
 }  // namespace
@@ -108,11 +149,9 @@ template <class T>
 void TileExtents::scan_tile_row(const SampleGrid<T>& grid, int tile_row, int first, int last) {
   const std::size_t begin = static_cast<std::size_t>(tile_row) * tile_cols_;
   for (int tile = first; tile < last; ++tile) {
-    SampleExtent& extent = tiles_[begin + tile];
-    extent = {};
-    const int col = tile * kSide, cols = std::min(kSide, grid.cols - col);
-    const int row_end = std::min((tile_row + 1) * kSide, grid.rows);
-    for (int row = tile_row * kSide; row < row_end; ++row) extend(grid, grid.row(row) + col, cols, extent);
+    const int col = tile * kSide, row = tile_row * kSide;
+    tiles_[begin + tile] =
+        extent_of_tile<kSide>(grid, {col, row, std::min(kSide, grid.cols - col), std::min(kSide, grid.rows - row)});
   }
   SampleExtent& row = rows_[static_cast<std::size_t>(tile_row)];
   row = {};

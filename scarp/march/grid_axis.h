@@ -16,6 +16,8 @@
 
 namespace scarp {
 
+/// Compiled apart for grids that wrap round: what this costs, rays over others need not pay.
+template <bool Wraps>
 class GridAxis {
  public:
   double origin;     // in cells
@@ -25,8 +27,8 @@ class GridAxis {
   int ahead;  // 1 if the line left through has a higher number than the cell, else 0
   int cells;
 
-  GridAxis(double o, double d, int cell_count, bool wraps)
-      : origin(o), direction(d), per_direction(1 / d), cells(cell_count), time_origin_(o), wraps_(wraps) {
+  GridAxis(double o, double d, int cell_count)
+      : origin(o), direction(d), per_direction(1 / d), cells(cell_count), time_origin_(o) {
     step = d < 0 ? -1 : 1;
     ahead = d < 0 ? 0 : 1;
     if (std::isinf(per_direction)) {
@@ -36,22 +38,22 @@ class GridAxis {
       direction = 0;
       step = ahead = 1;
       per_direction = std::numeric_limits<double>::infinity();
-      if (wraps_) set_copy(static_cast<std::int64_t>(std::floor(o)));
-      time_origin_ = static_cast<double>(first_ + near(o)) + 0.5;
+      if constexpr (Wraps) set_copy(static_cast<std::int64_t>(std::floor(o)));
+      time_origin_ = static_cast<double>(first() + near(o)) + 0.5;
     }
   }
 
   bool moves() const { return direction != 0; }
   double at(double t) const { return origin + direction * t; }
   /// Place in a cell at time t, 0..1.
-  double place(double t, int cell) const { return std::clamp(at(t) - static_cast<double>(first_ + cell), 0.0, 1.0); }
-  double line_time(int line) const { return global_line_time(first_ + line); }
+  double place(double t, int cell) const { return std::clamp(at(t) - static_cast<double>(first() + cell), 0.0, 1.0); }
+  double line_time(int line) const { return global_line_time(first() + line); }
   /// When the ray comes into and leaves this copy of the grid.
   double enter_time() const { return line_time(ahead ? 0 : cells); }
   double exit_time() const { return line_time(ahead ? cells : 0); }
   bool inside(int cell) const { return static_cast<unsigned>(cell) < static_cast<unsigned>(cells); }
   /// The number of a line among all lines of the plane.
-  std::int64_t global_line(int line) const { return first_ + line; }
+  std::int64_t global_line(int line) const { return first() + line; }
 
   // The cell at time t by the order of line times alone; the position is only where to look first. Lines crossed
   // exactly at t are behind the cell (after) or still ahead of it (before). In a grid that wraps round, the copy
@@ -65,12 +67,12 @@ class GridAxis {
   // Puts the ray into `cell` at time t; in a grid that wraps round into the copy that it is over then. A ray along a
   // line belongs to the cell that it is said to begin in.
   void begin_in(int cell, double t) {
-    if (wraps_) first_ = static_cast<std::int64_t>(std::round((at(t) - cell - 0.5) / cells)) * cells;
-    if (!moves()) time_origin_ = static_cast<double>(first_ + cell) + 0.5;
+    if constexpr (Wraps) first_ = static_cast<std::int64_t>(std::round((at(t) - cell - 0.5) / cells)) * cells;
+    if (!moves()) time_origin_ = static_cast<double>(first() + cell) + 0.5;
   }
   // The cell of this copy that is nearest to a position; NaN goes to 0.
   int near(double position) const {
-    return static_cast<int>(std::min(std::max(0.0, position - static_cast<double>(first_)), cells - 1.0));
+    return static_cast<int>(std::min(std::max(0.0, position - static_cast<double>(first())), cells - 1.0));
   }
   // Goes on to the next copy; returns the first cell there.
   int enter_next_copy() {
@@ -79,7 +81,16 @@ class GridAxis {
   }
 
  private:
-  double global_line_time(std::int64_t line) const {
+  // An int where it is always 0: counting lines then is in int, too.
+  auto first() const {
+    if constexpr (Wraps) {
+      return first_;
+    } else {
+      return 0;
+    }
+  }
+  template <class Line>
+  double global_line_time(Line line) const {
     return (static_cast<double>(line) - time_origin_) * per_direction;
   }
 
@@ -90,7 +101,7 @@ class GridAxis {
 
   template <class Behind>
   int ordered_cell(double t, Behind behind) {
-    if (!wraps_) {
+    if constexpr (!Wraps) {
       int cell = near(at(t));
       while (inside(cell + step) && behind(cell + ahead)) cell += step;
       while (inside(cell - step) && !behind(cell + 1 - ahead)) cell -= step;
@@ -106,7 +117,6 @@ class GridAxis {
 
   double time_origin_;      // origin, as the times of lines take it
   std::int64_t first_ = 0;  // the first line of this copy of the grid
-  bool wraps_;
 };
 
 }  // namespace scarp

@@ -58,14 +58,15 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_cle
   }
   field.visit([&](const auto& grid) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
-    const auto run = [&](auto&& walk) {
+    const auto run = [&]<bool holes, bool wraps>() {
+      max_mip::Walk<T, holes, wraps, ask> walk(field, grid, *target.pyramid, ray, local, halvings, t_clear, hit, all);
       walk.run();
       if (stats) *stats = walk.stats;
     };
-    if (grid.has_holes) {
-      run(max_mip::Walk<T, true, ask>(field, grid, *target.pyramid, ray, local, halvings, t_clear, hit, all));
+    if (field.wraps()) {
+      grid.has_holes ? run.template operator()<true, true>() : run.template operator()<false, true>();
     } else {
-      run(max_mip::Walk<T, false, ask>(field, grid, *target.pyramid, ray, local, halvings, t_clear, hit, all));
+      grid.has_holes ? run.template operator()<true, false>() : run.template operator()<false, false>();
     }
   });
   return hit;

@@ -28,7 +28,7 @@ enum class Side { unknown, above, below };
 // How the ray came to where it is: through a line of constant column (x) or row (y), or not through a line.
 enum class Through { point, x_line, y_line };
 
-template <class T, bool Holes, Ask ask>
+template <class T, bool Holes, bool Wraps, Ask ask>
 class Walk {
  public:
   /// `all` is where the hits go when all are asked for. Up to `t_clear` the ray is known to be above the ground by more
@@ -42,8 +42,8 @@ class Walk {
         code_(pyramid.code()),
         maxima_(pyramid.maxima()),
         minima_(pyramid.minima()),
-        x_(local.origin.x, local.direction.x, grid.cell_cols, field.wraps()),
-        y_(local.origin.y, local.direction.y, grid.cell_rows, field.wraps()),
+        x_(local.origin.x, local.direction.x, grid.cell_cols),
+        y_(local.origin.y, local.direction.y, grid.cell_rows),
         z_(local.origin.z),
         dz_(local.direction.z),
         t_in_(ray.t_min),
@@ -51,7 +51,6 @@ class Walk {
         strict_(ray.start == RayStart::on_surface),
         triangles_(field.settings().surface == Surface::triangles),
         solid_(field.settings().solid),
-        wraps_(field.wraps()),
         halvings_(halvings),
         t_clear_(t_clear),
         ray_(ray),
@@ -72,6 +71,8 @@ class Walk {
   MarchStats stats;
 
  private:
+  using Axis = GridAxis<Wraps>;
+
   double ray_height(double t) const { return z_ + dz_ * t; }
 
   CellQuadratic quadratic(const CellHeights& h, double t) const {
@@ -107,7 +108,7 @@ class Walk {
 
   // Clips the ray to the field and to the highest sample; finds the first cell.
   bool enter() {
-    if (!wraps_) {
+    if (!Wraps) {
       const double border = std::max(x_.enter_time(), y_.enter_time());
       from_outside_ = border >= t_in_;
       t_in_ = std::max(t_in_, border);
@@ -165,7 +166,7 @@ class Walk {
     y_.begin_in(row_, t_in_);
     const CellHeights h = grid_.cell(col_, row_);
     z_ = surface(h, t_in_) - dz_ * t_in_;
-    if (!wraps_) t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
+    if (!Wraps) t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
     const double tx = x_.line_time(col_ + x_.ahead), ty = y_.line_time(row_ + y_.ahead);
     const double t_line = std::min(tx, ty), t_out = std::min(t_line, t_end_);
     ++stats.cell_tests;
@@ -188,11 +189,11 @@ class Walk {
     after_x_ = tx <= ty;
     if (!(t_in_ < t_end_)) return false;
     if (Holes) through_ = after_x_ ? Through::x_line : Through::y_line;
-    GridAxis& axis = after_x_ ? x_ : y_;
+    Axis& axis = after_x_ ? x_ : y_;
     int& cell = after_x_ ? col_ : row_;
     cell += axis.step;
     if (!axis.inside(cell)) {
-      if (!wraps_) return false;
+      if (!Wraps) return false;
       cell = axis.enter_next_copy();
     }
     return true;
@@ -213,7 +214,7 @@ class Walk {
   // through the surface before, wherever. A look at the minima of one level at ever longer steps, which a cache holds;
   // rays along the ground are mostly stopped by hills that are wider than a block. True: answered.
   bool goes_under(double t) {
-    if (wraps_ || top_ < kProbeLevel) return false;
+    if (Wraps || top_ < kProbeLevel) return false;
     const Level& at = levels_[kProbeLevel - 1];
     const double t_last = dz_ > 0 ? std::min(t_end_, (field_.max_sample() - z_) / dz_) : t_end_;
     const double t_per_cell = 1 / std::max(std::abs(x_.direction), std::abs(y_.direction));
@@ -255,7 +256,7 @@ class Walk {
   // the line in the middle: is it behind? No cell is ever found from a position.
   bool walk() {
     const bool falling = dz_ < 0;
-    const GridAxis x = x_, y = y_;
+    const Axis x = x_, y = y_;
     // The ray's height as a code, less what rounding can add to it: the pyramid is compared without decoding it.
     const double per_step = code_.per_step, highest = field_.max_sample();
     const double farthest = std::max(std::abs(t_in_), std::abs(t_end_));
@@ -263,7 +264,7 @@ class Walk {
     const double code_z = (z_ - code_.base - kCodeRoundings * kUnit * upright) * per_step, code_dz = dz_ * per_step;
     const double highest_code = (highest - code_.base) * per_step;
     // A coarse block may reach beyond the last row or column; the walk does not.
-    const double t_end = wraps_ ? std::min({t_end_, x.exit_time(), y.exit_time()}) : t_end_;
+    const double t_end = Wraps ? std::min({t_end_, x.exit_time(), y.exit_time()}) : t_end_;
     int level = level_, col = col_ >> level, row = row_ >> level;
     double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
     std::uint32_t steps = 0, level_changes = 0;
@@ -299,7 +300,7 @@ class Walk {
           // After a line of constant column, rows' lines of the same time are still ahead: the order of ties. The near
           // side of a narrow last block is the seam, which was crossed to come here.
           const double middle_x = x.line_time((2 * col + 1) << level), middle_y = y.line_time((2 * row + 1) << level);
-          const bool entered = wraps_ && !y.ahead && ((2 * row + 1) << level) >= y.cells;
+          const bool entered = Wraps && !y.ahead && ((2 * row + 1) << level) >= y.cells;
           const bool behind_x = middle_x <= t_in, behind_y = after_x_ && !entered ? middle_y < t_in : middle_y <= t_in;
           col = std::min(2 * col + (behind_x ? x.ahead : 1 - x.ahead), (x.cells - 1) >> level);
           row = std::min(2 * row + (behind_y ? y.ahead : 1 - y.ahead), (y.cells - 1) >> level);
@@ -531,6 +532,7 @@ class Walk {
   }
 
   using Level = MaxPyramid::Level;
+
   // When and where any-hit looks ahead; from a search over the rays of scarp-bench (decisions.md).
   static constexpr std::uint32_t kPatience = 3;  // steps of the walk before: half of the rays need no more
   static constexpr int kProbeLevel = 3;          // blocks of 8 x 8 cells
@@ -546,10 +548,10 @@ class Walk {
   int top_;
   HeightCode code_;
   const std::uint16_t *maxima_, *minima_;
-  GridAxis x_, y_;
+  Axis x_, y_;
   double z_, dz_;  // ray height in sample units
   double t_in_, t_end_;
-  bool strict_, triangles_, solid_, wraps_;
+  bool strict_, triangles_, solid_;
   int halvings_;
   double t_clear_;
   const Ray& ray_;

@@ -5,6 +5,7 @@
 #include <rapidcheck/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <vector>
@@ -105,6 +106,32 @@ TEST(MaxPyramid, BoundsHeightsThatCodesDoNotMeet) {
       const HeightField field = HeightField::own(samples, 33, 18);
       expect_tight(field, MaxPyramid(field));
     }
+  }
+}
+
+TEST(MaxPyramid, BoundsHeightsOfARangeThatIsNarrowerThanRounding) {
+  // Neighbouring floats far above the datum, and a reserve that doubles hardly tell from nothing.
+  for (const double datum : {1.0, 8388608.0, -3e30}) {
+    auto samples = noise<float>(33, 18);
+    const float low = static_cast<float>(datum), high = std::nextafter(low, std::numeric_limits<float>::infinity());
+    for (float& s : samples) s = s < 500 ? low : high;
+    const HeightField two = HeightField::own(samples, 33, 18);
+    expect_tight(two, MaxPyramid(two));
+    const HeightField flat = HeightField::own(std::vector<float>(33 * 18, low), 33, 18);
+    expect_tight(flat, MaxPyramid(flat));
+    expect_tight(flat, MaxPyramid(flat, SampleRange{datum, std::nextafter(datum, kInfinity)}));
+  }
+}
+
+TEST(MaxPyramid, BoundsHeightsThatAreThoseOfCodesButForRounding) {
+  std::mt19937 random(10);
+  std::uniform_real_distribution<double> some(0.001, 0.01);
+  const HeightField flat = HeightField::own(std::vector<float>(9, 1.0f), 3, 3);
+  for (int i = 0; i < 200; ++i) {
+    // A range in which the sample's height is that of code m.
+    const double step = some(random), m = 2 + static_cast<double>(random() % 65000);
+    const double low = 1 - step * m + 1.5 * step;
+    expect_tight(flat, MaxPyramid(flat, SampleRange{low, low + 65533 * step}));
   }
 }
 
