@@ -2,6 +2,7 @@
 #include "scarp/accel/max_pyramid.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -110,10 +111,23 @@ void extremes_of_samples(const SampleGrid<T>& grid, const T* north, const T* mid
   }
 }
 
+// The most that the codes of an entry differ by.
+int most_relief(const std::uint16_t* maxima, const std::uint16_t* minima, int count) {
+  std::uint16_t most = 0;
+  for (int i = 0; i < count; ++i) most = std::max(most, static_cast<std::uint16_t>(maxima[i] - minima[i]));
+  return most;
+}
+
+void raise(std::atomic<int>& to, int value) {
+  for (int now = to.load(std::memory_order_relaxed); now < value;) {
+    if (to.compare_exchange_weak(now, value, std::memory_order_relaxed)) return;
+  }
+}
+
 // Level 1, from the samples; the rows in between live for a moment only.
 template <class T>
 void build_first(const SampleGrid<T>& grid, const HeightCode& code, const Part& part, int cols, std::uint16_t* maxima,
-                 std::uint16_t* minima) {
+                 std::uint16_t* minima, std::atomic<int>& relief) {
   const int begin = 2 * part.col_begin, end = std::min(2 * part.col_end, grid.cell_cols);
   const int width = part.col_end - part.col_begin;
   parallel_for(part.row_end - part.row_begin, rows_per_piece(width), [&](std::int64_t first, std::int64_t last) {
@@ -140,6 +154,7 @@ void build_first(const SampleGrid<T>& grid, const HeightCode& code, const Part& 
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row) * cols + part.col_begin;
       encode_above(code, high.data(), width, maxima + at);
       encode_below(code, low.data(), width, minima + at);
+      raise(relief, most_relief(maxima + at, minima + at, width));
     }
   });
 }
@@ -174,14 +189,16 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
   }
   entries_ = static_cast<std::size_t>(entries);
   // Not zeroed: each entry is written by the thread that makes it.
-  shared_->maxima.reset(new std::uint16_t[entries_]);
-  shared_->minima.reset(new std::uint16_t[entries_]);
+  shared_->maxima.reset(new std::uint16_t[entries_ + 1]);
+  shared_->minima.reset(new std::uint16_t[entries_ + 1]);
+  shared_->maxima[entries_] = shared_->minima[entries_] = 0;
   set_range(field, reserve);
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
 }
 
 void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleRange>& reserve) {
   HeightCode& code = shared_->code;
+  shared_->cell_relief = 0;
   if (field.sample_type() != SampleType::float32) {
     code = {field.sample_type() == SampleType::int16 ? -32768.0 : 0.0, 1, 1};
     return;
@@ -224,7 +241,10 @@ void MaxPyramid::build(const HeightField& field, CellBox changed) {
     part = {part.col_begin / 2, part.row_begin / 2, (part.col_end + 1) / 2, (part.row_end + 1) / 2};
     const Level& level = levels_[l];
     if (l == 0) {
-      field.visit([&](const auto& grid) { build_first(grid, shared_->code, part, level.cols, maxima, minima); });
+      std::atomic<int> relief = shared_->cell_relief;
+      field.visit(
+          [&](const auto& grid) { build_first(grid, shared_->code, part, level.cols, maxima, minima, relief); });
+      shared_->cell_relief = relief;
       continue;
     }
     const Level& finer = levels_[l - 1];

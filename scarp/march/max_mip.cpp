@@ -26,6 +26,10 @@ bool countable(const GridRay& local, const Ray& ray) {
   return std::abs(local.origin.x) < kFarthestCell && std::abs(local.origin.y) < kFarthestCell;
 }
 
+double longest_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+// Whether a direction's length is far from where doubles end.
+bool is_usual(double longest) { return longest > 0x1p-500 && longest < 0x1p500; }
+
 template <Ask ask>
 Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_clear, MarchStats* stats,
           std::vector<Hit>* all) {
@@ -34,9 +38,8 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_cle
   if (stats) *stats = {};
   if (!field.has_cells() || field.all_nodata()) return hit;
   const GridRay local = field.grid_from_world(ray);
-  const double longest =
-      std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
-  if (!(longest > 0x1p-500 && longest < 0x1p500)) {
+  const double longest = longest_of(local.direction);
+  if (!is_usual(longest)) {
     if (!(longest > 0) || !std::isfinite(longest)) return hit;
     // A direction of extreme length is brought near 1 by a power of two, which rounds nothing; t goes back by the same.
     const int exponent = std::ilogb(longest);
@@ -92,6 +95,27 @@ Hit resume_max_mip(const HeightTarget& target, const Ray& ray, double t_clear) {
 
 bool resume_occluded_max_mip(const HeightTarget& target, const Ray& ray, double t_clear) {
   return march<Ask::any>(target, ray, 0, t_clear, nullptr, nullptr).status == HitStatus::hit;
+}
+
+SurfaceStart start_max_mip(const HeightTarget& target, const Ray& ray) {
+  const HeightField& field = *target.field;
+  const GridRay local = field.grid_from_world(ray);
+  SurfaceStart start;
+  if (!is_usual(longest_of(local.direction))) {
+    start.hit = march_max_mip(target, ray);
+    return start;
+  }
+  Hit hit;
+  field.visit([&](const auto& grid) {
+    using T = std::remove_cvref_t<decltype(grid.data[0])>;
+    const auto first_cell = [&]<bool holes>() {
+      using Walk = max_mip::Walk<T, holes, false, Ask::closest>;
+      start = Walk(field, grid, *target.pyramid, ray, local, 0, kNotClear, hit, nullptr).start();
+    };
+    grid.has_holes ? first_cell.template operator()<true>() : first_cell.template operator()<false>();
+  });
+  start.hit = hit;
+  return start;
 }
 
 HitStatus all_hits_max_mip(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {

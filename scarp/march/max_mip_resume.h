@@ -18,4 +18,14 @@ constexpr double kNotClear = -std::numeric_limits<double>::infinity();
 Hit resume_max_mip(const HeightTarget& target, const Ray& ray, double t_clear);
 bool resume_occluded_max_mip(const HeightTarget& target, const Ray& ray, double t_clear);
 
+/// The begin of a ray from the surface: its first cell.
+struct SurfaceStart {
+  bool decided;  ///< the answer is `hit`; else the ray goes on
+  Hit hit;
+  double t;    ///< where it leaves the cell
+  double z;    ///< its height at t = 0, in sample units, such that it begins on the surface
+  bool above;  ///< whether it leaves the cell above the ground
+};
+SurfaceStart start_max_mip(const HeightTarget& target, const Ray& ray);
+
 }  // namespace scarp

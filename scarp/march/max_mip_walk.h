@@ -10,6 +10,7 @@
 #include "scarp/march/cell_surface.h"
 #include "scarp/march/grid_axis.h"
 #include "scarp/march/marches.h"
+#include "scarp/march/max_mip_resume.h"
 #include "scarp/march/rounding.h"
 
 // Internal linkage, though in a header: included by one file, which lets the compiler put functions that are called
@@ -66,6 +67,16 @@ class Walk {
       if (!x_.moves() && !y_.moves()) return vertical();
     }
     while (walk()) enter_next_copy();
+  }
+
+  /// Of a ray from the surface only the first cell.
+  SurfaceStart start() {
+    SurfaceStart start;
+    start.decided = !leave_start_cell();
+    start.t = t_in_;
+    start.z = z_;
+    start.above = side_ == Side::above;
+    return start;
   }
 
   MarchStats stats;
