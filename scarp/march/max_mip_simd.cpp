@@ -45,7 +45,8 @@ constexpr float kNever = 0x1p100f;
 constexpr double kSideways = 0x1p-21, kUpright = 0.25;
 constexpr double kUnit = 0x1p-53, kRoundings = 64;  // four times rounding_of_clearance()
 
-enum Status : std::int32_t { kWalking, kMiss, kHit, kUnsure };
+// kAlone: not for the vectors.
+enum Status : std::int32_t { kWalking, kMiss, kHit, kUnsure, kAlone };
 
 // The rays of one vector in memory. Each is in a frame of its own: x and y run along the ray, mirrored where it goes
 // backwards; time T is in cells along the longer axis, from the ray's begin over the field; positions are relative to
@@ -68,8 +69,7 @@ struct VectorGround {
   alignas(64) std::int32_t level_begin[32];
   float base, per_step, offset;  // a sample's code is (sample - base) * per_step + offset
   float margin_per_cell;         // twice that of the heights
-  float nodata;
-  bool has_holes, triangles;
+  bool triangles;
 };
 
 struct Packet {
@@ -172,10 +172,10 @@ HWY_INLINE void block_step(const VectorGround<T>& g, bool minima, Packet& p) {
   const MI clear = hn::And(walking, hn::RebindMask(di, hn::Gt(low, highest)));
   MI down = hn::AndNot(clear, walking);
   if (any && minima) {
-    // if (low + margin < lowest) under all of it
+    // if (lowest != MaxPyramid::kNoMinimum && low + margin < lowest) under all of it
     const VF lowest = hn::ConvertTo(df, entries(g.minima, at));
     const VF margin = hn::MulAdd(hn::Set(df, g.margin_per_cell), e.T, p.margin);
-    const MI under = hn::RebindMask(di, hn::Lt(hn::Add(low, margin), lowest));
+    const MI under = hn::RebindMask(di, hn::Lt(hn::Max(hn::Add(low, margin), hn::Zero(df)), lowest));
     const MI hit = hn::And(hn::And(down, hn::Ne(p.seen, zero)), hn::And(under, p.before_end(e)));
     p.status = hn::IfThenElse(hit, hn::Set(di, kHit), p.status);
     down = hn::AndNot(hit, down);
@@ -185,12 +185,12 @@ HWY_INLINE void block_step(const VectorGround<T>& g, bool minima, Packet& p) {
   p.leave(clear, e, g.top);
 }
 
-// The heights of each lane's cell as codes. `hole` has a bit for each lane whose cell is one.
+// The heights of each lane's cell as codes.
 struct CellCodes {
   VF h00, h10, h01, h11;
 };
 template <class T>
-HWY_INLINE CellCodes cell_codes(const VectorGround<T>& g, VI col, VI row, MI cells, MI* hole) {
+HWY_INLINE CellCodes cell_codes(const VectorGround<T>& g, VI col, VI row, MI cells) {
   alignas(64) std::int32_t cols[N], rows[N];
   alignas(64) float h00[N] = {}, h10[N] = {}, h01[N] = {}, h11[N] = {};
   hn::Store(col, di, cols), hn::Store(row, di, rows);
@@ -206,11 +206,6 @@ HWY_INLINE CellCodes cell_codes(const VectorGround<T>& g, VI col, VI row, MI cel
     h01[j] = static_cast<float>(south[0]), h11[j] = static_cast<float>(south[1]);
   }
   CellCodes h{hn::Load(df, h00), hn::Load(df, h10), hn::Load(df, h01), hn::Load(df, h11)};
-  if (g.has_holes) {
-    const VF nodata = hn::Set(df, g.nodata);
-    const auto none = [&](VF v) HWY_ATTR { return hn::Or(hn::Eq(v, nodata), hn::Ne(v, v)); };
-    *hole = hn::RebindMask(di, hn::Or(hn::Or(none(h.h00), none(h.h10)), hn::Or(none(h.h01), none(h.h11))));
-  }
   const VF base = hn::Set(df, g.base), per_step = hn::Set(df, g.per_step), offset = hn::Set(df, g.offset);
   const auto code = [&](VF v) HWY_ATTR { return hn::MulAdd(hn::Sub(v, base), per_step, offset); };
   return {code(h.h00), code(h.h10), code(h.h01), code(h.h11)};
@@ -262,8 +257,7 @@ HWY_INLINE void cell_step(const VectorGround<T>& g, bool put_off, Packet& p) {
   const VF f0 = hn::Zero(df);
   const MI cells = hn::And(hn::Eq(p.status, zero), hn::Eq(p.level, zero));
   const Packet::Exit e = p.exit();
-  MI hole = hn::Ne(zero, zero);
-  const CellCodes h = cell_codes(g, hn::Xor(p.x, p.mirror_x), hn::Xor(p.y, p.mirror_y), cells, &hole);
+  const CellCodes h = cell_codes(g, hn::Xor(p.x, p.mirror_x), hn::Xor(p.y, p.mirror_y), cells);
   const VF to_x = hn::Sub(p.ox, hn::ConvertTo(df, hn::Sub(p.x, p.begin_x)));
   const VF to_y = hn::Sub(p.oy, hn::ConvertTo(df, hn::Sub(p.y, p.begin_y)));
   const auto back_x = hn::RebindMask(df, hn::Ne(p.mirror_x, zero)),
@@ -276,21 +270,19 @@ HWY_INLINE void cell_step(const VectorGround<T>& g, bool put_off, Packet& p) {
   const VF z0 = p.height(p.T), z1 = p.height(e.T);
   const Clearance f =
       g.triangles ? triangle_clearance(h, u0, v0, u1, v1, z0, z1) : bilinear_clearance(h, u0, v0, u1, v1, z0, z1);
-  const MI clear = hn::AndNot(hole, hn::And(cells, hn::RebindMask(di, hn::Gt(f.least, f0))));
+  const MI clear = hn::And(cells, hn::RebindMask(di, hn::Gt(f.least, f0)));
   MI on = clear, unsure = hn::AndNot(clear, cells);
   if constexpr (any) {
-    const MI above = hn::AndNot(hole, hn::And(cells, hn::RebindMask(di, hn::Gt(f.in, f0))));
+    const MI above = hn::And(cells, hn::RebindMask(di, hn::Gt(f.in, f0)));
     p.seen = hn::IfThenElse(above, one, p.seen);
     const MI seen = hn::Ne(p.seen, zero), doubtful = hn::And(unsure, seen);
-    if (!g.has_holes) {
-      const VF margin = hn::MulAdd(hn::Set(df, g.margin_per_cell), e.T, p.margin);
-      const MI below = hn::And(hn::RebindMask(di, hn::Lt(hn::Add(f.out, margin), f0)), p.before_end(e));
-      const MI hit = hn::And(doubtful, below);
-      p.status = hn::IfThenElse(hit, hn::Set(di, kHit), p.status);
-      unsure = hn::AndNot(hit, unsure);
-    }
+    const VF margin = hn::MulAdd(hn::Set(df, g.margin_per_cell), e.T, p.margin);
+    const MI below = hn::And(hn::RebindMask(di, hn::Lt(hn::Add(f.out, margin), f0)), p.before_end(e));
+    const MI hit = hn::And(doubtful, below);
+    p.status = hn::IfThenElse(hit, hn::Set(di, kHit), p.status);
+    unsure = hn::AndNot(hit, unsure);
     p.doubt = hn::IfThenElse(hn::RebindMask(df, doubtful), hn::Min(p.doubt, p.T), p.doubt);
-    if (put_off && !g.has_holes) {
+    if (put_off) {
       on = hn::Or(on, hn::And(unsure, seen));
       unsure = hn::AndNot(seen, unsure);
     }
@@ -345,7 +337,7 @@ HWY_INLINE AxisSpan axis_span(VD o, VD d, VD cells) {
 }
 
 // Rays into lanes: clipped to the field and to its highest sample, the first cell found. Lanes that the vectors cannot
-// follow are kUnsure and not seen.
+// follow are kAlone.
 HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
   for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
     const VD zero = hn::Zero(dd), one = hn::Set(dd, 1), cols = hn::Set(dd, f.cols), rows = hn::Set(dd, f.rows);
@@ -411,7 +403,7 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     const auto outside = hn::And(followed, hn::Ne(t_begin, t_min));
     put_whole(hn::IfThenElseZero(outside, hn::Set(dd, f.from_outside)), a.level);
     put_whole(hn::IfThenElseZero(hn::And(followed, from_above), one), a.seen);
-    const VD status = hn::IfThenElse(followed, hn::Set(dd, kWalking), hn::Set(dd, kUnsure));
+    const VD status = hn::IfThenElse(followed, hn::Set(dd, kWalking), hn::Set(dd, kAlone));
     put_whole(hn::IfThenElse(misses, hn::Set(dd, kMiss), status), a.status);
   }
   for (std::size_t j = 0; j < N; ++j) {
@@ -447,7 +439,6 @@ class VectorWalk {
     }
     g_.base = static_cast<float>(code.base), g_.per_step = static_cast<float>(code.per_step);
     g_.offset = static_cast<float>((static_cast<double>(g_.base) - code.base) * code.per_step);
-    g_.has_holes = grid.has_holes, g_.nodata = static_cast<float>(grid.nodata);
     g_.triangles = field_.settings().surface == Surface::triangles;
     const double low = field_.min_sample(), high = field_.max_sample(), relief = high - low;
     const double cell_relief = std::min(relief, pyramid.cell_relief() * code.step);
@@ -601,7 +592,7 @@ class VectorWalk {
     if constexpr (any) {
       const bool doubtful = a.doubt[j] < kNever;
       bool hit = a.status[j] == kHit;
-      if (!hit && (a.status[j] == kUnsure || doubtful)) {
+      if (!hit && (a.status[j] != kMiss || doubtful)) {
         ++stats_.handed_over;
         hit = resume_occluded_max_mip(target_, rays_[static_cast<std::size_t>(ray)],
                                       doubtful ? time(a.doubt[j]) : max_mip::kNotClear);
@@ -610,6 +601,11 @@ class VectorWalk {
     } else {
       if (a.status[j] == kMiss) {
         answers_[ray] = Hit{};
+        return;
+      }
+      if (a.status[j] == kAlone) {
+        ++stats_.handed_over;
+        answers_[ray] = march_max_mip(target_, rays_[static_cast<std::size_t>(ray)]);
         return;
       }
       Candidates& c = candidates_;
@@ -685,9 +681,13 @@ class VectorWalk {
       const VD steepest =
           hn::Add(hn::Abs(vdz), hn::Mul(hn::Add(hn::Abs(vdx), hn::Abs(vdy)), hn::Set(dd, f_.cell_relief)));
       const auto above = hn::Gt(cc, hn::Add(hn::Mul(gap, steepest), doubt));
-      const auto usual =
-          hn::And(hn::And(above, hn::Lt(t_in, t_line)),
-                  hn::And(hn::Le(t_line, t_end), hn::And(hn::Gt(hn::Abs(vdx), least), hn::Gt(hn::Abs(vdy), least))));
+      // march_max_mip() begins where the ray comes down to the highest sample, not before.
+      const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), z), vdz);
+      const VD t_top = hn::Sub(quotient, hn::Mul(hn::Set(dd, 2 * kUnit), hn::Abs(quotient)));
+      const auto begun = hn::Or(hn::Ge(vdz, zero), hn::Ge(t_line, t_top));
+      const auto moves = hn::And(hn::Gt(hn::Abs(vdx), least), hn::Gt(hn::Abs(vdy), least));
+      const auto visited = hn::And(hn::And(hn::Lt(t_in, t_line), hn::Le(t_line, t_end)), hn::And(begun, moves));
+      const auto usual = hn::And(above, visited);
       const VD highest = hn::Max(hn::Max(a00, a10), hn::Max(a01, a11));
       const VD lowest = hn::IfThenElse(hn::Lt(vdz, zero), z_out, z_in);
       const VD square = hn::Mul(b, b), ac4 = hn::Mul(hn::Mul(four, a), cc);
@@ -705,7 +705,7 @@ class VectorWalk {
       hn::Store(hn::Add(z, hn::Mul(vdz, time)), dd, height + h);
       hn::Store(hn::IfThenElseZero(hit, one), dd, found + h);
     }
-    const bool usual = ideas_.find_hits && !g_.triangles && !g_.has_holes;
+    const bool usual = ideas_.find_hits && !g_.triangles;
     for (std::size_t i = 0; i < c.count; ++i) {
       const Ray& ray = rays_[static_cast<std::size_t>(c.ray[i])];
       Hit& to = answers_[c.ray[i]];
@@ -770,10 +770,11 @@ HWY_EXPORT(walk_any);
 
 thread_local VectorStats t_stats;
 
-// Fields that the vectors do not walk over: those that wrap round, and those beyond 32-bit offsets or floats.
+// Fields that the vectors do not walk over: those that wrap round, those with holes, where a ray that is above all
+// ground may be below the rim of the next cell, and those beyond 32-bit offsets or floats.
 bool walks_over(const HeightTarget& target) {
   const HeightField& field = *target.field;
-  if (!field.has_cells() || field.all_nodata() || field.wraps()) return false;
+  if (!field.has_cells() || field.nodata_count() > 0 || field.wraps()) return false;
   const HeightCode& code = target.pyramid->code();
   return target.pyramid->bytes() < (std::size_t{1} << 32) && code.per_step > 0x1p-100 && code.per_step < 0x1p100 &&
          std::abs(code.base) < 0x1p100;

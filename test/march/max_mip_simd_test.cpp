@@ -178,7 +178,7 @@ TEST(MaxMipSimd, HandsOverFewRays) {
   take_vector_stats();
   occluded_max_mip_simd(target, rays, blocked);
   const VectorStats any = take_vector_stats();
-  EXPECT_LT(any.handed_over, rays.size() / 10);
+  EXPECT_LT(any.handed_over, rays.size() / 5);
   EXPECT_GT(any.block_lanes, rays.size());
   closest_hits_max_mip_simd(target, rays, hits);
   EXPECT_LT(take_vector_stats().handed_over, rays.size() / 2);
