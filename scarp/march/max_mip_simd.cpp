@@ -443,7 +443,8 @@ class VectorWalk {
     const double low = field_.min_sample(), high = field_.max_sample(), relief = high - low;
     const double cell_relief = std::min(relief, pyramid.cell_relief() * code.step);
     g_.margin_per_cell = static_cast<float>(4 * kSideways * cell_relief * code.per_step);
-    const auto side = std::bit_ceil(static_cast<unsigned>(std::max(grid.cell_cols, grid.cell_rows)));
+    // No less than 2: a mask of 0 would not tell what is mirrored.
+    const auto side = std::bit_ceil(static_cast<unsigned>(std::max({grid.cell_cols, grid.cell_rows, 2})));
     f_ = {.cols = static_cast<double>(grid.cell_cols),
           .rows = static_cast<double>(grid.cell_rows),
           .sample_rows = static_cast<double>(field_.rows()),

@@ -138,10 +138,7 @@ class Walk {
     const int from_outside = std::max(top_ - 3, 0);
     level_ = t_in_ == ray_.t_min ? 0 : from_outside;
     const double highest = field_.max_sample();
-    if (t_clear_ > t_in_) {
-      level_ = 0;
-      return skip_to(t_clear_);
-    }
+    double t_begin = t_clear_;
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
       // Down to the highest sample, less the two roundings of the quotient.
@@ -149,7 +146,11 @@ class Walk {
       if (t_top > t_end_) return false;
       side_ = Side::above;
       level_ = from_outside;
-      if (t_top > t_in_) return skip_to(t_top);
+      t_begin = std::max(t_begin, t_top);
+    }
+    if (t_begin > t_in_) {
+      if (t_begin == t_clear_) level_ = 0;
+      return skip_to(t_begin);
     }
     col_ = x_.cell_after(t_in_);
     row_ = y_.cell_after(t_in_);
