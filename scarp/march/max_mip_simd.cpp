@@ -565,6 +565,20 @@ class VectorWalk {
     }
   }
 
+  // The scalar walk believes in the start cell, the vectors in positions: they follow where the two agree.
+  HWY_NOINLINE SurfaceStart begin_on_surface(const Ray& ray, const GridRay& local) const {
+    const auto is_in = [&](double o, double d, int cell) {
+      return std::abs(o + d * ray.t_min - cell - 0.5) < 0.5 + kNearCell;
+    };
+    if (is_in(local.origin.x, local.direction.x, ray.start_cell.col) &&
+        is_in(local.origin.y, local.direction.y, ray.start_cell.row)) {
+      return start_max_mip(target_, ray);
+    }
+    SurfaceStart decided{};
+    decided.hit = march_max_mip(target_, ray);
+    return decided;
+  }
+
   // A ray into the grid. False: it is answered.
   bool take_ray(std::size_t j, const Ray& ray) {
     const GridRay local = field_.grid_from_world(ray);
@@ -572,7 +586,7 @@ class VectorWalk {
     r_.dx[j] = local.direction.x, r_.dy[j] = local.direction.y, r_.dz[j] = local.direction.z;
     r_.t_min[j] = ray.t_min, r_.t_max[j] = ray.t_max, r_.seen[j] = 0;
     if (ray.start == RayStart::free) return true;
-    const SurfaceStart start = start_max_mip(target_, ray);
+    const SurfaceStart start = begin_on_surface(ray, local);
     Answer& to = answers_[&ray - rays_.data()];
     if (start.decided) {
       if constexpr (any) {
@@ -725,6 +739,7 @@ class VectorWalk {
   static constexpr std::size_t kCompany = std::max<std::size_t>(1, any ? N / 4 : N * 3 / 8);
   static constexpr std::size_t kFree = std::max<std::size_t>(1, any ? N / 4 : N / 2);
   static constexpr int kFirstSteps = 2;
+  static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
 
   const HeightTarget& target_;
   const HeightField& field_;

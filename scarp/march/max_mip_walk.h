@@ -61,7 +61,7 @@ class Walk {
   void run() {
     if (strict_) {
       if (!leave_start_cell()) return;
-      if (t_clear_ > t_in_ && !skip_to(t_clear_)) return;
+      if (t_clear_ > t_in_ && !skip_on(t_clear_)) return;
     } else {
       if (!enter()) return;
       if (!x_.moves() && !y_.moves()) return vertical();
@@ -165,6 +165,16 @@ class Walk {
     col_ = x_.cell_before(t);
     row_ = y_.cell_before(t);
     t_in_ = std::max({t_in_, x_.line_time(col_ + 1 - x_.ahead), y_.line_time(row_ + 1 - y_.ahead)});
+    return true;
+  }
+
+  // The same from within a cell. In this one the ray stays where it came in: next to a start on a line, which is in the
+  // cell that it is said to be in, not all lines behind are crossed before.
+  bool skip_on(double t) {
+    const int col = col_, row = row_;
+    const double t_in = t_in_;
+    if (!skip_to(t)) return false;
+    if (col_ == col && row_ == row) t_in_ = t_in;
     return true;
   }
 
