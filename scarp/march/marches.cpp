@@ -11,6 +11,7 @@
 #include "scarp/march/exhaustive.h"
 #include "scarp/march/lipschitz.h"
 #include "scarp/march/max_mip.h"
+#include "scarp/march/max_mip_simd.h"
 #include "scarp/march/naive.h"
 #include "scarp/march/relaxed.h"
 
@@ -18,21 +19,23 @@ namespace scarp {
 namespace {
 
 constexpr std::array kMarches = {
-    MarchEntry{"exhaustive", "height field", Guarantee::exact, false, false, march_exhaustive, nullptr, nullptr, false,
-               "", "every cell under the ray on its own, in double: the judge of the others, slow"},
-    MarchEntry{"naive", "height field", Guarantee::approximate, false, false, march_naive, nullptr, nullptr, false,
-               "step factor 0.7, least step 1/512 of the way out, tolerance 0.001 of the distance, 1024 steps",
+    MarchEntry{"exhaustive", "height field", Guarantee::exact, false, false, march_exhaustive, nullptr, nullptr,
+               nullptr, false, "", "every cell under the ray on its own, in double: the judge of the others, slow"},
+    MarchEntry{"naive", "height field", Guarantee::approximate, false, false, march_naive, nullptr, nullptr, nullptr,
+               false, "step factor 0.7, least step 1/512 of the way out, tolerance 0.001 of the distance, 1024 steps",
                "steps by the vertical distance to the ground; steps over steep ground"},
-    MarchEntry{"relaxed", "height field", Guarantee::approximate, false, false, march_relaxed, nullptr, nullptr, false,
-               "step factor 0.4, tolerance 0.0015 of the distance, 300 steps",
+    MarchEntry{"relaxed", "height field", Guarantee::approximate, false, false, march_relaxed, nullptr, nullptr,
+               nullptr, false, "step factor 0.4, tolerance 0.0015 of the distance, 300 steps",
                "the shader writers' t += 0.4 h: closes in on calm ground, steps through steep ground"},
     MarchEntry{"lipschitz", "height field", Guarantee::conservative, true, true, march_lipschitz, nullptr, nullptr,
-               false, "shrink factor 1/sqrt(1 + c^2), c the slope bound, tolerance 0.0005 of the distance, 1024 steps",
+               nullptr, false,
+               "shrink factor 1/sqrt(1 + c^2), c the slope bound, tolerance 0.0005 of the distance, 1024 steps",
                "steps by a distance that the steepest slope allows; never passes, slow near steep ground"},
-    MarchEntry{"max-mip", "height field", Guarantee::exact, true, false, march_max_mip, occluded_max_mip, nullptr,
-               false, "", "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
+    MarchEntry{"max-mip", "height field", Guarantee::exact, true, false, march_max_mip, occluded_max_mip,
+               closest_hits_max_mip_simd, occluded_max_mip_simd, false, "",
+               "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
     MarchEntry{"max-mip-bisect", "height field", Guarantee::approximate, true, false, march_max_mip_bisect, nullptr,
-               nullptr, false, "16 halvings",
+               nullptr, nullptr, false, "16 halvings",
                "the same walk with the paper's binary search in the cell; passes rays that dip into a cell"},
 };
 

@@ -34,13 +34,16 @@ struct VectorIdeas {
   bool find_hits = true;    ///< closest hit: computed for many rays at once
 };
 
-/// hits[i] is march_max_mip() of rays[i], bit for bit. On the calling thread; the spans have the same length.
+/// hits[i] is march_max_mip() of rays[i], bit for bit. On the calling thread; the spans have the same length, below
+/// 2^31.
+void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits);
 void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
-                               const VectorIdeas& ideas = {});
+                               const VectorIdeas& ideas);
 
 /// blocked[i] is 1 where occluded_max_mip() of rays[i] is true, else 0.
+void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked);
 void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-                           const VectorIdeas& ideas = {});
+                           const VectorIdeas& ideas);
 
 /// What the vectors did on this thread since it was last asked.
 struct VectorStats {
