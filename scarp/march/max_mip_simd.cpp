@@ -47,7 +47,7 @@ class VectorWalk {
     const MaxPyramid& pyramid = *target.pyramid;
     const HeightCode& code = pyramid.code();
     g_ = {};
-    g_.maxima = pyramid.maxima(), g_.minima = pyramid.minima();
+    g_.maxima = pyramid.maxima();
     g_.samples = grid.data, g_.stride = grid.row_stride;
     g_.last_col = grid.cell_cols - 1, g_.last_row = grid.cell_rows - 1, g_.top = pyramid.top_level();
     for (int level = 1; level <= g_.top; ++level) {
@@ -86,7 +86,7 @@ class VectorWalk {
     for (int k = 0; k < kPackets; ++k) packets[k].load(lanes_[k]);
     for (bool live = true; live;) {
       live = false;
-      for (Packet& p : packets) block_step<any>(g_, ideas_.minima, p);
+      for (Packet& p : packets) block_step(g_, p);
       for (int k = 0; k < kPackets; ++k) live = follow_up(packets[k], lanes_[k]) || live;
     }
     if constexpr (!any) {
@@ -175,7 +175,7 @@ class VectorWalk {
       p.load(fresh_);
       for (int i = 0; i < kFirstSteps; ++i) {
         cell_step<any>(g_, ideas_.put_off, p);
-        block_step<any>(g_, ideas_.minima, p);
+        block_step(g_, p);
       }
       p.store(fresh_);
     }
@@ -354,6 +354,7 @@ class VectorWalk {
   // From a search over the rays of scarp-bench (decisions.md): lanes that wait until they are served.
   static constexpr std::size_t kCompany = std::max<std::size_t>(1, any ? N / 4 : N * 3 / 8);
   static constexpr std::size_t kFree = std::max<std::size_t>(1, any ? N / 4 : N / 2);
+  static constexpr int kPackets = any ? 3 : 2;  // vectors in turn: while one waits for memory, others compute
   static constexpr int kFirstSteps = 2;
   static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
 

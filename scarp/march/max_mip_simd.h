@@ -29,7 +29,6 @@ struct VectorIdeas {
   bool refill = true;       ///< lanes get new rays when some are done, not when all are
   bool wait = true;         ///< lanes at cells wait for company
   bool first_cells = true;  ///< any-hit: the first steps of new rays are taken together
-  bool minima = true;       ///< any-hit: a ray under all of a block is stopped
   bool put_off = true;      ///< any-hit: a doubtful cell is decided only if nothing stops the ray behind it
   bool find_hits = true;    ///< closest hit: computed for many rays at once
 };

@@ -33,7 +33,6 @@ using VI = hn::Vec<decltype(di)>;
 using MI = hn::Mask<decltype(di)>;
 using VD = hn::Vec<decltype(dd)>;
 
-constexpr int kPackets = 2;  // vectors of rays in turn: while one waits for memory, the other computes
 constexpr float kNever = 0x1p100f;
 // Rounding of positions and line times, per cell of the ray's way, and of heights, in codes: numerics.md.
 constexpr double kSideways = 0x1p-21, kUpright = 0.25;
@@ -56,7 +55,7 @@ struct Lanes {
 // The ground as the vectors need it.
 template <class T>
 struct VectorGround {
-  const std::uint16_t *maxima, *minima;
+  const std::uint16_t* maxima;
   const T* samples;
   std::ptrdiff_t stride;
   std::int32_t last_col, last_row, top;
@@ -150,8 +149,8 @@ HWY_INLINE VI entries(const std::uint16_t* codes, VI at) {
 }
 
 // One step of the lanes that are at blocks.
-template <bool any, class T>
-HWY_INLINE void block_step(const VectorGround<T>& g, bool minima, Packet& p) {
+template <class T>
+HWY_INLINE void block_step(const VectorGround<T>& g, Packet& p) {
   const VI zero = hn::Zero(di), one = hn::Set(di, 1);
   const MI walking = hn::And(hn::Eq(p.status, zero), hn::Gt(p.level, zero));
   const Packet::Exit e = p.exit();
@@ -164,16 +163,7 @@ HWY_INLINE void block_step(const VectorGround<T>& g, bool minima, Packet& p) {
   const VF highest = hn::ConvertTo(df, entries(g.maxima, at));
   // if (low > highest) above all of the block
   const MI clear = hn::And(walking, hn::RebindMask(di, hn::Gt(low, highest)));
-  MI down = hn::AndNot(clear, walking);
-  if (any && minima) {
-    // if (lowest != MaxPyramid::kNoMinimum && low + margin < lowest) under all of it
-    const VF lowest = hn::ConvertTo(df, entries(g.minima, at));
-    const VF margin = hn::MulAdd(hn::Set(df, g.margin_per_cell), e.T, p.margin);
-    const MI under = hn::RebindMask(di, hn::Lt(hn::Max(hn::Add(low, margin), hn::Zero(df)), lowest));
-    const MI hit = hn::And(hn::And(down, hn::Ne(p.seen, zero)), hn::And(under, p.before_end(e)));
-    p.status = hn::IfThenElse(hit, hn::Set(di, kHit), p.status);
-    down = hn::AndNot(hit, down);
-  }
+  const MI down = hn::AndNot(clear, walking);
   p.seen = hn::IfThenElse(clear, one, p.seen);
   p.level = hn::IfThenElse(down, hn::Sub(p.level, one), p.level);
   p.leave(clear, e, g.top);
