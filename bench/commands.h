@@ -43,6 +43,13 @@ struct NaiveOptions {
 };
 void run_naive(const NaiveOptions& options, const ReportOptions& report);
 
+/// `simd`: the vectors beside the scalar walk, one thread, with each of their ideas left out.
+struct SimdOptions {
+  TraceOptions trace;
+  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes"};
+};
+void run_simd(const SimdOptions& options, const ReportOptions& report);
+
 /// `pyramid`: how fast the pyramid of maxima is built.
 struct PyramidOptions {
   std::vector<int> sizes{2049, 8193};

@@ -105,6 +105,18 @@ int run(int argc, char** argv) {
   add_trace_options(*naive_command, naive.trace);
   add_json_option(*naive_command, report);
 
+  SimdOptions simd;
+  CLI::App* simd_command = app.add_subcommand("simd", "the vectors beside the scalar walk, and what each idea gains");
+  simd_command->add_option("--size", simd.trace.field.size, "samples per side of the procedural DEM")
+      ->check(CLI::Range(kLeastSize, kMostSize))
+      ->capture_default_str();
+  simd_command->add_option("--classes", simd.classes, "of rays")
+      ->delimiter(',')
+      ->check(CLI::IsMember(simd.classes))
+      ->capture_default_str();
+  add_trace_options(*simd_command, simd.trace);
+  add_json_option(*simd_command, report);
+
   PyramidOptions pyramid;
   CLI::App* pyramid_command = app.add_subcommand("pyramid", "how fast the pyramid of maxima is built");
   pyramid_command->add_option("--sizes", pyramid.sizes, "samples per side, one or several")
@@ -203,6 +215,7 @@ int run(int argc, char** argv) {
   leaks.embree_rays = static_cast<std::int64_t>(embree_rays);
   if (*heights_command) run_heights(heights, report);
   if (*naive_command) run_naive(naive, report);
+  if (*simd_command) run_simd(simd, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
   if (*leaks_command) run_leaks(leaks, report);
   if (*voxels_command) run_voxels(voxels, report);

@@ -60,11 +60,36 @@ Engine ScarpGround::engine(const MarchEntry& march, const MarchSettings& setting
   return engine;
 }
 
+Engine ScarpGround::vectors(const std::string& mode, const VectorIdeas& ideas) const {
+  Engine engine = this->engine(find_march("max-mip"));
+  engine.mode = mode;
+  const HeightTarget to = target();
+  engine.trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
+    const auto count = static_cast<std::size_t>(end - begin);
+    thread_local std::vector<Ray> rays;
+    rays.resize(count);
+    for (std::size_t i = 0; i < count; ++i) rays[i] = library_ray(set.rays[static_cast<std::size_t>(begin) + i]);
+    if (set.any_hit) {
+      thread_local std::vector<std::uint8_t> blocked;
+      blocked.resize(count);
+      occluded_max_mip_simd(to, rays, blocked, ideas);
+      for (std::size_t i = 0; i < count; ++i) answers[i] = blocked[i] ? kBlocked : kMiss;
+    } else {
+      thread_local std::vector<Hit> hits;
+      hits.resize(count);
+      closest_hits_max_mip_simd(to, rays, hits, ideas);
+      for (std::size_t i = 0; i < count; ++i) answers[i] = hits[i] ? static_cast<float>(hits[i].t) : kMiss;
+    }
+  };
+  return engine;
+}
+
 std::vector<Engine> ScarpGround::engines() const {
   std::vector<Engine> engines;
   for (const MarchEntry& march : height_marches()) {
     if (march.name == "exhaustive") continue;
     engines.push_back(engine(march));
+    if (march.simd) engines.push_back(vectors(std::string(march.name) + "-simd"));
     if (!march.cpu_occluded) continue;
     // The same question by way of the closest hit: what a function of its own for any hit gains.
     MarchEntry closest_only = march;

@@ -6,6 +6,7 @@
 
 #include "bench/engine.h"
 #include "bench/fields.h"
+#include "scarp/march/max_mip_simd.h"
 
 namespace scarp::bench {
 
@@ -20,6 +21,9 @@ class ScarpGround {
   /// One march of the table under the given settings. Rays that only ask whether they are blocked go to the march's own
   /// function for that where there is one.
   Engine engine(const MarchEntry& march, const MarchSettings& settings = {}) const;
+
+  /// `max-mip` in vectors, with all of their ideas or some.
+  Engine vectors(const std::string& mode, const VectorIdeas& ideas = {}) const;
 
   /// Every march of the table but the judge.
   std::vector<Engine> engines() const;

@@ -2,6 +2,7 @@
 #include "scarp/accel/max_pyramid.h"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 
 #include "scarp/accel/height_encode.h"
@@ -76,10 +77,23 @@ void extremes_of_samples(const SampleGrid<T>& grid, const T* north, const T* mid
   }
 }
 
+// The most that the codes of an entry differ by.
+int most_relief(const std::uint16_t* maxima, const std::uint16_t* minima, int count) {
+  std::uint16_t most = 0;
+  for (int i = 0; i < count; ++i) most = std::max(most, static_cast<std::uint16_t>(maxima[i] - minima[i]));
+  return most;
+}
+
+void raise(std::atomic<int>& to, int value) {
+  for (int now = to.load(std::memory_order_relaxed); now < value;) {
+    if (to.compare_exchange_weak(now, value, std::memory_order_relaxed)) return;
+  }
+}
+
 // Level 1, from the samples; the rows in between live for a moment only.
 template <class T>
 void build_first(const SampleGrid<T>& grid, const HeightCode& code, const CellBox& part, int cols,
-                 std::uint16_t* maxima, std::uint16_t* minima) {
+                 std::uint16_t* maxima, std::uint16_t* minima, std::atomic<int>& relief) {
   const int begin = 2 * part.col_begin, end = std::min(2 * part.col_end, grid.cell_cols);
   const int width = part.col_end - part.col_begin;
   parallel_for(part.row_end - part.row_begin, rows_per_piece(width), [&](std::int64_t first, std::int64_t last) {
@@ -106,6 +120,7 @@ void build_first(const SampleGrid<T>& grid, const HeightCode& code, const CellBo
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row) * cols + part.col_begin;
       encode_above(code, high.data(), width, maxima + at);
       encode_below(code, low.data(), width, minima + at);
+      raise(relief, most_relief(maxima + at, minima + at, width));
     }
   });
 }
@@ -134,13 +149,15 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
   if (levels_.empty()) return;
   entries_ = static_cast<std::size_t>(levels_.back().begin + 1);
   // Not zeroed: each entry is written by the thread that makes it.
-  shared_->maxima.reset(new std::uint16_t[entries_]);
-  shared_->minima.reset(new std::uint16_t[entries_]);
+  shared_->maxima.reset(new std::uint16_t[entries_ + 1]);
+  shared_->minima.reset(new std::uint16_t[entries_ + 1]);
+  shared_->maxima[entries_] = shared_->minima[entries_] = 0;
   set_range(field, reserve);
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
 }
 
 void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleRange>& reserve) {
+  shared_->cell_relief = 0;
   shared_->range = code_range(field, reserve);
   shared_->code = height_code(field.sample_type(), shared_->range);
 }
@@ -161,7 +178,10 @@ void MaxPyramid::build(const HeightField& field, const CellBox& changed) {
     part = coarser(part);
     const Level& level = levels_[l];
     if (l == 0) {
-      field.visit([&](const auto& grid) { build_first(grid, shared_->code, part, level.cols, maxima, minima); });
+      std::atomic<int> relief = shared_->cell_relief;
+      field.visit(
+          [&](const auto& grid) { build_first(grid, shared_->code, part, level.cols, maxima, minima, relief); });
+      shared_->cell_relief = relief;
       continue;
     }
     const Level& finer = levels_[l - 1];

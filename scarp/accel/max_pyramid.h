@@ -49,7 +49,8 @@ class MaxPyramid {
   std::size_t bytes() const { return 2 * entries_ * sizeof(std::uint16_t); }
 
   using Level = PyramidLevel;
-  /// Levels 1, 2, ...; their entries lie in rows from north to south, no padding.
+  /// Levels 1, 2, ...; their entries lie in rows from north to south, no padding. Behind the last one there is room for
+  /// another: vectors read two entries where they need one.
   const std::vector<Level>& levels() const { return levels_; }
   const HeightCode& code() const { return shared_->code; }
   const std::uint16_t* maxima() const { return shared_->maxima.get(); }
@@ -60,11 +61,16 @@ class MaxPyramid {
   double maximum(int level, int col, int row) const;
   double minimum(int level, int col, int row) const;
 
+  /// No two points of a cell differ by more, in steps of the code; where there are holes, up to 65535. After edits it
+  /// may be more than a pyramid built anew would say.
+  int cell_relief() const { return shared_->cell_relief; }
+
  private:
   // What copies share.
   struct Shared {
     HeightCode code;
     SampleRange range;  // what the codes can hold
+    int cell_relief = 0;
     std::unique_ptr<std::uint16_t[]> maxima, minima;
   };
 

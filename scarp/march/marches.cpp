@@ -12,6 +12,7 @@
 #include "scarp/march/fixed_step.h"
 #include "scarp/march/lipschitz.h"
 #include "scarp/march/max_mip.h"
+#include "scarp/march/max_mip_simd.h"
 #include "scarp/march/naive.h"
 #include "scarp/march/relaxed.h"
 #include "scarp/march/voxel_bricks.h"
@@ -26,29 +27,31 @@ namespace {
 
 constexpr MarchEntry voxel_march(std::string_view name, VoxelAccelerator needs, VoxelMarch cpu, VoxelOcclusion occluded,
                                  std::string_view description) {
-  return {name,  "voxel grid", Guarantee::exact, false, false,    nullptr, nullptr, nullptr,
+  return {name,  "voxel grid", Guarantee::exact, false, false,    nullptr, nullptr, nullptr, nullptr,
           false, "",           description,      cpu,   occluded, needs};
 }
 
 constexpr std::array kMarches = {
-    MarchEntry{"exhaustive", "height field", Guarantee::exact, false, false, march_exhaustive, nullptr, nullptr, false,
-               "", "every cell under the ray on its own, in double: the judge of the others, slow"},
-    MarchEntry{"naive", "height field", Guarantee::approximate, false, false, march_naive, nullptr, nullptr, true,
-               "step factor 0.7, least step 1/512 of the way out, tolerance 0.001 of the distance, 1024 steps",
+    MarchEntry{"exhaustive", "height field", Guarantee::exact, false, false, march_exhaustive, nullptr, nullptr,
+               nullptr, false, "", "every cell under the ray on its own, in double: the judge of the others, slow"},
+    MarchEntry{"naive", "height field", Guarantee::approximate, false, false, march_naive, nullptr, nullptr, nullptr,
+               true, "step factor 0.7, least step 1/512 of the way out, tolerance 0.001 of the distance, 1024 steps",
                "steps by the vertical distance to the ground; steps over steep ground"},
     MarchEntry{"fixed-step", "height field", Guarantee::approximate, false, false, march_fixed_step, nullptr, nullptr,
-               true, "step 0.5 cells, interpolating, 16384 steps",
+               nullptr, true, "step 0.5 cells, interpolating, 16384 steps",
                "a sample at every step, a hit where one is not above; passes what is thinner than a step"},
-    MarchEntry{"relaxed", "height field", Guarantee::approximate, false, false, march_relaxed, nullptr, nullptr, true,
-               "step factor 0.4, tolerance 0.0015 of the distance, 300 steps",
+    MarchEntry{"relaxed", "height field", Guarantee::approximate, false, false, march_relaxed, nullptr, nullptr,
+               nullptr, true, "step factor 0.4, tolerance 0.0015 of the distance, 300 steps",
                "the shader writers' t += 0.4 h: closes in on calm ground, steps through steep ground"},
     MarchEntry{"lipschitz", "height field", Guarantee::conservative, true, true, march_lipschitz, nullptr, nullptr,
-               true, "shrink factor 1/sqrt(1 + c^2), c the slope bound, tolerance 0.0005 of the distance, 1024 steps",
+               nullptr, true,
+               "shrink factor 1/sqrt(1 + c^2), c the slope bound, tolerance 0.0005 of the distance, 1024 steps",
                "steps by a distance that the steepest slope allows; never passes, slow near steep ground"},
-    MarchEntry{"max-mip", "height field", Guarantee::exact, true, false, march_max_mip, occluded_max_mip, nullptr, true,
-               "", "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
+    MarchEntry{"max-mip", "height field", Guarantee::exact, true, false, march_max_mip, occluded_max_mip,
+               closest_hits_max_mip_simd, occluded_max_mip_simd, true, "",
+               "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
     MarchEntry{"max-mip-bisect", "height field", Guarantee::approximate, true, false, march_max_mip_bisect, nullptr,
-               nullptr, false, "16 halvings",
+               nullptr, nullptr, false, "16 halvings",
                "the same walk with the paper's binary search in the cell; passes rays that dip into a cell"},
     voxel_march("voxel-exhaustive", VoxelAccelerator::none, march_voxel_exhaustive, nullptr,
                 "every solid voxel on its own, in rationals: the judge of the voxel marches, slow"),

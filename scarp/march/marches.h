@@ -3,6 +3,7 @@
 // is listed here is tested against the oracle from that moment on.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string_view>
@@ -83,6 +84,12 @@ using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const Ma
 /// Whether the closest hit is a hit, without computing where.
 using HeightOcclusion = bool (*)(const HeightTarget& target, const Ray& ray);
 
+/// The two above for many rays, on the calling thread, answers bit for bit those for single rays. The spans have one
+/// length.
+using HeightMarchBatch = void (*)(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits);
+using HeightOcclusionBatch = void (*)(const HeightTarget& target, std::span<const Ray> rays,
+                                      std::span<std::uint8_t> blocked);
+
 /// What a voxel march needs of VoxelTarget besides the grid.
 enum class VoxelAccelerator { none, spheres, cubes, octants, bricks };
 
@@ -92,13 +99,14 @@ struct MarchEntry {
   std::string_view fields;  ///< kinds of field that it takes
   Guarantee guarantee;
   bool needs_pyramid;
-  bool needs_slope;              ///< whether it asks for HeightTarget::slope
-  HeightMarch cpu;               ///< scalar C++; null: takes no height fields
-  HeightOcclusion cpu_occluded;  ///< null: none of its own, ask cpu
-  HeightMarch simd;              ///< null: none
-  bool gpu;                      ///< whether a Vulkan realisation exists
-  std::string_view parameters;   ///< its settings with their defaults, for people
-  std::string_view description;  ///< one line
+  bool needs_slope;                    ///< whether it asks for HeightTarget::slope
+  HeightMarch cpu;                     ///< scalar C++; null: takes no height fields
+  HeightOcclusion cpu_occluded;        ///< null: none of its own, ask cpu
+  HeightMarchBatch simd;               ///< many rays at once in vectors; null: none
+  HeightOcclusionBatch simd_occluded;  ///< null: none
+  bool gpu;                            ///< whether a Vulkan realisation exists
+  std::string_view parameters;         ///< its settings with their defaults, for people
+  std::string_view description;        ///< one line
   // Those of voxel grids, which have none of the height fields' functions above.
   VoxelMarch voxel_cpu = nullptr;  ///< scalar C++
   VoxelOcclusion voxel_cpu_occluded = nullptr;

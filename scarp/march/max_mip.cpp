@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scarp/march/max_mip_resume.h"
 #include "scarp/march/max_mip_walk.h"
 
 namespace scarp {
 namespace {
 
 using max_mip::Ask;
+using max_mip::kNotClear;
 
 // Beyond this many cells doubles no longer tell one cell from the next.
 constexpr double kFarthestCell = 0x1p51;
@@ -24,16 +26,20 @@ bool countable(const GridRay& local, const Ray& ray) {
   return std::abs(local.origin.x) < kFarthestCell && std::abs(local.origin.y) < kFarthestCell;
 }
 
+double longest_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+// Whether a direction's length is far from where doubles end.
+bool is_usual(double longest) { return longest > 0x1p-500 && longest < 0x1p500; }
+
 template <Ask ask>
-Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* stats, std::vector<Hit>* all) {
+Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_clear, MarchStats* stats,
+          std::vector<Hit>* all) {
   const HeightField& field = *target.field;
   Hit hit;
   if (stats) *stats = {};
   if (!field.has_cells() || field.all_nodata()) return hit;
   const GridRay local = field.grid_from_world(ray);
-  const double longest =
-      std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
-  if (!(longest > 0x1p-500 && longest < 0x1p500)) {
+  const double longest = longest_of(local.direction);
+  if (!is_usual(longest)) {
     if (!(longest > 0) || !std::isfinite(longest)) return hit;
     // A direction of extreme length is brought near 1 by a power of two, which rounds nothing; t goes back by the same.
     const int exponent = std::ilogb(longest);
@@ -41,7 +47,7 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
     for (int axis = 0; axis < 3; ++axis) scaled.direction[axis] = std::ldexp(ray.direction[axis], -exponent);
     scaled.t_min = std::ldexp(ray.t_min, exponent);
     scaled.t_max = std::ldexp(ray.t_max, exponent);
-    hit = march<ask>(target, scaled, halvings, stats, all);
+    hit = march<ask>(target, scaled, halvings, kNotClear, stats, all);
     if (hit) hit.t = std::ldexp(hit.t, -exponent);
     if (all) {
       for (Hit& one : *all) one.t = std::ldexp(one.t, -exponent);
@@ -56,7 +62,7 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
   field.visit([&](const auto& grid) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
     const auto run = [&]<bool holes, bool wraps>() {
-      max_mip::Walk<T, holes, wraps, ask> walk(field, grid, *target.pyramid, ray, local, halvings, hit, all);
+      max_mip::Walk<T, holes, wraps, ask> walk(field, grid, *target.pyramid, ray, local, halvings, t_clear, hit, all);
       walk.run();
       if (stats) *stats = walk.stats;
     };
@@ -72,20 +78,49 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, MarchStats* 
 }  // namespace
 
 Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats) {
-  return march<Ask::closest>(target, ray, 0, stats, nullptr);
+  return march<Ask::closest>(target, ray, 0, kNotClear, stats, nullptr);
 }
 
 Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  return march<Ask::bisected>(target, ray, settings.bisect.halvings, stats, nullptr);
+  return march<Ask::bisected>(target, ray, settings.bisect.halvings, kNotClear, stats, nullptr);
 }
 
 bool occluded_max_mip(const HeightTarget& target, const Ray& ray) {
-  return march<Ask::any>(target, ray, 0, nullptr, nullptr).status == HitStatus::hit;
+  return march<Ask::any>(target, ray, 0, kNotClear, nullptr, nullptr).status == HitStatus::hit;
+}
+
+Hit resume_max_mip(const HeightTarget& target, const Ray& ray, double t_clear) {
+  return march<Ask::closest>(target, ray, 0, t_clear, nullptr, nullptr);
+}
+
+bool resume_occluded_max_mip(const HeightTarget& target, const Ray& ray, double t_clear) {
+  return march<Ask::any>(target, ray, 0, t_clear, nullptr, nullptr).status == HitStatus::hit;
+}
+
+SurfaceStart start_max_mip(const HeightTarget& target, const Ray& ray) {
+  const HeightField& field = *target.field;
+  const GridRay local = field.grid_from_world(ray);
+  SurfaceStart start;
+  if (!is_usual(longest_of(local.direction))) {
+    start.hit = march_max_mip(target, ray);
+    return start;
+  }
+  Hit hit;
+  field.visit([&](const auto& grid) {
+    using T = std::remove_cvref_t<decltype(grid.data[0])>;
+    const auto first_cell = [&]<bool holes>() {
+      using Walk = max_mip::Walk<T, holes, false, Ask::closest>;
+      start = Walk(field, grid, *target.pyramid, ray, local, 0, kNotClear, hit, nullptr).start();
+    };
+    grid.has_holes ? first_cell.template operator()<true>() : first_cell.template operator()<false>();
+  });
+  start.hit = hit;
+  return start;
 }
 
 HitStatus all_hits_max_mip(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
   hits.clear();
-  return march<Ask::all>(target, ray, 0, nullptr, &hits).status;
+  return march<Ask::all>(target, ray, 0, kNotClear, nullptr, &hits).status;
 }
 
 }  // namespace scarp

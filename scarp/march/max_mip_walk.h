@@ -10,6 +10,7 @@
 #include "scarp/march/cell_surface.h"
 #include "scarp/march/grid_axis.h"
 #include "scarp/march/marches.h"
+#include "scarp/march/max_mip_resume.h"
 #include "scarp/march/rounding.h"
 
 // Internal linkage, though in a header: included by one file, which lets the compiler put functions that are called
@@ -31,9 +32,10 @@ enum class Through { point, x_line, y_line };
 template <class T, bool Holes, bool Wraps, Ask ask>
 class Walk {
  public:
-  /// `all` is where the hits go when all are asked for.
+  /// `all` is where the hits go when all are asked for. Up to `t_clear` the ray is known to be above the ground by more
+  /// than rounding: the walk begins in the cell that holds it.
   Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray,
-       const GridRay& local, int halvings, Hit& answer, std::vector<Hit>* all)
+       const GridRay& local, int halvings, double t_clear, Hit& answer, std::vector<Hit>* all)
       : field_(field),
         grid_(grid),
         levels_(pyramid.levels().data()),
@@ -51,6 +53,7 @@ class Walk {
         triangles_(field.settings().surface == Surface::triangles),
         solid_(field.settings().solid),
         halvings_(halvings),
+        t_clear_(t_clear),
         ray_(ray),
         answer_(answer),
         all_(all) {}
@@ -58,11 +61,22 @@ class Walk {
   void run() {
     if (strict_) {
       if (!leave_start_cell()) return;
+      if (t_clear_ > t_in_ && !skip_on(t_clear_)) return;
     } else {
       if (!enter()) return;
       if (!x_.moves() && !y_.moves()) return vertical();
     }
     while (walk()) enter_next_copy();
+  }
+
+  /// Of a ray from the surface only the first cell.
+  SurfaceStart start() {
+    SurfaceStart start;
+    start.decided = !leave_start_cell();
+    start.t = t_in_;
+    start.z = z_;
+    start.above = side_ == Side::above;
+    return start;
   }
 
   MarchStats stats;
@@ -124,23 +138,43 @@ class Walk {
     const int from_outside = std::max(top_ - 3, 0);
     level_ = t_in_ == ray_.t_min ? 0 : from_outside;
     const double highest = field_.max_sample();
+    double t_begin = t_clear_;
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
-      // Down to the highest sample, less the two roundings of the quotient; from there back to where the cell begins,
-      // so that a peak which the ray just touches is still ahead.
+      // Down to the highest sample, less the two roundings of the quotient.
       const double quotient = (highest - z_) / dz_, t_top = quotient - 2 * kUnit * std::abs(quotient);
       if (t_top > t_end_) return false;
       side_ = Side::above;
       level_ = from_outside;
-      if (t_top > t_in_) {
-        col_ = x_.cell_before(t_top);
-        row_ = y_.cell_before(t_top);
-        t_in_ = std::max({t_in_, x_.line_time(col_ + 1 - x_.ahead), y_.line_time(row_ + 1 - y_.ahead)});
-        return true;
-      }
+      t_begin = std::max(t_begin, t_top);
+    }
+    if (t_begin > t_in_) {
+      if (t_begin == t_clear_) level_ = 0;
+      return skip_to(t_begin);
     }
     col_ = x_.cell_after(t_in_);
     row_ = y_.cell_after(t_in_);
+    return true;
+  }
+
+  // On to the cell that holds a time up to which the ray is above the ground, and back to where that cell begins, so
+  // that a peak which the ray just touches is still ahead. False: the ray ends before.
+  bool skip_to(double t) {
+    if (t > t_end_) return false;
+    side_ = Side::above;
+    col_ = x_.cell_before(t);
+    row_ = y_.cell_before(t);
+    t_in_ = std::max({t_in_, x_.line_time(col_ + 1 - x_.ahead), y_.line_time(row_ + 1 - y_.ahead)});
+    return true;
+  }
+
+  // The same from within a cell. In this one the ray stays where it came in: next to a start on a line, which is in the
+  // cell that it is said to be in, not all lines behind are crossed before.
+  bool skip_on(double t) {
+    const int col = col_, row = row_;
+    const double t_in = t_in_;
+    if (!skip_to(t)) return false;
+    if (col_ == col && row_ == row) t_in_ = t_in;
     return true;
   }
 
@@ -541,6 +575,7 @@ class Walk {
   double t_in_, t_end_;
   bool strict_, triangles_, solid_;
   int halvings_;
+  double t_clear_;
   const Ray& ray_;
 
   int col_ = 0, row_ = 0;  // the cell that the ray is in: this is the state, times are derived from it

@@ -15,6 +15,8 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kRaysPerPiece = 256;
+constexpr std::int64_t kRaysPerVectorPiece = 2048;  // at the end of a piece vectors have lanes without rays
+constexpr std::size_t kFewForVectors = 32;
 constexpr std::size_t kRaysAtOnce = 1 << 22;  // what is put in order together
 constexpr std::size_t kAhead = 6;
 
@@ -29,21 +31,55 @@ void prefetch(const Ray& ray) {
   __builtin_prefetch(reinterpret_cast<const char*>(&ray) + 64);  // the next cache line
 }
 
-// Calls answer(i) for each ray, on all threads, those over one tile of ground together where that pays.
-template <class Answer>
-void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Answer& answer) {
+// Calls body(first, order) for pieces of the rays on all threads: answer those from `first` on, or, where `order` is
+// not empty, those at its indices counted from `first`. Rays over one tile of ground come together where that pays.
+template <class Body>
+void for_each_piece(const HeightField& field, std::span<const Ray> rays, std::int64_t rays_per_piece,
+                    const Body& body) {
   for (std::size_t first = 0; first < rays.size(); first += kRaysAtOnce) {
     const std::span<const Ray> part = rays.subspan(first, std::min(kRaysAtOnce, rays.size() - first));
     const std::vector<std::uint32_t> order = ground_order(field, part);
-    parallel_for(static_cast<std::int64_t>(part.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
-      const auto last = static_cast<std::size_t>(end);
-      for (auto i = static_cast<std::size_t>(begin); i < last; ++i) {
-        // In another order than they lie, rays have to be sent for early.
-        if (!order.empty() && i + kAhead < last) prefetch(part[order[i + kAhead]]);
-        answer(first + (order.empty() ? i : order[i]));
+    parallel_for(static_cast<std::int64_t>(part.size()), rays_per_piece, [&](std::int64_t begin, std::int64_t end) {
+      const auto from = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+      if (order.empty()) {
+        body(first + from, count, {});
+      } else {
+        body(first, count, std::span(order).subspan(from, count));
       }
     });
   }
+}
+
+// Ray by ray, by answer(i).
+template <class Answer>
+void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Answer& answer) {
+  for_each_piece(field, rays, kRaysPerPiece,
+                 [&](std::size_t first, std::size_t count, std::span<const std::uint32_t> order) {
+                   for (std::size_t i = 0; i < count; ++i) {
+                     // In another order than they lie, rays have to be sent for early.
+                     if (i + kAhead < order.size()) prefetch(rays[first + order[i + kAhead]]);
+                     answer(first + (order.empty() ? i : order[i]));
+                   }
+                 });
+}
+
+// Many rays at once, by answer(rays, answers).
+template <class Result, class Answer>
+void in_vectors(const HeightField& field, std::span<const Ray> rays, std::span<Result> results, const Answer& answer) {
+  // A thousand rays are work for several threads, too.
+  const auto some = static_cast<std::int64_t>(rays.size() / 8);
+  const std::int64_t piece = std::clamp(some, kRaysPerPiece, kRaysPerVectorPiece);
+  for_each_piece(field, rays, piece, [&](std::size_t first, std::size_t count, std::span<const std::uint32_t> order) {
+    if (order.empty()) return answer(rays.subspan(first, count), results.subspan(first, count));
+    std::vector<Ray> ordered(count);
+    std::vector<Result> answers(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (i + kAhead < count) prefetch(rays[first + order[i + kAhead]]);
+      ordered[i] = rays[first + order[i]];
+    }
+    answer(ordered, answers);
+    for (std::size_t i = 0; i < count; ++i) results[first + order[i]] = answers[i];
+  });
 }
 
 }  // namespace
@@ -51,12 +87,21 @@ void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Ans
 void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits, const MarchEntry& march,
                   const MarchSettings& settings) {
   require_same_length(rays.size(), hits.size());
+  if (march.simd && rays.size() >= kFewForVectors) {
+    return in_vectors(*target.field, rays, hits,
+                      [&](std::span<const Ray> some, std::span<Hit> answers) { march.simd(target, some, answers); });
+  }
   for_each_ray(*target.field, rays, [&](std::size_t i) { hits[i] = march.cpu(target, rays[i], settings, nullptr); });
 }
 
 void occluded(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
               const MarchEntry& march, const MarchSettings& settings) {
   require_same_length(rays.size(), blocked.size());
+  if (march.simd_occluded && rays.size() >= kFewForVectors) {
+    return in_vectors(*target.field, rays, blocked, [&](std::span<const Ray> some, std::span<std::uint8_t> answers) {
+      march.simd_occluded(target, some, answers);
+    });
+  }
   for_each_ray(*target.field, rays, [&](std::size_t i) {
     blocked[i] = march.cpu_occluded ? march.cpu_occluded(target, rays[i])
                                     : march.cpu(target, rays[i], settings, nullptr).status == HitStatus::hit;

@@ -6,7 +6,7 @@
 //
 // One call answers all rays, on all threads. Large batches of rays without order over large fields are answered in the
 // order of the ground that they begin over, so that neighbours in time are neighbours in memory; ground_order.h says
-// when.
+// when. Marches that have vectors (max_mip_simd.h) answer batches by them, with the same bits.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace scarp {
 
-/// hits[i] is march.cpu(target, rays[i], settings). Throws Error when the spans differ in length.
+/// hits[i] is march.cpu(target, rays[i], settings), bit for bit. Throws Error when the spans differ in length.
 void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                   const MarchEntry& march = find_march("max-mip"), const MarchSettings& settings = {});
 

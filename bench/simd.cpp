@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// `scarp-bench simd`: what the vectors gain over the scalar walk, and what each of their ideas adds.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <vector>
+
+#include "bench/commands.h"
+#include "bench/protocol.h"
+#include "bench/scarp_engine.h"
+#include "scarp/march/max_mip.h"
+#include "scarp/march/max_mip_simd.h"
+
+namespace scarp::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Variant {
+  const char* name;
+  VectorIdeas ideas;
+};
+const Variant kVariants[] = {
+    {"all", {}},
+    {"no-refill", {.refill = false}},
+    {"no-wait", {.wait = false}},
+    {"no-first-cells", {.first_cells = false}},
+    {"no-put-off", {.put_off = false}},
+    {"no-find-hits", {.find_hits = false}},
+    {"none", {.refill = false, .wait = false, .first_cells = false, .put_off = false, .find_hits = false}},
+};
+
+// What a pass over all rays counts, and how many answers are not those of the scalar walk.
+struct Count {
+  VectorStats stats;
+  std::int64_t different = 0;
+};
+Count count(const Engine& engine, const Engine& scalar, const RaySet& set) {
+  constexpr std::int64_t kBlock = 4096;
+  std::vector<float> answers(kBlock), expected(kBlock);
+  Count count;
+  take_vector_stats();
+  for (std::int64_t begin = 0; begin < set.size(); begin += kBlock) {
+    const std::int64_t end = std::min(begin + kBlock, set.size());
+    engine.trace(set, begin, end, answers.data());
+    scalar.trace(set, begin, end, expected.data());
+    for (std::size_t i = 0; i < static_cast<std::size_t>(end - begin); ++i)
+      count.different += answers[i] != expected[i];
+  }
+  count.stats = take_vector_stats();
+  return count;
+}
+
+}  // namespace
+
+void run_simd(const SimdOptions& options, const ReportOptions& report) {
+  std::vector<RayClass> classes;
+  for (const std::string& name : options.classes) classes.push_back(find_ray_class(name));
+  const BenchField ground = load_field(options.trace.field);
+  const ScarpGround scarp(ground.field);
+  std::vector<Engine> engines{scarp.engine(find_march("max-mip"))};
+  for (const Variant& variant : kVariants) engines.push_back(scarp.vectors(variant.name, variant.ideas));
+  Json rows = Json::array();
+  for (const RaySet& set : make_rays(ground, classes, options.trace.rays, options.trace.ray_seed)) {
+    const auto timings = measure(engines, set, {1, options.trace.repeats, options.trace.pass_limit_s});
+    std::vector<std::vector<std::string>> lines{
+        {"class", "ideas", "Mrays/cpu s", "x scalar", "blocks", "use", "cells", "use", "handed over %", "different"}};
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      const Count counted = count(engines[e], engines[0], set);
+      const double rays = static_cast<double>(set.size());
+      const auto share = [](std::uint64_t part, std::uint64_t of) {
+        return of > 0 ? static_cast<double>(part) / static_cast<double>(of) : 0.0;
+      };
+      Json row;
+      row["class"] = name_of(set.ray_class);
+      row["ideas"] = e == 0 ? "scalar" : engines[e].mode;
+      row["mrays_per_cpu_s"] = timings[e].mrays_per_cpu_s;
+      row["scalar_ratio"] = timings[e].mrays_per_cpu_s / timings[0].mrays_per_cpu_s;
+      row["blocks_per_ray"] = static_cast<double>(counted.stats.block_lanes) / rays;
+      row["block_lanes_used"] = share(counted.stats.block_lanes, counted.stats.block_steps);
+      row["cells_per_ray"] = static_cast<double>(counted.stats.cell_lanes) / rays;
+      row["cell_lanes_used"] = share(counted.stats.cell_lanes, counted.stats.cell_steps);
+      row["handed_over"] = static_cast<double>(counted.stats.handed_over) / rays;
+      row["different"] = counted.different;
+      row["busy"] = timings[e].busy;
+      row["field"] = ground.name;
+      row["size"] = ground.field.cols();
+      lines.push_back({row["class"], row["ideas"], short_number(row["mrays_per_cpu_s"]),
+                       fmt::format("{:.2f}", row["scalar_ratio"].get<double>()), short_number(row["blocks_per_ray"]),
+                       short_number(row["block_lanes_used"]), short_number(row["cells_per_ray"]),
+                       short_number(row["cell_lanes_used"]),
+                       fmt::format("{:.2f}", 100 * row["handed_over"].get<double>()), short_number(row["different"])});
+      rows.push_back(std::move(row));
+    }
+    print_table(lines, 2);
+    std::fflush(stdout);
+  }
+  write_json(report, rows);
+}
+
+}  // namespace scarp::bench

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// The vectors answer as the scalar walk does, bit for bit: every kind of field and ray of the oracle's suite, on every
+// instruction set that this machine has, in batches of odd sizes, with each idea left out.
+#include "scarp/march/max_mip_simd.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "hwy/targets.h"
+#include "march/spiteful.h"
+#include "scarp/march/max_mip.h"
+
+namespace scarp::test {
+namespace {
+
+#ifdef NDEBUG
+constexpr int kRaysPerPair = 10'000;
+#else
+constexpr int kRaysPerPair = 300;
+#endif
+constexpr int kRaysPerField = 500;
+
+// Targets that the build has and the machine can run; after the test the choice is the machine's again.
+std::vector<std::int64_t> targets() {
+  std::vector<std::int64_t> all;
+  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) all.push_back(left & -left);
+  return all;
+}
+class Target {
+ public:
+  explicit Target(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
+  ~Target() { hwy::SetSupportedTargetsForTest(0); }
+};
+
+std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
+
+testing::AssertionResult identical(const Hit& a, const Hit& b) {
+  if (a.status == b.status && bits(a.t) == bits(b.t) &&
+      (!a || (a.cell == b.cell && a.u == b.u && a.v == b.v && a.height == b.height && a.wall == b.wall))) {
+    return testing::AssertionSuccess();
+  }
+  return testing::AssertionFailure() << std::hexfloat << "status " << int(a.status) << ", " << int(b.status) << ", t "
+                                     << a.t << ", " << b.t << ", cell " << a.cell.col << " " << a.cell.row << ", "
+                                     << b.cell.col << " " << b.cell.row;
+}
+
+// All of the batch, in parts of `size`.
+void compare(const HeightTarget& target, const std::vector<Ray>& rays, const std::vector<Hit>& expected,
+             std::size_t size, const VectorIdeas& ideas, const std::string& what) {
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> blocked(rays.size(), 7);
+  for (std::size_t begin = 0; begin < rays.size(); begin += size) {
+    const std::size_t count = std::min(size, rays.size() - begin);
+    const std::span<const Ray> part(rays.data() + begin, count);
+    closest_hits_max_mip_simd(target, part, {hits.data() + begin, count}, ideas);
+    occluded_max_mip_simd(target, part, {blocked.data() + begin, count}, ideas);
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_TRUE(identical(hits[i], expected[i])) << what << ", ray " << i;
+    ASSERT_EQ(blocked[i], expected[i] ? 1 : 0) << what << ", ray " << i;
+  }
+}
+
+std::vector<Hit> scalar(const HeightTarget& target, const std::vector<Ray>& rays) {
+  std::vector<Hit> hits;
+  for (const Ray& ray : rays) hits.push_back(march_max_mip(target, ray));
+  return hits;
+}
+
+TEST(MaxMipSimd, AnswersAsTheScalarWalkDoesBitForBit) {
+  Random random(71);
+  for (const FieldKind& fields : spiteful_fields()) {
+    for (int part = 0; part < kRaysPerPair; part += kRaysPerField) {
+      const HeightField field = fields.make(random);
+      const MaxPyramid pyramid(field);
+      const HeightTarget target{&field, &pyramid};
+      std::vector<Ray> rays;
+      for (const RayKind& kind : spiteful_rays()) {
+        if ((fields.has & kind.aims_at) != kind.aims_at) continue;
+        for (int i = 0; i < std::min(kRaysPerField, kRaysPerPair); ++i) rays.push_back(kind.make(field, random));
+      }
+      const std::vector<Hit> expected = scalar(target, rays);
+      compare(target, rays, expected, rays.size(), {}, std::string(fields.name));
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+// A field with room to walk in, steep and gentle, as floats and as integers, with holes or without.
+template <class T>
+HeightField hills(Surface surface, bool holes, Random& random) {
+  const int cols = 413, rows = 270;
+  std::vector<T> samples;
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const double z = 400 + 90 * std::sin(0.03 * col) * std::cos(0.041 * row) + 12 * std::sin(0.31 * col + 0.2 * row) +
+                       uniform(random, 0, 3);
+      samples.push_back(static_cast<T>(holes && uniform(random, 0, 1) < 0.002 ? 0 : z));
+    }
+  }
+  HeightFieldSettings settings{.surface = surface};
+  if (holes) settings.nodata = 0;
+  return HeightField::own(std::move(samples), cols, rows, settings);
+}
+
+// Rays as renderers ask them: from a camera, from the surface to a sun, from anywhere to anywhere.
+std::vector<Ray> usual_rays(const HeightTarget& target, Random& random) {
+  const HeightField& field = *target.field;
+  std::vector<Ray> rays;
+  for (int i = 0; i < 3000; ++i) {
+    Ray ray;
+    ray.origin = {uniform(random, -50, field.width() + 50), uniform(random, -50, field.depth() + 50),
+                  uniform(random, 350, 600)};
+    ray.direction = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -0.8, 0.2)};
+    if (i % 7 == 0) ray.t_max = uniform(random, 0, 300);
+    if (i % 11 == 0) ray.t_min = uniform(random, 0, 50);
+    rays.push_back(ray);
+    const Hit hit = march_max_mip(target, ray);
+    if (!hit || hit.wall) continue;
+    Ray on = ray;
+    on.origin = ray.at(hit.t);
+    on.direction = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -0.1, 0.6)};
+    on.t_min = 0, on.t_max = i % 5 ? HUGE_VAL : uniform(random, 0, 100);
+    on.start = RayStart::on_surface, on.start_cell = hit.cell;
+    rays.push_back(on);
+  }
+  return rays;
+}
+
+TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
+  Random random(72);
+  const std::vector<std::int64_t> sets = targets();
+  ASSERT_FALSE(sets.empty());
+  for (const bool holes : {false, true}) {
+    for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+      for (int type = 0; type < 3; ++type) {
+        const HeightField field = type == 0   ? hills<float>(surface, holes, random)
+                                  : type == 1 ? hills<std::int16_t>(surface, holes, random)
+                                              : hills<std::uint16_t>(surface, holes, random);
+        const MaxPyramid pyramid(field);
+        const HeightTarget target{&field, &pyramid};
+        const std::vector<Ray> rays = usual_rays(target, random);
+        const std::vector<Hit> expected = scalar(target, rays);
+        for (const std::int64_t set : sets) {
+          const Target only(set);
+          const std::string name = hwy::TargetName(set);
+          for (const std::size_t size :
+               {std::size_t{1}, std::size_t{7}, std::size_t{16}, std::size_t{33}, rays.size()}) {
+            compare(target, rays, expected, size, {}, name + ", batches of " + std::to_string(size));
+          }
+          compare(target, rays, expected, rays.size(), {.refill = false}, name + ", no refill");
+          compare(target, rays, expected, rays.size(), {.wait = false}, name + ", no waiting");
+          compare(target, rays, expected, rays.size(), {.first_cells = false}, name + ", no first cells");
+          compare(target, rays, expected, rays.size(), {.put_off = false}, name + ", nothing put off");
+          compare(target, rays, expected, rays.size(), {.find_hits = false}, name + ", no hits found");
+          if (HasFatalFailure()) return;
+        }
+      }
+    }
+  }
+}
+
+// Else the vectors could hand over all rays and be right.
+TEST(MaxMipSimd, HandsOverFewRays) {
+  Random random(73);
+  const HeightField field = hills<float>(Surface::bilinear, false, random);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  const std::vector<Ray> rays = usual_rays(target, random);
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> blocked(rays.size());
+  take_vector_stats();
+  occluded_max_mip_simd(target, rays, blocked);
+  const VectorStats any = take_vector_stats();
+  EXPECT_LT(any.handed_over, rays.size() / 5);
+  EXPECT_GT(any.block_lanes, rays.size());
+  closest_hits_max_mip_simd(target, rays, hits);
+  EXPECT_LT(take_vector_stats().handed_over, rays.size() / 2);
+}
+
+}  // namespace
+}  // namespace scarp::test
