@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr RayCounts kCpuDeviceRays{480, 264, 1 << 16, 1 << 16, 256};
 constexpr std::int64_t kJudged = 20000, kCpuDeviceJudged = 4096;
-constexpr std::uint32_t kMostRaysAtOnce = 1 << 22, kMostCountedAtOnce = 1 << 16;
+constexpr std::uint32_t kMostRaysAtOnce = 4'000'000, kMostCountedAtOnce = 1 << 16;
 constexpr std::size_t kBlock = 4096;
 // Steps per ray beyond which the search for naive's settings ends.
 constexpr double kMostSteps = 65536, kCpuDeviceMostSteps = 4096;
@@ -79,12 +79,18 @@ struct Ground {
   DeviceTarget target;
 };
 
-// A march on the device: once to be timed, once to count.
+// A march on the device: once to be timed, on all rays of a class at once if that can be, and once to count.
 struct DeviceMarch {
-  DeviceMarch(const Device& device, const char* name)
+  DeviceMarch(const Device& device, const char* name, const RayCounts& rays)
       : march(find_march(name)),
-        timed(device, march, {}, {false, kMostRaysAtOnce}),
+        timed(device, march, {}, {false, all_of(rays)}),
         counting(device, march, {}, {true, kMostCountedAtOnce}) {}
+
+  static std::uint32_t all_of(const RayCounts& rays) {
+    const std::int64_t most =
+        std::max({std::int64_t{rays.width} * rays.height, std::int64_t{rays.chunk} * rays.chunk, rays.grazing});
+    return static_cast<std::uint32_t>(std::min<std::int64_t>(most, kMostRaysAtOnce));
+  }
 
   const MarchEntry& march;
   DeviceQueries timed, counting;
@@ -109,10 +115,10 @@ class Comparison {
         judged_(options.judged > 0 ? options.judged
                 : is_cpu(device)   ? kCpuDeviceJudged
                                    : kJudged),
-        max_mip_(device, "max-mip"),
-        naive_(device, "naive"),
-        relaxed_(device, "relaxed"),
-        lipschitz_(device, "lipschitz") {}
+        max_mip_(device, "max-mip", rays_),
+        naive_(device, "naive", rays_),
+        relaxed_(device, "relaxed", rays_),
+        lipschitz_(device, "lipschitz", rays_) {}
 
   void run(const BenchField& field) {
     const Ground ground(device_, field);
