@@ -2,17 +2,19 @@
 // A plain Vulkan program that knows nothing of Scarp but its shader texts: it makes a field of heights and a pyramid of
 // their maxima, lets shadow_map.comp ask max-mip for each cell whether it sees the sun, and writes the shadow map.
 //   shadow_map shadow_map.spv shadows.pgm
-#include <vulkan/vulkan.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
+#include <vulkan/vulkan_raii.hpp>
 
 namespace {
 
@@ -21,14 +23,8 @@ constexpr int kCells = 256, kSamples = kCells + 1;
 struct Push {  // as in shadow_map.comp, std430
   std::int32_t cells = kCells, top_level = 0;
   float lowest = 0, highest = 0, code_step = 0, padding[3] = {};
-  float sun[3] = {0.8f, 0.5f, 0.3f};
+  float sun[3] = {0.8f, 0.5f, 0.5f};
 };
-
-void check(VkResult result, const char* what) {
-  if (result == VK_SUCCESS) return;
-  std::fprintf(stderr, "shadow_map: %s failed: VkResult %d\n", what, static_cast<int>(result));
-  std::exit(1);
-}
 
 std::vector<float> hills() {
   std::vector<float> heights;
@@ -70,147 +66,118 @@ std::vector<float> maxima_of(const std::vector<float>& heights, float step, std:
 }
 
 struct Buffer {
-  VkBuffer buffer = VK_NULL_HANDLE;
-  VkDeviceMemory memory = VK_NULL_HANDLE;
+  vk::raii::DeviceMemory memory = nullptr;
+  vk::raii::Buffer buffer = nullptr;
   void* data = nullptr;
 };
 
-Buffer make_buffer(VkPhysicalDevice physical, VkDevice device, std::size_t bytes, const void* from) {
+Buffer make_buffer(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device, std::size_t bytes) {
   Buffer made;
-  VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
-  info.size = bytes;
-  info.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-  check(vkCreateBuffer(device, &info, nullptr, &made.buffer), "vkCreateBuffer");
-  VkMemoryRequirements needs;
-  vkGetBufferMemoryRequirements(device, made.buffer, &needs);
-  VkPhysicalDeviceMemoryProperties memory;
-  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
-  constexpr VkMemoryPropertyFlags kWanted = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
-  allocate.allocationSize = needs.size;
-  while (!(needs.memoryTypeBits >> allocate.memoryTypeIndex & 1) ||
-         (memory.memoryTypes[allocate.memoryTypeIndex].propertyFlags & kWanted) != kWanted)
-    ++allocate.memoryTypeIndex;
-  check(vkAllocateMemory(device, &allocate, nullptr, &made.memory), "vkAllocateMemory");
-  check(vkBindBufferMemory(device, made.buffer, made.memory, 0), "vkBindBufferMemory");
-  check(vkMapMemory(device, made.memory, 0, VK_WHOLE_SIZE, 0, &made.data), "vkMapMemory");
-  if (from) std::memcpy(made.data, from, bytes);
+  made.buffer = device.createBuffer({{}, bytes, vk::BufferUsageFlagBits::eStorageBuffer});
+  const vk::MemoryRequirements needs = made.buffer.getMemoryRequirements();
+  const vk::PhysicalDeviceMemoryProperties memory = physical.getMemoryProperties();
+  // Every device has a kind of memory that the host sees and that a buffer may lie in.
+  constexpr auto kSeen = vk::MemoryPropertyFlagBits::eHostVisible | vk::MemoryPropertyFlagBits::eHostCoherent;
+  std::uint32_t type = 0;
+  while (!(needs.memoryTypeBits >> type & 1) || (memory.memoryTypes[type].propertyFlags & kSeen) != kSeen) ++type;
+  made.memory = device.allocateMemory({needs.size, type});
+  made.buffer.bindMemory(*made.memory, 0);
+  made.data = made.memory.mapMemory(0, VK_WHOLE_SIZE);
   return made;
+}
+
+Buffer make_buffer(const vk::raii::PhysicalDevice& physical, const vk::raii::Device& device,
+                   const std::vector<float>& numbers) {
+  Buffer made = make_buffer(physical, device, numbers.size() * sizeof(float));
+  std::memcpy(made.data, numbers.data(), numbers.size() * sizeof(float));
+  return made;
+}
+
+// Runs the shader once for each cell; shadows[row * kCells + col] is 1 where the sun is hidden. Nothing where there is
+// no device.
+std::vector<std::uint32_t> run(const std::vector<std::uint32_t>& shader, const std::vector<float>& heights,
+                               const std::vector<float>& maxima, const Push& push) {
+  const vk::raii::Context context;
+  const vk::ApplicationInfo application("shadow_map", 1, nullptr, 0, VK_API_VERSION_1_1);
+  const vk::raii::Instance instance = context.createInstance({{}, &application});
+  const std::vector<vk::raii::PhysicalDevice> all = instance.enumeratePhysicalDevices();
+  if (all.empty()) return {};
+  const vk::raii::PhysicalDevice& physical = all.front();
+  const auto families = physical.getQueueFamilyProperties();
+  std::uint32_t family = 0;
+  while (!(families.at(family).queueFlags & vk::QueueFlagBits::eCompute)) ++family;
+  const float priority = 1;
+  const vk::DeviceQueueCreateInfo queue_info({}, family, 1, &priority);
+  const vk::raii::Device device = physical.createDevice({{}, queue_info});
+  const vk::raii::Queue queue = device.getQueue(family, 0);
+
+  const Buffer buffers[] = {make_buffer(physical, device, heights), make_buffer(physical, device, maxima),
+                            make_buffer(physical, device, kCells * kCells * sizeof(std::uint32_t))};
+  std::vector<vk::DescriptorSetLayoutBinding> bindings;
+  for (std::uint32_t i = 0; i < 3; ++i)
+    bindings.emplace_back(i, vk::DescriptorType::eStorageBuffer, 1, vk::ShaderStageFlagBits::eCompute);
+  const vk::raii::DescriptorSetLayout set_layout = device.createDescriptorSetLayout({{}, bindings});
+  const vk::DescriptorPoolSize pool_size(vk::DescriptorType::eStorageBuffer, 3);
+  const vk::raii::DescriptorPool pool =
+      device.createDescriptorPool({vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, pool_size});
+  const vk::raii::DescriptorSet set = std::move(device.allocateDescriptorSets({*pool, *set_layout}).front());
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    const vk::DescriptorBufferInfo whole(*buffers[i].buffer, 0, VK_WHOLE_SIZE);
+    device.updateDescriptorSets(vk::WriteDescriptorSet(*set, i, 0, vk::DescriptorType::eStorageBuffer, {}, whole), {});
+  }
+
+  const vk::PushConstantRange range(vk::ShaderStageFlagBits::eCompute, 0, sizeof(Push));
+  const vk::raii::PipelineLayout layout = device.createPipelineLayout({{}, *set_layout, range});
+  const vk::raii::ShaderModule module = device.createShaderModule({{}, shader});
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
+  const vk::raii::Pipeline pipeline = device.createComputePipeline(nullptr, {{}, stage, *layout});
+
+  const vk::raii::CommandPool command_pool = device.createCommandPool({{}, family});
+  const vk::raii::CommandBuffer commands =
+      std::move(device.allocateCommandBuffers({*command_pool, vk::CommandBufferLevel::ePrimary, 1}).front());
+  commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+  commands.bindPipeline(vk::PipelineBindPoint::eCompute, *pipeline);
+  commands.bindDescriptorSets(vk::PipelineBindPoint::eCompute, *layout, 0, *set, {});
+  commands.pushConstants<Push>(*layout, vk::ShaderStageFlagBits::eCompute, 0, push);
+  commands.dispatch(kCells / 8, kCells / 8, 1);
+  const vk::MemoryBarrier seen(vk::AccessFlagBits::eShaderWrite, vk::AccessFlagBits::eHostRead);
+  commands.pipelineBarrier(vk::PipelineStageFlagBits::eComputeShader, vk::PipelineStageFlagBits::eHost, {}, seen, {},
+                           {});
+  commands.end();
+  queue.submit(vk::SubmitInfo({}, {}, *commands));
+  queue.waitIdle();
+  const auto* shadows = static_cast<const std::uint32_t*>(buffers[2].data);
+  return {shadows, shadows + kCells * kCells};
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc != 3) return std::fprintf(stderr, "usage: shadow_map shadow_map.spv shadows.pgm\n"), 1;
+int main(int argc, char** argv) try {
+  if (argc != 3) throw std::runtime_error("usage: shadow_map shadow_map.spv shadows.pgm");
   std::ifstream file(argv[1], std::ios::binary);
-  const std::vector<char> words{std::istreambuf_iterator<char>(file), {}};
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(file), {}};
+  std::vector<std::uint32_t> shader(bytes.size() / 4);
+  std::memcpy(shader.data(), bytes.data(), shader.size() * 4);
+  if (shader.empty()) throw std::runtime_error(std::string(argv[1]) + ": no such shader");
   const std::vector<float> heights = hills();
   Push push;
   push.lowest = *std::min_element(heights.begin(), heights.end());
   push.highest = *std::max_element(heights.begin(), heights.end());
   push.code_step = push.highest / 65535;
   const std::vector<float> maxima = maxima_of(heights, push.code_step, push.top_level);
-
-  VkApplicationInfo application{VK_STRUCTURE_TYPE_APPLICATION_INFO};
-  application.apiVersion = VK_API_VERSION_1_1;
-  VkInstanceCreateInfo instance_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO};
-  instance_info.pApplicationInfo = &application;
-  VkInstance instance;
-  VkPhysicalDevice physical = VK_NULL_HANDLE;
-  std::uint32_t count = 1;
-  if (vkCreateInstance(&instance_info, nullptr, &instance) != VK_SUCCESS ||
-      vkEnumeratePhysicalDevices(instance, &count, &physical) < VK_SUCCESS || count == 0)
-    return std::puts("no Vulkan device"), 0;
-  // The first family that computes; all but a few devices have it first.
-  std::uint32_t families = 16;
-  VkQueueFamilyProperties family[16];
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &families, family);
-  VkDeviceQueueCreateInfo queue_info{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
-  while (!(family[queue_info.queueFamilyIndex].queueFlags & VK_QUEUE_COMPUTE_BIT)) ++queue_info.queueFamilyIndex;
-  const float priority = 1;
-  queue_info.queueCount = 1;
-  queue_info.pQueuePriorities = &priority;
-  VkDeviceCreateInfo device_info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO};
-  device_info.queueCreateInfoCount = 1;
-  device_info.pQueueCreateInfos = &queue_info;
-  VkDevice device;
-  check(vkCreateDevice(physical, &device_info, nullptr, &device), "vkCreateDevice");
-  VkQueue queue;
-  vkGetDeviceQueue(device, queue_info.queueFamilyIndex, 0, &queue);
-
-  const Buffer buffers[] = {make_buffer(physical, device, heights.size() * sizeof(float), heights.data()),
-                            make_buffer(physical, device, maxima.size() * sizeof(float), maxima.data()),
-                            make_buffer(physical, device, kCells * kCells * sizeof(std::uint32_t), nullptr)};
-  VkDescriptorSetLayoutBinding bindings[3];
-  for (std::uint32_t i = 0; i < 3; ++i)
-    bindings[i] = {i, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1, VK_SHADER_STAGE_COMPUTE_BIT, nullptr};
-  VkDescriptorSetLayoutCreateInfo set_info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO, {}, {}, 3, bindings};
-  VkDescriptorSetLayout set_layout;
-  check(vkCreateDescriptorSetLayout(device, &set_info, nullptr, &set_layout), "vkCreateDescriptorSetLayout");
-  const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 3};
-  VkDescriptorPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO, {}, {}, 1, 1, &size};
-  VkDescriptorPool pool;
-  check(vkCreateDescriptorPool(device, &pool_info, nullptr, &pool), "vkCreateDescriptorPool");
-  VkDescriptorSetAllocateInfo take{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO, {}, pool, 1, &set_layout};
-  VkDescriptorSet set;
-  check(vkAllocateDescriptorSets(device, &take, &set), "vkAllocateDescriptorSets");
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    const VkDescriptorBufferInfo whole{buffers[i].buffer, 0, VK_WHOLE_SIZE};
-    VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET, {}, set, i, 0, 1, bindings[i].descriptorType};
-    write.pBufferInfo = &whole;
-    vkUpdateDescriptorSets(device, 1, &write, 0, nullptr);
-  }
-
-  VkShaderModuleCreateInfo module_info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO, {}, {}, words.size()};
-  module_info.pCode = reinterpret_cast<const std::uint32_t*>(words.data());
-  VkShaderModule module;
-  check(vkCreateShaderModule(device, &module_info, nullptr, &module), "vkCreateShaderModule");
-  const VkPushConstantRange range{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(Push)};
-  VkPipelineLayoutCreateInfo layout_info{
-      VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO, {}, {}, 1, &set_layout, 1, &range};
-  VkPipelineLayout layout;
-  check(vkCreatePipelineLayout(device, &layout_info, nullptr, &layout), "vkCreatePipelineLayout");
-  VkComputePipelineCreateInfo pipeline_info{VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO};
-  pipeline_info.stage = {VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                         {},
-                         {},
-                         VK_SHADER_STAGE_COMPUTE_BIT,
-                         module,
-                         "main",
-                         nullptr};
-  pipeline_info.layout = layout;
-  VkPipeline pipeline;
-  check(vkCreateComputePipelines(device, VK_NULL_HANDLE, 1, &pipeline_info, nullptr, &pipeline), "the pipeline");
-
-  VkCommandPoolCreateInfo commands_info{
-      VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO, {}, {}, queue_info.queueFamilyIndex};
-  VkCommandPool command_pool;
-  check(vkCreateCommandPool(device, &commands_info, nullptr, &command_pool), "vkCreateCommandPool");
-  VkCommandBufferAllocateInfo command_info{
-      VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO, {}, command_pool, VK_COMMAND_BUFFER_LEVEL_PRIMARY, 1};
-  VkCommandBuffer commands;
-  check(vkAllocateCommandBuffers(device, &command_info, &commands), "vkAllocateCommandBuffers");
-  const VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-  check(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
-  vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
-  vkCmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, nullptr);
-  vkCmdPushConstants(commands, layout, range.stageFlags, 0, sizeof push, &push);
-  vkCmdDispatch(commands, kCells / 8, kCells / 8, 1);
-  VkMemoryBarrier to_host{VK_STRUCTURE_TYPE_MEMORY_BARRIER, {}, VK_ACCESS_SHADER_WRITE_BIT, VK_ACCESS_HOST_READ_BIT};
-  vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &to_host, 0,
-                       nullptr, 0, nullptr);
-  check(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
-  VkSubmitInfo submit{VK_STRUCTURE_TYPE_SUBMIT_INFO};
-  submit.commandBufferCount = 1;
-  submit.pCommandBuffers = &commands;
-  check(vkQueueSubmit(queue, 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit");
-  check(vkQueueWaitIdle(queue), "vkQueueWaitIdle");
-
-  const auto* shadows = static_cast<const std::uint32_t*>(buffers[2].data);
+  const std::vector<std::uint32_t> shadows = run(shader, heights, maxima, push);
+  if (shadows.empty()) throw vk::IncompatibleDriverError("enumeratePhysicalDevices");
   std::ofstream picture(argv[2], std::ios::binary);
   picture << "P5\n" << kCells << ' ' << kCells << "\n255\n";
-  for (int i = 0; i < kCells * kCells; ++i) picture.put(static_cast<char>(shadows[i] ? 0 : 255));
-  std::printf("%d of %d cells are in shadow\n", static_cast<int>(std::count(shadows, shadows + kCells * kCells, 1u)),
+  for (const std::uint32_t shadow : shadows) picture.put(static_cast<char>(shadow ? 0 : 255));
+  if (!picture.flush()) throw std::runtime_error(std::string(argv[2]) + ": cannot be written");
+  std::printf("%d of %d cells are in shadow\n", static_cast<int>(std::count(shadows.begin(), shadows.end(), 1u)),
               kCells * kCells);
-  return picture ? 0 : 1;
+  return 0;
+} catch (const vk::IncompatibleDriverError&) {
+  std::puts("no Vulkan device");
+  return 0;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "shadow_map: %s\n", error.what());
+  return 1;
 }
