@@ -28,6 +28,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr RayCounts kCpuDeviceRays{480, 264, 1 << 16, 1 << 16, 256};
 constexpr std::int64_t kJudged = 20000, kCpuDeviceJudged = 4096;
+// Naive is searched for in class chunk, where so many times more rays are judged: what is right on a few rays need not
+// be right.
+constexpr std::int64_t kMoreJudged = 16;
 constexpr std::uint32_t kMostRaysAtOnce = 4'000'000, kMostCountedAtOnce = 1 << 16;
 constexpr std::size_t kBlock = 4096;
 // Steps per ray beyond which the search for naive's settings ends.
@@ -126,7 +129,8 @@ class Comparison {
     for (const RayClass ray_class :
          {RayClass::chunk, RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao}) {
       const RaySet set = std::move(make_rays(field, {ray_class}, rays_, options_.ray_seed).front());
-      const Judge judge(ground.cpu.target(), set, judged_, options_.ray_seed);
+      const std::int64_t judged = ray_class == RayClass::chunk ? kMoreJudged * judged_ : judged_;
+      const Judge judge(ground.cpu.target(), set, judged, options_.ray_seed);
       const std::vector<Ray> rays = library_rays(set);
       std::vector<Contender> contenders{{"max-mip", &max_mip_, {}},
                                         {"naive-default", &naive_, {}},
