@@ -215,7 +215,8 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
     }
   }
   EXPECT_EQ(classes, (std::set<std::string>{"build", "chunk", "primary", "shadow", "grazing", "ao"}));
-  for (const char* mode : {"pyramid", "max-mip", "naive-default", "naive-fair", "relaxed", "lipschitz"})
+  for (const char* mode :
+       {"pyramid", "max-mip", "naive-default", "naive-fair", "naive-right", "naive-equal", "relaxed", "lipschitz"})
     EXPECT_TRUE(modes.contains(mode)) << mode;
 }
 #endif
