@@ -193,6 +193,62 @@ TEST(ScarpBench, VoxelLeaksFindsNone) {
   }
 }
 
+#ifdef SCARP_BENCH_VULKAN
+TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
+  // Who asks for a device that is not there is told which there are, or that there is none.
+  const std::string command =
+      fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
+  if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
+  const json all = output_of("gpu --sizes 129 --rays small --judged 2000 --repeats 1");
+  expect_head(all);
+  std::set<std::string> classes, modes;
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"size",           "class",
+                        "mode",           "mrays_per_s",
+                        "max_mip_ratio",  "fetches_per_ray",
+                        "fetch_ratio",    "steps_per_ray",
+                        "step_ratio",     "article_ratio",
+                        "step_factor",    "min_step",
+                        "tolerance",      "wrong_rate",
+                        "miss_rate",      "false_rate",
+                        "late_rate",      "early_rate",
+                        "error_p99",      "judged",
+                        "rays",           "hit_share",
+                        "spread",         "build_ms",
+                        "gsamples_per_s", "bytes_per_sample",
+                        "device",         "driver",
+                        "field",          "relief",
+                        "mean_slope_deg"});
+    SCOPED_TRACE(row.dump());
+    const std::string ray_class = row["class"], mode = row["mode"];
+    classes.insert(ray_class);
+    modes.insert(mode);
+    if (ray_class == "build") {
+      EXPECT_GT(row["build_ms"], 0.0);
+      continue;
+    }
+    EXPECT_GT(row["mrays_per_s"], 0.0);
+    EXPECT_GE(row["fetches_per_ray"], row["steps_per_ray"]);
+    if (mode == "max-mip") {
+      // Of 2000 rays none comes as near to the surface as single precision errs.
+      EXPECT_EQ(row["wrong_rate"], 0.0);
+      EXPECT_EQ(row["fetch_ratio"], 1.0);
+    }
+    if (mode == "naive-fair") {
+      EXPECT_LT(row["miss_rate"], 0.001);
+    }
+    if (mode == "naive-equal") {
+      EXPECT_EQ(row["wrong_rate"], 0.0);
+      EXPECT_GT(row["fetch_ratio"], 1.0);
+    }
+  }
+  EXPECT_EQ(classes, (std::set<std::string>{"build", "chunk", "primary", "shadow", "grazing", "ao"}));
+  for (const char* mode :
+       {"pyramid", "max-mip", "naive-default", "naive-fair", "naive-right", "naive-equal", "relaxed", "lipschitz"})
+    EXPECT_TRUE(modes.contains(mode)) << mode;
+}
+#endif
+
 TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   const auto fails = [](const std::string& arguments) {
     return std::system(fmt::format("'{}' {} > /dev/null 2>&1", SCARP_BENCH_PROGRAM, arguments).c_str()) != 0;
@@ -203,6 +259,7 @@ TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   EXPECT_TRUE(fails("heights --engines none"));
   EXPECT_TRUE(fails("heights --dem /nowhere.tif --rays small"));
   EXPECT_TRUE(fails("leaks --rays 0"));
+  EXPECT_TRUE(fails("gpu --device none-of-that-name --sizes 33 --rays small"));
   EXPECT_TRUE(fails("edits --size 100 --rect 101"));
   EXPECT_TRUE(fails("pyramid --sizes 2 --repeats 1 --json /nowhere/out.json"));
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -56,6 +57,20 @@ struct PyramidOptions {
   int repeats = 5;
 };
 void run_pyramid(const PyramidOptions& options, const ReportOptions& report);
+
+/// `gpu`: the marches on a Vulkan device, and the article's comparison there.
+struct GpuOptions {
+  FieldOptions field;
+  std::string device = "auto";    ///< DeviceSettings::choice
+  std::vector<int> sizes;         ///< samples per side; empty: 1025, 4097 and, but for CPU devices, 16385
+  std::optional<RayCounts> rays;  ///< nothing: those of RayCounts, for CPU devices a sixteenth
+  std::int64_t judged = 0;        ///< rays per class that the oracle answers, too; 0: 20,000, for CPU devices 4096
+  std::uint64_t ray_seed = 1;
+  double miss_limit = 0.001;  ///< share of the hits that naive may miss
+  int repeats = 5;
+  double pass_limit_s = 10;
+};
+void run_gpu(const GpuOptions& options, const ReportOptions& report);
 
 /// `leaks`: rays aimed at what engines lose, each judged.
 struct LeaksOptions {

@@ -37,11 +37,6 @@ Judge::Judge(const HeightTarget& target, const RaySet& set, std::int64_t sample_
 }
 
 Judgement Judge::judge(const Engine& engine) const {
-  struct Answer {
-    bool hit, exhausted;
-    double t;
-    MarchStats stats;
-  };
   std::vector<Answer> answers(sample_.size());
   parallel_for(static_cast<std::int64_t>(sample_.size()), kRaysPerPiece, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t i = first; i < last; ++i) {
@@ -54,7 +49,10 @@ Judgement Judge::judge(const Engine& engine) const {
       answer.t = hit.t;
     }
   });
+  return score(answers);
+}
 
+Judgement Judge::score(const std::vector<Answer>& answers) const {
   Judgement result;
   result.judged = static_cast<std::int64_t>(sample_.size());
   std::int64_t hits = 0, missed = 0, invented = 0, late = 0, early = 0, exhausted = 0;
@@ -78,6 +76,7 @@ Judgement Judge::judge(const Engine& engine) const {
   }
   result.miss_rate = share(missed, hits);
   result.false_rate = share(invented, result.judged - hits);
+  result.wrong_rate = share(missed + invented, result.judged);
   result.late_rate = share(late, hits);
   result.early_rate = share(early, hits);
   result.exhausted = share(exhausted, result.judged);

@@ -18,7 +18,8 @@ struct Judgement {
   double miss_rate = 0;     ///< share of the judge's hits that the engine does not report
   double false_rate = 0;    ///< share of the judge's misses that the engine reports as hits
   std::optional<double>
-      error_p99;  ///< 99th percentile of |t - t of the judge| in cells where both hit; null: neither does
+      error_p99;          ///< 99th percentile of |t - t of the judge| in cells where both hit; null: neither does
+  double wrong_rate = 0;  ///< share of all rays where one reports a hit and the other does not
   double late_rate =
       0;  ///< share of the judge's hits that are reported, but more than kNear behind: the first hit was lost
   double early_rate = 0;  ///< the same before it
@@ -35,6 +36,17 @@ class Judge {
   /// For engines that have `closest` and `blocked`. Where the set only asks whether rays are blocked, the answer comes
   /// from `blocked`, t and the cost from `closest`.
   Judgement judge(const Engine& engine) const;
+
+  /// Indices of the sample's rays in the set, rising.
+  const std::vector<std::size_t>& sample() const { return sample_; }
+  /// What an engine said of a ray. A t that is not finite is not compared.
+  struct Answer {
+    bool hit, exhausted;
+    double t;
+    MarchStats stats;
+  };
+  /// The same for engines that have answered the sample, in its order.
+  Judgement score(const std::vector<Answer>& answers) const;
 
  private:
   const RaySet& set_;

@@ -128,6 +128,47 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*pyramid_command, report);
 
+#ifdef SCARP_BENCH_VULKAN
+  GpuOptions gpu;
+  CLI::App* gpu_command =
+      app.add_subcommand("gpu", "the marches on a Vulkan device, and the article's comparison there");
+  gpu_command->add_option("--device", gpu.device, "auto, gpu, cpu or part of a name")->capture_default_str();
+  gpu_command
+      ->add_option("--sizes", gpu.sizes,
+                   "samples per side of the procedural DEM, one or several (1025,4097, and 16385 but for CPU devices)")
+      ->delimiter(',')
+      ->check(CLI::Range(kLeastSize, kMostSize));
+  gpu_command->add_option("--kind", gpu.field.kind, "procedural DEM")
+      ->check(CLI::IsMember({"ridged", "fbm"}))
+      ->capture_default_str();
+  gpu_command->add_option("--seed", gpu.field.seed, "of the procedural DEM")->capture_default_str();
+  gpu_command->add_option("--ray-seed", gpu.ray_seed, "of the rays")->capture_default_str();
+  gpu_command
+      ->add_option_function<std::string>(
+          "--rays",
+          [&gpu](const std::string& size) {
+            gpu.rays = size == "small" ? RayCounts{160, 88, 4096, 4096, 64} : RayCounts{};
+          },
+          "full: 1920 x 1080 pixels and 2^20 rays for each other class (but for CPU devices: a sixteenth); small: "
+          "160 x 88 and 2^12, to see that all works")
+      ->check(CLI::IsMember({"full", "small"}));
+  gpu_command
+      ->add_option("--judged", gpu.judged, "rays per class that the oracle answers, too (20000; for CPU devices 4096)")
+      ->check(CLI::Range(1, 100'000'000));
+  gpu_command->add_option("--miss-limit", gpu.miss_limit, "share of the hits that naive may miss")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  gpu_command->add_option("--repeats", gpu.repeats, "counted passes per march")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  gpu_command
+      ->add_option("--pass-limit", gpu.pass_limit_s,
+                   "seconds; a march that takes longer for a pass traces part of the rays")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  add_json_option(*gpu_command, report);
+#endif
+
   LeaksOptions leaks;
   CLI::App* leaks_command =
       app.add_subcommand("leaks", "very many rays at what engines lose; fails when Scarp loses one");
@@ -217,6 +258,9 @@ int run(int argc, char** argv) {
   if (*naive_command) run_naive(naive, report);
   if (*simd_command) run_simd(simd, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
+#ifdef SCARP_BENCH_VULKAN
+  if (*gpu_command) run_gpu(gpu, report);
+#endif
   if (*leaks_command) run_leaks(leaks, report);
   if (*voxels_command) run_voxels(voxels, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);

@@ -1,32 +1,22 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench naive`: what the max-mip article compares, 55.066 ms without and 9.074 ms with the pyramid, asked
-// fairly: naive marching is first made as fine as it takes to be right, at the least cost that it takes, then timed.
-//
-// Two things let naive step through ground: the least step, which it must take, and the share of the vertical distance
-// that it trusts to be free. On steep ground the second alone loses hits at any least step, so both are searched.
+// fairly: naive marching is first made as fine as it takes to be right, at the least cost that it takes
+// (naive_search.h), then timed.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 #include <functional>
-#include <limits>
 #include <optional>
 
 #include "bench/commands.h"
 #include "bench/judge.h"
+#include "bench/naive_search.h"
 #include "bench/scarp_engine.h"
 
 namespace scarp::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kArticleRatio = 55.066 / 9.074;
-constexpr double kCoarsestStep = 1.0 / 64, kFinestStep = 1.0 / (1 << 20);
-constexpr int kFactorHalvings = 6;
-// The height above ground that counts as a hit, against the least step: small enough that what naive reports early
-// stays a matter of the step, as its misses are.
-constexpr double kTolerancePerStep = 1.0 / 16;
 
 struct Contender {
   Engine engine;
@@ -43,28 +33,14 @@ Contender naive_with(const ScarpGround& scarp, const Judge& judge, const char* m
   return contender;
 }
 
-// The settings at which naive is good and takes the fewest steps: for each factor, halved from 0.7 on, the coarsest
-// least step, halved from 1/64 on, at which it is good. Nothing when there are none.
 std::optional<Contender> cheapest(const ScarpGround& scarp, const Judge& judge, const char* mode,
                                   const std::function<bool(const Judgement&)>& good) {
-  std::optional<Contender> best;
-  NaiveSettings settings;
-  for (int halving = 0; halving <= kFactorHalvings; ++halving, settings.step_factor /= 2) {
-    for (double min_step = kCoarsestStep; min_step >= kFinestStep; min_step /= 2) {
-      settings.min_step = min_step;
-      settings.tolerance = kTolerancePerStep * min_step;
-      // No ray needs more steps than forced ones alone would take: none is given up.
-      settings.max_steps = static_cast<int>(1 / min_step) + 2;
-      Contender contender = naive_with(scarp, judge, mode, settings);
-      // Finer ones only take more steps.
-      if (best && contender.judged.steps >= best->judged.steps) break;
-      if (good(contender.judged)) {
-        best = std::move(contender);
-        break;
-      }
-    }
-  }
-  return best;
+  const auto settings = cheapest_naive([&](const NaiveSettings& tried) {
+    const Judgement judged = naive_with(scarp, judge, mode, tried).judged;
+    return NaiveTrial{good(judged), judged.steps};
+  });
+  if (!settings) return {};
+  return naive_with(scarp, judge, mode, *settings);
 }
 
 class Comparison {

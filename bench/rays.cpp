@@ -123,6 +123,22 @@ std::vector<BenchRay> grazing_rays(const HeightField& field, std::int64_t count,
   return rays;
 }
 
+std::vector<BenchRay> chunk_rays(const HeightField& field, int side, dvec3 sun) {
+  std::vector<BenchRay> rays;
+  rays.reserve(static_cast<std::size_t>(side) * static_cast<std::size_t>(side));
+  for (int tile_y = 0; tile_y < side; tile_y += kTile) {
+    for (int tile_x = 0; tile_x < side; tile_x += kTile) {
+      for (int y = tile_y; y < tile_y + kTile; ++y) {
+        for (int x = tile_x; x < tile_x + kTile; ++x) {
+          rays.push_back(
+              make_ray(lifted(field, (x + 0.5) / side * field.width(), (y + 0.5) / side * field.depth()), sun));
+        }
+      }
+    }
+  }
+  return rays;
+}
+
 // Aimed at places where surfaces are sewn together. In plan the coordinates are multiples of 2^-10, so the ray stands
 // exactly over its target at t = 1 (over square cells); its height there is that of the surface to half a float32 step
 // of the origin's height.
@@ -194,16 +210,18 @@ std::string_view name_of(RayClass ray_class) {
     case RayClass::ao:
       return "ao";
     case RayClass::nodes:
+      return "nodes";
+    case RayClass::chunk:
       break;
   }
-  return "nodes";
+  return "chunk";
 }
 
 RayClass find_ray_class(std::string_view name) {
   for (const RayClass ray_class : kRayClasses) {
     if (name_of(ray_class) == name) return ray_class;
   }
-  throw Error(fmt::format("ray class '{}': unknown; there are: primary, shadow, grazing, ao, nodes", name));
+  throw Error(fmt::format("ray class '{}': unknown; there are: primary, shadow, grazing, ao, nodes, chunk", name));
 }
 
 std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayClass>& classes, const RayCounts& counts,
@@ -239,6 +257,10 @@ std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayCla
       case RayClass::nodes:
         set.must_hit = true;
         set.rays = node_rays(field, counts.nodes, own_seed);
+        break;
+      case RayClass::chunk:
+        set.any_hit = true;
+        set.rays = chunk_rays(field, counts.chunk, sun);
         break;
     }
     if (set.rays.empty()) {

@@ -7,6 +7,7 @@
 //   ao        from the primary hits, cosine-distributed about the surface normal; in their order
 //   grazing   from random points of the surface, 3 degrees above the horizon, any azimuth
 //   nodes     from far above at nodes, points of edges and points of diagonals, ending below the ground: each must hit
+//   chunk     from points spread evenly over the field to the same sun, as for a shadow map of it; in tiles of 8 x 8
 //
 // Rays from the surface begin a little above both surfaces, the bilinear one and the two triangles (kLift), so that no
 // engine profits from a rule of its own about rays that begin on its surface.
@@ -23,9 +24,9 @@ namespace scarp::bench {
 /// Height above the higher of the two surfaces at which rays from the surface begin, in cells.
 constexpr double kLift = 0.01;
 
-enum class RayClass { primary, shadow, grazing, ao, nodes };
-constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao,
-                                    RayClass::nodes};
+enum class RayClass { primary, shadow, grazing, ao, nodes, chunk };
+constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow, RayClass::grazing,
+                                    RayClass::ao,      RayClass::nodes,  RayClass::chunk};
 std::string_view name_of(RayClass ray_class);
 /// Throws Error listing the classes when there is no such one.
 RayClass find_ray_class(std::string_view name);
@@ -61,6 +62,7 @@ struct RayCounts {
   int height = 1080;
   std::int64_t grazing = 1 << 20;
   std::int64_t nodes = 1 << 20;
+  int chunk = 1024;  ///< points per side, a multiple of 8
 };
 
 /// The classes asked for, in the order of kRayClasses. Deterministic by seed.

@@ -187,6 +187,11 @@ DeviceQueries::DeviceQueries(DeviceQueries&&) noexcept = default;
 DeviceQueries& DeviceQueries::operator=(DeviceQueries&&) noexcept = default;
 DeviceQueries::~DeviceQueries() = default;
 
+void DeviceQueries::set_march_settings(const MarchSettings& march_settings) {
+  validate(march_settings);
+  impl_->march_settings = march_settings;
+}
+
 void DeviceQueries::closest_hits(const DeviceTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                                  std::span<DeviceRayCost> costs) {
   if (rays.size() != hits.size())

@@ -50,6 +50,9 @@ class DeviceQueries {
   DeviceQueries& operator=(DeviceQueries&&) noexcept;
   ~DeviceQueries();
 
+  /// For the calls that follow. Throws Error: a setting out of its range.
+  void set_march_settings(const MarchSettings& march_settings);
+
   /// hits[i] answers rays[i], which must be valid (queries.h). costs, when not empty, is filled. Throws Error when
   /// spans differ in length, a slope is needed and not given, or the device is lost.
   void closest_hits(const DeviceTarget& target, std::span<const Ray> rays, std::span<Hit> hits,

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: MIT
+// `scarp-bench gpu`: the marches on a Vulkan device, by its own timestamps, and the max-mip article's comparison there:
+// naive made as fine as it takes to be as right as max-mip, then how long both take and how many heights they read.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "bench/commands.h"
+#include "bench/judge.h"
+#include "bench/naive_search.h"
+#include "bench/scarp_engine.h"
+#include "scarp/base/error.h"
+#include "scarp/march/queries_vk.h"
+
+namespace scarp::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr RayCounts kCpuDeviceRays{480, 264, 1 << 16, 1 << 16, 256};
+constexpr std::int64_t kJudged = 20000, kCpuDeviceJudged = 4096;
+// Naive is searched for in class chunk, where so many times more rays are judged: what is right on a few rays need not
+// be right.
+constexpr std::int64_t kMoreJudged = 16;
+constexpr std::uint32_t kMostRaysAtOnce = 4'000'000, kMostCountedAtOnce = 1 << 16;
+constexpr std::size_t kBlock = 4096;
+// Steps per ray beyond which the search for naive's settings ends.
+constexpr double kMostSteps = 65536, kCpuDeviceMostSteps = 4096;
+
+bool is_cpu(const Device& device) { return device.description().kind == DeviceKind::cpu; }
+
+// Of all passes, by the device's clock.
+double seconds(const Device& device, const std::vector<PassTime>& passes) {
+  double sum = 0;
+  for (const PassTime& pass : passes) {
+    if (!pass.nanoseconds)
+      throw Error(fmt::format("device '{}': has no timestamps, by which gpu measures", device.description().name));
+    sum += *pass.nanoseconds * 1e-9;
+  }
+  return sum;
+}
+
+std::vector<Ray> library_rays(const RaySet& set) {
+  std::vector<Ray> rays;
+  rays.reserve(set.rays.size());
+  for (const BenchRay& ray : set.rays) rays.push_back(library_ray(ray));
+  return rays;
+}
+
+// As many blocks of rays, spread evenly, as take no longer than the limit.
+std::vector<Ray> affordable(const std::vector<Ray>& rays, double seconds_per_ray, double limit_s) {
+  const double most = limit_s / std::max(seconds_per_ray, 1e-15);
+  if (static_cast<double>(rays.size()) <= most) return rays;
+  const std::size_t blocks = (rays.size() + kBlock - 1) / kBlock,
+                    kept = std::max<std::size_t>(1, static_cast<std::size_t>(most) / kBlock);
+  std::vector<Ray> part;
+  for (std::size_t i = 0; i < std::min(kept, blocks); ++i) {
+    const std::size_t begin = i * blocks / kept * kBlock, end = std::min(begin + kBlock, rays.size());
+    part.insert(part.end(), rays.begin() + static_cast<std::ptrdiff_t>(begin),
+                rays.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+  return part;
+}
+
+// A field in the memory of both.
+struct Ground {
+  Ground(const Device& device, const BenchField& ground)
+      : bench(ground), cpu(ground.field), gpu(device, bench.field), target{&bench.field, &gpu, cpu.target().slope} {}
+
+  BenchField bench;
+  ScarpGround cpu;
+  DeviceGround gpu;
+  DeviceTarget target;
+};
+
+// A march on the device: once to be timed, on all rays of a class at once if that can be, and once to count.
+struct DeviceMarch {
+  DeviceMarch(const Device& device, const char* name, const RayCounts& rays)
+      : march(find_march(name)),
+        timed(device, march, {}, {false, all_of(rays)}),
+        counting(device, march, {}, {true, kMostCountedAtOnce}) {}
+
+  static std::uint32_t all_of(const RayCounts& rays) {
+    const std::int64_t most =
+        std::max({std::int64_t{rays.width} * rays.height, std::int64_t{rays.chunk} * rays.chunk, rays.grazing});
+    return static_cast<std::uint32_t>(std::min<std::int64_t>(most, kMostRaysAtOnce));
+  }
+
+  const MarchEntry& march;
+  DeviceQueries timed, counting;
+};
+
+// What asks the rays of a set, and what came of it.
+struct Contender {
+  std::string mode;
+  DeviceMarch* march;
+  MarchSettings settings;
+  Judgement judged{};
+  double fetches = 0;          // per ray
+  double seconds_per_ray = 0;  // of the judged pass, which counts
+};
+
+class Comparison {
+ public:
+  Comparison(const Device& device, const GpuOptions& options)
+      : device_(device),
+        options_(options),
+        rays_(options.rays.value_or(is_cpu(device) ? kCpuDeviceRays : RayCounts{})),
+        judged_(options.judged > 0 ? options.judged
+                : is_cpu(device)   ? kCpuDeviceJudged
+                                   : kJudged),
+        max_mip_(device, "max-mip", rays_),
+        naive_(device, "naive", rays_),
+        relaxed_(device, "relaxed", rays_),
+        lipschitz_(device, "lipschitz", rays_) {}
+
+  void run(const BenchField& field) {
+    const Ground ground(device_, field);
+    measure_build(ground);
+    for (const RayClass ray_class :
+         {RayClass::chunk, RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao}) {
+      const RaySet set = std::move(make_rays(field, {ray_class}, rays_, options_.ray_seed).front());
+      const std::int64_t judged = ray_class == RayClass::chunk ? kMoreJudged * judged_ : judged_;
+      const Judge judge(ground.cpu.target(), set, judged, options_.ray_seed);
+      const std::vector<Ray> rays = library_rays(set);
+      std::vector<Contender> contenders{{"max-mip", &max_mip_, {}},
+                                        {"naive-default", &naive_, {}},
+                                        {"relaxed", &relaxed_, {}},
+                                        {"lipschitz", &lipschitz_, {}}};
+      for (Contender& contender : contenders) judge_it(ground, set, rays, judge, contender);
+      if (ray_class == RayClass::chunk) add_fair_ones(ground, set, rays, judge, contenders);
+      measure_all(ground, set, rays, contenders);
+      std::fflush(stdout);
+    }
+  }
+
+  const Json& rows() const { return rows_; }
+
+  void print() const {
+    std::vector<std::vector<std::string>> lines{{"samples", "class", "mode", "Mrays/s", "max-mip is", "fetches",
+                                                 "x max-mip", "steps", "wrong %", "missed %", "late %", "error p99",
+                                                 "factor", "least step"}};
+    const auto percent = [](const Json& share) {
+      return share.is_null() ? "-" : short_number(100 * share.get<double>());
+    };
+    for (const Json& row : rows_) {
+      if (row["class"] == "build") {
+        fmt::print("{0} x {0} samples: pyramid in {1} ms, {2} Gsamples/s\n", row["size"].get<int>(),
+                   short_number(row["build_ms"]), short_number(row["gsamples_per_s"]));
+        continue;
+      }
+      lines.push_back({short_number(row["size"]), row["class"], row["mode"], short_number(row["mrays_per_s"]),
+                       fmt::format("{} x", short_number(row["max_mip_ratio"])), short_number(row["fetches_per_ray"]),
+                       short_number(row["fetch_ratio"]), short_number(row["steps_per_ray"]), percent(row["wrong_rate"]),
+                       percent(row["miss_rate"]), percent(row["late_rate"]), short_number(row["error_p99"], 2),
+                       short_number(row["step_factor"]),
+                       row["min_step"].is_null() ? "-" : fmt::format("1/{:.0f}", 1 / row["min_step"].get<double>())});
+    }
+    print_table(lines, 3);
+  }
+
+ private:
+  // Asks `rays`; the answers as the judge wants them.
+  static std::vector<Judge::Answer> ask(DeviceQueries& queries, const DeviceTarget& target, bool any_hit,
+                                        const std::vector<Ray>& rays, std::vector<DeviceRayCost>& costs) {
+    constexpr double kNoTime = std::numeric_limits<double>::quiet_NaN();
+    std::vector<Judge::Answer> answers(rays.size());
+    if (any_hit) {
+      std::vector<std::uint8_t> blocked(rays.size());
+      queries.occluded(target, rays, blocked, costs);
+      for (std::size_t i = 0; i < rays.size(); ++i) answers[i] = {blocked[i] != 0, false, kNoTime, {}};
+    } else {
+      std::vector<Hit> hits(rays.size());
+      queries.closest_hits(target, rays, hits, costs);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        answers[i] = {
+            static_cast<bool>(hits[i]), hits[i].status == HitStatus::exhausted, hits[i] ? hits[i].t : kNoTime, {}};
+      }
+    }
+    for (std::size_t i = 0; i < costs.size(); ++i) answers[i].stats.steps = static_cast<int>(costs[i].steps);
+    return answers;
+  }
+
+  void judge_it(const Ground& ground, const RaySet& set, const std::vector<Ray>& rays, const Judge& judge,
+                Contender& contender) const {
+    std::vector<Ray> sample;
+    for (const std::size_t i : judge.sample()) sample.push_back(rays[i]);
+    std::vector<DeviceRayCost> costs(sample.size());
+    DeviceQueries& queries = contender.march->counting;
+    queries.set_march_settings(contender.settings);
+    contender.judged = judge.score(ask(queries, ground.target, set.any_hit, sample, costs));
+    const double count = static_cast<double>(sample.size());
+    contender.fetches = std::accumulate(costs.begin(), costs.end(), 0.0,
+                                        [](double sum, const DeviceRayCost& cost) { return sum + cost.fetches; }) /
+                        count;
+    contender.seconds_per_ray = seconds(device_, queries.passes()) / count;
+  }
+
+  // Naive at the cheapest settings that are good, for each meaning of good that there are settings for.
+  void add_fair_ones(const Ground& ground, const RaySet& set, const std::vector<Ray>& rays, const Judge& judge,
+                     std::vector<Contender>& contenders) {
+    const double limit = options_.miss_limit, max_mip_wrong = contenders[0].judged.wrong_rate;
+    std::map<std::pair<double, double>, Contender> tried;
+    const auto contender_with = [&](const NaiveSettings& settings) -> const Contender& {
+      const auto [at, is_new] = tried.try_emplace({settings.step_factor, settings.min_step});
+      if (is_new) {
+        at->second.march = &naive_;
+        at->second.settings.naive = settings;
+        judge_it(ground, set, rays, judge, at->second);
+      }
+      return at->second;
+    };
+    const auto add = [&](const char* mode, const std::function<bool(const Judgement&)>& good) {
+      const auto settings = cheapest_naive(
+          [&](const NaiveSettings& attempt) {
+            const Judgement& judged = contender_with(attempt).judged;
+            return NaiveTrial{good(judged), judged.steps};
+          },
+          is_cpu(device_) ? kCpuDeviceMostSteps : kMostSteps);
+      if (!settings) {
+        fmt::print("{0} x {0} samples: no settings make {1}\n", ground.bench.field.cols(), mode);
+        return;
+      }
+      contenders.push_back(contender_with(*settings));
+      contenders.back().mode = mode;
+    };
+    add("naive-fair", [&](const Judgement& judged) { return judged.miss_rate < limit; });
+    add("naive-right", [&](const Judgement& judged) { return judged.miss_rate + judged.false_rate < limit; });
+    add("naive-equal", [&](const Judgement& judged) { return judged.wrong_rate <= max_mip_wrong; });
+  }
+
+  // One pass of each to warm up, then passes in turn.
+  void measure_all(const Ground& ground, const RaySet& set, const std::vector<Ray>& rays,
+                   const std::vector<Contender>& contenders) {
+    std::vector<std::vector<Ray>> parts;
+    for (const Contender& contender : contenders)
+      parts.push_back(affordable(rays, contender.seconds_per_ray, options_.pass_limit_s));
+    std::vector<std::vector<double>> times(contenders.size());
+    std::vector<double> hits(contenders.size());
+    std::vector<DeviceRayCost> no_costs;
+    for (int pass = 0; pass <= options_.repeats; ++pass) {
+      for (std::size_t c = 0; c < contenders.size(); ++c) {
+        DeviceQueries& queries = contenders[c].march->timed;
+        queries.set_march_settings(contenders[c].settings);
+        const auto answers = ask(queries, ground.target, set.any_hit, parts[c], no_costs);
+        if (pass > 0) {
+          times[c].push_back(seconds(device_, queries.passes()));
+        } else {
+          hits[c] = static_cast<double>(
+              std::count_if(answers.begin(), answers.end(), [](const Judge::Answer& answer) { return answer.hit; }));
+        }
+      }
+    }
+    const double max_mip_speed = static_cast<double>(parts[0].size()) / median(times[0]);
+    for (std::size_t c = 0; c < contenders.size(); ++c) {
+      const auto& [mode, march, settings, judged, fetches, per_ray] = contenders[c];
+      const double count = static_cast<double>(parts[c].size()), speed = count / median(times[c]);
+      const auto [fastest, slowest] = std::minmax_element(times[c].begin(), times[c].end());
+      const bool is_naive = march == &naive_, has_times = !set.any_hit && judged.error_p99;
+      Json row = head(ground, name_of(set.ray_class), mode);
+      row["mrays_per_s"] = speed * 1e-6;
+      row["max_mip_ratio"] = max_mip_speed / speed;
+      row["fetches_per_ray"] = fetches;
+      row["fetch_ratio"] = fetches / contenders[0].fetches;
+      row["steps_per_ray"] = judged.steps;
+      row["step_ratio"] = judged.steps / contenders[0].judged.steps;
+      row["article_ratio"] = kArticleRatio;
+      row["step_factor"] = is_naive ? Json(settings.naive.step_factor) : Json();
+      row["min_step"] = is_naive ? Json(settings.naive.min_step) : Json();
+      row["tolerance"] = is_naive ? Json(settings.naive.tolerance) : Json();
+      row["wrong_rate"] = judged.wrong_rate;
+      row["miss_rate"] = judged.miss_rate;
+      row["false_rate"] = judged.false_rate;
+      row["late_rate"] = has_times ? Json(judged.late_rate) : Json();
+      row["early_rate"] = has_times ? Json(judged.early_rate) : Json();
+      row["error_p99"] = has_times ? Json(*judged.error_p99) : Json();
+      row["judged"] = judged.judged;
+      row["rays"] = parts[c].size();
+      row["hit_share"] = hits[c] / count;
+      row["spread"] = (*slowest - *fastest) / median(times[c]);
+      rows_.push_back(with_all_fields(std::move(row)));
+    }
+  }
+
+  void measure_build(const Ground& ground) {
+    std::vector<double> times;
+    for (int repeat = 0; repeat < options_.repeats; ++repeat) {
+      const DeviceGround again(device_, ground.bench.field);
+      times.push_back(seconds(device_, again.passes()));
+    }
+    const double samples = static_cast<double>(ground.bench.field.cols()) * ground.bench.field.rows();
+    const auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());
+    Json row = head(ground, "build", "pyramid");
+    row["build_ms"] = median(times) * 1e3;
+    row["gsamples_per_s"] = samples / median(times) * 1e-9;
+    row["bytes_per_sample"] = static_cast<double>(ground.gpu.bytes()) / samples;
+    row["spread"] = (*slowest - *fastest) / median(times);
+    rows_.push_back(with_all_fields(std::move(row)));
+  }
+
+  Json head(const Ground& ground, std::string_view ray_class, std::string_view mode) const {
+    const DeviceDescription& device = device_.description();
+    Json row;
+    row["size"] = ground.bench.field.cols();
+    row["class"] = ray_class;
+    row["mode"] = mode;
+    row["device"] = device.name;
+    row["driver"] = device.driver;
+    row["field"] = ground.bench.name;
+    row["relief"] = ground.bench.relief;
+    row["mean_slope_deg"] = ground.bench.mean_slope_deg;
+    return row;
+  }
+
+  // Rows of rays and of builds have the same fields, in the same order; null what does not apply.
+  static Json with_all_fields(const Json& row) {
+    Json all;
+    for (const char* field : {"size",           "class",
+                              "mode",           "mrays_per_s",
+                              "max_mip_ratio",  "fetches_per_ray",
+                              "fetch_ratio",    "steps_per_ray",
+                              "step_ratio",     "article_ratio",
+                              "step_factor",    "min_step",
+                              "tolerance",      "wrong_rate",
+                              "miss_rate",      "false_rate",
+                              "late_rate",      "early_rate",
+                              "error_p99",      "judged",
+                              "rays",           "hit_share",
+                              "spread",         "build_ms",
+                              "gsamples_per_s", "bytes_per_sample",
+                              "device",         "driver",
+                              "field",          "relief",
+                              "mean_slope_deg"}) {
+      all[field] = row.value(field, Json());
+    }
+    return all;
+  }
+
+  Device device_;
+  const GpuOptions& options_;
+  RayCounts rays_;
+  std::int64_t judged_;
+  DeviceMarch max_mip_, naive_, relaxed_, lipschitz_;
+  Json rows_ = Json::array();
+};
+
+}  // namespace
+
+void run_gpu(const GpuOptions& options, const ReportOptions& report) {
+  const Device device({.choice = options.device});
+  const DeviceDescription& description = device.description();
+  fmt::print("{}, {}\n", description.name, description.driver);
+  std::vector<int> sizes = options.sizes;
+  if (sizes.empty()) sizes = is_cpu(device) ? std::vector<int>{1025, 4097} : std::vector<int>{1025, 4097, 16385};
+  Comparison comparison(device, options);
+  for (const int size : sizes) {
+    FieldOptions field = options.field;
+    field.size = size;
+    const std::uint64_t bytes = std::uint64_t{4} * static_cast<std::uint64_t>(size) * static_cast<std::uint64_t>(size);
+    if (bytes > description.max_allocation_bytes) {
+      fmt::print("{0} x {0} samples: left out, one buffer of the device holds {1} bytes at most\n", size,
+                 description.max_allocation_bytes);
+      continue;
+    }
+    comparison.run(load_field(field));
+  }
+  comparison.print();
+  fmt::print("the article: 55.066 ms without, 9.074 ms with the pyramid: {:.2f} x\n", kArticleRatio);
+  write_json(report, comparison.rows());
+}
+
+}  // namespace scarp::bench

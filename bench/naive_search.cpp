@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+#include "bench/naive_search.h"
+
+namespace scarp::bench {
+namespace {
+
+constexpr double kCoarsestStep = 1.0 / 64, kFinestStep = 1.0 / (1 << 20);
+constexpr int kFactorHalvings = 6;
+// The height above ground that counts as a hit, against the least step: small enough that what naive reports early
+// stays a matter of the step, as its misses are.
+constexpr double kTolerancePerStep = 1.0 / 16;
+
+}  // namespace
+
+std::optional<NaiveSettings> cheapest_naive(const std::function<NaiveTrial(const NaiveSettings&)>& attempt,
+                                            double most_steps) {
+  std::optional<NaiveSettings> best;
+  double best_steps = 0;
+  NaiveSettings settings;
+  for (int halving = 0; halving <= kFactorHalvings; ++halving, settings.step_factor /= 2) {
+    for (double min_step = kCoarsestStep; min_step >= kFinestStep; min_step /= 2) {
+      settings.min_step = min_step;
+      settings.tolerance = kTolerancePerStep * min_step;
+      // No ray needs more steps than forced ones alone would take: none is given up.
+      settings.max_steps = static_cast<int>(1 / min_step) + 2;
+      const NaiveTrial trial = attempt(settings);
+      // Finer ones only take more steps.
+      if (best && trial.steps >= best_steps) break;
+      if (trial.good) {
+        best = settings;
+        best_steps = trial.steps;
+        break;
+      }
+      if (trial.steps > most_steps) break;
+    }
+  }
+  return best;
+}
+
+}  // namespace scarp::bench
