@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/device_option.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
 #include "app/cli/march_options.h"
@@ -37,7 +38,7 @@ struct RenderOptions {
   std::string output;
   RasterOptions raster;
   FieldOptions field;
-  std::string march = "max-mip";
+  std::string march = "max-mip", device;
   MarchSettings march_settings;
   PictureSettings picture;
   std::string size, look = "shaded", sun, view, eye, target;
@@ -158,6 +159,7 @@ void run(RenderOptions options) {
   if (!options.eye.empty()) point_from(options.eye, "--eye");
   if (!options.target.empty()) point_from(options.target, "--target");
   const ThreadLimit limit(options.threads);
+  const SceneMaker scenes = scene_maker(options.device, march);
   // Reserved first: an unwritable place is found before the work and not after it.
   ReplaceFile file(options.output);
 
@@ -177,7 +179,7 @@ void run(RenderOptions options) {
   if (field.all_nodata()) {
     throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", path));
   }
-  const TerrainScene scene(std::move(field), march, options.march_settings);
+  const TerrainScene scene = scenes.make(std::move(field), march, options.march_settings);
   stop_if_interrupted();
   const double build_s = watch.lap();
 
@@ -186,8 +188,9 @@ void run(RenderOptions options) {
   const Camera camera = camera_of(options, view, box, grid_north_azimuth);
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
   const auto print_times = [&](double render_s) {
-    fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s\n", options.output,
-               options.picture.width, options.picture.height, read_s, build_s, render_s);
+    fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options.output,
+               options.picture.width, options.picture.height, read_s, build_s, render_s,
+               scenes.device.empty() ? "" : ", on " + scenes.device);
   };
   if (options.exr) {
     const PictureLayers layers =
@@ -250,6 +253,7 @@ void add_render(CLI::App& program) {
       ->add_option("--error-tolerance", o.picture.error_tolerance,
                    "of the error look, in sides of a cell along the ray")
       ->capture_default_str();
+  add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
 
   const std::string from = "Where from";

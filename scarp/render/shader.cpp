@@ -55,9 +55,7 @@ Shader::Shader(const HeightField& field, const Camera& camera, double grid_north
   haze_per_metre_ = -std::log(1 - settings.haze) / diagonal(box);
 }
 
-std::size_t Shader::most_light_rays() const {
-  return static_cast<std::size_t>(std::max(1, 2 * settings_.samples));
-}
+std::size_t Shader::most_light_rays() const { return static_cast<std::size_t>(std::max(1, 2 * settings_.samples)); }
 
 LightRays Shader::ask_light(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const {
   const auto samples = [&](std::uint32_t purpose) {
@@ -75,8 +73,8 @@ LightRays Shader::ask_light(const GroundPoint& ground, const PicturePoint& point
   return asked;
 }
 
-vec3 Shader::ground_colour(const Hit& hit, const GroundPoint& ground, const LightRays& asked,
-                           std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const {
+vec3 Shader::ground_colour(const Hit& hit, const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
+                           std::span<const std::uint8_t> blocked) const {
   double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = 1;
   if (settings_.shadows) {
     const std::size_t count = asked.sky - asked.sun;

@@ -87,8 +87,7 @@ void work_together(const TerrainScene& scene, const PixelTiles& tiles, std::size
     if (progress) {
       listen = [&](double) { return progress(static_cast<double>(first) / static_cast<double>(tiles.count())); };
     }
-    std::vector<OpenTile> group(
-        std::min(tiles_at_once, static_cast<std::size_t>(tiles.count() - first)));
+    std::vector<OpenTile> group(std::min(tiles_at_once, static_cast<std::size_t>(tiles.count() - first)));
     for (bool open = true; open;) {
       parallel_for(
           static_cast<std::int64_t>(group.size()), 1,
