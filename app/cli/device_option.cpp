@@ -21,9 +21,13 @@ TerrainScene scene_on_cpu(HeightField field, const MarchEntry& march, const Marc
 }  // namespace
 
 void add_device_option(CLI::App& command, std::string& device) {
-  command.add_option("--device", device,
-                     "cpu, gpu, auto or part of a name: a Vulkan device answers the rays, in single precision, see "
-                     "'scarp devices'; without this the marches of the CPU do, in double");
+  command
+      .add_option("--device", device,
+                  "cpu, gpu, auto or part of a name: a Vulkan device answers the rays, in single precision, see "
+                  "'scarp devices'; without this the marches of the CPU do, in double")
+      ->check([](const std::string& text) {
+        return text.empty() ? std::string("expected cpu, gpu, auto or part of a name") : std::string();
+      });
 }
 
 SceneMaker scene_maker(const std::string& device, const MarchEntry& march) {
