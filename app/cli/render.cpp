@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/device_option.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
 #include "app/cli/march_options.h"
@@ -42,6 +43,7 @@ struct RenderOptions {
   FieldOptions field;
   VoxSceneOptions vox;
   std::string march;  // empty: the fastest exact one
+  std::string device;
   MarchSettings march_settings;
   PictureSettings picture;
   std::string size, look = "shaded", sun, view, eye, target;
@@ -156,13 +158,16 @@ void print_findings(const Picture& picture) {
   }
 }
 
-void print_times(const RenderOptions& options, double read_s, double build_s, double render_s) {
-  fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s\n", options.output,
-             options.picture.width, options.picture.height, read_s, build_s, render_s);
+void print_times(const RenderOptions& options, double read_s, double build_s, double render_s,
+                 const std::string& device = {}) {
+  fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options.output,
+             options.picture.width, options.picture.height, read_s, build_s, render_s,
+             device.empty() ? "" : ", on " + device);
 }
 
 void render_vox(RenderOptions options, const ViewSettings& view) {
   if (options.exr) throw Error(fmt::format("output '{}': pictures of voxels are written as PNG", options.output));
+  if (!options.device.empty()) throw Error("--device: pictures of voxels are made on the CPU; leave it out");
   const FromVoxOptions from{options.vox, options.march.empty() ? FromVoxOptions{}.march : options.march};
   find_voxel_march(from.march);
   // From over the default camera's shoulder: walls that face it are lit.
@@ -187,6 +192,7 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
 
 void render_terrain(RenderOptions options, const ViewSettings& view) {
   const MarchEntry& march = find_march(options.march.empty() ? "max-mip" : options.march);
+  const SceneMaker scenes = scene_maker(options.device, march);
   // Reserved first: an unwritable place is found before the work and not after it.
   ReplaceFile file(options.output);
 
@@ -206,7 +212,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   if (field.all_nodata()) {
     throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", path));
   }
-  const TerrainScene scene(std::move(field), march, options.march_settings);
+  const TerrainScene scene = scenes.make(std::move(field), march, options.march_settings);
   stop_if_interrupted();
   const double build_s = watch.lap();
 
@@ -219,14 +225,14 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
         render_layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
     const double render_s = watch.lap();
     write_layers(file, options.output, layers, camera);
-    print_times(options, read_s, build_s, render_s);
+    print_times(options, read_s, build_s, render_s, scenes.device);
     return;
   }
   const Picture picture =
       render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
   const double render_s = watch.lap();
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
-  print_times(options, read_s, build_s, render_s);
+  print_times(options, read_s, build_s, render_s, scenes.device);
   print_findings(picture);
 }
 
@@ -289,6 +295,7 @@ void add_render(CLI::App& program) {
       ->add_option("--error-tolerance", o.picture.error_tolerance,
                    "of the error look, in sides of a cell along the ray")
       ->capture_default_str();
+  add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
 
   const std::string from = "Where from";

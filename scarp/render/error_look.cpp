@@ -3,11 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "scarp/march/wall.h"
 #include "scarp/render/light.h"
 #include "scarp/render/ramp.h"
+#include "scarp/render/sight.h"
+#include "scarp/render/tile_work.h"
 
 namespace scarp {
 namespace {
@@ -31,6 +34,9 @@ constexpr std::array<Style, kVerdicts> kStyles{{
 
 const Style& style_of(Verdict verdict) { return kStyles[static_cast<std::size_t>(verdict)]; }
 
+// A ray judged by `exhaustive` may take a millisecond: a device waits for the judge, and so does whoever wants to stop.
+constexpr std::size_t kMostRays = kMostRaysOfRound;
+
 }  // namespace
 
 std::string_view name_of(Verdict verdict) { return style_of(verdict).name; }
@@ -45,6 +51,55 @@ Verdict judge(const Hit& answer, const Hit& truth, double tolerance) {
   return answer.t < truth.t ? Verdict::early : Verdict::late;
 }
 
+namespace {
+
+class ErrorTile final : public TileWork {
+ public:
+  ErrorTile(const TerrainScene& oracle, const Camera& camera, const PixelTile& tile, const Light& light,
+            std::vector<Verdict>& verdicts, ErrorPicture& picture)
+      : oracle_(oracle), camera_(camera), tile_(tile), light_(light), verdicts_(verdicts), picture_(picture) {}
+
+  bool next(RayRound& round) override {
+    if (!asked_) {
+      asked_ = true;
+      round.question = RayRound::Question::closest;
+      round.rays = rays_through_middles(camera_, tile_);
+      return true;
+    }
+    std::size_t i = 0;
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (int x = tile_.x0; x < tile_.x1; ++x, ++i) judge_pixel(x, y, round.rays[i], round.hits[i]);
+    }
+    return false;
+  }
+
+ private:
+  void judge_pixel(int x, int y, const Ray& ray, const Hit& answer) const {
+    const Hit truth = oracle_.closest_hit(ray);
+    const Verdict verdict = judge(answer, truth, picture_.counts.tolerance_m);
+    vec3 colour = linear_from_srgb(style_of(verdict).srgb);
+    // Unshadowed relief behind all colours of ground, so that one sees where the errors are.
+    if (truth) {
+      const dvec3 normal =
+          truth.wall ? wall_normal(ray, truth) : oracle_.field().shading_normal(truth.cell, truth.u, truth.v);
+      colour *= light_.on(normal, true);
+    }
+    set_pixel(picture_.image, x, y, colour);
+    verdicts_[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.image.width) +
+              static_cast<std::size_t>(x)] = verdict;
+  }
+
+  const TerrainScene& oracle_;
+  const Camera& camera_;
+  PixelTile tile_;
+  const Light& light_;
+  std::vector<Verdict>& verdicts_;
+  ErrorPicture& picture_;
+  bool asked_ = false;
+};
+
+}  // namespace
+
 ErrorPicture render_error(const TerrainScene& scene, const Camera& camera, int width, int height, double tolerance,
                           const Progress& progress) {
   const HeightField& field = scene.field();
@@ -53,21 +108,10 @@ ErrorPicture render_error(const TerrainScene& scene, const Camera& camera, int w
   ErrorPicture picture{Image(width, height), {}};
   picture.counts.tolerance_m = tolerance * std::min(field.settings().cell_x, field.settings().cell_y);
   std::vector<Verdict> verdicts(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for_each_pixel(
-      width, height,
-      [&](int x, int y) {
-        const Ray ray = camera.ray(x + 0.5, y + 0.5);
-        const Hit truth = oracle.closest_hit(ray);
-        const Verdict verdict = judge(scene.closest_hit(ray), truth, picture.counts.tolerance_m);
-        vec3 colour = linear_from_srgb(style_of(verdict).srgb);
-        // Unshadowed relief behind all colours of ground, so that one sees where the errors are.
-        if (truth) {
-          const dvec3 normal =
-              truth.wall ? wall_normal(ray, truth) : field.shading_normal(truth.cell, truth.u, truth.v);
-          colour *= light.on(normal, true);
-        }
-        set_pixel(picture.image, x, y, colour);
-        verdicts[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = verdict;
+  work_on_tiles(
+      scene, PixelTiles(width, height, 1), kMostRays,
+      [&](const PixelTile& tile) {
+        return std::make_unique<ErrorTile>(oracle, camera, tile, light, verdicts, picture);
       },
       progress);
   for (const Verdict verdict : verdicts) ++picture.counts.pixels[static_cast<std::size_t>(verdict)];

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "scarp/base/progress.h"
 #include "scarp/render/camera.h"
 #include "scarp/render/film.h"
 #include "scarp/scene/terrain_scene.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "scarp/base/parallel.h"
 #include "scarp/render/ramp.h"
 
 namespace scarp {
@@ -11,6 +10,8 @@ namespace {
 
 // Pixels along a tile's side: neighbouring rays meet the same cells, and a tile is some milliseconds of work.
 constexpr int kTile = 16;
+constexpr int kMostPointsPerSide = 32;
+static_assert(kMostPointsPerSide * kMostPointsPerSide == kMostPointsOfTile);
 
 }  // namespace
 
@@ -26,34 +27,35 @@ void set_pixel(Image& image, int x, int y, vec3 linear) {
   rgb[2] = srgb_byte(linear.z);
 }
 
-void for_each_pixel(int width, int height, const std::function<void(int, int)>& body, const Progress& progress) {
-  const std::int64_t across = (width + kTile - 1) / kTile, down = (height + kTile - 1) / kTile;
-  parallel_for(
-      across * down, 1,
-      [&](std::int64_t begin, std::int64_t end) {
-        for (std::int64_t tile = begin; tile < end; ++tile) {
-          const int x0 = static_cast<int>(tile % across) * kTile, y0 = static_cast<int>(tile / across) * kTile;
-          for (int y = y0; y < std::min(y0 + kTile, height); ++y) {
-            for (int x = x0; x < std::min(x0 + kTile, width); ++x) body(x, y);
-          }
-        }
-      },
-      progress);
+PixelTiles::PixelTiles(int width, int height, int aa)
+    : width_(width),
+      height_(height),
+      side_(std::min(kTile, kMostPointsPerSide / aa)),
+      across_((width + side_ - 1) / side_),
+      down_((height + side_ - 1) / side_) {}
+
+PixelTile PixelTiles::operator[](std::int64_t i) const {
+  const int x0 = static_cast<int>(i % across_) * side_, y0 = static_cast<int>(i / across_) * side_;
+  return {x0, y0, std::min(x0 + side_, width_), std::min(y0 + side_, height_)};
 }
 
-vec3 mean_colour(int x, int y, int aa, const PointColour& colour) {
-  vec3 sum(0.0f);
-  for (int j = 0; j < aa; ++j) {
-    for (int i = 0; i < aa; ++i) sum += colour({x + (i + 0.5) / aa, y + (j + 0.5) / aa, x, y, j * aa + i});
+std::vector<PicturePoint> points_of(const PixelTile& tile, int aa) {
+  std::vector<PicturePoint> points;
+  points.reserve(tile.pixels() * static_cast<std::size_t>(aa * aa));
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) {
+      for (int j = 0; j < aa; ++j) {
+        for (int i = 0; i < aa; ++i) points.push_back({x + (i + 0.5) / aa, y + (j + 0.5) / aa, x, y, j * aa + i});
+      }
+    }
   }
-  return sum * (1.0f / static_cast<float>(aa * aa));
+  return points;
 }
 
-Image develop(int width, int height, int aa, const PointColour& colour, const Progress& progress) {
-  Image image(width, height);
-  for_each_pixel(
-      width, height, [&](int x, int y) { set_pixel(image, x, y, mean_colour(x, y, aa, colour)); }, progress);
-  return image;
+vec3 mean_colour(std::span<const vec3> points) {
+  vec3 sum(0.0f);
+  for (const vec3& point : points) sum += point;
+  return sum * (1.0f / static_cast<float>(points.size()));
 }
 
 }  // namespace scarp

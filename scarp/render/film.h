@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// From colours of points to a picture of bytes: tiles over all threads, several samples per pixel.
+// From colours of points to a picture of bytes: tiles, several samples per pixel.
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <span>
 #include <vector>
 
-#include "scarp/base/progress.h"
 #include "scarp/base/vec.h"
 
 namespace scarp {
@@ -27,8 +26,29 @@ struct Image {
 /// Sets a pixel from linear light.
 void set_pixel(Image& image, int x, int y, vec3 linear);
 
-/// Calls body(x, y) once for every pixel, tile by tile on all threads. Throws Interrupted when progress asks for it.
-void for_each_pixel(int width, int height, const std::function<void(int, int)>& body, const Progress& progress);
+/// Pixels [x0, x1) x [y0, y1).
+struct PixelTile {
+  int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+
+  std::size_t pixels() const { return static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0); }
+};
+
+/// A picture cut into tiles of some hundred points, neighbours in the picture.
+class PixelTiles {
+ public:
+  /// `width`, `height` in pixels, aa x aa points each, aa 1..16.
+  PixelTiles(int width, int height, int aa);
+
+  std::int64_t count() const { return across_ * down_; }
+  PixelTile operator[](std::int64_t i) const;
+
+ private:
+  int width_, height_, side_;
+  std::int64_t across_, down_;
+};
+
+/// Of a tile's points at most.
+constexpr std::size_t kMostPointsOfTile = 1024;
 
 /// A place in a picture whose colour is asked for; pixel (i, j) covers [i, i+1) x [j, j+1).
 struct PicturePoint {
@@ -37,13 +57,10 @@ struct PicturePoint {
   int index;  ///< of the point in its pixel, from 0
 };
 
-/// Colour of a point of the picture in linear light.
-using PointColour = std::function<vec3(const PicturePoint&)>;
+/// aa x aa evenly spaced points for each pixel, the pixels row by row, the points of one pixel together.
+std::vector<PicturePoint> points_of(const PixelTile& tile, int aa);
 
-/// The mean of aa x aa evenly spaced points in pixel (x, y), in linear light.
-vec3 mean_colour(int x, int y, int aa, const PointColour& colour);
-
-/// That of every pixel.
-Image develop(int width, int height, int aa, const PointColour& colour, const Progress& progress);
+/// The mean colour of the points of one pixel, in linear light.
+vec3 mean_colour(std::span<const vec3> points);
 
 }  // namespace scarp

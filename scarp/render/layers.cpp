@@ -5,12 +5,80 @@
 
 #include <cstddef>
 #include <limits>
+#include <memory>
 
 #include "scarp/base/error.h"
 #include "scarp/march/wall.h"
-#include "scarp/render/shader.h"
+#include "scarp/render/shaded_tile.h"
+#include "scarp/render/sight.h"
+#include "scarp/render/tile_work.h"
 
 namespace scarp {
+
+namespace {
+
+class LayersTile final : public TileWork {
+ public:
+  LayersTile(const ShadedView& view, const PixelTile& tile, PictureLayers& layers)
+      : view_(view),
+        tile_(tile),
+        middles_(rays_through_middles(view.camera, tile)),
+        looking_(view.plinth),
+        shaded_(view, tile),
+        layers_(layers) {}
+
+  bool next(RayRound& round) override {
+    if (!asked_) {
+      asked_ = true;
+      looking_.ask(middles_, true, round);
+      return true;
+    }
+    if (!seen_) {
+      seen_ = true;
+      take_sights(round);
+    }
+    if (shaded_.next(round)) return true;
+    const std::vector<vec3> colours = shaded_.pixels();
+    for (std::size_t i = 0; i < colours.size(); ++i) layers_.colour[pixel(i)] = colours[i];
+    return false;
+  }
+
+ private:
+  // Of pixel i of the tile, in the layers.
+  std::size_t pixel(std::size_t i) const {
+    const auto across = static_cast<std::size_t>(tile_.x1 - tile_.x0);
+    return (static_cast<std::size_t>(tile_.y0) + i / across) * static_cast<std::size_t>(layers_.width) +
+           static_cast<std::size_t>(tile_.x0) + i % across;
+  }
+
+  void take_sights(const RayRound& round) {
+    const Camera& camera = view_.camera;
+    const std::vector<Sight> sights = looking_.answers(round);
+    for (std::size_t i = 0; i < sights.size(); ++i) {
+      const Sight& sight = sights[i];
+      const Ray& ray = middles_[i];
+      const std::size_t to = pixel(i);
+      layers_.steps[to] = sight.steps;
+      if (!sight.hit && !sight.wall) continue;
+      const dvec3 position = ray.at(sight.hit ? sight.hit.t : sight.wall->t);
+      layers_.depth[to] = static_cast<float>(dot(position - camera.eye(), camera.forward()));
+      layers_.normal[to] = !sight.hit       ? sight.wall->normal
+                           : sight.hit.wall ? wall_normal(ray, sight.hit)
+                                            : view_.shader.field().normal(sight.hit.cell, sight.hit.u, sight.hit.v);
+      layers_.position[to] = position;
+    }
+  }
+
+  const ShadedView& view_;
+  PixelTile tile_;
+  std::vector<Ray> middles_;
+  SightRound looking_;
+  ShadedTile shaded_;
+  PictureLayers& layers_;
+  bool asked_ = false, seen_ = false;
+};
+
+}  // namespace
 
 PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
                             const PictureSettings& settings, const Progress& progress) {
@@ -23,10 +91,10 @@ PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, dou
   }
   const HeightField& field = scene.field();
   require_ground(field);
-  const Shader shader(scene, camera, grid_north_azimuth, settings);
+  const Shader shader(field, camera, grid_north_azimuth, settings);
   const std::optional<Plinth> plinth = plinth_of(field, settings);
-  const auto width = static_cast<std::size_t>(settings.width);
-  const std::size_t pixels = width * static_cast<std::size_t>(settings.height);
+  const ShadedView view{camera, plinth, shader, settings.aa};
+  const std::size_t pixels = static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
   PictureLayers layers{settings.width,
                        settings.height,
                        std::vector<vec3>(pixels),
@@ -34,25 +102,9 @@ PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, dou
                        std::vector<vec3>(pixels, vec3(0.0f)),
                        std::vector<vec3>(pixels, vec3(0.0f)),
                        std::vector<std::uint32_t>(pixels)};
-  for_each_pixel(
-      settings.width, settings.height,
-      [&](int x, int y) {
-        const std::size_t i = static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x);
-        layers.colour[i] =
-            mean_colour(x, y, settings.aa, [&](const PicturePoint& point) { return shader.colour(point); });
-        const Ray ray = camera.ray(x + 0.5, y + 0.5);
-        MarchStats stats;
-        const Sight sight = look(scene, plinth, ray, &stats);
-        layers.steps[i] = stats.steps;
-        if (!sight.hit && !sight.wall) return;
-        const dvec3 position = ray.at(sight.hit ? sight.hit.t : sight.wall->t);
-        layers.depth[i] = static_cast<float>(dot(position - camera.eye(), camera.forward()));
-        layers.normal[i] = !sight.hit       ? sight.wall->normal
-                           : sight.hit.wall ? wall_normal(ray, sight.hit)
-                                            : field.normal(sight.hit.cell, sight.hit.u, sight.hit.v);
-        layers.position[i] = position;
-      },
-      progress);
+  work_on_tiles(
+      scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(shader),
+      [&](const PixelTile& tile) { return std::make_unique<LayersTile>(view, tile, layers); }, progress);
   return layers;
 }
 

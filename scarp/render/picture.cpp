@@ -6,11 +6,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/render/ramp.h"
+#include "scarp/render/shaded_tile.h"
 #include "scarp/render/shader.h"
+#include "scarp/render/sight.h"
 #include "scarp/render/step_look.h"
+#include "scarp/render/tile_work.h"
 
 namespace scarp {
 namespace {
@@ -25,32 +30,100 @@ void require(bool good, std::string_view what, double value, std::string_view ra
   if (!good) throw Error(fmt::format("picture: {} is {}; it must be {}", what, value, range));
 }
 
+// Calls take(x, y, ray's sight) for each pixel of a tile.
+template <class Take>
+class LookingTile final : public TileWork {
+ public:
+  LookingTile(const Camera& camera, const std::optional<Plinth>& plinth, const PixelTile& tile, bool steps,
+              const Take& take)
+      : camera_(camera), tile_(tile), looking_(plinth), steps_(steps), take_(take) {}
+
+  bool next(RayRound& round) override {
+    if (!asked_) {
+      asked_ = true;
+      looking_.ask(rays_through_middles(camera_, tile_), steps_, round);
+      return true;
+    }
+    const std::vector<Sight> sights = looking_.answers(round);
+    std::size_t i = 0;
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (int x = tile_.x0; x < tile_.x1; ++x) take_(x, y, sights[i++]);
+    }
+    return false;
+  }
+
+ private:
+  const Camera& camera_;
+  PixelTile tile_;
+  SightRound looking_;
+  bool steps_, asked_ = false;
+  const Take& take_;
+};
+
+template <class Take>
+void look_through_middles(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings, bool steps,
+                          const Progress& progress, const Take& take) {
+  const std::optional<Plinth> plinth = plinth_of(scene.field(), settings);
+  const PixelTiles tiles(settings.width, settings.height, 1);
+  const auto make = [&](const PixelTile& tile) {
+    return std::make_unique<LookingTile<Take>>(camera, plinth, tile, steps, take);
+  };
+  work_on_tiles(scene, tiles, tiles[0].pixels(), make, progress);
+}
+
 Image render_height(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings,
                     const Progress& progress) {
   Image image(settings.width, settings.height);
-  const std::optional<Plinth> plinth = plinth_of(scene.field(), settings);
   const double low = scene.field().min_height(), relief = scene.field().max_height() - low;
-  for_each_pixel(
-      settings.width, settings.height,
-      [&](int x, int y) {
-        const Hit hit = look(scene, plinth, camera.ray(x + 0.5, y + 0.5)).hit;
-        if (!hit) return;
-        const double share = relief > 0 ? std::clamp((hit.height - low) / relief, 0.0, 1.0) : 1.0;
-        std::fill_n(image.pixel(x, y), 3, static_cast<std::uint8_t>(std::lround(1 + 254 * share)));
-      },
-      progress);
+  look_through_middles(scene, camera, settings, false, progress, [&](int x, int y, const Sight& sight) {
+    if (!sight.hit) return;
+    const double share = relief > 0 ? std::clamp((sight.hit.height - low) / relief, 0.0, 1.0) : 1.0;
+    std::fill_n(image.pixel(x, y), 3, static_cast<std::uint8_t>(std::lround(1 + 254 * share)));
+  });
   return image;
 }
 
 Picture render_steps(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings,
                      const Progress& progress) {
+  const auto width = static_cast<std::size_t>(settings.width);
+  std::vector<std::uint32_t> steps(width * static_cast<std::size_t>(settings.height));
+  look_through_middles(scene, camera, settings, true, progress, [&](int x, int y, const Sight& sight) {
+    steps[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = sight.steps;
+  });
+  return picture_of_steps(settings, steps);
+}
+
+class ImageTile final : public TileWork {
+ public:
+  ImageTile(const ShadedView& view, const PixelTile& tile, Image& image)
+      : tile_(tile), shaded_(view, tile), image_(image) {}
+
+  bool next(RayRound& round) override {
+    if (shaded_.next(round)) return true;
+    const std::vector<vec3> colours = shaded_.pixels();
+    std::size_t i = 0;
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (int x = tile_.x0; x < tile_.x1; ++x) set_pixel(image_, x, y, colours[i++]);
+    }
+    return false;
+  }
+
+ private:
+  PixelTile tile_;
+  ShadedTile shaded_;
+  Image& image_;
+};
+
+Image render_shaded(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
+                    const PictureSettings& settings, const Progress& progress) {
+  const Shader shader(scene.field(), camera, grid_north_azimuth, settings);
   const std::optional<Plinth> plinth = plinth_of(scene.field(), settings);
-  const auto steps_of = [&](int x, int y) {
-    MarchStats stats;
-    look(scene, plinth, camera.ray(x + 0.5, y + 0.5), &stats);
-    return stats.steps;
-  };
-  return picture_of_steps(settings, steps_of, progress);
+  const ShadedView view{camera, plinth, shader, settings.aa};
+  Image image(settings.width, settings.height);
+  work_on_tiles(
+      scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(shader),
+      [&](const PixelTile& tile) { return std::make_unique<ImageTile>(view, tile, image); }, progress);
+  return image;
 }
 
 }  // namespace
@@ -104,12 +177,7 @@ Picture render_picture(const TerrainScene& scene, const Camera& camera, double g
     case Look::shaded:
       break;
   }
-  const Shader shader(scene, camera, grid_north_azimuth, settings);
-  return {develop(
-              settings.width, settings.height, settings.aa,
-              [&](const PicturePoint& point) { return shader.colour(point); }, progress),
-          {},
-          {}};
+  return {render_shaded(scene, camera, grid_north_azimuth, settings, progress), {}, {}};
 }
 
 }  // namespace scarp

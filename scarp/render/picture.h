@@ -17,6 +17,7 @@
 #include <string>
 #include <string_view>
 
+#include "scarp/base/progress.h"
 #include "scarp/render/camera.h"
 #include "scarp/render/error_look.h"
 #include "scarp/render/film.h"

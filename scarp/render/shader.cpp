@@ -10,7 +10,6 @@
 #include "scarp/base/error.h"
 #include "scarp/march/wall.h"
 #include "scarp/render/sky.h"
-#include "scarp/render/visibility.h"
 
 namespace scarp {
 namespace {
@@ -39,38 +38,16 @@ void require_ground(const HeightField& field) {
   if (field.all_nodata()) throw Error("picture: all samples of the field are nodata; there is nothing to see");
 }
 
-std::optional<Plinth> plinth_of(const HeightField& field, const PictureSettings& settings) {
-  if (!settings.plinth) return {};
-  return Plinth(field, plinth_base(field));
-}
-
-Sight look(const TerrainScene& scene, const std::optional<Plinth>& plinth, Ray ray, MarchStats* stats) {
-  Sight sight;
-  if (plinth) {
-    if (plinth->passes_below(ray)) return sight;
-    sight.wall = plinth->intersect(ray);
-    if (sight.wall) {
-      if (sight.wall->outermost) return sight;
-      ray.t_max = sight.wall->t;
-    }
-  }
-  sight.hit = scene.closest_hit(ray, stats);
-  return sight;
-}
-
-Shader::Shader(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
+Shader::Shader(const HeightField& field, const Camera& camera, double grid_north_azimuth,
                const PictureSettings& settings)
-    : scene_(scene),
-      field_(scene.field()),
-      camera_(camera),
+    : field_(field),
       settings_(settings),
       ramp_(ramp_of(settings), field_.min_height(), field_.max_height()),
       light_(settings.sun, grid_north_azimuth),
       pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
       // No ray from the ground has a longer way to the end of the field.
       ao_distance_(std::min(settings.ao_distance, diagonal(picture_box(field_, false)))),
-      earth_(linear_from_srgb(kEarth)),
-      plinth_(plinth_of(field_, settings)) {
+      earth_(linear_from_srgb(kEarth)) {
   // Haze lies over the field, not between it and a camera that stands back.
   const Box box = picture_box(field_, settings.plinth);
   const dvec3 nearest = glm::clamp(camera.eye(), box.low, box.high);
@@ -78,14 +55,38 @@ Shader::Shader(const TerrainScene& scene, const Camera& camera, double grid_nort
   haze_per_metre_ = -std::log(1 - settings.haze) / diagonal(box);
 }
 
-vec3 Shader::colour(const PicturePoint& point) const {
-  const Ray ray = camera_.ray(point.x, point.y);
-  const Sight sight = look(scene_, plinth_, ray);
-  if (const Hit& hit = sight.hit) {
-    const vec3 colour =
-        hit.wall ? wall_colour(wall_normal(ray, hit)) : ramp_(ground_height(hit)) * light_on(ray, hit, point);
-    return in_haze(colour, hit.t);
+std::size_t Shader::most_light_rays() const { return static_cast<std::size_t>(std::max(1, 2 * settings_.samples)); }
+
+LightRays Shader::ask_light(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const {
+  const auto samples = [&](std::uint32_t purpose) {
+    const auto count = static_cast<std::uint32_t>(settings_.samples);
+    if (count == 0) return PatternRange{};  // a point of a sun needs none
+    return PatternRange{pattern_.pixel(point.pixel_x, point.pixel_y, purpose),
+                        count * static_cast<std::uint32_t>(point.index), count};
+  };
+  LightRays asked;
+  asked.sun = rays.size();
+  if (settings_.shadows) ask_sun(ground, light_.to_sun(), sun_radius(), samples(kOfSun), rays);
+  asked.sky = rays.size();
+  if (settings_.samples > 0 && ao_distance_ > 0) ask_sky(ground, ao_distance_, samples(kOfSky), rays);
+  asked.end = rays.size();
+  return asked;
+}
+
+vec3 Shader::ground_colour(const Hit& hit, const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
+                           std::span<const std::uint8_t> blocked) const {
+  double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = 1;
+  if (settings_.shadows) {
+    const std::size_t count = asked.sky - asked.sun;
+    sun = sun_cosine(ground, sun_radius(), static_cast<std::uint32_t>(settings_.samples),
+                     rays.subspan(asked.sun, count), blocked.subspan(asked.sun, count));
   }
+  if (asked.end > asked.sky) sky = 1 - sky_occlusion(blocked.subspan(asked.sky, asked.end - asked.sky));
+  return in_haze(ramp_(ground_height(hit)) * light_.on(ground.shading_normal, sun, sky), hit.t);
+}
+
+vec3 Shader::colour_beside_ground(const Ray& ray, const Sight& sight) const {
+  if (sight.hit) return in_haze(wall_colour(wall_normal(ray, sight.hit)), sight.hit.t);
   if (!sight.wall) return sky_colour(ray.direction.z);
   return in_haze(wall_colour(sight.wall->normal), sight.wall->t);
 }
@@ -100,25 +101,6 @@ double Shader::ground_height(const Hit& hit) const {
   const CellHeights h = field_.cell_heights(hit.cell).value();
   const double north = h.h00 + hit.u * (h.h10 - h.h00), south = h.h01 + hit.u * (h.h11 - h.h01);
   return field_.height_from_sample(north + hit.v * (south - north));
-}
-
-vec3 Shader::light_on(const Ray& ray, const Hit& hit, const PicturePoint& point) const {
-  const GroundPoint ground = ground_point(field_, ray, hit);
-  const auto samples = [&](std::uint32_t purpose) {
-    const auto count = static_cast<std::uint32_t>(settings_.samples);
-    return PatternRange{pattern_.pixel(point.pixel_x, point.pixel_y, purpose),
-                        count * static_cast<std::uint32_t>(point.index), count};
-  };
-  double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = 1;
-  if (settings_.shadows && settings_.samples > 0) {
-    sun = sun_cosine(scene_, ground, light_.to_sun(), light_.sun_radius(), samples(kOfSun));
-  } else if (settings_.shadows && sun > 0 && hidden(scene_, ground, light_.to_sun())) {
-    sun = 0;
-  }
-  if (settings_.samples > 0 && ao_distance_ > 0) {
-    sky = 1 - sky_occlusion(scene_, ground, ao_distance_, samples(kOfSky));
-  }
-  return light_.on(ground.shading_normal, sun, sky);
 }
 
 vec3 Shader::in_haze(vec3 colour, double t) const {

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: MIT
-// What a ray of the camera meets, and the colour that it has in the look `shaded`.
+// The colour that a ray of the camera has in the look `shaded`, given what it meets and what is seen from there.
 #pragma once
 
-#include <optional>
+#include <cstdint>
+#include <span>
 #include <string_view>
+#include <vector>
 
 #include "scarp/render/camera.h"
 #include "scarp/render/film.h"
 #include "scarp/render/light.h"
 #include "scarp/render/picture.h"
-#include "scarp/render/plinth.h"
 #include "scarp/render/ramp.h"
 #include "scarp/render/sample_pattern.h"
-#include "scarp/scene/terrain_scene.h"
+#include "scarp/render/sight.h"
+#include "scarp/render/visibility.h"
 
 namespace scarp {
 
@@ -22,43 +24,43 @@ std::string_view ramp_of(const PictureSettings& settings);
 /// Throws Error when the field has nothing to see: no cells, no valid samples.
 void require_ground(const HeightField& field);
 
-/// What a ray of the camera meets: ground, or else perhaps a wall.
-struct Sight {
-  Hit hit;
-  std::optional<Plinth::Wall> wall;
+/// Rays about the light of one point on the ground, among others.
+struct LightRays {
+  std::size_t sun = 0;  ///< the first to the sun; up to that to the sky
+  std::size_t sky = 0;  ///< the first to the sky
+  std::size_t end = 0;
 };
 
-/// Nothing when the settings want none.
-std::optional<Plinth> plinth_of(const HeightField& field, const PictureSettings& settings);
-
-/// Rays are not marched where the block hides the field: below its base and behind its outer walls. `stats`, when
-/// given, is overwritten by rays that are marched.
-Sight look(const TerrainScene& scene, const std::optional<Plinth>& plinth, Ray ray, MarchStats* stats = nullptr);
-
-/// Everything that one point of a picture in the look `shaded` needs. Refers to scene, camera and settings.
+/// Everything that a picture in the look `shaded` needs but rays. Refers to field, camera and settings.
 class Shader {
  public:
-  Shader(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth, const PictureSettings& settings);
+  Shader(const HeightField& field, const Camera& camera, double grid_north_azimuth, const PictureSettings& settings);
 
-  /// In linear light.
-  vec3 colour(const PicturePoint& point) const;
+  const HeightField& field() const { return field_; }
+  /// How many rays ask_light() appends at most.
+  std::size_t most_light_rays() const;
+  /// Appends what has to be known of the light on a point.
+  LightRays ask_light(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const;
+  /// Of ground, in linear light; `rays` and their answers are those that `asked` refers to.
+  vec3 ground_colour(const Hit& hit, const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
+                     std::span<const std::uint8_t> blocked) const;
+  /// Of what is not ground: walls and the sky, in linear light.
+  vec3 colour_beside_ground(const Ray& ray, const Sight& sight) const;
 
  private:
   double ground_height(const Hit& hit) const;
   vec3 wall_colour(const dvec3& normal) const;
-  vec3 light_on(const Ray& ray, const Hit& hit, const PicturePoint& point) const;
   vec3 in_haze(vec3 colour, double t) const;
+  // With `samples`; else the sun is a point.
+  double sun_radius() const { return settings_.samples > 0 ? light_.sun_radius() : 0; }
 
-  const TerrainScene& scene_;
   const HeightField& field_;
-  const Camera& camera_;
   const PictureSettings& settings_;
   Ramp ramp_;
   Light light_;
   SamplePattern pattern_;
   double ao_distance_;
   vec3 earth_;
-  std::optional<Plinth> plinth_;
   double clear_distance_ = 0;
   double haze_per_metre_ = 0;
 };

@@ -3,21 +3,14 @@
 
 #include <algorithm>
 #include <numeric>
-#include <vector>
 
 #include "scarp/render/ramp.h"
 #include "scarp/render/shader.h"
 
 namespace scarp {
 
-Picture picture_of_steps(const PictureSettings& settings, const std::function<std::uint32_t(int, int)>& steps_of,
-                         const Progress& progress) {
+Picture picture_of_steps(const PictureSettings& settings, std::span<const std::uint32_t> steps) {
   const auto width = static_cast<std::size_t>(settings.width);
-  std::vector<std::uint32_t> steps(width * static_cast<std::size_t>(settings.height));
-  for_each_pixel(
-      settings.width, settings.height,
-      [&](int x, int y) { steps[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = steps_of(x, y); },
-      progress);
   const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
   const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
   Picture picture{

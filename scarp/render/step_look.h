@@ -3,14 +3,13 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <span>
 
 #include "scarp/render/picture.h"
 
 namespace scarp {
 
-/// `steps_of(x, y)` is asked once for each pixel, on all threads.
-Picture picture_of_steps(const PictureSettings& settings, const std::function<std::uint32_t(int, int)>& steps_of,
-                         const Progress& progress);
+/// `steps`: width * height of them, rows from the top.
+Picture picture_of_steps(const PictureSettings& settings, std::span<const std::uint32_t> steps);
 
 }  // namespace scarp

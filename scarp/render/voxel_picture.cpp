@@ -3,7 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
 #include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
 #include "scarp/render/ramp.h"
 #include "scarp/render/sky.h"
 #include "scarp/render/step_look.h"
@@ -42,6 +48,22 @@ class VoxelShader {
   bool shadows_;
 };
 
+// body(points) for the points of each pixel, on all threads.
+template <class Body>
+void for_each_pixel(const PictureSettings& settings, int aa, const Progress& progress, const Body& body) {
+  const PixelTiles tiles(settings.width, settings.height, aa);
+  const auto per_pixel = static_cast<std::size_t>(aa) * static_cast<std::size_t>(aa);
+  parallel_for(
+      tiles.count(), 1,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t tile = begin; tile < end; ++tile) {
+          const std::vector<PicturePoint> points = points_of(tiles[tile], aa);
+          for (std::size_t i = 0; i < points.size(); i += per_pixel) body(std::span(points).subspan(i, per_pixel));
+        }
+      },
+      progress);
+}
+
 }  // namespace
 
 Box picture_box(const VoxelScene& scene) {
@@ -54,22 +76,27 @@ Picture render_voxels(const VoxelScene& scene, const Camera& camera, const Pictu
                       const Progress& progress) {
   validate(settings);
   if (settings.look == Look::steps) {
-    const auto steps_of = [&](int x, int y) {
+    const auto width = static_cast<std::size_t>(settings.width);
+    std::vector<std::uint32_t> steps(width * static_cast<std::size_t>(settings.height));
+    for_each_pixel(settings, 1, progress, [&](std::span<const PicturePoint> middle) {
       VoxelSceneStats stats;
-      scene.closest_hit(camera.ray(x + 0.5, y + 0.5), &stats);
-      return stats.steps;
-    };
-    return picture_of_steps(settings, steps_of, progress);
+      scene.closest_hit(camera.ray(middle[0].x, middle[0].y), &stats);
+      steps[static_cast<std::size_t>(middle[0].pixel_y) * width + static_cast<std::size_t>(middle[0].pixel_x)] =
+          stats.steps;
+    });
+    return picture_of_steps(settings, steps);
   }
   if (settings.look != Look::shaded) {
     throw Error(fmt::format("look '{}': voxels have none; there are: shaded, steps", name_of(settings.look)));
   }
   const VoxelShader shader(scene, camera, settings);
-  return {develop(
-              settings.width, settings.height, settings.aa,
-              [&](const PicturePoint& point) { return shader.colour(point); }, progress),
-          {},
-          {}};
+  Image image(settings.width, settings.height);
+  for_each_pixel(settings, settings.aa, progress, [&](std::span<const PicturePoint> points) {
+    std::vector<vec3> colours;
+    for (const PicturePoint& point : points) colours.push_back(shader.colour(point));
+    set_pixel(image, points[0].pixel_x, points[0].pixel_y, mean_colour(colours));
+  });
+  return {std::move(image), {}, {}};
 }
 
 }  // namespace scarp

@@ -3,46 +3,45 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
+#include <cmath>
 #include <vector>
-
-#include "scarp/base/error.h"
 
 namespace scarp {
 namespace {
 
-TEST(Film, EveryPixelIsVisitedOnce) {
-  for (const auto& [width, height] : {std::pair(1, 1), {16, 16}, {17, 33}, {5, 100}}) {
-    std::vector<std::atomic<int>> visits(static_cast<std::size_t>(width * height));
-    for_each_pixel(width, height, [&, w = width](int x, int y) { ++visits[static_cast<std::size_t>(y * w + x)]; }, {});
-    for (const auto& count : visits) ASSERT_EQ(count, 1) << width << " x " << height;
+TEST(Film, TilesCoverEveryPixelOnceAndHaveFewPoints) {
+  for (const int aa : {1, 2, 3, 5, 16}) {
+    for (const auto& [width, height] : {std::pair(1, 1), {16, 16}, {17, 33}, {5, 100}}) {
+      std::vector<int> visits(static_cast<std::size_t>(width * height));
+      const PixelTiles tiles(width, height, aa);
+      for (std::int64_t i = 0; i < tiles.count(); ++i) {
+        const auto points = points_of(tiles[i], aa);
+        EXPECT_LE(points.size(), kMostPointsOfTile);
+        EXPECT_EQ(points.size(), tiles[i].pixels() * static_cast<std::size_t>(aa * aa));
+        for (const PicturePoint& p : points) {
+          EXPECT_EQ(p.pixel_x, std::floor(p.x));
+          EXPECT_EQ(p.pixel_y, std::floor(p.y));
+          visits.at(static_cast<std::size_t>(p.pixel_y * width + p.pixel_x)) += p.index + 1;
+        }
+      }
+      const int all = aa * aa * (aa * aa + 1) / 2;
+      for (const int count : visits) ASSERT_EQ(count, all) << width << " x " << height << ", aa " << aa;
+    }
   }
 }
 
 TEST(Film, SamplesAreMixedInLinearLight) {
-  // The left half of each pixel is black, the right one white: half the light is 188 in sRGB, not 128.
-  const Image image =
-      develop(2, 1, 2, [](const PicturePoint& p) { return vec3(p.x - p.pixel_x < 0.5 ? 0.0f : 1.0f); }, {});
+  // Half the light is 188 in sRGB, not 128.
+  const std::vector<vec3> points = {vec3(0.0f), vec3(1.0f), vec3(0.0f), vec3(1.0f)};
+  Image image(1, 1);
+  set_pixel(image, 0, 0, mean_colour(points));
   EXPECT_EQ(int{image.pixel(0, 0)[0]}, 188);
-  EXPECT_EQ(int{image.pixel(1, 0)[2]}, 188);
 }
 
 TEST(Film, OneSampleIsTheMiddleOfThePixel) {
-  const Image image =
-      develop(3, 2, 1,
-              [](const PicturePoint& p) { return vec3(p.x == 2.5 ? 1.0f : 0.0f, p.y == 1.5 ? 1.0f : 0.0f, 0.0f); }, {});
-  EXPECT_EQ(int{image.pixel(2, 0)[0]}, 255);
-  EXPECT_EQ(int{image.pixel(1, 0)[0]}, 0);
-  EXPECT_EQ(int{image.pixel(0, 1)[1]}, 255);
-}
-
-TEST(Film, StopsWhenItIsAskedTo) {
-  std::atomic<int> pixels{0};
-  const Progress stop = [](double) { return false; };
-  EXPECT_THROW(for_each_pixel(
-                   1600, 1600, [&](int, int) { ++pixels; }, stop),
-               Interrupted);
-  EXPECT_LT(pixels, 1600 * 1600);
+  const auto points = points_of({0, 0, 3, 2}, 1);
+  EXPECT_EQ(points[2].x, 2.5);
+  EXPECT_EQ(points[5].y, 1.5);
 }
 
 }  // namespace

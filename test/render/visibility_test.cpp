@@ -9,6 +9,8 @@
 #include <numbers>
 #include <vector>
 
+#include "scarp/scene/terrain_scene.h"
+
 namespace scarp {
 namespace {
 
@@ -31,6 +33,25 @@ GroundPoint point_at(const TerrainScene& scene, double x, double y) {
   const Hit hit = scene.closest_hit(down);
   EXPECT_TRUE(hit) << x << ", " << y;
   return ground_point(scene.field(), down, hit);
+}
+
+std::vector<std::uint8_t> blocked(const TerrainScene& scene, const std::vector<Ray>& rays) {
+  std::vector<std::uint8_t> answers(rays.size());
+  scene.occluded(rays, answers);
+  return answers;
+}
+
+double sky_occlusion(const TerrainScene& scene, const GroundPoint& point, double distance, const PatternRange& range) {
+  std::vector<Ray> rays;
+  ask_sky(point, distance, range, rays);
+  return scarp::sky_occlusion(blocked(scene, rays));
+}
+
+double sun_cosine(const TerrainScene& scene, const GroundPoint& point, const dvec3& to_sun, double radius,
+                  const PatternRange& range) {
+  std::vector<Ray> rays;
+  ask_sun(point, to_sun, radius, range, rays);
+  return scarp::sun_cosine(point, radius, range.count, rays, blocked(scene, rays));
 }
 
 // The mean of `f(range)` over pixels, each with `count` samples.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <vector>
 
@@ -39,6 +40,36 @@ TEST(TerrainScene, OccludedIsWhetherThereIsAHitWithEveryMarch) {
     }
     EXPECT_GT(hits, 100) << march.name << ": the rays ask too little";
   }
+}
+
+TEST(TerrainScene, ABatchIsAnsweredAsItsRaysAre) {
+  const TerrainScene scene(waves(40), find_march("max-mip"));
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> place(-5, 45), height(-6, 8), way(-1, 1);
+  std::vector<Ray> rays(3000);
+  for (Ray& ray : rays) {
+    ray.origin = {place(random), place(random), height(random)};
+    ray.direction = {way(random), way(random), 0.3 * way(random)};
+  }
+  std::vector<Hit> hits(rays.size()), counted(rays.size());
+  std::vector<std::uint32_t> steps(rays.size());
+  std::vector<std::uint8_t> blocked(rays.size());
+  scene.closest_hits(rays, hits);
+  scene.closest_hits(rays, counted, steps);
+  scene.occluded(rays, blocked);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    MarchStats stats;
+    const Hit hit = scene.closest_hit(rays[i], &stats);
+    ASSERT_EQ(hits[i].status, hit.status) << i;
+    ASSERT_EQ(hits[i].t, hit.t) << i;
+    ASSERT_EQ(counted[i].t, hit.t) << i;
+    ASSERT_EQ(steps[i], stats.steps) << i;
+    ASSERT_EQ(blocked[i] != 0, static_cast<bool>(hit)) << i;
+  }
+  hits.pop_back();
+  steps.pop_back();
+  EXPECT_THROW(scene.closest_hits(rays, hits), Error);
+  EXPECT_THROW(scene.closest_hits(rays, counted, steps), Error);
 }
 
 TEST(TerrainScene, StatisticsAreThoseOfTheMarch) {

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// --device: where the rays of a scene are answered.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "scarp/scene/terrain_scene.h"
+
+namespace scarp::cli {
+
+void add_device_option(CLI::App& command, std::string& device);
+
+struct SceneMaker {
+  std::function<TerrainScene(HeightField field, const MarchEntry& march, const MarchSettings& settings)> make;
+  std::string device;  ///< its name; empty: the marches of the CPU
+};
+
+/// Opens the device, so that what is wrong with the choice is known before a file is read. Throws Error: there is no
+/// such device, it lacks something, the march does not run on devices, this program was built without Vulkan.
+SceneMaker scene_maker(const std::string& device, const MarchEntry& march);
+
+}  // namespace scarp::cli

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// `scarp render --device`: a picture on whatever device there is, and what is refused.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "test/cli/program.h"
+#include "test/output/read_png.h"
+
+namespace scarp::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RenderOnDevice : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_EQ(run({"generate", "--size", "65", "-o", dem_}).status, 0); }
+
+  Program::Result render(std::vector<std::string> more) const {
+    std::vector<std::string> arguments{"render", dem_, "-o", picture_, "--size", "60x40"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_on_device(std::move(arguments));
+  }
+  // One line that says `what`, and no file.
+  void expect_refusal(const Program::Result& result, const std::string& what) const {
+    EXPECT_NE(result.status, 0);
+    EXPECT_EQ(lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(what), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(picture_));
+  }
+
+  Scratch scratch_;
+  const std::string dem_ = scratch_.path("dem.tif"), picture_ = scratch_.path("picture.png");
+};
+
+TEST_F(RenderOnDevice, MakesThePictureAndNamesTheDevice) {
+  const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
+  if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
+  const auto cpu = render({"--look", "error"});
+  ASSERT_EQ(cpu.status, 0) << cpu.err;
+  const auto device = render({"--look", "error", "--device", "auto"});
+  ASSERT_EQ(device.status, 0) << device.err;
+  EXPECT_EQ(cpu.out.find(", on "), std::string::npos) << cpu.out;
+  bool named = false;
+  for (const auto& one : devices["devices"]) {
+    named |= device.out.find(", on " + std::string(one["name"]) + "\n") != std::string::npos;
+  }
+  EXPECT_TRUE(named) << device.out;
+  // Both are exact by the same judge.
+  for (const char* wrong : {"lost        red        0\n", "invented    magenta    0\n", "late        orange     0\n"}) {
+    EXPECT_NE(device.out.find(wrong), std::string::npos) << device.out;
+  }
+  EXPECT_EQ(read_png(picture_).width, 60);
+}
+
+TEST_F(RenderOnDevice, RefusesMarchesThatDoNotRunThere) {
+  expect_refusal(render({"--device", "auto", "--march", "exhaustive"}),
+                 "--device auto: march 'exhaustive' does not run on Vulkan devices; there run: max-mip, ");
+}
+
+TEST_F(RenderOnDevice, RefusesDevicesThatAreNotThere) {
+  expect_refusal(render({"--device", "no such card"}), "'no such card'");
+  expect_refusal(render({"--device", ""}), "--device");
+  ::setenv("VK_DRIVER_FILES", "/nonexistent", 1);
+  ::setenv("VK_ICD_FILENAMES", "/nonexistent", 1);
+  expect_refusal(render({"--device", "auto"}), "Vulkan: no ");
+  ::unsetenv("VK_DRIVER_FILES");
+  ::unsetenv("VK_ICD_FILENAMES");
+}
+
+}  // namespace
+}  // namespace scarp::test

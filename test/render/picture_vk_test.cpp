@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: MIT
+// Pictures on a Vulkan device: every ray of every look gets an answer that single precision allows (RoundingJudge), and
+// where the CPU answers the same, pixels are the same.
+//
+// A hit of the device is the CPU's when it has the same status and cell and lies within kMove of it. The picture is
+// made twice: once by the device alone; once with the CPU's hits put in where they are the same, so that all further
+// rays begin where the CPU's do. The second picture is the CPU's, byte by byte, but for pixels with a ray that the
+// device answers otherwise: these are counted, and each was allowed.
+#include "scarp/render/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "march/rounding_judge.h"
+#include "march/sampling_rules.h"
+#include "march/spiteful_text.h"
+#include "scarp/accel/slope_bound.h"
+#include "scarp/render/layers.h"
+#include "scarp/scene/terrain_scene_vk.h"
+#include "vk/device_under_test.h"
+
+namespace scarp::test {
+namespace {
+
+// Along the ray, metres where cells are 1 m wide. What is the same to the eye; the judge knows no such number.
+constexpr double kMove = 0x1p-14;
+constexpr int kWidth = 80, kHeight = 48;
+
+bool same(const Hit& a, const Hit& b) {
+  if (a.status != b.status) return false;
+  return !a || (a.wall == b.wall && a.cell == b.cell && std::abs(a.t - b.t) <= kMove);
+}
+
+class Judged final : public BatchQueries {
+ public:
+  // `repairs`: whether the CPU's hits are told where the device's are the same.
+  Judged(const TerrainScene& device, const TerrainScene& cpu, bool repairs)
+      : device_(device), cpu_(cpu), repairs_(repairs), slope_(slope_bound(cpu.field())) {}
+
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+    device_.closest_hits(rays, hits, steps);
+    std::vector<Hit> cpu(rays.size());
+    std::vector<std::uint32_t> cpu_steps(steps.size());
+    cpu_.closest_hits(rays, cpu, cpu_steps);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      judge(rays[i], hits[i]);
+      if (!same(hits[i], cpu[i])) {
+        judge(rays[i], cpu[i]);
+        ++otherwise;
+        continue;
+      }
+      if (repairs_) hits[i] = cpu[i];
+      // It counts the same points; the others go on from what they found, and their costs are the device's matter.
+      if (!steps.empty() && hits[i] && cpu_.march().name == "fixed-step") {
+        EXPECT_EQ(steps[i], cpu_steps[i]) << text(rays[i]);
+      }
+    }
+    asked += rays.size();
+  }
+
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+    device_.occluded(rays, blocked);
+    std::vector<Hit> hits(rays.size());
+    device_.closest_hits(rays, hits);
+    std::vector<std::uint8_t> cpu(rays.size());
+    cpu_.occluded(rays, cpu);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(blocked[i] != 0, static_cast<bool>(hits[i])) << text(rays[i]);
+      // A march that takes samples stops near the surface, not on it, and then such a ray does not begin on it.
+      if (cpu_.march().guarantee == Guarantee::exact) judge(rays[i], hits[i]);
+      otherwise += (blocked[i] != 0) != (cpu[i] != 0);
+    }
+    asked += rays.size();
+  }
+
+  std::size_t asked = 0, otherwise = 0;
+
+ private:
+  void judge(const Ray& ray, const Hit& hit) const {
+    if (testing::Test::HasFailure()) return;
+    const HeightField& field = cpu_.field();
+    const MarchEntry& march = cpu_.march();
+    const RoundingJudge truth(field, ray);
+    const std::string objection = march.guarantee == Guarantee::exact
+                                      ? truth.objection(hit)
+                                      : sampling_objection(march.name, {}, field, slope_, ray, truth, hit);
+    EXPECT_EQ(objection, "") << text(ray) << "\n  " << text(hit);
+  }
+
+  const TerrainScene& device_;
+  const TerrainScene& cpu_;
+  bool repairs_;
+  double slope_;
+};
+
+// Ridges and valleys, 1 m cells, with a hole; solid or a sheet.
+HeightField ridges(bool solid) {
+  constexpr int kSide = 72;
+  std::vector<float> samples;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) {
+      const double x = 0.31 * col + 0.12 * row, y = 0.27 * row - 0.2 * col;
+      samples.push_back(static_cast<float>(400 + 6 * std::abs(std::sin(x)) + 4 * std::sin(y) + std::sin(3 * x + y)));
+    }
+  }
+  samples[30 * kSide + 20] = NAN;
+  HeightFieldSettings settings;
+  settings.solid = solid;
+  return HeightField::own(std::move(samples), kSide, kSide, settings);
+}
+
+int pixels_unlike(const Image& a, const Image& b) {
+  int unlike = 0;
+  for (int y = 0; y < a.height; ++y) {
+    for (int x = 0; x < a.width; ++x) unlike += !std::equal(a.pixel(x, y), a.pixel(x, y) + 3, b.pixel(x, y));
+  }
+  return unlike;
+}
+
+class PicturesOnDevice : public OnDevice {
+ protected:
+  struct Scenes {
+    TerrainScene cpu, device;
+    Camera camera;
+  };
+  Scenes scenes(bool solid, bool plinth, std::string_view march = "max-mip") const {
+    const HeightField field = ridges(solid);
+    const Camera camera = Camera::framed(picture_box(field, plinth), {.elevation_deg = 20}, 0, kWidth, kHeight);
+    return {TerrainScene(field, find_march(march)), terrain_scene_on(device(), field, find_march(march)), camera};
+  }
+  static TerrainScene judged(const Scenes& of, std::shared_ptr<Judged>& judge, bool repairs) {
+    judge = std::make_shared<Judged>(of.device, of.cpu, repairs);
+    return {of.cpu.field(), of.cpu.march(), judge};
+  }
+  static PictureSettings settings(Look look) {
+    PictureSettings settings;
+    settings.width = kWidth;
+    settings.height = kHeight;
+    settings.look = look;
+    settings.aa = 1;
+    settings.sun.altitude_deg = 25;
+    return settings;
+  }
+
+  // All of the above for one picture.
+  static void expect_the_cpus(const Scenes& of, const PictureSettings& settings, bool device_alone_too = true) {
+    const Picture cpu = render_picture(of.cpu, of.camera, 0, settings);
+    std::shared_ptr<Judged> judge;
+    const Picture repaired = render_picture(judged(of, judge, true), of.camera, 0, settings);
+    EXPECT_GT(judge->asked, 1000u);
+    EXPECT_LE(pixels_unlike(cpu.image, repaired.image), static_cast<int>(judge->otherwise));
+    EXPECT_LT(judge->otherwise, judge->asked / 2);
+    if (!device_alone_too) return;
+    const Picture alone = render_picture(of.device, of.camera, 0, settings);
+    const Picture watched = render_picture(judged(of, judge, false), of.camera, 0, settings);
+    EXPECT_EQ(alone.image.rgb, watched.image.rgb);
+  }
+};
+
+TEST_F(PicturesOnDevice, ShadedWithHardShadows) { expect_the_cpus(scenes(false, true), settings(Look::shaded)); }
+
+TEST_F(PicturesOnDevice, ShadedWithSoftSunAndOcclusion) {
+  PictureSettings soft = settings(Look::shaded);
+  soft.samples = 3;
+  soft.sun.size_deg = 5;
+  expect_the_cpus(scenes(false, true), soft);
+}
+
+TEST_F(PicturesOnDevice, ShadedSolidGround) {
+  PictureSettings bare = settings(Look::shaded);
+  bare.plinth = false;
+  bare.aa = 2;
+  expect_the_cpus(scenes(true, false), bare);
+}
+
+TEST_F(PicturesOnDevice, Height) {
+  const Scenes of = scenes(false, true);
+  expect_the_cpus(of, settings(Look::height));
+  // kMove is less than half a grey, so where hits are the same greys differ by rounding alone.
+  ASSERT_LT(254 * kMove / (of.cpu.field().max_height() - of.cpu.field().min_height()), 0.5);
+  std::shared_ptr<Judged> judge;
+  const Image cpu = render_picture(of.cpu, of.camera, 0, settings(Look::height)).image;
+  const Image device = render_picture(judged(of, judge, false), of.camera, 0, settings(Look::height)).image;
+  std::size_t unlike = 0;
+  for (std::size_t i = 0; i < cpu.rgb.size(); i += 3) unlike += std::abs(int{cpu.rgb[i]} - int{device.rgb[i]}) > 1;
+  EXPECT_LE(unlike, judge->otherwise);
+}
+
+// The verdict is by the place of the hit, and the tolerance is far more than kMove.
+TEST_F(PicturesOnDevice, Error) {
+  const Scenes of = scenes(false, true);
+  expect_the_cpus(of, settings(Look::error));
+  const ErrorCounts counts = render_picture(of.device, of.camera, 0, settings(Look::error)).errors.value();
+  const ErrorCounts cpu = render_picture(of.cpu, of.camera, 0, settings(Look::error)).errors.value();
+  EXPECT_GT(counts[Verdict::right_hit], 1000);
+  EXPECT_EQ(counts.pixels, cpu.pixels);
+}
+
+TEST_F(PicturesOnDevice, StepsAreThoseThatTheDeviceTells) {
+  for (const std::string_view march : {"max-mip", "fixed-step"}) {
+    const Scenes of = scenes(false, true, march);
+    std::shared_ptr<Judged> judge;
+    const Picture device = render_picture(of.device, of.camera, 0, settings(Look::steps));
+    const Picture watched = render_picture(judged(of, judge, false), of.camera, 0, settings(Look::steps));
+    EXPECT_EQ(device.image.rgb, watched.image.rgb);
+    EXPECT_GT(device.steps->most, 10u) << march;
+    EXPECT_EQ(device.steps->least, 0u) << "rays that miss the block";
+  }
+}
+
+TEST_F(PicturesOnDevice, Layers) {
+  const Scenes of = scenes(false, true);
+  std::shared_ptr<Judged> judge;
+  const PictureLayers cpu = render_layers(of.cpu, of.camera, 0, settings(Look::shaded));
+  const PictureLayers device = render_layers(of.device, of.camera, 0, settings(Look::shaded));
+  const PictureLayers repaired = render_layers(judged(of, judge, true), of.camera, 0, settings(Look::shaded));
+  std::size_t unlike = 0, moved = 0, counted = 0;
+  for (std::size_t i = 0; i < cpu.depth.size(); ++i) {
+    unlike += cpu.colour[i] != repaired.colour[i] || cpu.depth[i] != repaired.depth[i] ||
+              cpu.normal[i] != repaired.normal[i] || cpu.position[i] != repaired.position[i];
+    // Positions are floats: metres up to 1,024 have a unit roundoff of 2^-15.
+    moved += !(length(cpu.position[i] - device.position[i]) <= kMove + 3 * 0x1p-15);
+    counted += device.steps[i] > 0;
+  }
+  EXPECT_LE(unlike, judge->otherwise);
+  EXPECT_LE(moved, judge->otherwise);
+  EXPECT_GT(counted, 1000u);
+}
+
+// Marches that take samples may stop elsewhere, each ray by its own rule.
+TEST_F(PicturesOnDevice, EveryMarchMakesThem) {
+  for (const MarchEntry& march : marches()) {
+    if (!march.gpu || march.guarantee == Guarantee::exact) continue;
+    const Scenes of = scenes(false, true, march.name);
+    std::shared_ptr<Judged> judge;
+    const Image device = render_picture(of.device, of.camera, 0, settings(Look::shaded)).image;
+    EXPECT_EQ(render_picture(judged(of, judge, false), of.camera, 0, settings(Look::shaded)).image.rgb, device.rgb);
+    EXPECT_GT(judge->asked, 1000u) << march.name;
+  }
+}
+
+}  // namespace
+}  // namespace scarp::test
