@@ -68,7 +68,7 @@ struct Fractal {
   dvec2 turn{0.8, 0.6};      ///< from octave to octave: cosine and sine of the angle
   double damping = 0;        ///< k: octaves count 1 / (1 + k |d|^2), d the sum of the noise's gradients; >= 0
   double focus = 2;          ///< of ridged: how soon a crest lets the next octave show, > 0
-  Octaves octaves;
+  Octaves octaves{};
 };
 
 /// base at (x + shift_x(x, y), y + shift_y(x, y)).
