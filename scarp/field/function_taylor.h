@@ -10,7 +10,7 @@
 //
 // Rounding of the bounds themselves: every operation widens its results by kSlack times the magnitudes that went into
 // it, twice what fewer than 8 roundings of 2^-53 can do. Noise is bounded by its value and gradient at the middle and
-// by bound_of() (noise.h): to second order where the segment is short against the lattice, by its range where it is
+// by bound_of() (noise.h), to second order where the segment is short against the lattice, by its range where it is
 // not, and then without looking at the lattice at all.
 //
 // Source: K. Makino, M. Berz, "Taylor models and other validated functional inclusion methods", 2003; the local bound
@@ -252,54 +252,82 @@ double wander(const Taylor<N>& a, const Taylor<N>& b) {
   return sum * (1 + kSlack);
 }
 
-/// Noise over a segment. The gradient's range goes to x and y, when they are asked for.
+/// The derivative d of noise at the middle, its own derivatives dx and dy there, and bounds of it, of its first and of
+/// its second derivatives, over a segment that gets r away from the middle.
 template <std::size_t N>
-Taylor<N> noise_over(const FunctionInstruction& in, const Taylor<N>& a, const Taylor<N>& b, Taylor<N>* x,
-                     Taylor<N>* y) {
-  const NoiseBound bound = bound_of(in.kind);
-  const double rounding = noise_rounding(in.kind, a.most(), b.most());
-  const double error = bound.slope * (a.error + b.error) + rounding;
-  const double slope_error = bound.curvature * (a.error + b.error) + rounding;
-  const double r = wander(a, b);
-  // Beyond this the second-order term alone is wider than the range.
-  if (bound.curvature * r * r >= 2 * bound.height) {
-    if (x) *x = *y = from_range<N>(-bound.slope, bound.slope, slope_error);
-    return from_range<N>(-bound.height, bound.height, error);
-  }
-  const NoiseJet jet = noise_jet(in.kind, in.seed, a.mid, b.mid);
-  if (x) {
-    const double away = bound.curvature * r * (1 + kSlack) + rounding;
-    *x = from_range<N>(std::max(-bound.slope, jet.x - away), std::min(bound.slope, jet.x + away), slope_error);
-    *y = from_range<N>(std::max(-bound.slope, jet.y - away), std::min(bound.slope, jet.y + away), slope_error);
-  }
+Taylor<N> derivative_over(const Taylor<N>& a, const Taylor<N>& b, double r, double d, double dx, double dy, double most,
+                          double first, double second, double rounding) {
   Taylor<N> t;
-  t.mid = jet.n;
-  for (std::size_t i = 0; i < N; ++i) t.slope[i] = jet.x * a.slope[i] + jet.y * b.slope[i];
-  t.rest = std::abs(jet.x) * a.rest + std::abs(jet.y) * b.rest + 0.5 * bound.curvature * r * r * (1 + kSlack) +
-           (rounding + kSlack * bound.slope) * (1 + r);
-  t.low = -bound.height, t.high = bound.height, t.error = error;
+  t.mid = d;
+  for (std::size_t i = 0; i < N; ++i) t.slope[i] = dx * a.slope[i] + dy * b.slope[i];
+  t.rest = std::abs(dx) * a.rest + std::abs(dy) * b.rest + 0.5 * second * r * r * (1 + kSlack) +
+           (rounding + kSlack * first) * (1 + r);
+  const double away = first * r * (1 + kSlack) + rounding;
+  t.low = std::max(-most, d - away), t.high = std::min(most, d + away);
+  t.error = first * (a.error + b.error) + rounding;
   settle(t);
   return t;
 }
 
+/// Noise over a segment, with its derivatives as far as they are asked for.
+template <std::size_t N>
+struct NoiseOver {
+  Taylor<N> n, x, y, xx, xy, yy;
+};
+template <int order, std::size_t N>
+NoiseOver<N> noise_over(const FunctionInstruction& in, const Taylor<N>& a, const Taylor<N>& b) {
+  const NoiseBound bound = bound_of(in.kind);
+  const double rounding = noise_rounding(in.kind, a.most(), b.most());
+  const double moved = a.error + b.error;
+  const double r = wander(a, b);
+  NoiseOver<N> out;
+  // Beyond this the second-order term alone is wider than the range.
+  if (bound.curvature * r * r >= 2 * bound.height) {
+    out.n = from_range<N>(-bound.height, bound.height, bound.slope * moved + rounding);
+    if constexpr (order >= 1) {
+      out.x = out.y = from_range<N>(-bound.slope, bound.slope, bound.curvature * moved + rounding);
+    }
+    if constexpr (order >= 2) {
+      out.xx = out.xy = out.yy = from_range<N>(-bound.curvature, bound.curvature, bound.third * moved + rounding);
+    }
+    return out;
+  }
+  const NoiseJet jet = noise_jet(in.kind, in.seed, a.mid, b.mid);
+  // The second derivative in any direction, anywhere on the segment: that at the middle, or the bound.
+  const double curvature =
+      std::min(bound.curvature, std::sqrt(jet.xx * jet.xx + 2 * jet.xy * jet.xy + jet.yy * jet.yy) * (1 + kSlack) +
+                                    bound.third * r + rounding);
+  out.n = derivative_over(a, b, r, jet.n, jet.x, jet.y, bound.height, bound.slope, curvature, rounding);
+  if constexpr (order >= 1) {
+    out.x = derivative_over(a, b, r, jet.x, jet.xx, jet.xy, bound.slope, curvature, bound.third, rounding);
+    out.y = derivative_over(a, b, r, jet.y, jet.xy, jet.yy, bound.slope, curvature, bound.third, rounding);
+    out.x.error = out.y.error = bound.curvature * moved + rounding;
+  }
+  if constexpr (order >= 2) {
+    const double away = bound.third * r * (1 + kSlack) + rounding, most = bound.curvature;
+    const auto range = [&](double d) {
+      return from_range<N>(std::max(-most, d - away), std::min(most, d + away), bound.third * moved + rounding);
+    };
+    out.xx = range(jet.xx), out.xy = range(jet.xy), out.yy = range(jet.yy);
+  }
+  return out;
+}
+
 template <std::size_t N>
 Taylor<N> noise_value(const FunctionInstruction& in, const Taylor<N>& a, const Taylor<N>& b) {
-  return noise_over<N>(in, a, b, nullptr, nullptr);
+  return noise_over<0>(in, a, b).n;
 }
 template <std::size_t N>
 void noise_slope(const FunctionInstruction& in, const Taylor<N>& a, const Taylor<N>& b, Taylor<N>& n, Taylor<N>& x,
                  Taylor<N>& y) {
-  Taylor<N> slope_x, slope_y;
-  n = noise_over<N>(in, a, b, &slope_x, &slope_y);
-  x = slope_x, y = slope_y;
+  const NoiseOver<N> over = noise_over<1>(in, a, b);
+  n = over.n, x = over.x, y = over.y;
 }
-/// Second derivatives by their bound alone.
 template <std::size_t N>
 void noise_curvature(const FunctionInstruction& in, const Taylor<N>& a, const Taylor<N>& b, Taylor<N>& n, Taylor<N>& x,
                      Taylor<N>& y, Taylor<N>& xx, Taylor<N>& xy, Taylor<N>& yy) {
-  noise_slope(in, a, b, n, x, y);
-  const double most = bound_of(in.kind).curvature;
-  xx = xy = yy = from_range<N>(-most, most, most);
+  const NoiseOver<N> over = noise_over<2>(in, a, b);
+  n = over.n, x = over.x, y = over.y, xx = over.xx, xy = over.xy, yy = over.yy;
 }
 
 }  // namespace scarp::function

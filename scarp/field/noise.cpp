@@ -138,13 +138,13 @@ NoiseJet any_noise(NoiseKind kind, std::uint32_t seed, double x, double y) {
 NoiseBound bound_of(NoiseKind kind) {
   switch (kind) {
     case NoiseKind::value:
-      return {1, 3.76, 14.1};
+      return {1, 3.77, 14.14, 120.6};
     case NoiseKind::perlin:
-      return {1.001, 2.95, 13.2};
+      return {1.001, 2.95, 13.2, 138.5};
     case NoiseKind::simplex:
       break;
   }
-  return {1, 7.36, 56};
+  return {1, 7.38, 56, 533};
 }
 
 double noise_rounding(NoiseKind kind, double x, double y) {
