@@ -208,9 +208,21 @@ Taylor<N> terrace(const Taylor<N>& a, double step, double rise) {
   return from_range<N>(terrace(a.low, step, rise) - slack, terrace(a.high, step, rise) + slack,
                        a.error * kSteepestFade / rise + slack);
 }
+/// Range of the fade's slope, which grows until 1/2 and falls after it, between two phases.
+inline std::array<double, 2> fade_slope_range(double low, double high) {
+  const double a = fade_slope(low), b = fade_slope(high);
+  return {std::max(0.0, std::min(a, b) - 8 * kSlack),
+          low <= 0.5 && high >= 0.5 ? kSteepestFade : std::max(a, b) * (1 + 8 * kSlack)};
+}
 template <std::size_t N>
-Taylor<N> terrace_slope(const Taylor<N>&, double, double rise) {
-  return from_range<N>(0, kSteepestFade / rise, kSteepestFade / rise);
+Taylor<N> terrace_slope(const Taylor<N>& a, double step, double rise) {
+  const double slack = kSlack * (a.most() + step);
+  double floor_low = 0, floor_high = 0;
+  const double low = terrace_phase(a.low - slack, step, rise, floor_low);
+  const double high = terrace_phase(a.high + slack, step, rise, floor_high);
+  if (floor_low != floor_high) return from_range<N>(0, kSteepestFade / rise, kSteepestFade / rise);
+  const auto [least, most] = fade_slope_range(low, high);
+  return from_range<N>(least / rise * (1 - kSlack), most / rise * (1 + kSlack), kSteepestFade / rise);
 }
 
 /// Distances from the mask's centre, nearest and farthest, over the ranges of x and y.
@@ -239,9 +251,22 @@ template <std::size_t N>
 void radial_slope(const Taylor<N>& x, const Taylor<N>& y, const FunctionInstruction& in, Taylor<N>& out_x,
                   Taylor<N>& out_y) {
   const auto [near, far] = radial_range(x, y, in);
-  const bool flat = far < in.k2 || near > in.k3;
-  const double steepest = flat ? 0 : kSteepestFade / (in.k3 - in.k2);
-  out_x = out_y = from_range<N>(-steepest, steepest, steepest);
+  const double width = in.k3 - in.k2;
+  const auto [least, most] =
+      fade_slope_range(radial_phase(far, in.k2, in.k3) * (1 - kSlack), radial_phase(near, in.k2, in.k3) * (1 + kSlack));
+  // The unit vector away from the centre: anything where the centre is near, a quotient of ranges elsewhere.
+  const double steepest = most / width * (1 + kSlack), calmest = least / width * (1 - kSlack);
+  const auto part = [&, near = near, far = far](double low, double high) {
+    double from = -1, to = 1;
+    if (near > 0) {
+      from = std::max(-1.0, low / (low < 0 ? near : far) - kSlack);
+      to = std::min(1.0, high / (high < 0 ? far : near) + kSlack);
+    }
+    // The mask falls outwards.
+    return from_range<N>(-to * (to > 0 ? steepest : calmest), -from * (from > 0 ? calmest : steepest), steepest);
+  };
+  out_x = part(x.low - in.k0, x.high - in.k0);
+  out_y = part(y.low - in.k1, y.high - in.k1);
 }
 
 /// How far the position (a, b) gets from its middle.

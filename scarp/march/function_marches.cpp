@@ -60,7 +60,11 @@ Hit marched(const HeightFunction& function, const Ray& ray, MarchStats* stats, F
   MarchStats counted;
   Hit hit;
   const FunctionRay r(function, ray, use);
-  if (r.crosses()) hit = march(r, counted);
+  if (r.begins_under) {
+    hit.status = HitStatus::below;
+  } else if (r.crosses()) {
+    hit = march(r, counted);
+  }
   if (stats) *stats = counted;
   return hit;
 }

@@ -23,12 +23,14 @@ class FunctionRay {
     const double slack = kRounding * (std::abs(all.low) + std::abs(all.high) + std::abs(ray.origin.z));
     clip(-kFunctionReach, kFunctionReach, ray.origin.x, ray.direction.x);
     clip(-kFunctionReach, kFunctionReach, ray.origin.y, ray.direction.y);
+    begins_under = ray.start == RayStart::free && ray.origin.z + ray.direction.z * ray.t_min < all.low - slack;
     clip(all.low - slack, all.high + slack, ray.origin.z, ray.direction.z);
     if (!crosses()) return;
     rounding_ = bound(t_enter, t_exit).rounding + rounding_of_height(t_enter, t_exit);
   }
 
-  double t_enter, t_exit;  ///< the part of the ray that is within the ground's range; empty when t_enter > t_exit
+  double t_enter, t_exit;     ///< the part of the ray that is within the ground's range; empty when t_enter > t_exit
+  bool begins_under = false;  ///< whether the ray begins under all ground, and comes into its range from there
 
   bool crosses() const { return t_enter <= t_exit && std::isfinite(t_exit) && speed_ > 0; }
   double metres_per_t() const { return speed_; }

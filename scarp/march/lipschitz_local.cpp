@@ -135,7 +135,11 @@ Hit march_lipschitz_local(const HeightFunction& function, const Ray& ray, const 
   MarchStats counted;
   Hit hit;
   const FunctionRay r(function, ray, use);
-  if (r.crosses()) hit = LocalMarch(r, settings, counted).run();
+  if (r.begins_under) {
+    hit.status = HitStatus::below;
+  } else if (r.crosses()) {
+    hit = LocalMarch(r, settings, counted).run();
+  }
   if (stats) *stats = counted;
   return hit;
 }

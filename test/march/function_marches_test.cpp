@@ -133,7 +133,7 @@ TEST(FunctionMarches, FollowRaysOfAnyDirection) {
   EXPECT_NEAR(down.t, 1, 1e-6);
   EXPECT_EQ(march_lipschitz_local(plane, {{1, 2, 9}, {0, 0, 1}}).status, HitStatus::miss);
   EXPECT_EQ(march_lipschitz_local(plane, {{1, 2, 9}, {1, 0, 0}}).status, HitStatus::miss);
-  EXPECT_EQ(march_lipschitz_local(plane, {{1, 2, 4}, {0, 0, 1}}).status, HitStatus::miss);  // under all ground
+  EXPECT_EQ(march_lipschitz_local(plane, {{1, 2, 4}, {0, 0, 1}}).status, HitStatus::below);
   EXPECT_EQ(march_lipschitz_local(bowl(), {{25, 2, 9}, {0, 0, 1}}).status, HitStatus::below);
   // Level, between the crests: sin(2 pi x / 100) = 0.5 at x = 25 / 3.
   const Hit level = march_lipschitz_local(bowl(), {{-25, 3, 5}, {0.5, 0, 0}});
@@ -141,7 +141,7 @@ TEST(FunctionMarches, FollowRaysOfAnyDirection) {
   EXPECT_NEAR(level.t, 2 * (25 + 25.0 / 3), 1e-4);
   for (const auto march : {march_naive, march_relaxed, march_lipschitz}) {
     MarchStats stats;
-    const Hit hit = march(bowl(), {{-25, 3, 5}, {0.5, 0, 0}}, {}, &stats, FunctionUse::march);
+    const Hit hit = march(bowl(), {{-25, 3, 5}, {0.5, 0, 0}, 0, 200}, {}, &stats, FunctionUse::march);
     ASSERT_TRUE(hit);
     EXPECT_NEAR(hit.t, 2 * (25 + 25.0 / 3), 1);
     EXPECT_GT(stats.steps, 5u);
@@ -160,7 +160,7 @@ TEST(FunctionMarches, RespectTheRange) {
 }
 
 TEST(FunctionMarches, TellUsedUpStepsFromHits) {
-  const Ray ray{{-25, 3, 5}, {1, 0, 0}};
+  const Ray ray{{-25, 3, 5}, {1, 0, 0}, 0, 200};
   EXPECT_EQ(march_lipschitz_local(bowl(), ray, {.max_steps = 2}).status, HitStatus::exhausted);
   MarchSettings settings;
   settings.naive.max_steps = settings.relaxed.max_steps = settings.lipschitz.max_steps = 2;
