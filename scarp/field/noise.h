@@ -36,9 +36,9 @@ struct NoiseBound {
 /// Positions beyond this are taken as this, in lattice units: from there on doubles are whole numbers.
 inline constexpr double kLatticeReach = 0x1p52;
 
-/// The bounds of a kind: whatever the lattice holds, a derivative is at most the sum over its corners of the length that
-/// the corner's direction (or number) is weighed with. The largest such sums over position and direction were found on a
-/// grid of 400 x 400 x 180, and are rounded up by half a percent to one percent.
+/// The bounds of a kind: whatever the lattice holds, a derivative is at most the sum over its corners of the length
+/// that the corner's direction (or number) is weighed with. The largest such sums over position and direction were
+/// found on a grid of 400 x 400 x 180, and are rounded up by half a percent to one percent.
 NoiseBound bound_of(NoiseKind kind);
 
 /// How far rounding takes the noise, or one of its derivatives, as computed at (x, y) from its true value there: fewer

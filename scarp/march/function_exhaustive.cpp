@@ -115,8 +115,7 @@ Interval noise_over(NoiseKind kind, std::uint32_t seed, const Interval& x, const
   return kind == NoiseKind::simplex ? simplex_noise(seed, x, y) : square_noise(kind, seed, x, y);
 }
 
-// Derivatives of noise are asked for by damping alone: bounded by a difference quotient of none, that is, by lattice
-// sums.
+// Damping alone asks for the gradient: that of the field at the middle, and as far from it as the curvature allows.
 struct NoiseSlope {
   Interval x, y;
 };

@@ -3,7 +3,8 @@
 //
 // The ray's part over the ground is halved until an interval is provably free of the ground, or shorter than 1e-9 of
 // that part; the leftmost first. The tree of the function is evaluated in intervals by code of its own, which shares
-// with the marches the settings (function_node.h) and the lattice's integers (noise.h), and nothing else.
+// with the marches the settings (function_node.h), the lattice's integers and the bounds of noise (noise.h) and, where
+// a fractal is damped, the gradient of noise at a point; nothing else.
 //
 // Guarantee: a proof, rounding included. Cost: some thousand evaluations per ray. Source: R. E. Moore, "Interval
 // analysis", 1966; for rays D. P. Mitchell, "Robust ray intersection with interval arithmetic", Graphics Interface
