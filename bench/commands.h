@@ -117,4 +117,15 @@ struct VoxelLeaksOptions {
 };
 void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report);
 
+/// `functions`: the marches over terrain functions beside proofs.
+struct FunctionsOptions {
+  int width = 480, height = 270;  ///< pixels
+  int octaves = 9;                ///< of the fractals
+  std::uint64_t seed = 1;
+  int repeats = 3;
+  std::int64_t judged = 4000;  ///< about so many rays per function are judged
+};
+/// Throws Error, after the report, when a conservative march lost a crossing.
+void run_functions(const FunctionsOptions& options, const ReportOptions& report);
+
 }  // namespace scarp::bench

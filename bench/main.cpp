@@ -250,6 +250,26 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*voxel_leaks_command, report);
 
+  FunctionsOptions functions;
+  CLI::App* functions_command = app.add_subcommand("functions", "the marches over terrain functions, beside proofs");
+  functions_command->add_option("--width", functions.width, "pixels")
+      ->check(CLI::Range(1, 16384))
+      ->capture_default_str();
+  functions_command->add_option("--height", functions.height, "pixels")
+      ->check(CLI::Range(1, 16384))
+      ->capture_default_str();
+  functions_command->add_option("--octaves", functions.octaves, "of the fractals")
+      ->check(CLI::Range(1, 20))
+      ->capture_default_str();
+  functions_command->add_option("--seed", functions.seed, "of the noise")->capture_default_str();
+  functions_command->add_option("--repeats", functions.repeats, "counted passes")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  functions_command->add_option("--judged", functions.judged, "rays per function that the judge answers, about")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
+      ->capture_default_str();
+  add_json_option(*functions_command, report);
+
   CLI11_PARSE(app, argc, argv);
   voxel_leaks.rays = static_cast<std::int64_t>(voxel_leak_rays);
   leaks.rays = static_cast<std::int64_t>(leak_rays);
@@ -265,6 +285,7 @@ int run(int argc, char** argv) {
   if (*voxels_command) run_voxels(voxels, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*edits_command) run_edits(edits, report);
+  if (*functions_command) run_functions(functions, report);
   if (*extents_command) {
     extents.sizes.clear();
     for (const std::string& text : extent_sizes) extents.sizes.push_back(size_from(text));

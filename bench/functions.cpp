@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+// `scarp-bench functions`: the marches over terrain functions, on the pixels of one picture, beside the proofs of the
+// judge.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bench/commands.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/field/height_function.h"
+#include "scarp/march/function_exhaustive.h"
+#include "scarp/march/function_marches.h"
+#include "scarp/march/lipschitz_local.h"
+
+namespace scarp::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kFarthest = 20'000;  // metres that a ray is followed
+constexpr double kEyeHeight = 300;    // metres above the function's ground
+constexpr int kUnlimitedSteps = 1 << 20;
+
+struct Ground {
+  std::string name;
+  Function function;
+};
+
+std::vector<Ground> grounds(const FunctionsOptions& options) {
+  const int n = options.octaves;
+  const Octaves octaves{n, n, n};
+  Fractal fractal{.seed = options.seed, .octaves = octaves};
+  std::vector<Ground> all{{"fbm", make_function(fractal)}};
+  fractal.noise = NoiseKind::value;
+  fractal.damping = 1;
+  all.push_back({"fbm, damped", make_function(fractal)});
+  fractal.damping = 0;
+  fractal.noise = NoiseKind::simplex;
+  fractal.form = FractalForm::ridged;
+  all.push_back({"ridged", make_function(fractal)});
+  const Function shift =
+      make_function(Fractal{.seed = options.seed + 1, .wavelength = 3000, .height = 300, .octaves = {2, 2, 2}});
+  all.push_back({"fbm, warped", make_function(Warp{all[0].function, shift, shift})});
+  all.push_back({"sines", make_function(Sines{{{20, 700, 0.3, 0}, {8, 220, 1.3, 1}, {2, 60, 2, 2}}})});
+  return all;
+}
+
+// A pinhole of 60 degrees across, looking 12 degrees down.
+std::vector<Ray> picture(const HeightFunction& function, const FunctionsOptions& options) {
+  const double pitch = -12 * 3.141592653589793 / 180, half = std::tan(30 * 3.141592653589793 / 180);
+  const dvec3 ahead(0, std::cos(pitch), std::sin(pitch)), right(1, 0, 0), up(0, -std::sin(pitch), std::cos(pitch));
+  std::vector<Ray> rays;
+  for (int row = 0; row < options.height; ++row) {
+    for (int col = 0; col < options.width; ++col) {
+      const double x = (2 * (col + 0.5) / options.width - 1) * half;
+      const double y = (1 - 2 * (row + 0.5) / options.height) * half * options.height / options.width;
+      Ray ray;
+      ray.origin = {0, 0, function.value(0, 0) + kEyeHeight};
+      ray.direction = normalize(ahead + x * right + y * up);
+      ray.t_max = kFarthest;
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+struct March {
+  const char* name;
+  std::function<Hit(const HeightFunction&, const Ray&, MarchStats*)> cast;
+};
+
+std::vector<March> marches_over_functions() {
+  MarchSettings settings;
+  settings.lipschitz.max_steps = kUnlimitedSteps;
+  const auto use = FunctionUse::march;
+  return {
+      {"naive", [=](const auto& f, const Ray& r, MarchStats* s) { return march_naive(f, r, settings, s, use); }},
+      {"relaxed", [=](const auto& f, const Ray& r, MarchStats* s) { return march_relaxed(f, r, settings, s, use); }},
+      {"lipschitz",
+       [=](const auto& f, const Ray& r, MarchStats* s) { return march_lipschitz(f, r, settings, s, use); }},
+      {"lipschitz-local",
+       [=](const auto& f, const Ray& r, MarchStats* s) { return march_lipschitz_local(f, r, {}, s, use); }},
+  };
+}
+
+}  // namespace
+
+void run_functions(const FunctionsOptions& options, const ReportOptions& report) {
+  Json rows = Json::array();
+  std::vector<std::vector<std::string>> lines{{"function", "march", "heights/ray", "bounds/ray", "ms/megapixel",
+                                               "judged", "misses", "false hits", "given up", "error p99 m"}};
+  bool lost = false;
+  for (const Ground& ground : grounds(options)) {
+    const HeightFunction function(ground.function);
+    const std::vector<Ray> rays = picture(function, options);
+    const auto count = static_cast<std::int64_t>(rays.size());
+    const std::int64_t every = std::max<std::int64_t>(1, count / options.judged);
+    const std::int64_t judged = (count + every - 1) / every;
+    std::vector<FunctionJudgement> judgements(static_cast<std::size_t>(judged));
+    parallel_for(judged, 16, [&](std::int64_t begin, std::int64_t end) {
+      for (std::int64_t i = begin; i < end; ++i) {
+        judgements[static_cast<std::size_t>(i)] =
+            judge_function(ground.function, rays[static_cast<std::size_t>(i * every)]);
+      }
+    });
+    for (const March& march : marches_over_functions()) {
+      std::vector<Hit> hits(rays.size());
+      double heights = 0, bounds = 0, best_ms = std::numeric_limits<double>::infinity();
+      for (int pass = 0; pass < options.repeats; ++pass) {
+        heights = bounds = 0;
+        const auto start = std::chrono::steady_clock::now();
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          MarchStats stats;
+          hits[i] = march.cast(function, rays[i], &stats);
+          heights += stats.cell_tests, bounds += stats.steps;
+        }
+        const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+        best_ms = std::min(best_ms, took.count());
+      }
+      // The others look at heights alone, and count them as steps.
+      if (std::string(march.name) != "lipschitz-local") std::swap(heights, bounds);
+      int crossings = 0, misses = 0, clear = 0, false_hits = 0, given_up = 0;
+      std::vector<double> errors;
+      for (std::int64_t i = 0; i < judged; ++i) {
+        const FunctionJudgement& judge = judgements[static_cast<std::size_t>(i)];
+        const Hit& hit = hits[static_cast<std::size_t>(i * every)];
+        given_up += hit.status == HitStatus::exhausted;
+        if (judge.verdict == FunctionVerdict::clear) {
+          ++clear;
+          false_hits += bool(hit);
+        } else if (judge.verdict == FunctionVerdict::crossing) {
+          ++crossings;
+          // Past the first crossing by more than a tolerance of the distance: it was stepped through.
+          const bool passed = hit && hit.t > judge.crossed_by * (1 + RelaxedSettings{}.tolerance);
+          misses += hit.status == HitStatus::miss || passed;
+          if (hit && !passed) {
+            errors.push_back(std::max({0.0, judge.clear_until - hit.t, hit.t - judge.crossed_by}));
+          }
+        }
+      }
+      std::sort(errors.begin(), errors.end());
+      const double p99 = errors.empty() ? 0 : errors[(errors.size() - 1) * 99 / 100];
+      const double n = static_cast<double>(count), ms = best_ms / n * 1e6;
+      const double miss_rate = crossings ? static_cast<double>(misses) / crossings : 0;
+      lost = lost || (misses > 0 && std::string(march.name).starts_with("lipschitz"));
+      rows.push_back({{"function", ground.name},
+                      {"octaves", options.octaves},
+                      {"march", march.name},
+                      {"heights_per_ray", heights / n},
+                      {"bounds_per_ray", bounds / n},
+                      {"ms_per_megapixel", ms},
+                      {"judged", judged},
+                      {"crossings", crossings},
+                      {"miss_rate", miss_rate},
+                      {"false_hit_rate", clear ? static_cast<double>(false_hits) / clear : 0},
+                      {"exhausted", given_up},
+                      {"error_p99_m", p99}});
+      lines.push_back({ground.name, march.name, fmt::format("{:.1f}", heights / n), fmt::format("{:.1f}", bounds / n),
+                       fmt::format("{:.0f}", ms), fmt::format("{}", judged), fmt::format("{:.4f} %", miss_rate * 100),
+                       fmt::format("{}", false_hits), fmt::format("{}", given_up), fmt::format("{:.2g}", p99)});
+    }
+  }
+  print_table(lines, 2);
+  write_json(report, rows);
+  if (lost) throw Error("functions: a conservative march lost a crossing that the judge proves; see the table");
+}
+
+}  // namespace scarp::bench

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// A terrain function as a flat list of instructions over registers, compiled once per purpose: what CPU, SIMD and GPU
+// evaluate, and what bounds are computed by.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "scarp/field/function_node.h"
+
+namespace scarp {
+
+/// What heights are asked for: chooses the numbers of octaves.
+enum class FunctionUse : std::uint8_t { march, shadow, normal };
+
+enum class FunctionOp : std::uint8_t {
+  constant,        ///< k0
+  combine,         ///< k0 * a + k1 * b + k2
+  multiply,        ///< a * b
+  square,          ///< a * a
+  absolute,        ///< |a|
+  clamp,           ///< a, at least k0 and at most k1
+  sine,            ///< sin(a)
+  minimum,         ///< the smaller of a and b
+  maximum,         ///< the larger of a and b
+  smooth_minimum,  ///< of a and b, radius k0
+  reciprocal,      ///< 1 / a, a >= 1
+  noise,           ///< noise at (a, b)
+  noise_slope,     ///< the same, and its gradient into out_x and out_y
+  terrace,         ///< a in steps of k0, climbing in the last k1 of each
+  radial,          ///< mask at (a, b) about (k0, k1): 1 within k2, 0 beyond k3
+};
+
+struct FunctionInstruction {
+  FunctionOp op = FunctionOp::constant;
+  NoiseKind kind = NoiseKind::value;
+  std::uint8_t out = 0, out_x = 0, out_y = 0;  ///< registers written
+  std::uint8_t a = 0, b = 0;                   ///< registers read
+  std::uint32_t seed = 0;
+  double k0 = 0, k1 = 0, k2 = 0, k3 = 0;
+};
+
+/// Registers there are; 0 and 1 hold x and y when the program begins.
+inline constexpr int kFunctionRegisters = 64;
+
+struct FunctionProgram {
+  std::vector<FunctionInstruction> code;
+  std::uint8_t result = 0;
+};
+
+/// Throws Error for a function that needs more than 4096 instructions or kFunctionRegisters numbers at a time.
+FunctionProgram compile(const Function& function, FunctionUse use);
+
+}  // namespace scarp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// `lipschitz-local`: a terrain function is bounded anew on every segment of the ray, so that steps grow where the
+// ground is calm or far below.
+//
+//     o-------------------+----------o      the ground is under the line mid + slope s + rest on this segment:
+//      \ segment of the ray                 free as far as the ray is above that line, or above `high`;
+//   ~~~~\~~~~~~~~~~~~~~~~~~~~~~~~~~ high    a free segment is followed by one twice as long,
+//   ______\______ line + rest ___----       one that is not by its free part and a shorter one
+//      --- ground ---
+//
+// The line makes this a Newton iteration that cannot overshoot: close to the ground the bounds are of second order.
+// The last interval, no longer than the tolerance, is halved until doubles end.
+//
+// Guarantee: conservative, with rounding counted: no crossing is passed, whatever the function. A hit is a crossing, or
+// a place where the ray cannot be told from one within the tolerance (of several crossings within it any). Used-up steps are exhausted, never a hit. A ray
+// that begins under the ground is below, and is not followed. A ray that begins on the surface is above it by
+// definition: it is followed as far as it provably gains height, and hits where it begins if it provably loses height
+// there. Source: E. Galin, E. Guerin, A. Paris, A. Peytavie, "Segment tracing using local Lipschitz bounds", Computer
+// Graphics Forum 39(2), 2020; here with a line and a remainder instead of a slope. Cost: a bound costs 2 to 5 heights.
+#pragma once
+
+#include "scarp/base/ray.h"
+#include "scarp/field/height_function.h"
+
+namespace scarp {
+
+struct LipschitzLocalSettings {
+  double tolerance = 1e-6;  ///< length of the last interval, per unit of distance travelled, >= 0
+  int max_steps = 1024;     ///< >= 1
+};
+
+/// Throws Error naming the first setting out of its range.
+void validate(const LipschitzLocalSettings& settings);
+
+/// Closest hit. `stats`, when given, is overwritten: steps are bounds of segments, cell_tests heights.
+Hit march_lipschitz_local(const HeightFunction& function, const Ray& ray, const LipschitzLocalSettings& settings = {},
+                          MarchStats* stats = nullptr, FunctionUse use = FunctionUse::march);
+
+}  // namespace scarp

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+// Terrain functions: gradients are those of differences, bounds are never exceeded, settings are checked.
+#include "scarp/field/height_function.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <string>
+
+#include "field/terrain_functions.h"
+#include "scarp/base/error.h"
+
+namespace scarp::test {
+namespace {
+
+#ifdef NDEBUG
+constexpr int kSamples = 1'000'000;
+#else
+constexpr int kSamples = 20'000;
+#endif
+constexpr double kSizes[] = {0.1, 1, 10, 100, 1000};
+
+TEST(HeightFunction, GradientsAreThoseOfDifferences) {
+  for (const NamedFunction& named : terrain_functions()) {
+    const HeightFunction function(named.function);
+    FunctionRandom random(1);
+    int creases = 0;
+    for (int i = 0; i < 3000; ++i) {
+      const double x = random.between(-5000, 5000), y = random.between(-5000, 5000);
+      // Central differences are off by h^2 / 6 times the third derivative; half of h tells by how much.
+      const auto differences = [&](double h) {
+        return dvec2(function.value(x + h, y) - function.value(x - h, y),
+                     function.value(x, y + h) - function.value(x, y - h)) /
+               (2 * h);
+      };
+      const dvec2 coarse = differences(2e-3), fine = differences(1e-3);
+      const double off = length(coarse - fine);
+      const double rounding = 4 * function.bound({x - 1, x + 1, y - 1, y + 1}).rounding / 1e-3;
+      const double error = length(function.gradient(x, y, FunctionUse::march) - fine);
+      if (error <= off + rounding + 1e-9) continue;
+      ++creases;
+      if (named.smooth) ADD_FAILURE() << named.name << " at " << x << ", " << y << ": off by " << error;
+    }
+    EXPECT_LE(creases, 30) << named.name;  // one position in a hundred is nearer than 2 mm to a crease: too many
+  }
+}
+
+// All that is asked of a bound over [x, x + size] x [y, y + size].
+struct Seen {
+  double low = 1e300, high = -1e300, slope = 0;
+};
+
+TEST(HeightFunction, RectangleBoundsAreNeverExceeded) {
+  for (const NamedFunction& named : terrain_functions()) {
+    const HeightFunction function(named.function);
+    std::string tightness = named.name + ": range, slope bound over seen";
+    for (const double size : kSizes) {
+      FunctionRandom random(2);
+      const int rectangles = kSamples / 2000;
+      double range = 0, slope = 0;
+      int counted = 0;
+      for (int r = 0; r < rectangles; ++r) {
+        const double x = random.between(-5000, 5000), y = random.between(-5000, 5000);
+        const FunctionBound bound = function.bound({x, x + size, y, y + size});
+        Seen seen;
+        for (int i = 0; i < 2000; ++i) {
+          const double px = random.between(x, x + size), py = random.between(y, y + size);
+          const double h = function.value(px, py);
+          seen.low = std::min(seen.low, h), seen.high = std::max(seen.high, h);
+          if (i % 8 == 0) seen.slope = std::max(seen.slope, length(function.gradient(px, py, FunctionUse::march)));
+        }
+        ASSERT_GE(seen.low, bound.low - bound.rounding) << named.name << ", size " << size;
+        ASSERT_LE(seen.high, bound.high + bound.rounding) << named.name << ", size " << size;
+        // Gradients as computed, a thousand roundings of doubles.
+        ASSERT_LE(seen.slope, bound.slope + 0x1p-43 * (1 + bound.slope)) << named.name << ", size " << size;
+        if (seen.high - seen.low > 1e-3 * size && seen.slope > 0) {
+          range += (bound.high - bound.low) / (seen.high - seen.low);
+          slope += bound.slope / seen.slope;
+          ++counted;
+        }
+      }
+      if (counted) tightness += fmt::format(";  {} m {:.2f}, {:.2f}", size, range / counted, slope / counted);
+    }
+    fmt::print("{}\n", tightness);
+  }
+}
+
+TEST(HeightFunction, SegmentBoundsAreNeverExceeded) {
+  for (const NamedFunction& named : terrain_functions()) {
+    const HeightFunction function(named.function);
+    std::string tightness = named.name + ": range, line over seen";
+    for (const double size : kSizes) {
+      FunctionRandom random(3);
+      const int segments = kSamples / 500;
+      double range = 0, line = 0;
+      int counted = 0;
+      for (int s = 0; s < segments; ++s) {
+        const dvec2 origin(random.between(-5000, 5000), random.between(-5000, 5000));
+        const double angle = random.between(0, 6.28), t0 = random.between(-2000, 2000), t1 = t0 + size;
+        const dvec2 direction(std::cos(angle), std::sin(angle));
+        const SegmentBound bound = function.along(origin, direction, t0, t1);
+        const dvec2 slope = function.slope_along(origin, direction, t0, t1);
+        Seen seen;
+        for (int i = 0; i < 500; ++i) {
+          const double t = random.between(t0, t1), q = (t - 0.5 * (t0 + t1)) / (0.5 * size);
+          const dvec2 p = origin + direction * t;
+          const double h = function.value(p.x, p.y);
+          seen.low = std::min(seen.low, h), seen.high = std::max(seen.high, h);
+          ASSERT_LE(std::abs(h - (bound.mid + bound.slope * q)),
+                    bound.rest + bound.rounding + 1e-12 * std::abs(bound.slope))
+              << named.name << ", size " << size;
+          if (i % 8 == 0) {
+            const double along = dot(function.gradient(p.x, p.y, FunctionUse::march), direction);
+            ASSERT_GE(along, slope.x - 0x1p-43 * (1 + std::abs(slope.x))) << named.name << ", size " << size;
+            ASSERT_LE(along, slope.y + 0x1p-43 * (1 + std::abs(slope.y))) << named.name << ", size " << size;
+          }
+        }
+        ASSERT_GE(seen.low, bound.low - bound.rounding) << named.name << ", size " << size;
+        ASSERT_LE(seen.high, bound.high + bound.rounding) << named.name << ", size " << size;
+        if (seen.high - seen.low > 1e-3 * size) {
+          range += (bound.high - bound.low) / (seen.high - seen.low);
+          line += 2 * bound.rest / (seen.high - seen.low);
+          ++counted;
+        }
+      }
+      if (counted) tightness += fmt::format(";  {} m {:.2f}, {:.2f}", size, range / counted, line / counted);
+    }
+    fmt::print("{}\n", tightness);
+  }
+}
+
+TEST(HeightFunction, HeightsStayWithinTheBoundOfThePlane) {
+  for (const NamedFunction& named : terrain_functions()) {
+    const HeightFunction function(named.function);
+    for (const FunctionUse use : {FunctionUse::march, FunctionUse::shadow, FunctionUse::normal}) {
+      const FunctionBound& all = function.bound_everywhere(use);
+      FunctionRandom random(4);
+      for (int i = 0; i < 20000; ++i) {
+        const double reach = std::exp2(random.between(-10, 30));
+        const double x = random.between(-reach, reach), y = random.between(-reach, reach);
+        const double h = function.value(x, y, use);
+        ASSERT_TRUE(h >= all.low - all.rounding && h <= all.high + all.rounding) << named.name << ": " << h;
+      }
+    }
+  }
+}
+
+TEST(HeightFunction, OctavesDifferByUse) {
+  const HeightFunction function(make_function(Fractal{.octaves = {3, 2, 5}}));
+  EXPECT_NE(function.value(10, 20), function.value(10, 20, FunctionUse::shadow));
+  const HeightFunction coarse(make_function(Fractal{.octaves = {2, 2, 2}}));
+  EXPECT_EQ(function.value(10, 20, FunctionUse::shadow), coarse.value(10, 20));
+}
+
+std::uint64_t bits(double x) {
+  std::uint64_t b = 0;
+  std::memcpy(&b, &x, sizeof b);
+  return b;
+}
+
+TEST(HeightFunction, HeightsAreTheSameBitsEverywhere) {
+  // Hashes of 1000 heights, as first computed; sines are the C library's and left out.
+  const std::map<std::string, std::uint64_t> known{{"perlin fbm", 3542965959583933750u},
+                                                   {"simplex ridged", 9851071123495928902u},
+                                                   {"damped fbm", 15668961169119412477u}};
+  int compared = 0;
+  for (const NamedFunction& named : terrain_functions()) {
+    const auto entry = known.find(named.name);
+    if (entry == known.end()) continue;
+    const HeightFunction function(named.function);
+    std::uint64_t hash = 0;
+    for (int i = 0; i < 1000; ++i) hash = hash * 31 + bits(function.value(i * 7.25 - 3000, i * -3.5 + 900));
+    EXPECT_EQ(hash, entry->second) << named.name;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 3);
+}
+
+std::string refusal(FunctionShape shape) {
+  try {
+    make_function(std::move(shape));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(HeightFunction, RefusesWhatIsOutOfRange) {
+  const double nan = std::nan("");
+  const Function plane = make_function(Plane{});
+  EXPECT_EQ(refusal(Plane{nan}), "terrain function: plane height is nan; it must be between -2^30 and 2^30");
+  EXPECT_EQ(refusal(Fractal{.octaves = {0, 1, 1}}),
+            "terrain function: fractal octaves of the march is 0; it must be 1 to 24");
+  EXPECT_EQ(refusal(SmoothMinimum{plane, plane, -1}),
+            "terrain function: smooth minimum radius is -1; it must be between 2^-20 and 2^30");
+  EXPECT_EQ(refusal(Minimum{plane, nullptr}), "terrain function: minimum operand b is missing; it must be a function");
+  EXPECT_EQ(refusal(Sines{}), "terrain function: sines without waves; at least one is needed");
+  EXPECT_NE(refusal(Fractal{.wavelength = 0}), "");
+  EXPECT_NE(refusal(Fractal{.wavelength = 1, .lacunarity = 8, .octaves = {9, 9, 9}}), "");
+  EXPECT_NE(refusal(Fractal{.height = -1}), "");
+  EXPECT_NE(refusal(Fractal{.gain = 0}), "");
+  EXPECT_NE(refusal(Fractal{.turn = {1, 1}}), "");
+  EXPECT_NE(refusal(Fractal{.damping = nan}), "");
+  EXPECT_NE(refusal(RadialMask{{0, 0}, 5, 5}), "");
+  EXPECT_NE(refusal(Terraces{plane, 10, 0}), "");
+  EXPECT_THROW(HeightFunction(nullptr), Error);
+}
+
+TEST(HeightFunction, RefusesWhatIsTooDeepOrTooLarge) {
+  Function deep = make_function(Plane{});
+  for (int i = 1; i < kDeepestFunction; ++i) deep = make_function(Sum{deep, deep, 0.5, 0.5, 0});
+  // Shared nodes are computed once: 2^255 paths, 256 instructions.
+  EXPECT_EQ(HeightFunction(deep).value(1, 2), 0);
+  EXPECT_EQ(refusal(Sum{deep, deep}), fmt::format("terrain function: {} nodes under one another; {} are possible",
+                                                  kDeepestFunction + 1, kDeepestFunction));
+  Function warped = make_function(Fractal{});
+  for (int i = 0; i < 12; ++i) warped = make_function(Warp{warped, warped, warped});
+  EXPECT_THROW(HeightFunction{warped}, Error);
+}
+
+}  // namespace
+}  // namespace scarp::test
