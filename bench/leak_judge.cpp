@@ -217,7 +217,8 @@ const char* LeakJudge::lost(const Hit& hit, double share) const {
   if (!(t0_ <= t1_) || !c0_) return nullptr;
   if (!hit) return must_hit_ ? "a ray that must hit" : nullptr;
   const Real from = t0_, t = from + share * (hit.t - from);
-  if (!begins_above_ || t > t1_ - early_ || holes_between(from, t)) return nullptr;
+  // It is known to be above only where it has come in for certain.
+  if (!begins_above_ || t < from + late_ || t > t1_ - early_ || holes_between(from, t)) return nullptr;
   const auto c = clearance(t);
   return c && *c < -under(t) ? "a hit before the one that is told" : nullptr;
 }
@@ -287,6 +288,8 @@ std::optional<double> LeakJudge::cut_behind(const Hit& hit) const {
   if (!place || hit.wall) return {};
   const Real length = time_in_cell(*place, hit.t, false) / 2;
   const double t = static_cast<double>(hit.t + length);
+  // By rounding it may be out of the field before.
+  if (t > t1_ - early_) return {};
   const Piece f = piece(*place, hit.t, south_east(*place, hit.t + length / 2));
   if (triangles_ && south_east(*place, hit.t) != south_east(*place, t)) return {};
   if (f.b > 0 || f.b + 2 * f.a * length > 0) return {};

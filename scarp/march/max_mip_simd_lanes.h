@@ -107,7 +107,8 @@ struct Packet {
 
   // Whether the way out is before the ray's end for certain, which is rounded up.
   HWY_INLINE MI before_end(const Exit& e) const {
-    return hn::RebindMask(di, hn::Lt(e.T, hn::Mul(end, hn::Set(df, 1 - 0x1p-20f))));
+    const VF least = hn::MulSub(end, hn::Set(df, 1 - 0x1p-20f), hn::Set(df, static_cast<float>(4 * kSideways)));
+    return hn::RebindMask(di, hn::Lt(e.T, least));
   }
 
   // Lanes of `clear` are done at their end, or go on to the next block: over the line ahead, and along the other axis

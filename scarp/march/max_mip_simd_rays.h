@@ -44,6 +44,7 @@ HWY_INLINE VD rounding(const FieldFrame& f, VD ox, VD oy, VD oz, VD dx, VD dy, V
 // One axis of rays: mirrored so that they go forth, and when they are in the field.
 struct AxisSpan {
   VD origin, direction, per, enter, exit;
+  VD slack;  // what rounding may do to the times of the borders: the more, the more slowly they are crossed
   hn::Mask<decltype(dd)> back;
 };
 HWY_INLINE AxisSpan axis_span(VD o, VD d, VD cells) {
@@ -57,6 +58,8 @@ HWY_INLINE AxisSpan axis_span(VD o, VD d, VD cells) {
   const auto still = hn::Eq(d, zero), within = hn::And(hn::Ge(o, zero), hn::Le(o, cells));
   s.enter = hn::IfThenElse(still, hn::IfThenElse(within, hn::Neg(far), far), hn::Mul(hn::Neg(s.origin), s.per));
   s.exit = hn::IfThenElse(still, far, hn::Mul(hn::Sub(cells, s.origin), s.per));
+  s.slack = hn::Mul(hn::Mul(hn::Set(dd, 8 * kUnit), hn::Add(cells, hn::Abs(o))), s.per);
+  s.slack = hn::IfThenElse(still, hn::Zero(dd), s.slack);
   return s;
 }
 
@@ -85,16 +88,20 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     const VD t_end = hn::IfThenElse(hn::Gt(dz, zero), hn::Min(t_exit, t_over), t_exit);
     // Of usual lengths, and not so steep that a cell is more than 2^30 codes high: far from where floats end.
     const VD per_step = hn::Set(dd, f.per_step), slope = hn::Mul(hn::Mul(dz, per_step), per_longest);
-    const auto sound =
+    const auto usual =
         hn::And(hn::And(hn::Gt(longest, hn::Set(dd, 0x1p-300)), hn::Lt(longest, hn::Set(dd, 0x1p300))),
                 hn::And(hn::Lt(hn::Abs(slope), hn::Set(dd, 0x1p30)), hn::Lt(t_far, hn::Set(dd, 0x1p300))));
+    // The borders are where they are to less than a position's rounding, and a sixteenth of a code.
+    const VD slack = hn::Max(x.slack, y.slack), slack_cells = hn::Mul(slack, longest);
+    const auto sound = hn::And(usual, hn::And(hn::Lt(slack_cells, hn::Set(dd, kSideways)),
+                                              hn::Lt(hn::Mul(slack_cells, hn::Abs(slope)), hn::Set(dd, 0x1p-4))));
     const auto climbs_from_above = hn::AndNot(falls, from_above);
     const auto followed = hn::And(sound, hn::AndNot(climbs_from_above, hn::Lt(t_begin, t_end)));
     // Beside the field, or above all ground from begin to end.
     const VD tie = hn::Mul(hn::Set(dd, 0x1p-40), hn::Add(hn::Abs(t_border), hn::Abs(t_exit)));
-    const auto beside = hn::Gt(hn::Sub(t_border, t_exit), tie);
+    const auto beside = hn::Gt(hn::Sub(t_border, t_exit), hn::Add(tie, hn::Add(slack, slack)));
     const auto stays_above = hn::And(hn::And(hn::Gt(height(t_border), over), hn::Lt(t_border, t_exit)),
-                                     hn::Or(hn::Not(falls), hn::Gt(height(t_exit), over)));
+                                     hn::Or(hn::Not(falls), hn::Gt(height(hn::Add(t_exit, slack)), over)));
     const auto misses = hn::And(sound, hn::Or(beside, stays_above));
     const VD at_x = hn::Add(x.origin, hn::Mul(x.direction, t_begin)),
              at_y = hn::Add(y.origin, hn::Mul(y.direction, t_begin));
@@ -114,7 +121,8 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     put(hn::Sub(hn::Mul(hn::Sub(height(t_begin), hn::Set(dd, f.base)), per_step), margin), a.z);
     put(hn::Sub(slope, hn::Set(dd, sideways)), a.dz);
     put(hn::Add(margin, margin), a.margin);
-    put(hn::Mul(hn::Mul(hn::Sub(t_end, t_begin), longest), hn::Set(dd, 1 + 0x1p-22)), a.end);
+    const VD way = hn::Add(hn::Mul(hn::Sub(t_end, t_begin), longest), slack_cells);
+    put(hn::Mul(way, hn::Set(dd, 1 + 0x1p-22)), a.end);
     hn::Store(t_begin, dd, a.t_begin + part), hn::Store(per_longest, dd, a.t_per_cell + part);
     const auto put_whole = [&](VD v, std::int32_t* to)
                                HWY_ATTR { hn::Store(hn::DemoteTo(di_part, v), di_part, to + part); };

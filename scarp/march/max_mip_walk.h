@@ -422,6 +422,12 @@ class Walk {
   // The surface of the current cell; true: answered. Otherwise side_ is that of the way out.
   [[gnu::always_inline]] bool test_cell(const CellHeights& h, bool through_x, double t_line, double t_out) {
     ++stats.cell_tests;
+    if (strict_) {
+      // It is in the cell that it is said to begin in; by rounding, lines around that may be crossed before it begins,
+      // when its place is clamped and its height must not run ahead.
+      t_in_ = std::max(t_in_, ray_.t_min);
+      t_out = std::max(t_out, ray_.t_min);
+    }
     if (side_ == Side::unknown && find_side(h)) return true;
     const Through exit = t_line > t_end_ ? Through::point : through_x ? Through::x_line : Through::y_line;
     const double out = clearance(h, exit, true, t_out);
