@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/march/lipschitz_local.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "scarp/base/error.h"
 #include "scarp/march/function_ray.h"
 
 namespace scarp {
@@ -119,18 +116,7 @@ class LocalMarch {
 
 }  // namespace
 
-void validate(const LipschitzLocalSettings& settings) {
-  if (!(std::isfinite(settings.tolerance) && settings.tolerance >= 0)) {
-    throw Error(
-        fmt::format("march setting lipschitz-local tolerance: is {}; it must be 0 or more", settings.tolerance));
-  }
-  if (settings.max_steps < 1) {
-    throw Error(
-        fmt::format("march setting lipschitz-local step limit: is {}; it must be 1 or more", settings.max_steps));
-  }
-}
-
-Hit march_lipschitz_local(const HeightFunction& function, const Ray& ray, const LipschitzLocalSettings& settings,
+Hit march_lipschitz_local(const HeightFunction& function, const Ray& ray, const MarchSettings& settings,
                           MarchStats* stats, FunctionUse use) {
   MarchStats counted;
   Hit hit;
@@ -138,7 +124,7 @@ Hit march_lipschitz_local(const HeightFunction& function, const Ray& ray, const 
   if (r.begins_under) {
     hit.status = HitStatus::below;
   } else if (r.crosses()) {
-    hit = LocalMarch(r, settings, counted).run();
+    hit = LocalMarch(r, settings.lipschitz_local, counted).run();
   }
   if (stats) *stats = counted;
   return hit;

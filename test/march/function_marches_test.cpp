@@ -139,10 +139,10 @@ TEST(FunctionMarches, FollowRaysOfAnyDirection) {
   const Hit level = march_lipschitz_local(bowl(), {{-25, 3, 5}, {0.5, 0, 0}});
   ASSERT_TRUE(level);
   EXPECT_NEAR(level.t, 2 * (25 + 25.0 / 3), 1e-4);
-  for (const auto march : {march_naive, march_relaxed, march_lipschitz}) {
+  for (const MarchEntry& march : function_marches()) {
     MarchStats stats;
-    const Hit hit = march(bowl(), {{-25, 3, 5}, {0.5, 0, 0}, 0, 200}, {}, &stats, FunctionUse::march);
-    ASSERT_TRUE(hit);
+    const Hit hit = march.function_cpu(bowl(), {{-25, 3, 5}, {0.5, 0, 0}, 0, 200}, {}, &stats, FunctionUse::march);
+    ASSERT_TRUE(hit) << march.name;
     EXPECT_NEAR(hit.t, 2 * (25 + 25.0 / 3), 1);
     EXPECT_GT(stats.steps, 5u);
   }
@@ -161,14 +161,96 @@ TEST(FunctionMarches, RespectTheRange) {
 
 TEST(FunctionMarches, TellUsedUpStepsFromHits) {
   const Ray ray{{-25, 3, 5}, {1, 0, 0}, 0, 200};
-  EXPECT_EQ(march_lipschitz_local(bowl(), ray, {.max_steps = 2}).status, HitStatus::exhausted);
   MarchSettings settings;
-  settings.naive.max_steps = settings.relaxed.max_steps = settings.lipschitz.max_steps = 2;
-  for (const auto march : {march_naive, march_relaxed, march_lipschitz}) {
-    EXPECT_EQ(march(bowl(), ray, settings, nullptr, FunctionUse::march).status, HitStatus::exhausted);
+  settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = 2;
+  settings.lipschitz.max_steps = settings.lipschitz_local.max_steps = 2;
+  for (const MarchEntry& march : function_marches()) {
+    EXPECT_EQ(march.function_cpu(bowl(), ray, settings, nullptr, FunctionUse::march).status, HitStatus::exhausted)
+        << march.name;
   }
-  EXPECT_THROW(validate(LipschitzLocalSettings{.tolerance = -1}), Error);
-  EXPECT_THROW(validate(LipschitzLocalSettings{.max_steps = 0}), Error);
+}
+
+TEST(FunctionMarches, TheTableNamesThem) {
+  std::vector<std::string_view> names;
+  for (const MarchEntry& march : function_marches()) {
+    names.push_back(march.name);
+    EXPECT_EQ(&find_function_march(march.name), &march);
+    EXPECT_NE(march.fields.find("function"), std::string_view::npos);
+  }
+  EXPECT_EQ(names, (std::vector<std::string_view>{"naive", "fixed-step", "relaxed", "lipschitz", "lipschitz-local"}));
+  EXPECT_THROW(find_function_march("max-mip"), Error);
+  EXPECT_THROW(find_march("lipschitz-local"), Error);
+}
+
+TEST(FunctionMarches, ValidateTheirSettings) {
+  const auto bad = [](auto change) {
+    MarchSettings settings;
+    validate(settings);
+    change(settings);
+    EXPECT_THROW(validate(settings), Error);
+  };
+  bad([](MarchSettings& s) { s.lipschitz_local.tolerance = -1; });
+  bad([](MarchSettings& s) { s.lipschitz_local.max_steps = 0; });
+  bad([](MarchSettings& s) { s.function.step = 0; });
+  bad([](MarchSettings& s) { s.function.step_share = -1; });
+  bad([](MarchSettings& s) { s.function.tolerance = NAN; });
+  bad([](MarchSettings& s) { s.function.halvings = 0; });
+  bad([](MarchSettings& s) { s.relaxed.tolerance = 0; });
+  EXPECT_EQ(find_refinement("secant"), Refinement::secant);
+  EXPECT_THROW(find_refinement("newton"), Error);
+}
+
+// A ramp, on which every march's last interval is known.
+TEST(FunctionMarches, FixedStepCountsItsSamples) {
+  const HeightFunction ramp(make_function(Plane{0, 1, 0}));
+  const Ray ray{{-100, 0, 2}, {2, 0, 0}, 0, 60};  // over x = 2 at t = 51
+  MarchSettings settings;
+  settings.function.step = 3;  // t = 0, 1.5, ..., 51 exactly: the 35th
+  MarchStats stats;
+  Hit hit = march_fixed_step(ramp, ray, settings, &stats);
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit.t, 51);
+  EXPECT_EQ(stats.steps, 35u);
+  settings.function.step = 4;  // 50, 52
+  EXPECT_NEAR(march_fixed_step(ramp, ray, settings).t, 51, 1e-12);
+  settings.fixed_step.interpolate = false;
+  EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 52);
+  settings.function.refinement = Refinement::bisect;
+  settings.function.halvings = 10;
+  EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 51);  // a dyadic share of the step
+  settings.function.refinement = Refinement::none;
+  settings.function.step_share = 0.5;  // 0, 2, 4, 6, 9, 13.5, 20.25, 30.375, 45.5625, 60 (68.3, the end)
+  hit = march_fixed_step(ramp, ray, settings, &stats);
+  EXPECT_EQ(hit.t, 60);
+  EXPECT_EQ(stats.steps, 10u);
+  // A ray that begins under the ramp is below; one that comes up and goes down again is not.
+  EXPECT_EQ(march_fixed_step(ramp, {{10, 0, 2}, {1, 0, 0}, 0, 60}, settings).status, HitStatus::below);
+  EXPECT_EQ(march_fixed_step(bowl(), {{10, 0, 5}, {1, 0, 0}, 0, 60}, {}).status, HitStatus::below);
+  EXPECT_TRUE(march_fixed_step(bowl(), {{10, 0, 5}, {1, 0, 0}, 0, 160}, {}));
+}
+
+TEST(FunctionMarches, RefineTheLastInterval) {
+  const HeightFunction ramp(make_function(Plane{0, 1, 0}));
+  const Ray ray{{-100, 0, 2}, {1, 0, 0}, 0, 200};  // clearance 102 - t, which is 0.01 t at 102 / 1.01
+  MarchSettings settings;
+  settings.relaxed.tolerance = settings.naive.tolerance = 0.01;
+  for (const std::string_view name : {"naive", "relaxed"}) {
+    const FunctionMarch march = find_function_march(name).function_cpu;
+    settings.function.refinement = Refinement::none;
+    const Hit plain = march(ramp, ray, settings, nullptr, FunctionUse::march);
+    settings.function.refinement = Refinement::bisect;
+    const Hit halved = march(ramp, ray, settings, nullptr, FunctionUse::march);
+    settings.function.refinement = Refinement::secant;
+    const Hit secant = march(ramp, ray, settings, nullptr, FunctionUse::march);
+    EXPECT_GT(plain.t - halved.t, 0.01);
+    // 24 halvings of an interval shorter than 2; the secant meets the limit of the last sample, 0.01 of its t.
+    EXPECT_NEAR(halved.t, 102 / 1.01, 2 * 0x1p-24);
+    EXPECT_NEAR(secant.t, 102 - 0.01 * plain.t, 1e-12);
+  }
+  // Metres that count as a hit at any distance.
+  settings.function = {.tolerance = 3, .refinement = Refinement::bisect};
+  settings.relaxed.tolerance = 0;
+  EXPECT_NEAR(march_relaxed(ramp, ray, settings).t, 99, 4 * 0x1p-24);
 }
 
 TEST(FunctionMarches, LocalBoundsTakeFewerEvaluations) {
