@@ -38,7 +38,7 @@ void add_march_options(CLI::App& command, MarchSettings& march) {
   add_function("--function-step-share", march.function.step_share,
                "its least step as a share of the distance travelled; 0 or more");
   add_function("--function-tolerance", march.function.tolerance,
-               "metres off the ground that relaxed takes for a hit at any distance; 0 or more");
+               "metres off the ground that naive and relaxed take for a hit at any distance; 0 or more");
   command
       .add_option_function<std::string>(
           "--refine", [&march](const std::string& name) { march.function.refinement = find_refinement(name); },

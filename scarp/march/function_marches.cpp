@@ -39,7 +39,9 @@ double refined(const FunctionRay& r, Refinement refinement, int halvings, Look b
 Hit naive(const FunctionRay& r, const MarchSettings& all, MarchStats& stats) {
   const NaiveSettings& settings = all.naive;
   const double least = settings.min_step * (r.t_exit - r.ray().t_min), per_metre = 1 / r.metres_per_t();
-  const auto limit = [&](double t) { return settings.tolerance * (t - r.ray().t_min); };
+  const auto limit = [&](double t) {
+    return std::max(all.function.tolerance * per_metre, settings.tolerance * (t - r.ray().t_min));
+  };
   const auto stops = [&](double t, double h) { return h < limit(t); };
   Look before;
   double t = r.t_enter + (on_surface(r) ? least : 0.0);

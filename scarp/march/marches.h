@@ -82,7 +82,7 @@ Refinement find_refinement(std::string_view name);
 struct FunctionMarchSettings {
   double step = 5;        ///< of fixed-step, in the place of its cells: metres, > 0
   double step_share = 0;  ///< of fixed-step: steps are at least this share of the distance travelled, >= 0
-  double tolerance = 0;   ///< of relaxed: metres off the ground that count as a hit even where its own are fewer, >= 0
+  double tolerance = 0;   ///< of naive and relaxed: metres off the ground that are a hit at any distance, >= 0
   Refinement refinement = Refinement::none;
   int halvings = 24;  ///< of `bisect`, 1..60
 };
