@@ -13,7 +13,6 @@
 #include <variant>
 
 #include "scarp/field/height_function.h"
-#include "scarp/march/lipschitz_local.h"
 #include "scarp/march/marches.h"
 #include "scarp/scene/box_tree.h"
 #include "scarp/scene/voxel_scene.h"
@@ -72,11 +71,9 @@ using SceneFieldPtr = std::shared_ptr<const SceneField>;
 SceneFieldPtr scene_heights(HeightField field, const MarchEntry& march = find_march("max-mip"),
                             const MarchSettings& settings = {});
 
-/// Marches over terrain functions, by name.
-std::span<const std::string_view> scene_function_marches();
-/// Throws Error listing the names when there is no such march, and for a setting out of its range.
-SceneFieldPtr scene_function(HeightFunction function, std::string_view march = "lipschitz-local",
-                             const MarchSettings& settings = {}, const LipschitzLocalSettings& local = {});
+/// `march` is a row of function_marches(). Throws Error for a setting out of its range.
+SceneFieldPtr scene_function(HeightFunction function, const MarchEntry& march = find_function_march("lipschitz-local"),
+                             const MarchSettings& settings = {});
 
 /// The objects of a voxel scene as one; each model has its march.
 SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march);
