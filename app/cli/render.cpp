@@ -17,6 +17,7 @@
 #include "app/cli/device_option.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
+#include "app/cli/function_input.h"
 #include "app/cli/march_options.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
@@ -42,6 +43,7 @@ struct RenderOptions {
   RasterOptions raster;
   FieldOptions field;
   VoxSceneOptions vox;
+  FunctionInput function;
   std::string march;  // empty: the fastest exact one
   std::string device;
   MarchSettings march_settings;
@@ -50,6 +52,7 @@ struct RenderOptions {
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg;
   bool top = false, no_shadows = false, no_plinth = false;
+  bool haze_given = false, tolerance_given = false;
   int threads = 0;
 };
 
@@ -236,11 +239,28 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   print_findings(picture);
 }
 
+void render_function_input(const RenderOptions& options, const ViewSettings& view) {
+  if (!options.inputs.empty()) {
+    throw Error(fmt::format("'{}': --function stands in the place of files; give one of both", options.inputs.front()));
+  }
+  if (options.exr) throw Error(fmt::format("output '{}': pictures of functions are written as PNG", options.output));
+  if (!options.device.empty()) throw Error("--device: pictures of functions are made on the CPU; leave it out");
+  if (options.top) throw Error("--top: a function has no end that a map could show; leave it out");
+  render_function(options.function,
+                  {options.picture, options.march, options.march_settings, view, !options.view.empty(),
+                   options.haze_given, options.tolerance_given, options.eye, options.target},
+                  options.output);
+}
+
 void run(RenderOptions options) {
   const ViewSettings view = settle(options);
   if (!options.eye.empty()) point_from(options.eye, "--eye");
   if (!options.target.empty()) point_from(options.target, "--target");
   const ThreadLimit limit(options.threads);
+  if (!options.function.function.empty()) return render_function_input(options, view);
+  if (options.inputs.empty()) throw Error("nothing to render: give files, or --function NAME");
+  if (!options.function.preset.empty())
+    throw Error("--preset: has the numbers of shaders over functions; add --function");
   if (is_vox_input(options.inputs)) {
     render_vox(std::move(options), view);
   } else {
@@ -254,7 +274,7 @@ void add_render(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "Render an elevation model or a voxel model into a picture");
   const auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
-  add_raster_inputs(*command, o.inputs);
+  add_raster_inputs(*command, o.inputs)->required(false);
   command
       ->add_option("-o,--output", o.output,
                    "the picture: .png, or .exr in linear light with depth, normal, position and steps")
@@ -286,15 +306,19 @@ void add_render(CLI::App& program) {
       })
       ->capture_default_str();
   command->add_flag("--no-plinth", o.no_plinth, "no walls below the terrain's border");
-  command
-      ->add_option("--haze", o.picture.haze, "share of haze over a distance as long as the field's diagonal, 0 to 0.95")
-      ->capture_default_str();
+  CLI::Option* haze = command
+                          ->add_option("--haze", o.picture.haze,
+                                       "share of haze over a distance as long as the field's diagonal (of functions "
+                                       "over --extent, 0.2), 0 to 0.95")
+                          ->capture_default_str();
   command->add_option("--aa", o.picture.aa, "N x N samples per pixel of the shaded look, 1 to 16")
       ->capture_default_str();
-  command
-      ->add_option("--error-tolerance", o.picture.error_tolerance,
-                   "of the error look, in sides of a cell along the ray")
-      ->capture_default_str();
+  CLI::Option* tolerance =
+      command
+          ->add_option(
+              "--error-tolerance", o.picture.error_tolerance,
+              "of the error look along the ray, in sides of a cell; of functions in percent of the distance (1)")
+          ->capture_default_str();
   add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
 
@@ -320,12 +344,16 @@ void add_render(CLI::App& program) {
       ->excludes(fov);
   view->excludes(eye);
 
-  command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks)")
+  add_function_options(*command, o.function, o.march, o.march_settings);
+  command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks; lipschitz-local)")
       ->group("Settings of marches");
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);
   add_vox_options(*command, o.vox);
-  command->callback([options] { run(*options); });
+  command->callback([options, haze, tolerance] {
+    options->haze_given = haze->count() > 0, options->tolerance_given = tolerance->count() > 0;
+    run(*options);
+  });
 }
 
 }  // namespace scarp::cli

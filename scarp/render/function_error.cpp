@@ -34,7 +34,8 @@ FunctionErrorPicture render_function_error(const HeightFunction& function, const
                                            const FunctionErrorSettings& settings, const Progress& progress) {
   validate(march_settings);
   if (!(settings.share >= 0 && std::isfinite(settings.share))) {
-    throw Error(fmt::format("picture: the error tolerance is {} of the distance; it must be 0 or more", settings.share));
+    throw Error(
+        fmt::format("picture: the error tolerance is {} of the distance; it must be 0 or more", settings.share));
   }
   if (!(settings.reach > 0 && std::isfinite(settings.reach))) {
     throw Error(fmt::format("picture: the reach is {}; it must be above 0 metres, and finite", settings.reach));

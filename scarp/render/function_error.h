@@ -11,16 +11,16 @@
 namespace scarp {
 
 struct FunctionErrorSettings {
-  double share = 0.01;      ///< hits agree within this share of the distance, >= 0
-  double reach = 20000;     ///< metres that rays are followed; > 0, finite
-  int width = 1280;         ///< pixels of the camera's picture
+  double share = 0.01;   ///< hits agree within this share of the distance, >= 0
+  double reach = 20000;  ///< metres that rays are followed; > 0, finite
+  int width = 1280;      ///< pixels of the camera's picture
   int height = 720;
 };
 
 struct FunctionErrorPicture {
   Image image;
-  ErrorCounts counts;              ///< tolerance_m is 0: it goes with the distance
-  std::int64_t judged = 0;         ///< pixels that intervals decided
+  ErrorCounts counts;               ///< tolerance_m is 0: it goes with the distance
+  std::int64_t judged = 0;          ///< pixels that intervals decided
   std::int64_t contradictions = 0;  ///< of those, where lipschitz-local says otherwise: none, or there is a bug
 };
 

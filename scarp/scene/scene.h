@@ -52,8 +52,8 @@ struct SceneSurface {
 
 /// What a ray cost.
 struct SceneStats {
-  std::uint32_t steps = 0;      ///< of all marches
-  std::uint32_t boxes = 0;      ///< objects of the hierarchy that were asked
+  std::uint32_t steps = 0;  ///< of all marches
+  std::uint32_t boxes = 0;  ///< objects of the hierarchy that were asked
 };
 
 /// Immutable. Questions may be asked from many threads at once.

@@ -2,7 +2,8 @@
 // A field with the march that follows rays over it, as an object of a scene: the same questions for heights, functions
 // and voxels, in the field's own space.
 //
-// A ray that begins on the surface of a hit does so by the field's own rule (cell, place, voxel): nothing is pushed off.
+// A ray that begins on the surface of a hit does so by the field's own rule (cell, place, voxel): nothing is pushed
+// off.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +32,8 @@ struct FieldHit {
 
 /// What is at a hit, in the field's space.
 struct FieldSurface {
-  dvec3 normal{0.0};          ///< unit, outward; zero for a ray that began inside
-  dvec3 shading_normal{0.0};  ///< unit
+  dvec3 normal{0.0};                  ///< unit, outward; zero for a ray that began inside
+  dvec3 shading_normal{0.0};          ///< unit
   std::optional<VoxelColour> colour;  ///< where the field has colours of its own
 };
 
