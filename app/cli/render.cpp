@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// `scarp render`: an elevation model or a voxel model in, a picture out.
+// `scarp render`: an elevation model, a voxel model or a scene in, a picture out.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <chrono>
 #include <cmath>
@@ -21,6 +22,7 @@
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
+#include "app/cli/scene_input.h"
 #include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -34,6 +36,11 @@
 
 namespace scarp::cli {
 namespace {
+
+// What of the options goes with a scene, which says all else itself.
+constexpr std::array<std::string_view, 16> kSceneOptions = {
+    "IN",     "--output",   "--size",      "--look", "--ramp",    "--sun", "--no-shadows", "--samples", "--sun-size",
+    "--view", "--eye",      "--target",    "--fov",  "--top",     "--aa",  "--threads"};
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {
@@ -51,6 +58,7 @@ struct RenderOptions {
   double fov_deg = ViewSettings{}.fov_deg;
   bool top = false, no_shadows = false, no_plinth = false;
   int threads = 0;
+  std::vector<std::string> given;  // the names of the options that were typed
 };
 
 // Seconds since it was made or last asked.
@@ -190,6 +198,45 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
   print_findings(picture);
 }
 
+// The file's own settings hold where no option was given.
+void render_scene_file(RenderOptions options, ViewSettings view) {
+  if (!options.device.empty()) throw Error("--device: pictures of scenes are made on the CPU; leave it out");
+  for (const std::string& option : options.given) {
+    if (std::find(kSceneOptions.begin(), kSceneOptions.end(), option) == kSceneOptions.end())
+      throw Error(fmt::format("{}: of a scene this stands in its file; leave it out", option));
+  }
+  ReplaceFile file(options.output);
+  Watch watch;
+  const SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
+  stop_if_interrupted();
+  const double read_s = watch.lap();
+  options.picture = picture_of(document, options.picture, options.given);
+  view = view_of(document, view, options.given);
+  const bool typed = options.top || !options.view.empty() || !options.eye.empty();
+  if (options.top && options.size.empty()) fit_size_to_ground(picture_box(document.scene), options.picture);
+  const int width = options.picture.width, height = options.picture.height;
+  options.fov_deg = view.fov_deg;
+  const Camera camera = !typed && document.camera.eye
+                            ? Camera::look_at(*document.camera.eye, *document.camera.target, view.fov_deg, width, height)
+                        : !options.eye.empty() && !options.target.empty() ? camera_of(options, view, {}, 0)
+                                                                          : camera_of(options, view, picture_box(document.scene), 0);
+  for (const std::string& note : document.notes) fmt::print(stderr, "note: {}\n", note);
+  const SceneLook look = look_of(document);
+  if (options.exr) {
+    const PictureLayers layers =
+        render_scene_layers(document.scene, look, camera, options.picture, terminal_progress("render"));
+    const double render_s = watch.lap();
+    write_layers(file, options.output, layers, camera);
+    print_times(options, read_s, 0, render_s);
+    return;
+  }
+  const Picture picture = render_scene(document.scene, look, camera, options.picture, terminal_progress("render"));
+  const double render_s = watch.lap();
+  write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  print_times(options, read_s, 0, render_s);
+  print_findings(picture);
+}
+
 void render_terrain(RenderOptions options, const ViewSettings& view) {
   const MarchEntry& march = find_march(options.march.empty() ? "max-mip" : options.march);
   const SceneMaker scenes = scene_maker(options.device, march);
@@ -241,7 +288,9 @@ void run(RenderOptions options) {
   if (!options.eye.empty()) point_from(options.eye, "--eye");
   if (!options.target.empty()) point_from(options.target, "--target");
   const ThreadLimit limit(options.threads);
-  if (is_vox_input(options.inputs)) {
+  if (is_scene_input(options.inputs)) {
+    render_scene_file(std::move(options), view);
+  } else if (is_vox_input(options.inputs)) {
     render_vox(std::move(options), view);
   } else {
     render_terrain(std::move(options), view);
@@ -251,7 +300,7 @@ void run(RenderOptions options) {
 }  // namespace
 
 void add_render(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("render", "Render an elevation model or a voxel model into a picture");
+  CLI::App* command = program.add_subcommand("render", "Render an elevation model, a voxel model or a scene into a picture");
   const auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
   add_raster_inputs(*command, o.inputs);
@@ -325,7 +374,12 @@ void add_render(CLI::App& program) {
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);
   add_vox_options(*command, o.vox);
-  command->callback([options] { run(*options); });
+  command->callback([options, command] {
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->count() > 0) options->given.push_back(option->get_name());
+    }
+    run(*options);
+  });
 }
 
 }  // namespace scarp::cli
