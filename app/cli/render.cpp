@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// `scarp render`: an elevation model or a voxel model in, a picture out.
+// `scarp render`: an elevation model, a voxel model or a scene in, a picture out.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <chrono>
 #include <cmath>
@@ -22,6 +23,7 @@
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
+#include "app/cli/scene_input.h"
 #include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -35,6 +37,11 @@
 
 namespace scarp::cli {
 namespace {
+
+// What of the options goes with a scene, which says all else itself.
+constexpr std::array<std::string_view, 16> kSceneOptions = {
+    "IN",         "--output", "--size", "--look",   "--ramp", "--sun", "--no-shadows", "--samples",
+    "--sun-size", "--view",   "--eye",  "--target", "--fov",  "--top", "--aa",         "--threads"};
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {
@@ -52,8 +59,8 @@ struct RenderOptions {
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg;
   bool top = false, no_shadows = false, no_plinth = false;
-  bool haze_given = false, tolerance_given = false;
   int threads = 0;
+  std::vector<std::string> given;  // the names of the options that were typed
 };
 
 // Seconds since it was made or last asked.
@@ -193,6 +200,46 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
   print_findings(picture);
 }
 
+// The file's own settings hold where no option was given.
+void render_scene_file(RenderOptions options, ViewSettings view) {
+  if (!options.device.empty()) throw Error("--device: pictures of scenes are made on the CPU; leave it out");
+  for (const std::string& option : options.given) {
+    if (std::find(kSceneOptions.begin(), kSceneOptions.end(), option) == kSceneOptions.end())
+      throw Error(fmt::format("{}: of a scene this stands in its file; leave it out", option));
+  }
+  ReplaceFile file(options.output);
+  Watch watch;
+  const SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
+  stop_if_interrupted();
+  const double read_s = watch.lap();
+  options.picture = picture_of(document, options.picture, options.given);
+  view = view_of(document, view, options.given);
+  const bool typed = options.top || !options.view.empty() || !options.eye.empty();
+  if (options.top && options.size.empty()) fit_size_to_ground(picture_box(document.scene), options.picture);
+  const int width = options.picture.width, height = options.picture.height;
+  options.fov_deg = view.fov_deg;
+  const Camera camera =
+      !typed && document.camera.eye
+          ? Camera::look_at(*document.camera.eye, *document.camera.target, view.fov_deg, width, height)
+      : !options.eye.empty() && !options.target.empty() ? camera_of(options, view, {}, 0)
+                                                        : camera_of(options, view, picture_box(document.scene), 0);
+  for (const std::string& note : document.notes) fmt::print(stderr, "note: {}\n", note);
+  const SceneLook look = look_of(document);
+  if (options.exr) {
+    const PictureLayers layers =
+        render_scene_layers(document.scene, look, camera, options.picture, terminal_progress("render"));
+    const double render_s = watch.lap();
+    write_layers(file, options.output, layers, camera);
+    print_times(options, read_s, 0, render_s);
+    return;
+  }
+  const Picture picture = render_scene(document.scene, look, camera, options.picture, terminal_progress("render"));
+  const double render_s = watch.lap();
+  write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  print_times(options, read_s, 0, render_s);
+  print_findings(picture);
+}
+
 void render_terrain(RenderOptions options, const ViewSettings& view) {
   const MarchEntry& march = find_march(options.march.empty() ? "max-mip" : options.march);
   const SceneMaker scenes = scene_maker(options.device, march);
@@ -246,9 +293,12 @@ void render_function_input(const RenderOptions& options, const ViewSettings& vie
   if (options.exr) throw Error(fmt::format("output '{}': pictures of functions are written as PNG", options.output));
   if (!options.device.empty()) throw Error("--device: pictures of functions are made on the CPU; leave it out");
   if (options.top) throw Error("--top: a function has no end that a map could show; leave it out");
+  const auto given = [&](const char* option) {
+    return std::find(options.given.begin(), options.given.end(), option) != options.given.end();
+  };
   render_function(options.function,
-                  {options.picture, options.march, options.march_settings, view, !options.view.empty(),
-                   options.haze_given, options.tolerance_given, options.eye, options.target},
+                  {options.picture, options.march, options.march_settings, view, given("--view"), given("--haze"),
+                   given("--error-tolerance"), options.eye, options.target},
                   options.output);
 }
 
@@ -261,7 +311,9 @@ void run(RenderOptions options) {
   if (options.inputs.empty()) throw Error("nothing to render: give files, or --function NAME");
   if (!options.function.preset.empty())
     throw Error("--preset: has the numbers of shaders over functions; add --function");
-  if (is_vox_input(options.inputs)) {
+  if (is_scene_input(options.inputs)) {
+    render_scene_file(std::move(options), view);
+  } else if (is_vox_input(options.inputs)) {
     render_vox(std::move(options), view);
   } else {
     render_terrain(std::move(options), view);
@@ -271,7 +323,8 @@ void run(RenderOptions options) {
 }  // namespace
 
 void add_render(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("render", "Render an elevation model or a voxel model into a picture");
+  CLI::App* command =
+      program.add_subcommand("render", "Render an elevation model, a voxel model or a scene into a picture");
   const auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
   add_raster_inputs(*command, o.inputs)->required(false);
@@ -306,11 +359,11 @@ void add_render(CLI::App& program) {
       })
       ->capture_default_str();
   command->add_flag("--no-plinth", o.no_plinth, "no walls below the terrain's border");
-  CLI::Option* haze = command
-                          ->add_option("--haze", o.picture.haze,
-                                       "share of haze over a distance as long as the field's diagonal (of functions "
-                                       "over --extent, 0.2), 0 to 0.95")
-                          ->capture_default_str();
+  command
+      ->add_option("--haze", o.picture.haze,
+                   "share of haze over a distance as long as the field's diagonal (of functions "
+                   "over --extent, 0.2), 0 to 0.95")
+      ->capture_default_str();
   command->add_option("--aa", o.picture.aa, "N x N samples per pixel of the shaded look, 1 to 16")
       ->capture_default_str();
   CLI::Option* tolerance =
@@ -350,8 +403,10 @@ void add_render(CLI::App& program) {
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);
   add_vox_options(*command, o.vox);
-  command->callback([options, haze, tolerance] {
-    options->haze_given = haze->count() > 0, options->tolerance_given = tolerance->count() > 0;
+  command->callback([options, command] {
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->count() > 0) options->given.push_back(option->get_name());
+    }
     run(*options);
   });
 }

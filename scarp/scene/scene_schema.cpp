@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/scene_schema.h"
 
+// g++ 12 sees overlaps in "[" + std::to_string(index), of which valijson is full (GCC bug 105651).
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wrestrict"
+#endif
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -29,15 +34,15 @@ std::string shortened(const std::string& text) {
 // What the parser is inside of.
 struct Level {
   bool list;
-  std::size_t index = 0;  // of a list
-  std::string key;        // of an object
-  std::set<std::string> keys;
+  std::size_t index = 0;         // of a list
+  std::string key{};             // of an object
+  std::set<std::string> keys{};  // that were there
 };
 
 std::string pointer(const std::vector<Level>& levels) {
   std::string path;
   for (const Level& level : levels) {
-    path += "/" + (level.list ? std::to_string(level.index) : level.key);
+    path.append("/").append(level.list ? std::to_string(level.index) : level.key);
     if (path.size() > kMostShown) return shortened(path);
   }
   return path;
@@ -85,7 +90,7 @@ class SchemaWalk {
   std::string path;
   for (std::size_t i = 1; i < error.context.size(); ++i) {
     const std::string step = error.context[i].substr(1, error.context[i].size() - 2);  // "[step]"
-    path += "/" + step;
+    path.append("/").append(step);
     here = here->is_array() ? &(*here)[std::stoul(step)] : &(*here)[step];
     walk.enter(step);
   }
