@@ -32,8 +32,8 @@ void text(double x, double z, const char* colour, const char* words) {
 int main() {
   using namespace scarp;
   // A profile along x, and the point P above it.
-  const HeightFunction ground(make_function(Sines{{{17, 170, 0, 2.5}, {9, 83, 0, 2.9}, {2, 31, 0, 0}}}));
-  const dvec3 p(76, 0, 32);
+  const HeightFunction ground(make_function(Sines{{{25, 170, 0, 2.5}, {13, 83, 0, 2.9}, {3, 31, 0, 0}}}));
+  const dvec3 p(110, 0, 27);
   const double h = p.z - ground.value(p.x, p.y);
   // The bound of the slope over all that the page shows, and the ball that follows.
   const double c = ground.bound({0, kWidth, 0, 0}).slope, shrink = 1 / std::sqrt(1 + c * c);

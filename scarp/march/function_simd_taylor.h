@@ -177,6 +177,30 @@ HWY_INLINE VT derivative_over(const VT& a, const VT& b, V r, V d, V dx, V dy, V 
   return t;
 }
 
+HWY_INLINE VT value_over(const VT& a, const VT& b, V r, const VNoise& jet, const NoiseBound& bound, V hessian,
+                         V curvature, V rounding) {
+  const V sx = a.slope, sy = b.slope, xx = hn::Mul(sx, sx), yy = hn::Mul(sy, sy);
+  const V q = hn::Add(hn::Add(hn::Mul(xx, jet.xx), hn::Mul(hn::Mul(scaled(2, sx), sy), jet.xy)), hn::Mul(yy, jet.yy));
+  const V half = hn::Sqrt(hn::Add(xx, yy)), off = length_of(a.rest, b.rest);
+  const V bent =
+      hn::Add(hn::Add(scaled(0.25, vabs(q)), hn::Mul(hn::Mul(hessian, off), hn::Add(half, scaled(0.5, off)))),
+              hn::Mul(hn::Mul(scaled(bound.third / 6, r), r), r));
+  const V plain = hn::Mul(hn::Mul(scaled(0.5, curvature), r), r);
+  const M is_bent = hn::Lt(bent, plain);
+  VT t;
+  t.mid = hn::Add(jet.n, hn::IfThenElseZero(is_bent, scaled(0.25, q)));
+  t.slope = hn::Add(hn::Mul(jet.x, sx), hn::Mul(jet.y, sy));
+  t.rest = hn::Add(hn::Add(hn::Add(hn::Mul(vabs(jet.x), a.rest), hn::Mul(vabs(jet.y), b.rest)),
+                           hn::Mul(pick(is_bent, bent, plain), set(1 + kSlack))),
+                   scaled(3, hn::Add(rounding, set(kSlack * (bound.slope + bound.curvature)))));
+  const V height = set(bound.height), slope = set(bound.slope);
+  const V away = hn::Add(hn::Mul(hn::Mul(slope, r), set(1 + kSlack)), rounding);
+  t.low = vmax(hn::Neg(height), hn::Sub(jet.n, away)), t.high = vmin(height, hn::Add(jet.n, away));
+  t.error = hn::Add(hn::Mul(slope, hn::Add(a.error, b.error)), rounding);
+  settle(t);
+  return t;
+}
+
 // Noise over a segment, with its derivatives in x and y when they are asked for.
 struct VNoiseOver {
   VT n, x, y;
@@ -201,10 +225,10 @@ HWY_INLINE VNoiseOver noise_over(const Directions& directions, const FunctionIns
   const VNoise jet = noise_at<true>(directions, in.kind, in.seed, a.mid, b.mid);
   const V size = hn::Add(hn::Add(hn::Mul(jet.xx, jet.xx), hn::Mul(scaled(2, jet.xy), jet.xy)), hn::Mul(jet.yy, jet.yy));
   const V third = set(bound.third);
-  const V here = hn::Add(hn::Add(hn::Mul(hn::Sqrt(size), set(1 + kSlack)), hn::Mul(third, r)), rounding);
-  const V curvature = vmin(set(bound.curvature), here);
+  const V hessian = hn::Mul(hn::Sqrt(size), set(1 + kSlack));
+  const V curvature = vmin(set(bound.curvature), hn::Add(hn::Add(hessian, hn::Mul(third, r)), rounding));
   VNoiseOver out;
-  out.n = pick(coarse, far.n, derivative_over(a, b, r, jet.n, jet.x, jet.y, height, slope, curvature, rounding));
+  out.n = pick(coarse, far.n, value_over(a, b, r, jet, bound, hessian, curvature, rounding));
   if constexpr (slopes) {
     out.x = derivative_over(a, b, r, jet.x, jet.xx, jet.xy, slope, curvature, third, rounding);
     out.y = derivative_over(a, b, r, jet.y, jet.xy, jet.yy, slope, curvature, third, rounding);
