@@ -90,6 +90,22 @@ Taylor<N> combine(double k0, const Taylor<N>& a, double k1, const Taylor<N>& b, 
   return t;
 }
 
+/// k0 a + k1 b of places, whose line says nearly all: their range is that of the line.
+template <std::size_t N>
+Taylor<N> turned_place(double k0, const Taylor<N>& a, double k1, const Taylor<N>& b) {
+  Taylor<N> t;
+  t.mid = k0 * a.mid + k1 * b.mid;
+  for (std::size_t i = 0; i < N; ++i) t.slope[i] = k0 * a.slope[i] + k1 * b.slope[i];
+  const double ka = std::abs(k0), kb = std::abs(k1);
+  const double slack =
+      kSlack * (ka * (std::abs(a.mid) + a.reach() + a.error) + kb * (std::abs(b.mid) + b.reach() + b.error));
+  t.rest = ka * a.rest + kb * b.rest + slack;
+  const double reach = t.reach() + slack;
+  t.low = t.mid - reach, t.high = t.mid + reach;
+  t.error = ka * a.error + kb * b.error + slack;
+  return t;
+}
+
 template <std::size_t N>
 Taylor<N> multiply(const Taylor<N>& a, const Taylor<N>& b) {
   Taylor<N> t;

@@ -33,6 +33,7 @@ HWY_INLINE V pick(M m, V yes, V no) { return hn::IfThenElse(m, yes, no); }
 HWY_INLINE V combine(double k0, V a, double k1, V b, double k2) {
   return hn::Add(hn::Add(scaled(k0, a), scaled(k1, b)), set(k2));
 }
+HWY_INLINE V turned_place(double k0, V a, double k1, V b) { return hn::Add(scaled(k0, a), scaled(k1, b)); }
 HWY_INLINE V multiply(V a, V b) { return hn::Mul(a, b); }
 HWY_INLINE V square(V a) { return hn::Mul(a, a); }
 HWY_INLINE V absolute(V a) { return vabs(a); }
@@ -94,6 +95,20 @@ HWY_INLINE VT combine(double k0, const VT& a, double k1, const VT& b, double k2)
   return t;
 }
 HWY_INLINE VT negative(const VT& a) { return combine(-1, a, 0, a, 0); }
+
+HWY_INLINE VT turned_place(double k0, const VT& a, double k1, const VT& b) {
+  VT t;
+  const double ka = std::abs(k0), kb = std::abs(k1);
+  t.mid = hn::Add(scaled(k0, a.mid), scaled(k1, b.mid));
+  t.slope = hn::Add(scaled(k0, a.slope), scaled(k1, b.slope));
+  const V slack = scaled(kSlack, hn::Add(scaled(ka, hn::Add(hn::Add(vabs(a.mid), reach_of(a)), a.error)),
+                                         scaled(kb, hn::Add(hn::Add(vabs(b.mid), reach_of(b)), b.error))));
+  t.rest = hn::Add(hn::Add(scaled(ka, a.rest), scaled(kb, b.rest)), slack);
+  const V reach = hn::Add(reach_of(t), slack);
+  t.low = hn::Sub(t.mid, reach), t.high = hn::Add(t.mid, reach);
+  t.error = hn::Add(hn::Add(scaled(ka, a.error), scaled(kb, b.error)), slack);
+  return t;
+}
 
 HWY_INLINE VT multiply(const VT& a, const VT& b) {
   VT t;
@@ -248,6 +263,9 @@ HWY_INLINE void set_constant(VJ& out, double k) { out = {constant_model(set(k)),
 HWY_INLINE VJ combine(double k0, const VJ& a, double k1, const VJ& b, double k2) {
   return {combine(k0, a.v, k1, b.v, k2), combine(k0, a.d, k1, b.d, 0)};
 }
+HWY_INLINE VJ turned_place(double k0, const VJ& a, double k1, const VJ& b) {
+  return {turned_place(k0, a.v, k1, b.v), combine(k0, a.d, k1, b.d, 0)};
+}
 HWY_INLINE VJ chained(const VT& v, const VT& fa, const VT& da, const VT& fb, const VT& db) {
   return {v, combine(1, multiply(fa, da), 1, multiply(fb, db), 0)};
 }
@@ -381,6 +399,12 @@ HWY_NOINLINE Number run(const Directions& directions, const FunctionProgram& pro
       case FunctionOp::combine:
         out = combine(in.k0, a, in.k1, b, in.k2);
         break;
+      case FunctionOp::turn: {
+        const Number turned = turned_place(in.k0, a, -in.k1, b);
+        r[in.out_x] = turned_place(in.k1, a, in.k0, b);
+        r[in.out] = turned;
+        break;
+      }
       case FunctionOp::multiply:
         out = multiply(a, b);
         break;

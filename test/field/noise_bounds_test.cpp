@@ -134,8 +134,8 @@ int boxes_to_prove(NoiseKind kind, std::size_t k, double bound) {
     const Interval x = kind == NoiseKind::simplex ? Interval(0.0, 0.4083) : Interval(0.0, 0.5);
     const Interval y = kind == NoiseKind::simplex ? Interval(0.0, 0.2358) : Interval(0.0, 0.5);
     // Values have no direction.
-    const Interval angle = k == 0 ? Interval(0.0)
-                                  : Interval(quadrant * half_pi, (quadrant + 1) * half_pi + (quadrant == 1 ? 1e-15 : 0));
+    const Interval angle =
+        k == 0 ? Interval(0.0) : Interval(quadrant * half_pi, (quadrant + 1) * half_pi + (quadrant == 1 ? 1e-15 : 0));
     open.push_back({x, y, angle});
   }
   int boxes = 0;
