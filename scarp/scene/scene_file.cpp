@@ -245,10 +245,11 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
   Reader reader(path, whole);
   reader.read();
   const Json& json = reader.json();
+  const SceneCamera camera = reader.camera();
   SceneFile file{Scene(std::move(whole.fields), std::move(reader.objects())),
                  {},
                  std::move(reader.names()),
-                 reader.camera(),
+                 camera,
                  sun_from(json),
                  picture_from(json),
                  {},
