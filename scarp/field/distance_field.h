@@ -21,7 +21,8 @@ namespace scarp {
 inline constexpr double kDistanceReach = 0x1p30;
 
 /// What is known of the field along a segment of a line, t = middle + s * half with s from -1 to 1: the true value is
-/// within `rest` of mid + slope * s, and between low and high; its derivative by s is between rate_low and rate_high.
+/// within `rest` of mid + slope * s, and between low and high, and so is what value() computes at rounded positions;
+/// its derivative by s is between rate_low and rate_high.
 struct DistanceSegment {
   double mid, slope, rest;
   double low, high;
@@ -41,7 +42,7 @@ class DistanceField {
   /// Signed bound of the distance to the surface at a position within kDistanceReach, metres.
   double value(const dvec3& position) const;
   /// By how much value() may differ from the true one at positions at most `reach` from the origin.
-  double rounding(double reach) const { return program_.rounding + program_.rounding_per_metre * reach; }
+  double rounding(double reach) const;
   /// Material of the solid whose surface is the nearest, as value() tells; 0 where none was given.
   int material(const dvec3& position) const;
 
@@ -51,8 +52,9 @@ class DistanceField {
   /// Unit normal out of the solid: the gradient's direction.
   dvec3 normal(const dvec3& position) const;
 
-  /// Bounds along origin + t * direction for t from t0 to t1, within kDistanceReach.
-  DistanceSegment along(const dvec3& origin, const dvec3& direction, double t0, double t1) const;
+  /// Bounds along origin + t * direction for t from t0 to t1, within kDistanceReach. Without `rates` those of the
+  /// derivative are wide: they cost as much as the others where there is ground.
+  DistanceSegment along(const dvec3& origin, const dvec3& direction, double t0, double t1, bool rates = true) const;
 
  private:
   Shape shape_;

@@ -30,7 +30,7 @@ using Shape = std::shared_ptr<const ShapeNode>;
 inline constexpr double kLeastLength = 0x1p-20;
 inline constexpr double kMostLength = 0x1p30;
 /// Nodes under one another.
-inline constexpr int kDeepestShape = 64;
+inline constexpr int kDeepestShape = 256;
 /// Materials are 0 to kMostMaterial.
 inline constexpr int kMostMaterial = 65535;
 
@@ -54,7 +54,7 @@ struct Box {
   double round = 0;  ///< radius, 0 to the smallest half
 };
 /// All that is on or behind a plane.
-struct Plane {
+struct HalfSpace {
   dvec3 normal{0, 0, 1};  ///< out of the solid; any length but 0
   double height = 0;      ///< of the plane over the origin, along the normal
 };
@@ -106,11 +106,11 @@ struct Scaled {
   Shape shape;
   double factor = 1;  ///< > 0, the same in all directions
 };
-/// The shape again and again, `period` apart along each axis that has one. It must lie between -period and period on
-/// such an axis, and be no longer than the period there: then no copy but a neighbour can be the nearest.
+/// The shape again and again, `period` apart along each axis that has one. It must be no longer than the period there:
+/// then one of two copies per axis is the nearest.
 struct Repeated {
   Shape shape;
-  dvec3 period{0.0};              ///< 0: not along this axis
+  dvec3 period{0.0};                  ///< 0: not along this axis
   std::array<int, 3> count{0, 0, 0};  ///< copies on each side of the first; 0: without end
 };
 
@@ -135,8 +135,8 @@ struct Painted {
   int material = 0;
 };
 
-using Form = std::variant<Sphere, Box, Plane, Capsule, Cylinder, Cone, Torus, Ellipsoid, FunctionGround, FieldGround, Moved,
-                          Turned, Scaled, Repeated, Union, Intersection, Subtraction, Painted>;
+using Form = std::variant<Sphere, Box, HalfSpace, Capsule, Cylinder, Cone, Torus, Ellipsoid, FunctionGround,
+                          FieldGround, Moved, Turned, Scaled, Repeated, Union, Intersection, Subtraction, Painted>;
 
 }  // namespace shape
 

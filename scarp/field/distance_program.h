@@ -6,6 +6,7 @@
 // already in metres of the world: scales are folded into the constants.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -17,30 +18,34 @@ namespace scarp {
 enum class DistanceOp : std::uint8_t {
   // Positions: into position register `out`, from position register `a`.
   turn,       ///< M (p - c): 3 numbers of c, 9 of M row by row
-  fold,       ///< into the nearest copy's frame: p - c, its periods, its counts (0: no end): 9 numbers
-  neighbour,  ///< from a fold into the frame of a copy next to it: its axes as bits of `mask`; numbers of the fold
-  // Solids: value register `out`, position register `a`; numbers begin with the centre c, then as told.
+  fold,       ///< into the frame of the nearest copy: 12 numbers, see below
+  neighbour,  ///< into that of the copy next to it, along the axes that are bits of `mask`: likewise
+  // Solids: value register `out`, position register `a`; numbers begin with the centre, then as told.
   sphere,           ///< radius
   box,              ///< half x, y, z without the rounding; rounding
-  plane,            ///< unit normal; height (c is not used: 0)
+  plane,            ///< unit normal; height (there is no centre)
   capsule,          ///< half length, along z; radius
   cylinder,         ///< radius, half height
-  cone,             ///< radius below, radius above, half height; cosine and sine of the side's normal
+  cone,             ///< radius below, radius above, half height
   torus,            ///< radius, tube
-  ellipsoid,        ///< radii; smallest radius
-  function_ground,  ///< scale; shrink; `index` into functions
-  field_ground,     ///< scale; shrink; slope; `index` into fields
+  ellipsoid,        ///< radii; the smallest of them
+  function_ground,  ///< scale, shrink; `index` of functions
+  field_ground,     ///< scale, shrink, slope; `index` of fields
   // Values: value register `out`, from value registers `a` and `b`.
   unite,         ///< the smaller
   intersect,     ///< the larger
   subtract,      ///< the larger of a and -b
-  smooth_unite,  ///< likewise with a radius: 1 number
+  smooth_unite,  ///< likewise, with a radius
   smooth_intersect,
   smooth_subtract,
-  clamp,      ///< the larger of `a` and the distance to a box, position register `b`: low, high: 6 numbers
-  rest_bound  ///< the smaller of `a` and the distance to all but the nearest copies, position register `b`, a fold:
-              ///< numbers of the fold, then the box's largest coordinate along each axis
+  clamp,       ///< the larger of `a` and the distance of position `b` to a box: low, high
+  rest_bound,  ///< the smaller of `a` and what position `b` has at least to copies that are not looked at: 12 numbers
+  // Ways round: the next `index` instructions are left out where they cannot change value `a`, position `b`.
+  skip_far,   ///< for they unite (mask 0) or subtract (mask 1) what lies in a box: low, high, radius of the operation
+  skip_copy,  ///< for they unite a neighbour (axes in `mask`): 12 numbers
 };
+// The 12 numbers of copies: middle of the shape, period (0: none), copies on each side (0: without end), half of the
+// shape's length; each along x, y, z.
 
 struct DistanceInstruction {
   DistanceOp op = DistanceOp::sphere;
@@ -51,7 +56,7 @@ struct DistanceInstruction {
   std::uint32_t index = 0;
 };
 
-/// Registers there are; position register 0 holds the position when the program begins.
+/// Registers there are; position register 0 holds the position when the program begins. The result is value 0.
 inline constexpr int kDistancePositions = 32;
 inline constexpr int kDistanceValues = 32;
 
@@ -60,7 +65,8 @@ struct DistanceProgram {
   std::vector<double> numbers;
   std::vector<std::shared_ptr<const HeightFunction>> functions;
   std::vector<std::shared_ptr<const HeightField>> fields;
-  double rounding = 0, rounding_per_metre = 0;  ///< see DistanceField::rounding()
+  double rounding = 0, rounding_per_metre = 0;  ///< of values, at a position and per metre of its distance from 0
+  std::array<double, 32> ground_rounding{};     ///< of the grounds' heights, at positions within 2^i
 };
 
 /// Throws Error for a shape that needs more than 16384 instructions or more registers than there are.

@@ -15,6 +15,7 @@
 #include "scarp/march/max_mip_simd.h"
 #include "scarp/march/naive.h"
 #include "scarp/march/relaxed.h"
+#include "scarp/march/sphere_trace.h"
 #include "scarp/march/voxel_bricks.h"
 #include "scarp/march/voxel_cubes.h"
 #include "scarp/march/voxel_exhaustive.h"
@@ -29,6 +30,16 @@ constexpr MarchEntry voxel_march(std::string_view name, VoxelAccelerator needs, 
                                  std::string_view description) {
   return {name,  "voxel grid", Guarantee::exact, false, false,    nullptr, nullptr, nullptr, nullptr,
           false, "",           description,      cpu,   occluded, needs};
+}
+
+constexpr MarchEntry distance_march(std::string_view name, Guarantee guarantee, DistanceMarch cpu,
+                                    DistanceOcclusion occluded, std::string_view parameters,
+                                    std::string_view description) {
+  MarchEntry entry{name,    "distance field", guarantee, false, false,      nullptr,
+                   nullptr, nullptr,          nullptr,   false, parameters, description};
+  entry.distance_cpu = cpu;
+  entry.distance_cpu_occluded = occluded;
+  return entry;
 }
 
 constexpr std::array kMarches = {
@@ -65,13 +76,18 @@ constexpr std::array kMarches = {
                 "out of the largest empty cube ahead of each voxel, one for each octant of directions"),
     voxel_march("voxel-bricks", VoxelAccelerator::bricks, march_voxel_bricks, occluded_voxel_bricks,
                 "out of empty blocks of 2 to 16 voxels, told by bit masks; the smallest memory"),
+    distance_march("sphere-trace", Guarantee::conservative, march_sphere_trace, occluded_sphere_trace,
+                   "tolerance 1e-6 of the distance, 1024 steps",
+                   "steps by the distance to the nearest surface, closes in by bounds of segments; never passes"),
 };
 
-constexpr std::size_t kHeightMarches = [] {
+// How many rows there are of a kind, which stand together.
+constexpr std::size_t count_of(std::string_view fields) {
   std::size_t count = 0;
-  while (kMarches[count].fields == "height field") ++count;
+  for (const MarchEntry& march : kMarches) count += march.fields == fields;
   return count;
-}();
+}
+constexpr std::size_t kHeightMarches = count_of("height field"), kVoxelMarches = count_of("voxel grid");
 
 void require(bool good, std::string_view name, double value, std::string_view range) {
   if (!good) throw Error(fmt::format("march setting {}: is {}; it must be {}", name, value, range));
@@ -121,15 +137,21 @@ void validate(const MarchSettings& settings) {
   require(std::isfinite(lipschitz.tolerance) && lipschitz.tolerance >= 0, "lipschitz tolerance", lipschitz.tolerance,
           "0 or more");
   require(lipschitz.max_steps >= 1, "lipschitz step limit", lipschitz.max_steps, "1 or more");
+  const auto& sphere_trace = settings.sphere_trace;
+  require(std::isfinite(sphere_trace.tolerance) && sphere_trace.tolerance >= 0, "sphere-trace tolerance",
+          sphere_trace.tolerance, "0 or more");
+  require(sphere_trace.max_steps >= 1, "sphere-trace step limit", sphere_trace.max_steps, "1 or more");
   require(settings.bisect.halvings >= 1 && settings.bisect.halvings <= 60, "bisect halvings", settings.bisect.halvings,
           "1 to 60");
 }
 
 std::span<const MarchEntry> marches() { return kMarches; }
 std::span<const MarchEntry> height_marches() { return marches().first(kHeightMarches); }
-std::span<const MarchEntry> voxel_marches() { return marches().subspan(kHeightMarches); }
+std::span<const MarchEntry> voxel_marches() { return marches().subspan(kHeightMarches, kVoxelMarches); }
+std::span<const MarchEntry> distance_marches() { return marches().subspan(kHeightMarches + kVoxelMarches); }
 
 const MarchEntry& find_march(std::string_view name) { return find_in(height_marches(), name); }
 const MarchEntry& find_voxel_march(std::string_view name) { return find_in(voxel_marches(), name); }
+const MarchEntry& find_distance_march(std::string_view name) { return find_in(distance_marches(), name); }
 
 }  // namespace scarp

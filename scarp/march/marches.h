@@ -10,6 +10,7 @@
 
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/ray.h"
+#include "scarp/field/distance_field.h"
 #include "scarp/field/height_field.h"
 #include "scarp/march/voxel_target.h"
 
@@ -58,12 +59,19 @@ struct BisectSettings {
   int halvings = 16;  ///< 1..60
 };
 
+/// `sphere-trace`: t += distance, closes in on the surface by bounds of segments.
+struct SphereTraceSettings {
+  double tolerance = 1e-6;  ///< length of the last interval, per unit of distance travelled, >= 0
+  int max_steps = 1024;     ///< >= 1
+};
+
 struct MarchSettings {
   NaiveSettings naive;
   FixedStepSettings fixed_step;
   RelaxedSettings relaxed;
   LipschitzSettings lipschitz;
   BisectSettings bisect;
+  SphereTraceSettings sphere_trace;
 };
 
 /// Throws Error naming the first setting out of its range.
@@ -90,6 +98,11 @@ using HeightMarchBatch = void (*)(const HeightTarget& target, std::span<const Ra
 using HeightOcclusionBatch = void (*)(const HeightTarget& target, std::span<const Ray> rays,
                                       std::span<std::uint8_t> blocked);
 
+/// A ray in world space against a distance field: the closest hit, and whether it is one.
+using DistanceMarch = Hit (*)(const DistanceField& field, const Ray& ray, const MarchSettings& settings,
+                              MarchStats* stats);
+using DistanceOcclusion = bool (*)(const DistanceField& field, const Ray& ray, const MarchSettings& settings);
+
 /// What a voxel march needs of VoxelTarget besides the grid.
 enum class VoxelAccelerator { none, spheres, cubes, octants, bricks };
 
@@ -111,17 +124,24 @@ struct MarchEntry {
   VoxelMarch voxel_cpu = nullptr;  ///< scalar C++
   VoxelOcclusion voxel_cpu_occluded = nullptr;
   VoxelAccelerator voxel_accelerator = VoxelAccelerator::none;
+  // Those of distance fields likewise.
+  DistanceMarch distance_cpu = nullptr;
+  DistanceOcclusion distance_cpu_occluded = nullptr;
 };
 
-/// The whole table: height fields, then voxel grids.
+/// The whole table: height fields, voxel grids, distance fields.
 std::span<const MarchEntry> marches();
 /// The part of it that takes height fields, the oracle first.
 std::span<const MarchEntry> height_marches();
 /// The part that takes voxel grids, the oracle first.
 std::span<const MarchEntry> voxel_marches();
+/// The part that takes distance fields.
+std::span<const MarchEntry> distance_marches();
 /// Of height_marches(). Throws Error listing their names when there is no such march.
 const MarchEntry& find_march(std::string_view name);
 /// Of voxel_marches(), likewise.
 const MarchEntry& find_voxel_march(std::string_view name);
+/// Of distance_marches(), likewise.
+const MarchEntry& find_distance_march(std::string_view name);
 
 }  // namespace scarp
