@@ -20,7 +20,9 @@ using Row = std::array<std::string, kHeads.size()>;
 
 Row row_of(const MarchEntry& march) {
   std::string runs_on;
-  if (march.cpu != nullptr || march.function_cpu != nullptr || march.voxel_cpu != nullptr) runs_on += "cpu";
+  if (march.cpu != nullptr || march.function_cpu != nullptr || march.voxel_cpu != nullptr ||
+      march.distance_cpu != nullptr)
+    runs_on += "cpu";
   if (march.simd != nullptr) runs_on += ", simd";
   if (march.gpu) runs_on += ", gpu";
   return {std::string(march.name),
