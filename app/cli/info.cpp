@@ -112,8 +112,8 @@ std::string text_of(const Json& info) {
 }  // namespace
 
 void add_info(CLI::App& program) {
-  CLI::App* command =
-      program.add_subcommand("info", "Say what is in a raster of heights, a voxel model or a scene, as scarp will use it");
+  CLI::App* command = program.add_subcommand(
+      "info", "Say what is in a raster of heights, a voxel model or a scene, as scarp will use it");
   const auto options = std::make_shared<InfoOptions>();
   add_raster_inputs(*command, options->inputs);
   command->add_flag("--json", options->json, "one JSON object instead of text");

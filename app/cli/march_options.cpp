@@ -34,6 +34,8 @@ void add_march_options(CLI::App& command, MarchSettings& march) {
   const auto add_function = [&](const char* name, auto& value, const char* help) {
     command.add_option(name, value, help)->group(functions)->capture_default_str();
   };
+  command.add_option("--function-reach", march.function.reach, "metres that a ray is followed; above 0 (any)")
+      ->group(functions);
   add_function("--function-step", march.function.step, "the step of fixed-step, metres; above 0");
   add_function("--function-step-share", march.function.step_share,
                "its least step as a share of the distance travelled; 0 or more");

@@ -18,6 +18,7 @@
 #include "app/cli/device_option.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
+#include "app/cli/function_input.h"
 #include "app/cli/march_options.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
@@ -39,8 +40,8 @@ namespace {
 
 // What of the options goes with a scene, which says all else itself.
 constexpr std::array<std::string_view, 16> kSceneOptions = {
-    "IN",     "--output",   "--size",      "--look", "--ramp",    "--sun", "--no-shadows", "--samples", "--sun-size",
-    "--view", "--eye",      "--target",    "--fov",  "--top",     "--aa",  "--threads"};
+    "IN",         "--output", "--size", "--look",   "--ramp", "--sun", "--no-shadows", "--samples",
+    "--sun-size", "--view",   "--eye",  "--target", "--fov",  "--top", "--aa",         "--threads"};
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {
@@ -49,6 +50,7 @@ struct RenderOptions {
   RasterOptions raster;
   FieldOptions field;
   VoxSceneOptions vox;
+  FunctionInput function;
   std::string march;  // empty: the fastest exact one
   std::string device;
   MarchSettings march_settings;
@@ -216,10 +218,11 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
   if (options.top && options.size.empty()) fit_size_to_ground(picture_box(document.scene), options.picture);
   const int width = options.picture.width, height = options.picture.height;
   options.fov_deg = view.fov_deg;
-  const Camera camera = !typed && document.camera.eye
-                            ? Camera::look_at(*document.camera.eye, *document.camera.target, view.fov_deg, width, height)
-                        : !options.eye.empty() && !options.target.empty() ? camera_of(options, view, {}, 0)
-                                                                          : camera_of(options, view, picture_box(document.scene), 0);
+  const Camera camera =
+      !typed && document.camera.eye
+          ? Camera::look_at(*document.camera.eye, *document.camera.target, view.fov_deg, width, height)
+      : !options.eye.empty() && !options.target.empty() ? camera_of(options, view, {}, 0)
+                                                        : camera_of(options, view, picture_box(document.scene), 0);
   for (const std::string& note : document.notes) fmt::print(stderr, "note: {}\n", note);
   const SceneLook look = look_of(document);
   if (options.exr) {
@@ -283,11 +286,31 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   print_findings(picture);
 }
 
+void render_function_input(const RenderOptions& options, const ViewSettings& view) {
+  if (!options.inputs.empty()) {
+    throw Error(fmt::format("'{}': --function stands in the place of files; give one of both", options.inputs.front()));
+  }
+  if (options.exr) throw Error(fmt::format("output '{}': pictures of functions are written as PNG", options.output));
+  if (!options.device.empty()) throw Error("--device: pictures of functions are made on the CPU; leave it out");
+  if (options.top) throw Error("--top: a function has no end that a map could show; leave it out");
+  const auto given = [&](const char* option) {
+    return std::find(options.given.begin(), options.given.end(), option) != options.given.end();
+  };
+  render_function(options.function,
+                  {options.picture, options.march, options.march_settings, view, given("--view"), given("--haze"),
+                   given("--error-tolerance"), options.eye, options.target},
+                  options.output);
+}
+
 void run(RenderOptions options) {
   const ViewSettings view = settle(options);
   if (!options.eye.empty()) point_from(options.eye, "--eye");
   if (!options.target.empty()) point_from(options.target, "--target");
   const ThreadLimit limit(options.threads);
+  if (!options.function.function.empty()) return render_function_input(options, view);
+  if (options.inputs.empty()) throw Error("nothing to render: give files, or --function NAME");
+  if (!options.function.preset.empty())
+    throw Error("--preset: has the numbers of shaders over functions; add --function");
   if (is_scene_input(options.inputs)) {
     render_scene_file(std::move(options), view);
   } else if (is_vox_input(options.inputs)) {
@@ -300,10 +323,11 @@ void run(RenderOptions options) {
 }  // namespace
 
 void add_render(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("render", "Render an elevation model, a voxel model or a scene into a picture");
+  CLI::App* command =
+      program.add_subcommand("render", "Render an elevation model, a voxel model or a scene into a picture");
   const auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
-  add_raster_inputs(*command, o.inputs);
+  add_raster_inputs(*command, o.inputs)->required(false);
   command
       ->add_option("-o,--output", o.output,
                    "the picture: .png, or .exr in linear light with depth, normal, position and steps")
@@ -336,14 +360,18 @@ void add_render(CLI::App& program) {
       ->capture_default_str();
   command->add_flag("--no-plinth", o.no_plinth, "no walls below the terrain's border");
   command
-      ->add_option("--haze", o.picture.haze, "share of haze over a distance as long as the field's diagonal, 0 to 0.95")
+      ->add_option("--haze", o.picture.haze,
+                   "share of haze over a distance as long as the field's diagonal (of functions "
+                   "over --extent, 0.2), 0 to 0.95")
       ->capture_default_str();
   command->add_option("--aa", o.picture.aa, "N x N samples per pixel of the shaded look, 1 to 16")
       ->capture_default_str();
-  command
-      ->add_option("--error-tolerance", o.picture.error_tolerance,
-                   "of the error look, in sides of a cell along the ray")
-      ->capture_default_str();
+  CLI::Option* tolerance =
+      command
+          ->add_option(
+              "--error-tolerance", o.picture.error_tolerance,
+              "of the error look along the ray, in sides of a cell; of functions in percent of the distance (1)")
+          ->capture_default_str();
   add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
 
@@ -369,7 +397,8 @@ void add_render(CLI::App& program) {
       ->excludes(fov);
   view->excludes(eye);
 
-  command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks)")
+  add_function_options(*command, o.function, o.march, o.march_settings);
+  command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks; lipschitz-local)")
       ->group("Settings of marches");
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);

@@ -133,10 +133,11 @@ Hit lipschitz(const FunctionRay& r, const LipschitzSettings& settings, double sh
 }
 
 template <class March>
-Hit marched(const HeightFunction& function, const Ray& ray, MarchStats* stats, FunctionUse use, March march) {
+Hit marched(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+            FunctionUse use, March march) {
   MarchStats counted;
   Hit hit;
-  const FunctionRay r(function, ray, use);
+  const FunctionRay r(function, ray, use, settings.function.reach);
   if (r.begins_under) {
     hit.status = HitStatus::below;
   } else if (r.crosses()) {
@@ -150,19 +151,19 @@ Hit marched(const HeightFunction& function, const Ray& ray, MarchStats* stats, F
 
 Hit march_naive(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
                 FunctionUse use) {
-  return marched(function, ray, stats, use,
+  return marched(function, ray, settings, stats, use,
                  [&](const FunctionRay& r, MarchStats& counted) { return naive(r, settings, counted); });
 }
 
 Hit march_fixed_step(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
                      FunctionUse use) {
-  return marched(function, ray, stats, use,
+  return marched(function, ray, settings, stats, use,
                  [&](const FunctionRay& r, MarchStats& counted) { return fixed_step(r, settings, counted); });
 }
 
 Hit march_relaxed(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
                   FunctionUse use) {
-  return marched(function, ray, stats, use,
+  return marched(function, ray, settings, stats, use,
                  [&](const FunctionRay& r, MarchStats& counted) { return relaxed(r, settings, counted); });
 }
 
@@ -171,7 +172,7 @@ Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchS
   // A step of the factor 1 / sqrt(1 + c^2), rounded towards 0 by more than its three roundings.
   const double certified = (1 - 0x1p-50) / std::hypot(1.0, function.bound_everywhere(use).slope);
   const double shrink = settings.lipschitz.shrink > 0 ? settings.lipschitz.shrink : certified;
-  return marched(function, ray, stats, use, [&](const FunctionRay& r, MarchStats& counted) {
+  return marched(function, ray, settings, stats, use, [&](const FunctionRay& r, MarchStats& counted) {
     return lipschitz(r, settings.lipschitz, shrink, counted);
   });
 }

@@ -14,10 +14,12 @@ namespace scarp {
 
 class FunctionRay {
  public:
-  FunctionRay(const HeightFunction& function, const Ray& ray, FunctionUse use)
+  /// `reach` is how many metres the ray is followed at most.
+  FunctionRay(const HeightFunction& function, const Ray& ray, FunctionUse use,
+              double reach = std::numeric_limits<double>::infinity())
       : function_(function), ray_(ray), use_(use), speed_(length(ray.direction)) {
     t_enter = ray.t_min;
-    t_exit = ray.t_max;
+    t_exit = std::min(ray.t_max, ray.t_min + reach / speed_);
     const FunctionBound& all = function.bound_everywhere(use);
     // The ground's range, wider by what the division below can lose.
     const double slack = kRounding * (std::abs(all.low) + std::abs(all.high) + std::abs(ray.origin.z));

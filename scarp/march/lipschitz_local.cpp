@@ -120,7 +120,7 @@ Hit march_lipschitz_local(const HeightFunction& function, const Ray& ray, const 
                           MarchStats* stats, FunctionUse use) {
   MarchStats counted;
   Hit hit;
-  const FunctionRay r(function, ray, use);
+  const FunctionRay r(function, ray, use, settings.function.reach);
   if (r.begins_under) {
     hit.status = HitStatus::below;
   } else if (r.crosses()) {

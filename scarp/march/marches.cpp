@@ -199,6 +199,7 @@ void validate(const MarchSettings& settings) {
           "0 or more");
   require(local.max_steps >= 1, "lipschitz-local step limit", local.max_steps, "1 or more");
   const auto& function = settings.function;
+  require(function.reach > 0, "function reach", function.reach, "above 0 metres");
   require(positive(function.step), "function step", function.step, "above 0 metres");
   require(std::isfinite(function.step_share) && function.step_share >= 0, "function step share", function.step_share,
           "0 or more");

@@ -85,9 +85,10 @@ std::string_view name_of(Refinement refinement);
 /// Throws Error listing the names when there is no such refinement.
 Refinement find_refinement(std::string_view name);
 
-/// Of naive, fixed-step and relaxed over terrain functions alone, which have no cells to measure by.
+/// Of marches over terrain functions alone, which have no cells to measure by and no end.
 struct FunctionMarchSettings {
-  double step = 5;        ///< of fixed-step, in the place of its cells: metres, > 0
+  double reach = std::numeric_limits<double>::infinity();  ///< of all: metres that a ray is followed, > 0
+  double step = 5;                                         ///< of fixed-step, in the place of its cells: metres, > 0
   double step_share = 0;  ///< of fixed-step: steps are at least this share of the distance travelled, >= 0
   double tolerance = 0;   ///< of naive and relaxed: metres off the ground that are a hit at any distance, >= 0
   Refinement refinement = Refinement::none;

@@ -62,12 +62,9 @@ MarchPreset snowy() {
 }
 
 MarchPreset castle() {
-  MarchPreset p{"castle",
-                "naive",
-                {},
-                "t += h, stops at h < 0.001 units (1 unit: 1 m), 1000 steps",
-                "",
-                "\"Castle\", as in our reference on rendering"};
+  MarchPreset p{"castle", "naive",
+                {},       "t += h, stops at h < 0.001 units (1 unit: 1 m), 1000 steps",
+                "",       "\"Castle\", as in our reference on rendering"};
   p.settings.naive = {.step_factor = 1, .min_step = kNoLeastStep, .tolerance = 0, .max_steps = 1000};
   p.settings.function.tolerance = 0.001;
   return p;

@@ -26,9 +26,9 @@ struct SceneLook {
 /// Camera::framed() takes it: around all that has an end. Throws Error when that is nothing.
 Box picture_box(const Scene& scene);
 
-/// Of the settings `plinth`, `haze` and `error_tolerance` do not count; y is north. `camera` must have been made for the
-/// settings' width and height. Throws Error when a setting is out of its range or the look is another one, Interrupted
-/// when progress asks for it.
+/// Of the settings `plinth`, `haze` and `error_tolerance` do not count; y is north. `camera` must have been made for
+/// the settings' width and height. Throws Error when a setting is out of its range or the look is another one,
+/// Interrupted when progress asks for it.
 Picture render_scene(const Scene& scene, const SceneLook& look, const Camera& camera, const PictureSettings& settings,
                      const Progress& progress = {});
 

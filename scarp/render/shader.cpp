@@ -40,8 +40,7 @@ Shader::Shader(const HeightField& field, const Camera& camera, double grid_north
     : field_(field),
       ramp_(ramp_of(settings), field_.min_height(), field_.max_height()),
       // No ray from the ground has a longer way to the end of the field.
-      lighting_(settings, grid_north_azimuth,
-                std::min(settings.ao_distance, diagonal(picture_box(field_, false)))),
+      lighting_(settings, grid_north_azimuth, std::min(settings.ao_distance, diagonal(picture_box(field_, false)))),
       earth_(linear_from_srgb(kEarth)) {
   // Haze lies over the field, not between it and a camera that stands back.
   const Box box = picture_box(field_, settings.plinth);

@@ -74,9 +74,8 @@ vec3 SurfaceColours::colour(std::size_t material, const SceneSurface& surface) c
     return linear_from_srgb(in_second(*checker, surface.place) ? checker->second : checker->first);
   }
   if (const auto* blend = std::get_if<Blend>(&m)) {
-    const double value = blend->by == Blend::By::height
-                             ? z
-                             : glm::degrees(std::acos(glm::clamp(surface.shading_normal.z, -1.0, 1.0)));
+    const double value =
+        blend->by == Blend::By::height ? z : glm::degrees(std::acos(glm::clamp(surface.shading_normal.z, -1.0, 1.0)));
     if (value <= blend->from) return colour(blend->low, surface);
     if (value >= blend->to) return colour(blend->high, surface);
     const auto f = static_cast<float>((value - blend->from) / (blend->to - blend->from));

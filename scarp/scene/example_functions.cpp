@@ -14,23 +14,26 @@ namespace scarp {
 namespace {
 
 constexpr std::array kExamples = {
-    ExampleFunction{"hills", "plain fBm of Perlin noise, 9 octaves", R"({"type": "fbm", "wavelength": 1200, "height": 260})"},
+    ExampleFunction{"hills", "plain fBm of Perlin noise, 9 octaves",
+                    R"({"type": "fbm", "wavelength": 1600, "height": 320, "gain": 0.45})"},
     ExampleFunction{"eroded", "fBm of value noise, damped by its gradient as in Elevated: sharp slopes, calm valleys",
                     R"({"type": "fbm", "noise": "value", "seed": 2, "wavelength": 2400, "height": 900, "damping": 1,
                         "octaves": {"march": 9, "shadow": 9, "normal": 13}})"},
-    ExampleFunction{"ridges", "ridged multifractal of simplex noise: crests that meet",
-                    R"({"type": "ridged", "noise": "simplex", "seed": 3, "wavelength": 3000, "height": 800, "gain": 0.45})"},
+    ExampleFunction{
+        "ridges", "ridged multifractal of simplex noise: crests that meet",
+        R"({"type": "ridged", "noise": "simplex", "seed": 3, "wavelength": 3000, "height": 800, "gain": 0.45})"},
     ExampleFunction{"warped", "fBm whose plane is bent by another one",
                     R"({"type": "warp", "base": {"type": "fbm", "seed": 4, "wavelength": 1400, "height": 280},
                         "shift_x": {"type": "fbm", "seed": 5, "wavelength": 2600, "height": 420, "octaves": 2},
                         "shift_y": {"type": "fbm", "seed": 6, "wavelength": 2600, "height": 420, "octaves": 2}})"},
     ExampleFunction{"sea", "waves: a sum of sines",
                     R"({"type": "sines", "waves": [
-                        {"amplitude": 3.2, "wavelength": 140, "towards_deg": 70},
-                        {"amplitude": 1.8, "wavelength": 83, "towards_deg": 38, "phase_deg": 40},
-                        {"amplitude": 1.1, "wavelength": 47, "towards_deg": 105, "phase_deg": 90},
-                        {"amplitude": 0.5, "wavelength": 22, "towards_deg": 60, "phase_deg": 10}]})"},
-    ExampleFunction{"mesas", "terraced hills", R"({"type": "terraces", "base": {"type": "fbm", "seed": 8, "wavelength": 1500,
+                        {"amplitude": 3.2, "wavelength": 140, "towards": 70},
+                        {"amplitude": 1.8, "wavelength": 83, "towards": 38, "phase": 40},
+                        {"amplitude": 1.1, "wavelength": 47, "towards": 105, "phase": 90},
+                        {"amplitude": 0.5, "wavelength": 22, "towards": 60, "phase": 10}]})"},
+    ExampleFunction{"mesas", "terraced hills",
+                    R"({"type": "terraces", "base": {"type": "fbm", "seed": 8, "wavelength": 1500,
                         "height": 320, "octaves": 7}, "step": 60, "rise": 0.25})"},
     ExampleFunction{"island", "ridges inside a radial mask, and a calm sea",
                     R"({"type": "maximum", "of": [
@@ -41,8 +44,8 @@ constexpr std::array kExamples = {
                               {"type": "fbm", "seed": 10, "wavelength": 3000, "height": 200, "octaves": 3}]},
                             {"type": "mask", "inner": 200, "outer": 4200}]},
                           0]},
-                        {"type": "sines", "waves": [{"amplitude": 0.6, "wavelength": 90, "towards_deg": 70},
-                                                    {"amplitude": 0.3, "wavelength": 37, "towards_deg": 20}]}]})"},
+                        {"type": "sines", "waves": [{"amplitude": 0.6, "wavelength": 90, "towards": 70},
+                                                    {"amplitude": 0.3, "wavelength": 37, "towards": 20}]}]})"},
 };
 
 }  // namespace

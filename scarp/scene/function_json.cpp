@@ -24,8 +24,8 @@ constexpr double kRadians = std::numbers::pi / 180;
 constexpr int kMostOctaves = std::numeric_limits<int>::max();  // make_function() knows better
 constexpr std::size_t kMostOperands = 1024;
 
-const std::vector<std::string_view> kTypes = {"plane",  "sines", "fbm", "ridged",  "warp",    "terraces",
-                                              "mask",   "sum",   "product", "minimum", "maximum", "smooth-minimum"};
+const std::vector<std::string_view> kTypes = {"plane", "sines", "fbm",     "ridged",  "warp",    "terraces",
+                                              "mask",  "sum",   "product", "minimum", "maximum", "smooth-minimum"};
 enum Type { plane, sines, fbm, ridged, warp, terraces, mask, sum, product, minimum, maximum, smooth_minimum };
 
 class Reader {
@@ -112,8 +112,8 @@ class Reader {
       Sine sine;
       sine.amplitude = wave.number("amplitude", sine.amplitude);
       sine.wavelength = wave.number("wavelength", sine.wavelength);
-      sine.towards = wave.number("towards_deg", 0) * kRadians;
-      sine.phase = wave.number("phase_deg", 0) * kRadians;
+      sine.towards = wave.number("towards", 0) * kRadians;
+      sine.phase = wave.number("phase", 0) * kRadians;
       wave.finish();
       s.waves.push_back(sine);
     }
@@ -130,8 +130,8 @@ class Reader {
     f.height = object.number("height", f.height);
     f.gain = object.number("gain", f.gain);
     f.lacunarity = object.number("lacunarity", f.lacunarity);
-    if (object.find("turn_deg")) {
-      const double turn = object.number("turn_deg") * kRadians;
+    if (object.find("turn")) {
+      const double turn = object.number("turn") * kRadians;
       f.turn = {std::cos(turn), std::sin(turn)};
     }
     f.damping = object.number("damping", f.damping);
@@ -163,7 +163,8 @@ class Reader {
     const std::string path = object.path_of("of");
     const bool two = type == smooth_minimum;
     if (!of.is_array() || of.size() < 2 || of.size() > (two ? 2 : kMostOperands)) {
-      refuse_json(path, of, two ? "a list of two functions" : fmt::format("a list of 2 to {} functions", kMostOperands));
+      refuse_json(path, of,
+                  two ? "a list of two functions" : fmt::format("a list of 2 to {} functions", kMostOperands));
     }
     std::vector<Function> operands;
     for (std::size_t i = 0; i < of.size(); ++i) {

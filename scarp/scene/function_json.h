@@ -4,9 +4,9 @@
 //   5                                                            a plane at that height
 //   "hills"                                                      a function of that name
 //   {"type": "plane", "height": 0, "slope": [0.1, 0]}
-//   {"type": "sines", "waves": [{"amplitude": 20, "wavelength": 700, "towards_deg": 17, "phase_deg": 0}]}
+//   {"type": "sines", "waves": [{"amplitude": 20, "wavelength": 700, "towards": 17, "phase": 0}]}
 //   {"type": "fbm", "noise": "perlin", "seed": 1, "wavelength": 1000, "height": 200, "gain": 0.5, "lacunarity": 2,
-//    "turn_deg": 36.87, "damping": 0, "octaves": 9}              octaves also {"march": 9, "shadow": 9, "normal": 12}
+//    "turn": 36.87, "damping": 0, "octaves": 9}              octaves also {"march": 9, "shadow": 9, "normal": 12}
 //   {"type": "ridged", ..., "focus": 2}
 //   {"type": "warp", "base": F, "shift_x": F, "shift_y": F}
 //   {"type": "terraces", "base": F, "step": 10, "rise": 0.3}
@@ -15,8 +15,8 @@
 //   {"type": "product" | "minimum" | "maximum", "of": [F, F, ...]}
 //   {"type": "smooth-minimum", "of": [F, F], "radius": 10}
 //
-// All keys but type and operands have the defaults of function_node.h. Angles are degrees; towards_deg counts from east,
-// counter-clockwise.
+// All keys but type and operands have the defaults of function_node.h. Angles are in degrees; `towards` counts from
+// east, counter-clockwise.
 #pragma once
 
 #include <functional>

@@ -77,8 +77,8 @@ std::string JsonObject::text(std::string_view key) {
 std::size_t JsonObject::choice(std::string_view key, std::size_t fallback, const std::vector<std::string_view>& names) {
   const nlohmann::json* value = find(key);
   if (!value) return fallback;
-  const auto found = value->is_string() ? std::find(names.begin(), names.end(), value->get_ref<const std::string&>())
-                                        : names.end();
+  const auto found =
+      value->is_string() ? std::find(names.begin(), names.end(), value->get_ref<const std::string&>()) : names.end();
   if (found == names.end()) refuse_json(path_of(key), *value, fmt::format("one of {}", fmt::join(names, ", ")));
   return static_cast<std::size_t>(found - names.begin());
 }

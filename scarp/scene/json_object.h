@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An object of a JSON file, read key by key: what is missing, of the wrong kind or unknown is told with its place in the
-// file, as a JSON pointer ("/fields/0/function/octaves").
+// An object of a JSON file, read key by key: what is missing, of the wrong kind or unknown is told with its place in
+// the file, as a JSON pointer ("/fields/0/function/octaves").
 #pragma once
 
 #include <cstdint>

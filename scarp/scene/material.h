@@ -22,8 +22,8 @@ struct PlainColour {
 
 /// A ramp of render/ramp.h over heights.
 struct HeightRamp {
-  std::string ramp;         ///< a name of ramp_names()
-  double low = 0, high = 1; ///< metres of world z, low <= high
+  std::string ramp;          ///< a name of ramp_names()
+  double low = 0, high = 1;  ///< metres of world z, low <= high
 };
 
 /// Colours at heights, blended between them.
@@ -44,7 +44,7 @@ struct Blend {
     height,  ///< metres of world z
   };
   By by = By::slope;
-  double from = 30, to = 40;         ///< from <= to
+  double from = 30, to = 40;        ///< from <= to
   std::uint32_t low = 0, high = 0;  ///< materials before it in the list
 };
 

@@ -33,8 +33,9 @@ bool empty(const WorldBox& box) { return !(box.low.x <= box.high.x); }
 WorldBox world_box(const Placement& placement, const WorldBox& box) {
   WorldBox world;
   for (int corner = 0; corner < 8; ++corner) {
-    const dvec3 p = placement.world_from_field({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                                                corner & 4 ? box.high.z : box.low.z});
+    const dvec3 p =
+        placement.world_from_field({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                                    corner & 4 ? box.high.z : box.low.z});
     world = around(world, {p, p});
   }
   return world;
@@ -77,7 +78,8 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
                               fields_.size()));
     }
     if (!good(object.placement))
-      throw Error(fmt::format("scene: object {}: its placement must be a rotation, a scale above 0, a finite place", index));
+      throw Error(
+          fmt::format("scene: object {}: its placement must be a rotation, a scale above 0, a finite place", index));
     batched += fields_[object.field]->likes_batches();
   }
   std::vector<WorldBox> boxes;
@@ -225,7 +227,8 @@ SceneSurface Scene::surface(const Ray& ray, const SceneHit& hit) const {
   surface.normal = object.placement.world_from_normal(own.normal);
   surface.shading_normal = object.placement.world_from_normal(own.shading_normal);
   surface.object = hit.object;
-  surface.material = object.material;
+  // Materials of parts count from 1.
+  surface.material = own.material > 0 ? static_cast<std::uint32_t>(own.material - 1) : object.material;
   surface.place = local.at(hit.t());
   surface.colour = own.colour;
   return surface;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Many fields in one world: terrain, functions and voxels, each in as many places as one likes, and one call that tells
+// Many fields in one world: terrain, functions, shapes and voxels, each in as many places as one likes, and one call that tells
 // the nearest that a ray meets.
 //
 //   ray ──▶ ground without an end, and terrain that takes rays by the hundred        each by its own march;
@@ -45,15 +45,16 @@ struct SceneSurface {
   dvec3 position{0.0};
   dvec3 normal{0.0};          ///< unit, outward; zero for a ray that began inside of a voxel
   dvec3 shading_normal{0.0};  ///< unit, likewise
-  std::uint32_t object = 0, material = 0;
+  std::uint32_t object = 0;
+  std::uint32_t material = 0;  ///< the object's, or that of a shape's part less 1
   dvec3 place{0.0};                   ///< the position in the object's own space
   std::optional<VoxelColour> colour;  ///< where the field has colours of its own
 };
 
 /// What a ray cost.
 struct SceneStats {
-  std::uint32_t steps = 0;      ///< of all marches
-  std::uint32_t boxes = 0;      ///< objects of the hierarchy that were asked
+  std::uint32_t steps = 0;  ///< of all marches
+  std::uint32_t boxes = 0;  ///< objects of the hierarchy that were asked
 };
 
 /// Immutable. Questions may be asked from many threads at once.

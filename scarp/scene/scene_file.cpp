@@ -50,12 +50,17 @@ class Reader {
     check_scene_schema(json_);
     around_.folder = fs::path(path).parent_path().string();
     around_.functions = [this](const std::string& name, std::string_view at) { return function_of(name, at); };
+    around_.material = [this](const std::string& name, const std::string& at) {
+      return static_cast<int>(material_named(name, at)) + 1;
+    };
+    around_.field = [this](const std::string& name, const std::string& at) { return field_named(name, at); };
     around_.notes = &whole_.notes;
     around_.progress = whole_.progress;
   }
 
   void read() {
-    if (json_.contains("materials")) materials_ = materials_from_json(json_["materials"], "/materials", whole_.materials);
+    if (json_.contains("materials"))
+      materials_ = materials_from_json(json_["materials"], "/materials", whole_.materials);
     const Json& list = json_["objects"];
     for (std::size_t i = 0; i < list.size(); ++i) read_object(list[i], fmt::format("/objects/{}", i));
   }
@@ -85,14 +90,18 @@ class Reader {
   std::pair<std::uint32_t, dvec3> field_of(const Json& object, const std::string& path) {
     if (!object.contains("field")) return add_field(object, path);
     for (const char* key : {"march", "settings", "heights", "function", "shape", "voxels", "scene"}) {
-      if (object.contains(key)) throw Error(fmt::format("{}/{}: does not go with field; give it in /fields", path, key));
+      if (object.contains(key))
+        throw Error(fmt::format("{}/{}: does not go with field; give it in /fields", path, key));
     }
     const std::string name = object["field"];
     if (const auto known = named_fields_.find(name); known != named_fields_.end()) return known->second;
-    if (!json_.contains("fields") || !json_["fields"].contains(name)) {
-      throw Error(fmt::format("{}/field: there is no field '{}'; fields stand in /fields, by name", path, name));
-    }
-    return named_fields_[name] = add_field(json_["fields"][name], "/fields/" + name);
+    const auto [json, at] = field_named(name, path + "/field");
+    return named_fields_[name] = add_field(*json, at);
+  }
+  std::pair<const Json*, std::string> field_named(const std::string& name, const std::string& at) const {
+    if (!json_.contains("fields") || !json_["fields"].contains(name))
+      throw Error(fmt::format("{}: there is no field '{}'; fields stand in /fields, by name", at, name));
+    return {&json_["fields"][name], "/fields/" + name};
   }
   std::pair<std::uint32_t, dvec3> add_field(const Json& json, const std::string& path) {
     FieldWithPlace made = field_from_json(json, path, around_);
@@ -130,14 +139,14 @@ class Reader {
       const auto [field, shift] = field_of(json, path);
       parts.push_back({field, material_of(json, path), {.origin = shift}});
     }
-    const ScenePlaces places = places_from_json(json, path, [&](const std::string& name, const std::string& at) {
-      return ground_of(name, at);
-    });
+    const ScenePlaces places = places_from_json(
+        json, path, [&](const std::string& name, const std::string& at) { return ground_of(name, at); });
     const auto first = static_cast<std::uint32_t>(objects_.size());
     if (parts.size() * places.size() > kMostObjects - first)
       throw Error(fmt::format("{}: more than {} objects; place fewer", path, kMostObjects));
     for (const Placement& place : places) {
-      for (const SceneObject& part : parts) objects_.push_back({part.field, part.material, placed(place, part.placement)});
+      for (const SceneObject& part : parts)
+        objects_.push_back({part.field, part.material, placed(place, part.placement)});
     }
     std::string name = json.contains("name") ? json["name"].get<std::string>() : path;
     for (const SceneObjectName& other : names_) {
@@ -148,11 +157,12 @@ class Reader {
 
   std::uint32_t material_of(const Json& json, const std::string& path) const {
     if (!json.contains("material")) return static_cast<std::uint32_t>(-1);
-    const std::string name = json["material"];
+    return material_named(json["material"], path + "/material");
+  }
+  std::uint32_t material_named(const std::string& name, const std::string& at) const {
     const auto found = materials_.find(name);
-    if (found == materials_.end()) {
-      throw Error(fmt::format("{}/material: there is no material '{}'; materials stand in /materials, by name", path, name));
-    }
+    if (found == materials_.end())
+      throw Error(fmt::format("{}: there is no material '{}'; materials stand in /materials, by name", at, name));
     return found->second;
   }
 
@@ -193,7 +203,8 @@ SceneCamera Reader::camera() const {
   const Json& json = json_["camera"];
   if (json.contains("eye")) {
     for (const char* key : {"azimuth", "elevation", "distance"}) {
-      if (json.contains(key)) throw Error(fmt::format("/camera/{}: does not go with eye and target; leave it out", key));
+      if (json.contains(key))
+        throw Error(fmt::format("/camera/{}: does not go with eye and target; leave it out", key));
     }
     camera.eye = point(json["eye"]);
     camera.target = point(json["target"]);

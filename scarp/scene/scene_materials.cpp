@@ -19,7 +19,8 @@ vec3 colour_from(const Json& json) {
 
 class Reader {
  public:
-  Reader(const Json& json, std::string path, std::vector<Material>& all) : json_(json), path_(std::move(path)), all_(all) {}
+  Reader(const Json& json, std::string path, std::vector<Material>& all)
+      : json_(json), path_(std::move(path)), all_(all) {}
 
   std::map<std::string, std::uint32_t> read() {
     for (const auto& [name, material] : json_.items()) index_of(name, path_ + "/" + name);
@@ -60,7 +61,8 @@ class Reader {
     }
     if (json.contains("checker")) {
       const Json& checker = json["checker"];
-      return Checker{colour_from(checker["colours"][0]), colour_from(checker["colours"][1]), checker.value("size", 1.0)};
+      return Checker{colour_from(checker["colours"][0]), colour_from(checker["colours"][1]),
+                     checker.value("size", 1.0)};
     }
     const Json& blend = json["blend"];
     Blend made{blend["by"] == "slope" ? Blend::By::slope : Blend::By::height, blend["from"], blend["to"]};

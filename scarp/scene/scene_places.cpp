@@ -32,7 +32,8 @@ Placement placement_from(const Json& json) {
   if (json.contains("at")) placement.origin = {json["at"][0], json["at"][1], json["at"][2]};
   if (json.contains("turn")) {
     for (int axis = 0; axis < 3; ++axis)
-      placement.turn = about(axis, json["turn"][static_cast<std::size_t>(axis)].get<double>() * kRadians) * placement.turn;
+      placement.turn =
+          about(axis, json["turn"][static_cast<std::size_t>(axis)].get<double>() * kRadians) * placement.turn;
   }
   placement.scale = json.value("scale", 1.0);
   return placement;
@@ -74,7 +75,8 @@ ScenePlaces scattered(const Json& json, const std::string& path, const SceneGrou
   };
   constexpr double kNoLimit = std::numeric_limits<double>::infinity();
   const dvec2 scale = range("scale", 1, 1), heights = range("heights", -kNoLimit, kNoLimit);
-  if (!(scale.x > 0)) throw Error(fmt::format("{}/scale: is [{}, {}]; expected numbers above 0", path, scale.x, scale.y));
+  if (!(scale.x > 0))
+    throw Error(fmt::format("{}/scale: is [{}, {}]; expected numbers above 0", path, scale.x, scale.y));
   ScenePlaces places;
   std::int64_t tries = 0;
   for (; static_cast<std::int64_t>(places.size()) < count; ++tries) {
@@ -122,7 +124,8 @@ ScenePlaces places_from_json(const Json& object, const std::string& path, const 
   if (object.contains("on")) {
     ground = grounds(object["on"], path + "/on");
     if (ground->placement.turn[2].z < 1 - 1e-12)
-      throw Error(fmt::format("{}/on: '{}' is tilted; expected ground that is turned about z alone", path, ground->name));
+      throw Error(
+          fmt::format("{}/on: '{}' is tilted; expected ground that is turned about z alone", path, ground->name));
   }
   ScenePlaces places;
   if (object.contains("scatter")) {

@@ -99,7 +99,8 @@ class SchemaWalk {
     // The message ends with the name, its quote and a full stop.
     return error.description.substr(begin, error.description.size() - 2 - begin);
   };
-  if (error.description.starts_with("Missing required property") || error.description.starts_with("Missing dependency")) {
+  if (error.description.starts_with("Missing required property") ||
+      error.description.starts_with("Missing dependency")) {
     const std::string key = quoted();
     walk.enter(key);
     throw Error(fmt::format("{}/{}: is missing; expected {}", shortened(path), key, walk.expected()));

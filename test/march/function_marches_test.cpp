@@ -159,6 +159,17 @@ TEST(FunctionMarches, RespectTheRange) {
   EXPECT_EQ(march_lipschitz_local(bowl(), ray).status, HitStatus::below);
 }
 
+TEST(FunctionMarches, EndAtTheirReach) {
+  const Ray ray{{-25, 3, 5}, {2, 0, 0}};  // meets the ground after 33.3 m
+  for (const MarchEntry& march : function_marches()) {
+    MarchSettings settings;
+    settings.function.reach = 30;
+    EXPECT_EQ(march.function_cpu(bowl(), ray, settings, nullptr, FunctionUse::march).status, HitStatus::miss);
+    settings.function.reach = 40;
+    EXPECT_TRUE(march.function_cpu(bowl(), ray, settings, nullptr, FunctionUse::march)) << march.name;
+  }
+}
+
 TEST(FunctionMarches, TellUsedUpStepsFromHits) {
   const Ray ray{{-25, 3, 5}, {1, 0, 0}, 0, 200};
   MarchSettings settings;
@@ -192,6 +203,7 @@ TEST(FunctionMarches, ValidateTheirSettings) {
   bad([](MarchSettings& s) { s.lipschitz_local.tolerance = -1; });
   bad([](MarchSettings& s) { s.lipschitz_local.max_steps = 0; });
   bad([](MarchSettings& s) { s.function.step = 0; });
+  bad([](MarchSettings& s) { s.function.reach = 0; });
   bad([](MarchSettings& s) { s.function.step_share = -1; });
   bad([](MarchSettings& s) { s.function.tolerance = NAN; });
   bad([](MarchSettings& s) { s.function.halvings = 0; });
