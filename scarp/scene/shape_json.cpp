@@ -256,8 +256,9 @@ class Reader {
     }
     if (kind == "rotate") {
       const Settings s = settings(json, path, {"axis", "degrees"});
-      return made(path,
-                  shape::Turned{of, s.direction("axis", {0, 0, 1}), s.number("degrees") * std::numbers::pi / 180});
+      const dvec3 axis = s.direction("axis", {0, 0, 1});
+      const double angle = s.number("degrees") * std::numbers::pi / 180;
+      return made(path, shape::Turned{of, axis, angle});
     }
     const Settings s = settings(json, path, {"period", "count"});
     shape::Repeated repeated{of, s.vector("period"), {0, 0, 0}};
