@@ -124,8 +124,18 @@ struct FunctionsOptions {
   std::uint64_t seed = 1;
   int repeats = 3;
   std::int64_t judged = 4000;  ///< about so many rays per function are judged
+  bool presets = false;        ///< the presets of known shaders beside lipschitz-local, instead of the marches
 };
 /// Throws Error, after the report, when a conservative march lost a crossing.
 void run_functions(const FunctionsOptions& options, const ReportOptions& report);
+
+/// `function-leaks`: the conservative marches over the example functions, every ray judged.
+struct FunctionLeaksOptions {
+  std::int64_t rays = 1'000'000;  ///< in all
+  std::uint64_t seed = 1;
+  bool all = false;  ///< the approximate marches as well
+};
+/// Throws Error, after the report, when a conservative march was wrong.
+void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions& report);
 
 }  // namespace scarp::bench

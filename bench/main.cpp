@@ -268,11 +268,25 @@ int run(int argc, char** argv) {
   functions_command->add_option("--judged", functions.judged, "rays per function that the judge answers, about")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
       ->capture_default_str();
+  functions_command->add_flag("--presets", functions.presets,
+                              "the presets of known shaders beside lipschitz-local, instead of the marches");
   add_json_option(*functions_command, report);
+
+  FunctionLeaksOptions function_leaks;
+  CLI::App* function_leaks_command =
+      app.add_subcommand("function-leaks", "very many rays at terrain functions; fails when Scarp loses one");
+  double function_leak_rays = static_cast<double>(function_leaks.rays);
+  function_leaks_command->add_option("--rays", function_leak_rays, "in all")
+      ->check(CLI::Range(1.0, 1e15))
+      ->capture_default_str();
+  function_leaks_command->add_option("--seed", function_leaks.seed, "of the rays")->capture_default_str();
+  function_leaks_command->add_flag("--all", function_leaks.all, "the approximate marches as well");
+  add_json_option(*function_leaks_command, report);
 
   CLI11_PARSE(app, argc, argv);
   voxel_leaks.rays = static_cast<std::int64_t>(voxel_leak_rays);
   leaks.rays = static_cast<std::int64_t>(leak_rays);
+  function_leaks.rays = static_cast<std::int64_t>(function_leak_rays);
   leaks.embree_rays = static_cast<std::int64_t>(embree_rays);
   if (*heights_command) run_heights(heights, report);
   if (*naive_command) run_naive(naive, report);
@@ -286,6 +300,7 @@ int run(int argc, char** argv) {
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*edits_command) run_edits(edits, report);
   if (*functions_command) run_functions(functions, report);
+  if (*function_leaks_command) run_function_leaks(function_leaks, report);
   if (*extents_command) {
     extents.sizes.clear();
     for (const std::string& text : extent_sizes) extents.sizes.push_back(size_from(text));

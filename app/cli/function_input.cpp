@@ -116,7 +116,8 @@ void add_function_options(CLI::App& command, FunctionInput& input, std::string& 
             march = preset.march;
             settings = preset.settings;
           },
-          fmt::format("a march with the numbers of a known shader: {}; see 'scarp marches'", fmt::join(presets, ", ")))
+          fmt::format("a march with the numbers of a known shader: {}; see 'scarp marches --presets'",
+                      fmt::join(presets, ", ")))
       ->group(group);
   command.add_option("--extent", input.extent, "metres of ground that the picture is about; above 0")
       ->group(group)

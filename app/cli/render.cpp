@@ -366,12 +366,10 @@ void add_render(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--aa", o.picture.aa, "N x N samples per pixel of the shaded look, 1 to 16")
       ->capture_default_str();
-  CLI::Option* tolerance =
-      command
-          ->add_option(
-              "--error-tolerance", o.picture.error_tolerance,
-              "of the error look along the ray, in sides of a cell; of functions in percent of the distance (1)")
-          ->capture_default_str();
+  command
+      ->add_option("--error-tolerance", o.picture.error_tolerance,
+                   "of the error look along the ray, in sides of a cell; of functions in percent of the distance (1)")
+      ->capture_default_str();
   add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
 

@@ -14,6 +14,7 @@
 #include "scarp/march/function_marches.h"
 #include "scarp/march/lipschitz.h"
 #include "scarp/march/lipschitz_local.h"
+#include "scarp/march/lipschitz_local_simd.h"
 #include "scarp/march/max_mip.h"
 #include "scarp/march/max_mip_simd.h"
 #include "scarp/march/naive.h"
@@ -53,11 +54,12 @@ constexpr MarchEntry sampling_march(std::string_view name, Guarantee guarantee, 
 }
 
 constexpr MarchEntry function_march(std::string_view name, Guarantee guarantee, FunctionMarch cpu,
-                                    std::string_view parameters, std::string_view description) {
+                                    FunctionMarchBatch simd, std::string_view parameters,
+                                    std::string_view description) {
   MarchEntry entry{};
   entry.name = name, entry.fields = kFunctions, entry.guarantee = guarantee;
   entry.parameters = parameters, entry.description = description;
-  entry.function_cpu = cpu;
+  entry.function_cpu = cpu, entry.function_simd = simd;
   return entry;
 }
 
@@ -102,7 +104,7 @@ constexpr std::array kMarches = {
     sampling_march("lipschitz", Guarantee::conservative, true, march_lipschitz, march_lipschitz,
                    "shrink factor 1/sqrt(1 + c^2), c the slope bound, tolerance 0.0005 of the distance, 1024 steps",
                    "steps by a distance that the steepest slope allows; never passes, slow near steep ground"),
-    function_march("lipschitz-local", Guarantee::conservative, march_lipschitz_local,
+    function_march("lipschitz-local", Guarantee::conservative, march_lipschitz_local, closest_hits_lipschitz_local_simd,
                    "tolerance 0.000001 of the distance, 1024 steps",
                    "bounds the ground anew on every segment of the ray; never passes, long steps where it is calm"),
     voxel_march("voxel-exhaustive", VoxelAccelerator::none, march_voxel_exhaustive, nullptr,

@@ -134,6 +134,11 @@ using HeightOcclusionBatch = void (*)(const HeightTarget& target, std::span<cons
 using FunctionMarch = Hit (*)(const HeightFunction& function, const Ray& ray, const MarchSettings& settings,
                               MarchStats* stats, FunctionUse use);
 
+/// The same for many rays, on the calling thread, answers bit for bit those for single rays; `steps`, when not empty,
+/// are what each cost: its steps and cell tests. The spans have one length.
+using FunctionMarchBatch = void (*)(const HeightFunction& function, std::span<const Ray> rays, std::span<Hit> hits,
+                                    const MarchSettings& settings, std::span<std::uint32_t> steps, FunctionUse use);
+
 /// A ray in world space against a distance field: the closest hit, and whether it is one.
 using DistanceMarch = Hit (*)(const DistanceField& field, const Ray& ray, const MarchSettings& settings,
                               MarchStats* stats);
@@ -148,15 +153,16 @@ struct MarchEntry {
   std::string_view fields;  ///< kinds of field that it takes: "height field", "function", "voxel grid"
   Guarantee guarantee;
   bool needs_pyramid;
-  bool needs_slope;                      ///< whether it asks for HeightTarget::slope
-  HeightMarch cpu;                       ///< scalar C++; null: takes no height fields
-  HeightOcclusion cpu_occluded;          ///< null: none of its own, ask cpu
-  HeightMarchBatch simd;                 ///< many rays at once in vectors; null: none
-  HeightOcclusionBatch simd_occluded;    ///< null: none
-  bool gpu;                              ///< whether a Vulkan realisation exists
-  std::string_view parameters;           ///< its settings with their defaults, for people
-  std::string_view description;          ///< one line
-  FunctionMarch function_cpu = nullptr;  ///< scalar C++ over terrain functions; null: takes none
+  bool needs_slope;                            ///< whether it asks for HeightTarget::slope
+  HeightMarch cpu;                             ///< scalar C++; null: takes no height fields
+  HeightOcclusion cpu_occluded;                ///< null: none of its own, ask cpu
+  HeightMarchBatch simd;                       ///< many rays at once in vectors; null: none
+  HeightOcclusionBatch simd_occluded;          ///< null: none
+  bool gpu;                                    ///< whether a Vulkan realisation exists
+  std::string_view parameters;                 ///< its settings with their defaults, for people
+  std::string_view description;                ///< one line
+  FunctionMarch function_cpu = nullptr;        ///< scalar C++ over terrain functions; null: takes none
+  FunctionMarchBatch function_simd = nullptr;  ///< many rays at once in vectors; null: none
   // Those of voxel grids, which have none of the functions above.
   VoxelMarch voxel_cpu = nullptr;  ///< scalar C++
   VoxelOcclusion voxel_cpu_occluded = nullptr;

@@ -21,7 +21,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr double kRadians = std::numbers::pi / 180;
-constexpr int kMostOctaves = std::numeric_limits<int>::max();  // make_function() knows better
 constexpr std::size_t kMostOperands = 1024;
 
 const std::vector<std::string_view> kTypes = {"plane", "sines", "fbm",     "ridged",  "warp",    "terraces",

@@ -12,6 +12,8 @@
 #include "scarp/base/error.h"
 #include "scarp/march/function_exhaustive.h"
 #include "scarp/march/lipschitz_local.h"
+#include "scarp/march/lipschitz_local_simd.h"
+#include "scarp/march/presets.h"
 
 namespace scarp::test {
 namespace {
@@ -212,6 +214,39 @@ TEST(FunctionMarches, ValidateTheirSettings) {
   EXPECT_THROW(find_refinement("newton"), Error);
 }
 
+// The numbers, by what they do over a ramp: a ray along x at height 2 is 102 - t above it.
+TEST(FunctionMarches, PresetsHaveTheirNumbers) {
+  const HeightFunction ramp(make_function(Plane{0, 1, 0}));
+  const Ray ray{{-100, 0, 2}, {1, 0, 0}, 0, 200};
+  const auto steps = [&](std::string_view name, double& t) {
+    const MarchPreset& preset = find_march_preset(name);
+    validate(preset.settings);
+    MarchStats stats;
+    const Hit hit =
+        find_function_march(preset.march).function_cpu(ramp, ray, preset.settings, &stats, FunctionUse::march);
+    EXPECT_TRUE(hit) << name;
+    t = hit.t;
+    return stats.steps;
+  };
+  // After n steps of share s the clearance is 102 (1 - s)^n, and t what is missing to 102.
+  const auto expected = [](double share, double tolerance) {
+    std::uint32_t n = 0;
+    for (double h = 102; !(h < tolerance * (102 - h)); h *= 1 - share) ++n;
+    return n + 1;
+  };
+  double t = 0;
+  EXPECT_EQ(steps("elevated", t), expected(0.4, 0.0015));
+  EXPECT_EQ(steps("rainforest", t), expected(0.8, 0.001));
+  EXPECT_LT(t, 102);
+  EXPECT_EQ(steps("iq2002", t), 12u);  // 0, 10, ..., 110
+  EXPECT_NEAR(t, 102, 1e-12);
+  EXPECT_EQ(steps("castle", t), 2u);
+  EXPECT_EQ(t, 102);
+  const MarchPreset& snowy = find_march_preset("snowy");
+  EXPECT_EQ(march_naive(ramp, ray, snowy.settings).status, HitStatus::exhausted);  // never under the ground
+  EXPECT_THROW(find_march_preset("comanche"), Error);
+}
+
 // A ramp, on which every march's last interval is known.
 TEST(FunctionMarches, FixedStepCountsItsSamples) {
   const HeightFunction ramp(make_function(Plane{0, 1, 0}));
@@ -263,6 +298,43 @@ TEST(FunctionMarches, RefineTheLastInterval) {
   settings.function = {.tolerance = 3, .refinement = Refinement::bisect};
   settings.relaxed.tolerance = 0;
   EXPECT_NEAR(march_relaxed(ramp, ray, settings).t, 99, 4 * 0x1p-24);
+}
+
+TEST(FunctionMarches, VectorsAnswerBitForBit) {
+  std::vector<NamedFunction> functions = terrain_functions();
+  functions.push_back({"both at once", make_function(Maximum{functions[2].function, functions[9].function}), false});
+  for (const NamedFunction& named : functions) {
+    const HeightFunction function(named.function);
+    FunctionRandom random(14);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 150; ++i) {
+      Ray ray = random_ray(function, random);
+      if (i % 3 == 0) {
+        ray.origin.z = function.value(ray.origin.x, ray.origin.y);
+        ray.start = RayStart::on_surface;
+      }
+      if (i % 7 == 0) ray.origin.z -= 3000;
+      if (i % 11 == 0) ray.direction = {0, 0, -1};
+      if (i % 13 == 0) ray.origin.x += 1e7;
+      rays.push_back(ray);
+    }
+    MarchSettings settings;
+    settings.lipschitz_local.max_steps = 60;
+    for (const std::size_t count : {rays.size(), std::size_t{1}, std::size_t{0}}) {
+      std::vector<Hit> hits(count);
+      std::vector<std::uint32_t> steps(count);
+      closest_hits_lipschitz_local_simd(function, std::span(rays).first(count), hits, settings, steps,
+                                        FunctionUse::shadow);
+      for (std::size_t i = 0; i < count; ++i) {
+        MarchStats stats;
+        const Hit hit = march_lipschitz_local(function, rays[i], settings, &stats, FunctionUse::shadow);
+        ASSERT_EQ(hits[i].status, hit.status) << named.name << ", ray " << i;
+        ASSERT_EQ(hits[i].t, hit.t) << named.name << ", ray " << i;
+        ASSERT_EQ(hits[i].height, hit.height);
+        ASSERT_EQ(steps[i], stats.steps + stats.cell_tests) << named.name << ", ray " << i;
+      }
+    }
+  }
 }
 
 TEST(FunctionMarches, LocalBoundsTakeFewerEvaluations) {
