@@ -79,16 +79,20 @@ FieldSlope field_slope(const HeightField& field, const dvec3& q, const dvec3& d,
           std::max(x_low * d.x, x_high * d.x) + std::max(y_low * d.y, y_high * d.y) + slack};
 }
 
-GradientMode::Value GradientMode::rest_bound(const Value& a, const Position& p, const double* k) const {
-  if (!(distance::rest_bound(p.p, k) < a.value)) return a;
-  Value out{kCreased, dvec3(0.0)};
+GradientMode::Value GradientMode::rest_bound(const Value& a, const Position& p, const double* k, int mask) const {
+  const double bound = distance::rest_bound(p.p, k);
+  if (mask || !(bound < a.value)) return a;
+  int along = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (k[3 + axis] == 0) continue;
-    const Copy<double> copy = nearest_copy(p.p[axis], k, axis);
-    const double bound = k[3 + axis] + std::abs(copy.off) - k[9 + axis];
-    if (bound < out.value) out = {bound, (copy.off < 0 ? -1.0 : 1.0) * p.turn[static_cast<std::size_t>(axis)]};
+    if (k[3 + axis] != 0 && rest_bound_along(p.p, k, axis) <= bound * bound * (1 + 0x1p-40)) along = axis;
   }
-  return out;
+  dvec3 out(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    const double off = nearest_copy(p.p[axis], k, axis).off;
+    const double away = positive(std::abs(off) + (axis == along ? k[3 + axis] : 0) - k[9 + axis]);
+    out[axis] = off < 0 ? -away : away;
+  }
+  return {bound, to_world(p, out / bound)};
 }
 
 BentMode::Value BentMode::from_range(double low, double high) const {
@@ -133,17 +137,19 @@ BentMode::Value BentMode::clamp(const Value& a, const Position& p, const double*
   return from_range(a.f.low, std::max(a.f.high, away + radius));
 }
 
-BentMode::Value BentMode::rest_bound(const Value& a, const Position& p, const double* k) const {
+BentMode::Value BentMode::rest_bound(const Value& a, const Position& p, const double* k, int mask) const {
   double least = kCreased;
   for (int axis = 0; axis < 3; ++axis) {
     if (k[3 + axis] == 0) continue;
+    // Where the segment stays on one side of the copy's middle its neighbours were looked at.
     const double off = std::abs(nearest_copy(p.p[axis], k, axis).off);
-    // On the other side of the copy's middle the neighbour is another one, which was not looked at.
-    const double other = off >= radius ? off - radius : -(radius - off);
-    least = std::min(least, k[3 + axis] + other - k[9 + axis]);
+    if (mask && off >= radius && off + radius <= k[3 + axis]) continue;
+    least = std::min(least, std::sqrt(rest_bound_along(p.p, k, axis)) - radius);
   }
   if (least >= a.f.high) return a;
-  return from_range(std::min(a.f.low, least), a.f.high);
+  // In the middle all that matters was looked at, if the shape is exact.
+  const double lowest = std::min(a.f.low, least);
+  return from_range(mask ? std::max(lowest, a.f.mid - a.f.rest - radius) : lowest, a.f.high);
 }
 
 BentMode::Value BentMode::function_ground(const HeightFunction& function, const double* k, const Position& p) const {
@@ -177,9 +183,17 @@ BentMode::Value BentMode::field_ground(const HeightField& field, const double* k
   const double scale = k[3], shrink = k[4], factor = shrink * scale;
   const dvec3 q = (p.p - dvec3(k[0], k[1], k[2])) / scale, d = p.d / scale;
   const double value = field_ground_value(field, q, shrink) * scale;
-  // Near the walls: what is known of any distance.
-  const double border = beyond_border(field, q) * scale;
-  if (border + radius > value - radius) return from_range(value - radius, value + radius);
+  // By the walls alone, or over the ground alone; where they meet what is known of any distance.
+  if (!field.wraps()) {
+    const double border = beyond_border(field, q) * scale;
+    const dvec2 at = clamped_to(field, q);
+    const double over = (q.z - field.height(at.x, at.y).value_or(0)) * factor;
+    if (border - radius >= over + radius) {
+      const double walls[6] = {0, 0, -kCreased, field.width() * scale, field.depth() * scale, kCreased};
+      return from_bent(bent_outside(q * scale, walls, radius), p.d);
+    }
+    if (border + radius > over - radius) return from_range(value - radius, value + radius);
+  }
   const FieldSlope slope = field_slope(field, q, d, k[5]);
   Value out{{}, (d.z - slope.high) * factor, (d.z - slope.low) * factor};
   Taylor<1>& t = out.f;

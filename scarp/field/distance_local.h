@@ -93,7 +93,7 @@ struct GradientMode {
     if (!(away > 0 && away > a.value)) return a;
     return {away, to_world(p, bent_outside(p.p, k, 0).gradient)};
   }
-  Value rest_bound(const Value& a, const Position& p, const double* k) const;
+  Value rest_bound(const Value& a, const Position& p, const double* k, int mask) const;
   bool is_far(const Value& a, const Position& p, const double* k) const {
     return PointMode<double>{}.is_far(a.value, p.p, k);
   }
@@ -142,7 +142,7 @@ struct BentMode {
   Value minimum(const Value& a, const Value& b) const;
   Value smooth_minimum(const Value& a, const Value& b, double k) const;
   Value clamp(const Value& a, const Position& p, const double* k) const;
-  Value rest_bound(const Value& a, const Position& p, const double* k) const;
+  Value rest_bound(const Value& a, const Position& p, const double* k, int mask) const;
   bool is_far(const Value& a, const Position& p, const double* k) const {
     const double away = outside(p.p, k) - radius;
     return away > 0 && a.f.high <= away - k[6];

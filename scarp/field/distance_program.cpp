@@ -59,6 +59,27 @@ bool bounds_anything(const ShapeBox& box) {
   return false;
 }
 
+// Whether values outside of a shape are the distance itself.
+bool is_exact_outside(const Shape& shape) {
+  return std::visit(
+      [](const auto& form) {
+        using Of = std::decay_t<decltype(form)>;
+        if constexpr (std::is_same_v<Of, Ellipsoid> || std::is_same_v<Of, FunctionGround> ||
+                      std::is_same_v<Of, FieldGround> || std::is_same_v<Of, Intersection> ||
+                      std::is_same_v<Of, Subtraction>) {
+          return false;
+        } else if constexpr (std::is_same_v<Of, Moved> || std::is_same_v<Of, Turned> || std::is_same_v<Of, Scaled> ||
+                             std::is_same_v<Of, Painted> || std::is_same_v<Of, Repeated>) {
+          return is_exact_outside(form.shape);
+        } else if constexpr (std::is_same_v<Of, Union>) {
+          return form.smooth == 0 && std::all_of(form.parts.begin(), form.parts.end(), is_exact_outside);
+        } else {
+          return true;
+        }
+      },
+      shape->form);
+}
+
 // What it costs to look at a shape.
 enum class Cost { single, several, ground };
 Cost cost_of(const Shape& shape) {
@@ -207,12 +228,13 @@ class Compiler {
     int axes = 0;
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
+      const bool ends = std::isfinite(box.low[axis]) && std::isfinite(box.high[axis]);
+      k[i] = ends ? place.at[axis] + place.scale * 0.5 * (box.low[axis] + box.high[axis]) : 0;
+      k[9 + i] = ends ? place.scale * 0.5 * (box.high[axis] - box.low[axis]) : std::numeric_limits<double>::infinity();
       if (r.period[axis] == 0) continue;
       axes |= 1 << axis;
-      k[i] = place.at[axis] + place.scale * 0.5 * (box.low[axis] + box.high[axis]);
       k[3 + i] = place.scale * r.period[axis];
       k[6 + i] = r.count[i];
-      k[9 + i] = place.scale * 0.5 * (box.high[axis] - box.low[axis]) * (1 + 0x1p-49);
     }
     const std::uint32_t copies = numbers(k);
     Place copy = place;
@@ -239,27 +261,38 @@ class Compiler {
       add({.op = DistanceOp::unite, .out = value(out), .a = value(out), .b = value(out + 1)}, place);
       end_skip(skip);
     }
-    add({.op = DistanceOp::rest_bound, .out = value(out), .a = value(out), .b = position(place), .number = copies},
+    const bool exact = is_exact_outside(r.shape);
+    add({.op = DistanceOp::rest_bound,
+         .out = value(out),
+         .a = value(out),
+         .b = position(place),
+         .mask = exact,
+         .number = copies},
         place);
-    clamp(place, node.box, out);
+    if (!exact) clamp(place, node.box, out);
   }
 
   // Operations.
   void put(const Union& u, const ShapeNode&, Place place, int out) {
-    if (u.parts.size() == 1) return emit(u.parts.front(), place, out);
+    // What is known to be empty leaves no trace: its values say nothing.
+    std::vector<Shape> parts;
+    for (const Shape& part : u.parts) {
+      if (!part->box.empty()) parts.push_back(part);
+    }
+    if (parts.size() <= 1) return emit(parts.empty() ? u.parts.front() : parts.front(), place, out);
     place = straightened(place);
     if (u.smooth > 0) {
-      emit(u.parts.front(), place, out);
-      for (std::size_t i = 1; i < u.parts.size(); ++i) {
-        const std::size_t skip = skip_far(u.parts[i], place, out, 0, u.smooth);
-        emit(u.parts[i], place, out + 1);
+      emit(parts.front(), place, out);
+      for (std::size_t i = 1; i < parts.size(); ++i) {
+        const std::size_t skip = skip_far(parts[i], place, out, 0, u.smooth);
+        emit(parts[i], place, out + 1);
         smooth(DistanceOp::smooth_unite, place, out, u.smooth);
         end_skip(skip);
       }
     } else {
       // Grounds last: where something else is near they need not be looked at.
       std::vector<Shape> bounded, rest;
-      for (const Shape& part : u.parts) (part->box.finite() ? bounded : rest).push_back(part);
+      for (const Shape& part : parts) (part->box.finite() ? bounded : rest).push_back(part);
       std::stable_sort(rest.begin(), rest.end(),
                        [](const Shape& a, const Shape& b) { return cost_of(a) < cost_of(b); });
       bool first = true;
@@ -282,6 +315,7 @@ class Compiler {
     clamp(place, node.box, out);
   }
   void put(const Subtraction& s, const ShapeNode&, Place place, int out) {
+    if (s.what->box.empty()) return emit(s.from, place, out);
     place = straightened(place);
     emit(s.from, place, out);
     const std::size_t skip = skip_far(s.what, place, out, 1, s.smooth);

@@ -39,13 +39,14 @@ enum class DistanceOp : std::uint8_t {
   smooth_intersect,
   smooth_subtract,
   clamp,       ///< the larger of `a` and the distance of position `b` to a box: low, high
-  rest_bound,  ///< the smaller of `a` and what position `b` has at least to copies that are not looked at: 12 numbers
+  rest_bound,  ///< the smaller of `a` and what position `b` has at least to copies that are not looked at: 12 numbers;
+               ///< with mask 1 it is known not to be smaller at any single position, only over segments
   // Ways round: the next `index` instructions are left out where they cannot change value `a`, position `b`.
   skip_far,   ///< for they unite (mask 0) or subtract (mask 1) what lies in a box: low, high, radius of the operation
   skip_copy,  ///< for they unite a neighbour (axes in `mask`): 12 numbers
 };
-// The 12 numbers of copies: middle of the shape, period (0: none), copies on each side (0: without end), half of the
-// shape's length; each along x, y, z.
+// The 12 numbers of copies: middle of the shape's box, period (0: none), copies on each side (0: without end), half of
+// the box's length, perhaps infinite; each along x, y, z.
 
 struct DistanceInstruction {
   DistanceOp op = DistanceOp::sphere;

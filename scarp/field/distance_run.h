@@ -98,7 +98,7 @@ Result<typename Mode::Value> run(const DistanceProgram& program, const Mode& mod
         material[in.out] = material[in.a];
         break;
       case DistanceOp::rest_bound:
-        v[in.out] = mode.rest_bound(v[in.a], p[in.b], k);
+        v[in.out] = mode.rest_bound(v[in.a], p[in.b], k, in.mask);
         material[in.out] = material[in.a];
         break;
       case DistanceOp::skip_far:
@@ -170,8 +170,8 @@ struct PointMode {
     const T away = outside(p, k);
     return away > 0 ? std::max(a, away) : a;
   }
-  Value rest_bound(Value a, const Position& p, const double* k) const {
-    return std::min(a, distance::rest_bound(p, k));
+  Value rest_bound(Value a, const Position& p, const double* k, int mask) const {
+    return mask ? a : std::min(a, distance::rest_bound(p, k));
   }
   bool is_far(Value a, const Position& p, const double* k) const {
     const T away = outside(p, k);

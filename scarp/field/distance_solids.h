@@ -143,23 +143,36 @@ template <class T>
 T neighbour_bound(const Vec<T>& p, const double* k, int mask) {
   T sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (!(mask >> axis & 1)) continue;
     const Copy<T> copy = nearest_copy(p[axis], k, axis);
-    if (!has_neighbour(copy, k, axis)) return std::numeric_limits<T>::infinity();
-    const T away = positive(T(k[3 + axis]) - std::abs(copy.off) - T(k[9 + axis]));
+    T away = std::abs(copy.off);
+    if (mask >> axis & 1) {
+      if (!has_neighbour(copy, k, axis)) return std::numeric_limits<T>::infinity();
+      away = T(k[3 + axis]) - away;
+    }
+    away = positive(away - T(k[9 + axis]));
     sum += away * away;
   }
   return std::sqrt(sum);
 }
-/// Least distance of a position to all copies but the nearest and its neighbours.
+/// Least distance of a position to all copies along an axis but the nearest and its neighbour; squared.
+template <class T>
+T rest_bound_along(const Vec<T>& p, const double* k, int axis) {
+  T sum = 0;
+  for (int i = 0; i < 3; ++i) {
+    T away = std::abs(nearest_copy(p[i], k, i).off);
+    if (i == axis) away += T(k[3 + i]);
+    away = positive(away - T(k[9 + i]));
+    sum += away * away;
+  }
+  return sum;
+}
 template <class T>
 T rest_bound(const Vec<T>& p, const double* k) {
   T least = std::numeric_limits<T>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
-    if (k[3 + axis] == 0) continue;
-    least = std::min(least, T(k[3 + axis]) + std::abs(nearest_copy(p[axis], k, axis).off) - T(k[9 + axis]));
+    if (k[3 + axis] != 0) least = std::min(least, rest_bound_along(p, k, axis));
   }
-  return least;
+  return std::sqrt(least);
 }
 
 }  // namespace scarp::distance

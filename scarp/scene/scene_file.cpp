@@ -123,8 +123,10 @@ class Reader {
       reader.read();
       whole_.open_files.pop_back();
       return std::move(reader.objects());
-    } catch (const Error&) {
-      rethrow_at(fmt::format("{}/scene: scene '{}'", path, file));
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}/scene: scene '{}': {}", path, inner, error.what()));
     }
   }
 
@@ -277,8 +279,10 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
 SceneFile read_scene(const std::string& path, const Progress& progress) {
   try {
     return read_whole(path, progress);
-  } catch (const Error&) {
-    rethrow_at(fmt::format("scene '{}'", path));
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(fmt::format("scene '{}': {}", path, error.what()));
   }
 }
 
