@@ -114,41 +114,46 @@ class Evaluation {
     }
     return clamped(max(walls, (at(p, 2) - height_of(field, x, y)) * shrink(g.slope)), node, p);
   }
-  // A bilinear cell is highest and lowest at corners of what is looked at of it, triangles at their own as well.
+  // A bilinear cell is highest and lowest at corners of what is looked at of it, and so are planes.
   static Interval height_of(const HeightField& field, const Interval& x, const Interval& y) {
     const HeightFieldSettings& s = field.settings();
     const Interval all(field.min_height(), field.max_height());
     const Interval col = x / s.cell_x, row = double(field.rows() - 1) - y / s.cell_y;
     constexpr double kMostCells = 4;
     if (width(col) > kMostCells || width(row) > kMostCells) return all;
+    const auto first = [&](const Interval& at, int count) {
+      const double cell = std::floor(at.lower());
+      return field.wraps() ? cell : std::clamp(cell, 0.0, count - 1.0);
+    };
+    const auto last = [&](const Interval& at, int count) {
+      const double cell = std::floor(at.upper());
+      return field.wraps() ? cell : std::clamp(cell, 0.0, count - 1.0);
+    };
+    const auto wrapped = [](double at, int count) { return static_cast<int>(at - std::floor(at / count) * count); };
+    const int cols = field.cell_cols(), rows = field.cell_rows();
     Interval range = Interval::empty();
-    for (double r = std::floor(row.lower()); r <= std::floor(row.upper()); ++r) {
-      for (double c = std::floor(col.lower()); c <= std::floor(col.upper()); ++c) {
-        const auto wrapped = [&](double at, int count) {
-          if (!field.wraps()) return static_cast<int>(std::clamp(at, 0.0, double(count - 1)));
-          return static_cast<int>(at - std::floor(at / count) * count);
-        };
-        const auto h = field.cell_heights({wrapped(c, field.cell_cols()), wrapped(r, field.cell_rows())});
+    for (double r = first(row, rows); r <= last(row, rows); ++r) {
+      for (double c = first(col, cols); c <= last(col, cols); ++c) {
+        const auto h = field.cell_heights({wrapped(c, cols), wrapped(r, rows)});
         if (!h) return all;
-        const Interval u = intersect(col - c, Interval(0, 1)), v = intersect(row - r, Interval(0, 1));
+        const Interval u = intersect(col - c, Interval(0, 1)), v = intersect(row - r, Interval(0, 1)), one(1.0);
         if (empty(u) || empty(v)) continue;
-        if (s.surface == Surface::triangles) {
-          range = hull(
-              range, Interval(std::min({h->h00, h->h10, h->h01, h->h11}), std::max({h->h00, h->h10, h->h01, h->h11})));
-          if (width(u) > 1e-3 || width(v) > 1e-3) continue;
-        }
-        Interval cell = Interval::empty();
         for (const double cu : {u.lower(), u.upper()}) {
           for (const double cv : {v.lower(), v.upper()}) {
-            const Interval a(cu), b(cv), one(1.0);
-            cell = hull(cell, (one - a) * ((one - b) * h->h00 + b * h->h01) + a * ((one - b) * h->h10 + b * h->h11));
+            const Interval a(cu), b(cv);
+            if (s.surface == Surface::bilinear) {
+              range = hull(range, (one - a) * ((one - b) * h->h00 + b * h->h01) + a * ((one - b) * h->h10 + b * h->h11));
+              continue;
+            }
+            // Each of the two planes where the box reaches into its triangle.
+            if (u.lower() + v.lower() <= 1) range = hull(range, h->h00 + a * (Interval(h->h10) - h->h00) + b * (Interval(h->h01) - h->h00));
+            if (u.upper() + v.upper() >= 1) range = hull(range, h->h11 + (one - a) * (Interval(h->h01) - h->h11) + (one - b) * (Interval(h->h10) - h->h11));
           }
         }
-        range = hull(range, cell);
       }
     }
     if (empty(range)) return all;
-    return intersect((range * s.scale + s.offset) * s.exaggeration, all + Interval(-0x1p-40, 0x1p-40) * norm(all));
+    return (range * s.scale + s.offset) * s.exaggeration;
   }
 
   Interval value(const Moved& m, const ShapeNode&, Place p) const {
@@ -249,8 +254,8 @@ class Evaluation {
       if (std::isfinite(node.box.low[axis])) a = max(a, node.box.low[axis] - at(p, axis));
       if (std::isfinite(node.box.high[axis])) a = max(a, at(p, axis) - node.box.high[axis]);
     }
+    if (away[0].upper() <= 0 && away[1].upper() <= 0 && away[2].upper() <= 0) return value;
     const Interval distance = length_of(away[0], away[1], away[2]);
-    if (distance.upper() <= 0) return value;
     const Interval larger = max(value, distance);
     return distance.lower() > 0 ? larger : hull(value, larger);
   }

