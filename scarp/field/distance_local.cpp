@@ -68,8 +68,19 @@ FieldSlope field_slope(const HeightField& field, const dvec3& q, const dvec3& d,
       const double north = (h->h10 - h->h00) * per_x, south = (h->h11 - h->h01) * per_x;
       // Rows run southwards.
       const double west = (h->h00 - h->h01) * per_y, east = (h->h10 - h->h11) * per_y;
-      x_low = std::min({x_low, north, south}), x_high = std::max({x_high, north, south});
-      y_low = std::min({y_low, west, east}), y_high = std::max({y_high, west, east});
+      const double u0 = std::clamp(col_low - col, 0.0, 1.0), u1 = std::clamp(col_high - col, 0.0, 1.0);
+      const double v0 = std::clamp(row_low - row, 0.0, 1.0), v1 = std::clamp(row_high - row, 0.0, 1.0);
+      const auto seen = [&](double x_slope, double y_slope) {
+        x_low = std::min(x_low, x_slope), x_high = std::max(x_high, x_slope);
+        y_low = std::min(y_low, y_slope), y_high = std::max(y_high, y_slope);
+      };
+      if (settings.surface == Surface::bilinear) {
+        seen(north + v0 * (south - north), west + u0 * (east - west));
+        seen(north + v1 * (south - north), west + u1 * (east - west));
+      } else {
+        if (u0 + v0 <= 1) seen(north, west);
+        if (u1 + v1 >= 1) seen(south, east);
+      }
     }
   }
   const double slack = 8 * kSlack *

@@ -142,12 +142,16 @@ class Evaluation {
           for (const double cv : {v.lower(), v.upper()}) {
             const Interval a(cu), b(cv);
             if (s.surface == Surface::bilinear) {
-              range = hull(range, (one - a) * ((one - b) * h->h00 + b * h->h01) + a * ((one - b) * h->h10 + b * h->h11));
+              range =
+                  hull(range, (one - a) * ((one - b) * h->h00 + b * h->h01) + a * ((one - b) * h->h10 + b * h->h11));
               continue;
             }
             // Each of the two planes where the box reaches into its triangle.
-            if (u.lower() + v.lower() <= 1) range = hull(range, h->h00 + a * (Interval(h->h10) - h->h00) + b * (Interval(h->h01) - h->h00));
-            if (u.upper() + v.upper() >= 1) range = hull(range, h->h11 + (one - a) * (Interval(h->h01) - h->h11) + (one - b) * (Interval(h->h10) - h->h11));
+            if (u.lower() + v.lower() <= 1)
+              range = hull(range, h->h00 + a * (Interval(h->h10) - h->h00) + b * (Interval(h->h01) - h->h00));
+            if (u.upper() + v.upper() >= 1)
+              range = hull(range,
+                           h->h11 + (one - a) * (Interval(h->h01) - h->h11) + (one - b) * (Interval(h->h10) - h->h11));
           }
         }
       }

@@ -45,11 +45,10 @@ class Trace {
       clip(std::max(box.low[axis], -kDistanceReach), std::min(box.high[axis], kDistanceReach), ray.origin[axis],
            ray.direction[axis]);
     }
+    // That it begins in the box is known; by how much rounding may have it outside is not.
+    if (ray.start == RayStart::on_surface) t_enter_ = ray.t_min;
     if (!crosses()) return;
-    // Values at rounded positions, which values follow by a metre per metre.
-    const double farthest = std::max(std::abs(t_enter_), std::abs(t_exit_)) * speed_, from = length(ray.origin);
-    const double reach = std::max(length(ray.at(t_enter_)), length(ray.at(t_exit_)));
-    rounding_ = field.rounding(reach) + kRounding * (from + farthest);
+    from_ = length(ray.origin);
     shortest_ = kShortest * (t_exit_ - t_enter_);
   }
 
@@ -84,6 +83,12 @@ class Trace {
     ++stats_.cell_tests;
     return field_.along(ray_.origin, ray_.direction, t0, t1, rates);
   }
+  // How far from the truth a value at t may be: it is that of a rounded position, which it follows by a metre per
+  // metre.
+  double rounding(double t) const {
+    const double reach = from_ + std::abs(t) * speed_;
+    return field_.rounding(reach) + kRounding * reach;
+  }
   bool used_up() const { return stats_.steps + stats_.cell_tests >= static_cast<std::uint32_t>(settings_.max_steps); }
   double least_at(double t) const { return std::max(shortest_, settings_.tolerance * (t - ray_.t_min)); }
 
@@ -104,10 +109,10 @@ class Trace {
   // Moves t to where the ray is outside for the first time. False where it is decided before, in `hit`.
   bool first_outside(double& t, Hit& hit) {
     if (!crosses()) return false;
-    if (ray_.start == RayStart::on_surface && t == ray_.t_min) return leave(t, hit);
+    if (ray_.start == RayStart::on_surface) return leave(t, hit);
     const double f = value(t);
-    if (f > rounding_) return true;
-    if (f >= -rounding_) {
+    if (f > rounding(t)) return true;
+    if (f >= -rounding(t)) {
       hit = hit_at(t);
       return false;
     }
@@ -138,17 +143,19 @@ class Trace {
         return false;
       }
       const DistanceSegment s = segment(t, t + length, true);
-      if (2 * s.rate_low >= -rounding_ || length <= shortest_) {
+      const double rounded = rounding(t);
+      if (2 * s.rate_low >= -rounded || length <= shortest_) {
         t = std::min(t + length, t_exit_);
+        length *= kGrowth;
         const double f = value(t);
-        if (f > 4 * rounding_) return true;
-        if (f < -2 * rounding_) {
+        if (f > 4 * rounded) return true;
+        if (f < -2 * rounded) {
           hit = hit_at(start);
           return false;
         }
         continue;
       }
-      if (2 * s.rate_high < -2 * rounding_) {
+      if (s.rate_high < -rounded) {
         hit = hit_at(start);
         return false;
       }
@@ -163,7 +170,7 @@ class Trace {
     double length = 0;  // of the next segment
     while (t < t_exit_) {
       if (used_up()) return {Ended::exhausted, t, t};
-      const double free = (sign * value(t) - rounding_) / speed_;
+      const double free = (sign * value(t) - rounding(t)) / speed_;
       if (free > least_at(t) && kAhead * free > kGrowing * length) {
         t += free;
         length = kAhead * free;
@@ -180,7 +187,7 @@ class Trace {
           break;
         }
         const double least = least_at(t);
-        if (length <= least) return {Ended::crossing, t, sign * value(end) <= 0 ? end : t};
+        if (length <= least) return {Ended::crossing, t, crossed_by(t, least, sign)};
         const double gained = until - t;
         length = std::max(least, sunk < end ? std::min((sunk - until) * kBeyond, kShrink * length)
                                             : std::max(gained, kShrink * (end - until)));
@@ -189,6 +196,15 @@ class Trace {
       }
     }
     return {Ended::exit, t, t};
+  }
+
+  // A time at which the surface is crossed, within a few of the last intervals; t where there is none.
+  double crossed_by(double t, double least, double sign) {
+    for (const double ahead : {1, 2, 4}) {
+      const double end = std::min(t + ahead * least, t_exit_);
+      if (sign * value(end) <= 0) return end;
+    }
+    return t;
   }
 
   // Until when a segment is proven to be on this side, and from when on not to be, if that is finite.
@@ -213,13 +229,13 @@ class Trace {
   // ("Illinois"), until the value is rounding or doubles end.
   double crossing(double t0, double t1) {
     double f0 = value(t0), f1 = value(t1);
-    if (f0 <= rounding_) return t0;
+    if (f0 <= rounding(t0)) return t0;
     int kept = 0;
     for (int i = 0; i < kMostSecants; ++i) {
       const double t = t0 + (t1 - t0) * (f0 / (f0 - f1));
       if (!(t > t0 && t < t1)) break;
       const double f = value(t);
-      if (std::abs(f) <= rounding_) return t;
+      if (std::abs(f) <= rounding(t)) return t;
       if (f > 0) {
         t0 = t, f0 = f;
         if (kept == 1) f1 *= 0.5;
@@ -251,7 +267,7 @@ class Trace {
   MarchStats& stats_;
   double t_enter_ = 0, t_exit_ = 0;
   double speed_;
-  double rounding_ = 0, shortest_ = 0;
+  double from_ = 0, shortest_ = 0;
   bool began_inside_ = false;
 };
 
