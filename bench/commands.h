@@ -117,6 +117,14 @@ struct VoxelLeaksOptions {
 };
 void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report);
 
+/// `scenes`: hierarchies over many objects.
+struct ScenesOptions {
+  std::vector<int> objects{1000, 10000, 100000};
+  int rays = 100000;
+  int repeats = 5;
+};
+void run_scenes(const ScenesOptions& options, const ReportOptions& report);
+
 /// `functions`: the marches over terrain functions beside proofs.
 struct FunctionsOptions {
   int width = 480, height = 270;  ///< pixels

@@ -250,6 +250,16 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*voxel_leaks_command, report);
 
+  ScenesOptions scenes;
+  CLI::App* scenes_command = app.add_subcommand("scenes", "hierarchies over many objects: how soon built, how fast");
+  scenes_command->add_option("--objects", scenes.objects, "one or several")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1 << 24))
+      ->capture_default_str();
+  scenes_command->add_option("--rays", scenes.rays, "per pass")->check(CLI::Range(1, 1 << 28))->capture_default_str();
+  scenes_command->add_option("--repeats", scenes.repeats, "passes")->check(CLI::Range(1, 1000))->capture_default_str();
+  add_json_option(*scenes_command, report);
+
   FunctionsOptions functions;
   CLI::App* functions_command = app.add_subcommand("functions", "the marches over terrain functions, beside proofs");
   functions_command->add_option("--width", functions.width, "pixels")
@@ -299,6 +309,7 @@ int run(int argc, char** argv) {
   if (*voxels_command) run_voxels(voxels, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*edits_command) run_edits(edits, report);
+  if (*scenes_command) run_scenes(scenes, report);
   if (*functions_command) run_functions(functions, report);
   if (*function_leaks_command) run_function_leaks(function_leaks, report);
   if (*extents_command) {

@@ -21,7 +21,9 @@ const Row kPresetHeads = {"preset", "march", "numbers", "left out", "source", ""
 
 Row row_of(const MarchEntry& march) {
   std::string runs_on;
-  if (march.cpu != nullptr || march.function_cpu != nullptr || march.voxel_cpu != nullptr) runs_on += "cpu";
+  if (march.cpu != nullptr || march.function_cpu != nullptr || march.voxel_cpu != nullptr ||
+      march.distance_cpu != nullptr)
+    runs_on += "cpu";
   if (march.simd != nullptr || march.function_simd != nullptr) runs_on += ", simd";
   if (march.gpu) runs_on += ", gpu";
   return {std::string(march.name),

@@ -30,7 +30,6 @@
 #include "scarp/output/png.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/ramp.h"
-#include "scarp/render/voxel_picture.h"
 #include "scarp/scene/from_raster.h"
 #include "scarp/scene/from_vox.h"
 #include "scarp/source/read_raster.h"
@@ -175,8 +174,24 @@ void print_times(const RenderOptions& options, double read_s, double build_s, do
              device.empty() ? "" : ", on " + device);
 }
 
+// Writes the picture, and says what it took.
+void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const Scene& scene, const SceneLook& look,
+                         const Camera& camera, Watch& watch, double read_s, double build_s) {
+  if (options.exr) {
+    const PictureLayers layers = render_scene_layers(scene, look, camera, options.picture, terminal_progress("render"));
+    const double render_s = watch.lap();
+    write_layers(file, options.output, layers, camera);
+    print_times(options, read_s, build_s, render_s);
+    return;
+  }
+  const Picture picture = render_scene(scene, look, camera, options.picture, terminal_progress("render"));
+  const double render_s = watch.lap();
+  write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  print_times(options, read_s, build_s, render_s);
+  print_findings(picture);
+}
+
 void render_vox(RenderOptions options, const ViewSettings& view) {
-  if (options.exr) throw Error(fmt::format("output '{}': pictures of voxels are written as PNG", options.output));
   if (!options.device.empty()) throw Error("--device: pictures of voxels are made on the CPU; leave it out");
   const FromVoxOptions from{options.vox, options.march.empty() ? FromVoxOptions{}.march : options.march};
   find_voxel_march(from.march);
@@ -187,17 +202,13 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
   const VoxFile document = read_vox(options.inputs.front());
   stop_if_interrupted();
   const double read_s = watch.lap();
-  const VoxelScene scene = voxel_scene_from(document, from);
+  const Scene scene({scene_voxels(voxel_scene_from(document, from), from.march)}, {SceneObject{}});
   stop_if_interrupted();
   const double build_s = watch.lap();
   const Box box = picture_box(scene);
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   const Camera camera = camera_of(options, view, box, 0);
-  const Picture picture = render_voxels(scene, camera, options.picture, terminal_progress("render"));
-  const double render_s = watch.lap();
-  write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
-  print_times(options, read_s, build_s, render_s);
-  print_findings(picture);
+  write_scene_picture(options, file, scene, {}, camera, watch, read_s, build_s);
 }
 
 // The file's own settings hold where no option was given.
@@ -224,20 +235,7 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
       : !options.eye.empty() && !options.target.empty() ? camera_of(options, view, {}, 0)
                                                         : camera_of(options, view, picture_box(document.scene), 0);
   for (const std::string& note : document.notes) fmt::print(stderr, "note: {}\n", note);
-  const SceneLook look = look_of(document);
-  if (options.exr) {
-    const PictureLayers layers =
-        render_scene_layers(document.scene, look, camera, options.picture, terminal_progress("render"));
-    const double render_s = watch.lap();
-    write_layers(file, options.output, layers, camera);
-    print_times(options, read_s, 0, render_s);
-    return;
-  }
-  const Picture picture = render_scene(document.scene, look, camera, options.picture, terminal_progress("render"));
-  const double render_s = watch.lap();
-  write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
-  print_times(options, read_s, 0, render_s);
-  print_findings(picture);
+  write_scene_picture(options, file, document.scene, look_of(document), camera, watch, read_s, 0);
 }
 
 void render_terrain(RenderOptions options, const ViewSettings& view) {

@@ -4,22 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
-#include "scarp/field/outward_interval.h"
+#include "scarp/march/function_interval.h"
 
 namespace scarp {
 namespace {
 
-using boost::numeric::square;
-
-// A position along the ray: base + rate * t + more. Turning and scaling it loses nothing; a warp goes into `more`.
-struct Position {
-  Interval base, rate, more;
-  Interval over(const Interval& t) const { return base + rate * t + more; }
-};
-Position operator+(const Position& a, const Position& b) { return {a.base + b.base, a.rate + b.rate, a.more + b.more}; }
-Position operator*(const Interval& k, const Position& a) { return {k * a.base, k * a.rate, k * a.more}; }
+using namespace judge;
 
 double fade(double t) { return t * t * t * (10 + t * (-15 + 6 * t)); }
 // The fade grows: its range is that of its ends, which are computed by fewer than 8 roundings of numbers below 32.
@@ -214,8 +205,12 @@ class Evaluation {
 
 }  // namespace
 
+judge::Interval judge::height_over(const Function& function, FunctionUse use, const Position& x, const Position& y,
+                                   const Interval& t) {
+  return Evaluation(use, t).of(function, x, y);
+}
+
 FunctionJudgement judge_function(const Function& function, const Ray& ray, FunctionUse use, int most_evaluations) {
-  FunctionJudgement judgement{FunctionVerdict::clear, ray.t_max, ray.t_max};
   double t_enter = ray.t_min, t_exit = ray.t_max;
   for (int axis = 0; axis < 3; ++axis) {
     const double o = ray.origin[axis], d = ray.direction[axis];
@@ -224,39 +219,13 @@ FunctionJudgement judge_function(const Function& function, const Ray& ray, Funct
     t_enter = std::max(t_enter, std::min(a, b));
     t_exit = std::min(t_exit, std::max(a, b));
   }
-  if (!(t_enter <= t_exit)) return judgement;
-  const double shortest = 1e-9 * (t_exit - t_enter);
   const auto position = [&](int axis) {
     return Position{Interval(ray.origin[axis]), Interval(ray.direction[axis]), Interval(0.0)};
   };
   const Position x = position(0), y = position(1), z = position(2);
   const auto above = [&](const Interval& t) { return z.over(t) - Evaluation(use, t).of(function, x, y); };
 
-  // Intervals yet to be judged, the leftmost last.
-  std::vector<Interval> open{Interval(t_enter, t_exit)};
-  while (!open.empty()) {
-    const Interval t = open.back();
-    open.pop_back();
-    const bool used_up = --most_evaluations < 0;
-    const Interval h = above(t);
-    if (h.lower() > 0 && !used_up) continue;
-    const bool clear_so_far = judgement.verdict == FunctionVerdict::clear;
-    if (width(t) <= shortest || used_up) {
-      if (clear_so_far) judgement.clear_until = t.lower();
-      judgement.verdict = FunctionVerdict::undecided;
-      judgement.crossed_by = t.upper();
-      if (used_up) return judgement;
-      if (above(Interval(t.upper())).upper() < 0) {
-        judgement.verdict = FunctionVerdict::crossing;
-        return judgement;
-      }
-      continue;
-    }
-    const double middle = median(t);
-    open.emplace_back(middle, t.upper());
-    open.emplace_back(t.lower(), middle);
-  }
-  return judgement;
+  return first_crossing(t_enter, t_exit, ray.t_max, most_evaluations, above);
 }
 
 }  // namespace scarp

@@ -19,6 +19,7 @@
 #include "scarp/march/max_mip_simd.h"
 #include "scarp/march/naive.h"
 #include "scarp/march/relaxed.h"
+#include "scarp/march/sphere_trace.h"
 #include "scarp/march/voxel_bricks.h"
 #include "scarp/march/voxel_cubes.h"
 #include "scarp/march/voxel_exhaustive.h"
@@ -71,6 +72,17 @@ constexpr MarchEntry voxel_march(std::string_view name, VoxelAccelerator needs, 
   return entry;
 }
 
+constexpr MarchEntry distance_march(std::string_view name, Guarantee guarantee, DistanceMarch cpu,
+                                    DistanceOcclusion occluded, std::string_view parameters,
+                                    std::string_view description) {
+  MarchEntry entry{};
+  entry.name = name, entry.fields = "distance field", entry.guarantee = guarantee;
+  entry.parameters = parameters, entry.description = description;
+  entry.distance_cpu = cpu;
+  entry.distance_cpu_occluded = occluded;
+  return entry;
+}
+
 constexpr std::array kMarches = {
     MarchEntry{"exhaustive", kHeights, Guarantee::exact, false, false, march_exhaustive, nullptr, nullptr, nullptr,
                false, "", "every cell under the ray on its own, in double: the judge of the others, slow"},
@@ -107,6 +119,9 @@ constexpr std::array kMarches = {
                 "out of the largest empty cube ahead of each voxel, one for each octant of directions"),
     voxel_march("voxel-bricks", VoxelAccelerator::bricks, march_voxel_bricks, occluded_voxel_bricks,
                 "out of empty blocks of 2 to 16 voxels, told by bit masks; the smallest memory"),
+    distance_march("sphere-trace", Guarantee::conservative, march_sphere_trace, occluded_sphere_trace,
+                   "tolerance 1e-6 of the distance, 1024 steps",
+                   "steps by the distance to the nearest surface, closes in by bounds of segments; never passes"),
 };
 
 // A run of rows for which `takes` holds.
@@ -193,6 +208,10 @@ void validate(const MarchSettings& settings) {
   require(std::isfinite(function.tolerance) && function.tolerance >= 0, "function tolerance", function.tolerance,
           "0 or more metres");
   require(function.halvings >= 1 && function.halvings <= 60, "function halvings", function.halvings, "1 to 60");
+  const auto& sphere_trace = settings.sphere_trace;
+  require(std::isfinite(sphere_trace.tolerance) && sphere_trace.tolerance >= 0, "sphere-trace tolerance",
+          sphere_trace.tolerance, "0 or more");
+  require(sphere_trace.max_steps >= 1, "sphere-trace step limit", sphere_trace.max_steps, "1 or more");
   require(settings.bisect.halvings >= 1 && settings.bisect.halvings <= 60, "bisect halvings", settings.bisect.halvings,
           "1 to 60");
 }
@@ -207,9 +226,13 @@ std::span<const MarchEntry> function_marches() {
 std::span<const MarchEntry> voxel_marches() {
   return run_of([](const MarchEntry& entry) { return entry.voxel_cpu != nullptr; });
 }
+std::span<const MarchEntry> distance_marches() {
+  return run_of([](const MarchEntry& entry) { return entry.distance_cpu != nullptr; });
+}
 
 const MarchEntry& find_march(std::string_view name) { return find_in(height_marches(), name); }
 const MarchEntry& find_function_march(std::string_view name) { return find_in(function_marches(), name); }
 const MarchEntry& find_voxel_march(std::string_view name) { return find_in(voxel_marches(), name); }
+const MarchEntry& find_distance_march(std::string_view name) { return find_in(distance_marches(), name); }
 
 }  // namespace scarp

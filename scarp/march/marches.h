@@ -10,6 +10,7 @@
 
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/ray.h"
+#include "scarp/field/distance_field.h"
 #include "scarp/field/height_field.h"
 #include "scarp/field/height_function.h"
 #include "scarp/march/voxel_target.h"
@@ -65,6 +66,12 @@ struct LipschitzLocalSettings {
   int max_steps = 1024;     ///< >= 1
 };
 
+/// `sphere-trace`: t += distance, closes in on the surface by bounds of segments.
+struct SphereTraceSettings {
+  double tolerance = 1e-6;  ///< length of the last interval, per unit of distance travelled, >= 0
+  int max_steps = 1024;     ///< >= 1
+};
+
 /// What an approximate march over a terrain function does with its last interval: from the sample before, where its
 /// test for a hit failed, to the one where it holds.
 enum class Refinement : std::uint8_t {
@@ -96,6 +103,7 @@ struct MarchSettings {
   BisectSettings bisect;
   LipschitzLocalSettings lipschitz_local;
   FunctionMarchSettings function;
+  SphereTraceSettings sphere_trace;
 };
 
 /// Throws Error naming the first setting out of its range.
@@ -131,6 +139,11 @@ using FunctionMarch = Hit (*)(const HeightFunction& function, const Ray& ray, co
 using FunctionMarchBatch = void (*)(const HeightFunction& function, std::span<const Ray> rays, std::span<Hit> hits,
                                     const MarchSettings& settings, std::span<std::uint32_t> steps, FunctionUse use);
 
+/// A ray in world space against a distance field: the closest hit, and whether it is one.
+using DistanceMarch = Hit (*)(const DistanceField& field, const Ray& ray, const MarchSettings& settings,
+                              MarchStats* stats);
+using DistanceOcclusion = bool (*)(const DistanceField& field, const Ray& ray, const MarchSettings& settings);
+
 /// What a voxel march needs of VoxelTarget besides the grid.
 enum class VoxelAccelerator { none, spheres, cubes, octants, bricks };
 
@@ -154,9 +167,13 @@ struct MarchEntry {
   VoxelMarch voxel_cpu = nullptr;  ///< scalar C++
   VoxelOcclusion voxel_cpu_occluded = nullptr;
   VoxelAccelerator voxel_accelerator = VoxelAccelerator::none;
+  // Those of distance fields likewise.
+  DistanceMarch distance_cpu = nullptr;
+  DistanceOcclusion distance_cpu_occluded = nullptr;
 };
 
-/// The whole table: those of height fields alone, of height fields and functions, of functions alone, of voxel grids.
+/// The whole table: those of height fields alone, of height fields and functions, of functions alone, of voxel grids,
+/// of distance fields.
 std::span<const MarchEntry> marches();
 /// The part of it that takes height fields, the oracle first.
 std::span<const MarchEntry> height_marches();
@@ -164,11 +181,15 @@ std::span<const MarchEntry> height_marches();
 std::span<const MarchEntry> function_marches();
 /// The part that takes voxel grids, the oracle first.
 std::span<const MarchEntry> voxel_marches();
+/// The part that takes distance fields.
+std::span<const MarchEntry> distance_marches();
 /// Of height_marches(). Throws Error listing their names when there is no such march.
 const MarchEntry& find_march(std::string_view name);
 /// Of function_marches(), likewise.
 const MarchEntry& find_function_march(std::string_view name);
 /// Of voxel_marches(), likewise.
 const MarchEntry& find_voxel_march(std::string_view name);
+/// Of distance_marches(), likewise.
+const MarchEntry& find_distance_march(std::string_view name);
 
 }  // namespace scarp

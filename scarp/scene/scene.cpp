@@ -227,7 +227,8 @@ SceneSurface Scene::surface(const Ray& ray, const SceneHit& hit) const {
   surface.normal = object.placement.world_from_normal(own.normal);
   surface.shading_normal = object.placement.world_from_normal(own.shading_normal);
   surface.object = hit.object;
-  surface.material = object.material;
+  // Materials of parts count from 1.
+  surface.material = own.material > 0 ? static_cast<std::uint32_t>(own.material - 1) : object.material;
   surface.place = local.at(hit.t());
   surface.colour = own.colour;
   return surface;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A field with the march that follows rays over it, as an object of a scene: the same questions for heights, functions
-// and voxels, in the field's own space.
+// A field with the march that follows rays over it, as an object of a scene: the same questions for heights, functions,
+// shapes and voxels, in the field's own space.
 //
 // A ray that begins on the surface of a hit does so by the field's own rule (cell, place, voxel): nothing is pushed
 // off.
@@ -13,6 +13,7 @@
 #include <string_view>
 #include <variant>
 
+#include "scarp/field/distance_field.h"
 #include "scarp/field/height_function.h"
 #include "scarp/march/marches.h"
 #include "scarp/scene/box_tree.h"
@@ -24,7 +25,7 @@ namespace scarp {
 struct FieldHit {
   HitStatus status = HitStatus::miss;
   double t = std::numeric_limits<double>::infinity();
-  /// Hit: of heights (with cell) and functions (without); VoxelSceneHit: of voxels. Set for hits.
+  /// Hit: of heights (with cell), functions and shapes (without); VoxelSceneHit: of voxels. Set for hits.
   std::variant<std::monostate, Hit, VoxelSceneHit> own;
 
   explicit operator bool() const { return status == HitStatus::hit; }
@@ -32,9 +33,10 @@ struct FieldHit {
 
 /// What is at a hit, in the field's space.
 struct FieldSurface {
-  dvec3 normal{0.0};                  ///< unit, outward; zero for a ray that began inside
-  dvec3 shading_normal{0.0};          ///< unit
-  std::optional<VoxelColour> colour;  ///< where the field has colours of its own
+  dvec3 normal{0.0};                    ///< unit, outward; zero for a ray that began inside
+  dvec3 shading_normal{0.0};            ///< unit
+  std::optional<VoxelColour> colour{};  ///< where the field has colours of its own
+  int material = 0;                     ///< of the part of a shape, as in distance_node.h; 0: that of the object
 };
 
 /// Immutable; asked from many threads at once.
@@ -42,7 +44,7 @@ class SceneField {
  public:
   virtual ~SceneField() = default;
 
-  virtual std::string_view kind() const = 0;   ///< "heights", "function", "voxels"
+  virtual std::string_view kind() const = 0;   ///< "heights", "function", "shape", "voxels"
   virtual std::string_view march() const = 0;  ///< its name
   /// Around everything that rays can meet: empty when that is nothing; no box for a field without an end.
   virtual std::optional<WorldBox> box() const = 0;
@@ -75,6 +77,10 @@ SceneFieldPtr scene_heights(HeightField field, const MarchEntry& march = find_ma
 /// `march` is a row of function_marches(). Throws Error for a setting out of its range.
 SceneFieldPtr scene_function(HeightFunction function, const MarchEntry& march = find_function_march("lipschitz-local"),
                              const MarchSettings& settings = {});
+
+/// `march` is a row of distance_marches(). Throws Error for a setting out of its range.
+SceneFieldPtr scene_shape(DistanceField shape, const MarchEntry& march = find_distance_march("sphere-trace"),
+                          const MarchSettings& settings = {});
 
 /// The objects of a voxel scene as one; each model has its march.
 SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march);

@@ -8,11 +8,13 @@
 #include <string_view>
 #include <utility>
 
+#include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/from_raster.h"
 #include "scarp/scene/from_vox.h"
 #include "scarp/scene/json_object.h"
 #include "scarp/scene/scene_parts.h"
+#include "scarp/scene/shape_json.h"
 #include "scarp/source/procedural_dem.h"
 #include "scarp/source/read_raster.h"
 
@@ -74,8 +76,12 @@ Raster generated(const Json& json) {
   return raster;
 }
 
-FieldWithPlace heights_from(const Json& json, const std::string& path, const FieldSurroundings& around,
-                            const MarchEntry& march, const MarchSettings& settings) {
+struct HeightsWithPlace {
+  HeightField field;
+  dvec3 shift;
+};
+
+HeightsWithPlace heights_from(const Json& json, const std::string& path, const FieldSurroundings& around) {
   const int sources = json.contains("file") + json.contains("files") + json.contains("generate");
   if (sources != 1) refuse_json(path, json, "an object with one of file, files, generate");
   const RasterOptions options = raster_options_from(json, path);
@@ -98,10 +104,32 @@ FieldWithPlace heights_from(const Json& json, const std::string& path, const Fie
     HeightField field = height_field_from(std::move(raster), field_options);
     const dvec3 shift =
         json.value("centred", false) ? dvec3(-0.5 * field.width(), -0.5 * field.depth(), 0) : dvec3(0.0);
-    return {scene_heights(std::move(field), march, settings), shift};
+    return {std::move(field), shift};
   } catch (const Error&) {
     rethrow_at(path + "/" + source);
   }
+}
+
+// The ground that a shape is cut out of: a field's name, or an object with heights or a function.
+Shape ground_from(const Json& json, const std::string& path, const FieldSurroundings& around) {
+  if (json.is_string()) {
+    const auto [named, at] = around.field(json.get<std::string>(), path);
+    if (!named->is_object() || !(named->contains("heights") || named->contains("function")))
+      throw Error(fmt::format("{}: '{}' is no ground; expected a field of heights or a function", path,
+                              json.get<std::string>()));
+    return ground_from(*named, at, around);
+  }
+  if (json.is_object() && json.size() >= 1 && json.contains("heights")) {
+    HeightsWithPlace made = heights_from(json["heights"], path + "/heights", around);
+    const double slope = slope_bound(made.field);
+    const Shape ground = make_shape(shape::FieldGround{std::make_shared<HeightField>(std::move(made.field)), slope});
+    return made.shift == dvec3(0.0) ? ground : make_shape(shape::Moved{ground, made.shift});
+  }
+  if (json.is_object() && json.contains("function")) {
+    Function function = function_from_json(json["function"], path + "/function", around.functions);
+    return make_shape(shape::FunctionGround{std::make_shared<const HeightFunction>(std::move(function))});
+  }
+  refuse_json(path, json, "the name of a field, or an object with heights or a function");
 }
 
 FieldWithPlace voxels_from(const Json& json, const std::string& path, const FieldSurroundings& around,
@@ -127,6 +155,8 @@ void rethrow_at(const std::string& path) {
   } catch (const Interrupted&) {
     throw;
   } catch (const Error& error) {
+    // What has a place already keeps it.
+    if (*error.what() == '/') throw;
     throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
@@ -154,6 +184,8 @@ MarchSettings march_settings_from_json(const Json& json, const std::string& path
   count("bisect_halvings", s.bisect.halvings);
   number("local_tolerance", s.lipschitz_local.tolerance);
   count("local_max_steps", s.lipschitz_local.max_steps);
+  number("trace_tolerance", s.sphere_trace.tolerance);
+  count("trace_max_steps", s.sphere_trace.max_steps);
   number("function_step", s.function.step);
   number("function_step_share", s.function.step_share);
   number("function_tolerance", s.function.tolerance);
@@ -169,7 +201,7 @@ MarchSettings march_settings_from_json(const Json& json, const std::string& path
 }
 
 FieldWithPlace field_from_json(const Json& json, const std::string& path, const FieldSurroundings& around) {
-  constexpr std::array<const char*, 3> kKinds = {"heights", "function", "voxels"};
+  constexpr std::array<const char*, 4> kKinds = {"heights", "function", "shape", "voxels"};
   const char* kind = nullptr;
   for (const char* name : kKinds) {
     if (!json.contains(name)) continue;
@@ -190,11 +222,25 @@ FieldWithPlace field_from_json(const Json& json, const std::string& path, const 
   };
   const std::string inner = path + "/" + kind;
   const Json& field = json[kind];
-  if (kind == kKinds[0]) return heights_from(field, inner, around, march(find_march, "max-mip"), settings);
+  if (kind == kKinds[0]) {
+    const MarchEntry& by = march(find_march, "max-mip");
+    HeightsWithPlace made = heights_from(field, inner, around);
+    return {scene_heights(std::move(made.field), by, settings), made.shift};
+  }
   if (kind == kKinds[1]) {
-    Function function = function_from_json(field, inner, around.functions);
-    return {
-        scene_function(HeightFunction(std::move(function)), march(find_function_march, "lipschitz-local"), settings)};
+    const MarchEntry& by = march(find_function_march, "lipschitz-local");
+    return {scene_function(HeightFunction(function_from_json(field, inner, around.functions)), by, settings)};
+  }
+  if (kind == kKinds[2]) {
+    const MarchEntry& by = march(find_distance_march, "sphere-trace");
+    const ShapeNames names{around.material, [&](const Json& ground, const std::string& at) {
+                             try {
+                               return ground_from(ground, at, around);
+                             } catch (const Error&) {
+                               rethrow_at(at);
+                             }
+                           }};
+    return {scene_shape(distance_field_from_json(field, inner, names), by, settings)};
   }
   return voxels_from(field, inner, around, march(find_voxel_march, "voxel-bricks"));
 }

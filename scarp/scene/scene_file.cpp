@@ -50,6 +50,10 @@ class Reader {
     check_scene_schema(json_);
     around_.folder = fs::path(path).parent_path().string();
     around_.functions = [this](const std::string& name, std::string_view at) { return function_of(name, at); };
+    around_.material = [this](const std::string& name, const std::string& at) {
+      return static_cast<int>(material_named(name, at)) + 1;
+    };
+    around_.field = [this](const std::string& name, const std::string& at) { return field_named(name, at); };
     around_.notes = &whole_.notes;
     around_.progress = whole_.progress;
   }
@@ -91,10 +95,13 @@ class Reader {
     }
     const std::string name = object["field"];
     if (const auto known = named_fields_.find(name); known != named_fields_.end()) return known->second;
-    if (!json_.contains("fields") || !json_["fields"].contains(name)) {
-      throw Error(fmt::format("{}/field: there is no field '{}'; fields stand in /fields, by name", path, name));
-    }
-    return named_fields_[name] = add_field(json_["fields"][name], "/fields/" + name);
+    const auto [json, at] = field_named(name, path + "/field");
+    return named_fields_[name] = add_field(*json, at);
+  }
+  std::pair<const Json*, std::string> field_named(const std::string& name, const std::string& at) const {
+    if (!json_.contains("fields") || !json_["fields"].contains(name))
+      throw Error(fmt::format("{}: there is no field '{}'; fields stand in /fields, by name", at, name));
+    return {&json_["fields"][name], "/fields/" + name};
   }
   std::pair<std::uint32_t, dvec3> add_field(const Json& json, const std::string& path) {
     FieldWithPlace made = field_from_json(json, path, around_);
@@ -116,8 +123,10 @@ class Reader {
       reader.read();
       whole_.open_files.pop_back();
       return std::move(reader.objects());
-    } catch (const Error&) {
-      rethrow_at(fmt::format("{}/scene: scene '{}'", path, file));
+    } catch (const Interrupted&) {
+      throw;
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}/scene: scene '{}': {}", path, inner, error.what()));
     }
   }
 
@@ -150,12 +159,12 @@ class Reader {
 
   std::uint32_t material_of(const Json& json, const std::string& path) const {
     if (!json.contains("material")) return static_cast<std::uint32_t>(-1);
-    const std::string name = json["material"];
+    return material_named(json["material"], path + "/material");
+  }
+  std::uint32_t material_named(const std::string& name, const std::string& at) const {
     const auto found = materials_.find(name);
-    if (found == materials_.end()) {
-      throw Error(
-          fmt::format("{}/material: there is no material '{}'; materials stand in /materials, by name", path, name));
-    }
+    if (found == materials_.end())
+      throw Error(fmt::format("{}: there is no material '{}'; materials stand in /materials, by name", at, name));
     return found->second;
   }
 
@@ -249,10 +258,11 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
   Reader reader(path, whole);
   reader.read();
   const Json& json = reader.json();
+  const SceneCamera camera = reader.camera();
   SceneFile file{Scene(std::move(whole.fields), std::move(reader.objects())),
                  {},
                  std::move(reader.names()),
-                 reader.camera(),
+                 camera,
                  sun_from(json),
                  picture_from(json),
                  {},
@@ -269,8 +279,10 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
 SceneFile read_scene(const std::string& path, const Progress& progress) {
   try {
     return read_whole(path, progress);
-  } catch (const Error&) {
-    rethrow_at(fmt::format("scene '{}'", path));
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(fmt::format("scene '{}': {}", path, error.what()));
   }
 }
 
