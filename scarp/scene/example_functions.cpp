@@ -21,7 +21,7 @@ constexpr std::array kExamples = {
                         "octaves": {"march": 9, "shadow": 9, "normal": 13}})"},
     ExampleFunction{
         "ridges", "ridged multifractal of simplex noise: crests that meet",
-        R"({"type": "ridged", "noise": "simplex", "seed": 3, "wavelength": 3000, "height": 800, "gain": 0.45})"},
+        R"({"type": "ridged", "noise": "simplex", "seed": 3, "wavelength": 3600, "height": 520, "gain": 0.42})"},
     ExampleFunction{"warped", "fBm whose plane is bent by another one",
                     R"({"type": "warp", "base": {"type": "fbm", "seed": 4, "wavelength": 1400, "height": 280},
                         "shift_x": {"type": "fbm", "seed": 5, "wavelength": 2600, "height": 420, "octaves": 2},
