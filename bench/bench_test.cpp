@@ -228,6 +228,16 @@ TEST(ScarpBench, EditsWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, ScenesWritesTheDocumentedFields) {
+  const json all = output_of("scenes --objects 100,1000 --rays 1000 --repeats 1");
+  expect_head(all);
+  EXPECT_EQ(all["rows"].size(), 2u);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"objects", "build_s", "bytes_per_object", "rays", "hits", "boxes_per_ray", "steps_per_ray",
+                        "mrays_per_cpu_s"});
+  }
+}
+
 TEST(ScarpBench, VoxelsWritesTheDocumentedFieldsAndMarchesAgree) {
   const json all = output_of("voxels --sets standard,degenerate --thousands 1 --stride 64 --repeats 1");
   expect_head(all);

@@ -127,6 +127,14 @@ struct VoxelLeaksOptions {
 };
 void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report);
 
+/// `scenes`: hierarchies over many objects.
+struct ScenesOptions {
+  std::vector<int> objects{1000, 10000, 100000};
+  int rays = 100000;
+  int repeats = 5;
+};
+void run_scenes(const ScenesOptions& options, const ReportOptions& report);
+
 /// `functions`: the marches over terrain functions beside proofs.
 struct FunctionsOptions {
   int width = 480, height = 270;  ///< pixels
@@ -134,8 +142,18 @@ struct FunctionsOptions {
   std::uint64_t seed = 1;
   int repeats = 3;
   std::int64_t judged = 4000;  ///< about so many rays per function are judged
+  bool presets = false;        ///< the presets of known shaders beside lipschitz-local, instead of the marches
 };
 /// Throws Error, after the report, when a conservative march lost a crossing.
 void run_functions(const FunctionsOptions& options, const ReportOptions& report);
+
+/// `function-leaks`: the conservative marches over the example functions, every ray judged.
+struct FunctionLeaksOptions {
+  std::int64_t rays = 1'000'000;  ///< in all
+  std::uint64_t seed = 1;
+  bool all = false;  ///< the approximate marches as well
+};
+/// Throws Error, after the report, when a conservative march was wrong.
+void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions& report);
 
 }  // namespace scarp::bench

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -16,8 +15,8 @@
 #include "scarp/base/parallel.h"
 #include "scarp/field/height_function.h"
 #include "scarp/march/function_exhaustive.h"
-#include "scarp/march/function_marches.h"
-#include "scarp/march/lipschitz_local.h"
+#include "scarp/march/marches.h"
+#include "scarp/march/presets.h"
 
 namespace scarp::bench {
 namespace {
@@ -72,22 +71,28 @@ std::vector<Ray> picture(const HeightFunction& function, const FunctionsOptions&
 }
 
 struct March {
-  const char* name;
-  std::function<Hit(const HeightFunction&, const Ray&, MarchStats*)> cast;
+  std::string name;
+  const MarchEntry* entry;
+  MarchSettings settings;
+  bool vectors = false;
 };
 
-std::vector<March> marches_over_functions() {
+std::vector<March> marches_over_functions(const FunctionsOptions& options) {
   MarchSettings settings;
   settings.lipschitz.max_steps = kUnlimitedSteps;
-  const auto use = FunctionUse::march;
-  return {
-      {"naive", [=](const auto& f, const Ray& r, MarchStats* s) { return march_naive(f, r, settings, s, use); }},
-      {"relaxed", [=](const auto& f, const Ray& r, MarchStats* s) { return march_relaxed(f, r, settings, s, use); }},
-      {"lipschitz",
-       [=](const auto& f, const Ray& r, MarchStats* s) { return march_lipschitz(f, r, settings, s, use); }},
-      {"lipschitz-local",
-       [=](const auto& f, const Ray& r, MarchStats* s) { return march_lipschitz_local(f, r, {}, s, use); }},
-  };
+  std::vector<March> all;
+  if (options.presets) {
+    for (const MarchPreset& preset : march_presets()) {
+      all.push_back({std::string(preset.name), &find_function_march(preset.march), preset.settings});
+    }
+    all.push_back({"lipschitz-local", &find_function_march("lipschitz-local"), settings});
+    return all;
+  }
+  for (const MarchEntry& march : function_marches()) {
+    all.push_back({std::string(march.name), &march, settings});
+    if (march.function_simd) all.push_back({fmt::format("{}-simd", march.name), &march, settings, true});
+  }
+  return all;
 }
 
 }  // namespace
@@ -110,22 +115,27 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
             judge_function(ground.function, rays[static_cast<std::size_t>(i * every)]);
       }
     });
-    for (const March& march : marches_over_functions()) {
+    double counted_heights = 0, counted_bounds = 0;
+    for (const March& march : marches_over_functions(options)) {
       std::vector<Hit> hits(rays.size());
       double heights = 0, bounds = 0, best_ms = std::numeric_limits<double>::infinity();
       for (int pass = 0; pass < options.repeats; ++pass) {
         heights = bounds = 0;
         const auto start = std::chrono::steady_clock::now();
-        for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (march.vectors) march.entry->function_simd(function, rays, hits, march.settings, {}, FunctionUse::march);
+        for (std::size_t i = 0; i < rays.size() && !march.vectors; ++i) {
           MarchStats stats;
-          hits[i] = march.cast(function, rays[i], &stats);
+          hits[i] = march.entry->function_cpu(function, rays[i], march.settings, &stats, FunctionUse::march);
           heights += stats.cell_tests, bounds += stats.steps;
         }
         const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
         best_ms = std::min(best_ms, took.count());
       }
+      // Bit for bit the same work as ray by ray, which was counted in the row before.
+      if (march.vectors) heights = counted_heights, bounds = counted_bounds;
+      counted_heights = heights, counted_bounds = bounds;
       // The others look at heights alone, and count them as steps.
-      if (std::string(march.name) != "lipschitz-local") std::swap(heights, bounds);
+      if (march.entry->name != "lipschitz-local") std::swap(heights, bounds);
       int crossings = 0, misses = 0, clear = 0, false_hits = 0, given_up = 0;
       std::vector<double> errors;
       for (std::int64_t i = 0; i < judged; ++i) {
@@ -149,7 +159,7 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
       const double p99 = errors.empty() ? 0 : errors[(errors.size() - 1) * 99 / 100];
       const double n = static_cast<double>(count), ms = best_ms / n * 1e6;
       const double miss_rate = crossings ? static_cast<double>(misses) / crossings : 0;
-      lost = lost || (misses > 0 && std::string(march.name).starts_with("lipschitz"));
+      lost = lost || (misses > 0 && march.entry->guarantee == Guarantee::conservative);
       rows.push_back({{"function", ground.name},
                       {"octaves", options.octaves},
                       {"march", march.name},

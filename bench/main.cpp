@@ -277,6 +277,16 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*voxel_leaks_command, report);
 
+  ScenesOptions scenes;
+  CLI::App* scenes_command = app.add_subcommand("scenes", "hierarchies over many objects: how soon built, how fast");
+  scenes_command->add_option("--objects", scenes.objects, "one or several")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 1 << 24))
+      ->capture_default_str();
+  scenes_command->add_option("--rays", scenes.rays, "per pass")->check(CLI::Range(1, 1 << 28))->capture_default_str();
+  scenes_command->add_option("--repeats", scenes.repeats, "passes")->check(CLI::Range(1, 1000))->capture_default_str();
+  add_json_option(*scenes_command, report);
+
   FunctionsOptions functions;
   CLI::App* functions_command = app.add_subcommand("functions", "the marches over terrain functions, beside proofs");
   functions_command->add_option("--width", functions.width, "pixels")
@@ -295,11 +305,25 @@ int run(int argc, char** argv) {
   functions_command->add_option("--judged", functions.judged, "rays per function that the judge answers, about")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
       ->capture_default_str();
+  functions_command->add_flag("--presets", functions.presets,
+                              "the presets of known shaders beside lipschitz-local, instead of the marches");
   add_json_option(*functions_command, report);
+
+  FunctionLeaksOptions function_leaks;
+  CLI::App* function_leaks_command =
+      app.add_subcommand("function-leaks", "very many rays at terrain functions; fails when Scarp loses one");
+  double function_leak_rays = static_cast<double>(function_leaks.rays);
+  function_leaks_command->add_option("--rays", function_leak_rays, "in all")
+      ->check(CLI::Range(1.0, 1e15))
+      ->capture_default_str();
+  function_leaks_command->add_option("--seed", function_leaks.seed, "of the rays")->capture_default_str();
+  function_leaks_command->add_flag("--all", function_leaks.all, "the approximate marches as well");
+  add_json_option(*function_leaks_command, report);
 
   CLI11_PARSE(app, argc, argv);
   voxel_leaks.rays = static_cast<std::int64_t>(voxel_leak_rays);
   leaks.rays = static_cast<std::int64_t>(leak_rays);
+  function_leaks.rays = static_cast<std::int64_t>(function_leak_rays);
   leaks.embree_rays = static_cast<std::int64_t>(embree_rays);
   if (*heights_command) run_heights(heights, report);
   if (*survey_command) run_survey(survey, report);
@@ -313,7 +337,9 @@ int run(int argc, char** argv) {
   if (*voxels_command) run_voxels(voxels, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*edits_command) run_edits(edits, report);
+  if (*scenes_command) run_scenes(scenes, report);
   if (*functions_command) run_functions(functions, report);
+  if (*function_leaks_command) run_function_leaks(function_leaks, report);
   if (*extents_command) {
     extents.sizes.clear();
     for (const std::string& text : extent_sizes) extents.sizes.push_back(size_from(text));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp info`: what is in a raster or a voxel model, as Scarp will use it.
+// `scarp info`: what is in a raster, a voxel model or a scene, as Scarp will use it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,6 +13,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
+#include "app/cli/scene_input.h"
 #include "app/cli/vox_input.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/accel/slope_bound.h"
@@ -111,19 +112,21 @@ std::string text_of(const Json& info) {
 }  // namespace
 
 void add_info(CLI::App& program) {
-  CLI::App* command =
-      program.add_subcommand("info", "Say what is in a raster of heights or a voxel model, as scarp will use it");
+  CLI::App* command = program.add_subcommand(
+      "info", "Say what is in a raster of heights, a voxel model or a scene, as scarp will use it");
   const auto options = std::make_shared<InfoOptions>();
   add_raster_inputs(*command, options->inputs);
   command->add_flag("--json", options->json, "one JSON object instead of text");
   add_raster_options(*command, options->raster);
   add_vox_options(*command, options->vox);
   command->callback([options] {
-    const bool vox = is_vox_input(options->inputs);
-    const Json info = vox ? describe_vox(options->inputs.front(), options->vox) : describe(*options);
+    const bool scene = is_scene_input(options->inputs), vox = !scene && is_vox_input(options->inputs);
+    const Json info = scene ? describe_scene(options->inputs.front())
+                      : vox ? describe_vox(options->inputs.front(), options->vox)
+                            : describe(*options);
     // File names may hold any bytes; JSON may not.
     const auto json = [&] { return info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; };
-    fmt::print("{}", options->json ? json() : vox ? vox_text_of(info) : text_of(info));
+    fmt::print("{}", options->json ? json() : scene ? scene_text_of(info) : vox ? vox_text_of(info) : text_of(info));
   });
 }
 

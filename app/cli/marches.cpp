@@ -10,18 +10,21 @@
 
 #include "app/cli/commands.h"
 #include "scarp/march/marches.h"
+#include "scarp/march/presets.h"
 
 namespace scarp::cli {
 namespace {
 
-constexpr std::array<std::string_view, 6> kHeads = {"name",    "guarantee",  "fields",
-                                                    "runs on", "parameters", "description"};
-using Row = std::array<std::string, kHeads.size()>;
+using Row = std::array<std::string, 6>;
+const Row kHeads = {"name", "guarantee", "fields", "runs on", "parameters", "description"};
+const Row kPresetHeads = {"preset", "march", "numbers", "left out", "source", ""};
 
 Row row_of(const MarchEntry& march) {
   std::string runs_on;
-  if (march.cpu != nullptr || march.voxel_cpu != nullptr) runs_on += "cpu";
-  if (march.simd != nullptr) runs_on += ", simd";
+  if (march.cpu != nullptr || march.function_cpu != nullptr || march.voxel_cpu != nullptr ||
+      march.distance_cpu != nullptr)
+    runs_on += "cpu";
+  if (march.simd != nullptr || march.function_simd != nullptr) runs_on += ", simd";
   if (march.gpu) runs_on += ", gpu";
   return {std::string(march.name),
           std::string(name_of(march.guarantee)),
@@ -31,13 +34,28 @@ Row row_of(const MarchEntry& march) {
           std::string(march.description)};
 }
 
-void print_markdown(const std::vector<Row>& rows) {
-  fmt::print("| {} |\n|{}\n", fmt::join(kHeads, " | "), [] {
-    std::string line;
-    for (std::size_t i = 0; i < kHeads.size(); ++i) line += "---|";
-    return line;
-  }());
-  for (const Row& row : rows) fmt::print("| `{}` | {} |\n", row[0], fmt::join(row.begin() + 1, row.end(), " | "));
+Row row_of(const MarchPreset& preset) {
+  return {std::string(preset.name),    fmt::format("{}", preset.march),
+          std::string(preset.numbers), preset.left_out.empty() ? "-" : std::string(preset.left_out),
+          std::string(preset.source),  ""};
+}
+
+// Columns whose head is empty are none.
+void print_markdown(const Row& heads, const std::vector<Row>& rows) {
+  const auto columns = std::find(heads.begin(), heads.end(), "") - heads.begin();
+  fmt::print("| {} |\n|", fmt::join(heads.begin(), heads.begin() + columns, " | "));
+  for (std::ptrdiff_t i = 0; i < columns; ++i) fmt::print("---|");
+  fmt::print("\n");
+  for (const Row& row : rows) {
+    fmt::print("| `{}` | {} |\n", row[0], fmt::join(row.begin() + 1, row.begin() + columns, " | "));
+  }
+}
+
+void print_presets(const std::vector<Row>& rows) {
+  for (const Row& row : rows) {
+    fmt::print("{}: {}; {}\n    {}\n", row[0], row[1], row[2], row[4]);
+    if (row[3] != "-") fmt::print("    left out: {}\n", row[3]);
+  }
 }
 
 // Name, guarantee and so on in columns; parameters and description, which are long, on lines of their own.
@@ -64,16 +82,19 @@ void print_plain(const std::vector<Row>& rows) {
 
 void add_marches(CLI::App& program) {
   CLI::App* command = program.add_subcommand("marches", "List the marching techniques and what each guarantees");
-  const auto markdown = std::make_shared<bool>(false);
+  const auto markdown = std::make_shared<bool>(false), presets = std::make_shared<bool>(false);
   command->add_flag("--markdown", *markdown, "as a table in Markdown");
-  command->callback([markdown] {
+  command->add_flag("--presets", *presets, "instead: the numbers of known shaders for 'render --function --preset'");
+  command->callback([markdown, presets] {
     std::vector<Row> rows;
-    for (const MarchEntry& march : marches()) rows.push_back(row_of(march));
-    if (*markdown) {
-      print_markdown(rows);
+    if (*presets) {
+      for (const MarchPreset& preset : march_presets()) rows.push_back(row_of(preset));
     } else {
-      print_plain(rows);
+      for (const MarchEntry& march : marches()) rows.push_back(row_of(march));
     }
+    if (*markdown) return print_markdown(*presets ? kPresetHeads : kHeads, rows);
+    if (*presets) return print_presets(rows);
+    print_plain(rows);
   });
 }
 

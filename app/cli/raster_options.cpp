@@ -43,11 +43,11 @@ HeightEncoding encoding_from(const std::string& text) {
 
 }  // namespace
 
-void add_raster_inputs(CLI::App& command, std::vector<std::string>& inputs) {
-  command
+CLI::Option* add_raster_inputs(CLI::App& command, std::vector<std::string>& inputs) {
+  return command
       .add_option("IN", inputs,
                   "raster of heights: anything GDAL reads, .npy, .npz, .exr; several files, or a folder of them, are "
-                  "tiles of one field. render and info take a MagicaVoxel file (.vox), too")
+                  "tiles of one field. render and info take a MagicaVoxel file (.vox) or a scene (.json), too")
       ->required();
 }
 

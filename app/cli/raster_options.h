@@ -11,7 +11,7 @@
 namespace scarp::cli {
 
 /// Adds IN, one or several files or folders: what read_tiles() takes. `inputs` must live until the subcommand has run.
-void add_raster_inputs(CLI::App& command, std::vector<std::string>& inputs);
+CLI::Option* add_raster_inputs(CLI::App& command, std::vector<std::string>& inputs);
 
 /// Adds --band, --window, --nodata, --scale, --offset, --height-range, --unit, --crs, --bounds, --encoding, --raw,
 /// --channel and --key. `options` must live until the subcommand has run. `crs_option` replaces --crs where that means

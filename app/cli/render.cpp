@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// `scarp render`: an elevation model or a voxel model in, a picture out.
+// `scarp render`: an elevation model, a voxel model or a scene in, a picture out.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <chrono>
 #include <cmath>
@@ -17,23 +18,29 @@
 #include "app/cli/device_option.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
+#include "app/cli/function_input.h"
 #include "app/cli/march_options.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
+#include "app/cli/scene_input.h"
 #include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/output/png.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/ramp.h"
-#include "scarp/render/voxel_picture.h"
 #include "scarp/scene/from_raster.h"
 #include "scarp/scene/from_vox.h"
 #include "scarp/source/read_raster.h"
 
 namespace scarp::cli {
 namespace {
+
+// What of the options goes with a scene, which says all else itself.
+constexpr std::array<std::string_view, 16> kSceneOptions = {
+    "IN",         "--output", "--size", "--look",   "--ramp", "--sun", "--no-shadows", "--samples",
+    "--sun-size", "--view",   "--eye",  "--target", "--fov",  "--top", "--aa",         "--threads"};
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {
@@ -42,6 +49,7 @@ struct RenderOptions {
   RasterOptions raster;
   FieldOptions field;
   VoxSceneOptions vox;
+  FunctionInput function;
   std::string march;  // empty: the fastest exact one
   std::string device;
   MarchSettings march_settings;
@@ -51,6 +59,7 @@ struct RenderOptions {
   double fov_deg = ViewSettings{}.fov_deg;
   bool top = false, no_shadows = false, no_plinth = false;
   int threads = 0;
+  std::vector<std::string> given;  // the names of the options that were typed
 };
 
 // Seconds since it was made or last asked.
@@ -165,8 +174,24 @@ void print_times(const RenderOptions& options, double read_s, double build_s, do
              device.empty() ? "" : ", on " + device);
 }
 
+// Writes the picture, and says what it took.
+void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const Scene& scene, const SceneLook& look,
+                         const Camera& camera, Watch& watch, double read_s, double build_s) {
+  if (options.exr) {
+    const PictureLayers layers = render_scene_layers(scene, look, camera, options.picture, terminal_progress("render"));
+    const double render_s = watch.lap();
+    write_layers(file, options.output, layers, camera);
+    print_times(options, read_s, build_s, render_s);
+    return;
+  }
+  const Picture picture = render_scene(scene, look, camera, options.picture, terminal_progress("render"));
+  const double render_s = watch.lap();
+  write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  print_times(options, read_s, build_s, render_s);
+  print_findings(picture);
+}
+
 void render_vox(RenderOptions options, const ViewSettings& view) {
-  if (options.exr) throw Error(fmt::format("output '{}': pictures of voxels are written as PNG", options.output));
   if (!options.device.empty()) throw Error("--device: pictures of voxels are made on the CPU; leave it out");
   const FromVoxOptions from{options.vox, options.march.empty() ? FromVoxOptions{}.march : options.march};
   find_voxel_march(from.march);
@@ -177,17 +202,40 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
   const VoxFile document = read_vox(options.inputs.front());
   stop_if_interrupted();
   const double read_s = watch.lap();
-  const VoxelScene scene = voxel_scene_from(document, from);
+  const Scene scene({scene_voxels(voxel_scene_from(document, from), from.march)}, {SceneObject{}});
   stop_if_interrupted();
   const double build_s = watch.lap();
   const Box box = picture_box(scene);
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   const Camera camera = camera_of(options, view, box, 0);
-  const Picture picture = render_voxels(scene, camera, options.picture, terminal_progress("render"));
-  const double render_s = watch.lap();
-  write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
-  print_times(options, read_s, build_s, render_s);
-  print_findings(picture);
+  write_scene_picture(options, file, scene, {}, camera, watch, read_s, build_s);
+}
+
+// The file's own settings hold where no option was given.
+void render_scene_file(RenderOptions options, ViewSettings view) {
+  if (!options.device.empty()) throw Error("--device: pictures of scenes are made on the CPU; leave it out");
+  for (const std::string& option : options.given) {
+    if (std::find(kSceneOptions.begin(), kSceneOptions.end(), option) == kSceneOptions.end())
+      throw Error(fmt::format("{}: of a scene this stands in its file; leave it out", option));
+  }
+  ReplaceFile file(options.output);
+  Watch watch;
+  const SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
+  stop_if_interrupted();
+  const double read_s = watch.lap();
+  options.picture = picture_of(document, options.picture, options.given);
+  view = view_of(document, view, options.given);
+  const bool typed = options.top || !options.view.empty() || !options.eye.empty();
+  if (options.top && options.size.empty()) fit_size_to_ground(picture_box(document.scene), options.picture);
+  const int width = options.picture.width, height = options.picture.height;
+  options.fov_deg = view.fov_deg;
+  const Camera camera =
+      !typed && document.camera.eye
+          ? Camera::look_at(*document.camera.eye, *document.camera.target, view.fov_deg, width, height)
+      : !options.eye.empty() && !options.target.empty() ? camera_of(options, view, {}, 0)
+                                                        : camera_of(options, view, picture_box(document.scene), 0);
+  for (const std::string& note : document.notes) fmt::print(stderr, "note: {}\n", note);
+  write_scene_picture(options, file, document.scene, look_of(document), camera, watch, read_s, 0);
 }
 
 void render_terrain(RenderOptions options, const ViewSettings& view) {
@@ -236,12 +284,34 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   print_findings(picture);
 }
 
+void render_function_input(const RenderOptions& options, const ViewSettings& view) {
+  if (!options.inputs.empty()) {
+    throw Error(fmt::format("'{}': --function stands in the place of files; give one of both", options.inputs.front()));
+  }
+  if (options.exr) throw Error(fmt::format("output '{}': pictures of functions are written as PNG", options.output));
+  if (!options.device.empty()) throw Error("--device: pictures of functions are made on the CPU; leave it out");
+  if (options.top) throw Error("--top: a function has no end that a map could show; leave it out");
+  const auto given = [&](const char* option) {
+    return std::find(options.given.begin(), options.given.end(), option) != options.given.end();
+  };
+  render_function(options.function,
+                  {options.picture, options.march, options.march_settings, view, given("--view"), given("--haze"),
+                   given("--error-tolerance"), options.eye, options.target},
+                  options.output);
+}
+
 void run(RenderOptions options) {
   const ViewSettings view = settle(options);
   if (!options.eye.empty()) point_from(options.eye, "--eye");
   if (!options.target.empty()) point_from(options.target, "--target");
   const ThreadLimit limit(options.threads);
-  if (is_vox_input(options.inputs)) {
+  if (!options.function.function.empty()) return render_function_input(options, view);
+  if (options.inputs.empty()) throw Error("nothing to render: give files, or --function NAME");
+  if (!options.function.preset.empty())
+    throw Error("--preset: has the numbers of shaders over functions; add --function");
+  if (is_scene_input(options.inputs)) {
+    render_scene_file(std::move(options), view);
+  } else if (is_vox_input(options.inputs)) {
     render_vox(std::move(options), view);
   } else {
     render_terrain(std::move(options), view);
@@ -251,10 +321,11 @@ void run(RenderOptions options) {
 }  // namespace
 
 void add_render(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("render", "Render an elevation model or a voxel model into a picture");
+  CLI::App* command =
+      program.add_subcommand("render", "Render an elevation model, a voxel model or a scene into a picture");
   const auto options = std::make_shared<RenderOptions>();
   RenderOptions& o = *options;
-  add_raster_inputs(*command, o.inputs);
+  add_raster_inputs(*command, o.inputs)->required(false);
   command
       ->add_option("-o,--output", o.output,
                    "the picture: .png, or .exr in linear light with depth, normal, position and steps")
@@ -287,13 +358,15 @@ void add_render(CLI::App& program) {
       ->capture_default_str();
   command->add_flag("--no-plinth", o.no_plinth, "no walls below the terrain's border");
   command
-      ->add_option("--haze", o.picture.haze, "share of haze over a distance as long as the field's diagonal, 0 to 0.95")
+      ->add_option("--haze", o.picture.haze,
+                   "share of haze over a distance as long as the field's diagonal (of functions "
+                   "over --extent, 0.2), 0 to 0.95")
       ->capture_default_str();
   command->add_option("--aa", o.picture.aa, "N x N samples per pixel of the shaded look, 1 to 16")
       ->capture_default_str();
   command
       ->add_option("--error-tolerance", o.picture.error_tolerance,
-                   "of the error look, in sides of a cell along the ray")
+                   "of the error look along the ray, in sides of a cell; of functions in percent of the distance (1)")
       ->capture_default_str();
   add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
@@ -320,12 +393,18 @@ void add_render(CLI::App& program) {
       ->excludes(fov);
   view->excludes(eye);
 
-  command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks)")
+  add_function_options(*command, o.function, o.march, o.march_settings);
+  command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks; lipschitz-local)")
       ->group("Settings of marches");
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);
   add_vox_options(*command, o.vox);
-  command->callback([options] { run(*options); });
+  command->callback([options, command] {
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->count() > 0) options->given.push_back(option->get_name());
+    }
+    run(*options);
+  });
 }
 
 }  // namespace scarp::cli

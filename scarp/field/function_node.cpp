@@ -13,7 +13,6 @@
 namespace scarp {
 namespace {
 
-constexpr int kMostOctaves = 24;
 constexpr double kShortestWave = 0x1p-20;
 
 [[noreturn]] void refuse(std::string_view what, double value, std::string_view range) {

@@ -43,11 +43,13 @@ struct Sines {
   std::vector<Sine> waves;  ///< at least one
 };
 
-/// Octaves by what they are for: normals may be finer than the surface that is marched.
+inline constexpr int kMostOctaves = 24;
+
+/// Octaves by what they are for, 1..kMostOctaves: normals may be finer than the surface that is marched.
 struct Octaves {
-  int march = 9;    ///< 1..24
-  int shadow = 9;   ///< 1..24
-  int normal = 12;  ///< 1..24
+  int march = 9;
+  int shadow = 9;
+  int normal = 12;
 };
 
 enum class FractalForm : std::uint8_t {

@@ -2,51 +2,15 @@
 #include "scarp/march/function_exhaustive.h"
 
 #include <algorithm>
-#include <boost/numeric/interval.hpp>
 #include <cmath>
 #include <numbers>
-#include <vector>
+
+#include "scarp/march/function_interval.h"
 
 namespace scarp {
 namespace {
 
-// Rounds outwards by widening each result, without touching the processor's rounding mode: 2^-52 of it is at least one
-// unit of its last place, and 2^-1000 more than any that is not normal.
-struct Outwards : boost::numeric::interval_lib::rounded_arith_exact<double> {
-  using unprotected_rounding = Outwards;
-  static double down(double x) { return x - (std::abs(x) * 0x1p-52 + 0x1p-1000); }
-  static double up(double x) { return x + (std::abs(x) * 0x1p-52 + 0x1p-1000); }
-  template <class T>
-  double conv_down(const T& x) {
-    return down(static_cast<double>(x));
-  }
-  template <class T>
-  double conv_up(const T& x) {
-    return up(static_cast<double>(x));
-  }
-  double add_down(double a, double b) { return down(a + b); }
-  double add_up(double a, double b) { return up(a + b); }
-  double sub_down(double a, double b) { return down(a - b); }
-  double sub_up(double a, double b) { return up(a - b); }
-  double mul_down(double a, double b) { return down(a * b); }
-  double mul_up(double a, double b) { return up(a * b); }
-  double div_down(double a, double b) { return down(a / b); }
-  double div_up(double a, double b) { return up(a / b); }
-  double sqrt_down(double a) { return std::max(0.0, down(std::sqrt(a))); }
-  double sqrt_up(double a) { return up(std::sqrt(a)); }
-};
-using Policies = boost::numeric::interval_lib::policies<boost::numeric::interval_lib::save_state_nothing<Outwards>,
-                                                        boost::numeric::interval_lib::checking_base<double>>;
-using Interval = boost::numeric::interval<double, Policies>;
-using boost::numeric::square;
-
-// A position along the ray: base + rate * t + more. Turning and scaling it loses nothing; a warp goes into `more`.
-struct Position {
-  Interval base, rate, more;
-  Interval over(const Interval& t) const { return base + rate * t + more; }
-};
-Position operator+(const Position& a, const Position& b) { return {a.base + b.base, a.rate + b.rate, a.more + b.more}; }
-Position operator*(const Interval& k, const Position& a) { return {k * a.base, k * a.rate, k * a.more}; }
+using namespace judge;
 
 double fade(double t) { return t * t * t * (10 + t * (-15 + 6 * t)); }
 // The fade grows: its range is that of its ends, which are computed by fewer than 8 roundings of numbers below 32.
@@ -241,8 +205,12 @@ class Evaluation {
 
 }  // namespace
 
+judge::Interval judge::height_over(const Function& function, FunctionUse use, const Position& x, const Position& y,
+                                   const Interval& t) {
+  return Evaluation(use, t).of(function, x, y);
+}
+
 FunctionJudgement judge_function(const Function& function, const Ray& ray, FunctionUse use, int most_evaluations) {
-  FunctionJudgement judgement{FunctionVerdict::clear, ray.t_max, ray.t_max};
   double t_enter = ray.t_min, t_exit = ray.t_max;
   for (int axis = 0; axis < 3; ++axis) {
     const double o = ray.origin[axis], d = ray.direction[axis];
@@ -251,39 +219,13 @@ FunctionJudgement judge_function(const Function& function, const Ray& ray, Funct
     t_enter = std::max(t_enter, std::min(a, b));
     t_exit = std::min(t_exit, std::max(a, b));
   }
-  if (!(t_enter <= t_exit)) return judgement;
-  const double shortest = 1e-9 * (t_exit - t_enter);
   const auto position = [&](int axis) {
     return Position{Interval(ray.origin[axis]), Interval(ray.direction[axis]), Interval(0.0)};
   };
   const Position x = position(0), y = position(1), z = position(2);
   const auto above = [&](const Interval& t) { return z.over(t) - Evaluation(use, t).of(function, x, y); };
 
-  // Intervals yet to be judged, the leftmost last.
-  std::vector<Interval> open{Interval(t_enter, t_exit)};
-  while (!open.empty()) {
-    const Interval t = open.back();
-    open.pop_back();
-    const bool used_up = --most_evaluations < 0;
-    const Interval h = above(t);
-    if (h.lower() > 0 && !used_up) continue;
-    const bool clear_so_far = judgement.verdict == FunctionVerdict::clear;
-    if (width(t) <= shortest || used_up) {
-      if (clear_so_far) judgement.clear_until = t.lower();
-      judgement.verdict = FunctionVerdict::undecided;
-      judgement.crossed_by = t.upper();
-      if (used_up) return judgement;
-      if (above(Interval(t.upper())).upper() < 0) {
-        judgement.verdict = FunctionVerdict::crossing;
-        return judgement;
-      }
-      continue;
-    }
-    const double middle = median(t);
-    open.emplace_back(middle, t.upper());
-    open.emplace_back(t.lower(), middle);
-  }
-  return judgement;
+  return first_crossing(t_enter, t_exit, ray.t_max, most_evaluations, above);
 }
 
 }  // namespace scarp

@@ -22,19 +22,13 @@
 
 #include "scarp/base/ray.h"
 #include "scarp/field/height_function.h"
+#include "scarp/march/marches.h"
 
 namespace scarp {
 
-struct LipschitzLocalSettings {
-  double tolerance = 1e-6;  ///< length of the last interval, per unit of distance travelled, >= 0
-  int max_steps = 1024;     ///< >= 1
-};
-
-/// Throws Error naming the first setting out of its range.
-void validate(const LipschitzLocalSettings& settings);
-
-/// Closest hit. `stats`, when given, is overwritten: steps are bounds of segments, cell_tests heights.
-Hit march_lipschitz_local(const HeightFunction& function, const Ray& ray, const LipschitzLocalSettings& settings = {},
+/// Closest hit. Uses settings.lipschitz_local. `stats`, when given, is overwritten: steps are bounds of segments,
+/// cell_tests heights.
+Hit march_lipschitz_local(const HeightFunction& function, const Ray& ray, const MarchSettings& settings = {},
                           MarchStats* stats = nullptr, FunctionUse use = FunctionUse::march);
 
 }  // namespace scarp

@@ -41,6 +41,7 @@ constexpr std::size_t kMostRays = kMostRaysOfRound;
 
 std::string_view name_of(Verdict verdict) { return style_of(verdict).name; }
 std::string_view colour_name_of(Verdict verdict) { return style_of(verdict).colour_name; }
+vec3 srgb_of(Verdict verdict) { return style_of(verdict).srgb; }
 
 Verdict judge(const Hit& answer, const Hit& truth, double tolerance) {
   if (truth.status == HitStatus::below) return Verdict::not_judged;

@@ -29,6 +29,7 @@ constexpr int kVerdicts = 8;
 std::string_view name_of(Verdict verdict);
 /// "grey", "red", ...: the colour of its pixels.
 std::string_view colour_name_of(Verdict verdict);
+vec3 srgb_of(Verdict verdict);
 
 /// Judges a march's answer by the true one. Hits agree when their t differ by at most `tolerance`.
 Verdict judge(const Hit& answer, const Hit& truth, double tolerance);

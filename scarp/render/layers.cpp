@@ -80,8 +80,7 @@ class LayersTile final : public TileWork {
 
 }  // namespace
 
-PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                            const PictureSettings& settings, const Progress& progress) {
+PictureLayers empty_layers(const PictureSettings& settings) {
   validate(settings);
   if (settings.look != Look::shaded) {
     throw Error(
@@ -89,19 +88,24 @@ PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, dou
                     "layers themselves",
                     name_of(settings.look)));
   }
+  const std::size_t pixels = static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
+  return {settings.width,
+          settings.height,
+          std::vector<vec3>(pixels),
+          std::vector<float>(pixels, std::numeric_limits<float>::infinity()),
+          std::vector<vec3>(pixels, vec3(0.0f)),
+          std::vector<vec3>(pixels, vec3(0.0f)),
+          std::vector<std::uint32_t>(pixels)};
+}
+
+PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
+                            const PictureSettings& settings, const Progress& progress) {
+  PictureLayers layers = empty_layers(settings);
   const HeightField& field = scene.field();
   require_ground(field);
   const Shader shader(field, camera, grid_north_azimuth, settings);
   const std::optional<Plinth> plinth = plinth_of(field, settings);
   const ShadedView view{camera, plinth, shader, settings.aa};
-  const std::size_t pixels = static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height);
-  PictureLayers layers{settings.width,
-                       settings.height,
-                       std::vector<vec3>(pixels),
-                       std::vector<float>(pixels, std::numeric_limits<float>::infinity()),
-                       std::vector<vec3>(pixels, vec3(0.0f)),
-                       std::vector<vec3>(pixels, vec3(0.0f)),
-                       std::vector<std::uint32_t>(pixels)};
   work_on_tiles(
       scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(shader),
       [&](const PixelTile& tile) { return std::make_unique<LayersTile>(view, tile, layers); }, progress);

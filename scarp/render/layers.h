@@ -21,6 +21,10 @@ struct PictureLayers {
   std::vector<std::uint32_t> steps;  ///< of the march; 0 for rays that met a wall of the block first, or passed it by
 };
 
+/// Layers of a picture in which nothing was met. Throws Error when the settings are out of range or name another look
+/// than `shaded`.
+PictureLayers empty_layers(const PictureSettings& settings);
+
 /// The look `shaded` with all layers; walls of the block count as met. Throws Error when the settings are out of range
 /// or name another look, or there is nothing to see; Interrupted when progress asks for it.
 PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,

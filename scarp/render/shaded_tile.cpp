@@ -6,7 +6,7 @@
 namespace scarp {
 
 std::size_t most_rays_of(const Shader& shader) {
-  return std::min(kMostRaysOfRound, kMostPointsOfTile * shader.most_light_rays());
+  return std::min(kMostRaysOfRound, kMostPointsOfTile * shader.lighting().most_rays());
 }
 
 ShadedTile::ShadedTile(const ShadedView& view, const PixelTile& tile)
@@ -34,12 +34,12 @@ bool ShadedTile::ask_light(RayRound& round) {
   round.question = RayRound::Question::any;
   round.rays.clear();
   for (; asked_points_ < points_.size(); ++asked_points_) {
-    if (round.rays.size() + shader.most_light_rays() > kMostRaysOfRound) return true;
+    if (round.rays.size() + shader.lighting().most_rays() > kMostRaysOfRound) return true;
     const std::size_t i = asked_points_;
     const Hit& hit = sights_[i].hit;
     if (hit && !hit.wall) {
       const GroundPoint ground = ground_point(shader.field(), rays_[i], hit);
-      open_.push_back({i, ground, shader.ask_light(ground, points_[i], round.rays)});
+      open_.push_back({i, ground, shader.lighting().ask(ground, points_[i], round.rays)});
     } else {
       colours_[i] = shader.colour_beside_ground(rays_[i], sights_[i]);
     }

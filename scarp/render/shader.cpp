@@ -18,9 +18,6 @@ namespace {
 constexpr vec3 kEarth(0.64f, 0.58f, 0.53f);
 constexpr float kUnlitWall = 0.55f;
 
-// Purposes of a pixel's points.
-constexpr std::uint32_t kOfSky = 0, kOfSun = 1;
-
 double diagonal(const Box& box) { return length(box.high - box.low); }
 
 }  // namespace
@@ -41,12 +38,9 @@ void require_ground(const HeightField& field) {
 Shader::Shader(const HeightField& field, const Camera& camera, double grid_north_azimuth,
                const PictureSettings& settings)
     : field_(field),
-      settings_(settings),
       ramp_(ramp_of(settings), field_.min_height(), field_.max_height()),
-      light_(settings.sun, grid_north_azimuth),
-      pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
       // No ray from the ground has a longer way to the end of the field.
-      ao_distance_(std::min(settings.ao_distance, diagonal(picture_box(field_, false)))),
+      lighting_(settings, grid_north_azimuth, std::min(settings.ao_distance, diagonal(picture_box(field_, false)))),
       earth_(linear_from_srgb(kEarth)) {
   // Haze lies over the field, not between it and a camera that stands back.
   const Box box = picture_box(field_, settings.plinth);
@@ -55,34 +49,9 @@ Shader::Shader(const HeightField& field, const Camera& camera, double grid_north
   haze_per_metre_ = -std::log(1 - settings.haze) / diagonal(box);
 }
 
-std::size_t Shader::most_light_rays() const { return static_cast<std::size_t>(std::max(1, 2 * settings_.samples)); }
-
-LightRays Shader::ask_light(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const {
-  const auto samples = [&](std::uint32_t purpose) {
-    const auto count = static_cast<std::uint32_t>(settings_.samples);
-    if (count == 0) return PatternRange{};  // a point of a sun needs none
-    return PatternRange{pattern_.pixel(point.pixel_x, point.pixel_y, purpose),
-                        count * static_cast<std::uint32_t>(point.index), count};
-  };
-  LightRays asked;
-  asked.sun = rays.size();
-  if (settings_.shadows) ask_sun(ground, light_.to_sun(), sun_radius(), samples(kOfSun), rays);
-  asked.sky = rays.size();
-  if (settings_.samples > 0 && ao_distance_ > 0) ask_sky(ground, ao_distance_, samples(kOfSky), rays);
-  asked.end = rays.size();
-  return asked;
-}
-
 vec3 Shader::ground_colour(const Hit& hit, const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
                            std::span<const std::uint8_t> blocked) const {
-  double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = 1;
-  if (settings_.shadows) {
-    const std::size_t count = asked.sky - asked.sun;
-    sun = sun_cosine(ground, sun_radius(), static_cast<std::uint32_t>(settings_.samples),
-                     rays.subspan(asked.sun, count), blocked.subspan(asked.sun, count));
-  }
-  if (asked.end > asked.sky) sky = 1 - sky_occlusion(blocked.subspan(asked.sky, asked.end - asked.sky));
-  return in_haze(ramp_(ground_height(hit)) * light_.on(ground.shading_normal, sun, sky), hit.t);
+  return in_haze(ramp_(ground_height(hit)) * lighting_.on(ground, asked, rays, blocked), hit.t);
 }
 
 vec3 Shader::colour_beside_ground(const Ray& ray, const Sight& sight) const {
@@ -92,7 +61,7 @@ vec3 Shader::colour_beside_ground(const Ray& ray, const Sight& sight) const {
 }
 
 vec3 Shader::wall_colour(const dvec3& normal) const {
-  const auto lit = static_cast<float>(std::max(0.0, dot(normal, light_.to_sun())));
+  const auto lit = static_cast<float>(std::max(0.0, dot(normal, lighting_.to_sun())));
   return earth_ * (kUnlitWall + (1 - kUnlitWall) * lit);
 }
 

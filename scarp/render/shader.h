@@ -5,14 +5,12 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
-#include <vector>
 
 #include "scarp/render/camera.h"
 #include "scarp/render/film.h"
-#include "scarp/render/light.h"
+#include "scarp/render/lighting.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/ramp.h"
-#include "scarp/render/sample_pattern.h"
 #include "scarp/render/sight.h"
 #include "scarp/render/visibility.h"
 
@@ -24,23 +22,13 @@ std::string_view ramp_of(const PictureSettings& settings);
 /// Throws Error when the field has nothing to see: no cells, no valid samples.
 void require_ground(const HeightField& field);
 
-/// Rays about the light of one point on the ground, among others.
-struct LightRays {
-  std::size_t sun = 0;  ///< the first to the sun; up to that to the sky
-  std::size_t sky = 0;  ///< the first to the sky
-  std::size_t end = 0;
-};
-
 /// Everything that a picture in the look `shaded` needs but rays. Refers to field, camera and settings.
 class Shader {
  public:
   Shader(const HeightField& field, const Camera& camera, double grid_north_azimuth, const PictureSettings& settings);
 
   const HeightField& field() const { return field_; }
-  /// How many rays ask_light() appends at most.
-  std::size_t most_light_rays() const;
-  /// Appends what has to be known of the light on a point.
-  LightRays ask_light(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const;
+  const Lighting& lighting() const { return lighting_; }
   /// Of ground, in linear light; `rays` and their answers are those that `asked` refers to.
   vec3 ground_colour(const Hit& hit, const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
                      std::span<const std::uint8_t> blocked) const;
@@ -51,15 +39,10 @@ class Shader {
   double ground_height(const Hit& hit) const;
   vec3 wall_colour(const dvec3& normal) const;
   vec3 in_haze(vec3 colour, double t) const;
-  // With `samples`; else the sun is a point.
-  double sun_radius() const { return settings_.samples > 0 ? light_.sun_radius() : 0; }
 
   const HeightField& field_;
-  const PictureSettings& settings_;
   Ramp ramp_;
-  Light light_;
-  SamplePattern pattern_;
-  double ao_distance_;
+  Lighting lighting_;
   vec3 earth_;
   double clear_distance_ = 0;
   double haze_per_metre_ = 0;

@@ -83,7 +83,10 @@ struct VoxelScene::Query {
         turn(in.objects_[in.in_tree_[0]].turn),
         direction(in.turns_[turn].grid_from_world * world_ray.direction) {}
 
-  std::optional<QuantisedRay> quantised(const Object& object, double t_max, const std::optional<ivec3>& start_voxel) {
+  std::optional<QuantisedRay> quantised(std::uint32_t index, double t_max, const VoxelSceneHit* from) {
+    const Object& object = scene.objects_[index];
+    std::optional<ivec3> start_voxel;
+    if (from && from->object == index) start_voxel = from->hit.voxel + normal_of(from->hit.face);
     const Turn& to = scene.turns_[object.turn];
     if (object.turn != turn) {
       turn = object.turn;
@@ -95,7 +98,7 @@ struct VoxelScene::Query {
   }
 };
 
-VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, VoxelSceneStats* stats) const {
+VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from, VoxelSceneStats* stats) const {
   VoxelSceneHit best;
   if (in_tree_.empty()) return best;
   Query query(*this, ray);
@@ -103,7 +106,7 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, VoxelSceneStats* stats) co
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
     const std::uint32_t index = in_tree_[in_tree];
     const Object& object = objects_[index];
-    const auto quantised = query.quantised(object, t_max, std::nullopt);
+    const auto quantised = query.quantised(index, t_max, from);
     if (!quantised) return t_max;
     MarchStats steps;
     const VoxelHit hit =
@@ -128,9 +131,7 @@ bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
     const std::uint32_t index = in_tree_[in_tree];
     const Object& object = objects_[index];
-    std::optional<ivec3> start;
-    if (from && from->object == index) start = from->hit.voxel + normal_of(from->hit.face);
-    const auto quantised = query.quantised(object, ray.t_max, start);
+    const auto quantised = query.quantised(index, ray.t_max, from);
     const MarchEntry& march = models_[object.model]->march();
     if (quantised) {
       blocked = march.voxel_cpu_occluded

@@ -46,7 +46,11 @@ class VoxelScene {
   VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places);
 
   /// The ray counts as one that starts free. `stats`, when given, is added to.
-  VoxelSceneHit closest_hit(const Ray& ray, VoxelSceneStats* stats = nullptr) const;
+  VoxelSceneHit closest_hit(const Ray& ray, VoxelSceneStats* stats = nullptr) const {
+    return closest_hit(ray, nullptr, stats);
+  }
+  /// The same for a ray that starts on the face that another one hit, when `from` is not null.
+  VoxelSceneHit closest_hit(const Ray& ray, const VoxelSceneHit* from, VoxelSceneStats* stats) const;
   /// Whether anything is in the way.
   bool occluded(const Ray& ray) const { return occluded(ray, nullptr); }
   /// The same for a ray that starts on the face that another one hit, on its outer side. It cannot hit that voxel

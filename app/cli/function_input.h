@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Terrain functions where `scarp render` takes files: --function and --preset.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "scarp/march/marches.h"
+#include "scarp/render/function_error.h"
+#include "scarp/render/picture.h"
+
+namespace scarp::cli {
+
+struct FunctionInput {
+  std::string function;  // a name or a file; empty: none
+  std::string preset;
+  double extent = 6000;
+};
+
+/// `march` and `settings` are where --march and its settings go, and those of a preset with them: add this before them,
+/// so that what is typed counts more. All must live until the subcommand has run.
+void add_function_options(CLI::App& command, FunctionInput& input, std::string& march, MarchSettings& settings);
+
+/// What of the command line's settings a function has other defaults for.
+struct FunctionPicture {
+  PictureSettings picture;
+  std::string march;  // empty: lipschitz-local
+  MarchSettings march_settings;
+  ViewSettings view;
+  bool view_given = false, haze_given = false, tolerance_given = false;
+  std::string eye, target;  // as --eye and --target, empty: of the view
+};
+
+void render_function(const FunctionInput& input, FunctionPicture settings, const std::string& output);
+
+}  // namespace scarp::cli

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/scene_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+
+#include "app/cli/progress.h"
+#include "scarp/base/error.h"
+
+namespace scarp::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+bool is_scene_path(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension == ".json";
+}
+
+// Sets what the file has, unless the option was given.
+class Taking {
+ public:
+  explicit Taking(const std::vector<std::string>& given) : given_(given) {}
+
+  template <class From, class To>
+  void operator()(const std::optional<From>& from, const char* option, To& to) const {
+    if (from && std::find(given_.begin(), given_.end(), option) == given_.end()) to = *from;
+  }
+
+ private:
+  const std::vector<std::string>& given_;
+};
+
+}  // namespace
+
+bool is_scene_input(const std::vector<std::string>& inputs) {
+  const auto scene = std::find_if(inputs.begin(), inputs.end(), is_scene_path);
+  if (scene == inputs.end()) return false;
+  if (inputs.size() > 1) throw Error(fmt::format("'{}': a scene stands alone; give it without others", *scene));
+  return true;
+}
+
+PictureSettings picture_of(const SceneFile& file, PictureSettings settings, const std::vector<std::string>& given) {
+  const Taking take(given);
+  take(file.picture.width, "--size", settings.width);
+  take(file.picture.height, "--size", settings.height);
+  take(file.picture.aa, "--aa", settings.aa);
+  take(file.picture.samples, "--samples", settings.samples);
+  take(file.picture.ao_distance, "--ao-distance", settings.ao_distance);
+  take(file.picture.seed, "--seed", settings.seed);
+  take(file.sun.azimuth_deg, "--sun", settings.sun.azimuth_deg);
+  take(file.sun.altitude_deg, "--sun", settings.sun.altitude_deg);
+  take(file.sun.size_deg, "--sun-size", settings.sun.size_deg);
+  take(file.sun.shadows, "--no-shadows", settings.shadows);
+  validate(settings);
+  return settings;
+}
+
+ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector<std::string>& given) {
+  const Taking take(given);
+  take(file.camera.azimuth_deg, "--view", view.azimuth_deg);
+  take(file.camera.elevation_deg, "--view", view.elevation_deg);
+  take(file.camera.distance, "--view", view.distance);
+  take(file.camera.fov_deg, "--fov", view.fov_deg);
+  return view;
+}
+
+SceneLook look_of(const SceneFile& file) {
+  SceneLook look;
+  look.materials = file.materials;
+  if (file.haze_distance) look.haze_distance = *file.haze_distance;
+  return look;
+}
+
+Json describe_scene(const std::string& path) {
+  const SceneFile file = read_scene(path, terminal_progress("read"));
+  Json info;
+  info["path"] = path;
+  info["format"] = "Scarp scene";
+  info["objects"] = Json::array();
+  for (const SceneObjectName& name : file.names) {
+    std::map<std::pair<std::string, std::string>, std::size_t> kinds;
+    for (std::uint32_t i = name.first; i < name.first + name.count; ++i) {
+      const SceneField& field = *file.scene.fields()[file.scene.objects()[i].field];
+      ++kinds[{std::string(field.kind()), std::string(field.march())}];
+    }
+    Json object{{"name", name.name}, {"count", name.count}, {"fields", Json::array()}};
+    for (const auto& [kind, count] : kinds)
+      object["fields"].push_back({{"kind", kind.first}, {"march", kind.second}, {"count", count}});
+    info["objects"].push_back(std::move(object));
+  }
+  info["placed"] = file.scene.objects().size();
+  info["fields"] = file.scene.fields().size();
+  info["materials"] = file.materials.size();
+  info["endless"] = file.scene.endless();
+  const WorldBox& box = file.scene.box();
+  const bool empty = !(box.low.x <= box.high.x);
+  info["low_m"] = empty ? Json() : Json{box.low.x, box.low.y, box.low.z};
+  info["high_m"] = empty ? Json() : Json{box.high.x, box.high.y, box.high.z};
+  info["hierarchy_bytes"] = file.scene.bytes();
+  info["notes"] = file.notes;
+  return info;
+}
+
+std::string scene_text_of(const Json& info) {
+  std::string out;
+  const auto line = [&](std::string_view name, const std::string& value) {
+    out += fmt::format("{:<12} {}\n", name, value);
+  };
+  line("file", info["path"].get<std::string>());
+  line("format", info["format"].get<std::string>());
+  line("objects", fmt::format("{}, placed {} times; {} fields, {} materials", info["objects"].size(),
+                              info["placed"].get<std::size_t>(), info["fields"].get<std::size_t>(),
+                              info["materials"].get<std::size_t>()));
+  for (const Json& object : info["objects"]) {
+    std::string what;
+    for (const Json& field : object["fields"]) {
+      what += fmt::format("{}{} x {} by {}", what.empty() ? "" : ", ", field["count"].get<std::size_t>(),
+                          field["kind"].get<std::string>(), field["march"].get<std::string>());
+    }
+    line("", fmt::format("{}: {}", object["name"].get<std::string>(), what));
+  }
+  const auto corner = [&](const char* key) {
+    const Json& p = info[key];
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
+  };
+  const std::string endless = info["endless"].get<bool>() ? "; beside it objects without an end" : "";
+  line("box", info["low_m"].is_null() ? "none: all objects are without an end"
+                                      : fmt::format("{} to {} m{}", corner("low_m"), corner("high_m"), endless));
+  line("memory", fmt::format("{} bytes for objects and hierarchy", info["hierarchy_bytes"].get<std::size_t>()));
+  for (const Json& note : info["notes"]) line("note", note.get<std::string>());
+  return out;
+}
+
+}  // namespace scarp::cli

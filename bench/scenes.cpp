@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: MIT
+// `scarp-bench scenes`: how soon a hierarchy over many objects is built, and how many rays it answers, on one thread:
+// boxes and balls of 1 to 4 m at random in a cube, turned at random.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+#include "bench/commands.h"
+#include "bench/random.h"
+#include "scarp/base/parallel.h"
+#include "scarp/scene/scene.h"
+
+namespace scarp::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kRoom = 30;  // cubic metres per object
+
+std::vector<SceneObject> objects_at_random(int count, double side) {
+  Random random(1, 0);
+  std::vector<SceneObject> objects;
+  for (int i = 0; i < count; ++i) {
+    Placement placement;
+    const double a = random.uniform(0, 6.283);
+    placement.turn = glm::dmat3({std::cos(a), std::sin(a), 0}, {-std::sin(a), std::cos(a), 0}, {0, 0, 1});
+    placement.scale = random.uniform(0.5, 2);
+    placement.origin = {random.uniform(0, side), random.uniform(0, side), random.uniform(0, side)};
+    objects.push_back({static_cast<std::uint32_t>(random.below(2)), 0, placement});
+  }
+  return objects;
+}
+
+Json measure_objects(const ScenesOptions& options, int count) {
+  const double side = std::cbrt(kRoom * count);
+  const std::vector<SceneFieldPtr> fields{scene_shape(DistanceField(make_shape(shape::Sphere{1}))),
+                                          scene_shape(DistanceField(make_shape(shape::Box{{1, 1, 1}})))};
+  const std::vector<SceneObject> objects = objects_at_random(count, side);
+  std::vector<double> build_s, trace_s;
+  Random random(2, 0);
+  std::vector<SceneRay> rays(static_cast<std::size_t>(options.rays));
+  for (SceneRay& ray : rays) {
+    const auto inside = [&] {
+      return dvec3(random.uniform(0, side), random.uniform(0, side), random.uniform(0, side));
+    };
+    ray.ray.origin = inside() - dvec3(0, 2 * side, 0);
+    ray.ray.direction = normalize(inside() - ray.ray.origin);
+  }
+  std::vector<SceneHit> hits(rays.size());
+  std::size_t bytes = 0, found = 0;
+  SceneStats all;
+  for (int pass = 0; pass < options.repeats; ++pass) {
+    const Stopwatch build;
+    const Scene scene(fields, objects);
+    build_s.push_back(build.cpu_s());
+    const Stopwatch trace;
+    scene.closest_hits(rays, hits);
+    trace_s.push_back(trace.cpu_s());
+    bytes = scene.bytes();
+    if (pass > 0) continue;
+    for (const SceneRay& ray : rays) {
+      SceneStats stats;
+      found += scene.closest_hit(ray, &stats) ? 1 : 0;
+      all.steps += stats.steps, all.boxes += stats.boxes;
+    }
+  }
+  const auto per_ray = [&](std::uint32_t sum) { return static_cast<double>(sum) / static_cast<double>(rays.size()); };
+  Json row;
+  row["objects"] = count;
+  row["build_s"] = median(build_s);
+  row["bytes_per_object"] = static_cast<double>(bytes) / count;
+  row["rays"] = rays.size();
+  row["hits"] = found;
+  row["boxes_per_ray"] = per_ray(all.boxes);
+  row["steps_per_ray"] = per_ray(all.steps);
+  row["mrays_per_cpu_s"] = 1e-6 * static_cast<double>(rays.size()) / median(trace_s);
+  return row;
+}
+
+}  // namespace
+
+void run_scenes(const ScenesOptions& options, const ReportOptions& report) {
+  const ThreadLimit limit(1);
+  Json rows = Json::array();
+  std::vector<std::vector<std::string>> lines{
+      {"objects", "build s", "bytes/object", "hits", "boxes/ray", "steps/ray", "Mrays/s (cpu)"}};
+  for (const int count : options.objects) {
+    const Json row = measure_objects(options, count);
+    lines.push_back({fmt::format("{}", count), short_number(row["build_s"]), short_number(row["bytes_per_object"]),
+                     fmt::format("{}", row["hits"].get<std::size_t>()), short_number(row["boxes_per_ray"]),
+                     short_number(row["steps_per_ray"]), short_number(row["mrays_per_cpu_s"])});
+    rows.push_back(row);
+  }
+  print_table(lines, 0);
+  write_json(report, rows);
+}
+
+}  // namespace scarp::bench

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// `lipschitz-local` for many rays in vectors: some dozens of walks (lipschitz_local_walk.h) are under way at once, and
+// what as many of them ask as a vector has lanes is answered together (function_simd_taylor.h).
+//
+//   walks    w0 w1 w2 w3 w4 w5 ...       bounds   [ w0 w2 w3 w5 | w8 ... ]     a walk that is done makes room
+//            each asks one question       heights  [ w1 w4 ... ]              for the next ray
+//
+// Answers and counts are bit for bit those of single rays.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scarp/march/marches.h"
+
+namespace scarp {
+
+/// hits[i] is march_lipschitz_local() of rays[i], bit for bit; steps[i], unless the span is empty, the steps and cell
+/// tests of its stats. On the calling thread; the spans have the same length.
+void closest_hits_lipschitz_local_simd(const HeightFunction& function, std::span<const Ray> rays, std::span<Hit> hits,
+                                       const MarchSettings& settings, std::span<std::uint32_t> steps, FunctionUse use);
+
+}  // namespace scarp

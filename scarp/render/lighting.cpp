@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/lighting.h"
+
+#include <algorithm>
+
+namespace scarp {
+namespace {
+
+// Purposes of a pixel's points.
+constexpr std::uint32_t kOfSky = 0, kOfSun = 1;
+
+}  // namespace
+
+Lighting::Lighting(const PictureSettings& settings, double grid_north_azimuth, double ao_distance)
+    : settings_(settings),
+      light_(settings.sun, grid_north_azimuth),
+      pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
+      ao_distance_(ao_distance) {}
+
+std::size_t Lighting::most_rays() const { return static_cast<std::size_t>(std::max(1, 2 * settings_.samples)); }
+
+LightRays Lighting::ask(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const {
+  const auto samples = [&](std::uint32_t purpose) {
+    const auto count = static_cast<std::uint32_t>(settings_.samples);
+    if (count == 0) return PatternRange{};  // a point of a sun needs none
+    return PatternRange{pattern_.pixel(point.pixel_x, point.pixel_y, purpose),
+                        count * static_cast<std::uint32_t>(point.index), count};
+  };
+  LightRays asked;
+  asked.sun = rays.size();
+  if (settings_.shadows) ask_sun(ground, light_.to_sun(), sun_radius(), samples(kOfSun), rays);
+  asked.sky = rays.size();
+  if (settings_.samples > 0 && ao_distance_ > 0) ask_sky(ground, ao_distance_, samples(kOfSky), rays);
+  asked.end = rays.size();
+  return asked;
+}
+
+vec3 Lighting::on(const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
+                  std::span<const std::uint8_t> blocked) const {
+  double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = 1;
+  if (settings_.shadows) {
+    const std::size_t count = asked.sky - asked.sun;
+    sun = sun_cosine(ground, sun_radius(), static_cast<std::uint32_t>(settings_.samples),
+                     rays.subspan(asked.sun, count), blocked.subspan(asked.sun, count));
+  }
+  if (asked.end > asked.sky) sky = 1 - sky_occlusion(blocked.subspan(asked.sky, asked.end - asked.sky));
+  return light_.on(ground.shading_normal, sun, sky);
+}
+
+}  // namespace scarp

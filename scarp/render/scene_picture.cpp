@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/scene_picture.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/render/lighting.h"
+#include "scarp/render/sky.h"
+#include "scarp/render/step_look.h"
+#include "scarp/render/surface_colour.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::size_t kLightRaysAtOnce = 8192;
+
+class SceneShader {
+ public:
+  SceneShader(const Scene& scene, const SceneLook& look, const Camera& camera, const PictureSettings& settings)
+      : scene_(scene),
+        camera_(camera),
+        colours_(look.materials),
+        lighting_(settings, 0, settings.ao_distance),
+        haze_per_metre_(1 / look.haze_distance) {}
+
+  /// Of points of a picture, in linear light.
+  std::vector<vec3> colours(const std::vector<PicturePoint>& points) const {
+    std::vector<SceneRay> rays;
+    for (const PicturePoint& point : points) rays.push_back({camera_.ray(point.x, point.y)});
+    std::vector<SceneHit> hits(rays.size());
+    scene_.closest_hits(rays, hits);
+    std::vector<vec3> colours(rays.size());
+    Open open;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray& ray = rays[i].ray;
+      if (!hits[i]) {
+        colours[i] = sky_colour(ray.direction.z);
+        continue;
+      }
+      const SceneSurface surface = scene_.surface(ray, hits[i]);
+      colours[i] = colours_(surface);
+      // The camera is inside: its colour is all there is to see.
+      if (surface.normal == dvec3(0.0)) continue;
+      const GroundPoint ground{surface.position, {}, surface.normal, surface.shading_normal};
+      open.points.push_back({i, ground, lighting_.ask(ground, points[i], open.rays)});
+      for (std::size_t ray_of_light = open.from.size(); ray_of_light < open.rays.size(); ++ray_of_light)
+        open.from.push_back(&hits[i]);
+      if (open.rays.size() + lighting_.most_rays() > kLightRaysAtOnce) light(rays, hits, open, colours);
+    }
+    light(rays, hits, open, colours);
+    return colours;
+  }
+
+ private:
+  // Points whose light has been asked for.
+  struct Open {
+    struct Point {
+      std::size_t index;
+      GroundPoint ground;
+      LightRays asked;
+    };
+    std::vector<Point> points;
+    std::vector<Ray> rays;
+    std::vector<const SceneHit*> from;
+  };
+
+  void light(std::span<const SceneRay> seen, std::span<const SceneHit> hits, Open& open,
+             std::vector<vec3>& colours) const {
+    std::vector<SceneRay> rays;
+    for (std::size_t i = 0; i < open.rays.size(); ++i) rays.push_back({open.rays[i], open.from[i]});
+    std::vector<std::uint8_t> blocked(rays.size());
+    scene_.occluded(rays, blocked);
+    for (const auto& [index, ground, asked] : open.points) {
+      const vec3 lit = colours[index] * lighting_.on(ground, asked, open.rays, blocked);
+      colours[index] = in_haze(lit, seen[index].ray, hits[index].t());
+    }
+    open = {};
+  }
+
+  // Haze has the colour that the sky has behind it, near the horizon.
+  vec3 in_haze(vec3 colour, const Ray& ray, double t) const {
+    const auto clear = static_cast<float>(std::exp(-haze_per_metre_ * t));
+    return colour * clear + sky_colour(std::max(0.0, ray.direction.z)) * (1 - clear);
+  }
+
+  const Scene& scene_;
+  const Camera& camera_;
+  SurfaceColours colours_;
+  Lighting lighting_;
+  double haze_per_metre_;
+};
+
+void require(const SceneLook& look, const PictureSettings& settings) {
+  validate(settings);
+  if (!(look.haze_distance > 0)) {
+    throw Error(fmt::format("picture: the distance of haze is {}; it must be above 0 metres", look.haze_distance));
+  }
+}
+
+// body(tile, its points, aa x aa for each pixel) on all threads.
+template <class Body>
+void for_each_tile(const PictureSettings& settings, int aa, const Progress& progress, const Body& body) {
+  const PixelTiles tiles(settings.width, settings.height, aa);
+  parallel_for(
+      tiles.count(), 1,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t tile = begin; tile < end; ++tile) body(points_of(tiles[tile], aa));
+      },
+      progress);
+}
+
+// take(x, y, mean colour)
+template <class Take>
+void shade(const Scene& scene, const SceneLook& look, const Camera& camera, const PictureSettings& settings,
+           const Progress& progress, const Take& take) {
+  const SceneShader shader(scene, look, camera, settings);
+  const auto per_pixel = static_cast<std::size_t>(settings.aa) * static_cast<std::size_t>(settings.aa);
+  for_each_tile(settings, settings.aa, progress, [&](const std::vector<PicturePoint>& points) {
+    const std::vector<vec3> colours = shader.colours(points);
+    for (std::size_t i = 0; i < points.size(); i += per_pixel)
+      take(points[i].pixel_x, points[i].pixel_y, mean_colour(std::span(colours).subspan(i, per_pixel)));
+  });
+}
+
+std::size_t place_of(const PictureSettings& settings, const PicturePoint& point) {
+  return static_cast<std::size_t>(point.pixel_y) * static_cast<std::size_t>(settings.width) +
+         static_cast<std::size_t>(point.pixel_x);
+}
+
+// take(index of the pixel, ray through its middle, hit, steps)
+template <class Take>
+void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                          const Progress& progress, const Take& take) {
+  for_each_tile(settings, 1, progress, [&](const std::vector<PicturePoint>& points) {
+    for (const PicturePoint& point : points) {
+      const SceneRay ray{camera.ray(point.x, point.y)};
+      SceneStats stats;
+      const SceneHit hit = scene.closest_hit(ray, &stats);
+      take(place_of(settings, point), ray.ray, hit, stats.steps);
+    }
+  });
+}
+
+}  // namespace
+
+Box picture_box(const Scene& scene) {
+  const WorldBox& box = scene.box();
+  if (!(box.low.x <= box.high.x)) {
+    throw Error(scene.endless() ? "picture: nothing in the scene has an end that a camera could be framed by; give the "
+                                  "camera an eye and a target"
+                                : "picture: nothing in the scene can be seen");
+  }
+  return {box.low, box.high};
+}
+
+Picture render_scene(const Scene& scene, const SceneLook& look, const Camera& camera, const PictureSettings& settings,
+                     const Progress& progress) {
+  require(look, settings);
+  if (settings.look == Look::steps) {
+    std::vector<std::uint32_t> steps(static_cast<std::size_t>(settings.width) *
+                                     static_cast<std::size_t>(settings.height));
+    look_through_middles(scene, camera, settings, progress,
+                         [&](std::size_t i, const Ray&, const SceneHit&, std::uint32_t cost) { steps[i] = cost; });
+    return picture_of_steps(settings, steps);
+  }
+  if (settings.look != Look::shaded)
+    throw Error(
+        fmt::format("look '{}': scenes and voxels have none; there are: shaded, steps", name_of(settings.look)));
+  Image image(settings.width, settings.height);
+  shade(scene, look, camera, settings, progress, [&](int x, int y, vec3 colour) { set_pixel(image, x, y, colour); });
+  return {std::move(image), {}, {}};
+}
+
+PictureLayers render_scene_layers(const Scene& scene, const SceneLook& look, const Camera& camera,
+                                  const PictureSettings& settings, const Progress& progress) {
+  require(look, settings);
+  PictureLayers layers = empty_layers(settings);
+  // The middles are a small part of the work.
+  look_through_middles(scene, camera, settings, {},
+                       [&](std::size_t i, const Ray& ray, const SceneHit& hit, std::uint32_t cost) {
+                         layers.steps[i] = cost;
+                         if (!hit) return;
+                         const SceneSurface surface = scene.surface(ray, hit);
+                         layers.depth[i] = static_cast<float>(dot(surface.position - camera.eye(), camera.forward()));
+                         layers.normal[i] = surface.normal;
+                         layers.position[i] = surface.position;
+                       });
+  const auto width = static_cast<std::size_t>(settings.width);
+  shade(scene, look, camera, settings, progress, [&](int x, int y, vec3 colour) {
+    layers.colour[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = colour;
+  });
+  return layers;
+}
+
+}  // namespace scarp

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// An object of a JSON file, read key by key: what is missing, of the wrong kind or unknown is told with its place in
+// the file, as a JSON pointer ("/fields/0/function/octaves").
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scarp {
+
+/// "PATH: is TEXT; expected WHAT" as an Error.
+[[noreturn]] void refuse_json(std::string_view path, const nlohmann::json& value, std::string_view expected);
+
+/// Refers to the JSON that it was made of.
+class JsonObject {
+ public:
+  /// Throws Error when it is none.
+  JsonObject(const nlohmann::json& json, std::string path);
+
+  const std::string& path() const { return path_; }
+  std::string path_of(std::string_view key) const;
+  /// Null when there is none. Whatever has been asked for is known to finish().
+  const nlohmann::json* find(std::string_view key);
+  const nlohmann::json& at(std::string_view key);
+
+  /// A finite number, or what stands for it when there is none.
+  double number(std::string_view key, double fallback);
+  double number(std::string_view key);
+  std::int64_t whole(std::string_view key, std::int64_t fallback, std::int64_t least, std::int64_t most);
+  std::string text(std::string_view key);
+  /// One of `names`, as its index.
+  std::size_t choice(std::string_view key, std::size_t fallback, const std::vector<std::string_view>& names);
+  /// A list of two numbers.
+  void pair(std::string_view key, double& first, double& second);
+
+  /// Throws Error for a key that nobody has asked for, listing those that somebody has.
+  void finish() const;
+
+ private:
+  const nlohmann::json& json_;
+  std::string path_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace scarp

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// What surfaces of a scene look like, as plain data; render/surface_colour.h makes colours of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "scarp/base/vec.h"
+
+namespace scarp {
+
+/// What the field itself says: a voxel's palette entry; else a neutral earth.
+struct OwnColour {};
+
+/// One colour, sRGB, 0..1.
+struct PlainColour {
+  vec3 colour{0.6f};
+};
+
+/// A ramp of render/ramp.h over heights.
+struct HeightRamp {
+  std::string ramp;          ///< a name of ramp_names()
+  double low = 0, high = 1;  ///< metres of world z, low <= high
+};
+
+/// Colours at heights, blended between them.
+struct HeightStops {
+  std::vector<std::pair<double, vec3>> stops;  ///< world z in metres, rising, and sRGB 0..1; at least one
+};
+
+/// Two colours in cubes, of the object's own space.
+struct Checker {
+  vec3 first{0.9f}, second{0.2f};  ///< sRGB, 0..1
+  double size = 1;                 ///< metres of a cube's side, > 0
+};
+
+/// One material up to `from`, another one from `to` on, blended between.
+struct Blend {
+  enum class By : std::uint8_t {
+    slope,   ///< degrees between the normal and up, 0..180
+    height,  ///< metres of world z
+  };
+  By by = By::slope;
+  double from = 30, to = 40;        ///< from <= to
+  std::uint32_t low = 0, high = 0;  ///< materials before it in the list
+};
+
+using Material = std::variant<OwnColour, PlainColour, HeightRamp, HeightStops, Checker, Blend>;
+
+}  // namespace scarp

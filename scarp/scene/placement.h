@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Where an object stands: turned, scaled alike in all directions, moved.
+//
+//   p_world = scale * turn * p_field + origin
+//
+// t is the same in both spaces: a ray's direction is turned and scaled, and never made a unit vector.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
+
+#include "scarp/base/ray.h"
+
+namespace scarp {
+
+struct Placement {
+  glm::dmat3 turn{1.0};  ///< a rotation
+  double scale = 1;      ///< > 0
+  dvec3 origin{0.0};     ///< metres
+
+  dvec3 world_from_field(const dvec3& p) const { return scale * (turn * p) + origin; }
+  dvec3 world_from_normal(const dvec3& n) const { return turn * n; }
+  /// Of an identity nothing is rounded.
+  Ray field_from_world(const Ray& ray) const {
+    Ray local = ray;
+    local.origin = ((ray.origin - origin) * turn) / scale;  // v * M is transpose(M) * v
+    local.direction = (ray.direction * turn) / scale;
+    return local;
+  }
+};
+
+/// First `inner`, then `outer`.
+inline Placement placed(const Placement& outer, const Placement& inner) {
+  return {outer.turn * inner.turn, outer.scale * inner.scale, outer.world_from_field(inner.origin)};
+}
+
+}  // namespace scarp

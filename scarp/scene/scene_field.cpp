@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/scene_field.h"
+
+namespace scarp {
+
+std::optional<double> SceneField::height(double, double) const { return {}; }
+
+void SceneField::closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                              std::span<FieldHit> hits) const {
+  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = closest_hit(rays[i], from[i], nullptr);
+}
+
+void SceneField::occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                          std::span<std::uint8_t> blocked) const {
+  for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = occluded(rays[i], from[i]);
+}
+
+}  // namespace scarp

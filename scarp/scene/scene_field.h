@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// A field with the march that follows rays over it, as an object of a scene: the same questions for heights, functions,
+// shapes and voxels, in the field's own space.
+//
+// A ray that begins on the surface of a hit does so by the field's own rule (cell, place, voxel): nothing is pushed
+// off.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <variant>
+
+#include "scarp/field/distance_field.h"
+#include "scarp/field/height_function.h"
+#include "scarp/march/marches.h"
+#include "scarp/scene/box_tree.h"
+#include "scarp/scene/voxel_scene.h"
+
+namespace scarp {
+
+/// An answer in the field's own terms.
+struct FieldHit {
+  HitStatus status = HitStatus::miss;
+  double t = std::numeric_limits<double>::infinity();
+  /// Hit: of heights (with cell), functions and shapes (without); VoxelSceneHit: of voxels. Set for hits.
+  std::variant<std::monostate, Hit, VoxelSceneHit> own;
+
+  explicit operator bool() const { return status == HitStatus::hit; }
+};
+
+/// What is at a hit, in the field's space.
+struct FieldSurface {
+  dvec3 normal{0.0};                    ///< unit, outward; zero for a ray that began inside
+  dvec3 shading_normal{0.0};            ///< unit
+  std::optional<VoxelColour> colour{};  ///< where the field has colours of its own
+  int material = 0;                     ///< of the part of a shape, as in distance_node.h; 0: that of the object
+};
+
+/// Immutable; asked from many threads at once.
+class SceneField {
+ public:
+  virtual ~SceneField() = default;
+
+  virtual std::string_view kind() const = 0;   ///< "heights", "function", "shape", "voxels"
+  virtual std::string_view march() const = 0;  ///< its name
+  /// Around everything that rays can meet: empty when that is nothing; no box for a field without an end.
+  virtual std::optional<WorldBox> box() const = 0;
+  /// Of the ground at (x, y); nothing beside it, and for fields that are no ground.
+  virtual std::optional<double> height(double x, double y) const;
+
+  /// `ray` counts as free, but for `from`: a hit of this field on whose surface it begins, or null. `stats`, when
+  /// given, is overwritten.
+  virtual FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const = 0;
+  /// Whether closest_hit() would tell a hit.
+  virtual bool occluded(const Ray& ray, const FieldHit* from) const = 0;
+  virtual FieldSurface surface(const Ray& ray, const FieldHit& hit) const = 0;
+
+  /// Whether rays are answered faster by the hundred.
+  virtual bool likes_batches() const { return false; }
+  /// The same answers for many rays, on the calling thread; `from` has the length of `rays`.
+  virtual void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                            std::span<FieldHit> hits) const;
+  virtual void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                        std::span<std::uint8_t> blocked) const;
+};
+
+using SceneFieldPtr = std::shared_ptr<const SceneField>;
+
+/// `march` is a row of height_marches(); the field must not wrap round. Builds what the march needs. Throws Error for
+/// a setting out of its range, a field that wraps round.
+SceneFieldPtr scene_heights(HeightField field, const MarchEntry& march = find_march("max-mip"),
+                            const MarchSettings& settings = {});
+
+/// `march` is a row of function_marches(). Throws Error for a setting out of its range.
+SceneFieldPtr scene_function(HeightFunction function, const MarchEntry& march = find_function_march("lipschitz-local"),
+                             const MarchSettings& settings = {});
+
+/// `march` is a row of distance_marches(). Throws Error for a setting out of its range.
+SceneFieldPtr scene_shape(DistanceField shape, const MarchEntry& march = find_distance_march("sphere-trace"),
+                          const MarchSettings& settings = {});
+
+/// The objects of a voxel scene as one; each model has its march.
+SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march);
+
+}  // namespace scarp

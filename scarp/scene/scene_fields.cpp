@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include <array>
+#include <filesystem>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+
+#include "scarp/accel/slope_bound.h"
+#include "scarp/base/error.h"
+#include "scarp/scene/from_raster.h"
+#include "scarp/scene/from_vox.h"
+#include "scarp/scene/json_object.h"
+#include "scarp/scene/scene_parts.h"
+#include "scarp/scene/shape_json.h"
+#include "scarp/source/procedural_dem.h"
+#include "scarp/source/read_raster.h"
+
+namespace scarp {
+namespace {
+
+using Json = nlohmann::json;
+
+template <class T>
+std::optional<T> optional(const Json& json, const char* key) {
+  return json.contains(key) ? std::optional<T>(json[key].get<T>()) : std::nullopt;
+}
+
+std::string resolved(const FieldSurroundings& around, const Json& file) {
+  return (std::filesystem::path(around.folder) / file.get<std::string>()).lexically_normal().string();
+}
+
+RasterOptions raster_options_from(const Json& json, const std::string& path) {
+  RasterOptions options;
+  options.band = json.value("band", 0);
+  options.key = json.value("key", "");
+  options.channel = json.value("channel", "");
+  options.unit = json.value("unit", "");
+  options.crs = json.value("crs", "");
+  options.nodata = optional<double>(json, "nodata");
+  options.scale = optional<double>(json, "factor");
+  options.offset = optional<double>(json, "offset");
+  if (json.contains("window")) {
+    const Json& w = json["window"];
+    options.window = RasterWindow{w[0], w[1], w[2], w[3]};
+  }
+  if (json.contains("bounds")) {
+    const Json& b = json["bounds"];
+    options.bounds = MapBounds{b[0], b[1], b[2], b[3]};
+  }
+  if (json.contains("height_range"))
+    options.height_range = HeightRange{json["height_range"][0], json["height_range"][1]};
+  if (json.contains("encoding")) options.encoding = *height_encoding(json["encoding"].get<std::string>());
+  try {
+    if (json.contains("raw")) options.raw = parse_raw_format(json["raw"].get<std::string>());
+  } catch (const Error&) {
+    rethrow_at(path + "/raw");
+  }
+  return options;
+}
+
+Raster generated(const Json& json) {
+  ProceduralDem dem;
+  dem.kind = *terrain_kind(json.value("kind", "fbm"));
+  dem.seed = json.value("seed", dem.seed);
+  if (json.contains("size")) dem.cols = json["size"][0], dem.rows = json["size"][1];
+  dem.cell_m = json.value("cell", dem.cell_m);
+  dem.wavelength = json.value("wavelength", dem.wavelength);
+  Raster raster;
+  raster.samples = generate_dem(dem);
+  raster.cols = dem.cols, raster.rows = dem.rows;
+  raster.georeference.cell_x_m = raster.georeference.cell_y_m = dem.cell_m;
+  raster.path = "generated";
+  return raster;
+}
+
+struct HeightsWithPlace {
+  HeightField field;
+  dvec3 shift;
+};
+
+HeightsWithPlace heights_from(const Json& json, const std::string& path, const FieldSurroundings& around) {
+  const int sources = json.contains("file") + json.contains("files") + json.contains("generate");
+  if (sources != 1) refuse_json(path, json, "an object with one of file, files, generate");
+  const RasterOptions options = raster_options_from(json, path);
+  const std::string source = json.contains("generate") ? "generate" : json.contains("file") ? "file" : "files";
+  try {
+    Raster raster;
+    if (source == "generate") {
+      raster = generated(json["generate"]);
+    } else {
+      std::vector<std::string> inputs;
+      for (const Json& file : source == "file" ? Json::array({json["file"]}) : json["files"])
+        inputs.push_back(resolved(around, file));
+      raster = read_tiles(inputs, options, around.progress);
+    }
+    for (const std::string& note : raster.notes) around.notes->push_back(note);
+    FieldOptions field_options;
+    field_options.exaggeration = json.value("exaggeration", 1.0);
+    field_options.surface = json.value("surface", "bilinear") == "triangles" ? Surface::triangles : Surface::bilinear;
+    field_options.solid = json.value("solid", false);
+    HeightField field = height_field_from(std::move(raster), field_options);
+    const dvec3 shift =
+        json.value("centred", false) ? dvec3(-0.5 * field.width(), -0.5 * field.depth(), 0) : dvec3(0.0);
+    return {std::move(field), shift};
+  } catch (const Error&) {
+    rethrow_at(path + "/" + source);
+  }
+}
+
+// The ground that a shape is cut out of: a field's name, or an object with heights or a function.
+Shape ground_from(const Json& json, const std::string& path, const FieldSurroundings& around) {
+  if (json.is_string()) {
+    const auto [named, at] = around.field(json.get<std::string>(), path);
+    if (!named->is_object() || !(named->contains("heights") || named->contains("function")))
+      throw Error(fmt::format("{}: '{}' is no ground; expected a field of heights or a function", path,
+                              json.get<std::string>()));
+    return ground_from(*named, at, around);
+  }
+  if (json.is_object() && json.size() >= 1 && json.contains("heights")) {
+    HeightsWithPlace made = heights_from(json["heights"], path + "/heights", around);
+    const double slope = slope_bound(made.field);
+    const Shape ground = make_shape(shape::FieldGround{std::make_shared<HeightField>(std::move(made.field)), slope});
+    return made.shift == dvec3(0.0) ? ground : make_shape(shape::Moved{ground, made.shift});
+  }
+  if (json.is_object() && json.contains("function")) {
+    Function function = function_from_json(json["function"], path + "/function", around.functions);
+    return make_shape(shape::FunctionGround{std::make_shared<const HeightFunction>(std::move(function))});
+  }
+  refuse_json(path, json, "the name of a field, or an object with heights or a function");
+}
+
+FieldWithPlace voxels_from(const Json& json, const std::string& path, const FieldSurroundings& around,
+                           const MarchEntry& march) {
+  try {
+    const VoxSceneOptions options{json.value("frame", 0), json.value("hidden", false)};
+    VoxelScene scene = voxel_scene_from(read_vox(resolved(around, json["file"])), {options, march.name});
+    const WorldBox box = scene.box();
+    dvec3 shift(0.0);
+    if (json.value("centred", false) && box.low.x <= box.high.x)
+      shift = -dvec3(0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y), box.low.z);
+    return {scene_voxels(std::move(scene), march.name), shift};
+  } catch (const Error&) {
+    rethrow_at(path + "/file");
+  }
+}
+
+}  // namespace
+
+void rethrow_at(const std::string& path) {
+  try {
+    throw;
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    // What has a place already keeps it.
+    if (*error.what() == '/') throw;
+    throw Error(fmt::format("{}: {}", path, error.what()));
+  }
+}
+
+MarchSettings march_settings_from_json(const Json& json, const std::string& path) {
+  MarchSettings s;
+  JsonObject object(json, path);
+  const auto number = [&](const char* key, double& value) { value = object.number(key, value); };
+  const auto count = [&](const char* key, int& value) {
+    value = static_cast<int>(object.whole(key, value, 1, std::numeric_limits<int>::max()));
+  };
+  number("naive_step_factor", s.naive.step_factor);
+  number("naive_min_step", s.naive.min_step);
+  number("naive_tolerance", s.naive.tolerance);
+  count("naive_max_steps", s.naive.max_steps);
+  number("fixed_step", s.fixed_step.step);
+  s.fixed_step.interpolate = object.choice("fixed_step_interpolate", 0, {"yes", "no"}) == 0;
+  count("fixed_step_max_steps", s.fixed_step.max_steps);
+  number("relaxed_step_factor", s.relaxed.step_factor);
+  number("relaxed_tolerance", s.relaxed.tolerance);
+  count("relaxed_max_steps", s.relaxed.max_steps);
+  number("shrink", s.lipschitz.shrink);
+  number("lipschitz_tolerance", s.lipschitz.tolerance);
+  count("lipschitz_max_steps", s.lipschitz.max_steps);
+  count("bisect_halvings", s.bisect.halvings);
+  number("local_tolerance", s.lipschitz_local.tolerance);
+  count("local_max_steps", s.lipschitz_local.max_steps);
+  number("trace_tolerance", s.sphere_trace.tolerance);
+  count("trace_max_steps", s.sphere_trace.max_steps);
+  number("function_step", s.function.step);
+  number("function_step_share", s.function.step_share);
+  number("function_tolerance", s.function.tolerance);
+  if (object.find("refine")) s.function.refinement = find_refinement(object.text("refine"));
+  count("refine_halvings", s.function.halvings);
+  object.finish();
+  try {
+    validate(s);
+  } catch (const Error&) {
+    rethrow_at(path);
+  }
+  return s;
+}
+
+FieldWithPlace field_from_json(const Json& json, const std::string& path, const FieldSurroundings& around) {
+  constexpr std::array<const char*, 4> kKinds = {"heights", "function", "shape", "voxels"};
+  const char* kind = nullptr;
+  for (const char* name : kKinds) {
+    if (!json.contains(name)) continue;
+    if (kind)
+      throw Error(fmt::format("{}: has {} and {}; expected one of {}", path, kind, name, fmt::join(kKinds, ", ")));
+    kind = name;
+  }
+  if (!kind) refuse_json(path, json, fmt::format("an object with one of {}", fmt::join(kKinds, ", ")));
+  const MarchSettings settings =
+      json.contains("settings") ? march_settings_from_json(json["settings"], path + "/settings") : MarchSettings{};
+  // The march that the field has, or that which suits its kind.
+  const auto march = [&](const MarchEntry& (*find)(std::string_view), const char* usual) -> const MarchEntry& {
+    try {
+      return find(json.value("march", usual));
+    } catch (const Error&) {
+      rethrow_at(path + "/march");
+    }
+  };
+  const std::string inner = path + "/" + kind;
+  const Json& field = json[kind];
+  if (kind == kKinds[0]) {
+    const MarchEntry& by = march(find_march, "max-mip");
+    HeightsWithPlace made = heights_from(field, inner, around);
+    return {scene_heights(std::move(made.field), by, settings), made.shift};
+  }
+  if (kind == kKinds[1]) {
+    const MarchEntry& by = march(find_function_march, "lipschitz-local");
+    return {scene_function(HeightFunction(function_from_json(field, inner, around.functions)), by, settings)};
+  }
+  if (kind == kKinds[2]) {
+    const MarchEntry& by = march(find_distance_march, "sphere-trace");
+    const ShapeNames names{around.material, [&](const Json& ground, const std::string& at) {
+                             try {
+                               return ground_from(ground, at, around);
+                             } catch (const Error&) {
+                               rethrow_at(at);
+                             }
+                           }};
+    return {scene_shape(distance_field_from_json(field, inner, names), by, settings)};
+  }
+  return voxels_from(field, inner, around, march(find_voxel_march, "voxel-bricks"));
+}
+
+}  // namespace scarp

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// Terrain functions in scenes. What is seen, what throws shadows on it, and what it is shaded by may have different
+// octaves (FunctionUse): a shadow ray begins on the surface of the shadows, above or below the point that was seen.
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "scarp/scene/scene_field.h"
+
+namespace scarp {
+namespace {
+
+dvec3 upward(const dvec2& slope) { return normalize(dvec3(-slope.x, -slope.y, 1)); }
+
+class FunctionField final : public SceneField {
+ public:
+  FunctionField(HeightFunction function, const MarchEntry& march, const MarchSettings& settings)
+      : function_(std::move(function)), march_(march), settings_(settings) {
+    validate(settings_);
+  }
+
+  std::string_view kind() const override { return "function"; }
+  std::string_view march() const override { return march_.name; }
+  std::optional<WorldBox> box() const override { return {}; }
+  std::optional<double> height(double x, double y) const override { return function_.value(x, y); }
+
+  FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
+    Ray r = ray;
+    r.start = from ? RayStart::on_surface : RayStart::free;
+    return field_hit(march_.function_cpu(function_, r, settings_, stats, FunctionUse::march));
+  }
+  bool occluded(const Ray& ray, const FieldHit* from) const override {
+    return static_cast<bool>(
+        march_.function_cpu(function_, of_shadow(ray, from), settings_, nullptr, FunctionUse::shadow));
+  }
+  bool likes_batches() const override { return march_.function_simd != nullptr; }
+  void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                    std::span<FieldHit> hits) const override {
+    if (!march_.function_simd) return SceneField::closest_hits(rays, from, hits);
+    std::vector<Ray> started(rays.begin(), rays.end());
+    for (std::size_t i = 0; i < rays.size(); ++i) started[i].start = from[i] ? RayStart::on_surface : RayStart::free;
+    std::vector<Hit> own(rays.size());
+    march_.function_simd(function_, started, own, settings_, {}, FunctionUse::march);
+    std::transform(own.begin(), own.end(), hits.begin(), field_hit);
+  }
+  void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                std::span<std::uint8_t> blocked) const override {
+    if (!march_.function_simd) return SceneField::occluded(rays, from, blocked);
+    std::vector<Ray> started(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) started[i] = of_shadow(rays[i], from[i]);
+    std::vector<Hit> own(rays.size());
+    march_.function_simd(function_, started, own, settings_, {}, FunctionUse::shadow);
+    std::transform(own.begin(), own.end(), blocked.begin(), [](const Hit& hit) { return hit ? 1 : 0; });
+  }
+  FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
+    const dvec3 p = ray.at(hit.t);
+    return {upward(function_.gradient(p.x, p.y, FunctionUse::march)),
+            upward(function_.gradient(p.x, p.y, FunctionUse::normal)),
+            {}};
+  }
+
+ private:
+  static FieldHit field_hit(const Hit& hit) { return {hit.status, hit.t, hit}; }
+  Ray of_shadow(const Ray& ray, const FieldHit* from) const {
+    Ray r = ray;
+    r.start = from ? RayStart::on_surface : RayStart::free;
+    if (from) {
+      const dvec3 p = ray.at(ray.t_min);
+      r.origin.z += function_.value(p.x, p.y, FunctionUse::shadow) - p.z;
+    }
+    return r;
+  }
+
+  HeightFunction function_;
+  const MarchEntry& march_;
+  MarchSettings settings_;
+};
+
+}  // namespace
+
+SceneFieldPtr scene_function(HeightFunction function, const MarchEntry& march, const MarchSettings& settings) {
+  return std::make_shared<FunctionField>(std::move(function), march, settings);
+}
+
+}  // namespace scarp

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Shapes in scenes.
+#include <utility>
+
+#include "scarp/scene/scene_field.h"
+
+namespace scarp {
+namespace {
+
+Ray started(const Ray& ray, const FieldHit* from) {
+  Ray r = ray;
+  r.start = from ? RayStart::on_surface : RayStart::free;
+  return r;
+}
+
+class ShapeField final : public SceneField {
+ public:
+  ShapeField(DistanceField shape, const MarchEntry& march, const MarchSettings& settings)
+      : shape_(std::move(shape)), march_(march), settings_(settings) {
+    validate(settings_);
+  }
+
+  std::string_view kind() const override { return "shape"; }
+  std::string_view march() const override { return march_.name; }
+  std::optional<WorldBox> box() const override {
+    const ShapeBox& box = shape_.box();
+    if (box.empty()) return WorldBox{};
+    if (!box.finite()) return {};
+    return WorldBox{box.low, box.high};
+  }
+
+  FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
+    const Hit hit = march_.distance_cpu(shape_, started(ray, from), settings_, stats);
+    return {hit.status, hit.t, hit};
+  }
+  bool occluded(const Ray& ray, const FieldHit* from) const override {
+    if (march_.distance_cpu_occluded) return march_.distance_cpu_occluded(shape_, started(ray, from), settings_);
+    return static_cast<bool>(closest_hit(ray, from, nullptr));
+  }
+  FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
+    const dvec3 p = ray.at(hit.t), normal = shape_.normal(p);
+    return {normal, normal, {}, shape_.material(p)};
+  }
+
+ private:
+  DistanceField shape_;
+  const MarchEntry& march_;
+  MarchSettings settings_;
+};
+
+}  // namespace
+
+SceneFieldPtr scene_shape(DistanceField shape, const MarchEntry& march, const MarchSettings& settings) {
+  return std::make_shared<ShapeField>(std::move(shape), march, settings);
+}
+
+}  // namespace scarp

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// Scenes on the command line: what is printed, which options go with them, what is written.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/program.h"
+#include "output/read_png.h"
+
+namespace scarp {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* kScene = R"({
+  "picture": {"size": [64, 40], "aa": 1},
+  "camera": {"eye": [0, -20, 3], "target": [0, 0, 2]},
+  "sun": {"azimuth": 180, "altitude": 40},
+  "materials": {"red": {"colour": "#ff0000"}},
+  "objects": [
+    {"name": "ground", "function": 0},
+    {"name": "ball", "shape": {"sphere": {"radius": 3}}, "material": "red", "at": [0, 0, 2]}
+  ]
+})";
+
+class Scenes : public testing::Test {
+ protected:
+  Scenes() { std::ofstream(path_) << kScene; }
+
+  test::Scratch scratch_;
+  const std::string path_ = scratch_.path("scene.json"), picture_ = scratch_.path("out.png");
+};
+
+TEST_F(Scenes, AreRenderedAsTheirFilesSay) {
+  const auto result = test::run({"render", path_, "-o", picture_});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const test::Rgb image = test::read_png(picture_);
+  ASSERT_EQ(image.width, 64);
+  ASSERT_EQ(image.height, 40);
+  // Red in the middle, where the ball is; blue sky above, earth below.
+  const auto pixel = [&](int x, int y) { return &image.bytes[static_cast<std::size_t>(3 * (y * 64 + x))]; };
+  EXPECT_GT(pixel(32, 20)[0], 4 * pixel(32, 20)[1]);
+  EXPECT_GT(pixel(32, 0)[2], pixel(32, 0)[0]);
+  EXPECT_GT(pixel(32, 39)[0], pixel(32, 39)[2]);
+}
+
+TEST_F(Scenes, GiveWayToOptions) {
+  ASSERT_EQ(test::run({"render", path_, "-o", picture_, "--size", "16x8", "--view", "0,90", "--look", "steps"}).status,
+            0);
+  EXPECT_EQ(test::read_png(picture_).width, 16);
+  const auto refused = test::run({"render", path_, "-o", picture_, "--march", "naive"});
+  EXPECT_NE(refused.status, 0);
+  EXPECT_NE(refused.err.find("--march: of a scene this stands in its file"), std::string::npos) << refused.err;
+  EXPECT_NE(test::run({"render", path_, path_, "-o", picture_}).err.find("stands alone"), std::string::npos);
+}
+
+TEST_F(Scenes, AreToldByInfo) {
+  const auto result = test::run({"info", path_, "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json info = Json::parse(result.out);
+  EXPECT_EQ(info["objects"].size(), 2u);
+  EXPECT_EQ(info["objects"][1]["name"], "ball");
+  EXPECT_EQ(info["objects"][1]["fields"][0]["march"], "sphere-trace");
+  EXPECT_EQ(info["endless"], true);
+  EXPECT_EQ(info["low_m"][2], -1);
+  EXPECT_NE(test::run({"info", path_}).out.find("ball: 1 x shape by sphere-trace"), std::string::npos);
+}
+
+TEST_F(Scenes, LeaveNothingBehindWhenTheyAreWrong) {
+  std::ofstream(path_) << R"({"objects": [{"shape": {"sphere": {"radius": -1}}}]})";
+  const auto result = test::run({"render", path_, "-o", picture_});
+  EXPECT_NE(result.status, 0);
+  EXPECT_NE(result.err.find("/objects/0/shape/sphere/radius"), std::string::npos) << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_FALSE(fs::exists(picture_));
+}
+
+}  // namespace
+}  // namespace scarp

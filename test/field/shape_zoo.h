@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Shapes of each kind, and random trees of them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "field/terrain_functions.h"
+#include "scarp/field/distance_node.h"
+
+namespace scarp::test {
+
+struct NamedShape {
+  std::string name;
+  Shape shape;
+};
+
+/// All solids, all operations, grounds of both kinds; within some 20 m of the origin.
+std::vector<NamedShape> shape_zoo();
+
+/// Solids, one or two metres large.
+Shape random_solid(FunctionRandom& random);
+/// Nested at most `depth` deep. Without `smooth` its solid is that of sets, and solid_holds() tells it.
+Shape random_shape(FunctionRandom& random, int depth, bool smooth);
+
+/// Whether a position is in the solid: by the inequality of each solid, and by sets. No smooth operations.
+bool solid_holds(const Shape& shape, const dvec3& p);
+
+}  // namespace scarp::test

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Scene files: what is read, and that everything wrong is told in one line with its place.
+#include "scarp/scene/scene_file.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SceneFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / fmt::format("scarp-scene-{}", getpid());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  std::string write(const std::string& name, const std::string& text) const {
+    const fs::path path = folder_ / name;
+    std::ofstream(path) << text;
+    return path.string();
+  }
+  SceneFile read(const std::string& text) const { return read_scene(write("scene.json", text)); }
+  // The message less the file; empty when there is none.
+  std::string error(const std::string& text) const {
+    try {
+      read(text);
+    } catch (const Error& error) {
+      const std::string what = error.what(), file = fmt::format("scene '{}': ", (folder_ / "scene.json").string());
+      EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+      EXPECT_EQ(what.substr(0, file.size()), file);
+      return what.substr(std::min(file.size(), what.size()));
+    }
+    return {};
+  }
+
+  fs::path folder_;
+};
+
+const std::string kBall = R"({"shape": {"sphere": {"radius": 1}}})";
+
+std::string with_object(const std::string& object) { return R"({"objects": [)" + object + "]}"; }
+
+TEST_F(SceneFiles, AreReadWhole) {
+  const SceneFile file = read(R"({
+    "about": "all of it",
+    "picture": {"size": [320, 200], "aa": 3, "samples": 4, "ao_distance": 10, "seed": 7},
+    "camera": {"eye": [0, -20, 2], "target": [0, 0, 1], "on": "ground", "fov": 40},
+    "sun": {"azimuth": 120, "altitude": 20, "size": 1, "shadows": false},
+    "haze": {"distance": 500},
+    "materials": {
+      "a mix": {"blend": {"by": "slope", "from": 20, "to": 30, "low": "green", "high": "red"}},
+      "green": {"colour": "#00ff00"}, "red": {"colour": "#ff0000"},
+      "board": {"checker": {"colours": ["#000000", "#ffffff"], "size": 2}},
+      "bands": {"stops": [{"z": 0, "colour": "#102030"}, {"z": 5, "colour": "#405060"}]},
+      "ramp": {"ramp": {"name": "viridis", "heights": [0, 10]}}
+    },
+    "functions": {"base": {"type": "plane", "height": 3}},
+    "fields": {"ball": {"shape": {"sphere": {"radius": 2}}}},
+    "objects": [
+      {"name": "ground", "function": {"type": "sum", "of": ["base", 4]}, "material": "a mix"},
+      {"name": "balls", "field": "ball", "on": "ground", "scale": 0.5, "at": [0, 0, 1],
+       "places": [{"at": [10, 0, 0]}, {"at": [0, 20, 5], "scale": 3, "turn": [0, 0, 90]}]},
+      {"name": "crowd", "field": "ball", "on": "ground", "scatter": {"count": 50, "within": [-9, -9, 9, 9], "scale": [0.5, 2]}},
+      {"heights": {"generate": {"size": [9, 9], "cell": 2}, "centred": true}, "at": [0, 0, 100], "march": "exhaustive"}
+    ]
+  })");
+  ASSERT_EQ(file.scene.objects().size(), 1u + 2 + 50 + 1);
+  EXPECT_EQ(file.scene.fields().size(), 3u);
+  EXPECT_TRUE(file.scene.endless());
+  EXPECT_EQ(file.names[3].name, "/objects/3");
+  EXPECT_EQ(file.names[2].count, 50u);
+  EXPECT_EQ(*file.camera.eye, dvec3(0, -20, 9));  // 2 m over ground at 7 m
+  EXPECT_EQ(*file.picture.width, 320);
+  EXPECT_EQ(*file.sun.shadows, false);
+  EXPECT_EQ(*file.haze_distance, 500);
+  ASSERT_EQ(file.materials.size(), 6u);
+  const auto& blend = std::get<Blend>(file.materials[file.scene.objects()[0].material]);
+  EXPECT_EQ(std::get<PlainColour>(file.materials[blend.high]).colour, vec3(1, 0, 0));
+  // What stands in the object comes first, then its place; z counts from the ground.
+  const Placement& second = file.scene.objects()[2].placement;
+  EXPECT_EQ(second.scale, 1.5);
+  EXPECT_NEAR(length(second.origin - dvec3(0, 20, 7 + 5 + 3)), 0, 1e-12);
+  EXPECT_NEAR(length(second.world_from_field({1, 0, 0}) - second.origin - dvec3(0, 1.5, 0)), 0, 1e-12);
+  EXPECT_EQ(file.scene.fields()[file.scene.objects()[53].field]->march(), "exhaustive");
+  for (std::uint32_t i = 3; i < 53; ++i) {
+    const Placement& place = file.scene.objects()[i].placement;
+    EXPECT_EQ(place.origin.z, 7);
+    EXPECT_LE(std::abs(place.origin.x), 9);
+    EXPECT_TRUE(place.scale >= 0.5 && place.scale <= 2);
+  }
+}
+
+TEST_F(SceneFiles, TakeOtherScenesAsOneObject) {
+  write("pair.json", R"({"materials": {"red": {"colour": "#ff0000"}}, "objects": [
+    {"shape": {"sphere": {"radius": 1}}, "material": "red"}, {"shape": {"sphere": {"radius": 1}}, "at": [4, 0, 0]}]})");
+  const SceneFile file = read(R"({"materials": {"blue": {"colour": "#0000ff"}}, "objects": [
+    {"shape": {"box": {"half": [1, 1, 1]}}, "material": "blue"},
+    {"name": "pairs", "scene": "pair.json", "places": [{"at": [10, 0, 0]}, {"at": [20, 0, 0], "turn": [0, 0, 90], "scale": 2}]}]})");
+  ASSERT_EQ(file.scene.objects().size(), 5u);
+  const auto& objects = file.scene.objects();
+  EXPECT_EQ(std::get<PlainColour>(file.materials[objects[1].material]).colour, vec3(1, 0, 0));
+  EXPECT_NEAR(length(objects[4].placement.origin - dvec3(20, 8, 0)), 0, 1e-12);
+}
+
+TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
+  write("itself.json", R"({"objects": [{"scene": "scene.json"}]})");
+  struct Case {
+    std::string text, place, what;
+  };
+  const std::vector<Case> cases = {
+      {"", "no JSON", "line 1"},
+      {"{\"objects\": [,]}", "no JSON", "line 1, column 14"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1e999}}})"), "no JSON", "1e999"},
+      {with_object(R"({"shape": {"sphere": {"radius": NaN}}})"), "no JSON", "line 1"},
+      {"[]", "/:", "an object with objects"},
+      {"{}", "/objects:", "is missing; expected a list of objects"},
+      {R"({"objects": []})", "/objects:", "at least one"},
+      {R"({"objects": [], "objects": []})", "/objects:", "twice"},
+      {R"({"objects": [)" + kBall + R"(], "camara": {}})", "/camara:", "unknown; there are: $schema, about, camera"},
+      {R"({"objects": [)" + kBall + R"(], "sun": {"altitude": 91}})", "/sun/altitude:", "at most 90"},
+      {R"({"objects": [)" + kBall + R"(], "picture": {"size": [0, 5]}})", "/picture/size/0:", "from 1 to 65536"},
+      {R"({"objects": [)" + kBall + R"(], "camera": {"eye": [0, 0, 0]}})", "/camera/target:", "is missing"},
+      {R"({"objects": [)" + kBall + R"(], "camera": {"eye": [0, 0, 0], "target": [0, 0, 0]}})",
+       "/camera/target:", "eye"},
+      {R"({"objects": [)" + kBall + R"(], "materials": {"m": {"colour": "red"}}})", "/materials/m/colour:", "#rrggbb"},
+      {R"({"objects": [)" + kBall + R"(], "materials": {"m": {}}})", "/materials/m:", "one of colour"},
+      {R"({"objects": [)" + kBall + R"(], "materials": {
+          "a": {"blend": {"by": "height", "from": 0, "to": 1, "low": "b", "high": "b"}},
+          "b": {"blend": {"by": "height", "from": 0, "to": 1, "low": "a", "high": "a"}}}})",
+       "/materials/b/blend/low:", "contains itself"},
+      {R"({"objects": [)" + kBall +
+           R"(], "materials": {"m": {"stops": [{"z": 1, "colour": "#000000"}, {"z": 1, "colour": "#000000"}]}}})",
+       "/materials/m/stops/1/z:", "expected more"},
+      {with_object("3"), "/objects/0:", "is 3; expected an object"},
+      {with_object("{}"), "/objects/0:", "one of heights, function, shape, voxels"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1}}, "function": 3})"), "/objects/0:", "has function and shape"},
+      {with_object(R"({"shape": {"sphere": {"radius": -1}}})"), "/objects/0/shape/sphere/radius:", "-1"},
+      {with_object(R"({"function": {"type": "fbm", "wavelength": 0}})"), "/objects/0/function", "wavelength"},
+      {with_object(R"({"function": "loop"})")
+           .insert(1, R"("functions": {"loop": {"type": "sum", "of": ["loop", 1]}}, )"),
+       "/functions/loop/of/0:", "contains itself"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1}}, "at": [1, 2]})"), "/objects/0/at:", "[x, y, z]"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1}}, "at": [1, 2, "up"]})"), "/objects/0/at/2:", "metres"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1}}, "scale": 0})"), "/objects/0/scale:", "above 0"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1}}, "material": "gold"})"),
+       "/objects/0/material:", "no material 'gold'"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1}}, "on": "sea"})"), "/objects/0/on:", "no object 'sea'"},
+      {with_object(kBall + R"(, {"shape": {"sphere": {"radius": 1}}, "on": "/objects/0"})"),
+       "/objects/1/at:", "no ground"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1}}, "march": "max-mip"})"), "/objects/0/march:", "sphere-trace"},
+      {with_object(R"({"function": 1, "settings": {"naive_tolerance": -1}})"), "/objects/0/settings:", "0 or more"},
+      {with_object(R"({"function": 1, "settings": {"speed": 1}})"), "/objects/0/settings/speed:", "unknown"},
+      {with_object(R"({"field": "tree"})"), "/objects/0/field:", "no field 'tree'"},
+      {with_object(R"({"field": "tree", "march": "naive"})"), "/objects/0/march:", "does not go with field"},
+      {with_object(R"({"voxels": {"file": "none.vox"}})"), "/objects/0/voxels/file:", "none.vox"},
+      {with_object(R"({"heights": {"file": "none.tif"}})"), "/objects/0/heights/file:", "none.tif"},
+      {with_object(R"({"heights": {}})"), "/objects/0/heights:", "one of file"},
+      {with_object(R"({"scene": "none.json"})"), "/objects/0/scene:", "none.json"},
+      {with_object(R"({"scene": "scene.json"})"), "/objects/0/scene:", "a scene cannot"},
+      {with_object(R"({"scene": "itself.json"})"), "/objects/0/scene:", "a scene cannot"},
+      {with_object(R"({"function": 0, "name": "sea"}, {"name": "sea", "function": 1})"), "/objects/1/name:", "taken"},
+      {with_object(R"({"function": 0, "name": "sea"}, {"on": "sea", "shape": {"sphere": {"radius": 1}},
+          "scatter": {"count": 5, "within": [0, 0, 1, 1], "heights": [5, 9]}})"),
+       "/objects/1/scatter:", "found room for 0 of 5"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1}}, "scatter": {"count": 5, "within": [0, 0, 1, 1]}})"),
+       "/objects/0/on:", "is missing"},
+      {with_object(R"({"shape": )" + std::string(1'000'000, '[')), "/objects/0/shape/0/0", "than the 1000"},
+  };
+  for (const Case& wrong : cases) {
+    const std::string told = error(wrong.text);
+    EXPECT_EQ(told.substr(0, wrong.place.size()), wrong.place) << wrong.text.substr(0, 200) << "\n  " << told;
+    EXPECT_NE(told.find(wrong.what), std::string::npos) << wrong.text.substr(0, 200) << "\n  " << told;
+    EXPECT_LT(told.size(), 600u);
+  }
+  EXPECT_THROW(read_scene((folder_ / "nowhere.json").string()), Error);
+}
+
+}  // namespace
+}  // namespace scarp
