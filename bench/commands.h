@@ -156,4 +156,13 @@ struct FunctionLeaksOptions {
 /// Throws Error, after the report, when a conservative march was wrong.
 void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions& report);
 
+/// `shapes`: sphere-trace over distance fields beside balls alone and proofs.
+struct ShapesOptions {
+  int width = 480, height = 270;  ///< pixels
+  int repeats = 3;
+  std::int64_t judged = 1000;  ///< about so many rays per shape are judged
+};
+/// Throws Error, after the report, when sphere-trace lost a crossing.
+void run_shapes(const ShapesOptions& options, const ReportOptions& report);
+
 }  // namespace scarp::bench

@@ -320,6 +320,19 @@ int run(int argc, char** argv) {
   function_leaks_command->add_flag("--all", function_leaks.all, "the approximate marches as well");
   add_json_option(*function_leaks_command, report);
 
+  ShapesOptions shapes;
+  CLI::App* shapes_command =
+      app.add_subcommand("shapes", "sphere-trace over distance fields, beside balls alone and proofs");
+  shapes_command->add_option("--width", shapes.width, "pixels")->check(CLI::Range(1, 16384))->capture_default_str();
+  shapes_command->add_option("--height", shapes.height, "pixels")->check(CLI::Range(1, 16384))->capture_default_str();
+  shapes_command->add_option("--repeats", shapes.repeats, "counted passes")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  shapes_command->add_option("--judged", shapes.judged, "rays per shape that the judge answers, about")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
+      ->capture_default_str();
+  add_json_option(*shapes_command, report);
+
   CLI11_PARSE(app, argc, argv);
   voxel_leaks.rays = static_cast<std::int64_t>(voxel_leak_rays);
   leaks.rays = static_cast<std::int64_t>(leak_rays);
@@ -340,6 +353,7 @@ int run(int argc, char** argv) {
   if (*scenes_command) run_scenes(scenes, report);
   if (*functions_command) run_functions(functions, report);
   if (*function_leaks_command) run_function_leaks(function_leaks, report);
+  if (*shapes_command) run_shapes(shapes, report);
   if (*extents_command) {
     extents.sizes.clear();
     for (const std::string& text : extent_sizes) extents.sizes.push_back(size_from(text));

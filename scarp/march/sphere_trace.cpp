@@ -20,6 +20,11 @@ constexpr double kGrowth = 2, kShrink = 0.4;
 constexpr double kAhead = 4;
 // Balls that grow by less, along a face say, are no way to go on.
 constexpr double kGrowing = 1.125;
+// So many of those are taken before a segment, whose bound costs as much as some 8 values.
+constexpr int kPatience = 6;
+
+// The first segment of a ray from the surface, as a share of all: near enough for most of a shape to be left out.
+constexpr double kFirst = 0x1p-8;
 
 // Which side of the surface the ray is on.
 enum class Side { outside, inside };
@@ -136,7 +141,7 @@ class Trace {
   // the surface. False when it loses distance at once (a hit here), or at the end.
   bool leave(double& t, Hit& hit) {
     const double start = t;
-    double length = t_exit_ - t;
+    double length = kFirst * (t_exit_ - t);
     while (t < t_exit_) {
       if (used_up()) {
         hit = exhausted(t);
@@ -168,10 +173,13 @@ class Trace {
   Walk follow(double t, Side side) {
     const double sign = side == Side::outside ? 1 : -1;
     double length = 0;  // of the next segment
+    int patience = kPatience;
     while (t < t_exit_) {
       if (used_up()) return {Ended::exhausted, t, t};
       const double free = (sign * value(t) - rounding(t)) / speed_;
-      if (free > least_at(t) && kAhead * free > kGrowing * length) {
+      const bool grows = kAhead * free > kGrowing * length;
+      if (free > least_at(t) && (grows || --patience >= 0)) {
+        if (grows) patience = kPatience;
         t += free;
         length = kAhead * free;
         continue;

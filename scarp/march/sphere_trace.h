@@ -3,7 +3,7 @@
 //
 //        o-----------o--------o----o--o-o--.        each step is the radius of a ball that is free of the surface;
 //      (           )(       )(   )              ___ where they get short, because the surface is ahead or beside
-//       `---------'  `-----'  `-'         __---     the ray, segments of the ray are bounded instead (along() of
+//       `---------'  `-----'  `-'         __---     the ray, segments of the ray are bounded now and then (along() of
 //                                  ___---           the field): free if the field's line less its remainder is positive
 //
 // A segment is free, or free up to a point, or known to be under the surface from a point on: a Newton iteration that
