@@ -74,6 +74,7 @@ struct March {
   std::string name;
   const MarchEntry* entry;
   MarchSettings settings;
+  bool vectors = false;
 };
 
 std::vector<March> marches_over_functions(const FunctionsOptions& options) {
@@ -87,7 +88,10 @@ std::vector<March> marches_over_functions(const FunctionsOptions& options) {
     all.push_back({"lipschitz-local", &find_function_march("lipschitz-local"), settings});
     return all;
   }
-  for (const MarchEntry& march : function_marches()) all.push_back({std::string(march.name), &march, settings});
+  for (const MarchEntry& march : function_marches()) {
+    all.push_back({std::string(march.name), &march, settings});
+    if (march.function_simd) all.push_back({fmt::format("{}-simd", march.name), &march, settings, true});
+  }
   return all;
 }
 
@@ -111,13 +115,15 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
             judge_function(ground.function, rays[static_cast<std::size_t>(i * every)]);
       }
     });
+    double counted_heights = 0, counted_bounds = 0;
     for (const March& march : marches_over_functions(options)) {
       std::vector<Hit> hits(rays.size());
       double heights = 0, bounds = 0, best_ms = std::numeric_limits<double>::infinity();
       for (int pass = 0; pass < options.repeats; ++pass) {
         heights = bounds = 0;
         const auto start = std::chrono::steady_clock::now();
-        for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (march.vectors) march.entry->function_simd(function, rays, hits, march.settings, {}, FunctionUse::march);
+        for (std::size_t i = 0; i < rays.size() && !march.vectors; ++i) {
           MarchStats stats;
           hits[i] = march.entry->function_cpu(function, rays[i], march.settings, &stats, FunctionUse::march);
           heights += stats.cell_tests, bounds += stats.steps;
@@ -125,6 +131,9 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
         const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
         best_ms = std::min(best_ms, took.count());
       }
+      // Bit for bit the same work as ray by ray, which was counted in the row before.
+      if (march.vectors) heights = counted_heights, bounds = counted_bounds;
+      counted_heights = heights, counted_bounds = bounds;
       // The others look at heights alone, and count them as steps.
       if (march.entry->name != "lipschitz-local") std::swap(heights, bounds);
       int crossings = 0, misses = 0, clear = 0, false_hits = 0, given_up = 0;

@@ -41,7 +41,9 @@ Json measure_objects(const ScenesOptions& options, int count) {
   Random random(2, 0);
   std::vector<SceneRay> rays(static_cast<std::size_t>(options.rays));
   for (SceneRay& ray : rays) {
-    const auto inside = [&] { return dvec3(random.uniform(0, side), random.uniform(0, side), random.uniform(0, side)); };
+    const auto inside = [&] {
+      return dvec3(random.uniform(0, side), random.uniform(0, side), random.uniform(0, side));
+    };
     ray.ray.origin = inside() - dvec3(0, 2 * side, 0);
     ray.ray.direction = normalize(inside() - ray.ray.origin);
   }

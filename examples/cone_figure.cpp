@@ -32,8 +32,8 @@ void text(double x, double z, const char* colour, const char* words) {
 int main() {
   using namespace scarp;
   // A profile along x, and the point P above it.
-  const HeightFunction ground(make_function(Sines{{{17, 170, 0, 2.5}, {9, 83, 0, 2.9}, {2, 31, 0, 0}}}));
-  const dvec3 p(76, 0, 32);
+  const HeightFunction ground(make_function(Sines{{{25, 170, 0, 2.5}, {13, 83, 0, 2.9}, {3, 31, 0, 0}}}));
+  const dvec3 p(110, 0, 27);
   const double h = p.z - ground.value(p.x, p.y);
   // The bound of the slope over all that the page shows, and the ball that follows.
   const double c = ground.bound({0, kWidth, 0, 0}).slope, shrink = 1 / std::sqrt(1 + c * c);
@@ -72,12 +72,13 @@ int main() {
   text(p.x - 5.5, o - 4.5, "#222222", "O");
   text(p.x + 1.5, p.z - 0.62 * h, "#222222", "h");
   text(p.x - along - 6, o + c * along - 1, "#2f8f4e", "N");
-  text(p.x + level.t - 3, p.z + 2.5, "#222222", "ground");
-  text(p.x + h + 2, p.z - 1.2, "#b3392f", "a step of h ends here");
+  text(p.x + level.t + 1, p.z - 7, "#222222", "ground");
+  text(p.x + h - 8, p.z + 14, "#b3392f", "a step of h ends here");
+  line(p.x + h, p.z, p.x + h, p.z + 12, "stroke=\"#b3392f\" stroke-width=\"1\"");
   char words[96];
   std::snprintf(words, sizeof words, "slope c = %.2f, proven", c);
   text(p.x + up + 2, kHigh - 6, "#2a6f97", words);
   std::snprintf(words, sizeof words, "free ball: h / &#8730;(1 + c&#178;) = %.2f h", shrink);
-  text(4, p.z + 0.6 * h, "#2f8f4e", words);
+  text(24, p.z + 0.6 * h, "#2f8f4e", words);
   std::printf("</svg>\n");
 }

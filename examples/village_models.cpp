@@ -13,7 +13,21 @@
 namespace {
 
 // Palette indices.
-enum Colour : std::uint8_t { stone = 1, plaster, timber, roof, ridge, glass, door, bark, needles, tips, leaves, light_leaves, slate };
+enum Colour : std::uint8_t {
+  stone = 1,
+  plaster,
+  timber,
+  roof,
+  ridge,
+  glass,
+  door,
+  bark,
+  needles,
+  tips,
+  leaves,
+  light_leaves,
+  slate
+};
 
 scarp::VoxPalette palette() {
   scarp::VoxPalette colours{};
@@ -41,7 +55,8 @@ class Builder {
   Builder(int width, int depth, int height) { model_.size = {width, depth, height}; }
 
   void set(int x, int y, int z, Colour colour) {
-    model_.voxels.push_back({static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(z), colour});
+    model_.voxels.push_back(
+        {static_cast<std::uint8_t>(x), static_cast<std::uint8_t>(y), static_cast<std::uint8_t>(z), colour});
   }
   // Walls of a box without floor and ceiling; x1, y1, z1 are outside of it.
   void walls(int x0, int y0, int z0, int x1, int y1, int z1, Colour colour) {
@@ -105,7 +120,8 @@ Builder church() {
   b.walls(2, 10, 0, 16, 33, 13, plaster);
   b.walls(2, 10, 0, 16, 33, 2, stone);
   for (const int y : {15, 21, 27}) {
-    for (int z = 4; z < 10; ++z) b.set(2, y, z, glass), b.set(2, y + 1, z, glass), b.set(15, y, z, glass), b.set(15, y + 1, z, glass);
+    for (int z = 4; z < 10; ++z)
+      b.set(2, y, z, glass), b.set(2, y + 1, z, glass), b.set(15, y, z, glass), b.set(15, y + 1, z, glass);
   }
   b.gable_roof(1, 17, 9, 34, 12, 1, slate, slate, plaster);
   b.walls(4, 1, 0, 14, 11, 28, plaster);
@@ -114,14 +130,16 @@ Builder church() {
     for (int x = 7; x < 11; ++x) b.set(x, 1, z, door);
   }
   for (int z = 21; z < 26; ++z) {  // where the bells hang
-    for (int i = 7; i < 11; ++i) b.set(i, 1, z, timber), b.set(i, 10, z, timber), b.set(4, i - 1, z, timber), b.set(13, i - 1, z, timber);
+    for (int i = 7; i < 11; ++i)
+      b.set(i, 1, z, timber), b.set(i, 10, z, timber), b.set(4, i - 1, z, timber), b.set(13, i - 1, z, timber);
   }
   // A spire of rings, two voxels high each, wider than the tower at its foot.
   for (int z = 28; z < 44; ++z) {
     const int inset = (z - 28) * 6 / 16;
     b.walls(3 + inset, 0 + inset, z, 15 - inset, 12 - inset, z + 1, slate);
   }
-  for (int z = 43; z < 46; ++z) b.set(8, 5, z, ridge), b.set(9, 6, z, ridge), b.set(8, 6, z, ridge), b.set(9, 5, z, ridge);
+  for (int z = 43; z < 46; ++z)
+    b.set(8, 5, z, ridge), b.set(9, 6, z, ridge), b.set(8, 6, z, ridge), b.set(9, 5, z, ridge);
   return b;
 }
 

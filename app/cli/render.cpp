@@ -178,8 +178,7 @@ void print_times(const RenderOptions& options, double read_s, double build_s, do
 void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const Scene& scene, const SceneLook& look,
                          const Camera& camera, Watch& watch, double read_s, double build_s) {
   if (options.exr) {
-    const PictureLayers layers =
-        render_scene_layers(scene, look, camera, options.picture, terminal_progress("render"));
+    const PictureLayers layers = render_scene_layers(scene, look, camera, options.picture, terminal_progress("render"));
     const double render_s = watch.lap();
     write_layers(file, options.output, layers, camera);
     print_times(options, read_s, build_s, render_s);

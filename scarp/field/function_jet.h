@@ -52,6 +52,12 @@ Jet<T, M> combine(double k0, const Jet<T, M>& a, double k1, const Jet<T, M>& b, 
   for (std::size_t i = 0; i < M; ++i) out.d[i] = combine(k0, a.d[i], k1, b.d[i], 0);
   return out;
 }
+template <class T, std::size_t M>
+Jet<T, M> turned_place(double k0, const Jet<T, M>& a, double k1, const Jet<T, M>& b) {
+  Jet<T, M> out{turned_place(k0, a.v, k1, b.v), {}};
+  for (std::size_t i = 0; i < M; ++i) out.d[i] = combine(k0, a.d[i], k1, b.d[i], 0);
+  return out;
+}
 /// v with the derivatives f1 * a'.
 template <class T, std::size_t M>
 Jet<T, M> chained(const T& v, const T& f1, const Jet<T, M>& a) {

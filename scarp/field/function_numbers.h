@@ -10,6 +10,7 @@
 namespace scarp::function {
 
 inline double combine(double k0, double a, double k1, double b, double k2) { return k0 * a + k1 * b + k2; }
+inline double turned_place(double k0, double a, double k1, double b) { return k0 * a + k1 * b; }
 inline double multiply(double a, double b) { return a * b; }
 inline double square(double a) { return a * a; }
 inline double absolute(double a) { return std::abs(a); }

@@ -25,10 +25,10 @@ struct Step {
   double k0 = 0, k1 = 0, k2 = 0, k3 = 0;
   NoiseKind kind = NoiseKind::value;
   std::uint32_t seed = 0;
-  int out = 0;  // noise_slope writes out, out + 1 and out + 2
+  int out = 0;  // noise_slope writes out, out + 1 and out + 2, turn writes out and out + 1
 };
 
-int outputs(FunctionOp op) { return op == FunctionOp::noise_slope ? 3 : 1; }
+int outputs(FunctionOp op) { return op == FunctionOp::noise_slope ? 3 : op == FunctionOp::turn ? 2 : 1; }
 
 class Compiler {
  public:
@@ -141,8 +141,8 @@ class Compiler {
     const int octaves = octaves_of(f.octaves);
     for (int octave = 0; octave < octaves; ++octave, height *= f.gain) {
       if (octave > 0) {
-        const int turned_u = combine(c, u, -s, v, 0), turned_v = combine(s, u, c, v, 0);
-        u = turned_u, v = turned_v;
+        u = add({.op = FunctionOp::turn, .a = u, .b = v, .k0 = c, .k1 = s});
+        v = u + 1;
       }
       const bool damped = f.damping > 0;
       int n = add({.op = damped ? FunctionOp::noise_slope : FunctionOp::noise,

@@ -16,6 +16,7 @@ enum class FunctionUse : std::uint8_t { march, shadow, normal };
 enum class FunctionOp : std::uint8_t {
   constant,        ///< k0
   combine,         ///< k0 * a + k1 * b + k2
+  turn,            ///< places: k0 * a - k1 * b, and k1 * a + k0 * b into out_x
   multiply,        ///< a * b
   square,          ///< a * a
   absolute,        ///< |a|

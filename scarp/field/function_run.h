@@ -34,6 +34,12 @@ T run(const FunctionProgram& program, const T& x, const T& y) {
       case FunctionOp::combine:
         out = combine(in.k0, a, in.k1, b, in.k2);
         break;
+      case FunctionOp::turn: {
+        const T turned = turned_place(in.k0, a, -in.k1, b);
+        r[in.out_x] = turned_place(in.k1, a, in.k0, b);
+        r[in.out] = turned;
+        break;
+      }
       case FunctionOp::multiply:
         out = multiply(a, b);
         break;

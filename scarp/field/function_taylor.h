@@ -90,6 +90,22 @@ Taylor<N> combine(double k0, const Taylor<N>& a, double k1, const Taylor<N>& b, 
   return t;
 }
 
+/// k0 a + k1 b of places, whose line says nearly all: their range is that of the line.
+template <std::size_t N>
+Taylor<N> turned_place(double k0, const Taylor<N>& a, double k1, const Taylor<N>& b) {
+  Taylor<N> t;
+  t.mid = k0 * a.mid + k1 * b.mid;
+  for (std::size_t i = 0; i < N; ++i) t.slope[i] = k0 * a.slope[i] + k1 * b.slope[i];
+  const double ka = std::abs(k0), kb = std::abs(k1);
+  const double slack =
+      kSlack * (ka * (std::abs(a.mid) + a.reach() + a.error) + kb * (std::abs(b.mid) + b.reach() + b.error));
+  t.rest = ka * a.rest + kb * b.rest + slack;
+  const double reach = t.reach() + slack;
+  t.low = t.mid - reach, t.high = t.mid + reach;
+  t.error = ka * a.error + kb * b.error + slack;
+  return t;
+}
+
 template <std::size_t N>
 Taylor<N> multiply(const Taylor<N>& a, const Taylor<N>& b) {
   Taylor<N> t;
@@ -294,6 +310,36 @@ Taylor<N> derivative_over(const Taylor<N>& a, const Taylor<N>& b, double r, doub
   return t;
 }
 
+/// Noise over a segment that is short against the lattice. Along it the second derivative is q at the middle, and the
+/// parabola q s^2 / 2 stays within |q| / 4 of q / 4:
+///
+///      q/2  .             .          n = mid + slope s + q s^2 / 2 +- third r^3 / 6
+///             .         .
+///      q/4 - - - . - . - - - -       what is off the line bends it as well: |off| (half + |off| / 2) |H|, H the second
+///        0 ________.__________       derivatives, |H| the root of their squares
+///          s = -1     0     1
+///
+/// The other bound, curvature r^2 / 2 without a look at q, is smaller where the segment is longer. `rounding` is that
+/// of n and each of its derivatives; r < 1.
+inline Taylor<1> value_over(const Taylor<1>& a, const Taylor<1>& b, double r, const NoiseJet& jet,
+                            const NoiseBound& bound, double hessian, double curvature, double rounding) {
+  const double sx = a.slope[0], sy = b.slope[0];
+  const double q = sx * sx * jet.xx + 2 * sx * sy * jet.xy + sy * sy * jet.yy;
+  const double half = std::sqrt(sx * sx + sy * sy), off = std::sqrt(a.rest * a.rest + b.rest * b.rest);
+  const double bent = 0.25 * std::abs(q) + hessian * off * (half + 0.5 * off) + bound.third / 6 * r * r * r;
+  const double plain = 0.5 * curvature * r * r;
+  Taylor<1> t;
+  t.mid = jet.n + (bent < plain ? 0.25 * q : 0.0);
+  t.slope[0] = jet.x * sx + jet.y * sy;
+  t.rest = std::abs(jet.x) * a.rest + std::abs(jet.y) * b.rest + (bent < plain ? bent : plain) * (1 + kSlack) +
+           3 * (rounding + kSlack * (bound.slope + bound.curvature));
+  const double away = bound.slope * r * (1 + kSlack) + rounding;
+  t.low = std::max(-bound.height, jet.n - away), t.high = std::min(bound.height, jet.n + away);
+  t.error = bound.slope * (a.error + b.error) + rounding;
+  settle(t);
+  return t;
+}
+
 /// Noise over a segment, with its derivatives as far as they are asked for.
 template <std::size_t N>
 struct NoiseOver {
@@ -319,10 +365,13 @@ NoiseOver<N> noise_over(const FunctionInstruction& in, const Taylor<N>& a, const
   }
   const NoiseJet jet = noise_jet(in.kind, in.seed, a.mid, b.mid);
   // The second derivative in any direction, anywhere on the segment: that at the middle, or the bound.
-  const double curvature =
-      std::min(bound.curvature, std::sqrt(jet.xx * jet.xx + 2 * jet.xy * jet.xy + jet.yy * jet.yy) * (1 + kSlack) +
-                                    bound.third * r + rounding);
-  out.n = derivative_over(a, b, r, jet.n, jet.x, jet.y, bound.height, bound.slope, curvature, rounding);
+  const double hessian = std::sqrt(jet.xx * jet.xx + 2 * jet.xy * jet.xy + jet.yy * jet.yy) * (1 + kSlack);
+  const double curvature = std::min(bound.curvature, hessian + bound.third * r + rounding);
+  if constexpr (N == 1) {
+    out.n = value_over(a, b, r, jet, bound, hessian, curvature, rounding);
+  } else {
+    out.n = derivative_over(a, b, r, jet.n, jet.x, jet.y, bound.height, bound.slope, curvature, rounding);
+  }
   if constexpr (order >= 1) {
     out.x = derivative_over(a, b, r, jet.x, jet.xx, jet.xy, bound.slope, curvature, bound.third, rounding);
     out.y = derivative_over(a, b, r, jet.y, jet.xy, jet.yy, bound.slope, curvature, bound.third, rounding);

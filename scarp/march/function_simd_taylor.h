@@ -33,6 +33,7 @@ HWY_INLINE V pick(M m, V yes, V no) { return hn::IfThenElse(m, yes, no); }
 HWY_INLINE V combine(double k0, V a, double k1, V b, double k2) {
   return hn::Add(hn::Add(scaled(k0, a), scaled(k1, b)), set(k2));
 }
+HWY_INLINE V turned_place(double k0, V a, double k1, V b) { return hn::Add(scaled(k0, a), scaled(k1, b)); }
 HWY_INLINE V multiply(V a, V b) { return hn::Mul(a, b); }
 HWY_INLINE V square(V a) { return hn::Mul(a, a); }
 HWY_INLINE V absolute(V a) { return vabs(a); }
@@ -94,6 +95,20 @@ HWY_INLINE VT combine(double k0, const VT& a, double k1, const VT& b, double k2)
   return t;
 }
 HWY_INLINE VT negative(const VT& a) { return combine(-1, a, 0, a, 0); }
+
+HWY_INLINE VT turned_place(double k0, const VT& a, double k1, const VT& b) {
+  VT t;
+  const double ka = std::abs(k0), kb = std::abs(k1);
+  t.mid = hn::Add(scaled(k0, a.mid), scaled(k1, b.mid));
+  t.slope = hn::Add(scaled(k0, a.slope), scaled(k1, b.slope));
+  const V slack = scaled(kSlack, hn::Add(scaled(ka, hn::Add(hn::Add(vabs(a.mid), reach_of(a)), a.error)),
+                                         scaled(kb, hn::Add(hn::Add(vabs(b.mid), reach_of(b)), b.error))));
+  t.rest = hn::Add(hn::Add(scaled(ka, a.rest), scaled(kb, b.rest)), slack);
+  const V reach = hn::Add(reach_of(t), slack);
+  t.low = hn::Sub(t.mid, reach), t.high = hn::Add(t.mid, reach);
+  t.error = hn::Add(hn::Add(scaled(ka, a.error), scaled(kb, b.error)), slack);
+  return t;
+}
 
 HWY_INLINE VT multiply(const VT& a, const VT& b) {
   VT t;
@@ -177,6 +192,30 @@ HWY_INLINE VT derivative_over(const VT& a, const VT& b, V r, V d, V dx, V dy, V 
   return t;
 }
 
+HWY_INLINE VT value_over(const VT& a, const VT& b, V r, const VNoise& jet, const NoiseBound& bound, V hessian,
+                         V curvature, V rounding) {
+  const V sx = a.slope, sy = b.slope, xx = hn::Mul(sx, sx), yy = hn::Mul(sy, sy);
+  const V q = hn::Add(hn::Add(hn::Mul(xx, jet.xx), hn::Mul(hn::Mul(scaled(2, sx), sy), jet.xy)), hn::Mul(yy, jet.yy));
+  const V half = hn::Sqrt(hn::Add(xx, yy)), off = length_of(a.rest, b.rest);
+  const V bent =
+      hn::Add(hn::Add(scaled(0.25, vabs(q)), hn::Mul(hn::Mul(hessian, off), hn::Add(half, scaled(0.5, off)))),
+              hn::Mul(hn::Mul(scaled(bound.third / 6, r), r), r));
+  const V plain = hn::Mul(hn::Mul(scaled(0.5, curvature), r), r);
+  const M is_bent = hn::Lt(bent, plain);
+  VT t;
+  t.mid = hn::Add(jet.n, hn::IfThenElseZero(is_bent, scaled(0.25, q)));
+  t.slope = hn::Add(hn::Mul(jet.x, sx), hn::Mul(jet.y, sy));
+  t.rest = hn::Add(hn::Add(hn::Add(hn::Mul(vabs(jet.x), a.rest), hn::Mul(vabs(jet.y), b.rest)),
+                           hn::Mul(pick(is_bent, bent, plain), set(1 + kSlack))),
+                   scaled(3, hn::Add(rounding, set(kSlack * (bound.slope + bound.curvature)))));
+  const V height = set(bound.height), slope = set(bound.slope);
+  const V away = hn::Add(hn::Mul(hn::Mul(slope, r), set(1 + kSlack)), rounding);
+  t.low = vmax(hn::Neg(height), hn::Sub(jet.n, away)), t.high = vmin(height, hn::Add(jet.n, away));
+  t.error = hn::Add(hn::Mul(slope, hn::Add(a.error, b.error)), rounding);
+  settle(t);
+  return t;
+}
+
 // Noise over a segment, with its derivatives in x and y when they are asked for.
 struct VNoiseOver {
   VT n, x, y;
@@ -201,10 +240,10 @@ HWY_INLINE VNoiseOver noise_over(const Directions& directions, const FunctionIns
   const VNoise jet = noise_at<true>(directions, in.kind, in.seed, a.mid, b.mid);
   const V size = hn::Add(hn::Add(hn::Mul(jet.xx, jet.xx), hn::Mul(scaled(2, jet.xy), jet.xy)), hn::Mul(jet.yy, jet.yy));
   const V third = set(bound.third);
-  const V here = hn::Add(hn::Add(hn::Mul(hn::Sqrt(size), set(1 + kSlack)), hn::Mul(third, r)), rounding);
-  const V curvature = vmin(set(bound.curvature), here);
+  const V hessian = hn::Mul(hn::Sqrt(size), set(1 + kSlack));
+  const V curvature = vmin(set(bound.curvature), hn::Add(hn::Add(hessian, hn::Mul(third, r)), rounding));
   VNoiseOver out;
-  out.n = pick(coarse, far.n, derivative_over(a, b, r, jet.n, jet.x, jet.y, height, slope, curvature, rounding));
+  out.n = pick(coarse, far.n, value_over(a, b, r, jet, bound, hessian, curvature, rounding));
   if constexpr (slopes) {
     out.x = derivative_over(a, b, r, jet.x, jet.xx, jet.xy, slope, curvature, third, rounding);
     out.y = derivative_over(a, b, r, jet.y, jet.xy, jet.yy, slope, curvature, third, rounding);
@@ -223,6 +262,9 @@ struct VJ {
 HWY_INLINE void set_constant(VJ& out, double k) { out = {constant_model(set(k)), constant_model(zero())}; }
 HWY_INLINE VJ combine(double k0, const VJ& a, double k1, const VJ& b, double k2) {
   return {combine(k0, a.v, k1, b.v, k2), combine(k0, a.d, k1, b.d, 0)};
+}
+HWY_INLINE VJ turned_place(double k0, const VJ& a, double k1, const VJ& b) {
+  return {turned_place(k0, a.v, k1, b.v), combine(k0, a.d, k1, b.d, 0)};
 }
 HWY_INLINE VJ chained(const VT& v, const VT& fa, const VT& da, const VT& fb, const VT& db) {
   return {v, combine(1, multiply(fa, da), 1, multiply(fb, db), 0)};
@@ -357,6 +399,12 @@ HWY_NOINLINE Number run(const Directions& directions, const FunctionProgram& pro
       case FunctionOp::combine:
         out = combine(in.k0, a, in.k1, b, in.k2);
         break;
+      case FunctionOp::turn: {
+        const Number turned = turned_place(in.k0, a, -in.k1, b);
+        r[in.out_x] = turned_place(in.k1, a, in.k0, b);
+        r[in.out] = turned;
+        break;
+      }
       case FunctionOp::multiply:
         out = multiply(a, b);
         break;

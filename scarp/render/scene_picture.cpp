@@ -169,7 +169,8 @@ Picture render_scene(const Scene& scene, const SceneLook& look, const Camera& ca
     return picture_of_steps(settings, steps);
   }
   if (settings.look != Look::shaded)
-    throw Error(fmt::format("look '{}': scenes and voxels have none; there are: shaded, steps", name_of(settings.look)));
+    throw Error(
+        fmt::format("look '{}': scenes and voxels have none; there are: shaded, steps", name_of(settings.look)));
   Image image(settings.width, settings.height);
   shade(scene, look, camera, settings, progress, [&](int x, int y, vec3 colour) { set_pixel(image, x, y, colour); });
   return {std::move(image), {}, {}};

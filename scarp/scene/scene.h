@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Many fields in one world: terrain, functions, shapes and voxels, each in as many places as one likes, and one call that tells
-// the nearest that a ray meets.
+// Many fields in one world: terrain, functions, shapes and voxels, each in as many places as one likes, and one call
+// that tells the nearest that a ray meets.
 //
 //   ray ──▶ ground without an end, and terrain that takes rays by the hundred        each by its own march;
 //       ──▶ hierarchy of boxes over all other objects (box_tree.h)                   the nearest hit wins
@@ -46,7 +46,7 @@ struct SceneSurface {
   dvec3 normal{0.0};          ///< unit, outward; zero for a ray that began inside of a voxel
   dvec3 shading_normal{0.0};  ///< unit, likewise
   std::uint32_t object = 0;
-  std::uint32_t material = 0;  ///< the object's, or that of a shape's part less 1
+  std::uint32_t material = 0;         ///< the object's, or that of a shape's part less 1
   dvec3 place{0.0};                   ///< the position in the object's own space
   std::optional<VoxelColour> colour;  ///< where the field has colours of its own
 };

@@ -33,8 +33,8 @@ struct FieldHit {
 
 /// What is at a hit, in the field's space.
 struct FieldSurface {
-  dvec3 normal{0.0};                  ///< unit, outward; zero for a ray that began inside
-  dvec3 shading_normal{0.0};          ///< unit
+  dvec3 normal{0.0};                    ///< unit, outward; zero for a ray that began inside
+  dvec3 shading_normal{0.0};            ///< unit
   std::optional<VoxelColour> colour{};  ///< where the field has colours of its own
   int material = 0;                     ///< of the part of a shape, as in distance_node.h; 0: that of the object
 };

@@ -102,7 +102,8 @@ HeightsWithPlace heights_from(const Json& json, const std::string& path, const F
     field_options.surface = json.value("surface", "bilinear") == "triangles" ? Surface::triangles : Surface::bilinear;
     field_options.solid = json.value("solid", false);
     HeightField field = height_field_from(std::move(raster), field_options);
-    const dvec3 shift = json.value("centred", false) ? dvec3(-0.5 * field.width(), -0.5 * field.depth(), 0) : dvec3(0.0);
+    const dvec3 shift =
+        json.value("centred", false) ? dvec3(-0.5 * field.width(), -0.5 * field.depth(), 0) : dvec3(0.0);
     return {std::move(field), shift};
   } catch (const Error&) {
     rethrow_at(path + "/" + source);
@@ -114,7 +115,8 @@ Shape ground_from(const Json& json, const std::string& path, const FieldSurround
   if (json.is_string()) {
     const auto [named, at] = around.field(json.get<std::string>(), path);
     if (!named->is_object() || !(named->contains("heights") || named->contains("function")))
-      throw Error(fmt::format("{}: '{}' is no ground; expected a field of heights or a function", path, json.get<std::string>()));
+      throw Error(fmt::format("{}: '{}' is no ground; expected a field of heights or a function", path,
+                              json.get<std::string>()));
     return ground_from(*named, at, around);
   }
   if (json.is_object() && json.size() >= 1 && json.contains("heights")) {

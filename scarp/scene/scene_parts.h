@@ -19,10 +19,10 @@ namespace scarp {
 
 /// What fields may refer to, and what is said about them.
 struct FieldSurroundings {
-  std::string folder;               ///< that paths count from
-  FunctionByName functions;         ///< named ones
-  /// A material's number for shapes, from 1; and the JSON of a field and where it stands: of a name that is asked for at
-  /// a place. Both throw Error.
+  std::string folder;        ///< that paths count from
+  FunctionByName functions;  ///< named ones
+  /// A material's number for shapes, from 1; and the JSON of a field and where it stands: of a name that is asked for
+  /// at a place. Both throw Error.
   std::function<int(const std::string& name, const std::string& path)> material;
   std::function<std::pair<const nlohmann::json*, std::string>(const std::string& name, const std::string& path)> field;
   std::vector<std::string>* notes;  ///< of readers

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The picture of the demo and the example scenes, smaller, against those that were looked at and found good. After a change that is meant to
-// be seen: look at the new picture, which a failing test leaves in the build folder, and copy it to test/golden/.
+// The picture of the demo and the example scenes, smaller, against those that were looked at and found good. After a
+// change that is meant to be seen: look at the new picture, which a failing test leaves in the build folder, and copy
+// it to test/golden/.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

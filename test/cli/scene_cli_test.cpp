@@ -48,7 +48,8 @@ TEST_F(Scenes, AreRenderedAsTheirFilesSay) {
 }
 
 TEST_F(Scenes, GiveWayToOptions) {
-  ASSERT_EQ(test::run({"render", path_, "-o", picture_, "--size", "16x8", "--view", "0,90", "--look", "steps"}).status, 0);
+  ASSERT_EQ(test::run({"render", path_, "-o", picture_, "--size", "16x8", "--view", "0,90", "--look", "steps"}).status,
+            0);
   EXPECT_EQ(test::read_png(picture_).width, 16);
   const auto refused = test::run({"render", path_, "-o", picture_, "--march", "naive"});
   EXPECT_NE(refused.status, 0);

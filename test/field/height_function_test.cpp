@@ -32,17 +32,24 @@ TEST(HeightFunction, GradientsAreThoseOfDifferences) {
     int creases = 0;
     for (int i = 0; i < 3000; ++i) {
       const double x = random.between(-5000, 5000), y = random.between(-5000, 5000);
-      // Central differences are off by h^2 / 6 times the third derivative; half of h tells by how much.
+      // Central differences are off by h^2 / 6 times the third derivative: the difference of two of them, h and 2 h, is
+      // three times what the finer one is off by.
       const auto differences = [&](double h) {
         return dvec2(function.value(x + h, y) - function.value(x - h, y),
                      function.value(x, y + h) - function.value(x, y - h)) /
                (2 * h);
       };
-      const dvec2 coarse = differences(2e-3), fine = differences(1e-3);
+      constexpr double kH = 1e-3;
+      const dvec2 coarse = differences(2 * kH), fine = differences(kH);
       const double off = length(coarse - fine);
-      const double rounding = 4 * function.bound({x - 1, x + 1, y - 1, y + 1}).rounding / 1e-3;
+      // Two heights over 2 h, in both coordinates, of the fine and half as much of the coarse one: at most 4 / h of
+      // what a height is off by. That is its own rounding, and that of the place x + h, 2^-53 of it, times the slope.
+      // The gradient itself takes fewer than 2^10 roundings of numbers no larger than 1 + slope.
+      const FunctionBound near = function.bound({x - 1, x + 1, y - 1, y + 1});
+      const double height_off = near.rounding + 0x1p-53 * (std::abs(x) + std::abs(y) + 1) * near.slope;
+      const double rounding = 4 * height_off / kH + 0x1p-43 * (1 + near.slope);
       const double error = length(function.gradient(x, y, FunctionUse::march) - fine);
-      if (error <= off + rounding + 1e-9) continue;
+      if (error <= off + rounding) continue;
       ++creases;
       if (named.smooth) ADD_FAILURE() << named.name << " at " << x << ", " << y << ": off by " << error;
     }
@@ -108,11 +115,13 @@ TEST(HeightFunction, SegmentBoundsAreNeverExceeded) {
         Seen seen;
         for (int i = 0; i < 500; ++i) {
           const double t = random.between(t0, t1), q = (t - 0.5 * (t0 + t1)) / (0.5 * size);
+          // t, t1 and the middle are rounded numbers below 2^12: three of 2^-42 over half the size.
+          const double rounding_of_q = 3 * 0x1p-42 / (0.5 * size);
           const dvec2 p = origin + direction * t;
           const double h = function.value(p.x, p.y);
           seen.low = std::min(seen.low, h), seen.high = std::max(seen.high, h);
           ASSERT_LE(std::abs(h - (bound.mid + bound.slope * q)),
-                    bound.rest + bound.rounding + 1e-12 * std::abs(bound.slope))
+                    bound.rest + bound.rounding + rounding_of_q * std::abs(bound.slope))
               << named.name << ", size " << size;
           if (i % 8 == 0) {
             const double along = dot(function.gradient(p.x, p.y, FunctionUse::march), direction);

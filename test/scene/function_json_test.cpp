@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -121,7 +122,7 @@ TEST(ExampleFunctions, AreGood) {
     const HeightFunction function(example_function(example.name));
     const FunctionBound& all = function.bound_everywhere();
     EXPECT_LT(all.low, all.high) << example.name;
-    EXPECT_LT(all.slope, 100) << example.name;
+    EXPECT_TRUE(std::isfinite(all.slope)) << example.name;
   }
   EXPECT_THROW(example_function("moon"), Error);
   EXPECT_THROW(read_function("/nowhere.json"), Error);

@@ -63,13 +63,16 @@ SceneFieldPtr ball(double radius) { return scene_shape(DistanceField(make_shape(
 // Some of each kind, turned, scaled and moved at random into a cube of 100 m.
 Scene crowd(unsigned seed) {
   Random random(seed);
-  std::vector<SceneFieldPtr> fields{hills(17, 6, seed), voxel_block(), ball(1),
-                                    scene_function(HeightFunction(make_function(
-                                        Sines{{{.amplitude = 2, .wavelength = 31}, {.amplitude = 1, .wavelength = 13, .towards = 1}}})))};
+  std::vector<SceneFieldPtr> fields{
+      hills(17, 6, seed), voxel_block(), ball(1),
+      scene_function(HeightFunction(make_function(
+          Sines{{{.amplitude = 2, .wavelength = 31}, {.amplitude = 1, .wavelength = 13, .towards = 1}}})))};
   std::vector<SceneObject> objects;
   const auto place = [&](std::uint32_t field, double scale) {
-    objects.push_back({field, static_cast<std::uint32_t>(objects.size()),
-                       {turned(random.direction(), random.in(0, 6)), scale,
+    objects.push_back({field,
+                       static_cast<std::uint32_t>(objects.size()),
+                       {turned(random.direction(), random.in(0, 6)),
+                        scale,
                         {random.in(-50, 50), random.in(-50, 50), random.in(-50, 50)}}});
   };
   for (int i = 0; i < 9; ++i) place(0, random.in(0.5, 2));
