@@ -64,6 +64,9 @@ endforeach()
 add_custom_target(scarp_flat_texts ALL DEPENDS ${flat_texts})
 install(FILES ${flat_texts} DESTINATION ${shader_folder})
 
+# For editors that complete scene files by their schema.
+install(FILES scarp/scene/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/scarp)
+
 # The command line's target comes into being after this file was read.
 function(scarp_install_app)
   if(TARGET scarp)

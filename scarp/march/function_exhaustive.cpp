@@ -205,8 +205,8 @@ class Evaluation {
 
 }  // namespace
 
-judge::Interval judge::height_over(const Function& function, FunctionUse use, const Position& x, const Position& y,
-                                   const Interval& t) {
+Interval judge::height_over(const Function& function, FunctionUse use, const Position& x, const Position& y,
+                            const Interval& t) {
   return Evaluation(use, t).of(function, x, y);
 }
 

@@ -173,7 +173,11 @@ MarchSettings march_settings_from_json(const Json& json, const std::string& path
   number("naive_tolerance", s.naive.tolerance);
   count("naive_max_steps", s.naive.max_steps);
   number("fixed_step", s.fixed_step.step);
-  s.fixed_step.interpolate = object.choice("fixed_step_interpolate", 0, {"yes", "no"}) == 0;
+  if (const Json* interpolate = object.find("fixed_step_interpolate")) {
+    if (!interpolate->is_boolean())
+      refuse_json(object.path_of("fixed_step_interpolate"), *interpolate, "true or false");
+    s.fixed_step.interpolate = interpolate->get<bool>();
+  }
   count("fixed_step_max_steps", s.fixed_step.max_steps);
   number("relaxed_step_factor", s.relaxed.step_factor);
   number("relaxed_tolerance", s.relaxed.tolerance);
@@ -186,6 +190,7 @@ MarchSettings march_settings_from_json(const Json& json, const std::string& path
   count("local_max_steps", s.lipschitz_local.max_steps);
   number("trace_tolerance", s.sphere_trace.tolerance);
   count("trace_max_steps", s.sphere_trace.max_steps);
+  number("function_reach", s.function.reach);
   number("function_step", s.function.step);
   number("function_step_share", s.function.step_share);
   number("function_tolerance", s.function.tolerance);

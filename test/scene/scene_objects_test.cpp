@@ -126,10 +126,19 @@ TEST(SceneOfManyFields, TellsTheNearestOfAllObjects) {
   EXPECT_GT(hits, 1000);
 }
 
+// Several objects that are asked by the hundred, turned and over one another, beside a few in the tree.
+Scene layers() {
+  return Scene({hills(65, 9, 3), hills(33, 20, 4), ball(8),
+                scene_function(HeightFunction(make_function(Sines{{{.amplitude = 6, .wavelength = 40}}})))},
+               {{0, 0, {glm::dmat3(1.0), 1.0, {-32, -32, 0}}},
+                {1, 1, {turned({0, 1, 0}, 0.4), 2.0, {-30, -30, 10}}},
+                {2, 2, {glm::dmat3(1.0), 1.0, {10, 5, 12}}},
+                {3, 3, {turned({1, 0, 0}, -0.3), 1.0, {0, 0, 5}}}});
+}
+
 TEST(SceneOfManyFields, BatchesAndOcclusionAgreeWithSingleRays) {
   for (const unsigned seed : {7u, 8u}) {
-    const Scene scene =
-        seed == 7 ? crowd(seed) : Scene({hills(65, 9, 3)}, {{0, 0, {glm::dmat3(1.0), 1.0, {-32, -32, 0}}}});
+    const Scene scene = seed == 7 ? crowd(seed) : layers();
     const std::vector<SceneRay> rays = rays_through(seed, 2000);
     std::vector<SceneHit> hits(rays.size());
     std::vector<std::uint8_t> blocked(rays.size());
