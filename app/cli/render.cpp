@@ -17,6 +17,7 @@
 #include "app/cli/device_option.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
+#include "app/cli/look_options.h"
 #include "app/cli/march_options.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
@@ -46,10 +47,11 @@ struct RenderOptions {
   std::string device;
   MarchSettings march_settings;
   PictureSettings picture;
+  LookOptions look_options;
   std::string size, look = "shaded", sun, view, eye, target;
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg;
-  bool top = false, no_shadows = false, no_plinth = false;
+  bool fov_said = false, top = false, no_shadows = false, no_plinth = false;
   int threads = 0;
 };
 
@@ -84,6 +86,7 @@ ViewSettings settle(RenderOptions& options) {
   picture.look = find_look(options.look);
   picture.shadows = !options.no_shadows;
   picture.plinth = !options.no_plinth;
+  settle_look(options.look_options, options.size, options.march_settings, picture);
   if (!options.size.empty()) {
     const auto size = numbers_from(options.size, 'x', 2, 2, "--size", "WIDTHxHEIGHT in pixels, for example 1280x720");
     picture.width = whole(size[0], options);
@@ -95,6 +98,7 @@ ViewSettings settle(RenderOptions& options) {
     picture.sun.altitude_deg = sun[1];
   }
   validate(picture);
+  if (picture.look == Look::comanche && !options.fov_said) options.fov_deg = 60;
   ViewSettings view;
   view.fov_deg = options.fov_deg;
   if (!options.view.empty()) {
@@ -107,8 +111,6 @@ ViewSettings settle(RenderOptions& options) {
   }
   validate(view);
   validate(options.march_settings);
-  if (options.field.wrap != Wrap::none)
-    throw Error("--wrap: a picture shows a field once, with its borders; leave it out");
   std::string extension = std::filesystem::path(options.output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
@@ -144,6 +146,14 @@ Camera camera_of(const RenderOptions& options, const ViewSettings& view, const B
   return Camera::look_at(point_from(options.eye, "--eye"), target, options.fov_deg, width, height);
 }
 
+Camera terrain_camera(const RenderOptions& options, const ViewSettings& view, const HeightField& field, const Box& box,
+                      double grid_north_azimuth) {
+  if (options.picture.look == Look::comanche && !options.top && options.view.empty() && options.eye.empty()) {
+    return flight_camera(field, grid_north_azimuth, options.fov_deg, options.picture.width, options.picture.height);
+  }
+  return camera_of(options, view, box, grid_north_azimuth);
+}
+
 void print_findings(const Picture& picture) {
   if (picture.steps) {
     fmt::print("steps per ray: {} (first colour of the ramp) to {} (last), mean {:.1f}\n", picture.steps->least,
@@ -160,8 +170,9 @@ void print_findings(const Picture& picture) {
 
 void print_times(const RenderOptions& options, double read_s, double build_s, double render_s,
                  const std::string& device = {}) {
+  const int scale = options.picture.look == Look::comanche ? options.picture.comanche.scale : 1;
   fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options.output,
-             options.picture.width, options.picture.height, read_s, build_s, render_s,
+             options.picture.width * scale, options.picture.height * scale, read_s, build_s, render_s,
              device.empty() ? "" : ", on " + device);
 }
 
@@ -212,13 +223,16 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   if (field.all_nodata()) {
     throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", path));
   }
+  if (field.wraps()) options.picture.plinth = false;
   const TerrainScene scene = scenes.make(std::move(field), march, options.march_settings);
   stop_if_interrupted();
   const double build_s = watch.lap();
 
   const Box box = picture_box(scene.field(), options.picture.plinth);
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
-  const Camera camera = camera_of(options, view, box, grid_north_azimuth);
+  finish_look(options.look_options, scene.field(), options.picture);
+  Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth);
+  camera.set_reach(reach_of(options.look_options, scene.field()));
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
   if (options.exr) {
     const PictureLayers layers =
@@ -260,7 +274,7 @@ void add_render(CLI::App& program) {
                    "the picture: .png, or .exr in linear light with depth, normal, position and steps")
       ->required();
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels (1280x720; with --top the shape of the ground)");
-  command->add_option("--look", o.look, "shaded, height, steps, error")->capture_default_str();
+  command->add_option("--look", o.look, "shaded, height, steps, error, comanche")->capture_default_str();
   command->add_option("--ramp", o.picture.ramp,
                       fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
   add_field_options(*command, o.field);
@@ -295,6 +309,7 @@ void add_render(CLI::App& program) {
       ->add_option("--error-tolerance", o.picture.error_tolerance,
                    "of the error look, in sides of a cell along the ray")
       ->capture_default_str();
+  add_look_options(*command, o.look_options);
   add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
 
@@ -325,7 +340,10 @@ void add_render(CLI::App& program) {
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);
   add_vox_options(*command, o.vox);
-  command->callback([options] { run(*options); });
+  command->callback([options, fov] {
+    options->fov_said = fov->count() > 0;
+    run(*options);
+  });
 }
 
 }  // namespace scarp::cli

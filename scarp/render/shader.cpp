@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
+#include <limits>
 
 #include "scarp/base/error.h"
 #include "scarp/march/wall.h"
@@ -18,8 +19,19 @@ namespace {
 constexpr vec3 kEarth(0.64f, 0.58f, 0.53f);
 constexpr float kUnlitWall = 0.55f;
 
+// The sine of the lowest sun that casts shadows over endless ground.
+constexpr double kLeastSunRise = 1e-3;
+
 // Purposes of a pixel's points.
 constexpr std::uint32_t kOfSky = 0, kOfSun = 1;
+
+// Rays over endless ground need an end: above the highest summit nothing is met, and low rays end far away.
+void end_above_ground(std::span<Ray> rays, double highest) {
+  for (Ray& ray : rays) {
+    const double rise = std::max(highest - ray.origin.z, 0.0);
+    ray.t_max = rise / std::max(ray.direction.z, kLeastSunRise);
+  }
+}
 
 double diagonal(const Box& box) { return length(box.high - box.low); }
 
@@ -44,6 +56,7 @@ Shader::Shader(const HeightField& field, const Camera& camera, double grid_north
       settings_(settings),
       ramp_(ramp_of(settings), field_.min_height(), field_.max_height()),
       light_(settings.sun, grid_north_azimuth),
+      fog_(settings.fog, light_.to_sun()),
       pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
       // No ray from the ground has a longer way to the end of the field.
       ao_distance_(std::min(settings.ao_distance, diagonal(picture_box(field_, false)))),
@@ -51,7 +64,9 @@ Shader::Shader(const HeightField& field, const Camera& camera, double grid_north
   // Haze lies over the field, not between it and a camera that stands back.
   const Box box = picture_box(field_, settings.plinth);
   const dvec3 nearest = glm::clamp(camera.eye(), box.low, box.high);
+  endless_ = field.wraps();
   clear_distance_ = length(nearest - camera.eye());
+  if (settings.look == Look::comanche || settings.fog.kind != FogKind::none) return;
   haze_per_metre_ = -std::log(1 - settings.haze) / diagonal(box);
 }
 
@@ -67,14 +82,21 @@ LightRays Shader::ask_light(const GroundPoint& ground, const PicturePoint& point
   LightRays asked;
   asked.sun = rays.size();
   if (settings_.shadows) ask_sun(ground, light_.to_sun(), sun_radius(), samples(kOfSun), rays);
+  if (endless_) end_above_ground(std::span(rays).subspan(asked.sun), field_.max_height());
   asked.sky = rays.size();
   if (settings_.samples > 0 && ao_distance_ > 0) ask_sky(ground, ao_distance_, samples(kOfSky), rays);
   asked.end = rays.size();
   return asked;
 }
 
-vec3 Shader::ground_colour(const Hit& hit, const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
-                           std::span<const std::uint8_t> blocked) const {
+vec3 Shader::ground_colour(const Ray& ray, const Hit& hit, const GroundPoint& ground, const LightRays& asked,
+                           std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const {
+  return in_air(lit_ground(hit, ground, 0, asked, rays, blocked), ray, hit.t);
+}
+
+vec3 Shader::lit_ground(const Hit& hit, const GroundPoint& ground, [[maybe_unused]] double footprint,
+                        const LightRays& asked, std::span<const Ray> rays,
+                        std::span<const std::uint8_t> blocked) const {
   double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = 1;
   if (settings_.shadows) {
     const std::size_t count = asked.sky - asked.sun;
@@ -82,13 +104,15 @@ vec3 Shader::ground_colour(const Hit& hit, const GroundPoint& ground, const Ligh
                      rays.subspan(asked.sun, count), blocked.subspan(asked.sun, count));
   }
   if (asked.end > asked.sky) sky = 1 - sky_occlusion(blocked.subspan(asked.sky, asked.end - asked.sky));
-  return in_haze(ramp_(ground_height(hit)) * light_.on(ground.shading_normal, sun, sky), hit.t);
+  return ramp_(ground_height(hit)) * light_.on(ground.shading_normal, sun, sky);
 }
 
 vec3 Shader::colour_beside_ground(const Ray& ray, const Sight& sight) const {
-  if (sight.hit) return in_haze(wall_colour(wall_normal(ray, sight.hit)), sight.hit.t);
-  if (!sight.wall) return sky_colour(ray.direction.z);
-  return in_haze(wall_colour(sight.wall->normal), sight.wall->t);
+  if (sight.hit) return in_air(wall_colour(wall_normal(ray, sight.hit)), ray, sight.hit.t);
+  if (sight.wall) return in_air(wall_colour(sight.wall->normal), ray, sight.wall->t);
+  // Endless ground that lies farther away than the picture reaches is at the horizon.
+  const double z = endless_ ? std::max(0.0, ray.direction.z) : ray.direction.z;
+  return fog_(ray, std::numeric_limits<double>::infinity(), sky_colour(z));
 }
 
 vec3 Shader::wall_colour(const dvec3& normal) const {
@@ -96,14 +120,14 @@ vec3 Shader::wall_colour(const dvec3& normal) const {
   return earth_ * (kUnlitWall + (1 - kUnlitWall) * lit);
 }
 
-// Of the surface, where hit.height is that of the ray: they differ by rounding, and a sea at 0 must not be speckled.
 double Shader::ground_height(const Hit& hit) const {
   const CellHeights h = field_.cell_heights(hit.cell).value();
   const double north = h.h00 + hit.u * (h.h10 - h.h00), south = h.h01 + hit.u * (h.h11 - h.h01);
   return field_.height_from_sample(north + hit.v * (south - north));
 }
 
-vec3 Shader::in_haze(vec3 colour, double t) const {
+vec3 Shader::in_air(vec3 colour, const Ray& ray, double t) const {
+  if (fog_.kind() != FogKind::none) return fog_(ray, t, colour);
   const auto clear = static_cast<float>(std::exp(-haze_per_metre_ * std::max(0.0, t - clear_distance_)));
   return colour * clear + haze_colour() * (1 - clear);
 }

@@ -9,6 +9,7 @@
 
 #include "scarp/render/camera.h"
 #include "scarp/render/film.h"
+#include "scarp/render/fog.h"
 #include "scarp/render/light.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/ramp.h"
@@ -42,15 +43,23 @@ class Shader {
   /// Appends what has to be known of the light on a point.
   LightRays ask_light(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const;
   /// Of ground, in linear light; `rays` and their answers are those that `asked` refers to.
-  vec3 ground_colour(const Hit& hit, const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
-                     std::span<const std::uint8_t> blocked) const;
+  vec3 ground_colour(const Ray& ray, const Hit& hit, const GroundPoint& ground, const LightRays& asked,
+                     std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const;
+  /// The same before the air between: the ground's colour in its light. `footprint`: metres that a pixel is wide there.
+  vec3 lit_ground(const Hit& hit, const GroundPoint& ground, double footprint, const LightRays& asked,
+                  std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const;
+  /// A colour seen through t metres of haze or fog.
+  vec3 in_air(vec3 colour, const Ray& ray, double t) const;
+  /// Metres, of the surface, where hit.height is that of the ray: they differ by rounding, and a sea at 0 must not be
+  /// speckled.
+  double ground_height(const Hit& hit) const;
+  const Fog& fog() const { return fog_; }
+  const dvec3& to_sun() const { return light_.to_sun(); }
   /// Of what is not ground: walls and the sky, in linear light.
   vec3 colour_beside_ground(const Ray& ray, const Sight& sight) const;
 
  private:
-  double ground_height(const Hit& hit) const;
   vec3 wall_colour(const dvec3& normal) const;
-  vec3 in_haze(vec3 colour, double t) const;
   // With `samples`; else the sun is a point.
   double sun_radius() const { return settings_.samples > 0 ? light_.sun_radius() : 0; }
 
@@ -58,11 +67,13 @@ class Shader {
   const PictureSettings& settings_;
   Ramp ramp_;
   Light light_;
+  Fog fog_;
   SamplePattern pattern_;
   double ao_distance_;
   vec3 earth_;
   double clear_distance_ = 0;
   double haze_per_metre_ = 0;
+  bool endless_ = false;
 };
 
 }  // namespace scarp
