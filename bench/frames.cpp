@@ -202,7 +202,8 @@ void run_frames(const FramesOptions& options, const ReportOptions& report) {
              options.threads);
   print_table(lines, 2);
   write_json(report, rows);
-  if (worst_exact > 0) throw Error(fmt::format("render: {:.3g} % of the pixels of max-mip are wrong", 100 * worst_exact));
+  if (worst_exact > 0)
+    throw Error(fmt::format("render: {:.3g} % of the pixels of max-mip are wrong", 100 * worst_exact));
 }
 
 }  // namespace scarp::bench

@@ -258,9 +258,13 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   frames_command->add_option("--width", frames.width, "pixels")->check(CLI::Range(1, 16384))->capture_default_str();
   frames_command->add_option("--height", frames.height, "pixels")->check(CLI::Range(1, 16384))->capture_default_str();
-  frames_command->add_option("--steps", frames.steps, "of fixed-step")->check(CLI::Range(1, 65536))->capture_default_str();
+  frames_command->add_option("--steps", frames.steps, "of fixed-step")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
   frames_command->add_option("--threads", frames.threads, "at once")->check(CLI::Range(1, 1024))->capture_default_str();
-  frames_command->add_option("--cameras", frames.cameras, "along a flight")->check(CLI::Range(1, 1000))->capture_default_str();
+  frames_command->add_option("--cameras", frames.cameras, "along a flight")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
   frames_command->add_option("--repeats", frames.repeats, "counted passes over the flight")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

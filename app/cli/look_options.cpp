@@ -2,12 +2,21 @@
 #include "app/cli/look_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "app/cli/numbers.h"
 #include "scarp/base/error.h"
+#include "scarp/source/colour_image.h"
+#include "scarp/source/ramp_file.h"
 
 namespace scarp::cli {
 namespace {
@@ -22,6 +31,13 @@ vec3 colour_from(const std::string& text, std::string_view option) {
   return vec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.0f;
 }
 
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
 int pixels(double number, const std::string& text) {
   if (number != std::floor(number) || !(std::abs(number) <= 1e9)) {
     throw Error(fmt::format("--lowres '{}': expected WIDTHxHEIGHT in pixels, for example 320x240", text));
@@ -32,7 +48,29 @@ int pixels(double number, const std::string& text) {
 }  // namespace
 
 void add_look_options(CLI::App& command, LookOptions& o) {
-  std::string group = "Water";
+  std::string group = "Ground";
+  command
+      .add_option("--ramp", o.ramp,
+                  fmt::format("colours by height: {}, a .cpt file, or a .png of 1 x N colours (hypsometric; viridis "
+                              "for steps)",
+                              fmt::join(ramp_names(), ", ")))
+      ->group(group);
+  command.add_option("--ground", o.ground_colours, "ramp, or natural: rock, grass and snow by slope and aspect (ramp)")
+      ->group(group);
+  command.add_option("--snow-line", o.snow_line, "metres above which natural ground has snow (0.7 of the relief)")
+      ->group(group);
+  command.add_option("--detail", o.ground.detail, "strength of patches of noise on the ground, 0 to 1")
+      ->group(group)
+      ->capture_default_str();
+  command.add_option("--detail-size", o.ground.detail_size, "of the largest patches in metres (16 cells)")
+      ->group(group);
+  command.add_option("--contours", o.ground.contours, "metres from contour line to contour line; 0: none")
+      ->group(group)
+      ->capture_default_str();
+  command.add_option("--overlay", o.overlay, "a picture that lies on the ground, georeferenced where the terrain is")
+      ->group(group);
+
+  group = "Water";
   command.add_option("--water", o.water, "level in metres: water over all ground below it (looks shaded and comanche)")
       ->group(group);
   command.add_option("--water-colour", o.water_colour, "RRGGBB: what deep water gives back (1a4055)")->group(group);
@@ -90,6 +128,25 @@ void settle_look(const LookOptions& o, const std::string& size, const MarchSetti
   picture.comanche = o.comanche;
   picture.comanche.interpolate = march.fixed_step.interpolate;
   picture.fog = o.fog_settings;
+  picture.ground = o.ground;
+  if (o.ground_colours == "natural") {
+    picture.ground.natural = true;
+  } else if (!o.ground_colours.empty() && o.ground_colours != "ramp") {
+    throw Error(fmt::format("--ground '{}': expected ramp or natural", o.ground_colours));
+  }
+  const std::string extension = extension_of(o.ramp);
+  if (extension == ".cpt") {
+    picture.ramp_stops = std::make_shared<RampStops>(read_cpt(o.ramp));
+  } else if (extension == ".png") {
+    const ColourImage row = read_colour_row(o.ramp);
+    std::vector<std::uint8_t> rgb;
+    for (std::size_t i = 0; i < row.rgba.size(); ++i) {
+      if (i % 4 != 3) rgb.push_back(row.rgba[i]);
+    }
+    picture.ramp_stops = std::make_shared<RampStops>(ramp_of_row(rgb));
+  } else {
+    picture.ramp = o.ramp;
+  }
   if (comanche) {
     if (!size.empty()) {
       throw Error(
@@ -127,10 +184,21 @@ void settle_look(const LookOptions& o, const std::string& size, const MarchSetti
   }
 }
 
+void read_look_files(const LookOptions& o, const Raster& raster, const FieldOptions& field, PictureSettings& picture) {
+  if (o.overlay.empty()) return;
+  if (field.mirror) throw Error("--overlay: goes with a terrain as it is; leave --wrap mirror out");
+  ColourImage image = read_overlay(o.overlay, raster.georeference, raster.cols, raster.rows);
+  picture.ground.drape = std::make_shared<Drape>(Drape{image.width, image.height, std::move(image.rgba)});
+}
+
 void finish_look(const LookOptions& o, const HeightField& field, PictureSettings& picture) {
   const double reach = reach_of(o, field);
   if (!o.visibility) picture.fog.visibility = std::isfinite(reach) ? reach : default_reach(field);
   const double exaggeration = field.settings().exaggeration;
+  const double relief = field.max_height() - field.min_height();
+  if (o.snow_line && relief > 0) {
+    picture.ground.snow_share = (*o.snow_line * exaggeration - field.min_height()) / relief;
+  }
   if (o.fog_base) {
     picture.fog.base = *o.fog_base * exaggeration;
   } else {

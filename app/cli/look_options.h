@@ -8,6 +8,7 @@
 
 #include "scarp/march/marches.h"
 #include "scarp/render/picture.h"
+#include "scarp/scene/from_raster.h"
 
 namespace scarp::cli {
 
@@ -18,6 +19,9 @@ struct LookOptions {
   WaterSettings water_settings;
   FogSettings fog_settings;
   ComancheSettings comanche;
+  GroundPaintSettings ground;
+  std::string ground_colours, ramp, overlay;
+  std::optional<double> snow_line;
   bool no_refraction = false, no_reflection = false;
 };
 
@@ -27,6 +31,10 @@ void add_look_options(CLI::App& command, LookOptions& options);
 /// What can be judged without the field. `size` is the text of --size. Throws Error.
 void settle_look(const LookOptions& options, const std::string& size, const MarchSettings& march,
                  PictureSettings& picture);
+
+/// Reads the files that the options name, for a raster that is about to become a field.
+void read_look_files(const LookOptions& options, const Raster& raster, const FieldOptions& field,
+                     PictureSettings& picture);
 
 /// What follows from the field where nothing was said: visibility, base and falloff of the fog.
 void finish_look(const LookOptions& options, const HeightField& field, PictureSettings& picture);

@@ -215,6 +215,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   const std::vector<std::string> notes = raster.notes;
   const std::string path = raster.path;
 
+  read_look_files(options.look_options, raster, options.field, options.picture);
   HeightField field = height_field_from(std::move(raster), options.field);
   if (!field.has_cells()) {
     throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed", path,
@@ -275,8 +276,6 @@ void add_render(CLI::App& program) {
       ->required();
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels (1280x720; with --top the shape of the ground)");
   command->add_option("--look", o.look, "shaded, height, steps, error, comanche")->capture_default_str();
-  command->add_option("--ramp", o.picture.ramp,
-                      fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
   add_field_options(*command, o.field);
   command->add_option(
       "--sun", o.sun,

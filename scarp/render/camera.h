@@ -67,6 +67,9 @@ class Camera {
   void set_reach(double metres) { reach_ = metres; }
   double reach() const { return reach_; }
 
+  /// How wide a pixel is at a depth, in metres.
+  double pixel_width(double depth) const { return 2 * half_width_ / width_ * (orthographic_ ? 1 : depth); }
+
   const dvec3& eye() const { return eye_; }
   const dvec3& forward() const { return forward_; }
 

@@ -76,7 +76,7 @@ double default_reach(const HeightField& field) { return std::max(field.width(), 
 Camera flight_camera(const HeightField& field, double grid_north_azimuth, double fov_deg, int width, int height) {
   constexpr double kAbove = 1.0, kDown = 0.2;  // of the relief; of the way ahead
   const double low = field.min_height(), relief = field.max_height() - low;
-  const double x = 0.5 * field.width(), y = 0.1 * field.depth();
+  const double x = 0.3 * field.width(), y = 0.1 * field.depth();
   dvec3 eye(x, y, low + kAbove * relief);
   const double clear = field.height(x, y).value_or(low) + 0.1 * relief;
   eye.z = std::max(eye.z, clear);

@@ -32,9 +32,7 @@ Lake::Lake(const TerrainScene& scene, const Camera& camera, double grid_north_az
     const double reach = std::isfinite(camera.reach()) ? camera.reach() : default_reach(field);
     march_.emplace(field, settings.comanche, reach, camera.forward());
   }
-  const dvec3 middle = camera.ray(settings.width / 2.0, settings.height / 2.0).direction;
-  const double pixel = length(camera.ray(settings.width / 2.0 + 1, settings.height / 2.0).direction - middle);
-  view_.emplace(LakeView{camera, plinth_, shader_, water_ ? &*water_ : nullptr, march_ ? &*march_ : nullptr, pixel,
+  view_.emplace(LakeView{camera, plinth_, shader_, water_ ? &*water_ : nullptr, march_ ? &*march_ : nullptr,
                          comanche && settings.comanche.iterations, settings.aa});
 }
 
@@ -88,6 +86,12 @@ void LakeTile::ask_camera(RayRound& round) {
   rays.reserve(seen_.size());
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     rays.push_back(seen_[i].ray);
+    // Above the highest ground there is nothing more to meet.
+    Ray& ray = rays.back();
+    if (ray.direction.z > 0) {
+      const double leaves = (view_.shader.field().max_height() - ray.origin.z) / ray.direction.z;
+      ray.t_max = std::max(ray.t_min, std::min(ray.t_max, leaves));
+    }
     if (!view_.water) continue;
     meetings_[i] = view_.water->meets(rays.back());
     if (meetings_[i]) rays.back().t_max = meetings_[i]->t;
@@ -115,7 +119,7 @@ void LakeTile::add_water(std::size_t point, const Water::Meeting& meeting, bool 
   dvec3 normal = meeting.normal;
   if (normal.z > 0) {
     // A pixel is longer on the water than it is wide, seen at a grazing angle.
-    const double cosine = -ray.direction.z, wide = view_.pixel * meeting.t;
+    const double cosine = -ray.direction.z, wide = view_.camera.pixel_width(meeting.t);
     normal = water.normal_at(position, wide / std::sqrt(std::max(cosine, 0.01)));
     if (dot(normal, ray.direction) >= 0) normal = {0, 0, 1};
   }
@@ -177,8 +181,8 @@ bool LakeTile::ask_light(RayRound& round) {
 
 void LakeTile::take_light(const RayRound& round) {
   for (const Open& open : open_) {
-    open.seen->light = view_.shader.lit_ground(open.seen->sight.hit, open.ground, view_.pixel * open.seen->sight.hit.t,
-                                               open.asked, round.rays, round.blocked);
+    open.seen->light = view_.shader.lit_ground(open.seen->ray, open.seen->sight.hit, open.ground, open.asked,
+                                               round.rays, round.blocked);
   }
   open_.clear();
 }

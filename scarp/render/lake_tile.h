@@ -21,7 +21,6 @@ struct LakeView {
   const Shader& shader;
   const Water* water;      ///< null: none
   const StepMarch* march;  ///< answers rays of camera and water instead of the scene; null: the scene does
-  double pixel;            ///< how wide a pixel is, 1 m away
   bool iterations;         ///< a picture of steps instead
   int aa;
 };

@@ -154,6 +154,7 @@ void validate(const PictureSettings& settings) {
           settings.error_tolerance, "0 or more sides of a cell");
   validate(settings.sun);
   if (settings.water) validate(*settings.water);
+  validate(settings.ground);
   validate(settings.fog);
   validate(settings.comanche);
   Ramp(ramp_of(settings), 0, 1);

@@ -14,6 +14,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -24,6 +25,7 @@
 #include "scarp/render/error_look.h"
 #include "scarp/render/film.h"
 #include "scarp/render/fog.h"
+#include "scarp/render/ground_paint.h"
 #include "scarp/render/light.h"
 #include "scarp/render/water.h"
 #include "scarp/scene/terrain_scene.h"
@@ -47,6 +49,7 @@ struct PictureSettings {
   Look look = Look::shaded;
   int aa = 2;          ///< aa x aa samples per pixel in `shaded`; 1..16
   std::string ramp{};  ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
+  std::shared_ptr<const RampStops> ramp_stops{};  ///< instead of `ramp`; null: none
   SunSettings sun{};
   bool shadows = true;  ///< of the sun; false: it shines through the ground
   int samples = 0;      ///< rays to the sun's disc, and to the sky, per sample of `shaded`; 0..4096; 0: exact hard
@@ -56,6 +59,7 @@ struct PictureSettings {
   bool plinth = true;                    ///< a block below the terrain: walls down to a common base
   double haze = 0.1;                     ///< share of haze over a distance as long as the field's diagonal; 0..0.95
   std::optional<WaterSettings> water{};  ///< of `shaded` and `comanche`
+  GroundPaintSettings ground{};          ///< likewise
   FogSettings fog{};                     ///< instead of haze, likewise
   ComancheSettings comanche{};
   double error_tolerance = 0.1;  ///< of `error`, along the ray, in shorter sides of a cell; >= 0

@@ -42,6 +42,11 @@ std::string_view ramp_of(const PictureSettings& settings) {
   return settings.look == Look::steps ? "viridis" : "hypsometric";
 }
 
+Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale) {
+  if (settings.ramp_stops) return {*settings.ramp_stops, low, high, scale};
+  return {ramp_of(settings), low, high};
+}
+
 void require_ground(const HeightField& field) {
   if (!field.has_cells()) {
     throw Error(fmt::format("picture: the field has {} x {} samples and so no cells; at least 2 x 2 samples are needed",
@@ -54,8 +59,11 @@ Shader::Shader(const HeightField& field, const Camera& camera, double grid_north
                const PictureSettings& settings)
     : field_(field),
       settings_(settings),
-      ramp_(ramp_of(settings), field_.min_height(), field_.max_height()),
+      camera_(camera),
       light_(settings.sun, grid_north_azimuth),
+      paint_(settings.ground, field,
+             ramp_over(settings, field.min_height(), field.max_height(), field.settings().exaggeration),
+             light_.to_sun()),
       fog_(settings.fog, light_.to_sun()),
       pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
       // No ray from the ground has a longer way to the end of the field.
@@ -91,12 +99,11 @@ LightRays Shader::ask_light(const GroundPoint& ground, const PicturePoint& point
 
 vec3 Shader::ground_colour(const Ray& ray, const Hit& hit, const GroundPoint& ground, const LightRays& asked,
                            std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const {
-  return in_air(lit_ground(hit, ground, 0, asked, rays, blocked), ray, hit.t);
+  return in_air(lit_ground(ray, hit, ground, asked, rays, blocked), ray, hit.t);
 }
 
-vec3 Shader::lit_ground(const Hit& hit, const GroundPoint& ground, [[maybe_unused]] double footprint,
-                        const LightRays& asked, std::span<const Ray> rays,
-                        std::span<const std::uint8_t> blocked) const {
+vec3 Shader::lit_ground(const Ray& ray, const Hit& hit, const GroundPoint& ground, const LightRays& asked,
+                        std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const {
   double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = 1;
   if (settings_.shadows) {
     const std::size_t count = asked.sky - asked.sun;
@@ -104,7 +111,11 @@ vec3 Shader::lit_ground(const Hit& hit, const GroundPoint& ground, [[maybe_unuse
                      rays.subspan(asked.sun, count), blocked.subspan(asked.sun, count));
   }
   if (asked.end > asked.sky) sky = 1 - sky_occlusion(blocked.subspan(asked.sky, asked.end - asked.sky));
-  return ramp_(ground_height(hit)) * light_.on(ground.shading_normal, sun, sky);
+  // What a pixel covers is longer than it is wide where ground is seen from the side: the mean of both.
+  const double cosine = std::max(0.05, -dot(ray.direction, ground.normal));
+  const double footprint = camera_.pixel_width(hit.t) / std::sqrt(cosine);
+  return paint_(ground.position, ground_height(hit), ground.shading_normal, footprint) *
+         light_.on(ground.shading_normal, sun, sky);
 }
 
 vec3 Shader::colour_beside_ground(const Ray& ray, const Sight& sight) const {

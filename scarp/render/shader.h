@@ -10,6 +10,7 @@
 #include "scarp/render/camera.h"
 #include "scarp/render/film.h"
 #include "scarp/render/fog.h"
+#include "scarp/render/ground_paint.h"
 #include "scarp/render/light.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/ramp.h"
@@ -21,6 +22,8 @@ namespace scarp {
 
 /// The name of the ramp in the settings, or what suits the look.
 std::string_view ramp_of(const PictureSettings& settings);
+/// The ramp of the settings over a range of heights (exaggerated) or other numbers.
+Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale = 1);
 
 /// Throws Error when the field has nothing to see: no cells, no valid samples.
 void require_ground(const HeightField& field);
@@ -45,8 +48,8 @@ class Shader {
   /// Of ground, in linear light; `rays` and their answers are those that `asked` refers to.
   vec3 ground_colour(const Ray& ray, const Hit& hit, const GroundPoint& ground, const LightRays& asked,
                      std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const;
-  /// The same before the air between: the ground's colour in its light. `footprint`: metres that a pixel is wide there.
-  vec3 lit_ground(const Hit& hit, const GroundPoint& ground, double footprint, const LightRays& asked,
+  /// The same before the air between: the ground's colour in its light.
+  vec3 lit_ground(const Ray& ray, const Hit& hit, const GroundPoint& ground, const LightRays& asked,
                   std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const;
   /// A colour seen through t metres of haze or fog.
   vec3 in_air(vec3 colour, const Ray& ray, double t) const;
@@ -65,8 +68,9 @@ class Shader {
 
   const HeightField& field_;
   const PictureSettings& settings_;
-  Ramp ramp_;
+  const Camera& camera_;
   Light light_;
+  GroundPaint paint_;
   Fog fog_;
   SamplePattern pattern_;
   double ao_distance_;
