@@ -14,9 +14,11 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/depth_options.h"
 #include "app/cli/device_option.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
+#include "app/cli/frames.h"
 #include "app/cli/look_options.h"
 #include "app/cli/march_options.h"
 #include "app/cli/numbers.h"
@@ -48,6 +50,8 @@ struct RenderOptions {
   MarchSettings march_settings;
   PictureSettings picture;
   LookOptions look_options;
+  FrameOptions frames;
+  DepthOptions depth;
   std::string size, look = "shaded", sun, view, eye, target;
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg;
@@ -111,10 +115,14 @@ ViewSettings settle(RenderOptions& options) {
   }
   validate(view);
   validate(options.march_settings);
+  settle_frames(options.frames, options.output);
   std::string extension = std::filesystem::path(options.output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   options.exr = extension == ".exr";
+  if (const auto range = depth_range_of(options.depth); range && !options.exr) {
+    throw Error("--depth-range: device depth is a channel of EXR pictures; let the name of the output end in .exr");
+  }
   if (options.exr) {
     require_exr(options.output);
     if (picture.look != Look::shaded) {
@@ -178,6 +186,8 @@ void print_times(const RenderOptions& options, double read_s, double build_s, do
 
 void render_vox(RenderOptions options, const ViewSettings& view) {
   if (options.exr) throw Error(fmt::format("output '{}': pictures of voxels are written as PNG", options.output));
+  if (options.frames.several()) throw Error("--path, --turntable: flights go over terrain; leave them out");
+  if (options.picture.look == Look::comanche) throw Error("--look comanche: goes with terrain");
   if (!options.device.empty()) throw Error("--device: pictures of voxels are made on the CPU; leave it out");
   const FromVoxOptions from{options.vox, options.march.empty() ? FromVoxOptions{}.march : options.march};
   find_voxel_march(from.march);
@@ -199,6 +209,19 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
   print_times(options, read_s, build_s, render_s);
   print_findings(picture);
+}
+
+void render_frame(const RenderOptions& options, const TerrainScene& scene, const Camera& camera,
+                  double grid_north_azimuth, const std::string& name) {
+  ReplaceFile file(name);
+  const Progress listen = [](double) { return caught_signal() == 0; };
+  if (options.exr) {
+    write_layers(file, name, render_layers(scene, camera, grid_north_azimuth, options.picture, listen), camera,
+                 depth_range_of(options.depth));
+    return;
+  }
+  const Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, listen);
+  write_png(file, name, {picture.image.rgb.data(), picture.image.width, picture.image.height});
 }
 
 void render_terrain(RenderOptions options, const ViewSettings& view) {
@@ -232,14 +255,24 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   const Box box = picture_box(scene.field(), options.picture.plinth);
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   finish_look(options.look_options, scene.field(), options.picture);
-  Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth);
-  camera.set_reach(reach_of(options.look_options, scene.field()));
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  const double reach = reach_of(options.look_options, scene.field());
+  if (options.frames.several()) {
+    std::vector<Camera> cameras =
+        frame_cameras(options.frames, box, view, grid_north_azimuth, options.picture.width, options.picture.height);
+    for (Camera& camera : cameras) camera.set_reach(reach);
+    make_frames(options.frames, options.output, cameras, [&](const Camera& camera, const std::string& name) {
+      render_frame(options, scene, camera, grid_north_azimuth, name);
+    });
+    return;
+  }
+  Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth);
+  camera.set_reach(reach);
   if (options.exr) {
     const PictureLayers layers =
         render_layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
     const double render_s = watch.lap();
-    write_layers(file, options.output, layers, camera);
+    write_layers(file, options.output, layers, camera, depth_range_of(options.depth));
     print_times(options, read_s, build_s, render_s, scenes.device);
     return;
   }
@@ -334,6 +367,8 @@ void add_render(CLI::App& program) {
       ->excludes(fov);
   view->excludes(eye);
 
+  add_frame_options(*command, o.frames);
+  add_depth_options(*command, o.depth);
   command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks)")
       ->group("Settings of marches");
   add_march_options(*command, o.march_settings);

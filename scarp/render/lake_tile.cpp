@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scarp/base/error.h"
 #include "scarp/render/picture.h"
@@ -97,6 +98,19 @@ void LakeTile::ask_camera(RayRound& round) {
     if (meetings_[i]) rays.back().t_max = meetings_[i]->t;
   }
   looking_.ask(rays, view_.iterations || view_.shader.fog().kind() == FogKind::iterations, round);
+}
+
+std::optional<Water::Meeting> LakeTile::water_of(const Ray& ray, const Sight& sight) const {
+  if (sight.hit && !sight.hit.wall && view_.shader.ground_height(sight.hit) <= view_.water->level() &&
+      ray.origin.z > view_.water->level()) {
+    // A sea stored as flat ground, or ground below the water, which is met after it.
+    const auto meeting = view_.water->meets(ray);
+    return meeting && meeting->t < sight.hit.t ? *meeting : Water::Meeting{sight.hit.t, {0, 0, 1}};
+  }
+  const auto meeting = view_.water->meets(ray);
+  if (!meeting) return {};
+  const double t = sight.hit ? sight.hit.t : sight.wall ? sight.wall->t : std::numeric_limits<double>::infinity();
+  return meeting->t < t ? meeting : std::nullopt;
 }
 
 void LakeTile::find_water() {

@@ -50,6 +50,8 @@ class LakeTile {
 
   /// As TileWork::next.
   bool next(RayRound& round);
+  /// The water that a ray of the camera meets before what else it meets.
+  std::optional<Water::Meeting> water_of(const Ray& ray, const Sight& sight) const;
   /// The mean colours of the pixels, row by row, in linear light, when there is no further round.
   std::vector<vec3> pixels() const;
 
