@@ -101,11 +101,8 @@ void LakeTile::ask_camera(RayRound& round) {
 }
 
 std::optional<Water::Meeting> LakeTile::water_of(const Ray& ray, const Sight& sight) const {
-  if (sight.hit && !sight.hit.wall && view_.shader.ground_height(sight.hit) <= view_.water->level() &&
-      ray.origin.z > view_.water->level()) {
-    // A sea stored as flat ground, or ground below the water, which is met after it.
-    const auto meeting = view_.water->meets(ray);
-    return meeting && meeting->t < sight.hit.t ? *meeting : Water::Meeting{sight.hit.t, {0, 0, 1}};
+  if (sight.hit && !sight.hit.wall && view_.water->is_sea(sight.hit.cell)) {
+    return Water::Meeting{sight.hit.t, {0, 0, 1}, sight.hit.cell};
   }
   const auto meeting = view_.water->meets(ray);
   if (!meeting) return {};
@@ -117,16 +114,15 @@ void LakeTile::find_water() {
   if (!view_.water) return;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Sight& sight = seen_[i].sight;
-    if (sight.hit && !sight.hit.wall && view_.shader.ground_height(sight.hit) <= view_.water->level()) {
-      // A sea stored as flat ground: nobody knows how deep it is.
-      add_water(i, {sight.hit.t, {0, 0, 1}}, false);
+    if (sight.hit && !sight.hit.wall && view_.water->is_sea(sight.hit.cell)) {
+      add_water(i, {sight.hit.t, {0, 0, 1}, sight.hit.cell});
     } else if (meetings_[i] && !sight.hit && !(sight.wall && sight.wall->t <= meetings_[i]->t)) {
-      add_water(i, *meetings_[i], view_.water->settings().refraction);
+      add_water(i, *meetings_[i]);
     }
   }
 }
 
-void LakeTile::add_water(std::size_t point, const Water::Meeting& meeting, bool bottom) {
+void LakeTile::add_water(std::size_t point, const Water::Meeting& meeting) {
   const Water& water = *view_.water;
   const Ray& ray = seen_[point].ray;
   const dvec3 position = ray.at(meeting.t);
@@ -143,13 +139,17 @@ void LakeTile::add_water(std::size_t point, const Water::Meeting& meeting, bool 
     sent.origin = position;
     sent.direction = direction;
     sent.t_max = t_max;
+    if (meeting.sea) {
+      sent.start = RayStart::on_surface;
+      sent.start_cell = *meeting.sea;
+    }
     water_rays_.push_back({sent, {}});
     return water_rays_.size() - 1;
   };
   dvec3 mirrored = reflected(ray.direction, normal);
   if (mirrored.z < kLeastRise && meeting.normal.z > 0) mirrored = normalize(dvec3(mirrored.x, mirrored.y, kLeastRise));
   found.mirror = send(mirrored, water.settings().reflection ? view_.camera.reach() : 0);
-  if (bottom) {
+  if (water.settings().refraction && !meeting.sea) {
     const dvec3 down = refracted(ray.direction, normal);
     found.bottom = send(down, view_.camera.reach());
     Ray& sent = water_rays_.back().ray;

@@ -78,7 +78,7 @@ class LakeTile {
 
   void ask_camera(RayRound& round);
   void find_water();
-  void add_water(std::size_t point, const Water::Meeting& meeting, bool bottom);
+  void add_water(std::size_t point, const Water::Meeting& meeting);
   bool ask_water(RayRound& round);
   bool ask_light(RayRound& round);
   void take_light(const RayRound& round);

@@ -70,16 +70,18 @@ Water::Water(const WaterSettings& settings, const HeightField& field)
 
 std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
   const dvec3 &o = ray.origin, &d = ray.direction;
-  const auto over_ground = [&](double t) {
+  const auto from_above = [&](double t) -> std::optional<Meeting> {
     const dvec3 p = ray.at(t);
     const auto place = field_.place(p.x, p.y);
-    return place && field_.cell_heights(place->cell);
+    if (place && field_.nodata_count() > 0 && !field_.cell_heights(place->cell)) return {};
+    Meeting meeting{t, {0, 0, 1}};
+    if (place && is_sea(place->cell)) meeting.sea = place->cell;
+    return meeting;
   };
   if (field_.wraps()) {
     const double t = (level_ - o.z) / d.z;
     if (!(d.z < 0) || !(t >= ray.t_min && t <= ray.t_max)) return {};
-    if (field_.nodata_count() > 0 && !over_ground(t)) return {};
-    return Meeting{t, {0, 0, 1}};
+    return from_above(t);
   }
   // The basin is a box without a floor: the last of its three borders to be crossed is where the ray comes in.
   const Span x = span_in(o.x, d.x, field_.width()), y = span_in(o.y, d.y, field_.depth());
@@ -91,10 +93,7 @@ std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
   }
   const double t = std::max({x.from, y.from, z.from}), end = std::min({x.to, y.to, z.to});
   if (!(t < end) || !(t >= ray.t_min && t <= ray.t_max)) return {};
-  if (t == z.from) {
-    if (field_.nodata_count() > 0 && !over_ground(t)) return {};
-    return Meeting{t, {0, 0, 1}};
-  }
+  if (t == z.from) return from_above(t);
   // A side: only over the ground that stands there.
   const bool through_x = t == x.from;
   dvec3 p = ray.at(t);
@@ -103,6 +102,15 @@ std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
   const auto ground = field_.height(p.x, p.y);
   if (!ground || p.z <= *ground) return {};
   return Meeting{t, through_x ? dvec3(d.x > 0 ? -1 : 1, 0, 0) : dvec3(0, d.y > 0 ? -1 : 1, 0)};
+}
+
+bool Water::is_sea(Cell cell) const {
+  const auto heights = field_.cell_heights(cell);
+  if (!heights) return false;
+  for (const double sample : {heights->h00, heights->h01, heights->h10, heights->h11}) {
+    if (field_.height_from_sample(sample) != level_) return false;
+  }
+  return true;
 }
 
 double Water::leaves(const Ray& ray) const {

@@ -50,12 +50,16 @@ class Water {
   double level() const { return level_; }
 
   struct Meeting {
-    double t;      ///< in lengths of the ray's direction
-    dvec3 normal;  ///< unit, of the still water: up, or level at the sides of a field that ends
+    double t;                   ///< in lengths of the ray's direction
+    dvec3 normal;               ///< unit, of the still water: up, or level at the sides of a field that ends
+    std::optional<Cell> sea{};  ///< the cell of is_sea() there, if it is one
   };
   /// Where a ray comes into the water from outside, within its range; ground may be met before. Nothing where the ray
   /// begins in the water, and over holes.
   std::optional<Meeting> meets(const Ray& ray) const;
+  /// Whether all corners of a cell are exactly at the level: a sea that the elevation model has as flat ground. Nobody
+  /// knows how deep it is.
+  bool is_sea(Cell cell) const;
   /// Where a ray that runs in the water comes out at a side of a field that ends; infinite in one that does not.
   double leaves(const Ray& ray) const;
 
