@@ -123,10 +123,11 @@ void add_look_options(CLI::App& command, LookOptions& o) {
       ->group(group);
 }
 
-void settle_look(const LookOptions& o, const std::string& size, const MarchSettings& march, PictureSettings& picture) {
+void settle_look(const LookOptions& o, const std::string& size, std::string_view march,
+                 const MarchSettings& march_settings, PictureSettings& picture) {
   const bool comanche = picture.look == Look::comanche;
   picture.comanche = o.comanche;
-  picture.comanche.interpolate = march.fixed_step.interpolate;
+  picture.comanche.interpolate = march_settings.fixed_step.interpolate;
   picture.fog = o.fog_settings;
   picture.ground = o.ground;
   if (o.ground_colours == "natural") {
@@ -165,7 +166,11 @@ void settle_look(const LookOptions& o, const std::string& size, const MarchSetti
     picture.height = pixels(numbers[1], o.lowres);
   }
   if (!o.fog.empty()) picture.fog.kind = find_fog(o.fog);
-  if (picture.fog.kind == FogKind::iterations && !comanche) {
+  const bool stepped = comanche && march == "fixed-step";
+  if ((o.comanche.shells || o.comanche.step_by_view) && !stepped) {
+    throw Error("--shells, --step-by-view: each goes with --march fixed-step in the look comanche; leave them out");
+  }
+  if (picture.fog.kind == FogKind::iterations && !stepped) {
     throw Error("--fog iterations: goes with --look comanche --march fixed-step; let it be distance or height");
   }
   if (o.visibility) picture.fog.visibility = *o.visibility;

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "scarp/march/marches.h"
 #include "scarp/render/picture.h"
@@ -29,8 +30,8 @@ struct LookOptions {
 void add_look_options(CLI::App& command, LookOptions& options);
 
 /// What can be judged without the field. `size` is the text of --size. Throws Error.
-void settle_look(const LookOptions& options, const std::string& size, const MarchSettings& march,
-                 PictureSettings& picture);
+void settle_look(const LookOptions& options, const std::string& size, std::string_view march,
+                 const MarchSettings& march_settings, PictureSettings& picture);
 
 /// Reads the files that the options name, for a raster that is about to become a field.
 void read_look_files(const LookOptions& options, const Raster& raster, const FieldOptions& field,

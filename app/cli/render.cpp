@@ -90,7 +90,7 @@ ViewSettings settle(RenderOptions& options) {
   picture.look = find_look(options.look);
   picture.shadows = !options.no_shadows;
   picture.plinth = !options.no_plinth;
-  settle_look(options.look_options, options.size, options.march_settings, picture);
+  settle_look(options.look_options, options.size, options.march, options.march_settings, picture);
   if (!options.size.empty()) {
     const auto size = numbers_from(options.size, 'x', 2, 2, "--size", "WIDTHxHEIGHT in pixels, for example 1280x720");
     picture.width = whole(size[0], options);
@@ -211,9 +211,17 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
   print_findings(picture);
 }
 
+// From under the ground one sees its other side, and through it: worth a word.
+void tell_if_buried(const Camera& camera, const HeightField& field, const std::string& whose = "the eye") {
+  const auto ground = field.height(camera.eye().x, camera.eye().y);
+  if (!ground || camera.eye().z >= *ground) return;
+  fmt::print(stderr, "note: {} is {:.3g} m below the ground\n", whose, *ground - camera.eye().z);
+}
+
 void render_frame(const RenderOptions& options, const TerrainScene& scene, const Camera& camera,
                   double grid_north_azimuth, const std::string& name) {
   ReplaceFile file(name);
+  tell_if_buried(camera, scene.field(), fmt::format("the eye of '{}'", name));
   const Progress listen = [](double) { return caught_signal() == 0; };
   if (options.exr) {
     write_layers(file, name, render_layers(scene, camera, grid_north_azimuth, options.picture, listen), camera,
@@ -268,6 +276,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   }
   Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth);
   camera.set_reach(reach);
+  tell_if_buried(camera, scene.field());
   if (options.exr) {
     const PictureLayers layers =
         render_layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));

@@ -121,8 +121,8 @@ vec3 Shader::lit_ground(const Ray& ray, const Hit& hit, const GroundPoint& groun
 vec3 Shader::colour_beside_ground(const Ray& ray, const Sight& sight) const {
   if (sight.hit) return in_air(wall_colour(wall_normal(ray, sight.hit)), ray, sight.hit.t);
   if (sight.wall) return in_air(wall_colour(sight.wall->normal), ray, sight.wall->t);
-  // Endless ground that lies farther away than the picture reaches is at the horizon.
-  const double z = endless_ ? std::max(0.0, ray.direction.z) : ray.direction.z;
+  // Ground that lies farther away than the picture reaches is at the horizon.
+  const double z = endless_ || settings_.look == Look::comanche ? std::max(0.0, ray.direction.z) : ray.direction.z;
   return fog_(ray, std::numeric_limits<double>::infinity(), sky_colour(z));
 }
 

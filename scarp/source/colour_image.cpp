@@ -2,6 +2,7 @@
 #include "scarp/source/colour_image.h"
 
 #include <fmt/format.h>
+#include <gdal_alg.h>
 #include <gdal_priv.h>
 #include <gdal_utils.h>
 
@@ -11,6 +12,7 @@
 #include <memory>
 
 #include "scarp/base/error.h"
+#include "scarp/base/vec.h"
 #include "scarp/source/gdal_dataset.h"
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/raster_name.h"
@@ -78,6 +80,23 @@ bool has_place(GDALDataset& dataset) {
   return dataset.GetGeoTransform(transform) == CE_None;
 }
 
+// Of the picture, in units of the raster's CRS.
+dvec2 pixel_size(GDALDataset& dataset, const Georeference& georeference, const GdalSession& session) {
+  CPLStringList options;
+  if (!georeference.crs_wkt.empty() && dataset.GetSpatialRef() != nullptr) {
+    options.SetNameValue("DST_SRS", georeference.crs_wkt.c_str());
+  }
+  GDALDatasetH handle = GDALDataset::ToHandle(&dataset);
+  void* transform = GDALCreateGenImgProjTransformer2(handle, nullptr, options.List());
+  double place[6] = {};
+  int across = 0, down = 0;
+  const bool found = transform != nullptr && GDALSuggestedWarpOutput(handle, GDALGenImgProjTransform, transform, place,
+                                                                     &across, &down) == CE_None;
+  if (transform != nullptr) GDALDestroyGenImgProjTransformer(transform);
+  if (!found) throw Error(session.reason("cannot be brought onto the raster"));
+  return {std::abs(place[1]), std::abs(place[5])};
+}
+
 }  // namespace
 
 ColourImage read_colour_row(const std::string& path) {
@@ -112,9 +131,10 @@ ColourImage read_overlay(const std::string& path, const Georeference& georeferen
       add("-t_srs");
       add(georeference.crs_wkt);
     }
-    // As fine as the picture itself, when it spans the raster, but no finer than anyone sees.
-    const int across = std::clamp(dataset->GetRasterXSize(), cols, kMostSide);
-    const int down = std::clamp(static_cast<int>(std::lround(across * (north - south) / (east - west))), 1, kMostSide);
+    // As fine as the picture itself.
+    const dvec2 pixel = pixel_size(*dataset, georeference, session);
+    const int across = std::clamp(static_cast<int>(std::ceil((east - west) / pixel.x)), 1, kMostSide);
+    const int down = std::clamp(static_cast<int>(std::ceil((north - south) / pixel.y)), 1, kMostSide);
     add("-ts");
     add(fmt::format("{}", across));
     add(fmt::format("{}", down));
