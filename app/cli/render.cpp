@@ -188,6 +188,10 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
   if (options.exr) throw Error(fmt::format("output '{}': pictures of voxels are written as PNG", options.output));
   if (options.frames.several()) throw Error("--path, --turntable: flights go over terrain; leave them out");
   if (options.picture.look == Look::comanche) throw Error("--look comanche: goes with terrain");
+  if (options.field.wrap != Wrap::none) throw Error("--wrap: voxels end where they end; leave it out");
+  if (options.picture.water || options.picture.fog.kind != FogKind::none || !options.look_options.overlay.empty()) {
+    throw Error("--water, --fog, --overlay: go with terrain; leave them out");
+  }
   if (!options.device.empty()) throw Error("--device: pictures of voxels are made on the CPU; leave it out");
   const FromVoxOptions from{options.vox, options.march.empty() ? FromVoxOptions{}.march : options.march};
   find_voxel_march(from.march);
@@ -221,7 +225,6 @@ void tell_if_buried(const Camera& camera, const HeightField& field, const std::s
 void render_frame(const RenderOptions& options, const TerrainScene& scene, const Camera& camera,
                   double grid_north_azimuth, const std::string& name) {
   ReplaceFile file(name);
-  tell_if_buried(camera, scene.field(), fmt::format("the eye of '{}'", name));
   const Progress listen = [](double) { return caught_signal() == 0; };
   if (options.exr) {
     write_layers(file, name, render_layers(scene, camera, grid_north_azimuth, options.picture, listen), camera,
@@ -230,10 +233,14 @@ void render_frame(const RenderOptions& options, const TerrainScene& scene, const
   }
   const Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, listen);
   write_png(file, name, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  tell_if_buried(camera, scene.field(), fmt::format("the eye of '{}'", name));
 }
 
 void render_terrain(RenderOptions options, const ViewSettings& view) {
   const MarchEntry& march = find_march(options.march.empty() ? "max-mip" : options.march);
+  if (options.picture.look == Look::comanche && march.name == "fixed-step" && !options.device.empty()) {
+    throw Error("--device: the steps of --look comanche are made on the CPU; leave it out, or take another march");
+  }
   const SceneMaker scenes = scene_maker(options.device, march);
   // Reserved first: an unwritable place is found before the work and not after it.
   ReplaceFile file(options.output);
@@ -263,7 +270,10 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   const Box box = picture_box(scene.field(), options.picture.plinth);
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   finish_look(options.look_options, scene.field(), options.picture);
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  // Last: who fails says one line alone.
+  const auto tell_notes = [&] {
+    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  };
   const double reach = reach_of(options.look_options, scene.field());
   if (options.frames.several()) {
     std::vector<Camera> cameras =
@@ -272,16 +282,18 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
     make_frames(options.frames, options.output, cameras, [&](const Camera& camera, const std::string& name) {
       render_frame(options, scene, camera, grid_north_azimuth, name);
     });
+    tell_notes();
     return;
   }
   Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth);
   camera.set_reach(reach);
-  tell_if_buried(camera, scene.field());
   if (options.exr) {
     const PictureLayers layers =
         render_layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
     const double render_s = watch.lap();
     write_layers(file, options.output, layers, camera, depth_range_of(options.depth));
+    tell_notes();
+    tell_if_buried(camera, scene.field());
     print_times(options, read_s, build_s, render_s, scenes.device);
     return;
   }
@@ -289,6 +301,8 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
       render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
   const double render_s = watch.lap();
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  tell_notes();
+  tell_if_buried(camera, scene.field());
   print_times(options, read_s, build_s, render_s, scenes.device);
   print_findings(picture);
 }

@@ -18,7 +18,6 @@ constexpr std::array<std::string_view, 4> kNames = {"none", "distance", "height"
 
 const double kContrastLeft = std::log(50.0);
 constexpr vec3 kSunlight(1.0f, 0.83f, 0.58f);
-constexpr double kSunPower = 8;
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
   if (!good) throw Error(fmt::format("fog: {} is {}; it must be {}", what, value, range));
@@ -72,8 +71,9 @@ double Fog::transmittance(const Ray& ray, double t) const {
 }
 
 vec3 Fog::colour(const dvec3& direction) const {
-  const double towards = std::max(0.0, dot(direction, to_sun_));
-  return mix(haze_colour(), kSunlight, settings_.sun_tint * std::pow(towards, kSunPower));
+  double towards = std::max(0.0, dot(direction, to_sun_));
+  for (int i = 0; i < 3; ++i) towards *= towards;  // the 8th power
+  return mix(haze_colour(), kSunlight, settings_.sun_tint * towards);
 }
 
 vec3 Fog::operator()(const Ray& ray, double t, vec3 behind) const {

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string_view>
 
 #include "scarp/base/error.h"
@@ -21,9 +23,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr vec3 kPureWater(0.340f, 0.0565f, 0.00922f);
 
 // Wave i is shorter than the one before by this factor and turned by the golden angle: no two repeat one another.
-constexpr int kWaves = 7;
+constexpr std::size_t kWaves = 7;
 constexpr double kShorter = 0.71;
 constexpr double kTurn = 2.399963229728653;
+// Towards these the waves run.
+const std::array<dvec2, kWaves> kAlong = [] {
+  std::array<dvec2, kWaves> along;
+  for (std::size_t i = 0; i < kWaves; ++i) {
+    const double angle = kTurn * static_cast<double>(i) + 0.4;
+    along[i] = {std::cos(angle), std::sin(angle)};
+  }
+  return along;
+}();
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
   if (!good) throw Error(fmt::format("water: {} is {}; it must be {}", what, value, range));
@@ -123,16 +134,16 @@ dvec3 Water::normal_at(const dvec3& position, double footprint) const {
   if (settings_.waves == 0) return {0, 0, 1};
   // Each wave has the same root mean square of slope: that of a cos is its height by sqrt(2), and slopes of different
   // directions add up squared.
-  const double slope = settings_.waves * std::sqrt(2.0 / kWaves);
+  const double slope = settings_.waves * std::sqrt(2.0 / static_cast<double>(kWaves));
   dvec2 tilt(0.0);
   double wavelength = wavelength_;
-  for (int i = 0; i < kWaves; ++i, wavelength *= kShorter) {
+  for (std::size_t i = 0; i < kWaves; ++i, wavelength *= kShorter) {
     // Gone when a wave is as long as two pixels, in full when it is as long as four.
     const double seen = std::clamp(wavelength / (2 * footprint) - 1, 0.0, 1.0);
     if (seen == 0) break;
-    const dvec2 along(std::cos(kTurn * i + 0.4), std::sin(kTurn * i + 0.4));
-    const double phase = 2 * 3.14159265358979323846 * (along.x * position.x + along.y * position.y) / wavelength;
-    tilt += seen * slope * std::cos(phase + i) * along;
+    const dvec2& along = kAlong[i];
+    const double phase = 2 * std::numbers::pi * (along.x * position.x + along.y * position.y) / wavelength;
+    tilt += seen * slope * std::cos(phase + static_cast<double>(i)) * along;
   }
   return normalize(dvec3(-tilt.x, -tilt.y, 1));
 }
