@@ -51,17 +51,11 @@ LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
   const GridRay local = field_.grid_from_world(ray);
   exact_plan_ = local.origin.x == ox_ && local.origin.y == oy_ && local.direction.x == dx_ && local.direction.y == dy_;
   t0_ = ray.t_min, t1_ = ray.t_max;
+  // A ray that by rounding begins outside of the field, and comes in later, is on the surface where it begins.
+  if (on_surface_) put_on_surface();
   if (!wraps_) clip();
   if (!(t0_ <= t1_)) return;
-  if (on_surface_) {
-    const CellHeights h = *field_.cell_heights(ray.start_cell);
-    const Real u = clamped(x(t0_) - ray.start_cell.col), v = clamped(y(t0_) - ray.start_cell.row);
-    const bool south_east = u + v > 1;
-    oz_ = (triangles_ ? height_of_triangle(h, south_east, u, v) : height(h, u, v)) - dz_ * t0_;
-    c0_ = 0;
-  } else {
-    c0_ = clearance(t0_);
-  }
+  c0_ = on_surface_ ? Real{0} : clearance(t0_);
   if (!c0_ || hugs_border() || holes_between(t0_, t1_)) return;
   // The border is crossed at a time that rounding moves: the more, the more slowly the ray crosses it.
   const Real in = t0_ + late_, out = t1_ - early_;
@@ -70,6 +64,13 @@ LeakJudge::LeakJudge(const LeakField& ground, const Ray& ray)
   begins_above_ = c0 && (on_surface_ || *c0 > bound(in));
   must_hit_ = begins_above_ && c1 && *c1 < -under(out);
   if (field_.settings().solid && from_outside_ && *c0_ < -bound(t0_) && c0 && *c0 < -bound(in)) must_hit_ = true;
+}
+
+// Moves the ray up or down so that it begins on the surface of its cell.
+void LeakJudge::put_on_surface() {
+  const CellHeights h = *field_.cell_heights(ray_.start_cell);
+  const Real u = clamped(x(t0_) - ray_.start_cell.col), v = clamped(y(t0_) - ray_.start_cell.row);
+  oz_ = (triangles_ ? height_of_triangle(h, u + v > 1, u, v) : height(h, u, v)) - dz_ * t0_;
 }
 
 // The part of the ray over the field.

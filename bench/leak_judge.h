@@ -74,6 +74,7 @@ class LeakJudge {
   Real sideways(Real t) const;
   Real bound(Real t) const;
   Real under(Real t) const;
+  void put_on_surface();
   void clip();
   bool hugs_border() const;
   bool holes_between(Real from, Real to) const;

@@ -54,8 +54,9 @@ class Comparison {
     for (const RaySet& set :
          make_rays(ground, {RayClass::primary, RayClass::shadow, RayClass::grazing}, trace.rays, trace.ray_seed)) {
       const Judge judge(scarp.target(), set, trace.judged, trace.ray_seed);
-      std::vector<Contender> contenders{{scarp.engine(find_march("max-mip")), std::nullopt, {}}};
-      contenders[0].judged = judge.judge(contenders[0].engine);
+      std::vector<Contender> contenders{{scarp.engine(find_march("max-mip")), std::nullopt, {}},
+                                        {scarp.vectors("max-mip-simd"), std::nullopt, {}}};
+      for (Contender& max_mip : contenders) max_mip.judged = judge.judge(max_mip.engine);
       contenders.push_back(naive_with(scarp, judge, "naive-default", {}));
       const auto add = [&](std::optional<Contender> contender) {
         if (contender) contenders.push_back(std::move(*contender));
@@ -65,11 +66,10 @@ class Comparison {
         // A shadow that is not there is as wrong as one that is missing.
         add(cheapest(scarp, judge, "naive-right",
                      [&](const Judgement& j) { return j.miss_rate + j.false_rate < limit; }));
-      } else {
-        // In a picture, ground that was stepped through is a hole even where something is hit behind it.
-        add(cheapest(scarp, judge, "naive-no-holes",
-                     [&](const Judgement& j) { return j.miss_rate + j.late_rate < limit; }));
       }
+      // Ground that was stepped through is a hole, even where something is hit behind it.
+      add(cheapest(scarp, judge, "naive-no-holes",
+                   [&](const Judgement& j) { return j.miss_rate + j.late_rate < limit; }));
       for (const int threads : trace.threads) measure_all(ground, exaggeration, set, contenders, threads);
     }
   }
@@ -78,17 +78,17 @@ class Comparison {
 
   void print() const {
     std::vector<std::vector<std::string>> lines{{"class", "mode", "exagg.", "thr", "factor", "least step", "Mrays/s",
-                                                 "max-mip is", "missed %", "late %", "early %", "false %", "error p99",
-                                                 "steps", "given up %", "busy"}};
+                                                 "max-mip is", "in vectors", "missed %", "late %", "early %", "false %",
+                                                 "error p99", "steps", "given up %", "busy"}};
     const auto percent = [](const Json& share) { return short_number(100 * share.get<double>()); };
     for (const Json& row : rows_) {
       lines.push_back({row["class"], row["mode"], short_number(row["exaggeration"]), short_number(row["threads"]),
                        short_number(row["step_factor"]),
                        row["min_step"].is_null() ? "-" : fmt::format("1/{:.0f}", 1 / row["min_step"].get<double>()),
                        short_number(row["mrays_per_s"]), fmt::format("{:.2f} x", row["max_mip_ratio"].get<double>()),
-                       percent(row["miss_rate"]), percent(row["late_rate"]), percent(row["early_rate"]),
-                       percent(row["false_rate"]), short_number(row["error_p99"], 2),
-                       short_number(row["steps_per_ray"]), percent(row["exhausted"]),
+                       fmt::format("{:.2f} x", row["max_mip_simd_ratio"].get<double>()), percent(row["miss_rate"]),
+                       percent(row["late_rate"]), percent(row["early_rate"]), percent(row["false_rate"]),
+                       short_number(row["error_p99"], 2), short_number(row["steps_per_ray"]), percent(row["exhausted"]),
                        fmt::format("{:.2f}", row["busy"].get<double>())});
     }
     print_table(lines, 2);
@@ -113,6 +113,7 @@ class Comparison {
       row["mrays_per_s"] = timing.mrays_per_s;
       row["mrays_per_cpu_s"] = timing.mrays_per_cpu_s;
       row["max_mip_ratio"] = timings[0].mrays_per_cpu_s / timing.mrays_per_cpu_s;
+      row["max_mip_simd_ratio"] = timings[1].mrays_per_cpu_s / timing.mrays_per_cpu_s;
       row["article_ratio"] = kArticleRatio;
       row["step_factor"] = settings ? Json(settings->step_factor) : Json();
       row["min_step"] = settings ? Json(settings->min_step) : Json();

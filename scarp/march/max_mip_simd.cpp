@@ -20,6 +20,7 @@
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first.
 #include "hwy/highway.h"
+#include "scarp/march/max_mip_simd_beam.h"
 #include "scarp/march/max_mip_simd_lanes.h"
 #include "scarp/march/max_mip_simd_rays.h"
 
@@ -94,7 +95,7 @@ class VectorWalk {
     }
     stats.block_lanes += stats_.block_lanes, stats.block_steps += stats_.block_steps;
     stats.cell_lanes += stats_.cell_lanes, stats.cell_steps += stats_.cell_steps;
-    stats.handed_over += stats_.handed_over;
+    stats.handed_over += stats_.handed_over, stats.beam_rays += stats_.beam_rays;
   }
 
  private:
@@ -111,7 +112,7 @@ class VectorWalk {
       stats_.cell_lanes += cells;
       cell_step<any>(g_, ideas_.put_off, p);
     }
-    if (busy == 0 || (N - busy >= (ideas_.refill ? kFree : N) && !is_empty())) {
+    if (busy == 0 || (N - busy >= (ideas_.refill && !together_ ? kFree : N) && !is_empty())) {
       p.store(lanes);
       if (!refill(lanes)) return false;
       p.load(lanes);
@@ -119,28 +120,48 @@ class VectorWalk {
     return true;
   }
 
-  bool is_empty() const { return next_ >= rays_.size() && fresh_next_ >= N; }
+  bool is_empty() const { return next_ >= rays_.size() && fresh_next_ >= kFresh * N; }
 
   // Answers the rays that are done and puts new ones into their lanes. False: no lane has a ray.
   HWY_NOINLINE bool refill(Lanes& a) {
+    if (together_ && std::find(a.status, a.status + N, kWalking) == a.status + N) return refill_all(a);
+    return refill_lanes(a);
+  }
+
+  bool refill_lanes(Lanes& a) {
     bool live = false;
     for (std::size_t j = 0; j < N; ++j) {
       if (a.status[j] != kWalking) {
         answer(a, j);
         a.ray[j] = -1;
         if (!next_fresh()) continue;
-        move(fresh_, fresh_next_++, a, j);
+        move(fresh_[fresh_next_ / N], fresh_next_ % N, a, j);
+        ++fresh_next_;
       }
       live = true;
     }
     return live;
   }
 
+  // The same where all rays are done: a whole vector of new rays is taken as it is, and no lane is moved alone.
+  bool refill_all(Lanes& a) {
+    for (std::size_t j = 0; j < N; ++j) answer(a, j);
+    std::fill_n(a.ray, N, -1);
+    if (!next_fresh()) return false;
+    if (fresh_next_ % N != 0) return refill_lanes(a);
+    a = fresh_[fresh_next_ / N];
+    fresh_next_ += N;
+    return true;
+  }
+
   // Whether there is another ray, at fresh_next_. Rays that need no walk are answered on the way.
   bool next_fresh() {
     for (;;) {
-      while (fresh_next_ < N && fresh_.status[fresh_next_] != kWalking) answer(fresh_, fresh_next_++);
-      if (fresh_next_ < N) return true;
+      for (; fresh_next_ < kFresh * N; ++fresh_next_) {
+        const Lanes& fresh = fresh_[fresh_next_ / N];
+        if (fresh.status[fresh_next_ % N] == kWalking) return true;
+        answer(fresh, fresh_next_ % N);
+      }
       if (next_ >= rays_.size()) return false;
       take_rays();
     }
@@ -158,26 +179,34 @@ class VectorWalk {
     to.t_begin[j] = from.t_begin[i], to.t_per_cell[j] = from.t_per_cell[i], to.ray[j] = from.ray[i];
   }
 
-  // The next rays into fresh_. The first steps of any-hit are taken here, where all lanes are busy: most rays begin
-  // near the ground, at a cell.
+  // The next rays into fresh_.
   HWY_NOINLINE void take_rays() {
+    fresh_next_ = 0;
+    for (Lanes& fresh : fresh_) take_rays(fresh);
+    if (any || !ideas_.beam) return;
+    const std::uint64_t rays = follow_beam(g_, fresh_, kFresh, beam_length_);
+    stats_.beam_rays += rays;
+    together_ = rays > 0;
+  }
+
+  // The first steps of any-hit are taken here, where all lanes are busy: most rays begin near the ground, at a cell.
+  void take_rays(Lanes& fresh) {
     const std::size_t count = std::min(N, rays_.size() - next_);
     for (std::size_t j = 0; j < N; ++j) {
       const bool taken = j < count && take_ray(j, rays_[next_ + j]);
-      fresh_.ray[j] = taken ? static_cast<std::int32_t>(next_ + j) : -1;
+      fresh.ray[j] = taken ? static_cast<std::int32_t>(next_ + j) : -1;
       if (!taken) r_.dx[j] = r_.dy[j] = 0;
     }
     next_ += count;
-    fresh_next_ = 0;
-    prepare(f_, r_, fresh_);
+    prepare(f_, r_, fresh);
     if (any && ideas_.first_cells) {
       Packet p;
-      p.load(fresh_);
+      p.load(fresh);
       for (int i = 0; i < kFirstSteps; ++i) {
         cell_step<any>(g_, ideas_.put_off, p);
         block_step(g_, p);
       }
-      p.store(fresh_);
+      p.store(fresh);
     }
   }
 
@@ -356,7 +385,8 @@ class VectorWalk {
   static constexpr std::size_t kFree = std::max<std::size_t>(1, any ? N / 4 : N / 2);
   static constexpr int kPackets = any ? 3 : 2;  // vectors in turn: while one waits for memory, others compute
   static constexpr int kFirstSteps = 2;
-  static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
+  static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that are a beam
+  static constexpr double kNearCell = 0x1p-20;                                       // of a cell, far beyond rounding
 
   const HeightTarget& target_;
   const HeightField& field_;
@@ -366,8 +396,10 @@ class VectorWalk {
   VectorGround<T> g_;
   FieldFrame f_;
   GridRays r_;
-  Lanes fresh_, lanes_[kPackets];
-  std::size_t next_ = 0, fresh_next_ = N;
+  Lanes fresh_[kFresh], lanes_[kPackets];
+  std::size_t next_ = 0, fresh_next_ = kFresh * N;
+  float beam_length_ = 0;  // of the last beam
+  bool together_ = false;  // whether the rays in fresh_ are a beam: as they start together they end together
   Candidates candidates_;
   VectorStats stats_;
 };

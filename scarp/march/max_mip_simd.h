@@ -6,6 +6,8 @@
 //   cells    . r1 .  ... r14      lanes that have come down to a cell wait for company, then four samples are fetched
 //   done     r0 .  r2 ... .       lanes that are done wait for company, too, then get the next rays
 //
+// Rays of a camera start together, deep in the field: max_mip_simd_beam.h.
+//
 // What the vectors say is proven, for single precision with a margin (doc/dev/numerics.md): that a ray is above the
 // ground up to a time, or that it is above at one time and below at a later one. Any-hit needs no more. The closest hit
 // is computed as march_max_mip() computes it, in double; what no margin decides goes to march_max_mip() and
@@ -31,6 +33,7 @@ struct VectorIdeas {
   bool first_cells = true;  ///< any-hit: the first steps of new rays are taken together
   bool put_off = true;      ///< any-hit: a doubtful cell is decided only if nothing stops the ray behind it
   bool find_hits = true;    ///< closest hit: computed for many rays at once
+  bool beam = true;         ///< closest hit: rays that come from above together start together
 };
 
 /// hits[i] is march_max_mip() of rays[i], bit for bit. On the calling thread; the spans have the same length, below
@@ -49,6 +52,7 @@ struct VectorStats {
   std::uint64_t block_lanes = 0, block_steps = 0;  ///< steps of rays, and of vectors times their lanes
   std::uint64_t cell_lanes = 0, cell_steps = 0;    ///< the same for tests of cells
   std::uint64_t handed_over = 0;                   ///< rays that the scalar walk went on with
+  std::uint64_t beam_rays = 0;                     ///< rays that a beam took on
 };
 VectorStats take_vector_stats();
 

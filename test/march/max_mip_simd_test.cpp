@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,9 @@ namespace scarp::test {
 namespace {
 
 #ifdef NDEBUG
-constexpr int kRaysPerPair = 10'000;
+constexpr int kRaysPerPair = 10'000, kCameras = 60;
 #else
-constexpr int kRaysPerPair = 300;
+constexpr int kRaysPerPair = 300, kCameras = 6;
 #endif
 constexpr int kRaysPerField = 500;
 
@@ -158,11 +159,57 @@ TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
           compare(target, rays, expected, rays.size(), {.first_cells = false}, name + ", no first cells");
           compare(target, rays, expected, rays.size(), {.put_off = false}, name + ", nothing put off");
           compare(target, rays, expected, rays.size(), {.find_hits = false}, name + ", no hits found");
+          compare(target, rays, expected, rays.size(), {.beam = false}, name + ", no beam");
           if (HasFatalFailure()) return;
         }
       }
     }
   }
+}
+
+// As a camera asks, which looks down at the field from somewhere: 8 x 8 pixels after one another.
+std::vector<Ray> tiles_of_a_camera(const HeightField& field, Random& random) {
+  const dvec3 eye{uniform(random, -200, field.width() + 200), uniform(random, -200, field.depth() + 200),
+                  uniform(random, 300, 900)};
+  const dvec3 to{uniform(random, 0, field.width()), uniform(random, 0, field.depth()), 300};
+  const double azimuth = std::atan2(to.y - eye.y, to.x - eye.x);
+  const double fall = (eye.z - to.z) / std::hypot(to.x - eye.x, to.y - eye.y);
+  std::vector<Ray> rays;
+  for (int tile = 0; tile < 16; ++tile) {
+    for (int pixel = 0; pixel < 64; ++pixel) {
+      const double right = 0.01 * (tile % 4 * 8 + pixel % 8 - 16), up = 0.01 * (tile / 4 * 8 + pixel / 8 - 16);
+      Ray ray;
+      ray.origin = eye;
+      ray.direction = {std::cos(azimuth) - right * std::sin(azimuth), std::sin(azimuth) + right * std::cos(azimuth),
+                       up - fall};
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+TEST(MaxMipSimd, BeamsLoseNothing) {
+  Random random(74);
+  std::map<std::string, std::uint64_t> in_beams;
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    const HeightField field = hills<float>(surface, false, random);
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    for (int camera = 0; camera < kCameras; ++camera) {
+      const std::vector<Ray> rays = tiles_of_a_camera(field, random);
+      const std::vector<Hit> expected = scalar(target, rays);
+      for (const std::int64_t set : targets()) {
+        const Target only(set);
+        const std::string name = hwy::TargetName(set);
+        take_vector_stats();
+        compare(target, rays, expected, rays.size(), {}, name);
+        in_beams[name] += take_vector_stats().beam_rays;
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+  // Else there was nothing to lose.
+  for (const auto& [name, rays] : in_beams) EXPECT_GT(rays, 0u) << name;
 }
 
 // Else the vectors could hand over all rays and be right.

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The judge of `scarp-bench leaks` where it was wrong once, and where it has to speak up.
+#include "bench/leak_judge.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace scarp::bench {
+namespace {
+
+LeakField plane() {
+  constexpr int kCols = 64, kRows = 48;
+  std::vector<float> samples;
+  for (int row = 0; row < kRows; ++row) {
+    for (int col = 0; col < kCols; ++col)
+      samples.push_back(0.5F * static_cast<float>(col) + 0.25F * static_cast<float>(row));
+  }
+  HeightFieldSettings settings;
+  settings.cell_x = 7.3, settings.cell_y = 5.1, settings.scale = 0.3;
+  return {"plane", HeightField::own(std::move(samples), kCols, kRows, settings), {}};
+}
+
+// 47 * 5.1 is a little over 47 cells in binary: the ray begins north of the field by less than rounding, and comes in
+// so slowly that it falls by 5e-11 until then. It is on the surface where it begins, and hits there.
+Ray along_the_border() {
+  Ray ray;
+  ray.origin = {0x1.e1ccccccccccdp+7, 0x1.df66666666666p+7, 0x1.3cccccccccccdp+2};
+  ray.direction = {0x1.ffffffc3b629p-1, -0x1.f0ee99116334p-14, -0x1.d5ea0ba60076p-3};
+  ray.t_min = 0, ray.t_max = 102;
+  ray.start = RayStart::on_surface, ray.start_cell = {33, 0};
+  return ray;
+}
+
+Hit hit_at(double t, double u, double v) {
+  Hit hit;
+  hit.status = HitStatus::hit;
+  hit.t = t, hit.cell = {33, 0}, hit.u = u, hit.v = v;
+  return hit;
+}
+
+TEST(LeakJudge, ARayThatBeginsOutsideByRoundingIsOnTheSurfaceWhereItBegins) {
+  const LeakField ground = plane();
+  const LeakJudge judge(ground, along_the_border());
+  EXPECT_TRUE(judge.must_hit());
+  EXPECT_EQ(judge.false_hit(hit_at(0, 0, 0)), nullptr);
+  EXPECT_TRUE(judge.same(hit_at(0, 0, 0), hit_at(0, 0, 0)));
+}
+
+TEST(LeakJudge, TellsAHitUnderTheSurfaceAndOneThatWasLost) {
+  const LeakField ground = plane();
+  const LeakJudge judge(ground, along_the_border());
+  const Ray ray = along_the_border();
+  const double t = 1, u = ray.direction.x * t / 7.3, v = -ray.direction.y * t / 5.1;
+  EXPECT_STREQ(judge.false_hit(hit_at(t, u, v)), "not on the surface");
+  EXPECT_STREQ(judge.lost(hit_at(t, u, v), 0.5), "a hit before the one that is told");
+  EXPECT_STREQ(judge.lost(Hit{}, 0.5), "a ray that must hit");
+}
+
+}  // namespace
+}  // namespace scarp::bench
