@@ -146,8 +146,9 @@ TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
       EXPECT_LT(row["miss_rate"], 0.001);
       EXPECT_EQ(row["exhausted"], 0.0);
     }
-    if (row["mode"] == "naive-no-holes")
+    if (row["mode"] == "naive-no-holes") {
       EXPECT_LT(row["miss_rate"].get<double>() + row["late_rate"].get<double>(), 0.001);
+    }
   }
 }
 
@@ -215,6 +216,23 @@ TEST(ScarpBench, VoxelLeaksFindsNone) {
     EXPECT_EQ(row["wrong"], 0);
     EXPECT_GT(row["hits"], 1000);
   }
+}
+
+TEST(ScarpBench, RenderWritesTheDocumentedFieldsAndMaxMipIsRight) {
+  const json all = output_of("render --period 64 --width 40 --height 30 --cameras 2 --repeats 1 --judge-every 3");
+  expect_head(all);
+  double stepped = 0;
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"way", "air", "threads", "ms_per_frame", "cpu_ms_per_frame", "frames_per_s", "dry_ratio",
+                        "fixed_step_ratio", "judged_pixels", "wrong_percent", "water_percent"});
+    EXPECT_EQ(row["judged_pixels"], 2 * 400);
+    if (row["way"] == "max-mip") {
+      EXPECT_EQ(row["wrong_percent"], 0);
+    } else {
+      stepped += row["wrong_percent"].get<double>();
+    }
+  }
+  EXPECT_GT(stepped, 0) << "steps are seen to be wrong";
 }
 
 #ifdef SCARP_BENCH_VULKAN

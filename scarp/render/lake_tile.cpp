@@ -100,8 +100,15 @@ void LakeTile::ask_camera(RayRound& round) {
   looking_.ask(rays, view_.iterations || view_.shader.fog().kind() == FogKind::iterations, round);
 }
 
+bool LakeTile::is_sea(const Hit& hit) const {
+  // Most ground is far above the water. Heights of hits are good to a thousandth of a cell.
+  const HeightFieldSettings& field = view_.shader.field().settings();
+  if (!hit || hit.wall || hit.height > view_.water->level() + std::min(field.cell_x, field.cell_y)) return false;
+  return view_.water->is_sea(hit.cell);
+}
+
 std::optional<Water::Meeting> LakeTile::water_of(const Ray& ray, const Sight& sight) const {
-  if (sight.hit && !sight.hit.wall && view_.water->is_sea(sight.hit.cell)) {
+  if (is_sea(sight.hit)) {
     return Water::Meeting{sight.hit.t, {0, 0, 1}, sight.hit.cell};
   }
   const auto meeting = view_.water->meets(ray);
@@ -114,7 +121,7 @@ void LakeTile::find_water() {
   if (!view_.water) return;
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     const Sight& sight = seen_[i].sight;
-    if (sight.hit && !sight.hit.wall && view_.water->is_sea(sight.hit.cell)) {
+    if (is_sea(sight.hit)) {
       add_water(i, {sight.hit.t, {0, 0, 1}, sight.hit.cell});
     } else if (meetings_[i] && !sight.hit && !(sight.wall && sight.wall->t <= meetings_[i]->t)) {
       add_water(i, *meetings_[i]);

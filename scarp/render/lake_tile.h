@@ -77,6 +77,7 @@ class LakeTile {
   enum class Stage { look, water, light };
 
   void ask_camera(RayRound& round);
+  bool is_sea(const Hit& hit) const;
   void find_water();
   void add_water(std::size_t point, const Water::Meeting& meeting);
   bool ask_water(RayRound& round);
