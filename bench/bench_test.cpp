@@ -266,6 +266,23 @@ TEST(ScarpBench, VoxelLeaksFindsNone) {
   }
 }
 
+TEST(ScarpBench, RenderWritesTheDocumentedFieldsAndMaxMipIsRight) {
+  const json all = output_of("render --period 64 --width 40 --height 30 --cameras 2 --repeats 1 --judge-every 3");
+  expect_head(all);
+  double stepped = 0;
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"way", "air", "threads", "ms_per_frame", "cpu_ms_per_frame", "frames_per_s", "dry_ratio",
+                        "fixed_step_ratio", "judged_pixels", "wrong_percent", "water_percent"});
+    EXPECT_EQ(row["judged_pixels"], 2 * 400);
+    if (row["way"] == "max-mip") {
+      EXPECT_EQ(row["wrong_percent"], 0);
+    } else {
+      stepped += row["wrong_percent"].get<double>();
+    }
+  }
+  EXPECT_GT(stepped, 0) << "steps are seen to be wrong";
+}
+
 #ifdef SCARP_BENCH_VULKAN
 TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
   // Who asks for a device that is not there is told which there are, or that there is none.

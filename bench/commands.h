@@ -134,6 +134,16 @@ struct ScenesOptions {
   int repeats = 5;
 };
 void run_scenes(const ScenesOptions& options, const ReportOptions& report);
+/// `render`: frames of the look `comanche`.
+struct FramesOptions {
+  int period = 1024;  ///< samples from repetition to repetition, even, 64..8192
+  int width = 320, height = 240, steps = 256;
+  int threads = 2, cameras = 8, repeats = 9;
+  std::uint64_t seed = 1;
+  int judge_every = 16;  ///< one pixel in so many is also answered by exhaustive
+};
+/// Throws Error, after the report, when the exact march has a wrong pixel.
+void run_frames(const FramesOptions& options, const ReportOptions& report);
 
 /// `functions`: the marches over terrain functions beside proofs.
 struct FunctionsOptions {

@@ -286,6 +286,29 @@ int run(int argc, char** argv) {
   scenes_command->add_option("--rays", scenes.rays, "per pass")->check(CLI::Range(1, 1 << 28))->capture_default_str();
   scenes_command->add_option("--repeats", scenes.repeats, "passes")->check(CLI::Range(1, 1000))->capture_default_str();
   add_json_option(*scenes_command, report);
+  FramesOptions frames;
+  CLI::App* frames_command =
+      app.add_subcommand("render", "frames of the look comanche over endless ground: milliseconds and wrong pixels");
+  frames_command->add_option("--period", frames.period, "samples from repetition to repetition, an even number")
+      ->check(CLI::Range(64, 8192))
+      ->capture_default_str();
+  frames_command->add_option("--width", frames.width, "pixels")->check(CLI::Range(1, 16384))->capture_default_str();
+  frames_command->add_option("--height", frames.height, "pixels")->check(CLI::Range(1, 16384))->capture_default_str();
+  frames_command->add_option("--steps", frames.steps, "of fixed-step")
+      ->check(CLI::Range(1, 65536))
+      ->capture_default_str();
+  frames_command->add_option("--threads", frames.threads, "at once")->check(CLI::Range(1, 1024))->capture_default_str();
+  frames_command->add_option("--cameras", frames.cameras, "along a flight")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  frames_command->add_option("--repeats", frames.repeats, "counted passes over the flight")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  frames_command->add_option("--seed", frames.seed, "of the ground")->capture_default_str();
+  frames_command->add_option("--judge-every", frames.judge_every, "one pixel in so many is answered by exhaustive, too")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  add_json_option(*frames_command, report);
 
   FunctionsOptions functions;
   CLI::App* functions_command = app.add_subcommand("functions", "the marches over terrain functions, beside proofs");
@@ -351,6 +374,7 @@ int run(int argc, char** argv) {
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*edits_command) run_edits(edits, report);
   if (*scenes_command) run_scenes(scenes, report);
+  if (*frames_command) run_frames(frames, report);
   if (*functions_command) run_functions(functions, report);
   if (*function_leaks_command) run_function_leaks(function_leaks, report);
   if (*shapes_command) run_shapes(shapes, report);

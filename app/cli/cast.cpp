@@ -242,6 +242,9 @@ void run(CastOptions options) {
   const MarchEntry& march = find_march(options.march);
   all_hits_of(options, march);  // refuses before files are read
   validate(options.march_settings);
+  if (options.field.mirror) {
+    throw Error("--wrap 'mirror': is for pictures; expected none, periodic or shared");
+  }
   if (!options.coordinates.empty()) {
     try {
       find_coordinates(options.coordinates);

@@ -9,6 +9,7 @@ namespace scarp::cli {
 
 void add_render(CLI::App& program);
 void add_cast(CLI::App& program);
+void add_composite(CLI::App& program);
 void add_info(CLI::App& program);
 void add_generate(CLI::App& program);
 void add_marches(CLI::App& program);

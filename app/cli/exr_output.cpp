@@ -25,7 +25,8 @@ ExrMatrix matrix(const char* name, const glm::dmat4& m) {
 
 void require_exr(const std::string&) {}
 
-void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera) {
+void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera,
+                  const std::optional<DepthRange>& range) {
   const auto axis = [](const char* name, const std::vector<vec3>& layer, int i, ExrStorage storage) {
     return ExrChannel{name, &layer.data()->x + i, 3, storage};
   };
@@ -41,6 +42,11 @@ void write_layers(ReplaceFile& file, const std::string& path, const PictureLayer
                       axis("P.Y", layers.position, 1, ExrStorage::full),
                       axis("P.Z", layers.position, 2, ExrStorage::full),
                       {"steps", layers.steps.data()}};
+  std::vector<float> device;
+  if (range) {
+    for (const float z : layers.depth) device.push_back(static_cast<float>(device_depth(z, *range)));
+    picture.channels.push_back({"depth", device.data()});
+  }
   picture.matrices = {matrix("worldToCamera", camera.camera_from_world()),
                       matrix("worldToNDC", camera.ndc_from_world())};
   write_exr(file, path, picture);
@@ -53,7 +59,10 @@ void require_exr(const std::string& path) {
       "output '{}': this scarp was built without OpenEXR (SCARP_OPENEXR=OFF); let the name end in .png", path));
 }
 
-void write_layers(ReplaceFile&, const std::string& path, const PictureLayers&, const Camera&) { require_exr(path); }
+void write_layers(ReplaceFile&, const std::string& path, const PictureLayers&, const Camera&,
+                  const std::optional<DepthRange>&) {
+  require_exr(path);
+}
 
 #endif
 

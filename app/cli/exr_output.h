@@ -2,9 +2,11 @@
 // Pictures of many layers into OpenEXR files, under the channel names that compositing programs look for.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "scarp/base/replace_file.h"
+#include "scarp/render/depth.h"
 #include "scarp/render/layers.h"
 
 namespace scarp::cli {
@@ -13,7 +15,9 @@ namespace scarp::cli {
 void require_exr(const std::string& path);
 
 /// R, G, B (half), Z, N.X, N.Y, N.Z, P.X, P.Y, P.Z (float) and steps (uint), worldToCamera and worldToNDC in the
-/// header. Writes into the place that `file` has reserved and commits it; throws Error as write_exr() does.
-void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera);
+/// header. Writes into the place that `file` has reserved and commits it; throws Error as write_exr() does. With
+/// `range` also `depth` (float), what a depth buffer of these planes holds.
+void write_layers(ReplaceFile& file, const std::string& path, const PictureLayers& layers, const Camera& camera,
+                  const std::optional<DepthRange>& range);
 
 }  // namespace scarp::cli

@@ -25,11 +25,17 @@ Surface surface_from(const std::string& text) {
   throw Error(fmt::format("--surface '{}': expected bilinear or triangles", text));
 }
 
-Wrap wrap_from(const std::string& text) {
-  if (text == "none") return Wrap::none;
-  if (text == "periodic") return Wrap::periodic;
-  if (text == "shared") return Wrap::shared_border;
-  throw Error(fmt::format("--wrap '{}': expected none, periodic or shared", text));
+struct Beyond {
+  Wrap wrap = Wrap::none;
+  bool mirror = false;
+};
+
+Beyond wrap_from(const std::string& text) {
+  if (text == "none") return {};
+  if (text == "periodic") return {Wrap::periodic};
+  if (text == "shared") return {Wrap::shared_border};
+  if (text == "mirror") return {Wrap::periodic, true};
+  throw Error(fmt::format("--wrap '{}': expected none, periodic, shared or mirror", text));
 }
 
 }  // namespace
@@ -46,9 +52,18 @@ void add_field_options(CLI::App& command, FieldOptions& options) {
   add("--exaggeration", options.exaggeration, exaggeration_from, "heights times this; above 0", "1");
   add("--surface", options.surface, surface_from, "between the samples: bilinear, or triangles (two per cell)",
       "bilinear");
-  add("--wrap", options.wrap, wrap_from,
-      "beyond the border: none, periodic (the first column follows the last), or shared (the last repeats the first)",
-      "none");
+  command
+      .add_option_function<std::string>(
+          "--wrap",
+          [&options](const std::string& text) {
+            const Beyond beyond = wrap_from(text);
+            options.wrap = beyond.wrap;
+            options.mirror = beyond.mirror;
+          },
+          "beyond the border: none, periodic (the first column follows the last), shared (the last repeats the first), "
+          "or mirror (the field and its mirror images, without a seam)")
+      ->default_str("none")
+      ->group(group);
   command.add_flag("--solid", options.solid, "rock under the surface: rays hit the walls at borders and holes")
       ->group(group);
 }

@@ -64,6 +64,7 @@ int main(int argc, char** argv) {
   program.require_subcommand(0, 1);
   scarp::cli::add_render(program);
   scarp::cli::add_cast(program);
+  scarp::cli::add_composite(program);
   scarp::cli::add_info(program);
   scarp::cli::add_generate(program);
   scarp::cli::add_marches(program);

@@ -15,10 +15,13 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/depth_options.h"
 #include "app/cli/device_option.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
+#include "app/cli/frames.h"
 #include "app/cli/function_input.h"
+#include "app/cli/look_options.h"
 #include "app/cli/march_options.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
@@ -54,10 +57,13 @@ struct RenderOptions {
   std::string device;
   MarchSettings march_settings;
   PictureSettings picture;
+  LookOptions look_options;
+  FrameOptions frames;
+  DepthOptions depth;
   std::string size, look = "shaded", sun, view, eye, target;
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg;
-  bool top = false, no_shadows = false, no_plinth = false;
+  bool fov_said = false, top = false, no_shadows = false, no_plinth = false;
   int threads = 0;
   std::vector<std::string> given;  // the names of the options that were typed
 };
@@ -93,6 +99,7 @@ ViewSettings settle(RenderOptions& options) {
   picture.look = find_look(options.look);
   picture.shadows = !options.no_shadows;
   picture.plinth = !options.no_plinth;
+  settle_look(options.look_options, options.size, options.march, options.march_settings, picture);
   if (!options.size.empty()) {
     const auto size = numbers_from(options.size, 'x', 2, 2, "--size", "WIDTHxHEIGHT in pixels, for example 1280x720");
     picture.width = whole(size[0], options);
@@ -104,6 +111,7 @@ ViewSettings settle(RenderOptions& options) {
     picture.sun.altitude_deg = sun[1];
   }
   validate(picture);
+  if (picture.look == Look::comanche && !options.fov_said) options.fov_deg = 60;
   ViewSettings view;
   view.fov_deg = options.fov_deg;
   if (!options.view.empty()) {
@@ -116,12 +124,14 @@ ViewSettings settle(RenderOptions& options) {
   }
   validate(view);
   validate(options.march_settings);
-  if (options.field.wrap != Wrap::none)
-    throw Error("--wrap: a picture shows a field once, with its borders; leave it out");
+  settle_frames(options.frames, options.output);
   std::string extension = std::filesystem::path(options.output).extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   options.exr = extension == ".exr";
+  if (const auto range = depth_range_of(options.depth); range && !options.exr) {
+    throw Error("--depth-range: device depth is a channel of EXR pictures; let the name of the output end in .exr");
+  }
   if (options.exr) {
     require_exr(options.output);
     if (picture.look != Look::shaded) {
@@ -153,6 +163,14 @@ Camera camera_of(const RenderOptions& options, const ViewSettings& view, const B
   return Camera::look_at(point_from(options.eye, "--eye"), target, options.fov_deg, width, height);
 }
 
+Camera terrain_camera(const RenderOptions& options, const ViewSettings& view, const HeightField& field, const Box& box,
+                      double grid_north_azimuth) {
+  if (options.picture.look == Look::comanche && !options.top && options.view.empty() && options.eye.empty()) {
+    return flight_camera(field, grid_north_azimuth, options.fov_deg, options.picture.width, options.picture.height);
+  }
+  return camera_of(options, view, box, grid_north_azimuth);
+}
+
 void print_findings(const Picture& picture) {
   if (picture.steps) {
     fmt::print("steps per ray: {} (first colour of the ramp) to {} (last), mean {:.1f}\n", picture.steps->least,
@@ -169,8 +187,9 @@ void print_findings(const Picture& picture) {
 
 void print_times(const RenderOptions& options, double read_s, double build_s, double render_s,
                  const std::string& device = {}) {
+  const int scale = options.picture.look == Look::comanche ? options.picture.comanche.scale : 1;
   fmt::print("{}: {} x {} pixels; read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options.output,
-             options.picture.width, options.picture.height, read_s, build_s, render_s,
+             options.picture.width * scale, options.picture.height * scale, read_s, build_s, render_s,
              device.empty() ? "" : ", on " + device);
 }
 
@@ -192,6 +211,12 @@ void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const 
 }
 
 void render_vox(RenderOptions options, const ViewSettings& view) {
+  if (options.frames.several()) throw Error("--path, --turntable: flights go over terrain; leave them out");
+  if (options.picture.look == Look::comanche) throw Error("--look comanche: goes with terrain");
+  if (options.field.wrap != Wrap::none) throw Error("--wrap: voxels end where they end; leave it out");
+  if (options.picture.water || options.picture.fog.kind != FogKind::none || !options.look_options.overlay.empty()) {
+    throw Error("--water, --fog, --overlay: go with terrain; leave them out");
+  }
   if (!options.device.empty()) throw Error("--device: pictures of voxels are made on the CPU; leave it out");
   const FromVoxOptions from{options.vox, options.march.empty() ? FromVoxOptions{}.march : options.march};
   find_voxel_march(from.march);
@@ -238,8 +263,32 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
   write_scene_picture(options, file, document.scene, look_of(document), camera, watch, read_s, 0);
 }
 
+// From under the ground one sees its other side, and through it: worth a word.
+void tell_if_buried(const Camera& camera, const HeightField& field, const std::string& whose = "the eye") {
+  const auto ground = field.height(camera.eye().x, camera.eye().y);
+  if (!ground || camera.eye().z >= *ground) return;
+  fmt::print(stderr, "note: {} is {:.3g} m below the ground\n", whose, *ground - camera.eye().z);
+}
+
+void render_frame(const RenderOptions& options, const TerrainScene& scene, const Camera& camera,
+                  double grid_north_azimuth, const std::string& name) {
+  ReplaceFile file(name);
+  const Progress listen = [](double) { return caught_signal() == 0; };
+  if (options.exr) {
+    write_layers(file, name, render_layers(scene, camera, grid_north_azimuth, options.picture, listen), camera,
+                 depth_range_of(options.depth));
+    return;
+  }
+  const Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, listen);
+  write_png(file, name, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  tell_if_buried(camera, scene.field(), fmt::format("the eye of '{}'", name));
+}
+
 void render_terrain(RenderOptions options, const ViewSettings& view) {
   const MarchEntry& march = find_march(options.march.empty() ? "max-mip" : options.march);
+  if (options.picture.look == Look::comanche && march.name == "fixed-step" && !options.device.empty()) {
+    throw Error("--device: the steps of --look comanche are made on the CPU; leave it out, or take another march");
+  }
   const SceneMaker scenes = scene_maker(options.device, march);
   // Reserved first: an unwritable place is found before the work and not after it.
   ReplaceFile file(options.output);
@@ -252,6 +301,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   const std::vector<std::string> notes = raster.notes;
   const std::string path = raster.path;
 
+  read_look_files(options.look_options, raster, options.field, options.picture);
   HeightField field = height_field_from(std::move(raster), options.field);
   if (!field.has_cells()) {
     throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed", path,
@@ -260,19 +310,38 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   if (field.all_nodata()) {
     throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", path));
   }
+  if (field.wraps()) options.picture.plinth = false;
   const TerrainScene scene = scenes.make(std::move(field), march, options.march_settings);
   stop_if_interrupted();
   const double build_s = watch.lap();
 
   const Box box = picture_box(scene.field(), options.picture.plinth);
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
-  const Camera camera = camera_of(options, view, box, grid_north_azimuth);
-  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  finish_look(options.look_options, scene.field(), options.picture);
+  // Last: who fails says one line alone.
+  const auto tell_notes = [&] {
+    for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+  };
+  const double reach = reach_of(options.look_options, scene.field());
+  if (options.frames.several()) {
+    std::vector<Camera> cameras =
+        frame_cameras(options.frames, box, view, grid_north_azimuth, options.picture.width, options.picture.height);
+    for (Camera& camera : cameras) camera.set_reach(reach);
+    make_frames(options.frames, options.output, cameras, [&](const Camera& camera, const std::string& name) {
+      render_frame(options, scene, camera, grid_north_azimuth, name);
+    });
+    tell_notes();
+    return;
+  }
+  Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth);
+  camera.set_reach(reach);
   if (options.exr) {
     const PictureLayers layers =
         render_layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
     const double render_s = watch.lap();
-    write_layers(file, options.output, layers, camera);
+    write_layers(file, options.output, layers, camera, depth_range_of(options.depth));
+    tell_notes();
+    tell_if_buried(camera, scene.field());
     print_times(options, read_s, build_s, render_s, scenes.device);
     return;
   }
@@ -280,6 +349,8 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
       render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
   const double render_s = watch.lap();
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  tell_notes();
+  tell_if_buried(camera, scene.field());
   print_times(options, read_s, build_s, render_s, scenes.device);
   print_findings(picture);
 }
@@ -331,9 +402,7 @@ void add_render(CLI::App& program) {
                    "the picture: .png, or .exr in linear light with depth, normal, position and steps")
       ->required();
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels (1280x720; with --top the shape of the ground)");
-  command->add_option("--look", o.look, "shaded, height, steps, error")->capture_default_str();
-  command->add_option("--ramp", o.picture.ramp,
-                      fmt::format("colours: {} (hypsometric; viridis for steps)", fmt::join(ramp_names(), ", ")));
+  command->add_option("--look", o.look, "shaded, height, steps, error, comanche")->capture_default_str();
   add_field_options(*command, o.field);
   command->add_option(
       "--sun", o.sun,
@@ -368,6 +437,7 @@ void add_render(CLI::App& program) {
       ->add_option("--error-tolerance", o.picture.error_tolerance,
                    "of the error look along the ray, in sides of a cell; of functions in percent of the distance (1)")
       ->capture_default_str();
+  add_look_options(*command, o.look_options);
   add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
 
@@ -393,13 +463,16 @@ void add_render(CLI::App& program) {
       ->excludes(fov);
   view->excludes(eye);
 
+  add_frame_options(*command, o.frames);
+  add_depth_options(*command, o.depth);
   add_function_options(*command, o.function, o.march, o.march_settings);
   command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks; lipschitz-local)")
       ->group("Settings of marches");
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);
   add_vox_options(*command, o.vox);
-  command->callback([options, command] {
+  command->callback([options, command, fov] {
+    options->fov_said = fov->count() > 0;
     for (const CLI::Option* option : command->get_options()) {
       if (option->count() > 0) options->given.push_back(option->get_name());
     }

@@ -124,6 +124,7 @@ Ray Camera::ray(double pixel_x, double pixel_y) const {
   Ray ray;
   ray.origin = eye_;
   ray.direction = forward_;
+  ray.t_max = reach_;
   if (orthographic_) {
     ray.origin += x * right_ + y * up_;
   } else {

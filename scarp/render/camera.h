@@ -11,6 +11,7 @@
 #pragma once
 
 #include <glm/mat4x4.hpp>
+#include <limits>
 #include <optional>
 
 #include "scarp/base/ray.h"
@@ -62,6 +63,13 @@ class Camera {
   /// divides to 1 - 1 m / depth in perspective, and is the depth in metres of an orthographic camera.
   glm::dmat4 ndc_from_world() const;
 
+  /// Rays end `metres` away; above 0. A picture of a field that wraps round needs an end.
+  void set_reach(double metres) { reach_ = metres; }
+  double reach() const { return reach_; }
+
+  /// How wide a pixel is at a depth, in metres.
+  double pixel_width(double depth) const { return 2 * half_width_ / width_ * (orthographic_ ? 1 : depth); }
+
   const dvec3& eye() const { return eye_; }
   const dvec3& forward() const { return forward_; }
 
@@ -74,6 +82,7 @@ class Camera {
   double half_width_ = 1, half_height_ = 1;
   double width_ = 1, height_ = 1;
   bool orthographic_ = false;
+  double reach_ = std::numeric_limits<double>::infinity();
 };
 
 }  // namespace scarp

@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <optional>
 
 #include "scarp/base/error.h"
 #include "scarp/march/wall.h"
+#include "scarp/render/lake_tile.h"
 #include "scarp/render/shaded_tile.h"
 #include "scarp/render/sight.h"
 #include "scarp/render/tile_work.h"
@@ -19,13 +21,16 @@ namespace {
 
 class LayersTile final : public TileWork {
  public:
-  LayersTile(const ShadedView& view, const PixelTile& tile, PictureLayers& layers)
+  // `lake`: null where there is no water.
+  LayersTile(const ShadedView& view, const LakeView* lake, const PixelTile& tile, PictureLayers& layers)
       : view_(view),
         tile_(tile),
         middles_(rays_through_middles(view.camera, tile)),
         looking_(view.plinth),
         shaded_(view, tile),
-        layers_(layers) {}
+        layers_(layers) {
+    if (lake) lake_.emplace(*lake, tile);
+  }
 
   bool next(RayRound& round) override {
     if (!asked_) {
@@ -37,8 +42,8 @@ class LayersTile final : public TileWork {
       seen_ = true;
       take_sights(round);
     }
-    if (shaded_.next(round)) return true;
-    const std::vector<vec3> colours = shaded_.pixels();
+    if (lake_ ? lake_->next(round) : shaded_.next(round)) return true;
+    const std::vector<vec3> colours = lake_ ? lake_->pixels() : shaded_.pixels();
     for (std::size_t i = 0; i < colours.size(); ++i) layers_.colour[pixel(i)] = colours[i];
     return false;
   }
@@ -59,6 +64,12 @@ class LayersTile final : public TileWork {
       const Ray& ray = middles_[i];
       const std::size_t to = pixel(i);
       layers_.steps[to] = sight.steps;
+      if (const auto water = lake_ ? lake_->water_of(ray, sight) : std::nullopt) {
+        layers_.depth[to] = static_cast<float>(dot(ray.at(water->t) - camera.eye(), camera.forward()));
+        layers_.normal[to] = water->normal;
+        layers_.position[to] = ray.at(water->t);
+        continue;
+      }
       if (!sight.hit && !sight.wall) continue;
       const dvec3 position = ray.at(sight.hit ? sight.hit.t : sight.wall->t);
       layers_.depth[to] = static_cast<float>(dot(position - camera.eye(), camera.forward()));
@@ -74,6 +85,7 @@ class LayersTile final : public TileWork {
   std::vector<Ray> middles_;
   SightRound looking_;
   ShadedTile shaded_;
+  std::optional<LakeTile> lake_;
   PictureLayers& layers_;
   bool asked_ = false, seen_ = false;
 };
@@ -106,9 +118,12 @@ PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, dou
   const Shader shader(field, camera, grid_north_azimuth, settings);
   const std::optional<Plinth> plinth = plinth_of(field, settings);
   const ShadedView view{camera, plinth, shader, settings.aa};
+  std::optional<Lake> lake;
+  if (settings.water) lake.emplace(scene, camera, grid_north_azimuth, settings);
+  const LakeView* lake_view = lake ? &lake->view() : nullptr;
   work_on_tiles(
-      scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(shader),
-      [&](const PixelTile& tile) { return std::make_unique<LayersTile>(view, tile, layers); }, progress);
+      scene, PixelTiles(settings.width, settings.height, settings.aa), lake ? lake->most_rays() : most_rays_of(shader),
+      [&](const PixelTile& tile) { return std::make_unique<LayersTile>(view, lake_view, tile, layers); }, progress);
   return layers;
 }
 

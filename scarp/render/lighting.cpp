@@ -9,13 +9,26 @@ namespace {
 // Purposes of a pixel's points.
 constexpr std::uint32_t kOfSky = 0, kOfSun = 1;
 
+// The sine of the lowest sun that casts shadows over endless ground.
+constexpr double kLeastSunRise = 1e-3;
+
+// Rays over endless ground need an end: above the highest summit nothing is met, and low rays end far away.
+void end_above_ground(std::span<Ray> rays, double highest) {
+  for (Ray& ray : rays) {
+    const double rise = std::max(highest - ray.origin.z, 0.0);
+    ray.t_max = rise / std::max(ray.direction.z, kLeastSunRise);
+  }
+}
+
 }  // namespace
 
-Lighting::Lighting(const PictureSettings& settings, double grid_north_azimuth, double ao_distance)
+Lighting::Lighting(const PictureSettings& settings, double grid_north_azimuth, double ao_distance,
+                   std::optional<double> highest)
     : settings_(settings),
       light_(settings.sun, grid_north_azimuth),
       pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
-      ao_distance_(ao_distance) {}
+      ao_distance_(ao_distance),
+      highest_(highest) {}
 
 std::size_t Lighting::most_rays() const { return static_cast<std::size_t>(std::max(1, 2 * settings_.samples)); }
 
@@ -29,6 +42,7 @@ LightRays Lighting::ask(const GroundPoint& ground, const PicturePoint& point, st
   LightRays asked;
   asked.sun = rays.size();
   if (settings_.shadows) ask_sun(ground, light_.to_sun(), sun_radius(), samples(kOfSun), rays);
+  if (highest_) end_above_ground(std::span(rays).subspan(asked.sun), *highest_);
   asked.sky = rays.size();
   if (settings_.samples > 0 && ao_distance_ > 0) ask_sky(ground, ao_distance_, samples(kOfSky), rays);
   asked.end = rays.size();

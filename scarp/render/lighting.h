@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,10 @@ struct LightRays {
 /// Refers to the settings.
 class Lighting {
  public:
-  /// `ao_distance` takes the place of that in the settings.
-  Lighting(const PictureSettings& settings, double grid_north_azimuth, double ao_distance);
+  /// `ao_distance` takes the place of that in the settings. `highest` is given where ground has no end: above it
+  /// nothing is met, and rays to the sun end there.
+  Lighting(const PictureSettings& settings, double grid_north_azimuth, double ao_distance,
+           std::optional<double> highest = {});
 
   /// How many rays ask() appends at most.
   std::size_t most_rays() const;
@@ -46,6 +49,7 @@ class Lighting {
   Light light_;
   SamplePattern pattern_;
   double ao_distance_;
+  std::optional<double> highest_;
 };
 
 }  // namespace scarp

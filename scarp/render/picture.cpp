@@ -20,7 +20,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::array<std::string_view, 4> kLookNames = {"shaded", "height", "steps", "error"};
+constexpr std::array<std::string_view, 5> kLookNames = {"shaded", "height", "steps", "error", "comanche"};
 
 constexpr int kMaxSide = 65536;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
@@ -153,6 +153,10 @@ void validate(const PictureSettings& settings) {
   require(std::isfinite(settings.error_tolerance) && settings.error_tolerance >= 0, "the error tolerance",
           settings.error_tolerance, "0 or more sides of a cell");
   validate(settings.sun);
+  if (settings.water) validate(*settings.water);
+  validate(settings.ground);
+  validate(settings.fog);
+  validate(settings.comanche);
   Ramp(ramp_of(settings), 0, 1);
 }
 
@@ -174,9 +178,12 @@ Picture render_picture(const TerrainScene& scene, const Camera& camera, double g
           render_error(scene, camera, settings.width, settings.height, settings.error_tolerance, progress);
       return {std::move(error.image), {}, error.counts};
     }
+    case Look::comanche:
+      return render_comanche(scene, camera, grid_north_azimuth, settings, progress);
     case Look::shaded:
       break;
   }
+  if (settings.water) return render_lake(scene, camera, grid_north_azimuth, settings, progress);
   return {render_shaded(scene, camera, grid_north_azimuth, settings, progress), {}, {}};
 }
 

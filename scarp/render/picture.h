@@ -5,6 +5,7 @@
 //           sky, a block below the terrain
 //   height  grey, linear in height from the field's lowest (1) to its highest point (255); misses are black (0)
 //   steps   what the march cost: steps per ray as a ramp from the least to the most in the picture
+//   comanche  few large pixels, see comanche.h
 //   error   where the march is wrong, see error_look.h
 //
 // The block hides what lies behind its walls and below its base; only `shaded` shows it, and in `error` there is none.
@@ -13,22 +14,27 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "scarp/base/progress.h"
 #include "scarp/render/camera.h"
+#include "scarp/render/comanche.h"
 #include "scarp/render/error_look.h"
 #include "scarp/render/film.h"
+#include "scarp/render/fog.h"
+#include "scarp/render/ground_paint.h"
 #include "scarp/render/light.h"
+#include "scarp/render/water.h"
 #include "scarp/scene/terrain_scene.h"
 
 namespace scarp {
 
-enum class Look { shaded, height, steps, error };
+enum class Look { shaded, height, steps, error, comanche };
 
-/// "shaded", "height", "steps", "error".
+/// "shaded", "height", "steps", "error", "comanche".
 std::string_view name_of(Look look);
 /// Throws Error listing the names when there is no such look.
 Look find_look(std::string_view name);
@@ -43,15 +49,20 @@ struct PictureSettings {
   Look look = Look::shaded;
   int aa = 2;          ///< aa x aa samples per pixel in `shaded`; 1..16
   std::string ramp{};  ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
+  std::shared_ptr<const RampStops> ramp_stops{};  ///< instead of `ramp`; null: none
   SunSettings sun{};
   bool shadows = true;  ///< of the sun; false: it shines through the ground
   int samples = 0;      ///< rays to the sun's disc, and to the sky, per sample of `shaded`; 0..4096; 0: exact hard
                         ///< shadows of the disc's middle and no ambient occlusion
-  double ao_distance = kWholeField;  ///< metres within which ground hides the sky, >= 0; 0: no ambient occlusion
-  std::uint32_t seed = 0;            ///< of the samples' pattern
-  bool plinth = true;                ///< a block below the terrain: walls down to a common base
-  double haze = 0.1;                 ///< share of haze over a distance as long as the field's diagonal; 0..0.95
-  double error_tolerance = 0.1;      ///< of `error`, along the ray, in shorter sides of a cell; >= 0
+  double ao_distance = kWholeField;      ///< metres within which ground hides the sky, >= 0; 0: no ambient occlusion
+  std::uint32_t seed = 0;                ///< of the samples' pattern
+  bool plinth = true;                    ///< a block below the terrain: walls down to a common base
+  double haze = 0.1;                     ///< share of haze over a distance as long as the field's diagonal; 0..0.95
+  std::optional<WaterSettings> water{};  ///< of `shaded` and `comanche`
+  GroundPaintSettings ground{};          ///< likewise
+  FogSettings fog{};                     ///< instead of haze, likewise
+  ComancheSettings comanche{};
+  double error_tolerance = 0.1;  ///< of `error`, along the ray, in shorter sides of a cell; >= 0
 };
 
 /// Throws Error naming the first setting out of its range.

@@ -78,8 +78,28 @@ Ramp::Ramp(std::string_view name, double low, double high) {
   }
 }
 
+Ramp::Ramp(const RampStops& stops, double low, double high, double scale) {
+  // Steps within a slice that no eye tells apart.
+  constexpr int kSteps = 32;
+  for (const RampSlice& slice : stops.slices) {
+    const auto placed = [&](double value) {
+      if (!stops.stretched) return value * scale;
+      if (!stops.hinged) return low + value * (high - low);
+      return value * (value < 0 ? std::max(0.0, -low) : std::max(0.0, high));
+    };
+    Piece piece{placed(slice.low), placed(slice.high), {}};
+    for (int i = 0; i <= kSteps; ++i) {
+      const auto share = static_cast<float>(i) / kSteps;
+      piece.colours.push_back(linear_from_srgb(slice.srgb_low * (1 - share) + slice.srgb_high * share));
+    }
+    pieces_.push_back(std::move(piece));
+  }
+}
+
 vec3 Ramp::operator()(double value) const {
-  const Piece& piece = value > pieces_[0].high ? pieces_.back() : pieces_[0];
+  const auto above = [](const Piece& piece, double v) { return piece.high < v; };
+  const auto found = std::lower_bound(pieces_.begin(), pieces_.end() - 1, value, above);
+  const Piece& piece = *found;
   const double extent = piece.high - piece.low;
   const double share = extent > 0 ? std::clamp((value - piece.low) / extent, 0.0, 1.0) : 0.0;
   const double at = share * static_cast<double>(piece.colours.size() - 1);

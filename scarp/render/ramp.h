@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scarp/base/vec.h"
+#include "scarp/source/ramp_file.h"
 
 namespace scarp {
 
@@ -19,6 +20,8 @@ class Ramp {
  public:
   /// Throws Error listing the names when there is no such ramp. low <= high.
   Ramp(std::string_view name, double low, double high);
+  /// Of a file; values of its own are multiplied by `scale` (of exaggerated heights).
+  Ramp(const RampStops& stops, double low, double high, double scale = 1);
 
   /// In linear light, 0..1. Values outside the range have the colour of its nearer end.
   vec3 operator()(double value) const;

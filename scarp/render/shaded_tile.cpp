@@ -51,8 +51,8 @@ bool ShadedTile::ask_light(RayRound& round) {
 
 void ShadedTile::take_light(const RayRound& round) {
   for (const Open& open : open_) {
-    colours_[open.point] =
-        view_.shader.ground_colour(sights_[open.point].hit, open.ground, open.asked, round.rays, round.blocked);
+    colours_[open.point] = view_.shader.ground_colour(rays_[open.point], sights_[open.point].hit, open.ground,
+                                                      open.asked, round.rays, round.blocked);
   }
   open_.clear();
 }

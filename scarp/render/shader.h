@@ -8,6 +8,8 @@
 
 #include "scarp/render/camera.h"
 #include "scarp/render/film.h"
+#include "scarp/render/fog.h"
+#include "scarp/render/ground_paint.h"
 #include "scarp/render/lighting.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/ramp.h"
@@ -18,6 +20,8 @@ namespace scarp {
 
 /// The name of the ramp in the settings, or what suits the look.
 std::string_view ramp_of(const PictureSettings& settings);
+/// The ramp of the settings over a range of heights (exaggerated) or other numbers.
+Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale = 1);
 
 /// Throws Error when the field has nothing to see: no cells, no valid samples.
 void require_ground(const HeightField& field);
@@ -30,22 +34,34 @@ class Shader {
   const HeightField& field() const { return field_; }
   const Lighting& lighting() const { return lighting_; }
   /// Of ground, in linear light; `rays` and their answers are those that `asked` refers to.
-  vec3 ground_colour(const Hit& hit, const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
-                     std::span<const std::uint8_t> blocked) const;
+  vec3 ground_colour(const Ray& ray, const Hit& hit, const GroundPoint& ground, const LightRays& asked,
+                     std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const;
+  /// The same before the air between: the ground's colour in its light.
+  vec3 lit_ground(const Ray& ray, const Hit& hit, const GroundPoint& ground, const LightRays& asked,
+                  std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const;
+  /// A colour seen through t metres of haze or fog.
+  vec3 in_air(vec3 colour, const Ray& ray, double t) const;
+  /// Metres, of the surface, where hit.height is that of the ray: they differ by rounding, and a sea at 0 must not be
+  /// speckled.
+  double ground_height(const Hit& hit) const;
+  const Fog& fog() const { return fog_; }
+  const dvec3& to_sun() const { return lighting_.to_sun(); }
   /// Of what is not ground: walls and the sky, in linear light.
   vec3 colour_beside_ground(const Ray& ray, const Sight& sight) const;
 
  private:
-  double ground_height(const Hit& hit) const;
   vec3 wall_colour(const dvec3& normal) const;
-  vec3 in_haze(vec3 colour, double t) const;
 
   const HeightField& field_;
-  Ramp ramp_;
+  const PictureSettings& settings_;
+  const Camera& camera_;
   Lighting lighting_;
+  GroundPaint paint_;
+  Fog fog_;
   vec3 earth_;
   double clear_distance_ = 0;
   double haze_per_metre_ = 0;
+  bool endless_ = false;
 };
 
 }  // namespace scarp

@@ -6,7 +6,7 @@
 namespace scarp {
 
 std::optional<Plinth> plinth_of(const HeightField& field, const PictureSettings& settings) {
-  if (!settings.plinth) return {};
+  if (!settings.plinth || field.wraps()) return {};
   return Plinth(field, plinth_base(field));
 }
 

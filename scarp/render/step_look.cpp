@@ -15,7 +15,7 @@ Picture picture_of_steps(const PictureSettings& settings, std::span<const std::u
   const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
   Picture picture{
       Image(settings.width, settings.height), StepRange{*least, *most, sum / static_cast<double>(steps.size())}, {}};
-  const Ramp ramp(ramp_of(settings), *least, *most);
+  const Ramp ramp = ramp_over(settings, *least, *most);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     set_pixel(picture.image, static_cast<int>(i % width), static_cast<int>(i / width), ramp(steps[i]));
   }

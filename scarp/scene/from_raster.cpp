@@ -7,10 +7,12 @@
 #include <variant>
 
 #include "scarp/base/error.h"
+#include "scarp/source/mirrored.h"
 
 namespace scarp {
 
 HeightField height_field_from(Raster raster, const FieldOptions& options) {
+  if (options.mirror) raster = mirrored(std::move(raster));
   HeightFieldSettings settings;
   settings.cell_x = raster.georeference.cell_x_m;
   settings.cell_y = raster.georeference.cell_y_m;
@@ -19,7 +21,7 @@ HeightField height_field_from(Raster raster, const FieldOptions& options) {
   settings.exaggeration = options.exaggeration;
   settings.nodata = raster.nodata;
   settings.surface = options.surface;
-  settings.wrap = options.wrap;
+  settings.wrap = options.mirror ? Wrap::periodic : options.wrap;
   settings.solid = options.solid;
   try {
     return std::visit(

@@ -12,6 +12,7 @@ struct FieldOptions {
   double exaggeration = 1.0;  ///< > 0
   Surface surface = Surface::bilinear;
   Wrap wrap = Wrap::none;
+  bool mirror = false;  ///< the raster and its mirror images as one (source/mirrored.h); `wrap` is periodic then
   bool solid = false;
 };
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The picture of the demo and the example scenes, smaller, against those that were looked at and found good. After a
-// change that is meant to be seen: look at the new picture, which a failing test leaves in the build folder, and copy
-// it to test/golden/.
+// Pictures, small, against those that were looked at and found good: the demo, each row of the look comanche, the
+// example scenes. After a change that is meant to be seen: look at the new picture, which a failing test leaves in the
+// build folder, and copy it to test/golden/.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <ostream>
+#include <string>
+#include <vector>
 
 #include "cli/program.h"
 #include "output/read_png.h"
@@ -62,16 +65,57 @@ void expect_golden(const std::string& picture, const std::string& name, int most
 
 constexpr const char* kJacksboro = "/usr/share/matplotlib/mpl-data/sample_data/jacksboro_fault_dem.npz";
 
-TEST(Golden, TheDemosPicture) {
+struct Golden {
+  const char* name;
+  std::vector<std::string> options;
+  int max_difference;
+};
+
+void PrintTo(const Golden& golden, std::ostream* out) { *out << golden.name; }
+
+std::vector<Golden> goldens() {
+  const std::vector<std::string> low{"--look", "comanche", "--lowres", "160x120",        "--pixel-size",
+                                     "1",      "--wrap",   "mirror",   "--exaggeration", "2"};
+  std::vector<Golden> all;
+  all.push_back({"jacksboro",
+                 {"--size", "480x270", "--exaggeration", "2", "--view", "195,30", "--sun", "300,30"},
+                 kMaxDifference});
+  const auto add = [&](const char* name, const std::vector<std::string>& options) {
+    std::vector<std::string> full = low;
+    full.insert(full.end(), options.begin(), options.end());
+    // Here a pixel has one sample.
+    all.push_back({name, full, kAnyDifference});
+  };
+  add("comanche-plain",
+      {"--march", "fixed-step", "--fixed-step-interpolate", "false", "--water", "330", "--fog", "iterations"});
+  add("comanche-interpolated", {"--march", "fixed-step", "--water", "330", "--fog", "iterations", "--detail", "0.5"});
+  add("comanche-by-view", {"--march", "fixed-step", "--step-by-view", "--fixed-step-interpolate", "false"});
+  add("comanche-shells", {"--march", "fixed-step", "--shells", "--fixed-step-interpolate", "false", "--steps", "48"});
+  add("comanche-iterations", {"--march", "fixed-step", "--iterations"});
+  add("comanche-exact", {"--water", "330", "--fog", "distance"});
+  add("comanche-natural", {"--water", "330", "--fog", "height", "--ground", "natural", "--contours", "50"});
+  all.push_back({"lake",
+                 {"--size", "240x135", "--exaggeration", "2", "--water", "330", "--view", "200,25", "--fog", "height"},
+                 kMaxDifference});
+  return all;
+}
+
+class GoldenPicture : public testing::TestWithParam<Golden> {};
+
+TEST_P(GoldenPicture, IsAsItWas) {
+  const Golden& wanted = GetParam();
   if (!fs::exists(kJacksboro))
     GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
   const test::Scratch scratch;
-  const std::string picture = scratch.path("jacksboro.png");
-  const auto result = test::run({"render", kJacksboro, "-o", picture, "--key", "elevation", "--crs", "EPSG:4326",
-                                 "--bounds=-84.41375,36.44625,-84.07791666666667,36.73291666666667", "--size",
-                                 "480x270", "--exaggeration", "2", "--view", "195,30", "--sun", "300,30"});
+  const std::string picture = scratch.path("picture.png");
+  std::vector<std::string> arguments{
+      "render", kJacksboro,  "-o",
+      picture,  "--key",     "elevation",
+      "--crs",  "EPSG:4326", "--bounds=-84.41375,36.44625,-84.07791666666667,36.73291666666667"};
+  arguments.insert(arguments.end(), wanted.options.begin(), wanted.options.end());
+  const auto result = test::run(arguments);
   ASSERT_EQ(result.status, 0) << result.err;
-  expect_golden(picture, "jacksboro", kMaxDifference);
+  expect_golden(picture, wanted.name, wanted.max_difference);
 }
 
 class GoldenScene : public testing::TestWithParam<const char*> {};
@@ -97,6 +141,13 @@ INSTANTIATE_TEST_SUITE_P(Examples, GoldenScene,
                          testing::Values("endless", "mix", "quarry", "standing-in-noise", "torus-at-sea", "village"),
                          [](const auto& scene) {
                            std::string name = scene.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+INSTANTIATE_TEST_SUITE_P(All, GoldenPicture, testing::ValuesIn(goldens()),
+                         [](const testing::TestParamInfo<Golden>& golden) {
+                           std::string name = golden.param.name;
                            std::replace(name.begin(), name.end(), '-', '_');
                            return name;
                          });

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: MIT
+// `scarp composite`: another renderer's picture and ours in one, pixel by pixel what is nearer.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/depth_options.h"
+#include "scarp/base/error.h"
+#include "scarp/output/png.h"
+#include "scarp/render/film.h"
+#include "scarp/source/read_raster.h"
+#ifdef SCARP_OPENEXR
+#include "scarp/output/exr.h"
+#endif
+
+namespace scarp::cli {
+namespace {
+
+struct CompositeOptions {
+  std::string ours, theirs, output, alpha, depth_channel = "Z";
+  DepthOptions depth;
+};
+
+// Channels of one picture, row by row.
+class ExrChannels {
+ public:
+  explicit ExrChannels(std::string path) : path_(std::move(path)) {}
+
+  std::vector<float> read(const std::string& channel) {
+    RasterOptions options;
+    options.channel = channel;
+    options.nodata = std::numeric_limits<double>::infinity();  // where nothing is
+    const Raster raster = read_raster(path_, options);
+    if (width == 0) {
+      width = raster.cols;
+      height = raster.rows;
+    }
+    const auto* samples = std::get_if<std::vector<float>>(&raster.samples);
+    if (!samples || raster.cols != width || raster.rows != height) {
+      throw Error(fmt::format("picture '{}': its channel '{}' is not one of numbers like the others", path_, channel));
+    }
+    return *samples;
+  }
+  const std::string& path() const { return path_; }
+
+  int width = 0, height = 0;
+
+ private:
+  std::string path_;
+};
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+void write(const std::string& path, int width, int height, const std::vector<vec3>& colour,
+           const std::vector<float>& depth) {
+  ReplaceFile file(path);
+  if (extension_of(path) == ".png") {
+    Image image(width, height);
+    for (int y = 0; y < height; ++y) {
+      for (int x = 0; x < width; ++x) set_pixel(image, x, y, colour[static_cast<std::size_t>(y * width + x)]);
+    }
+    return write_png(file, path, {image.rgb.data(), width, height});
+  }
+#ifdef SCARP_OPENEXR
+  ExrView view{width, height};
+  view.channels = {{"R", &colour.data()->x, 3, ExrStorage::half},
+                   {"G", &colour.data()->x + 1, 3, ExrStorage::half},
+                   {"B", &colour.data()->x + 2, 3, ExrStorage::half},
+                   {"Z", depth.data()}};
+  write_exr(file, path, view);
+#else
+  throw Error(fmt::format("output '{}': this scarp was built without OpenEXR; let the name end in .png", path));
+#endif
+}
+
+void run(const CompositeOptions& options) {
+  const std::string extension = extension_of(options.output);
+  if (extension != ".png" && extension != ".exr") {
+    throw Error(fmt::format("output '{}': pictures are written as PNG or EXR; let the name end in .png or .exr",
+                            options.output));
+  }
+  const auto range = depth_range_of(options.depth);
+  ExrChannels ours(options.ours), theirs(options.theirs);
+  std::vector<float> depth = ours.read("Z");
+  std::vector<float> their_depth = theirs.read(options.depth_channel);
+  if (theirs.width != ours.width || theirs.height != ours.height) {
+    throw Error(fmt::format("picture '{}': {} x {} pixels, where '{}' has {} x {}; render both in one size",
+                            theirs.path(), theirs.width, theirs.height, ours.path(), ours.width, ours.height));
+  }
+  std::vector<vec3> colour(depth.size()), their_colour(depth.size());
+  const char* const names[] = {"R", "G", "B"};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::vector<float> own = ours.read(names[axis]), other = theirs.read(names[axis]);
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+      colour[i][axis] = own[i];
+      their_colour[i][axis] = other[i];
+    }
+  }
+  std::vector<float> alpha(depth.size(), 1.0f);
+  if (!options.alpha.empty()) alpha = theirs.read(options.alpha);
+  std::size_t taken = 0;
+  for (std::size_t i = 0; i < depth.size(); ++i) {
+    double z = their_depth[i];
+    if (range) {
+      // What lies on the far plane is what was never drawn.
+      const bool cleared = range->reversed ? z <= 0 : z >= 1;
+      z = cleared ? std::numeric_limits<double>::infinity() : view_depth_from_device(z, *range);
+    }
+    if (!(z < depth[i]) || alpha[i] <= 0) continue;
+    ++taken;
+    // Colours of EXR are multiplied with their alpha already.
+    colour[i] = their_colour[i] + colour[i] * (1 - alpha[i]);
+    depth[i] = static_cast<float>(z);
+  }
+  write(options.output, ours.width, ours.height, colour, depth);
+  fmt::print("{}: {} x {} pixels, {} of them from {}\n", options.output, ours.width, ours.height, taken, theirs.path());
+}
+
+}  // namespace
+
+void add_composite(CLI::App& program) {
+  CLI::App* command =
+      program.add_subcommand("composite", "Put another renderer's picture over one of ours: the nearer pixel is seen");
+  const auto options = std::make_shared<CompositeOptions>();
+  CompositeOptions& o = *options;
+  command->add_option("ours", o.ours, "an EXR of scarp render: R, G, B and Z")->required();
+  command->add_option("theirs", o.theirs, "an EXR of the same camera and size: R, G, B and a depth")->required();
+  command->add_option("-o,--output", o.output, "the picture: .png, or .exr with Z")->required();
+  command
+      ->add_option("--depth-channel", o.depth_channel,
+                   "their depth: metres along the view axis, or with --depth-range what their depth buffer held")
+      ->capture_default_str();
+  command->add_option("--alpha", o.alpha, "their channel of opacity, with which their colours are multiplied");
+  add_depth_options(*command, o.depth);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace scarp::cli

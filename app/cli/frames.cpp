@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/frames.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+
+#include "app/cli/progress.h"
+#include "scarp/base/error.h"
+#include "scarp/render/camera_path.h"
+#include "scarp/source/ray_table.h"
+
+namespace scarp::cli {
+namespace {
+
+constexpr int kMostFrames = 1000000;
+constexpr int kTurntableFrames = 120;
+
+// The #s are in the name, not in its folders.
+struct Place {
+  std::size_t first, count;
+};
+Place place_of_number(const std::string& output) {
+  const std::size_t folder = output.find_last_of('/');
+  const std::size_t first = output.find('#', folder == std::string::npos ? 0 : folder);
+  if (first == std::string::npos) return {0, 0};
+  const std::size_t end = output.find_first_not_of('#', first);
+  return {first, (end == std::string::npos ? output.size() : end) - first};
+}
+
+}  // namespace
+
+void add_frame_options(CLI::App& command, FrameOptions& o) {
+  const std::string group = "Flights";
+  command
+      .add_option(
+          "--path", o.path,
+          "a table of cameras: columns x,y,z of the eye and tx,ty,tz of the target, or dx,dy,dz of the direction, "
+          "in metres as --eye has them; the output is frame-####.png")
+      ->group(group);
+  command
+      .add_option("--frames", o.frames,
+                  "pictures along the path, which goes smoothly through its rows (one per row); of a turntable 120")
+      ->check(CLI::Range(1, kMostFrames))
+      ->group(group);
+  command.add_flag("--turntable", o.turntable, "once round, clockwise seen from above, beginning at --view")
+      ->group(group);
+  command.add_flag("--overwrite", o.overwrite, "makes frames that are there anew; else only those that are missing")
+      ->group(group);
+}
+
+void settle_frames(const FrameOptions& o, const std::string& output) {
+  if (!o.several()) {
+    if (o.frames > 0) throw Error("--frames: goes with --path FILE or --turntable");
+    if (o.overwrite) throw Error("--overwrite: goes with --path FILE or --turntable; one picture is always made anew");
+    return;
+  }
+  if (o.turntable && !o.path.empty()) throw Error("--turntable: goes not with --path; leave one of them out");
+  if (place_of_number(output).count == 0) {
+    throw Error(fmt::format("output '{}': frames need a place for their number; let it be frame-####.png", output));
+  }
+}
+
+std::vector<Camera> frame_cameras(const FrameOptions& o, const Box& box, const ViewSettings& view,
+                                  double grid_north_azimuth, int width, int height) {
+  std::vector<Camera> cameras;
+  if (o.turntable) {
+    const int frames = o.frames > 0 ? o.frames : kTurntableFrames;
+    for (int i = 0; i < frames; ++i) {
+      ViewSettings turned = view;
+      turned.azimuth_deg += 360.0 * i / frames;
+      cameras.push_back(Camera::framed(box, turned, grid_north_azimuth, width, height));
+    }
+    return cameras;
+  }
+  const RayTable table = read_rays(o.path);
+  if (table.rows.empty()) throw Error(fmt::format("path '{}': has no rows; one camera each is expected", o.path));
+  std::vector<CameraStation> stations;
+  for (const RayRow& row : table.rows) {
+    stations.push_back({row.origin, table.aim == RayAim::target ? row.aim : row.origin + row.aim});
+  }
+  const auto add = [&](const CameraStation& station) {
+    cameras.push_back(Camera::look_at(station.eye, station.target, view.fov_deg, width, height));
+  };
+  if (o.frames == 0) {
+    for (const CameraStation& station : stations) add(station);
+    return cameras;
+  }
+  const CameraPath path(std::move(stations));
+  for (int i = 0; i < o.frames; ++i) add(path.at(o.frames > 1 ? i / (o.frames - 1.0) : 0.0));
+  return cameras;
+}
+
+std::string frame_name(const std::string& output, int i) {
+  const Place place = place_of_number(output);
+  std::string name = output;
+  return name.replace(place.first, place.count, fmt::format("{:0{}}", i, place.count));
+}
+
+void make_frames(const FrameOptions& o, const std::string& output, const std::vector<Camera>& cameras,
+                 const std::function<void(const Camera&, const std::string&)>& make) {
+  const int frames = static_cast<int>(cameras.size());
+  const Progress progress = terminal_progress("frames");
+  int kept = 0;
+  for (int i = 0; i < frames; ++i) {
+    const std::string name = frame_name(output, i);
+    if (!o.overwrite && std::filesystem::exists(name)) {
+      ++kept;
+      continue;
+    }
+    stop_if_interrupted();
+    make(cameras[static_cast<std::size_t>(i)], name);
+    if (progress) progress((i + 1.0) / frames);
+  }
+  fmt::print("{}: {} frames, {} made now{}\n", output, frames, frames - kept,
+             kept > 0 ? fmt::format(", {} kept as they were; --overwrite makes all anew", kept) : "");
+}
+
+}  // namespace scarp::cli

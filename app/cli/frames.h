@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Many pictures of one terrain: a flight along a path, or once round on a turntable.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "scarp/render/camera.h"
+
+namespace scarp::cli {
+
+/// What was typed.
+struct FrameOptions {
+  std::string path;
+  int frames = 0;  // 0: one per row of the path
+  bool turntable = false, overwrite = false;
+
+  bool several() const { return turntable || !path.empty(); }
+};
+
+/// `options` must live until the subcommand has run.
+void add_frame_options(CLI::App& command, FrameOptions& options);
+
+/// Throws Error: an output without a place for the number, a number of frames without a path or turntable, both at
+/// once.
+void settle_frames(const FrameOptions& options, const std::string& output);
+
+/// Where the frames are seen from. `view` and `box` are those of a turntable. Throws Error naming file and line.
+std::vector<Camera> frame_cameras(const FrameOptions& options, const Box& box, const ViewSettings& view,
+                                  double grid_north_azimuth, int width, int height);
+
+/// The output's name with frame i (from 0) in place of its #s, at least as many digits.
+std::string frame_name(const std::string& output, int i);
+
+/// Calls make(camera, name) for the frames that are not there yet and tells what was done. A frame that fails ends it;
+/// those before stay.
+void make_frames(const FrameOptions& options, const std::string& output, const std::vector<Camera>& cameras,
+                 const std::function<void(const Camera&, const std::string&)>& make);
+
+}  // namespace scarp::cli

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// The options of pictures with water, fog and few large pixels.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "scarp/march/marches.h"
+#include "scarp/render/picture.h"
+#include "scarp/scene/from_raster.h"
+
+namespace scarp::cli {
+
+/// What was typed.
+struct LookOptions {
+  std::optional<double> water, visibility, fog_base, fog_falloff, reach;
+  std::string water_colour, fog, lowres;
+  WaterSettings water_settings;
+  FogSettings fog_settings;
+  ComancheSettings comanche;
+  GroundPaintSettings ground;
+  std::string ground_colours, ramp, overlay;
+  std::optional<double> snow_line;
+  bool no_refraction = false, no_reflection = false;
+};
+
+/// `options` must live until the subcommand has run.
+void add_look_options(CLI::App& command, LookOptions& options);
+
+/// What can be judged without the field. `size` is the text of --size. Throws Error.
+void settle_look(const LookOptions& options, const std::string& size, std::string_view march,
+                 const MarchSettings& march_settings, PictureSettings& picture);
+
+/// Reads the files that the options name, for a raster that is about to become a field.
+void read_look_files(const LookOptions& options, const Raster& raster, const FieldOptions& field,
+                     PictureSettings& picture);
+
+/// What follows from the field where nothing was said: visibility, base and falloff of the fog.
+void finish_look(const LookOptions& options, const HeightField& field, PictureSettings& picture);
+
+/// How far the camera's rays go: infinitely far, but for fields that wrap round.
+double reach_of(const LookOptions& options, const HeightField& field);
+
+}  // namespace scarp::cli

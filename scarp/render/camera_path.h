@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// A flight through some points: smooth, through all of them, at a speed that follows their distances.
+//
+// Eye and target each run along a Catmull-Rom spline in its centripetal form (C. Yuksel et al., "Parameterization and
+// applications of Catmull-Rom curves", 2011), which has neither loops nor cusps between its points. Both share the
+// eye's parameter: at every point of the table the camera looks where the table says.
+#pragma once
+
+#include <vector>
+
+#include "scarp/base/vec.h"
+
+namespace scarp {
+
+struct CameraStation {
+  dvec3 eye;     ///< metres
+  dvec3 target;  ///< metres, not the eye
+};
+
+class CameraPath {
+ public:
+  /// Throws Error when there is no station.
+  explicit CameraPath(std::vector<CameraStation> stations);
+
+  /// The station at a share of the way, 0 (the first) to 1 (the last).
+  CameraStation at(double share) const;
+
+ private:
+  std::vector<CameraStation> stations_;
+  std::vector<double> knots_;  // ascending; one per station
+};
+
+}  // namespace scarp

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Still water over the ground, up to a level: where rays meet it, and what light does there.
+//
+//    eye \      / reflected        the level is a plane, met in closed form: a coast is where the ground goes through
+//   ______\____/_______            it, to the last bit, and no step of any march can fray it
+//          \  .'  .               R  = R0 + (1 - R0) (1 - cos)^5, R0 = ((n - 1) / (n + 1))^2     (Schlick 1994)
+//           \    .                 the rest goes on, refracted by Snell's law, to the bottom that the ray meets
+//      ______\_.'__                 and comes back as bottom * exp(-c d) + the water's own colour * (1 - exp(-c d))
+//                                                                                          (Beer; d as traced)
+// Absorption is that of pure water at 650, 550 and 450 nm (Pope and Fry 1997), and `turbidity` for what floats in it.
+// Waves tilt the normal alone: some sines along different directions whose slopes are known in closed form; those
+// shorter than a pixel is wide are left out.
+//
+// A field that does not wrap round holds water over its own ground, like a basin: its sides are met, too.
+#pragma once
+
+#include <optional>
+
+#include "scarp/base/ray.h"
+#include "scarp/field/height_field.h"
+
+namespace scarp {
+
+struct WaterSettings {
+  double level = 0;                ///< metres, not exaggerated; finite
+  double turbidity = 0.04;         ///< per metre, taken from all colours alike; >= 0
+  vec3 srgb{0.10f, 0.25f, 0.33f};  ///< what deep water gives back, sRGB 0..1
+  double waves = 0.02;             ///< mean slope of the surface (root mean square), 0..0.5; 0: a mirror
+  double wavelength = 0;           ///< of the longest wave in metres, >= 0; 0: twice the shorter side of a cell
+  bool refraction = true;          ///< whether rays go on to the bottom; false: water of the one colour
+  bool reflection = true;          ///< whether reflected rays are traced in the terrain; false: they see the sky alone
+};
+
+/// Throws Error naming the first setting out of its range.
+void validate(const WaterSettings& settings);
+
+/// Of air to water.
+constexpr double kWaterIndex = 1.333;
+
+/// The share of light that is reflected where the ray and the normal enclose an angle of this cosine, 0..1.
+double schlick(double cosine, double index = kWaterIndex);
+
+class Water {
+ public:
+  /// The settings must be valid. Refers to the field.
+  Water(const WaterSettings& settings, const HeightField& field);
+
+  const WaterSettings& settings() const { return settings_; }
+  /// Metres of world z: exaggerated as the field is.
+  double level() const { return level_; }
+
+  struct Meeting {
+    double t;                   ///< in lengths of the ray's direction
+    dvec3 normal;               ///< unit, of the still water: up, or level at the sides of a field that ends
+    std::optional<Cell> sea{};  ///< the cell of is_sea() there, if it is one
+  };
+  /// Where a ray comes into the water from outside, within its range; ground may be met before. Nothing where the ray
+  /// begins in the water, and over holes.
+  std::optional<Meeting> meets(const Ray& ray) const;
+  /// Whether all corners of a cell are exactly at the level: a sea that the elevation model has as flat ground. Nobody
+  /// knows how deep it is.
+  bool is_sea(Cell cell) const;
+  /// Where a ray that runs in the water comes out at a side of a field that ends; infinite in one that does not.
+  double leaves(const Ray& ray) const;
+
+  /// Unit normal of the surface with its waves; `footprint` is the width of a pixel there in metres.
+  dvec3 normal_at(const dvec3& position, double footprint) const;
+  /// Bottom, or what else is there, `distance` metres away through the water, in linear light.
+  vec3 through(vec3 behind, double distance) const;
+  /// The share of sunlight that is left, per colour, `depth` metres below the surface; to_sun is a unit vector.
+  vec3 sunlight(double depth, const dvec3& to_sun) const;
+  /// Of water without a bottom in sight.
+  vec3 deep() const { return deep_; }
+
+ private:
+  vec3 left_after(double distance) const;
+
+  WaterSettings settings_;
+  const HeightField& field_;
+  double level_, wavelength_;
+  vec3 deep_, per_metre_;
+};
+
+/// Mirrored at a unit normal that points against `direction`.
+dvec3 reflected(const dvec3& direction, const dvec3& normal);
+/// Refracted on the way from air into water (Snell); both unit vectors, `normal` against `direction`.
+dvec3 refracted(const dvec3& direction, const dvec3& normal, double index = kWaterIndex);
+
+}  // namespace scarp

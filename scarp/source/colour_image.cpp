@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/colour_image.h"
+
+#include <fmt/format.h>
+#include <gdal_alg.h>
+#include <gdal_priv.h>
+#include <gdal_utils.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+
+#include "scarp/base/error.h"
+#include "scarp/base/vec.h"
+#include "scarp/source/gdal_dataset.h"
+#include "scarp/source/gdal_errors.h"
+#include "scarp/source/raster_name.h"
+
+namespace scarp {
+namespace {
+
+// No draped picture becomes larger than this along a side.
+constexpr int kMostSide = 16384;
+
+struct WarpOptions {
+  GDALWarpAppOptions* options;
+  explicit WarpOptions(char** arguments) : options(GDALWarpAppOptionsNew(arguments, nullptr)) {}
+  ~WarpOptions() { GDALWarpAppOptionsFree(options); }
+  WarpOptions(const WarpOptions&) = delete;
+  WarpOptions& operator=(const WarpOptions&) = delete;
+};
+
+struct TranslateOptions {
+  GDALTranslateOptions* options;
+  explicit TranslateOptions(char** arguments) : options(GDALTranslateOptionsNew(arguments, nullptr)) {}
+  ~TranslateOptions() { GDALTranslateOptionsFree(options); }
+  TranslateOptions(const TranslateOptions&) = delete;
+  TranslateOptions& operator=(const TranslateOptions&) = delete;
+};
+
+// Palettes become colours; nothing is copied when there are bands of colours already.
+GDALDatasetUniquePtr in_colours(GDALDatasetUniquePtr dataset, const GdalSession& session) {
+  if (dataset->GetRasterBand(1)->GetRasterDataType() != GDT_Byte) {
+    throw Error("is no picture of 8 bits per channel");
+  }
+  if (dataset->GetRasterCount() != 1 || !dataset->GetRasterBand(1)->GetColorTable()) return dataset;
+  CPLStringList arguments;
+  for (const char* argument : {"-of", "MEM", "-expand", "rgba"}) arguments.AddString(argument);
+  const TranslateOptions options(arguments.List());
+  int wrong = 0;
+  GDALDatasetUniquePtr colours(
+      GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(dataset.get()), options.options, &wrong)));
+  if (!colours) throw Error(session.reason("its palette cannot be read"));
+  return colours;
+}
+
+ColourImage pixels_of(GDALDataset& dataset, int height, const GdalSession& session) {
+  ColourImage image{dataset.GetRasterXSize(), height, {}};
+  image.rgba.assign(4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(height), 255);
+  const int bands = dataset.GetRasterCount();
+  for (int channel = 0; channel < 4; ++channel) {
+    int band = 0;
+    if (channel < 3) {
+      band = bands >= 3 ? channel + 1 : 1;
+    } else if (bands == 2 || bands >= 4) {
+      band = bands == 2 ? 2 : 4;
+    }
+    if (band == 0) continue;
+    const CPLErr result =
+        dataset.GetRasterBand(band)->RasterIO(GF_Read, 0, 0, image.width, height, image.rgba.data() + channel,
+                                              image.width, height, GDT_Byte, 4, std::int64_t{4} * image.width, nullptr);
+    if (result != CE_None) throw Error(session.reason("cannot be read"));
+  }
+  return image;
+}
+
+bool has_place(GDALDataset& dataset) {
+  double transform[6];
+  return dataset.GetGeoTransform(transform) == CE_None;
+}
+
+// Of the picture, in units of the raster's CRS.
+dvec2 pixel_size(GDALDataset& dataset, const Georeference& georeference, const GdalSession& session) {
+  CPLStringList options;
+  if (!georeference.crs_wkt.empty() && dataset.GetSpatialRef() != nullptr) {
+    options.SetNameValue("DST_SRS", georeference.crs_wkt.c_str());
+  }
+  GDALDatasetH handle = GDALDataset::ToHandle(&dataset);
+  void* transform = GDALCreateGenImgProjTransformer2(handle, nullptr, options.List());
+  double place[6] = {};
+  int across = 0, down = 0;
+  const bool found = transform != nullptr && GDALSuggestedWarpOutput(handle, GDALGenImgProjTransform, transform, place,
+                                                                     &across, &down) == CE_None;
+  if (transform != nullptr) GDALDestroyGenImgProjTransformer(transform);
+  if (!found) throw Error(session.reason("cannot be brought onto the raster"));
+  return {std::abs(place[1]), std::abs(place[5])};
+}
+
+}  // namespace
+
+ColourImage read_colour_row(const std::string& path) {
+  GdalSession session;
+  const StrictReading strict;
+  try {
+    const GDALDatasetUniquePtr dataset = in_colours(open_gdal_raster(path, session), session);
+    return pixels_of(*dataset, 1, session);
+  } catch (const Error& error) {
+    throw Error(fmt::format("ramp '{}': {}", path, error.what()));
+  }
+}
+
+ColourImage read_overlay(const std::string& path, const Georeference& georeference, int cols, int rows) {
+  GdalSession session;
+  const StrictReading strict;
+  try {
+    GDALDatasetUniquePtr dataset = in_colours(open_gdal_raster(path, session), session);
+    const bool placed = has_place(*dataset);
+    if (placed != georeference.present) {
+      throw Error(placed ? "has a place on the earth, and the raster has none; give it one with --crs and --bounds"
+                         : "has no place on the earth, and the raster has one; gdal_translate -a_srs -a_ullr gives it");
+    }
+    if (!placed) return pixels_of(*dataset, dataset->GetRasterYSize(), session);
+    const auto& m = georeference.map_from_node;
+    const double west = m[0], east = m[0] + (cols - 1) * m[1], north = m[3], south = m[3] + (rows - 1) * m[5];
+    CPLStringList arguments;
+    const auto add = [&](const std::string& text) { arguments.AddString(text.c_str()); };
+    for (const char* word : {"-of", "MEM", "-r", "bilinear", "-te"}) add(word);
+    for (const double edge : {west, south, east, north}) add(fmt::format("{}", edge));
+    if (!georeference.crs_wkt.empty() && dataset->GetSpatialRef() != nullptr) {
+      add("-t_srs");
+      add(georeference.crs_wkt);
+    }
+    // As fine as the picture itself.
+    const dvec2 pixel = pixel_size(*dataset, georeference, session);
+    const int across = std::clamp(static_cast<int>(std::ceil((east - west) / pixel.x)), 1, kMostSide);
+    const int down = std::clamp(static_cast<int>(std::ceil((north - south) / pixel.y)), 1, kMostSide);
+    add("-ts");
+    add(fmt::format("{}", across));
+    add(fmt::format("{}", down));
+    const int count = dataset->GetRasterCount();
+    if (count != 2 && count != 4) add("-dstalpha");
+    const WarpOptions options(arguments.List());
+    if (!options.options) throw Error(session.reason("cannot be brought onto the raster"));
+    GDALDatasetH source = GDALDataset::ToHandle(dataset.get());
+    int wrong = 0;
+    const GDALDatasetUniquePtr warped(
+        GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options.options, &wrong)));
+    if (!warped) throw Error(session.reason("cannot be brought onto the raster"));
+    ColourImage image = pixels_of(*warped, warped->GetRasterYSize(), session);
+    bool seen = false;
+    for (std::size_t i = 3; i < image.rgba.size() && !seen; i += 4) seen = image.rgba[i] != 0;
+    if (!seen) {
+      throw Error(fmt::format("lies beside the raster, which goes from {:.10g} to {:.10g} and from {:.10g} to {:.10g}",
+                              west, east, south, north));
+    }
+    return image;
+  } catch (const Error& error) {
+    throw Error(fmt::format("overlay '{}': {}", path, error.what()));
+  }
+}
+
+}  // namespace scarp

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: MIT
+// The look comanche, water, fog, flights and composites as typed.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "cli/program.h"
+#include "output/read_png.h"
+#include "scarp/output/png.h"
+#ifdef SCARP_OPENEXR
+#include "scarp/output/exr.h"
+#endif
+
+namespace scarp {
+namespace {
+
+// 9 x 9 samples of a hill, 0 to 80 m, ESRI's ASCII grid, cells of 10 m.
+std::string hill(const test::Scratch& scratch) {
+  std::string text = "ncols 9\nnrows 9\nxllcenter 500000\nyllcenter 4000000\ncellsize 10\n";
+  for (int row = 0; row < 9; ++row) {
+    for (int col = 0; col < 9; ++col) {
+      const int away = std::max(std::abs(row - 4), std::abs(col - 4));
+      text += std::to_string(80 - 20 * away) + " ";
+    }
+    text += "\n";
+  }
+  return scratch.write("hill.asc", text);
+}
+
+bool is_one_line(const std::string& err) { return std::count(err.begin(), err.end(), '\n') == 1 && err.back() == '\n'; }
+
+TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch), out = scratch.path("out.png");
+  scratch.write("gap.cpt", "0 0 0 0 10 255 255 255\n20 0 0 0 30 255 255 255\n");
+  scratch.write("down.cpt", "10 0 0 0 5 255 255 255\n");
+  scratch.write("empty.csv", "x,y,z,tx,ty,tz\n");
+  scratch.write("words.csv", "x,y,z,tx,ty,tz\n1,2,three,4,5,6\n");
+  const std::vector<std::uint8_t> pixels(12, 200);
+  write_png(scratch.path("unplaced.png"), {pixels.data(), 2, 2});
+  write_png(scratch.path("elsewhere.png"), {pixels.data(), 2, 2});
+  scratch.write("elsewhere.pgw", "1\n0\n0\n-1\n100.5\n200.5\n");
+  const std::vector<std::string> before = scratch.files();
+  struct Case {
+    std::vector<std::string> options;
+    std::string says;
+  };
+  const std::vector<Case> cases{
+      {{"--look", "comanchee"}, "look 'comanchee': unknown; there are: shaded, height, steps, error, comanche"},
+      {{"--look", "comanche", "--size", "640x480"}, "--lowres WIDTHxHEIGHT and --pixel-size N"},
+      {{"--lowres", "64x48"}, "goes with --look comanche"},
+      {{"--look", "comanche", "--lowres", "64"}, "expected WIDTHxHEIGHT"},
+      {{"--look", "comanche", "--pixel-size", "0"}, "comanche: the scale is 0; it must be 1 to 64"},
+      {{"--look", "comanche", "--steps", "0"}, "the number of steps is 0"},
+      {{"--look", "comanche", "--reach", "-5"}, "--reach '-5': expected metres, above 0"},
+      {{"--look", "steps", "--water", "10"}, "goes with the looks shaded and comanche"},
+      {{"--water", "10", "--waves", "3"}, "water: the waves' slope is 3; it must be 0 to 0.5"},
+      {{"--water", "10", "--water-colour", "blue"}, "--water-colour 'blue': expected RRGGBB"},
+      {{"--water", "90000"}, "is not below the eye"},
+      {{"--fog", "mist"}, "fog 'mist': unknown; there are: none, distance, height, iterations"},
+      {{"--fog", "iterations"}, "goes with --look comanche --march fixed-step"},
+      {{"--look", "comanche", "--fog", "iterations"}, "goes with --look comanche --march fixed-step"},
+      {{"--look", "comanche", "--shells"}, "each goes with --march fixed-step"},
+      {{"--fog", "distance", "--visibility", "0"}, "fog: the visibility is 0"},
+      {{"--ground", "lava"}, "--ground 'lava': expected ramp or natural"},
+      {{"--ramp", scratch.path("gap.cpt")}, "line 2: begins at 20, where the line before ends at 10"},
+      {{"--ramp", scratch.path("down.cpt")}, "line 1: 10 to 5 does not ascend"},
+      {{"--ramp", scratch.path("none.cpt")}, "none.cpt': cannot be opened"},
+      {{"--ramp", scratch.path("none.png")}, "none.png': does not exist"},
+      {{"--overlay", scratch.path("unplaced.png")}, "has no place on the earth, and the raster has one"},
+      {{"--overlay", scratch.path("elsewhere.png")}, "lies beside the raster"},
+      {{"--path", scratch.path("empty.csv")}, "frames need a place for their number"},
+      {{"--path", scratch.path("empty.csv"), "--turntable"}, "leave one of them out"},
+      {{"--frames", "3"}, "--frames: goes with --path FILE or --turntable"},
+      {{"--depth-range", "1,100"}, "let the name of the output end in .exr"},
+  };
+  for (const Case& one : cases) {
+    std::vector<std::string> arguments{"render", dem, "-o", out};
+    arguments.insert(arguments.end(), one.options.begin(), one.options.end());
+    const auto result = test::run(arguments);
+    EXPECT_EQ(result.status, 1) << one.says << "\n" << result.err;
+    EXPECT_NE(result.err.find(one.says), std::string::npos) << one.says << "\n" << result.err;
+    EXPECT_TRUE(is_one_line(result.err)) << result.err;
+  }
+  for (const auto& [path, says] :
+       {std::pair("empty.csv", "has no rows"), {"words.csv", "line 2"}, {"none.csv", "none.csv"}}) {
+    const auto result = test::run({"render", dem, "-o", scratch.path("f##.png"), "--path", scratch.path(path)});
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find(says), std::string::npos) << result.err;
+  }
+  EXPECT_EQ(scratch.files(), before) << "nothing is left behind";
+}
+
+TEST(Comanche, IsScaledUpByWholeFactors) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch), out = scratch.path("out.png");
+  const auto result = test::run({"render", dem, "-o", out, "--look", "comanche", "--wrap", "mirror", "--lowres",
+                                 "40x30", "--pixel-size", "4", "--water", "20", "--fog", "height"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const test::Rgb picture = test::read_png(out);
+  ASSERT_EQ(picture.width, 160);
+  ASSERT_EQ(picture.height, 120);
+  const auto at = [&](int x, int y) { return picture.bytes.data() + 3 * (y * 160 + x); };
+  for (int y = 0; y < 120; ++y) {
+    for (int x = 0; x < 160; ++x) EXPECT_TRUE(std::equal(at(x, y), at(x, y) + 3, at(x / 4 * 4, y / 4 * 4)));
+  }
+}
+
+TEST(Flight, GoesOnWhereItStopped) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch), frames = scratch.path("f-###.png");
+  const std::vector<std::string> arguments{"render", dem,     "-o",   frames, "--turntable", "--frames", "4",
+                                           "--size", "32x24", "--aa", "1"};
+  auto result = test::run(arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("4 frames, 4 made now"), std::string::npos) << result.out;
+  const std::string second = test::text_of(scratch.path("f-002.png"));
+  EXPECT_NE(second, test::text_of(scratch.path("f-000.png")));
+  std::filesystem::remove(scratch.path("f-002.png"));
+  scratch.write("f-001.png", "mine");
+  result = test::run(arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("4 frames, 1 made now, 3 kept"), std::string::npos) << result.out;
+  EXPECT_EQ(test::text_of(scratch.path("f-002.png")), second);
+  EXPECT_EQ(test::text_of(scratch.path("f-001.png")), "mine");
+  std::vector<std::string> anew = arguments;
+  anew.push_back("--overwrite");
+  EXPECT_EQ(test::run(anew).status, 0);
+  EXPECT_NE(test::text_of(scratch.path("f-001.png")), "mine");
+}
+
+// The largest file that a process may write stands for the full disk: the frame of noise is larger than those of haze.
+TEST(Flight, AFullDiskLeavesTheFramesBefore) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch);
+  scratch.write(
+      "path.csv",
+      "x,y,z,tx,ty,tz\n40,-50,60,40,-500,5000\n40,-50,70,40,-500,5000\n40,-50,150,40,40,40\n40,-50,60,40,-500,5000\n");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit small{2500, before.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);  // inherited: writing fails instead
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const auto result =
+      test::run({"render", dem, "-o", scratch.path("f#.png"), "--path", scratch.path("path.csv"), "--size", "160x120",
+                 "--aa", "1", "--no-plinth", "--detail", "1", "--detail-size", "4"});
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("f2.png"), std::string::npos) << result.err;
+  EXPECT_TRUE(is_one_line(result.err)) << result.err;
+  EXPECT_EQ(scratch.files(), (std::vector<std::string>{"f0.png", "f1.png", "hill.asc", "path.csv"}));
+  EXPECT_EQ(test::read_png(scratch.path("f1.png")).width, 160);
+}
+
+TEST(Overlay, LiesWhereItsPlaceIs) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch);
+  // Over the western half of the ground, red; the eastern half has the ramp's grey.
+  std::vector<std::uint8_t> red(3 * 40 * 80);
+  for (std::size_t i = 0; i < red.size(); i += 3) red[i] = 255;
+  write_png(scratch.path("red.png"), {red.data(), 40, 80});
+  scratch.write("red.pgw", "1\n0\n0\n-1\n500000.5\n4000079.5\n");
+  const auto result = test::run({"render", dem, "-o", scratch.path("out.png"), "--top", "--size", "80x80", "--ramp",
+                                 "grey", "--overlay", scratch.path("red.png"), "--haze", "0", "--no-plinth"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const test::Rgb picture = test::read_png(scratch.path("out.png"));
+  for (int y = 2; y < 78; y += 5) {
+    for (int x = 2; x < 78; x += 5) {
+      const auto* p = picture.bytes.data() + 3 * (y * 80 + x);
+      // Within a pixel of its border colours are mixed, by the warper and once more when it is looked up.
+      if (x >= 38 && x <= 42) continue;
+      EXPECT_EQ(p[1] == 0 && p[2] == 0, x < 40) << x << ", " << y;
+    }
+  }
+}
+
+#ifdef SCARP_OPENEXR
+TEST(Composite, TheNearerPixelIsSeen) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch), ours = scratch.path("ours.exr");
+  ASSERT_EQ(
+      test::run({"render", dem, "-o", ours, "--top", "--size", "8x8", "--aa", "1", "--depth-range", "1,1000"}).status,
+      0);
+  // A level plate in green: seen from above it hides what is deeper. The eye is 80 + 80 + 80 m over the middle of the
+  // box; what depth that is, the file says.
+  std::vector<float> zero(64, 0.0f), one(64, 1.0f), z(64, 300.0f), device(64);
+  const auto write = [&](const std::string& name, float plate) {
+    for (std::size_t i = 0; i < 64; ++i) {
+      z[i] = plate;
+      device[i] = 1000.0f / 999.0f * (1 - 1 / plate);
+    }
+    write_exr(
+        scratch.path(name),
+        {8, 8, {{"R", zero.data()}, {"G", one.data()}, {"B", zero.data()}, {"Z", z.data()}, {"D", device.data()}}, {}});
+  };
+  const auto greens = [&](const std::vector<std::string>& more, const std::string& theirs) {
+    std::vector<std::string> arguments{"composite", ours, scratch.path(theirs), "-o", scratch.path("out.png")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = test::run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const test::Rgb picture = test::read_png(scratch.path("out.png"));
+    int count = 0;
+    for (std::size_t i = 0; i < 64; ++i) {
+      count += picture.bytes[3 * i] == 0 && picture.bytes[3 * i + 1] == 255 && picture.bytes[3 * i + 2] == 0;
+    }
+    return count;
+  };
+  write("far.exr", 100000);
+  EXPECT_EQ(greens({}, "far.exr"), 0);
+  write("near.exr", 1.5f);
+  EXPECT_EQ(greens({}, "near.exr"), 64);
+  // Between the summit and the foot of the hill, by both kinds of depth the same.
+  int between = 0;
+  for (float plate = 100; plate < 400; plate += 40) {
+    write("plate.exr", plate);
+    const int by_metres = greens({}, "plate.exr");
+    EXPECT_EQ(by_metres, greens({"--depth-channel", "D", "--depth-range", "1,1000"}, "plate.exr")) << plate;
+    between += by_metres > 0 && by_metres < 64;
+  }
+  EXPECT_GE(between, 1);
+  write_exr(scratch.path("small.exr"),
+            {4, 4, {{"R", zero.data()}, {"G", one.data()}, {"B", zero.data()}, {"Z", z.data()}}, {}});
+  const auto result = test::run({"composite", ours, scratch.path("small.exr"), "-o", scratch.path("x.png")});
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.err.find("4 x 4 pixels"), std::string::npos) << result.err;
+}
+#endif
+
+}  // namespace
+}  // namespace scarp
