@@ -141,6 +141,8 @@ class Trace {
   // the surface. False when it loses distance at once (a hit here), or at the end.
   bool leave(double& t, Hit& hit) {
     const double start = t;
+    // It may be told to begin a little inside: by what the ray that found the place rounded.
+    const double begin = std::min(0.0, value(t));
     double length = kFirst * (t_exit_ - t);
     while (t < t_exit_) {
       if (used_up()) {
@@ -154,7 +156,7 @@ class Trace {
         length *= kGrowth;
         const double f = value(t);
         if (f > 4 * rounded) return true;
-        if (f < -2 * rounded) {
+        if (f < begin - 2 * rounded) {
           hit = hit_at(start);
           return false;
         }
