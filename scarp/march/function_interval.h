@@ -9,6 +9,7 @@
 
 namespace scarp::judge {
 
+using scarp::Interval;
 using boost::numeric::square;
 
 // A position along the ray: base + rate * t + more. Turning and scaling it loses nothing; a warp goes into `more`.
