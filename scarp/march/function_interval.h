@@ -9,8 +9,8 @@
 
 namespace scarp::judge {
 
-using scarp::Interval;
 using boost::numeric::square;
+using scarp::Interval;
 
 // A position along the ray: base + rate * t + more. Turning and scaling it loses nothing; a warp goes into `more`.
 struct Position {

@@ -20,7 +20,7 @@ MarchPreset elevated() {
                 {},
                 "t += 0.4 h, stops at |h| < 0.0015 t, 300 steps",
                 "the plane that rays are cut at: here the certified range of heights",
-                "I. Quilez, \"Elevated\", 2009, as in the founding text on height-field ray casting"};
+                "I. Quilez, \"Elevated\", 2009; the founding text on height-field ray casting has the same"};
   p.settings.relaxed = {.step_factor = 0.4, .tolerance = 0.0015, .max_steps = 300};
   return p;
 }
@@ -62,9 +62,8 @@ MarchPreset snowy() {
 }
 
 MarchPreset castle() {
-  MarchPreset p{"castle", "naive",
-                {},       "t += h, stops at h < 0.001 units (1 unit: 1 m), 1000 steps",
-                "",       "\"Castle\", as in our reference on rendering"};
+  MarchPreset p{
+      "castle", "naive", {}, "t += h, stops at h < 0.001 units (1 unit: 1 m), 1000 steps", "", "the shader \"Castle\""};
   p.settings.naive = {.step_factor = 1, .min_step = kNoLeastStep, .tolerance = 0, .max_steps = 1000};
   p.settings.function.tolerance = 0.001;
   return p;
