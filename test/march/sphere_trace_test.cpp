@@ -24,7 +24,7 @@ using namespace shape;
 #ifdef NDEBUG
 constexpr int kRays = 2000;
 #else
-constexpr int kRays = 24;
+constexpr int kRays = 200;
 #endif
 constexpr double kTolerance = SphereTraceSettings{}.tolerance;
 
