@@ -24,7 +24,7 @@ using namespace shape;
 #ifdef NDEBUG
 constexpr int kRays = 2000;
 #else
-constexpr int kRays = 24;
+constexpr int kRays = 200;
 #endif
 constexpr double kTolerance = SphereTraceSettings{}.tolerance;
 
@@ -103,11 +103,13 @@ TEST(SphereTrace, LosesNothing) {
     fmt::print("{}: {} crossings, {} clear, {} undecided, {} exhausted, {} early, {} inexact, {:.1f} steps\n",
                named.name, counts.crossings, counts.clear, counts.undecided, counts.exhausted, counts.early,
                counts.inexact, counts.steps / kRays);
-    EXPECT_GE(counts.crossings, kRays / 20) << named.name;
+    // Enough of either kind for the test to mean something.
+    EXPECT_GE(counts.crossings, kRays / 40) << named.name;
+    EXPECT_GE(counts.clear, kRays / 40) << named.name;
     // Of rays that are aimed at edges some touch them.
     EXPECT_LE(counts.undecided, 1 + kRays / 20) << named.name;
     // Not only conservative, but right.
-    EXPECT_LE(counts.exhausted, kRays / 200) << named.name;
+    EXPECT_LE(counts.exhausted, 1 + kRays / 200) << named.name;
     EXPECT_LE(counts.early + counts.inexact, 1 + kRays / 200) << named.name;
   }
 }
