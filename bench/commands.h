@@ -32,7 +32,7 @@ struct HeightsOptions {
   TraceOptions trace;
   std::vector<int> sizes{2049};
   std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes"};
-  std::vector<std::string> engines{"scarp", "embree-tri", "embree-grid"};
+  std::vector<std::string> engines{"scarp", "embree-tri", "embree-grid", "bullet"};
   std::string embree_quality = "high";
 };
 void run_heights(const HeightsOptions& options, const ReportOptions& report);
@@ -43,6 +43,16 @@ struct NaiveOptions {
   double miss_limit = 0.001;  ///< share of the judge's hits that naive may miss
 };
 void run_naive(const NaiveOptions& options, const ReportOptions& report);
+
+/// `survey`: Scarp's best mode over its peers' best over several fields, cameras and suns; the median and the worst.
+struct SurveyOptions {
+  TraceOptions trace;
+  std::vector<std::string> kinds{"ridged", "fbm"};
+  std::vector<std::string> dems;
+  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao"};
+  std::vector<std::string> peers{"embree-tri", "embree-grid"};
+};
+void run_survey(const SurveyOptions& options, const ReportOptions& report);
 
 /// `simd`: the vectors beside the scalar walk, one thread, with each of their ideas left out.
 struct SimdOptions {

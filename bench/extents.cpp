@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench extents`: fields as wide as 65,536 samples. Rays aimed at nodes, from above and within a window, are
-// also asked of a small field cut out of the large one: both have to tell the same.
+// also asked of a small field cut out of the large one: both have to tell the same. And what a ray costs in batches, on
+// one thread, class by class: how that grows with the field.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <vector>
 
 #include "bench/commands.h"
+#include "bench/protocol.h"
 #include "bench/random.h"
+#include "bench/rays.h"
+#include "bench/scarp_engine.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/max_mip.h"
@@ -26,6 +31,9 @@ constexpr int kAside = 40;      // and how far from it, at most, along each axis
 // The ground rises by less than 4 per cell along each axis. So along a ray the clearance falls by kAbove per t, less
 // what the ground under its shadow of at most sqrt(2) kAside cells can fall with it.
 constexpr double kFall = kAbove - 4 * 1.4142136 * 1.4142136 * kAside;
+
+const std::vector<RayClass> kGrowthClasses{RayClass::primary, RayClass::shadow, RayClass::grazing, RayClass::ao};
+constexpr RayCounts kGrowthRays{960, 544, 1 << 18, 1 << 18};
 
 // Hills of several lengths, in whole numbers, and a hash on top: a height for each sample without a table.
 std::int16_t height(int col, int row) {
@@ -75,6 +83,31 @@ std::vector<Aimed> aimed_rays(int cols, int rows, std::int64_t windows, int per_
   return rays;
 }
 
+// Processor time per ray in batches, ns, the best of three passes.
+double ns_in_batches(const HeightTarget& target, const RaySet& set) {
+  constexpr std::int64_t kBatch = 4096;
+  constexpr int kPasses = 3;
+  std::vector<Ray> rays;
+  for (const BenchRay& ray : set.rays) rays.push_back(library_ray(ray));
+  std::vector<Hit> hits(kBatch);
+  std::vector<std::uint8_t> blocked(kBatch);
+  double best_s = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const Stopwatch watch;
+    for (std::int64_t begin = 0; begin < set.size(); begin += kBatch) {
+      const auto count = static_cast<std::size_t>(std::min(kBatch, set.size() - begin));
+      const std::span<const Ray> part(rays.data() + begin, count);
+      if (set.any_hit) {
+        occluded_max_mip_simd(target, part, {blocked.data(), count});
+      } else {
+        closest_hits_max_mip_simd(target, part, {hits.data(), count});
+      }
+    }
+    best_s = std::min(best_s, watch.cpu_s());
+  }
+  return 1e9 * best_s / static_cast<double>(set.size());
+}
+
 Json measure(int cols, int rows, const ExtentsOptions& options) {
   Stopwatch watch;
   const HeightField field = make_field(0, 0, cols, rows);
@@ -117,6 +150,9 @@ Json measure(int cols, int rows, const ExtentsOptions& options) {
   row["gsamples_per_s"] = static_cast<double>(cols) * rows / build_s * 1e-9;
   row["rays"] = rays.size();
   row["ns_per_ray"] = 1e9 * cast_s / static_cast<double>(rays.size());
+  const BenchField ground{field, "hills", field.max_height() - field.min_height(), 0};
+  for (const RaySet& set : make_rays(ground, kGrowthClasses, kGrowthRays, 1))
+    row[std::string(name_of(set.ray_class)) + "_ns"] = ns_in_batches(target, set);
   row["lost"] = lost;
   row["different"] = different;
   return row;
@@ -126,8 +162,8 @@ Json measure(int cols, int rows, const ExtentsOptions& options) {
 
 void run_extents(const ExtentsOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{
-      {"samples", "type", "B/sample", "build s", "Gsamples/s", "rays", "ns/ray", "lost", "different"}};
+  std::vector<std::vector<std::string>> lines{{"samples", "type", "B/sample", "build s", "Gsamples/s", "rays", "ns/ray",
+                                               "primary", "shadow", "grazing", "ao", "lost", "different"}};
   for (const auto& [cols, count] : options.sizes) {
     if (std::min(cols, count) < kWindow) {
       throw Error(
@@ -136,7 +172,9 @@ void run_extents(const ExtentsOptions& options, const ReportOptions& report) {
     const Json row = rows.emplace_back(measure(cols, count, options));
     lines.push_back({fmt::format("{} x {}", cols, count), row["sample_type"], short_number(row["bytes_per_sample"]),
                      short_number(row["build_s"]), short_number(row["gsamples_per_s"]), short_number(row["rays"]),
-                     short_number(row["ns_per_ray"]), short_number(row["lost"]), short_number(row["different"])});
+                     short_number(row["ns_per_ray"]), short_number(row["primary_ns"]), short_number(row["shadow_ns"]),
+                     short_number(row["grazing_ns"]), short_number(row["ao_ns"]), short_number(row["lost"]),
+                     short_number(row["different"])});
   }
   print_table(lines, 2);
   write_json(report, rows);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 
+#include "bench/bullet_peer.h"
 #include "bench/commands.h"
 #include "bench/embree_peer.h"
 #include "bench/judge.h"
@@ -33,8 +34,11 @@ class Contest {
       } else if (name == "embree-grid") {
         grid_.emplace(ground.field, EmbreeSurface::grid, quality);
         add(grid_->engines());
+      } else if (name == "bullet") {
+        for (const bool accelerated : {true, false})
+          add({bullets_.emplace_back(std::make_unique<BulletPeer>(ground.field, accelerated))->engine()});
       } else {
-        throw Error(fmt::format("engine '{}': unknown; there are: scarp, embree-tri, embree-grid", name));
+        throw Error(fmt::format("engine '{}': unknown; there are: scarp, embree-tri, embree-grid, bullet", name));
       }
     }
   }
@@ -49,6 +53,7 @@ class Contest {
 
   ScarpGround scarp_;
   std::optional<EmbreePeer> triangles_, grid_;
+  std::vector<std::unique_ptr<BulletPeer>> bullets_;
   std::vector<Engine> engines_;
 };
 

@@ -19,22 +19,14 @@ constexpr int kLeastSize = 33, kMostSize = 32767;  // Embree's grids end there
 std::pair<int, int> size_from(const std::string& text) {
   int cols = 0, rows = 0, end = 0;
   if (std::sscanf(text.c_str(), "%dx%d%n", &cols, &rows, &end) != 2 || text.c_str()[end] != '\0' ||
-      std::max(cols, rows) > 65536 || std::min(cols, rows) < 1) {
-    throw scarp::Error("--sizes '" + text + "': expected COLSxROWS, each at most 65536, for example 65536x512");
+      std::max(cols, rows) > 65537 || std::min(cols, rows) < 1) {
+    throw scarp::Error("--sizes '" + text + "': expected COLSxROWS, each at most 65537, for example 65536x512");
   }
   return {cols, rows};
 }
 
-void add_trace_options(CLI::App& command, TraceOptions& trace) {
-  command.add_option("--dem", trace.field.dem, "a raster file without holes, instead of a procedural DEM");
-  command.add_option("--kind", trace.field.kind, "procedural DEM")
-      ->check(CLI::IsMember({"ridged", "fbm"}))
-      ->capture_default_str();
-  command.add_option("--seed", trace.field.seed, "of the procedural DEM")->capture_default_str();
-  command.add_option("--exaggerations", trace.exaggerations, "vertical, one or several")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+// Threads, repeats and rays.
+void add_measure_options(CLI::App& command, TraceOptions& trace) {
   command.add_option("--threads", trace.threads, "numbers of threads, one or several")
       ->delimiter(',')
       ->check(CLI::Range(1, 1024))
@@ -43,9 +35,6 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command.add_option("--ray-seed", trace.ray_seed, "of the rays")->capture_default_str();
-  command.add_option("--judged", trace.judged, "rays per class that the oracle answers, too")
-      ->check(CLI::Range(1, 100'000'000))
-      ->capture_default_str();
   command
       .add_option("--pass-limit", trace.pass_limit_s,
                   "seconds; an engine that takes longer for a pass traces part of the rays")
@@ -60,6 +49,22 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
           "full: 1920 x 1080 pixels and 2^20 rays for each other class; small: 160 x 88 and 2^12, to see that all "
           "works")
       ->check(CLI::IsMember({"full", "small"}));
+}
+
+void add_trace_options(CLI::App& command, TraceOptions& trace) {
+  command.add_option("--dem", trace.field.dem, "a raster file without holes, instead of a procedural DEM");
+  command.add_option("--kind", trace.field.kind, "procedural DEM")
+      ->check(CLI::IsMember({"ridged", "fbm"}))
+      ->capture_default_str();
+  command.add_option("--seed", trace.field.seed, "of the procedural DEM")->capture_default_str();
+  command.add_option("--exaggerations", trace.exaggerations, "vertical, one or several")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  add_measure_options(command, trace);
+  command.add_option("--judged", trace.judged, "rays per class that the oracle answers, too")
+      ->check(CLI::Range(1, 100'000'000))
+      ->capture_default_str();
 }
 
 void add_json_option(CLI::App& command, ReportOptions& report) {
@@ -91,6 +96,28 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_trace_options(*heights_command, heights.trace);
   add_json_option(*heights_command, report);
+
+  SurveyOptions survey;
+  CLI::App* survey_command =
+      app.add_subcommand("survey", "Scarp over Embree in several fields, from several cameras: median and worst");
+  survey_command->add_option("--size", survey.trace.field.size, "samples per side of the procedural DEMs")
+      ->check(CLI::Range(kLeastSize, kMostSize))
+      ->capture_default_str();
+  survey_command->add_option("--kinds", survey.kinds, "of procedural DEMs, one or several")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"ridged", "fbm"}))
+      ->capture_default_str();
+  survey_command->add_option("--dems", survey.dems, "raster files without holes, too")->delimiter(',');
+  survey_command->add_option("--classes", survey.classes, "of rays")
+      ->delimiter(',')
+      ->check(CLI::IsMember(survey.classes))
+      ->capture_default_str();
+  survey_command->add_option("--peers", survey.peers, "to measure")
+      ->delimiter(',')
+      ->check(CLI::IsMember(survey.peers))
+      ->capture_default_str();
+  add_measure_options(*survey_command, survey.trace);
+  add_json_option(*survey_command, report);
 
   NaiveOptions naive;
   naive.trace.exaggerations = {1, 4, 16};
@@ -299,6 +326,7 @@ int run(int argc, char** argv) {
   function_leaks.rays = static_cast<std::int64_t>(function_leak_rays);
   leaks.embree_rays = static_cast<std::int64_t>(embree_rays);
   if (*heights_command) run_heights(heights, report);
+  if (*survey_command) run_survey(survey, report);
   if (*naive_command) run_naive(naive, report);
   if (*simd_command) run_simd(simd, report);
   if (*pyramid_command) run_pyramid(pyramid, report);

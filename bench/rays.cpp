@@ -53,11 +53,11 @@ dvec3 lifted(const HeightField& field, double x, double y) {
   return {fx, fy, fz};
 }
 
-std::vector<BenchRay> primary_rays(const HeightField& field, int width, int height) {
-  // From above the southern border over the middle of the field, the horizon in the upper part of the picture.
+std::vector<BenchRay> primary_rays(const HeightField& field, int width, int height, const RayView& view) {
   const double extent = std::max(field.width(), field.depth());
-  const dvec3 eye(0.5 * field.width(), 0.02 * field.depth(), field.max_height() + 0.05 * extent);
-  const dvec3 target(0.5 * field.width(), 0.5 * field.depth(), 0.5 * (field.min_height() + field.max_height()));
+  const dvec3 eye(view.eye.x * field.width(), view.eye.y * field.depth(), field.max_height() + view.eye.z * extent);
+  const dvec3 target(view.target.x * field.width(), view.target.y * field.depth(),
+                     field.min_height() + view.target.z * (field.max_height() - field.min_height()));
   const dvec3 forward = normalize(target - eye), right = normalize(cross(forward, dvec3(0, 0, 1))),
               up = cross(right, forward);
   const double half_height = std::tan(45.0 / 2 * kPi / 180), half_width = half_height * width / height;
@@ -225,10 +225,10 @@ RayClass find_ray_class(std::string_view name) {
 }
 
 std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayClass>& classes, const RayCounts& counts,
-                              std::uint64_t seed) {
+                              std::uint64_t seed, const RayView& view) {
   const HeightField& field = ground.field;
-  const std::vector<BenchRay> primary = primary_rays(field, counts.width, counts.height);
-  const dvec3 sun = direction_to(315 * kPi / 180, 20 * kPi / 180);
+  const std::vector<BenchRay> primary = primary_rays(field, counts.width, counts.height, view);
+  const dvec3 sun = direction_to(view.sun_azimuth_deg * kPi / 180, view.sun_altitude_deg * kPi / 180);
   std::vector<RaySet> sets;
   for (const RayClass ray_class : kRayClasses) {
     if (std::find(classes.begin(), classes.end(), ray_class) == classes.end()) continue;

@@ -65,8 +65,17 @@ struct RayCounts {
   int chunk = 1024;  ///< points per side, a multiple of 8
 };
 
+/// Where the camera of the primary rays is and looks to, and where the sun of the shadow rays is.
+struct RayView {
+  std::string_view name = "over the south";
+  dvec3 eye{0.5, 0.02, 0.05};    ///< shares of width and depth, and of the longer of them above the highest point
+  dvec3 target{0.5, 0.5, 0.5};   ///< shares of width, depth and relief
+  double sun_azimuth_deg = 315;  ///< compass
+  double sun_altitude_deg = 20;
+};
+
 /// The classes asked for, in the order of kRayClasses. Deterministic by seed.
 std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayClass>& classes, const RayCounts& counts,
-                              std::uint64_t seed);
+                              std::uint64_t seed, const RayView& view = {});
 
 }  // namespace scarp::bench
