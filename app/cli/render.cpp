@@ -199,7 +199,7 @@ void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const 
   if (options.exr) {
     const PictureLayers layers = render_scene_layers(scene, look, camera, options.picture, terminal_progress("render"));
     const double render_s = watch.lap();
-    write_layers(file, options.output, layers, camera);
+    write_layers(file, options.output, layers, camera, depth_range_of(options.depth));
     print_times(options, read_s, build_s, render_s);
     return;
   }
@@ -210,13 +210,17 @@ void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const 
   print_findings(picture);
 }
 
-void render_vox(RenderOptions options, const ViewSettings& view) {
+// Of pictures of anything else.
+void require_no_terrain_options(const RenderOptions& options) {
   if (options.frames.several()) throw Error("--path, --turntable: flights go over terrain; leave them out");
   if (options.picture.look == Look::comanche) throw Error("--look comanche: goes with terrain");
-  if (options.field.wrap != Wrap::none) throw Error("--wrap: voxels end where they end; leave it out");
-  if (options.picture.water || options.picture.fog.kind != FogKind::none || !options.look_options.overlay.empty()) {
+  if (options.field.wrap != Wrap::none) throw Error("--wrap: goes with terrain; leave it out");
+  if (options.picture.water || options.picture.fog.kind != FogKind::none || !options.look_options.overlay.empty())
     throw Error("--water, --fog, --overlay: go with terrain; leave them out");
-  }
+}
+
+void render_vox(RenderOptions options, const ViewSettings& view) {
+  require_no_terrain_options(options);
   if (!options.device.empty()) throw Error("--device: pictures of voxels are made on the CPU; leave it out");
   const FromVoxOptions from{options.vox, options.march.empty() ? FromVoxOptions{}.march : options.march};
   find_voxel_march(from.march);
@@ -243,6 +247,7 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
     if (std::find(kSceneOptions.begin(), kSceneOptions.end(), option) == kSceneOptions.end())
       throw Error(fmt::format("{}: of a scene this stands in its file; leave it out", option));
   }
+  require_no_terrain_options(options);
   ReplaceFile file(options.output);
   Watch watch;
   const SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
@@ -359,6 +364,7 @@ void render_function_input(const RenderOptions& options, const ViewSettings& vie
   if (!options.inputs.empty()) {
     throw Error(fmt::format("'{}': --function stands in the place of files; give one of both", options.inputs.front()));
   }
+  require_no_terrain_options(options);
   if (options.exr) throw Error(fmt::format("output '{}': pictures of functions are written as PNG", options.output));
   if (!options.device.empty()) throw Error("--device: pictures of functions are made on the CPU; leave it out");
   if (options.top) throw Error("--top: a function has no end that a map could show; leave it out");
