@@ -32,7 +32,7 @@ struct HeightsOptions {
   TraceOptions trace;
   std::vector<int> sizes{2049};
   std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes"};
-  std::vector<std::string> engines{"scarp", "embree-tri", "embree-grid", "bullet"};
+  std::vector<std::string> engines{"scarp", "embree-tri", "embree-grid"};  ///< and "bullet", which is slow
   std::string embree_quality = "high";
 };
 void run_heights(const HeightsOptions& options, const ReportOptions& report);

@@ -89,7 +89,7 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   heights_command->add_option("--engines", heights.engines, "to measure")
       ->delimiter(',')
-      ->check(CLI::IsMember(heights.engines))
+      ->check(CLI::IsMember({"scarp", "embree-tri", "embree-grid", "bullet"}))
       ->capture_default_str();
   heights_command->add_option("--embree-quality", heights.embree_quality, "of Embree's build")
       ->check(CLI::IsMember({"medium", "high"}))

@@ -383,7 +383,7 @@ void run(RenderOptions options) {
   if (!options.target.empty()) point_from(options.target, "--target");
   const ThreadLimit limit(options.threads);
   if (!options.function.function.empty()) return render_function_input(options, view);
-  if (options.inputs.empty()) throw Error("nothing to render: give files, or --function NAME");
+  if (options.inputs.empty()) throw CLI::RequiredError("IN (or --function NAME)");
   if (!options.function.preset.empty())
     throw Error("--preset: has the numbers of shaders over functions; add --function");
   if (is_scene_input(options.inputs)) {

@@ -142,21 +142,30 @@ struct PointMode {
     } else {
       const Position q(p.x - T(k[0]), p.y - T(k[1]), p.z - T(k[2]));
       k += 3;
-      if constexpr (op == DistanceOp::sphere) return sphere(q, k);
-      if constexpr (op == DistanceOp::box) return box(q, k);
-      if constexpr (op == DistanceOp::capsule) return capsule(q, k);
-      if constexpr (op == DistanceOp::cylinder) return cylinder(q, k);
-      if constexpr (op == DistanceOp::cone) return cone(q, k);
-      if constexpr (op == DistanceOp::torus) return torus(q, k);
-      if constexpr (op == DistanceOp::ellipsoid) return ellipsoid(q, k);
-      const double scale = k[0], shrink = k[1];
-      const dvec3 local = dvec3(q) / scale;
-      if constexpr (op == DistanceOp::function_ground) {
-        const dvec3 at = within_reach(local);
-        return T((at.z - program.functions[in.index]->value(at.x, at.y)) * shrink * scale);
-      }
-      if constexpr (op == DistanceOp::field_ground) {
-        return T(field_ground_value(*program.fields[in.index], local, shrink) * scale);
+      if constexpr (op == DistanceOp::sphere) {
+        return sphere(q, k);
+      } else if constexpr (op == DistanceOp::box) {
+        return box(q, k);
+      } else if constexpr (op == DistanceOp::capsule) {
+        return capsule(q, k);
+      } else if constexpr (op == DistanceOp::cylinder) {
+        return cylinder(q, k);
+      } else if constexpr (op == DistanceOp::cone) {
+        return cone(q, k);
+      } else if constexpr (op == DistanceOp::torus) {
+        return torus(q, k);
+      } else if constexpr (op == DistanceOp::ellipsoid) {
+        return ellipsoid(q, k);
+      } else {
+        const double scale = k[0], shrink = k[1];
+        const dvec3 local = dvec3(q) / scale;
+        if constexpr (op == DistanceOp::function_ground) {
+          const dvec3 at = within_reach(local);
+          return T((at.z - program.functions[in.index]->value(at.x, at.y)) * shrink * scale);
+        } else {
+          static_assert(op == DistanceOp::field_ground);
+          return T(field_ground_value(*program.fields[in.index], local, shrink) * scale);
+        }
       }
     }
   }
