@@ -20,9 +20,9 @@ namespace scarp::test {
 namespace {
 
 #ifdef NDEBUG
-constexpr int kRaysPerPair = 10'000, kCameras = 60;
+constexpr int kRaysPerPair = 10'000, kUsualRays = 3000, kCameras = 60;
 #else
-constexpr int kRaysPerPair = 300, kCameras = 6;
+constexpr int kRaysPerPair = 300, kUsualRays = 300, kCameras = 6;
 #endif
 constexpr int kRaysPerField = 500;
 
@@ -113,7 +113,7 @@ HeightField hills(Surface surface, bool holes, Random& random) {
 std::vector<Ray> usual_rays(const HeightTarget& target, Random& random) {
   const HeightField& field = *target.field;
   std::vector<Ray> rays;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < kUsualRays; ++i) {
     Ray ray;
     ray.origin = {uniform(random, -50, field.width() + 50), uniform(random, -50, field.depth() + 50),
                   uniform(random, 350, 600)};
