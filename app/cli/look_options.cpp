@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <glm/common.hpp>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -93,7 +94,8 @@ void add_look_options(CLI::App& command, LookOptions& o) {
       ->group(group);
   command
       .add_option("--visibility", o.visibility,
-                  "metres at which 2 of 100 parts of a contrast are left (the reach, or the field's longer side)")
+                  "metres at which 2 of 100 parts of a contrast are left (the reach, or the field's longer side; more "
+                  "from afar)")
       ->group(group);
   command.add_option("--fog-base", o.fog_base, "height in metres where that holds (the water, or the lowest ground)")
       ->group(group);
@@ -194,6 +196,13 @@ void read_look_files(const LookOptions& o, const Raster& raster, const FieldOpti
   if (field.mirror) throw Error("--overlay: goes with a terrain as it is; leave --wrap mirror out");
   ColourImage image = read_overlay(o.overlay, raster.georeference, raster.cols, raster.rows);
   picture.ground.drape = std::make_shared<Drape>(Drape{image.width, image.height, std::move(image.rgba)});
+}
+
+void see_from_afar(const LookOptions& o, const Box& box, const Camera& camera, PictureSettings& picture) {
+  constexpr double kWays = 10;
+  if (o.visibility) return;
+  const dvec3 nearest = glm::clamp(camera.eye(), box.low, box.high);
+  picture.fog.visibility += kWays * length(nearest - camera.eye());
 }
 
 void finish_look(const LookOptions& o, const HeightField& field, PictureSettings& picture) {

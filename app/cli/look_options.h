@@ -39,6 +39,9 @@ void read_look_files(const LookOptions& options, const Raster& raster, const Fie
 
 /// What follows from the field where nothing was said: visibility, base and falloff of the fog.
 void finish_look(const LookOptions& options, const HeightField& field, PictureSettings& picture);
+/// A camera that stands back from the field, whose box this is, still has to see it: where no visibility was given it
+/// grows by ten times the way there, on which less than a third of a contrast is lost then.
+void see_from_afar(const LookOptions& options, const Box& box, const Camera& camera, PictureSettings& picture);
 
 /// How far the camera's rays go: infinitely far, but for fields that wrap round.
 double reach_of(const LookOptions& options, const HeightField& field);

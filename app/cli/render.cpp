@@ -340,6 +340,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   }
   Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth);
   camera.set_reach(reach);
+  see_from_afar(options.look_options, box, camera, options.picture);
   if (options.exr) {
     const PictureLayers layers =
         render_layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
