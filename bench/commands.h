@@ -127,6 +127,17 @@ struct VoxelLeaksOptions {
 };
 void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report);
 
+/// `pixel-match`: pictures of voxels beside the same drawn as quads.
+struct PixelMatchOptions {
+  std::vector<std::string> sets{"standard", "degenerate"};
+  std::vector<int> thousands{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};  ///< of objects, the post's camera
+  std::vector<std::string> marches{"voxel-bricks"};
+  std::string cameras = "all";  ///< or "post"
+  int width = 1920, height = 1080;
+};
+/// Throws Error, after the report, when a pixel differs.
+void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& report);
+
 /// `scenes`: hierarchies over many objects.
 struct ScenesOptions {
   std::vector<int> objects{1000, 10000, 100000};

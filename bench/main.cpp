@@ -356,6 +356,31 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*shapes_command, report);
 
+  PixelMatchOptions pixel_match;
+  CLI::App* pixel_match_command =
+      app.add_subcommand("pixel-match", "pictures of voxels beside the same drawn as quads; fails when a pixel differs");
+  pixel_match_command->add_option("--sets", pixel_match.sets, "of objects")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"standard", "degenerate", "far-wall"}))
+      ->capture_default_str();
+  pixel_match_command->add_option("--thousands", pixel_match.thousands, "thousands of objects, one or several")
+      ->delimiter(',')
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  pixel_match_command->add_option("--marches", pixel_match.marches, "one or several")
+      ->delimiter(',')
+      ->capture_default_str();
+  pixel_match_command->add_option("--cameras", pixel_match.cameras, "post or all")
+      ->check(CLI::IsMember({"post", "all"}))
+      ->capture_default_str();
+  pixel_match_command->add_option("--width", pixel_match.width, "pixels")
+      ->check(CLI::Range(2, 2048))
+      ->capture_default_str();
+  pixel_match_command->add_option("--height", pixel_match.height, "pixels")
+      ->check(CLI::Range(2, 2048))
+      ->capture_default_str();
+  add_json_option(*pixel_match_command, report);
+
   CLI11_PARSE(app, argc, argv);
   voxel_leaks.rays = static_cast<std::int64_t>(voxel_leak_rays);
   leaks.rays = static_cast<std::int64_t>(leak_rays);
@@ -372,6 +397,7 @@ int run(int argc, char** argv) {
   if (*leaks_command) run_leaks(leaks, report);
   if (*voxels_command) run_voxels(voxels, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
+  if (*pixel_match_command) run_pixel_match(pixel_match, report);
   if (*edits_command) run_edits(edits, report);
   if (*scenes_command) run_scenes(scenes, report);
   if (*frames_command) run_frames(frames, report);

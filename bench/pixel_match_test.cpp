@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+// Pictures of voxels beside the same drawn as quads, and the rasteriser where it has to speak up.
+#include "bench/pixel_match.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "bench/voxel_sets.h"
+#include "scarp/base/error.h"
+
+namespace scarp::bench {
+namespace {
+
+VoxelScene scene_of(const VoxelGrid& grid, std::span<const VoxelPlace> places) {
+  return VoxelScene({std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))}, places);
+}
+
+void expect_match(std::string_view set, int thousands, const NamedFrame& view) {
+  const VoxelGrid grid = voxel_object(set);
+  const std::vector<VoxelPlace> places = object_places(thousands);
+  const RasterPicture quads = rasterise(grid, places, view.frame, kPixelMargin);
+  const PixelMatch match = compare_with_quads(quads, scene_of(grid, places), grid, 0.25, view.frame);
+  EXPECT_EQ(match.differ, 0) << set << ' ' << thousands << ' ' << view.name << ": " << match.first;
+  EXPECT_EQ(match.near_edge_wrong, 0) << set << ' ' << thousands << ' ' << view.name << ": " << match.first;
+  EXPECT_EQ(match.pixels, view.frame.width * view.frame.height);
+  EXPECT_GT(match.hits, 0) << set << ' ' << view.name;
+  // A 100th of the picture: else the comparison would be about edges.
+  EXPECT_LT(match.near_edges, match.pixels / 100) << set << ' ' << view.name;
+}
+
+TEST(PixelMatch, ThePostsPictures) {
+  for (const char* set : {"standard", "degenerate"}) {
+    for (const int thousands : {1, 4}) expect_match(set, thousands, pixel_match_frames(480, 270)[0]);
+  }
+}
+
+TEST(PixelMatch, FromEverywhere) {
+  for (const NamedFrame& view : pixel_match_frames(96, 54)) expect_match("standard", 4, view);
+}
+
+// A voxel 10 m away, 1 m a side, looked at along x: 10 pixels a side in a picture of 0.01 per pixel and metre.
+class OneVoxel : public testing::Test {
+ protected:
+  OneVoxel() : grid_(ivec3(1)) { grid_.set(ivec3(0), 1); }
+
+  PictureFrame frame_ = [] {
+    // 20 pixels high: tan(fov / 2) = 0.1.
+    return frame_looking({-10, 0.5, 0.5}, {0, 0.5, 0.5}, {0, 0, 1}, 2 * std::atan(0.1), 20, 20);
+  }();
+  VoxelGrid grid_;
+  std::vector<VoxelPlace> places_{VoxelPlace{}};
+};
+
+TEST_F(OneVoxel, CoversItsPixels) {
+  const RasterPicture quads = rasterise(grid_, places_, frame_, kPixelMargin);
+  EXPECT_TRUE(quads.near_edges.empty());
+  for (int row = 0; row < 20; ++row) {
+    for (int col = 0; col < 20; ++col) {
+      const SeenFace& seen = quads.seen[static_cast<std::size_t>(row * 20 + col)];
+      const bool inside = row >= 5 && row < 15 && col >= 5 && col < 15;
+      ASSERT_EQ(std::isfinite(seen.t), inside) << row << ' ' << col;
+      if (!inside) continue;
+      EXPECT_EQ(seen.face, (FaceOf{0, ivec3(0), VoxelFace::low_x}));
+      EXPECT_DOUBLE_EQ(seen.t, 10);
+    }
+  }
+}
+
+// The eye is moved by what takes the left edge over the middles of a column, up to half a margin.
+TEST_F(OneVoxel, TellsPixelsNearEdges) {
+  const double metres_per_pixel = 0.1;
+  frame_.eye -= (0.5 + 0.5 * kPixelMargin) * metres_per_pixel * frame_.right;
+  const RasterPicture quads = rasterise(grid_, places_, frame_, kPixelMargin);
+  // Both sides of the front face; the eye does not see the others.
+  EXPECT_EQ(quads.near_edges.size(), 20U);
+  for (const NearEdge& near : quads.near_edges) EXPECT_EQ(near.face.face, VoxelFace::low_x);
+}
+
+// What the post could not see by eye: rays that find the neighbour of the right voxel, or nothing.
+TEST(PixelMatch, TellsAVoxelThatIsNotThere) {
+  VoxelGrid grid = voxel_object("standard");
+  const std::vector<VoxelPlace> places = object_places(1);
+  const PictureFrame frame = pixel_match_frames(160, 90)[0].frame;
+  const RasterPicture quads = rasterise(grid, places, frame, kPixelMargin);
+  for (int y = 0; y < 32; ++y) grid.clear(ivec3(3, y, 12));
+  EXPECT_GT(compare_with_quads(quads, scene_of(grid, places), grid, 0.25, frame).differ, 0);
+}
+
+TEST(PixelMatch, RefusesACameraThatIsTooClose) {
+  VoxelGrid grid(ivec3(32));
+  grid.fill(grid.box(), 1);
+  const std::vector<VoxelPlace> places{VoxelPlace{}};
+  const PictureFrame frame = frame_looking({-0.01, 3.3, 3.3}, {0, 3.3, 3.3}, {0, 0, 1}, 0.8, 1080, 1080);
+  const RasterPicture quads = rasterise(grid, places, frame, kPixelMargin);
+  EXPECT_THROW(compare_with_quads(quads, scene_of(grid, places), grid, 1, frame), Error);
+}
+
+}  // namespace
+}  // namespace scarp::bench
