@@ -14,6 +14,8 @@ void add_info(CLI::App& program);
 void add_generate(CLI::App& program);
 void add_marches(CLI::App& program);
 void add_replay(CLI::App& program);
+void add_section(CLI::App& program);
+void add_voxelise(CLI::App& program);
 void add_devices(CLI::App& program);  // with SCARP_VULKAN
 
 }  // namespace scarp::cli

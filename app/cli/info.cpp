@@ -28,7 +28,7 @@ using Json = nlohmann::ordered_json;
 struct InfoOptions {
   std::vector<std::string> inputs;
   RasterOptions raster;
-  VoxSceneOptions vox;
+  VoxOptions vox;
   bool json = false;
 };
 
@@ -120,7 +120,7 @@ void add_info(CLI::App& program) {
   add_raster_options(*command, options->raster);
   add_vox_options(*command, options->vox);
   command->callback([options] {
-    const bool scene = is_scene_input(options->inputs), vox = !scene && is_vox_input(options->inputs);
+    const bool scene = is_scene_input(options->inputs), vox = !scene && is_vox_input(options->inputs, options->vox);
     const Json info = scene ? describe_scene(options->inputs.front())
                       : vox ? describe_vox(options->inputs.front(), options->vox)
                             : describe(*options);

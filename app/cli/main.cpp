@@ -69,6 +69,8 @@ int main(int argc, char** argv) {
   scarp::cli::add_generate(program);
   scarp::cli::add_marches(program);
   scarp::cli::add_replay(program);
+  scarp::cli::add_voxelise(program);
+  scarp::cli::add_section(program);
 #ifdef SCARP_VULKAN
   scarp::cli::add_devices(program);
 #endif

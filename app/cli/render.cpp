@@ -41,9 +41,9 @@ namespace scarp::cli {
 namespace {
 
 // What of the options goes with a scene, which says all else itself.
-constexpr std::array<std::string_view, 16> kSceneOptions = {
-    "IN",         "--output", "--size", "--look",   "--ramp", "--sun", "--no-shadows", "--samples",
-    "--sun-size", "--view",   "--eye",  "--target", "--fov",  "--top", "--aa",         "--threads"};
+constexpr std::array<std::string_view, 17> kSceneOptions = {
+    "IN",         "--output", "--size", "--look",   "--ramp", "--sun", "--no-shadows", "--samples",      "--sun-size",
+    "--view",     "--eye",    "--target", "--fov",  "--top",  "--aa",  "--threads",    "--coarse-voxels"};
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {
@@ -51,7 +51,8 @@ struct RenderOptions {
   std::string output;
   RasterOptions raster;
   FieldOptions field;
-  VoxSceneOptions vox;
+  VoxOptions vox;
+  VoxLookOptions vox_look;
   FunctionInput function;
   std::string march;  // empty: the fastest exact one
   std::string device;
@@ -193,6 +194,10 @@ void print_times(const RenderOptions& options, double read_s, double build_s, do
              device.empty() ? "" : ", on " + device);
 }
 
+SceneDetail detail_of(const Camera& camera) {
+  return {camera.eye(), camera.forward(), [&camera](double depth) { return camera.pixel_width(depth); }};
+}
+
 // Writes the picture, and says what it took.
 void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const Scene& scene, const SceneLook& look,
                          const Camera& camera, Watch& watch, double read_s, double build_s) {
@@ -222,21 +227,27 @@ void require_no_terrain_options(const RenderOptions& options) {
 void render_vox(RenderOptions options, const ViewSettings& view) {
   require_no_terrain_options(options);
   if (!options.device.empty()) throw Error("--device: pictures of voxels are made on the CPU; leave it out");
-  const FromVoxOptions from{options.vox, options.march.empty() ? FromVoxOptions{}.march : options.march};
-  find_voxel_march(from.march);
+  VoxelSceneOptions voxels;
+  if (!options.march.empty()) voxels.march = options.march;
+  find_voxel_march(voxels.march);
+  voxels.surface_colours = options.vox.surface_colours;
+  voxels.rounding = options.vox_look.rounding;
+  const VoxelShading shading = shading_of(options.vox_look);
   // From over the default camera's shoulder: walls that face it are lit.
   if (options.sun.empty()) options.picture.sun.azimuth_deg = 235;
   ReplaceFile file(options.output);
   Watch watch;
-  const VoxFile document = read_vox(options.inputs.front());
+  VoxInput input = read_voxels(options.inputs.front(), options.vox, voxels, options.picture.ramp);
   stop_if_interrupted();
   const double read_s = watch.lap();
-  const Scene scene({scene_voxels(voxel_scene_from(document, from), from.march)}, {SceneObject{}});
+  Scene scene({scene_voxels(std::move(input.scene), voxels.march, shading)}, {SceneObject{}});
   stop_if_interrupted();
-  const double build_s = watch.lap();
   const Box box = picture_box(scene);
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   const Camera camera = camera_of(options, view, box, 0);
+  if (options.vox_look.coarse) scene = scene.coarser(detail_of(camera));
+  stop_if_interrupted();
+  const double build_s = watch.lap();
   write_scene_picture(options, file, scene, {}, camera, watch, read_s, build_s);
 }
 
@@ -265,7 +276,10 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
       : !options.eye.empty() && !options.target.empty() ? camera_of(options, view, {}, 0)
                                                         : camera_of(options, view, picture_box(document.scene), 0);
   for (const std::string& note : document.notes) fmt::print(stderr, "note: {}\n", note);
-  write_scene_picture(options, file, document.scene, look_of(document), camera, watch, read_s, 0);
+  const bool coarse = document.picture.coarse_voxels || options.vox_look.coarse;
+  const Scene scene = coarse ? document.scene.coarser(detail_of(camera)) : document.scene;
+  stop_if_interrupted();
+  write_scene_picture(options, file, scene, look_of(document), camera, watch, read_s, watch.lap());
 }
 
 // From under the ground one sees its other side, and through it: worth a word.
@@ -389,7 +403,7 @@ void run(RenderOptions options) {
     throw Error("--preset: has the numbers of shaders over functions; add --function");
   if (is_scene_input(options.inputs)) {
     render_scene_file(std::move(options), view);
-  } else if (is_vox_input(options.inputs)) {
+  } else if (is_vox_input(options.inputs, options.vox)) {
     render_vox(std::move(options), view);
   } else {
     render_terrain(std::move(options), view);
@@ -478,6 +492,7 @@ void add_render(CLI::App& program) {
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster);
   add_vox_options(*command, o.vox);
+  add_vox_look_options(*command, o.vox_look);
   command->callback([options, command, fov] {
     options->fov_said = fov->count() > 0;
     for (const CLI::Option* option : command->get_options()) {

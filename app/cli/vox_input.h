@@ -1,24 +1,58 @@
 // SPDX-License-Identifier: MIT
-// MagicaVoxel files where a subcommand takes rasters, too.
+// Voxel files where a subcommand takes rasters, too: MagicaVoxel, binvox, volumes of numbers.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "scarp/source/vox_scene.h"
+#include "scarp/scene/from_vox.h"
+#include "scarp/scene/voxel_shading.h"
 
 namespace scarp::cli {
 
-/// Whether the inputs are one file whose name ends in .vox. Throws Error when such a file is among others.
-bool is_vox_input(const std::vector<std::string>& inputs);
+/// What was typed.
+struct VoxOptions {
+  VoxSceneOptions scene;
+  bool surface_colours = false;
+  std::string volume;  ///< empty: not a volume
+  std::optional<double> solid_from;
+  std::string up = "z";
+};
 
-/// Adds --frame and --hidden. `options` must live until the subcommand has run.
-void add_vox_options(CLI::App& command, VoxSceneOptions& options);
+/// How voxels look, typed, too.
+struct VoxLookOptions {
+  std::string normals = "flat";
+  double normal_radius = VoxelShading{}.normal_radius;
+  VoxelRounding rounding;
+  bool corner_ao = false;
+  bool coarse = false;
+};
 
-/// What is in a .vox file, for `scarp info`.
-nlohmann::ordered_json describe_vox(const std::string& path, const VoxSceneOptions& options);
+/// Whether the inputs are one file of voxels: by its ending, or because --volume was given. Throws Error when such a
+/// file is among others.
+bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& options);
+
+/// Adds --frame, --hidden, --volume, ... `options` must live until the subcommand has run.
+void add_vox_options(CLI::App& command, VoxOptions& options);
+/// Adds --normals, --rounded, ...
+void add_vox_look_options(CLI::App& command, VoxLookOptions& options);
+
+/// A voxel file read.
+struct VoxInput {
+  std::optional<VoxFile> document;  ///< of MagicaVoxel
+  VoxelScene scene;
+};
+/// Numbers of volumes are shown by `ramp`, of ramp_names().
+VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelSceneOptions& voxels,
+                     const std::string& ramp);
+
+VoxelShading shading_of(const VoxLookOptions& options);
+
+/// What is in a voxel file, for `scarp info`.
+nlohmann::ordered_json describe_vox(const std::string& path, const VoxOptions& options);
 std::string vox_text_of(const nlohmann::ordered_json& info);
 
 }  // namespace scarp::cli

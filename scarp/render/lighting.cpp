@@ -51,7 +51,7 @@ LightRays Lighting::ask(const GroundPoint& ground, const PicturePoint& point, st
 
 vec3 Lighting::on(const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
                   std::span<const std::uint8_t> blocked) const {
-  double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = 1;
+  double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = ground.openness;
   if (settings_.shadows) {
     const std::size_t count = asked.sky - asked.sun;
     sun = sun_cosine(ground, sun_radius(), static_cast<std::uint32_t>(settings_.samples),

@@ -27,6 +27,7 @@ struct GroundPoint {
   Cell cell;
   dvec3 normal;          ///< unit, of the surface
   dvec3 shading_normal;  ///< unit
+  double openness = 1;   ///< share of the sky that is there, where it is not sampled
 };
 
 /// Of what is visible from a hit of a ray.

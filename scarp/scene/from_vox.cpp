@@ -83,7 +83,7 @@ void for_each_overlap(const std::vector<OnLattice>& instances, const Body& body)
 }  // namespace
 
 VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options) {
-  const MarchEntry& march = find_voxel_march(options.march);
+  const MarchEntry& march = find_voxel_march(options.voxels.march);
   const std::vector<VoxInstance> instances = vox_instances(file, options.scene);
   std::vector<VoxelColour> palette(256);
   for (std::size_t i = 1; i < palette.size(); ++i) {
@@ -134,13 +134,14 @@ VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options) 
     if (own == cut.end() && known != shared.end()) {
       index = known->second;
     } else {
-      const VoxelGrid& grid = own != cut.end() ? own->second : grids.at(model);
-      models.push_back(std::make_shared<const VoxelModel>(grid, march, palette));
+      VoxelGrid grid = own != cut.end() ? own->second : grids.at(model);
+      if (options.voxels.surface_colours) grid.drop_hidden_entries();
+      models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march, palette));
       if (own == cut.end()) shared.emplace(model, index);
     }
     places.push_back(on_lattice[i].place(index));
   }
-  return VoxelScene(std::move(models), places);
+  return VoxelScene(std::move(models), places, options.voxels.rounding);
 }
 
 }  // namespace scarp

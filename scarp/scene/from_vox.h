@@ -2,8 +2,6 @@
 // The scene of a .vox file as objects in a world of metres, a voxel 1 m, z up as in the file.
 #pragma once
 
-#include <string_view>
-
 #include "scarp/scene/voxel_scene.h"
 #include "scarp/source/vox_scene.h"
 
@@ -11,7 +9,7 @@ namespace scarp {
 
 struct FromVoxOptions {
   VoxSceneOptions scene{};
-  std::string_view march = "voxel-bricks";  ///< of voxel_marches()
+  VoxelSceneOptions voxels{};
 };
 
 /// Entries are palette indices. Where instances overlap, one voxel is left in each place, that which MagicaVoxel shows:

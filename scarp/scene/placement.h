@@ -20,6 +20,7 @@ struct Placement {
 
   dvec3 world_from_field(const dvec3& p) const { return scale * (turn * p) + origin; }
   dvec3 world_from_normal(const dvec3& n) const { return turn * n; }
+  dvec3 field_from_world(const dvec3& p) const { return ((p - origin) * turn) / scale; }
   /// Of an identity nothing is rounded.
   Ray field_from_world(const Ray& ray) const {
     Ray local = ray;

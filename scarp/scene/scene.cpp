@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "scarp/base/error.h"
@@ -27,6 +29,9 @@ bool good(const Placement& p) {
   }
   return dot(cross(p.turn[0], p.turn[1]), p.turn[2]) > 0;
 }
+
+// Levels of voxels: a grid of 2,048 is a single one then.
+constexpr int kCoarsest = 11;
 
 bool empty(const WorldBox& box) { return !(box.low.x <= box.high.x); }
 
@@ -218,20 +223,66 @@ void Scene::occluded(std::span<const SceneRay> rays, std::span<std::uint8_t> blo
   });
 }
 
-SceneSurface Scene::surface(const Ray& ray, const SceneHit& hit) const {
-  const SceneObject& object = objects_[hit.object];
-  const Ray local = object.placement.field_from_world(ray);
-  const FieldSurface own = field_of(hit.object).surface(local, hit.field);
+SceneSurface Scene::placed_surface(std::uint32_t index, const FieldSurface& own, const dvec3& p,
+                                   const dvec3& in_field) const {
+  const SceneObject& object = objects_[index];
   SceneSurface surface;
-  surface.position = ray.at(hit.t());
+  surface.position = p;
   surface.normal = object.placement.world_from_normal(own.normal);
   surface.shading_normal = object.placement.world_from_normal(own.shading_normal);
-  surface.object = hit.object;
+  surface.object = index;
   // Materials of parts count from 1.
   surface.material = own.material > 0 ? static_cast<std::uint32_t>(own.material - 1) : object.material;
-  surface.place = local.at(hit.t());
+  surface.place = in_field;
   surface.colour = own.colour;
+  surface.openness = own.openness;
   return surface;
+}
+
+SceneSurface Scene::surface(const Ray& ray, const SceneHit& hit) const {
+  const Ray local = objects_[hit.object].placement.field_from_world(ray);
+  return placed_surface(hit.object, field_of(hit.object).surface(local, hit.field), ray.at(hit.t()), local.at(hit.t()));
+}
+
+std::optional<SceneSurface> Scene::within(const dvec3& p) const {
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+    const dvec3 in_field = objects_[i].placement.field_from_world(p);
+    if (const auto own = field_of(i).within(in_field)) return placed_surface(i, *own, p, in_field);
+  }
+  return {};
+}
+
+Scene Scene::coarser(const SceneDetail& detail) const {
+  std::vector<SceneFieldPtr> fields = fields_;
+  std::vector<SceneObject> objects = objects_;
+  std::map<std::pair<std::uint32_t, int>, std::uint32_t> known;  // of a field and a level
+  for (SceneObject& object : objects) {
+    const SceneField& field = *fields_[object.field];
+    const std::optional<WorldBox> box = field.box();
+    const double side = field.detail() * object.placement.scale;
+    if (!(side > 0) || !box || empty(*box)) continue;
+    const WorldBox in_world = world_box(object.placement, *box);
+    double depth = std::numeric_limits<double>::infinity();
+    for (int corner = 0; corner < 8; ++corner) {
+      const dvec3 p(corner & 1 ? in_world.high.x : in_world.low.x, corner & 2 ? in_world.high.y : in_world.low.y,
+                    corner & 4 ? in_world.high.z : in_world.low.z);
+      depth = std::min(depth, dot(p - detail.eye, detail.forward));
+    }
+    const double voxels = detail.pixel(std::max(depth, 0.0)) / side;
+    if (!(voxels >= 2)) continue;
+    const int level = std::min(kCoarsest, std::ilogb(voxels));
+    const auto [place, fresh] = known.try_emplace({object.field, level}, static_cast<std::uint32_t>(fields.size()));
+    if (fresh) {
+      SceneFieldPtr coarse = field.coarser(level);
+      if (coarse) {
+        fields.push_back(std::move(coarse));
+      } else {
+        place->second = object.field;
+      }
+    }
+    object.field = place->second;
+  }
+  return Scene(std::move(fields), std::move(objects));
 }
 
 std::size_t Scene::bytes() const {

@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -49,6 +50,13 @@ struct SceneSurface {
   std::uint32_t material = 0;         ///< the object's, or that of a shape's part less 1
   dvec3 place{0.0};                   ///< the position in the object's own space
   std::optional<VoxelColour> colour;  ///< where the field has colours of its own
+  double openness = 1;                ///< share of the sky that is there, as far as the object tells by itself
+};
+
+/// How fine things have to be to be seen, for Scene::coarser().
+struct SceneDetail {
+  dvec3 eye{0.0}, forward{0, 0, -1};
+  std::function<double(double)> pixel;  ///< metres that a pixel is wide at a depth along `forward` in metres
 };
 
 /// What a ray cost.
@@ -78,6 +86,13 @@ class Scene {
 
   SceneSurface surface(const Ray& ray, const SceneHit& hit) const;
 
+  /// What is at a point inside of an object, of the first one that has it inside; see SceneField::within().
+  std::optional<SceneSurface> within(const dvec3& p) const;
+
+  /// The same objects; voxels that are smaller than pixels wherever their object is in the picture are made one of
+  /// 2 x 2 x 2, as often as they stay no larger than a pixel.
+  Scene coarser(const SceneDetail& detail) const;
+
   const std::vector<SceneFieldPtr>& fields() const { return fields_; }
   const std::vector<SceneObject>& objects() const { return objects_; }
   /// Around all objects that have an end; empty when none has.
@@ -94,6 +109,8 @@ class Scene {
   }
   void ask_tree(const SceneRay& ray, SceneHit& best, SceneStats* stats) const;
   bool tree_blocks(const SceneRay& ray) const;
+  SceneSurface placed_surface(std::uint32_t object, const FieldSurface& own, const dvec3& p,
+                              const dvec3& in_field) const;
   void closest_of_piece(std::span<const SceneRay> rays, std::span<SceneHit> hits) const;
   void occluded_of_piece(std::span<const SceneRay> rays, std::span<std::uint8_t> blocked) const;
 

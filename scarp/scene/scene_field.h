@@ -18,6 +18,7 @@
 #include "scarp/march/marches.h"
 #include "scarp/scene/box_tree.h"
 #include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/voxel_shading.h"
 
 namespace scarp {
 
@@ -37,6 +38,7 @@ struct FieldSurface {
   dvec3 shading_normal{0.0};            ///< unit
   std::optional<VoxelColour> colour{};  ///< where the field has colours of its own
   int material = 0;                     ///< of the part of a shape, as in distance_node.h; 0: that of the object
+  double openness = 1;                  ///< share of the sky that is there, as far as the field tells by itself
 };
 
 /// Immutable; asked from many threads at once.
@@ -57,6 +59,15 @@ class SceneField {
   /// Whether closest_hit() would tell a hit.
   virtual bool occluded(const Ray& ray, const FieldHit* from) const = 0;
   virtual FieldSurface surface(const Ray& ray, const FieldHit& hit) const = 0;
+
+  /// What the field is like at a point below the ground, in the shape or in a solid voxel, surface included: normals of
+  /// the surface above or nearest. Nothing outside, beside the ground and in its holes.
+  virtual std::optional<FieldSurface> within(const dvec3& p) const = 0;
+
+  /// The least thing that there is to see, in metres: a voxel. 0: nothing that is made coarser.
+  virtual double detail() const { return 0; }
+  /// What stands for the field where 2^level times its detail is small; null: the field itself.
+  virtual std::shared_ptr<const SceneField> coarser(int) const { return nullptr; }
 
   /// Whether rays are answered faster by the hundred.
   virtual bool likes_batches() const { return false; }
@@ -82,7 +93,7 @@ SceneFieldPtr scene_function(HeightFunction function, const MarchEntry& march = 
 SceneFieldPtr scene_shape(DistanceField shape, const MarchEntry& march = find_distance_march("sphere-trace"),
                           const MarchSettings& settings = {});
 
-/// The objects of a voxel scene as one; each model has its march.
-SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march);
+/// The objects of a voxel scene as one; each model has its march. Throws Error for a shading out of its range.
+SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march, const VoxelShading& shading = {});
 
 }  // namespace scarp

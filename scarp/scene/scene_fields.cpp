@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -11,6 +13,7 @@
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/from_raster.h"
+#include "scarp/scene/from_volume.h"
 #include "scarp/scene/from_vox.h"
 #include "scarp/scene/json_object.h"
 #include "scarp/scene/scene_parts.h"
@@ -132,16 +135,55 @@ Shape ground_from(const Json& json, const std::string& path, const FieldSurround
   refuse_json(path, json, "the name of a field, or an object with heights or a function");
 }
 
+VoxelColour colour_from(const Json& json) {
+  const auto rgb = std::stoul(json.get<std::string>().substr(1), nullptr, 16);
+  return {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8), static_cast<std::uint8_t>(rgb)};
+}
+
+// By its ending, or by `volume`.
+VoxelScene voxels_of_file(const Json& json, const std::string& path, const std::string& file,
+                          const VoxelSceneOptions& voxels) {
+  FromVolumeOptions volume{voxels, json.value("up", "z") == "y" ? UpAxis::y : UpAxis::z,
+                           optional<double>(json, "solid_from")};
+  const auto refuse = [&](std::initializer_list<const char*> keys, const char* why) {
+    for (const char* key : keys) {
+      if (json.contains(key)) throw Error(fmt::format("{}/{}: {}", path, key, why));
+    }
+  };
+  const VoxelColour colour = json.contains("colour") ? colour_from(json["colour"]) : kPlainVoxels;
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  if (json.contains("volume")) {
+    refuse({"frame", "hidden"}, "goes with MagicaVoxel files; leave it out");
+    return voxel_scene_from(read_volume(file, json["volume"]), std::vector{colour}, volume);
+  }
+  refuse({"solid_from"}, "goes with volume; leave it out");
+  if (extension == ".binvox") {
+    refuse({"frame", "hidden"}, "goes with MagicaVoxel files; leave it out");
+    return voxel_scene_from(read_binvox(file), colour, volume);
+  }
+  refuse({"up", "colour"}, "goes with binvox files and volumes; leave it out");
+  return voxel_scene_from(read_vox(file), {{json.value("frame", 0), json.value("hidden", false)}, voxels});
+}
+
 FieldWithPlace voxels_from(const Json& json, const std::string& path, const FieldSurroundings& around,
                            const MarchEntry& march) {
   try {
-    const VoxSceneOptions options{json.value("frame", 0), json.value("hidden", false)};
-    VoxelScene scene = voxel_scene_from(read_vox(resolved(around, json["file"])), {options, march.name});
+    VoxelSceneOptions options{march.name, json.value("surface_colours", false), {}};
+    options.rounding = {json.value("rounded", 0.0), json.value("each", false)};
+    VoxelShading shading;
+    const std::string normals = json.value("normals", "flat");
+    shading.normals = normals == "smooth"  ? VoxelNormals::smooth
+                      : normals == "voxel" ? VoxelNormals::voxel
+                                           : VoxelNormals::flat;
+    shading.normal_radius = json.value("normal_radius", shading.normal_radius);
+    shading.corner_ao = json.value("corner_ao", false);
+    VoxelScene scene = voxels_of_file(json, path, resolved(around, json["file"]), options);
     const WorldBox box = scene.box();
     dvec3 shift(0.0);
     if (json.value("centred", false) && box.low.x <= box.high.x)
       shift = -dvec3(0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y), box.low.z);
-    return {scene_voxels(std::move(scene), march.name), shift};
+    return {scene_voxels(std::move(scene), march.name, shading), shift};
   } catch (const Error&) {
     rethrow_at(path + "/file");
   }

@@ -247,6 +247,7 @@ ScenePicture picture_from(const Json& scene) {
   set(picture.samples, json, "samples");
   set(picture.ao_distance, json, "ao_distance");
   set(picture.seed, json, "seed");
+  picture.coarse_voxels = json.value("coarse_voxels", false);
   return picture;
 }
 

@@ -39,6 +39,7 @@ struct ScenePicture {
   std::optional<int> width, height, aa, samples;
   std::optional<double> ao_distance;
   std::optional<std::uint32_t> seed;
+  bool coarse_voxels = false;  ///< Scene::coarser()
 };
 
 /// An object of a file; one with places, scattered or of another scene is several of a Scene.

@@ -52,6 +52,11 @@ class FunctionField final : public SceneField {
     march_.function_simd(function_, started, own, settings_, {}, FunctionUse::shadow);
     std::transform(own.begin(), own.end(), blocked.begin(), [](const Hit& hit) { return hit ? 1 : 0; });
   }
+  std::optional<FieldSurface> within(const dvec3& p) const override {
+    if (p.z > function_.value(p.x, p.y)) return {};
+    const dvec3 normal = upward(function_.gradient(p.x, p.y, FunctionUse::march));
+    return FieldSurface{normal, normal, {}};
+  }
   FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
     const dvec3 p = ray.at(hit.t);
     return {upward(function_.gradient(p.x, p.y, FunctionUse::march)),

@@ -63,6 +63,14 @@ class Heights final : public SceneField {
     return {field_.normal(own.cell, own.u, own.v), field_.shading_normal(own.cell, own.u, own.v), {}};
   }
 
+  std::optional<FieldSurface> within(const dvec3& p) const override {
+    const auto place = field_.place(p.x, p.y);
+    const auto height = field_.height(p.x, p.y);
+    if (!place || !height || p.z > *height) return {};
+    const auto& [cell, u, v] = *place;
+    return FieldSurface{field_.normal(cell, u, v), field_.shading_normal(cell, u, v), {}};
+  }
+
   bool likes_batches() const override { return march_.simd && march_.simd_occluded; }
   void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
                     std::span<FieldHit> hits) const override {

@@ -41,6 +41,11 @@ class ShapeField final : public SceneField {
     const dvec3 p = ray.at(hit.t), normal = shape_.normal(p);
     return {normal, normal, {}, shape_.material(p)};
   }
+  std::optional<FieldSurface> within(const dvec3& p) const override {
+    if (shape_.value(p) > 0) return {};
+    const dvec3 normal = shape_.normal(p);
+    return FieldSurface{normal, normal, {}, shape_.material(p)};
+  }
 
  private:
   DistanceField shape_;

@@ -10,7 +10,10 @@ namespace {
 
 class Voxels final : public SceneField {
  public:
-  Voxels(VoxelScene scene, std::string_view march) : scene_(std::move(scene)), march_(march) {}
+  Voxels(VoxelScene scene, std::string_view march, const VoxelShading& shading)
+      : scene_(std::move(scene)), march_(march), shading_(shading) {
+    validate(shading);
+  }
 
   std::string_view kind() const override { return "voxels"; }
   std::string_view march() const override { return march_; }
@@ -26,25 +29,52 @@ class Voxels final : public SceneField {
     const VoxelSceneHit* voxel = from_of(from);
     return voxel ? scene_.occluded_from(*voxel, ray) : scene_.occluded(ray);
   }
-  FieldSurface surface(const Ray&, const FieldHit& hit) const override {
+  FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
     const VoxelSceneHit& own = std::get<VoxelSceneHit>(hit.own);
-    const dvec3 normal = scene_.normal(own);
-    return {normal, normal, scene_.colour(own)};
+    FieldSurface surface;
+    surface.normal = scene_.normal(ray, own);
+    surface.shading_normal = shading_normal(ray, own, surface.normal);
+    surface.colour = scene_.colour(own);
+    if (shading_.corner_ao)
+      surface.openness =
+          corner_openness(scene_.grid(own), own.hit.voxel, own.hit.face, scene_.place_in_grid(ray, own));
+    return surface;
   }
 
+  std::optional<FieldSurface> within(const dvec3& p) const override {
+    const auto colour = scene_.colour_at(p);
+    if (!colour) return {};
+    return FieldSurface{{0, 0, 1}, {0, 0, 1}, colour};
+  }
+  double detail() const override { return scene_.voxel_side(); }
+  SceneFieldPtr coarser(int level) const override { return scene_voxels(scene_.coarser(level), march_, shading_); }
+
  private:
+  dvec3 shading_normal(const Ray& ray, const VoxelSceneHit& hit, const dvec3& normal) const {
+    if (shading_.normals == VoxelNormals::flat || hit.hit.face == VoxelFace::inside) return normal;
+    const dvec3 point = shading_.normals == VoxelNormals::smooth
+                            ? scene_.place_in_grid(ray, hit)
+                            : dvec3(hit.hit.voxel) + 0.5 + 0.5 * dvec3(normal_of(hit.hit.face));
+    const dvec3 smooth = smooth_normal(scene_.grid(hit), point, shading_.normal_radius);
+    if (smooth == dvec3(0.0)) return normal;
+    const dvec3 in_world = scene_.world_from_grid(hit, smooth);
+    // Of a leaf or a thread the other side may weigh more.
+    return dot(in_world, normal) > 0 ? in_world : normal;
+  }
+
   static const VoxelSceneHit* from_of(const FieldHit* from) {
     return from ? std::get_if<VoxelSceneHit>(&from->own) : nullptr;
   }
 
   VoxelScene scene_;
   std::string march_;
+  VoxelShading shading_;
 };
 
 }  // namespace
 
-SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march) {
-  return std::make_shared<Voxels>(std::move(scene), march);
+SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march, const VoxelShading& shading) {
+  return std::make_shared<Voxels>(std::move(scene), march, shading);
 }
 
 }  // namespace scarp

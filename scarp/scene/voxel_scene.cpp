@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/matrix.hpp>
@@ -11,6 +12,7 @@
 #include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/scene/coarse_voxels.h"
 
 namespace scarp {
 namespace {
@@ -42,8 +44,10 @@ WorldBox world_box(const VoxelPlace& place, const VoxelBox& box) {
 
 }  // namespace
 
-VoxelScene::VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places)
-    : models_(std::move(models)) {
+VoxelScene::VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places,
+                       const VoxelRounding& rounding)
+    : models_(std::move(models)), rounding_(rounding) {
+  validate(rounding);
   for (const auto& model : models_) targets_.push_back(model->target());
   std::unordered_map<std::string, std::uint32_t> turns;
   std::vector<WorldBox> boxes;
@@ -83,18 +87,25 @@ struct VoxelScene::Query {
         turn(in.objects_[in.in_tree_[0]].turn),
         direction(in.turns_[turn].grid_from_world * world_ray.direction) {}
 
-  std::optional<QuantisedRay> quantised(std::uint32_t index, double t_max, const VoxelSceneHit* from) {
+  VoxelRay in_grid(std::uint32_t index, double t_max) {
     const Object& object = scene.objects_[index];
-    std::optional<ivec3> start_voxel;
-    if (from && from->object == index) start_voxel = from->hit.voxel + normal_of(from->hit.face);
     const Turn& to = scene.turns_[object.turn];
     if (object.turn != turn) {
       turn = object.turn;
       direction = VoxelDirection(to.grid_from_world * ray.direction);
     }
-    const VoxelRay in_grid{to.grid_from_world * (ray.origin - object.origin), direction.given, ray.t_min, t_max,
-                           start_voxel};
-    return quantise(in_grid, direction, scene.targets_[object.model].box);
+    return {to.grid_from_world * (ray.origin - object.origin), direction.given, ray.t_min, t_max, {}};
+  }
+  std::optional<QuantisedRay> quantised(std::uint32_t index, double t_max, const VoxelSceneHit* from) {
+    VoxelRay local = in_grid(index, t_max);
+    if (from && from->object == index) local.start_voxel = from->hit.voxel + normal_of(from->hit.face);
+    return quantise(local, direction, scene.targets_[scene.objects_[index].model].box);
+  }
+  VoxelHit rounded(std::uint32_t index, double t_max, const VoxelSceneHit* from, MarchStats* stats) {
+    const std::uint32_t model = scene.objects_[index].model;
+    const VoxelRay local = in_grid(index, t_max);
+    return first_rounded_voxel(scene.targets_[model], scene.models_[model]->march().voxel_cpu, local, direction,
+                               scene.rounding_, from && from->object == index ? &from->hit.voxel : nullptr, stats);
   }
 };
 
@@ -106,11 +117,15 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from,
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
     const std::uint32_t index = in_tree_[in_tree];
     const Object& object = objects_[index];
-    const auto quantised = query.quantised(index, t_max, from);
-    if (!quantised) return t_max;
     MarchStats steps;
-    const VoxelHit hit =
-        models_[object.model]->march().voxel_cpu(targets_[object.model], *quantised, stats ? &steps : nullptr);
+    VoxelHit hit;
+    if (rounding_) {
+      hit = query.rounded(index, t_max, from, stats ? &steps : nullptr);
+    } else {
+      const auto quantised = query.quantised(index, t_max, from);
+      if (!quantised) return t_max;
+      hit = models_[object.model]->march().voxel_cpu(targets_[object.model], *quantised, stats ? &steps : nullptr);
+    }
     if (stats) {
       ++stats->boxes;
       stats->steps += steps.steps;
@@ -126,14 +141,17 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from,
 
 bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   if (in_tree_.empty()) return false;
+  // Into the surface that it begins on: of a rounded voxel no neighbour would tell.
+  if (rounding_ && from && dot(normal(ray, *from), ray.direction) < 0) return true;
   Query query(*this, ray);
   bool blocked = false;
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
     const std::uint32_t index = in_tree_[in_tree];
     const Object& object = objects_[index];
-    const auto quantised = query.quantised(index, ray.t_max, from);
     const MarchEntry& march = models_[object.model]->march();
-    if (quantised) {
+    if (rounding_) {
+      blocked = static_cast<bool>(query.rounded(index, ray.t_max, from, nullptr));
+    } else if (const auto quantised = query.quantised(index, ray.t_max, from)) {
       blocked = march.voxel_cpu_occluded
                     ? march.voxel_cpu_occluded(targets_[object.model], *quantised)
                     : static_cast<bool>(march.voxel_cpu(targets_[object.model], *quantised, nullptr));
@@ -143,9 +161,49 @@ bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   return blocked;
 }
 
-dvec3 VoxelScene::normal(const VoxelSceneHit& hit) const {
+dvec3 VoxelScene::normal(const Ray& ray, const VoxelSceneHit& hit) const {
   if (hit.hit.face == VoxelFace::inside) return dvec3(0.0);
-  return normalize(turns_[objects_[hit.object].turn].world_from_grid * dvec3(normal_of(hit.hit.face)));
+  if (!rounding_) return world_from_grid(hit, dvec3(normal_of(hit.hit.face)));
+  return world_from_grid(hit, rounded_normal(grid(hit), hit.hit, place_in_grid(ray, hit), rounding_));
+}
+
+dvec3 VoxelScene::place_in_grid(const Ray& ray, const VoxelSceneHit& hit) const {
+  const Object& object = objects_[hit.object];
+  return turns_[object.turn].grid_from_world * (ray.at(hit.hit.t) - object.origin);
+}
+
+dvec3 VoxelScene::world_from_grid(const VoxelSceneHit& hit, const dvec3& direction) const {
+  return normalize(turns_[objects_[hit.object].turn].world_from_grid * direction);
+}
+
+std::optional<VoxelColour> VoxelScene::colour_at(const dvec3& p) const {
+  for (const Object& object : objects_) {
+    const dvec3 at = floor(turns_[object.turn].grid_from_world * (p - object.origin));
+    const VoxelModel& model = *models_[object.model];
+    const dvec3 size(model.grid().size());
+    // Compared as they are: too far away for whole numbers.
+    if (!(at.x >= 0 && at.y >= 0 && at.z >= 0 && at.x < size.x && at.y < size.y && at.z < size.z)) continue;
+    if (model.grid().solid(ivec3(at))) return model.colour(model.grid().entry(ivec3(at)));
+  }
+  return {};
+}
+
+double VoxelScene::voxel_side() const {
+  double least = 0;
+  for (const Turn& turn : turns_) {
+    const double side = length(turn.world_from_grid[0]);
+    least = least > 0 ? std::min(least, side) : side;
+  }
+  return least;
+}
+
+VoxelScene VoxelScene::coarser(int level) const {
+  std::vector<std::shared_ptr<const VoxelModel>> models;
+  for (const auto& model : models_) models.push_back(coarse_voxels(model, level));
+  std::vector<VoxelPlace> places;
+  for (const Object& object : objects_)
+    places.push_back({object.model, std::ldexp(1, level) * turns_[object.turn].world_from_grid, object.origin});
+  return VoxelScene(std::move(models), places, rounding_);
 }
 
 VoxelColour VoxelScene::colour(const VoxelSceneHit& hit) const {

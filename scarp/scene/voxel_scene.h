@@ -11,8 +11,10 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
+#include "scarp/march/rounded_voxels.h"
 #include "scarp/scene/box_tree.h"
 #include "scarp/scene/voxel_model.h"
 
@@ -23,6 +25,13 @@ struct VoxelPlace {
   std::uint32_t model = 0;          ///< index of the scene's models
   glm::dmat3 world_from_grid{1.0};  ///< a rotation or reflection times a scale: the metres of a voxel's side, > 0
   dvec3 origin{0.0};                ///< metres, of the grid's corner (0, 0, 0)
+};
+
+/// How readers make scenes of files.
+struct VoxelSceneOptions {
+  std::string_view march = "voxel-bricks";  ///< of voxel_marches()
+  bool surface_colours = false;             ///< VoxelGrid::drop_hidden_entries(): less memory, lossy inside
+  VoxelRounding rounding{};
 };
 
 struct VoxelSceneHit {
@@ -41,9 +50,13 @@ struct VoxelSceneStats {
 /// Immutable. Questions may be asked from many threads at once.
 class VoxelScene {
  public:
-  /// Throws Error, naming the place: a model that is not there, a matrix that is no rotation with a scale. Models are
-  /// shared with the caller, who may not change them any more.
-  VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places);
+  /// Throws Error, naming the place: a model that is not there, a matrix that is no rotation with a scale; a rounding
+  /// out of its range. Models are shared with the caller, who may not change them any more.
+  VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places,
+             const VoxelRounding& rounding = {});
+
+  /// The same with `level` times 2 x 2 x 2 voxels made one, see coarse_voxels.h.
+  VoxelScene coarser(int level) const;
 
   /// The ray counts as one that starts free. `stats`, when given, is added to.
   VoxelSceneHit closest_hit(const Ray& ray, VoxelSceneStats* stats = nullptr) const {
@@ -57,13 +70,25 @@ class VoxelScene {
   /// again.
   bool occluded_from(const VoxelSceneHit& hit, const Ray& ray) const { return occluded(ray, &hit); }
 
-  /// Outward unit normal in world space of the face that was hit; zero for a ray that began in the voxel.
-  dvec3 normal(const VoxelSceneHit& hit) const;
+  /// Outward unit normal in world space of what was hit, a face or a rounded edge; zero for a ray that began in the
+  /// voxel.
+  dvec3 normal(const Ray& ray, const VoxelSceneHit& hit) const;
   VoxelColour colour(const VoxelSceneHit& hit) const;
+
+  const VoxelGrid& grid(const VoxelSceneHit& hit) const { return models_[objects_[hit.object].model]->grid(); }
+  /// Where the ray hit, in the space of the object's grid.
+  dvec3 place_in_grid(const Ray& ray, const VoxelSceneHit& hit) const;
+  /// A unit vector of the grid's space in the world.
+  dvec3 world_from_grid(const VoxelSceneHit& hit, const dvec3& direction) const;
+  /// Of the solid voxel that a point is in; nothing for a point in none.
+  std::optional<VoxelColour> colour_at(const dvec3& p) const;
+  /// The least side of a voxel of all objects, in metres; 0 when there is none.
+  double voxel_side() const;
 
   /// Around all solid voxels (or grids); empty when there are none.
   const WorldBox& box() const { return tree_.box(); }
   std::size_t objects() const { return objects_.size(); }
+  const std::vector<std::shared_ptr<const VoxelModel>>& models() const { return models_; }
   /// Of the objects and the hierarchy over them, without the models.
   std::size_t bytes() const;
 
@@ -86,6 +111,7 @@ class VoxelScene {
   std::vector<Turn> turns_;
   std::vector<std::uint32_t> in_tree_;  // objects that have something to hit, in the order of the tree's numbers
   BoxTree tree_;
+  VoxelRounding rounding_;
 };
 
 }  // namespace scarp

@@ -75,8 +75,8 @@ TEST(VoxelScene, FindsTheNearestOfTurnedAndOverlappingObjects) {
       // The object is the same; t up to that of a ray quantised where it comes in, whatever else is in the scene.
       ASSERT_EQ(hit.object, expected.object);
       ASSERT_EQ(hit.hit, expected.hit);
-      EXPECT_NEAR(length(scene.normal(hit)), hit.hit.face == VoxelFace::inside ? 0 : 1, 1e-12);
-      EXPECT_LE(dot(scene.normal(hit), ray.direction), hit.hit.face == VoxelFace::inside ? 0.0 : 1e-12);
+      EXPECT_NEAR(length(scene.normal(ray, hit)), hit.hit.face == VoxelFace::inside ? 0 : 1, 1e-12);
+      EXPECT_LE(dot(scene.normal(ray, hit), ray.direction), hit.hit.face == VoxelFace::inside ? 0.0 : 1e-12);
     }
   }
   EXPECT_GT(hits, 100);
@@ -114,7 +114,7 @@ TEST(VoxelScene, ShadowRaysDoNotHitWhatTheyLeave) {
     // Straight out of the ball: nothing is in the way.
     Ray out;
     out.origin = ray.at(hit.hit.t);
-    out.direction = scene.normal(hit);
+    out.direction = scene.normal(ray, hit);
     free += scene.occluded_from(hit, out) ? 0 : 1;
   }
   EXPECT_EQ(free, 2000);
@@ -213,7 +213,7 @@ TEST(FromVox, PutsTurnedVoxelsWhereTheFileSays) {
     ASSERT_TRUE(hit) << bits;
     EXPECT_EQ(hit.hit.t, 4.5);
     EXPECT_EQ(hit.hit.voxel, ivec3(2, 0, 1));
-    EXPECT_EQ(scene.normal(hit), dvec3(0, 0, 1));
+    EXPECT_EQ(scene.normal(ray, hit), dvec3(0, 0, 1));
   }
 }
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// `scarp section`: one layer of a voxel model with the radius that spheres or cubes may have around each empty voxel,
+// as figures 5 of C. Leak, "Raymarching voxel rendering", have it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+
+#include "app/cli/commands.h"
+#include "app/cli/vox_input.h"
+#include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/empty_spheres.h"
+#include "scarp/base/error.h"
+#include "scarp/base/replace_file.h"
+
+namespace scarp::cli {
+namespace {
+
+struct SectionOptions {
+  std::vector<std::string> inputs;
+  std::string output, radii = "spheres", axis = "z";
+  int at = -1, model = 0;
+  VoxOptions vox;
+};
+
+constexpr int kCell = 20;  // of the picture, in its units
+constexpr int kMostCells = 256;
+
+// Radii as colours: white for 0, deeper with every voxel, up to the largest of the layer.
+std::string shade(int radius, int largest) {
+  const double share = largest > 0 ? static_cast<double>(radius) / largest : 0;
+  const auto mix = [&](double from, double to) { return static_cast<int>(from + share * (to - from) + 0.5); };
+  return fmt::format("#{:02x}{:02x}{:02x}", mix(255, 246), mix(255, 190), mix(255, 110));
+}
+
+template <class Radius>
+std::string svg_of(const VoxelModel& model, int axis, int at, const Radius& radius) {
+  const VoxelGrid& grid = model.grid();
+  const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
+  const int cols = grid.size()[across], rows = grid.size()[up];
+  if (std::max(cols, rows) > kMostCells)
+    throw Error(fmt::format("section: the layer is {} x {} voxels; pictures are made of {} at most", cols, rows,
+                            kMostCells));
+  const auto voxel = [&](int col, int row) {
+    ivec3 v(0);
+    v[axis] = at, v[across] = col, v[up] = rows - 1 - row;
+    return v;
+  };
+  int largest = 0;
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      if (!grid.solid(voxel(col, row))) largest = std::max(largest, radius(voxel(col, row)));
+    }
+  }
+  const int width = cols * kCell, height = rows * kCell;
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"-1 -1 {2} {3}\">\n"
+      "<g stroke=\"#9aa3ad\" stroke-width=\"0.6\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"{4}\" "
+      "text-anchor=\"middle\">\n",
+      width + 2, height + 2, width + 2, height + 2, kCell * 11 / 20);
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const ivec3 v = voxel(col, row);
+      const bool solid = grid.solid(v);
+      const int x = col * kCell, y = row * kCell;
+      svg += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>", x, y, kCell, kCell,
+                         solid ? "#3b6ea5" : shade(radius(v), largest));
+      if (!solid) {
+        svg += fmt::format("<text x=\"{}\" y=\"{}\" stroke=\"none\" fill=\"#333\">{}</text>", x + kCell / 2,
+                           y + kCell * 7 / 10, radius(v));
+      }
+      svg += '\n';
+    }
+  }
+  return svg + "</g>\n</svg>\n";
+}
+
+void write_text(const std::string& path, const std::string& text) {
+  ReplaceFile place(path);
+  std::ofstream out(place.temporary_path(), std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", path));
+  place.commit();
+}
+
+void run(const SectionOptions& options) {
+  std::string extension = std::filesystem::path(options.output).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  if (extension != ".svg")
+    throw Error(fmt::format("output '{}': sections are written as SVG; let the name end in .svg", options.output));
+  if (!is_vox_input(options.inputs, options.vox))
+    throw Error(fmt::format("'{}': a section is of voxels; expected a .vox or .binvox file, or --volume",
+                            options.inputs.front()));
+  const VoxInput input = read_voxels(options.inputs.front(), options.vox, {}, {});
+  const auto& models = input.scene.models();
+  if (options.model >= static_cast<int>(models.size()))
+    throw Error(fmt::format("--model {}: there are {}, counted from 0", options.model, models.size()));
+  const VoxelModel& model = *models[static_cast<std::size_t>(options.model)];
+  const int axis = options.axis == "x" ? 0 : options.axis == "y" ? 1 : 2;
+  const int side = model.grid().size()[axis], at = options.at < 0 ? side / 2 : options.at;
+  if (at >= side) throw Error(fmt::format("--at {}: the model has {} layers along {}", at, side, options.axis));
+  std::string svg;
+  if (options.radii == "spheres") {
+    const EmptySpheres spheres(model.grid());
+    svg = svg_of(model, axis, at, [&](const ivec3& v) { return spheres.distance(v); });
+  } else {
+    const EmptyCubes cubes(model.grid());
+    svg = svg_of(model, axis, at, [&](const ivec3& v) { return cubes.distance(v) - 1; });
+  }
+  write_text(options.output, svg);
+  fmt::print("{}: model {}, layer {} of {} along {}, radii of {}\n", options.output, options.model, at, side,
+             options.axis, options.radii);
+}
+
+}  // namespace
+
+void add_section(CLI::App& program) {
+  CLI::App* command =
+      program.add_subcommand("section", "A layer of a voxel model with the radii of empty spheres or cubes, as SVG");
+  const auto options = std::make_shared<SectionOptions>();
+  SectionOptions& o = *options;
+  command->add_option("IN", o.inputs, "a .vox or .binvox file, or a volume")->required();
+  command->add_option("-o,--output", o.output, "the SVG to write")->required();
+  command->add_option("--radii", o.radii, "of spheres or cubes around empty voxels that meet no solid one")
+      ->check(CLI::IsMember({"spheres", "cubes"}))
+      ->capture_default_str();
+  command->add_option("--axis", o.axis, "x, y or z: the layer is across it")
+      ->check(CLI::IsMember({"x", "y", "z"}))
+      ->capture_default_str();
+  command->add_option("--at", o.at, "which layer, from 0 (the middle)")->check(CLI::Range(0, 2047));
+  command->add_option("--model", o.model, "which model of a file, from 0")->check(CLI::Range(0, 1 << 20));
+  add_vox_options(*command, o.vox);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace scarp::cli

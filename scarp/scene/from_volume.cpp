@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/from_volume.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "scarp/base/error.h"
+#include "scarp/field/rotate_voxels.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::size_t kMostColours = 255;
+
+// `entry(v)` of a voxel of the file.
+template <class Entry>
+VoxelScene scene_of(const ivec3& size, const FromVolumeOptions& options, std::vector<VoxelColour> palette,
+                    const Entry& entry) {
+  // A quarter turn about x: the file's y becomes z.
+  const LatticeRotation turn = options.up == UpAxis::y ? LatticeRotation{{0, 2, 1}, {1, -1, 1}} : LatticeRotation{};
+  const ivec3 turned_size = abs(turn(size));
+  VoxelGrid grid(turned_size, 8);
+  const LatticeRotation back = turn.inverse();
+  grid.edit(grid.box(),
+            [&](const ivec3& v, const VoxelGrid::Voxel&) { return entry(rotated_voxel(v, turned_size, back)); });
+  if (options.voxels.surface_colours) grid.drop_hidden_entries();
+  const auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(options.voxels.march),
+                                                        std::move(palette));
+  return VoxelScene({model}, std::vector{VoxelPlace{}}, options.voxels.rounding);
+}
+
+}  // namespace
+
+VoxelScene voxel_scene_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options) {
+  return scene_of(binvox.size, options, {colour, colour},
+                  [&](const ivec3& v) { return binvox.solid(v) ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel(); });
+}
+
+VoxelScene voxel_scene_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
+                            const FromVolumeOptions& options) {
+  if (colours.empty() || colours.size() > kMostColours) throw Error("volume: 1 to 255 colours are needed");
+  const auto solid = [&](double value) { return options.solid_from ? value >= *options.solid_from : value > 0; };
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for_each_voxel({ivec3(0), volume.size()}, [&](const ivec3& v) {
+    const double value = volume[v];
+    if (!solid(value)) return;
+    low = std::min(low, value), high = std::max(high, value);
+  });
+  // Infinite numbers have the last colour.
+  const double range = std::min(high, std::numeric_limits<double>::max()) - low;
+  std::vector<VoxelColour> palette{VoxelColour{}};
+  palette.insert(palette.end(), colours.begin(), colours.end());
+  const auto last = static_cast<double>(colours.size() - 1);
+  return scene_of(volume.size(), options, std::move(palette), [&](const ivec3& v) {
+    const double value = volume[v];
+    if (!solid(value)) return VoxelGrid::Voxel();
+    const double share = range > 0 ? std::min(1.0, (value - low) / range) : 1;
+    return VoxelGrid::Voxel(1 + static_cast<std::uint32_t>(share * last + 0.5));
+  });
+}
+
+}  // namespace scarp

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Voxels of binvox files and of volumes of numbers as a scene of one object, a voxel 1 m, its corner at (0, 0, 0).
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "scarp/scene/voxel_scene.h"
+#include "scarp/source/binvox.h"
+#include "scarp/source/dense_volume.h"
+
+namespace scarp {
+
+/// Of voxels without a colour of their own.
+constexpr VoxelColour kPlainVoxels{196, 188, 170};
+
+/// Which axis of the file points up; the others follow so that nothing is mirrored.
+enum class UpAxis : std::uint8_t { y, z };
+
+struct FromVolumeOptions {
+  VoxelSceneOptions voxels{};
+  UpAxis up = UpAxis::z;
+  std::optional<double> solid_from;  ///< the least number of a solid voxel; nothing: all above 0 are solid
+};
+
+/// `colour`: of all voxels.
+VoxelScene voxel_scene_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options = {});
+
+/// The least number of a solid voxel has the first of the colours, the largest one the last; at most 255 colours, at
+/// least one. NaN is empty. Throws Error when there are more or none.
+VoxelScene voxel_scene_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
+                            const FromVolumeOptions& options = {});
+
+}  // namespace scarp

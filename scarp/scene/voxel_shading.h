@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// What light makes of voxels, apart from where they are hit: normals and the dark of corners, both from the grid alone.
+#pragma once
+
+#include "scarp/field/voxel_grid.h"
+#include "scarp/march/voxel_ray.h"
+
+namespace scarp {
+
+enum class VoxelNormals : std::uint8_t {
+  flat,   ///< of the face that was hit
+  voxel,  ///< one per face, smooth_normal() in its middle: cubes that turn with the shape they are part of
+  smooth  ///< smooth_normal() where the ray hit: no cubes in the shading
+};
+
+struct VoxelShading {
+  VoxelNormals normals = VoxelNormals::flat;
+  double normal_radius = 2.5;  ///< of smooth_normal(), in voxels, 1..8
+  bool corner_ao = false;      ///< corner_openness() on the light of the sky, where that is not sampled
+};
+
+/// Throws Error naming the setting out of its range.
+void validate(const VoxelShading& shading);
+
+/// Away from the solid voxels within `radius` of a point in the grid's space: the gradient of how solid it is there,
+/// every voxel's middle counting (1 - d^2 / radius^2)^2 at a distance d. Unit; zero where nothing is near, or as much on
+/// all sides. Continuous in the point. Cost: (2 radius)^3 voxels looked at.
+dvec3 smooth_normal(const VoxelGrid& grid, const dvec3& point, double radius);
+
+/// How much of the sky a point on a face of a voxel has, told by the eight voxels round the one before the face:
+///
+///   at each corner of the face four voxels meet before it; each that is solid hides a quarter of what a wall of any
+///   height would leave, two at the sides hide the one between them:  1, 3/4, 1/2 or 1/4;  linear in between
+///
+/// Source: M. Lysenko, "Ambient occlusion for Minecraft-like worlds", 0fps.net 2013, whose four levels these are. 1 for
+/// `inside`.
+double corner_openness(const VoxelGrid& grid, const ivec3& voxel, VoxelFace face, const dvec3& point);
+
+}  // namespace scarp

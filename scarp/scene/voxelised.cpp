@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/voxelised.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+
+namespace scarp {
+namespace {
+
+constexpr double kFarthest = 1 << 24;  // voxels
+
+}  // namespace
+
+VoxelLattice lattice_around(const Scene& scene, double side, const std::optional<WorldBox>& within) {
+  if (!(side > 0 && std::isfinite(side)))
+    throw Error(fmt::format("voxels: their side is {} m; it must be above 0", side));
+  if (!within && scene.endless()) throw Error("voxels: the scene has no end; say within which box voxels are made");
+  WorldBox box = scene.box();
+  if (within) {
+    box = *within;
+    if (!scene.endless()) {
+      box.low = glm::max(box.low, scene.box().low);
+      box.high = glm::min(box.high, scene.box().high);
+    }
+  }
+  if (!(box.low.x < box.high.x && box.low.y < box.high.y && box.low.z <= box.high.z))
+    throw Error("voxels: there is nothing to make voxels of in the box");
+  VoxelLattice lattice{side, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = std::floor(box.low[axis] / side), high = std::max(low + 1, std::ceil(box.high[axis] / side));
+    if (high - low > VoxelGrid::kMaxSide) {
+      throw Error(fmt::format("voxels of {} m: {} along {}, at most {} can be; take larger ones", side, high - low,
+                              "xyz"[axis], VoxelGrid::kMaxSide));
+    }
+    if (!(std::abs(low) <= kFarthest && std::abs(high) <= kFarthest))
+      throw Error(fmt::format("voxels of {} m: {} of them from the origin; at most 2^24 can be", side,
+                              std::max(std::abs(low), std::abs(high))));
+    lattice.box.low[axis] = static_cast<int>(low);
+    lattice.box.high[axis] = static_cast<int>(high);
+  }
+  return lattice;
+}
+
+VoxelGrid voxelised(const Scene& scene, const VoxelLattice& lattice,
+                    const std::function<std::uint32_t(const SceneSurface&)>& entry, const Progress& progress) {
+  const ivec3 size = lattice.box.high - lattice.box.low;
+  VoxelGrid grid(size, VoxelGrid::kMaxEntryBits);
+  // A layer of bricks at a time: who is inside is asked on all threads, the grid is filled by one.
+  const auto columns = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+  std::vector<std::optional<SceneSurface>> found(columns * VoxelGrid::kBrick);
+  const auto place = [&](int x, int y, int z) {
+    return static_cast<std::size_t>(x) +
+           static_cast<std::size_t>(size.x) * (static_cast<std::size_t>(y) +
+                                               static_cast<std::size_t>(size.y) * static_cast<std::size_t>(z));
+  };
+  for (int z0 = 0; z0 < size.z; z0 += VoxelGrid::kBrick) {
+    if (progress && !progress(static_cast<double>(z0) / size.z)) throw Interrupted();
+    const int layers = std::min(VoxelGrid::kBrick, size.z - z0);
+    parallel_for(size.y, 4, [&](std::int64_t begin, std::int64_t end) {
+      for (int z = 0; z < layers; ++z) {
+        for (auto y = static_cast<int>(begin); y < end; ++y) {
+          for (int x = 0; x < size.x; ++x) {
+            const dvec3 middle = lattice.side * (dvec3(lattice.box.low + ivec3(x, y, z0 + z)) + 0.5);
+            found[place(x, y, z)] = scene.within(middle);
+          }
+        }
+      }
+    });
+    grid.edit({{0, 0, z0}, {size.x, size.y, z0 + layers}}, [&](const ivec3& v, const VoxelGrid::Voxel&) {
+      const auto& surface = found[place(v.x, v.y, v.z - z0)];
+      return surface ? VoxelGrid::Voxel(entry(*surface)) : VoxelGrid::Voxel();
+    });
+  }
+  if (progress) progress(1);
+  return grid;
+}
+
+}  // namespace scarp

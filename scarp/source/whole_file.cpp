@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/whole_file.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+
+std::string whole_file(const std::string& path, std::string_view magic) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) throw Error("cannot be opened; is the name right?");
+  const std::streamoff length = in.tellg();
+  if (length < 0) throw Error("cannot be read; is it a file?");
+  const auto size = static_cast<std::uint64_t>(length);
+  in.seekg(0);
+  std::string bytes(std::min<std::uint64_t>(size, 64), '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  if (!in) throw Error("cannot be read; is it a file?");
+  if (!bytes.starts_with(magic)) return bytes;
+  const std::size_t begin = bytes.size();
+  bytes.resize(size);
+  in.read(bytes.data() + begin, static_cast<std::streamsize>(size - begin));
+  if (!in) throw Error("cannot be read to its end");
+  return bytes;
+}
+
+}  // namespace scarp
