@@ -66,12 +66,12 @@ void add_vox_options(CLI::App& command, VoxOptions& options) {
                    "drop colours that cannot be seen from outside: less memory, lossy inside")
       ->group(group);
   command
-      ->add_option("--volume", options.volume,
+      .add_option("--volume", options.volume,
                    "IN is numbers, one per voxel: npy (an array [z][y][x]), or NXxNYxNZ:TYPE[+OFFSET]: "
                    "256x256x128:u16le, x fastest")
       ->group(group);
   command
-      ->add_option("--solid-from", options.solid_from, "the least number of a solid voxel of a volume (all above 0)")
+      .add_option("--solid-from", options.solid_from, "the least number of a solid voxel of a volume (all above 0)")
       ->group(group);
   command.add_option("--up", options.up, "y or z: the axis of a binvox file or volume that points up")
       ->check(CLI::IsMember({"y", "z"}))
@@ -82,27 +82,27 @@ void add_vox_options(CLI::App& command, VoxOptions& options) {
 void add_vox_look_options(CLI::App& command, VoxLookOptions& options) {
   const std::string group = "Looks of voxels";
   command
-      ->add_option("--normals", options.normals,
+      .add_option("--normals", options.normals,
                    "flat: of the face; voxel: one per face, of the shape it is part of; smooth: of the shape")
       ->check(CLI::IsMember({"flat", "voxel", "smooth"}))
       ->group(group)
       ->capture_default_str();
-  command->add_option("--normal-radius", options.normal_radius, "voxels that those of the shape look at, 1 to 8")
+  command.add_option("--normal-radius", options.normal_radius, "voxels that those of the shape look at, 1 to 8")
       ->group(group)
       ->capture_default_str();
   command
-      ->add_option("--rounded", options.rounding.radius,
+      .add_option("--rounded", options.rounding.radius,
                    "radius of the edges that are open, in sides of a voxel, 0 to 0.5")
       ->group(group)
       ->capture_default_str();
-  command->add_flag("--each", options.rounding.each, "with --rounded: every voxel on its own, as a heap of dice")
+  command.add_flag("--each", options.rounding.each, "with --rounded: every voxel on its own, as a heap of dice")
       ->group(group);
   command
-      ->add_flag("--corner-ao", options.corner_ao,
+      .add_flag("--corner-ao", options.corner_ao,
                  "darker corners, by the voxels next to them; not where --samples asks the sky")
       ->group(group);
   command
-      ->add_flag("--coarse-voxels", options.coarse, "voxels that are smaller than pixels are made one of 2 x 2 x 2")
+      .add_flag("--coarse-voxels", options.coarse, "voxels that are smaller than pixels are made one of 2 x 2 x 2")
       ->group(group);
 }
 

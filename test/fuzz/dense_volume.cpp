@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Any bytes as the form of a volume, as the header of one, and as its samples: understood, or refused with an Error of
+// one line; no sample is read that is not there.
+#include "scarp/source/dense_volume.h"
+
+#include <cstdlib>
+#include <string>
+#include <string_view>
+
+#include "fuzz/fuzz.h"
+#include "scarp/base/error.h"
+
+namespace {
+
+void require(bool good) {
+  if (!good) std::abort();
+}
+
+void read(const scarp::VolumeFormat& format, std::string_view bytes) {
+  const scarp::DenseVolume volume(format, std::string(bytes));
+  const scarp::ivec3 last = volume.size() - 1;
+  (void)volume[scarp::ivec3(0)];
+  (void)volume[last];
+  (void)volume[scarp::ivec3(last.x, 0, last.z)];
+}
+
+template <class Format>
+void parse(const Format& format, std::string_view bytes) {
+  try {
+    const scarp::VolumeFormat found = format();
+    for (int axis = 0; axis < 3; ++axis)
+      require(found.size[axis] >= 1 && found.size[axis] <= scarp::kMaxVolumeSide);
+    require(found.offset >= 0);
+    read(found, bytes);
+  } catch (const scarp::Error& error) {
+    require(!std::string_view(error.what()).empty());
+  }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string_view bytes(reinterpret_cast<const char*>(data), size);
+  // The form ends at a zero, the samples begin behind it.
+  const std::size_t end = bytes.find('\0');
+  const std::string_view rest = end == std::string_view::npos ? std::string_view() : bytes.substr(end + 1);
+  parse([&] { return scarp::parse_volume_format(bytes.substr(0, end)); }, rest);
+  parse([&] { return scarp::npy_volume_format(bytes); }, bytes);
+  return 0;
+}

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+// What becomes of voxels beside being hit: normals, corners, coarser ones, and scenes made voxels.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "scarp/base/error.h"
+#include "scarp/field/rotate_voxels.h"
+#include "scarp/scene/coarse_voxels.h"
+#include "scarp/scene/from_volume.h"
+#include "scarp/scene/from_vox.h"
+#include "scarp/scene/scene.h"
+#include "scarp/scene/to_vox.h"
+#include "scarp/scene/voxelised.h"
+
+namespace scarp {
+namespace {
+
+template <class Solid>
+VoxelGrid grid_where(const ivec3& size, const Solid& solid) {
+  VoxelGrid grid(size, 24);
+  grid.edit(grid.box(), [&](const ivec3& v, const VoxelGrid::Voxel&) {
+    return solid(v) ? VoxelGrid::Voxel(0x0a0b0c) : VoxelGrid::Voxel();
+  });
+  return grid;
+}
+
+std::shared_ptr<const VoxelModel> model_of(VoxelGrid grid) {
+  return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
+}
+
+// Symmetry gives the answer: planes along the axes, and a staircase that all orders of the axes leave as it is.
+TEST(SmoothNormal, IsThatOfPlanes) {
+  const VoxelGrid level = grid_where(ivec3(16), [](const ivec3& v) { return v.z < 8; });
+  EXPECT_LT(length(smooth_normal(level, {8.5, 8.5, 8}, 2.5) - dvec3(0, 0, 1)), 1e-12);
+  const VoxelGrid stairs = grid_where(ivec3(16), [](const ivec3& v) { return v.x + v.y + v.z < 24; });
+  EXPECT_LT(length(smooth_normal(stairs, dvec3(8), 3) - dvec3(1 / std::sqrt(3.0))), 1e-12);
+  EXPECT_EQ(smooth_normal(level, {8, 8, 14}, 3), dvec3(0.0));
+}
+
+TEST(SmoothNormal, TurnsWithTheGrid) {
+  const VoxelGrid grid = grid_where({9, 10, 11}, [](const ivec3& v) { return (v.x * v.x + 3 * v.y + v.z * v.y) % 5 < 2; });
+  const dvec3 middle = 0.5 * dvec3(grid.size()), point(3.2, 5.1, 6.4);
+  for (const LatticeRotation& turn : lattice_rotations()) {
+    const VoxelGrid turned = rotated(grid, turn);
+    const dvec3 there = turn(point - middle) + 0.5 * dvec3(turned.size());
+    EXPECT_LT(length(smooth_normal(turned, there, 2.5) - turn(smooth_normal(grid, point, 2.5))), 1e-12);
+  }
+}
+
+// The four levels of a corner, by hand.
+TEST(CornerOpenness, CountsTheVoxelsAtACorner) {
+  VoxelGrid grid(ivec3(3));
+  grid.set({1, 1, 0}, 1);
+  const auto at = [&](double x, double y) {
+    return corner_openness(grid, {1, 1, 0}, VoxelFace::high_z, {x, y, 1});
+  };
+  EXPECT_EQ(at(2, 2), 1);
+  grid.set({2, 2, 1}, 1);
+  EXPECT_EQ(at(2, 2), 0.75);
+  EXPECT_EQ(at(1, 1), 1);
+  EXPECT_EQ(at(1.5, 1.5), (3 + 0.75) / 4);
+  grid.set({2, 1, 1}, 1);
+  EXPECT_EQ(at(2, 2), 0.5);
+  EXPECT_EQ(at(2, 1), 0.75);
+  grid.set({1, 2, 1}, 1);
+  EXPECT_EQ(at(2, 2), 0.25);
+  grid.clear(ivec3(2, 2, 1));
+  EXPECT_EQ(at(2, 2), 0.25);  // hidden by the two
+  EXPECT_EQ(corner_openness(grid, {1, 1, 0}, VoxelFace::inside, {2, 2, 1}), 1);
+}
+
+std::int64_t solid_after(const VoxelGrid& grid, int level) { return coarse_voxels(model_of(grid), level)->grid().solid_count(); }
+
+TEST(CoarseVoxels, CoverWhatTheyCovered) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int other = (axis + 1) % 3;
+    // A wall of a single voxel stays closed.
+    const VoxelGrid wall = grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21; });
+    EXPECT_EQ(solid_after(wall, 1), 32 * 32);
+    EXPECT_EQ(solid_after(wall, 3), 8 * 8);
+    // A thread has half the width of what is left of it: of 32 blocks each second.
+    const VoxelGrid thread =
+        grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21 && v[other] == 33; });
+    EXPECT_EQ(solid_after(thread, 1), 16);
+  }
+  EXPECT_EQ(solid_after(grid_where(ivec3(64), [](const ivec3&) { return true; }), 2), 16 * 16 * 16);
+  // Single voxels in each 8 x 8 x 8: 4,096, of which a quarter stays, give or take five standard errors of as many
+  // draws; a pattern in step with theirs would keep all or none.
+  const VoxelGrid dust = grid_where(ivec3(128), [](const ivec3& v) { return v.x % 8 == 3 && v.y % 8 == 6 && v.z % 8 == 1; });
+  EXPECT_NEAR(static_cast<double>(solid_after(dust, 1)), 1024, 5 * std::sqrt(4096 * 0.25 * 0.75));
+}
+
+// What is hidden does not colour what is seen; means are those of light.
+TEST(CoarseVoxels, HaveTheMeanColourOfWhatIsSeen) {
+  VoxelGrid grid(ivec3(4), 24);
+  grid.fill(grid.box(), 0xffffff);
+  grid.fill({{0, 0, 0}, {4, 4, 1}}, 0x000000);
+  grid.fill({{1, 1, 1}, {3, 3, 3}}, 0x0000ff);  // buried
+  const auto coarse = coarse_voxels(model_of(grid), 1);
+  // Of a block's 8 voxels 7 are seen: 4 of them black, 3 white at the bottom; all 7 white at the top.
+  EXPECT_EQ(coarse->colour(coarse->grid().entry({0, 0, 1})), (VoxelColour{255, 255, 255}));
+  // 3/7 of white light: 255 * (1.055 * (3/7)^(1/2.4) - 0.055).
+  const auto grey = static_cast<std::uint8_t>(std::lround(255 * (1.055 * std::pow(3.0 / 7, 1 / 2.4) - 0.055)));
+  EXPECT_EQ(coarse->colour(coarse->grid().entry({0, 0, 0})), (VoxelColour{grey, grey, grey}));
+}
+
+TEST(CoarseVoxels, AreTakenWherePixelsAreLarger) {
+  const VoxelGrid wall = grid_where(ivec3(64), [](const ivec3& v) { return v.z == 0; });
+  const SceneFieldPtr field = scene_voxels(VoxelScene({model_of(wall)}, std::vector{VoxelPlace{}}), "voxel-bricks");
+  const Scene scene({field}, {SceneObject{0, 0, {glm::dmat3(1.0), 0.5, {0, 0, 0}}}, SceneObject{0, 0, {}}});
+  // The eye is 100 m above; voxels are 0.5 and 1 m, a pixel 2.2 m: levels 2 and 1.
+  const Scene coarse = scene.coarser({{0, 0, 101}, {0, 0, -1}, [](double depth) { return 0.022 * depth; }});
+  const auto detail = [&](std::size_t object) { return coarse.fields()[coarse.objects()[object].field]->detail(); };
+  EXPECT_EQ(detail(0), 4);
+  EXPECT_EQ(detail(1), 2);
+  EXPECT_EQ(coarse.box().high, dvec3(64, 64, 2));
+  const Scene near = scene.coarser({{0, 0, 11}, {0, 0, -1}, [](double depth) { return 0.022 * depth; }});
+  EXPECT_EQ(near.fields().size(), 1U);
+}
+
+SceneFieldPtr ball(double radius) {
+  Shape shape = make_shape(shape::Sphere{radius});
+  return scene_shape(DistanceField(std::move(shape)));
+}
+
+TEST(Voxelised, AsksTheMiddlesOfVoxels) {
+  const Scene scene({ball(3)}, {SceneObject{0, 0, {glm::dmat3(1.0), 2, {1, -20, 3.3}}}});
+  const VoxelLattice lattice = lattice_around(scene, 0.5);
+  // (-5, -26, -2.7) to (7, -14, 9.3); the box of the shape may be larger by rounding, and so by a voxel.
+  EXPECT_EQ(intersection(lattice.box, {{-10, -52, -6}, {14, -28, 19}}), (VoxelBox{{-10, -52, -6}, {14, -28, 19}}));
+  EXPECT_EQ(intersection(lattice.box, {{-11, -53, -6}, {15, -27, 19}}), lattice.box);
+  const VoxelGrid grid = voxelised(scene, lattice, [](const SceneSurface&) { return 5U; });
+  for_each_voxel(grid.box(), [&](const ivec3& v) {
+    const dvec3 from = 0.5 * (dvec3(lattice.box.low + v) + 0.5) - dvec3(1, -20, 3.3);
+    ASSERT_EQ(grid.solid(v), dot(from, from) <= 36) << v.x << ' ' << v.y << ' ' << v.z;
+  });
+}
+
+TEST(Voxelised, GroundIsSolidBelow) {
+  std::vector<float> samples;
+  for (int row = 0; row < 9; ++row) {
+    for (int col = 0; col < 9; ++col) samples.push_back(static_cast<float>(col) * 0.75F + 0.125F);
+  }
+  const Scene scene({scene_heights(HeightField::own(std::move(samples), 9, 9, {}))}, {SceneObject{}});
+  const VoxelLattice lattice = lattice_around(scene, 1);
+  const VoxelGrid grid = voxelised(scene, lattice, [](const SceneSurface& surface) {
+    EXPECT_LT(length(surface.normal - normalize(dvec3(-0.75, 0, 1))), 1e-12);
+    return 5U;
+  });
+  for_each_voxel(grid.box(), [&](const ivec3& v) {
+    const dvec3 p = dvec3(lattice.box.low + v) + 0.5;
+    ASSERT_EQ(grid.solid(v), p.z <= 0.75 * p.x + 0.125);
+  });
+}
+
+TEST(Voxelised, RefusesWhatCannotBe) {
+  const Scene scene({ball(3)}, {SceneObject{}});
+  EXPECT_THROW(lattice_around(scene, 0), Error);
+  EXPECT_THROW(lattice_around(scene, 0.001), Error);
+  EXPECT_THROW(lattice_around(scene, 1, WorldBox{{10, 10, 10}, {20, 20, 20}}), Error);
+}
+
+// A file of two models, read again: every voxel is where it was, in its colour.
+TEST(ToVox, KeepsPlacesAndColours) {
+  VoxelGrid grid({300, 3, 2}, 24);
+  grid.set({0, 0, 0}, 0x010203);
+  grid.set({255, 2, 1}, 0x040506);
+  grid.set({256, 1, 0}, 0x070809);
+  grid.set({299, 2, 1}, 0x010203);
+  bool exact = false;
+  const VoxFile file = vox_file_of(grid, {-7, 20, 5}, exact);
+  EXPECT_TRUE(exact);
+  EXPECT_EQ(file.models.size(), 2U);
+  const VoxelScene scene = voxel_scene_from(parse_vox(vox_bytes(file)));
+  for_each_voxel(grid.box(), [&](const ivec3& v) {
+    const auto colour = scene.colour_at(dvec3(v + ivec3(-7, 20, 5)) + 0.5);
+    ASSERT_EQ(colour.has_value(), grid.solid(v)) << v.x << ' ' << v.y << ' ' << v.z;
+    if (!colour) return;
+    ASSERT_EQ(static_cast<std::uint32_t>((*colour)[0] | (*colour)[1] << 8 | (*colour)[2] << 16), grid.entry(v));
+  });
+}
+
+TEST(ToVox, TakesTheNearestOfFewerColours) {
+  VoxelGrid grid(ivec3(16), 24);
+  grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
+    return VoxelGrid::Voxel(static_cast<std::uint32_t>(17 * v.x | 17 * v.y << 8 | 17 * v.z << 16));
+  });
+  bool exact = true;
+  const VoxelScene scene = voxel_scene_from(vox_file_of(grid, ivec3(0), exact));
+  EXPECT_FALSE(exact);
+  for_each_voxel(grid.box(), [&](const ivec3& v) {
+    const auto colour = *scene.colour_at(dvec3(v) + 0.5);
+    // Half a step: 255 / 5, 255 / 6 and 255 / 5, and a half for rounding.
+    EXPECT_LE(std::abs(colour[0] - 17 * v.x), 26);
+    EXPECT_LE(std::abs(colour[1] - 17 * v.y), 22);
+    EXPECT_LE(std::abs(colour[2] - 17 * v.z), 26);
+  });
+}
+
+TEST(FromVolume, StandsUp) {
+  Binvox binvox;
+  binvox.size = {2, 3, 4};
+  binvox.clear();
+  binvox.set({1, 2, 0});
+  const VoxelScene as_is = voxel_scene_from(binvox, {9, 8, 7});
+  EXPECT_EQ(as_is.colour_at({1.5, 2.5, 0.5}), (VoxelColour{9, 8, 7}));
+  FromVolumeOptions options;
+  options.up = UpAxis::y;
+  // y goes up, z comes towards the viewer: south.
+  const VoxelScene up = voxel_scene_from(binvox, {9, 8, 7}, options);
+  EXPECT_EQ(up.colour_at({1.5, 3.5, 2.5}), (VoxelColour{9, 8, 7}));
+  EXPECT_EQ(up.models()[0]->grid().solid_count(), 1);
+}
+
+TEST(FromVolume, ColoursByNumber) {
+  const DenseVolume volume(parse_volume_format("5x1x1:u8"), std::string("\0\12\24\36\31", 5));
+  const std::vector<VoxelColour> colours{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+  FromVolumeOptions options;
+  const VoxelScene all = voxel_scene_from(volume, colours, options);
+  EXPECT_FALSE(all.colour_at({0.5, 0.5, 0.5}));
+  EXPECT_EQ((*all.colour_at({1.5, 0.5, 0.5}))[0], 1);
+  EXPECT_EQ((*all.colour_at({2.5, 0.5, 0.5}))[0], 2);
+  EXPECT_EQ((*all.colour_at({3.5, 0.5, 0.5}))[0], 3);
+  options.solid_from = 25;
+  const VoxelScene some = voxel_scene_from(volume, colours, options);
+  EXPECT_FALSE(some.colour_at({2.5, 0.5, 0.5}));
+  EXPECT_EQ((*some.colour_at({4.5, 0.5, 0.5}))[0], 1);
+}
+
+}  // namespace
+}  // namespace scarp
