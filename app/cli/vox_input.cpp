@@ -30,7 +30,8 @@ bool is_voxel_path(const std::string& path) { return extension_of(path) == ".vox
 constexpr int kRampColours = 255;
 
 std::vector<VoxelColour> colours_of(const std::string& ramp) {
-  const Ramp colours(ramp.empty() ? "viridis" : ramp, 0, kRampColours - 1);
+  if (ramp.empty()) return {kPlainVoxels};
+  const Ramp colours(ramp, 0, kRampColours - 1);
   std::vector<VoxelColour> list;
   for (int i = 0; i < kRampColours; ++i) {
     const vec3 c = colours(i);

@@ -45,7 +45,7 @@ struct VoxInput {
   std::optional<VoxFile> document;  ///< of MagicaVoxel
   VoxelScene scene;
 };
-/// Numbers of volumes are shown by `ramp`, of ramp_names().
+/// Numbers of volumes are shown by `ramp`, of ramp_names(); empty: not at all.
 VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelSceneOptions& voxels,
                      const std::string& ramp);
 

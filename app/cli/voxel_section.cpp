@@ -23,7 +23,7 @@ namespace {
 struct SectionOptions {
   std::vector<std::string> inputs;
   std::string output, radii = "spheres", axis = "z";
-  int at = -1, model = 0;
+  int at = -1, model = 0, margin = 4;
   VoxOptions vox;
 };
 
@@ -37,9 +37,18 @@ std::string shade(int radius, int largest) {
   return fmt::format("#{:02x}{:02x}{:02x}", mix(255, 246), mix(255, 190), mix(255, 110));
 }
 
+// The shape alone, with empty voxels around.
+VoxelGrid with_margin(const VoxelGrid& grid, int margin) {
+  VoxelGrid larger(grid.size() + 2 * margin, 1);
+  larger.edit(larger.box(), [&](const ivec3& v, const VoxelGrid::Voxel&) {
+    const ivec3 from = v - margin;
+    return grid.box().contains(from) && grid.solid(from) ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
+  });
+  return larger;
+}
+
 template <class Radius>
-std::string svg_of(const VoxelModel& model, int axis, int at, const Radius& radius) {
-  const VoxelGrid& grid = model.grid();
+std::string svg_of(const VoxelGrid& grid, int axis, int at, const Radius& radius) {
   const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
   const int cols = grid.size()[across], rows = grid.size()[up];
   if (std::max(cols, rows) > kMostCells)
@@ -105,13 +114,14 @@ void run(const SectionOptions& options) {
   const int axis = options.axis == "x" ? 0 : options.axis == "y" ? 1 : 2;
   const int side = model.grid().size()[axis], at = options.at < 0 ? side / 2 : options.at;
   if (at >= side) throw Error(fmt::format("--at {}: the model has {} layers along {}", at, side, options.axis));
+  const VoxelGrid grid = with_margin(model.grid(), options.margin);
   std::string svg;
   if (options.radii == "spheres") {
-    const EmptySpheres spheres(model.grid());
-    svg = svg_of(model, axis, at, [&](const ivec3& v) { return spheres.distance(v); });
+    const EmptySpheres spheres(grid);
+    svg = svg_of(grid, axis, at + options.margin, [&](const ivec3& v) { return spheres.distance(v); });
   } else {
-    const EmptyCubes cubes(model.grid());
-    svg = svg_of(model, axis, at, [&](const ivec3& v) { return cubes.distance(v) - 1; });
+    const EmptyCubes cubes(grid);
+    svg = svg_of(grid, axis, at + options.margin, [&](const ivec3& v) { return cubes.distance(v) - 1; });
   }
   write_text(options.output, svg);
   fmt::print("{}: model {}, layer {} of {} along {}, radii of {}\n", options.output, options.model, at, side,
@@ -135,6 +145,9 @@ void add_section(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--at", o.at, "which layer, from 0 (the middle)")->check(CLI::Range(0, 2047));
   command->add_option("--model", o.model, "which model of a file, from 0")->check(CLI::Range(0, 1 << 20));
+  command->add_option("--margin", o.margin, "empty voxels round the model")
+      ->check(CLI::Range(0, 100))
+      ->capture_default_str();
   add_vox_options(*command, o.vox);
   command->callback([options] { run(*options); });
 }

@@ -15,6 +15,7 @@
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/scene_input.h"
+#include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/render/voxel_colours.h"
@@ -32,6 +33,7 @@ struct VoxeliseOptions {
   std::string output, within, ramp = "hypsometric";
   RasterOptions raster;
   FieldOptions field;
+  VoxOptions vox;
   double voxel = 0;  // 0: not given
   int count = 0;     // 0: not given
   int threads = 0;
@@ -57,7 +59,13 @@ Input terrain(const VoxeliseOptions& options) {
   return {Scene({scene_heights(std::move(field))}, {SceneObject{}}), {{ramp}}, std::move(notes)};
 }
 
+Input voxels(const VoxeliseOptions& options) {
+  VoxInput input = read_voxels(options.inputs.front(), options.vox, {}, {});
+  return {Scene({scene_voxels(std::move(input.scene), VoxelSceneOptions{}.march)}, {SceneObject{}}), {}, {}};
+}
+
 Input input_of(const VoxeliseOptions& options) {
+  if (is_vox_input(options.inputs, options.vox)) return voxels(options);
   if (!is_scene_input(options.inputs)) return terrain(options);
   SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
   SceneLook look = look_of(document);
@@ -73,6 +81,8 @@ std::optional<WorldBox> box_of(const VoxeliseOptions& options) {
 
 double side_of(const VoxeliseOptions& options, const Scene& scene, const std::optional<WorldBox>& within) {
   if (options.voxel > 0) return options.voxel;
+  // Voxels stay what they are.
+  if (options.count == 0 && is_vox_input(options.inputs, options.vox)) return 1;
   if (!within && scene.endless())
     throw Error("--within: the scene has no end; say of which box voxels are made, XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH");
   const WorldBox& box = within ? *within : scene.box();
@@ -124,7 +134,7 @@ void run(const VoxeliseOptions& options) {
 }  // namespace
 
 void add_voxelise(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("voxelise", "Make voxels of terrain or of a scene: .vox or .binvox");
+  CLI::App* command = program.add_subcommand("voxelise", "Make voxels of terrain, a scene or other voxels: .vox or .binvox");
   const auto options = std::make_shared<VoxeliseOptions>();
   VoxeliseOptions& o = *options;
   add_raster_inputs(*command, o.inputs);
@@ -138,6 +148,7 @@ void add_voxelise(CLI::App& program) {
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
   add_raster_options(*command, o.raster);
   add_field_options(*command, o.field);
+  add_vox_options(*command, o.vox);
   command->callback([options] { run(*options); });
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Voxels in scenes.
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -27,17 +28,19 @@ class Voxels final : public SceneField {
   }
   bool occluded(const Ray& ray, const FieldHit* from) const override {
     const VoxelSceneHit* voxel = from_of(from);
-    return voxel ? scene_.occluded_from(*voxel, ray) : scene_.occluded(ray);
+    if (!voxel) return scene_.occluded(ray);
+    return shading_.normals == VoxelNormals::smooth ? occluded_above_steps(ray, *voxel)
+                                                    : scene_.occluded_from(*voxel, ray);
   }
   FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
     const VoxelSceneHit& own = std::get<VoxelSceneHit>(hit.own);
     FieldSurface surface;
     surface.normal = scene_.normal(ray, own);
-    surface.shading_normal = shading_normal(ray, own, surface.normal);
+    surface.shading_normal = shading_normal(own, ray.at(own.hit.t), surface.normal);
     surface.colour = scene_.colour(own);
     if (shading_.corner_ao)
       surface.openness =
-          corner_openness(scene_.grid(own), own.hit.voxel, own.hit.face, scene_.place_in_grid(ray, own));
+          corner_openness(scene_.grid(own), own.hit.voxel, own.hit.face, scene_.place_in_grid(own, ray.at(own.hit.t)));
     return surface;
   }
 
@@ -50,10 +53,19 @@ class Voxels final : public SceneField {
   SceneFieldPtr coarser(int level) const override { return scene_voxels(scene_.coarser(level), march_, shading_); }
 
  private:
-  dvec3 shading_normal(const Ray& ray, const VoxelSceneHit& hit, const dvec3& normal) const {
+  // A surface that is shaded as a smooth one is not shaded by its own steps. Voxels with their middles below a plane
+  // have corners up to sqrt(3) / 2 voxel above it, and faces as far below: above all of them the ray begins free.
+  bool occluded_above_steps(const Ray& ray, const VoxelSceneHit& from) const {
+    const dvec3 p = ray.at(ray.t_min), normal = scene_.normal(p, from);
+    Ray above = ray;
+    above.origin += std::sqrt(3.0) * scene_.voxel_side(from) * shading_normal(from, p, normal);
+    return scene_.occluded(above);
+  }
+
+  dvec3 shading_normal(const VoxelSceneHit& hit, const dvec3& p, const dvec3& normal) const {
     if (shading_.normals == VoxelNormals::flat || hit.hit.face == VoxelFace::inside) return normal;
     const dvec3 point = shading_.normals == VoxelNormals::smooth
-                            ? scene_.place_in_grid(ray, hit)
+                            ? scene_.place_in_grid(hit, p)
                             : dvec3(hit.hit.voxel) + 0.5 + 0.5 * dvec3(normal_of(hit.hit.face));
     const dvec3 smooth = smooth_normal(scene_.grid(hit), point, shading_.normal_radius);
     if (smooth == dvec3(0.0)) return normal;

@@ -142,7 +142,7 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from,
 bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   if (in_tree_.empty()) return false;
   // Into the surface that it begins on: of a rounded voxel no neighbour would tell.
-  if (rounding_ && from && dot(normal(ray, *from), ray.direction) < 0) return true;
+  if (rounding_ && from && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0) return true;
   Query query(*this, ray);
   bool blocked = false;
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
@@ -161,15 +161,19 @@ bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   return blocked;
 }
 
-dvec3 VoxelScene::normal(const Ray& ray, const VoxelSceneHit& hit) const {
+dvec3 VoxelScene::normal(const dvec3& p, const VoxelSceneHit& hit) const {
   if (hit.hit.face == VoxelFace::inside) return dvec3(0.0);
   if (!rounding_) return world_from_grid(hit, dvec3(normal_of(hit.hit.face)));
-  return world_from_grid(hit, rounded_normal(grid(hit), hit.hit, place_in_grid(ray, hit), rounding_));
+  return world_from_grid(hit, rounded_normal(grid(hit), hit.hit, place_in_grid(hit, p), rounding_));
 }
 
-dvec3 VoxelScene::place_in_grid(const Ray& ray, const VoxelSceneHit& hit) const {
+dvec3 VoxelScene::place_in_grid(const VoxelSceneHit& hit, const dvec3& p) const {
   const Object& object = objects_[hit.object];
-  return turns_[object.turn].grid_from_world * (ray.at(hit.hit.t) - object.origin);
+  return turns_[object.turn].grid_from_world * (p - object.origin);
+}
+
+double VoxelScene::voxel_side(const VoxelSceneHit& hit) const {
+  return length(turns_[objects_[hit.object].turn].world_from_grid[0]);
 }
 
 dvec3 VoxelScene::world_from_grid(const VoxelSceneHit& hit, const dvec3& direction) const {

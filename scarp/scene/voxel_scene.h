@@ -72,12 +72,16 @@ class VoxelScene {
 
   /// Outward unit normal in world space of what was hit, a face or a rounded edge; zero for a ray that began in the
   /// voxel.
-  dvec3 normal(const Ray& ray, const VoxelSceneHit& hit) const;
+  dvec3 normal(const Ray& ray, const VoxelSceneHit& hit) const { return normal(ray.at(hit.hit.t), hit); }
+  /// The same by the point that was hit.
+  dvec3 normal(const dvec3& p, const VoxelSceneHit& hit) const;
   VoxelColour colour(const VoxelSceneHit& hit) const;
 
   const VoxelGrid& grid(const VoxelSceneHit& hit) const { return models_[objects_[hit.object].model]->grid(); }
-  /// Where the ray hit, in the space of the object's grid.
-  dvec3 place_in_grid(const Ray& ray, const VoxelSceneHit& hit) const;
+  /// A point of the world in the space of the object's grid.
+  dvec3 place_in_grid(const VoxelSceneHit& hit, const dvec3& p) const;
+  /// Metres of a voxel's side of the object.
+  double voxel_side(const VoxelSceneHit& hit) const;
   /// A unit vector of the grid's space in the world.
   dvec3 world_from_grid(const VoxelSceneHit& hit, const dvec3& direction) const;
   /// Of the solid voxel that a point is in; nothing for a point in none.

@@ -10,7 +10,7 @@ namespace scarp {
 enum class VoxelNormals : std::uint8_t {
   flat,   ///< of the face that was hit
   voxel,  ///< one per face, smooth_normal() in its middle: cubes that turn with the shape they are part of
-  smooth  ///< smooth_normal() where the ray hit: no cubes in the shading
+  smooth  ///< smooth_normal() where the ray hit: no cubes in the shading, and no shadows of the surface's own steps
 };
 
 struct VoxelShading {

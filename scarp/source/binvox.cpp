@@ -97,16 +97,17 @@ Binvox parse_binvox(std::string_view bytes) {
   Binvox binvox = parse_header(bytes);
   const std::uint64_t voxels = volume(binvox.size);
   std::uint64_t told = 0;
-  for (std::size_t i = 0; i + 1 < bytes.size() && told < voxels; i += 2) {
+  for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
     const auto value = static_cast<std::uint8_t>(bytes[i]), count = static_cast<std::uint8_t>(bytes[i + 1]);
     if (value > 1 || count == 0)
       throw Error(fmt::format("run {} is {} voxels of {}; expected 1 to 255 of 0 or 1", i / 2, count, value));
     told += count;
   }
   if (told != voxels) {
-    throw Error(fmt::format("its runs are {} voxels; the header says {} x {} x {}, which are {}; is it cut off?", told,
-                            binvox.size.x, binvox.size.y, binvox.size.z, voxels));
+    throw Error(fmt::format("its runs are {} voxels; the header says {} x {} x {}, which are {}{}", told, binvox.size.x,
+                            binvox.size.y, binvox.size.z, voxels, told < voxels ? "; is it cut off?" : ""));
   }
+  if (bytes.size() % 2 != 0) throw Error("ends within a run; is it cut off?");
   binvox.clear();
   std::uint64_t at = 0;
   for (std::size_t i = 0; at < voxels; i += 2) {

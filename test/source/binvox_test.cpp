@@ -56,6 +56,8 @@ TEST(Binvox, SaysWhatIsWrong) {
   refused(header("2048 2048 2048") + "\1\377", "its runs are 255 voxels");
   refused(header("2 2 2") + "\1\11", "its runs are 9 voxels");
   refused(header("2 2 2") + std::string("\1\0", 2), "expected 1 to 255 of 0 or 1");
+  refused(header("2 2 2") + "\1\10\1\1", "its runs are 9 voxels");
+  refused(header("2 2 2") + "\1\10\1", "ends within a run");
   refused(header("2 2 2") + "\7\10", "expected 1 to 255 of 0 or 1");
 }
 
