@@ -357,8 +357,8 @@ int run(int argc, char** argv) {
   add_json_option(*shapes_command, report);
 
   PixelMatchOptions pixel_match;
-  CLI::App* pixel_match_command =
-      app.add_subcommand("pixel-match", "pictures of voxels beside the same drawn as quads; fails when a pixel differs");
+  CLI::App* pixel_match_command = app.add_subcommand(
+      "pixel-match", "pictures of voxels beside the same drawn as quads; fails when a pixel differs");
   pixel_match_command->add_option("--sets", pixel_match.sets, "of objects")
       ->delimiter(',')
       ->check(CLI::IsMember({"standard", "degenerate", "far-wall"}))

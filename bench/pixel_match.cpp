@@ -57,7 +57,8 @@ class Rows {
       same = error <= 1;
     }
     if (near.empty()) {
-      if (!same) differs(found_.differ, col, row, hit ? text_of(face) : "nothing", covered ? text_of(seen.face) : "nothing");
+      if (!same)
+        differs(found_.differ, col, row, hit ? text_of(face) : "nothing", covered ? text_of(seen.face) : "nothing");
       return;
     }
     ++found_.near_edges;
@@ -98,9 +99,10 @@ PixelMatch compare_with_quads(const RasterPicture& quads, const VoxelScene& scen
   const double slant = frame.perspective ? std::sqrt(1 + dot(corner, corner)) / quads.least_depth : 1;
   match.ray_pixels = std::sqrt(3.0) * off * slant / frame.pixel;
   if (match.ray_pixels > kPixelMargin)
-    throw Error(fmt::format("pixel-match: rays may be off by {} pixels, more than the margin of {}; the camera is too "
-                            "close",
-                            match.ray_pixels, kPixelMargin));
+    throw Error(
+        fmt::format("pixel-match: rays may be off by {} pixels, more than the margin of {}; the camera is too "
+                    "close",
+                    match.ray_pixels, kPixelMargin));
   std::mutex mutex;
   parallel_for(frame.height, 8, [&](std::int64_t begin, std::int64_t end) {
     Rows rows(quads, scene, frame, off);

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // A picture of voxels, ray by ray, beside the same picture drawn as quads.
 //
-// How far a ray may be off, and so how wide the margin about edges has to be: quantised where it comes into an object of
-// L voxels a side, it stays within e = 2^-21 + 2^-29 L voxel of itself in each axis (scarp/march/voxel_ray.h), sqrt(3) e
-// in space. In the picture, at the depth W, that is at most
+// How far a ray may be off, and so how wide the margin about edges has to be: quantised where it comes into an object
+// of L voxels a side, it stays within e = 2^-21 + 2^-29 L voxel of itself in each axis (scarp/march/voxel_ray.h),
+// sqrt(3) e in space. In the picture, at the depth W, that is at most
 //
 //   sqrt(3) e side sqrt(1 + x^2 + y^2) / (W pixel)     x, y: tangents of the angles at the picture's corner
 //
 // for L = 32: 1e-3 pixel at a depth of 1.6 voxels in the post's picture, 2e-5 from where its camera stands. A
-// difference beyond the margin of 1e-3 pixel is none of rounding. Along the axis of the face that was hit t is off by e.
+// difference beyond the margin of 1e-3 pixel is none of rounding. Along the axis of the face that was hit t is off by
+// e.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +24,8 @@ constexpr double kPixelMargin = 1e-3;
 
 struct PixelMatch {
   std::int64_t pixels = 0, hits = 0;
-  std::int64_t near_edges = 0;       ///< pixels closer to an edge than the margin
-  std::int64_t differ = 0;           ///< of the others: another object, voxel or face than the quads, or t off by more than e
+  std::int64_t near_edges = 0;  ///< pixels closer to an edge than the margin
+  std::int64_t differ = 0;  ///< of the others: another object, voxel or face than the quads, or t off by more than e
   std::int64_t near_edge_wrong = 0;  ///< near an edge, and none of the faces that meet there
   double ray_pixels = 0;             ///< how far a ray may be off at the least depth of the picture, derived
   double t_error = 0;                ///< the largest of all t, in shares of e

@@ -144,8 +144,8 @@ class Strip {
         for (const dvec3& e : edge) inside = std::min(inside, sign * (e.x * p.x + e.y * p.y + e.z));
         if (inside <= -margin_) continue;
         if (inside < margin_ && !near_edge(p, ring, inside)) continue;
-        const std::size_t pixel = static_cast<std::size_t>(row) * static_cast<std::size_t>(frame_.width) +
-                                  static_cast<std::size_t>(col);
+        const std::size_t pixel =
+            static_cast<std::size_t>(row) * static_cast<std::size_t>(frame_.width) + static_cast<std::size_t>(col);
         if (inside < margin_) {
           near_edges_.push_back({static_cast<std::uint32_t>(pixel), face, least_t(face, place)});
         } else if (const double t = depth(col, row, axis, plane); t < picture_.seen[pixel].t) {
@@ -221,15 +221,13 @@ Ray PictureFrame::ray(int col, int row) const {
   return ray;
 }
 
-PictureFrame frame_looking(const dvec3& eye, const dvec3& target, const dvec3& top, double fov, int width,
-                           int height) {
+PictureFrame frame_looking(const dvec3& eye, const dvec3& target, const dvec3& top, double fov, int width, int height) {
   PictureFrame frame = frame_along(eye, normalize(target - eye), top, 2 * std::tan(fov / 2), width, height);
   frame.perspective = true;
   return frame;
 }
 
-PictureFrame frame_along(const dvec3& eye, const dvec3& forward, const dvec3& top, double high, int width,
-                         int height) {
+PictureFrame frame_along(const dvec3& eye, const dvec3& forward, const dvec3& top, double high, int width, int height) {
   const dvec3 right = normalize(cross(forward, top));
   return {eye, right, cross(right, forward), forward, false, high / height, width, height};
 }

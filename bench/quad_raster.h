@@ -3,19 +3,19 @@
 // and an empty voxel is a quad, projected to the picture; a pixel shows the nearest quad that covers its middle.
 //
 //   corner    (X, Y, W) = (right, up, forward) . (corner - eye), X and Y in pixels; W = 1 without perspective
-//   edge      e(x, y) = (x, y, 1) . (corner_i x corner_i+1): its sign tells the side, e / |(e_x, e_y)| how far, in pixels
-//   inside    all four edges have the sign of the quad; right for quads that reach behind the eye, too
-//   depth     at (x, y) the plane's: t = (k - eye_a) / direction_a
+//   edge      e(x, y) = (x, y, 1) . (corner_i x corner_i+1): its sign tells the side, e / |(e_x, e_y)| how far, in
+//   pixels inside    all four edges have the sign of the quad; right for quads that reach behind the eye, too depth at
+//   (x, y) the plane's: t = (k - eye_a) / direction_a
 //
 // Sources: M. Olano, T. Greer, "Triangle scan conversion using 2D homogeneous coordinates", Graphics Hardware 1997;
 // J. Pineda, "A parallel algorithm for polygon rasterization", SIGGRAPH 1988.
 //
-// Exactness, all in double, for eyes within 2^9 m and pictures up to 2^11 pixels: a corner 2^-2 m or more away is off by
-// less than 2^-29 pixel (three products of 2^19 pixels), an edge of length L by that and 2^-29 / L (a product of two
+// Exactness, all in double, for eyes within 2^9 m and pictures up to 2^11 pixels: a corner 2^-2 m or more away is off
+// by less than 2^-29 pixel (three products of 2^19 pixels), an edge of length L by that and 2^-29 / L (a product of two
 // coordinates, 2^22 pixels, divided by L). That is below 2^-20 pixel for L above 2^-9; faces with a shorter edge are
 // narrower than two margins of 1e-3 and cover nothing. So a pixel that is farther than the margin from all edges is
-// decided. Two faces that cover it meet at edges, if they meet: at the pixel they are a margin's width apart, 2^-20 voxel
-// or more, and depths are known to 2^-40.
+// decided. Two faces that cover it meet at edges, if they meet: at the pixel they are a margin's width apart, 2^-20
+// voxel or more, and depths are known to 2^-40.
 #pragma once
 
 #include <cstdint>

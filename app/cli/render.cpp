@@ -42,8 +42,8 @@ namespace {
 
 // What of the options goes with a scene, which says all else itself.
 constexpr std::array<std::string_view, 17> kSceneOptions = {
-    "IN",         "--output", "--size", "--look",   "--ramp", "--sun", "--no-shadows", "--samples",      "--sun-size",
-    "--view",     "--eye",    "--target", "--fov",  "--top",  "--aa",  "--threads",    "--coarse-voxels"};
+    "IN",     "--output", "--size",   "--look", "--ramp", "--sun", "--no-shadows", "--samples",      "--sun-size",
+    "--view", "--eye",    "--target", "--fov",  "--top",  "--aa",  "--threads",    "--coarse-voxels"};
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {
@@ -194,8 +194,8 @@ void print_times(const RenderOptions& options, double read_s, double build_s, do
              device.empty() ? "" : ", on " + device);
 }
 
-SceneDetail detail_of(const Camera& camera) {
-  return {camera.eye(), camera.forward(), [&camera](double depth) { return camera.pixel_width(depth); }};
+SceneDetail detail_of(const Camera& camera, int aa) {
+  return {camera.eye(), camera.forward(), [&camera, aa](double depth) { return camera.pixel_width(depth) / aa; }};
 }
 
 // Writes the picture, and says what it took.
@@ -213,6 +213,17 @@ void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const 
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
   print_times(options, read_s, build_s, render_s);
   print_findings(picture);
+}
+
+// Of pictures of terrain and functions.
+void require_no_voxel_options(const RenderOptions& options) {
+  constexpr std::array<std::string_view, 11> kVoxelOptions = {
+      "--frame",   "--hidden", "--surface-colours", "--solid-from",   "--up", "--normals", "--normal-radius",
+      "--rounded", "--each",   "--corner-ao",       "--coarse-voxels"};
+  for (const std::string_view option : kVoxelOptions) {
+    if (std::find(options.given.begin(), options.given.end(), option) != options.given.end())
+      throw Error(fmt::format("{}: goes with files of voxels; leave it out", option));
+  }
 }
 
 // Of pictures of anything else.
@@ -245,7 +256,7 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
   const Box box = picture_box(scene);
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   const Camera camera = camera_of(options, view, box, 0);
-  if (options.vox_look.coarse) scene = scene.coarser(detail_of(camera));
+  if (options.vox_look.coarse) scene = scene.coarser(detail_of(camera, options.picture.aa));
   stop_if_interrupted();
   const double build_s = watch.lap();
   write_scene_picture(options, file, scene, {}, camera, watch, read_s, build_s);
@@ -277,7 +288,7 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
                                                         : camera_of(options, view, picture_box(document.scene), 0);
   for (const std::string& note : document.notes) fmt::print(stderr, "note: {}\n", note);
   const bool coarse = document.picture.coarse_voxels || options.vox_look.coarse;
-  const Scene scene = coarse ? document.scene.coarser(detail_of(camera)) : document.scene;
+  const Scene scene = coarse ? document.scene.coarser(detail_of(camera, options.picture.aa)) : document.scene;
   stop_if_interrupted();
   write_scene_picture(options, file, scene, look_of(document), camera, watch, read_s, watch.lap());
 }
@@ -380,6 +391,7 @@ void render_function_input(const RenderOptions& options, const ViewSettings& vie
     throw Error(fmt::format("'{}': --function stands in the place of files; give one of both", options.inputs.front()));
   }
   require_no_terrain_options(options);
+  require_no_voxel_options(options);
   if (options.exr) throw Error(fmt::format("output '{}': pictures of functions are written as PNG", options.output));
   if (!options.device.empty()) throw Error("--device: pictures of functions are made on the CPU; leave it out");
   if (options.top) throw Error("--top: a function has no end that a map could show; leave it out");
@@ -406,6 +418,7 @@ void run(RenderOptions options) {
   } else if (is_vox_input(options.inputs, options.vox)) {
     render_vox(std::move(options), view);
   } else {
+    require_no_voxel_options(options);
     render_terrain(std::move(options), view);
   }
 }

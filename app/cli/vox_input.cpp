@@ -63,16 +63,16 @@ void add_vox_options(CLI::App& command, VoxOptions& options) {
       ->group(group)
       ->capture_default_str();
   command.add_flag("--hidden", options.scene.hidden, "with hidden objects and layers (MagicaVoxel)")->group(group);
-  command.add_flag("--surface-colours", options.surface_colours,
-                   "drop colours that cannot be seen from outside: less memory, lossy inside")
+  command
+      .add_flag("--surface-colours", options.surface_colours,
+                "drop colours that cannot be seen from outside: less memory, lossy inside")
       ->group(group);
   command
       .add_option("--volume", options.volume,
-                   "IN is numbers, one per voxel: npy (an array [z][y][x]), or NXxNYxNZ:TYPE[+OFFSET]: "
-                   "256x256x128:u16le, x fastest")
+                  "IN is numbers, one per voxel: npy (an array [z][y][x]), or NXxNYxNZ:TYPE[+OFFSET]: "
+                  "256x256x128:u16le, x fastest")
       ->group(group);
-  command
-      .add_option("--solid-from", options.solid_from, "the least number of a solid voxel of a volume (all above 0)")
+  command.add_option("--solid-from", options.solid_from, "the least number of a solid voxel of a volume (all above 0)")
       ->group(group);
   command.add_option("--up", options.up, "y or z: the axis of a binvox file or volume that points up")
       ->check(CLI::IsMember({"y", "z"}))
@@ -84,7 +84,7 @@ void add_vox_look_options(CLI::App& command, VoxLookOptions& options) {
   const std::string group = "Looks of voxels";
   command
       .add_option("--normals", options.normals,
-                   "flat: of the face; voxel: one per face, of the shape it is part of; smooth: of the shape")
+                  "flat: of the face; voxel: one per face, of the shape it is part of; smooth: of the shape")
       ->check(CLI::IsMember({"flat", "voxel", "smooth"}))
       ->group(group)
       ->capture_default_str();
@@ -93,17 +93,16 @@ void add_vox_look_options(CLI::App& command, VoxLookOptions& options) {
       ->capture_default_str();
   command
       .add_option("--rounded", options.rounding.radius,
-                   "radius of the edges that are open, in sides of a voxel, 0 to 0.5")
+                  "radius of the edges that are open, in sides of a voxel, 0 to 0.5")
       ->group(group)
       ->capture_default_str();
   command.add_flag("--each", options.rounding.each, "with --rounded: every voxel on its own, as a heap of dice")
       ->group(group);
   command
       .add_flag("--corner-ao", options.corner_ao,
-                 "darker corners, by the voxels next to them; not where --samples asks the sky")
+                "darker corners, by the voxels next to them; not where --samples asks the sky")
       ->group(group);
-  command
-      .add_flag("--coarse-voxels", options.coarse, "voxels that are smaller than pixels are made one of 2 x 2 x 2")
+  command.add_flag("--coarse-voxels", options.coarse, "voxels that are smaller than pixels are made one of 2 x 2 x 2")
       ->group(group);
 }
 
@@ -170,8 +169,7 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   } else {
     info["format"] = options.volume.empty() ? "binvox" : "volume";
     const VoxelGrid& grid = input.scene.models()[0]->grid();
-    info["models"] = {
-        {{"size", {grid.size().x, grid.size().y, grid.size().z}}, {"voxels", grid.solid_count()}}};
+    info["models"] = {{{"size", {grid.size().x, grid.size().y, grid.size().z}}, {"voxels", grid.solid_count()}}};
   }
   std::size_t bytes = input.scene.bytes();
   for (const auto& model : input.scene.models()) bytes += model->bytes();
@@ -205,9 +203,9 @@ std::string vox_text_of(const Json& info) {
   if (info["models"].size() > kListed) line("", fmt::format("... and {} more", info["models"].size() - kListed));
   if (document) {
     line("scene", fmt::format("{} nodes, {} layers; {} objects, {} hidden", count("nodes"), count("layers"),
-                            count("instances"), count("hidden_instances")));
-  line("colours", fmt::format("{} of the {} palette; {} materials", count("colours_used"),
-                              info["default_palette"].get<bool>() ? "default" : "file's", count("materials")));
+                              count("instances"), count("hidden_instances")));
+    line("colours", fmt::format("{} of the {} palette; {} materials", count("colours_used"),
+                                info["default_palette"].get<bool>() ? "default" : "file's", count("materials")));
   }
   line("memory", fmt::format("{} bytes, with all that rays need", count("bytes")));
   if (info["low"].is_null()) {

@@ -52,8 +52,8 @@ std::string svg_of(const VoxelGrid& grid, int axis, int at, const Radius& radius
   const int across = axis == 0 ? 1 : 0, up = axis == 2 ? 1 : 2;
   const int cols = grid.size()[across], rows = grid.size()[up];
   if (std::max(cols, rows) > kMostCells)
-    throw Error(fmt::format("section: the layer is {} x {} voxels; pictures are made of {} at most", cols, rows,
-                            kMostCells));
+    throw Error(
+        fmt::format("section: the layer is {} x {} voxels; pictures are made of {} at most", cols, rows, kMostCells));
   const auto voxel = [&](int col, int row) {
     ivec3 v(0);
     v[axis] = at, v[across] = col, v[up] = rows - 1 - row;

@@ -96,9 +96,10 @@ void run(const VoxeliseOptions& options) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return std::tolower(c); });
   if (extension != ".vox" && extension != ".binvox") {
-    throw Error(fmt::format("output '{}': voxels are written as MagicaVoxel or binvox; let the name end in .vox or "
-                            ".binvox",
-                            options.output));
+    throw Error(
+        fmt::format("output '{}': voxels are written as MagicaVoxel or binvox; let the name end in .vox or "
+                    ".binvox",
+                    options.output));
   }
   const std::optional<WorldBox> within = box_of(options);
   const ThreadLimit limit(options.threads);
@@ -106,8 +107,7 @@ void run(const VoxeliseOptions& options) {
   stop_if_interrupted();
   const double side = side_of(options, input.scene, within);
   const VoxelLattice lattice = lattice_around(input.scene, side, within);
-  const VoxelGrid grid =
-      voxelised(input.scene, lattice, voxel_colours(input.look), terminal_progress("voxelise"));
+  const VoxelGrid grid = voxelised(input.scene, lattice, voxel_colours(input.look), terminal_progress("voxelise"));
   if (grid.solid_count() == 0)
     throw Error(fmt::format("'{}': no voxel of {:.6g} m has its middle inside; take smaller ones",
                             options.inputs.front(), side));
@@ -126,7 +126,8 @@ void run(const VoxeliseOptions& options) {
     write_binvox(options.output, binvox);
   }
   for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
-  if (!exact_colours) fmt::print(stderr, "note: more than 255 colours; each is the nearest of 252 evenly spaced ones\n");
+  if (!exact_colours)
+    fmt::print(stderr, "note: more than 255 colours; each is the nearest of 252 evenly spaced ones\n");
   fmt::print("{}: {} x {} x {} voxels of {:.6g} m, {} solid\n", options.output, grid.size().x, grid.size().y,
              grid.size().z, side, grid.solid_count());
 }
@@ -134,7 +135,8 @@ void run(const VoxeliseOptions& options) {
 }  // namespace
 
 void add_voxelise(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("voxelise", "Make voxels of terrain, a scene or other voxels: .vox or .binvox");
+  CLI::App* command =
+      program.add_subcommand("voxelise", "Make voxels of terrain, a scene or other voxels: .vox or .binvox");
   const auto options = std::make_shared<VoxeliseOptions>();
   VoxeliseOptions& o = *options;
   add_raster_inputs(*command, o.inputs);

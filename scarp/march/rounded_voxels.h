@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Voxels with rounded edges: which point of a solid voxel's cube a ray meets first, when only part of the cube is there.
+// Voxels with rounded edges: which point of a solid voxel's cube a ray meets first, when only part of the cube is
+// there.
 //
 //   +-----------+      the cube of a voxel, moved in by the radius on each face that has no solid voxel behind it,
 //   |  .-----.  |      and then grown by the radius again, as far as the cube reaches: a ball's way round its edges.

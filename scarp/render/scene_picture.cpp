@@ -46,8 +46,7 @@ class SceneShader {
       colours[i] = colours_(surface);
       // The camera is inside: its colour is all there is to see.
       if (surface.normal == dvec3(0.0)) continue;
-      const GroundPoint ground{surface.position, {}, surface.normal, surface.shading_normal,
-                               surface.openness};
+      const GroundPoint ground{surface.position, {}, surface.normal, surface.shading_normal, surface.openness};
       open.points.push_back({i, ground, lighting_.ask(ground, points[i], open.rays)});
       for (std::size_t ray_of_light = open.from.size(); ray_of_light < open.rays.size(); ++ray_of_light)
         open.from.push_back(&hits[i]);

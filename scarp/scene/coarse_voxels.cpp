@@ -23,8 +23,8 @@ int covered(unsigned children) { return std::max({columns(children, 0), columns(
 // 0 to 3, each once in every run of four blocks along an axis that begins at a multiple of 4.
 int rank(const ivec3& block) {
   const ivec3 of = block >> 2;
-  std::uint32_t moved = static_cast<std::uint32_t>(of.x) * 0x9E3779B1U ^ static_cast<std::uint32_t>(of.y) * 0x85EBCA77U ^
-                        static_cast<std::uint32_t>(of.z) * 0xC2B2AE3DU;
+  std::uint32_t moved = static_cast<std::uint32_t>(of.x) * 0x9E3779B1U ^
+                        static_cast<std::uint32_t>(of.y) * 0x85EBCA77U ^ static_cast<std::uint32_t>(of.z) * 0xC2B2AE3DU;
   moved = (moved ^ moved >> 15) * 0x2C1B3C6DU;
   const int odd = (block.x + block.y + block.z) & 1;
   const int second = ((block.x >> 1) + (block.y >> 1) + (block.z >> 1)) & 1;

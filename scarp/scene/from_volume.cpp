@@ -25,8 +25,8 @@ VoxelScene scene_of(const ivec3& size, const FromVolumeOptions& options, std::ve
   grid.edit(grid.box(),
             [&](const ivec3& v, const VoxelGrid::Voxel&) { return entry(rotated_voxel(v, turned_size, back)); });
   if (options.voxels.surface_colours) grid.drop_hidden_entries();
-  const auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(options.voxels.march),
-                                                        std::move(palette));
+  const auto model =
+      std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(options.voxels.march), std::move(palette));
   return VoxelScene({model}, std::vector{VoxelPlace{}}, options.voxels.rounding);
 }
 

@@ -152,7 +152,8 @@ VoxelScene voxels_of_file(const Json& json, const std::string& path, const std::
   };
   const VoxelColour colour = json.contains("colour") ? colour_from(json["colour"]) : kPlainVoxels;
   std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   if (json.contains("volume")) {
     refuse({"frame", "hidden"}, "goes with MagicaVoxel files; leave it out");
     return voxel_scene_from(read_volume(file, json["volume"]), std::vector{colour}, volume);

@@ -23,8 +23,8 @@ struct VoxelShading {
 void validate(const VoxelShading& shading);
 
 /// Away from the solid voxels within `radius` of a point in the grid's space: the gradient of how solid it is there,
-/// every voxel's middle counting (1 - d^2 / radius^2)^2 at a distance d. Unit; zero where nothing is near, or as much on
-/// all sides. Continuous in the point. Cost: (2 radius)^3 voxels looked at.
+/// every voxel's middle counting (1 - d^2 / radius^2)^2 at a distance d. Unit; zero where nothing is near, or as much
+/// on all sides. Continuous in the point. Cost: (2 radius)^3 voxels looked at.
 dvec3 smooth_normal(const VoxelGrid& grid, const dvec3& point, double radius);
 
 /// How much of the sky a point on a face of a voxel has, told by the eight voxels round the one before the face:

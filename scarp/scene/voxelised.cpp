@@ -55,8 +55,8 @@ VoxelGrid voxelised(const Scene& scene, const VoxelLattice& lattice,
   std::vector<std::optional<SceneSurface>> found(columns * VoxelGrid::kBrick);
   const auto place = [&](int x, int y, int z) {
     return static_cast<std::size_t>(x) +
-           static_cast<std::size_t>(size.x) * (static_cast<std::size_t>(y) +
-                                               static_cast<std::size_t>(size.y) * static_cast<std::size_t>(z));
+           static_cast<std::size_t>(size.x) *
+               (static_cast<std::size_t>(y) + static_cast<std::size_t>(size.y) * static_cast<std::size_t>(z));
   };
   for (int z0 = 0; z0 < size.z; z0 += VoxelGrid::kBrick) {
     if (progress && !progress(static_cast<double>(z0) / size.z)) throw Interrupted();

@@ -2,7 +2,8 @@
 // Scenes of any kind made voxels: terrain, functions, shapes, other voxels.
 //
 // A voxel is solid when its middle is inside of an object, told by the object's own arithmetic: below the surface of
-// heights (z <= height), in a shape (value <= 0), in a voxel. What is thinner than a voxel may fall between the middles.
+// heights (z <= height), in a shape (value <= 0), in a voxel. What is thinner than a voxel may fall between the
+// middles.
 #pragma once
 
 #include <functional>

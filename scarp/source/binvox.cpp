@@ -129,9 +129,9 @@ Binvox read_binvox(const std::string& path) {
 }
 
 std::string binvox_bytes(const Binvox& binvox) {
-  std::string bytes = fmt::format("#binvox 1\ndim {} {} {}\ntranslate {} {} {}\nscale {}\ndata\n", binvox.size.x,
-                                  binvox.size.z, binvox.size.y, binvox.translate.x, binvox.translate.y,
-                                  binvox.translate.z, binvox.scale);
+  std::string bytes =
+      fmt::format("#binvox 1\ndim {} {} {}\ntranslate {} {} {}\nscale {}\ndata\n", binvox.size.x, binvox.size.z,
+                  binvox.size.y, binvox.translate.x, binvox.translate.y, binvox.translate.z, binvox.scale);
   const std::uint64_t voxels = volume(binvox.size);
   const auto value = [&](std::uint64_t v) { return binvox.bits[v / 64] >> v % 64 & 1; };
   for (std::uint64_t begin = 0; begin < voxels;) {

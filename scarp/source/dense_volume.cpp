@@ -7,6 +7,7 @@
 #include <charconv>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "scarp/base/error.h"
@@ -26,8 +27,8 @@ bool parse(std::string_view text, VolumeFormat& format) {
   text.remove_prefix(static_cast<std::size_t>(end - text.data()) + 1);
   try {
     const RawFormat slice = parse_raw_format(text);
-    format = {{x, slice.cols, slice.rows}, slice.kind, slice.bytes, slice.big_endian, false, slice.offset,
-              slice.has_offset};
+    format = {
+        {x, slice.cols, slice.rows}, slice.kind, slice.bytes, slice.big_endian, false, slice.offset, slice.has_offset};
   } catch (const Error&) {
     return false;
   }
@@ -50,10 +51,14 @@ void require_length(const VolumeFormat& format, std::uint64_t bytes) {
 
 template <class Number>
 double number(std::uint64_t bits) {
-  if constexpr (sizeof(Number) == 8) return static_cast<double>(std::bit_cast<Number>(bits));
-  else if constexpr (sizeof(Number) == 4) return std::bit_cast<Number>(static_cast<std::uint32_t>(bits));
-  else if constexpr (sizeof(Number) == 2) return std::bit_cast<Number>(static_cast<std::uint16_t>(bits));
-  else return std::bit_cast<Number>(static_cast<std::uint8_t>(bits));
+  if constexpr (sizeof(Number) == 8)
+    return static_cast<double>(std::bit_cast<Number>(bits));
+  else if constexpr (sizeof(Number) == 4)
+    return std::bit_cast<Number>(static_cast<std::uint32_t>(bits));
+  else if constexpr (sizeof(Number) == 2)
+    return std::bit_cast<Number>(static_cast<std::uint16_t>(bits));
+  else
+    return std::bit_cast<Number>(static_cast<std::uint8_t>(bits));
 }
 
 }  // namespace
@@ -61,9 +66,10 @@ double number(std::uint64_t bits) {
 VolumeFormat parse_volume_format(std::string_view text) {
   VolumeFormat format;
   if (!parse(text, format)) {
-    throw Error(fmt::format("volume '{}': expected npy, or NXxNYxNZ:TYPE[+OFFSET], sides 1 to {}, TYPE one of u8 i8 u16 "
-                            "i16 u32 i32 f32 f64 with le or be behind it, for example 256x256x128:u16le",
-                            text, kMaxVolumeSide));
+    throw Error(fmt::format(
+        "volume of the form '{}': expected npy, or NXxNYxNZ:TYPE[+OFFSET], sides 1 to {}, TYPE one of u8 i8 u16 "
+        "i16 u32 i32 f32 f64 with le or be behind it, for example 256x256x128:u16le",
+        text, kMaxVolumeSide));
   }
   return format;
 }
@@ -125,13 +131,14 @@ double DenseVolume::operator[](const ivec3& voxel) const {
 }
 
 DenseVolume read_volume(const std::string& path, const std::string& text) {
+  const std::optional<VolumeFormat> said = text == kNpy ? std::nullopt : std::optional(parse_volume_format(text));
   try {
-    if (text == kNpy) {
+    if (!said) {
       std::string bytes = whole_file(path, kNpyMagic);
       const VolumeFormat format = npy_volume_format(bytes);
       return {format, std::move(bytes)};
     }
-    const VolumeFormat format = parse_volume_format(text);
+    const VolumeFormat& format = *said;
     std::error_code error;
     const std::uintmax_t length = std::filesystem::file_size(path, error);
     if (!error) require_length(format, length);

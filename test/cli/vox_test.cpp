@@ -92,5 +92,98 @@ TEST_F(CliVox, SaysInOneLineWhatIsWrong) {
   expect_refused({"render", model_, "-o", out}, "ff d8 ff e0");
 }
 
+// The same plate as a binvox file, an array and bare numbers: the same picture of another colour.
+TEST_F(CliVox, ReadsBinvoxAndVolumes) {
+  const std::string binvox = path("plate.binvox"), raw = scratch_.write("plate.raw", std::string("head") + "123456789");
+  const auto made = run({"voxelise", model_, "-o", binvox});
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find("3 x 3 x 1 voxels of 1 m, 9 solid"), std::string::npos) << made.out;
+  const auto top = [&](std::vector<std::string> arguments, const std::string& out) {
+    arguments.insert(arguments.begin(), "render");
+    arguments.insert(arguments.end(), {"-o", path(out), "--top", "--size", "30x30"});
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return test::text_of(path(out));
+  };
+  const std::string of_binvox = top({binvox}, "a.png");
+  EXPECT_EQ(top({raw, "--volume", "3x3x1:u8+4"}, "b.png"), of_binvox);
+  EXPECT_NE(top({raw, "--volume", "3x3x1:u8+4", "--solid-from", "54"}, "c.png"), of_binvox);
+  EXPECT_NE(top({raw, "--volume", "3x3x1:u8+4", "--ramp", "grey"}, "d.png"), of_binvox);
+  const auto json = nlohmann::json::parse(run({"info", raw, "--volume", "3x3x1:u8+4", "--json"}).out);
+  EXPECT_EQ(json["format"], "volume");
+  EXPECT_EQ(json["models"][0]["voxels"], 9);
+}
+
+TEST_F(CliVox, VoxelsBecomeVoxels) {
+  const std::string copy = path("copy.vox");
+  ASSERT_EQ(run({"voxelise", model_, "-o", copy}).status, 0);
+  const auto original = nlohmann::json::parse(run({"info", model_, "--json"}).out);
+  const auto json = nlohmann::json::parse(run({"info", copy, "--json"}).out);
+  EXPECT_EQ(json["low"], original["low"]);
+  EXPECT_EQ(json["high"], original["high"]);
+  EXPECT_EQ(json["colours_used"], 1);
+  const auto top = [&](const std::string& model, const std::string& out) {
+    EXPECT_EQ(run({"render", model, "-o", path(out), "--top", "--size", "30x30"}).status, 0);
+    return test::text_of(path(out));
+  };
+  EXPECT_EQ(top(copy, "a.png"), top(model_, "b.png"));
+}
+
+TEST_F(CliVox, EachLookIsAnother) {
+  std::vector<std::string> pictures;
+  const std::vector<std::vector<std::string>> looks = {{},
+                                                       {"--rounded", "0.3"},
+                                                       {"--rounded", "0.3", "--each"},
+                                                       {"--normals", "voxel"},
+                                                       {"--normals", "smooth"},
+                                                       {"--coarse-voxels", "--view", "190,35,60"},
+                                                       {"--view", "190,35,60"}};
+  for (const auto& look : looks) {
+    std::vector<std::string> arguments{"render", model_, "-o", path("look.png"), "--size", "60x40"};
+    arguments.insert(arguments.end(), look.begin(), look.end());
+    const auto result = run(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+    pictures.push_back(test::text_of(path("look.png")));
+    for (std::size_t i = 0; i + 1 < pictures.size(); ++i)
+      EXPECT_NE(pictures[i], pictures.back()) << i << ' ' << pictures.size();
+  }
+}
+
+// A plate of 3 x 3 with 2 voxels of room: 49 cells, 40 of them with the number that they are away.
+TEST_F(CliVox, ASectionHasTheNumbers) {
+  const std::string svg = path("section.svg");
+  const auto count = [](const std::string& text, const std::string& part) {
+    int found = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+    return found;
+  };
+  ASSERT_EQ(run({"section", model_, "-o", svg, "--margin", "2", "--at", "0"}).status, 0);
+  const std::string spheres = test::text_of(svg);
+  EXPECT_EQ(count(spheres, "<rect"), 49);
+  EXPECT_EQ(count(spheres, ">0<"), 16);
+  EXPECT_EQ(count(spheres, ">1<"), 24);  // the corners are 1.41 away
+  ASSERT_EQ(run({"section", model_, "-o", svg, "--margin", "2", "--radii", "cubes", "--axis", "y"}).status, 0);
+  const std::string cubes = test::text_of(svg);
+  EXPECT_EQ(count(cubes, "<rect"), 49);
+  EXPECT_EQ(count(cubes, "<text"), 46);
+}
+
+TEST_F(CliVox, SaysInOneLineWhatDoesNotGo) {
+  const std::string out = path("out.png");
+  expect_refused({"render", model_, "-o", out, "--rounded", "0.6"}, "0 to 0.5");
+  expect_refused({"render", model_, "-o", out, "--each"}, "--rounded");
+  expect_refused({"render", model_, "-o", out, "--normals", "soft"}, "--normals");
+  expect_refused({"render", model_, "-o", out, "--up", "y"}, "--up");
+  expect_refused({"render", model_, "-o", out, "--solid-from", "3"}, "--volume");
+  expect_refused({"render", model_, "-o", out, "--volume", "3x3:u8"}, "NXxNYxNZ");
+  expect_refused({"render", model_, "-o", out, "--volume", "3x3x3:u8"}, "need 27");
+  expect_refused({"render", path("dem.tif"), "-o", out, "--rounded", "0.2"}, "goes with files of voxels");
+  expect_refused({"render", "--function", "elevated", "-o", out, "--normals", "smooth"}, "goes with files of voxels");
+  expect_refused({"voxelise", model_, "-o", path("out.obj")}, ".binvox");
+  expect_refused({"voxelise", model_, "-o", path("out.vox"), "--within", "50,50,50,60,60,60"}, "nothing to make");
+  expect_refused({"section", model_, "-o", path("out.png")}, ".svg");
+  expect_refused({"section", model_, "-o", path("out.svg"), "--at", "7"}, "3 layers");
+}
+
 }  // namespace
 }  // namespace scarp

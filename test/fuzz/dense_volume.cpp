@@ -28,8 +28,7 @@ template <class Format>
 void parse(const Format& format, std::string_view bytes) {
   try {
     const scarp::VolumeFormat found = format();
-    for (int axis = 0; axis < 3; ++axis)
-      require(found.size[axis] >= 1 && found.size[axis] <= scarp::kMaxVolumeSide);
+    for (int axis = 0; axis < 3; ++axis) require(found.size[axis] >= 1 && found.size[axis] <= scarp::kMaxVolumeSide);
     require(found.offset >= 0);
     read(found, bytes);
   } catch (const scarp::Error& error) {

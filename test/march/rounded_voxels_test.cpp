@@ -54,8 +54,8 @@ TEST(RoundedVoxels, ALoneVoxelIsABall) {
   EXPECT_GT(hits, 1000);
 }
 
-// The judge: every solid voxel on its own, its cube cut out of the ray, and the first point of that which is near enough
-// to the inner box by bisection; the distance to a box is convex along a line.
+// The judge: every solid voxel on its own, its cube cut out of the ray, and the first point of that which is near
+// enough to the inner box by bisection; the distance to a box is convex along a line.
 struct Judged {
   double t = std::numeric_limits<double>::infinity();
   bool close = false;  // to passing where it hits, or the other way round
@@ -95,7 +95,8 @@ Judged judge(const VoxelGrid& grid, const VoxelRay& ray, const VoxelRounding& ro
     judged.close = judged.close || std::abs(outside(least)) < 1e-3;
     if (outside(least) > 0) return;
     a = begin, b = least;
-    for (int i = 0; i < 100 && outside(begin) > 0; ++i) outside(0.5 * (a + b)) > 0 ? a = 0.5 * (a + b) : b = 0.5 * (a + b);
+    for (int i = 0; i < 100 && outside(begin) > 0; ++i)
+      outside(0.5 * (a + b)) > 0 ? a = 0.5 * (a + b) : b = 0.5 * (a + b);
     judged.t = std::min(judged.t, outside(begin) > 0 ? b : begin);
   });
   return judged;

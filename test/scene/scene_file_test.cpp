@@ -11,6 +11,7 @@
 #include <string>
 
 #include "scarp/base/error.h"
+#include "scarp/source/binvox.h"
 
 namespace scarp {
 namespace {
@@ -101,6 +102,29 @@ TEST_F(SceneFiles, AreReadWhole) {
   }
 }
 
+// Voxels by name of their looks: the corner of a rounded cube is not there, what is left has a smooth normal.
+TEST_F(SceneFiles, SayHowVoxelsLook) {
+  Binvox cube;
+  cube.size = ivec3(2);
+  cube.clear();
+  for_each_voxel({ivec3(0), cube.size}, [&](const ivec3& v) { cube.set(v); });
+  write_binvox((folder_ / "cube.binvox").string(), cube);
+  const SceneFile file = read(R"({"picture": {"coarse_voxels": true}, "objects": [
+    {"voxels": {"file": "cube.binvox", "rounded": 0.5, "normals": "smooth", "colour": "#ff8000", "corner_ao": true,
+                "surface_colours": true, "up": "y"}}]})");
+  EXPECT_TRUE(file.picture.coarse_voxels);
+  Ray ray;
+  ray.origin = {1.95, 1.95, 5};
+  EXPECT_FALSE(file.scene.closest_hit({ray}));
+  ray.origin = {1.6, 1.6, 5};
+  const SceneHit hit = file.scene.closest_hit({ray});
+  ASSERT_TRUE(hit);
+  const SceneSurface surface = file.scene.surface(ray, hit);
+  EXPECT_EQ(surface.colour, (VoxelColour{255, 128, 0}));
+  EXPECT_GT(surface.shading_normal.x, 0.1);
+  EXPECT_EQ(surface.openness, 1);
+}
+
 TEST_F(SceneFiles, TakeOtherScenesAsOneObject) {
   write("pair.json", R"({"materials": {"red": {"colour": "#ff0000"}}, "objects": [
     {"shape": {"sphere": {"radius": 1}}, "material": "red"}, {"shape": {"sphere": {"radius": 1}}, "at": [4, 0, 0]}]})");
@@ -164,6 +188,11 @@ TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
       {with_object(R"({"field": "tree"})"), "/objects/0/field:", "no field 'tree'"},
       {with_object(R"({"field": "tree", "march": "naive"})"), "/objects/0/march:", "does not go with field"},
       {with_object(R"({"voxels": {"file": "none.vox"}})"), "/objects/0/voxels/file:", "none.vox"},
+      {with_object(R"({"voxels": {"file": "none.vox", "rounded": 0.7}})"), "/objects/0/voxels/rounded:", "0 to 0.5"},
+      {with_object(R"({"voxels": {"file": "none.vox", "normals": "soft"}})"), "/objects/0/voxels/normals:", "smooth"},
+      {with_object(R"({"voxels": {"file": "none.vox", "up": "y"}})"), "/objects/0/voxels/up:", "binvox"},
+      {with_object(R"({"voxels": {"file": "none.binvox", "frame": 1}})"), "/objects/0/voxels/frame:", "MagicaVoxel"},
+      {with_object(R"({"voxels": {"file": "none.raw", "volume": "2x2:u8"}})"), "/objects/0/voxels/file:", "NXxNYxNZ"},
       {with_object(R"({"heights": {"file": "none.tif"}})"), "/objects/0/heights/file:", "none.tif"},
       {with_object(R"({"heights": {}})"), "/objects/0/heights:", "one of file"},
       {with_object(R"({"scene": "none.json"})"), "/objects/0/scene:", "none.json"},

@@ -40,7 +40,8 @@ TEST(SmoothNormal, IsThatOfPlanes) {
 }
 
 TEST(SmoothNormal, TurnsWithTheGrid) {
-  const VoxelGrid grid = grid_where({9, 10, 11}, [](const ivec3& v) { return (v.x * v.x + 3 * v.y + v.z * v.y) % 5 < 2; });
+  const VoxelGrid grid =
+      grid_where({9, 10, 11}, [](const ivec3& v) { return (v.x * v.x + 3 * v.y + v.z * v.y) % 5 < 2; });
   const dvec3 middle = 0.5 * dvec3(grid.size()), point(3.2, 5.1, 6.4);
   for (const LatticeRotation& turn : lattice_rotations()) {
     const VoxelGrid turned = rotated(grid, turn);
@@ -53,9 +54,7 @@ TEST(SmoothNormal, TurnsWithTheGrid) {
 TEST(CornerOpenness, CountsTheVoxelsAtACorner) {
   VoxelGrid grid(ivec3(3));
   grid.set({1, 1, 0}, 1);
-  const auto at = [&](double x, double y) {
-    return corner_openness(grid, {1, 1, 0}, VoxelFace::high_z, {x, y, 1});
-  };
+  const auto at = [&](double x, double y) { return corner_openness(grid, {1, 1, 0}, VoxelFace::high_z, {x, y, 1}); };
   EXPECT_EQ(at(2, 2), 1);
   grid.set({2, 2, 1}, 1);
   EXPECT_EQ(at(2, 2), 0.75);
@@ -71,7 +70,9 @@ TEST(CornerOpenness, CountsTheVoxelsAtACorner) {
   EXPECT_EQ(corner_openness(grid, {1, 1, 0}, VoxelFace::inside, {2, 2, 1}), 1);
 }
 
-std::int64_t solid_after(const VoxelGrid& grid, int level) { return coarse_voxels(model_of(grid), level)->grid().solid_count(); }
+std::int64_t solid_after(const VoxelGrid& grid, int level) {
+  return coarse_voxels(model_of(grid), level)->grid().solid_count();
+}
 
 TEST(CoarseVoxels, CoverWhatTheyCovered) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -81,14 +82,14 @@ TEST(CoarseVoxels, CoverWhatTheyCovered) {
     EXPECT_EQ(solid_after(wall, 1), 32 * 32);
     EXPECT_EQ(solid_after(wall, 3), 8 * 8);
     // A thread has half the width of what is left of it: of 32 blocks each second.
-    const VoxelGrid thread =
-        grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21 && v[other] == 33; });
+    const VoxelGrid thread = grid_where(ivec3(64), [&](const ivec3& v) { return v[axis] == 21 && v[other] == 33; });
     EXPECT_EQ(solid_after(thread, 1), 16);
   }
   EXPECT_EQ(solid_after(grid_where(ivec3(64), [](const ivec3&) { return true; }), 2), 16 * 16 * 16);
   // Single voxels in each 8 x 8 x 8: 4,096, of which a quarter stays, give or take five standard errors of as many
   // draws; a pattern in step with theirs would keep all or none.
-  const VoxelGrid dust = grid_where(ivec3(128), [](const ivec3& v) { return v.x % 8 == 3 && v.y % 8 == 6 && v.z % 8 == 1; });
+  const VoxelGrid dust =
+      grid_where(ivec3(128), [](const ivec3& v) { return v.x % 8 == 3 && v.y % 8 == 6 && v.z % 8 == 1; });
   EXPECT_NEAR(static_cast<double>(solid_after(dust, 1)), 1024, 5 * std::sqrt(4096 * 0.25 * 0.75));
 }
 
@@ -118,6 +119,32 @@ TEST(CoarseVoxels, AreTakenWherePixelsAreLarger) {
   EXPECT_EQ(coarse.box().high, dvec3(64, 64, 2));
   const Scene near = scene.coarser({{0, 0, 11}, {0, 0, -1}, [](double depth) { return 0.022 * depth; }});
   EXPECT_EQ(near.fields().size(), 1U);
+}
+
+// Stairs that the sun shines along, a little above their slope: flat ones shade themselves, smooth ones do not.
+TEST(SmoothVoxels, AreNotShadedByTheirOwnSteps) {
+  const VoxelGrid stairs = grid_where(ivec3(64, 16, 40), [](const ivec3& v) { return 2 * v.z < v.x; });
+  const VoxelScene voxels({model_of(stairs)}, std::vector{VoxelPlace{0, glm::dmat3(0.5), {10, 0, 0}}});
+  const auto blocked = [&](VoxelNormals normals, int towards) {
+    VoxelShading shading;
+    shading.normals = normals;
+    const Scene scene({scene_voxels(voxels, "voxel-bricks", shading)}, {SceneObject{}});
+    int count = 0;
+    for (int i = 0; i < 100; ++i) {
+      Ray down;
+      down.origin = {15 + 0.1 * i, 4.05, 30};
+      const SceneHit hit = scene.closest_hit({down});
+      Ray sun;
+      sun.origin = down.at(hit.t());
+      sun.direction = {1.0 * towards, 0, 0.6 * towards};
+      count += scene.occluded({sun, &hit}) ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_GT(blocked(VoxelNormals::flat, 1), 30);
+  EXPECT_EQ(blocked(VoxelNormals::smooth, 1), 0);
+  // Into the stairs it stays dark.
+  EXPECT_EQ(blocked(VoxelNormals::smooth, -1), 100);
 }
 
 SceneFieldPtr ball(double radius) {
