@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <numbers>
 
 #include "scarp/base/error.h"
 
@@ -23,7 +24,7 @@ void validate(const VoxelShading& shading) {
   }
 }
 
-dvec3 smooth_normal(const VoxelGrid& grid, const dvec3& point, double radius) {
+dvec3 smooth_normal(const VoxelGrid& grid, const dvec3& point, double radius, const dvec3& face) {
   const dvec3 low = ceil(point - radius - 0.5), high = floor(point + radius - 0.5) + 1.0;
   const VoxelBox near = intersection({ivec3(low), ivec3(high)}, grid.bounds());
   dvec3 away(0.0);
@@ -33,10 +34,12 @@ dvec3 smooth_normal(const VoxelGrid& grid, const dvec3& point, double radius) {
     const double weight = 1 - dot(from, from) / (radius * radius);
     if (weight > 0) away += weight * from;
   });
+  // The same sum as an integral over the half of the ball below a plane.
+  away /= std::numbers::pi * std::pow(radius, 4) / 12;
+  away += std::max(0.0, 1 - 2 * length(away)) * face;
   const double size = length(away);
   // What the roundings of so many terms may leave of nothing.
-  const double nothing = 1e-12 * radius;
-  return size > nothing ? away / size : dvec3(0.0);
+  return size > 1e-12 ? away / size : dvec3(0.0);
 }
 
 double corner_openness(const VoxelGrid& grid, const ivec3& voxel, VoxelFace face, const dvec3& point) {
