@@ -21,6 +21,7 @@
 // foreach_target.h comes first.
 #include "hwy/highway.h"
 #include "scarp/march/max_mip_simd_beam.h"
+#include "scarp/march/max_mip_simd_cells.h"
 #include "scarp/march/max_mip_simd_lanes.h"
 #include "scarp/march/max_mip_simd_rays.h"
 
@@ -199,15 +200,30 @@ class VectorWalk {
     }
     next_ += count;
     prepare(f_, r_, fresh);
-    if (any && ideas_.first_cells) {
-      Packet p;
-      p.load(fresh);
-      for (int i = 0; i < kFirstSteps; ++i) {
-        cell_step<any>(g_, ideas_.put_off, p);
-        block_step(g_, p);
-      }
+    const int first_steps = any && ideas_.first_cells ? kFirstSteps : 0;
+    const bool doubles = ideas_.doubles && !g_.triangles && begins_over_field(fresh);
+    if (first_steps == 0 && !doubles) return;
+    Packet p;
+    p.load(fresh);
+    cell_step<any>(g_, ideas_.put_off, p);
+    if (doubles) {
       p.store(fresh);
+      leave_first_cells<any>(g_, f_, r_, fresh);
+      p.load(fresh);
     }
+    for (int i = 1; i < first_steps; ++i) {
+      block_step(g_, p);
+      cell_step<any>(g_, ideas_.put_off, p);
+    }
+    if (first_steps > 0) block_step(g_, p);
+    p.store(fresh);
+  }
+
+  static bool begins_over_field(const Lanes& fresh) {
+    for (std::size_t j = 0; j < N; ++j) {
+      if (fresh.status[j] == kWalking && fresh.level[j] == 0) return true;
+    }
+    return false;
   }
 
   // The scalar walk believes in the start cell, the vectors in positions: they follow where the two agree.
@@ -224,12 +240,16 @@ class VectorWalk {
     return decided;
   }
 
+  static void put_ray(GridRays& to, std::size_t j, const Ray& ray, const GridRay& local) {
+    to.ox[j] = local.origin.x, to.oy[j] = local.origin.y, to.oz[j] = local.origin.z;
+    to.dx[j] = local.direction.x, to.dy[j] = local.direction.y, to.dz[j] = local.direction.z;
+    to.t_min[j] = ray.t_min, to.t_max[j] = ray.t_max, to.seen[j] = 0;
+  }
+
   // A ray into the grid. False: it is answered.
   bool take_ray(std::size_t j, const Ray& ray) {
     const GridRay local = field_.grid_from_world(ray);
-    r_.ox[j] = local.origin.x, r_.oy[j] = local.origin.y, r_.oz[j] = local.origin.z;
-    r_.dx[j] = local.direction.x, r_.dy[j] = local.direction.y, r_.dz[j] = local.direction.z;
-    r_.t_min[j] = ray.t_min, r_.t_max[j] = ray.t_max, r_.seen[j] = 0;
+    put_ray(r_, j, ray, local);
     if (ray.start == RayStart::free) return true;
     const SurfaceStart start = begin_on_surface(ray, local);
     Answer& to = answers_[&ray - rays_.data()];
@@ -280,76 +300,44 @@ class VectorWalk {
   // order, for the usual way through a cell. It is asked where the way is another one, and where there is no hit.
   HWY_NOINLINE void find_hits() {
     Candidates& c = candidates_;
-    alignas(64) double ox[N], oy[N], oz[N], dx[N], dy[N], dz[N], t_min[N], t_max[N], col[N], row[N], h00[N], h10[N],
-        h01[N], h11[N], t_clear[N], t[N], u[N], v[N], height[N], found[N];
+    GridRays rays;
+    Cells cells;
+    alignas(64) double t_clear[N], t[N], u[N], v[N], height[N], found[N];
     for (std::size_t i = 0; i < N; ++i) {
       const std::size_t k = i < c.count ? i : 0;
       const Ray& ray = rays_[static_cast<std::size_t>(c.ray[k])];
-      const GridRay local = field_.grid_from_world(ray);
-      ox[i] = local.origin.x, oy[i] = local.origin.y, oz[i] = local.origin.z;
-      dx[i] = local.direction.x, dy[i] = local.direction.y, dz[i] = local.direction.z;
-      t_min[i] = ray.t_min, t_max[i] = ray.t_max, col[i] = c.col[k], row[i] = c.row[k], t_clear[i] = c.t_clear[k];
-      const T *north = g_.samples + c.row[k] * g_.stride + c.col[k], *south = north + g_.stride;
-      h00[i] = static_cast<double>(north[0]), h10[i] = static_cast<double>(north[1]);
-      h01[i] = static_cast<double>(south[0]), h11[i] = static_cast<double>(south[1]);
+      put_ray(rays, i, ray, field_.grid_from_world(ray));
+      cells.load(g_, i, c.col[k], c.row[k]);
+      t_clear[i] = c.t_clear[k];
     }
     for (std::size_t h = 0; h < N; h += hn::MaxLanes(dd)) {
-      const auto at = [h](const double* from) HWY_ATTR { return hn::Load(dd, from + h); };
-      const VD least = hn::Set(dd, 0x1p-1000), zero = hn::Zero(dd), one = hn::Set(dd, 1), two = hn::Set(dd, 2),
-               four = hn::Set(dd, 4);
-      const VD vox = at(ox), voy = at(oy), z = at(oz), vdx = at(dx), vdy = at(dy), vdz = at(dz);
-      const VD vcol = at(col), vrow = at(row), vt_min = at(t_min), vt_max = at(t_max);
-      const VD a00 = at(h00), a10 = at(h10), a01 = at(h01), a11 = at(h11);
-      const auto back_x = hn::Lt(vdx, zero), back_y = hn::Lt(vdy, zero);
-      const VD per_x = hn::Div(one, vdx), per_y = hn::Div(one, vdy);
-      const auto line = [](VD k, VD o, VD per) HWY_ATTR { return hn::Mul(hn::Sub(k, o), per); };
-      const VD next_x = hn::Add(vcol, one), next_y = hn::Add(vrow, one);
-      const VD tx_in = line(hn::IfThenElse(back_x, next_x, vcol), vox, per_x);
-      const VD ty_in = line(hn::IfThenElse(back_y, next_y, vrow), voy, per_y);
-      const VD tx = line(hn::IfThenElse(back_x, vcol, next_x), vox, per_x);
-      const VD ty = line(hn::IfThenElse(back_y, vrow, next_y), voy, per_y);
-      const VD exit_x = line(hn::IfThenElse(back_x, zero, hn::Set(dd, f_.cols)), vox, per_x);
-      const VD exit_y = line(hn::IfThenElse(back_y, zero, hn::Set(dd, f_.rows)), voy, per_y);
-      const VD t_in = hn::Max(vt_min, hn::Max(tx_in, ty_in)), t_end = hn::Min(vt_max, hn::Min(exit_x, exit_y));
+      const VD zero = hn::Zero(dd), one = hn::Set(dd, 1), two = hn::Set(dd, 2), four = hn::Set(dd, 4);
+      const CellRays r(rays, cells, h);
+      const VD vt_min = hn::Load(dd, rays.t_min + h), vt_max = hn::Load(dd, rays.t_max + h);
+      const VD tx = r.x_out(), ty = r.y_out();
+      const VD exit_x = CellRays::line(hn::IfThenElse(r.back_x, zero, hn::Set(dd, f_.cols)), r.ox, r.per_x);
+      const VD exit_y = CellRays::line(hn::IfThenElse(r.back_y, zero, hn::Set(dd, f_.rows)), r.oy, r.per_y);
+      const VD t_in = hn::Max(vt_min, hn::Max(r.x_in(), r.y_in()));
+      const VD t_end = hn::Min(vt_max, hn::Min(exit_x, exit_y));
       const VD t_line = hn::Min(tx, ty), t_out = hn::Min(t_line, t_end), length = hn::Sub(t_out, t_in);
-      const auto place = [&](VD o, VD d, VD time, VD cell) HWY_ATTR {
-        return hn::Min(hn::Max(hn::Sub(hn::Add(o, hn::Mul(d, time)), cell), zero), one);
-      };
-      // CellQuadratic at t_in
-      const VD u0 = place(vox, vdx, t_in, vcol), v0 = place(voy, vdy, t_in, vrow);
-      const VD hu = hn::Sub(a10, a00), hv = hn::Sub(a01, a00), twist = hn::Sub(hn::Sub(a11, a01), hu);
-      const VD a = hn::Mul(hn::Mul(hn::Sub(hn::Sub(a10, a00), hn::Sub(a11, a01)), vdx), vdy);
-      const VD b = hn::Sub(vdz, hn::Add(hn::Add(hn::Mul(hu, vdx), hn::Mul(hv, vdy)),
-                                        hn::Mul(twist, hn::Add(hn::Mul(u0, vdy), hn::Mul(v0, vdx)))));
-      const VD surface =
-          hn::Add(hn::Add(hn::Add(a00, hn::Mul(hu, u0)), hn::Mul(hv, v0)), hn::Mul(hn::Mul(twist, u0), v0));
-      const VD z_in = hn::Add(z, hn::Mul(vdz, t_in)), z_out = hn::Add(z, hn::Mul(vdz, t_out));
-      const VD cc = hn::Sub(z_in, surface);
-      // clearance() where it leaves through a line
-      const auto edge = [&](VD p, VD q, VD w) HWY_ATTR {
-        return hn::Min(hn::Max(hn::Add(p, hn::Mul(w, hn::Sub(q, p))), hn::Min(p, q)), hn::Max(p, q));
-      };
-      const VD on_x =
-          edge(hn::IfThenElse(back_x, a00, a10), hn::IfThenElse(back_x, a01, a11), place(voy, vdy, t_out, vrow));
-      const VD on_y =
-          edge(hn::IfThenElse(back_y, a00, a01), hn::IfThenElse(back_y, a10, a11), place(vox, vdx, t_out, vcol));
-      const VD out = hn::Sub(z_out, hn::IfThenElse(hn::Le(tx, ty), on_x, on_y));
+      const auto [a, b, cc] = r.clearance_from(t_in);
+      const VD z_in = r.height(t_in), z_out = r.height(t_out);
+      const VD out = r.clearance_out(t_out, hn::Le(tx, ty));
       const VD t_far = hn::Max(hn::Abs(t_in), hn::Abs(t_out));
-      const VD doubt = rounding(f_, vox, voy, z, vdx, vdy, vdz, t_far);
+      const VD doubt = rounding(f_, r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, t_far);
       // Above until it comes into the cell: known up to t_clear, and from there on because of how steep ground is.
-      const VD gap = hn::Max(hn::Sub(t_in, at(t_clear)), zero);
+      const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, t_clear + h)), zero);
       const VD steepest =
-          hn::Add(hn::Abs(vdz), hn::Mul(hn::Add(hn::Abs(vdx), hn::Abs(vdy)), hn::Set(dd, f_.cell_relief)));
+          hn::Add(hn::Abs(r.dz), hn::Mul(hn::Add(hn::Abs(r.dx), hn::Abs(r.dy)), hn::Set(dd, f_.cell_relief)));
       const auto above = hn::Gt(cc, hn::Add(hn::Mul(gap, steepest), doubt));
       // march_max_mip() begins where the ray comes down to the highest sample, not before.
-      const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), z), vdz);
+      const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), r.oz), r.dz);
       const VD t_top = hn::Sub(quotient, hn::Mul(hn::Set(dd, 2 * kUnit), hn::Abs(quotient)));
-      const auto begun = hn::Or(hn::Ge(vdz, zero), hn::Ge(t_line, t_top));
-      const auto moves = hn::And(hn::Gt(hn::Abs(vdx), least), hn::Gt(hn::Abs(vdy), least));
-      const auto visited = hn::And(hn::And(hn::Lt(t_in, t_line), hn::Le(t_line, t_end)), hn::And(begun, moves));
+      const auto begun = hn::Or(hn::Ge(r.dz, zero), hn::Ge(t_line, t_top));
+      const auto visited = hn::And(hn::And(hn::Lt(t_in, t_line), hn::Le(t_line, t_end)), hn::And(begun, r.moves()));
       const auto usual = hn::And(above, visited);
-      const VD highest = hn::Max(hn::Max(a00, a10), hn::Max(a01, a11));
-      const VD lowest = hn::IfThenElse(hn::Lt(vdz, zero), z_out, z_in);
+      const VD highest = hn::Max(hn::Max(r.h00, r.h10), hn::Max(r.h01, r.h11));
+      const VD lowest = hn::IfThenElse(hn::Lt(r.dz, zero), z_out, z_in);
       const VD square = hn::Mul(b, b), ac4 = hn::Mul(hn::Mul(four, a), cc);
       const auto dips = hn::And(hn::And(hn::Gt(a, zero), hn::Lt(b, zero)),
                                 hn::And(hn::Lt(hn::Neg(b), hn::Mul(hn::Mul(two, a), length)), hn::Ge(square, ac4)));
@@ -361,8 +349,7 @@ class VectorWalk {
       const VD in_cell = hn::IfThenElseZero(hn::Ge(s, zero), hn::Min(s, length));
       const VD time = hn::Min(hn::Max(hn::Add(t_in, in_cell), vt_min), vt_max);
       hn::Store(time, dd, t + h);
-      hn::Store(place(vox, vdx, time, vcol), dd, u + h), hn::Store(place(voy, vdy, time, vrow), dd, v + h);
-      hn::Store(hn::Add(z, hn::Mul(vdz, time)), dd, height + h);
+      hn::Store(r.u(time), dd, u + h), hn::Store(r.v(time), dd, v + h), hn::Store(r.height(time), dd, height + h);
       hn::Store(hn::IfThenElseZero(hit, one), dd, found + h);
     }
     const bool usual = ideas_.find_hits && !g_.triangles;
