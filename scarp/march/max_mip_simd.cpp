@@ -78,14 +78,15 @@ class VectorWalk {
   }
 
   void run(VectorStats& stats) {
-    for (Lanes& lanes : lanes_) {
+    Packet packets[kPackets];
+    for (int k = 0; k < kPackets; ++k) {
+      Lanes& lanes = lanes_[k];
       lanes = {};
       std::fill_n(lanes.ray, N, -1);
       std::fill_n(lanes.status, N, kMiss);
-      refill(lanes);
+      packets[k].load(lanes);
+      refill(packets[k], lanes);
     }
-    Packet packets[kPackets];
-    for (int k = 0; k < kPackets; ++k) packets[k].load(lanes_[k]);
     for (bool live = true; live;) {
       live = false;
       for (Packet& p : packets) block_step(g_, p);
@@ -103,7 +104,7 @@ class VectorWalk {
   // Cells and new rays, when enough lanes wait for them. False: no lane has a ray, and there are no more.
   HWY_INLINE bool follow_up(Packet& p, Lanes& lanes) {
     const VI zero = hn::Zero(di);
-    const MI walking = hn::Eq(p.status, zero), at_cells = hn::And(walking, hn::Eq(p.level, zero));
+    const MI walking = p.walking(), at_cells = hn::And(walking, hn::Eq(p.level, zero));
     const std::size_t busy = hn::CountTrue(di, walking), cells = hn::CountTrue(di, at_cells);
     stats_.block_steps += N;
     stats_.block_lanes += busy - cells;
@@ -114,80 +115,64 @@ class VectorWalk {
       cell_step<any>(g_, ideas_.put_off, p);
     }
     if (busy == 0 || (N - busy >= (ideas_.refill && !together_ ? kFree : N) && !is_empty())) {
-      p.store(lanes);
-      if (!refill(lanes)) return false;
-      p.load(lanes);
+      return refill(p, lanes);
     }
     return true;
   }
 
-  bool is_empty() const { return next_ >= rays_.size() && fresh_next_ >= kFresh * N; }
-
-  // Answers the rays that are done and puts new ones into their lanes. False: no lane has a ray.
-  HWY_NOINLINE bool refill(Lanes& a) {
-    if (together_ && std::find(a.status, a.status + N, kWalking) == a.status + N) return refill_all(a);
-    return refill_lanes(a);
+  bool is_empty() const {
+    return next_ >= rays_.size() && std::all_of(waiting_, waiting_ + kFresh, [](std::uint64_t w) { return w == 0; });
   }
 
-  bool refill_lanes(Lanes& a) {
-    bool live = false;
-    for (std::size_t j = 0; j < N; ++j) {
-      if (a.status[j] != kWalking) {
-        answer(a, j);
-        a.ray[j] = -1;
-        if (!next_fresh()) continue;
-        move(fresh_[fresh_next_ / N], fresh_next_ % N, a, j);
-        ++fresh_next_;
+  // Answers the rays that are done and puts new ones into their lanes. False: no lane has a ray.
+  HWY_NOINLINE bool refill(Packet& p, Lanes& a) {
+    const std::uint64_t walking = bits_of(p.walking());
+    std::uint64_t idle = ~walking & kAllLanes;
+    p.store(a);
+    answer(p, a, idle);
+    for (std::uint64_t rest = idle; rest != 0; rest &= rest - 1) a.ray[std::countr_zero(rest)] = -1;
+    bool live = walking != 0;
+    while (idle != 0 && find_waiting()) {
+      const Lanes& fresh = fresh_[fresh_at_];
+      std::uint64_t& waiting = waiting_[fresh_at_];
+      alignas(64) std::int32_t from[N] = {}, taken[N] = {};
+      for (; idle != 0 && waiting != 0; idle &= idle - 1, waiting &= waiting - 1) {
+        const int j = std::countr_zero(idle), i = std::countr_zero(waiting);
+        from[j] = i, taken[j] = 1;
+        a.ray[j] = fresh.ray[i], a.t_begin[j] = fresh.t_begin[i], a.t_per_cell[j] = fresh.t_per_cell[i];
       }
+      p.take(fresh, from, taken);
       live = true;
     }
     return live;
   }
 
-  // The same where all rays are done: a whole vector of new rays is taken as it is, and no lane is moved alone.
-  bool refill_all(Lanes& a) {
-    for (std::size_t j = 0; j < N; ++j) answer(a, j);
-    std::fill_n(a.ray, N, -1);
-    if (!next_fresh()) return false;
-    if (fresh_next_ % N != 0) return refill_lanes(a);
-    a = fresh_[fresh_next_ / N];
-    fresh_next_ += N;
-    return true;
-  }
-
-  // Whether there is another ray, at fresh_next_. Rays that need no walk are answered on the way.
-  bool next_fresh() {
+  // Whether rays wait for a lane, in fresh_[fresh_at_].
+  bool find_waiting() {
     for (;;) {
-      for (; fresh_next_ < kFresh * N; ++fresh_next_) {
-        const Lanes& fresh = fresh_[fresh_next_ / N];
-        if (fresh.status[fresh_next_ % N] == kWalking) return true;
-        answer(fresh, fresh_next_ % N);
+      for (; fresh_at_ < kFresh; ++fresh_at_) {
+        if (waiting_[fresh_at_] != 0) return true;
       }
       if (next_ >= rays_.size()) return false;
       take_rays();
     }
   }
 
-  static void move(const Lanes& from, std::size_t i, Lanes& to, std::size_t j) {
-    to.ox[j] = from.ox[i], to.oy[j] = from.oy[i], to.dx[j] = from.dx[i], to.dy[j] = from.dy[i];
-    to.per_x[j] = from.per_x[i], to.per_y[j] = from.per_y[i], to.z[j] = from.z[i], to.dz[j] = from.dz[i];
-    to.margin[j] = from.margin[i], to.end[j] = from.end[i], to.T[j] = from.T[i], to.doubt[j] = from.doubt[i];
-    to.x[j] = from.x[i], to.y[j] = from.y[i], to.level[j] = from.level[i];
-    to.mirror_x[j] = from.mirror_x[i], to.mirror_y[j] = from.mirror_y[i];
-    to.begin_x[j] = from.begin_x[i], to.begin_y[j] = from.begin_y[i];
-    to.last_x[j] = from.last_x[i], to.last_y[j] = from.last_y[i];
-    to.seen[j] = from.seen[i], to.status[j] = from.status[i];
-    to.t_begin[j] = from.t_begin[i], to.t_per_cell[j] = from.t_per_cell[i], to.ray[j] = from.ray[i];
-  }
-
-  // The next rays into fresh_.
+  // The next rays into fresh_. Those that need no walk are answered.
   HWY_NOINLINE void take_rays() {
-    fresh_next_ = 0;
+    fresh_at_ = 0;
     for (Lanes& fresh : fresh_) take_rays(fresh);
-    if (any || !ideas_.beam) return;
-    const std::uint64_t rays = follow_beam(g_, fresh_, kFresh, beam_length_);
-    stats_.beam_rays += rays;
-    together_ = rays > 0;
+    if (!any && ideas_.beam) {
+      const std::uint64_t rays = follow_beam(g_, fresh_, kFresh, beam_length_);
+      stats_.beam_rays += rays;
+      together_ = rays > 0;
+    }
+    for (std::size_t k = 0; k < kFresh; ++k) {
+      Packet p;
+      p.load(fresh_[k]);
+      waiting_[k] = bits_of(p.walking());
+      answer(p, fresh_[k], ~waiting_[k] & kAllLanes);
+    }
   }
 
   // The first steps of any-hit are taken here, where all lanes are busy: most rays begin near the ground, at a cell.
@@ -265,19 +250,30 @@ class VectorWalk {
     return true;
   }
 
+  // Answers the rays of some lanes of p, which are in memory, too.
+  HWY_INLINE void answer(const Packet& p, const Lanes& a, std::uint64_t lanes) {
+    if constexpr (any) {
+      const MI hits = hn::Eq(p.status, hn::Set(di, kHit)), misses = hn::Eq(p.status, hn::Set(di, kMiss));
+      const MI certain = hn::RebindMask(di, hn::Ge(p.doubt, hn::Set(df, kNever)));
+      const std::uint64_t hit = bits_of(hits), sure = bits_of(hn::Or(hits, hn::And(misses, certain)));
+      for (std::uint64_t rest = lanes & sure; rest != 0; rest &= rest - 1) {
+        const int j = std::countr_zero(rest);
+        if (a.ray[j] >= 0) answers_[a.ray[j]] = hit >> j & 1;
+      }
+      lanes &= ~sure;
+    }
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(lanes));
+      if (a.ray[j] >= 0) answer(a, j);
+    }
+  }
   void answer(const Lanes& a, std::size_t j) {
     const std::int32_t ray = a.ray[j];
-    if (ray < 0) return;
     const auto time = [&](float cells) { return a.t_begin[j] + static_cast<double>(cells) * a.t_per_cell[j]; };
     if constexpr (any) {
-      const bool doubtful = a.doubt[j] < kNever;
-      bool hit = a.status[j] == kHit;
-      if (!hit && (a.status[j] != kMiss || doubtful)) {
-        ++stats_.handed_over;
-        hit = resume_occluded_max_mip(target_, rays_[static_cast<std::size_t>(ray)],
-                                      doubtful ? time(a.doubt[j]) : max_mip::kNotClear);
-      }
-      answers_[ray] = hit;
+      ++stats_.handed_over;
+      answers_[ray] = resume_occluded_max_mip(target_, rays_[static_cast<std::size_t>(ray)],
+                                              a.doubt[j] < kNever ? time(a.doubt[j]) : max_mip::kNotClear);
     } else {
       if (a.status[j] == kMiss) {
         answers_[ray] = Hit{};
@@ -373,7 +369,8 @@ class VectorWalk {
   static constexpr int kPackets = any ? 3 : 2;  // vectors in turn: while one waits for memory, others compute
   static constexpr int kFirstSteps = 2;
   static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that are a beam
-  static constexpr double kNearCell = 0x1p-20;                                       // of a cell, far beyond rounding
+  static constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << N) - 1;
+  static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
 
   const HeightTarget& target_;
   const HeightField& field_;
@@ -384,8 +381,9 @@ class VectorWalk {
   FieldFrame f_;
   GridRays r_;
   Lanes fresh_[kFresh], lanes_[kPackets];
-  std::size_t next_ = 0, fresh_next_ = kFresh * N;
-  float beam_length_ = 0;  // of the last beam
+  std::size_t next_ = 0, fresh_at_ = kFresh;
+  std::uint64_t waiting_[kFresh] = {};  // lanes of fresh_ whose rays wait for a lane in lanes_
+  float beam_length_ = 0;               // of the last beam
   bool together_ = false;  // whether the rays in fresh_ are a beam: as they start together they end together
   Candidates candidates_;
   VectorStats stats_;
