@@ -121,6 +121,7 @@ void add_info(CLI::App& program) {
   add_vox_options(*command, options->vox);
   command->callback([options] {
     const bool scene = is_scene_input(options->inputs), vox = !scene && is_vox_input(options->inputs, options->vox);
+    if (!vox) require_no_vox_options(options->vox);
     const Json info = scene ? describe_scene(options->inputs.front())
                       : vox ? describe_vox(options->inputs.front(), options->vox)
                             : describe(*options);

@@ -217,10 +217,9 @@ void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const 
 
 // Of pictures of terrain and functions.
 void require_no_voxel_options(const RenderOptions& options) {
-  constexpr std::array<std::string_view, 11> kVoxelOptions = {
-      "--frame",   "--hidden", "--surface-colours", "--solid-from",   "--up", "--normals", "--normal-radius",
-      "--rounded", "--each",   "--corner-ao",       "--coarse-voxels"};
-  for (const std::string_view option : kVoxelOptions) {
+  require_no_vox_options(options.vox);
+  for (const std::string_view option :
+       {"--normals", "--normal-radius", "--rounded", "--each", "--corner-ao", "--coarse-voxels"}) {
     if (std::find(options.given.begin(), options.given.end(), option) != options.given.end())
       throw Error(fmt::format("{}: goes with files of voxels; leave it out", option));
   }

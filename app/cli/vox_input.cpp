@@ -56,6 +56,15 @@ bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& opti
   return true;
 }
 
+void require_no_vox_options(const VoxOptions& options) {
+  constexpr const char* kVoxels = "files of voxels";
+  refuse(options.scene.frame > 0, "--frame", kVoxels);
+  refuse(options.scene.hidden, "--hidden", kVoxels);
+  refuse(options.surface_colours, "--surface-colours", kVoxels);
+  refuse(options.solid_from.has_value(), "--solid-from", kVoxels);
+  refuse(options.up != "z", "--up", kVoxels);
+}
+
 void add_vox_options(CLI::App& command, VoxOptions& options) {
   const std::string group = "Files of voxels";
   command.add_option("--frame", options.scene.frame, "frame of an animation (MagicaVoxel)")

@@ -66,6 +66,7 @@ Input voxels(const VoxeliseOptions& options) {
 
 Input input_of(const VoxeliseOptions& options) {
   if (is_vox_input(options.inputs, options.vox)) return voxels(options);
+  require_no_vox_options(options.vox);
   if (!is_scene_input(options.inputs)) return terrain(options);
   SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
   SceneLook look = look_of(document);

@@ -268,7 +268,7 @@ Scene Scene::coarser(const SceneDetail& detail) const {
                     corner & 4 ? in_world.high.z : in_world.low.z);
       depth = std::min(depth, dot(p - detail.eye, detail.forward));
     }
-    const double voxels = detail.pixel(std::max(depth, 0.0)) / side;
+    const double voxels = detail.sample(std::max(depth, 0.0)) / side;
     if (!(voxels >= 2)) continue;
     const int level = std::min(kCoarsest, std::ilogb(voxels));
     const auto [place, fresh] = known.try_emplace({object.field, level}, static_cast<std::uint32_t>(fields.size()));

@@ -56,7 +56,8 @@ struct SceneSurface {
 /// How fine things have to be to be seen, for Scene::coarser().
 struct SceneDetail {
   dvec3 eye{0.0}, forward{0, 0, -1};
-  std::function<double(double)> pixel;  ///< metres that a pixel is wide at a depth along `forward` in metres
+  std::function<double(double)> sample;  ///< metres from one of a picture's samples to the next, at a depth along
+                                         ///< `forward` in metres
 };
 
 /// What a ray cost.
@@ -89,8 +90,8 @@ class Scene {
   /// What is at a point inside of an object, of the first one that has it inside; see SceneField::within().
   std::optional<SceneSurface> within(const dvec3& p) const;
 
-  /// The same objects; voxels that are smaller than pixels wherever their object is in the picture are made one of
-  /// 2 x 2 x 2, as often as they stay no larger than a pixel.
+  /// The same objects; voxels that are closer than the picture's samples, wherever their object is seen, are made one
+  /// of 2 x 2 x 2, as often as they stay no larger than that.
   Scene coarser(const SceneDetail& detail) const;
 
   const std::vector<SceneFieldPtr>& fields() const { return fields_; }

@@ -67,8 +67,7 @@ class Voxels final : public SceneField {
     const dvec3 point = shading_.normals == VoxelNormals::smooth
                             ? scene_.place_in_grid(hit, p)
                             : dvec3(hit.hit.voxel) + 0.5 + 0.5 * dvec3(normal_of(hit.hit.face));
-    const dvec3 smooth =
-        smooth_normal(scene_.grid(hit), point, shading_.normal_radius, dvec3(normal_of(hit.hit.face)));
+    const dvec3 smooth = smooth_normal(scene_.grid(hit), point, shading_.normal_radius, dvec3(normal_of(hit.hit.face)));
     if (smooth == dvec3(0.0)) return normal;
     const dvec3 in_world = scene_.world_from_grid(hit, smooth);
     // Of a leaf or a thread the other side may weigh more.

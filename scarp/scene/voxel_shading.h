@@ -16,7 +16,7 @@ enum class VoxelNormals : std::uint8_t {
 struct VoxelShading {
   VoxelNormals normals = VoxelNormals::flat;
   double normal_radius = 3;  ///< of smooth_normal(), in voxels, 1..8
-  bool corner_ao = false;      ///< corner_openness() on the light of the sky, where that is not sampled
+  bool corner_ao = false;    ///< corner_openness() on the light of the sky, where that is not sampled
 };
 
 /// Throws Error naming the setting out of its range.
@@ -25,8 +25,8 @@ void validate(const VoxelShading& shading);
 /// Away from the solid voxels within `radius` of a point in the grid's space: the gradient of how solid it is there,
 /// every voxel's middle counting (1 - d^2 / radius^2)^2 at a distance d. Where that is less than half of what a plane
 /// would give (threads, sheets of a single voxel, edges that touch), `face`, a unit vector or zero, comes in, and takes
-/// over where as much is solid on all sides. Unit, or zero; continuous in the point. On a ball of radius 12 it is off by
-/// 3.4 degrees (rms) for a radius of 3, by 5 for 2.5 and 1.8 for 4. Cost: (2 radius)^3 voxels.
+/// over where as much is solid on all sides. Unit, or zero; continuous in the point. On a ball of radius 12 it is off
+/// by 3.4 degrees (rms) for a radius of 3, by 5 for 2.5 and 1.8 for 4. Cost: (2 radius)^3 voxels.
 dvec3 smooth_normal(const VoxelGrid& grid, const dvec3& point, double radius, const dvec3& face = dvec3(0.0));
 
 /// How much of the sky a point on a face of a voxel has, told by the eight voxels round the one before the face:
