@@ -23,26 +23,73 @@ struct InnerBox {
   dvec3 low, high;
 };
 
-InnerBox inner_box(const VoxelGrid& grid, const ivec3& voxel, const VoxelRounding& rounding) {
-  InnerBox box{dvec3(voxel), dvec3(voxel) + 1.0};
-  for (int axis = 0; axis < 3; ++axis) {
-    ivec3 below = voxel, above = voxel;
-    --below[axis], ++above[axis];
-    if (rounding.each || !solid(grid, below)) box.low[axis] += rounding.radius;
-    if (rounding.each || !solid(grid, above)) box.high[axis] -= rounding.radius;
+// Which parts of a voxel's surface are taken off. An eighth of the voxel, on the high side of the axes whose bits are
+// set, has an inner box of its own.
+class Shape {
+ public:
+  Shape(const VoxelGrid& grid, const ivec3& voxel, const VoxelRounding& rounding)
+      : voxel_(voxel), radius_(rounding.radius) {
+    std::array<std::array<bool, 2>, 3> open{};
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int side = 0; side < 2; ++side) open[axis][side] = rounding.each || !solid(grid, beyond(axis, side));
+    }
+    for (int eighth = 0; eighth < 8; ++eighth) {
+      const auto side = [&](int axis) { return eighth >> axis & 1; };
+      std::array<bool, 3> taken_off;
+      for (int axis = 0; axis < 3; ++axis) taken_off[axis] = open[axis][side(axis)];
+      // Across an edge that touches another voxel's nothing is taken off, lest rays pass there.
+      for (int axis = 0; axis < 3 && !rounding.each; ++axis) {
+        const int next = (axis + 1) % 3;
+        if (!open[axis][side(axis)] || !open[next][side(next)]) continue;
+        ivec3 diagonal = beyond(axis, side(axis));
+        diagonal[next] += side(next) ? 1 : -1;
+        if (solid(grid, diagonal)) taken_off[axis] = taken_off[next] = false;
+      }
+      InnerBox& box = boxes_[eighth];
+      box = {dvec3(voxel), dvec3(voxel) + 1.0};
+      for (int axis = 0; axis < 3; ++axis) {
+        if (!taken_off[axis]) continue;
+        if (side(axis)) {
+          box.high[axis] -= radius_;
+        } else {
+          box.low[axis] += radius_;
+        }
+      }
+    }
   }
-  return box;
-}
+
+  double radius() const { return radius_; }
+  double middle(int axis) const { return voxel_[axis] + 0.5; }
+  const InnerBox& box_at(const dvec3& p) const {
+    int eighth = 0;
+    for (int axis = 0; axis < 3; ++axis) eighth |= p[axis] > middle(axis) ? 1 << axis : 0;
+    return boxes_[eighth];
+  }
+
+ private:
+  ivec3 beyond(int axis, int side) const {
+    ivec3 neighbour = voxel_;
+    neighbour[axis] += side ? 1 : -1;
+    return neighbour;
+  }
+
+  ivec3 voxel_;
+  double radius_;
+  std::array<InnerBox, 8> boxes_;
+};
 
 dvec3 from_inner_box(const InnerBox& box, const dvec3& p) { return p - glm::clamp(p, box.low, box.high); }
 
-// The first t of [begin, end] at which the ray is no farther from the box than the radius.
-std::optional<double> enter(const InnerBox& box, const VoxelRay& ray, double radius, double begin, double end) {
-  std::array<double, 8> cuts{begin};
+// The first t of [begin, end], in the voxel's cube, at which the ray is no farther from the inner box than the radius.
+std::optional<double> enter(const Shape& shape, const VoxelRay& ray, double begin, double end) {
+  const double square = shape.radius() * shape.radius();
+  // Between the planes of the inner boxes and of the middle the ray is in one eighth, and outside in the same axes.
+  std::array<double, 11> cuts{begin};
   std::size_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
     if (ray.direction[axis] == 0) continue;
-    for (const double plane : {box.low[axis], box.high[axis]}) {
+    for (const double plane :
+         {shape.middle(axis) - 0.5 + shape.radius(), shape.middle(axis), shape.middle(axis) + 0.5 - shape.radius()}) {
       const double t = (plane - ray.origin[axis]) / ray.direction[axis];
       if (t > begin && t < end) cuts[count++] = t;
     }
@@ -51,13 +98,11 @@ std::optional<double> enter(const InnerBox& box, const VoxelRay& ray, double rad
   cuts[count] = end;
   for (std::size_t i = 0; i < count; ++i) {
     const dvec3 here = ray.origin + cuts[i] * ray.direction;
-    const dvec3 away = from_inner_box(box, here);
-    double c = dot(away, away) - radius * radius;
-    if (c <= 0) return cuts[i];
-    // In between the ray is outside in the same axes.
     const dvec3 middle = ray.origin + 0.5 * (cuts[i] + cuts[i + 1]) * ray.direction;
-    double a = 0, b = 0;
-    c = -radius * radius;
+    const InnerBox& box = shape.box_at(middle);
+    const dvec3 away = from_inner_box(box, here);
+    if (dot(away, away) <= square) return cuts[i];
+    double a = 0, b = 0, c = -square;
     for (int axis = 0; axis < 3; ++axis) {
       if (middle[axis] >= box.low[axis] && middle[axis] <= box.high[axis]) continue;
       const double from = here[axis] - (middle[axis] < box.low[axis] ? box.low[axis] : box.high[axis]);
@@ -127,12 +172,12 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
     if (stats) stats->steps += part.steps;
     if (!hit) break;
     if (hit.face == VoxelFace::inside && came_by) hit.face = *came_by;
-    const InnerBox box = inner_box(*target.grid, hit.voxel, rounding);
-    if (const auto t = enter(box, ray, rounding.radius, hit.t, std::max(hit.t, leaving(hit.voxel, ray).t))) {
+    const Shape shape(*target.grid, hit.voxel, rounding);
+    if (const auto t = enter(shape, ray, hit.t, std::max(hit.t, leaving(hit.voxel, ray).t))) {
       if (*t > ray.t_max) break;
       const bool later = *t > hit.t;
       hit.t = *t;
-      const dvec3 away = from_inner_box(box, ray.origin + hit.t * ray.direction);
+      const dvec3 p = ray.origin + hit.t * ray.direction, away = from_inner_box(shape.box_at(p), p);
       if ((later || hit.face != VoxelFace::inside) && length(away) >= rounding.radius - kOffRay)
         hit.face = face_along(away);
       return hit;
@@ -145,7 +190,7 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
 
 dvec3 rounded_normal(const VoxelGrid& grid, const VoxelHit& hit, const dvec3& point, const VoxelRounding& rounding) {
   if (hit.face == VoxelFace::inside) return dvec3(0.0);
-  const dvec3 away = from_inner_box(inner_box(grid, hit.voxel, rounding), point);
+  const dvec3 away = from_inner_box(Shape(grid, hit.voxel, rounding).box_at(point), point);
   // On the part of a face that a neighbour, rounded itself, leaves open.
   if (length(away) < rounding.radius - kOffRay) return dvec3(normal_of(hit.face));
   return normalize(away);

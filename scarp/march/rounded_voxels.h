@@ -5,7 +5,8 @@
 //   +-----------+      the cube of a voxel, moved in by the radius on each face that has no solid voxel behind it,
 //   |  .-----.  |      and then grown by the radius again, as far as the cube reaches: a ball's way round its edges.
 //   | |       | |      Faces between two solid voxels stay: walls are flat, steps meet, nothing opens between
-//   +-----------+      neighbours. `each`: every voxel is rounded on all sides, as a heap of dice
+//   +-----------+      neighbours, and edges that touch another voxel's stay sharp, so that rays that cubes stop are
+//                      stopped. `each`: every voxel is rounded on all sides, as a heap of dice
 //
 // Guarantee: the walk from voxel to voxel is that of the march, exact; in a voxel the distance to the inner box is a
 // parabola between the planes of that box, of which the first root is taken: t to some roundings of double, and a ray

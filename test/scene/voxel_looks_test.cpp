@@ -263,6 +263,7 @@ TEST(FromVolume, ColoursByNumber) {
   EXPECT_EQ((*all.colour_at({1.5, 0.5, 0.5}))[0], 1);
   EXPECT_EQ((*all.colour_at({2.5, 0.5, 0.5}))[0], 2);
   EXPECT_EQ((*all.colour_at({3.5, 0.5, 0.5}))[0], 3);
+  EXPECT_EQ((*all.colour_at({4.5, 0.5, 0.5}))[0], 3);  // 1.5 steps of 10: the nearest above
   options.solid_from = 25;
   const VoxelScene some = voxel_scene_from(volume, colours, options);
   EXPECT_FALSE(some.colour_at({2.5, 0.5, 0.5}));
