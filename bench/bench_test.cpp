@@ -266,6 +266,22 @@ TEST(ScarpBench, VoxelLeaksFindsNone) {
   }
 }
 
+TEST(ScarpBench, PixelMatchFindsNoDifference) {
+  const json all = output_of(
+      "pixel-match --sets degenerate --thousands 1 --width 96 --height 54 --cameras post "
+      "--marches voxel-planes,voxel-octants");
+  expect_head(all);
+  EXPECT_EQ(all["rows"].size(), 2U);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"set", "objects", "camera", "march", "width", "height", "hits", "near_edges", "differ",
+                        "near_edge_wrong", "ray_pixels", "t_error"});
+    EXPECT_EQ(row["differ"], 0);
+    EXPECT_EQ(row["near_edge_wrong"], 0);
+    EXPECT_LT(row["ray_pixels"], 1e-3);
+    EXPECT_GT(row["hits"], 5);
+  }
+}
+
 TEST(ScarpBench, RenderWritesTheDocumentedFieldsAndMaxMipIsRight) {
   const json all = output_of("render --period 64 --width 40 --height 30 --cameras 2 --repeats 1 --judge-every 3");
   expect_head(all);

@@ -129,6 +129,20 @@ TEST_F(CliVox, VoxelsBecomeVoxels) {
   EXPECT_EQ(top(copy, "a.png"), top(model_, "b.png"));
 }
 
+// 8 x 8 cells of 10 m: 4 x 4 columns of voxels of 20 m.
+TEST_F(CliVox, TerrainBecomesVoxels) {
+  const std::string dem = path("dem.tif"), out = path("dem.vox");
+  ASSERT_EQ(run({"generate", "--size", "9", "--cell", "10", "-o", dem}).status, 0);
+  const auto made = run({"voxelise", dem, "-o", out, "--voxel", "20", "--exaggeration", "30"});
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto json = nlohmann::json::parse(run({"info", out, "--json"}).out);
+  EXPECT_EQ(json["models"][0]["size"][0], 4);
+  EXPECT_EQ(json["models"][0]["size"][1], 4);
+  EXPECT_EQ(json["low"][0], 0);
+  EXPECT_EQ(json["high"][1], 4);
+  EXPECT_GT(json["colours_used"], 1);
+}
+
 TEST_F(CliVox, EachLookIsAnother) {
   std::vector<std::string> pictures;
   const std::vector<std::vector<std::string>> looks = {{},
