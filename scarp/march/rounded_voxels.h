@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Voxels with rounded edges: which point of a solid voxel's cube a ray meets first, when only part of the cube is
-// there.
+// Voxels with rounded edges: which point of a solid voxel a ray meets first, when only part of its cube is there.
 //
 //   +-----------+      the cube of a voxel, moved in by the radius on each face that has no solid voxel behind it,
 //   |  .-----.  |      and then grown by the radius again, as far as the cube reaches: a ball's way round its edges.
@@ -10,8 +9,9 @@
 //
 // Guarantee: the walk from voxel to voxel is that of the march, exact; in a voxel the distance to the inner box is a
 // parabola between the planes of that box, of which the first root is taken: t to some roundings of double, and a ray
-// that grazes an edge by less may pass or hit. A ray that passes a voxel's edge goes on from the voxel that it comes
-// into, quantised anew from itself: nothing accumulates. Source: rounded boxes as in I. Quilez, "Distance functions".
+// that grazes an edge by less may pass or hit. A ray that passes a voxel's edge goes on from the neighbour by whose
+// face it leaves (told in double, of equals x before y before z), quantised anew from itself: nothing accumulates.
+// Source: rounded boxes as in I. Quilez, "Distance functions".
 #pragma once
 
 #include "scarp/march/voxel_target.h"
