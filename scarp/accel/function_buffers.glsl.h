@@ -27,6 +27,9 @@ const uint kScarpNoiseSlope = 13u;
 const uint kScarpTerrace = 14u;
 const uint kScarpRadial = 15u;
 
+/// What a program has, as bits: 1 << op, and of noise 1 << (kScarpNoiseBit + kind).
+const uint kScarpNoiseBit = 16u;
+
 /// Registers there are; 0 and 1 hold x and y when the program begins.
 const int kScarpRegisters = 64;
 

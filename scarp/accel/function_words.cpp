@@ -34,6 +34,16 @@ std::vector<glsl::ScarpInstruction> function_words(const FunctionProgram& progra
   return words;
 }
 
+std::uint32_t function_parts(const FunctionProgram& program) {
+  std::uint32_t parts = 0;
+  for (const FunctionInstruction& in : program.code) {
+    parts |= 1u << static_cast<unsigned>(in.op);
+    if (in.op == FunctionOp::noise || in.op == FunctionOp::noise_slope)
+      parts |= 1u << (glsl::kScarpNoiseBit + static_cast<unsigned>(in.kind));
+  }
+  return parts;
+}
+
 SingleRounding::SingleRounding(const FunctionProgram& program) {
   for (std::size_t i = 0; i < off_.size(); ++i) {
     const function::Single height = function::single_height(program, std::exp2(static_cast<double>(i)));

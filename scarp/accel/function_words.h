@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,6 +14,9 @@ namespace scarp {
 
 /// One program of a function.
 std::vector<glsl::ScarpInstruction> function_words(const FunctionProgram& program);
+
+/// What is in it: 1 << op, 1 << (kScarpNoiseBit + kind).
+std::uint32_t function_parts(const FunctionProgram& program);
 
 /// What heights of one program as shaders compute them are off by, by where they are.
 class SingleRounding {

@@ -19,7 +19,8 @@ SCARP_GLSL_BEGIN
 // (LP_MAX_TGSI_LOOP_ITERATIONS of llvmpipe), the interpreter's included: kScarpLoopTurns and kScarpMostInstructions.
 //
 // Specialisation constants: threads of a workgroup; which march (function_marches.comp), or whether any hit will do
-// (lipschitz_local.comp).
+// (lipschitz_local.comp); what the program has (scarp_uses), so that a shader is made of what it needs: some drivers go
+// through all branches of an instruction.
 
 /// Turns of loops in one run of an invocation, at most.
 const int kScarpLoopTurns = 60000;
@@ -50,12 +51,14 @@ struct FunctionBatch {
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint batch_choice = 0;
+layout(constant_id = 2) const uint batch_parts = 0xffffffffu;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FunctionRays { ScarpFunctionRay rays[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer FunctionHits { ScarpFunctionHit hits[]; };
 layout(push_constant, scalar) uniform Push { FunctionBatch batch; };
 
 ScarpInstruction scarp_instruction(uint i) { return FunctionCode(batch.code).instructions[i]; }
+bool scarp_uses(uint part) { return (batch_parts & (1u << part)) != 0u; }
 
 #endif
 

@@ -246,7 +246,7 @@ SCARP_FN ScarpNoiseOver scarp_noise_over(ScarpInstruction at, ScarpBound a, Scar
     over.y = over.x;
     return over;
   }
-  ScarpNoise jet = scarp_noise(at.kind, at.seed, a.mid, b.mid);
+  ScarpNoise jet = scarp_program_noise(at, a.mid, b.mid);
   // The turn of simplex noise into its own axes, in pairs.
   float moved = kScarpTwoSlack * (abs(a.mid.high) + abs(b.mid.high));
   float n_off = bound.n_off + bound.slope * moved;
@@ -292,63 +292,45 @@ SCARP_FN ScarpBound scarp_bound(ScarpProgram program, ScarpBound x, ScarpBound y
     ScarpBound a = r[at.a];
     ScarpBound b = r[at.b];
     ScarpBound to = a;
-    switch (at.op) {
-      case kScarpConstant:
-        to = scarp_exactly(scarp_k0(at));
-        break;
-      case kScarpCombine:
-        to = scarp_bound_combine(scarp_k0(at), a, scarp_k1(at), b, scarp_k2(at));
-        break;
-      case kScarpTurn:
-        to = scarp_bound_turn(scarp_k0(at), a, scarp_two_negate(scarp_k1(at)), b);
-        r[at.to_x] = scarp_bound_turn(scarp_k1(at), a, scarp_k0(at), b);
-        break;
-      case kScarpMultiply:
-        to = scarp_bound_multiply(a, b);
-        break;
-      case kScarpSquare:
-        to = scarp_bound_square(a);
-        break;
-      case kScarpAbsolute:
-        to = scarp_bound_absolute(a);
-        break;
-      case kScarpClamp:
-        to = scarp_bound_clamp(a, at.k0, at.k1);
-        break;
-      case kScarpSine:
-        to = scarp_bound_sine(a);
-        break;
-      case kScarpMinimum:
-      case kScarpMaximum: {
-        // The larger of a and b is less the smaller of -a and -b.
-        bool larger = at.op == kScarpMaximum;
-        if (larger) a = scarp_bound_negate(a);
-        if (larger) b = scarp_bound_negate(b);
-        to = scarp_bound_minimum(a, b);
-        if (larger) to = scarp_bound_negate(to);
-        break;
+    if (scarp_is(at, kScarpConstant)) {
+      to = scarp_exactly(scarp_k0(at));
+    } else if (scarp_is(at, kScarpCombine)) {
+      to = scarp_bound_combine(scarp_k0(at), a, scarp_k1(at), b, scarp_k2(at));
+    } else if (scarp_is(at, kScarpTurn)) {
+      to = scarp_bound_turn(scarp_k0(at), a, scarp_two_negate(scarp_k1(at)), b);
+      r[at.to_x] = scarp_bound_turn(scarp_k1(at), a, scarp_k0(at), b);
+    } else if (scarp_is(at, kScarpMultiply)) {
+      to = scarp_bound_multiply(a, b);
+    } else if (scarp_is(at, kScarpSquare)) {
+      to = scarp_bound_square(a);
+    } else if (scarp_is(at, kScarpAbsolute)) {
+      to = scarp_bound_absolute(a);
+    } else if (scarp_is(at, kScarpClamp)) {
+      to = scarp_bound_clamp(a, at.k0, at.k1);
+    } else if (scarp_is(at, kScarpSine)) {
+      to = scarp_bound_sine(a);
+    } else if (scarp_is(at, kScarpMinimum) || scarp_is(at, kScarpMaximum)) {
+      // The larger of a and b is less the smaller of -a and -b.
+      bool larger = at.op == kScarpMaximum;
+      if (larger) a = scarp_bound_negate(a);
+      if (larger) b = scarp_bound_negate(b);
+      to = scarp_bound_minimum(a, b);
+      if (larger) to = scarp_bound_negate(to);
+    } else if (scarp_is(at, kScarpSmoothMinimum)) {
+      to = scarp_bound_smooth_minimum(a, b, at.k0);
+    } else if (scarp_is(at, kScarpReciprocal)) {
+      to = scarp_bound_reciprocal(a);
+    } else if (scarp_is(at, kScarpNoiseOp) || scarp_is(at, kScarpNoiseSlope)) {
+      ScarpNoiseOver over = scarp_noise_over(at, a, b, at.op == kScarpNoiseSlope);
+      to = over.n;
+      if (at.op == kScarpNoiseSlope) {
+        r[at.to_x] = over.x;
+        r[at.to_y] = over.y;
       }
-      case kScarpSmoothMinimum:
-        to = scarp_bound_smooth_minimum(a, b, at.k0);
-        break;
-      case kScarpReciprocal:
-        to = scarp_bound_reciprocal(a);
-        break;
-      case kScarpNoiseOp:
-      case kScarpNoiseSlope: {
-        ScarpNoiseOver over = scarp_noise_over(at, a, b, at.op == kScarpNoiseSlope);
-        to = over.n;
-        if (at.op == kScarpNoiseSlope) {
-          r[at.to_x] = over.x;
-          r[at.to_y] = over.y;
-        }
-        break;
-      }
-      case kScarpTerrace:
-        to = scarp_bound_terrace(a, at);
-        break;
-      default:
-        to = scarp_bound_radial(a, b, at);
+    } else if (scarp_is(at, kScarpTerrace)) {
+      to = scarp_bound_terrace(a, at);
+    } else if (scarp_is(at, kScarpRadial)) {
+      to = scarp_bound_radial(a, b, at);
     }
     r[at.to] = to;
   }

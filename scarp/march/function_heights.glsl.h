@@ -8,6 +8,8 @@
 // Text of C++ and of GLSL, GLSL ES 3.0 included. Who includes it has defined
 //
 //   ScarpInstruction scarp_instruction(uint i);      the i-th of the program
+//   bool scarp_uses(uint part);                      whether an instruction, or kScarpNoiseBit + kind, is in it; true is
+//                                                    always right, constants let the compiler leave out the rest
 #ifndef SCARP_MARCH_FUNCTION_HEIGHTS_GLSL_H
 #define SCARP_MARCH_FUNCTION_HEIGHTS_GLSL_H
 
@@ -20,6 +22,10 @@ SCARP_GLSL_BEGIN
 
 /// The host's.
 ScarpInstruction scarp_instruction(uint i);
+bool scarp_uses(uint part);
+
+/// Whether an instruction is this one, which is not asked where no program has it.
+SCARP_FN bool scarp_is(ScarpInstruction at, uint op) { return scarp_uses(op) && at.op == op; }
 
 /// Which program, and where its answer is.
 struct ScarpProgram {
@@ -90,6 +96,15 @@ SCARP_FN float scarp_radial(float dx, float dy, float inner, float outer) {
   return scarp_fade(clamp((outer - sqrt(dx * dx + dy * dy)) / (outer - inner), 0.0f, 1.0f));
 }
 
+/// Noise of an instruction.
+SCARP_FN ScarpNoise scarp_program_noise(ScarpInstruction at, ScarpTwoFloat x, ScarpTwoFloat y) {
+  if (at.kind == kScarpSimplexNoise && scarp_uses(kScarpNoiseBit + kScarpSimplexNoise))
+    return scarp_simplex_noise(at.seed, x, y);
+  if (at.kind == kScarpPerlinNoise && scarp_uses(kScarpNoiseBit + kScarpPerlinNoise))
+    return scarp_perlin_noise(at.seed, scarp_lattice(x), scarp_lattice(y));
+  return scarp_value_noise(at.seed, scarp_lattice(x), scarp_lattice(y));
+}
+
 /// The height at (x, y), metres.
 SCARP_FN ScarpTwoFloat scarp_height(ScarpProgram program, ScarpTwoFloat x, ScarpTwoFloat y) {
   ScarpTwoFloat r[kScarpRegisters];
@@ -100,69 +115,49 @@ SCARP_FN ScarpTwoFloat scarp_height(ScarpProgram program, ScarpTwoFloat x, Scarp
     ScarpTwoFloat a = r[at.a];
     ScarpTwoFloat b = r[at.b];
     ScarpTwoFloat to = a;
-    switch (at.op) {
-      case kScarpConstant:
-        to = scarp_k0(at);
-        break;
-      case kScarpCombine:
-        to = scarp_two_combine(scarp_k0(at), a, scarp_k1(at), b, scarp_k2(at));
-        break;
-      case kScarpTurn: {
-        ScarpTwoFloat none = scarp_two(0.0f);
-        to = scarp_two_combine(scarp_k0(at), a, scarp_two_negate(scarp_k1(at)), b, none);
-        r[at.to_x] = scarp_two_combine(scarp_k1(at), a, scarp_k0(at), b, none);
-        break;
+    if (scarp_is(at, kScarpConstant)) {
+      to = scarp_k0(at);
+    } else if (scarp_is(at, kScarpCombine)) {
+      to = scarp_two_combine(scarp_k0(at), a, scarp_k1(at), b, scarp_k2(at));
+    } else if (scarp_is(at, kScarpTurn)) {
+      ScarpTwoFloat none = scarp_two(0.0f);
+      to = scarp_two_combine(scarp_k0(at), a, scarp_two_negate(scarp_k1(at)), b, none);
+      r[at.to_x] = scarp_two_combine(scarp_k1(at), a, scarp_k0(at), b, none);
+    } else if (scarp_is(at, kScarpMultiply)) {
+      to = scarp_two_multiply(a, b);
+    } else if (scarp_is(at, kScarpSquare)) {
+      to = scarp_two_multiply(a, a);
+    } else if (scarp_is(at, kScarpAbsolute)) {
+      if (a.high < 0.0f) to = scarp_two_negate(a);
+    } else if (scarp_is(at, kScarpClamp)) {
+      if (scarp_two_less(a, scarp_k0(at))) to = scarp_k0(at);
+      if (scarp_two_less(scarp_k1(at), a)) to = scarp_k1(at);
+    } else if (scarp_is(at, kScarpSine)) {
+      float sine;
+      float cosine;
+      scarp_sine(a, sine, cosine);
+      to = scarp_two(sine);
+    } else if (scarp_is(at, kScarpMinimum)) {
+      if (scarp_two_less(b, a)) to = b;
+    } else if (scarp_is(at, kScarpMaximum)) {
+      if (scarp_two_less(a, b)) to = b;
+    } else if (scarp_is(at, kScarpSmoothMinimum)) {
+      to = scarp_smooth_minimum(a, b, at.k0);
+    } else if (scarp_is(at, kScarpReciprocal)) {
+      to = scarp_two(1.0f / a.high);
+    } else if (scarp_is(at, kScarpNoiseOp) || scarp_is(at, kScarpNoiseSlope)) {
+      ScarpNoise noise = scarp_program_noise(at, a, b);
+      to = scarp_two(noise.n);
+      if (at.op == kScarpNoiseSlope) {
+        r[at.to_x] = scarp_two(noise.x);
+        r[at.to_y] = scarp_two(noise.y);
       }
-      case kScarpMultiply:
-        to = scarp_two_multiply(a, b);
-        break;
-      case kScarpSquare:
-        to = scarp_two_multiply(a, a);
-        break;
-      case kScarpAbsolute:
-        if (a.high < 0.0f) to = scarp_two_negate(a);
-        break;
-      case kScarpClamp:
-        if (scarp_two_less(a, scarp_k0(at))) to = scarp_k0(at);
-        if (scarp_two_less(scarp_k1(at), a)) to = scarp_k1(at);
-        break;
-      case kScarpSine: {
-        float sine;
-        float cosine;
-        scarp_sine(a, sine, cosine);
-        to = scarp_two(sine);
-        break;
-      }
-      case kScarpMinimum:
-        if (scarp_two_less(b, a)) to = b;
-        break;
-      case kScarpMaximum:
-        if (scarp_two_less(a, b)) to = b;
-        break;
-      case kScarpSmoothMinimum:
-        to = scarp_smooth_minimum(a, b, at.k0);
-        break;
-      case kScarpReciprocal:
-        to = scarp_two(1.0f / a.high);
-        break;
-      case kScarpNoiseOp:
-      case kScarpNoiseSlope: {
-        ScarpNoise noise = scarp_noise(at.kind, at.seed, a, b);
-        to = scarp_two(noise.n);
-        if (at.op == kScarpNoiseSlope) {
-          r[at.to_x] = scarp_two(noise.x);
-          r[at.to_y] = scarp_two(noise.y);
-        }
-        break;
-      }
-      case kScarpTerrace:
-        to = scarp_terrace(a, scarp_k0(at), scarp_k2(at), at.k1);
-        break;
-      default: {
-        float dx = scarp_two_add(a, scarp_two_negate(scarp_k0(at))).high;
-        float dy = scarp_two_add(b, scarp_two_negate(scarp_k1(at))).high;
-        to = scarp_two(scarp_radial(dx, dy, at.k2, at.k3));
-      }
+    } else if (scarp_is(at, kScarpTerrace)) {
+      to = scarp_terrace(a, scarp_k0(at), scarp_k2(at), at.k1);
+    } else if (scarp_is(at, kScarpRadial)) {
+      float dx = scarp_two_add(a, scarp_two_negate(scarp_k0(at))).high;
+      float dy = scarp_two_add(b, scarp_two_negate(scarp_k1(at))).high;
+      to = scarp_two(scarp_radial(dx, dy, at.k2, at.k3));
     }
     r[at.to] = to;
   }

@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
-#include <optional>
 #include <string>
+#include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -111,28 +112,33 @@ std::uint32_t checked_slice(std::uint32_t rays) {
 }  // namespace
 
 struct DeviceFunctionQueries::Impl {
-  Impl(const Device& device, const MarchEntry& entry, const MarchSettings& march_settings_,
+  Impl(const Device& device_, const MarchEntry& entry, const MarchSettings& march_settings_,
        const DeviceQuerySettings& settings)
       : march(device_march(entry)),
         march_settings(march_settings_),
         slice(checked_slice(settings.rays_at_once)),
-        closest(pipeline(device, march.choice)),
+        device(device_),
         rays(device, std::uint64_t{slice} * sizeof(glsl::ScarpFunctionRay), "rays"),
         answers(device, std::uint64_t{slice} * sizeof(glsl::ScarpFunctionHit), "hits"),
-        commands(device) {
-    if (march.has_any) any.emplace(pipeline(device, march.choice + 1));
-  }
+        commands(device) {}
 
-  ComputePipeline pipeline(const Device& device, std::uint32_t choice) const {
-    const std::uint32_t constants[] = {kThreads, choice};
-    return {device, march.words, std::string(march.name) + " over functions", sizeof(glsl::FunctionBatch), constants};
+  // Made of what the program has, when it is first asked for.
+  const ComputePipeline& pipeline(const FunctionProgram& program, bool any) {
+    const std::uint32_t choice = march.choice + (any && march.has_any ? 1 : 0), parts = function_parts(program);
+    const auto made = pipelines.find({choice, parts});
+    if (made != pipelines.end()) return made->second;
+    const std::uint32_t constants[] = {kThreads, choice, parts};
+    return pipelines
+        .try_emplace({choice, parts}, device, march.words, std::string(march.name) + " over functions",
+                     std::uint32_t{sizeof(glsl::FunctionBatch)}, constants)
+        .first->second;
   }
 
   // Calls answer(i, prepared, hit) for each ray, on all threads.
   template <class Answer>
-  void ask(const DeviceFunctionTarget& target, const ComputePipeline& pipeline, std::span<const Ray> asked,
-           const Answer& answer) {
+  void ask(const DeviceFunctionTarget& target, bool any, std::span<const Ray> asked, const Answer& answer) {
     const FunctionProgram& program = target.function->program(target.use);
+    const ComputePipeline& shader = pipeline(program, any);
     glsl::FunctionBatch batch =
         batch_settings(march.name, march_settings, target.function->bound_everywhere(target.use).slope);
     batch.code = target.device->address(target.use);
@@ -159,7 +165,7 @@ struct DeviceFunctionQueries::Impl {
         if (prepared[i].marches) packed.push_back(prepared[i].ray);
       }
       found.assign(packed.size(), glsl::scarp_function_miss());
-      run(pipeline, batch);
+      run(shader, batch);
       parallel_for(static_cast<std::int64_t>(count), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
           answer(first + i, prepared[i], prepared[i].marches ? found[place[i]] : glsl::scarp_function_miss());
@@ -199,8 +205,8 @@ struct DeviceFunctionQueries::Impl {
   const DeviceMarch& march;
   MarchSettings march_settings;
   std::uint32_t slice;
-  ComputePipeline closest;
-  std::optional<ComputePipeline> any;
+  Device device;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, ComputePipeline> pipelines;  // by choice and parts
   DeviceBuffer rays, answers;
   Commands commands;
   std::vector<PassTime> passes;
@@ -232,7 +238,7 @@ void DeviceFunctionQueries::closest_hits(const DeviceFunctionTarget& target, std
                                          std::span<Hit> hits, std::span<std::uint32_t> steps) {
   if (rays.size() != hits.size() || (!steps.empty() && rays.size() != steps.size()))
     throw Error(fmt::format("batch: {} rays, room for {} answers and {} costs", rays.size(), hits.size(), steps.size()));
-  impl_->ask(target, impl_->closest, rays,
+  impl_->ask(target, false, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
                hits[i] = hit_from_device(rays[i], prepared, answer);
                if (!steps.empty()) steps[i] = answer.bounds + answer.heights;
@@ -243,7 +249,7 @@ void DeviceFunctionQueries::occluded(const DeviceFunctionTarget& target, std::sp
                                      std::span<std::uint8_t> blocked) {
   if (rays.size() != blocked.size())
     throw Error(fmt::format("batch: {} rays, room for {} answers", rays.size(), blocked.size()));
-  impl_->ask(target, impl_->any ? *impl_->any : impl_->closest, rays,
+  impl_->ask(target, true, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
                blocked[i] = prepared.marches && answer.status == glsl::kScarpFunctionHit;
              });

@@ -110,22 +110,30 @@ SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, floa
   return proof;
 }
 
-/// The crossing between s0, above the ground, and s1, on or under it, where clearances are h0 and h1: by secants of
-/// which the end that stays is weighed less and less ("Illinois"), until the clearance is rounding or floats end.
-SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float s0, float h0, float s1, float h1,
+/// The crossing between s0, above the ground, and s1, on or under it, by secants of which the end that stays is weighed
+/// less and less ("Illinois"), until the clearance is rounding or floats end; s0 where they are not.
+SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float s0, float s1,
                               SCARP_INOUT(ScarpFunctionHit) hit) {
   float from = s0;
   float to = s1;
-  float above = h0;
-  float below = h1;
+  float above = 0.0f;
+  float below = 0.0f;
   int kept = 0;
+  // The first two of them look at the ends.
   for (int i = 0; i < kScarpMostSecants; ++i) {
-    float s = from + (to - from) * (above / (above - below));
-    if (!(s > from && s < to)) return to;
+    float s = i == 0 ? s1 : i == 1 ? s0 : from + (to - from) * (above / (above - below));
+    if (i > 1 && !(s > from && s < to)) return to;
     hit.heights += 1u;
     float h = scarp_clearance(program, ray, s);
-    if (abs(h) <= ray.rounding) return s;
-    if (h > 0.0f) {
+    if (i == 0) {
+      below = h;
+      if (h > 0.0f) return s0;
+    } else if (i == 1) {
+      above = h;
+      if (h <= 0.0f) return s0;
+    } else if (abs(h) <= ray.rounding) {
+      return s;
+    } else if (h > 0.0f) {
       from = s;
       above = h;
       if (kept == 1) below *= 0.5f;
@@ -140,41 +148,41 @@ SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float 
   return to;
 }
 
+// What the bounds that the march asks for are of.
+const int kScarpAskOpen = 0;     ///< the begin: what bounds of a point leave open
+const int kScarpAskSegment = 1;  ///< the next segment
+const int kScarpAskPoint = 2;    ///< its begin, where the segment tells nothing
+
 /// What the march finds first. With `any` a hit's time means nothing.
 SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunctionRay ray_,
                                                 ScarpLipschitzLocal settings, bool any) {
   ScarpFunctionHit hit = scarp_function_miss();
   ScarpFunctionRay ray = ray_;
+  bool from_surface = (ray.flags & kScarpFromSurface) != 0u;
+  bool begins = ray.state.steps == 0;
   float s = ray.state.s;
-  float length_ = ray.state.before;
+  float length_ = begins ? ray.exit : ray.state.before;
   float lift = ray.state.h_before;
-  if ((ray.flags & kScarpFromSurface) != 0u) {
-    // It begins at the height that floats find there.
-    ScarpTwoFloat ground = scarp_height(program, scarp_ray_x(ray, 0.0f), scarp_ray_y(ray, 0.0f));
-    ray.origin.z = ground.high;
-    ray.origin_low.z = ground.low;
-  }
-  if (ray.state.steps == 0) {
-    s = 0.0f;
-    length_ = ray.exit;
-    if ((ray.flags & kScarpFromSurface) != 0u) {
-      hit.bounds += 1u;
-      lift = 4.0f * scarp_proof(program, ray, 0.0f, 0.0f, 0.0f).wide;
-    } else {
-      hit.heights += 1u;
-      float h = scarp_clearance(program, ray, 0.0f);
-      if (abs(h) <= ray.rounding) {
-        scarp_function_tell(kScarpFunctionHit, 0.0f, hit);
-        return hit;
-      }
-      if (h < 0.0f) {
-        hit.status = kScarpFunctionBelow;
-        return hit;
-      }
+  if (begins || from_surface) {
+    hit.heights += 1u;
+    float h = scarp_clearance(program, ray, 0.0f);
+    if (from_surface) {
+      // It begins at the height that floats find there.
+      ScarpTwoFloat z = scarp_two_add(scarp_ray_z(ray, 0.0f), scarp_two(-h));
+      ray.origin.z = z.high;
+      ray.origin_low.z = z.low;
+    } else if (abs(h) <= ray.rounding) {
+      scarp_function_tell(kScarpFunctionHit, 0.0f, hit);
+      return hit;
+    } else if (h < 0.0f) {
+      hit.status = kScarpFunctionBelow;
+      return hit;
     }
   }
+  int ask = begins && from_surface ? kScarpAskOpen : kScarpAskSegment;
   int first = max(1, ray.state.steps);  // 0 is for rays that have not begun
-  for (int steps = first; s < ray.exit; ++steps) {
+  int steps = first;
+  while (s < ray.exit) {
     if (steps > settings.max_steps) {
       scarp_function_tell(kScarpFunctionExhausted, s, hit);
       return hit;
@@ -188,9 +196,15 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
       return hit;
     }
     hit.bounds += 1u;
-    float end = min(s + length_, ray.exit);
+    ++steps;
+    float end = ask == kScarpAskSegment ? min(s + length_, ray.exit) : s;
     ScarpProof proof = scarp_proof(program, ray, lift, s, end);
-    if (proof.until == end) {
+    if (ask == kScarpAskOpen) {
+      lift = 4.0f * proof.wide;
+      ask = kScarpAskSegment;
+      continue;
+    }
+    if (ask == kScarpAskSegment && proof.until == end) {
       if (proof.end > lift) lift = 0.0f;
       s = end;
       length_ = ray.direction.z > 0.0f
@@ -198,23 +212,19 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
                     : kScarpGrowth * length_;
       continue;
     }
-    float least = max(kScarpShortest * end, settings.tolerance * (s + ray.travelled));
+    float least = max(kScarpShortest * (s + length_), settings.tolerance * (s + ray.travelled));
     // Where bounds of the point itself do not tell it from the ground, shorter segments tell no more.
-    bool hidden = false;
-    if (proof.until == s && length_ > least) {
-      hit.bounds += 1u;
-      hidden = !(scarp_proof(program, ray, lift, s, s).begin > 0.0f);
-    }
+    bool hidden = ask == kScarpAskPoint && !(proof.begin > 0.0f);
     if (length_ <= least || hidden) {
-      if (!any) {
-        hit.heights += 2u;
-        float h1 = scarp_clearance(program, ray, end);
-        float h0 = scarp_clearance(program, ray, s);
-        if (h1 <= 0.0f && h0 > 0.0f && length_ <= 2.0f * least) s = scarp_crossing(program, ray, s, h0, end, h1, hit);
-      }
+      if (!any && !hidden) s = scarp_crossing(program, ray, s, end, hit);
       scarp_function_tell(kScarpFunctionHit, s, hit);
       return hit;
     }
+    if (ask == kScarpAskPoint) {
+      ask = kScarpAskSegment;
+      continue;
+    }
+    if (proof.until == s && proof.wide <= 4.0f * ray.rounding) ask = kScarpAskPoint;
     // The first crossing is before `sunk`; otherwise it may be anywhere in the rest of the segment, or nowhere.
     float gained = proof.until - s;
     length_ = max(least, proof.sunk < end ? min((proof.sunk - proof.until) * kScarpBeyond, kScarpShrink * length_)

@@ -24,6 +24,7 @@ namespace scarp::glsl {
 
 static const ScarpInstruction* host_program = nullptr;
 ScarpInstruction scarp_instruction(uint i) { return host_program[i]; }
+bool scarp_uses(uint) { return true; }
 
 }  // namespace scarp::glsl
 

@@ -22,14 +22,15 @@ namespace scarp::test {
 namespace {
 
 #ifdef NDEBUG
-constexpr int kRays = 300;
+constexpr int kRays = 200;
 #else
-constexpr int kRays = 30;
+constexpr int kRays = 40;
 #endif
+// All functions have lipschitz-local, these alone the others: compiling a march for lavapipe takes longer than running it.
+constexpr std::size_t kOfAllMarches = 2;
 
 class FunctionsOnDevice : public OnDevice {};
 
-// Compiling a march for lavapipe takes longer than running it: once for all functions.
 DeviceFunctionQueries& queries(const MarchEntry& march) {
   static std::map<std::string_view, DeviceFunctionQueries> all;
   const auto found = all.find(march.name);
@@ -39,6 +40,7 @@ DeviceFunctionQueries& queries(const MarchEntry& march) {
 }
 
 TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
+  std::size_t others = 0;
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     const DeviceFunction on_device(device(), function);
@@ -51,6 +53,7 @@ TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
     std::vector<std::uint8_t> blocked(rays.size());
     for (const MarchEntry& march : function_marches()) {
       ASSERT_TRUE(march.gpu) << march.name;
+      if (march.name != "lipschitz-local" && ++others > kOfAllMarches * 4) continue;
       queries(march).closest_hits(target, rays, hits, steps);
       queries(march).occluded(target, rays, blocked);
       int met = 0;
@@ -60,7 +63,7 @@ TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
         EXPECT_EQ(function_objection(march.name, {}, function, rays[i],
                                      4 * static_cast<double>(prepared.ray.rounding), hits[i]),
                   "")
-            << march.name << " over " << named.name << ", ray " << i << " status " << (int)hits[i].status << " steps " << steps[i];
+            << march.name << " over " << named.name << ", ray " << i;
         EXPECT_EQ(blocked[i], static_cast<bool>(hits[i])) << march.name << " over " << named.name << ", ray " << i;
         met += bool(hits[i]);
         if (HasFailure()) return;
