@@ -158,10 +158,10 @@ void render_function(const FunctionInput& input, FunctionPicture settings, const
     return;
   }
   const SceneLook look = look_of(heights_around(function, input.extent), settings.picture.ramp, haze_distance);
-  const auto [scene, device] =
-      scene_on_device(settings.device,
-                      Scene({scene_function(function, march, settings.march_settings)},
-                            {{.field = 0, .material = static_cast<std::uint32_t>(look.materials.size() == 3 ? 2 : 0)}}));
+  const auto [scene, device] = scene_on_device(
+      settings.device,
+      Scene({scene_function(function, march, settings.march_settings)},
+            {{.field = 0, .material = static_cast<std::uint32_t>(look.materials.size() == 3 ? 2 : 0)}}));
   if (std::isinf(settings.picture.ao_distance)) settings.picture.ao_distance = input.extent / 8;
   const Picture picture = render_scene(scene, look, camera, settings.picture, terminal_progress("render"));
   done(picture.image, device);

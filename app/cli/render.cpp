@@ -42,8 +42,8 @@ namespace {
 
 // What of the options goes with a scene, which says all else itself.
 constexpr std::array<std::string_view, 17> kSceneOptions = {
-    "--device", "IN",         "--output", "--size", "--look",   "--ramp", "--sun", "--no-shadows", "--samples",
-    "--sun-size", "--view",   "--eye",  "--target", "--fov",  "--top", "--aa",         "--threads"};
+    "--device",   "IN",     "--output", "--size",   "--look", "--ramp", "--sun", "--no-shadows", "--samples",
+    "--sun-size", "--view", "--eye",    "--target", "--fov",  "--top",  "--aa",  "--threads"};
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {

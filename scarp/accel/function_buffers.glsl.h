@@ -49,14 +49,6 @@ struct ScarpInstruction {
   float k3, k3_low;
 };
 
-#ifndef __cplusplus
-
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FunctionCode {
-  ScarpInstruction instructions[];
-};
-
-#endif
-
 SCARP_GLSL_END
 
 #endif

@@ -27,12 +27,15 @@ struct Single {
   double error = 0;          ///< of heights, and of bounds over segments that shrink to a point, at most
   double range = 0;          ///< the same of the ranges that bounds tell
   bool fits = true;          ///< in floats
+  double root = -1;          ///< of a square: the error of what was squared, else negative
+  double inverse = -1;       ///< of 1 + squares: the error of its reciprocal, else negative
 
   double most() const { return std::max(std::abs(low), std::abs(high)) + error; }
 };
 
 inline Single single_of(double low, double high, double error, double range, bool fits) {
-  return {low, high, error, std::max(error, range), fits && low > -kMostSingle && high < kMostSingle && error < kMostSingle};
+  return {low, high, error, std::max(error, range),
+          fits && low > -kMostSingle && high < kMostSingle && error < kMostSingle};
 }
 /// Of an instruction that bounds go through by their ranges, at least in places.
 inline Single by_range(double low, double high, double error, double range, bool fits) {
@@ -45,9 +48,13 @@ inline void set_constant(Single& out, double k) {
 inline Single combine(double k0, const Single& a, double k1, const Single& b, double k2) {
   const double ka = std::abs(k0), kb = std::abs(k1), size = ka * a.most() + kb * b.most() + std::abs(k2);
   const double p = k0 * a.low, q = k0 * a.high, r = k1 * b.low, s = k1 * b.high;
-  return single_of(std::min(p, q) + std::min(r, s) + k2, std::max(p, q) + std::max(r, s) + k2,
-                   ka * a.error + kb * b.error + kPair * size, ka * a.range + kb * b.range + kRangeSlack * size,
-                   a.fits && b.fits);
+  Single out = single_of(std::min(p, q) + std::min(r, s) + k2, std::max(p, q) + std::max(r, s) + k2,
+                         ka * a.error + kb * b.error + kPair * size, ka * a.range + kb * b.range + kRangeSlack * size,
+                         a.fits && b.fits);
+  // 1 / (1 + k x^2) changes by at most 3 sqrt(3) / 8 sqrt(k) per x.
+  if (a.root >= 0 && b.root >= 0 && k0 >= 0 && k1 >= 0 && k2 == 1)
+    out.inverse = 0.65 * (std::sqrt(k0) * a.root + std::sqrt(k1) * b.root);
+  return out;
 }
 inline Single turned_place(double k0, const Single& a, double k1, const Single& b) { return combine(k0, a, k1, b, 0); }
 inline Single multiply(const Single& a, const Single& b) {
@@ -60,6 +67,7 @@ inline Single multiply(const Single& a, const Single& b) {
 inline Single square(const Single& a) {
   Single s = multiply(a, a);
   s.low = std::max(0.0, s.low);
+  s.root = a.error;
   return s;
 }
 inline Single absolute(const Single& a) {
@@ -89,7 +97,8 @@ inline Single smooth_minimum(const Single& a, const Single& b, double radius) {
 }
 /// The true a is at least 1, the computed one 1 plus what is not negative.
 inline Single reciprocal(const Single& a) {
-  return single_of(0, 1, std::min(1.0, 2 * a.error) + kRangeSlack, std::min(1.0, 2 * a.range) + kRangeSlack, a.fits);
+  const double error = a.inverse >= 0 ? a.inverse : 2 * a.error;
+  return single_of(0, 1, std::min(1.0, error) + kRangeSlack, std::min(1.0, 2 * a.range) + kRangeSlack, a.fits);
 }
 /// `step` * (whole + fade): the fade of a phase that is right to 6 units over `rise`.
 inline Single terrace(const Single& a, double step, double rise) {
@@ -98,15 +107,18 @@ inline Single terrace(const Single& a, double step, double rise) {
 }
 inline Single radial(const Single& x, const Single& y, const FunctionInstruction& in) {
   const double steepest = kSteepestFade / (in.k3 - in.k2);
-  const double slack =
-      kRangeSlack * (8 + steepest * (x.most() + y.most() + std::abs(in.k0) + std::abs(in.k1) + in.k3));
+  const double slack = kRangeSlack * (8 + steepest * (x.most() + y.most() + std::abs(in.k0) + std::abs(in.k1) + in.k3));
   return by_range(0, 1, steepest * (x.error + y.error) + slack, steepest * (x.range + y.range) + slack,
                   x.fits && y.fits);
 }
 
 /// What noise as computed is off by where its place is exact: kScarpNoiseBound of march/noise.glsl.h.
-inline double noise_off(NoiseKind kind) { return kind == NoiseKind::simplex ? 0x1p-15 : 0x1p-17; }
-inline double noise_slope_off(NoiseKind kind) { return kind == NoiseKind::simplex ? 0x1p-11 : 0x1p-15; }
+inline double noise_off(NoiseKind kind) {
+  return kind == NoiseKind::simplex ? 0x1p-15 : kind == NoiseKind::perlin ? 0x1p-17 : 0x1p-18;
+}
+inline double noise_slope_off(NoiseKind kind) {
+  return kind == NoiseKind::simplex ? 0x1p-11 : kind == NoiseKind::perlin ? 0x1p-15 : 0x1p-17;
+}
 
 inline void noise_slope(const FunctionInstruction& in, const Single& a, const Single& b, Single& n, Single& x,
                         Single& y) {

@@ -53,6 +53,9 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint batch_choice = 0;
 layout(constant_id = 2) const uint batch_parts = 0xffffffffu;
 
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FunctionCode {
+  ScarpInstruction instructions[];
+};
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer FunctionRays { ScarpFunctionRay rays[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer FunctionHits { ScarpFunctionHit hits[]; };
 layout(push_constant, scalar) uniform Push { FunctionBatch batch; };

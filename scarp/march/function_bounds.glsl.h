@@ -17,8 +17,8 @@
 
 SCARP_GLSL_BEGIN
 
-const float kScarpSlack = 9.5367431640625e-7f;             // 2^-20
-const float kScarpTwoSlack = 1.136868377216160297e-13f;    // 2^-43
+const float kScarpSlack = 9.5367431640625e-7f;           // 2^-20
+const float kScarpTwoSlack = 1.136868377216160297e-13f;  // 2^-43
 const float kScarpSteepestFade = 1.875f;
 
 /// Over s in [-1, 1] the true function is within rest of mid + slope s, and between low and high.

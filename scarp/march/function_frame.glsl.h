@@ -19,10 +19,10 @@ const uint kScarpFromSurface = 1u;  ///< ScarpFunctionRay::flags: begins on the 
 
 /// Where a march is that has been interrupted, see ScarpFunctionHit; of a ray that has not begun steps and phase are 0.
 struct ScarpFunctionState {
-  float s;         ///< time
-  float before;    ///< what else the march has to know
+  float s;       ///< time
+  float before;  ///< what else the march has to know
   float h_before;
-  int steps;       ///< that it has taken
+  int steps;  ///< that it has taken
   uint phase;
 };
 

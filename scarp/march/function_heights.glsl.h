@@ -8,7 +8,8 @@
 // Text of C++ and of GLSL, GLSL ES 3.0 included. Who includes it has defined
 //
 //   ScarpInstruction scarp_instruction(uint i);      the i-th of the program
-//   bool scarp_uses(uint part);                      whether an instruction, or kScarpNoiseBit + kind, is in it; true is
+//   bool scarp_uses(uint part);                      whether an instruction, or kScarpNoiseBit + kind, is in it; true
+//   is
 //                                                    always right, constants let the compiler leave out the rest
 #ifndef SCARP_MARCH_FUNCTION_HEIGHTS_GLSL_H
 #define SCARP_MARCH_FUNCTION_HEIGHTS_GLSL_H

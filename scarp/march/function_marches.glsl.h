@@ -155,8 +155,8 @@ SCARP_FN ScarpFunctionHit scarp_function_fixed_step(ScarpProgram program, ScarpF
     if (h > 0.0f || (h == 0.0f && from_surface)) {
       above = true;
     } else if (above && h_before > 0.0f) {
-      float at = scarp_refined(program, ray, kScarpFunctionFixedStep, settings, settings.refinement, before, h_before, s,
-                               h, 0.0f, hit);
+      float at = scarp_refined(program, ray, kScarpFunctionFixedStep, settings, settings.refinement, before, h_before,
+                               s, h, 0.0f, hit);
       scarp_function_tell(kScarpFunctionHit, at, hit);
       return hit;
     } else if (above || (i == 0 && h == 0.0f)) {

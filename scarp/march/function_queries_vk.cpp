@@ -51,7 +51,8 @@ const DeviceMarch& device_march(const MarchEntry& march) {
     if (candidate.name == march.name) return candidate;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", candidate.name);
   }
-  throw Error(fmt::format("march '{}': does not run over functions on Vulkan devices; there run: {}", march.name, names));
+  throw Error(
+      fmt::format("march '{}': does not run over functions on Vulkan devices; there run: {}", march.name, names));
 }
 
 void set_refinement(glsl::FunctionBatch& batch, Refinement refinement, int halvings) {
@@ -97,9 +98,10 @@ glsl::FunctionBatch batch_settings(std::string_view march, const MarchSettings& 
 // Steps until a march is interrupted: the interpreter's loop turns once per instruction and step.
 int run_steps(std::size_t instructions) {
   if (instructions > static_cast<std::size_t>(glsl::kScarpMostInstructions)) {
-    throw Error(fmt::format("terrain function: {} instructions; Vulkan devices take {}: use fewer octaves or warps, or the "
-                            "CPU",
-                            instructions, glsl::kScarpMostInstructions));
+    throw Error(
+        fmt::format("terrain function: {} instructions; Vulkan devices take {}: use fewer octaves or warps, or the "
+                    "CPU",
+                    instructions, glsl::kScarpMostInstructions));
   }
   return std::max(1, glsl::kScarpLoopTurns / (static_cast<int>(instructions) + 2) - glsl::kScarpLastEvaluations);
 }
@@ -237,7 +239,8 @@ void DeviceFunctionQueries::set_march_settings(const MarchSettings& march_settin
 void DeviceFunctionQueries::closest_hits(const DeviceFunctionTarget& target, std::span<const Ray> rays,
                                          std::span<Hit> hits, std::span<std::uint32_t> steps) {
   if (rays.size() != hits.size() || (!steps.empty() && rays.size() != steps.size()))
-    throw Error(fmt::format("batch: {} rays, room for {} answers and {} costs", rays.size(), hits.size(), steps.size()));
+    throw Error(
+        fmt::format("batch: {} rays, room for {} answers and {} costs", rays.size(), hits.size(), steps.size()));
   impl_->ask(target, false, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
                hits[i] = hit_from_device(rays[i], prepared, answer);

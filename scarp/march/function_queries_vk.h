@@ -34,8 +34,7 @@ class DeviceFunctionQueries {
  public:
   /// `march` is a row of function_marches(); of the settings `rays_at_once` counts. Throws Error: the march does not
   /// run on devices, a setting out of its range, no memory on the device.
-  explicit DeviceFunctionQueries(const Device& device,
-                                 const MarchEntry& march = find_function_march("lipschitz-local"),
+  explicit DeviceFunctionQueries(const Device& device, const MarchEntry& march = find_function_march("lipschitz-local"),
                                  const MarchSettings& march_settings = {}, const DeviceQuerySettings& settings = {});
   DeviceFunctionQueries(DeviceFunctionQueries&&) noexcept;
   DeviceFunctionQueries& operator=(DeviceFunctionQueries&&) noexcept;

@@ -28,14 +28,14 @@ struct ScarpLipschitzLocal {
 /// What is proven about a segment: the ray is above the ground until `until`, and under it at `sunk`.
 struct ScarpProof {
   float until;
-  float sunk;        ///< kScarpNeverSunk: not known to be
-  float middle;      ///< the bounds are of times middle - half_ to middle + half_, a little longer than asked for
+  float sunk;    ///< kScarpNeverSunk: not known to be
+  float middle;  ///< the bounds are of times middle - half_ to middle + half_, a little longer than asked for
   float half_;
-  float begin;       ///< metres above the ground at their begin, at least, and at most
+  float begin;  ///< metres above the ground at their begin, at least, and at most
   float begin_most;
-  float end;         ///< at their end, likewise
+  float end;  ///< at their end, likewise
   float end_most;
-  float wide;        ///< half of what the bounds leave open
+  float wide;  ///< half of what the bounds leave open
 };
 const float kScarpNeverSunk = 1.0e30f;
 
@@ -47,7 +47,7 @@ const float kScarpGrowth = 1.3f;
 const float kScarpShrink = 0.5f;
 const float kScarpRisingGrowth = 1.5f;
 const float kScarpRisingClear = 3.0f;
-const int kScarpMostSecants = 30;
+const int kScarpMostSecants = 12;
 
 /// A coordinate over times middle - half to middle + half.
 SCARP_FN ScarpBound scarp_coordinate(ScarpTwoFloat mid, float origin, float direction, float half_, float last) {
@@ -66,9 +66,9 @@ SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, floa
   float middle = 0.5f * (s0 + s1);
   // Longer by what the middle and the half round.
   float half_ = 0.5f * (s1 - s0) * (1.0f + kScarpSlack) + 1.1920928955078125e-7f * s1;
-  ScarpBound ground = scarp_bound(
-      program, scarp_coordinate(scarp_ray_x(ray, middle), ray.origin.x, ray.direction.x, half_, s1),
-      scarp_coordinate(scarp_ray_y(ray, middle), ray.origin.y, ray.direction.y, half_, s1));
+  ScarpBound ground =
+      scarp_bound(program, scarp_coordinate(scarp_ray_x(ray, middle), ray.origin.x, ray.direction.x, half_, s1),
+                  scarp_coordinate(scarp_ray_y(ray, middle), ray.origin.y, ray.direction.y, half_, s1));
   ScarpTwoFloat z = scarp_ray_z(ray, middle);
   float rise = ray.direction.z * half_;
   ScarpProof proof;
@@ -111,7 +111,8 @@ SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, floa
 }
 
 /// The crossing between s0, above the ground, and s1, on or under it, by secants of which the end that stays is weighed
-/// less and less ("Illinois"), until the clearance is rounding or floats end; s0 where they are not.
+/// less and less ("Illinois"), until floats end; s0 where they are not. What clearances round by they mostly share with
+/// their neighbours: they are of use below ray.rounding, too.
 SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float s0, float s1,
                               SCARP_INOUT(ScarpFunctionHit) hit) {
   float from = s0;
@@ -131,7 +132,7 @@ SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float 
     } else if (i == 1) {
       above = h;
       if (h <= 0.0f) return s0;
-    } else if (abs(h) <= ray.rounding) {
+    } else if (h == 0.0f) {
       return s;
     } else if (h > 0.0f) {
       from = s;

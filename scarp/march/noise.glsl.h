@@ -37,10 +37,12 @@ struct ScarpNoiseBound {
 SCARP_FN ScarpNoiseBound scarp_noise_bound(uint kind) {
   ScarpNoiseBound bound;
   bound.height = 1.0f;
-  bound.n_off = 7.62939453125e-6f;            // 2^-17
-  bound.slope_off = 3.0517578125e-5f;         // 2^-15
-  bound.curvature_off = 1.220703125e-4f;      // 2^-13
+  bound.n_off = 7.62939453125e-6f;        // 2^-17
+  bound.slope_off = 3.0517578125e-5f;     // 2^-15
+  bound.curvature_off = 1.220703125e-4f;  // 2^-13
   if (kind == kScarpValueNoise) {
+    bound.n_off = 3.814697265625e-6f;     // 2^-18
+    bound.slope_off = 7.62939453125e-6f;  // 2^-17
     bound.slope = 3.77f;
     bound.curvature = 14.14f;
     bound.third = 120.6f;
@@ -53,9 +55,9 @@ SCARP_FN ScarpNoiseBound scarp_noise_bound(uint kind) {
     bound.slope = 7.38f;
     bound.curvature = 56.0f;
     bound.third = 533.0f;
-    bound.n_off = 3.0517578125e-5f;      // 2^-15
-    bound.slope_off = 4.8828125e-4f;     // 2^-11
-    bound.curvature_off = 3.90625e-3f;   // 2^-8
+    bound.n_off = 3.0517578125e-5f;     // 2^-15
+    bound.slope_off = 4.8828125e-4f;    // 2^-11
+    bound.curvature_off = 3.90625e-3f;  // 2^-8
   }
   return bound;
 }
@@ -212,8 +214,8 @@ SCARP_FN ScarpNoise scarp_simplex_noise(uint seed, ScarpTwoFloat x, ScarpTwoFloa
   noise.yy = 0.0f;
   // No loop: who runs programs of noise counts loops (function_batch.glsl.h).
   scarp_simplex_corner(scarp_lattice_hash(seed, i.cell, j.cell), x0, y0, noise);
-  scarp_simplex_corner(scarp_lattice_hash(seed, i.cell + east, j.cell + (1u - east)),
-                       x0 - (float(east) - unskew.high), y0 - (float(1u - east) - unskew.high), noise);
+  scarp_simplex_corner(scarp_lattice_hash(seed, i.cell + east, j.cell + (1u - east)), x0 - (float(east) - unskew.high),
+                       y0 - (float(1u - east) - unskew.high), noise);
   scarp_simplex_corner(scarp_lattice_hash(seed, i.cell + 1u, j.cell + 1u), x0 - (1.0f - 2.0f * unskew.high),
                        y0 - (1.0f - 2.0f * unskew.high), noise);
   return noise;

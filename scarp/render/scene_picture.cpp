@@ -125,7 +125,8 @@ void for_each_tile(const Scene& scene, const PictureSettings& settings, int aa, 
       if (points.size() < kPointsAtOnce && tile + 1 < tiles.count()) continue;
       body(points);
       points.clear();
-      if (progress && !progress(static_cast<double>(tile + 1) / static_cast<double>(tiles.count()))) throw Interrupted();
+      if (progress && !progress(static_cast<double>(tile + 1) / static_cast<double>(tiles.count())))
+        throw Interrupted();
     }
     return;
   }

@@ -76,8 +76,8 @@ class Scene {
   /// Whether closest_hit() would tell a hit.
   bool occluded(const SceneRay& ray) const;
 
-  /// hits[i] is closest_hit(rays[i]), bit for bit (on a device as it finds it); steps[i], when asked for, is what that cost. On all threads. Throws
-  /// Error when spans differ in length.
+  /// hits[i] is closest_hit(rays[i]), bit for bit (on a device as it finds it); steps[i], when asked for, is what that
+  /// cost. On all threads. Throws Error when spans differ in length.
   void closest_hits(std::span<const SceneRay> rays, std::span<SceneHit> hits,
                     std::span<std::uint32_t> steps = {}) const;
   /// blocked[i] is 1 where closest_hits() would tell a hit, else 0.

@@ -94,8 +94,8 @@ void Scene::by_field(std::vector<Asked>& asked, const Ask& ask) const {
   std::stable_sort(asked.begin(), asked.end(),
                    [&](const Asked& a, const Asked& b) { return field_of_asked(a) < field_of_asked(b); });
   for (auto begin = asked.begin(); begin != asked.end();) {
-    const auto end = std::find_if(begin, asked.end(),
-                                  [&](const Asked& a) { return field_of_asked(a) != field_of_asked(*begin); });
+    const auto end =
+        std::find_if(begin, asked.end(), [&](const Asked& a) { return field_of_asked(a) != field_of_asked(*begin); });
     ask(std::span<const Asked>(begin, end));
     begin = end;
   }

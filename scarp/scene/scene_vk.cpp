@@ -113,9 +113,10 @@ class OnDevice final : public FieldQueries {
       } else if (const auto* const* function = std::get_if<const HeightFunction*>(&parts.of)) {
         on_device_.push_back(std::make_unique<FunctionOnDevice>(marches_, **function, parts));
       } else {
-        throw Error(fmt::format("scene: field {} ({}) does not run on Vulkan devices; heights and functions do: ask the "
-                                "CPU",
-                                i, fields_[i]->kind()));
+        throw Error(
+            fmt::format("scene: field {} ({}) does not run on Vulkan devices; heights and functions do: ask the "
+                        "CPU",
+                        i, fields_[i]->kind()));
       }
     }
   }

@@ -25,7 +25,8 @@ double clearance(const HeightFunction& function, const Ray& ray, double t) {
 }
 
 // Nothing is passed: what a higher ray meets is met, and no later.
-std::string objection_to_loss(const HeightFunction& function, const Ray& ray, double delta, const Hit& hit, double late) {
+std::string objection_to_loss(const HeightFunction& function, const Ray& ray, double delta, const Hit& hit,
+                              double late) {
   const Hit met = march_lipschitz_local(function, moved(ray, delta));
   if (!met || hit.status == HitStatus::exhausted) return {};
   if (!hit) return fmt::format("lost a crossing at t = {}", met.t);

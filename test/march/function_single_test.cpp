@@ -117,7 +117,8 @@ TEST(FunctionsInShaders, HeightsAreWithinTheirBound) {
     for (int i = 0; i < kPlaces; ++i) {
       const double x = random_place(random), y = random_place(random);
       const double height = value(glsl::scarp_height(*program, two(x), two(y)));
-      const double off = std::abs(height - function.value(x, y)), bound = rounding.at(std::max(std::abs(x), std::abs(y)));
+      const double off = std::abs(height - function.value(x, y)),
+                   bound = rounding.at(std::max(std::abs(x), std::abs(y)));
       ASSERT_LE(off, bound) << named.name << " at " << x << ", " << y;
       worst = std::max(worst, off / bound);
     }
@@ -175,13 +176,15 @@ TEST(FunctionsInShaders, MarchesTellWhatSinglePrecisionAllows) {
   const auto march = [](const Program& program, const DeviceFunctionRay& ray, std::string_view name,
                         const MarchSettings& settings, double slope) {
     if (name == "lipschitz-local")
-      return glsl::scarp_lipschitz_local(*program, ray.ray, {static_cast<float>(settings.lipschitz_local.tolerance), 1024, kAll},
-                                         false);
+      return glsl::scarp_lipschitz_local(*program, ray.ray,
+                                         {static_cast<float>(settings.lipschitz_local.tolerance), 1024, kAll}, false);
     if (name == "lipschitz")
       return glsl::scarp_function_lipschitz(
-          *program, ray.ray, {static_cast<float>((1 - 0x1p-20) / std::hypot(1.0, slope)), 0, 0.0005f, 0, 1024, 0, 24, kAll});
+          *program, ray.ray,
+          {static_cast<float>((1 - 0x1p-20) / std::hypot(1.0, slope)), 0, 0.0005f, 0, 1024, 0, 24, kAll});
     if (name == "fixed-step")
-      return glsl::scarp_function_fixed_step(*program, ray.ray, {5, 0, 0, 0, 16384, glsl::kScarpRefineSecant, 24, kAll});
+      return glsl::scarp_function_fixed_step(*program, ray.ray,
+                                             {5, 0, 0, 0, 16384, glsl::kScarpRefineSecant, 24, kAll});
     const bool naive = name == "naive";
     return glsl::scarp_function_by_height(
         *program, ray.ray, naive ? glsl::kScarpFunctionNaive : glsl::kScarpFunctionRelaxed,
@@ -235,7 +238,8 @@ TEST(FunctionsInShaders, RaysLeaveTheSurface) {
       ray.start = RayStart::on_surface;
       const auto prepared = device_function_ray(function, rounding, ray, FunctionUse::march, 1e30);
       if (!prepared.marches) continue;
-      const Hit hit = hit_from_device(ray, prepared, glsl::scarp_lipschitz_local(*program, prepared.ray, {1e-6f, 1024, kAll}, false));
+      const Hit hit = hit_from_device(ray, prepared,
+                                      glsl::scarp_lipschitz_local(*program, prepared.ray, {1e-6f, 1024, kAll}, false));
       // Later on, by when the ray is clear of the surface or under it by more than rounding, it is judged as free.
       const double delta = 4 * static_cast<double>(prepared.ray.rounding), speed = length(ray.direction);
       Ray later = ray;

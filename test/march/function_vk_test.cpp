@@ -26,7 +26,8 @@ constexpr int kRays = 200;
 #else
 constexpr int kRays = 40;
 #endif
-// All functions have lipschitz-local, these alone the others: compiling a march for lavapipe takes longer than running it.
+// All functions have lipschitz-local, these alone the others: compiling a march for lavapipe takes longer than running
+// it.
 constexpr std::size_t kOfAllMarches = 2;
 
 class FunctionsOnDevice : public OnDevice {};
@@ -60,8 +61,8 @@ TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const auto prepared =
             device_function_ray(function, on_device.rounding(FunctionUse::march), rays[i], FunctionUse::march, 1e30);
-        EXPECT_EQ(function_objection(march.name, {}, function, rays[i],
-                                     4 * static_cast<double>(prepared.ray.rounding), hits[i]),
+        EXPECT_EQ(function_objection(march.name, {}, function, rays[i], 4 * static_cast<double>(prepared.ray.rounding),
+                                     hits[i]),
                   "")
             << march.name << " over " << named.name << ", ray " << i;
         EXPECT_EQ(blocked[i], static_cast<bool>(hits[i])) << march.name << " over " << named.name << ", ray " << i;
@@ -89,7 +90,9 @@ TEST_F(FunctionsOnDevice, SayWhatIsWrong) {
   const DeviceFunction on_device(device(), plane);
   std::vector<Ray> rays(2);
   std::vector<Hit> hits(1);
-  EXPECT_EQ(message([&] { queries(find_function_march("lipschitz-local")).closest_hits({&plane, &on_device}, rays, hits); }),
+  EXPECT_EQ(message([&] {
+              queries(find_function_march("lipschitz-local")).closest_hits({&plane, &on_device}, rays, hits);
+            }),
             "batch: 2 rays, room for 1 answers and 0 costs");
 }
 
@@ -98,12 +101,13 @@ constexpr std::uint32_t kShader[] = {
 };
 
 TEST(FunctionBatchLayout, IsThatOfTheShaders) {
-  using glsl::ScarpFunctionState, glsl::ScarpFunctionRay, glsl::ScarpFunctionHit, glsl::FunctionBatch, glsl::ScarpInstruction;
-  EXPECT_TRUE(has_struct(
-      kShader, {offsetof(ScarpFunctionRay, origin), offsetof(ScarpFunctionRay, origin_low),
-                offsetof(ScarpFunctionRay, direction), offsetof(ScarpFunctionRay, direction_low),
-                offsetof(ScarpFunctionRay, exit), offsetof(ScarpFunctionRay, travelled), offsetof(ScarpFunctionRay, speed),
-                offsetof(ScarpFunctionRay, rounding), offsetof(ScarpFunctionRay, flags), offsetof(ScarpFunctionRay, state)}));
+  using glsl::ScarpFunctionState, glsl::ScarpFunctionRay, glsl::ScarpFunctionHit, glsl::FunctionBatch,
+      glsl::ScarpInstruction;
+  EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpFunctionRay, origin), offsetof(ScarpFunctionRay, origin_low),
+                                   offsetof(ScarpFunctionRay, direction), offsetof(ScarpFunctionRay, direction_low),
+                                   offsetof(ScarpFunctionRay, exit), offsetof(ScarpFunctionRay, travelled),
+                                   offsetof(ScarpFunctionRay, speed), offsetof(ScarpFunctionRay, rounding),
+                                   offsetof(ScarpFunctionRay, flags), offsetof(ScarpFunctionRay, state)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpFunctionRay)));
   EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpFunctionHit, status), offsetof(ScarpFunctionHit, time),
                                    offsetof(ScarpFunctionHit, bounds), offsetof(ScarpFunctionHit, heights),
@@ -112,13 +116,13 @@ TEST(FunctionBatchLayout, IsThatOfTheShaders) {
                                    offsetof(ScarpFunctionState, h_before), offsetof(ScarpFunctionState, steps),
                                    offsetof(ScarpFunctionState, phase)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpFunctionHit)));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(FunctionBatch, code), offsetof(FunctionBatch, rays),
-                                   offsetof(FunctionBatch, hits), offsetof(FunctionBatch, count),
-                                   offsetof(FunctionBatch, instructions), offsetof(FunctionBatch, result),
-                                   offsetof(FunctionBatch, factor), offsetof(FunctionBatch, least),
-                                   offsetof(FunctionBatch, tolerance), offsetof(FunctionBatch, metres),
-                                   offsetof(FunctionBatch, max_steps), offsetof(FunctionBatch, refinement),
-                                   offsetof(FunctionBatch, halvings), offsetof(FunctionBatch, run_steps)}));
+  EXPECT_TRUE(has_struct(
+      kShader,
+      {offsetof(FunctionBatch, code), offsetof(FunctionBatch, rays), offsetof(FunctionBatch, hits),
+       offsetof(FunctionBatch, count), offsetof(FunctionBatch, instructions), offsetof(FunctionBatch, result),
+       offsetof(FunctionBatch, factor), offsetof(FunctionBatch, least), offsetof(FunctionBatch, tolerance),
+       offsetof(FunctionBatch, metres), offsetof(FunctionBatch, max_steps), offsetof(FunctionBatch, refinement),
+       offsetof(FunctionBatch, halvings), offsetof(FunctionBatch, run_steps)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpInstruction)));
   EXPECT_EQ(sizeof(ScarpInstruction), 64u);
 }
