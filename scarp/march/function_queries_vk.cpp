@@ -7,22 +7,17 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <string>
 #include <utility>
 
 #include "scarp/base/error.h"
-#include "scarp/base/parallel.h"
 #include "scarp/march/device_function_ray.h"
 #include "scarp/march/function_batch.glsl.h"
 #include "scarp/march/function_marches.glsl.h"
+#include "scarp/march/ray_runs_vk.h"
 
 namespace scarp {
 namespace {
-
-constexpr std::uint32_t kThreads = 64;
-constexpr std::uint32_t kMostRaysAtOnce = 4'000'000;  // 65,535 workgroups
-constexpr std::int64_t kRaysPerPiece = 1024;
 
 constexpr std::uint32_t kFunctionMarchesWords[] = {
 #include "scarp/march/function_marches.comp.inc"
@@ -106,11 +101,6 @@ int run_steps(std::size_t instructions) {
   return std::max(1, glsl::kScarpLoopTurns / (static_cast<int>(instructions) + 2) - glsl::kScarpLastEvaluations);
 }
 
-std::uint32_t checked_slice(std::uint32_t rays) {
-  if (rays >= 1 && rays <= kMostRaysAtOnce) return rays;
-  throw Error(fmt::format("device queries: {} rays at once; there can be 1 to {}", rays, kMostRaysAtOnce));
-}
-
 }  // namespace
 
 struct DeviceFunctionQueries::Impl {
@@ -118,18 +108,15 @@ struct DeviceFunctionQueries::Impl {
        const DeviceQuerySettings& settings)
       : march(device_march(entry)),
         march_settings(march_settings_),
-        slice(checked_slice(settings.rays_at_once)),
         device(device_),
-        rays(device, std::uint64_t{slice} * sizeof(glsl::ScarpFunctionRay), "rays"),
-        answers(device, std::uint64_t{slice} * sizeof(glsl::ScarpFunctionHit), "hits"),
-        commands(device) {}
+        runs(device_, settings.rays_at_once) {}
 
   // Made of what the program has, when it is first asked for.
   const ComputePipeline& pipeline(const FunctionProgram& program, bool any) {
     const std::uint32_t choice = march.choice + (any && march.has_any ? 1 : 0), parts = function_parts(program);
     const auto made = pipelines.find({choice, parts});
     if (made != pipelines.end()) return made->second;
-    const std::uint32_t constants[] = {kThreads, choice, parts};
+    const std::uint32_t constants[] = {RayRuns::kThreads, choice, parts};
     return pipelines
         .try_emplace({choice, parts}, device, march.words, std::string(march.name) + " over functions",
                      std::uint32_t{sizeof(glsl::FunctionBatch)}, constants)
@@ -140,86 +127,26 @@ struct DeviceFunctionQueries::Impl {
   template <class Answer>
   void ask(const DeviceFunctionTarget& target, bool any, std::span<const Ray> asked, const Answer& answer) {
     const FunctionProgram& program = target.function->program(target.use);
-    const ComputePipeline& shader = pipeline(program, any);
     glsl::FunctionBatch batch =
         batch_settings(march.name, march_settings, target.function->bound_everywhere(target.use).slope);
     batch.code = target.device->address(target.use);
-    batch.rays = rays.address();
-    batch.hits = answers.address();
     batch.instructions = static_cast<std::uint32_t>(program.code.size());
     batch.result = program.result;
     batch.run_steps = run_steps(program.code.size());
-    passes.clear();
-    for (std::size_t first = 0; first < asked.size(); first += slice) {
-      const std::size_t count = std::min<std::size_t>(slice, asked.size() - first);
-      prepared.resize(count);
-      packed.clear();
-      place.resize(count);
-      parallel_for(static_cast<std::int64_t>(count), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-          prepared[i] = device_function_ray(*target.function, target.device->rounding(target.use), asked[first + i],
-                                            target.use, march_settings.function.reach);
-        }
-      });
-      // Rays that never come down to the ground's heights stay here.
-      for (std::size_t i = 0; i < count; ++i) {
-        place[i] = packed.size();
-        if (prepared[i].marches) packed.push_back(prepared[i].ray);
-      }
-      found.assign(packed.size(), glsl::scarp_function_miss());
-      run(shader, batch);
-      parallel_for(static_cast<std::int64_t>(count), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-          answer(first + i, prepared[i], prepared[i].marches ? found[place[i]] : glsl::scarp_function_miss());
-        }
-      });
-    }
-  }
-
-  // Marches what was packed, run after run until none is under way.
-  void run(const ComputePipeline& pipeline, glsl::FunctionBatch batch) {
-    open.resize(packed.size());
-    std::iota(open.begin(), open.end(), std::size_t{0});
-    while (!open.empty()) {
-      batch.count = static_cast<std::uint32_t>(open.size());
-      answered.resize(open.size());
-      upload(rays, 0, packed.data(), open.size() * sizeof(glsl::ScarpFunctionRay));
-      commands.dispatch(pipeline, batch, {(batch.count + kThreads - 1) / kThreads, 1, 1});
-      commands.run();
-      passes.insert(passes.end(), commands.passes().begin(), commands.passes().end());
-      download(answers, 0, answered.data(), open.size() * sizeof(glsl::ScarpFunctionHit));
-      std::size_t left = 0;
-      for (std::size_t i = 0; i < answered.size(); ++i) {
-        glsl::ScarpFunctionHit& hit = found[open[i]];
-        const std::uint32_t bounds = hit.bounds, heights = hit.heights;
-        hit = answered[i];
-        hit.bounds += bounds;
-        hit.heights += heights;
-        if (hit.status != glsl::kScarpFunctionUnderWay) continue;
-        packed[left] = packed[i];
-        packed[left].state = hit.state;
-        open[left++] = open[i];
-      }
-      open.resize(left);
-    }
+    runs.ask(
+        pipeline(program, any), batch, asked.size(),
+        [&](std::size_t i) {
+          return device_function_ray(*target.function, target.device->rounding(target.use), asked[i], target.use,
+                                     march_settings.function.reach);
+        },
+        answer);
   }
 
   const DeviceMarch& march;
   MarchSettings march_settings;
-  std::uint32_t slice;
   Device device;
+  RayRuns runs;
   std::map<std::pair<std::uint32_t, std::uint32_t>, ComputePipeline> pipelines;  // by choice and parts
-  DeviceBuffer rays, answers;
-  Commands commands;
-  std::vector<PassTime> passes;
-  // Of one slice.
-  std::vector<DeviceFunctionRay> prepared;
-  std::vector<glsl::ScarpFunctionRay> packed;
-  std::vector<std::size_t> place;
-  std::vector<glsl::ScarpFunctionHit> found;
-  // Of one run: those under way, by their places, and what the device tells of them.
-  std::vector<std::size_t> open;
-  std::vector<glsl::ScarpFunctionHit> answered;
 };
 
 DeviceFunctionQueries::DeviceFunctionQueries(const Device& device, const MarchEntry& march,
@@ -258,6 +185,6 @@ void DeviceFunctionQueries::occluded(const DeviceFunctionTarget& target, std::sp
              });
 }
 
-const std::vector<PassTime>& DeviceFunctionQueries::passes() const { return impl_->passes; }
+const std::vector<PassTime>& DeviceFunctionQueries::passes() const { return impl_->runs.passes(); }
 
 }  // namespace scarp

@@ -81,6 +81,7 @@ constexpr MarchEntry distance_march(std::string_view name, Guarantee guarantee, 
   entry.parameters = parameters, entry.description = description;
   entry.distance_cpu = cpu;
   entry.distance_cpu_occluded = occluded;
+  entry.gpu = true;
   return entry;
 }
 

@@ -15,6 +15,7 @@
 #include "scarp/base/error.h"
 #include "scarp/march/function_queries_vk.h"
 #include "scarp/march/queries_vk.h"
+#include "scarp/march/shape_queries_vk.h"
 
 namespace scarp {
 namespace {
@@ -45,11 +46,18 @@ class Marches {
     queries->set_march_settings(settings);
     return *queries;
   }
+  DeviceShapeQueries& shapes(const MarchEntry& march, const MarchSettings& settings) {
+    auto& queries = shapes_[&march];
+    if (!queries) queries = std::make_unique<DeviceShapeQueries>(device_, march, settings);
+    queries->set_march_settings(settings);
+    return *queries;
+  }
 
  private:
   Device device_;
   std::map<std::pair<const MarchEntry*, bool>, std::unique_ptr<DeviceQueries>> heights_;  // bool: whether it counts
   std::map<const MarchEntry*, std::unique_ptr<DeviceFunctionQueries>> functions_;
+  std::map<const MarchEntry*, std::unique_ptr<DeviceShapeQueries>> shapes_;
 };
 
 class HeightsOnDevice final : public FieldOnDevice {
@@ -103,6 +111,29 @@ class FunctionOnDevice final : public FieldOnDevice {
   DeviceFunction device_;
 };
 
+class ShapeOnDevice final : public FieldOnDevice {
+ public:
+  ShapeOnDevice(Marches& marches, const DistanceField& shape, const SceneFieldParts& parts)
+      : marches_(marches), shape_(shape), parts_(parts), device_(marches.device(), shape) {
+    queries();
+  }
+
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+    queries().closest_hits({&shape_, &device_}, rays, hits, steps);
+  }
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+    queries().occluded({&shape_, &device_}, rays, blocked);
+  }
+
+ private:
+  DeviceShapeQueries& queries() { return marches_.shapes(*parts_.march, *parts_.settings); }
+
+  Marches& marches_;
+  const DistanceField& shape_;
+  SceneFieldParts parts_;
+  DeviceShape device_;
+};
+
 class OnDevice final : public FieldQueries {
  public:
   OnDevice(const Device& device, const std::vector<SceneFieldPtr>& fields) : marches_(device), fields_(fields) {
@@ -112,11 +143,12 @@ class OnDevice final : public FieldQueries {
         on_device_.push_back(std::make_unique<HeightsOnDevice>(marches_, **heights, parts));
       } else if (const auto* const* function = std::get_if<const HeightFunction*>(&parts.of)) {
         on_device_.push_back(std::make_unique<FunctionOnDevice>(marches_, **function, parts));
+      } else if (const auto* const* shape = std::get_if<const DistanceField*>(&parts.of)) {
+        on_device_.push_back(std::make_unique<ShapeOnDevice>(marches_, **shape, parts));
       } else {
-        throw Error(
-            fmt::format("scene: field {} ({}) does not run on Vulkan devices; heights and functions do: ask the "
-                        "CPU",
-                        i, fields_[i]->kind()));
+        throw Error(fmt::format("scene: field {} ({}) does not run on Vulkan devices; heights, functions and shapes do: "
+                                "ask the CPU",
+                                i, fields_[i]->kind()));
       }
     }
   }

@@ -22,23 +22,24 @@ double between(std::mt19937_64& random, double low, double high) {
   return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53;
 }
 
-// A tilted, scaled height field over the hills of a function.
+// A tilted, scaled height field and a ring over the hills of a function.
 Scene terrain_and_hills() {
   std::mt19937_64 random(3);
   std::vector<float> samples(33 * 33);
   for (float& sample : samples) sample = static_cast<float>(between(random, 0, 4));
   std::vector<SceneFieldPtr> fields{
       scene_heights(HeightField::own(std::move(samples), 33, 33)),
-      scene_function(HeightFunction(make_function(Fractal{.wavelength = 200, .height = 20, .octaves = {4, 3, 5}})))};
+      scene_function(HeightFunction(make_function(Fractal{.wavelength = 200, .height = 20, .octaves = {4, 3, 5}}))),
+                                    scene_shape(DistanceField(make_shape(shape::Torus{.radius = 20, .tube = 6})))};
   const double c = std::cos(0.3), s = std::sin(0.3);
   glm::dmat3 tilt(1.0);
   tilt[0] = dvec3(c, 0, s), tilt[2] = dvec3(-s, 0, c);
-  return Scene(std::move(fields), {{0, 0, {tilt, 3, {-40, -40, 30}}}, {1, 1, {}}});
+  return Scene(std::move(fields), {{0, 0, {tilt, 3, {-40, -40, 30}}}, {1, 1, {}}, {2, 2, {tilt, 1, {60, 50, 30}}}});
 }
 
 TEST_F(ScenesOnDevice, TellTheNearestHit) {
   // Over these fields single precision is right to some millimetres: 4 times 2^-17 of twice 20 m, and 32 units of 200 m
-  // in height and way for the height field (doc/dev/numerics.md).
+  // in height and way for the height field; 4 times 48 of 100 m for the ring (doc/dev/numerics.md).
   constexpr double kDelta = 0.01;
   const Scene cpu = terrain_and_hills(), on_device = scene_on(device(), cpu);
   std::mt19937_64 random(4);
@@ -66,7 +67,7 @@ TEST_F(ScenesOnDevice, TellTheNearestHit) {
   on_device.closest_hits(rays, hits, steps);
   on_device.occluded(rays, blocked);
   EXPECT_EQ(on_device.closest_hit(rays[0]).t(), hits[0].t());
-  std::size_t agreed = 0, met[2] = {};
+  std::size_t agreed = 0, met[3] = {};
   std::vector<SceneRay> suns;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (above[i].field.status != below[i].field.status || above[i].object != below[i].object) continue;
@@ -89,6 +90,7 @@ TEST_F(ScenesOnDevice, TellTheNearestHit) {
   EXPECT_GT(agreed, rays.size() * 9 / 10);
   EXPECT_GT(met[0], 100u);
   EXPECT_GT(met[1], 500u);
+  EXPECT_GT(met[2], 50u);
   // To the sun, from the surface: the function's shadow has another octave less, and begins on its own surface.
   std::vector<std::uint8_t> shaded(suns.size()), on_cpu(suns.size());
   on_device.occluded(suns, shaded);
@@ -100,13 +102,18 @@ TEST_F(ScenesOnDevice, TellTheNearestHit) {
 }
 
 TEST_F(ScenesOnDevice, RefuseWhatDoesNotRunThere) {
-  const Scene scene({scene_shape(DistanceField(make_shape(shape::Sphere{})))}, {{0, 0, {}}});
+  const auto model = std::make_shared<const VoxelModel>(VoxelGrid(ivec3(2), 8), find_voxel_march("voxel-bricks"));
+  const VoxelPlace place{};
+  const Scene scene({scene_shape(DistanceField(make_shape(shape::Sphere{}))),
+                     scene_voxels(VoxelScene({model}, std::span(&place, 1)), "voxel-bricks")},
+                    {{0, 0, {}}, {1, 0, {}}});
   try {
     scene_on(device(), scene);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "scene: field 0 (shape) does not run on Vulkan devices; heights and functions do: ask the CPU");
+    EXPECT_STREQ(
+        error.what(),
+        "scene: field 1 (voxels) does not run on Vulkan devices; heights, functions and shapes do: ask the CPU");
   }
 }
 
