@@ -138,17 +138,10 @@ class OnDevice final : public FieldQueries {
  public:
   OnDevice(const Device& device, const std::vector<SceneFieldPtr>& fields) : marches_(device), fields_(fields) {
     for (std::size_t i = 0; i < fields_.size(); ++i) {
-      const SceneFieldParts parts = fields_[i]->parts();
-      if (const auto* const* heights = std::get_if<const HeightField*>(&parts.of)) {
-        on_device_.push_back(std::make_unique<HeightsOnDevice>(marches_, **heights, parts));
-      } else if (const auto* const* function = std::get_if<const HeightFunction*>(&parts.of)) {
-        on_device_.push_back(std::make_unique<FunctionOnDevice>(marches_, **function, parts));
-      } else if (const auto* const* shape = std::get_if<const DistanceField*>(&parts.of)) {
-        on_device_.push_back(std::make_unique<ShapeOnDevice>(marches_, **shape, parts));
-      } else {
-        throw Error(fmt::format("scene: field {} ({}) does not run on Vulkan devices; heights, functions and shapes do: "
-                                "ask the CPU",
-                                i, fields_[i]->kind()));
+      try {
+        on_device_.push_back(made(*fields_[i]));
+      } catch (const Error& error) {
+        throw Error(fmt::format("scene: field {} ({}): {}", i, fields_[i]->kind(), error.what()));
       }
     }
   }
@@ -165,6 +158,16 @@ class OnDevice final : public FieldQueries {
   }
 
  private:
+  std::unique_ptr<FieldOnDevice> made(const SceneField& field) {
+    const SceneFieldParts parts = field.parts();
+    if (const auto* const* heights = std::get_if<const HeightField*>(&parts.of))
+      return std::make_unique<HeightsOnDevice>(marches_, **heights, parts);
+    if (const auto* const* function = std::get_if<const HeightFunction*>(&parts.of))
+      return std::make_unique<FunctionOnDevice>(marches_, **function, parts);
+    if (const auto* const* shape = std::get_if<const DistanceField*>(&parts.of))
+      return std::make_unique<ShapeOnDevice>(marches_, **shape, parts);
+    throw Error("does not run on Vulkan devices; heights, functions and shapes do: ask the CPU");
+  }
   std::vector<Ray> started(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
                            bool shadow) const {
     std::vector<Ray> started(rays.size());

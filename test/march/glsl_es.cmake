@@ -59,5 +59,20 @@ void main() {
 }
 ")
 check(${WORK}/pasted.frag TRUE)
+file(READ ${FLAT}/sphere_trace.glsl march)
+file(WRITE ${WORK}/pasted.frag "#version 300 es
+precision highp float;
+precision highp int;
+out vec4 colour;
+${march}
+ScarpShapeInstruction scarp_shape_instruction(uint i) {
+  return ScarpShapeInstruction(kScarpShapeSphere, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+}
+float scarp_shape_number(uint i) { return i == 3u ? 1.0 : 0.0; }
+bool scarp_shape_uses(uint op) { return op == kScarpShapeSphere; }
+uniform ScarpFunctionRay ray;
+void main() { colour = vec4(scarp_sphere_trace(1u, ray, ScarpSphereTrace(1.0e-6, 1024, 1024), true).time); }
+")
+check(${WORK}/pasted.frag TRUE)
 file(WRITE ${WORK}/bad.frag "#version 300 es\nprecision highp float;\nout vec4 colour;\nvoid main() { precise double x = 1.0; colour = vec4(x); }\n")
 check(${WORK}/bad.frag FALSE)
