@@ -63,7 +63,7 @@ TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
   const std::string plain = scratch_.write("plain.json", R"({"type": "fbm", "octaves": 2})");
   const std::string scene = scratch_.write("scene.json", R"({
     "camera": {"eye": [0, -3000, 900], "target": [0, 0, 0]},
-    "objects": [{"function": {"type": "fbm", "octaves": 2}}, {"shape": {"torus": {"radius": 400, "tube": 90}, "at": [0, 0, 300]}}]})");
+    "objects": [{"function": {"type": "fbm", "octaves": 2}}, {"shape": {"torus": {"radius": 400, "tube": 90}}, "at": [0, 0, 300]}]})");
   for (const std::vector<std::string>& what : {std::vector<std::string>{"--function", plain}, {scene}}) {
     std::vector<std::string> arguments{"render", "-o", picture_, "--size", "60x40", "--aa", "1"};
     arguments.insert(arguments.end(), what.begin(), what.end());
@@ -90,7 +90,8 @@ TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
     EXPECT_EQ(fs::remove(picture_), true);
   }
   const std::string ground = scratch_.write("ground.json", R"({"objects": [{"shape": {"ground": "hills"}}]})");
-  expect_refusal(run_on_device({"render", ground, "-o", picture_, "--device", "auto"}), "does not run on Vulkan devices");
+  expect_refusal(run_on_device({"render", ground, "-o", picture_, "--device", "auto"}),
+                 "does not run on Vulkan devices");
 }
 
 TEST_F(RenderOnDevice, RefusesMarchesThatDoNotRunThere) {
