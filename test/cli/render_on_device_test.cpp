@@ -89,7 +89,9 @@ TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
     EXPECT_LE(unlike, 60 * 40 / 100);
     EXPECT_EQ(fs::remove(picture_), true);
   }
-  const std::string ground = scratch_.write("ground.json", R"({"objects": [{"shape": {"ground": "hills"}}]})");
+  const std::string ground = scratch_.write("ground.json", R"({
+    "fields": {"hills": {"function": {"type": "fbm"}}}, "camera": {"eye": [0, -3000, 900], "target": [0, 0, 0]},
+    "objects": [{"shape": {"ground": "hills"}}]})");
   expect_refusal(run_on_device({"render", ground, "-o", picture_, "--device", "auto"}),
                  "does not run on Vulkan devices");
 }
