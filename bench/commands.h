@@ -54,6 +54,14 @@ struct SurveyOptions {
 };
 void run_survey(const SurveyOptions& options, const ReportOptions& report);
 
+/// `batches`: the library's batch calls with batches of several sizes.
+struct BatchesOptions {
+  TraceOptions trace;
+  std::vector<std::string> classes{"primary", "ao"};
+  std::vector<double> batches{10, 100, 1e3, 1e4, 1e6, 1e7};  ///< rays
+};
+void run_batches(const BatchesOptions& options, const ReportOptions& report);
+
 /// `simd`: the vectors beside the scalar walk, one thread, with each of their ideas left out.
 struct SimdOptions {
   TraceOptions trace;
@@ -164,6 +172,7 @@ struct FunctionsOptions {
   int repeats = 3;
   std::int64_t judged = 4000;  ///< about so many rays per function are judged
   bool presets = false;        ///< the presets of known shaders beside lipschitz-local, instead of the marches
+  std::string device;          ///< a Vulkan device, as in `scarp render --device`; empty: none
 };
 /// Throws Error, after the report, when a conservative march lost a crossing.
 void run_functions(const FunctionsOptions& options, const ReportOptions& report);

@@ -41,6 +41,13 @@ struct FieldSurface {
   double openness = 1;                  ///< share of the sky that is there, as far as the field tells by itself
 };
 
+/// What a field is made of, for those who answer its rays elsewhere (field_queries.h).
+struct SceneFieldParts {
+  std::variant<const HeightField*, const HeightFunction*, const DistanceField*, const VoxelScene*> of;
+  const MarchEntry* march = nullptr;        ///< null for voxels
+  const MarchSettings* settings = nullptr;  ///< likewise
+};
+
 /// Immutable; asked from many threads at once.
 class SceneField {
  public:
@@ -68,6 +75,11 @@ class SceneField {
   virtual double detail() const { return 0; }
   /// What stands for the field where 2^level times its detail is small; null: the field itself.
   virtual std::shared_ptr<const SceneField> coarser(int) const { return nullptr; }
+
+  virtual SceneFieldParts parts() const = 0;
+  /// The ray as the field's march wants it: on the surface that `from` hit, or free when that is null. `shadow`: of
+  /// occluded(), for fields whose shadows are thrown by another surface than what is seen.
+  virtual Ray started(const Ray& ray, const FieldHit* from, bool shadow) const;
 
   /// Whether rays are answered faster by the hundred.
   virtual bool likes_batches() const { return false; }

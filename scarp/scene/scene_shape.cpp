@@ -7,12 +7,6 @@
 namespace scarp {
 namespace {
 
-Ray started(const Ray& ray, const FieldHit* from) {
-  Ray r = ray;
-  r.start = from ? RayStart::on_surface : RayStart::free;
-  return r;
-}
-
 class ShapeField final : public SceneField {
  public:
   ShapeField(DistanceField shape, const MarchEntry& march, const MarchSettings& settings)
@@ -30,11 +24,11 @@ class ShapeField final : public SceneField {
   }
 
   FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
-    const Hit hit = march_.distance_cpu(shape_, started(ray, from), settings_, stats);
+    const Hit hit = march_.distance_cpu(shape_, started(ray, from, false), settings_, stats);
     return {hit.status, hit.t, hit};
   }
   bool occluded(const Ray& ray, const FieldHit* from) const override {
-    if (march_.distance_cpu_occluded) return march_.distance_cpu_occluded(shape_, started(ray, from), settings_);
+    if (march_.distance_cpu_occluded) return march_.distance_cpu_occluded(shape_, started(ray, from, true), settings_);
     return static_cast<bool>(closest_hit(ray, from, nullptr));
   }
   FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
@@ -46,6 +40,7 @@ class ShapeField final : public SceneField {
     const dvec3 normal = shape_.normal(p);
     return FieldSurface{normal, normal, {}, shape_.material(p)};
   }
+  SceneFieldParts parts() const override { return {&shape_, &march_, &settings_}; }
 
  private:
   DistanceField shape_;
