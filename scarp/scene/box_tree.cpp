@@ -18,6 +18,9 @@ double half_area(const WorldBox& box) {
   return size.x * size.y + size.y * size.z + size.z * size.x;
 }
 
+// A beam has one longest axis, along which no ray is much slower than along another, and no wider slopes than this.
+constexpr double kSteepestOfBeam = 4, kWidestBeam = 0.5;
+
 }  // namespace
 
 WorldBox around(const WorldBox& a, const WorldBox& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
@@ -143,6 +146,70 @@ BoxTree::BoxTree(std::span<const WorldBox> boxes) {
   nodes_.reserve(boxes.size() / 2 + 1);
   builder.build(builder.range(0, static_cast<std::uint32_t>(boxes.size())), 0);
   nodes_.shrink_to_fit();
+}
+
+bool BoxTree::clip(const Ray& ray, double t_max, double& t_in, double& t_out) const {
+  t_in = ray.t_min, t_out = t_max;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double direction = ray.direction[axis], low = box_.low[axis] - padding_, high = box_.high[axis] + padding_;
+    if (direction == 0) {
+      if (ray.origin[axis] < low || ray.origin[axis] > high) return false;
+      continue;
+    }
+    const double inverse = 1 / direction, a = (low - ray.origin[axis]) * inverse,
+                 b = (high - ray.origin[axis]) * inverse;
+    t_in = std::max(t_in, std::min(a, b));
+    t_out = std::min(t_out, std::max(a, b));
+  }
+  // The box is padded: a ray that rounding keeps out touches nothing.
+  return t_in <= t_out;
+}
+
+float BoxTree::Beam::end_of(std::span<const double> t_max) const {
+  double last = -1;
+  for (std::size_t i = 0; i < t_max.size(); ++i) {
+    const double here = (t_max[i] - start[i]) * per_t[i];
+    last = per_t[i] > 0 && here > last ? here : last;
+  }
+  return static_cast<float>(last) * kRounding;
+}
+
+std::optional<BoxTree::Beam> BoxTree::beam(std::span<const Ray> rays, std::span<const double> t_max) const {
+  Beam beam;
+  beam.start.fill(0), beam.per_t.fill(0);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  dvec3 low(kInfinity), high(-kInfinity), least(kInfinity), most(-kInfinity);
+  const dvec3& first = rays[0].direction;
+  const dvec3 size = glm::abs(first);
+  const int longest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  double end = -1;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    const double speed = std::abs(ray.direction[longest]);
+    if (!(ray.direction[longest] * first[longest] > 0)) return {};
+    double t_in, t_out;
+    if (nodes_.empty() || !clip(ray, t_max[i], t_in, t_out)) continue;
+    const dvec3 from = ray.origin + t_in * ray.direction - middle_, slope = ray.direction / speed;
+    low = glm::min(low, from), high = glm::max(high, from);
+    least = glm::min(least, slope), most = glm::max(most, slope);
+    beam.inside |= std::uint64_t{1} << i;
+    beam.start[i] = t_in, beam.per_t[i] = speed;
+    end = std::max(end, (t_out - t_in) * speed);
+  }
+  beam.end = static_cast<float>(end) * kRounding;
+  if (beam.inside == 0) return beam;
+  for (int i = 0; i < 3; ++i) {
+    if (!(most[i] - least[i] <= kWidestBeam && most[i] <= kSteepestOfBeam && least[i] >= -kSteepestOfBeam)) return {};
+    Beam::Axis& axis = beam.axes[i];
+    axis.low = static_cast<float>(low[i]), axis.high = static_cast<float>(high[i]);
+    // Flatter rays than can be told from level ones count as both.
+    const auto per = [](double slope) { return slope * kSteepest < 1 ? kSteepest : static_cast<float>(1 / slope); };
+    axis.per_up = per(most[i]), axis.per_down = per(-least[i]);
+    const double flattest = std::max(least[i], -most[i]);
+    axis.way = flattest * kSteepest < 1 ? Beam::Way::both : least[i] > 0 ? Beam::Way::up : Beam::Way::down;
+    axis.per_least = per(flattest) * kRounding;
+  }
+  return beam;
 }
 
 }  // namespace scarp

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// NanoVDB 32 over the same voxels: a grid of floats, 1 where a voxel is solid, followed by its own hierarchical DDA from
+// active node to active voxel, one ray at a time, in float as its documentation has it.
+#pragma once
+
+#include <memory>
+
+#include "bench/voxel_engine.h"
+
+namespace scarp::bench {
+
+class NanovdbPeer {
+ public:
+  explicit NanovdbPeer(const VoxelGrid& grid);
+  NanovdbPeer(NanovdbPeer&&) noexcept;
+  ~NanovdbPeer();
+
+  /// Rays in the space of the grid. Outlived by the peer.
+  VoxelEngine engine() const;
+
+ private:
+  struct Tree;
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace scarp::bench
