@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cstdint>
 
 #include "scarp/accel/brick_masks.h"
@@ -35,6 +36,7 @@ using MD = hn::Mask<decltype(dd)>;
 using MI = hn::Mask<decltype(di)>;
 
 constexpr std::size_t kVectors = VoxelPacket::kRays / N;
+constexpr std::size_t kSaved = 4;  // vectors: below that moving rays costs more than it saves
 // 2^52 as a double: its last bits count ones.
 constexpr double kOnes = 0x1p52;
 
@@ -190,16 +192,52 @@ struct BricksLook {
   }
 };
 
-// The rays of a packet on their way through one box.
+// Rays on their way through one box, in lanes; after each compaction those that are done are gone.
 struct Walk {
   using Numbers = VoxelPacket::Lanes<std::int64_t>;
-  alignas(64) Numbers next[3], at[3], end[3];  // at: mirrored voxel; end: the first one beyond the box
-  alignas(64) Numbers axis, entered, alive, solid;
-  alignas(64) VoxelPacket::Lanes<double> t;
+  // at: the voxel, mirrored where the ray goes down; end: the first one beyond the box.
+  alignas(64) Numbers next[3], at[3], end[3], speed[3], down[3];
+  // crossed: the axis whose plane was crossed last; before the first step kEntered and that by which it came in.
+  alignas(64) Numbers crossed, ray;
+  alignas(64) VoxelPacket::Lanes<double> slowness[3];
+  std::size_t lanes = 0;             // in use
+  std::uint64_t alive[kVectors] = {};  // lanes of each vector
+
+  static constexpr std::int64_t kEntered = 8, kInside = 7;
 };
 
-// quantise() of voxel_ray.cpp, the same operations in the same order. Which rays come into the box.
-HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, const VoxelPacket& packet, std::size_t o, MI rays,
+// Lanes of a vector whose bits are set, in order; hn::Compress() of Highway 1.0.3 copies its table to the stack each
+// time.
+constexpr auto make_orders() {
+  std::array<std::array<std::int64_t, N>, std::size_t{1} << N> orders{};
+  for (std::size_t bits = 0; bits < orders.size(); ++bits) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (bits >> i & 1) orders[bits][count++] = static_cast<std::int64_t>(i);
+    }
+  }
+  return orders;
+}
+alignas(64) constexpr auto kOrders = make_orders();
+
+// Writes chosen lanes of one vector after another.
+class Chosen {
+ public:
+  explicit HWY_INLINE Chosen(std::uint64_t bits) : order_(hn::SetTableIndices(di, kOrders[bits].data())) {}
+  HWY_INLINE void append(VI lanes, std::int64_t* to) const {
+    hn::StoreU(hn::TableLookupLanes(lanes, order_), di, to);
+  }
+  HWY_INLINE void append(VD lanes, double* to) const {
+    append(hn::BitCast(di, lanes), reinterpret_cast<std::int64_t*>(to));
+  }
+
+ private:
+  decltype(hn::SetTableIndices(di, kOrders[0].data())) order_;
+};
+
+// quantise() of voxel_ray.cpp, the same operations in the same order. Rays that come into the box are put on their way;
+// which they are.
+HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& packet, std::size_t o, MI rays,
                     Walk& walk) {
   const VD zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
   VD from[3], origin[3];
@@ -207,7 +245,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, const VoxelPac
   transform(stand.grid_from_world, from, origin);
   VD t = hn::Load(dd, packet.t_min + o), t_out = hn::Load(dd, packet.t_max + o);
   MD alive = hn::RebindMask(dd, rays);
-  VI entered = hn::Set(di, -1);
+  VI entered = hn::Set(di, Walk::kInside);
   MD down[3];
   VD given[3];
   for (int i = 0; i < 3; ++i) {
@@ -220,59 +258,104 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, const VoxelPac
     const VD to_low = hn::Mul(hn::Sub(low, origin[i]), inverse), to_high = hn::Mul(hn::Sub(high, origin[i]), inverse);
     const VD near = hn::IfThenElse(down[i], to_high, to_low), far = hn::IfThenElse(down[i], to_low, to_high);
     const MD later = hn::AndNot(level, hn::Ge(near, t));
-    entered = hn::IfThenElse(hn::RebindMask(di, later), hn::Set(di, i), entered);
+    entered = hn::IfThenElse(hn::RebindMask(di, later), hn::Set(di, Walk::kEntered + i), entered);
     t = hn::IfThenElse(hn::And(later, hn::Gt(near, t)), near, t);
     t_out = hn::IfThenElse(hn::AndNot(level, hn::Lt(far, t_out)), far, t_out);
   }
   alive = hn::And(alive, hn::Le(t, t_out));
   if (hn::AllFalse(dd, alive)) return hn::RebindMask(di, alive);
+  VD voxel[3];
+  VI next[3];
   for (int i = 0; i < 3; ++i) {
     const VD low = hn::Set(dd, box.low[i]), high = hn::Set(dd, box.high[i]);
     VD place = hn::Add(origin[i], hn::Mul(t, given[i]));
     place = hn::IfThenElse(hn::Gt(place, low), place, low);
     place = hn::IfThenElse(hn::Lt(place, high), place, high);
-    const MD in_here = hn::RebindMask(dd, hn::Eq(entered, hn::Set(di, i)));
+    const MD in_here = hn::RebindMask(dd, hn::Eq(entered, hn::Set(di, Walk::kEntered + i)));
     const VD whole = hn::Trunc(place);
-    VD voxel = hn::Sub(whole, hn::IfThenElseZero(hn::And(down[i], hn::Eq(whole, place)), one));
-    alive = hn::And(alive, hn::Or(in_here, hn::And(hn::Ge(voxel, low), hn::Lt(voxel, high))));
+    voxel[i] = hn::Sub(whole, hn::IfThenElseZero(hn::And(down[i], hn::Eq(whole, place)), one));
+    alive = hn::And(alive, hn::Or(in_here, hn::And(hn::Ge(voxel[i], low), hn::Lt(voxel[i], high))));
     place = hn::IfThenElse(in_here, hn::IfThenElse(down[i], high, low), place);
-    voxel = hn::IfThenElse(in_here, hn::IfThenElse(down[i], hn::Sub(high, one), low), voxel);
+    voxel[i] = hn::IfThenElse(in_here, hn::IfThenElse(down[i], hn::Sub(high, one), low), voxel[i]);
     const VD distance =
-        hn::IfThenElse(down[i], hn::Sub(place, voxel), hn::Sub(hn::Add(voxel, one), place));
+        hn::IfThenElse(down[i], hn::Sub(place, voxel[i]), hn::Sub(hn::Add(voxel[i], one), place));
     const VD places = hn::Add(hn::Mul(distance, hn::Set(dd, static_cast<double>(kVoxelPlaces))), hn::Set(dd, 0.5));
-    const VI next = truncated(hn::Min(hn::Max(places, zero), hn::Set(dd, static_cast<double>(kVoxelPlaces))));
-    const VI side = hn::Load(di, packet.down[i] + o);
-    // A plane that is never reached: at speed 0 any distance above 0 comes last.
-    const MI never = hn::Eq(hn::Load(di, packet.speed[i] + o), hn::Zero(di));
-    hn::Store(hn::IfThenElse(never, hn::Set(di, 1), next), di, walk.next[i] + o);
-    hn::Store(hn::Xor(truncated(voxel), side), di, walk.at[i] + o);
-    hn::Store(hn::IfThenElse(hn::RebindMask(di, down[i]), hn::Set(di, -box.low[i]), hn::Set(di, box.high[i])), di,
-              walk.end[i] + o);
+    next[i] = truncated(hn::Min(hn::Max(places, zero), hn::Set(dd, static_cast<double>(kVoxelPlaces))));
   }
-  hn::Store(hn::Set(di, -1), di, walk.axis + o);
-  hn::Store(entered, di, walk.entered + o);
-  hn::Store(t, dd, walk.t + o);
-  return hn::RebindMask(di, alive);
+  const MI in = hn::RebindMask(di, alive);
+  const Chosen chosen(bits_of(in));
+  const std::size_t to = walk.lanes;
+  for (int i = 0; i < 3; ++i) {
+    const VI speed = hn::Load(di, packet.speed[i] + o), side = hn::Load(di, packet.down[i] + o);
+    // A plane that is never reached: at speed 0 any distance above 0 comes last.
+    const MI never = hn::Eq(speed, hn::Zero(di));
+    const VI end = hn::IfThenElse(hn::RebindMask(di, down[i]), hn::Set(di, -box.low[i]), hn::Set(di, box.high[i]));
+    chosen.append(hn::IfThenElse(never, hn::Set(di, 1), next[i]), walk.next[i] + to);
+    chosen.append(hn::Xor(truncated(voxel[i]), side), walk.at[i] + to);
+    chosen.append(end, walk.end[i] + to);
+    chosen.append(speed, walk.speed[i] + to);
+    chosen.append(side, walk.down[i] + to);
+    chosen.append(hn::Load(dd, packet.slowness[i] + o), walk.slowness[i] + to);
+  }
+  chosen.append(entered, walk.crossed + to);
+  chosen.append(hn::Iota(di, static_cast<std::int64_t>(o)), walk.ray + to);
+  walk.lanes += hn::CountTrue(di, in);
+  hn::Store(t, dd, packet.t_in + o);
+  return in;
 }
 
-// VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel. Whether any ray is still on its way.
+// VoxelWalk::hit() of rays in solid voxels.
+HWY_NOINLINE void finish(VoxelPacket& packet, const Walk& walk, std::size_t o, MI solid) {
+  const VI crossed = hn::Load(di, walk.crossed + o), ray = hn::Load(di, walk.ray + o);
+  VI next = hn::Load(di, walk.next[0] + o), speed = hn::Load(di, walk.speed[0] + o);
+  VI down = hn::Load(di, walk.down[0] + o);
+  const MI walked = hn::Lt(crossed, hn::Set(di, 3));
+  const VI axis = hn::And(crossed, hn::Set(di, 3));
+  for (int i = 1; i < 3; ++i) {
+    const MI here = hn::Eq(axis, hn::Set(di, i));
+    next = hn::IfThenElse(here, hn::Load(di, walk.next[i] + o), next);
+    speed = hn::IfThenElse(here, hn::Load(di, walk.speed[i] + o), speed);
+    down = hn::IfThenElse(here, hn::Load(di, walk.down[i] + o), down);
+  }
+  const VI safe = hn::IfThenElseZero(solid, ray);
+  const VD t_in = hn::GatherIndex(dd, packet.t_in, safe), t_max = hn::GatherIndex(dd, packet.t_max, safe);
+  const VI distance = hn::IfThenElseZero(walked, hn::Sub(next, hn::Set(di, kVoxelPlaces)));
+  const VD on_the_way =
+      hn::Mul(hn::Div(as_double(distance), as_double(speed)), hn::GatherIndex(dd, packet.t_per_s, safe));
+  const VD t = hn::IfThenElse(hn::RebindMask(dd, walked), hn::Add(t_in, on_the_way), t_in);
+  const MI hit = hn::And(solid, hn::RebindMask(di, hn::Not(hn::Gt(t, t_max))));
+  const VI inside = hn::Set(di, static_cast<std::int64_t>(VoxelFace::inside));
+  const VI face = hn::IfThenElse(hn::Eq(crossed, hn::Set(di, Walk::kInside)), inside,
+                                 hn::Sub(hn::Add(axis, axis), down));
+  const Chosen chosen(bits_of(hit));
+  const std::size_t to = packet.hits;
+  chosen.append(t, packet.t + to);
+  chosen.append(face, packet.face + to);
+  chosen.append(ray, packet.ray + to);
+  for (int i = 0; i < 3; ++i)
+    chosen.append(hn::Xor(hn::Load(di, walk.at[i] + o), hn::Load(di, walk.down[i] + o)), packet.voxel[i] + to);
+  packet.hits += hn::CountTrue(di, hit);
+}
+
+// VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; those that are still on their way.
 template <class Look>
-HWY_INLINE bool advance(const Look& look, VoxelPacket& packet, std::size_t o, Walk& walk) {
+HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::size_t o, MI alive) {
   const VI one = hn::Set(di, 1), zero = hn::Zero(di);
-  MI alive = hn::MaskFromVec(hn::Load(di, walk.alive + o));
   VI at[3], next[3], speed[3], down[3], voxel[3], end[3];
   for (int i = 0; i < 3; ++i) {
     at[i] = hn::Load(di, walk.at[i] + o), next[i] = hn::Load(di, walk.next[i] + o);
     end[i] = hn::Load(di, walk.end[i] + o);
-    speed[i] = hn::Load(di, packet.speed[i] + o), down[i] = hn::Load(di, packet.down[i] + o);
+    speed[i] = hn::Load(di, walk.speed[i] + o), down[i] = hn::Load(di, walk.down[i] + o);
     voxel[i] = hn::Xor(at[i], down[i]);
   }
   const Seen seen = look(voxel, at, down, alive);
   const MI solid = hn::And(alive, seen.solid);
-  alive = hn::AndNot(seen.solid, alive);
-  hn::Store(hn::Or(hn::Load(di, walk.solid + o), hn::VecFromMask(di, solid)), di, walk.solid + o);
-  if (hn::AllFalse(di, alive)) return false;
-  hn::Store(hn::Add(hn::Load(di, packet.steps + o), hn::IfThenElseZero(alive, one)), di, packet.steps + o);
+  if (!hn::AllFalse(di, solid)) {
+    finish(packet, walk, o, solid);
+    alive = hn::AndNot(seen.solid, alive);
+    if (hn::AllFalse(di, alive)) return alive;
+  }
+  packet.steps += hn::CountTrue(di, alive);
 
   // The first plane that leaves the part.
   VI out[3];
@@ -286,19 +369,20 @@ HWY_INLINE bool advance(const Look& look, VoxelPacket& packet, std::size_t o, Wa
   const MI y_first = hn::Lt(product(out[1], speed[0]), product(out[0], speed[1]));
   VI distance = hn::IfThenElse(y_first, out[1], out[0]), pace = hn::IfThenElse(y_first, speed[1], speed[0]);
   const MI z_first = hn::Lt(product(out[2], pace), product(distance, speed[2]));
-  VI axis = hn::IfThenElse(z_first, hn::Set(di, 2), hn::IfThenElseZero(y_first, one));
+  const VI axis = hn::IfThenElse(z_first, hn::Set(di, 2), hn::IfThenElseZero(y_first, one));
 
   VI crossed[3];
   if constexpr (Look::kSingle) {
     for (int i = 0; i < 3; ++i) crossed[i] = hn::IfThenElseZero(hn::Eq(axis, hn::Set(di, i)), one);
   } else {
     distance = hn::IfThenElse(z_first, out[2], distance), pace = hn::IfThenElse(z_first, speed[2], pace);
-    VD slowness = hn::Load(dd, packet.slowness[0] + o);
-    slowness = hn::IfThenElse(hn::RebindMask(dd, y_first), hn::Load(dd, packet.slowness[1] + o), slowness);
-    slowness = hn::IfThenElse(hn::RebindMask(dd, z_first), hn::Load(dd, packet.slowness[2] + o), slowness);
+    VD slowness = hn::Load(dd, walk.slowness[0] + o);
+    slowness = hn::IfThenElse(hn::RebindMask(dd, y_first), hn::Load(dd, walk.slowness[1] + o), slowness);
+    slowness = hn::IfThenElse(hn::RebindMask(dd, z_first), hn::Load(dd, walk.slowness[2] + o), slowness);
     for (int i = 0; i < 3; ++i) {
       VI ahead = hn::Sub(product(distance, speed[i]), product(next[i], pace));
-      if (i > 0) ahead = hn::Add(ahead, hn::VecFromMask(di, hn::Lt(axis, hn::Set(di, i))));
+      // Of what is crossed at once with the last plane a higher axis comes after it.
+      if (i > 0) ahead = hn::IfThenElse(hn::Lt(axis, hn::Set(di, i)), hn::Sub(ahead, one), ahead);
       const VI a = hn::BitCast(di, hn::ShiftRight<kPlaceBits>(hn::BitCast(du, ahead)));
       // The nearest quotient is the one rounded down, or one more.
       const VI quotient = nearest(hn::Mul(as_double(a), slowness)), rest = hn::Sub(a, product(quotient, pace));
@@ -308,75 +392,71 @@ HWY_INLINE bool advance(const Look& look, VoxelPacket& packet, std::size_t o, Wa
   }
   MI inside = alive;
   for (int i = 0; i < 3; ++i) {
-    const VI planes = hn::IfThenElseZero(alive, crossed[i]);
-    at[i] = hn::Add(at[i], planes);
+    at[i] = hn::Add(at[i], crossed[i]);
     hn::Store(at[i], di, walk.at[i] + o);
-    hn::Store(hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(planes)), di, walk.next[i] + o);
+    hn::Store(hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(crossed[i])), di, walk.next[i] + o);
     inside = hn::And(inside, hn::Lt(at[i], end[i]));
   }
-  hn::Store(hn::IfThenElse(alive, axis, hn::Load(di, walk.axis + o)), di, walk.axis + o);
-  hn::Store(hn::VecFromMask(di, inside), di, walk.alive + o);
-  return !hn::AllFalse(di, inside);
+  hn::Store(axis, di, walk.crossed + o);
+  return inside;
 }
 
-// VoxelWalk::hit() of the rays in solid voxels; those that hit.
-HWY_INLINE MI finish(VoxelPacket& packet, std::size_t o, const Walk& walk) {
-  const MI solid = hn::MaskFromVec(hn::Load(di, walk.solid + o));
-  if (hn::AllFalse(di, solid)) return solid;
-  const VI axis = hn::Load(di, walk.axis + o);
-  VI next = hn::Load(di, walk.next[0] + o), speed = hn::Load(di, packet.speed[0] + o),
-     down = hn::Load(di, packet.down[0] + o);
-  const VI entered = hn::Load(di, walk.entered + o);
-  const MI walked = hn::Not(hn::Lt(axis, hn::Zero(di)));
-  const VI by = hn::IfThenElse(walked, axis, entered);
-  for (int i = 1; i < 3; ++i) {
-    const MI here = hn::Eq(by, hn::Set(di, i));
-    next = hn::IfThenElse(here, hn::Load(di, walk.next[i] + o), next);
-    speed = hn::IfThenElse(here, hn::Load(di, packet.speed[i] + o), speed);
-    down = hn::IfThenElse(here, hn::Load(di, packet.down[i] + o), down);
+// Rays that are still on their way, close together.
+HWY_NOINLINE void compact(Walk& walk) {
+  std::size_t to = 0;
+  for (std::size_t o = 0; o < walk.lanes; o += N) {
+    const std::uint64_t bits = walk.alive[o / N];
+    if (bits == 0) continue;
+    const Chosen chosen(bits);
+    for (int i = 0; i < 3; ++i) {
+      chosen.append(hn::Load(di, walk.next[i] + o), walk.next[i] + to);
+      chosen.append(hn::Load(di, walk.at[i] + o), walk.at[i] + to);
+      chosen.append(hn::Load(di, walk.end[i] + o), walk.end[i] + to);
+      chosen.append(hn::Load(di, walk.speed[i] + o), walk.speed[i] + to);
+      chosen.append(hn::Load(di, walk.down[i] + o), walk.down[i] + to);
+      chosen.append(hn::Load(dd, walk.slowness[i] + o), walk.slowness[i] + to);
+    }
+    chosen.append(hn::Load(di, walk.crossed + o), walk.crossed + to);
+    chosen.append(hn::Load(di, walk.ray + o), walk.ray + to);
+    to += hn::CountTrue(di, lanes_of(bits));
   }
-  const VD t_in = hn::Load(dd, walk.t + o);
-  const VI distance = hn::IfThenElseZero(walked, hn::Sub(next, hn::Set(di, kVoxelPlaces)));
-  const VD on_the_way = hn::Mul(hn::Div(as_double(distance), as_double(speed)), hn::Load(dd, packet.t_per_s + o));
-  const VD t = hn::IfThenElse(hn::RebindMask(dd, walked), hn::Add(t_in, on_the_way), t_in);
-  const MI hit = hn::And(solid, hn::RebindMask(di, hn::Not(hn::Gt(t, hn::Load(dd, packet.t_max + o)))));
-  hn::Store(t, dd, packet.t + o);
-  for (int i = 0; i < 3; ++i)
-    hn::Store(hn::Xor(hn::Load(di, walk.at[i] + o), hn::Load(di, packet.down[i] + o)), di, packet.voxel[i] + o);
-  const VI face = hn::Sub(hn::Add(by, by), down);
-  const VI inside = hn::Set(di, static_cast<std::int64_t>(VoxelFace::inside));
-  hn::Store(hn::IfThenElse(hn::Lt(by, hn::Zero(di)), inside, face), di, packet.face + o);
-  return hit;
+  walk.lanes = to;
+}
+
+// Sets which lanes are in use: all of the first ones.
+HWY_INLINE void wake(Walk& walk) {
+  for (std::size_t o = 0; o < walk.lanes; o += N) {
+    const std::size_t here = walk.lanes - o < N ? walk.lanes - o : N;
+    walk.alive[o / N] = (std::uint64_t{1} << here) - 1;
+  }
 }
 
 template <class Look>
-VoxelMeeting march(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
   const Look look(target);
-  VoxelMeeting meeting;
+  std::uint64_t met = 0;
   Walk walk;
-  std::size_t on_the_way[kVectors], count = 0;
+  packet.hits = 0;
   for (std::size_t o = 0; o < packet.count; o += N) {
     if ((rays >> o & ((std::uint64_t{1} << N) - 1)) == 0) continue;
-    const MI in = enter(target.box, stand, packet, o, lanes_of(rays >> o), walk);
-    if (hn::AllFalse(di, in)) continue;
-    meeting.met |= bits_of(in) << o;
-    hn::Store(hn::VecFromMask(di, in), di, walk.alive + o);
-    hn::Store(hn::Zero(di), di, walk.solid + o);
-    on_the_way[count++] = o;
+    met |= bits_of(enter(target.box, stand, packet, o, lanes_of(rays >> o), walk)) << o;
   }
-  while (count > 0) {
-    std::size_t left = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::size_t o = on_the_way[i];
-      if (advance(look, packet, o, walk)) {
-        on_the_way[left++] = o;
-      } else {
-        meeting.hit |= bits_of(finish(packet, o, walk)) << o;
-      }
+  wake(walk);
+  for (std::size_t live = walk.lanes; live > 0;) {
+    live = 0;
+    for (std::size_t o = 0; o < walk.lanes; o += N) {
+      std::uint64_t& alive = walk.alive[o / N];
+      if (alive == 0) continue;
+      alive = bits_of(advance(look, packet, walk, o, lanes_of(alive)));
+      live += static_cast<std::size_t>(hn::CountTrue(di, lanes_of(alive)));
     }
-    count = left;
+    // Where that saves vectors.
+    if (live > 0 && live + kSaved * N <= walk.lanes) {
+      compact(walk);
+      wake(walk);
+    }
   }
-  return meeting;
+  return met;
 }
 
 // VoxelDirection of each ray.
@@ -401,17 +481,17 @@ void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
   }
 }
 
-VoxelMeeting march_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+std::uint64_t march_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
   return march<PlanesLook>(target, stand, packet, rays);
 }
-VoxelMeeting march_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+std::uint64_t march_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
   return march<CubesLook>(target, stand, packet, rays);
 }
-VoxelMeeting march_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+std::uint64_t march_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                            std::uint64_t rays) {
   return march<OctantsLook>(target, stand, packet, rays);
 }
-VoxelMeeting march_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+std::uint64_t march_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
   return march<BricksLook>(target, stand, packet, rays);
 }
 
@@ -436,19 +516,19 @@ void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
   HWY_DYNAMIC_DISPATCH(aim)(packet, grid_from_world);
 }
 
-VoxelMeeting march_packet_voxel_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+std::uint64_t march_packet_voxel_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                        std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_planes)(target, stand, packet, rays);
 }
-VoxelMeeting march_packet_voxel_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+std::uint64_t march_packet_voxel_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                       std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_cubes)(target, stand, packet, rays);
 }
-VoxelMeeting march_packet_voxel_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+std::uint64_t march_packet_voxel_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                         std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_octants)(target, stand, packet, rays);
 }
-VoxelMeeting march_packet_voxel_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+std::uint64_t march_packet_voxel_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                        std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_bricks)(target, stand, packet, rays);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/box_tree.h"
 
+#include <cstring>
 #include <glm/common.hpp>
 #include <numeric>
 
@@ -16,6 +17,14 @@ constexpr double kPadding = 0x1p-21;
 double half_area(const WorldBox& box) {
   const dvec3 size = glm::max(box.high - box.low, dvec3(0.0));
   return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+// Two numbers in one register, as Four in the header.
+using Two = double __attribute__((vector_size(16)));
+Two two(const double* from) {
+  Two pair;
+  std::memcpy(&pair, from, sizeof(pair));
+  return pair;
 }
 
 // A beam has one longest axis, along which no ray is much slower than along another, and no wider slopes than this.
@@ -148,8 +157,8 @@ BoxTree::BoxTree(std::span<const WorldBox> boxes) {
   nodes_.shrink_to_fit();
 }
 
-bool BoxTree::clip(const Ray& ray, double t_max, double& t_in, double& t_out) const {
-  t_in = ray.t_min, t_out = t_max;
+bool BoxTree::clip(const Ray& ray, double& t_in, double& t_out) const {
+  t_in = ray.t_min, t_out = ray.t_max;
   for (int axis = 0; axis < 3; ++axis) {
     const double direction = ray.direction[axis], low = box_.low[axis] - padding_, high = box_.high[axis] + padding_;
     if (direction == 0) {
@@ -174,39 +183,64 @@ float BoxTree::Beam::end_of(std::span<const double> t_max) const {
   return static_cast<float>(last) * kRounding;
 }
 
-std::optional<BoxTree::Beam> BoxTree::beam(std::span<const Ray> rays, std::span<const double> t_max) const {
+std::optional<BoxTree::Beam> BoxTree::beam(const Rays& rays) const {
   Beam beam;
-  beam.start.fill(0), beam.per_t.fill(0);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  dvec3 low(kInfinity), high(-kInfinity), least(kInfinity), most(-kInfinity);
-  const dvec3& first = rays[0].direction;
-  const dvec3 size = glm::abs(first);
-  const int longest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  double end = -1;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Ray& ray = rays[i];
-    const double speed = std::abs(ray.direction[longest]);
-    if (!(ray.direction[longest] * first[longest] > 0)) return {};
-    double t_in, t_out;
-    if (nodes_.empty() || !clip(ray, t_max[i], t_in, t_out)) continue;
-    const dvec3 from = ray.origin + t_in * ray.direction - middle_, slope = ray.direction / speed;
-    low = glm::min(low, from), high = glm::max(high, from);
-    least = glm::min(least, slope), most = glm::max(most, slope);
-    beam.inside |= std::uint64_t{1} << i;
-    beam.start[i] = t_in, beam.per_t[i] = speed;
-    end = std::max(end, (t_out - t_in) * speed);
+  if (nodes_.empty() || rays.count == 0) return beam;
+  int longest = 0;
+  for (int axis = 1; axis < 3; ++axis) {
+    if (std::abs(rays.direction[axis][0]) > std::abs(rays.direction[longest][0])) longest = axis;
   }
-  beam.end = static_cast<float>(end) * kRounding;
+  const double sign = rays.direction[longest][0] < 0 ? -1 : 1;
+  constexpr Two kMost = Two{} + std::numeric_limits<double>::infinity(), kZero{}, kOne = kZero + 1;
+  std::array<Two, 3> low, high, least, most;
+  low.fill(kMost), high.fill(-kMost), least.fill(kMost), most.fill(-kMost);
+  Two slowest = kMost, last = kZero - 1;
+  for (std::size_t i = 0; i < rays.count; i += 2) {
+    // Where the rays come into the box around everything, and where they leave it, as in clip().
+    Two t_in = two(rays.t_min + i), t_out = two(rays.t_max + i);
+    if (i + 1 == rays.count) t_out[1] = -std::numeric_limits<double>::infinity();
+    std::array<Two, 3> origin, direction;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Two bottom = kZero + (box_.low[axis] - padding_), top = kZero + (box_.high[axis] + padding_);
+      const Two o = origin[axis] = two(rays.origin[axis] + i), d = direction[axis] = two(rays.direction[axis] + i);
+      const Two inverse = kOne / d, a = (bottom - o) * inverse, b = (top - o) * inverse;
+      const auto level = d == kZero, in = (o >= bottom) & (o <= top);
+      const Two near = level ? (in ? -kMost : kMost) : a < b ? a : b, far = level ? kMost : a < b ? b : a;
+      t_in = near > t_in ? near : t_in;
+      t_out = far < t_out ? far : t_out;
+    }
+    const Two speed = direction[longest] * sign;
+    const auto inside = t_in <= t_out;
+    slowest = inside & (speed < slowest) ? speed : slowest;
+    const Two length = (t_out - t_in) * speed;
+    last = inside & (length > last) ? length : last;
+    const Two per_speed = kOne / speed;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Two from = origin[axis] + t_in * direction[axis] - middle_[axis], slope = direction[axis] * per_speed;
+      low[axis] = inside & (from < low[axis]) ? from : low[axis];
+      high[axis] = inside & (from > high[axis]) ? from : high[axis];
+      least[axis] = inside & (slope < least[axis]) ? slope : least[axis];
+      most[axis] = inside & (slope > most[axis]) ? slope : most[axis];
+    }
+    t_in = inside ? t_in : kZero;
+    const Two per_t = inside ? speed : kZero;
+    std::memcpy(&beam.start[i], &t_in, sizeof(Two)), std::memcpy(&beam.per_t[i], &per_t, sizeof(Two));
+    beam.inside |= static_cast<std::uint64_t>((inside[0] & 1) | (inside[1] & 2)) << i;
+  }
+  if (!(std::min(slowest[0], slowest[1]) > 0)) return {};
   if (beam.inside == 0) return beam;
+  beam.end = static_cast<float>(std::max(last[0], last[1])) * kRounding;
   for (int i = 0; i < 3; ++i) {
-    if (!(most[i] - least[i] <= kWidestBeam && most[i] <= kSteepestOfBeam && least[i] >= -kSteepestOfBeam)) return {};
+    const double flat = std::min(least[i][0], least[i][1]), steep = std::max(most[i][0], most[i][1]);
+    if (!(steep - flat <= kWidestBeam && steep <= kSteepestOfBeam && flat >= -kSteepestOfBeam)) return {};
     Beam::Axis& axis = beam.axes[i];
-    axis.low = static_cast<float>(low[i]), axis.high = static_cast<float>(high[i]);
+    axis.low = static_cast<float>(std::min(low[i][0], low[i][1]));
+    axis.high = static_cast<float>(std::max(high[i][0], high[i][1]));
     // Flatter rays than can be told from level ones count as both.
     const auto per = [](double slope) { return slope * kSteepest < 1 ? kSteepest : static_cast<float>(1 / slope); };
-    axis.per_up = per(most[i]), axis.per_down = per(-least[i]);
-    const double flattest = std::max(least[i], -most[i]);
-    axis.way = flattest * kSteepest < 1 ? Beam::Way::both : least[i] > 0 ? Beam::Way::up : Beam::Way::down;
+    axis.per_up = per(steep), axis.per_down = per(-flat);
+    const double flattest = std::max(flat, -steep);
+    axis.way = flattest * kSteepest < 1 ? Beam::Way::both : flat > 0 ? Beam::Way::up : Beam::Way::down;
     axis.per_least = per(flattest) * kRounding;
   }
   return beam;

@@ -43,10 +43,16 @@ class BoxTree {
   /// Boxes must be finite and not empty, fewer than 2^31.
   explicit BoxTree(std::span<const WorldBox> boxes);
 
+  /// Rays side by side, at most Beam::kRays of them. Where their number is odd one more may be read.
+  struct Rays {
+    std::size_t count;
+    std::array<const double*, 3> origin, direction;
+    const double *t_min, *t_max;
+  };
   /// Rays that go about the same way.
   struct Beam;
-  /// The rays, at most Beam::kRays of them, as a beam; nothing when they go apart. t_max counts instead of the rays'.
-  std::optional<Beam> beam(std::span<const Ray> rays, std::span<const double> t_max) const;
+  /// The rays as a beam; nothing when they go apart.
+  std::optional<Beam> beam(const Rays& rays) const;
   /// Calls visit(object) for each object whose box a ray of the beam may meet before the beam's end, about from the
   /// nearest on; visit returns where it ends from then on, or a negative number: here and now.
   template <class Visit>
@@ -82,7 +88,7 @@ class BoxTree {
   using Stack = std::array<Entry, (kWide - 1) * kMaxDepth + kWide>;
 
   // Where a ray comes into the box around everything, and where it leaves it; false: it passes it.
-  bool clip(const Ray& ray, double t_max, double& t_in, double& t_out) const;
+  bool clip(const Ray& ray, double& t_in, double& t_out) const;
 
   // The nearest child is to be on top.
   template <class Met>
@@ -111,7 +117,7 @@ struct BoxTree::Beam {
   static constexpr std::size_t kRays = 64;
 
   /// Lengths along the beam: (t - start) * per_t of each ray; per_t is 0 for those that pass the box around everything.
-  std::array<double, kRays> start, per_t;
+  alignas(16) std::array<double, kRays> start, per_t;
   std::uint64_t inside = 0;  ///< a bit for each ray that comes into the box around everything
   float end;                 ///< of the ray that ends last
 
@@ -164,7 +170,7 @@ template <class Visit>
 void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
   if (nodes_.empty()) return;
   double t_in, t_out;
-  if (!clip(ray, ray.t_max, t_in, t_out)) return;
+  if (!clip(ray, t_in, t_out)) return;
   double longest = 0;
   for (int axis = 0; axis < 3; ++axis) longest = std::max(longest, std::abs(ray.direction[axis]));
   const dvec3 from = ray.origin + t_in * ray.direction - middle_;

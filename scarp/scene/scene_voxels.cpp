@@ -2,6 +2,7 @@
 // Voxels in scenes.
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scarp/scene/scene_field.h"
 
@@ -26,6 +27,17 @@ class Voxels final : public SceneField {
     const VoxelSceneHit* voxel = from_of(from);
     return voxel ? scene_.occluded_from(*voxel, ray) : scene_.occluded(ray);
   }
+  bool likes_batches() const override { return true; }
+  void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                    std::span<FieldHit> hits) const override {
+    std::vector<VoxelSceneHit> own(rays.size());
+    scene_.closest_hits(rays, own, all_from(from));
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = {own[i].hit.status, own[i].hit.t, own[i]};
+  }
+  void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                std::span<std::uint8_t> blocked) const override {
+    scene_.occluded(rays, blocked, all_from(from));
+  }
   FieldSurface surface(const Ray&, const FieldHit& hit) const override {
     const VoxelSceneHit& own = std::get<VoxelSceneHit>(hit.own);
     const dvec3 normal = scene_.normal(own);
@@ -35,6 +47,11 @@ class Voxels final : public SceneField {
  private:
   static const VoxelSceneHit* from_of(const FieldHit* from) {
     return from ? std::get_if<VoxelSceneHit>(&from->own) : nullptr;
+  }
+  static std::vector<const VoxelSceneHit*> all_from(std::span<const FieldHit* const> from) {
+    std::vector<const VoxelSceneHit*> own;
+    for (const FieldHit* hit : from) own.push_back(from_of(hit));
+    return own;
   }
 
   VoxelScene scene_;

@@ -93,7 +93,7 @@ class VoxelScene {
 
   bool occluded(const Ray& ray, const VoxelSceneHit* from) const;
   template <class Together, class Alone>
-  void by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from, bool any,
+  void by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from, VoxelSceneHit* hits,
                   const Together& together, const Alone& alone) const;
 
   std::vector<std::shared_ptr<const VoxelModel>> models_;

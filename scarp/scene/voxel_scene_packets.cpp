@@ -19,6 +19,8 @@ static_assert(kRays == BoxTree::Beam::kRays);
 // So are those that follow, twice as many each time.
 constexpr int kFewRays = 8, kWasted = 24;
 constexpr std::size_t kLongestPause = 64;
+// So few objects are asked without a hierarchy.
+constexpr std::size_t kAskedAtOnce = 1;
 
 // Calls body(i) for each bit.
 template <class Body>
@@ -40,62 +42,79 @@ class VoxelScene::PacketQuery {
 
   explicit PacketQuery(const VoxelScene& scene) : scene_(scene) {}
 
-  // False: they go too far apart, and nothing is known.
-  bool ask(std::span<const Ray> rays, From from, bool any) {
-    rays_ = rays, from_ = from, any_ = any;
-    found_ = 0, stats_ = {};
-    for (std::size_t i = 0; i < rays.size(); ++i) packet_.t_max[i] = rays[i].t_max;
-    const auto beam = scene_.tree_.beam(rays, t_max());
-    if (!beam) return false;
-    load(beam->inside);
-    std::uint64_t open = beam->inside;
-    int wasted = 0;
-    bool given_up = false;
-    scene_.tree_.traverse(*beam, [&](std::uint32_t in_tree) {
-      const VoxelMeeting meeting = meet(scene_.in_tree_[in_tree], open);
-      stats_.boxes += static_cast<std::uint32_t>(std::popcount(meeting.met));
-      wasted += std::popcount(meeting.met) < kFewRays ? 1 : 0;
-      given_up = wasted > kWasted;
-      if (given_up) return -1.0f;
-      if (meeting.hit == 0) return std::numeric_limits<float>::infinity();
-      if (any_) open &= ~meeting.hit;
-      return beam->end_of(t_max());
-    });
-    return !given_up;
+  // hits[i] answers rays[i]; without them whether there is one is asked. False: they go too far apart, and nothing is
+  // known.
+  bool ask(std::span<const Ray> rays, From from, VoxelSceneHit* hits) {
+    rays_ = rays, from_ = from, hits_ = hits;
+    found_ = 0, boxes_ = 0;
+    load();
+    if (scene_.in_tree_.size() <= kAskedAtOnce) {
+      const std::uint64_t all = ~std::uint64_t{0} >> (kRays - rays.size());
+      for (const std::uint32_t index : scene_.in_tree_)
+        boxes_ += static_cast<std::uint32_t>(std::popcount(meet(index, all).met));
+    } else if (!ask_tree()) {
+      return false;
+    }
+    if (hits_) finish();
+    return true;
   }
 
   bool found(std::size_t i) const { return found_ >> i & 1; }
-  VoxelSceneHit hit(std::size_t i) const {
-    VoxelSceneHit hit;
-    if (!found(i)) return hit;
-    hit = {hit_[i], object_[i]};
-    hit.hit.entry = scene_.targets_[scene_.objects_[object_[i]].model].grid->entry(hit.hit.voxel);
-    return hit;
-  }
-  VoxelSceneStats stats() const {
-    VoxelSceneStats stats = stats_;
-    for (std::size_t i = 0; i < packet_.count; ++i) stats.steps += static_cast<std::uint32_t>(packet_.steps[i]);
-    return stats;
-  }
+  VoxelSceneStats stats() const { return {static_cast<std::uint32_t>(packet_.steps), boxes_}; }
 
  private:
   std::span<const double> t_max() const { return {packet_.t_max, rays_.size()}; }
 
-  void load(std::uint64_t inside) {
+  void load() {
     packet_.count = rays_.size();
+    packet_.steps = 0;
     for (std::size_t i = 0; i < rays_.size(); ++i) {
       const Ray& ray = rays_[i];
       for (int axis = 0; axis < 3; ++axis)
         packet_.origin[axis][i] = ray.origin[axis], packet_.direction[axis][i] = ray.direction[axis];
-      packet_.t_min[i] = ray.t_min;
-      packet_.steps[i] = 0;
-      if (!(inside >> i & 1)) packet_.t_max[i] = -std::numeric_limits<double>::infinity();
+      packet_.t_min[i] = ray.t_min, packet_.t_max[i] = ray.t_max;
     }
     aimed_ = alone_aimed_ = kNoTurn;
   }
 
+  bool ask_tree() {
+    const auto &o = packet_.origin, &d = packet_.direction;
+    const auto beam = scene_.tree_.beam({rays_.size(), {o[0], o[1], o[2]}, {d[0], d[1], d[2]}, packet_.t_min,
+                                         packet_.t_max});
+    if (!beam) return false;
+    // Those that pass everything.
+    for_each_bit(~beam->inside & ~std::uint64_t{0} >> (kRays - rays_.size()),
+                 [&](std::size_t i) { packet_.t_max[i] = -std::numeric_limits<double>::infinity(); });
+    int wasted = 0;
+    scene_.tree_.traverse(*beam, [&](std::uint32_t in_tree) {
+      const Meeting meeting = meet(scene_.in_tree_[in_tree], hits_ ? beam->inside : beam->inside & ~found_);
+      boxes_ += static_cast<std::uint32_t>(std::popcount(meeting.met));
+      wasted += std::popcount(meeting.met) < kFewRays ? 1 : 0;
+      if (wasted > kWasted) return -1.0f;
+      return meeting.hit == 0 ? std::numeric_limits<float>::infinity() : beam->end_of(t_max());
+    });
+    return wasted <= kWasted;
+  }
+
+  // What is left to be told.
+  void finish() {
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      VoxelSceneHit& hit = hits_[i];
+      if (found(i)) {
+        hit.hit.status = HitStatus::hit;
+        hit.hit.entry = scene_.targets_[scene_.objects_[hit.object].model].grid->entry(hit.hit.voxel);
+      } else {
+        hit = {};
+      }
+    }
+  }
+
+  struct Meeting {
+    std::uint64_t met = 0, hit = 0;  // a bit per ray
+  };
+
   // The rays at an object. Where it is the nearest so far, it is kept; t_max is that of the nearest hit from then on.
-  VoxelMeeting meet(std::uint32_t index, std::uint64_t open) {
+  Meeting meet(std::uint32_t index, std::uint64_t open) {
     const Object& object = scene_.objects_[index];
     const Turn& turn = scene_.turns_[object.turn];
     const VoxelTarget& target = scene_.targets_[object.model];
@@ -106,19 +125,19 @@ class VoxelScene::PacketQuery {
         if (from_[i] && from_[i]->object == index) alone |= std::uint64_t{1} << i;
       });
     }
-    VoxelMeeting meeting;
+    Meeting meeting;
     if (const std::uint64_t together = open & ~alone; together != 0) {
       if (aimed_ != object.turn) aim_voxel_packet(packet_, turn.grid_from_world);
       aimed_ = object.turn;
-      meeting = march.voxel_simd(target, {turn.grid_from_world, object.origin}, packet_, together);
-      for_each_bit(meeting.hit, [&](std::size_t i) {
-        VoxelHit hit;
-        hit.status = HitStatus::hit;
-        hit.face = static_cast<VoxelFace>(packet_.face[i]);
-        for (int axis = 0; axis < 3; ++axis) hit.voxel[axis] = static_cast<int>(packet_.voxel[axis][i]);
-        hit.t = packet_.t[i];
-        keep(i, hit, index);
-      });
+      meeting.met = march.voxel_simd(target, {turn.grid_from_world, object.origin}, packet_, together);
+      for (std::size_t k = 0; k < packet_.hits; ++k) {
+        const auto i = static_cast<std::size_t>(packet_.ray[k]);
+        meeting.hit |= std::uint64_t{1} << i;
+        if (VoxelSceneHit* to = keep(i, packet_.t[k], index)) {
+          to->hit.face = static_cast<VoxelFace>(packet_.face[k]);
+          for (int axis = 0; axis < 3; ++axis) to->hit.voxel[axis] = static_cast<int>(packet_.voxel[axis][k]);
+        }
+      }
     }
     if (alone != 0) {
       if (alone_aimed_ != object.turn) {
@@ -137,20 +156,28 @@ class VoxelScene::PacketQuery {
       if (!quantised) return;
       MarchStats stats;
       const VoxelHit hit = march.voxel_cpu(target, *quantised, &stats);
-      packet_.steps[i] += stats.steps;
+      packet_.steps += stats.steps;
       meeting.met |= std::uint64_t{1} << i;
       if (!hit) return;
       meeting.hit |= std::uint64_t{1} << i;
-      keep(i, hit, index);
+      if (VoxelSceneHit* to = keep(i, hit.t, index)) to->hit = hit;
     });
     return meeting;
   }
 
-  void keep(std::size_t i, const VoxelHit& hit, std::uint32_t index) {
-    if (found(i) && hit.t == hit_[i].t && index > object_[i]) return;
+  // Where the hit is to be told, if it is the nearest so far.
+  VoxelSceneHit* keep(std::size_t i, double t, std::uint32_t index) {
+    const bool again = found(i);
     found_ |= std::uint64_t{1} << i;
-    hit_[i] = hit, object_[i] = index;
-    packet_.t_max[i] = any_ ? -std::numeric_limits<double>::infinity() : hit.t;
+    if (!hits_) {
+      packet_.t_max[i] = -std::numeric_limits<double>::infinity();
+      return nullptr;
+    }
+    VoxelSceneHit& to = hits_[i];
+    if (again && t == to.hit.t && index > to.object) return nullptr;
+    to.hit.t = packet_.t_max[i] = t;
+    to.object = index;
+    return &to;
   }
 
   static constexpr std::uint32_t kNoTurn = 0xffff'ffff;
@@ -158,19 +185,17 @@ class VoxelScene::PacketQuery {
   const VoxelScene& scene_;
   std::span<const Ray> rays_;
   From from_;
-  bool any_ = false;
+  VoxelSceneHit* hits_ = nullptr;
   VoxelPacket packet_;
   std::uint32_t aimed_ = kNoTurn, alone_aimed_ = kNoTurn;  // turns of the directions in packet_ and directions_
   std::vector<VoxelDirection> directions_;
   std::uint64_t found_ = 0;
-  std::array<VoxelHit, kRays> hit_;
-  std::array<std::uint32_t, kRays> object_{};
-  VoxelSceneStats stats_;
+  std::uint32_t boxes_ = 0;
 };
 
 template <class Together, class Alone>
-void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from, bool any,
-                            const Together& together, const Alone& alone) const {
+void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from,
+                            VoxelSceneHit* hits, const Together& together, const Alone& alone) const {
   if (!from.empty()) require_same_length(rays.size(), from.size());
   PacketQuery query(*this);
   std::size_t pause = 0, next_pause = 1;
@@ -179,8 +204,8 @@ void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const VoxelScen
     const auto from_here = from.empty() ? from : from.subspan(begin, count);
     if (pause > 0) {
       --pause;
-    } else if (query.ask(rays.subspan(begin, count), from_here, any)) {
-      for (std::size_t i = 0; i < count; ++i) together(query, i, begin + i);
+    } else if (query.ask(rays.subspan(begin, count), from_here, hits ? hits + begin : nullptr)) {
+      together(query, begin, count);
       next_pause = 1;
       continue;
     } else {
@@ -195,13 +220,11 @@ void VoxelScene::closest_hits(std::span<const Ray> rays, std::span<VoxelSceneHit
                               std::span<const VoxelSceneHit* const> from, VoxelSceneStats* stats) const {
   require_same_length(rays.size(), hits.size());
   by_packets(
-      rays, from, false,
-      [&](const PacketQuery& query, std::size_t i, std::size_t to) {
-        hits[to] = query.hit(i);
-        if (stats && i == 0) {
-          const VoxelSceneStats of_all = query.stats();
-          stats->steps += of_all.steps, stats->boxes += of_all.boxes;
-        }
+      rays, from, hits.data(),
+      [&](const PacketQuery& query, std::size_t, std::size_t) {
+        if (!stats) return;
+        const VoxelSceneStats of_all = query.stats();
+        stats->steps += of_all.steps, stats->boxes += of_all.boxes;
       },
       [&](std::size_t i, const VoxelSceneHit* start) { hits[i] = closest_hit(rays[i], start, stats); });
 }
@@ -210,8 +233,10 @@ void VoxelScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blo
                           std::span<const VoxelSceneHit* const> from) const {
   require_same_length(rays.size(), blocked.size());
   by_packets(
-      rays, from, true,
-      [&](const PacketQuery& query, std::size_t i, std::size_t to) { blocked[to] = query.found(i); },
+      rays, from, nullptr,
+      [&](const PacketQuery& query, std::size_t begin, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) blocked[begin + i] = query.found(i);
+      },
       [&](std::size_t i, const VoxelSceneHit* start) { blocked[i] = occluded(rays[i], start); });
 }
 

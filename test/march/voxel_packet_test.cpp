@@ -66,15 +66,21 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
             packet.direction[axis][i] = rays[i].direction[axis];
           }
           packet.t_min[i] = rays[i].t_min, packet.t_max[i] = rays[i].t_max;
-          packet.steps[i] = 0;
         }
         const std::uint64_t all = ~std::uint64_t{0} >> (64 - packet.count), asked = round % 5 ? all : all & random();
         aim_voxel_packet(packet, stand.grid_from_world);
         for (const MarchEntry& march : voxel_marches()) {
           if (!march.voxel_simd) continue;
-          std::fill(packet.steps, packet.steps + VoxelPacket::kRays, 0);
-          const VoxelMeeting meeting = march.voxel_simd(target, stand, packet, asked);
-          ASSERT_EQ((meeting.met | meeting.hit) & ~asked, 0u);
+          packet.steps = 0;
+          const std::uint64_t met = march.voxel_simd(target, stand, packet, asked);
+          ASSERT_EQ(met & ~asked, 0u);
+          std::vector<std::size_t> hit_of(VoxelPacket::kRays, packet.hits);
+          for (std::size_t k = 0; k < packet.hits; ++k) {
+            std::size_t& of = hit_of[static_cast<std::size_t>(packet.ray[k])];
+            ASSERT_EQ(of, packet.hits);
+            of = k;
+          }
+          std::uint64_t steps = 0;
           for (std::size_t i = 0; i < packet.count; ++i) {
             if (!(asked >> i & 1)) continue;
             VoxelRay local = rays[i];
@@ -83,18 +89,20 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
             local.origin = stand.grid_from_world * (world - stand.origin);
             local.direction = stand.grid_from_world * local.direction;
             const auto quantised = quantise(local, target.box);
-            ASSERT_EQ(meeting.met >> i & 1, quantised ? 1u : 0u) << march.name << ", " << kind.name;
+            ASSERT_EQ(met >> i & 1, quantised ? 1u : 0u) << march.name << ", " << kind.name;
             if (!quantised) continue;
             MarchStats stats;
             const VoxelHit hit = march.voxel_cpu(target, *quantised, &stats);
-            ASSERT_EQ(meeting.hit >> i & 1, hit ? 1u : 0u) << march.name << ", " << kind.name;
-            ASSERT_EQ(packet.steps[i], stats.steps) << march.name << ", " << kind.name;
+            const std::size_t k = hit_of[i];
+            ASSERT_EQ(k < packet.hits, static_cast<bool>(hit)) << march.name << ", " << kind.name;
+            steps += stats.steps;
             if (!hit) continue;
             ++hits;
-            ASSERT_EQ(std::bit_cast<std::uint64_t>(packet.t[i]), std::bit_cast<std::uint64_t>(hit.t)) << march.name;
-            ASSERT_EQ(ivec3(packet.voxel[0][i], packet.voxel[1][i], packet.voxel[2][i]), hit.voxel) << march.name;
-            ASSERT_EQ(packet.face[i], static_cast<std::int64_t>(hit.face)) << march.name;
+            ASSERT_EQ(std::bit_cast<std::uint64_t>(packet.t[k]), std::bit_cast<std::uint64_t>(hit.t)) << march.name;
+            ASSERT_EQ(ivec3(packet.voxel[0][k], packet.voxel[1][k], packet.voxel[2][k]), hit.voxel) << march.name;
+            ASSERT_EQ(packet.face[k], static_cast<std::int64_t>(hit.face)) << march.name;
           }
+          ASSERT_EQ(packet.steps, steps) << march.name << ", " << kind.name;
         }
       }
     }

@@ -36,6 +36,27 @@ bool meets(const Ray& ray, const WorldBox& box) {
   return t_in <= t_out;
 }
 
+// Rays side by side; one more than there are.
+class RaysOfBeam {
+ public:
+  RaysOfBeam(const std::vector<Ray>& rays, const std::vector<double>& t_max) : rays_{rays.size(), {}, {}, nullptr, nullptr} {
+    for (std::size_t i = 0; i <= rays.size(); ++i) {
+      const Ray& ray = rays[i % rays.size()];
+      for (int axis = 0; axis < 3; ++axis) numbers_[axis][i] = ray.origin[axis], numbers_[3 + axis][i] = ray.direction[axis];
+      numbers_[6][i] = ray.t_min, numbers_[7][i] = t_max[i % rays.size()];
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      rays_.origin[axis] = numbers_[axis].data(), rays_.direction[axis] = numbers_[3 + axis].data();
+    rays_.t_min = numbers_[6].data(), rays_.t_max = numbers_[7].data();
+  }
+  RaysOfBeam(const RaysOfBeam&) = delete;
+  operator const BoxTree::Rays&() const { return rays_; }
+
+ private:
+  std::array<std::array<double, 65>, 8> numbers_{};
+  BoxTree::Rays rays_;
+};
+
 std::vector<WorldBox> random_boxes(Random& random, int count, double spread, double size) {
   std::vector<WorldBox> boxes;
   for (int i = 0; i < count; ++i) {
@@ -141,7 +162,7 @@ TEST(BoxTree, BeamsLoseNoBox) {
       if (i % 5 == 0) ray.t_max = uniform(random, 0, 2) * away;
       t_max.push_back(ray.t_max);
     }
-    const auto beam = tree.beam(rays, t_max);
+    const auto beam = tree.beam(RaysOfBeam(rays, t_max));
     if (!beam) continue;
     ++beams;
     std::set<std::uint32_t> visited;
@@ -169,7 +190,7 @@ TEST(BoxTree, BeamsEndWithTheirRays) {
   std::vector<Ray> rays(2, Ray{{-1, 0.5, 0.5}, {1, 0, 0}});
   rays[1].direction = {0.5, 0, 0};
   std::vector<double> t_max(2, std::numeric_limits<double>::infinity());
-  const auto beam = tree.beam(rays, t_max);
+  const auto beam = tree.beam(RaysOfBeam(rays, t_max));
   ASSERT_TRUE(beam);
   int visits = 0;
   tree.traverse(*beam, [&](std::uint32_t object) {
@@ -178,10 +199,10 @@ TEST(BoxTree, BeamsEndWithTheirRays) {
     return beam->end_of(t_max);
   });
   EXPECT_EQ(visits, 4);  // 0.5 * 72 - 1 = 35
-  rays[1].direction = {-1, 0, 0};
-  EXPECT_FALSE(tree.beam(rays, t_max));
+  rays[1] = Ray{{5, 0.5, 0.5}, {-1, 0, 0}};
+  EXPECT_FALSE(tree.beam(RaysOfBeam(rays, t_max)));
   rays[1] = Ray{{-0.2, 0.5, 0.5}, {1, 1, 0}};
-  EXPECT_FALSE(tree.beam(rays, t_max));
+  EXPECT_FALSE(tree.beam(RaysOfBeam(rays, t_max)));
 }
 
 }  // namespace
