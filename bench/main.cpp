@@ -256,6 +256,9 @@ int run(int argc, char** argv) {
   voxels_command->add_option("--width", voxels.width, "pixels per side of the pictures of one grid, a multiple of 8")
       ->check(CLI::Range(8, 2048))
       ->capture_default_str();
+  voxels_command->add_option("--block", voxels.block, "objects per side of the larger one of these grids")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
   voxels_command->add_option("--repeats", voxels.repeats, "counted passes")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

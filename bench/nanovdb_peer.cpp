@@ -12,9 +12,6 @@ namespace {
 
 using NanoRay = nanovdb::Ray<float>;
 
-// Over how many voxels the point that tells the next voxel is pushed behind a border: NanoVDB's own number.
-constexpr float kPush = 1.0001f;
-
 }  // namespace
 
 struct NanovdbPeer::Tree {
@@ -32,11 +29,15 @@ NanovdbPeer::NanovdbPeer(const VoxelGrid& grid) : tree_(std::make_unique<Tree>()
 NanovdbPeer::NanovdbPeer(NanovdbPeer&&) noexcept = default;
 NanovdbPeer::~NanovdbPeer() = default;
 
-VoxelEngine NanovdbPeer::engine() const {
+std::vector<VoxelEngine> NanovdbPeer::engines() const {
+  return {engine("push 1.0001", 1.0001f), engine("push 0.0001", 0.0001f)};
+}
+
+VoxelEngine NanovdbPeer::engine(const char* mode, float push) const {
   VoxelEngine engine;
-  engine.name = "nanovdb-hdda", engine.mode = "x1", engine.box = "bounds";
+  engine.name = "nanovdb-hdda", engine.mode = mode, engine.box = "bounds";
   engine.mib = static_cast<double>(tree_->handle.size()) / (1 << 20);
-  engine.trace = [&handle = tree_->handle](std::span<const Ray> rays, std::span<VoxelSceneHit> hits) {
+  engine.trace = [&handle = tree_->handle, push](std::span<const Ray> rays, std::span<VoxelSceneHit> hits) {
     const nanovdb::NanoGrid<float>* grid = handle.grid<float>();
     const auto box = grid->tree().root().bbox();
     auto accessor = grid->getAccessor();
@@ -54,7 +55,7 @@ VoxelEngine NanovdbPeer::engine() const {
       bool inside = true;
       while (!accessor.isActive(at) && (inside = walk.step())) {
         t = walk.time();
-        at = nanovdb::RoundDown<nanovdb::Coord>(ray(t + kPush));
+        at = nanovdb::RoundDown<nanovdb::Coord>(ray(t + push));
         walk.update(ray, accessor.getDim(at, ray));
       }
       if (!inside) continue;

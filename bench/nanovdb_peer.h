@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "bench/voxel_engine.h"
 
@@ -15,11 +16,14 @@ class NanovdbPeer {
   NanovdbPeer(NanovdbPeer&&) noexcept;
   ~NanovdbPeer();
 
-  /// Rays in the space of the grid. Outlived by the peer.
-  VoxelEngine engine() const;
+  /// Rays in the space of the grid. Modes: how far the point that tells the next voxel is pushed behind a border, by
+  /// NanoVDB's own 1.0001 voxels or by a ten-thousandth. The peer outlives its engines.
+  std::vector<VoxelEngine> engines() const;
 
  private:
   struct Tree;
+  VoxelEngine engine(const char* mode, float push) const;
+
   std::unique_ptr<Tree> tree_;
 };
 

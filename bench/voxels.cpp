@@ -222,7 +222,7 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
       VoxelSceneStats stats;
       std::size_t asked = 0;
       // Steps are the same in batches.
-      for (std::size_t i = 0; i < rays.size(); i += 16, ++asked) t.scene->closest_hit(rays[i], &stats);
+      for (std::size_t i = 0; i < rays.size(); i += 7, ++asked) t.scene->closest_hit(rays[i], &stats);
       row["steps_per_ray"] = static_cast<double>(stats.steps) / static_cast<double>(asked);
       row["boxes_per_ray"] = static_cast<double>(stats.boxes) / static_cast<double>(asked);
       row["bytes_per_object"] = t.bytes;
@@ -255,7 +255,7 @@ void measure_grid(const char* name, const VoxelGrid& grid, const VoxelsOptions& 
   }
 #ifdef SCARP_BENCH_NANOVDB
   const NanovdbPeer nanovdb(grid);
-  engines.push_back(nanovdb.engine());
+  for (VoxelEngine& engine : nanovdb.engines()) engines.push_back(std::move(engine));
 #endif
   const std::vector<Measured> measured = measure_engines(engines, rays, options);
   for (std::size_t e = 0; e < engines.size(); ++e) {
@@ -302,7 +302,7 @@ void run_voxels(const VoxelsOptions& options, const ReportOptions& report) {
   std::vector<std::vector<std::string>> grids{
       {"grid", "engine", "mode", "Mrays/s", "hits", "lost ppm", "other ppm", "MiB"}};
   measure_grid("object", voxel_object("standard"), options, rows, grids);
-  measure_grid("block", block_of({8, 8, 8}), options, rows, grids);
+  measure_grid("block", block_of(ivec3(options.block)), options, rows, grids);
   print_table(grids, 3);
   std::vector<std::vector<std::string>> lines{{"set", "objects", "engine", "mode", "box", "ms/frame", "Mrays/s",
                                                "steps/ray", "boxes/ray", "hits", "lost ppm", "other ppm", "MiB",

@@ -50,16 +50,19 @@ void OctantCubes::build(const VoxelGrid& grid, const VoxelBox& region, int octan
     }
   });
   near.spread(ahead[0], ahead[1], ahead[2]);
-  std::uint8_t least = 255;
+  int largest = 0;
   for_each_row(region, [&](int y, int z) {
     const std::uint8_t* const row = near.row(y - seen.low.y, z - seen.low.z) + (region.low.x - seen.low.x);
     std::uint8_t* const to = sides_.at(in_plane({region.low.x, y, z}, octant));
+    std::uint8_t here = 0;
     for (int x = 0; x < region.high.x - region.low.x; ++x) {
-      to[x] = static_cast<std::uint8_t>(kLargest - row[x]);
-      least = std::min(least, row[x]);
+      const auto side = static_cast<std::uint8_t>(kLargest - row[x]);
+      to[x] = side;
+      here = std::max(here, side);
     }
+    largest = std::max<int>(largest, here);
   });
-  largest_ = std::max(largest_, kLargest - least);
+  largest_ = std::max(largest_, largest);
 }
 
 }  // namespace scarp

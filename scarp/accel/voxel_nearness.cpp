@@ -8,8 +8,29 @@
 namespace scarp {
 namespace {
 
-constexpr std::size_t kBlock = 16;   // bytes at once
-constexpr std::size_t kFarthest = 255;  // steps that count; also the bytes before and after a row in a margin
+constexpr std::size_t kBlock = 16;      // bytes at once
+constexpr std::size_t kFarthest = 255;  // steps that count
+
+// 16 numbers in one register: the vectors of GCC and clang, whose operators work number by number.
+using Bytes = std::uint8_t __attribute__((vector_size(kBlock)));
+
+Bytes load(const std::uint8_t* from) {
+  Bytes bytes;
+  std::memcpy(&bytes, from, kBlock);
+  return bytes;
+}
+void store(const Bytes& bytes, std::uint8_t* to) { std::memcpy(to, &bytes, kBlock); }
+Bytes greater(const Bytes& a, const Bytes& b) { return a > b ? a : b; }
+// Each some steps farther away, at most out of sight.
+Bytes farther(const Bytes& nearness, const Bytes& steps) { return greater(nearness, steps) - steps; }
+
+// A block, or what is nearer of its neighbours in a row.
+Bytes widened(const std::uint8_t* from, const VoxelNearness::Sides& x) {
+  Bytes bytes = load(from);
+  if (x.lower) bytes = greater(bytes, load(from - 1));
+  if (x.upper) bytes = greater(bytes, load(from + 1));
+  return bytes;
+}
 
 // Four bytes, 255 where the bit is set.
 constexpr std::array<std::uint32_t, 16> make_bytes_of() {
@@ -21,31 +42,13 @@ constexpr std::array<std::uint32_t, 16> make_bytes_of() {
 }
 constexpr std::array<std::uint32_t, 16> kBytesOf = make_bytes_of();
 
-// 16 numbers in one register: the vectors of GCC and clang, whose operators work number by number.
-using Bytes = std::uint8_t __attribute__((vector_size(kBlock)));
-
-Bytes greater(const Bytes& a, const Bytes& b) { return a > b ? a : b; }
-
-// to = max(to, from - steps), block by block.
-void take(std::uint8_t* to, const std::uint8_t* from, std::size_t count, std::uint8_t steps) {
-  const Bytes step = Bytes{} + steps;
-  for (std::size_t i = 0; i < count; i += kBlock) {
-    Bytes here, there;
-    std::memcpy(&here, to + i, kBlock);
-    std::memcpy(&there, from + i, kBlock);
-    here = greater(here, greater(there, step) - step);
-    std::memcpy(to + i, &here, kBlock);
-  }
-}
-
 }  // namespace
 
 VoxelNearness::VoxelNearness(const VoxelGrid& grid, const VoxelBox& window)
     : size_(window.high - window.low),
-      stride_((static_cast<std::size_t>(size_.x) + kBlock - 1) / kBlock * kBlock),
-      bytes_(stride_ * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z)),
-      margin_(stride_ + 2 * kFarthest + 2),
-      next_(margin_.size()) {
+      used_((static_cast<std::size_t>(size_.x) + kBlock - 1) / kBlock * kBlock),
+      stride_(used_ + 2 * kMargin),
+      bytes_(stride_ * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z)) {
   const int first = window.low.x >> 2, last = (window.high.x - 1) >> 2, shift = window.low.x - 4 * first;
   std::vector<std::uint8_t> bricks(4 * static_cast<std::size_t>(last - first + 1));
   for (int z = 0; z < size_.z; ++z) {
@@ -59,6 +62,9 @@ VoxelNearness::VoxelNearness(const VoxelGrid& grid, const VoxelBox& window)
   }
 }
 
+// What has just been stored is not loaded across blocks at once, which would wait for it: slabs and columns of rows take
+// each step together.
+
 void VoxelNearness::spread(const Sides& x, const Sides& y, const Sides& z) {
   along_x(x);
   along_y(x, y);
@@ -67,56 +73,80 @@ void VoxelNearness::spread(const Sides& x, const Sides& y, const Sides& z) {
 
 void VoxelNearness::along_x(const Sides& x) {
   const std::size_t reach = std::min<std::size_t>(static_cast<std::size_t>(size_.x) - 1, kFarthest - 1);
-  std::uint8_t *here = margin_.data() + kFarthest, *next = next_.data() + kFarthest;
-  for (int z = 0; z < size_.z; ++z) {
-    for (int y = 0; y < size_.y; ++y) {
-      std::uint8_t* const to = row(y, z);
-      if (std::all_of(to, to + stride_, [](std::uint8_t byte) { return byte == 0; })) continue;
-      std::memcpy(here, to, stride_);
-      // What 1, 2, ... steps bring is nearer by 2 * steps - 1 afterwards.
-      for (std::size_t steps = 1; steps <= reach; steps *= 2) {
-        std::memcpy(next, here, stride_);
-        if (x.lower) take(next, here - steps, stride_, static_cast<std::uint8_t>(steps));
-        if (x.upper) take(next, here + steps, stride_, static_cast<std::uint8_t>(steps));
-        std::swap(here, next);
+  // The rows of a slab, twice, each between bytes that stay 0.
+  const std::size_t wide = 2 * used_, rows = static_cast<std::size_t>(size_.y);
+  std::vector<std::uint8_t> slabs(2 * (wide * rows + used_));
+  std::uint8_t *here = slabs.data() + used_, *next = here + slabs.size() / 2;
+  const auto stride_by = [&](std::size_t stride, bool lower, bool upper) {
+    const Bytes steps = Bytes{} + static_cast<std::uint8_t>(stride);
+    for (std::size_t row = 0; row < wide * rows; row += wide) {
+      for (std::size_t i = row; i < row + used_; i += kBlock) {
+        Bytes bytes = load(here + i);
+        if (lower) bytes = greater(bytes, farther(load(here + i - stride), steps));
+        if (upper) bytes = greater(bytes, farther(load(here + i + stride), steps));
+        store(bytes, next + i);
       }
-      std::memcpy(to, here, stride_);
+    }
+    std::swap(here, next);
+  };
+  for (int z = 0; z < size_.z; ++z) {
+    Bytes any{};
+    for (int y = 0; y < size_.y; ++y) {
+      const std::uint8_t* const from = row(y, z);
+      std::uint8_t* const to = here + wide * static_cast<std::size_t>(y);
+      for (std::size_t i = 0; i < used_; i += kBlock) {
+        const Bytes bytes = load(from + i);
+        any |= bytes;
+        store(bytes, to + i);
+      }
+    }
+    std::array<std::uint64_t, 2> halves;
+    std::memcpy(halves.data(), &any, kBlock);
+    if ((halves[0] | halves[1]) == 0) continue;
+    // After strides of 1, 2, ..., n all within 2 n - 1 steps is known.
+    for (std::size_t stride = 1; stride <= reach; stride *= 2) stride_by(stride, x.lower, x.upper);
+    for (int y = 0; y < size_.y; ++y) {
+      const std::uint8_t* const from = here + wide * static_cast<std::size_t>(y);
+      std::uint8_t* const to = row(y, z);
+      for (std::size_t i = 0; i < used_; i += kBlock) store(load(from + i), to + i);
     }
   }
-  std::fill(margin_.begin(), margin_.end(), 0);
-  std::fill(next_.begin(), next_.end(), 0);
-}
-
-void VoxelNearness::widen(const std::uint8_t* row, const Sides& x, std::uint8_t* to) {
-  std::uint8_t* const here = margin_.data() + kFarthest;
-  std::memcpy(here, row, stride_);
-  std::memcpy(to, row, stride_);
-  if (x.lower) take(to, here - 1, stride_, 0);
-  if (x.upper) take(to, here + 1, stride_, 0);
 }
 
 void VoxelNearness::along_y(const Sides& x, const Sides& y) {
-  for (int z = 0; z < size_.z; ++z) {
-    for (int i = 1; y.lower && i < size_.y; ++i) {
-      widen(row(i - 1, z), x, next_.data());
-      take(row(i, z), next_.data(), stride_, 1);
+  const Bytes step = Bytes{} + 1;
+  const auto pass = [&](int from, int to) {
+    for (int z = 0; z < size_.z; ++z) {
+      const std::uint8_t* const source = row(from, z);
+      std::uint8_t* const target = row(to, z);
+      for (std::size_t i = 0; i < used_; i += kBlock)
+        store(greater(load(target + i), farther(widened(source + i, x), step)), target + i);
     }
-    for (int i = size_.y - 2; y.upper && i >= 0; --i) {
-      widen(row(i + 1, z), x, next_.data());
-      take(row(i, z), next_.data(), stride_, 1);
-    }
-  }
+  };
+  for (int i = 1; y.lower && i < size_.y; ++i) pass(i - 1, i);
+  for (int i = size_.y - 2; y.upper && i >= 0; --i) pass(i + 1, i);
 }
 
 void VoxelNearness::along_z(const Sides& x, const Sides& y, const Sides& z) {
-  slab_.resize(stride_ * static_cast<std::size_t>(size_.y));
+  const Bytes step = Bytes{} + 1;
+  // The rows of a slab, widened, between two that are 0.
+  std::vector<std::uint8_t> slab(used_ * (static_cast<std::size_t>(size_.y) + 2));
   const auto pass = [&](int from, int to) {
-    for (int i = 0; i < size_.y; ++i) widen(row(i, from), x, slab_.data() + stride_ * static_cast<std::size_t>(i));
-    const std::size_t count = slab_.size();
-    std::uint8_t* const slab = row(0, to);
-    take(slab, slab_.data(), count, 1);
-    if (y.lower) take(slab + stride_, slab_.data(), count - stride_, 1);
-    if (y.upper) take(slab, slab_.data() + stride_, count - stride_, 1);
+    for (int i = 0; i < size_.y; ++i) {
+      const std::uint8_t* const source = row(i, from);
+      std::uint8_t* const wide = slab.data() + used_ * static_cast<std::size_t>(i + 1);
+      for (std::size_t j = 0; j < used_; j += kBlock) store(widened(source + j, x), wide + j);
+    }
+    for (int i = 0; i < size_.y; ++i) {
+      const std::uint8_t* const wide = slab.data() + used_ * static_cast<std::size_t>(i + 1);
+      std::uint8_t* const target = row(i, to);
+      for (std::size_t j = 0; j < used_; j += kBlock) {
+        Bytes bytes = load(wide + j);
+        if (y.lower) bytes = greater(bytes, load(wide + j - used_));
+        if (y.upper) bytes = greater(bytes, load(wide + j + used_));
+        store(greater(load(target + j), farther(bytes, step)), target + j);
+      }
+    }
   };
   for (int i = 1; z.lower && i < size_.z; ++i) pass(i - 1, i);
   for (int i = size_.z - 2; z.upper && i >= 0; --i) pass(i + 1, i);

@@ -34,7 +34,7 @@ class VoxelNearness {
 
   /// Of the voxels of a row of the window, y and z counted from its lowest ones.
   std::uint8_t* row(int y, int z) {
-    return bytes_.data() +
+    return bytes_.data() + kMargin +
            stride_ * (static_cast<std::size_t>(y) + static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(z));
   }
 
@@ -42,12 +42,13 @@ class VoxelNearness {
   void along_x(const Sides& x);
   void along_y(const Sides& x, const Sides& y);
   void along_z(const Sides& x, const Sides& y, const Sides& z);
-  // A row, or its neighbour in x where that is nearer, into `to`.
-  void widen(const std::uint8_t* row, const Sides& x, std::uint8_t* to);
+
+  static constexpr std::size_t kMargin = 8;  // bytes that are 0, before and after each row
 
   ivec3 size_;
-  std::size_t stride_;  // of rows; bytes beyond the row mean nothing
-  std::vector<std::uint8_t> bytes_, margin_, next_, slab_;
+  std::size_t used_;    // bytes of a row in whole blocks; those beyond its voxels mean nothing
+  std::size_t stride_;  // of rows
+  std::vector<std::uint8_t> bytes_;
 };
 
 }  // namespace scarp

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/box_tree.h"
 
-#include <cstring>
 #include <glm/common.hpp>
 #include <numeric>
+
+#include "scarp/scene/box_beam.h"
 
 namespace scarp {
 namespace {
@@ -17,14 +18,6 @@ constexpr double kPadding = 0x1p-21;
 double half_area(const WorldBox& box) {
   const dvec3 size = glm::max(box.high - box.low, dvec3(0.0));
   return size.x * size.y + size.y * size.z + size.z * size.x;
-}
-
-// Two numbers in one register, as Four in the header.
-using Two = double __attribute__((vector_size(16)));
-Two two(const double* from) {
-  Two pair;
-  std::memcpy(&pair, from, sizeof(pair));
-  return pair;
 }
 
 // A beam has one longest axis, along which no ray is much slower than along another, and no wider slopes than this.
@@ -191,51 +184,17 @@ std::optional<BoxTree::Beam> BoxTree::beam(const Rays& rays) const {
     if (std::abs(rays.direction[axis][0]) > std::abs(rays.direction[longest][0])) longest = axis;
   }
   const double sign = rays.direction[longest][0] < 0 ? -1 : 1;
-  constexpr Two kMost = Two{} + std::numeric_limits<double>::infinity(), kZero{}, kOne = kZero + 1;
-  std::array<Two, 3> low, high, least, most;
-  low.fill(kMost), high.fill(-kMost), least.fill(kMost), most.fill(-kMost);
-  Two slowest = kMost, last = kZero - 1;
-  for (std::size_t i = 0; i < rays.count; i += 2) {
-    // Where the rays come into the box around everything, and where they leave it, as in clip().
-    Two t_in = two(rays.t_min + i), t_out = two(rays.t_max + i);
-    if (i + 1 == rays.count) t_out[1] = -std::numeric_limits<double>::infinity();
-    std::array<Two, 3> origin, direction;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Two bottom = kZero + (box_.low[axis] - padding_), top = kZero + (box_.high[axis] + padding_);
-      const Two o = origin[axis] = two(rays.origin[axis] + i), d = direction[axis] = two(rays.direction[axis] + i);
-      const Two inverse = kOne / d, a = (bottom - o) * inverse, b = (top - o) * inverse;
-      const auto level = d == kZero, in = (o >= bottom) & (o <= top);
-      const Two near = level ? (in ? -kMost : kMost) : a < b ? a : b, far = level ? kMost : a < b ? b : a;
-      t_in = near > t_in ? near : t_in;
-      t_out = far < t_out ? far : t_out;
-    }
-    const Two speed = direction[longest] * sign;
-    const auto inside = t_in <= t_out;
-    slowest = inside & (speed < slowest) ? speed : slowest;
-    const Two length = (t_out - t_in) * speed;
-    last = inside & (length > last) ? length : last;
-    const Two per_speed = kOne / speed;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Two from = origin[axis] + t_in * direction[axis] - middle_[axis], slope = direction[axis] * per_speed;
-      low[axis] = inside & (from < low[axis]) ? from : low[axis];
-      high[axis] = inside & (from > high[axis]) ? from : high[axis];
-      least[axis] = inside & (slope < least[axis]) ? slope : least[axis];
-      most[axis] = inside & (slope > most[axis]) ? slope : most[axis];
-    }
-    t_in = inside ? t_in : kZero;
-    const Two per_t = inside ? speed : kZero;
-    std::memcpy(&beam.start[i], &t_in, sizeof(Two)), std::memcpy(&beam.per_t[i], &per_t, sizeof(Two));
-    beam.inside |= static_cast<std::uint64_t>((inside[0] & 1) | (inside[1] & 2)) << i;
-  }
-  if (!(std::min(slowest[0], slowest[1]) > 0)) return {};
+  BeamBounds bounds;
+  beam.inside = bound_beam(rays, {box_.low - padding_, box_.high + padding_}, middle_, longest, sign,
+                           beam.start.data(), beam.per_t.data(), bounds);
   if (beam.inside == 0) return beam;
-  beam.end = static_cast<float>(std::max(last[0], last[1])) * kRounding;
+  if (!(bounds.slowest > 0)) return {};
+  beam.end = static_cast<float>(bounds.last) * kRounding;
   for (int i = 0; i < 3; ++i) {
-    const double flat = std::min(least[i][0], least[i][1]), steep = std::max(most[i][0], most[i][1]);
+    const double flat = bounds.least[i], steep = bounds.most[i];
     if (!(steep - flat <= kWidestBeam && steep <= kSteepestOfBeam && flat >= -kSteepestOfBeam)) return {};
     Beam::Axis& axis = beam.axes[i];
-    axis.low = static_cast<float>(std::min(low[i][0], low[i][1]));
-    axis.high = static_cast<float>(std::max(high[i][0], high[i][1]));
+    axis.low = static_cast<float>(bounds.low[i]), axis.high = static_cast<float>(bounds.high[i]);
     // Flatter rays than can be told from level ones count as both.
     const auto per = [](double slope) { return slope * kSteepest < 1 ? kSteepest : static_cast<float>(1 / slope); };
     axis.per_up = per(steep), axis.per_down = per(-flat);

@@ -43,7 +43,7 @@ class BoxTree {
   /// Boxes must be finite and not empty, fewer than 2^31.
   explicit BoxTree(std::span<const WorldBox> boxes);
 
-  /// Rays side by side, at most Beam::kRays of them. Where their number is odd one more may be read.
+  /// Rays side by side, at most Beam::kRays of them; up to 7 numbers beyond them are read, but do not count.
   struct Rays {
     std::size_t count;
     std::array<const double*, 3> origin, direction;

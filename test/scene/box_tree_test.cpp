@@ -36,14 +36,14 @@ bool meets(const Ray& ray, const WorldBox& box) {
   return t_in <= t_out;
 }
 
-// Rays side by side; one more than there are.
+// Rays side by side.
 class RaysOfBeam {
  public:
   RaysOfBeam(const std::vector<Ray>& rays, const std::vector<double>& t_max) : rays_{rays.size(), {}, {}, nullptr, nullptr} {
-    for (std::size_t i = 0; i <= rays.size(); ++i) {
-      const Ray& ray = rays[i % rays.size()];
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray& ray = rays[i];
       for (int axis = 0; axis < 3; ++axis) numbers_[axis][i] = ray.origin[axis], numbers_[3 + axis][i] = ray.direction[axis];
-      numbers_[6][i] = ray.t_min, numbers_[7][i] = t_max[i % rays.size()];
+      numbers_[6][i] = ray.t_min, numbers_[7][i] = t_max[i];
     }
     for (int axis = 0; axis < 3; ++axis)
       rays_.origin[axis] = numbers_[axis].data(), rays_.direction[axis] = numbers_[3 + axis].data();
@@ -53,7 +53,7 @@ class RaysOfBeam {
   operator const BoxTree::Rays&() const { return rays_; }
 
  private:
-  std::array<std::array<double, 65>, 8> numbers_{};
+  std::array<std::array<double, BoxTree::Beam::kRays + 7>, 8> numbers_{};
   BoxTree::Rays rays_;
 };
 
