@@ -239,7 +239,8 @@ TEST(ScarpBench, ScenesWritesTheDocumentedFields) {
 }
 
 TEST(ScarpBench, VoxelsWritesTheDocumentedFieldsAndMarchesAgree) {
-  const json all = output_of("voxels --sets standard,degenerate --thousands 1 --stride 16 --width 16 --block 2 --repeats 1");
+  const json all =
+      output_of("voxels --sets standard,degenerate --thousands 1 --stride 16 --width 16 --block 2 --repeats 1");
   expect_head(all);
   std::map<std::string, int> rows;
   for (const json& row : all["rows"]) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// NanoVDB 32 over the same voxels: a grid of floats, 1 where a voxel is solid, followed by its own hierarchical DDA from
-// active node to active voxel, one ray at a time, in float as its documentation has it.
+// NanoVDB 32 over the same voxels: a grid of floats, 1 where a voxel is solid, followed by its own hierarchical DDA
+// from active node to active voxel, one ray at a time, in float as its documentation has it.
 #pragma once
 
 #include <memory>

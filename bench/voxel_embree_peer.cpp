@@ -90,7 +90,8 @@ struct VoxelEmbreePeer::Scene {
   }
   void check() const {
     if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE)
-      throw Error(fmt::format("Embree, voxels: error {}; too little memory is the usual cause", static_cast<int>(error)));
+      throw Error(
+          fmt::format("Embree, voxels: error {}; too little memory is the usual cause", static_cast<int>(error)));
   }
 
   static void bounds(const RTCBoundsFunctionArguments* args) {
@@ -114,7 +115,10 @@ struct VoxelEmbreePeer::Scene {
       const Ray& ray = question.rays[id];
       VoxelSceneHit& best = question.best[id];
       const VoxelRay in_grid{s.grid_from_world * (ray.origin - s.places[args->primID].origin),
-                             question.directions[id].given, ray.t_min, best ? best.hit.t : ray.t_max, {}};
+                             question.directions[id].given,
+                             ray.t_min,
+                             best ? best.hit.t : ray.t_max,
+                             {}};
       const auto quantised = quantise(in_grid, question.directions[id], s.target.box);
       if (!quantised) continue;
       const VoxelHit hit = s.model->march().voxel_cpu(s.target, *quantised, nullptr);
@@ -150,9 +154,18 @@ struct VoxelEmbreePeer::Scene {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Ray& ray = rays[i];
       begin(question, &ray, 1);
-      query.ray = {static_cast<float>(ray.origin.x), static_cast<float>(ray.origin.y), static_cast<float>(ray.origin.z),
-                   0, static_cast<float>(ray.direction.x), static_cast<float>(ray.direction.y),
-                   static_cast<float>(ray.direction.z), 0, kInfinity, ~0u, 0, 0};
+      query.ray = {static_cast<float>(ray.origin.x),
+                   static_cast<float>(ray.origin.y),
+                   static_cast<float>(ray.origin.z),
+                   0,
+                   static_cast<float>(ray.direction.x),
+                   static_cast<float>(ray.direction.y),
+                   static_cast<float>(ray.direction.z),
+                   0,
+                   kInfinity,
+                   ~0u,
+                   0,
+                   0};
       query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(scene, &question.embree, &query);
       if (model) {
@@ -285,10 +298,10 @@ VoxelEmbreePeer VoxelEmbreePeer::triangles(const VoxelGrid& grid, std::vector<Vo
 
 std::vector<VoxelEngine> VoxelEmbreePeer::engines() const {
   const Scene& s = *scene_;
-  const double own = static_cast<double>(s.model ? s.model->bytes() + s.places.size() * sizeof(VoxelPlace)
-                                                 : s.vertices.size() * sizeof(float) +
-                                                       s.indices.size() * sizeof(std::uint32_t) +
-                                                       s.quads.size() * sizeof(Quad));
+  const double own =
+      static_cast<double>(s.model ? s.model->bytes() + s.places.size() * sizeof(VoxelPlace)
+                                  : s.vertices.size() * sizeof(float) + s.indices.size() * sizeof(std::uint32_t) +
+                                        s.quads.size() * sizeof(Quad));
   VoxelEngine engine;
   engine.name = s.name, engine.mode = "x1", engine.box = "bounds";
   engine.mib = (static_cast<double>(s.bytes) + own) / (1 << 20);

@@ -53,7 +53,8 @@ bool VoxelHash::build(const std::vector<ivec3>& voxels) {
   for (const ivec3& v : voxels) of[index(v, r_)].push_back(v);
   std::vector<std::size_t> order(buckets);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return of[a].size() > of[b].size(); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return of[a].size() > of[b].size(); });
   offsets_.assign(buckets, {});
   std::vector<bool> taken(places);
   std::vector<std::size_t> mine;

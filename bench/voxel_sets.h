@@ -27,8 +27,8 @@ VoxelGrid voxel_object(std::string_view set);
 /// 1,024 n places for model 0.
 std::vector<VoxelPlace> object_places(int n);
 
-/// Rays through the middles of the pixels of a picture of 1920 x 1080, 8 x 8 pixels after 8 x 8 pixels: one such tile in
-/// stride x stride of them.
+/// Rays through the middles of the pixels of a picture of 1920 x 1080, 8 x 8 pixels after 8 x 8 pixels: one such tile
+/// in stride x stride of them.
 std::vector<Ray> camera_rays(int stride);
 
 /// Rays at a box at the origin from eight sides, one per octant of directions, twice its diagonal away: width x width

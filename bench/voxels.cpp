@@ -27,9 +27,7 @@ constexpr double kPixels = 1920.0 * 1080.0;
 constexpr double kMiB = 1 << 20;
 constexpr std::size_t kTileRays = 64;
 
-std::string text_of(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : short_number(value);
-}
+std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : short_number(value); }
 
 // The least of several times, in microseconds: of a single thread, so what is above it is others' doing.
 double least_us(const std::function<void()>& work, int times = 20) {
@@ -182,12 +180,11 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
       VoxelGrid grid = voxel_object(set);
       const std::size_t lossless = VoxelModel(grid, march, {}, extent).bytes();
       grid.drop_hidden_entries();
-      const auto model =
-          std::make_shared<const VoxelModel>(std::move(grid), march, std::vector<VoxelColour>{}, extent);
+      const auto model = std::make_shared<const VoxelModel>(std::move(grid), march, std::vector<VoxelColour>{}, extent);
       const Stopwatch build;
       auto scene = std::make_unique<VoxelScene>(std::vector{model}, places);
-      techniques.push_back({std::move(scene), static_cast<double>(model->bytes()), static_cast<double>(lossless),
-                            build.cpu_s()});
+      techniques.push_back(
+          {std::move(scene), static_cast<double>(model->bytes()), static_cast<double>(lossless), build.cpu_s()});
       add_engines(*techniques.back().scene, march.name, extent == VoxelModel::Extent::grid ? "grid" : "bounds",
                   techniques.back().bytes, engines);
     }
@@ -234,8 +231,9 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
       row["scene_build_s"] = t.build_s;
     }
     std::vector<std::string> line;
-    for (const char* key : {"set", "objects", "engine", "mode", "box", "ms_per_frame", "mrays_per_cpu_s", "steps_per_ray",
-                            "boxes_per_ray", "hit_share", "lost_ppm", "other_ppm", "main_mib", "mib_per_1k_distinct"})
+    for (const char* key :
+         {"set", "objects", "engine", "mode", "box", "ms_per_frame", "mrays_per_cpu_s", "steps_per_ray",
+          "boxes_per_ray", "hit_share", "lost_ppm", "other_ppm", "main_mib", "mib_per_1k_distinct"})
       line.push_back(text_of(row.value(key, Json())));
     lines.push_back(std::move(line));
     rows.push_back(std::move(row));

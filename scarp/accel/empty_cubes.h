@@ -9,8 +9,8 @@
 //   bit_parallel  the solid voxels grow by one in all directions, 64 voxels at once, and every voxel counts how long it
 //                 stays outside. O(n D): fast where nothing is far from solid voxels
 //   summed_area   sums of all voxels before each (a summed-area table, in 64 bits), then a binary search for the
-//                 largest empty cube. O(n log n). Source: C. Leak, "Raymarching voxel rendering"; F. Crow, "Summed-area tables
-//                 for texture mapping", SIGGRAPH 1984
+//                 largest empty cube. O(n log n). Source: C. Leak, "Raymarching voxel rendering"; F. Crow, "Summed-area
+//                 tables for texture mapping", SIGGRAPH 1984
 // Cost: a byte per voxel.
 #pragma once
 

@@ -28,9 +28,8 @@ class VoxelBytes {
 
   std::size_t index(const ivec3& voxel) const {
     return static_cast<std::size_t>(voxel.x) +
-           static_cast<std::size_t>(size_.x) *
-               (static_cast<std::size_t>(voxel.y) +
-                static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(voxel.z));
+           static_cast<std::size_t>(size_.x) * (static_cast<std::size_t>(voxel.y) +
+                                                static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(voxel.z));
   }
   std::uint8_t operator[](const ivec3& voxel) const { return bytes_[index(voxel)]; }
   std::uint8_t& operator[](const ivec3& voxel) { return bytes_[index(voxel)]; }

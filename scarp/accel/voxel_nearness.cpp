@@ -62,8 +62,8 @@ VoxelNearness::VoxelNearness(const VoxelGrid& grid, const VoxelBox& window)
   }
 }
 
-// What has just been stored is not loaded across blocks at once, which would wait for it: slabs and columns of rows take
-// each step together.
+// What has just been stored is not loaded across blocks at once, which would wait for it: slabs and columns of rows
+// take each step together.
 
 void VoxelNearness::spread(const Sides& x, const Sides& y, const Sides& z) {
   along_x(x);

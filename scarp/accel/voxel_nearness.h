@@ -5,9 +5,9 @@
 //   255 on solid voxels, one less for each step away, 0 for 255 steps and more: a step is a difference that ends at 0,
 //   and 16 of them are two instructions
 //
-// One axis after the other: along x in strides of 1, 2, 4, ...; then each row takes what its neighbour in y has, and the
-// neighbours in x of that one; then each slab likewise along z. That is exact: a shortest way goes along x first, then
-// along x and y at once, then along all three. O(n), whatever the grid holds. Source: A. Rosenfeld, J. Pfaltz,
+// One axis after the other: along x in strides of 1, 2, 4, ...; then each row takes what its neighbour in y has, and
+// the neighbours in x of that one; then each slab likewise along z. That is exact: a shortest way goes along x first,
+// then along x and y at once, then along all three. O(n), whatever the grid holds. Source: A. Rosenfeld, J. Pfaltz,
 // "Distance functions on digital pictures", Pattern Recognition 1968 (the two passes of its chessboard distance).
 #pragma once
 

@@ -7,8 +7,8 @@
 //           leaves enough lanes empty, the others move together
 //
 // The answers are those of the scalar marches, bit for bit, and so are the steps: the same roundings in double, the
-// same whole numbers afterwards. Source: T. Aila, S. Laine, "Understanding the efficiency of ray traversal on GPUs", HPG
-// 2009, for rays in lanes.
+// same whole numbers afterwards. Source: T. Aila, S. Laine, "Understanding the efficiency of ray traversal on GPUs",
+// HPG 2009, for rays in lanes.
 #pragma once
 
 #include <cstddef>
@@ -55,15 +55,15 @@ void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world);
 
 /// The rays whose bits are set, as free rays, within [t_min, t_max]. Returns which of them came into the box.
 using VoxelPacketMarch = std::uint64_t (*)(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
-                                          std::uint64_t rays);
+                                           std::uint64_t rays);
 
 std::uint64_t march_packet_voxel_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
-                                       std::uint64_t rays);
-std::uint64_t march_packet_voxel_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
-                                      std::uint64_t rays);
-std::uint64_t march_packet_voxel_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                         std::uint64_t rays);
-std::uint64_t march_packet_voxel_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+std::uint64_t march_packet_voxel_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                        std::uint64_t rays);
+std::uint64_t march_packet_voxel_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                         std::uint64_t rays);
+std::uint64_t march_packet_voxel_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                        std::uint64_t rays);
 
 }  // namespace scarp

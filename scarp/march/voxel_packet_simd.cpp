@@ -47,12 +47,8 @@ HWY_INLINE VI lesser(VI a, VI b) { return hn::Min(a, b); }
 #else
 constexpr hn::Repartition<std::uint32_t, decltype(dd)> du32;
 constexpr hn::Repartition<std::int32_t, decltype(dd)> di32;
-HWY_INLINE VI product(VI a, VI b) {
-  return hn::BitCast(di, hn::MulEven(hn::BitCast(du32, a), hn::BitCast(du32, b)));
-}
-HWY_INLINE VI lesser(VI a, VI b) {
-  return hn::BitCast(di, hn::Min(hn::BitCast(di32, a), hn::BitCast(di32, b)));
-}
+HWY_INLINE VI product(VI a, VI b) { return hn::BitCast(di, hn::MulEven(hn::BitCast(du32, a), hn::BitCast(du32, b))); }
+HWY_INLINE VI lesser(VI a, VI b) { return hn::BitCast(di, hn::Min(hn::BitCast(di32, a), hn::BitCast(di32, b))); }
 #endif
 // 0 <= a < 2^52.
 HWY_INLINE VD as_double(VI a) {
@@ -96,12 +92,10 @@ HWY_INLINE VI index_in(const VI (&v)[3], const ivec3& size) {
 }
 HWY_INLINE VI bit_in(const VI (&v)[3]) {
   const VI three = hn::Set(di, 3);
-  return hn::Or(hn::And(v[0], three), hn::Or(hn::ShiftLeft<2>(hn::And(v[1], three)),
-                                             hn::ShiftLeft<4>(hn::And(v[2], three))));
+  return hn::Or(hn::And(v[0], three),
+                hn::Or(hn::ShiftLeft<2>(hn::And(v[1], three)), hn::ShiftLeft<4>(hn::And(v[2], three))));
 }
-HWY_INLINE VI shifted(VI word, VI by) {
-  return hn::BitCast(di, hn::Shr(hn::BitCast(du, word), hn::BitCast(du, by)));
-}
+HWY_INLINE VI shifted(VI word, VI by) { return hn::BitCast(di, hn::Shr(hn::BitCast(du, word), hn::BitCast(du, by))); }
 HWY_INLINE VI gather_words(const std::uint64_t* words, VI index) {
   return hn::GatherIndex(di, reinterpret_cast<const std::int64_t*>(words), index);
 }
@@ -169,14 +163,16 @@ struct BricksLook {
                              hn::Or(hn::And(down[1], hn::Set(di, 128)), hn::And(down[2], hn::Set(di, 256))));
     const VI brick[3] = {hn::ShiftRight<2>(v[0]), hn::ShiftRight<2>(v[1]), hn::ShiftRight<2>(v[2])};
     const VI bit = bit_in(v);
-    const VI mask = hn::And(gather_words(grid.masks().data(), hn::IfThenElseZero(alive, index_in(brick, grid.bricks()))),
-                            gather_words(kAhead[0].data(), hn::Or(octant, bit)));
+    const VI mask =
+        hn::And(gather_words(grid.masks().data(), hn::IfThenElseZero(alive, index_in(brick, grid.bricks()))),
+                gather_words(kAhead[0].data(), hn::Or(octant, bit)));
     const MI solid = hn::Ne(hn::And(shifted(mask, bit), one), zero);
     VI last = hn::IfThenElseZero(pair_empty(mask, bit), one);  // side of the block - 1
     const MI clear = hn::And(alive, hn::Eq(mask, zero));
     if (!hn::AllFalse(di, clear)) {
       const VI sector[3] = {hn::ShiftRight<2>(brick[0]), hn::ShiftRight<2>(brick[1]), hn::ShiftRight<2>(brick[2])};
-      const VI brick_bit = bit_in(brick), own = hn::BitCast(di, hn::Shl(hn::BitCast(du, one), hn::BitCast(du, brick_bit)));
+      const VI brick_bit = bit_in(brick),
+               own = hn::BitCast(di, hn::Shl(hn::BitCast(du, one), hn::BitCast(du, brick_bit)));
       const VI bricks_of =
           hn::And(gather_words(bricks.masks().data(), hn::IfThenElseZero(clear, index_in(sector, bricks.sectors()))),
                   gather_words(kAhead[0].data(), hn::Or(octant, brick_bit)));
@@ -200,7 +196,7 @@ struct Walk {
   // crossed: the axis whose plane was crossed last; before the first step kEntered and that by which it came in.
   alignas(64) Numbers crossed, ray;
   alignas(64) VoxelPacket::Lanes<double> slowness[3];
-  std::size_t lanes = 0;             // in use
+  std::size_t lanes = 0;               // in use
   std::uint64_t alive[kVectors] = {};  // lanes of each vector
 
   static constexpr std::int64_t kEntered = 8, kInside = 7;
@@ -224,9 +220,7 @@ alignas(64) constexpr auto kOrders = make_orders();
 class Chosen {
  public:
   explicit HWY_INLINE Chosen(std::uint64_t bits) : order_(hn::SetTableIndices(di, kOrders[bits].data())) {}
-  HWY_INLINE void append(VI lanes, std::int64_t* to) const {
-    hn::StoreU(hn::TableLookupLanes(lanes, order_), di, to);
-  }
+  HWY_INLINE void append(VI lanes, std::int64_t* to) const { hn::StoreU(hn::TableLookupLanes(lanes, order_), di, to); }
   HWY_INLINE void append(VD lanes, double* to) const {
     append(hn::BitCast(di, lanes), reinterpret_cast<std::int64_t*>(to));
   }
@@ -277,8 +271,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     alive = hn::And(alive, hn::Or(in_here, hn::And(hn::Ge(voxel[i], low), hn::Lt(voxel[i], high))));
     place = hn::IfThenElse(in_here, hn::IfThenElse(down[i], high, low), place);
     voxel[i] = hn::IfThenElse(in_here, hn::IfThenElse(down[i], hn::Sub(high, one), low), voxel[i]);
-    const VD distance =
-        hn::IfThenElse(down[i], hn::Sub(place, voxel[i]), hn::Sub(hn::Add(voxel[i], one), place));
+    const VD distance = hn::IfThenElse(down[i], hn::Sub(place, voxel[i]), hn::Sub(hn::Add(voxel[i], one), place));
     const VD places = hn::Add(hn::Mul(distance, hn::Set(dd, static_cast<double>(kVoxelPlaces))), hn::Set(dd, 0.5));
     next[i] = truncated(hn::Min(hn::Max(places, zero), hn::Set(dd, static_cast<double>(kVoxelPlaces))));
   }
@@ -325,8 +318,8 @@ HWY_NOINLINE void finish(VoxelPacket& packet, const Walk& walk, std::size_t o, M
   const VD t = hn::IfThenElse(hn::RebindMask(dd, walked), hn::Add(t_in, on_the_way), t_in);
   const MI hit = hn::And(solid, hn::RebindMask(di, hn::Not(hn::Gt(t, t_max))));
   const VI inside = hn::Set(di, static_cast<std::int64_t>(VoxelFace::inside));
-  const VI face = hn::IfThenElse(hn::Eq(crossed, hn::Set(di, Walk::kInside)), inside,
-                                 hn::Sub(hn::Add(axis, axis), down));
+  const VI face =
+      hn::IfThenElse(hn::Eq(crossed, hn::Set(di, Walk::kInside)), inside, hn::Sub(hn::Add(axis, axis), down));
   const Chosen chosen(bits_of(hit));
   const std::size_t to = packet.hits;
   chosen.append(t, packet.t + to);
@@ -481,17 +474,19 @@ void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
   }
 }
 
-std::uint64_t march_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+std::uint64_t march_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                           std::uint64_t rays) {
   return march<PlanesLook>(target, stand, packet, rays);
 }
 std::uint64_t march_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
   return march<CubesLook>(target, stand, packet, rays);
 }
 std::uint64_t march_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
-                           std::uint64_t rays) {
+                            std::uint64_t rays) {
   return march<OctantsLook>(target, stand, packet, rays);
 }
-std::uint64_t march_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+std::uint64_t march_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                           std::uint64_t rays) {
   return march<BricksLook>(target, stand, packet, rays);
 }
 
@@ -517,19 +512,19 @@ void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
 }
 
 std::uint64_t march_packet_voxel_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
-                                       std::uint64_t rays) {
+                                        std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_planes)(target, stand, packet, rays);
 }
 std::uint64_t march_packet_voxel_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
-                                      std::uint64_t rays) {
+                                       std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_cubes)(target, stand, packet, rays);
 }
 std::uint64_t march_packet_voxel_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
-                                        std::uint64_t rays) {
+                                         std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_octants)(target, stand, packet, rays);
 }
 std::uint64_t march_packet_voxel_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
-                                       std::uint64_t rays) {
+                                        std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_bricks)(target, stand, packet, rays);
 }
 

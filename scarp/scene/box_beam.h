@@ -17,8 +17,8 @@ struct BeamBounds {
 };
 
 /// Of at most Beam::kRays rays. `sign` is that of their directions along the beam's axis, which must be 0, 1 or 2; they
-/// are told relative to `middle`. Sets start and per_t of each ray, 0 for those that pass the box, and returns a bit for
-/// each of the others. slowest is not above 0 when the sign of one of them is another.
+/// are told relative to `middle`. Sets start and per_t of each ray, 0 for those that pass the box, and returns a bit
+/// for each of the others. slowest is not above 0 when the sign of one of them is another.
 std::uint64_t bound_beam(const BoxTree::Rays& rays, const WorldBox& box, const dvec3& middle, int axis, double sign,
                          double* start, double* per_t, BeamBounds& bounds);
 

@@ -185,8 +185,8 @@ std::optional<BoxTree::Beam> BoxTree::beam(const Rays& rays) const {
   }
   const double sign = rays.direction[longest][0] < 0 ? -1 : 1;
   BeamBounds bounds;
-  beam.inside = bound_beam(rays, {box_.low - padding_, box_.high + padding_}, middle_, longest, sign,
-                           beam.start.data(), beam.per_t.data(), bounds);
+  beam.inside = bound_beam(rays, {box_.low - padding_, box_.high + padding_}, middle_, longest, sign, beam.start.data(),
+                           beam.per_t.data(), bounds);
   if (beam.inside == 0) return beam;
   if (!(bounds.slowest > 0)) return {};
   beam.end = static_cast<float>(bounds.last) * kRounding;

@@ -5,8 +5,8 @@
 // and larger than they are by more than what is rounded on the way: a ray is never kept from a box that it touches.
 // Rays begin where they come into the box around everything, so it does not matter from how far away they come.
 //
-// Rays that go about the same way are a beam, which walks the hierarchy once for all of them: an interval of origins and
-// one of slopes per axis, and a box is met when the beam's earliest way in is no later than its latest way out.
+// Rays that go about the same way are a beam, which walks the hierarchy once for all of them: an interval of origins
+// and one of slopes per axis, and a box is met when the beam's earliest way in is no later than its latest way out.
 //
 // Sources: H. Dammertz, J. Hanika, A. Keller, "Shallow bounding volume hierarchies for fast SIMD ray tracing of
 // incoherent rays", EGSR 2008; T. Ize, "Robust BVH ray traversal", JCGT 2013; I. Wald, "On fast construction of
@@ -128,10 +128,10 @@ struct BoxTree::Beam {
   friend BoxTree;
   enum class Way { up, down, both };
   struct Axis {
-    Way way;                  // of all its rays
-    float low, high;          // of the origins
-    float per_up, per_down;   // length per distance for the steepest rays that go there
-    float per_least;          // for the flattest ones, where all go one way
+    Way way;                 // of all its rays
+    float low, high;         // of the origins
+    float per_up, per_down;  // length per distance for the steepest rays that go there
+    float per_least;         // for the flattest ones, where all go one way
   };
   std::array<Axis, 3> axes;
 };

@@ -14,7 +14,8 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kRaysPerPiece = 512;
-// So many of the objects that like batches, the largest ones, are asked about all rays; the others are found by the tree.
+// So many of the objects that like batches, the largest ones, are asked about all rays; the others are found by the
+// tree.
 constexpr std::size_t kMostBesideTree = 4;
 // How far a turn may be from orthogonal: many roundings, and no shear that could be meant.
 constexpr double kRigid = 1e-9;
@@ -96,8 +97,7 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
     boxes.push_back(here);
     in_tree_.push_back(i);
     const dvec3 size = here.high - here.low;
-    if (field_of(i).likes_batches())
-      batched.emplace_back(-(size.x * size.y + size.y * size.z + size.z * size.x), i);
+    if (field_of(i).likes_batches()) batched.emplace_back(-(size.x * size.y + size.y * size.z + size.z * size.x), i);
   }
   std::sort(batched.begin(), batched.end());
   batched.resize(std::min(batched.size(), kMostBesideTree));

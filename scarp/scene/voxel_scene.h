@@ -4,8 +4,8 @@
 // Rays are answered in the space of each model that they may meet, quantised there (voxel_ray.h). t counts in the
 // length of the world's direction throughout. Of hits at the same t that of the object that was placed first counts.
 //
-// Batches go through the hierarchy as beams of 64 rays, and through each model's grid in vectors (voxel_packet.h); where
-// rays go apart, one by one.
+// Batches go through the hierarchy as beams of 64 rays, and through each model's grid in vectors (voxel_packet.h);
+// where rays go apart, one by one.
 #pragma once
 
 #include <cstddef>

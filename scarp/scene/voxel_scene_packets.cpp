@@ -79,8 +79,8 @@ class VoxelScene::PacketQuery {
 
   bool ask_tree() {
     const auto &o = packet_.origin, &d = packet_.direction;
-    const auto beam = scene_.tree_.beam({rays_.size(), {o[0], o[1], o[2]}, {d[0], d[1], d[2]}, packet_.t_min,
-                                         packet_.t_max});
+    const auto beam =
+        scene_.tree_.beam({rays_.size(), {o[0], o[1], o[2]}, {d[0], d[1], d[2]}, packet_.t_min, packet_.t_max});
     if (!beam) return false;
     // Those that pass everything.
     for_each_bit(~beam->inside & ~std::uint64_t{0} >> (kRays - rays_.size()),
@@ -194,8 +194,8 @@ class VoxelScene::PacketQuery {
 };
 
 template <class Together, class Alone>
-void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from,
-                            VoxelSceneHit* hits, const Together& together, const Alone& alone) const {
+void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from, VoxelSceneHit* hits,
+                            const Together& together, const Alone& alone) const {
   if (!from.empty()) require_same_length(rays.size(), from.size());
   PacketQuery query(*this);
   std::size_t pause = 0, next_pause = 1;

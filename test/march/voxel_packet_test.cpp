@@ -47,8 +47,7 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
         const EmptyCubes cubes(grid);
         const OctantCubes octants(grid);
         const BrickMasks bricks(grid);
-        const VoxelTarget target{&grid,    round % 2 ? grid.box() : grid.bounds(), nullptr, &cubes,
-                                 &octants, &bricks};
+        const VoxelTarget target{&grid, round % 2 ? grid.box() : grid.bounds(), nullptr, &cubes, &octants, &bricks};
         if (target.box.empty()) continue;
         VoxelStand stand;
         if (round % 3 == 2) {

@@ -39,10 +39,12 @@ bool meets(const Ray& ray, const WorldBox& box) {
 // Rays side by side.
 class RaysOfBeam {
  public:
-  RaysOfBeam(const std::vector<Ray>& rays, const std::vector<double>& t_max) : rays_{rays.size(), {}, {}, nullptr, nullptr} {
+  RaysOfBeam(const std::vector<Ray>& rays, const std::vector<double>& t_max)
+      : rays_{rays.size(), {}, {}, nullptr, nullptr} {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Ray& ray = rays[i];
-      for (int axis = 0; axis < 3; ++axis) numbers_[axis][i] = ray.origin[axis], numbers_[3 + axis][i] = ray.direction[axis];
+      for (int axis = 0; axis < 3; ++axis)
+        numbers_[axis][i] = ray.origin[axis], numbers_[3 + axis][i] = ray.direction[axis];
       numbers_[6][i] = ray.t_min, numbers_[7][i] = t_max[i];
     }
     for (int axis = 0; axis < 3; ++axis)

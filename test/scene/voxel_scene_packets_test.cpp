@@ -32,9 +32,9 @@ std::shared_ptr<const VoxelModel> model(int size, double share, std::string_view
 
 // Objects of all marches, turned, overlapping, some of them twice in the same place.
 VoxelScene crowd(Random& random, int count) {
-  const std::vector models = {model(8, 0.2, "voxel-bricks", random), model(5, 0.5, "voxel-cubes", random),
+  const std::vector models = {model(8, 0.2, "voxel-bricks", random),  model(5, 0.5, "voxel-cubes", random),
                               model(9, 0.1, "voxel-octants", random), model(6, 0.3, "voxel-spheres", random),
-                              model(3, 0.9, "voxel-planes", random), model(1, 0.0, "voxel-planes", random)};
+                              model(3, 0.9, "voxel-planes", random),  model(1, 0.0, "voxel-planes", random)};
   std::vector<VoxelPlace> places;
   for (int i = 0; i < count; ++i) {
     glm::dmat3 turn(1.0);
