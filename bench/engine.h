@@ -31,13 +31,4 @@ struct Engine {
   std::function<bool(const Ray& ray)> blocked;                    ///< as the function says that trace uses for any_hit
 };
 
-/// The same ray in the form of the library.
-inline Ray library_ray(const BenchRay& from) {
-  Ray ray;
-  ray.origin = {from.ox, from.oy, from.oz};
-  ray.direction = {from.dx, from.dy, from.dz};
-  ray.t_max = from.t_max;
-  return ray;
-}
-
 }  // namespace scarp::bench

@@ -87,8 +87,6 @@ std::vector<Aimed> aimed_rays(int cols, int rows, std::int64_t windows, int per_
 double ns_in_batches(const HeightTarget& target, const RaySet& set) {
   constexpr std::int64_t kBatch = 4096;
   constexpr int kPasses = 3;
-  std::vector<Ray> rays;
-  for (const BenchRay& ray : set.rays) rays.push_back(library_ray(ray));
   std::vector<Hit> hits(kBatch);
   std::vector<std::uint8_t> blocked(kBatch);
   double best_s = std::numeric_limits<double>::infinity();
@@ -96,7 +94,7 @@ double ns_in_batches(const HeightTarget& target, const RaySet& set) {
     const Stopwatch watch;
     for (std::int64_t begin = 0; begin < set.size(); begin += kBatch) {
       const auto count = static_cast<std::size_t>(std::min(kBatch, set.size() - begin));
-      const std::span<const Ray> part(rays.data() + begin, count);
+      const std::span<const Ray> part(set.library_rays.data() + begin, count);
       if (set.any_hit) {
         occluded_max_mip_simd(target, part, {blocked.data(), count});
       } else {

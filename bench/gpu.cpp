@@ -49,13 +49,6 @@ double seconds(const Device& device, const std::vector<PassTime>& passes) {
   return sum;
 }
 
-std::vector<Ray> library_rays(const RaySet& set) {
-  std::vector<Ray> rays;
-  rays.reserve(set.rays.size());
-  for (const BenchRay& ray : set.rays) rays.push_back(library_ray(ray));
-  return rays;
-}
-
 // As many blocks of rays, spread evenly, as take no longer than the limit.
 std::vector<Ray> affordable(const std::vector<Ray>& rays, double seconds_per_ray, double limit_s) {
   const double most = limit_s / std::max(seconds_per_ray, 1e-15);
@@ -131,7 +124,7 @@ class Comparison {
       const RaySet set = std::move(make_rays(field, {ray_class}, rays_, options_.ray_seed).front());
       const std::int64_t judged = ray_class == RayClass::chunk ? kMoreJudged * judged_ : judged_;
       const Judge judge(ground.cpu.target(), set, judged, options_.ray_seed);
-      const std::vector<Ray> rays = library_rays(set);
+      const std::vector<Ray>& rays = set.library_rays;
       std::vector<Contender> contenders{{"max-mip", &max_mip_, {}},
                                         {"naive-default", &naive_, {}},
                                         {"relaxed", &relaxed_, {}},

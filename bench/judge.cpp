@@ -31,7 +31,7 @@ Judge::Judge(const HeightTarget& target, const RaySet& set, std::int64_t sample_
   parallel_for(count, kRaysPerPiece, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t i = first; i < last; ++i) {
       const std::size_t k = static_cast<std::size_t>(i);
-      truth_[k] = march_exhaustive(target, library_ray(set.rays[sample_[k]]));
+      truth_[k] = march_exhaustive(target, set.library_rays[sample_[k]]);
     }
   });
 }
@@ -41,7 +41,7 @@ Judgement Judge::judge(const Engine& engine) const {
   parallel_for(static_cast<std::int64_t>(sample_.size()), kRaysPerPiece, [&](std::int64_t first, std::int64_t last) {
     for (std::int64_t i = first; i < last; ++i) {
       const std::size_t k = static_cast<std::size_t>(i);
-      const Ray ray = library_ray(set_.rays[sample_[k]]);
+      const Ray ray = set_.library_rays[sample_[k]];
       Answer& answer = answers[k];
       const Hit hit = engine.closest(ray, answer.stats);
       answer.hit = set_.any_hit ? engine.blocked(ray) : static_cast<bool>(hit);
@@ -68,7 +68,7 @@ Judgement Judge::score(const std::vector<Answer>& answers) const {
     steps += answer.stats.steps;
     cell_tests += answer.stats.cell_tests;
     if (hit && std::isfinite(answer.t) && !answer.exhausted) {
-      const double behind = (answer.t - truth_[k].t) * length(library_ray(set_.rays[sample_[k]]).direction);
+      const double behind = (answer.t - truth_[k].t) * length(set_.library_rays[sample_[k]].direction);
       late += behind > kNear;
       early += behind < -kNear;
       errors.push_back(std::abs(behind));

@@ -130,7 +130,7 @@ class Leaks {
     occluded(target, rays, blocked);
 
     Count sum;
-    RaySet floats{RayClass::nodes, false, true, {}, {}};
+    RaySet floats{RayClass::nodes, false, true, {}};
     const bool ask_embree =
         for_embree(job) && Random(options_.seed + 1, static_cast<std::uint64_t>(piece)).uniform() < embree_share_;
     for (std::int64_t i = 0; i < count; ++i) {

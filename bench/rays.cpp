@@ -183,6 +183,17 @@ std::vector<BenchRay> node_rays(const HeightField& field, std::int64_t count, st
   return rays;
 }
 
+std::vector<Ray> library_rays_of(const std::vector<BenchRay>& rays) {
+  std::vector<Ray> to(rays.size());
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const BenchRay& from = rays[i];
+    to[i].origin = {from.ox, from.oy, from.oz};
+    to[i].direction = {from.dx, from.dy, from.dz};
+    to[i].t_max = from.t_max;
+  }
+  return to;
+}
+
 std::vector<RayPacket> packets_of(const std::vector<BenchRay>& rays) {
   std::vector<RayPacket> packets((rays.size() + 7) / 8);
   for (std::size_t i = 0; i < packets.size() * 8; ++i) {
@@ -232,7 +243,7 @@ std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayCla
   std::vector<RaySet> sets;
   for (const RayClass ray_class : kRayClasses) {
     if (std::find(classes.begin(), classes.end(), ray_class) == classes.end()) continue;
-    RaySet set{ray_class, false, false, {}, {}};
+    RaySet set{ray_class, false, false, {}};
     const std::uint64_t own_seed = class_seed(seed, ray_class);
     switch (ray_class) {
       case RayClass::primary:
@@ -268,6 +279,7 @@ std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayCla
                               ground.name));
     }
     set.packets = packets_of(set.rays);
+    set.library_rays = library_rays_of(set.rays);
     sets.push_back(std::move(set));
   }
   return sets;

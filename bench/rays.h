@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "bench/fields.h"
+#include "scarp/base/ray.h"
 
 namespace scarp::bench {
 
@@ -52,7 +53,8 @@ struct RaySet {
   bool any_hit;   ///< whether the question is "is it blocked" or "where is the first hit"
   bool must_hit;  ///< whether every ray hits
   std::vector<BenchRay> rays;
-  std::vector<RayPacket> packets;  ///< the same rays
+  std::vector<RayPacket> packets{};  ///< the same rays, as packet engines want them
+  std::vector<Ray> library_rays{};   ///< the same rays, as the library wants them
 
   std::int64_t size() const { return static_cast<std::int64_t>(rays.size()); }
 };

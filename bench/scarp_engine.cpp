@@ -16,12 +16,12 @@ double sample_bytes(const HeightField& field) {
 template <class Closest, class Blocked>
 void set_functions(Engine& engine, const Closest& closest, const Blocked& blocked) {
   engine.trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
-    const BenchRay* rays = set.rays.data();
+    const Ray* rays = set.library_rays.data();
     if (set.any_hit) {
-      for (std::int64_t i = begin; i < end; ++i) *answers++ = blocked(library_ray(rays[i])) ? kBlocked : kMiss;
+      for (std::int64_t i = begin; i < end; ++i) *answers++ = blocked(rays[i]) ? kBlocked : kMiss;
     } else {
       for (std::int64_t i = begin; i < end; ++i) {
-        const Hit hit = closest(library_ray(rays[i]), nullptr);
+        const Hit hit = closest(rays[i], nullptr);
         *answers++ = hit ? static_cast<float>(hit.t) : kMiss;
       }
     }
@@ -66,9 +66,7 @@ Engine ScarpGround::vectors(const std::string& mode, const VectorIdeas& ideas) c
   const HeightTarget to = target();
   engine.trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
     const auto count = static_cast<std::size_t>(end - begin);
-    thread_local std::vector<Ray> rays;
-    rays.resize(count);
-    for (std::size_t i = 0; i < count; ++i) rays[i] = library_ray(set.rays[static_cast<std::size_t>(begin) + i]);
+    const std::span<const Ray> rays(set.library_rays.data() + begin, count);
     if (set.any_hit) {
       thread_local std::vector<std::uint8_t> blocked;
       blocked.resize(count);

@@ -39,6 +39,8 @@ struct FunctionInstruction {
   std::uint8_t a = 0, b = 0;                   ///< registers read
   std::uint32_t seed = 0;
   double k0 = 0, k1 = 0, k2 = 0, k3 = 0;
+
+  bool operator==(const FunctionInstruction&) const = default;
 };
 
 /// Registers there are; 0 and 1 hold x and y when the program begins.
@@ -47,6 +49,8 @@ inline constexpr int kFunctionRegisters = 64;
 struct FunctionProgram {
   std::vector<FunctionInstruction> code;
   std::uint8_t result = 0;
+
+  bool operator==(const FunctionProgram&) const = default;
 };
 
 /// Throws Error for a function that needs more than 4096 instructions or kFunctionRegisters numbers at a time.

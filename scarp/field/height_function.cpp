@@ -45,6 +45,7 @@ HeightFunction::HeightFunction(Function function) : function_(std::move(function
     programs_[static_cast<int>(use)] = compile(function_, use);
     everywhere_[static_cast<int>(use)] = bound({-kFunctionReach, kFunctionReach, -kFunctionReach, kFunctionReach}, use);
   }
+  normals_are_of_march_ = program(FunctionUse::normal) == program(FunctionUse::march);
 }
 
 double HeightFunction::value(double x, double y, FunctionUse use) const { return function::run(program(use), x, y); }

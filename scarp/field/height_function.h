@@ -62,9 +62,13 @@ class HeightFunction {
   /// The least and greatest dh/dt there.
   dvec2 slope_along(dvec2 origin, dvec2 direction, double t0, double t1, FunctionUse use = FunctionUse::march) const;
 
+  /// Whether normals are those of the surface that is marched: of as many octaves.
+  bool normals_are_of_march() const { return normals_are_of_march_; }
+
  private:
   Function function_;
   FunctionProgram programs_[3];
+  bool normals_are_of_march_ = false;
   FunctionBound everywhere_[3];
 };
 

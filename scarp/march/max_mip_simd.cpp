@@ -21,6 +21,7 @@
 // foreach_target.h comes first.
 #include "hwy/highway.h"
 #include "scarp/march/max_mip_simd_beam.h"
+#include "scarp/march/max_mip_simd_cells.h"
 #include "scarp/march/max_mip_simd_lanes.h"
 #include "scarp/march/max_mip_simd_rays.h"
 
@@ -77,14 +78,15 @@ class VectorWalk {
   }
 
   void run(VectorStats& stats) {
-    for (Lanes& lanes : lanes_) {
+    Packet packets[kPackets];
+    for (int k = 0; k < kPackets; ++k) {
+      Lanes& lanes = lanes_[k];
       lanes = {};
       std::fill_n(lanes.ray, N, -1);
       std::fill_n(lanes.status, N, kMiss);
-      refill(lanes);
+      packets[k].load(lanes);
+      refill(packets[k], lanes);
     }
-    Packet packets[kPackets];
-    for (int k = 0; k < kPackets; ++k) packets[k].load(lanes_[k]);
     for (bool live = true; live;) {
       live = false;
       for (Packet& p : packets) block_step(g_, p);
@@ -102,7 +104,7 @@ class VectorWalk {
   // Cells and new rays, when enough lanes wait for them. False: no lane has a ray, and there are no more.
   HWY_INLINE bool follow_up(Packet& p, Lanes& lanes) {
     const VI zero = hn::Zero(di);
-    const MI walking = hn::Eq(p.status, zero), at_cells = hn::And(walking, hn::Eq(p.level, zero));
+    const MI walking = p.walking(), at_cells = hn::And(walking, hn::Eq(p.level, zero));
     const std::size_t busy = hn::CountTrue(di, walking), cells = hn::CountTrue(di, at_cells);
     stats_.block_steps += N;
     stats_.block_lanes += busy - cells;
@@ -113,80 +115,64 @@ class VectorWalk {
       cell_step<any>(g_, ideas_.put_off, p);
     }
     if (busy == 0 || (N - busy >= (ideas_.refill && !together_ ? kFree : N) && !is_empty())) {
-      p.store(lanes);
-      if (!refill(lanes)) return false;
-      p.load(lanes);
+      return refill(p, lanes);
     }
     return true;
   }
 
-  bool is_empty() const { return next_ >= rays_.size() && fresh_next_ >= kFresh * N; }
-
-  // Answers the rays that are done and puts new ones into their lanes. False: no lane has a ray.
-  HWY_NOINLINE bool refill(Lanes& a) {
-    if (together_ && std::find(a.status, a.status + N, kWalking) == a.status + N) return refill_all(a);
-    return refill_lanes(a);
+  bool is_empty() const {
+    return next_ >= rays_.size() && std::all_of(waiting_, waiting_ + kFresh, [](std::uint64_t w) { return w == 0; });
   }
 
-  bool refill_lanes(Lanes& a) {
-    bool live = false;
-    for (std::size_t j = 0; j < N; ++j) {
-      if (a.status[j] != kWalking) {
-        answer(a, j);
-        a.ray[j] = -1;
-        if (!next_fresh()) continue;
-        move(fresh_[fresh_next_ / N], fresh_next_ % N, a, j);
-        ++fresh_next_;
+  // Answers the rays that are done and puts new ones into their lanes. False: no lane has a ray.
+  HWY_NOINLINE bool refill(Packet& p, Lanes& a) {
+    const std::uint64_t walking = bits_of(p.walking());
+    std::uint64_t idle = ~walking & kAllLanes;
+    p.store(a);
+    answer(p, a, idle);
+    for (std::uint64_t rest = idle; rest != 0; rest &= rest - 1) a.ray[std::countr_zero(rest)] = -1;
+    bool live = walking != 0;
+    while (idle != 0 && find_waiting()) {
+      const Lanes& fresh = fresh_[fresh_at_];
+      std::uint64_t& waiting = waiting_[fresh_at_];
+      alignas(64) std::int32_t from[N] = {}, taken[N] = {};
+      for (; idle != 0 && waiting != 0; idle &= idle - 1, waiting &= waiting - 1) {
+        const int j = std::countr_zero(idle), i = std::countr_zero(waiting);
+        from[j] = i, taken[j] = 1;
+        a.ray[j] = fresh.ray[i], a.t_begin[j] = fresh.t_begin[i], a.t_per_cell[j] = fresh.t_per_cell[i];
       }
+      p.take(fresh, from, taken);
       live = true;
     }
     return live;
   }
 
-  // The same where all rays are done: a whole vector of new rays is taken as it is, and no lane is moved alone.
-  bool refill_all(Lanes& a) {
-    for (std::size_t j = 0; j < N; ++j) answer(a, j);
-    std::fill_n(a.ray, N, -1);
-    if (!next_fresh()) return false;
-    if (fresh_next_ % N != 0) return refill_lanes(a);
-    a = fresh_[fresh_next_ / N];
-    fresh_next_ += N;
-    return true;
-  }
-
-  // Whether there is another ray, at fresh_next_. Rays that need no walk are answered on the way.
-  bool next_fresh() {
+  // Whether rays wait for a lane, in fresh_[fresh_at_].
+  bool find_waiting() {
     for (;;) {
-      for (; fresh_next_ < kFresh * N; ++fresh_next_) {
-        const Lanes& fresh = fresh_[fresh_next_ / N];
-        if (fresh.status[fresh_next_ % N] == kWalking) return true;
-        answer(fresh, fresh_next_ % N);
+      for (; fresh_at_ < kFresh; ++fresh_at_) {
+        if (waiting_[fresh_at_] != 0) return true;
       }
       if (next_ >= rays_.size()) return false;
       take_rays();
     }
   }
 
-  static void move(const Lanes& from, std::size_t i, Lanes& to, std::size_t j) {
-    to.ox[j] = from.ox[i], to.oy[j] = from.oy[i], to.dx[j] = from.dx[i], to.dy[j] = from.dy[i];
-    to.per_x[j] = from.per_x[i], to.per_y[j] = from.per_y[i], to.z[j] = from.z[i], to.dz[j] = from.dz[i];
-    to.margin[j] = from.margin[i], to.end[j] = from.end[i], to.T[j] = from.T[i], to.doubt[j] = from.doubt[i];
-    to.x[j] = from.x[i], to.y[j] = from.y[i], to.level[j] = from.level[i];
-    to.mirror_x[j] = from.mirror_x[i], to.mirror_y[j] = from.mirror_y[i];
-    to.begin_x[j] = from.begin_x[i], to.begin_y[j] = from.begin_y[i];
-    to.last_x[j] = from.last_x[i], to.last_y[j] = from.last_y[i];
-    to.seen[j] = from.seen[i], to.status[j] = from.status[i];
-    to.t_begin[j] = from.t_begin[i], to.t_per_cell[j] = from.t_per_cell[i], to.ray[j] = from.ray[i];
-  }
-
-  // The next rays into fresh_.
+  // The next rays into fresh_. Those that need no walk are answered.
   HWY_NOINLINE void take_rays() {
-    fresh_next_ = 0;
+    fresh_at_ = 0;
     for (Lanes& fresh : fresh_) take_rays(fresh);
-    if (any || !ideas_.beam) return;
-    const std::uint64_t rays = follow_beam(g_, fresh_, kFresh, beam_length_);
-    stats_.beam_rays += rays;
-    together_ = rays > 0;
+    if (!any && ideas_.beam) {
+      const std::uint64_t rays = follow_beam(g_, fresh_, kFresh, beam_length_);
+      stats_.beam_rays += rays;
+      together_ = rays > 0;
+    }
+    for (std::size_t k = 0; k < kFresh; ++k) {
+      Packet p;
+      p.load(fresh_[k]);
+      waiting_[k] = bits_of(p.walking());
+      answer(p, fresh_[k], ~waiting_[k] & kAllLanes);
+    }
   }
 
   // The first steps of any-hit are taken here, where all lanes are busy: most rays begin near the ground, at a cell.
@@ -199,15 +185,30 @@ class VectorWalk {
     }
     next_ += count;
     prepare(f_, r_, fresh);
-    if (any && ideas_.first_cells) {
-      Packet p;
-      p.load(fresh);
-      for (int i = 0; i < kFirstSteps; ++i) {
-        cell_step<any>(g_, ideas_.put_off, p);
-        block_step(g_, p);
-      }
+    const int first_steps = any && ideas_.first_cells ? kFirstSteps : 0;
+    const bool doubles = ideas_.doubles && !g_.triangles && begins_over_field(fresh);
+    if (first_steps == 0 && !doubles) return;
+    Packet p;
+    p.load(fresh);
+    cell_step<any>(g_, ideas_.put_off, p);
+    if (doubles) {
       p.store(fresh);
+      leave_first_cells<any>(g_, f_, r_, fresh);
+      p.load(fresh);
     }
+    for (int i = 1; i < first_steps; ++i) {
+      block_step(g_, p);
+      cell_step<any>(g_, ideas_.put_off, p);
+    }
+    if (first_steps > 0) block_step(g_, p);
+    p.store(fresh);
+  }
+
+  static bool begins_over_field(const Lanes& fresh) {
+    for (std::size_t j = 0; j < N; ++j) {
+      if (fresh.status[j] == kWalking && fresh.level[j] == 0) return true;
+    }
+    return false;
   }
 
   // The scalar walk believes in the start cell, the vectors in positions: they follow where the two agree.
@@ -224,12 +225,16 @@ class VectorWalk {
     return decided;
   }
 
+  static void put_ray(GridRays& to, std::size_t j, const Ray& ray, const GridRay& local) {
+    to.ox[j] = local.origin.x, to.oy[j] = local.origin.y, to.oz[j] = local.origin.z;
+    to.dx[j] = local.direction.x, to.dy[j] = local.direction.y, to.dz[j] = local.direction.z;
+    to.t_min[j] = ray.t_min, to.t_max[j] = ray.t_max, to.seen[j] = 0;
+  }
+
   // A ray into the grid. False: it is answered.
   bool take_ray(std::size_t j, const Ray& ray) {
     const GridRay local = field_.grid_from_world(ray);
-    r_.ox[j] = local.origin.x, r_.oy[j] = local.origin.y, r_.oz[j] = local.origin.z;
-    r_.dx[j] = local.direction.x, r_.dy[j] = local.direction.y, r_.dz[j] = local.direction.z;
-    r_.t_min[j] = ray.t_min, r_.t_max[j] = ray.t_max, r_.seen[j] = 0;
+    put_ray(r_, j, ray, local);
     if (ray.start == RayStart::free) return true;
     const SurfaceStart start = begin_on_surface(ray, local);
     Answer& to = answers_[&ray - rays_.data()];
@@ -245,19 +250,30 @@ class VectorWalk {
     return true;
   }
 
+  // Answers the rays of some lanes of p, which are in memory, too.
+  HWY_INLINE void answer(const Packet& p, const Lanes& a, std::uint64_t lanes) {
+    if constexpr (any) {
+      const MI hits = hn::Eq(p.status, hn::Set(di, kHit)), misses = hn::Eq(p.status, hn::Set(di, kMiss));
+      const MI certain = hn::RebindMask(di, hn::Ge(p.doubt, hn::Set(df, kNever)));
+      const std::uint64_t hit = bits_of(hits), sure = bits_of(hn::Or(hits, hn::And(misses, certain)));
+      for (std::uint64_t rest = lanes & sure; rest != 0; rest &= rest - 1) {
+        const int j = std::countr_zero(rest);
+        if (a.ray[j] >= 0) answers_[a.ray[j]] = hit >> j & 1;
+      }
+      lanes &= ~sure;
+    }
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(lanes));
+      if (a.ray[j] >= 0) answer(a, j);
+    }
+  }
   void answer(const Lanes& a, std::size_t j) {
     const std::int32_t ray = a.ray[j];
-    if (ray < 0) return;
     const auto time = [&](float cells) { return a.t_begin[j] + static_cast<double>(cells) * a.t_per_cell[j]; };
     if constexpr (any) {
-      const bool doubtful = a.doubt[j] < kNever;
-      bool hit = a.status[j] == kHit;
-      if (!hit && (a.status[j] != kMiss || doubtful)) {
-        ++stats_.handed_over;
-        hit = resume_occluded_max_mip(target_, rays_[static_cast<std::size_t>(ray)],
-                                      doubtful ? time(a.doubt[j]) : max_mip::kNotClear);
-      }
-      answers_[ray] = hit;
+      ++stats_.handed_over;
+      answers_[ray] = resume_occluded_max_mip(target_, rays_[static_cast<std::size_t>(ray)],
+                                              a.doubt[j] < kNever ? time(a.doubt[j]) : max_mip::kNotClear);
     } else {
       if (a.status[j] == kMiss) {
         answers_[ray] = Hit{};
@@ -280,76 +296,44 @@ class VectorWalk {
   // order, for the usual way through a cell. It is asked where the way is another one, and where there is no hit.
   HWY_NOINLINE void find_hits() {
     Candidates& c = candidates_;
-    alignas(64) double ox[N], oy[N], oz[N], dx[N], dy[N], dz[N], t_min[N], t_max[N], col[N], row[N], h00[N], h10[N],
-        h01[N], h11[N], t_clear[N], t[N], u[N], v[N], height[N], found[N];
+    GridRays rays;
+    Cells cells;
+    alignas(64) double t_clear[N], t[N], u[N], v[N], height[N], found[N];
     for (std::size_t i = 0; i < N; ++i) {
       const std::size_t k = i < c.count ? i : 0;
       const Ray& ray = rays_[static_cast<std::size_t>(c.ray[k])];
-      const GridRay local = field_.grid_from_world(ray);
-      ox[i] = local.origin.x, oy[i] = local.origin.y, oz[i] = local.origin.z;
-      dx[i] = local.direction.x, dy[i] = local.direction.y, dz[i] = local.direction.z;
-      t_min[i] = ray.t_min, t_max[i] = ray.t_max, col[i] = c.col[k], row[i] = c.row[k], t_clear[i] = c.t_clear[k];
-      const T *north = g_.samples + c.row[k] * g_.stride + c.col[k], *south = north + g_.stride;
-      h00[i] = static_cast<double>(north[0]), h10[i] = static_cast<double>(north[1]);
-      h01[i] = static_cast<double>(south[0]), h11[i] = static_cast<double>(south[1]);
+      put_ray(rays, i, ray, field_.grid_from_world(ray));
+      cells.load(g_, i, c.col[k], c.row[k]);
+      t_clear[i] = c.t_clear[k];
     }
     for (std::size_t h = 0; h < N; h += hn::MaxLanes(dd)) {
-      const auto at = [h](const double* from) HWY_ATTR { return hn::Load(dd, from + h); };
-      const VD least = hn::Set(dd, 0x1p-1000), zero = hn::Zero(dd), one = hn::Set(dd, 1), two = hn::Set(dd, 2),
-               four = hn::Set(dd, 4);
-      const VD vox = at(ox), voy = at(oy), z = at(oz), vdx = at(dx), vdy = at(dy), vdz = at(dz);
-      const VD vcol = at(col), vrow = at(row), vt_min = at(t_min), vt_max = at(t_max);
-      const VD a00 = at(h00), a10 = at(h10), a01 = at(h01), a11 = at(h11);
-      const auto back_x = hn::Lt(vdx, zero), back_y = hn::Lt(vdy, zero);
-      const VD per_x = hn::Div(one, vdx), per_y = hn::Div(one, vdy);
-      const auto line = [](VD k, VD o, VD per) HWY_ATTR { return hn::Mul(hn::Sub(k, o), per); };
-      const VD next_x = hn::Add(vcol, one), next_y = hn::Add(vrow, one);
-      const VD tx_in = line(hn::IfThenElse(back_x, next_x, vcol), vox, per_x);
-      const VD ty_in = line(hn::IfThenElse(back_y, next_y, vrow), voy, per_y);
-      const VD tx = line(hn::IfThenElse(back_x, vcol, next_x), vox, per_x);
-      const VD ty = line(hn::IfThenElse(back_y, vrow, next_y), voy, per_y);
-      const VD exit_x = line(hn::IfThenElse(back_x, zero, hn::Set(dd, f_.cols)), vox, per_x);
-      const VD exit_y = line(hn::IfThenElse(back_y, zero, hn::Set(dd, f_.rows)), voy, per_y);
-      const VD t_in = hn::Max(vt_min, hn::Max(tx_in, ty_in)), t_end = hn::Min(vt_max, hn::Min(exit_x, exit_y));
+      const VD zero = hn::Zero(dd), one = hn::Set(dd, 1), two = hn::Set(dd, 2), four = hn::Set(dd, 4);
+      const CellRays r(rays, cells, h);
+      const VD vt_min = hn::Load(dd, rays.t_min + h), vt_max = hn::Load(dd, rays.t_max + h);
+      const VD tx = r.x_out(), ty = r.y_out();
+      const VD exit_x = CellRays::line(hn::IfThenElse(r.back_x, zero, hn::Set(dd, f_.cols)), r.ox, r.per_x);
+      const VD exit_y = CellRays::line(hn::IfThenElse(r.back_y, zero, hn::Set(dd, f_.rows)), r.oy, r.per_y);
+      const VD t_in = hn::Max(vt_min, hn::Max(r.x_in(), r.y_in()));
+      const VD t_end = hn::Min(vt_max, hn::Min(exit_x, exit_y));
       const VD t_line = hn::Min(tx, ty), t_out = hn::Min(t_line, t_end), length = hn::Sub(t_out, t_in);
-      const auto place = [&](VD o, VD d, VD time, VD cell) HWY_ATTR {
-        return hn::Min(hn::Max(hn::Sub(hn::Add(o, hn::Mul(d, time)), cell), zero), one);
-      };
-      // CellQuadratic at t_in
-      const VD u0 = place(vox, vdx, t_in, vcol), v0 = place(voy, vdy, t_in, vrow);
-      const VD hu = hn::Sub(a10, a00), hv = hn::Sub(a01, a00), twist = hn::Sub(hn::Sub(a11, a01), hu);
-      const VD a = hn::Mul(hn::Mul(hn::Sub(hn::Sub(a10, a00), hn::Sub(a11, a01)), vdx), vdy);
-      const VD b = hn::Sub(vdz, hn::Add(hn::Add(hn::Mul(hu, vdx), hn::Mul(hv, vdy)),
-                                        hn::Mul(twist, hn::Add(hn::Mul(u0, vdy), hn::Mul(v0, vdx)))));
-      const VD surface =
-          hn::Add(hn::Add(hn::Add(a00, hn::Mul(hu, u0)), hn::Mul(hv, v0)), hn::Mul(hn::Mul(twist, u0), v0));
-      const VD z_in = hn::Add(z, hn::Mul(vdz, t_in)), z_out = hn::Add(z, hn::Mul(vdz, t_out));
-      const VD cc = hn::Sub(z_in, surface);
-      // clearance() where it leaves through a line
-      const auto edge = [&](VD p, VD q, VD w) HWY_ATTR {
-        return hn::Min(hn::Max(hn::Add(p, hn::Mul(w, hn::Sub(q, p))), hn::Min(p, q)), hn::Max(p, q));
-      };
-      const VD on_x =
-          edge(hn::IfThenElse(back_x, a00, a10), hn::IfThenElse(back_x, a01, a11), place(voy, vdy, t_out, vrow));
-      const VD on_y =
-          edge(hn::IfThenElse(back_y, a00, a01), hn::IfThenElse(back_y, a10, a11), place(vox, vdx, t_out, vcol));
-      const VD out = hn::Sub(z_out, hn::IfThenElse(hn::Le(tx, ty), on_x, on_y));
+      const auto [a, b, cc] = r.clearance_from(t_in);
+      const VD z_in = r.height(t_in), z_out = r.height(t_out);
+      const VD out = r.clearance_out(t_out, hn::Le(tx, ty));
       const VD t_far = hn::Max(hn::Abs(t_in), hn::Abs(t_out));
-      const VD doubt = rounding(f_, vox, voy, z, vdx, vdy, vdz, t_far);
+      const VD doubt = rounding(f_, r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, t_far);
       // Above until it comes into the cell: known up to t_clear, and from there on because of how steep ground is.
-      const VD gap = hn::Max(hn::Sub(t_in, at(t_clear)), zero);
+      const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, t_clear + h)), zero);
       const VD steepest =
-          hn::Add(hn::Abs(vdz), hn::Mul(hn::Add(hn::Abs(vdx), hn::Abs(vdy)), hn::Set(dd, f_.cell_relief)));
+          hn::Add(hn::Abs(r.dz), hn::Mul(hn::Add(hn::Abs(r.dx), hn::Abs(r.dy)), hn::Set(dd, f_.cell_relief)));
       const auto above = hn::Gt(cc, hn::Add(hn::Mul(gap, steepest), doubt));
       // march_max_mip() begins where the ray comes down to the highest sample, not before.
-      const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), z), vdz);
+      const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), r.oz), r.dz);
       const VD t_top = hn::Sub(quotient, hn::Mul(hn::Set(dd, 2 * kUnit), hn::Abs(quotient)));
-      const auto begun = hn::Or(hn::Ge(vdz, zero), hn::Ge(t_line, t_top));
-      const auto moves = hn::And(hn::Gt(hn::Abs(vdx), least), hn::Gt(hn::Abs(vdy), least));
-      const auto visited = hn::And(hn::And(hn::Lt(t_in, t_line), hn::Le(t_line, t_end)), hn::And(begun, moves));
+      const auto begun = hn::Or(hn::Ge(r.dz, zero), hn::Ge(t_line, t_top));
+      const auto visited = hn::And(hn::And(hn::Lt(t_in, t_line), hn::Le(t_line, t_end)), hn::And(begun, r.moves()));
       const auto usual = hn::And(above, visited);
-      const VD highest = hn::Max(hn::Max(a00, a10), hn::Max(a01, a11));
-      const VD lowest = hn::IfThenElse(hn::Lt(vdz, zero), z_out, z_in);
+      const VD highest = hn::Max(hn::Max(r.h00, r.h10), hn::Max(r.h01, r.h11));
+      const VD lowest = hn::IfThenElse(hn::Lt(r.dz, zero), z_out, z_in);
       const VD square = hn::Mul(b, b), ac4 = hn::Mul(hn::Mul(four, a), cc);
       const auto dips = hn::And(hn::And(hn::Gt(a, zero), hn::Lt(b, zero)),
                                 hn::And(hn::Lt(hn::Neg(b), hn::Mul(hn::Mul(two, a), length)), hn::Ge(square, ac4)));
@@ -361,8 +345,7 @@ class VectorWalk {
       const VD in_cell = hn::IfThenElseZero(hn::Ge(s, zero), hn::Min(s, length));
       const VD time = hn::Min(hn::Max(hn::Add(t_in, in_cell), vt_min), vt_max);
       hn::Store(time, dd, t + h);
-      hn::Store(place(vox, vdx, time, vcol), dd, u + h), hn::Store(place(voy, vdy, time, vrow), dd, v + h);
-      hn::Store(hn::Add(z, hn::Mul(vdz, time)), dd, height + h);
+      hn::Store(r.u(time), dd, u + h), hn::Store(r.v(time), dd, v + h), hn::Store(r.height(time), dd, height + h);
       hn::Store(hn::IfThenElseZero(hit, one), dd, found + h);
     }
     const bool usual = ideas_.find_hits && !g_.triangles;
@@ -386,7 +369,8 @@ class VectorWalk {
   static constexpr int kPackets = any ? 3 : 2;  // vectors in turn: while one waits for memory, others compute
   static constexpr int kFirstSteps = 2;
   static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that are a beam
-  static constexpr double kNearCell = 0x1p-20;                                       // of a cell, far beyond rounding
+  static constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << N) - 1;
+  static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
 
   const HeightTarget& target_;
   const HeightField& field_;
@@ -397,8 +381,9 @@ class VectorWalk {
   FieldFrame f_;
   GridRays r_;
   Lanes fresh_[kFresh], lanes_[kPackets];
-  std::size_t next_ = 0, fresh_next_ = kFresh * N;
-  float beam_length_ = 0;  // of the last beam
+  std::size_t next_ = 0, fresh_at_ = kFresh;
+  std::uint64_t waiting_[kFresh] = {};  // lanes of fresh_ whose rays wait for a lane in lanes_
+  float beam_length_ = 0;               // of the last beam
   bool together_ = false;  // whether the rays in fresh_ are a beam: as they start together they end together
   Candidates candidates_;
   VectorStats stats_;

@@ -30,6 +30,7 @@ namespace scarp {
 struct VectorIdeas {
   bool refill = true;       ///< lanes get new rays when some are done, not when all are
   bool wait = true;         ///< lanes at cells wait for company
+  bool doubles = true;      ///< rays that begin over the field: their first cells in double
   bool first_cells = true;  ///< any-hit: the first steps of new rays are taken together
   bool put_off = true;      ///< any-hit: a doubtful cell is decided only if nothing stops the ray behind it
   bool find_hits = true;    ///< closest hit: computed for many rays at once

@@ -41,6 +41,14 @@ constexpr double kUnit = 0x1p-53, kRoundings = 64;  // four times rounding_of_cl
 // kAlone: not for the vectors.
 enum Status : std::int32_t { kWalking, kMiss, kHit, kUnsure, kAlone };
 
+HWY_INLINE std::uint64_t bits_of(MI mask) {
+  std::uint8_t bytes[8] = {};
+  hn::StoreMaskBits(di, mask, bytes);
+  std::uint64_t bits;
+  std::memcpy(&bits, bytes, sizeof bits);
+  return bits;
+}
+
 // The rays of one vector in memory. Each is in a frame of its own: x and y run along the ray, mirrored where it goes
 // backwards; time T is in cells along the longer axis, from the ray's begin over the field; positions are relative to
 // the cell there; heights are codes, less the margin.
@@ -79,11 +87,30 @@ struct Packet {
     last_x = hn::Load(di, a.last_x), last_y = hn::Load(di, a.last_y);
     seen = hn::Load(di, a.seen), status = hn::Load(di, a.status);
   }
-  // What steps change.
+  // Lanes that are taken: from lane from[j] of others.
+  HWY_INLINE void take(const Lanes& a, const std::int32_t* from, const std::int32_t* taken) {
+    const auto at = hn::SetTableIndices(di, from);
+    const auto at_places = hn::SetTableIndices(df, from);
+    const MI into = hn::Ne(hn::Load(di, taken), hn::Zero(di));
+    const auto place = [&](VF& to, const float* v) HWY_ATTR {
+      to = hn::IfThenElse(hn::RebindMask(df, into), hn::TableLookupLanes(hn::Load(df, v), at_places), to);
+    };
+    const auto whole = [&](VI& to, const std::int32_t* v)
+                           HWY_ATTR { to = hn::IfThenElse(into, hn::TableLookupLanes(hn::Load(di, v), at), to); };
+    place(ox, a.ox), place(oy, a.oy), place(dx, a.dx), place(dy, a.dy), place(per_x, a.per_x), place(per_y, a.per_y);
+    place(z, a.z), place(dz, a.dz), place(margin, a.margin), place(end, a.end), place(T, a.T), place(doubt, a.doubt);
+    whole(x, a.x), whole(y, a.y), whole(level, a.level), whole(mirror_x, a.mirror_x), whole(mirror_y, a.mirror_y);
+    whole(begin_x, a.begin_x), whole(begin_y, a.begin_y), whole(last_x, a.last_x), whole(last_y, a.last_y);
+    whole(seen, a.seen), whole(status, a.status);
+  }
+  // What steps change, and what answers need.
   HWY_INLINE void store(Lanes& a) const {
+    hn::Store(mirror_x, di, a.mirror_x), hn::Store(mirror_y, di, a.mirror_y);
     hn::Store(T, df, a.T), hn::Store(doubt, df, a.doubt), hn::Store(x, di, a.x), hn::Store(y, di, a.y);
     hn::Store(level, di, a.level), hn::Store(seen, di, a.seen), hn::Store(status, di, a.status);
   }
+
+  HWY_INLINE MI walking() const { return hn::Eq(status, hn::Zero(di)); }
 
   // Where the ray leaves its block.
   struct Exit {
@@ -180,11 +207,7 @@ HWY_INLINE CellCodes cell_codes(const VectorGround<T>& g, VI col, VI row, MI cel
   alignas(64) float h00[N] = {}, h10[N] = {}, h01[N] = {}, h11[N] = {};
   hn::Store(col, di, cols), hn::Store(row, di, rows);
   // Loads lane by lane: a gather takes as long for few lanes as for all.
-  std::uint8_t bytes[8] = {};
-  hn::StoreMaskBits(di, cells, bytes);
-  std::uint64_t bits;
-  std::memcpy(&bits, bytes, sizeof bits);
-  for (; bits != 0; bits &= bits - 1) {
+  for (std::uint64_t bits = bits_of(cells); bits != 0; bits &= bits - 1) {
     const auto j = static_cast<std::size_t>(std::countr_zero(bits));
     const T *north = g.samples + rows[j] * g.stride + cols[j], *south = north + g.stride;
     h00[j] = static_cast<float>(north[0]), h10[j] = static_cast<float>(north[1]);

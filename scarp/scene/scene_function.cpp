@@ -54,8 +54,9 @@ class FunctionField final : public SceneField {
   }
   FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
     const dvec3 p = ray.at(hit.t);
-    return {upward(function_.gradient(p.x, p.y, FunctionUse::march)),
-            upward(function_.gradient(p.x, p.y, FunctionUse::normal)),
+    const dvec3 normal = upward(function_.gradient(p.x, p.y, FunctionUse::normal));
+    return {function_.normals_are_of_march() ? normal : upward(function_.gradient(p.x, p.y, FunctionUse::march)),
+            normal,
             {}};
   }
 

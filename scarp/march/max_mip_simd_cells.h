@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// Cells in vectors of double, for max_mip_simd.cpp: hits as the scalar walk computes them, and the first cells of rays
+// that begin closer to the ground than floats can tell.
+// Read once for each instruction set.
+#if defined(SCARP_MARCH_MAX_MIP_SIMD_CELLS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
+#undef SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
+#else
+#define SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
+#endif
+
+#include "scarp/march/max_mip_simd_lanes.h"
+#include "scarp/march/max_mip_simd_rays.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace scarp {
+namespace HWY_NAMESPACE {
+namespace {
+
+using MD = hn::Mask<decltype(dd)>;
+
+// One cell for each lane, and its corners in sample units.
+struct Cells {
+  alignas(64) double col[N], row[N], h00[N], h10[N], h01[N], h11[N];
+
+  template <class T>
+  HWY_INLINE void load(const VectorGround<T>& g, std::size_t j, std::int32_t to_col, std::int32_t to_row) {
+    const T *north = g.samples + to_row * g.stride + to_col, *south = north + g.stride;
+    col[j] = to_col, row[j] = to_row;
+    h00[j] = static_cast<double>(north[0]), h10[j] = static_cast<double>(north[1]);
+    h01[j] = static_cast<double>(south[0]), h11[j] = static_cast<double>(south[1]);
+  }
+};
+
+// Rays in their cells, with the operations of the scalar walk in its order, so that results have its bits.
+struct CellRays {
+  VD ox, oy, oz, dx, dy, dz, per_x, per_y, col, row, next_col, next_row, h00, h10, h01, h11;
+  MD back_x, back_y;
+
+  HWY_INLINE CellRays(const GridRays& r, const Cells& c, std::size_t part) {
+    const auto at = [part](const double* from) HWY_ATTR { return hn::Load(dd, from + part); };
+    const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
+    ox = at(r.ox), oy = at(r.oy), oz = at(r.oz), dx = at(r.dx), dy = at(r.dy), dz = at(r.dz);
+    per_x = hn::Div(one, dx), per_y = hn::Div(one, dy);
+    col = at(c.col), row = at(c.row), next_col = hn::Add(col, one), next_row = hn::Add(row, one);
+    h00 = at(c.h00), h10 = at(c.h10), h01 = at(c.h01), h11 = at(c.h11);
+    back_x = hn::Lt(dx, zero), back_y = hn::Lt(dy, zero);
+  }
+
+  // Not along an axis, where times of lines are none.
+  HWY_INLINE MD moves() const {
+    const VD least = hn::Set(dd, 0x1p-1000);
+    return hn::And(hn::Gt(hn::Abs(dx), least), hn::Gt(hn::Abs(dy), least));
+  }
+  static HWY_INLINE VD line(VD k, VD o, VD per) { return hn::Mul(hn::Sub(k, o), per); }
+  HWY_INLINE VD x_in() const { return line(hn::IfThenElse(back_x, next_col, col), ox, per_x); }
+  HWY_INLINE VD y_in() const { return line(hn::IfThenElse(back_y, next_row, row), oy, per_y); }
+  HWY_INLINE VD x_out() const { return line(hn::IfThenElse(back_x, col, next_col), ox, per_x); }
+  HWY_INLINE VD y_out() const { return line(hn::IfThenElse(back_y, row, next_row), oy, per_y); }
+  HWY_INLINE VD height(VD t) const { return hn::Add(oz, hn::Mul(dz, t)); }
+
+  static HWY_INLINE VD place(VD o, VD d, VD t, VD cell) {
+    return hn::Min(hn::Max(hn::Sub(hn::Add(o, hn::Mul(d, t)), cell), hn::Zero(dd)), hn::Set(dd, 1));
+  }
+  HWY_INLINE VD u(VD t) const { return place(ox, dx, t, col); }
+  HWY_INLINE VD v(VD t) const { return place(oy, dy, t, row); }
+
+  // CellQuadratic: the clearance s after t_in is c + b s + a s^2.
+  struct Quadratic {
+    VD a, b, c;
+  };
+  HWY_INLINE Quadratic clearance_from(VD t_in) const {
+    const VD u0 = u(t_in), v0 = v(t_in);
+    const VD hu = hn::Sub(h10, h00), hv = hn::Sub(h01, h00), twist = hn::Sub(hn::Sub(h11, h01), hu);
+    Quadratic q;
+    q.a = hn::Mul(hn::Mul(hn::Sub(hn::Sub(h10, h00), hn::Sub(h11, h01)), dx), dy);
+    q.b = hn::Sub(dz, hn::Add(hn::Add(hn::Mul(hu, dx), hn::Mul(hv, dy)),
+                              hn::Mul(twist, hn::Add(hn::Mul(u0, dy), hn::Mul(v0, dx)))));
+    q.c = hn::Sub(height(t_in),
+                  hn::Add(hn::Add(hn::Add(h00, hn::Mul(hu, u0)), hn::Mul(hv, v0)), hn::Mul(hn::Mul(twist, u0), v0)));
+    return q;
+  }
+
+  // clearance() at t, where the ray leaves the cell through a line: of a column, or of a row.
+  HWY_INLINE VD clearance_out(VD t, MD through_column) const {
+    const auto edge = [](VD p, VD q, VD w) HWY_ATTR {
+      return hn::Min(hn::Max(hn::Add(p, hn::Mul(w, hn::Sub(q, p))), hn::Min(p, q)), hn::Max(p, q));
+    };
+    const VD on_x = edge(hn::IfThenElse(back_x, h00, h10), hn::IfThenElse(back_x, h01, h11), v(t));
+    const VD on_y = edge(hn::IfThenElse(back_y, h00, h01), hn::IfThenElse(back_y, h10, h11), u(t));
+    return hn::Sub(height(t), hn::IfThenElse(through_column, on_x, on_y));
+  }
+};
+
+// Rays that are unsure in the cell that they begin in, because they are set off next to the ground as shadow rays are:
+// within the margin of floats, which would leave each of them to the scalar walk. Those that are above the ground on
+// all of their way through it go on behind it; any-hit is answered by those that are certain to fall under it.
+template <bool any, class T>
+HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a) {
+  const auto concerns = [&](std::size_t j) { return a.status[j] == kUnsure && a.T[j] == 0; };
+  Cells cells = {};
+  bool some = false;
+  for (std::size_t j = 0; j < N; ++j) {
+    if (!concerns(j)) continue;
+    cells.load(g, j, a.x[j] ^ a.mirror_x[j], a.y[j] ^ a.mirror_y[j]);
+    some = true;
+  }
+  if (!some) return;
+  alignas(64) double T_out[N], over_x[N], over_y[N], clear[N], through[N];
+  for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
+    const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
+    const CellRays c(r, cells, part);
+    const VD t_in = hn::Load(dd, a.t_begin + part), tx = c.x_out(), ty = c.y_out();
+    const VD t_out = hn::Max(hn::Min(tx, ty), t_in), length = hn::Sub(t_out, t_in);
+    const MD over_column = hn::Le(tx, ty), over_row = hn::Le(ty, tx);
+    const CellRays::Quadratic q = c.clearance_from(t_in);
+    const VD out = c.clearance_out(t_out, over_column);
+    const VD doubt = rounding(f, c.ox, c.oy, c.oz, c.dx, c.dy, c.dz, hn::Max(hn::Abs(t_in), hn::Abs(t_out)));
+    // A parabola lies no further below its chord.
+    const VD bend = hn::Mul(hn::Mul(hn::Set(dd, 0.25), q.a), hn::Mul(length, length));
+    const VD least = hn::Sub(hn::Min(q.c, out), hn::Max(bend, zero));
+    const MD falls = hn::And(hn::Gt(q.c, doubt), hn::Lt(out, hn::Neg(doubt)));
+    const auto put = [&](MD v, double* to) HWY_ATTR { hn::Store(hn::IfThenElseZero(v, one), dd, to + part); };
+    put(hn::And(c.moves(), hn::Gt(least, doubt)), clear), put(hn::And(c.moves(), falls), through);
+    put(over_column, over_x), put(over_row, over_y);
+    // Rounded down: what follows looks at the ground from where it is known to be clear.
+    const VD way = hn::Div(length, hn::Load(dd, a.t_per_cell + part));
+    hn::Store(hn::Mul(way, hn::Sub(one, hn::Set(dd, 0x1p-22))), dd, T_out + part);
+  }
+  for (std::size_t j = 0; j < N; ++j) {
+    if (!concerns(j)) continue;
+    const std::int32_t x = a.x[j] + (over_x[j] != 0), y = a.y[j] + (over_y[j] != 0);
+    const auto T_exit = static_cast<float>(T_out[j]);
+    // Its end may be in this cell, see Packet::before_end().
+    const float least_end = a.end[j] * (1 - 0x1p-20f) - static_cast<float>(4 * kSideways);
+    if (!(T_exit < least_end) || x > a.last_x[j] || y > a.last_y[j]) continue;
+    if (clear[j] != 0) {
+      a.status[j] = kWalking, a.seen[j] = 1, a.x[j] = x, a.y[j] = y, a.T[j] = T_exit;
+    } else if (any && through[j] != 0) {
+      a.status[j] = kHit;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace scarp
+HWY_AFTER_NAMESPACE();
+
+#endif
