@@ -31,7 +31,7 @@ struct VoxelPacket {
   alignas(64) Lanes<double> t_min, t_max;  ///< t_max: below t_min for rays that are done
 
   // Set by aim_voxel_packet(): VoxelDirection of each ray in the space of a grid.
-  alignas(64) Lanes<double> given[3], inverse[3], slowness[3], t_per_s;
+  alignas(64) Lanes<double> given[3], inverse[3], t_per_s;
   alignas(64) Lanes<std::int64_t> speed[3], down[3];  ///< down: -1 where a ray goes down the axis, else 0
 
   // Set by a march: hits, in no particular order.

@@ -288,7 +288,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     chosen.append(end, walk.end[i] + to);
     chosen.append(speed, walk.speed[i] + to);
     chosen.append(side, walk.down[i] + to);
-    chosen.append(hn::Load(dd, packet.slowness[i] + o), walk.slowness[i] + to);
+    chosen.append(hn::Div(one, as_double(speed)), walk.slowness[i] + to);
   }
   chosen.append(entered, walk.crossed + to);
   chosen.append(hn::Iota(di, static_cast<std::int64_t>(o)), walk.ray + to);
@@ -466,7 +466,6 @@ void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
       hn::Store(given[i], dd, packet.given[i] + o);
       hn::Store(hn::Div(hn::Set(dd, 1.0), given[i]), dd, packet.inverse[i] + o);
       hn::Store(speed, di, packet.speed[i] + o);
-      hn::Store(hn::Div(hn::Set(dd, 1.0), as_double(speed)), dd, packet.slowness[i] + o);
       hn::Store(hn::VecFromMask(di, hn::RebindMask(di, hn::Lt(given[i], hn::Zero(dd)))), di, packet.down[i] + o);
     }
     const VD per_s = hn::Set(dd, static_cast<double>(1 << (kDirectionBits - kPlaceBits)));

@@ -108,9 +108,16 @@ struct BoxTree::Builder {
     std::array<Range, kWide> parts{whole};
     int count = 1;
     while (count < kWide) {
+      // The largest part that one node cannot hold; else one that the places left can hold without a node of its own.
       int largest = -1;
+      const auto free = static_cast<std::uint32_t>(kWide - count);
       for (int i = 0; i < count; ++i) {
-        if (parts[i].count() > 1 && (largest < 0 || half_area(parts[i].box) > half_area(parts[largest].box)))
+        const bool fits = parts[i].count() <= kWide,
+                   splits = fits ? parts[i].count() > 1 && parts[i].count() - 1 <= free : true;
+        if (!splits) continue;
+        const bool before = largest >= 0 && parts[largest].count() <= kWide;
+        if (largest < 0 || (before && !fits) ||
+            (before == fits && half_area(parts[i].box) > half_area(parts[largest].box)))
           largest = i;
       }
       if (largest < 0) break;
