@@ -152,6 +152,16 @@ TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, BatchesOfAllSizes) {
+  const json all = output_of("batches --size 129 --rays small --repeats 1 --batches 10,5000");
+  expect_head(all);
+  EXPECT_EQ(all["rows"].size(), 2u * 2u * 2u);  // classes, orders, sizes
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"class", "order", "threads", "batch", "mrays_per_s", "us_per_batch", "field", "size"});
+    EXPECT_NEAR(row["mrays_per_s"].get<double>() * row["us_per_batch"].get<double>(), row["batch"].get<double>(), 1e-6);
+  }
+}
+
 TEST(ScarpBench, SurveyTellsTheFastestOfEach) {
   const json all = output_of("survey --size 129 --kinds fbm --rays small --repeats 1");
   expect_head(all);

@@ -54,6 +54,14 @@ struct SurveyOptions {
 };
 void run_survey(const SurveyOptions& options, const ReportOptions& report);
 
+/// `batches`: the library's batch calls with batches of several sizes.
+struct BatchesOptions {
+  TraceOptions trace;
+  std::vector<std::string> classes{"primary", "ao"};
+  std::vector<double> batches{10, 100, 1e3, 1e4, 1e6, 1e7};  ///< rays
+};
+void run_batches(const BatchesOptions& options, const ReportOptions& report);
+
 /// `simd`: the vectors beside the scalar walk, one thread, with each of their ideas left out.
 struct SimdOptions {
   TraceOptions trace;

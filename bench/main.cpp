@@ -132,6 +132,22 @@ int run(int argc, char** argv) {
   add_trace_options(*naive_command, naive.trace);
   add_json_option(*naive_command, report);
 
+  BatchesOptions batches;
+  CLI::App* batches_command = app.add_subcommand("batches", "the library's batch calls, from ten rays to ten million");
+  batches_command->add_option("--size", batches.trace.field.size, "samples per side of the procedural DEM")
+      ->check(CLI::Range(33, 32767))
+      ->capture_default_str();
+  batches_command->add_option("--classes", batches.classes, "of rays")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"primary", "shadow", "grazing", "ao"}))
+      ->capture_default_str();
+  batches_command->add_option("--batches", batches.batches, "rays in a batch, one or several")
+      ->delimiter(',')
+      ->check(CLI::Range(1.0, 1e8))
+      ->capture_default_str();
+  add_trace_options(*batches_command, batches.trace);
+  add_json_option(*batches_command, report);
+
   SimdOptions simd;
   CLI::App* simd_command = app.add_subcommand("simd", "the vectors beside the scalar walk, and what each idea gains");
   simd_command->add_option("--size", simd.trace.field.size, "samples per side of the procedural DEM")
@@ -370,6 +386,7 @@ int run(int argc, char** argv) {
   if (*heights_command) run_heights(heights, report);
   if (*survey_command) run_survey(survey, report);
   if (*naive_command) run_naive(naive, report);
+  if (*batches_command) run_batches(batches, report);
   if (*simd_command) run_simd(simd, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
 #ifdef SCARP_BENCH_VULKAN

@@ -19,6 +19,7 @@
 #include "app/cli/device_option.h"
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
+#include "app/cli/figure_options.h"
 #include "app/cli/frames.h"
 #include "app/cli/function_input.h"
 #include "app/cli/look_options.h"
@@ -60,6 +61,7 @@ struct RenderOptions {
   LookOptions look_options;
   FrameOptions frames;
   DepthOptions depth;
+  FigureOptions figure;
   std::string size, look = "shaded", sun, view, eye, target;
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg;
@@ -132,6 +134,7 @@ ViewSettings settle(RenderOptions& options) {
   if (const auto range = depth_range_of(options.depth); range && !options.exr) {
     throw Error("--depth-range: device depth is a channel of EXR pictures; let the name of the output end in .exr");
   }
+  settle_figure(options.figure, picture, options.exr);
   if (options.exr) {
     require_exr(options.output);
     if (picture.look != Look::shaded) {
@@ -217,6 +220,7 @@ void require_no_terrain_options(const RenderOptions& options) {
   if (options.field.wrap != Wrap::none) throw Error("--wrap: goes with terrain; leave it out");
   if (options.picture.water || options.picture.fog.kind != FogKind::none || !options.look_options.overlay.empty())
     throw Error("--water, --fog, --overlay: go with terrain; leave them out");
+  if (options.figure.any()) throw Error("--legend, --scale-bar: go with terrain; leave them out");
 }
 
 void render_vox(RenderOptions options, const ViewSettings& view) {
@@ -284,7 +288,8 @@ void render_frame(const RenderOptions& options, const TerrainScene& scene, const
                  depth_range_of(options.depth));
     return;
   }
-  const Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, listen);
+  Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, listen);
+  draw_figure_of(options.figure, options.picture, scene, camera, options.top, picture);
   write_png(file, name, {picture.image.rgb.data(), picture.image.width, picture.image.height});
   tell_if_buried(camera, scene.field(), fmt::format("the eye of '{}'", name));
 }
@@ -351,8 +356,8 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
     print_times(options, read_s, build_s, render_s, scenes.device);
     return;
   }
-  const Picture picture =
-      render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
+  Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
+  draw_figure_of(options.figure, options.picture, scene, camera, options.top, picture);
   const double render_s = watch.lap();
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
   tell_notes();
@@ -472,6 +477,7 @@ void add_render(CLI::App& program) {
 
   add_frame_options(*command, o.frames);
   add_depth_options(*command, o.depth);
+  add_figure_options(*command, o.figure);
   add_function_options(*command, o.function, o.march, o.march_settings);
   command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks; lipschitz-local)")
       ->group("Settings of marches");

@@ -137,6 +137,16 @@ Look find_look(std::string_view name) {
   throw Error(fmt::format("look '{}': unknown; there are: {}", name, fmt::join(kLookNames, ", ")));
 }
 
+std::string_view ramp_of(const PictureSettings& settings) {
+  if (!settings.ramp.empty()) return settings.ramp;
+  return settings.look == Look::steps ? "viridis" : "hypsometric";
+}
+
+Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale) {
+  if (settings.ramp_stops) return {*settings.ramp_stops, low, high, scale};
+  return {ramp_of(settings), low, high};
+}
+
 void validate(const PictureSettings& settings) {
   require(settings.width >= 1 && settings.width <= kMaxSide, "the width", settings.width, "1 to 65536 pixels");
   require(settings.height >= 1 && settings.height <= kMaxSide, "the height", settings.height, "1 to 65536 pixels");

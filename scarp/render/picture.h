@@ -27,6 +27,7 @@
 #include "scarp/render/fog.h"
 #include "scarp/render/ground_paint.h"
 #include "scarp/render/light.h"
+#include "scarp/render/ramp.h"
 #include "scarp/render/water.h"
 #include "scarp/scene/terrain_scene.h"
 
@@ -64,6 +65,11 @@ struct PictureSettings {
   ComancheSettings comanche{};
   double error_tolerance = 0.1;  ///< of `error`, along the ray, in shorter sides of a cell; >= 0
 };
+
+/// The name of the ramp in the settings, or what suits the look.
+std::string_view ramp_of(const PictureSettings& settings);
+/// The ramp of the settings over a range of heights (exaggerated) or other numbers.
+Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale = 1);
 
 /// Throws Error naming the first setting out of its range.
 void validate(const PictureSettings& settings);

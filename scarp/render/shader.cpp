@@ -23,16 +23,6 @@ double diagonal(const Box& box) { return length(box.high - box.low); }
 
 }  // namespace
 
-std::string_view ramp_of(const PictureSettings& settings) {
-  if (!settings.ramp.empty()) return settings.ramp;
-  return settings.look == Look::steps ? "viridis" : "hypsometric";
-}
-
-Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale) {
-  if (settings.ramp_stops) return {*settings.ramp_stops, low, high, scale};
-  return {ramp_of(settings), low, high};
-}
-
 void require_ground(const HeightField& field) {
   if (!field.has_cells()) {
     throw Error(fmt::format("picture: the field has {} x {} samples and so no cells; at least 2 x 2 samples are needed",

@@ -18,11 +18,6 @@
 
 namespace scarp {
 
-/// The name of the ramp in the settings, or what suits the look.
-std::string_view ramp_of(const PictureSettings& settings);
-/// The ramp of the settings over a range of heights (exaggerated) or other numbers.
-Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale = 1);
-
 /// Throws Error when the field has nothing to see: no cells, no valid samples.
 void require_ground(const HeightField& field);
 

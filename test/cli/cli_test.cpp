@@ -48,6 +48,41 @@ class Cli : public testing::Test {
   test::Scratch scratch_;
 };
 
+#ifdef SCARP_CAIRO
+TEST_F(Cli, FiguresHaveAScaleThatIsTrue) {
+  // 30 m in 640 pixels: of at most a quarter of that, 5 m are the longest round length. The first half of the bar is
+  // black.
+  const auto result =
+      run({"render", good(), "-o", path("map.png"), "--top", "--size", "640x480", "--scale-bar", "--legend"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  const test::Rgb picture = test::read_png(path("map.png"));
+  int longest = 0;
+  for (int y = picture.height / 2; y < picture.height; ++y) {
+    int run_length = 0;
+    for (int x = 0; x < picture.width / 2; ++x) {
+      const auto* p = picture.pixel(x, y);
+      run_length = p[0] + p[1] + p[2] == 0 ? run_length + 1 : 0;
+      longest = std::max(longest, run_length);
+    }
+  }
+  EXPECT_NEAR(longest, 2.5 * 640 / 30, 2);
+}
+
+TEST_F(Cli, FiguresAreRefusedWhereTheyMeanNothing) {
+  const auto refused = [&](const Names& more, const std::string& size, const std::string& fragment) {
+    Names words{"render", good(), "-o", path("out.png"), "--size", size};
+    words.insert(words.end(), more.begin(), more.end());
+    const auto result = run(words);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(fragment), std::string::npos) << result.err;
+    EXPECT_EQ(scratch_.files(), (Names{"good.asc"}));
+  };
+  refused({"--legend", "--ground", "natural"}, "320x240", "no scale of heights");
+  refused({"--legend"}, "40x20", "make it larger");
+}
+#endif
+
 TEST_F(Cli, RenderWritesAPictureAndOneLine) {
   const auto result = run({"render", good(), "-o", path("out.png"), "--size", "64x48"});
   EXPECT_EQ(result.status, 0) << result.err;

@@ -24,6 +24,12 @@ bool identical(const Hit& a, const Hit& b) {
   return same(a.t, b.t) && a.cell == b.cell && same(a.u, b.u) && same(a.v, b.v) && same(a.height, b.height);
 }
 
+#ifdef NDEBUG
+constexpr int kRaysPerPair = 60;
+#else
+constexpr int kRaysPerPair = 15;
+#endif
+
 TEST(Queries, ABatchAnswersAsItsRaysDo) {
   Random random(5);
   for (const FieldKind& fields : spiteful_fields()) {
@@ -31,7 +37,7 @@ TEST(Queries, ABatchAnswersAsItsRaysDo) {
     const MaxPyramid pyramid(field);
     const HeightTarget target{&field, &pyramid, slope_bound(field)};
     std::vector<Ray> rays;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < kRaysPerPair; ++i) {
       for (const RayKind& kind : spiteful_rays()) rays.push_back(kind.make(field, random));
     }
     for (const MarchEntry& march : height_marches()) {

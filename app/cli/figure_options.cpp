@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/figure_options.h"
+
+#include <fmt/format.h>
+
+#include "scarp/base/error.h"
+
+#ifdef SCARP_CAIRO
+#include <cmath>
+
+#include "scarp/output/figure.h"
+#include "scarp/render/ramp.h"
+#endif
+
+namespace scarp::cli {
+
+void add_figure_options(CLI::App& command, FigureOptions& options) {
+  command.add_flag("--legend", options.legend, "what the colours mean, drawn into the lower right corner");
+  command.add_flag("--scale-bar", options.scale_bar,
+                   "a bar of known length in the lower left corner; in perspective it holds in the picture's middle");
+}
+
+#ifdef SCARP_CAIRO
+
+namespace {
+
+constexpr int kTicks = 6, kColours = 256;
+constexpr double kBarShare = 0.25;  // of the picture's width, at most
+
+std::array<std::uint8_t, 3> bytes(vec3 linear) {
+  return {srgb_byte(linear.x), srgb_byte(linear.y), srgb_byte(linear.z)};
+}
+
+std::vector<FigureTick> ticks_of(double low, double high) {
+  if (!(high > low)) return {{0.5, fmt::format("{:.6g}", low)}};  // ground without relief
+  std::vector<FigureTick> ticks;
+  for (const double number : round_numbers(low, high, kTicks)) {
+    ticks.push_back({(number - low) / (high - low), fmt::format("{:.6g}", number)});
+  }
+  return ticks;
+}
+
+// Numbers from low to high; the ramp knows them multiplied.
+FigureLegend legend_of(std::string title, double low, double high, const Ramp& ramp, double per_colour = 1) {
+  FigureLegend legend{std::move(title), {}, ticks_of(low, high)};
+  for (int i = 0; i < kColours; ++i) {
+    legend.colours.push_back(bytes(ramp((low + (high - low) * (i + 0.5) / kColours) * per_colour)));
+  }
+  return legend;
+}
+
+void add_meaning(const PictureSettings& settings, const HeightField& field, const Picture& picture, Figure& figure) {
+  // Numbers are those of the ground, colours of what is drawn.
+  const double exaggeration = field.settings().exaggeration;
+  const double low = field.min_height() / exaggeration, high = field.max_height() / exaggeration;
+  switch (settings.look) {
+    case Look::steps:
+      figure.legend = legend_of("steps per ray", picture.steps->least, picture.steps->most,
+                                ramp_over(settings, picture.steps->least, picture.steps->most));
+      break;
+    case Look::error: {
+      FigureKey key{"the march is", {}};
+      for (int i = 0; i < kVerdicts; ++i) {
+        const auto verdict = static_cast<Verdict>(i);
+        if ((*picture.errors)[verdict] == 0) continue;
+        const vec3 colour = 255.f * srgb_of(verdict);
+        const auto byte = [](float v) { return static_cast<std::uint8_t>(std::lround(v)); };
+        key.entries.push_back({{byte(colour.x), byte(colour.y), byte(colour.z)}, std::string(name_of(verdict))});
+      }
+      figure.key = std::move(key);
+      break;
+    }
+    case Look::height: {
+      FigureLegend grey{"height, m", {}, ticks_of(low, high)};
+      for (int i = 0; i < 255; ++i) {
+        const auto byte = static_cast<std::uint8_t>(1 + i);
+        grey.colours.push_back({byte, byte, byte});
+      }
+      figure.legend = std::move(grey);
+      break;
+    }
+    case Look::shaded:
+    case Look::comanche:
+      figure.legend =
+          legend_of("height, m", low, high, ramp_over(settings, field.min_height(), field.max_height(), exaggeration),
+                    exaggeration);
+      break;
+  }
+}
+
+// What the picture's middle shows, else the middle of the field.
+double depth_in_the_middle(const PictureSettings& settings, const TerrainScene& scene, const Camera& camera) {
+  const Ray ray = camera.ray(0.5 * settings.width, 0.5 * settings.height);
+  const Hit hit = scene.closest_hit(ray);
+  const dvec3 there = hit ? ray.at(hit.t) : picture_box(scene.field(), false).middle();
+  return dot(there - camera.eye(), camera.forward());
+}
+
+FigureScale scale_of(double pixels_wide, double metres_per_pixel, bool map) {
+  const double most = kBarShare * pixels_wide * metres_per_pixel;
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
+  const double length = most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
+  const bool km = length >= 1000;
+  const double per_unit = km ? 1e-3 : 1;
+  return {length / metres_per_pixel,
+          map ? "" : "in the picture's middle",
+          {{0, "0"},
+           {0.5, fmt::format("{:.6g}", 0.5 * length * per_unit)},
+           {1, fmt::format("{:.6g} {}", length * per_unit, km ? "km" : "m")}}};
+}
+
+}  // namespace
+
+void settle_figure(const FigureOptions& options, const PictureSettings& settings, bool exr) {
+  if (!options.any()) return;
+  const std::string_view option = options.legend ? "--legend" : "--scale-bar";
+  if (exr) throw Error(fmt::format("{}: is drawn into PNG pictures; EXR keeps what was measured", option));
+  const bool ramp = settings.look == Look::shaded || settings.look == Look::comanche;
+  if (options.legend && ramp && settings.ground.natural) {
+    throw Error("--legend: rock, grass and snow are no scale of heights; leave it out, or --ground natural");
+  }
+}
+
+void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const TerrainScene& scene,
+                    const Camera& camera, bool map, Picture& picture) {
+  if (!options.any()) return;
+  Figure figure;
+  if (options.legend) add_meaning(settings, scene.field(), picture, figure);
+  if (options.scale_bar) {
+    const double depth = depth_in_the_middle(settings, scene, camera);
+    if (!(depth > 0)) throw Error("--scale-bar: the picture's middle shows no ground; leave it out");
+    figure.scale = scale_of(picture.image.width, camera.pixel_width(depth) * settings.width / picture.image.width, map);
+  }
+  draw_figure(picture.image.rgb.data(), picture.image.width, picture.image.height, figure);
+}
+
+#else
+
+void settle_figure(const FigureOptions& options, const PictureSettings&, bool) {
+  if (options.any()) {
+    throw Error("--legend, --scale-bar: this scarp was built without Cairo (SCARP_CAIRO=OFF); leave them out");
+  }
+}
+
+void draw_figure_of(const FigureOptions&, const PictureSettings&, const TerrainScene&, const Camera&, bool, Picture&) {}
+
+#endif
+
+}  // namespace scarp::cli

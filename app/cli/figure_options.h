@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// A legend and a scale bar over pictures of terrain.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "scarp/render/picture.h"
+
+namespace scarp::cli {
+
+/// What was typed.
+struct FigureOptions {
+  bool legend = false, scale_bar = false;
+
+  bool any() const { return legend || scale_bar; }
+};
+
+/// Adds --legend and --scale-bar. `options` must live until the subcommand has run.
+void add_figure_options(CLI::App& command, FigureOptions& options);
+
+/// What can be judged without the field. Throws Error.
+void settle_figure(const FigureOptions& options, const PictureSettings& settings, bool exr);
+
+/// Draws over a picture of a terrain what was asked for. `map`: seen without perspective. Throws Error where there is
+/// no room.
+void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const TerrainScene& scene,
+                    const Camera& camera, bool map, Picture& picture);
+
+}  // namespace scarp::cli
