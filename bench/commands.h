@@ -163,6 +163,7 @@ struct FunctionsOptions {
   int repeats = 3;
   std::int64_t judged = 4000;  ///< about so many rays per function are judged
   bool presets = false;        ///< the presets of known shaders beside lipschitz-local, instead of the marches
+  std::string device;          ///< a Vulkan device, as in `scarp render --device`; empty: none
 };
 /// Throws Error, after the report, when a conservative march lost a crossing.
 void run_functions(const FunctionsOptions& options, const ReportOptions& report);

@@ -6,8 +6,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <limits>
+#include <memory>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/commands.h"
@@ -17,6 +22,9 @@
 #include "scarp/march/function_exhaustive.h"
 #include "scarp/march/marches.h"
 #include "scarp/march/presets.h"
+#ifdef SCARP_BENCH_VULKAN
+#include "scarp/march/function_queries_vk.h"
+#endif
 
 namespace scarp::bench {
 namespace {
@@ -70,12 +78,35 @@ std::vector<Ray> picture(const HeightFunction& function, const FunctionsOptions&
   return rays;
 }
 
+// Answers all rays at once, counting steps, for one function; null: the march of the CPU.
+using AnswerAll = std::function<void(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps)>;
+
 struct March {
   std::string name;
   const MarchEntry* entry;
   MarchSettings settings;
   bool vectors = false;
+  std::function<AnswerAll(const HeightFunction&)> elsewhere{};  // null: on the CPU
 };
+
+#ifdef SCARP_BENCH_VULKAN
+// Over functions in the memory of a device.
+std::vector<March> marches_on(const Device& device, const MarchSettings& settings) {
+  std::vector<March> all;
+  for (const MarchEntry& march : function_marches()) {
+    const auto queries = std::make_shared<DeviceFunctionQueries>(device, march, settings);
+    all.push_back({fmt::format("{} on the device", march.name), &march, settings, false,
+                   [device, queries](const HeightFunction& function) -> AnswerAll {
+                     const auto there = std::make_shared<DeviceFunction>(device, function);
+                     return [queries, there, &function](std::span<const Ray> rays, std::span<Hit> hits,
+                                                        std::span<std::uint32_t> steps) {
+                       queries->closest_hits({&function, there.get(), FunctionUse::march}, rays, hits, steps);
+                     };
+                   }});
+  }
+  return all;
+}
+#endif
 
 std::vector<March> marches_over_functions(const FunctionsOptions& options) {
   MarchSettings settings;
@@ -92,6 +123,14 @@ std::vector<March> marches_over_functions(const FunctionsOptions& options) {
     all.push_back({std::string(march.name), &march, settings});
     if (march.function_simd) all.push_back({fmt::format("{}-simd", march.name), &march, settings, true});
   }
+  if (options.device.empty()) return all;
+#ifdef SCARP_BENCH_VULKAN
+  const Device device({.choice = options.device});
+  fmt::print("device: {}, {}\n", device.description().name, device.description().driver);
+  for (March& march : marches_on(device, settings)) all.push_back(std::move(march));
+#else
+  throw Error("functions: --device: this scarp-bench was built without Vulkan; leave it out");
+#endif
   return all;
 }
 
@@ -102,6 +141,7 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
   std::vector<std::vector<std::string>> lines{{"function", "march", "heights/ray", "bounds/ray", "ms/megapixel",
                                                "judged", "misses", "false hits", "given up", "error p99 m"}};
   bool lost = false;
+  const std::vector<March> marches = marches_over_functions(options);
   for (const Ground& ground : grounds(options)) {
     const HeightFunction function(ground.function);
     const std::vector<Ray> rays = picture(function, options);
@@ -116,14 +156,19 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
       }
     });
     double counted_heights = 0, counted_bounds = 0;
-    for (const March& march : marches_over_functions(options)) {
+    for (const March& march : marches) {
       std::vector<Hit> hits(rays.size());
       double heights = 0, bounds = 0, best_ms = std::numeric_limits<double>::infinity();
+      const AnswerAll answer = march.elsewhere ? march.elsewhere(function) : AnswerAll{};
+      std::vector<std::uint32_t> steps(answer ? rays.size() : 0);
+      // Shaders are made when they are first asked for.
+      if (answer) answer(std::span(rays).first(1), std::span(hits).first(1), std::span(steps).first(1));
       for (int pass = 0; pass < options.repeats; ++pass) {
         heights = bounds = 0;
         const auto start = std::chrono::steady_clock::now();
         if (march.vectors) march.entry->function_simd(function, rays, hits, march.settings, {}, FunctionUse::march);
-        for (std::size_t i = 0; i < rays.size() && !march.vectors; ++i) {
+        if (answer) answer(rays, hits, steps);
+        for (std::size_t i = 0; i < rays.size() && !march.vectors && !answer; ++i) {
           MarchStats stats;
           hits[i] = march.entry->function_cpu(function, rays[i], march.settings, &stats, FunctionUse::march);
           heights += stats.cell_tests, bounds += stats.steps;
@@ -131,6 +176,7 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
         const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
         best_ms = std::min(best_ms, took.count());
       }
+      for (const std::uint32_t of_ray : steps) bounds += of_ray;
       // Bit for bit the same work as ray by ray, which was counted in the row before.
       if (march.vectors) heights = counted_heights, bounds = counted_bounds;
       counted_heights = heights, counted_bounds = bounds;

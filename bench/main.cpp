@@ -352,6 +352,8 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   functions_command->add_flag("--presets", functions.presets,
                               "the presets of known shaders beside lipschitz-local, instead of the marches");
+  functions_command->add_option("--device", functions.device,
+                                "cpu, gpu, auto or part of a name: the marches on that Vulkan device, too");
   add_json_option(*functions_command, report);
 
   FunctionLeaksOptions function_leaks;

@@ -42,8 +42,11 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake ${CMAKE_CURRENT_BIN
 # march with all that it needs in one file, for pasting.
 set(shader_folder ${CMAKE_INSTALL_DATADIR}/scarp/glsl)
 set(marches_as_text max_mip naive fixed_step relaxed lipschitz)
-set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/ground_buffers.glsl.h)
-foreach(name ${marches_as_text} two_float ray_frame float_ray cell_surface ground textures)
+set(function_marches_as_text function_marches lipschitz_local sphere_trace)
+set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/ground_buffers.glsl.h scarp/accel/function_buffers.glsl.h
+    scarp/accel/shape_buffers.glsl.h)
+foreach(name ${marches_as_text} ${function_marches_as_text} two_float ray_frame float_ray cell_surface ground textures noise
+        function_heights function_bounds function_frame ray_states shape_distance)
   list(APPEND shader_texts scarp/march/${name}.glsl.h)
 endforeach()
 foreach(text IN LISTS shader_texts)
@@ -52,12 +55,16 @@ foreach(text IN LISTS shader_texts)
 endforeach()
 set(flat_texts "")
 list(TRANSFORM shader_texts PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE all_texts)
-foreach(name IN LISTS marches_as_text)
+foreach(name IN LISTS marches_as_text function_marches_as_text)
+  set(files ${PROJECT_SOURCE_DIR}/scarp/march/${name}.glsl.h)
+  if(name IN_LIST marches_as_text)
+    string(PREPEND files ${PROJECT_SOURCE_DIR}/scarp/march/float_ray.glsl.h,)
+  endif()
   set(flat ${PROJECT_BINARY_DIR}/glsl/${name}.glsl)
   set(flatten ${CMAKE_CURRENT_SOURCE_DIR}/cmake/FlattenGlsl.cmake)
   add_custom_command(OUTPUT ${flat}
     COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D OUT=${flat}
-            -D FILES=${PROJECT_SOURCE_DIR}/scarp/march/float_ray.glsl.h,${PROJECT_SOURCE_DIR}/scarp/march/${name}.glsl.h -P ${flatten}
+            -D FILES=${files} -P ${flatten}
     DEPENDS ${all_texts} ${flatten} VERBATIM)
   list(APPEND flat_texts ${flat})
 endforeach()

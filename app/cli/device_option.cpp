@@ -8,6 +8,7 @@
 #include "scarp/base/error.h"
 #ifdef SCARP_VULKAN
 #include "scarp/march/queries_vk.h"
+#include "scarp/scene/scene_vk.h"
 #include "scarp/scene/terrain_scene_vk.h"
 #endif
 
@@ -47,6 +48,16 @@ SceneMaker scene_maker(const std::string& device, const MarchEntry& march) {
       fmt::format("--device {}: this scarp was built without Vulkan (SCARP_VULKAN=OFF); leave it out, and march "
                   "'{}' runs on the CPU",
                   device, march.name));
+#endif
+}
+
+SceneOnDevice scene_on_device(const std::string& device, const Scene& scene) {
+  if (device.empty()) return {scene, {}};
+#ifdef SCARP_VULKAN
+  const Device opened({.choice = device});
+  return {scene_on(opened, scene), opened.description().name};
+#else
+  throw Error(fmt::format("--device {}: this scarp was built without Vulkan (SCARP_VULKAN=OFF); leave it out", device));
 #endif
 }
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "app/cli/device_option.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
@@ -136,13 +137,15 @@ void render_function(const FunctionInput& input, FunctionPicture settings, const
   if (std::isinf(settings.march_settings.function.reach)) {
     settings.march_settings.function.reach = std::min(haze_distance * std::log(kFaintest), kLongReach * input.extent);
   }
+  if (settings.picture.look == Look::error && !settings.device.empty())
+    throw Error("--device: the look error is judged on the CPU; leave it out");
   const Camera camera = camera_of(function, input, settings);
   const auto begin = std::chrono::steady_clock::now();
-  const auto done = [&](const Image& image) {
+  const auto done = [&](const Image& image, const std::string& on) {
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     write_png(file, output, {image.rgb.data(), image.width, image.height});
-    fmt::print("{}: {} x {} pixels; {}{}; render {:.2f} s\n", output, image.width, image.height, march.name,
-               input.preset.empty() ? "" : " as in " + input.preset, took.count());
+    fmt::print("{}: {} x {} pixels; {}{}; render {:.2f} s{}\n", output, image.width, image.height, march.name,
+               input.preset.empty() ? "" : " as in " + input.preset, took.count(), on.empty() ? "" : ", on " + on);
   };
   if (settings.picture.look == Look::error) {
     const double percent = settings.tolerance_given ? settings.picture.error_tolerance : kErrorPercent;
@@ -150,16 +153,18 @@ void render_function(const FunctionInput& input, FunctionPicture settings, const
         function, march, settings.march_settings, camera,
         {percent / 100, settings.march_settings.function.reach, settings.picture.width, settings.picture.height},
         terminal_progress("render"));
-    done(error.image);
+    done(error.image, {});
     print_error(error, percent);
     return;
   }
   const SceneLook look = look_of(heights_around(function, input.extent), settings.picture.ramp, haze_distance);
-  const Scene scene({scene_function(function, march, settings.march_settings)},
-                    {{.field = 0, .material = static_cast<std::uint32_t>(look.materials.size() == 3 ? 2 : 0)}});
+  const auto [scene, device] = scene_on_device(
+      settings.device,
+      Scene({scene_function(function, march, settings.march_settings)},
+            {{.field = 0, .material = static_cast<std::uint32_t>(look.materials.size() == 3 ? 2 : 0)}}));
   if (std::isinf(settings.picture.ao_distance)) settings.picture.ao_distance = input.extent / 8;
   const Picture picture = render_scene(scene, look, camera, settings.picture, terminal_progress("render"));
-  done(picture.image);
+  done(picture.image, device);
   if (picture.steps) {
     fmt::print("steps per ray: {} (first colour of the ramp) to {} (last), mean {:.1f}\n", picture.steps->least,
                picture.steps->most, picture.steps->mean);

@@ -28,6 +28,7 @@ struct FunctionPicture {
   MarchSettings march_settings;
   ViewSettings view;
   bool view_given = false, haze_given = false, tolerance_given = false;
+  std::string device{};     // as --device, empty: the CPU
   std::string eye, target;  // as --eye and --target, empty: of the view
 };
 

@@ -42,9 +42,9 @@ namespace scarp::cli {
 namespace {
 
 // What of the options goes with a scene, which says all else itself.
-constexpr std::array<std::string_view, 16> kSceneOptions = {
-    "IN",         "--output", "--size", "--look",   "--ramp", "--sun", "--no-shadows", "--samples",
-    "--sun-size", "--view",   "--eye",  "--target", "--fov",  "--top", "--aa",         "--threads"};
+constexpr std::array<std::string_view, 17> kSceneOptions = {
+    "--device",   "IN",     "--output", "--size",   "--look", "--ramp", "--sun", "--no-shadows", "--samples",
+    "--sun-size", "--view", "--eye",    "--target", "--fov",  "--top",  "--aa",  "--threads"};
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {
@@ -198,18 +198,19 @@ void print_times(const RenderOptions& options, double read_s, double build_s, do
 
 // Writes the picture, and says what it took.
 void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const Scene& scene, const SceneLook& look,
-                         const Camera& camera, Watch& watch, double read_s, double build_s) {
+                         const Camera& camera, Watch& watch, double read_s, double build_s,
+                         const std::string& device = {}) {
   if (options.exr) {
     const PictureLayers layers = render_scene_layers(scene, look, camera, options.picture, terminal_progress("render"));
     const double render_s = watch.lap();
     write_layers(file, options.output, layers, camera, depth_range_of(options.depth));
-    print_times(options, read_s, build_s, render_s);
+    print_times(options, read_s, build_s, render_s, device);
     return;
   }
   const Picture picture = render_scene(scene, look, camera, options.picture, terminal_progress("render"));
   const double render_s = watch.lap();
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
-  print_times(options, read_s, build_s, render_s);
+  print_times(options, read_s, build_s, render_s, device);
   print_findings(picture);
 }
 
@@ -246,7 +247,6 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
 
 // The file's own settings hold where no option was given.
 void render_scene_file(RenderOptions options, ViewSettings view) {
-  if (!options.device.empty()) throw Error("--device: pictures of scenes are made on the CPU; leave it out");
   for (const std::string& option : options.given) {
     if (std::find(kSceneOptions.begin(), kSceneOptions.end(), option) == kSceneOptions.end())
       throw Error(fmt::format("{}: of a scene this stands in its file; leave it out", option));
@@ -268,8 +268,10 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
           ? Camera::look_at(*document.camera.eye, *document.camera.target, view.fov_deg, width, height)
       : !options.eye.empty() && !options.target.empty() ? camera_of(options, view, {}, 0)
                                                         : camera_of(options, view, picture_box(document.scene), 0);
+  const auto [scene, device] = scene_on_device(options.device, document.scene);
+  const double build_s = options.device.empty() ? 0 : watch.lap();
   for (const std::string& note : document.notes) fmt::print(stderr, "note: {}\n", note);
-  write_scene_picture(options, file, document.scene, look_of(document), camera, watch, read_s, 0);
+  write_scene_picture(options, file, scene, look_of(document), camera, watch, read_s, build_s, device);
 }
 
 // From under the ground one sees its other side, and through it: worth a word.
@@ -372,14 +374,13 @@ void render_function_input(const RenderOptions& options, const ViewSettings& vie
   }
   require_no_terrain_options(options);
   if (options.exr) throw Error(fmt::format("output '{}': pictures of functions are written as PNG", options.output));
-  if (!options.device.empty()) throw Error("--device: pictures of functions are made on the CPU; leave it out");
   if (options.top) throw Error("--top: a function has no end that a map could show; leave it out");
   const auto given = [&](const char* option) {
     return std::find(options.given.begin(), options.given.end(), option) != options.given.end();
   };
   render_function(options.function,
                   {options.picture, options.march, options.march_settings, view, given("--view"), given("--haze"),
-                   given("--error-tolerance"), options.eye, options.target},
+                   given("--error-tolerance"), options.device, options.eye, options.target},
                   options.output);
 }
 

@@ -60,6 +60,7 @@ constexpr MarchEntry function_march(std::string_view name, Guarantee guarantee, 
   entry.name = name, entry.fields = kFunctions, entry.guarantee = guarantee;
   entry.parameters = parameters, entry.description = description;
   entry.function_cpu = cpu, entry.function_simd = simd;
+  entry.gpu = true;
   return entry;
 }
 
@@ -80,6 +81,7 @@ constexpr MarchEntry distance_march(std::string_view name, Guarantee guarantee, 
   entry.parameters = parameters, entry.description = description;
   entry.distance_cpu = cpu;
   entry.distance_cpu_occluded = occluded;
+  entry.gpu = true;
   return entry;
 }
 

@@ -102,6 +102,7 @@ SurfaceStart start_max_mip(const HeightTarget& target, const Ray& ray) {
   const GridRay local = field.grid_from_world(ray);
   SurfaceStart start;
   if (!is_usual(longest_of(local.direction))) {
+    start.decided = true;
     start.hit = march_max_mip(target, ray);
     return start;
   }

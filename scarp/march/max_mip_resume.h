@@ -20,11 +20,11 @@ bool resume_occluded_max_mip(const HeightTarget& target, const Ray& ray, double 
 
 /// The begin of a ray from the surface: its first cell.
 struct SurfaceStart {
-  bool decided;  ///< the answer is `hit`; else the ray goes on
-  Hit hit;
-  double t;    ///< where it leaves the cell
-  double z;    ///< its height at t = 0, in sample units, such that it begins on the surface
-  bool above;  ///< whether it leaves the cell above the ground
+  bool decided = false;  ///< the answer is `hit`; else the ray goes on
+  Hit hit{};
+  double t = 0;        ///< where it leaves the cell
+  double z = 0;        ///< its height at t = 0, in sample units, such that it begins on the surface
+  bool above = false;  ///< whether it leaves the cell above the ground
 };
 SurfaceStart start_max_mip(const HeightTarget& target, const Ray& ray);
 

@@ -211,16 +211,19 @@ class VectorWalk {
     return false;
   }
 
-  // The scalar walk believes in the start cell, the vectors in positions: they follow where the two agree.
+  // The scalar walk believes in the start cell, the vectors in positions: they follow where the two agree, and where
+  // the cell is not left before the ray begins.
   HWY_NOINLINE SurfaceStart begin_on_surface(const Ray& ray, const GridRay& local) const {
     const auto is_in = [&](double o, double d, int cell) {
       return std::abs(o + d * ray.t_min - cell - 0.5) < 0.5 + kNearCell;
     };
     if (is_in(local.origin.x, local.direction.x, ray.start_cell.col) &&
         is_in(local.origin.y, local.direction.y, ray.start_cell.row)) {
-      return start_max_mip(target_, ray);
+      const SurfaceStart start = start_max_mip(target_, ray);
+      if (start.decided || start.t >= ray.t_min) return start;
     }
-    SurfaceStart decided{};
+    SurfaceStart decided;
+    decided.decided = true;
     decided.hit = march_max_mip(target_, ray);
     return decided;
   }

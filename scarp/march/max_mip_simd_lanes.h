@@ -158,8 +158,9 @@ struct Packet {
   }
 };
 
-// Where the levels begin, a table that stays in registers where they are wide enough.
-HWY_INLINE VI level_begin(const std::int32_t* table, VI level) {
+// Where the levels begin, a table that stays in registers where they are wide enough and the levels not too many.
+HWY_INLINE VI level_begin(const std::int32_t* table, VI level, bool many) {
+  if (many) return hn::GatherIndex(di, table, level);
   if constexpr (N == 16) {
     return hn::TableLookupLanes(hn::Load(di, table), hn::IndicesFromVec(di, level));
   } else if constexpr (N == 8) {
@@ -187,7 +188,7 @@ HWY_INLINE void block_step(const VectorGround<T>& g, Packet& p) {
   const VI level = hn::Max(p.level, one);
   const VI col = hn::Shr(hn::Xor(p.x, p.mirror_x), level), row = hn::Shr(hn::Xor(p.y, p.mirror_y), level);
   const VI cols = hn::Add(hn::Shr(hn::Set(di, g.last_col), level), one);
-  const VI at = hn::Add(level_begin(g.level_begin, level), hn::Add(hn::Mul(row, cols), col));
+  const VI at = hn::Add(level_begin(g.level_begin, level, g.top > 15), hn::Add(hn::Mul(row, cols), col));
   const VF highest = hn::ConvertTo(df, entries(g.maxima, at));
   // if (low > highest) above all of the block
   const MI clear = hn::And(walking, hn::RebindMask(di, hn::Gt(low, highest)));

@@ -75,15 +75,15 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     const VD longest = hn::Max(x.direction, y.direction), per_longest = hn::Min(x.per, y.per);
     const VD t_border = hn::Max(t_min, hn::Max(x.enter, y.enter));
     const VD t_exit = hn::Min(hn::Load(dd, r.t_max + part), hn::Min(x.exit, y.exit));
-    // Down to the highest sample; up to where nothing is as high.
+    // Down to where it is not surely above the highest sample; up to where nothing is as high.
     const VD highest = hn::Set(dd, f.highest);
     const auto height = [&](VD t) HWY_ATTR { return hn::Add(oz, hn::Mul(dz, t)); };
     const auto falls = hn::Lt(dz, zero), from_above = hn::Gt(height(t_border), highest);
-    const VD quotient = hn::Div(hn::Sub(highest, oz), dz);
+    const VD t_far = hn::Max(hn::Abs(t_border), hn::Abs(t_exit));
+    const VD doubt = rounding(f, ox, oy, oz, dx, dy, dz, t_far), over = hn::Add(highest, doubt);
+    const VD quotient = hn::Div(hn::Sub(over, oz), dz);
     const VD t_top = hn::Sub(quotient, hn::Mul(hn::Set(dd, 4 * kUnit), hn::Abs(quotient)));
     const VD t_begin = hn::IfThenElse(hn::And(from_above, falls), hn::Max(t_border, t_top), t_border);
-    const VD t_far = hn::Max(hn::Abs(t_begin), hn::Abs(t_exit));
-    const VD doubt = rounding(f, ox, oy, oz, dx, dy, dz, t_far), over = hn::Add(highest, doubt);
     const VD t_over = hn::Div(hn::Sub(over, oz), dz);
     const VD t_end = hn::IfThenElse(hn::Gt(dz, zero), hn::Min(t_exit, t_over), t_exit);
     // Of usual lengths, and not so steep that a cell is more than 2^30 codes high: far from where floats end.

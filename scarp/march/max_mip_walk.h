@@ -168,13 +168,17 @@ class Walk {
     return true;
   }
 
-  // The same from within a cell. In this one the ray stays where it came in: next to a start on a line, which is in the
-  // cell that it is said to be in, not all lines behind are crossed before.
+  // The same from within a cell, never to one behind it: next to a start on a line, which is in the cell that it is
+  // said to be in, not all lines behind are crossed before.
   bool skip_on(double t) {
     const int col = col_, row = row_;
     const double t_in = t_in_;
     if (!skip_to(t)) return false;
-    if (col_ == col && row_ == row) t_in_ = t_in;
+    if ((col_ - col) * x_.step <= 0) col_ = col;
+    if ((row_ - row) * y_.step <= 0) row_ = row;
+    t_in_ = t_in;
+    if (col_ != col) t_in_ = std::max(t_in_, x_.line_time(col_ + 1 - x_.ahead));
+    if (row_ != row) t_in_ = std::max(t_in_, y_.line_time(row_ + 1 - y_.ahead));
     return true;
   }
 

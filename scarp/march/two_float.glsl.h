@@ -63,6 +63,41 @@ SCARP_FN ScarpTwoFloat scarp_two_line(float whole, float start, float start_low,
   return scarp_two_sum(all.high, low);
 }
 
+/// A float as one.
+SCARP_FN ScarpTwoFloat scarp_two(float a) {
+  ScarpTwoFloat result;
+  result.high = a;
+  result.low = 0.0f;
+  return result;
+}
+SCARP_FN ScarpTwoFloat scarp_two_negate(ScarpTwoFloat a) {
+  ScarpTwoFloat result;
+  result.high = -a.high;
+  result.low = -a.low;
+  return result;
+}
+SCARP_FN bool scarp_two_less(ScarpTwoFloat a, ScarpTwoFloat b) {
+  return a.high < b.high || (a.high == b.high && a.low < b.low);
+}
+
+/// a + b to 2^-46 of |a| + |b|.
+SCARP_FN ScarpTwoFloat scarp_two_add(ScarpTwoFloat a, ScarpTwoFloat b) {
+  ScarpTwoFloat sum = scarp_two_sum(a.high, b.high);
+  SCARP_PRECISE float low = sum.low + (a.low + b.low);
+  return scarp_two_sum(sum.high, low);
+}
+/// a * b to 2^-45 of itself.
+SCARP_FN ScarpTwoFloat scarp_two_multiply(ScarpTwoFloat a, ScarpTwoFloat b) {
+  ScarpTwoFloat product = scarp_two_product(a.high, b.high);
+  SCARP_PRECISE float low = product.low + (a.high * b.low + a.low * b.high);
+  return scarp_two_sum(product.high, low);
+}
+/// k0 a + k1 b + k2 to 2^-44 of |k0 a| + |k1 b| + |k2|.
+SCARP_FN ScarpTwoFloat scarp_two_combine(ScarpTwoFloat k0, ScarpTwoFloat a, ScarpTwoFloat k1, ScarpTwoFloat b,
+                                         ScarpTwoFloat k2) {
+  return scarp_two_add(scarp_two_add(scarp_two_multiply(k0, a), scarp_two_multiply(k1, b)), k2);
+}
+
 SCARP_GLSL_END
 
 #endif

@@ -17,7 +17,11 @@
 namespace scarp {
 namespace {
 
+// Of one batch to the light; and points of the picture, and rays of them to the light, when a device answers: each call
+// takes as long for one ray as for thousands.
 constexpr std::size_t kLightRaysAtOnce = 8192;
+constexpr std::size_t kPointsAtOnce = 1 << 17, kDeviceLightRaysAtOnce = 1 << 18;
+constexpr std::int64_t kSurfacesPerPiece = 2048;
 
 class SceneShader {
  public:
@@ -35,14 +39,20 @@ class SceneShader {
     std::vector<SceneHit> hits(rays.size());
     scene_.closest_hits(rays, hits);
     std::vector<vec3> colours(rays.size());
+    std::vector<SceneSurface> surfaces(rays.size());
+    parallel_for(static_cast<std::int64_t>(rays.size()), kSurfacesPerPiece, [&](std::int64_t begin, std::int64_t end) {
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+        if (hits[i]) surfaces[i] = scene_.surface(rays[i].ray, hits[i]);
+      }
+    });
+    const std::size_t rays_at_once = scene_.on_device() ? kDeviceLightRaysAtOnce : kLightRaysAtOnce;
     Open open;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Ray& ray = rays[i].ray;
       if (!hits[i]) {
-        colours[i] = sky_colour(ray.direction.z);
+        colours[i] = sky_colour(rays[i].ray.direction.z);
         continue;
       }
-      const SceneSurface surface = scene_.surface(ray, hits[i]);
+      const SceneSurface& surface = surfaces[i];
       colours[i] = colours_(surface);
       // The camera is inside: its colour is all there is to see.
       if (surface.normal == dvec3(0.0)) continue;
@@ -50,7 +60,7 @@ class SceneShader {
       open.points.push_back({i, ground, lighting_.ask(ground, points[i], open.rays)});
       for (std::size_t ray_of_light = open.from.size(); ray_of_light < open.rays.size(); ++ray_of_light)
         open.from.push_back(&hits[i]);
-      if (open.rays.size() + lighting_.most_rays() > kLightRaysAtOnce) light(rays, hits, open, colours);
+      if (open.rays.size() + lighting_.most_rays() > rays_at_once) light(rays, hits, open, colours);
     }
     light(rays, hits, open, colours);
     return colours;
@@ -102,10 +112,24 @@ void require(const SceneLook& look, const PictureSettings& settings) {
   }
 }
 
-// body(tile, its points, aa x aa for each pixel) on all threads.
+// body(points, aa x aa for each pixel): tile by tile on all threads, or many tiles at once when a device answers.
 template <class Body>
-void for_each_tile(const PictureSettings& settings, int aa, const Progress& progress, const Body& body) {
+void for_each_tile(const Scene& scene, const PictureSettings& settings, int aa, const Progress& progress,
+                   const Body& body) {
   const PixelTiles tiles(settings.width, settings.height, aa);
+  if (scene.on_device()) {
+    std::vector<PicturePoint> points;
+    for (std::int64_t tile = 0; tile < tiles.count(); ++tile) {
+      const std::vector<PicturePoint> of_tile = points_of(tiles[tile], aa);
+      points.insert(points.end(), of_tile.begin(), of_tile.end());
+      if (points.size() < kPointsAtOnce && tile + 1 < tiles.count()) continue;
+      body(points);
+      points.clear();
+      if (progress && !progress(static_cast<double>(tile + 1) / static_cast<double>(tiles.count())))
+        throw Interrupted();
+    }
+    return;
+  }
   parallel_for(
       tiles.count(), 1,
       [&](std::int64_t begin, std::int64_t end) {
@@ -120,7 +144,7 @@ void shade(const Scene& scene, const SceneLook& look, const Camera& camera, cons
            const Progress& progress, const Take& take) {
   const SceneShader shader(scene, look, camera, settings);
   const auto per_pixel = static_cast<std::size_t>(settings.aa) * static_cast<std::size_t>(settings.aa);
-  for_each_tile(settings, settings.aa, progress, [&](const std::vector<PicturePoint>& points) {
+  for_each_tile(scene, settings, settings.aa, progress, [&](const std::vector<PicturePoint>& points) {
     const std::vector<vec3> colours = shader.colours(points);
     for (std::size_t i = 0; i < points.size(); i += per_pixel)
       take(points[i].pixel_x, points[i].pixel_y, mean_colour(std::span(colours).subspan(i, per_pixel)));
@@ -136,13 +160,13 @@ std::size_t place_of(const PictureSettings& settings, const PicturePoint& point)
 template <class Take>
 void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                           const Progress& progress, const Take& take) {
-  for_each_tile(settings, 1, progress, [&](const std::vector<PicturePoint>& points) {
-    for (const PicturePoint& point : points) {
-      const SceneRay ray{camera.ray(point.x, point.y)};
-      SceneStats stats;
-      const SceneHit hit = scene.closest_hit(ray, &stats);
-      take(place_of(settings, point), ray.ray, hit, stats.steps);
-    }
+  for_each_tile(scene, settings, 1, progress, [&](const std::vector<PicturePoint>& points) {
+    std::vector<SceneRay> rays;
+    for (const PicturePoint& point : points) rays.push_back({camera.ray(point.x, point.y)});
+    std::vector<SceneHit> hits(rays.size());
+    std::vector<std::uint32_t> steps(rays.size());
+    scene.closest_hits(rays, hits, steps);
+    for (std::size_t i = 0; i < rays.size(); ++i) take(place_of(settings, points[i]), rays[i].ray, hits[i], steps[i]);
   });
 }
 

@@ -9,6 +9,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/scene/scene_answers.h"
 
 namespace scarp {
 namespace {
@@ -41,25 +42,6 @@ WorldBox world_box(const Placement& placement, const WorldBox& box) {
     world = around(world, {p, p});
   }
   return world;
-}
-
-// Keeps the better of two answers about one ray; what is no hit is kept by how much it leaves open.
-void take(const FieldHit& hit, std::uint32_t object, SceneHit& best) {
-  const auto rank = [](HitStatus status) {
-    return status == HitStatus::hit ? 3 : status == HitStatus::exhausted ? 2 : status == HitStatus::below ? 1 : 0;
-  };
-  const int now = rank(hit.status), before = rank(best.field.status);
-  if (now < before || now == 0) return;
-  if (now == before && !(hit.t < best.field.t || (hit.t == best.field.t && object < best.object))) return;
-  best = {hit, object};
-}
-
-// The ray in an object's space, no further than to what is known already.
-Ray shortened(const Placement& placement, const Ray& ray, const SceneHit& best) {
-  Ray local = placement.field_from_world(ray);
-  local.start = RayStart::free;
-  if (best) local.t_max = best.field.t;
-  return local;
 }
 
 void require_same_length(std::size_t rays, std::size_t answers) {
@@ -129,6 +111,12 @@ void Scene::ask_tree(const SceneRay& ray, SceneHit& best, SceneStats* stats) con
 
 SceneHit Scene::closest_hit(const SceneRay& ray, SceneStats* stats) const {
   SceneHit best;
+  if (queries_) {
+    std::uint32_t steps = 0;
+    closest_elsewhere({&ray, 1}, {&best, 1}, {&steps, 1});
+    if (stats) *stats = {.steps = steps};
+    return best;
+  }
   if (stats) *stats = {};
   for (const std::uint32_t object : beside_tree_) {
     MarchStats march;
@@ -152,6 +140,11 @@ bool Scene::tree_blocks(const SceneRay& ray) const {
 }
 
 bool Scene::occluded(const SceneRay& ray) const {
+  if (queries_) {
+    std::uint8_t blocked = 0;
+    occluded_elsewhere({&ray, 1}, {&blocked, 1});
+    return blocked != 0;
+  }
   for (const std::uint32_t object : beside_tree_) {
     if (field_of(object).occluded(shortened(objects_[object].placement, ray.ray, {}), start_on(object, ray)))
       return true;
@@ -206,6 +199,7 @@ void Scene::closest_hits(std::span<const SceneRay> rays, std::span<SceneHit> hit
                          std::span<std::uint32_t> steps) const {
   require_same_length(rays.size(), hits.size());
   if (!steps.empty()) require_same_length(rays.size(), steps.size());
+  if (queries_) return closest_elsewhere(rays, hits, steps);
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
     if (steps.empty()) return closest_of_piece(rays.subspan(first, count), hits.subspan(first, count));
@@ -219,6 +213,7 @@ void Scene::closest_hits(std::span<const SceneRay> rays, std::span<SceneHit> hit
 
 void Scene::occluded(std::span<const SceneRay> rays, std::span<std::uint8_t> blocked) const {
   require_same_length(rays.size(), blocked.size());
+  if (queries_) return occluded_elsewhere(rays, blocked);
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
     occluded_of_piece(rays.subspan(first, count), blocked.subspan(first, count));

@@ -12,9 +12,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "scarp/scene/field_queries.h"
 #include "scarp/scene/placement.h"
 #include "scarp/scene/scene_field.h"
 
@@ -57,11 +59,16 @@ struct SceneStats {
   std::uint32_t boxes = 0;  ///< objects of the hierarchy that were asked
 };
 
-/// Immutable. Questions may be asked from many threads at once.
+/// Immutable. Questions may be asked from many threads at once, unless others than the CPU answer.
 class Scene {
  public:
   /// Throws Error naming the object: a field that is not there, a placement that is no turn with a scale above 0.
   Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects);
+
+  /// The same scene, whose batches are answered field by field: by a device, see scene_vk.h. Used by one thread at a
+  /// time.
+  Scene answered_by(std::shared_ptr<FieldQueries> queries) const;
+  bool on_device() const { return queries_ != nullptr; }
 
   /// The nearest hit. Without one: exhausted when a march gave up, else below when the ray began below a surface and
   /// met none. A march that gives up hides nothing that is hit behind. `stats`, when given, is overwritten.
@@ -69,8 +76,8 @@ class Scene {
   /// Whether closest_hit() would tell a hit.
   bool occluded(const SceneRay& ray) const;
 
-  /// hits[i] is closest_hit(rays[i]), bit for bit; steps[i], when asked for, is what that cost. On all threads. Throws
-  /// Error when spans differ in length.
+  /// hits[i] is closest_hit(rays[i]), bit for bit (on a device as it finds it); steps[i], when asked for, is what that
+  /// cost. On all threads. Throws Error when spans differ in length.
   void closest_hits(std::span<const SceneRay> rays, std::span<SceneHit> hits,
                     std::span<std::uint32_t> steps = {}) const;
   /// blocked[i] is 1 where closest_hits() would tell a hit, else 0.
@@ -97,7 +104,24 @@ class Scene {
   void closest_of_piece(std::span<const SceneRay> rays, std::span<SceneHit> hits) const;
   void occluded_of_piece(std::span<const SceneRay> rays, std::span<std::uint8_t> blocked) const;
 
+  // Who asks for one ray against one object.
+  struct Asked {
+    std::uint32_t object;
+    std::uint32_t ray;
+  };
+  void ask_closest(std::span<const SceneRay> rays, std::span<const Asked> asked, std::span<SceneHit> hits,
+                   std::span<std::uint32_t> steps) const;
+  void ask_occluded(std::span<const SceneRay> rays, std::span<const Asked> asked,
+                    std::span<std::uint8_t> blocked) const;
+  std::vector<Asked> asked_in_tree(std::span<const SceneRay> rays, std::span<const SceneHit> hits) const;
+  template <class Ask>
+  void by_field(std::vector<Asked>& asked, const Ask& ask) const;
+  void closest_elsewhere(std::span<const SceneRay> rays, std::span<SceneHit> hits,
+                         std::span<std::uint32_t> steps) const;
+  void occluded_elsewhere(std::span<const SceneRay> rays, std::span<std::uint8_t> blocked) const;
+
   std::vector<SceneFieldPtr> fields_;
+  std::shared_ptr<FieldQueries> queries_;  // null: the fields' own marches
   std::vector<SceneObject> objects_;
   std::vector<std::uint32_t> beside_tree_;  // objects that every ray is asked against, before the tree
   std::vector<std::uint32_t> in_tree_;      // the others that can be met, in the order of the tree's numbers

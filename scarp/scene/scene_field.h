@@ -39,6 +39,13 @@ struct FieldSurface {
   int material = 0;                     ///< of the part of a shape, as in distance_node.h; 0: that of the object
 };
 
+/// What a field is made of, for those who answer its rays elsewhere (field_queries.h).
+struct SceneFieldParts {
+  std::variant<const HeightField*, const HeightFunction*, const DistanceField*, const VoxelScene*> of;
+  const MarchEntry* march = nullptr;        ///< null for voxels
+  const MarchSettings* settings = nullptr;  ///< likewise
+};
+
 /// Immutable; asked from many threads at once.
 class SceneField {
  public:
@@ -57,6 +64,11 @@ class SceneField {
   /// Whether closest_hit() would tell a hit.
   virtual bool occluded(const Ray& ray, const FieldHit* from) const = 0;
   virtual FieldSurface surface(const Ray& ray, const FieldHit& hit) const = 0;
+
+  virtual SceneFieldParts parts() const = 0;
+  /// The ray as the field's march wants it: on the surface that `from` hit, or free when that is null. `shadow`: of
+  /// occluded(), for fields whose shadows are thrown by another surface than what is seen.
+  virtual Ray started(const Ray& ray, const FieldHit* from, bool shadow) const;
 
   /// Whether rays are answered faster by the hundred.
   virtual bool likes_batches() const { return false; }

@@ -25,31 +25,29 @@ class FunctionField final : public SceneField {
   std::optional<double> height(double x, double y) const override { return function_.value(x, y); }
 
   FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
-    Ray r = ray;
-    r.start = from ? RayStart::on_surface : RayStart::free;
-    return field_hit(march_.function_cpu(function_, r, settings_, stats, FunctionUse::march));
+    return field_hit(march_.function_cpu(function_, started(ray, from, false), settings_, stats, FunctionUse::march));
   }
   bool occluded(const Ray& ray, const FieldHit* from) const override {
     return static_cast<bool>(
-        march_.function_cpu(function_, of_shadow(ray, from), settings_, nullptr, FunctionUse::shadow));
+        march_.function_cpu(function_, started(ray, from, true), settings_, nullptr, FunctionUse::shadow));
   }
   bool likes_batches() const override { return march_.function_simd != nullptr; }
   void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
                     std::span<FieldHit> hits) const override {
     if (!march_.function_simd) return SceneField::closest_hits(rays, from, hits);
-    std::vector<Ray> started(rays.begin(), rays.end());
-    for (std::size_t i = 0; i < rays.size(); ++i) started[i].start = from[i] ? RayStart::on_surface : RayStart::free;
+    std::vector<Ray> begun(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) begun[i] = started(rays[i], from[i], false);
     std::vector<Hit> own(rays.size());
-    march_.function_simd(function_, started, own, settings_, {}, FunctionUse::march);
+    march_.function_simd(function_, begun, own, settings_, {}, FunctionUse::march);
     std::transform(own.begin(), own.end(), hits.begin(), field_hit);
   }
   void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
                 std::span<std::uint8_t> blocked) const override {
     if (!march_.function_simd) return SceneField::occluded(rays, from, blocked);
-    std::vector<Ray> started(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) started[i] = of_shadow(rays[i], from[i]);
+    std::vector<Ray> begun(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) begun[i] = started(rays[i], from[i], true);
     std::vector<Hit> own(rays.size());
-    march_.function_simd(function_, started, own, settings_, {}, FunctionUse::shadow);
+    march_.function_simd(function_, begun, own, settings_, {}, FunctionUse::shadow);
     std::transform(own.begin(), own.end(), blocked.begin(), [](const Hit& hit) { return hit ? 1 : 0; });
   }
   FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
@@ -59,18 +57,18 @@ class FunctionField final : public SceneField {
             normal,
             {}};
   }
-
- private:
-  static FieldHit field_hit(const Hit& hit) { return {hit.status, hit.t, hit}; }
-  Ray of_shadow(const Ray& ray, const FieldHit* from) const {
-    Ray r = ray;
-    r.start = from ? RayStart::on_surface : RayStart::free;
-    if (from) {
+  SceneFieldParts parts() const override { return {&function_, &march_, &settings_}; }
+  Ray started(const Ray& ray, const FieldHit* from, bool shadow) const override {
+    Ray r = SceneField::started(ray, from, shadow);
+    if (shadow && from) {
       const dvec3 p = ray.at(ray.t_min);
       r.origin.z += function_.value(p.x, p.y, FunctionUse::shadow) - p.z;
     }
     return r;
   }
+
+ private:
+  static FieldHit field_hit(const Hit& hit) { return {hit.status, hit.t, hit}; }
 
   HeightFunction function_;
   const MarchEntry& march_;

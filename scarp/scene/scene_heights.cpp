@@ -14,18 +14,6 @@ namespace {
 
 FieldHit field_hit(const Hit& hit) { return {hit.status, hit.t, hit}; }
 
-// A ray of the scene as the march wants it: it knows whether it begins on the surface, and in which cell. On a wall it
-// begins free: the wall is behind it.
-Ray started(const Ray& ray, const FieldHit* from) {
-  Ray r = ray;
-  r.start = RayStart::free;
-  if (const Hit* hit = from ? std::get_if<Hit>(&from->own) : nullptr; hit && !hit->wall) {
-    r.start = RayStart::on_surface;
-    r.start_cell = hit->cell;
-  }
-  return r;
-}
-
 class Heights final : public SceneField {
  public:
   Heights(HeightField field, const MarchEntry& march, const MarchSettings& settings)
@@ -47,10 +35,10 @@ class Heights final : public SceneField {
   std::optional<double> height(double x, double y) const override { return field_.height(x, y); }
 
   FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
-    return field_hit(march_.cpu(target(), started(ray, from), settings_, stats));
+    return field_hit(march_.cpu(target(), started(ray, from, false), settings_, stats));
   }
   bool occluded(const Ray& ray, const FieldHit* from) const override {
-    const Ray r = started(ray, from);
+    const Ray r = started(ray, from, true);
     if (march_.cpu_occluded) return march_.cpu_occluded(target(), r);
     return static_cast<bool>(march_.cpu(target(), r, settings_, nullptr));
   }
@@ -68,22 +56,32 @@ class Heights final : public SceneField {
                     std::span<FieldHit> hits) const override {
     if (!march_.simd) return SceneField::closest_hits(rays, from, hits);
     std::vector<Hit> own(rays.size());
-    march_.simd(target(), started(rays, from), own);
+    march_.simd(target(), begun(rays, from), own);
     std::transform(own.begin(), own.end(), hits.begin(), field_hit);
   }
   void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
                 std::span<std::uint8_t> blocked) const override {
     if (!march_.simd_occluded) return SceneField::occluded(rays, from, blocked);
-    march_.simd_occluded(target(), started(rays, from), blocked);
+    march_.simd_occluded(target(), begun(rays, from), blocked);
+  }
+  SceneFieldParts parts() const override { return {&field_, &march_, &settings_}; }
+  // In which cell it begins the march knows from the ray. On a wall it begins free: the wall is behind it.
+  Ray started(const Ray& ray, const FieldHit* from, bool) const override {
+    Ray r = ray;
+    r.start = RayStart::free;
+    if (const Hit* hit = from ? std::get_if<Hit>(&from->own) : nullptr; hit && !hit->wall) {
+      r.start = RayStart::on_surface;
+      r.start_cell = hit->cell;
+    }
+    return r;
   }
 
  private:
-  static std::vector<Ray> started(std::span<const Ray> rays, std::span<const FieldHit* const> from) {
+  std::vector<Ray> begun(std::span<const Ray> rays, std::span<const FieldHit* const> from) const {
     std::vector<Ray> r(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) r[i] = scarp::started(rays[i], from[i]);
+    for (std::size_t i = 0; i < rays.size(); ++i) r[i] = started(rays[i], from[i], false);
     return r;
   }
-  static Ray started(const Ray& ray, const FieldHit* from) { return scarp::started(ray, from); }
   HeightTarget target() const { return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_}; }
 
   HeightField field_;

@@ -7,12 +7,6 @@
 namespace scarp {
 namespace {
 
-Ray started(const Ray& ray, const FieldHit* from) {
-  Ray r = ray;
-  r.start = from ? RayStart::on_surface : RayStart::free;
-  return r;
-}
-
 class ShapeField final : public SceneField {
  public:
   ShapeField(DistanceField shape, const MarchEntry& march, const MarchSettings& settings)
@@ -30,17 +24,18 @@ class ShapeField final : public SceneField {
   }
 
   FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
-    const Hit hit = march_.distance_cpu(shape_, started(ray, from), settings_, stats);
+    const Hit hit = march_.distance_cpu(shape_, started(ray, from, false), settings_, stats);
     return {hit.status, hit.t, hit};
   }
   bool occluded(const Ray& ray, const FieldHit* from) const override {
-    if (march_.distance_cpu_occluded) return march_.distance_cpu_occluded(shape_, started(ray, from), settings_);
+    if (march_.distance_cpu_occluded) return march_.distance_cpu_occluded(shape_, started(ray, from, true), settings_);
     return static_cast<bool>(closest_hit(ray, from, nullptr));
   }
   FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
     const dvec3 p = ray.at(hit.t), normal = shape_.normal(p);
     return {normal, normal, {}, shape_.material(p)};
   }
+  SceneFieldParts parts() const override { return {&shape_, &march_, &settings_}; }
 
  private:
   DistanceField shape_;

@@ -43,6 +43,7 @@ class Voxels final : public SceneField {
     const dvec3 normal = scene_.normal(own);
     return {normal, normal, scene_.colour(own)};
   }
+  SceneFieldParts parts() const override { return {&scene_, nullptr, nullptr}; }
 
  private:
   static const VoxelSceneHit* from_of(const FieldHit* from) {

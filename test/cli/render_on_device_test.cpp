@@ -57,6 +57,45 @@ TEST_F(RenderOnDevice, MakesThePictureAndNamesTheDevice) {
   EXPECT_EQ(read_png(picture_).width, 60);
 }
 
+TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
+  const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
+  if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
+  const std::string plain = scratch_.write("plain.json", R"({"type": "fbm", "octaves": 2})");
+  const std::string scene = scratch_.write("scene.json", R"({
+    "camera": {"eye": [0, -3000, 900], "target": [0, 0, 0]},
+    "objects": [{"function": {"type": "fbm", "octaves": 2}}, {"shape": {"torus": {"radius": 400, "tube": 90}}, "at": [0, 0, 300]}]})");
+  for (const std::vector<std::string>& what : {std::vector<std::string>{"--function", plain}, {scene}}) {
+    std::vector<std::string> arguments{"render", "-o", picture_, "--size", "60x40", "--aa", "1"};
+    arguments.insert(arguments.end(), what.begin(), what.end());
+    const auto cpu = run_on_device(arguments);
+    ASSERT_EQ(cpu.status, 0) << cpu.err;
+    const auto expected = read_png(picture_);
+    arguments.insert(arguments.end(), {"--device", "auto"});
+    const auto device = run_on_device(arguments);
+    ASSERT_EQ(device.status, 0) << device.err;
+    EXPECT_NE(device.out.find(", on "), std::string::npos) << device.out;
+    // Points of the ground move by millimetres over some kilometres: below a colour's last bit but for where light and
+    // shade, or ground and sky, meet.
+    const auto picture = read_png(picture_);
+    int unlike = 0;
+    for (std::size_t i = 0; i < picture.bytes.size(); i += 3) {
+      for (std::size_t k = i; k < i + 3; ++k) {
+        if (std::abs(picture.bytes[k] - expected.bytes[k]) > 2) {
+          ++unlike;
+          break;
+        }
+      }
+    }
+    EXPECT_LE(unlike, 60 * 40 / 100);
+    EXPECT_EQ(fs::remove(picture_), true);
+  }
+  const std::string ground = scratch_.write("ground.json", R"({
+    "fields": {"hills": {"function": {"type": "fbm"}}}, "camera": {"eye": [0, -3000, 900], "target": [0, 0, 0]},
+    "objects": [{"shape": {"ground": "hills"}}]})");
+  expect_refusal(run_on_device({"render", ground, "-o", picture_, "--device", "auto"}),
+                 "does not run on Vulkan devices");
+}
+
 TEST_F(RenderOnDevice, RefusesMarchesThatDoNotRunThere) {
   expect_refusal(render({"--device", "auto", "--march", "exhaustive"}),
                  "--device auto: march 'exhaustive' does not run on Vulkan devices; there run: max-mip, ");

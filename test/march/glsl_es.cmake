@@ -1,5 +1,5 @@
 # The marches over textures keep to GLSL ES 3.0:
-#   cmake -D ROOT=<checkout> -D WORK=<folder> -D VALIDATOR=<glslangValidator> -D FLAT=<max_mip.glsl> -P glsl_es.cmake
+#   cmake -D ROOT=<checkout> -D WORK=<folder> -D VALIDATOR=<glslangValidator> -D FLAT=<folder of max_mip.glsl, ...> -P glsl_es.cmake
 cmake_minimum_required(VERSION 3.25)
 
 # check(FILE GOOD): compiles a fragment shader with all that it includes.
@@ -17,7 +17,7 @@ endfunction()
 check(${ROOT}/test/march/textures_es.frag TRUE)
 
 # The text that is installed for pasting, after what a host defines.
-file(READ ${FLAT} march)
+file(READ ${FLAT}/max_mip.glsl march)
 file(WRITE ${WORK}/pasted.frag "#version 300 es
 precision highp float;
 precision highp int;
@@ -40,6 +40,38 @@ void main() {
   ScarpRay ray = scarp_ray(ivec2(1, 2), vec2(0.5, 0.5), 3.0, vec3(1.0, 0.5, -0.5), kScarpNever, 0u);
   colour = vec4(scarp_max_mip(field, ray, true).time);
 }
+")
+check(${WORK}/pasted.frag TRUE)
+# And that over a function, here of one instruction.
+file(READ ${FLAT}/lipschitz_local.glsl march)
+file(WRITE ${WORK}/pasted.frag "#version 300 es
+precision highp float;
+precision highp int;
+out vec4 colour;
+${march}
+ScarpInstruction scarp_instruction(uint i) {
+  return ScarpInstruction(kScarpNoiseOp, kScarpPerlinNoise, 2u, 2u, 2u, 0u, 1u, 7u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+}
+bool scarp_uses(uint part) { return part == kScarpNoiseOp || part == kScarpNoiseBit + kScarpPerlinNoise; }
+uniform ScarpFunctionRay ray;
+void main() {
+  colour = vec4(scarp_lipschitz_local(ScarpProgram(1u, 2u), ray, ScarpLipschitzLocal(1.0e-6, 1024, 1024), true).time);
+}
+")
+check(${WORK}/pasted.frag TRUE)
+file(READ ${FLAT}/sphere_trace.glsl march)
+file(WRITE ${WORK}/pasted.frag "#version 300 es
+precision highp float;
+precision highp int;
+out vec4 colour;
+${march}
+ScarpShapeInstruction scarp_shape_instruction(uint i) {
+  return ScarpShapeInstruction(kScarpShapeSphere, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+}
+float scarp_shape_number(uint i) { return i == 3u ? 1.0 : 0.0; }
+bool scarp_shape_uses(uint op) { return op == kScarpShapeSphere; }
+uniform ScarpFunctionRay ray;
+void main() { colour = vec4(scarp_sphere_trace(1u, ray, ScarpSphereTrace(1.0e-6, 1024, 1024), true).time); }
 ")
 check(${WORK}/pasted.frag TRUE)
 file(WRITE ${WORK}/bad.frag "#version 300 es\nprecision highp float;\nout vec4 colour;\nvoid main() { precise double x = 1.0; colour = vec4(x); }\n")

@@ -177,6 +177,79 @@ TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
   }
 }
 
+// More levels than a vector has lanes.
+TEST(MaxMipSimd, VeryLongFields) {
+  const int cols = 131'073, rows = 3, wall = 100'000;
+  std::vector<float> samples(std::size_t{cols} * rows, 0.f);
+  for (int row = 0; row < rows; ++row) samples[static_cast<std::size_t>(row) * cols + wall] = 100;
+  const HeightField field = HeightField::own(std::move(samples), cols, rows);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  Ray along, slanted, away;
+  along.origin = slanted.origin = {-1, 0.5, 50}, away.origin = {3, 0.5, 50};
+  along.direction = {1, 0, 0}, slanted.direction = {1, 1e-5, 0}, away.direction = {-1, 0, 0};
+  const std::vector<Ray> rays{along, away, slanted};
+  const std::vector<Hit> expected = scalar(target, rays);
+  ASSERT_EQ(expected[0].t, wall + 0.5);
+  for (const std::int64_t set : targets()) {
+    const Target only(set);
+    compare(target, rays, expected, rays.size(), {}, hwy::TargetName(set));
+  }
+}
+
+// Starts beside the cell that they are said to be in, by much and by less than a millionth of a cell: over ground above
+// and below 0, for a wrong start looks right where 0 is under the ground.
+TEST(MaxMipSimd, StartsBesideTheirCell) {
+  Random random(76);
+  for (const double base : {-100.0, 100.0}) {
+    const int side = 65;
+    std::vector<float> samples;
+    for (int i = 0; i < side * side; ++i) samples.push_back(static_cast<float>(base + uniform(random, 0, 40)));
+    const HeightField field = HeightField::own(std::move(samples), side, side);
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    std::vector<Ray> rays;
+    for (int i = 0; i < 20 * kUsualRays; ++i) {
+      const auto aside = [&] {
+        return uniform(random, -1, 1) * std::ldexp(1.0, -static_cast<int>(uniform(random, 16, 46)));
+      };
+      const int col = static_cast<int>(uniform(random, 1, side - 2)),
+                row = static_cast<int>(uniform(random, 1, side - 2));
+      const double x = col + aside(), y = side - 1 - (row + (i % 4 ? aside() : uniform(random, -0.5, 0.5)));
+      Ray ray;
+      ray.origin = {x, y, *field.height(x, y)};
+      const double turn = uniform(random, 0, 6.3), slope = std::exp2(uniform(random, -3, 20));
+      ray.direction = {std::cos(turn), std::sin(turn), i % 2 ? slope : -slope};
+      ray.start = RayStart::on_surface;
+      ray.start_cell = {col - i / 2 % 2, row - i / 4 % 2};
+      rays.push_back(ray);
+    }
+    compare(target, rays, scalar(target, rays), rays.size(), {}, "base " + std::to_string(base));
+  }
+}
+
+// Nearly level rays through the highest node: within rounding they are as high as it is long before.
+TEST(MaxMipSimd, TouchesOfTheHighestSample) {
+  Random random(77);
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    const int side = 17;
+    std::vector<float> samples(side * side, 0.f);
+    samples[8 * side + 8] = 100;
+    const HeightField field = HeightField::own(std::move(samples), side, side, {.surface = surface});
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    std::vector<Ray> rays;
+    for (int i = 0; i < 5 * kUsualRays; ++i) {
+      const double turn = uniform(random, 0, 1.5707), slope = std::exp2(-uniform(random, 30, 46));
+      Ray ray;
+      ray.direction = {std::cos(turn), std::sin(turn), i % 2 ? slope : -slope};
+      ray.origin = dvec3{8, 8, 100} - uniform(random, 10, 20) * ray.direction;
+      rays.push_back(ray);
+    }
+    compare(target, rays, scalar(target, rays), rays.size(), {}, "touches");
+  }
+}
+
 TEST(MaxMipSimd, RaysFromNextToTheGroundAreNotLeftToTheScalarWalk) {
   Random random(75);
   const HeightField field = hills<float>(Surface::bilinear, false, random);

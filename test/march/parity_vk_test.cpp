@@ -64,7 +64,7 @@ void check(const Device& device, const FieldKind& fields, const std::vector<RayK
   for (const Ray& ray : rays) judges.emplace_back(field, ray);
   std::vector<Hit> hits(rays.size());
   std::vector<std::uint8_t> blocked(rays.size());
-  for (const MarchEntry& march : marches()) {
+  for (const MarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
     queries(march.name).closest_hits(target, rays, hits);
     queries(march.name).occluded(target, rays, blocked);
@@ -166,7 +166,7 @@ TEST_F(QueriesOnDevice, SayWhatIsWrong) {
 }
 
 TEST(Marches, ThoseOfTheTableRunOnDevices) {
-  for (const MarchEntry& march : marches()) {
+  for (const MarchEntry& march : height_marches()) {
     EXPECT_EQ(march.gpu, device_march_names().find(std::string(march.name)) != std::string::npos) << march.name;
   }
 }

@@ -6,10 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <random>
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/scene/field_queries.h"
 
 namespace scarp {
 namespace {
@@ -97,6 +99,61 @@ std::vector<SceneRay> rays_through(unsigned seed, int count) {
 
 // What sphere-trace and lipschitz-local may stop early by, per unit of distance: their tolerance; each of two answers.
 constexpr double kTolerance = 2e-6;
+
+// Who answers a scene's fields in the place of their marches: they themselves, ray by ray.
+class Themselves final : public FieldQueries {
+ public:
+  explicit Themselves(std::vector<SceneFieldPtr> fields) : fields_(std::move(fields)) {}
+  void closest_hits(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                    std::span<FieldHit> hits, std::span<std::uint32_t> steps) override {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      MarchStats stats;
+      hits[i] = fields_[field]->closest_hit(rays[i], from[i], &stats);
+      if (!steps.empty()) steps[i] = stats.steps;
+    }
+  }
+  void occluded(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                std::span<std::uint8_t> blocked) override {
+    for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = fields_[field]->occluded(rays[i], from[i]);
+  }
+
+ private:
+  std::vector<SceneFieldPtr> fields_;
+};
+
+TEST(SceneOfManyFields, MayBeAnsweredFieldByField) {
+  const Scene scene = crowd(5);
+  const Scene elsewhere = scene.answered_by(std::make_shared<Themselves>(scene.fields()));
+  EXPECT_TRUE(elsewhere.on_device());
+  EXPECT_FALSE(scene.on_device());
+  const std::vector<SceneRay> rays = rays_through(7, 700);
+  std::vector<SceneHit> hits(rays.size());
+  std::vector<std::uint32_t> steps(rays.size());
+  std::vector<std::uint8_t> blocked(rays.size());
+  elsewhere.closest_hits(rays, hits, steps);
+  elsewhere.occluded(rays, blocked);
+  std::vector<SceneRay> onwards;
+  std::uint64_t cost = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const SceneHit one = scene.closest_hit(rays[i]);
+    EXPECT_EQ(hits[i].field.status, one.field.status);
+    EXPECT_EQ(hits[i].t(), one.t());
+    EXPECT_EQ(hits[i].object, one.object);
+    EXPECT_EQ(blocked[i], scene.occluded(rays[i]));
+    cost += steps[i];
+    if (!one) continue;
+    Ray ray = rays[i].ray;
+    ray.origin = ray.at(one.t());
+    ray.direction = dvec3(0.3, 0.4, 0.5);
+    ray.t_min = 0;
+    onwards.push_back({ray, &hits[i]});
+  }
+  EXPECT_GT(cost, rays.size());
+  std::vector<std::uint8_t> shaded(onwards.size());
+  elsewhere.occluded(onwards, shaded);
+  for (std::size_t i = 0; i < onwards.size(); ++i) EXPECT_EQ(shaded[i], scene.occluded(onwards[i]));
+  EXPECT_EQ(elsewhere.closest_hit(onwards[0]).t(), scene.closest_hit(onwards[0]).t());
+}
 
 TEST(SceneOfManyFields, TellsTheNearestOfAllObjects) {
   const Scene scene = crowd(5);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// A distance field as it lies in a device's memory: the instructions of its program (field/distance_program.h), 32 bytes
+// each, and their numbers as floats. DeviceShape (device_shape.h) makes it; the interpreter of shaders
+// (march/shape_distance.glsl.h) reads it.
+#ifndef SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H
+#define SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H
+
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+/// Of ScarpShapeInstruction::op, the values of DistanceOp. Grounds do not run on devices.
+const uint kScarpShapeTurn = 0u;
+const uint kScarpShapeFold = 1u;
+const uint kScarpShapeNeighbour = 2u;
+const uint kScarpShapeSphere = 3u;
+const uint kScarpShapeBox = 4u;
+const uint kScarpShapePlane = 5u;
+const uint kScarpShapeCapsule = 6u;
+const uint kScarpShapeCylinder = 7u;
+const uint kScarpShapeCone = 8u;
+const uint kScarpShapeTorus = 9u;
+const uint kScarpShapeEllipsoid = 10u;
+const uint kScarpShapeUnite = 13u;
+const uint kScarpShapeIntersect = 14u;
+const uint kScarpShapeSubtract = 15u;
+const uint kScarpShapeSmoothUnite = 16u;
+const uint kScarpShapeSmoothIntersect = 17u;
+const uint kScarpShapeSmoothSubtract = 18u;
+const uint kScarpShapeClamp = 19u;
+const uint kScarpShapeRestBound = 20u;
+const uint kScarpShapeSkipFar = 21u;
+const uint kScarpShapeSkipCopy = 22u;
+
+/// Registers there are, of positions and of values; position 0 holds the position when the program begins, value 0 the
+/// result when it ends.
+const int kScarpShapeRegisters = 32;
+/// In the place of infinity.
+const float kScarpEndless = 1.0e30f;
+
+/// DistanceInstruction without its material, which hosts look up in double.
+struct ScarpShapeInstruction {
+  uint op;
+  uint to;  ///< register written
+  uint a;   ///< registers read
+  uint b;
+  uint mask;
+  uint number;  ///< where its constants begin
+  uint index;
+  uint none;
+};
+
+SCARP_GLSL_END
+
+#endif

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Rays over terrain functions and against distance fields as the marches in single precision want them
+// (march/ray_states.glsl.h), and their answers back.
+//
+//   Ray, double ──▶ clipped to where the field can be met, two floats per number ──▶ march in floats ──▶ Hit
+#pragma once
+
+#include "scarp/accel/function_words.h"
+#include "scarp/march/marches.h"
+#include "scarp/march/ray_states.glsl.h"
+
+namespace scarp {
+
+/// A ray on its way to a march in single precision.
+struct DeviceFunctionRay {
+  glsl::ScarpFunctionRay ray{};
+  double begin = 0;      ///< t = begin + time * per_time
+  double per_time = 1;   ///< a power of two
+  bool marches = false;  ///< whether there is anything to march: else `known` is the answer
+  HitStatus known = HitStatus::miss;
+};
+
+/// `ray` must be valid (validate() of march/queries.h), `reach` metres at most it is followed.
+DeviceFunctionRay device_function_ray(const HeightFunction& function, const SingleRounding& rounding, const Ray& ray,
+                                      FunctionUse use, double reach);
+
+/// The same against a distance field: clipped to its box.
+DeviceFunctionRay device_shape_ray(const DistanceField& shape, const Ray& ray);
+
+/// The answer that belongs to a ray.
+Hit hit_from_device(const Ray& ray, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer);
+
+}  // namespace scarp

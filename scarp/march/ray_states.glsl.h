@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Rays on their way to marches in single precision over terrain functions and distance fields, and their answers. The
+// host makes rays in double (device_function_ray.h): clipped to where the field can be met, every number as two floats,
+// times counting from there.
+//
+// Text of C++ and of GLSL, GLSL ES 3.0 included.
+#ifndef SCARP_MARCH_RAY_STATES_GLSL_H
+#define SCARP_MARCH_RAY_STATES_GLSL_H
+
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+const uint kScarpFromSurface = 1u;  ///< ScarpFunctionRay::flags: begins on the surface, above it by definition
+
+/// Where a march is that has been interrupted, see ScarpFunctionHit; of a ray that has not begun steps and phase are 0.
+struct ScarpFunctionState {
+  float s;       ///< time
+  float before;  ///< what else the march has to know
+  float h_before;
+  int steps;  ///< that it has taken
+  uint phase;
+};
+
+/// A ray, metres.
+struct ScarpFunctionRay {
+  vec3 origin;
+  vec3 origin_low;
+  vec3 direction;  ///< 1 to 2 long
+  vec3 direction_low;
+  float exit;       ///< the last time, included
+  float travelled;  ///< time from the begin of the ray's range to its origin here
+  float speed;      ///< length of the direction
+  float rounding;   ///< metres by which clearances as computed may be off
+  uint flags;       ///< kScarpFromSurface and so on
+  ScarpFunctionState state;
+};
+
+const int kScarpFunctionMiss = 0;
+const int kScarpFunctionHit = 1;
+const int kScarpFunctionBelow = 2;
+const int kScarpFunctionExhausted = 3;
+const int kScarpFunctionUnderWay = 4;  ///< not done: march the same ray again, from `state`
+
+/// The answer; time means something for hits and exhausted.
+struct ScarpFunctionHit {
+  int status;
+  float time;
+  uint bounds;   ///< of segments that were asked for
+  uint heights;  ///< that were looked at
+  ScarpFunctionState state;
+};
+
+SCARP_FN ScarpFunctionHit scarp_function_miss() {
+  ScarpFunctionHit hit;
+  hit.status = kScarpFunctionMiss;
+  hit.time = 0.0f;
+  hit.bounds = 0u;
+  hit.heights = 0u;
+  hit.state.s = 0.0f;
+  hit.state.before = 0.0f;
+  hit.state.h_before = 0.0f;
+  hit.state.steps = 0;
+  hit.state.phase = 0u;
+  return hit;
+}
+SCARP_FN void scarp_function_tell(int status, float s, SCARP_INOUT(ScarpFunctionHit) hit) {
+  hit.status = status;
+  hit.time = s;
+}
+
+SCARP_GLSL_END
+
+#endif

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// A batch of rays over a distance field on a device: what sphere_trace.comp and the C++ that calls it
+// (shape_queries_vk.h) agree upon. Marches are interrupted as told in function_batch.glsl.h.
+//
+//   ShapeBatch ──code, numbers──▶ the shape's program
+//       │  └───────rays──▶ ScarpFunctionRay ...      one invocation each
+//       └──────────hits──▶ ScarpFunctionHit ...      the answers, in the same order
+#ifndef SCARP_MARCH_SHAPE_BATCH_GLSL_H
+#define SCARP_MARCH_SHAPE_BATCH_GLSL_H
+
+#include "scarp/accel/shape_buffers.glsl.h"
+#include "scarp/march/ray_states.glsl.h"
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+// Specialisation constants: threads of a workgroup; whether any hit will do; what the program has (scarp_shape_uses).
+
+/// The push constants; see ScarpSphereTrace.
+struct ShapeBatch {
+  Address code;
+  Address numbers;
+  Address rays;
+  Address hits;
+  uint count;
+  uint instructions;
+  float tolerance;
+  int max_steps;
+  int run_steps;
+};
+
+#ifndef __cplusplus
+
+layout(local_size_x_id = 0) in;
+layout(constant_id = 1) const uint batch_any = 0;
+layout(constant_id = 2) const uint batch_parts = 0xffffffffu;
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ShapeCode {
+  ScarpShapeInstruction instructions[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ShapeNumbers { float numbers[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ShapeRays { ScarpFunctionRay rays[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer ShapeHits { ScarpFunctionHit hits[]; };
+layout(push_constant, scalar) uniform Push { ShapeBatch batch; };
+
+ScarpShapeInstruction scarp_shape_instruction(uint i) { return ShapeCode(batch.code).instructions[i]; }
+float scarp_shape_number(uint i) { return ShapeNumbers(batch.numbers).numbers[i]; }
+bool scarp_shape_uses(uint op) { return (batch_parts & (1u << op)) != 0u; }
+
+#endif
+
+SCARP_GLSL_END
+
+#endif

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/scene_vk.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "scarp/accel/device_function.h"
+#include "scarp/accel/device_ground.h"
+#include "scarp/accel/slope_bound.h"
+#include "scarp/base/error.h"
+#include "scarp/march/function_queries_vk.h"
+#include "scarp/march/queries_vk.h"
+#include "scarp/march/shape_queries_vk.h"
+
+namespace scarp {
+namespace {
+
+// One field: rays that know how they begin, answered by its march.
+class FieldOnDevice {
+ public:
+  virtual ~FieldOnDevice() = default;
+  virtual void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) = 0;
+  virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) = 0;
+};
+
+// Marches ready to run, one for all fields that have it: making one takes longer than most of its calls.
+class Marches {
+ public:
+  explicit Marches(const Device& device) : device_(device) {}
+
+  const Device& device() const { return device_; }
+  DeviceQueries& heights(const MarchEntry& march, const MarchSettings& settings, bool count) {
+    auto& queries = heights_[{&march, count}];
+    if (!queries) queries = std::make_unique<DeviceQueries>(device_, march, settings, DeviceQuerySettings{count});
+    queries->set_march_settings(settings);
+    return *queries;
+  }
+  DeviceFunctionQueries& functions(const MarchEntry& march, const MarchSettings& settings) {
+    auto& queries = functions_[&march];
+    if (!queries) queries = std::make_unique<DeviceFunctionQueries>(device_, march, settings);
+    queries->set_march_settings(settings);
+    return *queries;
+  }
+  DeviceShapeQueries& shapes(const MarchEntry& march, const MarchSettings& settings) {
+    auto& queries = shapes_[&march];
+    if (!queries) queries = std::make_unique<DeviceShapeQueries>(device_, march, settings);
+    queries->set_march_settings(settings);
+    return *queries;
+  }
+
+ private:
+  Device device_;
+  std::map<std::pair<const MarchEntry*, bool>, std::unique_ptr<DeviceQueries>> heights_;  // bool: whether it counts
+  std::map<const MarchEntry*, std::unique_ptr<DeviceFunctionQueries>> functions_;
+  std::map<const MarchEntry*, std::unique_ptr<DeviceShapeQueries>> shapes_;
+};
+
+class HeightsOnDevice final : public FieldOnDevice {
+ public:
+  HeightsOnDevice(Marches& marches, const HeightField& field, const SceneFieldParts& parts)
+      : marches_(marches), field_(field), parts_(parts), ground_(marches.device(), field) {
+    if (parts.march->needs_slope) slope_ = slope_bound(field);
+    queries(false);
+  }
+
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+    std::vector<DeviceRayCost> costs(steps.size());
+    queries(!steps.empty()).closest_hits(target(), rays, hits, costs);
+    for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = costs[i].steps;
+  }
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+    queries(false).occluded(target(), rays, blocked);
+  }
+
+ private:
+  DeviceQueries& queries(bool count) { return marches_.heights(*parts_.march, *parts_.settings, count); }
+  DeviceTarget target() const { return {&field_, &ground_, slope_}; }
+
+  Marches& marches_;
+  const HeightField& field_;
+  SceneFieldParts parts_;
+  DeviceGround ground_;
+  double slope_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+class FunctionOnDevice final : public FieldOnDevice {
+ public:
+  FunctionOnDevice(Marches& marches, const HeightFunction& function, const SceneFieldParts& parts)
+      : marches_(marches), function_(function), parts_(parts), device_(marches.device(), function) {
+    queries();
+  }
+
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+    queries().closest_hits({&function_, &device_, FunctionUse::march}, rays, hits, steps);
+  }
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+    queries().occluded({&function_, &device_, FunctionUse::shadow}, rays, blocked);
+  }
+
+ private:
+  DeviceFunctionQueries& queries() { return marches_.functions(*parts_.march, *parts_.settings); }
+
+  Marches& marches_;
+  const HeightFunction& function_;
+  SceneFieldParts parts_;
+  DeviceFunction device_;
+};
+
+class ShapeOnDevice final : public FieldOnDevice {
+ public:
+  ShapeOnDevice(Marches& marches, const DistanceField& shape, const SceneFieldParts& parts)
+      : marches_(marches), shape_(shape), parts_(parts), device_(marches.device(), shape) {
+    queries();
+  }
+
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+    queries().closest_hits({&shape_, &device_}, rays, hits, steps);
+  }
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+    queries().occluded({&shape_, &device_}, rays, blocked);
+  }
+
+ private:
+  DeviceShapeQueries& queries() { return marches_.shapes(*parts_.march, *parts_.settings); }
+
+  Marches& marches_;
+  const DistanceField& shape_;
+  SceneFieldParts parts_;
+  DeviceShape device_;
+};
+
+class OnDevice final : public FieldQueries {
+ public:
+  OnDevice(const Device& device, const std::vector<SceneFieldPtr>& fields) : marches_(device), fields_(fields) {
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      try {
+        on_device_.push_back(made(*fields_[i]));
+      } catch (const Error& error) {
+        throw Error(fmt::format("scene: field {} ({}): {}", i, fields_[i]->kind(), error.what()));
+      }
+    }
+  }
+
+  void closest_hits(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                    std::span<FieldHit> hits, std::span<std::uint32_t> steps) override {
+    std::vector<Hit> own(rays.size());
+    on_device_[field]->closest_hits(started(field, rays, from, false), own, steps);
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = {own[i].status, own[i].t, own[i]};
+  }
+  void occluded(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                std::span<std::uint8_t> blocked) override {
+    on_device_[field]->occluded(started(field, rays, from, true), blocked);
+  }
+
+ private:
+  std::unique_ptr<FieldOnDevice> made(const SceneField& field) {
+    const SceneFieldParts parts = field.parts();
+    if (const auto* const* heights = std::get_if<const HeightField*>(&parts.of))
+      return std::make_unique<HeightsOnDevice>(marches_, **heights, parts);
+    if (const auto* const* function = std::get_if<const HeightFunction*>(&parts.of))
+      return std::make_unique<FunctionOnDevice>(marches_, **function, parts);
+    if (const auto* const* shape = std::get_if<const DistanceField*>(&parts.of))
+      return std::make_unique<ShapeOnDevice>(marches_, **shape, parts);
+    throw Error("does not run on Vulkan devices; heights, functions and shapes do: ask the CPU");
+  }
+  std::vector<Ray> started(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                           bool shadow) const {
+    std::vector<Ray> started(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) started[i] = fields_[field]->started(rays[i], from[i], shadow);
+    return started;
+  }
+
+  Marches marches_;
+  std::vector<SceneFieldPtr> fields_;
+  std::vector<std::unique_ptr<FieldOnDevice>> on_device_;
+};
+
+}  // namespace
+
+Scene scene_on(const Device& device, const Scene& scene) {
+  return scene.answered_by(std::make_shared<OnDevice>(device, scene.fields()));
+}
+
+}  // namespace scarp
