@@ -120,8 +120,10 @@ void run_extents(const ExtentsOptions& options, const ReportOptions& report);
 /// `voxels`: the founding post's tables for the marches of voxel grids.
 struct VoxelsOptions {
   std::vector<std::string> sets{"standard", "degenerate", "empty", "far-wall"};
-  std::vector<int> thousands{1, 4, 16};  ///< of objects, 1..16
-  int stride = 4;                        ///< one ray in stride x stride pixels of 1920 x 1080
+  std::vector<int> thousands{1, 2, 4, 8, 16};  ///< of objects, 1..16
+  int stride = 4;                              ///< one tile of 8 x 8 pixels in stride x stride of 1920 x 1080
+  int width = 128;                             ///< pixels per side of the pictures of one grid, from eight sides
+  int block = 8;                               ///< objects per side of the larger one of these grids
   int repeats = 3;
   double pass_limit_s = 10;  ///< a slower technique traces part of the rays
 };

@@ -266,8 +266,14 @@ int run(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
-  voxels_command->add_option("--stride", voxels.stride, "one ray in N x N pixels of 1920 x 1080")
-      ->check(CLI::Range(1, 256))
+  voxels_command->add_option("--stride", voxels.stride, "one tile of 8 x 8 pixels in N x N of 1920 x 1080")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  voxels_command->add_option("--width", voxels.width, "pixels per side of the pictures of one grid, a multiple of 8")
+      ->check(CLI::Range(8, 2048))
+      ->capture_default_str();
+  voxels_command->add_option("--block", voxels.block, "objects per side of the larger one of these grids")
+      ->check(CLI::Range(1, 16))
       ->capture_default_str();
   voxels_command->add_option("--repeats", voxels.repeats, "counted passes")
       ->check(CLI::Range(1, 1000))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench voxel-leaks`: very many rays at voxel grids. All marches have to give the same voxel, face and t, and
-// one ray in some is answered by the judge, too.
+// `scarp-bench voxel-leaks`: very many rays at voxel grids. All marches have to give the same voxel, face and t, ray by
+// ray and in vectors, and one ray in some is answered by the judge, too.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -80,6 +80,37 @@ struct Counts {
   std::int64_t rays = 0, hits = 0, judged = 0, wrong = 0;
 };
 
+// Rays that have been answered one by one, to be asked together.
+struct Together {
+  VoxelPacket packet;
+  std::array<VoxelHit, VoxelPacket::kRays> expected;
+  std::array<std::int64_t, VoxelPacket::kRays> index;
+
+  void add(const VoxelRay& ray, const VoxelHit& hit, std::int64_t i) {
+    const std::size_t lane = packet.count++;
+    for (int axis = 0; axis < 3; ++axis)
+      packet.origin[axis][lane] = ray.origin[axis], packet.direction[axis][lane] = ray.direction[axis];
+    packet.t_min[lane] = ray.t_min, packet.t_max[lane] = ray.t_max;
+    expected[lane] = hit, index[lane] = i;
+  }
+  // Asks one march, and calls wrong(i) for each ray that it answers differently; entries are not told.
+  template <class Wrong>
+  void ask(const VoxelModel& model, const Wrong& wrong) {
+    aim_voxel_packet(packet, glm::dmat3(1.0));
+    model.march().voxel_simd(model.target(), {}, packet, ~std::uint64_t{0} >> (VoxelPacket::kRays - packet.count));
+    std::array<VoxelHit, VoxelPacket::kRays> hits{};
+    for (std::size_t k = 0; k < packet.hits; ++k) {
+      VoxelHit& hit = hits[static_cast<std::size_t>(packet.ray[k])];
+      hit.status = HitStatus::hit, hit.t = packet.t[k], hit.face = static_cast<VoxelFace>(packet.face[k]);
+      for (int axis = 0; axis < 3; ++axis) hit.voxel[axis] = static_cast<int>(packet.voxel[axis][k]);
+    }
+    for (std::size_t lane = 0; lane < packet.count; ++lane) {
+      hits[lane].entry = expected[lane].entry;
+      if (!(hits[lane] == expected[lane])) wrong(index[lane]);
+    }
+  }
+};
+
 }  // namespace
 
 void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& report) {
@@ -95,6 +126,20 @@ void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& repo
       const VoxelGrid grid = random_grid(random);
       std::vector<VoxelModel> models;
       for (const MarchEntry& march : exact) models.emplace_back(grid, march);
+      const auto tell = [&](std::int64_t i) {
+        const auto kind = static_cast<std::size_t>(i % kRayKinds);
+        ++counts[kind].wrong;
+        const std::lock_guard lock(mutex);
+        if (first_wrong.empty()) first_wrong = fmt::format("grid {}, ray {} ({})", index, i, kRayNames[kind]);
+      };
+      Together together;
+      const auto ask_together = [&] {
+        if (together.packet.count == 0) return;
+        for (const VoxelModel& model : models) {
+          if (model.march().voxel_simd) together.ask(model, tell);
+        }
+        together.packet.count = 0;
+      };
       for (std::int64_t i = 0; i < kRaysPerGrid; ++i) {
         const int kind = static_cast<int>(i % kRayKinds);
         Counts& count = counts[static_cast<std::size_t>(kind)];
@@ -112,12 +157,11 @@ void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& repo
           ++count.judged;
           right = right && voxel_marches()[0].voxel_cpu(models[0].target(), *quantised, nullptr) == hit;
         }
-        if (right) continue;
-        ++count.wrong;
-        const std::lock_guard lock(mutex);
-        if (first_wrong.empty())
-          first_wrong = fmt::format("grid {}, ray {} ({})", index, i, kRayNames[static_cast<std::size_t>(kind)]);
+        if (!right) tell(i);
+        together.add(ray, hit, i);
+        if (together.packet.count == VoxelPacket::kRays) ask_together();
       }
+      ask_together();
     }
     const std::lock_guard lock(mutex);
     for (std::size_t i = 0; i < total.size(); ++i) {

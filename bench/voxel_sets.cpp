@@ -2,6 +2,7 @@
 #include "bench/voxel_sets.h"
 
 #include <cmath>
+#include <glm/vec3.hpp>
 #include <numbers>
 
 namespace scarp::bench {
@@ -9,7 +10,15 @@ namespace {
 
 constexpr double kVoxel = 0.25, kSpacing = kObjectSide * kVoxel;
 constexpr int kAcross = 32;
-constexpr int kWidth = 1920, kHeight = 1080;
+constexpr int kWidth = 1920, kHeight = 1080, kTile = 8;
+
+// The pixels of a tile, row by row.
+template <class Body>
+void for_each_pixel(int left, int top, const Body& body) {
+  for (int row = top; row < top + kTile; ++row) {
+    for (int col = left; col < left + kTile; ++col) body(col, row);
+  }
+}
 
 bool solid(std::string_view set, const ivec3& v) {
   if (set == "degenerate") return v == ivec3(kObjectSide - 1);
@@ -45,13 +54,37 @@ std::vector<Ray> camera_rays(int stride) {
   const dvec3 forward = normalize(dvec3(1, 0, 1)), up(0, 1, 0), right = cross(forward, up);
   const double half_height = std::tan(std::numbers::pi / 8), half_width = half_height * kWidth / kHeight;
   std::vector<Ray> rays;
-  for (int row = stride / 2; row < kHeight; row += stride) {
-    for (int col = stride / 2; col < kWidth; col += stride) {
-      Ray ray;
-      ray.origin = {-16, 0, -16};
-      const double x = (2 * (col + 0.5) / kWidth - 1) * half_width, y = (1 - 2 * (row + 0.5) / kHeight) * half_height;
-      ray.direction = normalize(forward + x * right + y * up);
-      rays.push_back(ray);
+  for (int top = kTile * (stride / 2); top < kHeight; top += kTile * stride) {
+    for (int left = kTile * (stride / 2); left < kWidth; left += kTile * stride) {
+      for_each_pixel(left, top, [&](int col, int row) {
+        Ray ray;
+        ray.origin = {-16, 0, -16};
+        const double x = (2 * (col + 0.5) / kWidth - 1) * half_width, y = (1 - 2 * (row + 0.5) / kHeight) * half_height;
+        ray.direction = normalize(forward + x * right + y * up);
+        rays.push_back(ray);
+      });
+    }
+  }
+  return rays;
+}
+
+std::vector<Ray> octant_rays(const dvec3& size, int width) {
+  std::vector<Ray> rays;
+  for (int octant = 0; octant < 8; ++octant) {
+    // Not along the diagonals, where planes are crossed at once.
+    const dvec3 forward = normalize(dvec3(octant & 1 ? -1 : 1, octant & 2 ? -0.7 : 0.7, octant & 4 ? -0.45 : 0.45));
+    const dvec3 right = normalize(cross(forward, dvec3(0, 0, 1))), up = cross(right, forward);
+    const double half = 0.25;
+    for (int top = 0; top < width; top += kTile) {
+      for (int left = 0; left < width; left += kTile) {
+        for_each_pixel(left, top, [&](int col, int row) {
+          Ray ray;
+          ray.origin = dvec3(glm::vec3(0.5 * size - 2 * length(size) * forward));
+          const double x = (2 * (col + 0.5) / width - 1) * half, y = (1 - 2 * (row + 0.5) / width) * half;
+          ray.direction = dvec3(glm::vec3(normalize(forward + x * right + y * up)));
+          rays.push_back(ray);
+        });
+      }
     }
   }
   return rays;

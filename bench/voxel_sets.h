@@ -27,7 +27,12 @@ VoxelGrid voxel_object(std::string_view set);
 /// 1,024 n places for model 0.
 std::vector<VoxelPlace> object_places(int n);
 
-/// Rays through the middles of every `stride`-th pixel of a picture of 1920 x 1080, row by row.
+/// Rays through the middles of the pixels of a picture of 1920 x 1080, 8 x 8 pixels after 8 x 8 pixels: one such tile
+/// in stride x stride of them.
 std::vector<Ray> camera_rays(int stride);
+
+/// Rays at a box at the origin from eight sides, one per octant of directions, twice its diagonal away: width x width
+/// pixels each, in tiles likewise. All numbers are floats.
+std::vector<Ray> octant_rays(const dvec3& size, int width);
 
 }  // namespace scarp::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench voxels`: the tables of the founding post for the marches of voxel grids: time per frame, memory, steps
-// and boxes per ray, and the time that builders take.
+// and boxes per ray, the time that builders take; beside Embree, NanoVDB and a hash for colours.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,8 +9,14 @@
 #include <vector>
 
 #include "bench/commands.h"
+#ifdef SCARP_BENCH_NANOVDB
+#include "bench/nanovdb_peer.h"
+#endif
 #include "bench/protocol.h"
+#include "bench/voxel_embree_peer.h"
+#include "bench/voxel_hash.h"
 #include "bench/voxel_sets.h"
+#include "scarp/base/error.h"
 
 namespace scarp::bench {
 namespace {
@@ -19,11 +25,14 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kPixels = 1920.0 * 1080.0;
 constexpr double kMiB = 1 << 20;
+constexpr std::size_t kTileRays = 64;
+
+std::string text_of(const Json& value) { return value.is_string() ? value.get<std::string>() : short_number(value); }
 
 // The least of several times, in microseconds: of a single thread, so what is above it is others' doing.
-double least_us(const std::function<void()>& work) {
+double least_us(const std::function<void()>& work, int times = 20) {
   double least = 1e300;
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < times; ++i) {
     const Stopwatch watch;
     work();
     least = std::min(least, watch.cpu_s() * 1e6);
@@ -40,8 +49,8 @@ void measure_builders(Json& rows, std::vector<std::vector<std::string>>& lines) 
       lines.push_back({std::string(set), builder, short_number(us), short_number(bytes)});
     };
     const std::size_t cubes = EmptyCubes(grid).bytes();
+    row("cubes, rows", cubes, [&] { EmptyCubes(grid, CubeBuilder::rows); });
     row("cubes, bit-parallel", cubes, [&] { EmptyCubes(grid, CubeBuilder::bit_parallel); });
-    row("cubes, two-pass", cubes, [&] { EmptyCubes(grid, CubeBuilder::two_pass); });
     row("cubes, summed-area", cubes, [&] { EmptyCubes(grid, CubeBuilder::summed_area); });
     row("spheres", EmptySpheres(grid).bytes(), [&] { EmptySpheres{grid}; });
     row("octants", OctantCubes(grid).bytes(), [&] { OctantCubes{grid}; });
@@ -49,63 +58,233 @@ void measure_builders(Json& rows, std::vector<std::vector<std::string>>& lines) 
   }
 }
 
-// A march with the part of each object that it follows rays in.
-struct Technique {
-  const MarchEntry* march;
-  VoxelModel::Extent extent;
+// Colours by rank, as VoxelGrid has them, beside a perfect spatial hash: bytes, and time per colour in the order in
+// which the camera's rays hit.
+void measure_colours(Json& rows, std::vector<std::vector<std::string>>& lines) {
+  for (const bool surface : {true, false}) {
+    VoxelGrid grid = voxel_object("standard");
+    const VoxelHash hash(grid, surface);
+    const double shape = static_cast<double>(grid.masks().size_bytes());
+    const double hash_us = least_us([&] { VoxelHash{grid, surface}; }, 1);
+    VoxelGrid ranked = grid;
+    if (surface) ranked.drop_hidden_entries();
+    const double rank_us = least_us([&] {
+      VoxelGrid again = grid;
+      again.drop_hidden_entries();
+    });
+    std::vector<ivec3> asked;
+    const VoxelScene scene({std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-planes"))},
+                           std::vector{VoxelPlace{}});
+    for (const Ray& ray : octant_rays(dvec3(grid.size()), 64)) {
+      if (const VoxelSceneHit hit = scene.closest_hit(ray)) asked.push_back(hit.hit.voxel);
+    }
+    std::uint64_t sum_rank = 0, sum_hash = 0;
+    const double count = static_cast<double>(asked.size());
+    const double rank_ns = 1e3 / count * least_us([&] {
+                             for (const ivec3& v : asked) sum_rank += ranked.entry(v);
+                           });
+    const double hash_ns = 1e3 / count * least_us([&] {
+                             for (const ivec3& v : asked) sum_hash += hash.entry(v);
+                           });
+    if (sum_rank != sum_hash) throw Error("voxels: the hash has other colours than the ranks");
+    const char* of = surface ? "surface" : "all";
+    const auto row = [&](const char* way, double bytes, double ns, double us) {
+      rows.push_back({{"table", "colours"}, {"of", of}, {"way", way}, {"bytes", bytes}, {"ns", ns}, {"us", us}});
+      lines.push_back({of, way, short_number(bytes), short_number(ns), short_number(us)});
+    };
+    // Of both without the shape itself, which marches need; with the mask of coloured voxels, which is the rank's.
+    row("rank", static_cast<double>(ranked.bytes()) - shape, rank_ns, rank_us);
+    row("hash", static_cast<double>(hash.bytes()), hash_ns, hash_us);
+  }
+}
+
+// Passes of all engines in turn, each with as many tiles of 64 rays as it can trace in time, and the median of them.
+struct Measured {
+  double ray_s = 0;
+  std::size_t rays = 0, hits = 0;
+  std::size_t lost = 0, other = 0;  // hits of the first engine that it does not tell, or tells of another voxel
 };
 
-Json measure_frame(std::string_view set, int n, const Technique& technique, const std::vector<Ray>& rays,
-                   const VoxelsOptions& options) {
-  VoxelGrid grid = voxel_object(set);
-  const std::size_t lossless = VoxelModel(grid, *technique.march, {}, technique.extent).bytes();
-  grid.drop_hidden_entries();
-  const auto model = std::make_shared<const VoxelModel>(std::move(grid), *technique.march, std::vector<VoxelColour>{},
-                                                        technique.extent);
-  const Stopwatch build;
-  const VoxelScene scene({model}, object_places(n));
-  const double scene_s = build.cpu_s();
-
-  // What slow techniques leave out is spread evenly over the picture.
-  VoxelSceneStats stats;
-  std::size_t hits = 0;
-  const Stopwatch probe;
-  const std::size_t probes = std::max<std::size_t>(1, rays.size() / 64);
-  for (std::size_t i = 0; i < probes; ++i) hits += scene.closest_hit(rays[i * 64 % rays.size()], &stats) ? 1 : 0;
-  const double per_ray_s = probe.cpu_s() / static_cast<double>(probes);
-  const auto every = static_cast<std::size_t>(
-      std::max(1.0, std::ceil(per_ray_s * static_cast<double>(rays.size()) / options.pass_limit_s)));
-  stats = {};
-  hits = 0;
-  std::size_t traced = 0;
-  for (std::size_t i = 0; i < rays.size(); i += every, ++traced) hits += scene.closest_hit(rays[i], &stats) ? 1 : 0;
-
-  std::vector<double> seconds;
-  for (int repeat = 0; repeat < options.repeats; ++repeat) {
-    const Stopwatch watch;
-    std::size_t again = 0;
-    for (std::size_t i = 0; i < rays.size(); i += every) again += scene.closest_hit(rays[i]) ? 1 : 0;
-    seconds.push_back(watch.cpu_s());
-    hits = std::max(hits, again);
+std::vector<Measured> measure_engines(const std::vector<VoxelEngine>& engines, const std::vector<Ray>& rays,
+                                      const VoxelsOptions& options) {
+  std::vector<Measured> measured(engines.size());
+  std::vector<std::vector<Ray>> own(engines.size());
+  std::vector<VoxelSceneHit> expected(rays.size()), answers;
+  engines[0].trace(rays, expected);
+  for (std::size_t e = 0; e < engines.size(); ++e) {
+    const auto part = [&](std::size_t every) {
+      own[e].clear();
+      for (std::size_t tile = 0; tile < rays.size() / kTileRays; tile += every)
+        own[e].insert(own[e].end(), &rays[tile * kTileRays], &rays[tile * kTileRays] + kTileRays);
+      answers.resize(own[e].size());
+      const Stopwatch watch;
+      engines[e].trace(own[e], answers);
+      return watch.cpu_s();
+    };
+    // What slow techniques leave out is spread evenly over the picture.
+    const double probe_s = part(32) * static_cast<double>(rays.size()) / static_cast<double>(own[e].size());
+    const auto every = static_cast<std::size_t>(std::max(1.0, std::ceil(probe_s / options.pass_limit_s)));
+    part(every);
+    Measured& m = measured[e];
+    m.rays = own[e].size();
+    for (std::size_t i = 0; i < own[e].size(); ++i) {
+      const VoxelSceneHit& right = expected[i / kTileRays * every * kTileRays + i % kTileRays];
+      m.hits += answers[i] ? 1 : 0;
+      const bool same = static_cast<bool>(right) == static_cast<bool>(answers[i]) &&
+                        (!right || (right.object == answers[i].object && right.hit.voxel == answers[i].hit.voxel));
+      if (!same) ++(right && !answers[i] ? m.lost : m.other);
+    }
   }
-  const double count = static_cast<double>(traced), ray_s = median(seconds) / count;
-  const double objects = static_cast<double>(scene.objects());
-  return {{"table", "frame"},
-          {"set", set},
-          {"objects", scene.objects()},
-          {"march", technique.march->name},
-          {"box", technique.extent == VoxelModel::Extent::grid ? "grid" : "bounds"},
-          {"ms_per_frame", ray_s * kPixels * 1e3},
-          {"mrays_per_cpu_s", 1e-6 / ray_s},
-          {"steps_per_ray", stats.steps / count},
-          {"boxes_per_ray", stats.boxes / count},
-          {"hit_share", static_cast<double>(hits) / count},
-          {"bytes_per_object", model->bytes()},
-          {"bytes_per_object_lossless", lossless},
-          {"mib_per_1k_distinct", static_cast<double>(model->bytes()) * 1024 / kMiB},
-          {"mib_per_1k_lossless", static_cast<double>(lossless) * 1024 / kMiB},
-          {"mib_per_1k_instanced", static_cast<double>(scene.bytes()) / objects * 1024 / kMiB},
-          {"scene_build_s", scene_s}};
+  std::vector<std::vector<double>> seconds(engines.size());
+  for (int repeat = 0; repeat < options.repeats; ++repeat) {
+    for (std::size_t e = 0; e < engines.size(); ++e) {
+      answers.resize(own[e].size());
+      const Stopwatch watch;
+      engines[e].trace(own[e], answers);
+      seconds[e].push_back(watch.cpu_s());
+    }
+  }
+  for (std::size_t e = 0; e < engines.size(); ++e)
+    measured[e].ray_s = median(seconds[e]) / static_cast<double>(own[e].size());
+  return measured;
+}
+
+// A scene as two engines: ray by ray, and in batches.
+void add_engines(const VoxelScene& scene, std::string_view march, const char* box, double model_bytes,
+                 std::vector<VoxelEngine>& engines) {
+  VoxelEngine engine;
+  engine.name = march, engine.mode = "x1", engine.box = box;
+  engine.mib = (model_bytes + static_cast<double>(scene.bytes())) / kMiB;
+  engine.trace = [&scene](std::span<const Ray> rays, std::span<VoxelSceneHit> hits) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = scene.closest_hit(rays[i]);
+  };
+  engines.push_back(engine);
+  engine.mode = "x64";
+  engine.trace = [&scene](std::span<const Ray> rays, std::span<VoxelSceneHit> hits) { scene.closest_hits(rays, hits); };
+  engines.push_back(engine);
+}
+
+// The post's scene in every technique, and its peers.
+void measure_frame(const std::string& set, int n, const VoxelsOptions& options, Json& rows,
+                   std::vector<std::vector<std::string>>& lines) {
+  struct Technique {
+    std::unique_ptr<VoxelScene> scene;
+    double bytes, lossless, build_s;
+  };
+  const std::vector<Ray> rays = camera_rays(options.stride);
+  const std::vector<VoxelPlace> places = object_places(n);
+  std::vector<Technique> techniques;
+  std::vector<VoxelEngine> engines;
+  for (const MarchEntry& march : voxel_marches().subspan(1)) {
+    for (const auto extent : {VoxelModel::Extent::grid, VoxelModel::Extent::bounds}) {
+      VoxelGrid grid = voxel_object(set);
+      const std::size_t lossless = VoxelModel(grid, march, {}, extent).bytes();
+      grid.drop_hidden_entries();
+      const auto model = std::make_shared<const VoxelModel>(std::move(grid), march, std::vector<VoxelColour>{}, extent);
+      const Stopwatch build;
+      auto scene = std::make_unique<VoxelScene>(std::vector{model}, places);
+      techniques.push_back(
+          {std::move(scene), static_cast<double>(model->bytes()), static_cast<double>(lossless), build.cpu_s()});
+      add_engines(*techniques.back().scene, march.name, extent == VoxelModel::Extent::grid ? "grid" : "bounds",
+                  techniques.back().bytes, engines);
+    }
+  }
+  const VoxelGrid grid = voxel_object(set);
+  const auto model = std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-octants"));
+  const VoxelEmbreePeer user = VoxelEmbreePeer::user_geometry(model, places),
+                        triangles = VoxelEmbreePeer::triangles(grid, places);
+  for (const VoxelEmbreePeer* peer : {&user, &triangles}) {
+    for (VoxelEngine& engine : peer->engines()) engines.push_back(std::move(engine));
+  }
+
+  const std::vector<Measured> measured = measure_engines(engines, rays, options);
+  for (std::size_t e = 0; e < engines.size(); ++e) {
+    const VoxelEngine& engine = engines[e];
+    const Measured& m = measured[e];
+    const double count = static_cast<double>(m.rays);
+    Json row = {{"table", "frame"},
+                {"set", set},
+                {"objects", places.size()},
+                {"engine", engine.name},
+                {"mode", engine.mode},
+                {"box", engine.box},
+                {"ms_per_frame", m.ray_s * kPixels * 1e3},
+                {"mrays_per_cpu_s", 1e-6 / m.ray_s},
+                {"hit_share", static_cast<double>(m.hits) / count},
+                {"lost_ppm", 1e6 * static_cast<double>(m.lost) / count},
+                {"other_ppm", 1e6 * static_cast<double>(m.other) / count},
+                {"main_mib", engine.mib}};
+    if (e / 2 < techniques.size()) {
+      const Technique& t = techniques[e / 2];
+      VoxelSceneStats stats;
+      std::size_t asked = 0;
+      // Steps are the same in batches.
+      for (std::size_t i = 0; i < rays.size(); i += 7, ++asked) t.scene->closest_hit(rays[i], &stats);
+      row["steps_per_ray"] = static_cast<double>(stats.steps) / static_cast<double>(asked);
+      row["boxes_per_ray"] = static_cast<double>(stats.boxes) / static_cast<double>(asked);
+      row["bytes_per_object"] = t.bytes;
+      row["bytes_per_object_lossless"] = t.lossless;
+      row["mib_per_1k_distinct"] = t.bytes * 1024 / kMiB;
+      row["mib_per_1k_lossless"] = t.lossless * 1024 / kMiB;
+      row["mib_per_1k_instanced"] =
+          static_cast<double>(t.scene->bytes()) / static_cast<double>(t.scene->objects()) * 1024 / kMiB;
+      row["scene_build_s"] = t.build_s;
+    }
+    std::vector<std::string> line;
+    for (const char* key :
+         {"set", "objects", "engine", "mode", "box", "ms_per_frame", "mrays_per_cpu_s", "steps_per_ray",
+          "boxes_per_ray", "hit_share", "lost_ppm", "other_ppm", "main_mib", "mib_per_1k_distinct"})
+      line.push_back(text_of(row.value(key, Json())));
+    lines.push_back(std::move(line));
+    rows.push_back(std::move(row));
+  }
+}
+
+// One grid alone: all marches, and NanoVDB's over the same voxels with the same rays.
+void measure_grid(const char* name, const VoxelGrid& grid, const VoxelsOptions& options, Json& rows,
+                  std::vector<std::vector<std::string>>& lines) {
+  const std::vector<Ray> rays = octant_rays(dvec3(grid.size()), options.width);
+  std::vector<std::unique_ptr<VoxelScene>> scenes;
+  std::vector<VoxelEngine> engines;
+  for (const MarchEntry& march : voxel_marches().subspan(1)) {
+    const auto model = std::make_shared<const VoxelModel>(grid, march);
+    scenes.push_back(std::make_unique<VoxelScene>(std::vector{model}, std::vector{VoxelPlace{}}));
+    add_engines(*scenes.back(), march.name, "bounds", static_cast<double>(model->bytes()), engines);
+  }
+#ifdef SCARP_BENCH_NANOVDB
+  const NanovdbPeer nanovdb(grid);
+  for (VoxelEngine& engine : nanovdb.engines()) engines.push_back(std::move(engine));
+#endif
+  const std::vector<Measured> measured = measure_engines(engines, rays, options);
+  for (std::size_t e = 0; e < engines.size(); ++e) {
+    const Measured& m = measured[e];
+    const double count = static_cast<double>(m.rays);
+    Json row = {{"table", "grid"},
+                {"set", name},
+                {"engine", engines[e].name},
+                {"mode", engines[e].mode},
+                {"mrays_per_cpu_s", 1e-6 / m.ray_s},
+                {"hit_share", static_cast<double>(m.hits) / count},
+                {"lost_ppm", 1e6 * static_cast<double>(m.lost) / count},
+                {"other_ppm", 1e6 * static_cast<double>(m.other) / count},
+                {"main_mib", engines[e].mib}};
+    std::vector<std::string> line;
+    for (const char* key :
+         {"set", "engine", "mode", "mrays_per_cpu_s", "hit_share", "lost_ppm", "other_ppm", "main_mib"})
+      line.push_back(text_of(row.value(key, Json())));
+    lines.push_back(std::move(line));
+    rows.push_back(std::move(row));
+  }
+}
+
+// Objects of the standard set side by side, as one grid.
+VoxelGrid block_of(const ivec3& objects) {
+  const VoxelGrid object = voxel_object("standard");
+  VoxelGrid grid(objects * kObjectSide, 1);
+  grid.edit(grid.box(), [&](const ivec3& v, const VoxelGrid::Voxel&) {
+    return object.solid(v & (kObjectSide - 1)) ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
+  });
+  return grid;
 }
 
 }  // namespace
@@ -115,29 +294,21 @@ void run_voxels(const VoxelsOptions& options, const ReportOptions& report) {
   std::vector<std::vector<std::string>> builds{{"set", "builder", "us", "bytes"}};
   measure_builders(rows, builds);
   print_table(builds, 2);
-
-  std::vector<Technique> techniques;
-  for (const MarchEntry& march : voxel_marches().subspan(1)) {
-    for (const auto extent : {VoxelModel::Extent::grid, VoxelModel::Extent::bounds})
-      techniques.push_back({&march, extent});
-  }
-  const std::vector<Ray> rays = camera_rays(options.stride);
-  std::vector<std::vector<std::string>> lines{{"set", "objects", "march", "box", "ms/frame", "Mrays/s", "steps/ray",
-                                               "boxes/ray", "hits", "B/object", "lossless", "MiB/1k inst."}};
+  std::vector<std::vector<std::string>> colours{{"colours of", "way", "bytes", "ns", "build us"}};
+  measure_colours(rows, colours);
+  print_table(colours, 2);
+  std::vector<std::vector<std::string>> grids{
+      {"grid", "engine", "mode", "Mrays/s", "hits", "lost ppm", "other ppm", "MiB"}};
+  measure_grid("object", voxel_object("standard"), options, rows, grids);
+  measure_grid("block", block_of(ivec3(options.block)), options, rows, grids);
+  print_table(grids, 3);
+  std::vector<std::vector<std::string>> lines{{"set", "objects", "engine", "mode", "box", "ms/frame", "Mrays/s",
+                                               "steps/ray", "boxes/ray", "hits", "lost ppm", "other ppm", "MiB",
+                                               "MiB/1k distinct"}};
   for (const std::string& set : options.sets) {
-    for (const int n : options.thousands) {
-      for (const Technique& technique : techniques) {
-        const Json row = measure_frame(set, n, technique, rays, options);
-        lines.push_back({set, short_number(row["objects"]), row["march"], row["box"], short_number(row["ms_per_frame"]),
-                         short_number(row["mrays_per_cpu_s"]), short_number(row["steps_per_ray"]),
-                         short_number(row["boxes_per_ray"]), short_number(row["hit_share"]),
-                         short_number(row["bytes_per_object"]), short_number(row["bytes_per_object_lossless"]),
-                         short_number(row["mib_per_1k_instanced"])});
-        rows.push_back(row);
-      }
-    }
+    for (const int n : options.thousands) measure_frame(set, n, options, rows, lines);
   }
-  print_table(lines, 4);
+  print_table(lines, 5);
   write_json(report, rows);
 }
 

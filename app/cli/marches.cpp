@@ -24,7 +24,7 @@ Row row_of(const MarchEntry& march) {
   if (march.cpu != nullptr || march.function_cpu != nullptr || march.voxel_cpu != nullptr ||
       march.distance_cpu != nullptr)
     runs_on += "cpu";
-  if (march.simd != nullptr || march.function_simd != nullptr) runs_on += ", simd";
+  if (march.simd != nullptr || march.function_simd != nullptr || march.voxel_simd != nullptr) runs_on += ", simd";
   if (march.gpu) runs_on += ", gpu";
   return {std::string(march.name),
           std::string(name_of(march.guarantee)),

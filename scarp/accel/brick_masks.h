@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "scarp/field/voxel_grid.h"
@@ -25,6 +26,9 @@ class BrickMasks {
                       (static_cast<std::size_t>(sector.y) +
                        static_cast<std::size_t>(sectors_.y) * static_cast<std::size_t>(sector.z))];
   }
+  /// Sectors per axis, and the masks of all of them, x fastest.
+  const ivec3& sectors() const { return sectors_; }
+  std::span<const std::uint64_t> masks() const { return masks_; }
   std::size_t bytes() const { return sizeof(*this) + masks_.size() * sizeof(std::uint64_t); }
   friend bool operator==(const BrickMasks&, const BrickMasks&) = default;
 

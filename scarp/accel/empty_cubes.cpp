@@ -5,13 +5,11 @@
 #include <array>
 #include <cstring>
 
+#include "scarp/accel/voxel_nearness.h"
 #include "scarp/accel/voxel_rows.h"
 
 namespace scarp {
 namespace {
-
-// Above this number of voxels counting each of them once per round takes longer than two passes.
-constexpr std::size_t kBitParallelVoxels = std::size_t{1} << 18;
 
 // Eight bytes, 1 where the bit is 0.
 constexpr std::array<std::uint64_t, 256> make_zeros() {
@@ -23,47 +21,22 @@ constexpr std::array<std::uint64_t, 256> make_zeros() {
 }
 constexpr std::array<std::uint64_t, 256> kZeros = make_zeros();
 
-std::uint8_t one_more(std::uint8_t distance) {
-  return static_cast<std::uint8_t>(distance + (distance < EmptyCubes::kFarthest ? 1 : 0));
-}
-
-// The distances of a region and of the voxels around it, x fastest, so that each voxel of the region has 26 neighbours.
-struct Padded {
-  ivec3 size;
-  std::vector<std::uint8_t> bytes;
-
-  explicit Padded(const ivec3& inner)
-      : size(inner + 2),
-        bytes(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z),
-              EmptyCubes::kFarthest) {}
-  std::uint8_t* row(int y, int z) {
-    return bytes.data() +
-           static_cast<std::size_t>(size.x) *
-               (static_cast<std::size_t>(y) + static_cast<std::size_t>(size.y) * static_cast<std::size_t>(z));
-  }
-  // The least of a row's neighbours in four rows that have been done, and of itself.
-  void relax(int y, int z, const std::array<const std::uint8_t*, 4>& done, std::vector<std::uint8_t>& least) {
-    std::uint8_t* const here = row(y, z);
-    for (int x = 0; x < size.x; ++x)
-      least[x] = std::min(std::min(done[0][x], done[1][x]), std::min(done[2][x], done[3][x]));
-    for (int x = 1; x < size.x - 1; ++x)
-      here[x] = std::min(here[x], one_more(std::min(std::min(least[x - 1], least[x]), least[x + 1])));
-  }
-};
-
 }  // namespace
 
 EmptyCubes::EmptyCubes(const VoxelGrid& grid, CubeBuilder builder)
-    : distances_(glm::min(grid.size(), kMaxAcceleratedSide), 1, kFarthest) {
+    : distances_(glm::min(grid.size(), kMaxAcceleratedSide), kFarthest) {
   require_accelerable(grid, "empty cubes");
   if (grid.solid_count() == 0) return;
-  const bool small = distances_.bytes() <= kBitParallelVoxels;
-  if (builder == CubeBuilder::summed_area) {
-    summed_area(grid);
-  } else if (builder == CubeBuilder::bit_parallel || (builder == CubeBuilder::fastest && small)) {
-    bit_parallel(grid);
-  } else {
-    two_pass(grid, grid.box());
+  switch (builder) {
+    case CubeBuilder::rows:
+      rows(grid, grid.box());
+      break;
+    case CubeBuilder::bit_parallel:
+      bit_parallel(grid);
+      break;
+    case CubeBuilder::summed_area:
+      summed_area(grid);
+      break;
   }
 }
 
@@ -89,35 +62,28 @@ void EmptyCubes::update(const VoxelGrid& grid, const VoxelBox& changed) {
     }
     if (nearer) break;
   }
-  two_pass(grid, intersection(changed.grown(std::min(reach, kFarthest)), grid.box()));
+  rows(grid, intersection(changed.grown(std::min(reach, kFarthest)), grid.box()));
 }
 
-void EmptyCubes::two_pass(const VoxelGrid& grid, const VoxelBox& region) {
-  const ivec3 inner = region.high - region.low;
-  Padded work(inner);
+void EmptyCubes::rows(const VoxelGrid& grid, const VoxelBox& region) {
   const VoxelBox seen = intersection(region.grown(1), grid.box());
-  for_each_voxel(seen, [&](const ivec3& v) {
-    const ivec3 at = v - region.low + 1;
-    work.row(at.y, at.z)[at.x] = !region.contains(v) ? distances_[v]
-                                 : grid.solid(v)     ? std::uint8_t{0}
-                                                     : std::uint8_t{kFarthest};
+  VoxelNearness near(grid, seen);
+  // What is beyond the region's border is known.
+  for_each_row(seen, [&](int y, int z) {
+    std::uint8_t* const row = near.row(y - seen.low.y, z - seen.low.z);
+    const bool inner = y >= region.low.y && y < region.high.y && z >= region.low.z && z < region.high.z;
+    for (int x = seen.low.x; x < seen.high.x; ++x) {
+      if (inner && x == region.low.x) x = region.high.x;
+      if (x < seen.high.x) row[x - seen.low.x] = static_cast<std::uint8_t>(kFarthest - distances_[{x, y, z}]);
+    }
   });
-  std::vector<std::uint8_t> least(static_cast<std::size_t>(work.size.x));
-  for (int z = 1; z <= inner.z; ++z) {
-    for (int y = 1; y <= inner.y; ++y) {
-      work.relax(y, z, {work.row(y - 1, z), work.row(y - 1, z - 1), work.row(y, z - 1), work.row(y + 1, z - 1)}, least);
-      std::uint8_t* const row = work.row(y, z);
-      for (int x = 1; x <= inner.x; ++x) row[x] = std::min(row[x], one_more(row[x - 1]));
-    }
-  }
-  for (int z = inner.z; z >= 1; --z) {
-    for (int y = inner.y; y >= 1; --y) {
-      work.relax(y, z, {work.row(y + 1, z), work.row(y - 1, z + 1), work.row(y, z + 1), work.row(y + 1, z + 1)}, least);
-      std::uint8_t* const row = work.row(y, z);
-      for (int x = inner.x; x >= 1; --x) row[x] = std::min(row[x], one_more(row[x + 1]));
-      std::memcpy(distances_.at(region.low + ivec3(0, y - 1, z - 1)), row + 1, static_cast<std::size_t>(inner.x));
-    }
-  }
+  constexpr VoxelNearness::Sides kBoth;
+  near.spread(kBoth, kBoth, kBoth);
+  for_each_row(region, [&](int y, int z) {
+    const std::uint8_t* const row = near.row(y - seen.low.y, z - seen.low.z) + (region.low.x - seen.low.x);
+    std::uint8_t* const to = distances_.at({region.low.x, y, z});
+    for (int x = 0; x < region.high.x - region.low.x; ++x) to[x] = static_cast<std::uint8_t>(kFarthest - row[x]);
+  });
 }
 
 void EmptyCubes::bit_parallel(const VoxelGrid& grid) {

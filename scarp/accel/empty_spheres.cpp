@@ -55,8 +55,7 @@ class Envelope {
 
 }  // namespace
 
-EmptySpheres::EmptySpheres(const VoxelGrid& grid)
-    : distances_(glm::min(grid.size(), kMaxAcceleratedSide), 1, kFarthest) {
+EmptySpheres::EmptySpheres(const VoxelGrid& grid) : distances_(glm::min(grid.size(), kMaxAcceleratedSide), kFarthest) {
   require_accelerable(grid, "empty spheres");
   build(grid, grid.box());
   largest_ = largest_in(grid.box());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A byte per voxel, or several: what accelerators of voxel grids store.
+// A byte per voxel: what accelerators of voxel grids store.
 #pragma once
 
 #include <cstddef>
@@ -17,22 +17,19 @@ constexpr int kMaxAcceleratedSide = 512;
 /// Throws Error naming `what` when the grid is larger.
 void require_accelerable(const VoxelGrid& grid, std::string_view what);
 
-/// x fastest. `per_voxel` bytes stand together.
+/// x fastest.
 class VoxelBytes {
  public:
-  VoxelBytes(const ivec3& size, int per_voxel, std::uint8_t value)
+  VoxelBytes(const ivec3& size, std::uint8_t value)
       : size_(size),
-        per_voxel_(per_voxel),
-        bytes_(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z) *
-                   static_cast<std::size_t>(per_voxel),
+        bytes_(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z) +
+                   kReadBeyond,
                value) {}
 
   std::size_t index(const ivec3& voxel) const {
-    return (static_cast<std::size_t>(voxel.x) +
-            static_cast<std::size_t>(size_.x) *
-                (static_cast<std::size_t>(voxel.y) +
-                 static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(voxel.z))) *
-           static_cast<std::size_t>(per_voxel_);
+    return static_cast<std::size_t>(voxel.x) +
+           static_cast<std::size_t>(size_.x) * (static_cast<std::size_t>(voxel.y) +
+                                                static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(voxel.z));
   }
   std::uint8_t operator[](const ivec3& voxel) const { return bytes_[index(voxel)]; }
   std::uint8_t& operator[](const ivec3& voxel) { return bytes_[index(voxel)]; }
@@ -41,12 +38,14 @@ class VoxelBytes {
 
   const ivec3& size() const { return size_; }
   VoxelBox box() const { return {ivec3(0), size_}; }
+  /// The first voxel's; so many bytes beyond the last one's may be read, as vectors do.
+  const std::uint8_t* data() const { return bytes_.data(); }
+  static constexpr std::size_t kReadBeyond = 7;
   std::size_t bytes() const { return bytes_.size(); }
   friend bool operator==(const VoxelBytes&, const VoxelBytes&) = default;
 
  private:
   ivec3 size_;
-  int per_voxel_;
   std::vector<std::uint8_t> bytes_;
 };
 

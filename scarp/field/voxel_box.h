@@ -33,6 +33,14 @@ inline VoxelBox around(const VoxelBox& a, const VoxelBox& b) {
   return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
 }
 
+/// Calls body(y, z) for each row along x.
+template <class Body>
+void for_each_row(const VoxelBox& box, const Body& body) {
+  for (int z = box.low.z; z < box.high.z; ++z) {
+    for (int y = box.low.y; y < box.high.y; ++y) body(y, z);
+  }
+}
+
 /// Calls body(v) for each voxel, x fastest.
 template <class Body>
 void for_each_voxel(const VoxelBox& box, const Body& body) {

@@ -17,6 +17,13 @@ constexpr int kVoxelsPerBrick = 64;
 // Bits of a mask below `bit`.
 constexpr std::uint64_t below(int bit) { return (std::uint64_t{1} << bit) - 1; }
 
+// std::popcount() is a call where the compiler may not count on the instruction.
+int bits_set(std::uint64_t mask) {
+  mask -= mask >> 1 & 0x5555555555555555u;
+  mask = (mask & 0x3333333333333333u) + (mask >> 2 & 0x3333333333333333u);
+  return static_cast<int>(((mask + (mask >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
+}
+
 std::uint32_t packed(const std::vector<std::uint64_t>& words, std::size_t place, int bits) {
   const std::size_t first = place * static_cast<std::size_t>(bits), word = first / 64, shift = first % 64;
   std::uint64_t value = words[word] >> shift;
@@ -70,8 +77,8 @@ std::uint32_t VoxelGrid::entry(const ivec3& voxel) const {
   if (!(masks[brick] >> bit & 1)) return 0;
   const Page& page = pages_[brick / kPageBricks];
   std::size_t rank = page.rank_from[brick % kPageBricks / kRankBricks];
-  for (std::size_t i = brick - brick % kRankBricks; i < brick; ++i) rank += std::popcount(masks[i]);
-  rank += std::popcount(masks[brick] & below(bit));
+  for (std::size_t i = brick - brick % kRankBricks; i < brick; ++i) rank += bits_set(masks[i]);
+  rank += bits_set(masks[brick] & below(bit));
   return packed(page.words, rank, entry_bits_);
 }
 

@@ -65,11 +65,11 @@ constexpr MarchEntry function_march(std::string_view name, Guarantee guarantee, 
 }
 
 constexpr MarchEntry voxel_march(std::string_view name, VoxelAccelerator needs, VoxelMarch cpu, VoxelOcclusion occluded,
-                                 std::string_view description) {
+                                 VoxelPacketMarch simd, std::string_view description) {
   MarchEntry entry{};
   entry.name = name, entry.fields = "voxel grid", entry.guarantee = Guarantee::exact;
   entry.description = description;
-  entry.voxel_cpu = cpu, entry.voxel_cpu_occluded = occluded, entry.voxel_accelerator = needs;
+  entry.voxel_cpu = cpu, entry.voxel_cpu_occluded = occluded, entry.voxel_simd = simd, entry.voxel_accelerator = needs;
   return entry;
 }
 
@@ -109,17 +109,19 @@ constexpr std::array kMarches = {
     function_march("lipschitz-local", Guarantee::conservative, march_lipschitz_local, closest_hits_lipschitz_local_simd,
                    "tolerance 0.000001 of the distance, 1024 steps",
                    "bounds the ground anew on every segment of the ray; never passes, long steps where it is calm"),
-    voxel_march("voxel-exhaustive", VoxelAccelerator::none, march_voxel_exhaustive, nullptr,
+    voxel_march("voxel-exhaustive", VoxelAccelerator::none, march_voxel_exhaustive, nullptr, nullptr,
                 "every solid voxel on its own, in rationals: the judge of the voxel marches, slow"),
     voxel_march("voxel-planes", VoxelAccelerator::none, march_voxel_planes, occluded_voxel_planes,
-                "from plane to plane, voxel by voxel"),
-    voxel_march("voxel-spheres", VoxelAccelerator::spheres, march_voxel_spheres, occluded_voxel_spheres,
+                march_packet_voxel_planes, "from plane to plane, voxel by voxel"),
+    voxel_march("voxel-spheres", VoxelAccelerator::spheres, march_voxel_spheres, occluded_voxel_spheres, nullptr,
                 "over the empty sphere around each voxel"),
     voxel_march("voxel-cubes", VoxelAccelerator::cubes, march_voxel_cubes, occluded_voxel_cubes,
-                "out of the largest empty cube around each voxel"),
+                march_packet_voxel_cubes, "out of the largest empty cube around each voxel"),
     voxel_march("voxel-octants", VoxelAccelerator::octants, march_voxel_octants, occluded_voxel_octants,
+                march_packet_voxel_octants,
                 "out of the largest empty cube ahead of each voxel, one for each octant of directions"),
     voxel_march("voxel-bricks", VoxelAccelerator::bricks, march_voxel_bricks, occluded_voxel_bricks,
+                march_packet_voxel_bricks,
                 "out of empty blocks of 2 to 16 voxels, told by bit masks; the smallest memory"),
     distance_march("sphere-trace", Guarantee::conservative, march_sphere_trace, occluded_sphere_trace,
                    "tolerance 1e-6 of the distance, 1024 steps",

@@ -13,6 +13,7 @@
 #include "scarp/field/distance_field.h"
 #include "scarp/field/height_field.h"
 #include "scarp/field/height_function.h"
+#include "scarp/march/voxel_packet.h"
 #include "scarp/march/voxel_target.h"
 
 namespace scarp {
@@ -166,6 +167,7 @@ struct MarchEntry {
   // Those of voxel grids, which have none of the functions above.
   VoxelMarch voxel_cpu = nullptr;  ///< scalar C++
   VoxelOcclusion voxel_cpu_occluded = nullptr;
+  VoxelPacketMarch voxel_simd = nullptr;  ///< up to 64 rays at once in vectors; null: none
   VoxelAccelerator voxel_accelerator = VoxelAccelerator::none;
   // Those of distance fields likewise.
   DistanceMarch distance_cpu = nullptr;

@@ -144,12 +144,9 @@ SCARP_FN float scarp_rest_bound(vec3 p, uint k) {
   float near_y = max(abs(y.off) - y.half_, 0.0f);
   float near_z = max(abs(z.off) - z.half_, 0.0f);
   float least = kScarpEndless;
-  if (x.period != 0.0f)
-    least = min(least, scarp_length3(max(abs(x.off) + x.period - x.half_, 0.0f), near_y, near_z));
-  if (y.period != 0.0f)
-    least = min(least, scarp_length3(near_x, max(abs(y.off) + y.period - y.half_, 0.0f), near_z));
-  if (z.period != 0.0f)
-    least = min(least, scarp_length3(near_x, near_y, max(abs(z.off) + z.period - z.half_, 0.0f)));
+  if (x.period != 0.0f) least = min(least, scarp_length3(max(abs(x.off) + x.period - x.half_, 0.0f), near_y, near_z));
+  if (y.period != 0.0f) least = min(least, scarp_length3(near_x, max(abs(y.off) + y.period - y.half_, 0.0f), near_z));
+  if (z.period != 0.0f) least = min(least, scarp_length3(near_x, near_y, max(abs(z.off) + z.period - z.half_, 0.0f)));
   return least;
 }
 
@@ -192,7 +189,8 @@ SCARP_FN float scarp_shape_distance(uint count, vec3 position) {
       float away = scarp_outside(p[at.b], k);
       v[at.to] = away > 0.0f ? max(v[at.a], away) : v[at.a];
     } else if (at.op == kScarpShapeRestBound) {
-      v[at.to] = at.mask != 0u || !scarp_shape_uses(kScarpShapeFold) ? v[at.a] : min(v[at.a], scarp_rest_bound(p[at.b], k));
+      v[at.to] =
+          at.mask != 0u || !scarp_shape_uses(kScarpShapeFold) ? v[at.a] : min(v[at.a], scarp_rest_bound(p[at.b], k));
     } else if (at.op == kScarpShapeSkipFar) {
       float away = scarp_outside(p[at.b], k);
       float a = at.mask != 0u ? -v[at.a] : v[at.a];

@@ -85,8 +85,8 @@ struct DeviceShapeQueries::Impl {
 DeviceShapeQueries::DeviceShapeQueries(const Device& device, const MarchEntry& march,
                                        const MarchSettings& march_settings, const DeviceQuerySettings& settings) {
   if (march.name != "sphere-trace") {
-    throw Error(fmt::format("march '{}': does not run against shapes on Vulkan devices; there runs: sphere-trace",
-                            march.name));
+    throw Error(
+        fmt::format("march '{}': does not run against shapes on Vulkan devices; there runs: sphere-trace", march.name));
   }
   validate(march_settings);
   impl_ = std::make_unique<Impl>(device, march_settings, settings);
@@ -103,7 +103,8 @@ void DeviceShapeQueries::set_march_settings(const MarchSettings& march_settings)
 void DeviceShapeQueries::closest_hits(const DeviceShapeTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                                       std::span<std::uint32_t> steps) {
   if (rays.size() != hits.size() || (!steps.empty() && rays.size() != steps.size()))
-    throw Error(fmt::format("batch: {} rays, room for {} answers and {} costs", rays.size(), hits.size(), steps.size()));
+    throw Error(
+        fmt::format("batch: {} rays, room for {} answers and {} costs", rays.size(), hits.size(), steps.size()));
   impl_->ask(target, false, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
                hits[i] = hit_from_device(rays[i], prepared, answer);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Rays by the batch against distance fields on a Vulkan device: queries_vk.h for shapes.
 //
-// Answers are those of single precision, by balls alone (sphere_trace.glsl.h): the CPU's wherever the ray passes or meets
-// the surface by more than 4 times what values are off by (single_rounding() of accel/shape_words.h). Closest and any
-// always agree.
+// Answers are those of single precision, by balls alone (sphere_trace.glsl.h): the CPU's wherever the ray passes or
+// meets the surface by more than 4 times what values are off by (single_rounding() of accel/shape_words.h). Closest and
+// any always agree.
 #pragma once
 
 #include <cstdint>

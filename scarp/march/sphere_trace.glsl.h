@@ -32,10 +32,10 @@ struct ScarpSphereTrace {
 // Where a ray is: ScarpFunctionState::phase.
 const uint kScarpTraceBegins = 0u;
 const uint kScarpTraceInside = 1u;
-const uint kScarpTraceLeaves = 2u;   ///< the surface that it begins on, or that it came out through
+const uint kScarpTraceLeaves = 2u;  ///< the surface that it begins on, or that it came out through
 const uint kScarpTraceOutside = 3u;
-const uint kScarpTraceCloses = 4u;   ///< has hit, and goes on to the surface as floats have it
-const uint kScarpTraceBegan = 8u;    ///< a bit: it began inside
+const uint kScarpTraceCloses = 4u;  ///< has hit, and goes on to the surface as floats have it
+const uint kScarpTraceBegan = 8u;   ///< a bit: it began inside
 
 const int kScarpClosingSteps = 6;
 
@@ -71,9 +71,10 @@ SCARP_FN ScarpFunctionHit scarp_sphere_trace(uint count, ScarpFunctionRay ray, S
     }
     hit.heights += 1u;
     float f = scarp_shape_distance(
-        count, vec3(scarp_two_line(0.0f, ray.origin.x, ray.origin_low.x, ray.direction.x, ray.direction_low.x, s).high,
-                    scarp_two_line(0.0f, ray.origin.y, ray.origin_low.y, ray.direction.y, ray.direction_low.y, s).high,
-                    scarp_two_line(0.0f, ray.origin.z, ray.origin_low.z, ray.direction.z, ray.direction_low.z, s).high));
+        count,
+        vec3(scarp_two_line(0.0f, ray.origin.x, ray.origin_low.x, ray.direction.x, ray.direction_low.x, s).high,
+             scarp_two_line(0.0f, ray.origin.y, ray.origin_low.y, ray.direction.y, ray.direction_low.y, s).high,
+             scarp_two_line(0.0f, ray.origin.z, ray.origin_low.z, ray.direction.z, ray.direction_low.z, s).high));
     if (phase == kScarpTraceCloses) {
       // Past where it is the closest it would go away again.
       if (f >= nearest) break;

@@ -2,39 +2,16 @@
 #include "scarp/march/voxel_bricks.h"
 
 #include <array>
+#include <cstdint>
 
 #include "scarp/accel/brick_masks.h"
+#include "scarp/march/voxel_ahead.h"
 #include "scarp/march/voxel_loop.h"
 
 namespace scarp {
 namespace {
 
-// bit = x + 4 y + 16 z. A block of 2 x 2 x 2 begins at a bit with x, y and z even.
-constexpr int kEven = 0b101010;
-constexpr std::uint64_t kPair = 0x00330033;
-
 bool pair_empty(std::uint64_t mask, int bit) { return (mask >> (bit & kEven) & kPair) == 0; }
-
-// ahead[octant][bit]: the voxels of a brick that a ray can still reach from one of them; bit i of an octant is set
-// where the ray goes down axis i.
-using Ahead = std::array<std::array<std::uint64_t, 64>, 8>;
-constexpr Ahead make_ahead() {
-  Ahead ahead{};
-  for (int octant = 0; octant < 8; ++octant) {
-    for (int from = 0; from < 64; ++from) {
-      for (int to = 0; to < 64; ++to) {
-        bool reached = true;
-        for (int axis = 0; axis < 3; ++axis) {
-          const int a = from >> (2 * axis) & 3, b = to >> (2 * axis) & 3;
-          reached = reached && (octant >> axis & 1 ? b <= a : b >= a);
-        }
-        if (reached) ahead[octant][from] |= std::uint64_t{1} << to;
-      }
-    }
-  }
-  return ahead;
-}
-constexpr Ahead kAhead = make_ahead();
 
 // The aligned block of 2^level voxels a side around a voxel.
 VoxelBox block(const ivec3& voxel, int level) {

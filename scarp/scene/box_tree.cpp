@@ -4,6 +4,8 @@
 #include <glm/common.hpp>
 #include <numeric>
 
+#include "scarp/scene/box_beam.h"
+
 namespace scarp {
 namespace {
 
@@ -17,6 +19,9 @@ double half_area(const WorldBox& box) {
   const dvec3 size = glm::max(box.high - box.low, dvec3(0.0));
   return size.x * size.y + size.y * size.z + size.z * size.x;
 }
+
+// A beam has one longest axis, along which no ray is much slower than along another, and no wider slopes than this.
+constexpr double kSteepestOfBeam = 4, kWidestBeam = 0.5;
 
 }  // namespace
 
@@ -103,9 +108,16 @@ struct BoxTree::Builder {
     std::array<Range, kWide> parts{whole};
     int count = 1;
     while (count < kWide) {
+      // The largest part that one node cannot hold; else one that the places left can hold without a node of its own.
       int largest = -1;
+      const auto free = static_cast<std::uint32_t>(kWide - count);
       for (int i = 0; i < count; ++i) {
-        if (parts[i].count() > 1 && (largest < 0 || half_area(parts[i].box) > half_area(parts[largest].box)))
+        const bool fits = parts[i].count() <= kWide,
+                   splits = fits ? parts[i].count() > 1 && parts[i].count() - 1 <= free : true;
+        if (!splits) continue;
+        const bool before = largest >= 0 && parts[largest].count() <= kWide;
+        if (largest < 0 || (before && !fits) ||
+            (before == fits && half_area(parts[i].box) > half_area(parts[largest].box)))
           largest = i;
       }
       if (largest < 0) break;
@@ -143,6 +155,61 @@ BoxTree::BoxTree(std::span<const WorldBox> boxes) {
   nodes_.reserve(boxes.size() / 2 + 1);
   builder.build(builder.range(0, static_cast<std::uint32_t>(boxes.size())), 0);
   nodes_.shrink_to_fit();
+}
+
+bool BoxTree::clip(const Ray& ray, double& t_in, double& t_out) const {
+  t_in = ray.t_min, t_out = ray.t_max;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double direction = ray.direction[axis], low = box_.low[axis] - padding_, high = box_.high[axis] + padding_;
+    if (direction == 0) {
+      if (ray.origin[axis] < low || ray.origin[axis] > high) return false;
+      continue;
+    }
+    const double inverse = 1 / direction, a = (low - ray.origin[axis]) * inverse,
+                 b = (high - ray.origin[axis]) * inverse;
+    t_in = std::max(t_in, std::min(a, b));
+    t_out = std::min(t_out, std::max(a, b));
+  }
+  // The box is padded: a ray that rounding keeps out touches nothing.
+  return t_in <= t_out;
+}
+
+float BoxTree::Beam::end_of(std::span<const double> t_max) const {
+  double last = -1;
+  for (std::size_t i = 0; i < t_max.size(); ++i) {
+    const double here = (t_max[i] - start[i]) * per_t[i];
+    last = per_t[i] > 0 && here > last ? here : last;
+  }
+  return static_cast<float>(last) * kRounding;
+}
+
+std::optional<BoxTree::Beam> BoxTree::beam(const Rays& rays) const {
+  Beam beam;
+  if (nodes_.empty() || rays.count == 0) return beam;
+  int longest = 0;
+  for (int axis = 1; axis < 3; ++axis) {
+    if (std::abs(rays.direction[axis][0]) > std::abs(rays.direction[longest][0])) longest = axis;
+  }
+  const double sign = rays.direction[longest][0] < 0 ? -1 : 1;
+  BeamBounds bounds;
+  beam.inside = bound_beam(rays, {box_.low - padding_, box_.high + padding_}, middle_, longest, sign, beam.start.data(),
+                           beam.per_t.data(), bounds);
+  if (beam.inside == 0) return beam;
+  if (!(bounds.slowest > 0)) return {};
+  beam.end = static_cast<float>(bounds.last) * kRounding;
+  for (int i = 0; i < 3; ++i) {
+    const double flat = bounds.least[i], steep = bounds.most[i];
+    if (!(steep - flat <= kWidestBeam && steep <= kSteepestOfBeam && flat >= -kSteepestOfBeam)) return {};
+    Beam::Axis& axis = beam.axes[i];
+    axis.low = static_cast<float>(bounds.low[i]), axis.high = static_cast<float>(bounds.high[i]);
+    // Flatter rays than can be told from level ones count as both.
+    const auto per = [](double slope) { return slope * kSteepest < 1 ? kSteepest : static_cast<float>(1 / slope); };
+    axis.per_up = per(steep), axis.per_down = per(-flat);
+    const double flattest = std::max(flat, -steep);
+    axis.way = flattest * kSteepest < 1 ? Beam::Way::both : flat > 0 ? Beam::Way::up : Beam::Way::down;
+    axis.per_least = per(flattest) * kRounding;
+  }
+  return beam;
 }
 
 }  // namespace scarp

@@ -16,7 +16,8 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kRaysPerPiece = 512;
-// Objects that like batches, up to this many, are asked about all rays; more of them are found by the tree.
+// So many of the objects that like batches, the largest ones, are asked about all rays; the others are found by the
+// tree.
 constexpr std::size_t kMostBesideTree = 4;
 // How far a turn may be from orthogonal: many roundings, and no shear that could be meant.
 constexpr double kRigid = 1e-9;
@@ -57,7 +58,6 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
     : fields_(std::move(fields)), objects_(std::move(objects)) {
   std::vector<std::optional<WorldBox>> field_boxes;
   for (const SceneFieldPtr& field : fields_) field_boxes.push_back(field->box());
-  std::size_t batched = 0;
   for (const SceneObject& object : objects_) {
     const auto index = static_cast<std::size_t>(&object - objects_.data());
     if (object.field >= fields_.size()) {
@@ -67,9 +67,9 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
     if (!good(object.placement))
       throw Error(
           fmt::format("scene: object {}: its placement must be a rotation, a scale above 0, a finite place", index));
-    batched += fields_[object.field]->likes_batches();
   }
   std::vector<WorldBox> boxes;
+  std::vector<std::pair<double, std::uint32_t>> batched;  // by how much there is of them
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
     const std::optional<WorldBox>& box = field_boxes[objects_[i].field];
     if (!box) {
@@ -78,14 +78,20 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
       continue;
     }
     if (empty(*box)) continue;
-    boxes.push_back(world_box(objects_[i].placement, *box));
-    box_ = around(box_, boxes.back());
-    if (field_of(i).likes_batches() && batched <= kMostBesideTree) {
-      beside_tree_.push_back(i);
-      boxes.pop_back();
-    } else {
-      in_tree_.push_back(i);
-    }
+    const WorldBox here = world_box(objects_[i].placement, *box);
+    box_ = around(box_, here);
+    boxes.push_back(here);
+    in_tree_.push_back(i);
+    const dvec3 size = here.high - here.low;
+    if (field_of(i).likes_batches()) batched.emplace_back(-(size.x * size.y + size.y * size.z + size.z * size.x), i);
+  }
+  std::sort(batched.begin(), batched.end());
+  batched.resize(std::min(batched.size(), kMostBesideTree));
+  for (const auto& [unused, i] : batched) {
+    beside_tree_.push_back(i);
+    const auto place = std::find(in_tree_.begin(), in_tree_.end(), i) - in_tree_.begin();
+    in_tree_.erase(in_tree_.begin() + place);
+    boxes.erase(boxes.begin() + place);
   }
   tree_ = BoxTree(boxes);
 }

@@ -2,7 +2,7 @@
 // Many fields in one world: terrain, functions, shapes and voxels, each in as many places as one likes, and one call
 // that tells the nearest that a ray meets.
 //
-//   ray ──▶ ground without an end, and terrain that takes rays by the hundred        each by its own march;
+//   ray ──▶ ground without an end, and the largest of what takes rays by the hundred  each by its own march;
 //       ──▶ hierarchy of boxes over all other objects (box_tree.h)                   the nearest hit wins
 //
 // Rays are answered in the space of each object; t counts in the length of the world's direction throughout. Of hits at

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "scarp/scene/scene_field.h"
 
@@ -31,6 +32,18 @@ class Voxels final : public SceneField {
     if (!voxel) return scene_.occluded(ray);
     return shading_.normals == VoxelNormals::smooth ? occluded_above_steps(ray, *voxel)
                                                     : scene_.occluded_from(*voxel, ray);
+  }
+  bool likes_batches() const override { return true; }
+  void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                    std::span<FieldHit> hits) const override {
+    std::vector<VoxelSceneHit> own(rays.size());
+    scene_.closest_hits(rays, own, all_from(from));
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = {own[i].hit.status, own[i].hit.t, own[i]};
+  }
+  void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
+                std::span<std::uint8_t> blocked) const override {
+    if (shading_.normals == VoxelNormals::smooth) return SceneField::occluded(rays, from, blocked);
+    scene_.occluded(rays, blocked, all_from(from));
   }
   FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
     const VoxelSceneHit& own = std::get<VoxelSceneHit>(hit.own);
@@ -77,6 +90,11 @@ class Voxels final : public SceneField {
 
   static const VoxelSceneHit* from_of(const FieldHit* from) {
     return from ? std::get_if<VoxelSceneHit>(&from->own) : nullptr;
+  }
+  static std::vector<const VoxelSceneHit*> all_from(std::span<const FieldHit* const> from) {
+    std::vector<const VoxelSceneHit*> own;
+    for (const FieldHit* hit : from) own.push_back(from_of(hit));
+    return own;
   }
 
   VoxelScene scene_;

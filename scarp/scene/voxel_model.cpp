@@ -1,33 +1,25 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/voxel_model.h"
 
+#include <type_traits>
 #include <utility>
 
 namespace scarp {
-namespace {
-
-// What an optional holds beyond itself.
-template <class Built>
-std::size_t heap_bytes(const std::optional<Built>& built) {
-  return built ? built->bytes() - sizeof(Built) : 0;
-}
-
-}  // namespace
 
 VoxelModel::VoxelModel(VoxelGrid grid, const MarchEntry& march, std::vector<VoxelColour> palette, Extent extent)
     : grid_(std::move(grid)), march_(&march), palette_(std::move(palette)), extent_(extent) {
   switch (march.voxel_accelerator) {
     case VoxelAccelerator::spheres:
-      spheres_.emplace(grid_);
+      built_.emplace<EmptySpheres>(grid_);
       break;
     case VoxelAccelerator::cubes:
-      cubes_.emplace(grid_);
+      built_.emplace<EmptyCubes>(grid_);
       break;
     case VoxelAccelerator::octants:
-      octants_.emplace(grid_);
+      built_.emplace<OctantCubes>(grid_);
       break;
     case VoxelAccelerator::bricks:
-      bricks_.emplace(grid_);
+      built_.emplace<BrickMasks>(grid_);
       break;
     case VoxelAccelerator::none:
       break;
@@ -37,10 +29,10 @@ VoxelModel::VoxelModel(VoxelGrid grid, const MarchEntry& march, std::vector<Voxe
 
 VoxelTarget VoxelModel::target() const {
   VoxelTarget target{&grid_, box_};
-  if (spheres_) target.spheres = &*spheres_;
-  if (cubes_) target.cubes = &*cubes_;
-  if (octants_) target.octants = &*octants_;
-  if (bricks_) target.bricks = &*bricks_;
+  target.spheres = std::get_if<EmptySpheres>(&built_);
+  target.cubes = std::get_if<EmptyCubes>(&built_);
+  target.octants = std::get_if<OctantCubes>(&built_);
+  target.bricks = std::get_if<BrickMasks>(&built_);
   return target;
 }
 
@@ -53,16 +45,23 @@ VoxelColour VoxelModel::colour(std::uint32_t entry) const {
 }
 
 void VoxelModel::update(const VoxelBox& changed) {
-  if (spheres_) spheres_->update(grid_, changed);
-  if (cubes_) cubes_->update(grid_, changed);
-  if (octants_) octants_->update(grid_, changed);
-  if (bricks_) bricks_->update(grid_, changed);
+  std::visit(
+      [&](auto& built) {
+        if constexpr (!std::is_same_v<decltype(built), std::monostate&>) built.update(grid_, changed);
+      },
+      built_);
   if (extent_ == Extent::bounds) box_ = grid_.bounds();
 }
 
 std::size_t VoxelModel::bytes() const {
-  return sizeof(*this) - sizeof(grid_) + grid_.bytes() + palette_.size() * sizeof(VoxelColour) + heap_bytes(spheres_) +
-         heap_bytes(cubes_) + heap_bytes(octants_) + heap_bytes(bricks_);
+  const std::size_t heap = std::visit(
+      [](const auto& built) {
+        std::size_t bytes = 0;
+        if constexpr (!std::is_same_v<decltype(built), const std::monostate&>) bytes = built.bytes() - sizeof(built);
+        return bytes;
+      },
+      built_);
+  return sizeof(*this) - sizeof(grid_) + grid_.bytes() + palette_.size() * sizeof(VoxelColour) + heap;
 }
 
 }  // namespace scarp

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
+#include <variant>
 #include <vector>
 
 #include "scarp/accel/brick_masks.h"
@@ -59,10 +59,7 @@ class VoxelModel {
   std::vector<VoxelColour> palette_;
   Extent extent_;
   VoxelBox box_;
-  std::optional<EmptySpheres> spheres_;
-  std::optional<EmptyCubes> cubes_;
-  std::optional<OctantCubes> octants_;
-  std::optional<BrickMasks> bricks_;
+  std::variant<std::monostate, EmptySpheres, EmptyCubes, OctantCubes, BrickMasks> built_;  // what the march needs
 };
 
 }  // namespace scarp

@@ -82,9 +82,9 @@ TEST_P(VoxelAccelerators, AllBuildersOfCubesAgree) {
   Random random(12);
   for (int i = 0; i < 4; ++i) {
     const VoxelGrid grid = GetParam().make(random);
-    const EmptyCubes two_pass(grid, CubeBuilder::two_pass);
-    EXPECT_TRUE(two_pass == EmptyCubes(grid, CubeBuilder::bit_parallel));
-    EXPECT_TRUE(two_pass == EmptyCubes(grid, CubeBuilder::summed_area));
+    const EmptyCubes rows(grid, CubeBuilder::rows);
+    EXPECT_TRUE(rows == EmptyCubes(grid, CubeBuilder::bit_parallel));
+    EXPECT_TRUE(rows == EmptyCubes(grid, CubeBuilder::summed_area));
   }
 }
 
@@ -121,7 +121,7 @@ TEST(VoxelAccelerators, CountNoFartherThanAByte) {
   EXPECT_EQ(EmptyCubes(grid).distance({200, 1, 1}), 255);
   EXPECT_EQ(EmptySpheres(grid).distance({200, 1, 1}), 254);
   grid.set({399, 1, 1}, 1);
-  for (const CubeBuilder builder : {CubeBuilder::two_pass, CubeBuilder::bit_parallel, CubeBuilder::summed_area}) {
+  for (const CubeBuilder builder : {CubeBuilder::rows, CubeBuilder::bit_parallel, CubeBuilder::summed_area}) {
     const EmptyCubes cubes(grid, builder);
     EXPECT_EQ(cubes.distance({0, 1, 1}), 255);
     EXPECT_EQ(cubes.distance({145, 0, 0}), 254);

@@ -36,6 +36,29 @@ bool meets(const Ray& ray, const WorldBox& box) {
   return t_in <= t_out;
 }
 
+// Rays side by side.
+class RaysOfBeam {
+ public:
+  RaysOfBeam(const std::vector<Ray>& rays, const std::vector<double>& t_max)
+      : rays_{rays.size(), {}, {}, nullptr, nullptr} {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const Ray& ray = rays[i];
+      for (int axis = 0; axis < 3; ++axis)
+        numbers_[axis][i] = ray.origin[axis], numbers_[3 + axis][i] = ray.direction[axis];
+      numbers_[6][i] = ray.t_min, numbers_[7][i] = t_max[i];
+    }
+    for (int axis = 0; axis < 3; ++axis)
+      rays_.origin[axis] = numbers_[axis].data(), rays_.direction[axis] = numbers_[3 + axis].data();
+    rays_.t_min = numbers_[6].data(), rays_.t_max = numbers_[7].data();
+  }
+  RaysOfBeam(const RaysOfBeam&) = delete;
+  operator const BoxTree::Rays&() const { return rays_; }
+
+ private:
+  std::array<std::array<double, BoxTree::Beam::kRays + 7>, 8> numbers_{};
+  BoxTree::Rays rays_;
+};
+
 std::vector<WorldBox> random_boxes(Random& random, int count, double spread, double size) {
   std::vector<WorldBox> boxes;
   for (int i = 0; i < count; ++i) {
@@ -114,6 +137,74 @@ TEST(BoxTree, TakesManyBoxesInOnePlace) {
   });
   EXPECT_EQ(visits, 5000);
   BoxTree().traverse(ray, [&](std::uint32_t) { return ADD_FAILURE(), 0.0; });
+}
+
+TEST(BoxTree, BeamsLoseNoBox) {
+  Random random(3);
+  int beams = 0, met = 0;
+  std::size_t visits = 0, possible = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double spread = std::pow(10.0, uniform(random, -3, 6));
+    const auto boxes = random_boxes(random, static_cast<int>(uniform(random, 1, 60)), spread, spread * 0.1);
+    const BoxTree tree(boxes);
+    const WorldBox& target = boxes[0];
+    dvec3 along = point(random, std::pow(10.0, uniform(random, -3, 3)));
+    if (i % 4 == 0) along[i / 4 % 3] = 0;
+    if (i % 16 == 1) along = dvec3(0), along[i / 16 % 3] = i % 32 == 1 ? -1 : 1;
+    const double away = uniform(random, 0, 10) * spread / length(along);
+    const double wide = std::pow(10.0, uniform(random, -6, -1));
+    std::vector<Ray> rays(static_cast<std::size_t>(uniform(random, 1, 65)));
+    std::vector<double> t_max;
+    for (Ray& ray : rays) {
+      ray.direction = along + wide * point(random, length(along));
+      if (i % 32 == 1) ray.direction = along;
+      // A corner of a box is touched by some.
+      ray.origin = (i % 2 ? target.low : target.high) - away * ray.direction;
+      if (i % 3 == 0) ray.origin += point(random, 0.1 * spread);
+      if (i % 5 == 0) ray.t_max = uniform(random, 0, 2) * away;
+      t_max.push_back(ray.t_max);
+    }
+    const auto beam = tree.beam(RaysOfBeam(rays, t_max));
+    if (!beam) continue;
+    ++beams;
+    std::set<std::uint32_t> visited;
+    tree.traverse(*beam, [&](std::uint32_t object) {
+      EXPECT_TRUE(visited.insert(object).second);
+      return beam->end;
+    });
+    visits += visited.size(), possible += boxes.size();
+    for (std::uint32_t b = 0; b < boxes.size(); ++b) {
+      if (std::none_of(rays.begin(), rays.end(), [&](const Ray& ray) { return meets(ray, boxes[b]); })) continue;
+      ++met;
+      EXPECT_TRUE(visited.contains(b)) << "round " << i << ", box " << b;
+    }
+  }
+  EXPECT_GT(beams, 1000);
+  EXPECT_GT(met, 2000);
+  EXPECT_LT(visits, possible / 3);
+}
+
+// Where rays end, so does the beam: at the one that ends last.
+TEST(BoxTree, BeamsEndWithTheirRays) {
+  std::vector<WorldBox> row;
+  for (int i = 0; i < 1000; ++i) row.push_back({dvec3(10.0 * i, 0, 0), dvec3(10.0 * i + 1, 1, 1)});
+  const BoxTree tree(row);
+  std::vector<Ray> rays(2, Ray{{-1, 0.5, 0.5}, {1, 0, 0}});
+  rays[1].direction = {0.5, 0, 0};
+  std::vector<double> t_max(2, std::numeric_limits<double>::infinity());
+  const auto beam = tree.beam(RaysOfBeam(rays, t_max));
+  ASSERT_TRUE(beam);
+  int visits = 0;
+  tree.traverse(*beam, [&](std::uint32_t object) {
+    EXPECT_EQ(object, static_cast<std::uint32_t>(visits));  // nearest first
+    if (++visits == 3) t_max = {15, 72};
+    return beam->end_of(t_max);
+  });
+  EXPECT_EQ(visits, 4);  // 0.5 * 72 - 1 = 35
+  rays[1] = Ray{{5, 0.5, 0.5}, {-1, 0, 0}};
+  EXPECT_FALSE(tree.beam(RaysOfBeam(rays, t_max)));
+  rays[1] = Ray{{-0.2, 0.5, 0.5}, {1, 1, 0}};
+  EXPECT_FALSE(tree.beam(RaysOfBeam(rays, t_max)));
 }
 
 }  // namespace

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// NanoVDB 32 over the same voxels: a grid of floats, 1 where a voxel is solid, followed by its own hierarchical DDA
+// from active node to active voxel, one ray at a time, in float as its documentation has it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "bench/voxel_engine.h"
+
+namespace scarp::bench {
+
+class NanovdbPeer {
+ public:
+  explicit NanovdbPeer(const VoxelGrid& grid);
+  NanovdbPeer(NanovdbPeer&&) noexcept;
+  ~NanovdbPeer();
+
+  /// Rays in the space of the grid. Modes: how far the point that tells the next voxel is pushed behind a border, by
+  /// NanoVDB's own 1.0001 voxels or by a ten-thousandth. The peer outlives its engines.
+  std::vector<VoxelEngine> engines() const;
+
+ private:
+  struct Tree;
+  VoxelEngine engine(const char* mode, float push) const;
+
+  std::unique_ptr<Tree> tree_;
+};
+
+}  // namespace scarp::bench

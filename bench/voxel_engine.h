@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// What `scarp-bench voxels` measures: something that answers many rays at voxels.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+
+#include "scarp/scene/voxel_scene.h"
+
+namespace scarp::bench {
+
+struct VoxelEngine {
+  std::string name;  ///< a march, or a peer
+  std::string mode;  ///< x1: one ray at a time; x64, x8: so many neighbours at once
+  std::string box;   ///< which part of objects is followed: grid or bounds
+  double mib = 0;    ///< with one model for all objects
+  /// hits[i] answers rays[i]: status, t, voxel and object. On the calling thread.
+  std::function<void(std::span<const Ray> rays, std::span<VoxelSceneHit> hits)> trace;
+};
+
+}  // namespace scarp::bench

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+// Batches of rays at voxel scenes.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include "scarp/base/error.h"
+#include "scarp/scene/voxel_scene.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::size_t kRays = VoxelPacket::kRays;
+static_assert(kRays == BoxTree::Beam::kRays);
+
+// A beam that came to so many objects which few of its rays met is given up: by then its rays could have gone alone.
+// So are those that follow, twice as many each time.
+constexpr int kFewRays = 8, kWasted = 24;
+constexpr std::size_t kLongestPause = 64;
+// So few objects are asked without a hierarchy.
+constexpr std::size_t kAskedAtOnce = 1;
+
+// Calls body(i) for each bit.
+template <class Body>
+void for_each_bit(std::uint64_t bits, const Body& body) {
+  for (; bits != 0; bits &= bits - 1) body(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+void require_same_length(std::size_t rays, std::size_t answers) {
+  if (rays != answers)
+    throw Error(fmt::format("voxel scene: {} rays and {} answers; there must be as many", rays, answers));
+}
+
+}  // namespace
+
+// Up to 64 world rays on their way through the objects together.
+class VoxelScene::PacketQuery {
+ public:
+  using From = std::span<const VoxelSceneHit* const>;
+
+  explicit PacketQuery(const VoxelScene& scene) : scene_(scene) {}
+
+  // hits[i] answers rays[i]; without them whether there is one is asked. False: they go too far apart, and nothing is
+  // known.
+  bool ask(std::span<const Ray> rays, From from, VoxelSceneHit* hits) {
+    rays_ = rays, from_ = from, hits_ = hits;
+    found_ = 0, boxes_ = 0;
+    load();
+    if (scene_.in_tree_.size() <= kAskedAtOnce) {
+      const std::uint64_t all = ~std::uint64_t{0} >> (kRays - rays.size());
+      for (const std::uint32_t index : scene_.in_tree_)
+        boxes_ += static_cast<std::uint32_t>(std::popcount(meet(index, all).met));
+    } else if (!ask_tree()) {
+      return false;
+    }
+    if (hits_) finish();
+    return true;
+  }
+
+  bool found(std::size_t i) const { return found_ >> i & 1; }
+  VoxelSceneStats stats() const { return {static_cast<std::uint32_t>(packet_.steps), boxes_}; }
+
+ private:
+  std::span<const double> t_max() const { return {packet_.t_max, rays_.size()}; }
+
+  void load() {
+    packet_.count = rays_.size();
+    packet_.steps = 0;
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      const Ray& ray = rays_[i];
+      for (int axis = 0; axis < 3; ++axis)
+        packet_.origin[axis][i] = ray.origin[axis], packet_.direction[axis][i] = ray.direction[axis];
+      packet_.t_min[i] = ray.t_min, packet_.t_max[i] = ray.t_max;
+    }
+    aimed_ = alone_aimed_ = kNoTurn;
+  }
+
+  bool ask_tree() {
+    const auto &o = packet_.origin, &d = packet_.direction;
+    const auto beam =
+        scene_.tree_.beam({rays_.size(), {o[0], o[1], o[2]}, {d[0], d[1], d[2]}, packet_.t_min, packet_.t_max});
+    if (!beam) return false;
+    // Those that pass everything.
+    for_each_bit(~beam->inside & ~std::uint64_t{0} >> (kRays - rays_.size()),
+                 [&](std::size_t i) { packet_.t_max[i] = -std::numeric_limits<double>::infinity(); });
+    int wasted = 0;
+    scene_.tree_.traverse(*beam, [&](std::uint32_t in_tree) {
+      const Meeting meeting = meet(scene_.in_tree_[in_tree], hits_ ? beam->inside : beam->inside & ~found_);
+      boxes_ += static_cast<std::uint32_t>(std::popcount(meeting.met));
+      wasted += std::popcount(meeting.met) < kFewRays ? 1 : 0;
+      if (wasted > kWasted) return -1.0f;
+      return meeting.hit == 0 ? std::numeric_limits<float>::infinity() : beam->end_of(t_max());
+    });
+    return wasted <= kWasted;
+  }
+
+  // What is left to be told.
+  void finish() {
+    for (std::size_t i = 0; i < rays_.size(); ++i) {
+      VoxelSceneHit& hit = hits_[i];
+      if (found(i)) {
+        hit.hit.status = HitStatus::hit;
+        hit.hit.entry = scene_.targets_[scene_.objects_[hit.object].model].grid->entry(hit.hit.voxel);
+      } else {
+        hit = {};
+      }
+    }
+  }
+
+  struct Meeting {
+    std::uint64_t met = 0, hit = 0;  // a bit per ray
+  };
+
+  // The rays at an object. Where it is the nearest so far, it is kept; t_max is that of the nearest hit from then on.
+  Meeting meet(std::uint32_t index, std::uint64_t open) {
+    const Object& object = scene_.objects_[index];
+    const Turn& turn = scene_.turns_[object.turn];
+    const VoxelTarget& target = scene_.targets_[object.model];
+    const MarchEntry& march = scene_.models_[object.model]->march();
+    std::uint64_t alone = march.voxel_simd ? 0 : open;
+    if (!from_.empty()) {
+      for_each_bit(open, [&](std::size_t i) {
+        if (from_[i] && from_[i]->object == index) alone |= std::uint64_t{1} << i;
+      });
+    }
+    Meeting meeting;
+    if (const std::uint64_t together = open & ~alone; together != 0) {
+      if (aimed_ != object.turn) aim_voxel_packet(packet_, turn.grid_from_world);
+      aimed_ = object.turn;
+      meeting.met = march.voxel_simd(target, {turn.grid_from_world, object.origin}, packet_, together);
+      for (std::size_t k = 0; k < packet_.hits; ++k) {
+        const auto i = static_cast<std::size_t>(packet_.ray[k]);
+        meeting.hit |= std::uint64_t{1} << i;
+        if (VoxelSceneHit* to = keep(i, packet_.t[k], index)) {
+          to->hit.face = static_cast<VoxelFace>(packet_.face[k]);
+          for (int axis = 0; axis < 3; ++axis) to->hit.voxel[axis] = static_cast<int>(packet_.voxel[axis][k]);
+        }
+      }
+    }
+    if (alone != 0) {
+      if (alone_aimed_ != object.turn) {
+        directions_.clear();
+        for (const Ray& ray : rays_) directions_.emplace_back(turn.grid_from_world * ray.direction);
+      }
+      alone_aimed_ = object.turn;
+    }
+    for_each_bit(alone, [&](std::size_t i) {
+      std::optional<ivec3> start_voxel;
+      const VoxelSceneHit* from = from_.empty() ? nullptr : from_[i];
+      if (from && from->object == index) start_voxel = from->hit.voxel + normal_of(from->hit.face);
+      const VoxelRay ray{turn.grid_from_world * (rays_[i].origin - object.origin), directions_[i].given, rays_[i].t_min,
+                         packet_.t_max[i], start_voxel};
+      const auto quantised = quantise(ray, directions_[i], target.box);
+      if (!quantised) return;
+      MarchStats stats;
+      const VoxelHit hit = march.voxel_cpu(target, *quantised, &stats);
+      packet_.steps += stats.steps;
+      meeting.met |= std::uint64_t{1} << i;
+      if (!hit) return;
+      meeting.hit |= std::uint64_t{1} << i;
+      if (VoxelSceneHit* to = keep(i, hit.t, index)) to->hit = hit;
+    });
+    return meeting;
+  }
+
+  // Where the hit is to be told, if it is the nearest so far.
+  VoxelSceneHit* keep(std::size_t i, double t, std::uint32_t index) {
+    const bool again = found(i);
+    found_ |= std::uint64_t{1} << i;
+    if (!hits_) {
+      packet_.t_max[i] = -std::numeric_limits<double>::infinity();
+      return nullptr;
+    }
+    VoxelSceneHit& to = hits_[i];
+    if (again && t == to.hit.t && index > to.object) return nullptr;
+    to.hit.t = packet_.t_max[i] = t;
+    to.object = index;
+    return &to;
+  }
+
+  static constexpr std::uint32_t kNoTurn = 0xffff'ffff;
+
+  const VoxelScene& scene_;
+  std::span<const Ray> rays_;
+  From from_;
+  VoxelSceneHit* hits_ = nullptr;
+  VoxelPacket packet_;
+  std::uint32_t aimed_ = kNoTurn, alone_aimed_ = kNoTurn;  // turns of the directions in packet_ and directions_
+  std::vector<VoxelDirection> directions_;
+  std::uint64_t found_ = 0;
+  std::uint32_t boxes_ = 0;
+};
+
+template <class Together, class Alone>
+void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from, VoxelSceneHit* hits,
+                            const Together& together, const Alone& alone) const {
+  if (!from.empty()) require_same_length(rays.size(), from.size());
+  // Rounded voxels are met by rays alone.
+  if (rounding_) {
+    for (std::size_t i = 0; i < rays.size(); ++i) alone(i, from.empty() ? nullptr : from[i]);
+    return;
+  }
+  PacketQuery query(*this);
+  std::size_t pause = 0, next_pause = 1;
+  for (std::size_t begin = 0; begin < rays.size(); begin += kRays) {
+    const std::size_t count = std::min(kRays, rays.size() - begin);
+    const auto from_here = from.empty() ? from : from.subspan(begin, count);
+    if (pause > 0) {
+      --pause;
+    } else if (query.ask(rays.subspan(begin, count), from_here, hits ? hits + begin : nullptr)) {
+      together(query, begin, count);
+      next_pause = 1;
+      continue;
+    } else {
+      pause = next_pause;
+      next_pause = std::min(2 * next_pause, kLongestPause);
+    }
+    for (std::size_t i = begin; i < begin + count; ++i) alone(i, from.empty() ? nullptr : from[i]);
+  }
+}
+
+void VoxelScene::closest_hits(std::span<const Ray> rays, std::span<VoxelSceneHit> hits,
+                              std::span<const VoxelSceneHit* const> from, VoxelSceneStats* stats) const {
+  require_same_length(rays.size(), hits.size());
+  by_packets(
+      rays, from, hits.data(),
+      [&](const PacketQuery& query, std::size_t, std::size_t) {
+        if (!stats) return;
+        const VoxelSceneStats of_all = query.stats();
+        stats->steps += of_all.steps, stats->boxes += of_all.boxes;
+      },
+      [&](std::size_t i, const VoxelSceneHit* start) { hits[i] = closest_hit(rays[i], start, stats); });
+}
+
+void VoxelScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                          std::span<const VoxelSceneHit* const> from) const {
+  require_same_length(rays.size(), blocked.size());
+  by_packets(
+      rays, from, nullptr,
+      [&](const PacketQuery& query, std::size_t begin, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) blocked[begin + i] = query.found(i);
+      },
+      [&](std::size_t i, const VoxelSceneHit* start) { blocked[i] = occluded(rays[i], start); });
+}
+
+}  // namespace scarp

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// Batches of rays at voxel scenes against the same rays one by one, to the bit.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <glm/gtc/matrix_transform.hpp>
+#include <random>
+
+#include "scarp/base/error.h"
+#include "scarp/scene/voxel_scene.h"
+
+namespace scarp {
+namespace {
+
+using Random = std::mt19937_64;
+
+double uniform(Random& random, double low, double high) {
+  return std::uniform_real_distribution<double>(low, high)(random);
+}
+
+dvec3 point(Random& random, double size) {
+  return {uniform(random, -size, size), uniform(random, -size, size), uniform(random, -size, size)};
+}
+
+std::shared_ptr<const VoxelModel> model(int size, double share, std::string_view march, Random& random) {
+  VoxelGrid grid(ivec3(size), 8);
+  grid.edit(grid.box(), [&](const ivec3&, const VoxelGrid::Voxel&) {
+    return uniform(random, 0, 1) < share ? VoxelGrid::Voxel(1 + random() % 255) : VoxelGrid::Voxel();
+  });
+  return std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(march));
+}
+
+// Objects of all marches, turned, overlapping, some of them twice in the same place.
+VoxelScene crowd(Random& random, int count) {
+  const std::vector models = {model(8, 0.2, "voxel-bricks", random),  model(5, 0.5, "voxel-cubes", random),
+                              model(9, 0.1, "voxel-octants", random), model(6, 0.3, "voxel-spheres", random),
+                              model(3, 0.9, "voxel-planes", random),  model(1, 0.0, "voxel-planes", random)};
+  std::vector<VoxelPlace> places;
+  for (int i = 0; i < count; ++i) {
+    glm::dmat3 turn(1.0);
+    if (i % 4 == 0) turn = glm::dmat3(glm::rotate(glm::dmat4(1), uniform(random, 0, 6), dvec3(1, 2, 3)));
+    places.push_back({static_cast<std::uint32_t>(i % 6), turn * uniform(random, 0.5, 2), point(random, 40)});
+    if (i % 10 == 0) places.push_back(places.back());
+  }
+  return VoxelScene(models, places);
+}
+
+// A camera's rays, 8 x 8 pixels after 8 x 8 pixels; with spread 1 they go anywhere.
+std::vector<Ray> rays_from(const dvec3& eye, const dvec3& towards, double spread, std::size_t count, Random& random) {
+  std::vector<Ray> rays;
+  for (std::size_t i = 0; i < count; ++i) {
+    Ray ray;
+    ray.origin = eye;
+    ray.direction = towards + spread * point(random, length(towards));
+    ray.t_min = random() % 8 ? 0 : uniform(random, 0, 0.5);
+    ray.t_max = random() % 8 ? ray.t_max : uniform(random, 0.5, 2);
+    rays.push_back(ray);
+  }
+  return rays;
+}
+
+bool same(const VoxelSceneHit& a, const VoxelSceneHit& b) {
+  return a.hit == b.hit && a.object == b.object &&
+         std::bit_cast<std::uint64_t>(a.hit.t) == std::bit_cast<std::uint64_t>(b.hit.t);
+}
+
+TEST(VoxelScenePackets, AnswerAsSingleRaysDo) {
+  Random random(1);
+  int hits = 0, again = 0;
+  for (int round = 0; round < 60; ++round) {
+    const VoxelScene scene = crowd(random, 1 + round * 4);
+    const dvec3 eye = point(random, round % 3 ? 90 : 30);
+    dvec3 towards = -eye;
+    // Along an axis, or in a plane of two: slopes around 0.
+    if (round % 4 == 1) towards[round % 3] = 0;
+    if (round % 8 == 2) towards = dvec3(0), towards[round % 3] = 50;
+    const double spread = round % 5 == 4 ? 1 : std::ldexp(1.0, -3 - round % 7);
+    const std::vector<Ray> rays = rays_from(eye, towards, spread, 64 * 3 + static_cast<std::size_t>(round), random);
+    std::vector<VoxelSceneHit> answers(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size(), 7);
+    VoxelSceneStats stats;
+    scene.closest_hits(rays, answers, {}, &stats);
+    scene.occluded(rays, blocked);
+    std::vector<Ray> onwards(rays.size());
+    std::vector<const VoxelSceneHit*> from(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const VoxelSceneHit expected = scene.closest_hit(rays[i]);
+      ASSERT_TRUE(same(answers[i], expected)) << "round " << round << ", ray " << i;
+      ASSERT_EQ(blocked[i], expected ? 1 : 0) << "round " << round << ", ray " << i;
+      hits += expected ? 1 : 0;
+      onwards[i] = {rays[i].at(expected ? expected.hit.t : 0), dvec3(1, 2, 3) + point(random, 0.2)};
+      if (expected) from[i] = &answers[i];
+    }
+    int here = 0;
+    for (const VoxelSceneHit& hit : answers) here += hit ? 1 : 0;
+    EXPECT_GE(stats.boxes, static_cast<std::uint32_t>(here));
+    // From the faces that were hit, to a light.
+    std::vector<VoxelSceneHit> second(rays.size());
+    scene.closest_hits(onwards, second, from);
+    scene.occluded(onwards, blocked, from);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const VoxelSceneHit expected = scene.closest_hit(onwards[i], from[i], nullptr);
+      ASSERT_TRUE(same(second[i], expected)) << "round " << round << ", ray " << i;
+      ASSERT_EQ(blocked[i], expected ? 1 : 0) << "round " << round << ", ray " << i;
+      again += expected ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hits, 1000);
+  EXPECT_GT(again, 300);
+}
+
+TEST(VoxelScenePackets, RefuseSpansThatDiffer) {
+  Random random(2);
+  const VoxelScene scene = crowd(random, 3);
+  const std::vector<Ray> rays(5);
+  std::vector<VoxelSceneHit> answers(4);
+  EXPECT_THROW(scene.closest_hits(rays, answers), Error);
+  answers.resize(5);
+  const std::vector<const VoxelSceneHit*> from(6);
+  EXPECT_THROW(scene.closest_hits(rays, answers, from), Error);
+  VoxelScene({}, {}).closest_hits(rays, answers);
+  EXPECT_FALSE(answers[0]);
+}
+
+}  // namespace
+}  // namespace scarp
