@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A distance field as it lies in a device's memory: the instructions of its program (field/distance_program.h), 32 bytes
-// each, and their numbers as floats. DeviceShape (device_shape.h) makes it; the interpreter of shaders
+// A distance field as it lies in a device's memory: the instructions of its program (field/distance_program.h), 32
+// bytes each, and their numbers as floats. DeviceShape (device_shape.h) makes it; the interpreter of shaders
 // (march/shape_distance.glsl.h) reads it.
 #ifndef SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H
 #define SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H

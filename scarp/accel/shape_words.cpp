@@ -30,8 +30,8 @@ std::uint32_t shape_parts(const DistanceProgram& program) {
   return parts;
 }
 
-// The counts of doubles (distance_program.cpp), at 2^-24 instead of 2^-53, and half as many again: numbers are rounded to
-// floats, and roots and divisions of devices are right to 2.5 units.
+// The counts of doubles (distance_program.cpp), at 2^-24 instead of 2^-53, and half as many again: numbers are rounded
+// to floats, and roots and divisions of devices are right to 2.5 units.
 double single_rounding(const DistanceField& shape, double reach) { return 0x1.8p29 * shape.rounding(reach); }
 
 }  // namespace scarp

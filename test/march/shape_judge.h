@@ -43,7 +43,8 @@ inline std::string shape_objection(const DistanceField& shape, const Ray& ray, d
   const double tolerance = SphereTraceSettings{}.tolerance, speed = length(ray.direction);
   if (hit) {
     const double off = shape.value(ray.at(hit.t)), most = delta + 2 * tolerance * (hit.t - ray.t_min) * speed;
-    if (std::abs(off) > most) return fmt::format("hit at t = {}, {} m off the surface; {} are allowed", hit.t, off, most);
+    if (std::abs(off) > most)
+      return fmt::format("hit at t = {}, {} m off the surface; {} are allowed", hit.t, off, most);
   }
   const Hit truth = march_sphere_trace(shape, ray);
   if (!truth || (hit && hit.t <= truth.t)) return {};

@@ -44,7 +44,8 @@ void expect_values(const std::string& name, const Shape& shape, FunctionRandom& 
   const std::uint32_t count = use(words);
   for (int i = 0; i < kPositions; ++i) {
     const double reach = std::exp2(random.between(-1, 10));
-    const glsl::vec3 p(static_cast<float>(random.between(-reach, reach)), static_cast<float>(random.between(-reach, reach)),
+    const glsl::vec3 p(static_cast<float>(random.between(-reach, reach)),
+                       static_cast<float>(random.between(-reach, reach)),
                        static_cast<float>(random.between(-reach, reach)));
     const double off = std::abs(static_cast<double>(glsl::scarp_shape_distance(count, p)) - field.value(dvec3(p)));
     const double bound = single_rounding(field, length(dvec3(p)));
@@ -104,7 +105,8 @@ TEST(ShapesInShaders, RaysLeaveTheSurface) {
       Ray ray;
       ray.origin = seen.at(at.t);
       const dvec3 normal = field.normal(ray.origin);
-      ray.direction = normal + 0.9 * normalize(dvec3(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)));
+      ray.direction =
+          normal + 0.9 * normalize(dvec3(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1)));
       ray.t_max = 100;
       ray.start = RayStart::on_surface;
       const auto prepared = device_shape_ray(field, ray);

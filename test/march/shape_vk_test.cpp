@@ -82,10 +82,10 @@ constexpr std::uint32_t kShader[] = {
 
 TEST(ShapeBatchLayout, IsThatOfTheShaders) {
   using glsl::ShapeBatch, glsl::ScarpShapeInstruction;
-  EXPECT_TRUE(has_struct(kShader, {offsetof(ShapeBatch, code), offsetof(ShapeBatch, numbers), offsetof(ShapeBatch, rays),
-                                   offsetof(ShapeBatch, hits), offsetof(ShapeBatch, count),
-                                   offsetof(ShapeBatch, instructions), offsetof(ShapeBatch, tolerance),
-                                   offsetof(ShapeBatch, max_steps), offsetof(ShapeBatch, run_steps)}));
+  EXPECT_TRUE(has_struct(
+      kShader, {offsetof(ShapeBatch, code), offsetof(ShapeBatch, numbers), offsetof(ShapeBatch, rays),
+                offsetof(ShapeBatch, hits), offsetof(ShapeBatch, count), offsetof(ShapeBatch, instructions),
+                offsetof(ShapeBatch, tolerance), offsetof(ShapeBatch, max_steps), offsetof(ShapeBatch, run_steps)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpShapeInstruction)));
   EXPECT_EQ(sizeof(ScarpShapeInstruction), 32u);
 }
