@@ -256,6 +256,11 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   }
   const Real before = time_in_cell(*place, t, true);
   if (risen(*place, t, before) > 2 * b + std::abs(c)) return "a way out of the ground";
+  // Above the surface where it comes into the cell, however little, and under it here: it goes in.
+  const Real came = t - before, u_in = x(came) - place->col, v_in = y(came) - place->row;
+  const Real above =
+      z(came) - (triangles_ ? height_of_triangle(place->h, u_in + v_in > 1, u_in, v_in) : height(place->h, u_in, v_in));
+  if (before > 0 && above > 0) return nullptr;
   // At the entry of its cell: the ray came through the cell before, if no other lies in between.
   constexpr Real kBack = 0x1p-8L;  // of a cell
   const Real speed = std::max(std::abs(dx_), std::abs(dy_));

@@ -6,6 +6,9 @@
 
 #include <vector>
 
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/march/max_mip.h"
+
 namespace scarp::bench {
 namespace {
 
@@ -55,6 +58,31 @@ TEST(LeakJudge, TellsAHitUnderTheSurfaceAndOneThatWasLost) {
   EXPECT_STREQ(judge.false_hit(hit_at(t, u, v)), "not on the surface");
   EXPECT_STREQ(judge.lost(hit_at(t, u, v), 0.5), "a hit before the one that is told");
   EXPECT_STREQ(judge.lost(Hit{}, 0.5), "a ray that must hit");
+}
+
+// Along the diagonal of saddles, rising by 8e-13 per cell: at each node it comes out of the ground and goes in again
+// right behind.
+TEST(LeakJudge, AWayInRightBehindAWayOutIsNoFalseHit) {
+  constexpr int kSide = 40;
+  std::vector<float> samples;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) samples.push_back((row + col) % 2 ? 4.F : 0.F);
+  }
+  const LeakField saddles{"saddles", HeightField::own(std::move(samples), kSide, kSide), {}};
+  Ray ray;
+  ray.origin = {36, 19, 0}, ray.direction = {-1, 1, 0x1.bf7224218p-41};
+  ray.t_max = 20;
+  ray.start = RayStart::on_surface, ray.start_cell = {35, 19};
+  const MaxPyramid pyramid(saddles.field);
+  std::vector<Hit> hits;
+  all_hits_max_mip({&saddles.field, &pyramid}, ray, hits);
+  ASSERT_EQ(hits.size(), 20u);
+  const LeakJudge judge(saddles, ray);
+  for (const Hit& hit : hits) EXPECT_EQ(judge.false_hit(hit), nullptr) << hit.t;
+  // The way out before is one.
+  Hit out = hits[10];
+  out.t = 10 - 9.93e-13, out.cell = {26, 10}, out.u = out.v = 9.93e-13;
+  EXPECT_STREQ(judge.false_hit(out), "a way out of the ground");
 }
 
 }  // namespace
