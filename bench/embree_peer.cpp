@@ -3,35 +3,19 @@
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
-#include <pmmintrin.h>
-#include <xmmintrin.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <cstring>
 
+#include "bench/denormals_off.h"
 #include "bench/protocol.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 
 namespace scarp::bench {
 namespace {
-
-// Embree's own recommendation for each thread that calls it; undone afterwards, Scarp's arithmetic needs no such help.
-class DenormalsOff {
- public:
-  DenormalsOff() : before_(_mm_getcsr()) {
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-  }
-  ~DenormalsOff() { _mm_setcsr(before_); }
-  DenormalsOff(const DenormalsOff&) = delete;
-  DenormalsOff& operator=(const DenormalsOff&) = delete;
-
- private:
-  unsigned before_;
-};
 
 // What Embree allocates, as its memory monitor tells.
 struct Memory {

@@ -3,33 +3,17 @@
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
-#include <pmmintrin.h>
-#include <xmmintrin.h>
 
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <utility>
 
+#include "bench/denormals_off.h"
 #include "scarp/base/error.h"
 
 namespace scarp::bench {
 namespace {
-
-// Embree's own recommendation for each thread that calls it; undone where Scarp's arithmetic runs afterwards.
-class DenormalsOff {
- public:
-  DenormalsOff() : before_(_mm_getcsr()) {
-    _MM_SET_FLUSH_ZERO_MODE(_MM_FLUSH_ZERO_ON);
-    _MM_SET_DENORMALS_ZERO_MODE(_MM_DENORMALS_ZERO_ON);
-  }
-  ~DenormalsOff() { _mm_setcsr(before_); }
-  DenormalsOff(const DenormalsOff&) = delete;
-  DenormalsOff& operator=(const DenormalsOff&) = delete;
-
- private:
-  unsigned before_;
-};
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 float below(double x) { return std::nextafter(static_cast<float>(x), -kInfinity); }

@@ -5,10 +5,8 @@
 
 #include <charconv>
 #include <cmath>
-#include <fstream>
 
 #include "scarp/base/error.h"
-#include "scarp/base/replace_file.h"
 #include "scarp/source/vox_bytes.h"
 #include "scarp/source/whole_file.h"
 
@@ -144,14 +142,6 @@ std::string binvox_bytes(const Binvox& binvox) {
   return bytes;
 }
 
-void write_binvox(const std::string& path, const Binvox& binvox) {
-  const std::string bytes = binvox_bytes(binvox);
-  ReplaceFile place(path);
-  std::ofstream out(place.temporary_path(), std::ios::binary);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", path));
-  place.commit();
-}
+void write_binvox(const std::string& path, const Binvox& binvox) { write_whole_file(path, binvox_bytes(binvox)); }
 
 }  // namespace scarp

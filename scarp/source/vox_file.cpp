@@ -7,9 +7,9 @@
 #include <iterator>
 
 #include "scarp/base/error.h"
-#include "scarp/base/replace_file.h"
 #include "scarp/source/vox_bytes.h"
 #include "scarp/source/vox_scene.h"
+#include "scarp/source/whole_file.h"
 
 namespace scarp {
 namespace {
@@ -264,14 +264,6 @@ VoxFile read_vox(const std::string& path) {
   }
 }
 
-void write_vox(const std::string& path, const VoxFile& file) {
-  const std::string bytes = vox_bytes(file);
-  ReplaceFile place(path);
-  std::ofstream out(place.temporary_path(), std::ios::binary);
-  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  out.close();
-  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", path));
-  place.commit();
-}
+void write_vox(const std::string& path, const VoxFile& file) { write_whole_file(path, vox_bytes(file)); }
 
 }  // namespace scarp

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/source/whole_file.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
 
 #include "scarp/base/error.h"
+#include "scarp/base/replace_file.h"
 
 namespace scarp {
 
@@ -25,6 +28,15 @@ std::string whole_file(const std::string& path, std::string_view magic) {
   in.read(bytes.data() + begin, static_cast<std::streamsize>(size - begin));
   if (!in) throw Error("cannot be read to its end");
   return bytes;
+}
+
+void write_whole_file(const std::string& path, std::string_view bytes) {
+  ReplaceFile place(path);
+  std::ofstream out(place.temporary_path(), std::ios::binary);
+  out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  out.close();
+  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", path));
+  place.commit();
 }
 
 }  // namespace scarp
