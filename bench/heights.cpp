@@ -20,6 +20,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// Embree's triangles take about 210 bytes per sample while they are built; fields that need more than 8 GB go without.
+constexpr double kTriangleBytes = 210, kMostTriangleBytes = 8e9;
+bool has_room_for_triangles(const HeightField& field) {
+  const double bytes = kTriangleBytes * field.cols() * field.rows();
+  if (bytes <= kMostTriangleBytes) return true;
+  fmt::print("embree-tri is left out over {} x {} samples: building it would take {:.0f} GB\n", field.cols(),
+             field.rows(), bytes * 1e-9);
+  return false;
+}
+
 // All engines over one field.
 class Contest {
  public:
@@ -29,6 +39,7 @@ class Contest {
       if (name == "scarp") {
         add(scarp_.engines());
       } else if (name == "embree-tri") {
+        if (!has_room_for_triangles(ground.field)) continue;
         triangles_.emplace(ground.field, EmbreeSurface::triangles, quality);
         add(triangles_->engines());
       } else if (name == "embree-grid") {
