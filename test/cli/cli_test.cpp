@@ -50,10 +50,10 @@ class Cli : public testing::Test {
 
 #ifdef SCARP_CAIRO
 TEST_F(Cli, FiguresHaveAScaleThatIsTrue) {
-  // 30 m in 640 pixels: of at most a quarter of that, 5 m are the longest round length. The first half of the bar is
+  // 30 m in 320 pixels: of at most a quarter of that, 5 m are the longest round length. The first half of the bar is
   // black.
   const auto result =
-      run({"render", good(), "-o", path("map.png"), "--top", "--size", "640x480", "--scale-bar", "--legend"});
+      run({"render", good(), "-o", path("map.png"), "--top", "--size", "320x240", "--scale-bar", "--legend"});
   EXPECT_EQ(result.status, 0) << result.err;
   const test::Rgb picture = test::read_png(path("map.png"));
   int longest = 0;
@@ -65,7 +65,7 @@ TEST_F(Cli, FiguresHaveAScaleThatIsTrue) {
       longest = std::max(longest, run_length);
     }
   }
-  EXPECT_NEAR(longest, 2.5 * 640 / 30, 2);
+  EXPECT_NEAR(longest, 2.5 * 320 / 30, 2);
 }
 
 TEST_F(Cli, FiguresAreRefusedWhereTheyMeanNothing) {

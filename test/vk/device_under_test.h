@@ -21,7 +21,7 @@ struct DeviceUnderTest {
 
 inline const DeviceUnderTest& device_under_test() {
   static const DeviceUnderTest under_test = [] {
-    // The leak sanitizer can tell whose memory it is only while the driver is loaded (see lavapipe.lsan).
+    // The leak sanitizer can tell whose memory it is only while the driver is loaded (see libraries.lsan).
     for (const char* module : {"libvulkan.so.1", "libvulkan_lvp.so", "libVkLayer_khronos_validation.so"}) {
       ::dlopen(module, RTLD_NOW | RTLD_NODELETE);
     }
