@@ -24,7 +24,7 @@ VoxelHash::VoxelHash(const VoxelGrid& grid, bool surface_only) : bits_(grid.entr
   count_ = voxels.size();
   // The least table that all fit into; a sixth as many offsets, and more until there is a way to set them.
   const double side = std::cbrt(static_cast<double>(std::max<std::size_t>(count_, 1)));
-  m_ = static_cast<int>(std::ceil(side - 1e-9));
+  for (m_ = 1; static_cast<std::size_t>(m_) * m_ * m_ < count_;) ++m_;
   for (r_ = std::max(1, static_cast<int>(std::ceil(side / std::cbrt(6.0)))); !build(voxels); ++r_) {
   }
   words_.resize((static_cast<std::size_t>(m_) * m_ * m_ * bits_ + 63) / 64 + 1);
