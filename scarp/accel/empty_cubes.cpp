@@ -77,13 +77,8 @@ void EmptyCubes::rows(const VoxelGrid& grid, const VoxelBox& region) {
       if (x < seen.high.x) row[x - seen.low.x] = static_cast<std::uint8_t>(kFarthest - distances_[{x, y, z}]);
     }
   });
-  constexpr VoxelNearness::Sides kBoth;
-  near.spread(kBoth, kBoth, kBoth);
-  for_each_row(region, [&](int y, int z) {
-    const std::uint8_t* const row = near.row(y - seen.low.y, z - seen.low.z) + (region.low.x - seen.low.x);
-    std::uint8_t* const to = distances_.at({region.low.x, y, z});
-    for (int x = 0; x < region.high.x - region.low.x; ++x) to[x] = static_cast<std::uint8_t>(kFarthest - row[x]);
-  });
+  near.spread();
+  near.write_far(region, kFarthest, distances_);
 }
 
 void EmptyCubes::bit_parallel(const VoxelGrid& grid) {

@@ -5,10 +5,7 @@
 //   the distance of two boxes, |delta| voxels apart along an axis, is sqrt(sum of max(0, |delta| - 1)^2): that of the
 //   voxel to the nearest one of the solid voxels grown by one in all directions
 //
-// Built one axis after the other: squares of distances along x, then lower envelopes of parabolas along y and z, exact
-// in whole numbers. Sources: A. Meijster, J. Roerdink, W. Hesselink, "A general algorithm for computing distance
-// transforms in linear time", 2000; P. Felzenszwalb, D. Huttenlocher, "Distance transforms of sampled functions", 2012.
-// O(n). Cost: a byte per voxel.
+// Built one axis after the other, exact in whole numbers (sphere_rows.h). Cost: a byte per voxel.
 #pragma once
 
 #include <cstddef>
@@ -36,7 +33,6 @@ class EmptySpheres {
 
  private:
   void build(const VoxelGrid& grid, const VoxelBox& region);
-  int largest_in(const VoxelBox& box) const;
 
   VoxelBytes distances_;
   int largest_ = 0;  // no distance is larger

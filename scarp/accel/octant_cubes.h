@@ -2,7 +2,7 @@
 // For each voxel and each octant of directions the side of the largest empty cube that has the voxel in the corner
 // which rays of that octant come from: 0 for solid voxels, 255 for 255 and more. Outside of the grid all is empty.
 //
-//   side = 1 + the least side of the 7 neighbours ahead, built in rows (voxel_nearness.h)
+//   side = 1 + the least side of the 7 neighbours ahead, built in rows (octant_rows.h)
 //
 // Octant: bit i is set where a ray goes down axis i. Source: L. Deakin, M. Knackstedt, "Accelerated volume rendering
 // with Chebyshev distance maps", SIGGRAPH Asia 2019. O(n). Cost: 8 bytes per voxel.
@@ -32,8 +32,6 @@ class OctantCubes {
   friend bool operator==(const OctantCubes& a, const OctantCubes& b) { return a.sides_ == b.sides_; }
 
  private:
-  void build(const VoxelGrid& grid, const VoxelBox& region, int octant);
-
   ivec3 in_plane(const ivec3& voxel, int octant) const {
     return {voxel.x, voxel.y, voxel.z + octant * (sides_.size().z / 8)};
   }

@@ -116,6 +116,34 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelAccelerators, testing::ValuesIn(spiteful_voxe
   return name;
 });
 
+// Rows of less than a vector, of one, of some; longer than what counts; along each axis; before and after edits.
+TEST(VoxelAccelerators, OfRowsOfAllLengthsAreWhatTheirDefinitionsSay) {
+  Random random(14);
+  for (const ivec3& size : {ivec3(32, 9, 7), ivec3(31, 7, 9), ivec3(33, 6, 5), ivec3(64, 5, 5), ivec3(101, 6, 3),
+                            ivec3(400, 3, 3), ivec3(3, 400, 3), ivec3(3, 3, 400), ivec3(32, 1, 1), ivec3(1, 1, 32)}) {
+    VoxelGrid grid(size, 1);
+    EmptyCubes cubes(grid);
+    EmptySpheres spheres(grid);
+    OctantCubes octants(grid);
+    for (int edit = 0; edit < 6; ++edit) {
+      const ivec3 at = {uniform(random, 0, size.x), uniform(random, 0, size.y), uniform(random, 0, size.z)};
+      const VoxelBox changed = edit == 4 ? grid.clear({ivec3(0), (size + 1) / 2}) : grid.fill({at, at + 1}, 1);
+      cubes.update(grid, changed);
+      spheres.update(grid, changed);
+      octants.update(grid, changed);
+      EXPECT_TRUE(cubes == EmptyCubes(grid));
+      EXPECT_TRUE(spheres == EmptySpheres(grid));
+      EXPECT_TRUE(octants == OctantCubes(grid));
+      const std::vector<ivec3> solid = solid_voxels(grid);
+      for_each_voxel(grid.box(), [&](const ivec3& v) {
+        ASSERT_EQ(cubes.distance(v), cube_distance(solid, v));
+        ASSERT_EQ(spheres.distance(v), sphere_distance(solid, v)) << v.x << " " << v.y << " " << v.z;
+        for (int octant = 0; octant < 8; ++octant) ASSERT_EQ(octants.side(v, octant), octant_side(solid, v, octant));
+      });
+    }
+  }
+}
+
 TEST(VoxelAccelerators, CountNoFartherThanAByte) {
   VoxelGrid grid({400, 3, 3}, 1);
   EXPECT_EQ(EmptyCubes(grid).distance({200, 1, 1}), 255);
