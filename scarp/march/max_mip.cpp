@@ -16,16 +16,6 @@ using max_mip::kNotClear;
 // Beyond this many cells doubles no longer tell one cell from the next.
 constexpr double kFarthestCell = 0x1p51;
 
-// In a field that wraps round: whether all of the ray is where cells can be counted.
-bool countable(const GridRay& local, const Ray& ray) {
-  for (const double t : {ray.t_min, ray.t_max}) {
-    for (int axis = 0; axis < 2; ++axis) {
-      if (!(std::abs(local.origin[axis] + local.direction[axis] * t) < kFarthestCell)) return false;
-    }
-  }
-  return std::abs(local.origin.x) < kFarthestCell && std::abs(local.origin.y) < kFarthestCell;
-}
-
 double longest_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 // Whether a direction's length is far from where doubles end.
 bool is_usual(double longest) { return longest > 0x1p-500 && longest < 0x1p500; }
@@ -54,7 +44,7 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_cle
     }
     return hit;
   }
-  if (field.wraps() && !countable(local, ray)) {
+  if (field.wraps() && !max_mip::countable(local, ray)) {
     hit.status = HitStatus::exhausted;
     hit.t = ray.t_min;
     return hit;
@@ -76,6 +66,15 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_cle
 }
 
 }  // namespace
+
+bool max_mip::countable(const GridRay& local, const Ray& ray) {
+  for (const double t : {ray.t_min, ray.t_max}) {
+    for (int axis = 0; axis < 2; ++axis) {
+      if (!(std::abs(local.origin[axis] + local.direction[axis] * t) < kFarthestCell)) return false;
+    }
+  }
+  return std::abs(local.origin.x) < kFarthestCell && std::abs(local.origin.y) < kFarthestCell;
+}
 
 Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats) {
   return march<Ask::closest>(target, ray, 0, kNotClear, stats, nullptr);

@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "scarp/field/height_field.h"
 #include "scarp/march/marches.h"
 
 namespace scarp {
@@ -11,6 +12,9 @@ namespace scarp {
 namespace max_mip {
 /// Nothing is known of the ray.
 constexpr double kNotClear = -std::numeric_limits<double>::infinity();
+
+/// In a field that wraps round: whether all of the ray is where cells can be counted.
+bool countable(const GridRay& local, const Ray& ray);
 }  // namespace max_mip
 
 /// march_max_mip() and occluded_max_mip(), bit for bit, of a ray that is above the ground by more than rounding

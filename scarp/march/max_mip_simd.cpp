@@ -8,6 +8,7 @@
 #include <limits>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "scarp/march/max_mip.h"
 #include "scarp/march/max_mip_resume.h"
@@ -33,8 +34,15 @@ namespace {
 // Rays that may hit in a cell.
 struct Candidates {
   std::size_t count = 0;
-  std::int32_t ray[N], col[N], row[N], seen[N];
+  std::int32_t ray[N], col[N], row[N], seen[N], copy_x[N], copy_y[N];
   double t_clear[N];
+};
+
+// A ray that is to walk over a copy of a ground that wraps round.
+struct Copy {
+  std::size_t ray;
+  std::int32_t x, y;
+  bool seen;  // above the ground so far
 };
 
 // The walk of many rays, one batch on one thread.
@@ -58,6 +66,7 @@ class VectorWalk {
     g_.base = static_cast<float>(code.base), g_.per_step = static_cast<float>(code.per_step);
     g_.offset = static_cast<float>((static_cast<double>(g_.base) - code.base) * code.per_step);
     g_.triangles = field_.settings().surface == Surface::triangles;
+    g_.seam_col = field_.wraps() ? g_.last_col : -1, g_.seam_row = field_.wraps() ? g_.last_row : -1;
     const double low = field_.min_sample(), high = field_.max_sample(), relief = high - low;
     const double cell_relief = std::min(relief, pyramid.cell_relief() * code.step);
     g_.margin_per_cell = static_cast<float>(4 * kSideways * cell_relief * code.per_step);
@@ -65,7 +74,8 @@ class VectorWalk {
     const auto side = std::bit_ceil(static_cast<unsigned>(std::max({grid.cell_cols, grid.cell_rows, 2})));
     f_ = {.cols = static_cast<double>(grid.cell_cols),
           .rows = static_cast<double>(grid.cell_rows),
-          .sample_rows = static_cast<double>(field_.rows()),
+          .sample_rows = static_cast<double>(field_.rows()) +
+                         (field_.wraps() ? 8 * kFarthestCopy + 2.0 * (grid.cell_cols + grid.cell_rows) : 0),
           .highest = high,
           .base = code.base,
           .per_step = code.per_step,
@@ -121,7 +131,8 @@ class VectorWalk {
   }
 
   bool is_empty() const {
-    return next_ >= rays_.size() && std::all_of(waiting_, waiting_ + kFresh, [](std::uint64_t w) { return w == 0; });
+    return next_ >= rays_.size() && copies_.empty() &&
+           std::all_of(waiting_, waiting_ + kFresh, [](std::uint64_t w) { return w == 0; });
   }
 
   // Answers the rays that are done and puts new ones into their lanes. False: no lane has a ray.
@@ -140,6 +151,7 @@ class VectorWalk {
         const int j = std::countr_zero(idle), i = std::countr_zero(waiting);
         from[j] = i, taken[j] = 1;
         a.ray[j] = fresh.ray[i], a.t_begin[j] = fresh.t_begin[i], a.t_per_cell[j] = fresh.t_per_cell[i];
+        a.copy_x[j] = fresh.copy_x[i], a.copy_y[j] = fresh.copy_y[i];
       }
       p.take(fresh, from, taken);
       live = true;
@@ -153,7 +165,7 @@ class VectorWalk {
       for (; fresh_at_ < kFresh; ++fresh_at_) {
         if (waiting_[fresh_at_] != 0) return true;
       }
-      if (next_ >= rays_.size()) return false;
+      if (next_ >= rays_.size() && copies_.empty()) return false;
       take_rays();
     }
   }
@@ -177,13 +189,16 @@ class VectorWalk {
 
   // The first steps of any-hit are taken here, where all lanes are busy: most rays begin near the ground, at a cell.
   void take_rays(Lanes& fresh) {
-    const std::size_t count = std::min(N, rays_.size() - next_);
     for (std::size_t j = 0; j < N; ++j) {
-      const bool taken = j < count && take_ray(j, rays_[next_ + j]);
-      fresh.ray[j] = taken ? static_cast<std::int32_t>(next_ + j) : -1;
-      if (!taken) r_.dx[j] = r_.dy[j] = 0;
+      fresh.ray[j] = -1, fresh.copy_x[j] = fresh.copy_y[j] = 0;
+      r_.dx[j] = r_.dy[j] = 0;
+      if (!copies_.empty()) {
+        take_copy(j, copies_.back(), fresh);
+        copies_.pop_back();
+      } else if (next_ < rays_.size()) {
+        take_ray(j, next_++, fresh);
+      }
     }
-    next_ += count;
     prepare(f_, r_, fresh);
     const int first_steps = any && ideas_.first_cells ? kFirstSteps : 0;
     const bool doubles = ideas_.doubles && !g_.triangles && begins_over_field(fresh);
@@ -234,23 +249,83 @@ class VectorWalk {
     to.t_min[j] = ray.t_min, to.t_max[j] = ray.t_max, to.seen[j] = 0;
   }
 
-  // A ray into the grid. False: it is answered.
-  bool take_ray(std::size_t j, const Ray& ray) {
+  // A ray into the grid, unless it is answered at once.
+  void take_ray(std::size_t j, std::size_t index, Lanes& fresh) {
+    const Ray& ray = rays_[index];
     const GridRay local = field_.grid_from_world(ray);
-    put_ray(r_, j, ray, local);
-    if (ray.start == RayStart::free) return true;
-    const SurfaceStart start = begin_on_surface(ray, local);
-    Answer& to = answers_[&ray - rays_.data()];
-    if (start.decided) {
-      if constexpr (any) {
-        to = start.hit.status == HitStatus::hit;
+    if (field_.wraps()) {
+      const double copy_x = std::floor((local.origin.x + local.direction.x * ray.t_min) / f_.cols),
+                   copy_y = std::floor((local.origin.y + local.direction.y * ray.t_min) / f_.rows);
+      // The scalar walk knows more ways to begin, and counts farther.
+      if (ray.start == RayStart::free && is_near(local.origin.x, local.origin.y) &&
+          is_near(copy_x * f_.cols, copy_y * f_.rows) && max_mip::countable(local, ray)) {
+        take_copy(j, {index, static_cast<std::int32_t>(copy_x), static_cast<std::int32_t>(copy_y), false}, fresh);
       } else {
-        to = start.hit;
+        answer_alone(index);
       }
-      return false;
+      return;
     }
-    r_.oz[j] = start.z, r_.t_min[j] = start.t, r_.seen[j] = start.above;
-    return true;
+    put_ray(r_, j, ray, local);
+    if (ray.start == RayStart::on_surface) {
+      const SurfaceStart start = begin_on_surface(ray, local);
+      if (start.decided) {
+        r_.dx[j] = r_.dy[j] = 0;
+        put_answer(index, start.hit);
+        return;
+      }
+      r_.oz[j] = start.z, r_.t_min[j] = start.t, r_.seen[j] = start.above;
+    }
+    fresh.ray[j] = static_cast<std::int32_t>(index);
+  }
+
+  void put_answer(std::size_t index, const Hit& hit) {
+    if constexpr (any) {
+      answers_[index] = hit.status == HitStatus::hit;
+    } else {
+      answers_[index] = hit;
+    }
+  }
+  HWY_NOINLINE void answer_alone(std::size_t index) {
+    ++stats_.handed_over;
+    if constexpr (any) {
+      answers_[index] = occluded_max_mip(target_, rays_[index]);
+    } else {
+      answers_[index] = march_max_mip(target_, rays_[index]);
+    }
+  }
+
+  // Ground that wraps round is walked over copy by copy, each as ground of its own, with the ray in the copy's frame.
+  // What that rounds is within the doubt, see kFarthestCopy.
+  static bool is_near(double x, double y) { return std::abs(x) < kFarthestCopy && std::abs(y) < kFarthestCopy; }
+  void take_copy(std::size_t j, const Copy& copy, Lanes& fresh) {
+    const Ray& ray = rays_[copy.ray];
+    put_ray(r_, j, ray, field_.grid_from_world(ray));
+    r_.ox[j] -= copy.x * f_.cols, r_.oy[j] -= copy.y * f_.rows, r_.seen[j] = copy.seen;
+    fresh.ray[j] = static_cast<std::int32_t>(copy.ray);
+    fresh.copy_x[j] = copy.x, fresh.copy_y[j] = copy.y;
+  }
+  // A ray that has met nothing in its copy: on to the next one, if it goes so far. Where borders of both axes are
+  // crossed almost at once, either may come first.
+  HWY_NOINLINE void leave_copy(const Lanes& a, std::size_t j) {
+    Copy copy{static_cast<std::size_t>(a.ray[j]), a.copy_x[j], a.copy_y[j], a.seen[j] != 0};
+    const Ray& ray = rays_[copy.ray];
+    const GridRay local = field_.grid_from_world(ray);
+    const auto exit = [](double o, double d, double from, double cells) {
+      return d == 0 ? std::numeric_limits<double>::infinity() : ((d > 0 ? from + cells : from) - o) / d;
+    };
+    const double x = exit(local.origin.x, local.direction.x, copy.x * f_.cols, f_.cols);
+    const double y = exit(local.origin.y, local.direction.y, copy.y * f_.rows, f_.rows);
+    const double t = std::min(x, y), dz = local.direction.z, height = local.origin.z + dz * t;
+    const double upright = f_.upright + std::abs(local.origin.z) + std::abs(dz * t);
+    const double doubt = kRoundings * kUnit * (upright + f_.sample_rows * f_.relief);
+    const bool ends = !(t < ray.t_max) || (dz >= 0 && height > f_.highest + doubt);
+    if (ends) {
+      put_answer(copy.ray, {});
+      return;
+    }
+    if (x <= y) copy.x += local.direction.x > 0 ? 1 : -1;
+    if (!(x <= y)) copy.y += local.direction.y > 0 ? 1 : -1;
+    is_near(copy.x * f_.cols, copy.y * f_.rows) ? copies_.push_back(copy) : answer_alone(copy.ray);
   }
 
   // Answers the rays of some lanes of p, which are in memory, too.
@@ -261,7 +336,12 @@ class VectorWalk {
       const std::uint64_t hit = bits_of(hits), sure = bits_of(hn::Or(hits, hn::And(misses, certain)));
       for (std::uint64_t rest = lanes & sure; rest != 0; rest &= rest - 1) {
         const int j = std::countr_zero(rest);
-        if (a.ray[j] >= 0) answers_[a.ray[j]] = hit >> j & 1;
+        if (a.ray[j] < 0) continue;
+        if (field_.wraps() && !(hit >> j & 1)) {
+          leave_copy(a, static_cast<std::size_t>(j));
+        } else {
+          answers_[a.ray[j]] = hit >> j & 1;
+        }
       }
       lanes &= ~sure;
     }
@@ -279,16 +359,20 @@ class VectorWalk {
                                               a.doubt[j] < kNever ? time(a.doubt[j]) : max_mip::kNotClear);
     } else {
       if (a.status[j] == kMiss) {
-        answers_[ray] = Hit{};
+        if (field_.wraps()) {
+          leave_copy(a, j);
+        } else {
+          answers_[ray] = Hit{};
+        }
         return;
       }
       if (a.status[j] == kAlone) {
-        ++stats_.handed_over;
-        answers_[ray] = march_max_mip(target_, rays_[static_cast<std::size_t>(ray)]);
+        answer_alone(static_cast<std::size_t>(ray));
         return;
       }
       Candidates& c = candidates_;
       c.ray[c.count] = ray, c.seen[c.count] = a.seen[j];
+      c.copy_x[c.count] = a.copy_x[j], c.copy_y[c.count] = a.copy_y[j];
       c.col[c.count] = a.x[j] ^ a.mirror_x[j], c.row[c.count] = a.y[j] ^ a.mirror_y[j];
       c.t_clear[c.count] = time(a.T[j]);
       if (++c.count == N) find_hits();
@@ -306,7 +390,7 @@ class VectorWalk {
       const std::size_t k = i < c.count ? i : 0;
       const Ray& ray = rays_[static_cast<std::size_t>(c.ray[k])];
       put_ray(rays, i, ray, field_.grid_from_world(ray));
-      cells.load(g_, i, c.col[k], c.row[k]);
+      cells.load(g_, i, c.col[k], c.row[k], c.copy_x[k] * f_.cols, c.copy_y[k] * f_.rows);
       t_clear[i] = c.t_clear[k];
     }
     for (std::size_t h = 0; h < N; h += hn::MaxLanes(dd)) {
@@ -314,8 +398,10 @@ class VectorWalk {
       const CellRays r(rays, cells, h);
       const VD vt_min = hn::Load(dd, rays.t_min + h), vt_max = hn::Load(dd, rays.t_max + h);
       const VD tx = r.x_out(), ty = r.y_out();
-      const VD exit_x = CellRays::line(hn::IfThenElse(r.back_x, zero, hn::Set(dd, f_.cols)), r.ox, r.per_x);
-      const VD exit_y = CellRays::line(hn::IfThenElse(r.back_y, zero, hn::Set(dd, f_.rows)), r.oy, r.per_y);
+      const VD first_x = hn::Load(dd, cells.first_x + h), first_y = hn::Load(dd, cells.first_y + h);
+      const VD last_x = hn::IfThenElse(r.back_x, first_x, hn::Add(first_x, hn::Set(dd, f_.cols)));
+      const VD last_y = hn::IfThenElse(r.back_y, first_y, hn::Add(first_y, hn::Set(dd, f_.rows)));
+      const VD exit_x = CellRays::line(last_x, r.ox, r.per_x), exit_y = CellRays::line(last_y, r.oy, r.per_y);
       const VD t_in = hn::Max(vt_min, hn::Max(r.x_in(), r.y_in()));
       const VD t_end = hn::Min(vt_max, hn::Min(exit_x, exit_y));
       const VD t_line = hn::Min(tx, ty), t_out = hn::Min(t_line, t_end), length = hn::Sub(t_out, t_in);
@@ -374,6 +460,9 @@ class VectorWalk {
   static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that are a beam
   static constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << N) - 1;
   static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
+  // Cells, to the origin of a ray and to the last copy that is walked over here. Sideways, |origin| + |way| along x and
+  // y, it is then no farther than eight times that and twice the sides of a copy: in the frames of copies, too.
+  static constexpr double kFarthestCopy = 0x1p17;
 
   const HeightTarget& target_;
   const HeightField& field_;
@@ -385,6 +474,7 @@ class VectorWalk {
   GridRays r_;
   Lanes fresh_[kFresh], lanes_[kPackets];
   std::size_t next_ = 0, fresh_at_ = kFresh;
+  std::vector<Copy> copies_;            // that wait to be walked over
   std::uint64_t waiting_[kFresh] = {};  // lanes of fresh_ whose rays wait for a lane in lanes_
   float beam_length_ = 0;               // of the last beam
   bool together_ = false;  // whether the rays in fresh_ are a beam: as they start together they end together
@@ -423,11 +513,11 @@ HWY_EXPORT(walk_any);
 
 thread_local VectorStats t_stats;
 
-// Fields that the vectors do not walk over: those that wrap round, those with holes, where a ray that is above all
-// ground may be below the rim of the next cell, and those beyond 32-bit offsets or floats.
+// Fields that the vectors do not walk over: those with holes, where a ray that is above all ground may be below the rim
+// of the next cell, and those beyond 32-bit offsets or floats.
 bool walks_over(const HeightTarget& target) {
   const HeightField& field = *target.field;
-  if (!field.has_cells() || field.nodata_count() > 0 || field.wraps()) return false;
+  if (!field.has_cells() || field.nodata_count() > 0) return false;
   const HeightCode& code = target.pyramid->code();
   return target.pyramid->bytes() < (std::size_t{1} << 32) && code.per_step > 0x1p-100 && code.per_step < 0x1p100 &&
          std::abs(code.base) < 0x1p100;

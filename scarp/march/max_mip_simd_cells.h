@@ -19,16 +19,20 @@ namespace {
 
 using MD = hn::Mask<decltype(dd)>;
 
-// One cell for each lane, and its corners in sample units.
+// One cell for each lane, and its corners in sample units. `first`: the first lines of its copy of the ground; 0 where
+// the ground does not wrap round, or rays are in the frame of the copy.
 struct Cells {
-  alignas(64) double col[N], row[N], h00[N], h10[N], h01[N], h11[N];
+  alignas(64) double col[N], row[N], h00[N], h10[N], h01[N], h11[N], first_x[N], first_y[N];
 
   template <class T>
-  HWY_INLINE void load(const VectorGround<T>& g, std::size_t j, std::int32_t to_col, std::int32_t to_row) {
-    const T *north = g.samples + to_row * g.stride + to_col, *south = north + g.stride;
-    col[j] = to_col, row[j] = to_row;
-    h00[j] = static_cast<double>(north[0]), h10[j] = static_cast<double>(north[1]);
-    h01[j] = static_cast<double>(south[0]), h11[j] = static_cast<double>(south[1]);
+  HWY_INLINE void load(const VectorGround<T>& g, std::size_t j, std::int32_t to_col, std::int32_t to_row,
+                       double first_col = 0, double first_row = 0) {
+    const T *north = g.samples + to_row * g.stride + to_col, *south = north + g.south(to_row);
+    const std::ptrdiff_t east = g.east(to_col);
+    first_x[j] = first_col, first_y[j] = first_row;
+    col[j] = first_col + to_col, row[j] = first_row + to_row;
+    h00[j] = static_cast<double>(north[0]), h10[j] = static_cast<double>(north[east]);
+    h01[j] = static_cast<double>(south[0]), h11[j] = static_cast<double>(south[east]);
   }
 };
 

@@ -57,7 +57,8 @@ struct Lanes {
   alignas(64) std::int32_t x[N], y[N], level[N], mirror_x[N], mirror_y[N], begin_x[N], begin_y[N], last_x[N], last_y[N],
       seen[N], status[N];
   double t_begin[N], t_per_cell[N];
-  std::int32_t ray[N];  // -1: none
+  std::int32_t ray[N];                // -1: none
+  std::int32_t copy_x[N], copy_y[N];  // of a ground that wraps round
 };
 
 // The ground as the vectors need it.
@@ -71,6 +72,11 @@ struct VectorGround {
   float base, per_step, offset;  // a sample's code is (sample - base) * per_step + offset
   float margin_per_cell;         // twice that of the heights
   bool triangles;
+  std::int32_t seam_col, seam_row;  // after which the first ones follow; -1 where the ground does not wrap round
+
+  // From a sample to the next one east, and south.
+  HWY_INLINE std::ptrdiff_t east(std::int32_t col) const { return col == seam_col ? -col : 1; }
+  HWY_INLINE std::ptrdiff_t south(std::int32_t row) const { return row == seam_row ? -row * stride : stride; }
 };
 
 struct Packet {
@@ -208,11 +214,19 @@ HWY_INLINE CellCodes cell_codes(const VectorGround<T>& g, VI col, VI row, MI cel
   alignas(64) float h00[N] = {}, h10[N] = {}, h01[N] = {}, h11[N] = {};
   hn::Store(col, di, cols), hn::Store(row, di, rows);
   // Loads lane by lane: a gather takes as long for few lanes as for all.
-  for (std::uint64_t bits = bits_of(cells); bits != 0; bits &= bits - 1) {
-    const auto j = static_cast<std::size_t>(std::countr_zero(bits));
-    const T *north = g.samples + rows[j] * g.stride + cols[j], *south = north + g.stride;
-    h00[j] = static_cast<float>(north[0]), h10[j] = static_cast<float>(north[1]);
-    h01[j] = static_cast<float>(south[0]), h11[j] = static_cast<float>(south[1]);
+  const auto load = [&](auto to_east, auto to_south) HWY_ATTR {
+    for (std::uint64_t bits = bits_of(cells); bits != 0; bits &= bits - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(bits));
+      const T *north = g.samples + rows[j] * g.stride + cols[j], *south = north + to_south(rows[j]);
+      const std::ptrdiff_t east = to_east(cols[j]);
+      h00[j] = static_cast<float>(north[0]), h10[j] = static_cast<float>(north[east]);
+      h01[j] = static_cast<float>(south[0]), h11[j] = static_cast<float>(south[east]);
+    }
+  };
+  if (g.seam_col < 0) {
+    load([](std::int32_t) HWY_ATTR { return 1; }, [&](std::int32_t) HWY_ATTR { return g.stride; });
+  } else {
+    load([&](std::int32_t c) HWY_ATTR { return g.east(c); }, [&](std::int32_t r) HWY_ATTR { return g.south(r); });
   }
   CellCodes h{hn::Load(df, h00), hn::Load(df, h10), hn::Load(df, h01), hn::Load(df, h11)};
   const VF base = hn::Set(df, g.base), per_step = hn::Set(df, g.per_step), offset = hn::Set(df, g.offset);

@@ -93,19 +93,21 @@ TEST(MaxMipSimd, AnswersAsTheScalarWalkDoesBitForBit) {
 }
 
 // A field with room to walk in, steep and gentle, as floats and as integers, with holes or without.
+enum class Kind { plain, holes, endless };
 template <class T>
-HeightField hills(Surface surface, bool holes, Random& random) {
+HeightField hills(Surface surface, Kind kind, Random& random) {
   const int cols = 413, rows = 270;
   std::vector<T> samples;
   for (int row = 0; row < rows; ++row) {
     for (int col = 0; col < cols; ++col) {
       const double z = 400 + 90 * std::sin(0.03 * col) * std::cos(0.041 * row) + 12 * std::sin(0.31 * col + 0.2 * row) +
                        uniform(random, 0, 3);
-      samples.push_back(static_cast<T>(holes && uniform(random, 0, 1) < 0.002 ? 0 : z));
+      samples.push_back(static_cast<T>(kind == Kind::holes && uniform(random, 0, 1) < 0.002 ? 0 : z));
     }
   }
   HeightFieldSettings settings{.surface = surface};
-  if (holes) settings.nodata = 0;
+  if (kind == Kind::holes) settings.nodata = 0;
+  if (kind == Kind::endless) settings.wrap = Wrap::periodic;
   return HeightField::own(std::move(samples), cols, rows, settings);
 }
 
@@ -123,9 +125,11 @@ std::vector<Ray> usual_rays(const HeightTarget& target, Random& random) {
   std::vector<Ray> rays;
   for (int i = 0; i < kUsualRays; ++i) {
     Ray ray;
-    ray.origin = {uniform(random, -50, field.width() + 50), uniform(random, -50, field.depth() + 50),
+    const double beside = field.wraps() ? 3000 : 50;
+    ray.origin = {uniform(random, -beside, field.width() + beside), uniform(random, -beside, field.depth() + beside),
                   uniform(random, 350, 600)};
     ray.direction = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -0.8, 0.2)};
+    if (field.wraps()) ray.t_max = uniform(random, 500, 5000);
     if (i % 7 == 0) ray.t_max = uniform(random, 0, 300);
     if (i % 11 == 0) ray.t_min = uniform(random, 0, 50);
     rays.push_back(ray);
@@ -134,7 +138,7 @@ std::vector<Ray> usual_rays(const HeightTarget& target, Random& random) {
     Ray on = ray;
     on.origin = ray.at(hit.t);
     on.direction = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -0.1, 0.6)};
-    on.t_min = 0, on.t_max = i % 5 ? HUGE_VAL : uniform(random, 0, 100);
+    on.t_min = 0, on.t_max = i % 5 == 0 ? uniform(random, 0, 100) : field.wraps() ? 2000 : HUGE_VAL;
     on.start = RayStart::on_surface, on.start_cell = hit.cell;
     rays.push_back(on);
     rays.push_back(next_to_the_ground(on));
@@ -146,12 +150,12 @@ TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
   Random random(72);
   const std::vector<std::int64_t> sets = targets();
   ASSERT_FALSE(sets.empty());
-  for (const bool holes : {false, true}) {
+  for (const Kind kind : {Kind::plain, Kind::holes, Kind::endless}) {
     for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
       for (int type = 0; type < 3; ++type) {
-        const HeightField field = type == 0   ? hills<float>(surface, holes, random)
-                                  : type == 1 ? hills<std::int16_t>(surface, holes, random)
-                                              : hills<std::uint16_t>(surface, holes, random);
+        const HeightField field = type == 0   ? hills<float>(surface, kind, random)
+                                  : type == 1 ? hills<std::int16_t>(surface, kind, random)
+                                              : hills<std::uint16_t>(surface, kind, random);
         const MaxPyramid pyramid(field);
         const HeightTarget target{&field, &pyramid};
         const std::vector<Ray> rays = usual_rays(target, random);
@@ -252,7 +256,7 @@ TEST(MaxMipSimd, TouchesOfTheHighestSample) {
 
 TEST(MaxMipSimd, RaysFromNextToTheGroundAreNotLeftToTheScalarWalk) {
   Random random(75);
-  const HeightField field = hills<float>(Surface::bilinear, false, random);
+  const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
   std::vector<Ray> rays;
@@ -271,6 +275,34 @@ TEST(MaxMipSimd, RaysFromNextToTheGroundAreNotLeftToTheScalarWalk) {
   const double in_floats = handed_over({.doubles = false}), in_doubles = handed_over({});
   EXPECT_GT(in_floats, 1.0);
   EXPECT_LT(in_doubles, in_floats / 2);
+}
+
+// Copies of a ground that wraps round are walked over by the vectors, and what lies on their seams is met: rays along
+// seams, through corners of copies, and far away, where the scalar walk takes over.
+TEST(MaxMipSimd, EndlessGround) {
+  Random random(78);
+  const HeightField field = hills<float>(Surface::bilinear, Kind::endless, random);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  std::vector<Ray> rays;
+  for (int i = 0; i < 20 * kUsualRays; ++i) {
+    const double far = i % 50 == 0 ? std::exp2(uniform(random, 15, 30)) : 4;
+    const auto whole = [&](double size) { return size * std::floor(uniform(random, -far, far)); };
+    const dvec3 corner = {whole(field.width()), whole(field.depth()), uniform(random, 300, 520)};
+    Ray ray;
+    const double turn = i % 3 ? uniform(random, 0, 6.3) : std::floor(uniform(random, 0, 4)) * 1.5707963267948966;
+    ray.direction = {std::cos(turn), std::sin(turn), uniform(random, -0.3, 0.05)};
+    if (i % 3 == 0) ray.direction.x = std::round(ray.direction.x), ray.direction.y = std::round(ray.direction.y);
+    ray.origin = corner - std::round(uniform(random, 0, 600)) * ray.direction;
+    ray.t_max = uniform(random, 100, 3000);
+    rays.push_back(ray);
+  }
+  take_vector_stats();
+  compare(target, rays, scalar(target, rays), rays.size(), {}, "seams");
+  const VectorStats stats = take_vector_stats();
+  EXPECT_GT(stats.block_steps, rays.size());
+  // Of two questions per ray: rays along an axis and next to corners are in doubt.
+  EXPECT_LT(stats.handed_over, rays.size());
 }
 
 // As a camera asks, which looks down at the field from somewhere: 8 x 8 pixels after one another.
@@ -298,7 +330,7 @@ TEST(MaxMipSimd, BeamsLoseNothing) {
   Random random(74);
   std::map<std::string, std::uint64_t> in_beams;
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
-    const HeightField field = hills<float>(surface, false, random);
+    const HeightField field = hills<float>(surface, Kind::plain, random);
     const MaxPyramid pyramid(field);
     const HeightTarget target{&field, &pyramid};
     for (int camera = 0; camera < kCameras; ++camera) {
@@ -321,7 +353,7 @@ TEST(MaxMipSimd, BeamsLoseNothing) {
 // Else the vectors could hand over all rays and be right.
 TEST(MaxMipSimd, HandsOverFewRays) {
   Random random(73);
-  const HeightField field = hills<float>(Surface::bilinear, false, random);
+  const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
   const MaxPyramid pyramid(field);
   const HeightTarget target{&field, &pyramid};
   const std::vector<Ray> rays = usual_rays(target, random);
