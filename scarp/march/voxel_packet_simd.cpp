@@ -198,6 +198,7 @@ struct Walk {
   alignas(64) VoxelPacket::Lanes<double> slowness[3];
   std::size_t lanes = 0;               // in use
   std::uint64_t alive[kVectors] = {};  // lanes of each vector
+  std::uint64_t solid[kVectors] = {};  // that have come to a solid voxel and wait to be told: many cost as much as one
 
   static constexpr std::int64_t kEntered = 8, kInside = 7;
 };
@@ -298,7 +299,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
 }
 
 // VoxelWalk::hit() of rays in solid voxels.
-HWY_NOINLINE void finish(VoxelPacket& packet, const Walk& walk, std::size_t o, MI solid) {
+HWY_INLINE void finish(VoxelPacket& packet, const Walk& walk, std::size_t o, MI solid) {
   const VI crossed = hn::Load(di, walk.crossed + o), ray = hn::Load(di, walk.ray + o);
   VI next = hn::Load(di, walk.next[0] + o), speed = hn::Load(di, walk.speed[0] + o);
   VI down = hn::Load(di, walk.down[0] + o);
@@ -330,7 +331,15 @@ HWY_NOINLINE void finish(VoxelPacket& packet, const Walk& walk, std::size_t o, M
   packet.hits += hn::CountTrue(di, hit);
 }
 
-// VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; those that are still on their way.
+HWY_NOINLINE void finish_all(VoxelPacket& packet, Walk& walk) {
+  for (std::size_t o = 0; o < walk.lanes; o += N) {
+    if (walk.solid[o / N] != 0) finish(packet, walk, o, lanes_of(walk.solid[o / N]));
+    walk.solid[o / N] = 0;
+  }
+}
+
+// VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; those that are still on their way. The
+// others stay as they are.
 template <class Look>
 HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::size_t o, MI alive) {
   const VI one = hn::Set(di, 1), zero = hn::Zero(di);
@@ -344,7 +353,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::si
   const Seen seen = look(voxel, at, down, alive);
   const MI solid = hn::And(alive, seen.solid);
   if (!hn::AllFalse(di, solid)) {
-    finish(packet, walk, o, solid);
+    walk.solid[o / N] |= bits_of(solid);
     alive = hn::AndNot(seen.solid, alive);
     if (hn::AllFalse(di, alive)) return alive;
   }
@@ -385,12 +394,13 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::si
   }
   MI inside = alive;
   for (int i = 0; i < 3; ++i) {
+    crossed[i] = hn::IfThenElseZero(alive, crossed[i]);
     at[i] = hn::Add(at[i], crossed[i]);
     hn::Store(at[i], di, walk.at[i] + o);
     hn::Store(hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(crossed[i])), di, walk.next[i] + o);
     inside = hn::And(inside, hn::Lt(at[i], end[i]));
   }
-  hn::Store(axis, di, walk.crossed + o);
+  hn::Store(hn::IfThenElse(alive, axis, hn::Load(di, walk.crossed + o)), di, walk.crossed + o);
   return inside;
 }
 
@@ -445,10 +455,12 @@ std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPac
     }
     // Where that saves vectors.
     if (live > 0 && live + kSaved * N <= walk.lanes) {
+      finish_all(packet, walk);
       compact(walk);
       wake(walk);
     }
   }
+  finish_all(packet, walk);
   return met;
 }
 
