@@ -103,6 +103,13 @@ vec3 GroundPaint::operator()(const dvec3& position, double height, const dvec3& 
   return colour;
 }
 
+GroundPaint::Patch GroundPaint::patch(int set, int octave) const {
+  double size = glsl::scarp_patch_size(set, detail_size_);
+  for (int i = 0; i < octave; ++i) size = glsl::scarp_smaller_patch(size);
+  const dvec2 grain = glsl::scarp_patch_grain(octave);
+  return {grain / (2 * size), dvec2(-grain.y, grain.x) / size};
+}
+
 double GroundPaint::contour_interval() const { return settings_.contours * field_.settings().exaggeration; }
 
 }  // namespace scarp

@@ -55,6 +55,11 @@ class GroundPaint {
   const dvec2& away_from_sun() const { return away_from_sun_; }
   /// Metres of the largest patches.
   double detail_size() const { return detail_size_; }
+  /// Lattice units of a set's octave (ground_paint.glsl.h) per metre of x and y, along its grain and across.
+  struct Patch {
+    dvec2 along, across;
+  };
+  Patch patch(int set, int octave) const;
   /// Exaggerated metres from line to line.
   double contour_interval() const;
 
