@@ -15,5 +15,5 @@ void main() {
   if (i >= batch.count) return;
   ScarpRay ray = BatchRays(batch.rays).rays[i];
   batch_answer(
-      i, scarp_naive(scarp_ground_field(), ray, ScarpNaive(batch.step, batch.min_step, batch.tolerance, batch.max_steps)));
+      i, scarp_naive(open_ground(batch.ground), ray, ScarpNaive(batch.step, batch.min_step, batch.tolerance, batch.max_steps)));
 }

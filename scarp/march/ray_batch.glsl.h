@@ -43,7 +43,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Bat
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer BatchHits { ScarpHit hits[]; };
 layout(push_constant, scalar) uniform Push { RayBatch batch; };
 
-Ground scarp_ground() { return Ground(batch.ground); }
 #include "scarp/march/ground_host.glsl.h"
 
 // Writes the answer to ray i.

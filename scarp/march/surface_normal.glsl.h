@@ -53,22 +53,24 @@ SCARP_FN float scarp_node_slope(ScarpNode behind, ScarpNode here, ScarpNode ahea
 /// Continuous from cell to cell: central differences at the four nodes, interpolated.
 SCARP_FN vec2 scarp_shading_slope(ScarpField field, ivec2 cell, vec2 place) {
   vec2 sum = vec2(0.0f, 0.0f);
-  // Rows and columns of nodes round the cell, but for the four corners.
-  for (int i = 0; i < 2; ++i) {
-    int row = cell.y + i;
-    int col = cell.x + i;
-    ScarpNode r0 = scarp_node(field, cell.x - 1, row);
-    ScarpNode r1 = scarp_node(field, cell.x, row);
-    ScarpNode r2 = scarp_node(field, cell.x + 1, row);
-    ScarpNode r3 = scarp_node(field, cell.x + 2, row);
-    float weight = i == 0 ? 1.0f - place.y : place.y;
-    sum.x += weight * ((1.0f - place.x) * scarp_node_slope(r0, r1, r2) + place.x * scarp_node_slope(r1, r2, r3));
-    ScarpNode c0 = scarp_node(field, col, cell.y - 1);
-    ScarpNode c1 = scarp_node(field, col, cell.y);
-    ScarpNode c2 = scarp_node(field, col, cell.y + 1);
-    ScarpNode c3 = scarp_node(field, col, cell.y + 2);
-    weight = i == 0 ? 1.0f - place.x : place.x;
-    sum.y += weight * ((1.0f - place.y) * scarp_node_slope(c0, c1, c2) + place.y * scarp_node_slope(c1, c2, c3));
+  // Along the rows and then the columns of nodes through the cell's sides.
+  for (int i = 0; i < 4; ++i) {
+    int beside = i & 1;
+    bool along_row = i < 2;
+    ivec2 step = along_row ? ivec2(1, 0) : ivec2(0, 1);
+    ivec2 first = along_row ? ivec2(cell.x, cell.y + beside) : ivec2(cell.x + beside, cell.y);
+    ScarpNode n0 = scarp_node(field, first.x - step.x, first.y - step.y);
+    ScarpNode n1 = scarp_node(field, first.x, first.y);
+    ScarpNode n2 = scarp_node(field, first.x + step.x, first.y + step.y);
+    ScarpNode n3 = scarp_node(field, first.x + 2 * step.x, first.y + 2 * step.y);
+    float across = along_row ? place.y : place.x;
+    float along = along_row ? place.x : place.y;
+    float slope = (1.0f - along) * scarp_node_slope(n0, n1, n2) + along * scarp_node_slope(n1, n2, n3);
+    float weighed = (beside == 0 ? 1.0f - across : across) * slope;
+    if (along_row)
+      sum.x += weighed;
+    else
+      sum.y += weighed;
   }
   return sum;
 }

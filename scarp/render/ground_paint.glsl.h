@@ -60,11 +60,8 @@ SCARP_FN real scarp_patches(ScarpPaintPlace place, int set, real detail_size, re
 }
 
 /// Rock, grass and snow, in linear light: `share` of the relief that the ground is high, `normal` unit, `from_sun` x
-/// and y away from the sun, `snow_share` where snow begins.
-SCARP_FN vec3 scarp_natural(ScarpPaintPlace place, real share, real3 normal, real footprint, real detail_size,
-                            real2 from_sun, real snow_share) {
-  real blur = scarp_patches(place, kScarpBlur, detail_size, footprint);
-  real rough = scarp_patches(place, kScarpRough, detail_size, footprint);
+/// and y away from the sun, `snow_share` where snow begins, `blur` and `rough` the patches of these sets.
+SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_share, real blur, real rough) {
   real steep = sqrt(max(real(0.0), real(1.0) - normal.z * normal.z));
   vec3 colour =
       scarp_between(kScarpForest, kScarpMeadow, scarp_smooth(real(0.08), real(0.35), share + real(0.10) * blur));

@@ -21,13 +21,19 @@ float scarp_minimum(int level, int col, int row);
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool stepped = false;
+layout(constant_id = 2) const uint parts = 0xffffffffu;
+layout(constant_id = 3) const uint field_flags = 0u;
+const bool has_water = (parts & kFrameHasWater) != 0u;
+const bool has_shadows = (parts & kFrameHasShadows) != 0u;
+const bool has_patches = (parts & kFrameHasPatches) != 0u;
+const bool has_drape = (parts & kFrameHasDrape) != 0u;
+const bool has_contours = (parts & kFrameHasContours) != 0u;
+const bool has_fog = (parts & kFrameHasFog) != 0u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Pixels { uint words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer States { FrameState states[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Sights { FrameSight sights[]; };
 layout(push_constant, scalar) uniform Push { FramePush push; };
-
-Ground scarp_ground() { return Ground(push.ground); }
 
 #include "scarp/march/ground_host.glsl.h"
 #include "scarp/render/terrain_frame_ground.glsl.h"
@@ -38,7 +44,7 @@ vec3 direction_of(FrameSeen seen) { return normalize(world_direction(seen.line.d
 
 vec3 in_air(vec3 colour, FrameSeen seen, vec3 direction, float metres) {
   Settings s = settings();
-  if (s.is.fog == kScarpNoFog) {
+  if (!has_fog || s.is.fog == kScarpNoFog) {
     float clear = exp(-s.is.haze_per_metre * max(0.0, metres - s.is.clear_distance));
     return colour * clear + kScarpHorizon * (1.0 - clear);
   }
@@ -62,7 +68,7 @@ vec3 beside_ground(FrameSeen seen, vec3 direction) {
                   seen.t.high * seen.metres);
   }
   vec3 sky = scarp_sky_colour(s.is.no_descent != 0 ? max(0.0, direction.z) : direction.z);
-  if (s.is.fog == kScarpNoFog || s.is.fog == kScarpFogByIterations) return sky;
+  if (!has_fog || s.is.fog == kScarpNoFog || s.is.fog == kScarpFogByIterations) return sky;
   float left = scarp_fog_transmittance_of_sky(s.is.fog, s.is.fog_per_metre, s.is.fog_base, s.is.fog_falloff,
                                               eye_height(seen), direction.z);
   return scarp_between(scarp_fog_colour(dot(direction, s.is.to_sun), s.is.sun_tint), sky, left);
@@ -75,9 +81,8 @@ vec3 shading_normal(ScarpField field, FrameSeen seen) {
 // Ground in its light, without air.
 vec3 lit_ground(ScarpField field, FrameSeen seen) {
   Settings s = settings();
-  vec3 normal = shading_normal(field, seen);
-  return ground_colour(field, seen, direction_of(seen), normal) *
-         scarp_light(normal, s.is.sky_side, s.is.sun, seen.sun_cosine, 1.0);
+  return ground_colour(field, seen, direction_of(seen), seen.normal) *
+         scarp_light(seen.normal, s.is.sky_side, s.is.sun, seen.sun_cosine, 1.0);
 }
 
 vec3 seen_colour(FrameSeen seen) {
@@ -116,6 +121,22 @@ FrameSeen camera_ray(vec2 at) {
   return seen;
 }
 
+// The invocation's state: what it keeps from ray to ray lies in memory.
+uint slot;
+FrameSeen seen_of(int ray) { return States(push.states).states[slot].seen[ray]; }
+void keep(int ray, FrameSeen seen) { States(push.states).states[slot].seen[ray] = seen; }
+FrameWater water_met() { return States(push.states).states[slot].water; }
+void keep_water(FrameWater water) { States(push.states).states[slot].water = water; }
+
+// The ray that is under way.
+struct Sent {
+  ScarpSent ray;
+  ScarpHit hit;
+  ScarpWalk walk;
+  ScarpSteps steps;
+  ScarpFixedStep step;
+};
+
 FrameSeen no_sight() {
   FrameSeen seen;
   seen.line = ScarpLine(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
@@ -127,6 +148,7 @@ FrameSeen no_sight() {
   seen.cell = ivec2(0);
   seen.place = vec2(0.0);
   seen.sun_cosine = 0.0;
+  seen.normal = vec3(0.0);
   seen.light = vec3(0.0);
   seen.steps = 0u;
   return seen;
@@ -141,80 +163,42 @@ float step_of(FrameSeen seen, bool of_camera) {
   return step / max(length(direction.xy), 0.125);
 }
 
-ScarpFixedStep step_settings(FrameState state) {
-  Settings s = settings();
-  if (state.task >= kFrameSeens) return ScarpFixedStep(s.is.sun_step, s.is.sun_interpolate, s.is.sun_steps);
-  return ScarpFixedStep(step_of(state.seen[state.task], state.task == kFrameCamera), s.is.interpolate, s.is.steps + 1);
+// How far a stepped ray goes, in its time. Less than 0: nowhere.
+float stepped_end(ScarpField field, FrameSeen seen, float step) {
+  float end = min(seen.end.high, step * float(settings().is.steps));
+  if (!(seen.line.direction.z > 0.0)) return end;
+  float leaves = ((field.highest - seen.line.origin.z) - seen.line.origin_low.z) / seen.line.direction.z;
+  return leaves < 0.0 ? -1.0 : min(end, leaves + step);
 }
 
-// How far a stepped ray goes, in its time; of the camera's, where it meets the water. Less than 0: nowhere.
-float stepped_end(ScarpField field, inout FrameState state) {
-  FrameSeen seen = state.seen[state.task];
-  bool of_camera = state.task == kFrameCamera;
-  float step = step_of(seen, of_camera);
-  float end = min(seen.end.high, step * float(settings().is.steps));
-  if (seen.line.direction.z > 0.0) {
-    float leaves =
-        ((field.highest - seen.line.origin.z) - seen.line.origin_low.z) / seen.line.direction.z;
-    if (leaves < 0.0) return -1.0;
-    end = min(end, leaves + step);
-  }
-  state.plane = kScarpNever;
-  state.stop = kScarpNever;
-  if (!of_camera) return end;
-  FrameWater water = water_on(field, seen.line, seen.end);
-  if (water.kind == 0) return end;
+// The step at which a stepped ray of the camera finds out that it has met the water at time `plane`.
+float stop_of(ScarpField field, FrameSeen seen, float step, float plane) {
   float first = 0.0;
   if ((field.flags & kScarpWraps) == 0u) {
     // Of a ray along an axis the span is endless.
     first = max(0.0, max(scarp_span_x(field, seen.line).begin.high, scarp_span_y(field, seen.line).begin.high));
   }
-  state.plane = water.t.high;
-  state.stop = first + ceil((state.plane - first) / step) * step;
-  return min(end, state.stop);
+  return first + ceil((plane - first) / step) * step;
 }
 
-// Sends the ray of the task; false: there is none, or nothing is on its way.
-bool send(ScarpField field, inout FrameState state) {
+// Sends the ray of a task; false: there is none, or nothing is on its way.
+bool send(ScarpField field, int task, inout Sent sent) {
   Settings s = settings();
-  ScarpLine line;
-  ScarpTwoFloat end;
+  bool light = task >= kFrameSeens;
+  FrameSeen seen = seen_of(light ? task - kFrameSeens : task);
+  sent.hit = scarp_no_hit();
+  if (light ? seen.kind != kFrameGround : seen.asked == 0) return false;
+  ScarpLine line = seen.line;
+  ScarpTwoFloat end = seen.end;
   uint how = stepped ? kScarpSendSampled : 0u;
-  ivec2 cell = ivec2(0);
-  vec2 place = vec2(0.0);
-  state.hit = scarp_no_hit();
-  if (state.task < kFrameSeens) {
-    FrameSeen seen = state.seen[state.task];
-    if (seen.asked == 0) return false;
-    line = seen.line;
-    end = seen.end;
-    if (stepped) {
-      state.last = stepped_end(field, state);
-      if (state.last < 0.0) {
-        state.hit.steps = 1u;
-        return false;
-      }
-      end = scarp_two(state.last);
-    } else if (state.task == kFrameCamera) {
-      // Above the highest ground there is nothing more to meet.
-      if (line.direction.z > 0.0) {
-        float leaves = (field.highest - line.origin.z) / line.direction.z;
-        end = scarp_two_earlier(end, scarp_two(max(0.0, leaves)));
-      }
-      state.water = water_on(field, line, end);
-      if (state.water.kind != 0) end = state.water.t;
-    }
-    if (state.task != kFrameCamera && state.water.sea != 0) {
-      how |= kScarpSendFromSurface;
-      cell = state.water.cell;
-      place = state.water.place;
-    }
-  } else {
-    FrameSeen seen = state.seen[state.task - kFrameSeens];
-    if (seen.kind != kFrameGround) return false;
-    float cosine = dot(shading_normal(field, seen), s.is.to_sun);
-    state.seen[state.task - kFrameSeens].sun_cosine = max(0.0, cosine);
-    if (s.is.shadows == 0 || !(cosine > 0.0)) return false;
+  ivec2 cell = seen.cell;
+  vec2 place = seen.place;
+  if (light) {
+    seen.normal = shading_normal(field, seen);
+    float cosine = dot(seen.normal, s.is.to_sun);
+    seen.sun_cosine = max(0.0, cosine);
+    keep(task - kFrameSeens, seen);
+    if (!has_shadows || !(cosine > 0.0)) return false;
     ScarpTwoFloat x = scarp_line_col(seen.line, seen.t);
     ScarpTwoFloat y = scarp_line_row(seen.line, seen.t);
     ScarpTwoFloat z = scarp_line_height(seen.line, seen.t);
@@ -224,215 +208,259 @@ bool send(ScarpField field, inout FrameState state) {
     if ((field.flags & kScarpWraps) != 0u)
       end = scarp_two(max((field.highest - z.high) * s.is.metres_per_sample, 0.0) / max(s.is.to_sun.z, 1e-3));
     how |= kScarpSendFromSurface;
-    cell = seen.cell;
-    place = seen.place;
+    sent.step = ScarpFixedStep(s.is.sun_step, s.is.sun_interpolate, s.is.sun_steps);
+  } else {
+    FrameWater water = water_met();
+    if (task == kFrameCamera) water = water_on(field, line, end);
+    if (stepped) {
+      float step = step_of(seen, task == kFrameCamera);
+      sent.step = ScarpFixedStep(step, s.is.interpolate, s.is.steps + 1);
+      float last = stepped_end(field, seen, step);
+      if (last < 0.0) {
+        sent.hit.steps = 1u;
+        water.kind = 0;
+      } else if (water.kind != 0 && task == kFrameCamera) {
+        // Known at the first step that is past it, if the ray goes so far.
+        float stop = stop_of(field, seen, step, water.t.high);
+        if (stop > last) water.kind = 0;
+        last = min(last, stop);
+        if (s.is.interpolate == 0) water.t = scarp_two(stop);
+        // Its side and its bottom are not asked for.
+        water.sea = 0;
+        water.normal = vec3(0.0, 0.0, 1.0);
+      }
+      if (task == kFrameCamera) keep_water(water);
+      if (last < 0.0) return false;
+      end = scarp_two(last);
+    } else if (task == kFrameCamera) {
+      // Above the highest ground there is nothing more to meet.
+      if (line.direction.z > 0.0) {
+        float leaves = (field.highest - line.origin.z) / line.direction.z;
+        end = scarp_two_earlier(end, scarp_two(max(0.0, leaves)));
+        if (scarp_two_less(end, water.t)) water.kind = 0;
+      }
+      if (water.kind != 0) end = water.t;
+      keep_water(water);
+    }
+    if (task != kFrameCamera && water.sea != 0) {
+      how |= kScarpSendFromSurface;
+      cell = water.cell;
+      place = water.place;
+    }
   }
-  state.sent = scarp_send(field, line, end, how, cell, place);
-  if (state.sent.marches == 0) return false;
+  sent.ray = scarp_send(field, line, end, how, cell, place);
+  if (sent.ray.marches == 0) return false;
   if (stepped) {
-    state.steps = scarp_first_step(state.sent.ray);
+    sent.steps = scarp_first_step(sent.ray.ray);
     return true;
   }
-  return scarp_begin_walk(field, state.sent.ray, state.walk, state.hit);
+  return scarp_begin_walk(field, sent.ray.ray, sent.walk, sent.hit);
 }
 
-bool any_of(FrameState state) { return state.task >= kFrameSeens; }
-
 // Rays that the water sends on.
-void send_from_water(ScarpField field, inout FrameState state) {
+void send_from_water(ScarpField field, FrameSeen camera, inout FrameWater water) {
   Settings s = settings();
-  FrameSeen camera = state.seen[kFrameCamera];
   vec3 direction = direction_of(camera);
-  float metres = state.water.t.high * camera.metres;
-  ScarpTwoFloat x = scarp_line_col(camera.line, state.water.t);
-  ScarpTwoFloat y = scarp_line_row(camera.line, state.water.t);
-  ScarpTwoFloat z = scarp_line_height(camera.line, state.water.t);
-  vec3 normal = state.water.normal;
+  float metres = water.t.high * camera.metres;
+  ScarpTwoFloat x = scarp_line_col(camera.line, water.t);
+  ScarpTwoFloat y = scarp_line_row(camera.line, water.t);
+  ScarpTwoFloat z = scarp_line_height(camera.line, water.t);
+  vec3 normal = water.normal;
   if (normal.z > 0.0) {
     // A pixel is longer on the water than it is wide, seen at a grazing angle.
     float wide = s.is.pixel_width * (s.is.orthographic != 0 ? 1.0 : metres);
-    normal = water_normal(paint_place(camera.line, state.water.t), wide / sqrt(max(-direction.z, 0.01)));
+    normal = water_normal(paint_place(camera.line, water.t), wide / sqrt(max(-direction.z, 0.01)));
     if (dot(normal, direction) >= 0.0) normal = vec3(0.0, 0.0, 1.0);
   }
-  state.water.reflectance = scarp_schlick(-dot(normal, direction), 1.333);
+  water.reflectance = scarp_schlick(-dot(normal, direction), 1.333);
   vec3 mirrored = scarp_reflected(direction, normal);
-  if (state.water.normal.z > 0.0) mirrored = scarp_kept_above(mirrored);
+  if (water.normal.z > 0.0) mirrored = scarp_kept_above(mirrored);
   FrameSeen sent = no_sight();
   sent.line = ScarpLine(vec3(x.high, y.high, z.high), vec3(x.low, y.low, z.low), grid_direction(mirrored), vec3(0.0));
   sent.end = scarp_two(s.is.reach);
   sent.asked = s.is.reflection;
-  state.seen[kFrameMirror] = sent;
-  if (s.is.refraction == 0 || state.water.sea != 0) return;
+  keep(kFrameMirror, sent);
+  if (s.is.refraction == 0 || water.sea != 0) return;
   sent.line.direction = grid_direction(scarp_refracted(direction, normal, 1.333));
   sent.end = scarp_two(min(s.is.reach, leaves_water(field, sent.line)));
   sent.asked = 1;
-  state.seen[kFrameBottom] = sent;
+  keep(kFrameBottom, sent);
 }
 
-// What the ray of the task has found.
-void take(ScarpField field, inout FrameState state) {
-  bool met = state.hit.status == kScarpHit || state.hit.status == kScarpWall;
-  if (state.task >= kFrameSeens) {
-    FrameSeen lit = state.seen[state.task - kFrameSeens];
+// What the ray of a task has found.
+void take(ScarpField field, int task, Sent sent) {
+  Settings s = settings();
+  bool met = sent.hit.status == kScarpHit || sent.hit.status == kScarpWall;
+  if (task >= kFrameSeens) {
+    FrameSeen lit = seen_of(task - kFrameSeens);
     if (lit.kind != kFrameGround) return;
     if (met) lit.sun_cosine = 0.0;
-    state.seen[state.task - kFrameSeens].light = lit_ground(field, lit);
+    lit.light = lit_ground(field, lit);
+    keep(task - kFrameSeens, lit);
     return;
   }
-  FrameSeen seen = state.seen[state.task];
-  seen.steps = state.hit.steps;
+  FrameSeen seen = seen_of(task);
+  seen.steps = stepped ? min(sent.hit.steps, uint(s.is.steps)) : sent.hit.steps;
   if (met) {
-    seen.kind = state.hit.status == kScarpWall ? kFrameWall : kFrameGround;
-    seen.t = scarp_sent_time(state.sent, state.hit);
-    seen.cell = state.hit.cell;
-    seen.place = state.hit.place;
+    seen.kind = sent.hit.status == kScarpWall ? kFrameWall : kFrameGround;
+    seen.t = scarp_sent_time(sent.ray, sent.hit);
+    seen.cell = sent.hit.cell;
+    seen.place = sent.hit.place;
   }
-  if (state.task == kFrameCamera) {
-    Settings s = settings();
-    if (stepped) {
-      seen.steps = min(seen.steps, uint(s.is.steps));
-      // Ground is asked for first and water then, at each sample; in between, what comes first counts.
-      bool at_water = state.stop <= state.last;
-      if (at_water && (!met || (s.is.interpolate != 0 && state.plane < seen.t.high))) {
-        state.water.kind = 1;
-        state.water.t = scarp_two(s.is.interpolate != 0 ? state.plane : state.stop);
+  if (task == kFrameCamera) {
+    FrameWater water = water_met();
+    // Exact rays end at the water. Of samples ground is asked for first and water then; in between, what comes first
+    // counts.
+    if (met && water.kind != 0) {
+      if (stepped && s.is.interpolate != 0 && water.t.high < seen.t.high)
         seen.kind = kFrameNothing;
-      }
-    } else if (met) {
-      state.water.kind = 0;
+      else
+        water.kind = 0;
     }
-    if (seen.kind == kFrameGround && s.is.water != 0 && is_sea(field, seen.cell)) {
-      state.water.kind = 1;
-      state.water.t = seen.t;
-      state.water.sea = 1;
-      state.water.cell = seen.cell;
-      state.water.place = seen.place;
-      state.water.normal = vec3(0.0, 0.0, 1.0);
+    if (has_water && seen.kind == kFrameGround && is_sea(field, seen.cell)) {
+      water.kind = 1;
+      water.t = seen.t;
+      water.sea = 1;
+      water.cell = seen.cell;
+      water.place = seen.place;
+      water.normal = vec3(0.0, 0.0, 1.0);
     }
-    state.seen[kFrameCamera] = seen;
-    if (state.water.kind != 0) send_from_water(field, state);
-    return;
+    if (has_water && water.kind != 0) send_from_water(field, seen, water);
+    keep_water(water);
   }
-  state.seen[state.task] = seen;
+  keep(task, seen);
 }
 
-vec3 water_colour(FrameState state) {
+vec3 water_colour(FrameWater water) {
   Settings s = settings();
   vec3 body = s.is.deep;
-  FrameSeen bottom = state.seen[kFrameBottom];
+  FrameSeen bottom = seen_of(kFrameBottom);
   if (bottom.asked != 0) {
     if (bottom.kind != kFrameNothing) {
       float depth = s.is.level - height_of(scarp_line_height(bottom.line, bottom.t).high);
       vec3 sunlight = scarp_left_after(s.is.water_per_metre, scarp_sun_way(depth, s.is.to_sun.z, 1.333));
-      body = scarp_through_water(bottom.light * sunlight, s.is.deep, s.is.water_per_metre, bottom.t.high * bottom.metres);
+      body =
+          scarp_through_water(bottom.light * sunlight, s.is.deep, s.is.water_per_metre, bottom.t.high * bottom.metres);
     } else if (bottom.end.high < 0.5 * kScarpNever) {
       body = scarp_through_water(beside_ground(bottom, direction_of(bottom)), s.is.deep, s.is.water_per_metre,
                                  bottom.end.high);
     }
   }
-  float mirror = state.water.reflectance;
-  return seen_colour(state.seen[kFrameMirror]) * mirror + body * (1.0 - mirror);
+  return seen_colour(seen_of(kFrameMirror)) * water.reflectance + body * (1.0 - water.reflectance);
 }
 
-vec3 colour_of(FrameState state) {
+vec3 colour_of_point() {
   Settings s = settings();
-  FrameSeen camera = state.seen[kFrameCamera];
+  FrameSeen camera = seen_of(kFrameCamera);
+  FrameWater water = water_met();
   float share = min(1.0, float(camera.steps) / float(s.is.most_steps));
   if (s.is.iterations != 0) return vec3(share);
   vec3 direction = direction_of(camera);
   vec3 colour;
-  if (state.water.kind != 0)
-    colour = in_air(water_colour(state), camera, direction, state.water.t.high * camera.metres);
+  if (has_water && water.kind != 0)
+    colour = in_air(water_colour(water), camera, direction, water.t.high * camera.metres);
   else
     colour = seen_colour(camera);
-  if (s.is.fog == kScarpFogByIterations)
+  if (has_fog && s.is.fog == kScarpFogByIterations)
     colour = scarp_between(colour, scarp_fog_colour(dot(direction, s.is.to_sun), s.is.sun_tint), share);
   return colour;
 }
 
-// The next point of a pixel.
-void begin_point(uint pixel, inout FrameState state) {
+// Point `point` of a pixel.
+void begin_point(uint pixel, int point) {
   Settings s = settings();
   int aa = s.is.aa;
   vec2 at = vec2(float(pixel % uint(s.is.width)), float(pixel / uint(s.is.width))) +
-            (vec2(float(state.point % aa), float(state.point / aa)) + 0.5) / float(aa);
-  FrameSeen camera = no_sight();
-  FrameSeen ray = camera_ray(at);
-  camera.line = ray.line;
-  camera.metres = ray.metres;
-  camera.end = ray.end;
-  camera.asked = 1;
-  state.seen[kFrameCamera] = camera;
-  state.seen[kFrameMirror] = no_sight();
-  state.seen[kFrameBottom] = no_sight();
-  state.water.kind = 0;
-  state.water.t = scarp_two(kScarpNever);
-  state.water.sea = 0;
-  state.water.cell = ivec2(0);
-  state.water.place = vec2(0.0);
-  state.water.normal = vec3(0.0, 0.0, 1.0);
-  state.water.reflectance = 0.0;
-  state.plane = kScarpNever;
-  state.stop = kScarpNever;
-  state.last = 0.0;
-  state.task = 0;
-  state.under_way = 0;
+            (vec2(float(point % aa), float(point / aa)) + 0.5) / float(aa);
+  FrameSeen none = no_sight();
+  FrameSeen camera = camera_ray(at);
+  none.line = camera.line;
+  none.metres = camera.metres;
+  none.end = camera.end;
+  none.asked = 1;
+  keep(kFrameCamera, none);
+  none.asked = 0;
+  keep(kFrameMirror, none);
+  keep(kFrameBottom, none);
 }
 
-void tell_sight(uint pixel, FrameState state) {
-  FrameSeen camera = state.seen[kFrameCamera];
+void tell_sight(uint pixel) {
+  FrameSeen camera = seen_of(kFrameCamera);
+  FrameWater water = water_met();
   FrameSight sight;
-  sight.kind = state.water.kind != 0 ? kFrameWater : camera.kind;
-  sight.t = (state.water.kind != 0 ? state.water.t.high : camera.t.high) * camera.metres;
+  sight.kind = water.kind != 0 ? kFrameWater : camera.kind;
+  sight.t = (water.kind != 0 ? water.t.high : camera.t.high) * camera.metres;
   sight.cell = camera.cell;
   sight.steps = camera.steps;
   Sights(push.sights).sights[pixel] = sight;
 }
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
-  if (i >= push.count) return;
-  uint pixel = push.first + i;
+  slot = gl_GlobalInvocationID.x;
+  if (slot >= push.count) return;
+  uint pixel = push.first + slot;
   int points = settings().is.aa * settings().is.aa;
-  ScarpField field = scarp_ground_field();
-  FrameState state;
+  int tasks = settings().is.iterations != 0 ? 1 : kFrameTasks;
+  ScarpField field = open_ground(push.ground);
+  field.flags = field_flags;
+  Sent sent;
+  int point = 0;
+  int task = -1;
+  bool under_way = false;
+  vec3 sum = vec3(0.0);
   if (push.resume != 0u) {
-    if (Pixels(push.pixels).words[i] != 0u) return;
-    state = States(push.states).states[i];
-  } else {
-    state.point = 0;
-    state.sum = vec3(0.0);
-    state.task = -1;
+    if (Pixels(push.pixels).words[slot] != 0u) return;
+    States all = States(push.states);
+    point = all.states[slot].point;
+    task = all.states[slot].task;
+    under_way = all.states[slot].under_way != 0;
+    sum = all.states[slot].sum;
+    sent.ray = all.states[slot].sent;
+    sent.hit = all.states[slot].hit;
+    sent.step = all.states[slot].step;
+    if (stepped)
+      sent.steps = all.states[slot].steps;
+    else
+      sent.walk = all.states[slot].walk;
   }
-  bool all_done = false;
-  for (int round = 0; round < kFrameRounds; ++round) {
-    if (state.task < 0) begin_point(pixel, state);
-    bool marches = state.under_way != 0 || send(field, state);
-    bool done = true;
-    if (marches) {
-      done = stepped ? scarp_step_on(field, state.sent.ray, step_settings(state), kFrameTurns, state.steps, state.hit)
-                     : scarp_go_on(field, state.sent.ray, any_of(state), kFrameTurns, state.walk, state.hit);
+  for (int round = 0; round < kFrameRounds && point < points; ++round) {
+    if (task < 0) {
+      begin_point(pixel, point);
+      task = 0;
     }
-    state.under_way = done ? 0 : 1;
-    if (!done) break;
-    take(field, state);
-    state.task += 1;
-    if (state.task < kFrameTasks && !(settings().is.iterations != 0)) continue;
-    if (state.point == 0 && push.tell_sights != 0u) tell_sight(pixel, state);
-    state.sum += colour_of(state);
-    state.point += 1;
-    if (state.point == points) {
-      all_done = true;
-      break;
+    if (!under_way) under_way = send(field, task, sent);
+    if (under_way) {
+      bool done = stepped ? scarp_step_on(field, sent.ray.ray, sent.step, kFrameTurns, sent.steps, sent.hit)
+                          : scarp_go_on(field, sent.ray.ray, task >= kFrameSeens, kFrameTurns, sent.walk, sent.hit);
+      if (!done) break;
+      under_way = false;
     }
-    state.task = -1;
+    take(field, task, sent);
+    // Without water there is but the camera's ray to be lit.
+    task = has_water ? task + 1 : task == kFrameCamera ? kFrameSeens : kFrameTasks;
+    if (task < tasks) continue;
+    if (point == 0 && push.tell_sights != 0u) tell_sight(pixel);
+    sum += colour_of_point();
+    point += 1;
+    task = -1;
   }
-  if (!all_done) {
-    States(push.states).states[i] = state;
-    Pixels(push.pixels).words[i] = 0u;
+  if (point < points) {
+    States all = States(push.states);
+    all.states[slot].point = point;
+    all.states[slot].task = task;
+    all.states[slot].under_way = under_way ? 1 : 0;
+    all.states[slot].sum = sum;
+    all.states[slot].sent = sent.ray;
+    all.states[slot].hit = sent.hit;
+    all.states[slot].step = sent.step;
+    if (stepped)
+      all.states[slot].steps = sent.steps;
+    else
+      all.states[slot].walk = sent.walk;
+    Pixels(push.pixels).words[slot] = 0u;
     return;
   }
-  vec3 colour = state.sum / float(points);
-  Pixels(push.pixels).words[i] = uint(scarp_srgb_byte(colour.x)) | (uint(scarp_srgb_byte(colour.y)) << 8) |
-                                 (uint(scarp_srgb_byte(colour.z)) << 16) | 0xff000000u;
+  vec3 colour = sum / float(points);
+  Pixels(push.pixels).words[slot] = uint(scarp_srgb_byte(colour.x)) | (uint(scarp_srgb_byte(colour.y)) << 8) |
+                                    (uint(scarp_srgb_byte(colour.z)) << 16) | 0xff000000u;
 }

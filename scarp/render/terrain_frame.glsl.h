@@ -5,7 +5,7 @@
 //   FramePush ──settings──▶ FrameSettings ──ramp──▶ pieces and colours of a ramp;  ──drape──▶ a picture on the ground
 //       │  ├──ground────▶ GroundBuffers
 //       │  ├──pixels────▶ a word per pixel: red | green << 8 | blue << 16 | 255 << 24; 0: not done
-//       │  ├──states────▶ FrameState, of invocations that were interrupted
+//       │  ├──states────▶ FrameState, of each invocation
 //       │  └──sights────▶ FrameSight per pixel, for those who ask what rays have found
 //       └─ which pixels; whether they go on from their states
 //
@@ -25,7 +25,16 @@
 
 SCARP_GLSL_BEGIN
 
-// Specialisation constants: threads of a workgroup; whether rays are stepped (fixed-step) or exact (max-mip).
+// Specialisation constants: threads of a workgroup; whether rays are stepped (fixed-step) or exact (max-mip); what the
+// picture has (kFrameHas...) and what the field is (ScarpField::flags), so that a shader is made of what it needs:
+// drivers take seconds for all of it.
+const uint kFrameHasWater = 1u;
+const uint kFrameHasShadows = 2u;
+const uint kFrameHasPatches = 4u;  ///< detail or natural ground
+const uint kFrameHasDrape = 8u;
+const uint kFrameHasContours = 16u;
+const uint kFrameHasFog = 32u;
+
 const int kFrameRounds = 16;
 const int kFrameTurns = 3000;
 
@@ -177,6 +186,7 @@ struct FrameSeen {
   ivec2 cell;
   vec2 place;
   float sun_cosine;  ///< what is seen of the sun
+  vec3 normal;       ///< of ground, for shading
   vec3 light;        ///< of ground, before the air between
   uint steps;
 };
@@ -199,13 +209,11 @@ struct FrameState {
   vec3 sum;
   FrameSeen seen[kFrameSeens];
   FrameWater water;
-  float plane;  ///< stepped: time at which the ray meets the water, that at which a step finds out, and its last
-  float stop;
-  float last;
   ScarpSent sent;
   ScarpHit hit;
   ScarpWalk walk;
   ScarpSteps steps;
+  ScarpFixedStep step;
 };
 
 SCARP_GLSL_END

@@ -106,15 +106,23 @@ vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction, vec3 shadin
   ScarpCell cell = scarp_cell(field, seen.cell.x, seen.cell.y, 0.0);
   float height = height_of(scarp_bilinear(cell, seen.place.x, seen.place.y));
   ScarpPaintPlace place = paint_place(seen.line, seen.t);
+  // One place where noise is asked for keeps the shader small.
+  vec3 patches = vec3(0.0);
+  for (int set = 0; set < (has_patches ? kScarpPatchSets : 0); ++set) {
+    if (set == kScarpDetail ? s.is.detail == 0.0 : s.is.natural == 0) continue;
+    float patch_sum = scarp_patches(place, set, s.is.detail_size, footprint);
+    if (set == kScarpDetail) patches.x = patch_sum;
+    if (set == kScarpBlur) patches.y = patch_sum;
+    if (set == kScarpRough) patches.z = patch_sum;
+  }
   vec3 colour;
-  if (s.is.natural != 0)
-    colour = scarp_natural(place, (height - s.is.low) * s.is.per_relief, shading_normal, footprint, s.is.detail_size,
-                           s.is.from_sun, s.is.snow_share);
+  if (has_patches && s.is.natural != 0)
+    colour = scarp_natural((height - s.is.low) * s.is.per_relief, shading_normal, s.is.from_sun, s.is.snow_share,
+                           patches.y, patches.z);
   else
     colour = ramp_colour(height);
-  if (s.is.drape_width > 0) colour = draped(field, seen.cell, seen.place, colour);
-  if (s.is.detail > 0.0)
-    colour *= max(0.0, 1.0 + s.is.detail * scarp_patches(place, kScarpDetail, s.is.detail_size, footprint));
-  if (s.is.contours > 0.0) colour = scarp_with_contours(colour, height, shading_normal, footprint, s.is.contours);
+  if (has_drape) colour = draped(field, seen.cell, seen.place, colour);
+  if (has_patches && s.is.detail > 0.0) colour *= max(0.0, 1.0 + s.is.detail * patches.x);
+  if (has_contours) colour = scarp_with_contours(colour, height, shading_normal, footprint, s.is.contours);
   return colour;
 }

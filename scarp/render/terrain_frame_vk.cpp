@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 
 #include "scarp/base/error.h"
+#include "scarp/march/device_ray.h"
 #include "scarp/render/lake_tile.h"
 #include "scarp/scene/terrain_scene_vk.h"
 #include "scarp/vk/commands.h"
@@ -221,14 +223,19 @@ class KeptBuffer {
 
 class FrameMaker {
  public:
-  FrameMaker(const Device& device, bool stepped)
-      : device_(device), pipeline_(pipeline(device, stepped)), commands_(device) {}
+  // Of one scene: its march and its field.
+  explicit FrameMaker(const TerrainScene& scene)
+      : device_(scene.device_terrain()->device),
+        stepped_(scene.march().name == "fixed-step"),
+        flags_(device_field(scene.field(), nullptr).flags),
+        commands_(device_) {}
 
   Image make(const TerrainScene& scene, const glsl::FrameSettings& numbers, const GroundPaint& paint,
              const Progress& progress, std::vector<FrameSighting>* sightings) {
     glsl::FrameSettings s = numbers;
     set_ramp(s, paint.ramp());
     if (const Drape* drape = paint.settings().drape.get()) set_drape(s, *drape);
+    const ComputePipeline& pipeline = pipeline_for(s);
     Image image(s.width, s.height);
     const std::int64_t pixels = std::int64_t{s.width} * s.height, most = std::min(pixels, kPixelsAtOnce);
     const DeviceBuffer& words = pixels_.reserve(device_, 4 * static_cast<std::uint64_t>(most));
@@ -252,7 +259,7 @@ class FrameMaker {
       push.resume = 0;
       do {
         if (progress && !progress(static_cast<double>(first) / static_cast<double>(pixels))) throw Interrupted();
-        commands_.dispatch(pipeline_, push, {(push.count + kThreads - 1) / kThreads, 1, 1});
+        commands_.dispatch(pipeline, push, {(push.count + kThreads - 1) / kThreads, 1, 1});
         commands_.run();
         download(words, 0, found_.data(), 4 * std::uint64_t{push.count});
         push.resume = 1;
@@ -270,9 +277,19 @@ class FrameMaker {
   }
 
  private:
-  static ComputePipeline pipeline(const Device& device, bool stepped) {
-    const std::uint32_t constants[] = {kThreads, stepped};
-    return {device, kWords, "terrain frame", sizeof(glsl::FramePush), constants};
+  const ComputePipeline& pipeline_for(const glsl::FrameSettings& s) {
+    const std::uint32_t parts = (s.water != 0 ? glsl::kFrameHasWater : 0) |
+                                (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
+                                (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) |
+                                (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
+                                (s.contours > 0 ? glsl::kFrameHasContours : 0) |
+                                (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0);
+    const auto found = pipelines_.find(parts);
+    if (found != pipelines_.end()) return found->second;
+    const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
+    return pipelines_
+        .emplace(parts, ComputePipeline(device_, kWords, "terrain frame", sizeof(glsl::FramePush), constants))
+        .first->second;
   }
 
   void set_ramp(glsl::FrameSettings& s, const Ramp& ramp) {
@@ -305,7 +322,9 @@ class FrameMaker {
   }
 
   Device device_;
-  ComputePipeline pipeline_;
+  bool stepped_;
+  std::uint32_t flags_;
+  std::map<std::uint32_t, ComputePipeline> pipelines_;  // by what the picture has
   Commands commands_;
   KeptBuffer settings_{"a frame's settings"}, pieces_{"a ramp"}, colours_{"a ramp's colours"}, drape_{"an overlay"},
       pixels_{"pixels"}, states_{"a frame's states"}, sights_{"a frame's sights"};
@@ -332,9 +351,7 @@ Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double
                          const PictureSettings& settings, const Progress& progress,
                          std::vector<FrameSighting>* sightings) {
   const DeviceTerrain& terrain = *scene.device_terrain();
-  if (!terrain.kept) {
-    terrain.kept = std::make_shared<FrameMaker>(terrain.device, scene.march().name == "fixed-step");
-  }
+  if (!terrain.kept) terrain.kept = std::make_shared<FrameMaker>(scene);
   const HeightField& field = scene.field();
   const Lake lake(scene, camera, grid_north_azimuth, settings);
   const LakeView& view = lake.view();

@@ -23,7 +23,7 @@ FrameWater water_on(ScarpField field, ScarpLine line, ScarpTwoFloat end) {
   found.place = vec2(0.0);
   found.normal = vec3(0.0, 0.0, 1.0);
   found.reflectance = 0.0;
-  if (s.is.water == 0) return found;
+  if (!has_water) return found;
   bool wraps = (field.flags & kScarpWraps) != 0u;
   ScarpTwoFloat level = two(s.is.level_sample, s.is.level_sample_low);
   ScarpTwoFloat from = scarp_two(-kScarpNever);
