@@ -263,8 +263,8 @@ SCARP_FN bool scarp_step(ScarpField field, ScarpRay ray, bool through_x, int top
   return true;
 }
 
-/// The begin of a walk. A ray from the surface is told its height. False: there is nothing to walk, `hit` is the answer.
-/// `field.top_level` must be 1 or more.
+/// The begin of a walk. A ray from the surface is told its height. False: there is nothing to walk, `hit` is the
+/// answer. `field.top_level` must be 1 or more.
 SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCARP_INOUT(ScarpWalk) walk,
                                SCARP_INOUT(ScarpHit) hit) {
   bool strict = (ray.flags & kScarpOnSurface) != 0u;

@@ -5,7 +5,8 @@
 //   line in grid units ──▶ clipped to border, highest sample and end ──▶ ScarpRay of a march ──▶ time on the line
 //
 // Times are found by a quotient and one correction by what is left there, right to 2^-44 of the coordinates that the
-// line has from sample (0, 0) on; so places are where a ray of doubles has them but for 2^-24 of a cell 2^20 cells away.
+// line has from sample (0, 0) on; so places are where a ray of doubles has them but for 2^-24 of a cell 2^20 cells
+// away.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
 #ifndef SCARP_MARCH_TWO_FLOAT_RAY_GLSL_H

@@ -14,9 +14,7 @@ SCARP_FN vec3 scarp_between(vec3 from, vec3 to, real share) {
 }
 
 /// sRGB 0..1 to linear light (IEC 61966-2-1).
-SCARP_FN float scarp_linear_channel(float s) {
-  return s <= 0.04045f ? s / 12.92f : pow((s + 0.055f) / 1.055f, 2.4f);
-}
+SCARP_FN float scarp_linear_channel(float s) { return s <= 0.04045f ? s / 12.92f : pow((s + 0.055f) / 1.055f, 2.4f); }
 SCARP_FN vec3 scarp_linear_from_srgb(vec3 srgb) {
   return vec3(scarp_linear_channel(srgb.x), scarp_linear_channel(srgb.y), scarp_linear_channel(srgb.z));
 }

@@ -88,9 +88,7 @@ vec3 GroundPaint::draped(const dvec3& position, vec3 below) const {
 }
 
 vec3 GroundPaint::operator()(const dvec3& position, double height, const dvec3& normal, double footprint) const {
-  const auto patches = [&](int set) {
-    return glsl::scarp_patches(dvec2(position), set, detail_size_, footprint);
-  };
+  const auto patches = [&](int set) { return glsl::scarp_patches(dvec2(position), set, detail_size_, footprint); };
   vec3 colour = settings_.natural
                     ? glsl::scarp_natural((height - low_) / relief_, normal, away_from_sun_, settings_.snow_share,
                                           patches(glsl::kScarpBlur), patches(glsl::kScarpRough))
@@ -99,8 +97,7 @@ vec3 GroundPaint::operator()(const dvec3& position, double height, const dvec3& 
   if (settings_.detail > 0) {
     colour *= static_cast<float>(std::max(0.0, 1 + settings_.detail * patches(glsl::kScarpDetail)));
   }
-  if (settings_.contours > 0)
-    colour = glsl::scarp_with_contours(colour, height, normal, footprint, contour_interval());
+  if (settings_.contours > 0) colour = glsl::scarp_with_contours(colour, height, normal, footprint, contour_interval());
   return colour;
 }
 

@@ -68,9 +68,8 @@ SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_
   colour = scarp_between(colour, kScarpDry, scarp_smooth(real(0.30), real(0.62), share + real(0.16) * blur));
   vec3 rock = scarp_between(kScarpRock, kScarpScree, scarp_smooth(real(-0.4), real(0.6), rough));
   // Sines of slopes between which grass gives way to rock.
-  colour = scarp_between(colour, rock,
-                         scarp_smooth(real(0.45), real(0.68),
-                                      steep + real(0.10) * blur + real(0.35) * (share - real(0.5))));
+  colour = scarp_between(
+      colour, rock, scarp_smooth(real(0.45), real(0.68), steep + real(0.10) * blur + real(0.35) * (share - real(0.5))));
   // How much lower snow lies on the shadowed side, how wide its border is, and cosines below which it slides off.
   real line = snow_share - real(0.10) * (normal.x * from_sun.x + normal.y * from_sun.y);
   real snow = scarp_smooth(line - real(0.05), line + real(0.05), share + real(0.07) * blur) *

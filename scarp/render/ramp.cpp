@@ -99,8 +99,7 @@ vec3 Ramp::operator()(double value) const {
   const auto above = [](const Piece& piece, double v) { return piece.high < v; };
   const auto found = std::lower_bound(pieces_.begin(), pieces_.end() - 1, value, above);
   const Piece& piece = *found;
-  const auto at =
-      glsl::scarp_table_place(value, piece.low, piece.high, static_cast<int>(piece.colours.size()));
+  const auto at = glsl::scarp_table_place(value, piece.low, piece.high, static_cast<int>(piece.colours.size()));
   const auto entry = static_cast<std::size_t>(at.entry);
   return piece.colours[entry] * (1 - at.place) + piece.colours[entry + 1] * at.place;
 }

@@ -62,7 +62,8 @@ vec3 beside_ground(FrameSeen seen, vec3 direction) {
     float from_x = direction.x > 0.0 ? seen.place.x : 1.0 - seen.place.x;
     float from_y = direction.y > 0.0 ? 1.0 - seen.place.y : seen.place.y;
     bool on_x = direction.y == 0.0 || (direction.x != 0.0 && from_x <= from_y);
-    vec3 normal = on_x ? vec3(direction.x > 0.0 ? -1.0 : 1.0, 0.0, 0.0) : vec3(0.0, direction.y > 0.0 ? -1.0 : 1.0, 0.0);
+    vec3 normal =
+        on_x ? vec3(direction.x > 0.0 ? -1.0 : 1.0, 0.0, 0.0) : vec3(0.0, direction.y > 0.0 ? -1.0 : 1.0, 0.0);
     float lit = max(0.0, dot(normal, s.is.to_sun));
     return in_air(s.is.earth * (s.is.unlit_wall + (1.0 - s.is.unlit_wall) * lit), seen, direction,
                   seen.t.high * seen.metres);

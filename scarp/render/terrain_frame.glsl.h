@@ -203,8 +203,8 @@ struct FrameWater {
 };
 
 struct FrameState {
-  int point;  ///< of the pixel
-  int task;   ///< -1: the point has not been begun
+  int point;      ///< of the pixel
+  int task;       ///< -1: the point has not been begun
   int under_way;  ///< 1: the ray of the task is
   vec3 sum;
   FrameSeen seen[kFrameSeens];

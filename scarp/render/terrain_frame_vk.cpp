@@ -231,7 +231,7 @@ class FrameMaker {
         commands_(device_) {}
 
   Image make(const TerrainScene& scene, const glsl::FrameSettings& numbers, const GroundPaint& paint,
-             const Progress& progress, std::vector<FrameSighting>* sightings) {
+             const Progress& progress, FrameReport& report) {
     glsl::FrameSettings s = numbers;
     set_ramp(s, paint.ramp());
     if (const Drape* drape = paint.settings().drape.get()) set_drape(s, *drape);
@@ -243,11 +243,10 @@ class FrameMaker {
     push.settings = settings_.keep(device_, std::span<const glsl::FrameSettings>(&s, 1));
     push.ground = scene.device_terrain()->ground.address();
     push.pixels = words.address();
-    push.states =
-        states_.reserve(device_, static_cast<std::uint64_t>(most) * sizeof(glsl::FrameState)).address();
+    push.states = states_.reserve(device_, static_cast<std::uint64_t>(most) * sizeof(glsl::FrameState)).address();
     const DeviceBuffer* sights = nullptr;
-    if (sightings) {
-      sightings->resize(static_cast<std::size_t>(pixels));
+    if (report.tells_sightings) {
+      report.sightings.resize(static_cast<std::size_t>(pixels));
       sights = &sights_.reserve(device_, static_cast<std::uint64_t>(pixels) * sizeof(glsl::FrameSight));
       push.sights = sights->address();
       push.tell_sights = 1;
@@ -261,6 +260,9 @@ class FrameMaker {
         if (progress && !progress(static_cast<double>(first) / static_cast<double>(pixels))) throw Interrupted();
         commands_.dispatch(pipeline, push, {(push.count + kThreads - 1) / kThreads, 1, 1});
         commands_.run();
+        for (const PassTime& pass : commands_.passes()) {
+          if (pass.nanoseconds) report.device_s = report.device_s.value_or(0) + 1e-9 * *pass.nanoseconds;
+        }
         download(words, 0, found_.data(), 4 * std::uint64_t{push.count});
         push.resume = 1;
       } while (std::find(found_.begin(), found_.end(), 0u) != found_.end());
@@ -271,19 +273,17 @@ class FrameMaker {
         *rgb++ = static_cast<std::uint8_t>(word >> 16);
       }
     }
-    if (sightings) take_sights(*sights, *sightings);
+    if (sights) take_sights(*sights, report.sightings);
     if (progress && !progress(1.0)) throw Interrupted();
     return image;
   }
 
  private:
   const ComputePipeline& pipeline_for(const glsl::FrameSettings& s) {
-    const std::uint32_t parts = (s.water != 0 ? glsl::kFrameHasWater : 0) |
-                                (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
-                                (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) |
-                                (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
-                                (s.contours > 0 ? glsl::kFrameHasContours : 0) |
-                                (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0);
+    const std::uint32_t parts =
+        (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
+        (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) | (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
+        (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0);
     const auto found = pipelines_.find(parts);
     if (found != pipelines_.end()) return found->second;
     const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
@@ -316,8 +316,10 @@ class FrameMaker {
     download(from, 0, sights.data(), sights.size() * sizeof(glsl::FrameSight));
     for (std::size_t i = 0; i < sights.size(); ++i) {
       const glsl::FrameSight& sight = sights[i];
-      sightings[i] = {static_cast<FrameSighting::Kind>(sight.kind), static_cast<double>(sight.t),
-                      {sight.cell.x, sight.cell.y}, sight.steps};
+      sightings[i] = {static_cast<FrameSighting::Kind>(sight.kind),
+                      static_cast<double>(sight.t),
+                      {sight.cell.x, sight.cell.y},
+                      sight.steps};
     }
   }
 
@@ -348,8 +350,7 @@ bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const P
 }
 
 Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                         const PictureSettings& settings, const Progress& progress,
-                         std::vector<FrameSighting>* sightings) {
+                         const PictureSettings& settings, const Progress& progress, FrameReport* report) {
   const DeviceTerrain& terrain = *scene.device_terrain();
   if (!terrain.kept) terrain.kept = std::make_shared<FrameMaker>(scene);
   const HeightField& field = scene.field();
@@ -362,8 +363,10 @@ Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double
   set_water(numbers, field, view.water);
   set_air(numbers, field, view.shader);
   set_ground(numbers, field, view.shader.paint());
-  return static_cast<FrameMaker*>(terrain.kept.get())
-      ->make(scene, numbers, view.shader.paint(), progress, sightings);
+  FrameReport unasked;
+  FrameReport& told = report ? *report : unasked;
+  told.device_s.reset();
+  return static_cast<FrameMaker*>(terrain.kept.get())->make(scene, numbers, view.shader.paint(), progress, told);
 }
 
 }  // namespace scarp

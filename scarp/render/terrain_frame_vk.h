@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "scarp/base/progress.h"
@@ -31,11 +32,16 @@ struct FrameSighting {
   std::uint32_t steps = 0;
 };
 
-/// The looks `comanche` (not scaled up) and `shaded`. `settings` are valid and makes_whole_frames(). `sightings`, when
-/// given, is filled, pixel by pixel, rows from the top. Throws Error: no memory on the device, the device is lost, the
-/// eye is under the water; Interrupted when progress asks for it.
+/// What else is known of a frame.
+struct FrameReport {
+  bool tells_sightings = false;            ///< asked for: rays' findings cost memory and a copy
+  std::vector<FrameSighting> sightings{};  ///< pixel by pixel, rows from the top
+  std::optional<double> device_s{};        ///< what it took by the device's clock; nothing where it has none
+};
+
+/// The looks `comanche` (not scaled up) and `shaded`. `settings` are valid and makes_whole_frames(). Throws Error: no
+/// memory on the device, the device is lost, the eye is under the water; Interrupted when progress asks for it.
 Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                         const PictureSettings& settings, const Progress& progress = {},
-                         std::vector<FrameSighting>* sightings = nullptr);
+                         const PictureSettings& settings, const Progress& progress = {}, FrameReport* report = nullptr);
 
 }  // namespace scarp

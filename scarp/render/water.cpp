@@ -64,9 +64,7 @@ void validate(const WaterSettings& settings) {
   }
 }
 
-double schlick(double cosine, double index) {
-  return glsl::scarp_schlick(cosine, index);
-}
+double schlick(double cosine, double index) { return glsl::scarp_schlick(cosine, index); }
 
 Water::Water(const WaterSettings& settings, const HeightField& field)
     : settings_(settings),

@@ -79,7 +79,6 @@ class Water {
   double wavelength(int i) const;
 
  private:
-
   WaterSettings settings_;
   const HeightField& field_;
   double level_, wavelength_;

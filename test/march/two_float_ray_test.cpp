@@ -140,8 +140,8 @@ TEST(SinglePrecisionSlopes, AreThoseOfTheField) {
       if (!field.cell_heights(cell)) continue;
       const auto u = static_cast<float>(uniform(random, 0, 1)), v = static_cast<float>(uniform(random, 0, 1));
       const auto normal = [&](const glsl::vec2& slope) {
-        return normalize(dvec3(-double{slope.x} * metres / settings.cell_x, double{slope.y} * metres / settings.cell_y,
-                               1.0));
+        return normalize(
+            dvec3(-double{slope.x} * metres / settings.cell_x, double{slope.y} * metres / settings.cell_y, 1.0));
       };
       // Eight roundings of differences, relative to the largest sample: an angle of so many times the slope.
       const double steepest = std::max(std::abs(field.min_sample()), std::abs(field.max_sample())) * metres /
