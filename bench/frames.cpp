@@ -158,15 +158,15 @@ std::optional<double> device_ms(const Maker& maker, const Way& way, const Camera
 std::vector<Sighting> sightings_of(const Maker& maker, const Way& way, const Camera& camera,
                                    const PictureSettings& settings, const Water* water, int judge_every) {
   const std::int64_t pixels = std::int64_t{settings.width} * settings.height;
-  std::vector<Sighting> found(static_cast<std::size_t>(pixels));
+  std::vector<Sighting> found(static_cast<std::size_t>(pixels), Sighting{0, 0});
 #ifdef SCARP_BENCH_VULKAN
   if (maker.on_device) {
     FrameReport report{.tells_sightings = true};
     render_whole_frame(maker.scene(way), camera, 0, settings, {}, &report);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const FrameSighting& sighting = report.sightings[i];
-      const bool sea = sighting.kind == FrameSighting::Kind::water;
-      found[i] = {sea ? 2 : sighting.kind == FrameSighting::Kind::nothing ? 0 : 1, sighting.t};
+      if (sighting.kind == FrameSighting::Kind::nothing) continue;
+      found[i] = {sighting.kind == FrameSighting::Kind::water ? 2 : 1, sighting.t};
     }
     return found;
   }

@@ -122,12 +122,20 @@ FrameSeen camera_ray(vec2 at) {
   return seen;
 }
 
-// The invocation's state: what it keeps from ray to ray lies in memory.
+// What an invocation keeps from ray to ray: that of the camera's here, that of the water's in memory.
 uint slot;
-FrameSeen seen_of(int ray) { return States(push.states).states[slot].seen[ray]; }
-void keep(int ray, FrameSeen seen) { States(push.states).states[slot].seen[ray] = seen; }
-FrameWater water_met() { return States(push.states).states[slot].water; }
-void keep_water(FrameWater water) { States(push.states).states[slot].water = water; }
+FrameSeen camera_seen;
+FrameWater water_met;
+FrameSeen seen_of(int ray) {
+  if (!has_water || ray == kFrameCamera) return camera_seen;
+  return States(push.states).states[slot].seen[ray];
+}
+void keep(int ray, FrameSeen seen) {
+  if (!has_water || ray == kFrameCamera)
+    camera_seen = seen;
+  else
+    States(push.states).states[slot].seen[ray] = seen;
+}
 
 // The ray that is under way.
 struct Sent {
@@ -211,7 +219,7 @@ bool send(ScarpField field, int task, inout Sent sent) {
     how |= kScarpSendFromSurface;
     sent.step = ScarpFixedStep(s.is.sun_step, s.is.sun_interpolate, s.is.sun_steps);
   } else {
-    FrameWater water = water_met();
+    FrameWater water = water_met;
     if (task == kFrameCamera) water = water_on(field, line, end);
     if (stepped) {
       float step = step_of(seen, task == kFrameCamera);
@@ -230,7 +238,7 @@ bool send(ScarpField field, int task, inout Sent sent) {
         water.sea = 0;
         water.normal = vec3(0.0, 0.0, 1.0);
       }
-      if (task == kFrameCamera) keep_water(water);
+      if (task == kFrameCamera) water_met = water;
       if (last < 0.0) return false;
       end = scarp_two(last);
     } else if (task == kFrameCamera) {
@@ -241,7 +249,7 @@ bool send(ScarpField field, int task, inout Sent sent) {
         if (scarp_two_less(end, water.t)) water.kind = 0;
       }
       if (water.kind != 0) end = water.t;
-      keep_water(water);
+      water_met = water;
     }
     if (task != kFrameCamera && water.sea != 0) {
       how |= kScarpSendFromSurface;
@@ -309,7 +317,7 @@ void take(ScarpField field, int task, Sent sent) {
     seen.place = sent.hit.place;
   }
   if (task == kFrameCamera) {
-    FrameWater water = water_met();
+    FrameWater water = water_met;
     // Exact rays end at the water. Of samples ground is asked for first and water then; in between, what comes first
     // counts.
     if (met && water.kind != 0) {
@@ -327,7 +335,7 @@ void take(ScarpField field, int task, Sent sent) {
       water.normal = vec3(0.0, 0.0, 1.0);
     }
     if (has_water && water.kind != 0) send_from_water(field, seen, water);
-    keep_water(water);
+    water_met = water;
   }
   keep(task, seen);
 }
@@ -353,7 +361,7 @@ vec3 water_colour(FrameWater water) {
 vec3 colour_of_point() {
   Settings s = settings();
   FrameSeen camera = seen_of(kFrameCamera);
-  FrameWater water = water_met();
+  FrameWater water = water_met;
   float share = min(1.0, float(camera.steps) / float(s.is.most_steps));
   if (s.is.iterations != 0) return vec3(share);
   vec3 direction = direction_of(camera);
@@ -380,14 +388,16 @@ void begin_point(uint pixel, int point) {
   none.end = camera.end;
   none.asked = 1;
   keep(kFrameCamera, none);
-  none.asked = 0;
-  keep(kFrameMirror, none);
-  keep(kFrameBottom, none);
+  if (!has_water) return;
+  for (int ray = kFrameMirror; ray <= kFrameBottom; ++ray) {
+    States(push.states).states[slot].seen[ray].asked = 0;
+    States(push.states).states[slot].seen[ray].kind = kFrameNothing;
+  }
 }
 
 void tell_sight(uint pixel) {
   FrameSeen camera = seen_of(kFrameCamera);
-  FrameWater water = water_met();
+  FrameWater water = water_met;
   FrameSight sight;
   sight.kind = water.kind != 0 ? kFrameWater : camera.kind;
   sight.t = (water.kind != 0 ? water.t.high : camera.t.high) * camera.metres;
@@ -416,6 +426,8 @@ void main() {
     task = all.states[slot].task;
     under_way = all.states[slot].under_way != 0;
     sum = all.states[slot].sum;
+    camera_seen = all.states[slot].seen[kFrameCamera];
+    water_met = all.states[slot].water;
     sent.ray = all.states[slot].sent;
     sent.hit = all.states[slot].hit;
     sent.step = all.states[slot].step;
@@ -437,8 +449,8 @@ void main() {
       under_way = false;
     }
     take(field, task, sent);
-    // Without water there is but the camera's ray to be lit.
-    task = has_water ? task + 1 : task == kFrameCamera ? kFrameSeens : kFrameTasks;
+    // Where there is no water there is but the camera's ray to be lit.
+    task = has_water && water_met.kind != 0 ? task + 1 : task == kFrameCamera ? kFrameSeens : kFrameTasks;
     if (task < tasks) continue;
     if (point == 0 && push.tell_sights != 0u) tell_sight(pixel);
     sum += colour_of_point();
@@ -451,6 +463,8 @@ void main() {
     all.states[slot].task = task;
     all.states[slot].under_way = under_way ? 1 : 0;
     all.states[slot].sum = sum;
+    all.states[slot].seen[kFrameCamera] = camera_seen;
+    all.states[slot].water = water_met;
     all.states[slot].sent = sent.ray;
     all.states[slot].hit = sent.hit;
     all.states[slot].step = sent.step;
