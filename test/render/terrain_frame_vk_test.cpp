@@ -2,7 +2,7 @@
 // Whole pictures made on a Vulkan device against those of the CPU.
 //
 // A ray of single precision meets what a ray meets that is off by the bound of doc/dev/numerics.md: over these fields,
-// less than 2^-16 of a cell per cell of the way. Turning the camera by kTurn of a pixel moves each ray by more than ten
+// less than 2^-15 of a cell per cell of the way. Turning the camera by kTurn of a pixel moves each ray by more than ten
 // times that. So a pixel of the device has to lie between the darkest and the brightest of what the CPU's camera shows
 // there, straight and turned left, right, up and down; colours are continuous but for edges, which a turned camera has
 // on the pixel's other side. To that come kRounding: formulas in floats are right to 2^-17, a byte rounds either way.
