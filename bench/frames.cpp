@@ -143,8 +143,9 @@ std::vector<Maker> makers(const HeightField& field, const FramesOptions& options
 }
 
 // By the device's clock, in milliseconds.
-std::optional<double> device_ms(const Maker& maker, const Way& way, const Camera& camera,
-                                const PictureSettings& settings) {
+std::optional<double> device_ms(const Maker& maker, [[maybe_unused]] const Way& way,
+                                [[maybe_unused]] const Camera& camera,
+                                [[maybe_unused]] const PictureSettings& settings) {
   if (!maker.on_device) return {};
 #ifdef SCARP_BENCH_VULKAN
   FrameReport report;
