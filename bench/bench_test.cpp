@@ -311,8 +311,10 @@ TEST(ScarpBench, RenderWritesTheDocumentedFieldsAndMaxMipIsRight) {
   expect_head(all);
   double stepped = 0;
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"way", "air", "threads", "ms_per_frame", "cpu_ms_per_frame", "frames_per_s", "dry_ratio",
-                        "fixed_step_ratio", "judged_pixels", "wrong_percent", "water_percent"});
+    expect_fields(row,
+                  {"engine", "way", "air", "threads", "ms_per_frame", "cpu_ms_per_frame", "device_ms_per_frame",
+                   "frames_per_s", "dry_ratio", "fixed_step_ratio", "judged_pixels", "wrong_percent", "water_percent"});
+    EXPECT_EQ(row["engine"], "cpu");
     EXPECT_EQ(row["judged_pixels"], 2 * 400);
     if (row["way"] == "max-mip") {
       EXPECT_EQ(row["wrong_percent"], 0);
@@ -324,6 +326,23 @@ TEST(ScarpBench, RenderWritesTheDocumentedFieldsAndMaxMipIsRight) {
 }
 
 #ifdef SCARP_BENCH_VULKAN
+TEST(ScarpBench, RenderOnADeviceStandsBesideTheCpu) {
+  const std::string command =
+      fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
+  if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
+  const json all =
+      output_of("render --period 64 --width 32 --height 24 --cameras 1 --repeats 1 --judge-every 1 --device auto");
+  ASSERT_EQ(all["rows"].size(), 40u);
+  for (std::size_t i = 0; i < 20; ++i) {
+    const json &cpu = all["rows"][i], &device = all["rows"][20 + i];
+    EXPECT_EQ(cpu["engine"], "cpu");
+    EXPECT_NE(device["engine"], "cpu");
+    EXPECT_EQ(device["way"], cpu["way"]);
+    // Steps are the CPU's, and so are their mistakes.
+    EXPECT_NEAR(device["wrong_percent"].get<double>(), cpu["wrong_percent"].get<double>(), 0.3);
+  }
+}
+
 TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
   // Who asks for a device that is not there is told which there are, or that there is none.
   const std::string command =

@@ -3,8 +3,9 @@
 // what share of its pixels is wrong.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,10 @@
 #include "scarp/render/picture.h"
 #include "scarp/scene/from_raster.h"
 #include "scarp/source/procedural_dem.h"
+#ifdef SCARP_BENCH_VULKAN
+#include "scarp/render/terrain_frame_vk.h"
+#include "scarp/scene/terrain_scene_vk.h"
+#endif
 
 namespace scarp::bench {
 namespace {
@@ -113,6 +118,93 @@ PictureSettings settings_of(const HeightField& field, const FramesOptions& optio
   return settings;
 }
 
+// Who makes the frames: the CPU, or a device.
+struct Maker {
+  std::string name;
+  TerrainScene max_mip, fixed;
+  bool on_device = false;
+
+  const TerrainScene& scene(const Way& way) const { return way.march == std::string("max-mip") ? max_mip : fixed; }
+};
+
+std::vector<Maker> makers(const HeightField& field, const FramesOptions& options) {
+  const MarchEntry &max_mip = find_march("max-mip"), &fixed = find_march("fixed-step");
+  std::vector<Maker> all;
+  all.push_back({"cpu", TerrainScene(field, max_mip), TerrainScene(field, fixed)});
+  if (options.device.empty()) return all;
+#ifdef SCARP_BENCH_VULKAN
+  const Device device({.choice = options.device});
+  all.push_back({device.description().name, terrain_scene_on(device, field, max_mip),
+                 terrain_scene_on(device, field, fixed), true});
+  return all;
+#else
+  throw Error("--device: this program was built without Vulkan");
+#endif
+}
+
+// By the device's clock, in milliseconds.
+std::optional<double> device_ms(const Maker& maker, [[maybe_unused]] const Way& way,
+                                [[maybe_unused]] const Camera& camera,
+                                [[maybe_unused]] const PictureSettings& settings) {
+  if (!maker.on_device) return {};
+#ifdef SCARP_BENCH_VULKAN
+  FrameReport report;
+  render_whole_frame(maker.scene(way), camera, 0, settings, {}, &report);
+  if (report.device_s) return 1000 * *report.device_s;
+#endif
+  return {};
+}
+
+// What the rays of a frame find, pixel by pixel; of those that are judged.
+std::vector<Sighting> sightings_of(const Maker& maker, const Way& way, const Camera& camera,
+                                   const PictureSettings& settings, const Water* water, int judge_every) {
+  const std::int64_t pixels = std::int64_t{settings.width} * settings.height;
+  std::vector<Sighting> found(static_cast<std::size_t>(pixels), Sighting{0, 0});
+#ifdef SCARP_BENCH_VULKAN
+  if (maker.on_device) {
+    FrameReport report{.tells_sightings = true};
+    render_whole_frame(maker.scene(way), camera, 0, settings, {}, &report);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      const FrameSighting& sighting = report.sightings[i];
+      if (sighting.kind == FrameSighting::Kind::nothing) continue;
+      found[i] = {sighting.kind == FrameSighting::Kind::water ? 2 : 1, sighting.t};
+    }
+    return found;
+  }
+#endif
+  const StepMarch march(maker.fixed.field(), settings.comanche, camera.reach(), camera.forward());
+  parallel_for(pixels, 256, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      if (i % judge_every != 0) continue;
+      const Ray ray =
+          camera.ray(static_cast<double>(i % settings.width) + 0.5, static_cast<double>(i / settings.width) + 0.5);
+      found[static_cast<std::size_t>(i)] =
+          way.march == std::string("fixed-step") ? stepped(march, water, ray) : exact(maker.max_mip, water, ray);
+    }
+  });
+  return found;
+}
+
+// What is there, of the pixels that are judged.
+std::vector<Sighting> truth_of(const TerrainScene& oracle, const Camera& camera, const FramesOptions& options,
+                               const Water* water) {
+  const std::int64_t pixels = std::int64_t{options.width} * options.height;
+  std::vector<Sighting> found(static_cast<std::size_t>(pixels));
+  parallel_for(pixels, 256, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t i = begin; i < end; ++i) {
+      if (i % options.judge_every != 0) continue;
+      const Ray ray =
+          camera.ray(static_cast<double>(i % options.width) + 0.5, static_cast<double>(i / options.width) + 0.5);
+      found[static_cast<std::size_t>(i)] = exact(oracle, water, ray);
+    }
+  });
+  return found;
+}
+
+struct FrameTimes {
+  std::vector<double> wall_ms, cpu_ms, device_ms;
+};
+
 }  // namespace
 
 void run_frames(const FramesOptions& options, const ReportOptions& report) {
@@ -121,89 +213,90 @@ void run_frames(const FramesOptions& options, const ReportOptions& report) {
   const HeightField field = endless(options);
   const double level = field.min_height() + 0.25 * (field.max_height() - field.min_height());
   const std::vector<Camera> cameras = flight(field, options);
-  const TerrainScene max_mip(field, find_march("max-mip")), fixed(field, find_march("fixed-step"));
+  const std::vector<Maker> all = makers(field, options);
   const TerrainScene oracle(field, find_march("exhaustive"));
-  constexpr std::size_t kAirCount = std::size(kAirs);
+  constexpr std::size_t kAirCount = std::size(kAirs), kOfMaker = std::size(kWays) * kAirCount;
 
-  std::vector<std::vector<double>> wall_ms(std::size(kWays) * kAirCount), cpu_ms(wall_ms.size());
+  std::vector<FrameTimes> timings(all.size() * kOfMaker);
   for (int pass = 0; pass <= options.repeats; ++pass) {  // the first one warms up
-    for (std::size_t way = 0; way < std::size(kWays); ++way) {
-      for (std::size_t air = 0; air < kAirCount; ++air) {
-        const PictureSettings settings = settings_of(field, options, kWays[way], kAirs[air], level);
-        const TerrainScene& scene = kWays[way].march == std::string("max-mip") ? max_mip : fixed;
-        const Stopwatch watch;
-        for (const Camera& camera : cameras) render_picture(scene, camera, 0, settings);
-        const double frames = static_cast<double>(cameras.size());
-        if (pass == 0) continue;
-        wall_ms[way * kAirCount + air].push_back(1000 * watch.wall_s() / frames);
-        cpu_ms[way * kAirCount + air].push_back(1000 * watch.cpu_s() / frames);
+    for (std::size_t i = 0; i < timings.size(); ++i) {
+      const Maker& maker = all[i / kOfMaker];
+      const Way& way = kWays[i % kOfMaker / kAirCount];
+      const PictureSettings settings = settings_of(field, options, way, kAirs[i % kAirCount], level);
+      const Stopwatch watch;
+      for (const Camera& camera : cameras) render_picture(maker.scene(way), camera, 0, settings);
+      const double frames = static_cast<double>(cameras.size());
+      const double wall_ms = 1000 * watch.wall_s() / frames, cpu_ms = 1000 * watch.cpu_s() / frames;
+      if (pass == 0) continue;
+      timings[i].wall_ms.push_back(wall_ms);
+      timings[i].cpu_ms.push_back(cpu_ms);
+      for (const Camera& camera : cameras) {
+        if (const auto ms = device_ms(maker, way, camera, settings)) timings[i].device_ms.push_back(*ms);
       }
     }
   }
 
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{
-      {"way", "air", "ms", "cpu ms", "frames/s", "x dry", "x fixed-step", "wrong %", "water %"}};
-  double worst_exact = 0;
-  const auto wall = [&](std::size_t way, std::size_t air) { return median(wall_ms[way * kAirCount + air]); };
-  for (std::size_t way = 0; way < std::size(kWays); ++way) {
-    for (std::size_t air = 0; air < kAirCount; ++air) {
-      const PictureSettings settings = settings_of(field, options, kWays[way], kAirs[air], level);
-      std::optional<Water> water;
-      if (settings.water) water.emplace(*settings.water, field);
-      const Water* sea = water ? &*water : nullptr;
-      const bool steps = kWays[way].march == std::string("fixed-step");
-      std::int64_t judged = 0, mistakes = 0, seas = 0;
-      for (const Camera& camera : cameras) {
-        const StepMarch march(field, settings.comanche, camera.reach(), camera.forward());
-        std::vector<std::uint8_t> is_wrong(static_cast<std::size_t>(options.width * options.height)), is_sea(is_wrong);
-        parallel_for(options.width * options.height, 256, [&](std::int64_t begin, std::int64_t end) {
-          for (std::int64_t i = begin; i < end; ++i) {
-            if (i % options.judge_every != 0) continue;
-            const auto x = static_cast<double>(i % options.width), y = static_cast<double>(i / options.width);
-            const Ray ray = camera.ray(x + 0.5, y + 0.5);
-            const Sighting truth = exact(oracle, sea, ray);
-            const Sighting answer = steps ? stepped(march, sea, ray) : exact(max_mip, sea, ray);
-            is_wrong[static_cast<std::size_t>(i)] = wrong(answer, truth);
-            is_sea[static_cast<std::size_t>(i)] = truth.kind == 2;
-          }
-        });
-        for (std::size_t i = 0; i < is_wrong.size(); i += static_cast<std::size_t>(options.judge_every)) {
-          ++judged;
-          mistakes += is_wrong[i];
-          seas += is_sea[i];
-        }
+      {"engine", "way", "air", "ms", "cpu ms", "device ms", "frames/s", "x dry", "x fixed-step", "wrong %", "water %"}};
+  double worst_exact = 0, worst_on_device = 0;
+  for (std::size_t i = 0; i < timings.size(); ++i) {
+    const Maker& maker = all[i / kOfMaker];
+    const std::size_t way_index = i % kOfMaker / kAirCount, air = i % kAirCount;
+    const Way& way = kWays[way_index];
+    const auto wall = [&](std::size_t of_way, std::size_t of_air) {
+      return median(timings[i / kOfMaker * kOfMaker + of_way * kAirCount + of_air].wall_ms);
+    };
+    const PictureSettings settings = settings_of(field, options, way, kAirs[air], level);
+    std::optional<Water> water;
+    if (settings.water) water.emplace(*settings.water, field);
+    const Water* sea = water ? &*water : nullptr;
+    std::int64_t judged = 0, mistakes = 0, seas = 0;
+    for (const Camera& camera : cameras) {
+      const std::vector<Sighting> truth = truth_of(oracle, camera, options, sea);
+      const std::vector<Sighting> found = sightings_of(maker, way, camera, settings, sea, options.judge_every);
+      for (std::size_t pixel = 0; pixel < truth.size(); pixel += static_cast<std::size_t>(options.judge_every)) {
+        ++judged;
+        mistakes += wrong(found[pixel], truth[pixel]);
+        seas += truth[pixel].kind == 2;
       }
-      const double share = static_cast<double>(mistakes) / static_cast<double>(judged);
-      if (!steps) worst_exact = std::max(worst_exact, share);
-      Json row;
-      row["way"] = kWays[way].name;
-      row["air"] = kAirs[air].name;
-      row["threads"] = options.threads;
-      row["ms_per_frame"] = wall(way, air);
-      row["cpu_ms_per_frame"] = median(cpu_ms[way * kAirCount + air]);
-      row["frames_per_s"] = 1000 / wall(way, air);
-      row["dry_ratio"] = wall(way, air) / wall(way, 0);
-      row["fixed_step_ratio"] = wall(way, air) / wall(1, air);
-      row["judged_pixels"] = judged;
-      row["wrong_percent"] = 100 * share;
-      row["water_percent"] = 100 * static_cast<double>(seas) / static_cast<double>(judged);
-      std::vector<std::string> line{row["way"], row["air"]};
-      for (const char* key : {"ms_per_frame", "cpu_ms_per_frame", "frames_per_s", "dry_ratio", "fixed_step_ratio",
-                              "wrong_percent", "water_percent"}) {
-        line.push_back(short_number(row[key]));
-      }
-      lines.push_back(std::move(line));
-      rows.push_back(std::move(row));
     }
+    const double share = static_cast<double>(mistakes) / static_cast<double>(judged);
+    if (way.march == std::string("max-mip")) {
+      double& worst = maker.on_device ? worst_on_device : worst_exact;
+      worst = std::max(worst, share);
+    }
+    Json row;
+    row["engine"] = maker.name;
+    row["way"] = way.name;
+    row["air"] = kAirs[air].name;
+    row["threads"] = options.threads;
+    row["ms_per_frame"] = wall(way_index, air);
+    row["cpu_ms_per_frame"] = median(timings[i].cpu_ms);
+    row["device_ms_per_frame"] = timings[i].device_ms.empty() ? Json() : Json(median(timings[i].device_ms));
+    row["frames_per_s"] = 1000 / wall(way_index, air);
+    row["dry_ratio"] = wall(way_index, air) / wall(way_index, 0);
+    row["fixed_step_ratio"] = wall(way_index, air) / wall(1, air);
+    row["judged_pixels"] = judged;
+    row["wrong_percent"] = 100 * share;
+    row["water_percent"] = 100 * static_cast<double>(seas) / static_cast<double>(judged);
+    std::vector<std::string> line{row["engine"], row["way"], row["air"]};
+    for (const char* key : {"ms_per_frame", "cpu_ms_per_frame", "device_ms_per_frame", "frames_per_s", "dry_ratio",
+                            "fixed_step_ratio", "wrong_percent", "water_percent"}) {
+      line.push_back(row[key].is_null() ? "-" : short_number(row[key]));
+    }
+    lines.push_back(std::move(line));
+    rows.push_back(std::move(row));
   }
   fmt::print("comanche, {} x {} pixels, {} steps over {} cells; ridged ground of period {}, {} cameras, {} threads\n",
              options.width, options.height, options.steps, default_reach(field), options.period, options.cameras,
              options.threads);
-  print_table(lines, 2);
+  print_table(lines, 3);
   write_json(report, rows);
   if (worst_exact > 0)
     throw Error(fmt::format("render: {:.3g} % of the pixels of max-mip are wrong", 100 * worst_exact));
+  if (worst_on_device > 1e-3)
+    throw Error(fmt::format("render: {:.3g} % of max-mip's pixels on the device are wrong", 100 * worst_on_device));
 }
 
 }  // namespace scarp::bench

@@ -330,6 +330,8 @@ int run(int argc, char** argv) {
   frames_command->add_option("--judge-every", frames.judge_every, "one pixel in so many is answered by exhaustive, too")
       ->check(CLI::Range(1, 1 << 20))
       ->capture_default_str();
+  frames_command->add_option("--device", frames.device,
+                             "a Vulkan device beside the CPU: cpu, gpu, auto, part of a name");
   add_json_option(*frames_command, report);
 
   FunctionsOptions functions;

@@ -321,9 +321,6 @@ void render_frame(const RenderOptions& options, const TerrainScene& scene, const
 
 void render_terrain(RenderOptions options, const ViewSettings& view) {
   const MarchEntry& march = find_march(options.march.empty() ? "max-mip" : options.march);
-  if (options.picture.look == Look::comanche && march.name == "fixed-step" && !options.device.empty()) {
-    throw Error("--device: the steps of --look comanche are made on the CPU; leave it out, or take another march");
-  }
   const SceneMaker scenes = scene_maker(options.device, march);
   // Reserved first: an unwritable place is found before the work and not after it.
   ReplaceFile file(options.output);

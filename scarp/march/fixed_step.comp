@@ -14,5 +14,6 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
   ScarpRay ray = BatchRays(batch.rays).rays[i];
-  batch_answer(i, scarp_fixed_step(batch_field(), ray, ScarpFixedStep(batch.step, batch.interpolate, batch.max_steps)));
+  batch_answer(i, scarp_fixed_step(open_ground(batch.ground), ray,
+                                   ScarpFixedStep(batch.step, batch.interpolate, batch.max_steps)));
 }

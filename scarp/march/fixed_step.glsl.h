@@ -16,57 +16,84 @@ struct ScarpFixedStep {
   int max_steps;
 };
 
-/// What the march finds first.
-SCARP_FN ScarpHit scarp_fixed_step(ScarpField field, ScarpRay ray, ScarpFixedStep settings) {
-  ScarpHit hit = scarp_no_hit();
+/// Where the march stands.
+struct ScarpSteps {
+  int next;   ///< the point to be looked at
+  int above;  ///< 1: the last point over ground was above it
+  int known;  ///< 1: the point before was over ground
+  float s_before;
+  float clearance_before;
+};
+SCARP_FN ScarpSteps scarp_first_step(ScarpRay ray) {
+  ScarpSteps steps;
+  steps.above = (ray.flags & kScarpOnSurface) != 0u ? 1 : 0;
+  steps.known = steps.above;
+  steps.next = steps.above;
+  steps.s_before = 0.0f;
+  steps.clearance_before = 0.0f;
+  return steps;
+}
+
+/// On from where the march stands, for some turns. False: it is not done. Hosts whose drivers limit the turns of loops
+/// interrupt it so and go on with the same steps and hit.
+SCARP_FN bool scarp_step_on(ScarpField field, ScarpRay ray, ScarpFixedStep settings, int turns,
+                            SCARP_INOUT(ScarpSteps) steps, SCARP_INOUT(ScarpHit) hit) {
   bool on_surface = (ray.flags & kScarpOnSurface) != 0u;
-  bool above = on_surface;
-  bool known = on_surface;  // whether the sample before was over ground
-  float s_before = 0.0f;
-  float clearance_before = 0.0f;
   float step = settings.step * ray.cell_time;
-  for (int i = on_surface ? 1 : 0;; ++i) {
-    if (i == settings.max_steps) {
-      scarp_give_up(s_before, hit);
-      return hit;
+  for (int turn = 0; turn < turns; ++turn) {
+    if (steps.next == settings.max_steps) {
+      scarp_give_up(steps.s_before, hit);
+      return true;
     }
     // Counted, not summed up; the last sample is where the ray ends.
-    float s = min(float(i) * step, ray.exit);
+    float s = min(float(steps.next) * step, ray.exit);
     hit.steps += 1u;
     hit.fetches += 4u;
     ScarpPoint point = scarp_point(field, ray, s);
     if (!point.valid) {
-      known = false;
+      steps.known = 0;
     } else if (point.clearance > 0.0f || (on_surface && point.clearance == 0.0f)) {
-      above = true;
-      known = true;
-    } else if (known && above) {
-      if (settings.interpolate != 0 && !(clearance_before == 0.0f)) {
-        float s_between = s_before + (s - s_before) * (clearance_before / (clearance_before - point.clearance));
+      steps.above = 1;
+      steps.known = 1;
+    } else if (steps.known != 0 && steps.above != 0) {
+      if (settings.interpolate != 0 && !(steps.clearance_before == 0.0f)) {
+        float share = steps.clearance_before / (steps.clearance_before - point.clearance);
+        float s_between = steps.s_before + (s - steps.s_before) * share;
         ScarpPoint between = scarp_point(field, ray, s_between);
         hit.fetches += 4u;
         if (between.valid) {
           scarp_tell_point(between, s_between, kScarpHit, hit);
-          return hit;
+          return true;
         }
       }
       scarp_tell_point(point, s, kScarpHit, hit);
-      return hit;
-    } else if (!known && point.clearance == 0.0f) {
+      return true;
+    } else if (steps.known == 0 && point.clearance == 0.0f) {
       scarp_tell_point(point, s, kScarpHit, hit);
-      return hit;
+      return true;
     } else {
-      if (!known && (field.flags & kScarpSolid) != 0u && (hit.steps > 1u || (ray.flags & kScarpFromOutside) != 0u)) {
+      bool from_outside = hit.steps > 1u || (ray.flags & kScarpFromOutside) != 0u;
+      if (steps.known == 0 && (field.flags & kScarpSolid) != 0u && from_outside) {
         scarp_tell_point(point, s, kScarpWall, hit);
-        return hit;
+        return true;
       }
       if (hit.steps == 1u) hit.status = kScarpBelow;
-      above = false;
-      known = true;
+      steps.above = 0;
+      steps.known = 1;
     }
-    s_before = s;
-    clearance_before = point.clearance;
-    if (!(s < ray.exit)) return hit;
+    steps.s_before = s;
+    steps.clearance_before = point.clearance;
+    if (!(s < ray.exit)) return true;
+    steps.next += 1;
+  }
+  return false;
+}
+
+/// What the march finds first.
+SCARP_FN ScarpHit scarp_fixed_step(ScarpField field, ScarpRay ray, ScarpFixedStep settings) {
+  ScarpHit hit = scarp_no_hit();
+  ScarpSteps steps = scarp_first_step(ray);
+  while (!scarp_step_on(field, ray, settings, 2147483647, steps, hit)) {
   }
   return hit;
 }

@@ -14,5 +14,6 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
   ScarpRay ray = BatchRays(batch.rays).rays[i];
-  batch_answer(i, scarp_lipschitz(batch_field(), ray, ScarpLipschitz(batch.step, batch.tolerance, batch.max_steps)));
+  batch_answer(
+      i, scarp_lipschitz(open_ground(batch.ground), ray, ScarpLipschitz(batch.step, batch.tolerance, batch.max_steps)));
 }

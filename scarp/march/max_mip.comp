@@ -14,5 +14,5 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
   ScarpRay ray = BatchRays(batch.rays).rays[i];
-  batch_answer(i, scarp_max_mip(batch_field(), ray, batch_any));
+  batch_answer(i, scarp_max_mip(open_ground(batch.ground), ray, batch_any));
 }

@@ -32,6 +32,9 @@ const int kScarpUnknown = 0;
 const int kScarpAboveGround = 1;
 const int kScarpBelowGround = 2;
 
+/// More turns than any walk takes.
+const int kScarpAllTurns = 2147483647;
+
 /// Where the walk stands.
 struct ScarpWalk {
   ScarpFrame frame;
@@ -40,7 +43,8 @@ struct ScarpWalk {
   float t_in;    // when the ray came into it, local
   int side;      // kScarpUnknown and so on, at t_in
   int through;   // how it came into it
-  bool begun;    // whether anything has been left behind; only the first cell can say that the ray began below
+  int begun;     // 1: something has been left behind; only the first cell can say that the ray began below
+  int start;     // 1: in the cell of a ray from the surface
   float relief;  // of the cell that a ray from the surface began in: its height is as exact as that allows
 };
 
@@ -77,11 +81,11 @@ SCARP_FN bool scarp_find_side(ScarpField field, ScarpRay ray, ScarpCell cell, fl
   }
   walk.side = in_above >= 0.0f || on_rim ? kScarpAboveGround : kScarpBelowGround;
   if (walk.side == kScarpAboveGround) return false;
-  if ((field.flags & kScarpSolid) != 0u && (walk.begun || (ray.flags & kScarpFromOutside) != 0u)) {
+  if ((field.flags & kScarpSolid) != 0u && (walk.begun != 0 || (ray.flags & kScarpFromOutside) != 0u)) {
     scarp_tell(ray, walk, walk.t_in, kScarpWall, hit);
     return true;
   }
-  if (!walk.begun) hit.status = kScarpBelow;
+  if (walk.begun == 0) hit.status = kScarpBelow;
   return false;
 }
 
@@ -259,24 +263,20 @@ SCARP_FN bool scarp_step(ScarpField field, ScarpRay ray, bool through_x, int top
   return true;
 }
 
-/// What a ray meets first; with `any`, whether it meets anything: then only the status means something (kScarpHit also
-/// for walls, perhaps). `field.top_level` must be 1 or more.
-SCARP_FN ScarpHit scarp_max_mip(ScarpField field, ScarpRay ray, bool any) {
-  ScarpHit hit = scarp_no_hit();
-  bool holes = (field.flags & kScarpHoles) != 0u;
+/// The begin of a walk. A ray from the surface is told its height. False: there is nothing to walk, `hit` is the
+/// answer. `field.top_level` must be 1 or more.
+SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCARP_INOUT(ScarpWalk) walk,
+                               SCARP_INOUT(ScarpHit) hit) {
   bool strict = (ray.flags & kScarpOnSurface) != 0u;
-  bool falling = ray.direction.z < 0.0f;
-  int ahead_x = ray.direction.x >= 0.0f ? 1 : 0;
-  int ahead_y = ray.direction.y >= 0.0f ? 1 : 0;
   int top = min(field.top_level, kScarpTileLevel);
-  ScarpWalk walk;
   walk.level = 0;
   walk.col = ray.cell.x;
   walk.row = ray.cell.y;
   walk.t_in = 0.0f;
   walk.side = (ray.flags & kScarpAbove) != 0u ? kScarpAboveGround : kScarpUnknown;
   walk.through = kScarpPoint;
-  walk.begun = false;
+  walk.begun = 0;
+  walk.start = strict ? 1 : 0;
   walk.relief = 0.0f;
   if (strict) {
     ScarpCell cell = scarp_cell(field, walk.col, walk.row, 0.0f);
@@ -289,7 +289,7 @@ SCARP_FN ScarpHit scarp_max_mip(ScarpField field, ScarpRay ray, bool any) {
   walk.frame = scarp_frame(field, ray, ray.cell, ivec2(0, 0), 0.0f);
   if (!strict && (ray.flags & kScarpUpright) != 0u) {
     scarp_upright(field, ray, walk, hit);
-    return hit;
+    return false;
   }
   // Rays from afar cross open air first, though blocks that span the field are seldom free.
   if ((ray.flags & (kScarpFromOutside | kScarpAbove)) != 0u) {
@@ -297,8 +297,19 @@ SCARP_FN ScarpHit scarp_max_mip(ScarpField field, ScarpRay ray, bool any) {
     walk.col >>= walk.level;
     walk.row >>= walk.level;
   }
-  bool start = strict;
-  for (;;) {
+  return true;
+}
+
+/// On from where a walk stands, for some turns; with `any`, to the first certainty that anything is met. False: it is
+/// not done. Hosts whose drivers limit the turns of loops interrupt it so and go on with the same walk and hit.
+SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, SCARP_INOUT(ScarpWalk) walk,
+                          SCARP_INOUT(ScarpHit) hit) {
+  bool holes = (field.flags & kScarpHoles) != 0u;
+  bool falling = ray.direction.z < 0.0f;
+  int ahead_x = ray.direction.x >= 0.0f ? 1 : 0;
+  int ahead_y = ray.direction.y >= 0.0f ? 1 : 0;
+  int top = min(field.top_level, kScarpTileLevel);
+  for (int turn = 0; turn < turns; ++turn) {
     // The lines that the ray leaves the block through; the last block of a row or column is narrower.
     float tx = scarp_line_x(walk.frame, ray, min((walk.col + ahead_x) << walk.level, field.cells.x));
     float ty = scarp_line_y(walk.frame, ray, min((walk.row + ahead_y) << walk.level, field.cells.y));
@@ -338,13 +349,13 @@ SCARP_FN ScarpHit scarp_max_mip(ScarpField field, ScarpRay ray, bool any) {
                                      (abs(ray.direction.x * t_out) + abs(ray.direction.y * t_out) + 1.0f);
         float ray_highest = scarp_ray_height(walk.frame, ray, falling ? walk.t_in : t_out);
         if (bounded && walk.side == kScarpBelowGround && ray_highest < minimum - rounding) {
-          if (scarp_lost(field, walk.frame, ray, t_out)) break;
+          if (scarp_lost(field, walk.frame, ray, t_out)) return true;
         } else if (bounded && walk.side == kScarpBelowGround && skips && ray_lowest - maximum > exact) {
           walk.side = holes ? kScarpUnknown : kScarpAboveGround;
         } else if (bounded && walk.side == kScarpAboveGround && minimum - ray_lowest > 2.0f * exact) {
           // It was above before, and has come under all of the block: it has been through the surface, wherever.
           hit.status = kScarpHit;
-          break;
+          return true;
         } else {
           walk.level -= 1;
           // After a line of constant column, rows' lines of the same time are still ahead: the order of ties. A middle
@@ -369,21 +380,32 @@ SCARP_FN ScarpHit scarp_max_mip(ScarpField field, ScarpRay ray, bool any) {
       if (cell.hole) {
         // Passing the corner of a hole is not leaving the ground.
         if (t_line > walk.t_in) walk.side = kScarpUnknown;
-        if (scarp_lost(field, walk.frame, ray, walk.t_in)) break;
-      } else if (start) {
-        if (scarp_test_start(field, ray, cell, exit, t_out, walk, hit)) break;
+        if (scarp_lost(field, walk.frame, ray, walk.t_in)) return true;
+      } else if (walk.start != 0) {
+        if (scarp_test_start(field, ray, cell, exit, t_out, walk, hit)) return true;
       } else if (ray_lowest > scarp_highest(cell) && walk.side != kScarpBelowGround) {
         walk.side = kScarpAboveGround;
       } else if (scarp_test_cell(field, ray, cell, exit, t_out, walk, hit)) {
-        break;
+        return true;
       }
-      start = false;
+      walk.start = 0;
     }
-    walk.begun = true;
-    if (!falling && ray_lowest > field.highest - walk.frame.base) break;
-    if (!(t_line < walk.frame.t_end)) break;
+    walk.begun = 1;
+    if (!falling && ray_lowest > field.highest - walk.frame.base) return true;
+    if (!(t_line < walk.frame.t_end)) return true;
     walk.t_in = t_out;
-    if (!scarp_step(field, ray, through_x, top, walk, hit)) break;
+    if (!scarp_step(field, ray, through_x, top, walk, hit)) return true;
+  }
+  return false;
+}
+
+/// What a ray meets first; with `any`, whether it meets anything: then only the status means something (kScarpHit also
+/// for walls, perhaps). `field.top_level` must be 1 or more.
+SCARP_FN ScarpHit scarp_max_mip(ScarpField field, ScarpRay ray, bool any) {
+  ScarpHit hit = scarp_no_hit();
+  ScarpWalk walk;
+  if (!scarp_begin_walk(field, ray, walk, hit)) return hit;
+  while (!scarp_go_on(field, ray, any, kScarpAllTurns, walk, hit)) {
   }
   return hit;
 }

@@ -14,6 +14,6 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
   ScarpRay ray = BatchRays(batch.rays).rays[i];
-  batch_answer(
-      i, scarp_naive(batch_field(), ray, ScarpNaive(batch.step, batch.min_step, batch.tolerance, batch.max_steps)));
+  batch_answer(i, scarp_naive(open_ground(batch.ground), ray,
+                              ScarpNaive(batch.step, batch.min_step, batch.tolerance, batch.max_steps)));
 }

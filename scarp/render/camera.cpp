@@ -133,6 +133,13 @@ Ray Camera::ray(double pixel_x, double pixel_y) const {
   return ray;
 }
 
+Camera::PixelRays Camera::pixel_rays() const {
+  const dvec3 corner = -half_width_ * right_ + half_height_ * up_;
+  const dvec3 right = 2 * half_width_ / width_ * right_, down = -2 * half_height_ / height_ * up_, none(0.0);
+  if (orthographic_) return {eye_ + corner, right, down, forward_, none, none};
+  return {eye_, none, none, forward_ + corner, right, down};
+}
+
 std::optional<dvec2> Camera::pixel(const dvec3& p_world) const {
   const dvec3 from_eye = p_world - eye_;
   const double depth = dot(from_eye, forward_);

@@ -54,6 +54,14 @@ class Camera {
 
   /// The ray through a place in the picture: unit direction, so t counts in metres.
   Ray ray(double pixel_x, double pixel_y) const;
+  /// All rays at once, as sums: the ray through (x, y) goes from origin + x origin_right + y origin_down along
+  /// direction + x right + y down, which is not normalised but goes a metre along the view axis per t.
+  struct PixelRays {
+    dvec3 origin, origin_right, origin_down;
+    dvec3 direction, right, down;
+  };
+  PixelRays pixel_rays() const;
+  bool orthographic() const { return orthographic_; }
   /// Where a point appears, inside the picture or not; nothing for points that are not in front of the camera.
   std::optional<dvec2> pixel(const dvec3& p_world) const;
 

@@ -14,6 +14,9 @@
 #include "scarp/render/lake_tile.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/tile_work.h"
+#ifdef SCARP_VULKAN
+#include "scarp/render/terrain_frame_vk.h"
+#endif
 
 namespace scarp {
 namespace {
@@ -136,6 +139,16 @@ StepMarch::Answer StepMarch::march(const Ray& ray, const Water* water, double st
 
 Picture render_lake(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
                     const PictureSettings& settings, const Progress& progress) {
+#ifdef SCARP_VULKAN
+  if (makes_whole_frames(scene, camera, settings)) {
+    return {render_whole_frame(scene, camera, grid_north_azimuth, settings, progress), {}, {}};
+  }
+#endif
+  if (scene.on_device() && settings.look == Look::comanche && scene.march().name == "fixed-step") {
+    throw Error(
+        "comanche: on a device fixed-step has no soft light (samples), and the eye must be within 2^22 cells of the "
+        "field; let max-mip march, or the CPU");
+  }
   const Lake lake(scene, camera, grid_north_azimuth, settings);
   Image image(settings.width, settings.height);
   work_on_tiles(

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "scarp/base/error.h"
-#include "scarp/render/sky.h"
+#include "scarp/render/air.glsl.h"
 
 namespace scarp {
 namespace {
@@ -17,18 +17,9 @@ namespace {
 constexpr std::array<std::string_view, 4> kNames = {"none", "distance", "height", "iterations"};
 
 const double kContrastLeft = std::log(50.0);
-constexpr vec3 kSunlight(1.0f, 0.83f, 0.58f);
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
   if (!good) throw Error(fmt::format("fog: {} is {}; it must be {}", what, value, range));
-}
-
-// (1 - exp(-x)) / x, which goes through 1 at 0.
-double mean_of_decay(double x) { return x == 0 ? 1 : -std::expm1(-x) / x; }
-
-vec3 mix(vec3 from, vec3 to, double share) {
-  const auto f = static_cast<float>(share);
-  return from * (1 - f) + to * f;
 }
 
 }  // namespace
@@ -54,35 +45,25 @@ Fog::Fog(const FogSettings& settings, const dvec3& to_sun)
     : settings_(settings), per_metre_(kContrastLeft / settings.visibility), to_sun_(to_sun) {}
 
 double Fog::transmittance(const Ray& ray, double t) const {
-  switch (settings_.kind) {
-    case FogKind::distance:
-      return std::isinf(t) ? 1 : std::exp(-per_metre_ * t);
-    case FogKind::height: {
-      const double here = per_metre_ * std::exp(-(ray.origin.z - settings_.base) / settings_.falloff);
-      const double rise = ray.direction.z / settings_.falloff;
-      if (std::isinf(t)) return rise > 0 ? std::exp(-here / rise) : 0;
-      return std::exp(-here * t * mean_of_decay(t * rise));
-    }
-    case FogKind::none:
-    case FogKind::iterations:
-      break;
+  const FogSettings& s = settings_;
+  const auto kind = static_cast<int>(s.kind);
+  if (std::isinf(t)) {
+    return glsl::scarp_fog_transmittance_of_sky(kind, per_metre_, s.base, s.falloff, ray.origin.z, ray.direction.z);
   }
-  return 1;
+  return glsl::scarp_fog_transmittance(kind, per_metre_, s.base, s.falloff, ray.origin.z, ray.direction.z, t);
 }
 
 vec3 Fog::colour(const dvec3& direction) const {
-  double towards = std::max(0.0, dot(direction, to_sun_));
-  for (int i = 0; i < 3; ++i) towards *= towards;  // the 8th power
-  return mix(haze_colour(), kSunlight, settings_.sun_tint * towards);
+  return glsl::scarp_fog_colour(dot(direction, to_sun_), settings_.sun_tint);
 }
 
 vec3 Fog::operator()(const Ray& ray, double t, vec3 behind) const {
   if (settings_.kind == FogKind::none || settings_.kind == FogKind::iterations) return behind;
-  return mix(colour(ray.direction), behind, transmittance(ray, t));
+  return glsl::scarp_between(colour(ray.direction), behind, transmittance(ray, t));
 }
 
 vec3 Fog::by_share(const Ray& ray, double share, vec3 behind) const {
-  return mix(behind, colour(ray.direction), std::clamp(share, 0.0, 1.0));
+  return glsl::scarp_between(behind, colour(ray.direction), std::clamp(share, 0.0, 1.0));
 }
 
 }  // namespace scarp

@@ -51,6 +51,8 @@ class Fog {
   double transmittance(const Ray& ray, double t) const;
   /// Of the fog, in linear light, looking along a unit vector.
   vec3 colour(const dvec3& direction) const;
+  double per_metre() const { return per_metre_; }
+  const FogSettings& settings() const { return settings_; }
   /// A colour in linear light, seen through the fog.
   vec3 operator()(const Ray& ray, double t, vec3 behind) const;
   /// The same for `iterations`: `share` of the most steps, 0..1.

@@ -49,11 +49,22 @@ class GroundPaint {
   /// pixel is wide there.
   vec3 operator()(const dvec3& position, double height, const dvec3& normal, double footprint) const;
 
+  const GroundPaintSettings& settings() const { return settings_; }
+  const Ramp& ramp() const { return ramp_; }
+  /// Horizontally, with the sun's cosine.
+  const dvec2& away_from_sun() const { return away_from_sun_; }
+  /// Metres of the largest patches.
+  double detail_size() const { return detail_size_; }
+  /// Lattice units of a set's octave (ground_paint.glsl.h) per metre of x and y, along its grain and across.
+  struct Patch {
+    dvec2 along, across;
+  };
+  Patch patch(int set, int octave) const;
+  /// Exaggerated metres from line to line.
+  double contour_interval() const;
+
  private:
-  vec3 natural(const dvec3& position, double height, const dvec3& normal, double footprint) const;
-  double patches(const dvec3& position, double size, double footprint, int octaves) const;
   vec3 draped(const dvec3& position, vec3 below) const;
-  vec3 with_contours(vec3 colour, double height, const dvec3& normal, double footprint) const;
 
   GroundPaintSettings settings_;
   const HeightField& field_;

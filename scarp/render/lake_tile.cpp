@@ -9,14 +9,9 @@
 
 #include "scarp/base/error.h"
 #include "scarp/render/picture.h"
+#include "scarp/render/water.glsl.h"
 
 namespace scarp {
-namespace {
-
-// Waves must not send a mirrored ray into the water: it runs along it then.
-constexpr double kLeastRise = 1e-3;
-
-}  // namespace
 
 Lake::Lake(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth, const PictureSettings& settings)
     : shader_(scene.field(), camera, grid_north_azimuth, settings), plinth_(plinth_of(scene.field(), settings)) {
@@ -154,7 +149,7 @@ void LakeTile::add_water(std::size_t point, const Water::Meeting& meeting) {
     return water_rays_.size() - 1;
   };
   dvec3 mirrored = reflected(ray.direction, normal);
-  if (mirrored.z < kLeastRise && meeting.normal.z > 0) mirrored = normalize(dvec3(mirrored.x, mirrored.y, kLeastRise));
+  if (meeting.normal.z > 0) mirrored = glsl::scarp_kept_above(mirrored);
   found.mirror = send(mirrored, water.settings().reflection ? view_.camera.reach() : 0);
   if (water.settings().refraction && !meeting.sea) {
     const dvec3 down = refracted(ray.direction, normal);

@@ -8,13 +8,12 @@
 #include <glm/trigonometric.hpp>
 
 #include "scarp/base/error.h"
+#include "scarp/render/air.glsl.h"
 #include "scarp/render/compass.h"
 
 namespace scarp {
 namespace {
 
-// Light of the sky on level ground; the sun gives what lacks to white.
-constexpr vec3 kSky(0.27f, 0.32f, 0.39f);
 // Below sin(30 degrees) the sun is not made stronger any more: level ground darkens in the evening.
 constexpr double kLowestFullSun = 0.5;
 
@@ -37,16 +36,14 @@ Light::Light(const SunSettings& settings, double grid_north_azimuth)
     : to_sun_(towards(glm::radians(settings.azimuth_deg), glm::radians(settings.altitude_deg), grid_north_azimuth)),
       sun_radius_(glm::radians(settings.size_deg) / 2),
       sky_side_(normalize(dvec3(0, 0, 1) + 0.7 * towards(glm::radians(settings.azimuth_deg), 0, grid_north_azimuth))),
-      sun_((vec3(1.0f) - kSky) / static_cast<float>(std::max(to_sun_.z, kLowestFullSun))),
-      sky_(kSky) {}
+      sun_((vec3(1.0f) - glsl::kScarpSkylight) / static_cast<float>(std::max(to_sun_.z, kLowestFullSun))) {}
 
 vec3 Light::on(const dvec3& normal, bool in_sun) const {
   return on(normal, in_sun ? std::max(0.0, dot(normal, to_sun_)) : 0.0, 1.0);
 }
 
 vec3 Light::on(const dvec3& normal, double sun_cosine, double sky_share) const {
-  const double sky = sky_share * (1 + dot(normal, sky_side_)) / (1 + sky_side_.z);
-  return static_cast<float>(sky) * sky_ + static_cast<float>(sun_cosine) * sun_;
+  return glsl::scarp_light(normal, sky_side_, sun_, sun_cosine, sky_share);
 }
 
 }  // namespace scarp

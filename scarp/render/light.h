@@ -27,6 +27,10 @@ class Light {
   const dvec3& to_sun() const { return to_sun_; }
   /// Angular radius of the disc.
   double sun_radius() const { return sun_radius_; }
+  /// Unit vector to where the sky is brightest.
+  const dvec3& sky_side() const { return sky_side_; }
+  /// The sun's light on a surface that faces it.
+  vec3 sun() const { return sun_; }
   /// Light on a surface with this unit normal, in linear light.
   vec3 on(const dvec3& normal, bool in_sun) const;
   /// The same from what the surface sees: `sun_cosine` is the mean cosine to the visible part of the sun's disc, 0..1,
@@ -36,9 +40,8 @@ class Light {
  private:
   dvec3 to_sun_;
   double sun_radius_;
-  dvec3 sky_side_;  // where the sky is brightest
-  vec3 sun_;        // on a surface that faces the sun
-  vec3 sky_;        // on level ground
+  dvec3 sky_side_;
+  vec3 sun_;
 };
 
 }  // namespace scarp

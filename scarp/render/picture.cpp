@@ -16,6 +16,9 @@
 #include "scarp/render/sight.h"
 #include "scarp/render/step_look.h"
 #include "scarp/render/tile_work.h"
+#ifdef SCARP_VULKAN
+#include "scarp/render/terrain_frame_vk.h"
+#endif
 
 namespace scarp {
 namespace {
@@ -116,6 +119,11 @@ class ImageTile final : public TileWork {
 
 Image render_shaded(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
                     const PictureSettings& settings, const Progress& progress) {
+#ifdef SCARP_VULKAN
+  if (makes_whole_frames(scene, camera, settings)) {
+    return render_whole_frame(scene, camera, grid_north_azimuth, settings, progress);
+  }
+#endif
   const Shader shader(scene.field(), camera, grid_north_azimuth, settings);
   const std::optional<Plinth> plinth = plinth_of(scene.field(), settings);
   const ShadedView view{camera, plinth, shader, settings.aa};

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "scarp/base/error.h"
+#include "scarp/render/colour.glsl.h"
 #include "scarp/render/ramp_tables.h"
 
 namespace scarp {
@@ -54,8 +55,6 @@ std::vector<vec3> from_stops(std::span<const Stop> stops) {
   return colours;
 }
 
-float linear_channel(float s) { return s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f); }
-
 }  // namespace
 
 std::span<const std::string_view> ramp_names() { return kNames; }
@@ -100,20 +99,13 @@ vec3 Ramp::operator()(double value) const {
   const auto above = [](const Piece& piece, double v) { return piece.high < v; };
   const auto found = std::lower_bound(pieces_.begin(), pieces_.end() - 1, value, above);
   const Piece& piece = *found;
-  const double extent = piece.high - piece.low;
-  const double share = extent > 0 ? std::clamp((value - piece.low) / extent, 0.0, 1.0) : 0.0;
-  const double at = share * static_cast<double>(piece.colours.size() - 1);
-  const auto index = std::min(static_cast<std::size_t>(at), piece.colours.size() - 2);
-  const auto f = static_cast<float>(at - static_cast<double>(index));
-  return piece.colours[index] * (1 - f) + piece.colours[index + 1] * f;
+  const auto at = glsl::scarp_table_place(value, piece.low, piece.high, static_cast<int>(piece.colours.size()));
+  const auto entry = static_cast<std::size_t>(at.entry);
+  return piece.colours[entry] * (1 - at.place) + piece.colours[entry + 1] * at.place;
 }
 
-vec3 linear_from_srgb(vec3 srgb) { return {linear_channel(srgb.x), linear_channel(srgb.y), linear_channel(srgb.z)}; }
+vec3 linear_from_srgb(vec3 srgb) { return glsl::scarp_linear_from_srgb(srgb); }
 
-unsigned char srgb_byte(float linear) {
-  const float c = std::clamp(linear, 0.0f, 1.0f);
-  const float s = c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
-  return static_cast<unsigned char>(std::lround(255 * s));
-}
+unsigned char srgb_byte(float linear) { return static_cast<unsigned char>(glsl::scarp_srgb_byte(linear)); }
 
 }  // namespace scarp

@@ -26,12 +26,15 @@ class Ramp {
   /// In linear light, 0..1. Values outside the range have the colour of its nearer end.
   vec3 operator()(double value) const;
 
- private:
   struct Piece {
     double low, high;
-    std::vector<vec3> colours;  // evenly spaced from low to high
+    std::vector<vec3> colours;  ///< evenly spaced from low to high, at least two
   };
-  std::vector<Piece> pieces_;  // from low to high; a value belongs to the first one that ends at or above it
+  /// From low to high; a value belongs to the first one that ends at or above it, or to the last.
+  std::span<const Piece> pieces() const { return pieces_; }
+
+ private:
+  std::vector<Piece> pieces_;
 };
 
 /// sRGB 0..1 to linear light, and back to a byte (rounded, clamped).

@@ -71,9 +71,11 @@ vec3 Shader::colour_beside_ground(const Ray& ray, const Sight& sight) const {
   if (sight.hit) return in_air(wall_colour(wall_normal(ray, sight.hit)), ray, sight.hit.t);
   if (sight.wall) return in_air(wall_colour(sight.wall->normal), ray, sight.wall->t);
   // Ground that lies farther away than the picture reaches is at the horizon.
-  const double z = endless_ || settings_.look == Look::comanche ? std::max(0.0, ray.direction.z) : ray.direction.z;
+  const double z = horizon_below() ? std::max(0.0, ray.direction.z) : ray.direction.z;
   return fog_(ray, std::numeric_limits<double>::infinity(), sky_colour(z));
 }
+
+float Shader::unlit_wall() { return kUnlitWall; }
 
 vec3 Shader::wall_colour(const dvec3& normal) const {
   const auto lit = static_cast<float>(std::max(0.0, dot(normal, lighting_.to_sun())));

@@ -40,6 +40,16 @@ class Shader {
   /// speckled.
   double ground_height(const Hit& hit) const;
   const Fog& fog() const { return fog_; }
+  const GroundPaint& paint() const { return paint_; }
+  const PictureSettings& settings() const { return settings_; }
+  /// Haze per metre, and the metres before it begins.
+  double haze_per_metre() const { return haze_per_metre_; }
+  double clear_distance() const { return clear_distance_; }
+  /// Whether what lies below the horizon has its colour: ground farther away than the picture reaches.
+  bool horizon_below() const { return endless_ || settings_.look == Look::comanche; }
+  /// Of cut earth, in linear light, and the share of it that walls without sun have.
+  vec3 earth() const { return earth_; }
+  static float unlit_wall();
   const dvec3& to_sun() const { return lighting_.to_sun(); }
   /// Of what is not ground: walls and the sky, in linear light.
   vec3 colour_beside_ground(const Ray& ray, const Sight& sight) const;

@@ -7,11 +7,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string_view>
 
 #include "scarp/base/error.h"
 #include "scarp/render/ramp.h"
+#include "scarp/render/water.glsl.h"
 
 namespace scarp {
 namespace {
@@ -23,7 +23,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr vec3 kPureWater(0.340f, 0.0565f, 0.00922f);
 
 // Wave i is shorter than the one before by this factor and turned by the golden angle: no two repeat one another.
-constexpr std::size_t kWaves = 7;
+constexpr std::size_t kWaves = glsl::kScarpWaves;
 constexpr double kShorter = 0.71;
 constexpr double kTurn = 2.399963229728653;
 // Towards these the waves run.
@@ -64,11 +64,7 @@ void validate(const WaterSettings& settings) {
   }
 }
 
-double schlick(double cosine, double index) {
-  const double root = (index - 1) / (index + 1), r0 = root * root;
-  const double c = 1 - std::clamp(cosine, 0.0, 1.0);
-  return r0 + (1 - r0) * c * c * c * c * c;
-}
+double schlick(double cosine, double index) { return glsl::scarp_schlick(cosine, index); }
 
 Water::Water(const WaterSettings& settings, const HeightField& field)
     : settings_(settings),
@@ -132,44 +128,34 @@ double Water::leaves(const Ray& ray) const {
 
 dvec3 Water::normal_at(const dvec3& position, double footprint) const {
   if (settings_.waves == 0) return {0, 0, 1};
-  // Each wave has the same root mean square of slope: that of a cos is its height by sqrt(2), and slopes of different
-  // directions add up squared.
-  const double slope = settings_.waves * std::sqrt(2.0 / static_cast<double>(kWaves));
   dvec2 tilt(0.0);
   double wavelength = wavelength_;
   for (std::size_t i = 0; i < kWaves; ++i, wavelength *= kShorter) {
-    // Gone when a wave is as long as two pixels, in full when it is as long as four.
-    const double seen = std::clamp(wavelength / (2 * footprint) - 1, 0.0, 1.0);
+    const double seen = glsl::scarp_wave_seen(wavelength, footprint);
     if (seen == 0) break;
     const dvec2& along = kAlong[i];
-    const double phase = 2 * std::numbers::pi * (along.x * position.x + along.y * position.y) / wavelength;
-    tilt += seen * slope * std::cos(phase + static_cast<double>(i)) * along;
+    const double turns = (along.x * position.x + along.y * position.y) / wavelength;
+    tilt += seen * glsl::scarp_wave_slope(static_cast<int>(i), turns, settings_.waves) * along;
   }
   return normalize(dvec3(-tilt.x, -tilt.y, 1));
 }
 
-vec3 Water::left_after(double distance) const {
-  const auto d = static_cast<float>(distance);
-  return {std::exp(-per_metre_.x * d), std::exp(-per_metre_.y * d), std::exp(-per_metre_.z * d)};
-}
+dvec2 Water::wave_direction(int i) { return kAlong[static_cast<std::size_t>(i)]; }
+double Water::wavelength(int i) const { return wavelength_ * std::pow(kShorter, i); }
 
 vec3 Water::through(vec3 behind, double distance) const {
-  const vec3 left = left_after(distance);
-  return behind * left + deep_ * (vec3(1.0f) - left);
+  return glsl::scarp_through_water(behind, deep_, per_metre_, static_cast<float>(distance));
 }
 
 vec3 Water::sunlight(double depth, const dvec3& to_sun) const {
-  // Below the surface the sun stands higher: sin = cos(altitude) / n from the vertical.
-  const double sideways = std::sqrt(std::max(0.0, 1 - to_sun.z * to_sun.z)) / kWaterIndex;
-  return left_after(std::max(0.0, depth) / std::sqrt(1 - sideways * sideways));
+  const double way = glsl::scarp_sun_way(depth, to_sun.z, kWaterIndex);
+  return glsl::scarp_left_after(per_metre_, static_cast<float>(way));
 }
 
-dvec3 reflected(const dvec3& direction, const dvec3& normal) { return direction - 2 * dot(direction, normal) * normal; }
+dvec3 reflected(const dvec3& direction, const dvec3& normal) { return glsl::scarp_reflected(direction, normal); }
 
 dvec3 refracted(const dvec3& direction, const dvec3& normal, double index) {
-  const double ratio = 1 / index, cosine = -dot(direction, normal);
-  const double inside = std::sqrt(1 - ratio * ratio * (1 - cosine * cosine));
-  return normalize(ratio * direction + (ratio * cosine - inside) * normal);
+  return glsl::scarp_refracted(direction, normal, index);
 }
 
 }  // namespace scarp

@@ -72,9 +72,13 @@ class Water {
   /// Of water without a bottom in sight.
   vec3 deep() const { return deep_; }
 
- private:
-  vec3 left_after(double distance) const;
+  /// Per metre and colour, what water takes.
+  vec3 per_metre() const { return per_metre_; }
+  /// Where wave i of glsl::kScarpWaves runs, a unit vector, and how long it is in metres.
+  static dvec2 wave_direction(int i);
+  double wavelength(int i) const;
 
+ private:
   WaterSettings settings_;
   const HeightField& field_;
   double level_, wavelength_;

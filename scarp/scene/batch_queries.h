@@ -10,6 +10,8 @@
 
 namespace scarp {
 
+struct DeviceTerrain;  // terrain_scene_vk.h
+
 /// Spans of one call have one length, but `steps` may be empty.
 class BatchQueries {
  public:
@@ -19,6 +21,8 @@ class BatchQueries {
   virtual void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) = 0;
   /// blocked[i] is 1 where closest_hits would tell a hit, else 0.
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) = 0;
+  /// What a device holds, when one does: for those who make whole pictures there.
+  virtual const DeviceTerrain* terrain() const { return nullptr; }
 };
 
 }  // namespace scarp

@@ -37,6 +37,8 @@ class TerrainScene {
   const HeightField& field() const { return field_; }
   const MarchEntry& march() const { return *march_; }
   bool on_device() const { return device_ != nullptr; }
+  /// What a device holds of it; null: none does.
+  const DeviceTerrain* device_terrain() const { return device_ ? device_->terrain() : nullptr; }
 
  private:
   HeightTarget target() const { return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_}; }

@@ -22,7 +22,8 @@ class OnDevice final : public BatchQueries {
         settings_(settings),
         queries_(device, march, settings),
         ground_(device, field_),
-        slope_(march.needs_slope ? slope_bound(field_) : std::numeric_limits<double>::quiet_NaN()) {}
+        slope_(march.needs_slope ? slope_bound(field_) : std::numeric_limits<double>::quiet_NaN()),
+        terrain_{device_, ground_, settings_} {}
 
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
     if (steps.empty()) return queries_.closest_hits(target(), rays, hits);
@@ -34,6 +35,7 @@ class OnDevice final : public BatchQueries {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
     queries_.occluded(target(), rays, blocked);
   }
+  const DeviceTerrain* terrain() const override { return &terrain_; }
 
  private:
   DeviceTarget target() const { return {&field_, &ground_, slope_}; }
@@ -46,6 +48,7 @@ class OnDevice final : public BatchQueries {
   std::optional<DeviceQueries> counting_;  // made when steps are asked for: counting takes time
   DeviceGround ground_;
   double slope_;
+  DeviceTerrain terrain_;
 };
 
 }  // namespace

@@ -5,6 +5,9 @@
 //   render_picture(scene, camera, grid_north_azimuth, settings);
 #pragma once
 
+#include <memory>
+
+#include "scarp/accel/device_ground.h"
 #include "scarp/scene/terrain_scene.h"
 #include "scarp/vk/device.h"
 
@@ -15,5 +18,13 @@ namespace scarp {
 /// the device. Questions throw Error when the device is lost.
 TerrainScene terrain_scene_on(const Device& device, HeightField field, const MarchEntry& march = find_march("max-mip"),
                               const MarchSettings& settings = {});
+
+/// What a device holds of a terrain scene.
+struct DeviceTerrain {
+  Device device;
+  const DeviceGround& ground;
+  const MarchSettings& settings;
+  mutable std::shared_ptr<void> kept{};  ///< what was made for pictures of it, by the station that makes them
+};
 
 }  // namespace scarp

@@ -18,6 +18,7 @@
 #ifdef __cplusplus
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/vec2.hpp>
@@ -31,6 +32,9 @@ using glm::ivec2, glm::ivec3, glm::ivec4;
 using glm::uvec2, glm::uvec3, glm::uvec4;
 using glm::vec2, glm::vec3, glm::vec4;
 using std::abs, std::ceil, std::clamp, std::floor, std::max, std::min, std::sqrt;
+
+inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
+inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 
 /// Where a buffer lies in the device's memory (DeviceBuffer::address()); low word first, so that GLSL needs no 64-bit
 /// integers.

@@ -101,6 +101,21 @@ TEST_F(RenderOnDevice, RefusesMarchesThatDoNotRunThere) {
                  "--device auto: march 'exhaustive' does not run on Vulkan devices; there run: max-mip, ");
 }
 
+TEST_F(RenderOnDevice, StepsOfComancheHaveNoSoftLightThere) {
+  const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
+  if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
+  const std::vector<std::string> arguments{"render",   dem_,    "-o",      picture_,     "--look",   "comanche",
+                                           "--lowres", "24x16", "--march", "fixed-step", "--device", "auto"};
+  const auto made = run_on_device(arguments);
+  ASSERT_EQ(made.status, 0) << made.err;
+  EXPECT_NE(made.out.find(", on "), std::string::npos) << made.out;
+  EXPECT_EQ(read_png(picture_).width, 72);
+  fs::remove(picture_);
+  std::vector<std::string> soft = arguments;
+  soft.insert(soft.end(), {"--samples", "4"});
+  expect_refusal(run_on_device(soft), "on a device fixed-step has no soft light");
+}
+
 TEST_F(RenderOnDevice, RefusesDevicesThatAreNotThere) {
   expect_refusal(render({"--device", "no such card"}), "'no such card'");
   expect_refusal(render({"--device", ""}), "--device");

@@ -12,6 +12,8 @@ out vec4 colour;
 
 #include "scarp/march/textures.glsl.h"
 #include "scarp/march/float_ray.glsl.h"
+#include "scarp/march/two_float_ray.glsl.h"
+#include "scarp/march/surface_normal.glsl.h"
 #include "scarp/march/max_mip.glsl.h"
 #include "scarp/march/naive.glsl.h"
 #include "scarp/march/fixed_step.glsl.h"
