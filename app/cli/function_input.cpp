@@ -152,8 +152,8 @@ void render_function(const FunctionInput& input, FunctionPicture settings, const
   const auto begin = std::chrono::steady_clock::now();
   const auto took = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
   const auto tell = [&](double seconds, const std::string& on) {
-    fmt::print("{}: {} x {} pixels; {}{}; render {:.2f} s{}\n", output, settings.picture.width,
-               settings.picture.height, march.name, input.preset.empty() ? "" : " as in " + input.preset, seconds,
+    fmt::print("{}: {} x {} pixels; {}{}; render {:.2f} s{}\n", output, settings.picture.width, settings.picture.height,
+               march.name, input.preset.empty() ? "" : " as in " + input.preset, seconds,
                on.empty() ? "" : ", on " + on);
   };
   const auto done = [&](const Image& image, const std::string& on) {

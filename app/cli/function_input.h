@@ -8,8 +8,8 @@
 #include <string>
 
 #include "scarp/march/marches.h"
-#include "scarp/render/function_error.h"
 #include "scarp/render/depth.h"
+#include "scarp/render/function_error.h"
 #include "scarp/render/picture.h"
 
 namespace scarp::cli {
@@ -22,8 +22,8 @@ struct FunctionInput {
 
 /// Adds --function and --extent. `input` must live until the subcommand has run.
 void add_function_option(CLI::App& command, FunctionInput& input, const std::string& extent);
-/// These and --preset. `march` and `settings` are where --march and its settings go, and those of a preset with them: add this before them,
-/// so that what is typed counts more. All must live until the subcommand has run.
+/// These and --preset. `march` and `settings` are where --march and its settings go, and those of a preset with them:
+/// add this before them, so that what is typed counts more. All must live until the subcommand has run.
 void add_function_options(CLI::App& command, FunctionInput& input, std::string& march, MarchSettings& settings);
 
 /// What of the command line's settings a function has other defaults for.

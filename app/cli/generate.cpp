@@ -34,12 +34,14 @@ ComputedDem dem_of(const HeightFunction& function, const GenerateOptions& option
   const int cols = options.terrain.cols, rows = options.terrain.rows;
   const double cell = options.terrain.cell_m;
   if (0.5 * cell * std::max(cols, rows) > kFunctionReach)
-    throw Error(fmt::format("--cell {}: {} x {} samples reach beyond 2^30 metres, where functions end", cell, cols, rows));
+    throw Error(
+        fmt::format("--cell {}: {} x {} samples reach beyond 2^30 metres, where functions end", cell, cols, rows));
   return {cols, rows, cell, fmt::format("terrain function: {}", options.function),
           [&function, cols, rows, cell](int row, int count, float* out) {
             for (int r = row; r < row + count; ++r) {
               for (int c = 0; c < cols; ++c)
-                *out++ = static_cast<float>(function.value((c - 0.5 * (cols - 1)) * cell, (0.5 * (rows - 1) - r) * cell));
+                *out++ =
+                    static_cast<float>(function.value((c - 0.5 * (cols - 1)) * cell, (0.5 * (rows - 1) - r) * cell));
             }
           }};
 }
@@ -77,7 +79,8 @@ void run(GenerateOptions options) {
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   fmt::print("{}: {} x {} samples, {}; {:.2f} s\n", options.output, terrain.cols, terrain.rows,
-             options.function.empty() ? fmt::format("{}, seed {}", options.kind, terrain.seed) : options.function, seconds);
+             options.function.empty() ? fmt::format("{}, seed {}", options.kind, terrain.seed) : options.function,
+             seconds);
 }
 
 }  // namespace
@@ -104,8 +107,9 @@ void add_generate(CLI::App& program) {
       ->add_option("--cell", o.terrain.cell_m,
                    fmt::format("metres from sample to sample; above 0, at most {}", kLargestProceduralCell))
       ->capture_default_str();
-  command->add_option("--wavelength", o.terrain.wavelength,
-                      "of the largest features, in samples, from 2 (the lesser of 1024 and half the longer side)")
+  command
+      ->add_option("--wavelength", o.terrain.wavelength,
+                   "of the largest features, in samples, from 2 (the lesser of 1024 and half the longer side)")
       ->excludes(function);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
   command->callback([options] { run(*options); });

@@ -131,8 +131,8 @@ void add_info(CLI::App& program) {
     };
     if (!options->function.function.empty()) {
       if (!options->inputs.empty()) {
-        throw Error(fmt::format("'{}': --function stands in the place of files; give one of both",
-                                options->inputs.front()));
+        throw Error(
+            fmt::format("'{}': --function stands in the place of files; give one of both", options->inputs.front()));
       }
       for (const CLI::Option* option : command->get_options()) {
         const std::string name = option->get_name();
@@ -149,7 +149,10 @@ void add_info(CLI::App& program) {
     const Json info = scene ? describe_scene(options->inputs.front())
                       : vox ? describe_vox(options->inputs.front(), options->vox)
                             : describe(*options);
-    fmt::print("{}", options->json ? json_of(info) : scene ? scene_text_of(info) : vox ? vox_text_of(info) : text_of(info));
+    fmt::print("{}", options->json ? json_of(info)
+                     : scene       ? scene_text_of(info)
+                     : vox         ? vox_text_of(info)
+                                   : text_of(info));
   });
 }
 

@@ -73,7 +73,8 @@ struct GradientMode {
       return {value, to_world(p, k[4] * dvec3(-slope, 1.0))};
     } else if constexpr (op == DistanceOp::field_ground) {
       const dvec3 q = (p.p - dvec3(k[0], k[1], k[2])) / k[3];
-      return {value, to_world(p, field_ground_gradient(*program.fields[in.index], program.holes[in.index].get(), q, k[4]))};
+      return {value,
+              to_world(p, field_ground_gradient(*program.fields[in.index], program.holes[in.index].get(), q, k[4]))};
     } else if constexpr (op == DistanceOp::plane) {
       return {value, to_world(p, {k[0], k[1], k[2]})};
     } else {

@@ -90,8 +90,8 @@ struct FunctionGround {
 /// without a bottom. A bound likewise. Made by solid_ground() of accel/solid_ground.h. While the field is edited, no
 /// query may run, and a steeper slope or other holes need a new shape.
 struct FieldGround {
-  std::shared_ptr<const HeightField> field;  ///< without holes, or with heights in their place
-  double slope = 0;                          ///< slope_bound(*field) of accel/slope_bound.h
+  std::shared_ptr<const HeightField> field;    ///< without holes, or with heights in their place
+  double slope = 0;                            ///< slope_bound(*field) of accel/slope_bound.h
   std::shared_ptr<const HeightField> holes{};  ///< the field whose holes it has, on the same grid; null: it has none
 };
 

@@ -125,9 +125,7 @@ class Evaluation {
     constexpr double kMostCells = 4;
     if (width(col) > kMostCells || width(row) > kMostCells) return anything;
     const int cols = field.cell_cols(), rows = field.cell_rows();
-    const auto exists = [&](double c, double r) {
-      return field.wraps() || (c >= 0 && r >= 0 && c < cols && r < rows);
-    };
+    const auto exists = [&](double c, double r) { return field.wraps() || (c >= 0 && r >= 0 && c < cols && r < rows); };
     const auto is_hole = [&](double c, double r) {
       const auto wrapped = [](double at, int count) { return static_cast<int>(at - std::floor(at / count) * count); };
       return !field.cell_heights({wrapped(c, cols), wrapped(r, rows)});

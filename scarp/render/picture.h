@@ -93,8 +93,8 @@ struct SeenHeights {
 
 struct Picture {
   Image image;
-  std::optional<StepRange> steps;     ///< of `steps`
-  std::optional<ErrorCounts> errors;  ///< of `error`
+  std::optional<StepRange> steps;        ///< of `steps`
+  std::optional<ErrorCounts> errors;     ///< of `error`
   std::optional<SeenHeights> heights{};  ///< of `height` of scenes: what grey 1 and 255 mean; none: nothing was hit
 };
 

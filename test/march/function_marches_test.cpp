@@ -78,7 +78,7 @@ TEST(FunctionMarches, PassCreasesClosely) {
   const Function planes = make_function(Minimum{make_function(Plane{0, 0.1, 0}), make_function(Plane{0, -0.4, 0})});
   const HeightFunction ridge(planes);
   for (const double above : {1e-2, 1e-4, 1e-6, -1e-6, -1e-4}) {
-    const Ray ray{{-1000, 3, above}, {1, 0, 0}, 0, 2000};
+    const Ray ray{{-1000, 3, above}, {1, 0, 0}, 0, 2345};
     const Hit hit = march_lipschitz_local(ridge, ray);
     EXPECT_EQ(hit.status, above > 0 ? HitStatus::miss : HitStatus::hit) << above;
     if (above < 0) {

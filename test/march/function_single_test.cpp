@@ -230,11 +230,11 @@ TEST(FunctionsInShaders, PassCreasesClosely) {
   const Program program(ridge.program(FunctionUse::march));
   const SingleRounding rounding(ridge.program(FunctionUse::march));
   for (const double above : {1e-2, 1e-4, -1e-4, -1e-2}) {
-    const Ray ray{{-1000, 3, above}, {1, 0, 0}, 0, 2000};
+    const Ray ray{{-1000, 3, above}, {1, 0, 0}, 0, 2345};
     const auto prepared = device_function_ray(ridge, rounding, ray, FunctionUse::march, 1e30);
     for (const bool any : {false, true}) {
-      const Hit hit = hit_from_device(ray, prepared,
-                                      glsl::scarp_lipschitz_local(*program, prepared.ray, {1e-6f, 1024, kAll}, any));
+      const Hit hit =
+          hit_from_device(ray, prepared, glsl::scarp_lipschitz_local(*program, prepared.ray, {1e-6f, 1024, kAll}, any));
       EXPECT_EQ(hit.status, above > 0 ? HitStatus::miss : HitStatus::hit) << above;
     }
   }

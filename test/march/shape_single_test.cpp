@@ -172,7 +172,8 @@ TEST(ShapesInShaders, RaysLeaveTheSurface) {
         leaves = leaves && field.value(ray.at(metres / length(ray.direction))) > 0.1 * metres;
       if (!leaves) continue;
       ++left;
-      const Hit hit = hit_from_device(ray, prepared, glsl::scarp_sphere_trace(count, prepared.ray, settings(rounding), false));
+      const Hit hit =
+          hit_from_device(ray, prepared, glsl::scarp_sphere_trace(count, prepared.ray, settings(rounding), false));
       Ray later = ray;
       later.start = RayStart::free;
       later.t_min = 32 * r / length(ray.direction);

@@ -54,8 +54,8 @@ TEST_F(ShapesOnDevice, MarchesTellWhatSinglePrecisionAllows) {
     std::size_t met = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const glsl::ScarpFunctionRay ray = device_shape_ray(field, on_device.rounding(), rays[i]).ray;
-      const double delta = 4 * (static_cast<double>(ray.rounding) + shape_ray_growth(on_device.rounding()) *
-                                                                        static_cast<double>(ray.speed * ray.exit));
+      const double delta = 4 * (static_cast<double>(ray.rounding) +
+                                shape_ray_growth(on_device.rounding()) * static_cast<double>(ray.speed * ray.exit));
       EXPECT_EQ(shape_objection(field, rays[i], delta, hits[i]), "") << named.name << ", ray " << i;
       EXPECT_EQ(blocked[i], static_cast<bool>(hits[i])) << named.name << ", ray " << i;
       EXPECT_GE(steps[i], static_cast<std::uint32_t>(hits[i] ? 1 : 0));
@@ -88,9 +88,10 @@ constexpr std::uint32_t kShader[] = {
 TEST(ShapeBatchLayout, IsThatOfTheShaders) {
   using glsl::ShapeBatch, glsl::ScarpShapeInstruction;
   EXPECT_TRUE(has_struct(
-      kShader, {offsetof(ShapeBatch, code), offsetof(ShapeBatch, numbers), offsetof(ShapeBatch, grounds), offsetof(ShapeBatch, rays),
-                offsetof(ShapeBatch, hits), offsetof(ShapeBatch, count), offsetof(ShapeBatch, instructions),
-                offsetof(ShapeBatch, tolerance), offsetof(ShapeBatch, max_steps), offsetof(ShapeBatch, run_steps), offsetof(ShapeBatch, growth)}));
+      kShader, {offsetof(ShapeBatch, code), offsetof(ShapeBatch, numbers), offsetof(ShapeBatch, grounds),
+                offsetof(ShapeBatch, rays), offsetof(ShapeBatch, hits), offsetof(ShapeBatch, count),
+                offsetof(ShapeBatch, instructions), offsetof(ShapeBatch, tolerance), offsetof(ShapeBatch, max_steps),
+                offsetof(ShapeBatch, run_steps), offsetof(ShapeBatch, growth)}));
   using glsl::ScarpShapeGround;
   EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpShapeGround, data), offsetof(ScarpShapeGround, holes),
                                    offsetof(ScarpShapeGround, count), offsetof(ScarpShapeGround, result),
