@@ -91,7 +91,7 @@ TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     FunctionRandom random(12);
-    int leaving = 0;
+    int leaving = 0, exhausted = 0;
     for (int i = 0; i < kRays / 10; ++i) {
       const double x = random.between(-5000, 5000), y = random.between(-5000, 5000);
       Ray ray;
@@ -117,7 +117,13 @@ TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
         ++leaving;
         const FunctionJudgement judge = judge_function(named.function, later);
         if (judge.verdict == FunctionVerdict::crossing) {
-          EXPECT_TRUE(hit && hit.t <= judge.crossed_by + kTolerance * hit.t) << named.name;
+          // Creases that a ray nearly runs along take many short segments: given up, but not lost.
+          exhausted += hit.status == HitStatus::exhausted;
+          EXPECT_NE(hit.status, HitStatus::miss) << named.name << ": lost the crossing at t = " << judge.crossed_by;
+          EXPECT_NE(hit.status, HitStatus::below) << named.name;
+          if (hit) {
+            EXPECT_LE(hit.t, judge.crossed_by + kTolerance * hit.t) << named.name;
+          }
         }
         if (judge.verdict == FunctionVerdict::clear) {
           EXPECT_FALSE(hit) << named.name << " at t = " << hit.t;
@@ -125,6 +131,7 @@ TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
       }
     }
     EXPECT_GE(leaving, kRays / 40) << named.name;
+    EXPECT_LE(exhausted, kRays / 2000) << named.name;
   }
 }
 
