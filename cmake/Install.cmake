@@ -46,7 +46,7 @@ set(function_marches_as_text function_marches lipschitz_local sphere_trace)
 set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/ground_buffers.glsl.h scarp/accel/function_buffers.glsl.h
     scarp/accel/shape_buffers.glsl.h)
 foreach(name ${marches_as_text} ${function_marches_as_text} two_float ray_frame float_ray two_float_ray cell_surface surface_normal ground textures noise
-        function_heights function_bounds function_frame ray_states shape_distance)
+        function_heights function_bounds function_frame ray_states shape_distance shape_grounds)
   list(APPEND shader_texts scarp/march/${name}.glsl.h)
 endforeach()
 foreach(text IN LISTS shader_texts)

@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "app/cli/device_option.h"
+#include "app/cli/exr_output.h"
+#include "app/cli/findings.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
@@ -29,14 +31,10 @@ constexpr double kLongReach = 64;    // extents, where there is less haze
 constexpr double kErrorPercent = 1;  // of the error look, without --error-tolerance
 const ViewSettings kView{.azimuth_deg = 190, .elevation_deg = 14, .distance = 0.5, .fov_deg = 45};
 
-struct HeightRange {
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-};
-
 // Of the square that is looked at, on a lattice.
-HeightRange heights_around(const HeightFunction& function, double extent) {
+SeenHeights heights_around(const HeightFunction& function, double extent) {
   constexpr int kSide = 129;
-  HeightRange range;
+  SeenHeights range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   for (int row = 0; row < kSide; ++row) {
     for (int col = 0; col < kSide; ++col) {
       const double h = function.value(extent * (col / (kSide - 1.0) - 0.5), extent * (row / (kSide - 1.0) - 0.5));
@@ -71,7 +69,7 @@ Camera camera_of(const HeightFunction& function, const FunctionInput& input, con
 }
 
 // Meadows, dry grass and snow by height, rock where it is steep; or one of the ramps.
-SceneLook look_of(const HeightRange& range, const std::string& ramp, double haze_distance) {
+SceneLook look_of(const SeenHeights& range, const std::string& ramp, double haze_distance) {
   const auto at = [&](double share) { return range.low + share * (range.high - range.low); };
   Material by_height = HeightRamp{ramp, range.low, range.high};
   if (ramp.empty()) {
@@ -98,16 +96,27 @@ void print_error(const FunctionErrorPicture& error, double percent) {
 
 }  // namespace
 
-void add_function_options(CLI::App& command, FunctionInput& input, std::string& march, MarchSettings& settings) {
-  const std::string group = "Terrain functions";
-  std::vector<std::string_view> names, presets;
+namespace {
+
+constexpr const char* kGroup = "Terrain functions";
+
+}  // namespace
+
+void add_function_option(CLI::App& command, FunctionInput& input, const std::string& extent) {
+  std::vector<std::string_view> names;
   for (const ExampleFunction& example : example_functions()) names.push_back(example.name);
-  for (const MarchPreset& preset : march_presets()) presets.push_back(preset.name);
   command
       .add_option(
           "--function", input.function,
           fmt::format("in the place of files: {}, or a JSON file (doc/user/functions.md)", fmt::join(names, ", ")))
-      ->group(group);
+      ->group(kGroup);
+  command.add_option("--extent", input.extent, extent)->group(kGroup)->capture_default_str();
+}
+
+void add_function_options(CLI::App& command, FunctionInput& input, std::string& march, MarchSettings& settings) {
+  add_function_option(command, input, "metres of ground that the picture is about; above 0");
+  std::vector<std::string_view> presets;
+  for (const MarchPreset& preset : march_presets()) presets.push_back(preset.name);
   command
       .add_option_function<std::string>(
           "--preset",
@@ -119,16 +128,16 @@ void add_function_options(CLI::App& command, FunctionInput& input, std::string& 
           },
           fmt::format("a march with the numbers of a known shader: {}; see 'scarp marches --presets'",
                       fmt::join(presets, ", ")))
-      ->group(group);
-  command.add_option("--extent", input.extent, "metres of ground that the picture is about; above 0")
-      ->group(group)
-      ->capture_default_str();
+      ->group(kGroup);
+}
+
+void require_extent(double extent) {
+  if (!(extent > 0 && extent <= kFunctionReach))
+    throw Error(fmt::format("--extent {}: it must be above 0 and at most 2^30 metres", extent));
 }
 
 void render_function(const FunctionInput& input, FunctionPicture settings, const std::string& output) {
-  if (!(input.extent > 0 && input.extent <= kFunctionReach)) {
-    throw Error(fmt::format("--extent {}: it must be above 0 and at most 2^30 metres", input.extent));
-  }
+  require_extent(input.extent);
   const MarchEntry& march = find_function_march(settings.march.empty() ? "lipschitz-local" : settings.march);
   ReplaceFile file(output);
   const HeightFunction function(read_function(input.function));
@@ -141,11 +150,16 @@ void render_function(const FunctionInput& input, FunctionPicture settings, const
     throw Error("--device: the look error is judged on the CPU; leave it out");
   const Camera camera = camera_of(function, input, settings);
   const auto begin = std::chrono::steady_clock::now();
+  const auto took = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(); };
+  const auto tell = [&](double seconds, const std::string& on) {
+    fmt::print("{}: {} x {} pixels; {}{}; render {:.2f} s{}\n", output, settings.picture.width, settings.picture.height,
+               march.name, input.preset.empty() ? "" : " as in " + input.preset, seconds,
+               on.empty() ? "" : ", on " + on);
+  };
   const auto done = [&](const Image& image, const std::string& on) {
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+    const double seconds = took();
     write_png(file, output, {image.rgb.data(), image.width, image.height});
-    fmt::print("{}: {} x {} pixels; {}{}; render {:.2f} s{}\n", output, image.width, image.height, march.name,
-               input.preset.empty() ? "" : " as in " + input.preset, took.count(), on.empty() ? "" : ", on " + on);
+    tell(seconds, on);
   };
   if (settings.picture.look == Look::error) {
     const double percent = settings.tolerance_given ? settings.picture.error_tolerance : kErrorPercent;
@@ -163,12 +177,17 @@ void render_function(const FunctionInput& input, FunctionPicture settings, const
       Scene({scene_function(function, march, settings.march_settings)},
             {{.field = 0, .material = static_cast<std::uint32_t>(look.materials.size() == 3 ? 2 : 0)}}));
   if (std::isinf(settings.picture.ao_distance)) settings.picture.ao_distance = input.extent / 8;
+  if (settings.exr) {
+    const PictureLayers layers =
+        render_scene_layers(scene, look, camera, settings.picture, terminal_progress("render"));
+    const double seconds = took();
+    write_layers(file, output, layers, camera, settings.depth_range);
+    tell(seconds, device);
+    return;
+  }
   const Picture picture = render_scene(scene, look, camera, settings.picture, terminal_progress("render"));
   done(picture.image, device);
-  if (picture.steps) {
-    fmt::print("steps per ray: {} (first colour of the ramp) to {} (last), mean {:.1f}\n", picture.steps->least,
-               picture.steps->most, picture.steps->mean);
-  }
+  print_findings(picture);
 }
 
 }  // namespace scarp::cli

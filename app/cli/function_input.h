@@ -3,9 +3,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "scarp/march/marches.h"
+#include "scarp/render/depth.h"
 #include "scarp/render/function_error.h"
 #include "scarp/render/picture.h"
 
@@ -17,8 +20,10 @@ struct FunctionInput {
   double extent = 6000;
 };
 
-/// `march` and `settings` are where --march and its settings go, and those of a preset with them: add this before them,
-/// so that what is typed counts more. All must live until the subcommand has run.
+/// Adds --function and --extent. `input` must live until the subcommand has run.
+void add_function_option(CLI::App& command, FunctionInput& input, const std::string& extent);
+/// These and --preset. `march` and `settings` are where --march and its settings go, and those of a preset with them:
+/// add this before them, so that what is typed counts more. All must live until the subcommand has run.
 void add_function_options(CLI::App& command, FunctionInput& input, std::string& march, MarchSettings& settings);
 
 /// What of the command line's settings a function has other defaults for.
@@ -30,8 +35,13 @@ struct FunctionPicture {
   bool view_given = false, haze_given = false, tolerance_given = false;
   std::string device{};     // as --device, empty: the CPU
   std::string eye, target;  // as --eye and --target, empty: of the view
+  bool exr = false;         // layers instead of a PNG
+  std::optional<DepthRange> depth_range{};
 };
 
 void render_function(const FunctionInput& input, FunctionPicture settings, const std::string& output);
+
+/// Throws Error for one that is not above 0 or too long.
+void require_extent(double extent);
 
 }  // namespace scarp::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp generate`: procedural terrain of any size as a GeoTIFF.
+// `scarp generate`: procedural terrain of any size, or a terrain function, as a GeoTIFF.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,16 +16,35 @@
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/field/height_function.h"
+#include "scarp/scene/example_functions.h"
 #include "scarp/source/procedural_dem_file.h"
 
 namespace scarp::cli {
 namespace {
 
 struct GenerateOptions {
-  std::string output, size, kind = "fbm";
+  std::string output, size, kind = "fbm", function;
   ProceduralDem terrain;
   int threads = 0;
 };
+
+// Samples of a function about its origin; its heights are what it says, whatever the size.
+ComputedDem dem_of(const HeightFunction& function, const GenerateOptions& options) {
+  const int cols = options.terrain.cols, rows = options.terrain.rows;
+  const double cell = options.terrain.cell_m;
+  if (0.5 * cell * std::max(cols, rows) > kFunctionReach)
+    throw Error(
+        fmt::format("--cell {}: {} x {} samples reach beyond 2^30 metres, where functions end", cell, cols, rows));
+  return {cols, rows, cell, fmt::format("terrain function: {}", options.function),
+          [&function, cols, rows, cell](int row, int count, float* out) {
+            for (int r = row; r < row + count; ++r) {
+              for (int c = 0; c < cols; ++c)
+                *out++ =
+                    static_cast<float>(function.value((c - 0.5 * (cols - 1)) * cell, (0.5 * (rows - 1) - r) * cell));
+            }
+          }};
+}
 
 void run(GenerateOptions options) {
   ProceduralDem& terrain = options.terrain;
@@ -52,10 +71,16 @@ void run(GenerateOptions options) {
   const ThreadLimit limit(options.threads);
 
   const auto begin = std::chrono::steady_clock::now();
-  write_procedural_dem(options.output, terrain, terminal_progress("generate"));
+  if (!options.function.empty()) {
+    const HeightFunction function(read_function(options.function));
+    write_computed_dem(options.output, dem_of(function, options), terminal_progress("generate"));
+  } else {
+    write_procedural_dem(options.output, terrain, terminal_progress("generate"));
+  }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  fmt::print("{}: {} x {} samples, {}, seed {}; {:.2f} s\n", options.output, terrain.cols, terrain.rows, options.kind,
-             terrain.seed, seconds);
+  fmt::print("{}: {} x {} samples, {}; {:.2f} s\n", options.output, terrain.cols, terrain.rows,
+             options.function.empty() ? fmt::format("{}, seed {}", options.kind, terrain.seed) : options.function,
+             seconds);
 }
 
 }  // namespace
@@ -69,18 +94,23 @@ void add_generate(CLI::App& program) {
                    fmt::format("N or NxM samples, columns first, up to {0} x {0}", kLargestProceduralSide))
       ->required();
   command->add_option("-o,--output", o.output, "the GeoTIFF to write")->required();
+  CLI::Option* function = command->add_option(
+      "--function", o.function, "samples of a terrain function about (0, 0): its name, or a JSON file with one");
   command->add_option("--seed", o.terrain.seed, "which terrain; any whole number from 0")
       ->check([](const std::string& text) {
         return check_whole_number(text, std::numeric_limits<decltype(o.terrain.seed)>::max());
       })
       ->capture_default_str();
   command->add_option("--kind", o.kind, "fbm (rolling mountains) or ridged (sharp crests)")->capture_default_str();
+  for (const char* option : {"--seed", "--kind"}) command->get_option(option)->excludes(function);
   command
       ->add_option("--cell", o.terrain.cell_m,
                    fmt::format("metres from sample to sample; above 0, at most {}", kLargestProceduralCell))
       ->capture_default_str();
-  command->add_option("--wavelength", o.terrain.wavelength,
-                      "of the largest features, in samples, from 2 (the lesser of 1024 and half the longer side)");
+  command
+      ->add_option("--wavelength", o.terrain.wavelength,
+                   "of the largest features, in samples, from 2 (the lesser of 1024 and half the longer side)")
+      ->excludes(function);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
   command->callback([options] { run(*options); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp info`: what is in a raster, a voxel model or a scene, as Scarp will use it.
+// `scarp info`: what is in a raster, a voxel model, a scene or a terrain function, as Scarp will use it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,12 +11,15 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/function_info.h"
+#include "app/cli/function_input.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/scene_input.h"
 #include "app/cli/vox_input.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/accel/slope_bound.h"
+#include "scarp/base/error.h"
 #include "scarp/scene/from_raster.h"
 #include "scarp/source/read_raster.h"
 
@@ -29,6 +32,7 @@ struct InfoOptions {
   std::vector<std::string> inputs;
   RasterOptions raster;
   VoxOptions vox;
+  FunctionInput function;
   bool json = false;
 };
 
@@ -113,21 +117,42 @@ std::string text_of(const Json& info) {
 
 void add_info(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
-      "info", "Say what is in a raster of heights, a voxel model or a scene, as scarp will use it");
+      "info", "Say what is in a raster of heights, a voxel model, a scene or a terrain function, as scarp will use it");
   const auto options = std::make_shared<InfoOptions>();
-  add_raster_inputs(*command, options->inputs);
+  add_raster_inputs(*command, options->inputs)->required(false);
   command->add_flag("--json", options->json, "one JSON object instead of text");
+  add_function_option(*command, options->function, "square of ground about (0, 0) that is looked at, metres; above 0");
   add_raster_options(*command, options->raster);
   add_vox_options(*command, options->vox);
-  command->callback([options] {
+  command->callback([options, command] {
+    // File names may hold any bytes; JSON may not.
+    const auto json_of = [](const Json& info) {
+      return info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    };
+    if (!options->function.function.empty()) {
+      if (!options->inputs.empty()) {
+        throw Error(
+            fmt::format("'{}': --function stands in the place of files; give one of both", options->inputs.front()));
+      }
+      for (const CLI::Option* option : command->get_options()) {
+        const std::string name = option->get_name();
+        if (option->count() > 0 && name != "--function" && name != "--extent" && name != "--json")
+          throw Error(fmt::format("{}: goes with files; leave it out", name));
+      }
+      const Json info = describe_function(options->function.function, options->function.extent);
+      fmt::print("{}", options->json ? json_of(info) : function_text_of(info));
+      return;
+    }
+    if (options->inputs.empty()) throw CLI::RequiredError("IN (or --function NAME)");
     const bool scene = is_scene_input(options->inputs), vox = !scene && is_vox_input(options->inputs, options->vox);
     if (!vox) require_no_vox_options(options->vox);
     const Json info = scene ? describe_scene(options->inputs.front())
                       : vox ? describe_vox(options->inputs.front(), options->vox)
                             : describe(*options);
-    // File names may hold any bytes; JSON may not.
-    const auto json = [&] { return info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n"; };
-    fmt::print("{}", options->json ? json() : scene ? scene_text_of(info) : vox ? vox_text_of(info) : text_of(info));
+    fmt::print("{}", options->json ? json_of(info)
+                     : scene       ? scene_text_of(info)
+                     : vox         ? vox_text_of(info)
+                                   : text_of(info));
   });
 }
 

@@ -20,6 +20,7 @@
 #include "app/cli/exr_output.h"
 #include "app/cli/field_options.h"
 #include "app/cli/figure_options.h"
+#include "app/cli/findings.h"
 #include "app/cli/frames.h"
 #include "app/cli/function_input.h"
 #include "app/cli/look_options.h"
@@ -173,20 +174,6 @@ Camera terrain_camera(const RenderOptions& options, const ViewSettings& view, co
     return flight_camera(field, grid_north_azimuth, options.fov_deg, options.picture.width, options.picture.height);
   }
   return camera_of(options, view, box, grid_north_azimuth);
-}
-
-void print_findings(const Picture& picture) {
-  if (picture.steps) {
-    fmt::print("steps per ray: {} (first colour of the ramp) to {} (last), mean {:.1f}\n", picture.steps->least,
-               picture.steps->most, picture.steps->mean);
-  }
-  if (picture.errors) {
-    fmt::print("judged by exhaustive; tolerance {:.3g} m along the ray; pixels:\n", picture.errors->tolerance_m);
-    for (int i = 0; i < kVerdicts; ++i) {
-      const auto verdict = static_cast<Verdict>(i);
-      fmt::print("  {:10}  {:9}  {}\n", name_of(verdict), colour_name_of(verdict), (*picture.errors)[verdict]);
-    }
-  }
 }
 
 void print_times(const RenderOptions& options, double read_s, double build_s, double render_s,
@@ -394,14 +381,14 @@ void render_function_input(const RenderOptions& options, const ViewSettings& vie
   }
   require_no_terrain_options(options);
   require_no_voxel_options(options);
-  if (options.exr) throw Error(fmt::format("output '{}': pictures of functions are written as PNG", options.output));
   if (options.top) throw Error("--top: a function has no end that a map could show; leave it out");
   const auto given = [&](const char* option) {
     return std::find(options.given.begin(), options.given.end(), option) != options.given.end();
   };
   render_function(options.function,
                   {options.picture, options.march, options.march_settings, view, given("--view"), given("--haze"),
-                   given("--error-tolerance"), options.device, options.eye, options.target},
+                   given("--error-tolerance"), options.device, options.eye, options.target, options.exr,
+                   depth_range_of(options.depth)},
                   options.output);
 }
 

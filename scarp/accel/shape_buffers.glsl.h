@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A distance field as it lies in a device's memory: the instructions of its program (field/distance_program.h), 32
-// bytes each, and their numbers as floats. DeviceShape (device_shape.h) makes it; the interpreter of shaders
-// (march/shape_distance.glsl.h) reads it.
+// bytes each, their numbers as floats, and where its grounds are. DeviceShape (march/shape_queries_vk.h) makes it; the
+// interpreter of shaders (march/shape_distance.glsl.h) reads it.
 #ifndef SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H
 #define SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H
 
@@ -9,7 +9,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Of ScarpShapeInstruction::op, the values of DistanceOp. Grounds do not run on devices.
+/// Of ScarpShapeInstruction::op, the values of DistanceOp.
 const uint kScarpShapeTurn = 0u;
 const uint kScarpShapeFold = 1u;
 const uint kScarpShapeNeighbour = 2u;
@@ -21,6 +21,8 @@ const uint kScarpShapeCylinder = 7u;
 const uint kScarpShapeCone = 8u;
 const uint kScarpShapeTorus = 9u;
 const uint kScarpShapeEllipsoid = 10u;
+const uint kScarpShapeFunctionGround = 11u;
+const uint kScarpShapeFieldGround = 12u;
 const uint kScarpShapeUnite = 13u;
 const uint kScarpShapeIntersect = 14u;
 const uint kScarpShapeSubtract = 15u;
@@ -46,7 +48,17 @@ struct ScarpShapeInstruction {
   uint b;
   uint mask;
   uint number;  ///< where its constants begin
-  uint index;
+  uint index;   ///< of grounds: functions first, fields behind them
+  uint none;
+};
+
+/// A ground among a shape's parts.
+struct ScarpShapeGround {
+  Address data;   ///< of a function its instructions, of a field its GroundBuffers
+  Address holes;  ///< GroundBuffers of the field whose holes it has
+  uint count;     ///< of a function: of its instructions
+  uint result;    ///< of a function: register
+  uint has_holes;
   uint none;
 };
 

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scarp/field/ground_holes.h"
+
 namespace scarp::distance {
 namespace {
 
@@ -22,15 +24,20 @@ double beyond_border(const HeightField& field, const dvec3& q) {
 
 }  // namespace
 
-double field_ground_value(const HeightField& field, const dvec3& q, double shrink) {
+double field_ground_value(const HeightField& field, const HeightField* holes, const dvec3& q, double shrink) {
   const dvec2 at = clamped_to(field, q);
   // The field has no holes, so there is a height.
-  return std::max((q.z - field.height(at.x, at.y).value_or(0)) * shrink, beyond_border(field, q));
+  const double value = std::max((q.z - field.height(at.x, at.y).value_or(0)) * shrink, beyond_border(field, q));
+  return holes ? std::max(value, over_hole(*holes, at, 0).value) : value;
 }
 
-dvec3 field_ground_gradient(const HeightField& field, const dvec3& q, double shrink) {
+dvec3 field_ground_gradient(const HeightField& field, const HeightField* holes, const dvec3& q, double shrink) {
   const dvec2 at = clamped_to(field, q);
   const double over = (q.z - field.height(at.x, at.y).value_or(0)) * shrink;
+  if (holes) {
+    const OverHole hole = over_hole(*holes, at, 0);
+    if (hole.value > std::max(over, beyond_border(field, q))) return {hole.gradient, 0};
+  }
   if (beyond_border(field, q) > over) {
     const double k[6] = {0, 0, -kCreased, field.width(), field.depth(), kCreased};
     return bent_outside(q, k, 0).gradient;
@@ -190,10 +197,26 @@ BentMode::Value BentMode::function_ground(const HeightFunction& function, const 
   return out;
 }
 
-BentMode::Value BentMode::field_ground(const HeightField& field, const double* k, const Position& p) const {
+BentMode::Value BentMode::field_ground(const HeightField& field, const HeightField* holes, const double* k,
+                                       const Position& p) const {
+  const Value ground = field_without_holes(field, k, p);
+  if (!holes) return ground;
+  const double scale = k[3];
+  const dvec3 q = (p.p - dvec3(k[0], k[1], k[2])) / scale;
+  const dvec2 at = clamped_to(field, q);
+  const OverHole hole = over_hole(*holes, at, radius / scale);
+  const double value = hole.value * scale;
+  if (value + radius <= ground.f.low) return ground;
+  // Where the segment may be beside the field, the rim is that of where it is clamped to.
+  const bool flat = hole.flat && at.x == q.x && at.y == q.y && beyond_border(field, q) * scale + radius < 0;
+  const Value rim = from_bent({value, dvec3(hole.gradient, 0), flat ? 0 : kCreased}, p.d);
+  return negative(minimum(negative(ground), negative(rim)));
+}
+
+BentMode::Value BentMode::field_without_holes(const HeightField& field, const double* k, const Position& p) const {
   const double scale = k[3], shrink = k[4], factor = shrink * scale;
   const dvec3 q = (p.p - dvec3(k[0], k[1], k[2])) / scale, d = p.d / scale;
-  const double value = field_ground_value(field, q, shrink) * scale;
+  const double value = field_ground_value(field, nullptr, q, shrink) * scale;
   // By the walls alone, or over the ground alone; where they meet what is known of any distance.
   if (!field.wraps()) {
     const double border = beyond_border(field, q) * scale;

@@ -32,7 +32,7 @@ Bent bent_solid(DistanceOp op, const dvec3& q, const double* k, double r);
 Bent bent_outside(const dvec3& p, const double* k, double r);
 
 /// Gradient of field_ground_value().
-dvec3 field_ground_gradient(const HeightField& field, const dvec3& q, double shrink);
+dvec3 field_ground_gradient(const HeightField& field, const HeightField* holes, const dvec3& q, double shrink);
 /// A slope range: what field heights may do from -d to d around a place, as a rate per d.
 struct FieldSlope {
   double low, high;
@@ -73,7 +73,8 @@ struct GradientMode {
       return {value, to_world(p, k[4] * dvec3(-slope, 1.0))};
     } else if constexpr (op == DistanceOp::field_ground) {
       const dvec3 q = (p.p - dvec3(k[0], k[1], k[2])) / k[3];
-      return {value, to_world(p, field_ground_gradient(*program.fields[in.index], q, k[4]))};
+      return {value,
+              to_world(p, field_ground_gradient(*program.fields[in.index], program.holes[in.index].get(), q, k[4]))};
     } else if constexpr (op == DistanceOp::plane) {
       return {value, to_world(p, {k[0], k[1], k[2]})};
     } else {
@@ -131,7 +132,7 @@ struct BentMode {
     } else if constexpr (op == DistanceOp::function_ground) {
       return function_ground(*program.functions[in.index], k, p);
     } else if constexpr (op == DistanceOp::field_ground) {
-      return field_ground(*program.fields[in.index], k, p);
+      return field_ground(*program.fields[in.index], program.holes[in.index].get(), k, p);
     } else {
       return from_bent(bent_solid(op, p.p - dvec3(k[0], k[1], k[2]), k + 3, radius), p.d);
     }
@@ -156,7 +157,8 @@ struct BentMode {
   Value from_bent(const Bent& bent, const dvec3& d) const;
   Value from_range(double low, double high) const;
   Value function_ground(const HeightFunction& function, const double* k, const Position& p) const;
-  Value field_ground(const HeightField& field, const double* k, const Position& p) const;
+  Value field_ground(const HeightField& field, const HeightField* holes, const double* k, const Position& p) const;
+  Value field_without_holes(const HeightField& field, const double* k, const Position& p) const;
 };
 
 }  // namespace scarp::distance

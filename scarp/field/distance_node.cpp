@@ -129,8 +129,14 @@ struct Check {
     if (!g.field) throw Error("shape: field of a ground is missing; it must be a height field");
     if (!g.field->has_cells()) throw Error("shape: field of a ground has no cells; it must have 2 columns and rows");
     if (g.field->nodata_count() > 0) {
-      throw Error(fmt::format("shape: field of a ground has {} nodata samples; it must have none: fill them before",
+      throw Error(fmt::format("shape: field of a ground has {} nodata samples; make the ground by solid_ground()",
                               g.field->nodata_count()));
+    }
+    if (g.holes && (g.holes->cols() != g.field->cols() || g.holes->rows() != g.field->rows() ||
+                    g.holes->settings().wrap != g.field->settings().wrap ||
+                    g.holes->settings().cell_x != g.field->settings().cell_x ||
+                    g.holes->settings().cell_y != g.field->settings().cell_y)) {
+      throw Error("shape: holes of a ground are those of a field on another grid; both must be the same");
     }
     require(g.slope >= 0 && g.slope <= kMostLength, "slope of a ground", g.slope,
             "between 0 and 2^30, that of slope_bound()");

@@ -86,11 +86,13 @@ struct Ellipsoid {
 struct FunctionGround {
   std::shared_ptr<const HeightFunction> function;
 };
-/// The ground of a field, solid below it, with upright walls at its borders. A bound likewise. The field must have no
-/// holes; while it is edited, no query may run, and a steeper slope needs a new shape.
+/// The ground of a field, solid below it, with upright walls at its borders and round its holes, which are shafts
+/// without a bottom. A bound likewise. Made by solid_ground() of accel/solid_ground.h. While the field is edited, no
+/// query may run, and a steeper slope or other holes need a new shape.
 struct FieldGround {
-  std::shared_ptr<const HeightField> field;
-  double slope = 0;  ///< slope_bound(*field) of accel/slope_bound.h
+  std::shared_ptr<const HeightField> field;    ///< without holes, or with heights in their place
+  double slope = 0;                            ///< slope_bound(*field) of accel/slope_bound.h
+  std::shared_ptr<const HeightField> holes{};  ///< the field whose holes it has, on the same grid; null: it has none
 };
 
 struct Moved {

@@ -183,6 +183,7 @@ class Compiler {
     const double shrink = shrink_of(all.slope), scale = place.scale;
     ground(DistanceOp::function_ground, place, out, {scale, shrink}, program_.functions.size());
     program_.functions.push_back(g.function);
+    program_.function_away.push_back(place.chain + length(place.at));
     note(place, scale * std::max(std::abs(all.low), std::abs(all.high)));
     for (std::size_t i = 0; i < program_.ground_rounding.size(); ++i) {
       const double reach =
@@ -198,6 +199,7 @@ class Compiler {
     const double scale = place.scale;
     ground(DistanceOp::field_ground, place, out, {scale, shrink_of(g.slope), g.slope}, program_.fields.size());
     program_.fields.push_back(g.field);
+    program_.holes.push_back(g.holes);
     note(place, scale * (std::max(std::abs(field.min_height()), std::abs(field.max_height())) + field.width() +
                          field.depth()));
     clamp(place, node.box, out);

@@ -65,7 +65,9 @@ struct DistanceProgram {
   std::vector<DistanceInstruction> code;
   std::vector<double> numbers;
   std::vector<std::shared_ptr<const HeightFunction>> functions;
+  std::vector<double> function_away;  ///< of each: metres that its frame is from a position's, at most
   std::vector<std::shared_ptr<const HeightField>> fields;
+  std::vector<std::shared_ptr<const HeightField>> holes;  ///< of each: the field whose holes it has, or null
   double rounding = 0, rounding_per_metre = 0;  ///< of values, at a position and per metre of its distance from 0
   std::array<double, 32> ground_rounding{};     ///< of the grounds' heights, at positions within 2^i
 };

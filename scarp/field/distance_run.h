@@ -117,7 +117,8 @@ inline dvec3 within_reach(const dvec3& q) {
   return {std::clamp(q.x, -kFunctionReach, kFunctionReach), std::clamp(q.y, -kFunctionReach, kFunctionReach), q.z};
 }
 /// Height over the ground of a field at a position in its frame, where x and y are clamped to it; with its walls.
-double field_ground_value(const HeightField& field, const dvec3& q, double shrink);
+/// `holes` as in FieldGround.
+double field_ground_value(const HeightField& field, const HeightField* holes, const dvec3& q, double shrink);
 
 /// Positions and values as they are.
 template <class T>
@@ -164,7 +165,7 @@ struct PointMode {
           return T((at.z - program.functions[in.index]->value(at.x, at.y)) * shrink * scale);
         } else {
           static_assert(op == DistanceOp::field_ground);
-          return T(field_ground_value(*program.fields[in.index], local, shrink) * scale);
+          return T(field_ground_value(*program.fields[in.index], program.holes[in.index].get(), local, shrink) * scale);
         }
       }
     }

@@ -45,7 +45,8 @@ struct Sines {
 
 inline constexpr int kMostOctaves = 24;
 
-/// Octaves by what they are for, 1..kMostOctaves: normals may be finer than the surface that is marched.
+/// Octaves by what they are for, 1..kMostOctaves: normals may be finer than the surface that is marched. Each number is
+/// a surface of its own: with other ones for march and shadow, what a ray meets and whether it is blocked may differ.
 struct Octaves {
   int march = 9;
   int shadow = 9;

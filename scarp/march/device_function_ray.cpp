@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/accel/shape_words.h"
 #include "scarp/march/function_ray.h"
+#include "scarp/march/ray_clip.h"
 
 namespace scarp {
 namespace {
@@ -56,7 +56,9 @@ DeviceFunctionRay device_function_ray(const HeightFunction& function, const Sing
   return result;
 }
 
-DeviceFunctionRay device_shape_ray(const DistanceField& shape, const Ray& ray) {
+double shape_ray_growth(const ShapeSingleRounding& rounding) { return rounding.per_metre() + 0x1p-22; }
+
+DeviceFunctionRay device_shape_ray(const DistanceField& shape, const ShapeSingleRounding& rounding, const Ray& ray) {
   DeviceFunctionRay result;
   const ShapeBox& box = shape.box();
   if (box.empty()) return result;
@@ -66,21 +68,15 @@ DeviceFunctionRay device_shape_ray(const DistanceField& shape, const Ray& ray) {
     // More than what the quotients below round.
     const double o = ray.origin[axis], d = ray.direction[axis];
     const double slack = 0x1p-50 * (std::abs(o) + std::max(std::abs(low), std::abs(high)));
-    if (d == 0) {
-      if (!(o >= low - slack && o <= high + slack)) return result;
-      continue;
-    }
-    const double a = (low - slack - o) / d, b = (high + slack - o) / d;
-    t_enter = std::max(t_enter, std::min(a, b));
-    t_exit = std::min(t_exit, std::max(a, b));
+    clip_to_range(low - slack, high + slack, o, d, t_enter, t_exit);
   }
+  if (!(t_exit >= ray.t_min)) return result;
   // That it begins in the box is known; by how much rounding may have it outside is not.
   if (ray.start == RayStart::on_surface) t_enter = ray.t_min;
   if (!(t_enter <= t_exit) || !std::isfinite(t_exit)) return result;
   pack(result, ray, t_enter, t_exit);
-  const double farthest = std::max(length(ray.at(t_enter)), length(ray.at(t_exit)));
-  // Of values, and of positions that are rounded to floats, by which values change by a metre per metre.
-  result.ray.rounding = static_cast<float>(single_rounding(shape, farthest) + 0x1p-22 * farthest);
+  const double reach = length(ray.at(t_enter));
+  result.ray.rounding = static_cast<float>((rounding.at(reach) + 0x1p-22 * reach) * (1 + 0x1p-20));
   return result;
 }
 

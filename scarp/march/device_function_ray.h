@@ -6,6 +6,7 @@
 #pragma once
 
 #include "scarp/accel/function_words.h"
+#include "scarp/accel/shape_words.h"
 #include "scarp/march/marches.h"
 #include "scarp/march/ray_states.glsl.h"
 
@@ -24,8 +25,11 @@ struct DeviceFunctionRay {
 DeviceFunctionRay device_function_ray(const HeightFunction& function, const SingleRounding& rounding, const Ray& ray,
                                       FunctionUse use, double reach);
 
-/// The same against a distance field: clipped to its box.
-DeviceFunctionRay device_shape_ray(const DistanceField& shape, const Ray& ray);
+/// The same against a distance field: clipped to its box. `rounding` of the ray is that where it begins.
+DeviceFunctionRay device_shape_ray(const DistanceField& shape, const ShapeSingleRounding& rounding, const Ray& ray);
+/// By how much more values are off per metre of such a ray: values are, and positions that are rounded to floats, by
+/// which values change by a metre per metre.
+double shape_ray_growth(const ShapeSingleRounding& rounding);
 
 /// The answer that belongs to a ray.
 Hit hit_from_device(const Ray& ray, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer);

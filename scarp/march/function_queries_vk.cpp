@@ -165,9 +165,7 @@ void DeviceFunctionQueries::set_march_settings(const MarchSettings& march_settin
 
 void DeviceFunctionQueries::closest_hits(const DeviceFunctionTarget& target, std::span<const Ray> rays,
                                          std::span<Hit> hits, std::span<std::uint32_t> steps) {
-  if (rays.size() != hits.size() || (!steps.empty() && rays.size() != steps.size()))
-    throw Error(
-        fmt::format("batch: {} rays, room for {} answers and {} costs", rays.size(), hits.size(), steps.size()));
+  require_room(rays.size(), hits.size(), steps.size());
   impl_->ask(target, false, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
                hits[i] = hit_from_device(rays[i], prepared, answer);
@@ -177,11 +175,10 @@ void DeviceFunctionQueries::closest_hits(const DeviceFunctionTarget& target, std
 
 void DeviceFunctionQueries::occluded(const DeviceFunctionTarget& target, std::span<const Ray> rays,
                                      std::span<std::uint8_t> blocked) {
-  if (rays.size() != blocked.size())
-    throw Error(fmt::format("batch: {} rays, room for {} answers", rays.size(), blocked.size()));
+  require_room(rays.size(), blocked.size());
   impl_->ask(target, true, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
-               blocked[i] = prepared.marches && answer.status == glsl::kScarpFunctionHit;
+               blocked[i] = is_blocked(prepared, answer);
              });
 }
 

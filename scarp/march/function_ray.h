@@ -9,6 +9,7 @@
 
 #include "scarp/base/ray.h"
 #include "scarp/field/height_function.h"
+#include "scarp/march/ray_clip.h"
 
 namespace scarp {
 
@@ -77,15 +78,7 @@ class FunctionRay {
  private:
   static constexpr double kRounding = 0x1p-49;  // 16 roundings of 2^-53
 
-  void clip(double low, double high, double o, double d) {
-    if (d == 0) {
-      if (!(o >= low && o <= high)) t_exit = -std::numeric_limits<double>::infinity();
-      return;
-    }
-    const double a = (low - o) / d, b = (high - o) / d;
-    t_enter = std::max(t_enter, std::min(a, b));
-    t_exit = std::min(t_exit, std::max(a, b));
-  }
+  void clip(double low, double high, double o, double d) { clip_to_range(low, high, o, d, t_enter, t_exit); }
 
   const HeightFunction* function_ = nullptr;
   const Ray* ray_ = nullptr;

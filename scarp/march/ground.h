@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "scarp/march/marches.h"
+#include "scarp/march/ray_clip.h"
 
 namespace scarp {
 
@@ -89,15 +90,7 @@ class Ground {
     if (field_.wraps()) position -= std::floor(position / cells) * cells;
     return std::clamp(position, 0.0, static_cast<double>(cells));
   }
-  void clip(double low, double high, double o, double d) {
-    if (d == 0) {
-      if (!(o >= low && o <= high)) t_exit = -std::numeric_limits<double>::infinity();
-      return;
-    }
-    const double a = (low - o) / d, b = (high - o) / d;
-    t_enter = std::max(t_enter, std::min(a, b));
-    t_exit = std::min(t_exit, std::max(a, b));
-  }
+  void clip(double low, double high, double o, double d) { clip_to_range(low, high, o, d, t_enter, t_exit); }
 
   const HeightField& field_;
   const SampleGrid<T>& grid_;

@@ -2,8 +2,9 @@
 // `lipschitz-local` for shaders: lipschitz_local.h in single precision, the same steps by bounds in floats
 // (function_bounds.glsl.h).
 //
-// Guarantee: conservative, rounding counted: no crossing is passed. A hit is a crossing, or a place where the ray
-// cannot be told from one within the tolerance or 4 times the rounding of clearances. A ray from the surface begins at
+// Guarantee: conservative, rounding counted: no crossing is passed. A hit is a crossing, or a touch: a place where the
+// ray cannot be told from the ground by bounds of a segment of 2^-22 of the time, or by 4 times the rounding of
+// clearances. A ray from the surface begins at
 // the height that is computed there, and may be under the ground by 4 times what the bounds of a point leave open,
 // until it is proven to be above: it needs no bound of the ground's slope, which the other realisations ask for.
 //
@@ -22,7 +23,7 @@ SCARP_GLSL_BEGIN
 struct ScarpLipschitzLocal {
   float tolerance;
   int max_steps;
-  int run_steps;  ///< after so many more bounds the march is interrupted (kScarpFunctionUnderWay), at least 1
+  int run_steps;  ///< after so many more bounds and heights the march is interrupted (kScarpFunctionUnderWay), >= 1
 };
 
 /// What is proven about a segment: the ray is above the ground until `until`, and under it at `sunk`.
@@ -47,7 +48,7 @@ const float kScarpGrowth = 1.3f;
 const float kScarpShrink = 0.5f;
 const float kScarpRisingGrowth = 1.5f;
 const float kScarpRisingClear = 3.0f;
-const int kScarpMostSecants = 12;
+const int kScarpMostSecants = 11;
 
 /// A coordinate over times middle - half to middle + half.
 SCARP_FN ScarpBound scarp_coordinate(ScarpTwoFloat mid, float origin, float direction, float half_, float last) {
@@ -110,26 +111,23 @@ SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, floa
   return proof;
 }
 
-/// The crossing between s0, above the ground, and s1, on or under it, by secants of which the end that stays is weighed
-/// less and less ("Illinois"), until floats end; s0 where they are not. What clearances round by they mostly share with
-/// their neighbours: they are of use below ray.rounding, too.
-SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float s0, float s1,
+/// The crossing between s0, above the ground, and s1, where the clearance is h1 <= 0, by secants of which the end that
+/// stays is weighed less and less ("Illinois"), until floats end; s0 where that is not above as computed. What
+/// clearances round by they mostly share with their neighbours: they are of use below ray.rounding, too.
+SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float s0, float s1, float h1,
                               SCARP_INOUT(ScarpFunctionHit) hit) {
   float from = s0;
   float to = s1;
   float above = 0.0f;
-  float below = 0.0f;
+  float below = h1;
   int kept = 0;
-  // The first two of them look at the ends.
+  // The first of them looks at s0.
   for (int i = 0; i < kScarpMostSecants; ++i) {
-    float s = i == 0 ? s1 : i == 1 ? s0 : from + (to - from) * (above / (above - below));
-    if (i > 1 && !(s > from && s < to)) return to;
+    float s = i == 0 ? s0 : from + (to - from) * (above / (above - below));
+    if (i > 0 && !(s > from && s < to)) return to;
     hit.heights += 1u;
     float h = scarp_clearance(program, ray, s);
     if (i == 0) {
-      below = h;
-      if (h > 0.0f) return s0;
-    } else if (i == 1) {
       above = h;
       if (h <= 0.0f) return s0;
     } else if (h == 0.0f) {
@@ -183,12 +181,13 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
   int ask = begins && from_surface ? kScarpAskOpen : kScarpAskSegment;
   int first = max(1, ray.state.steps);  // 0 is for rays that have not begun
   int steps = first;
+  int evaluations = 0;  // of this run
   while (s < ray.exit) {
     if (steps > settings.max_steps) {
       scarp_function_tell(kScarpFunctionExhausted, s, hit);
       return hit;
     }
-    if (steps - first == settings.run_steps) {
+    if (evaluations >= settings.run_steps) {
       hit.status = kScarpFunctionUnderWay;
       hit.state.s = s;
       hit.state.before = length_;
@@ -198,6 +197,7 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
     }
     hit.bounds += 1u;
     ++steps;
+    ++evaluations;
     float end = ask == kScarpAskSegment ? min(s + length_, ray.exit) : s;
     ScarpProof proof = scarp_proof(program, ray, lift, s, end);
     if (ask == kScarpAskOpen) {
@@ -213,17 +213,28 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
                     : kScarpGrowth * length_;
       continue;
     }
-    float least = max(kScarpShortest * (s + length_), settings.tolerance * (s + ray.travelled));
-    // Where bounds of the point itself do not tell it from the ground, shorter segments tell no more.
-    bool hidden = ask == kScarpAskPoint && !(proof.begin > 0.0f);
-    if (length_ <= least || hidden) {
-      if (!any && !hidden) s = scarp_crossing(program, ray, s, end, hit);
-      scarp_function_tell(kScarpFunctionHit, s, hit);
-      return hit;
-    }
     if (ask == kScarpAskPoint) {
+      // Where bounds of the point itself do not tell it from the ground, shorter segments tell no more.
+      if (!(proof.begin > 0.0f)) {
+        scarp_function_tell(kScarpFunctionHit, s, hit);
+        return hit;
+      }
       ask = kScarpAskSegment;
       continue;
+    }
+    float shortest = kScarpShortest * (s + length_);
+    float least = max(shortest, settings.tolerance * (s + ray.travelled));
+    if (length_ <= least) {
+      hit.heights += 1u;
+      ++evaluations;
+      float h = scarp_clearance(program, ray, end);
+      if (h <= 0.0f || length_ <= shortest) {
+        if (h <= 0.0f && !any) s = scarp_crossing(program, ray, s, end, h, hit);
+        scarp_function_tell(kScarpFunctionHit, s, hit);
+        return hit;
+      }
+      // No crossing is known, the bounds are only too wide for so little clearance. Shorter segments tell.
+      least = shortest;
     }
     if (proof.until == s && proof.wide <= 4.0f * ray.rounding) ask = kScarpAskPoint;
     // The first crossing is before `sunk`; otherwise it may be anywhere in the rest of the segment, or nowhere.

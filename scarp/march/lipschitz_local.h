@@ -11,13 +11,13 @@
 // The line makes this a Newton iteration that cannot overshoot: close to the ground the bounds are of second order.
 // The last interval, no longer than the tolerance, is halved until doubles end.
 //
-// Guarantee: conservative, with rounding counted: no crossing is passed, whatever the function. A hit is a crossing, or
-// a place where the ray cannot be told from one within the tolerance (of several crossings within it any). Used-up
-// steps are exhausted, never a hit. A ray that begins under the ground is below, and is not followed. A ray that begins
-// on the surface is above it by definition: it is followed as far as it provably gains height, and hits where it begins
-// if it provably loses height there. Source: E. Galin, E. Guerin, A. Paris, A. Peytavie, "Segment tracing using local
-// Lipschitz bounds", Computer Graphics Forum 39(2), 2020; here with a line and a remainder instead of a slope. Cost: a
-// bound costs 2 to 5 heights.
+// Guarantee: conservative, with rounding counted: no crossing is passed, whatever the function. A hit is a crossing (of
+// several within the tolerance any), or a touch: a place where bounds of a segment of 2^-40 of the ray do not tell it
+// from the ground. Used-up steps are exhausted, never a hit: a ray that nearly runs along a crease may use them up. A
+// ray that begins under the ground is below, and is not followed. A ray that begins on the surface is above it by
+// definition: it is followed as far as it provably gains height, and hits where it begins if it provably loses height
+// there. Source: E. Galin, E. Guerin, A. Paris, A. Peytavie, "Segment tracing using local Lipschitz bounds", Computer
+// Graphics Forum 39(2), 2020; here with a line and a remainder instead of a slope. Cost: a bound costs 2 to 5 heights.
 #pragma once
 
 #include "scarp/base/ray.h"

@@ -104,7 +104,13 @@ class LocalWalk {
         length_ = r_.t_exit - t_;
         return next_segment();
       case State::last:
-        if (h > 0) return end(r_.hit(t_));
+        if (h > 0) {
+          // No crossing is known, the bounds are only too wide for so little clearance: over a crease, or along steep
+          // ground. Shorter segments tell.
+          if (length_ <= shortest_) return end(r_.hit(t_));
+          length_ = std::max(shortest_, kShrink * length_);
+          return next_segment();
+        }
         h1_ = h;
         ++stats_.cell_tests;
         return ask(Question::height, State::above_end, t_, t_);
@@ -130,7 +136,8 @@ class LocalWalk {
  private:
   enum class State : std::uint8_t { rounding, leaving, beginning, walking, last, above_end, secants };
 
-  // The shortest segment looked at, as a share of the ray's part over the ground, whatever the tolerance.
+  // The shortest segment looked at, as a share of the ray's part over the ground, whatever the tolerance: a ray that
+  // bounds do not tell from the ground there touches it.
   static constexpr double kShortest = 0x1p-40;
   // Lines are followed a little less far than to where they meet the ray: more than their rounding.
   static constexpr double kShort = 1 - 0x1p-20;

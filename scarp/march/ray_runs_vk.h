@@ -20,6 +20,18 @@
 
 namespace scarp {
 
+/// Throws Error when a batch has not as many answers and costs (or none) as rays.
+inline void require_room(std::size_t rays, std::size_t hits, std::size_t steps) {
+  if (rays != hits || (steps != 0 && rays != steps))
+    throw Error(fmt::format("batch: {} rays, room for {} answers and {} costs", rays, hits, steps));
+}
+inline void require_room(std::size_t rays, std::size_t blocked) {
+  if (rays != blocked) throw Error(fmt::format("batch: {} rays, room for {} answers", rays, blocked));
+}
+inline bool is_blocked(const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
+  return prepared.marches && answer.status == glsl::kScarpFunctionHit;
+}
+
 class RayRuns {
  public:
   static constexpr std::uint32_t kThreads = 64;  // of a workgroup

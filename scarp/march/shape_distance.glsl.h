@@ -8,6 +8,8 @@
 //   ScarpShapeInstruction scarp_shape_instruction(uint i);      the i-th of the program
 //   float scarp_shape_number(uint i);                           the i-th of its numbers
 //   bool scarp_shape_uses(uint op);                             whether an instruction is in it; true is always right
+//   float scarp_shape_function(uint index, float x, float y);   height of the index-th ground, a function's
+//   float scarp_shape_field(uint index, vec3 q, float shrink);  scarp_field_ground() of shape_grounds.glsl.h
 #ifndef SCARP_MARCH_SHAPE_DISTANCE_GLSL_H
 #define SCARP_MARCH_SHAPE_DISTANCE_GLSL_H
 
@@ -20,6 +22,11 @@ SCARP_GLSL_BEGIN
 ScarpShapeInstruction scarp_shape_instruction(uint i);
 float scarp_shape_number(uint i);
 bool scarp_shape_uses(uint op);
+float scarp_shape_function(uint index, float x, float y);
+float scarp_shape_field(uint index, vec3 q, float shrink);
+
+/// Terrain functions end here, metres from their origin in x and y; beyond, the ground goes on as it is there.
+const float kScarpFunctionReach = 1073741824.0f;
 
 SCARP_FN float scarp_length2(float x, float y) { return sqrt(x * x + y * y); }
 SCARP_FN float scarp_length3(float x, float y, float z) { return sqrt(x * x + y * y + z * z); }
@@ -150,6 +157,23 @@ SCARP_FN float scarp_rest_bound(vec3 p, uint k) {
   return least;
 }
 
+/// The value of a ground at a position.
+SCARP_FN float scarp_ground(ScarpShapeInstruction at, uint k, vec3 p) {
+  vec3 c = scarp_numbers3(k);
+  float scale = scarp_shape_number(k + 3u);
+  float shrink = scarp_shape_number(k + 4u);
+  vec3 q = vec3((p.x - c.x) / scale, (p.y - c.y) / scale, (p.z - c.z) / scale);
+  float value = 0.0f;
+  if (scarp_shape_uses(kScarpShapeFunctionGround) && at.op == kScarpShapeFunctionGround) {
+    float x = clamp(q.x, -kScarpFunctionReach, kScarpFunctionReach);
+    float y = clamp(q.y, -kScarpFunctionReach, kScarpFunctionReach);
+    value = (q.z - scarp_shape_function(at.index, x, y)) * shrink;
+  } else if (scarp_shape_uses(kScarpShapeFieldGround)) {
+    value = scarp_shape_field(at.index, q, shrink);
+  }
+  return value * scale;
+}
+
 /// The value at a position: no more than the distance to the surface, negative inside.
 SCARP_FN float scarp_shape_distance(uint count, vec3 position) {
   vec3 p[kScarpShapeRegisters];
@@ -176,6 +200,8 @@ SCARP_FN float scarp_shape_distance(uint count, vec3 position) {
       p[at.to] = to;
     } else if (at.op <= kScarpShapeEllipsoid) {
       v[at.to] = scarp_solid(at.op, k, p[at.a]);
+    } else if (at.op <= kScarpShapeFieldGround) {
+      v[at.to] = scarp_ground(at, k, p[at.a]);
     } else if (at.op <= kScarpShapeSmoothSubtract) {
       // max(a, b) = -min(-a, -b); to subtract is to intersect with all but b.
       bool unites = at.op == kScarpShapeUnite || at.op == kScarpShapeSmoothUnite;

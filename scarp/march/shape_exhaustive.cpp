@@ -112,7 +112,49 @@ class Evaluation {
       x = max(Interval(0.0), min(Interval(field.width()), x));
       y = max(Interval(0.0), min(Interval(field.depth()), y));
     }
-    return clamped(max(walls, (at(p, 2) - height_of(field, x, y)) * shrink(g.slope)), node, p);
+    Interval value = max(walls, (at(p, 2) - height_of(field, x, y)) * shrink(g.slope));
+    if (g.holes) value = max(value, over_hole(*g.holes, x, y));
+    return clamped(value, node, p);
+  }
+  // To the rim of the nearest hole, positive over holes, as far as a cell is long.
+  static Interval over_hole(const HeightField& field, const Interval& x, const Interval& y) {
+    const HeightFieldSettings& s = field.settings();
+    const double far = std::min(s.cell_x, s.cell_y);
+    const Interval anything(-far, far);
+    const Interval col = x / s.cell_x, row = double(field.rows() - 1) - y / s.cell_y;
+    constexpr double kMostCells = 4;
+    if (width(col) > kMostCells || width(row) > kMostCells) return anything;
+    const int cols = field.cell_cols(), rows = field.cell_rows();
+    const auto exists = [&](double c, double r) { return field.wraps() || (c >= 0 && r >= 0 && c < cols && r < rows); };
+    const auto is_hole = [&](double c, double r) {
+      const auto wrapped = [](double at, int count) { return static_cast<int>(at - std::floor(at / count) * count); };
+      return !field.cell_heights({wrapped(c, cols), wrapped(r, rows)});
+    };
+    // Between a place along an axis and a cell on its side `d` of the cell `c`, in cells.
+    const auto away = [](const Interval& place, double c, int d) {
+      return d == 0 ? Interval(0.0) : d > 0 ? positive(c + 1.0 - place) : positive(place - c);
+    };
+    Interval range = Interval::empty();
+    for (double r = std::floor(row.lower()); r <= std::floor(row.upper()); ++r) {
+      for (double c = std::floor(col.lower()); c <= std::floor(col.upper()); ++c) {
+        // The last line belongs to the cells before it.
+        const double own_c = field.wraps() ? c : std::clamp(c, 0.0, cols - 1.0);
+        const double own_r = field.wraps() ? r : std::clamp(r, 0.0, rows - 1.0);
+        const Interval u = intersect(col, Interval(own_c, own_c + 1)), v = intersect(row, Interval(own_r, own_r + 1));
+        if (empty(u) || empty(v)) continue;
+        const bool hole = is_hole(own_c, own_r);
+        Interval nearest(far);
+        for (int dr = -1; dr <= 1; ++dr) {
+          for (int dc = -1; dc <= 1; ++dc) {
+            if ((dr == 0 && dc == 0) || !exists(own_c + dc, own_r + dr) || is_hole(own_c + dc, own_r + dr) == hole)
+              continue;
+            nearest = min(nearest, length_of(away(u, own_c, dc) * s.cell_x, away(v, own_r, dr) * s.cell_y));
+          }
+        }
+        range = hull(range, hole ? nearest : -nearest);
+      }
+    }
+    return empty(range) ? anything : range;
   }
   // A bilinear cell is highest and lowest at corners of what is looked at of it, and so are planes.
   static Interval height_of(const HeightField& field, const Interval& x, const Interval& y) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -23,8 +24,28 @@ constexpr std::uint32_t kSphereTraceWords[] = {
 // Values that may follow the last step of a run, and the one that it begins with.
 constexpr int kLastValues = 8;
 
-int run_steps(std::size_t instructions) {
-  return std::max(1, glsl::kScarpLoopTurns / (static_cast<int>(instructions) + 2) - kLastValues);
+int run_steps(std::size_t turns) {
+  return std::max(1, glsl::kScarpLoopTurns / (static_cast<int>(turns) + 2) - kLastValues);
+}
+
+// The interpreter's loop turns once per instruction, and in the loops of grounds.
+std::size_t turns_of(const DistanceProgram& program) {
+  constexpr std::size_t kRim = 9;
+  std::size_t turns = program.code.size();
+  for (const DistanceInstruction& in : program.code) {
+    if (in.op == DistanceOp::function_ground)
+      turns += program.functions[in.index]->program(FunctionUse::march).code.size();
+    if (in.op == DistanceOp::field_ground && program.holes[in.index]) turns += kRim;
+  }
+  // A run has some steps besides the values that may follow the last.
+  constexpr std::size_t kMost = static_cast<std::size_t>(glsl::kScarpLoopTurns) / (2 * kLastValues);
+  if (turns > kMost) {
+    throw Error(
+        fmt::format("shape: {} instructions, those of its functions included; Vulkan devices take {}: use fewer solids "
+                    "or octaves, several objects, or the CPU",
+                    turns, kMost));
+  }
+  return turns;
 }
 
 DeviceBuffer filled(const Device& device, const void* from, std::uint64_t bytes, const std::string& name) {
@@ -36,14 +57,40 @@ DeviceBuffer filled(const Device& device, const void* from, std::uint64_t bytes,
 }  // namespace
 
 DeviceShape::DeviceShape(const Device& device, const DistanceField& shape)
-    : code_([&] {
-        const ShapeWords words = shape_words(shape.program());
-        return filled(device, words.code.data(), words.code.size() * sizeof(words.code[0]), "a shape");
-      }()),
-      numbers_([&] {
-        const ShapeWords words = shape_words(shape.program());
-        return filled(device, words.numbers.data(), words.numbers.size() * sizeof(float), "a shape's numbers");
-      }()) {}
+    : DeviceShape(device, shape, shape_words(shape.program())) {}
+
+DeviceShape::DeviceShape(const Device& device, const DistanceField& shape, const ShapeWords& words)
+    : rounding_(shape),
+      code_(filled(device, words.code.data(), words.code.size() * sizeof(words.code[0]), "a shape")),
+      numbers_(filled(device, words.numbers.data(), words.numbers.size() * sizeof(float), "a shape's numbers")),
+      grounds_(device,
+               (shape.program().functions.size() + shape.program().fields.size() + 1) * sizeof(glsl::ScarpShapeGround),
+               "a shape's grounds"),
+      turns_(turns_of(shape.program())) {
+  const DistanceProgram& program = shape.program();
+  std::vector<glsl::ScarpShapeGround> grounds;
+  for (const auto& function : program.functions) {
+    functions_.emplace_back(device, *function);
+    const FunctionProgram& march = function->program(FunctionUse::march);
+    glsl::ScarpShapeGround ground{};
+    ground.data = functions_.back().address(FunctionUse::march);
+    ground.count = static_cast<std::uint32_t>(march.code.size());
+    ground.result = march.result;
+    grounds.push_back(ground);
+  }
+  for (std::size_t i = 0; i < program.fields.size(); ++i) {
+    glsl::ScarpShapeGround ground{};
+    fields_.emplace_back(device, *program.fields[i]);
+    ground.data = fields_.back().address();
+    if (program.holes[i]) {
+      fields_.emplace_back(device, *program.holes[i]);
+      ground.holes = fields_.back().address();
+      ground.has_holes = 1;
+    }
+    grounds.push_back(ground);
+  }
+  if (!grounds.empty()) upload(grounds_, 0, grounds.data(), grounds.size() * sizeof(grounds[0]));
+}
 
 struct DeviceShapeQueries::Impl {
   Impl(const Device& device_, const MarchSettings& march_settings_, const DeviceQuerySettings& settings)
@@ -51,12 +98,12 @@ struct DeviceShapeQueries::Impl {
 
   // Made of what the program has, when it is first asked for.
   const ComputePipeline& pipeline(const DistanceProgram& program, bool any) {
-    const std::uint32_t choice = any, parts = shape_parts(program);
-    const auto made = pipelines.find({choice, parts});
+    const std::uint32_t choice = any, parts = shape_parts(program), functions = shape_function_parts(program);
+    const auto made = pipelines.find({choice, parts, functions});
     if (made != pipelines.end()) return made->second;
-    const std::uint32_t constants[] = {RayRuns::kThreads, choice, parts};
+    const std::uint32_t constants[] = {RayRuns::kThreads, choice, parts, functions};
     return pipelines
-        .try_emplace({choice, parts}, device, kSphereTraceWords, "sphere-trace",
+        .try_emplace({choice, parts, functions}, device, kSphereTraceWords, "sphere-trace",
                      std::uint32_t{sizeof(glsl::ShapeBatch)}, constants)
         .first->second;
   }
@@ -67,19 +114,21 @@ struct DeviceShapeQueries::Impl {
     glsl::ShapeBatch batch{};
     batch.code = target.device->code();
     batch.numbers = target.device->numbers();
+    batch.grounds = target.device->grounds();
+    batch.growth = static_cast<float>(shape_ray_growth(target.device->rounding()) * (1 + 0x1p-20));
     batch.instructions = static_cast<std::uint32_t>(program.code.size());
     batch.tolerance = static_cast<float>(march_settings.sphere_trace.tolerance);
     batch.max_steps = march_settings.sphere_trace.max_steps;
-    batch.run_steps = run_steps(program.code.size());
+    batch.run_steps = run_steps(target.device->turns());
     runs.ask(
         pipeline(program, any), batch, asked.size(),
-        [&](std::size_t i) { return device_shape_ray(*target.shape, asked[i]); }, answer);
+        [&](std::size_t i) { return device_shape_ray(*target.shape, target.device->rounding(), asked[i]); }, answer);
   }
 
   MarchSettings march_settings;
   Device device;
   RayRuns runs;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, ComputePipeline> pipelines;  // by choice and parts
+  std::map<std::array<std::uint32_t, 3>, ComputePipeline> pipelines;  // by choice, parts, and those of functions
 };
 
 DeviceShapeQueries::DeviceShapeQueries(const Device& device, const MarchEntry& march,
@@ -102,9 +151,7 @@ void DeviceShapeQueries::set_march_settings(const MarchSettings& march_settings)
 
 void DeviceShapeQueries::closest_hits(const DeviceShapeTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                                       std::span<std::uint32_t> steps) {
-  if (rays.size() != hits.size() || (!steps.empty() && rays.size() != steps.size()))
-    throw Error(
-        fmt::format("batch: {} rays, room for {} answers and {} costs", rays.size(), hits.size(), steps.size()));
+  require_room(rays.size(), hits.size(), steps.size());
   impl_->ask(target, false, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
                hits[i] = hit_from_device(rays[i], prepared, answer);
@@ -114,11 +161,10 @@ void DeviceShapeQueries::closest_hits(const DeviceShapeTarget& target, std::span
 
 void DeviceShapeQueries::occluded(const DeviceShapeTarget& target, std::span<const Ray> rays,
                                   std::span<std::uint8_t> blocked) {
-  if (rays.size() != blocked.size())
-    throw Error(fmt::format("batch: {} rays, room for {} answers", rays.size(), blocked.size()));
+  require_room(rays.size(), blocked.size());
   impl_->ask(target, true, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
-               blocked[i] = prepared.marches && answer.status == glsl::kScarpFunctionHit;
+               blocked[i] = is_blocked(prepared, answer);
              });
 }
 

@@ -2,14 +2,17 @@
 // Rays by the batch against distance fields on a Vulkan device: queries_vk.h for shapes.
 //
 // Answers are those of single precision, by balls alone (sphere_trace.glsl.h): the CPU's wherever the ray passes or
-// meets the surface by more than 4 times what values are off by (single_rounding() of accel/shape_words.h). Closest and
-// any always agree.
+// meets the surface by more than 4 times what values are off by (ShapeSingleRounding of accel/shape_words.h). Closest
+// and any always agree. Grounds of height fields and functions may be among a shape's parts.
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
+#include "scarp/accel/device_function.h"
+#include "scarp/accel/device_ground.h"
 #include "scarp/accel/shape_words.h"
 #include "scarp/march/marches.h"
 #include "scarp/march/queries_vk.h"
@@ -21,14 +24,24 @@ namespace scarp {
 /// A distance field in the memory of a device.
 class DeviceShape {
  public:
-  /// Throws Error: no memory for it, a ground of a height field or function in it.
+  /// Throws Error: no memory for it, a function in it whose numbers do not fit into floats, or too many instructions.
   DeviceShape(const Device& device, const DistanceField& shape);
 
   std::uint64_t code() const { return code_.address(); }
   std::uint64_t numbers() const { return numbers_.address(); }
+  std::uint64_t grounds() const { return grounds_.address(); }
+  const ShapeSingleRounding& rounding() const { return rounding_; }
+  /// Turns of loops that a value takes, at most.
+  std::size_t turns() const { return turns_; }
 
  private:
-  DeviceBuffer code_, numbers_;
+  DeviceShape(const Device& device, const DistanceField& shape, const ShapeWords& words);
+
+  ShapeSingleRounding rounding_;
+  DeviceBuffer code_, numbers_, grounds_;
+  std::vector<DeviceFunction> functions_;
+  std::vector<DeviceGround> fields_;  // those of holes, too
+  std::size_t turns_;
 };
 
 /// What is marched on a device.

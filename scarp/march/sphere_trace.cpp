@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "scarp/march/ray_clip.h"
+
 namespace scarp {
 namespace {
 
@@ -261,14 +263,7 @@ class Trace {
 
   void clip(double low, double high, double o, double d) {
     const double slack = kRounding * (std::abs(o) + std::max(std::abs(low), std::abs(high)));
-    low -= slack, high += slack;
-    if (d == 0) {
-      if (!(o >= low && o <= high)) t_exit_ = -std::numeric_limits<double>::infinity();
-      return;
-    }
-    const double a = (low - o) / d, b = (high - o) / d;
-    t_enter_ = std::max(t_enter_, std::min(a, b));
-    t_exit_ = std::min(t_exit_, std::max(a, b));
+    clip_to_range(low - slack, high + slack, o, d, t_enter_, t_exit_);
   }
 
   const DistanceField& field_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `sphere-trace` for shaders: balls alone, in floats, where sphere_trace.h has bounds of segments, too. r: what values
-// as computed are off by (ScarpFunctionRay::rounding).
+// as computed are off by there: ScarpFunctionRay::rounding where the ray begins, and more with the way.
 //
 //   outside   the next step is the value less r; a hit where that is no more than r or the tolerance, and then a few
 //             steps by the whole value, to the surface as floats have it
@@ -27,6 +27,7 @@ struct ScarpSphereTrace {
   float tolerance;
   int max_steps;
   int run_steps;  ///< after so many more steps the march is interrupted (kScarpFunctionUnderWay), at least 1
+  float growth;   ///< of what values are off by, per metre of the ray
 };
 
 // Where a ray is: ScarpFunctionState::phase.
@@ -42,7 +43,7 @@ const int kScarpClosingSteps = 6;
 /// What the march finds first. With `any` a hit's time means nothing.
 SCARP_FN ScarpFunctionHit scarp_sphere_trace(uint count, ScarpFunctionRay ray, ScarpSphereTrace settings, bool any) {
   ScarpFunctionHit hit = scarp_function_miss();
-  float r = ray.rounding;
+  float r = ray.rounding + settings.growth * (ray.speed * ray.state.s);
   float least_step = r / ray.speed;
   bool began_inside = (ray.state.phase & kScarpTraceBegan) != 0u;
   uint phase = ray.state.phase & 7u;
@@ -69,6 +70,8 @@ SCARP_FN ScarpFunctionHit scarp_sphere_trace(uint count, ScarpFunctionRay ray, S
         return hit;
       }
     }
+    r = ray.rounding + settings.growth * (ray.speed * s);
+    least_step = r / ray.speed;
     hit.heights += 1u;
     float f = scarp_shape_distance(
         count,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/render/height_look.h"
 #include "scarp/render/ramp.h"
 #include "scarp/render/shaded_tile.h"
 #include "scarp/render/shader.h"
@@ -77,11 +78,9 @@ void look_through_middles(const TerrainScene& scene, const Camera& camera, const
 Image render_height(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings,
                     const Progress& progress) {
   Image image(settings.width, settings.height);
-  const double low = scene.field().min_height(), relief = scene.field().max_height() - low;
+  const double low = scene.field().min_height(), high = scene.field().max_height();
   look_through_middles(scene, camera, settings, false, progress, [&](int x, int y, const Sight& sight) {
-    if (!sight.hit) return;
-    const double share = relief > 0 ? std::clamp((sight.hit.height - low) / relief, 0.0, 1.0) : 1.0;
-    std::fill_n(image.pixel(x, y), 3, static_cast<std::uint8_t>(std::lround(1 + 254 * share)));
+    if (sight.hit) std::fill_n(image.pixel(x, y), 3, grey_of_height(sight.hit.height, low, high));
   });
   return image;
 }

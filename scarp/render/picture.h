@@ -3,7 +3,8 @@
 //
 //   shaded  colours by height, sun with exact hard shadows (or, with `samples`, soft ones and ambient occlusion),
 //           sky, a block below the terrain
-//   height  grey, linear in height from the field's lowest (1) to its highest point (255); misses are black (0)
+//   height  grey, linear in height from the field's lowest (1) to its highest point (255); misses are black (0);
+//           of scenes from the lowest to the highest point in the picture, see height_look.h
 //   steps   what the march cost: steps per ray as a ramp from the least to the most in the picture
 //   comanche  few large pixels, see comanche.h
 //   error   where the march is wrong, see error_look.h
@@ -85,10 +86,16 @@ struct StepRange {
   double mean = 0;
 };
 
+/// Metres, world z.
+struct SeenHeights {
+  double low = 0, high = 0;
+};
+
 struct Picture {
   Image image;
-  std::optional<StepRange> steps;     ///< of `steps`
-  std::optional<ErrorCounts> errors;  ///< of `error`
+  std::optional<StepRange> steps;        ///< of `steps`
+  std::optional<ErrorCounts> errors;     ///< of `error`
+  std::optional<SeenHeights> heights{};  ///< of `height` of scenes: what grey 1 and 255 mean; none: nothing was hit
 };
 
 /// `camera` must have been made for the settings' width and height. Throws Error when a setting is out of its range or

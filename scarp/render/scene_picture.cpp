@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/render/height_look.h"
 #include "scarp/render/lighting.h"
 #include "scarp/render/sky.h"
 #include "scarp/render/step_look.h"
@@ -192,9 +194,19 @@ Picture render_scene(const Scene& scene, const SceneLook& look, const Camera& ca
                          [&](std::size_t i, const Ray&, const SceneHit&, std::uint32_t cost) { steps[i] = cost; });
     return picture_of_steps(settings, steps);
   }
-  if (settings.look != Look::shaded)
-    throw Error(
-        fmt::format("look '{}': scenes and voxels have none; there are: shaded, steps", name_of(settings.look)));
+  if (settings.look == Look::height) {
+    std::vector<double> heights(static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height),
+                                std::numeric_limits<double>::quiet_NaN());
+    look_through_middles(scene, camera, settings, progress,
+                         [&](std::size_t i, const Ray& ray, const SceneHit& hit, std::uint32_t) {
+                           if (hit) heights[i] = ray.at(hit.t()).z;
+                         });
+    return picture_of_heights(settings, heights);
+  }
+  if (settings.look != Look::shaded) {
+    throw Error(fmt::format("look '{}': scenes and voxels have none; there are: shaded, height, steps",
+                            name_of(settings.look)));
+  }
   Image image(settings.width, settings.height);
   shade(scene, look, camera, settings, progress, [&](int x, int y, vec3 colour) { set_pixel(image, x, y, colour); });
   return {std::move(image), {}, {}};

@@ -3,6 +3,7 @@
 //
 //   shaded  materials in the light of sun and sky, exact hard shadows (or, with `samples`, soft ones and ambient
 //           occlusion), haze with distance, sky
+//   height  grey by height, see height_look.h
 //   steps   what the marches cost: steps per ray as a ramp from the least to the most in the picture
 #pragma once
 

@@ -82,14 +82,16 @@ class Scene {
   /// The nearest hit. Without one: exhausted when a march gave up, else below when the ray began below a surface and
   /// met none. A march that gives up hides nothing that is hit behind. `stats`, when given, is overwritten.
   SceneHit closest_hit(const SceneRay& ray, SceneStats* stats = nullptr) const;
-  /// Whether closest_hit() would tell a hit.
+  /// Whether closest_hit() would tell a hit: of the surfaces that throw shadows. These are those that are seen, but for
+  /// terrain functions of which octaves for shadows are others than for the march (Octaves of field/function_node.h):
+  /// there the two may differ, for those surfaces do.
   bool occluded(const SceneRay& ray) const;
 
   /// hits[i] is closest_hit(rays[i]), bit for bit (on a device as it finds it); steps[i], when asked for, is what that
   /// cost. On all threads. Throws Error when spans differ in length.
   void closest_hits(std::span<const SceneRay> rays, std::span<SceneHit> hits,
                     std::span<std::uint32_t> steps = {}) const;
-  /// blocked[i] is 1 where closest_hits() would tell a hit, else 0.
+  /// blocked[i] is 1 where occluded(rays[i]) is true, else 0.
   void occluded(std::span<const SceneRay> rays, std::span<std::uint8_t> blocked) const;
 
   SceneSurface surface(const Ray& ray, const SceneHit& hit) const;

@@ -63,7 +63,7 @@ class SceneField {
   /// `ray` counts as free, but for `from`: a hit of this field on whose surface it begins, or null. `stats`, when
   /// given, is overwritten.
   virtual FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const = 0;
-  /// Whether closest_hit() would tell a hit.
+  /// Whether closest_hit() would tell a hit; of a function with fewer octaves for shadows, of that surface.
   virtual bool occluded(const Ray& ray, const FieldHit* from) const = 0;
   virtual FieldSurface surface(const Ray& ray, const FieldHit& hit) const = 0;
 

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <utility>
 
-#include "scarp/accel/slope_bound.h"
+#include "scarp/accel/solid_ground.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/from_raster.h"
 #include "scarp/scene/from_volume.h"
@@ -124,8 +124,13 @@ Shape ground_from(const Json& json, const std::string& path, const FieldSurround
   }
   if (json.is_object() && json.size() >= 1 && json.contains("heights")) {
     HeightsWithPlace made = heights_from(json["heights"], path + "/heights", around);
-    const double slope = slope_bound(made.field);
-    const Shape ground = make_shape(shape::FieldGround{std::make_shared<HeightField>(std::move(made.field)), slope});
+    const Shape ground = [&] {
+      try {
+        return make_shape(solid_ground(std::make_shared<HeightField>(std::move(made.field))));
+      } catch (const Error&) {
+        rethrow_at(path + "/heights");
+      }
+    }();
     return made.shift == dvec3(0.0) ? ground : make_shape(shape::Moved{ground, made.shift});
   }
   if (json.is_object() && json.contains("function")) {

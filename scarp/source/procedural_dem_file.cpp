@@ -24,7 +24,7 @@ constexpr int kRowsPerPiece = 8;  // of a strip, for one thread
                           session.reason("GDAL gives no reason")));
 }
 
-GDALDatasetUniquePtr create(const std::string& path, const std::string& file, const ProceduralDem& s,
+GDALDatasetUniquePtr create(const std::string& path, const std::string& file, const ComputedDem& s,
                             GdalSession& session) {
   GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   if (!driver) throw Error("this GDAL has no GeoTIFF driver; install one that has");
@@ -50,10 +50,7 @@ GDALDatasetUniquePtr create(const std::string& path, const std::string& file, co
   std::array<double, 6> map{-s.cols * s.cell_m / 2, s.cell_m, 0, s.rows * s.cell_m / 2, 0, -s.cell_m};
   dataset->SetSpatialRef(&crs);
   dataset->SetGeoTransform(map.data());
-  dataset->SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION",
-                           fmt::format("procedural terrain: {}, seed {}{}", name_of(s.kind), s.seed,
-                                       s.wavelength > 0 ? fmt::format(", wavelength {} cells", s.wavelength) : "")
-                               .c_str());
+  dataset->SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", s.description.c_str());
   dataset->GetRasterBand(1)->SetUnitType("m");
   if (session.failed()) refuse(path, session);
   return dataset;
@@ -63,6 +60,26 @@ GDALDatasetUniquePtr create(const std::string& path, const std::string& file, co
 
 void write_procedural_dem(const std::string& path, const ProceduralDem& settings, const Progress& progress) {
   validate(settings);
+  const std::string wavelength =
+      settings.wavelength > 0 ? fmt::format(", wavelength {} cells", settings.wavelength) : "";
+  write_computed_dem(
+      path,
+      {settings.cols, settings.rows, settings.cell_m,
+       fmt::format("procedural terrain: {}, seed {}{}", name_of(settings.kind), settings.seed, wavelength),
+       [&](int row, int rows, float* out) {
+         fill_rectangle(settings, 0, row, settings.cols, rows, out, settings.cols);
+       }},
+      progress);
+}
+
+void write_computed_dem(const std::string& path, const ComputedDem& settings, const Progress& progress) {
+  const auto side = [](int n) { return n >= 1 && n <= kLargestProceduralSide; };
+  if (!side(settings.cols) || !side(settings.rows))
+    throw Error(fmt::format("terrain: {} x {} samples; 1 to {} each are possible", settings.cols, settings.rows,
+                            kLargestProceduralSide));
+  if (!(settings.cell_m > 0 && settings.cell_m <= kLargestProceduralCell))
+    throw Error(fmt::format("terrain: {} metres from sample to sample; above 0 to {} are possible", settings.cell_m,
+                            kLargestProceduralCell));
   GdalSession session;
   // Declared before the dataset: whatever ends this function, the file is closed before it is removed.
   ReplaceFile output(path);
@@ -77,8 +94,8 @@ void write_procedural_dem(const std::string& path, const ProceduralDem& settings
     parallel_for(
         rows, kRowsPerPiece,
         [&](std::int64_t begin, std::int64_t end) {
-          fill_rectangle(settings, 0, first + static_cast<int>(begin), settings.cols, static_cast<int>(end - begin),
-                         strip.data() + begin * settings.cols, settings.cols);
+          settings.fill(first + static_cast<int>(begin), static_cast<int>(end - begin),
+                        strip.data() + begin * settings.cols);
         },
         of_strip);
     const CPLErr result = band.RasterIO(GF_Write, 0, first, settings.cols, rows, strip.data(), settings.cols, rows,

@@ -342,7 +342,7 @@ TEST(DistanceField, RefusesWhatIsOutOfRange) {
   EXPECT_NE(refusal(FieldGround{}), "");
   const auto holed = std::make_shared<HeightField>(HeightField::own(std::vector<float>{1, 2, 3, std::nanf("")}, 2, 2));
   EXPECT_EQ(refusal(FieldGround{holed, 1}),
-            "shape: field of a ground has 1 nodata samples; it must have none: fill them before");
+            "shape: field of a ground has 1 nodata samples; make the ground by solid_ground()");
   EXPECT_THROW(DistanceField(nullptr), Error);
 }
 

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <utility>
 
 #include <glm/vector_relational.hpp>
 
 #include "scarp/accel/slope_bound.h"
+#include "scarp/accel/solid_ground.h"
 
 namespace scarp::test {
 
@@ -25,6 +27,18 @@ Shape field_ground(Surface surface) {
   const auto field = std::make_shared<HeightField>(
       HeightField::own(std::move(samples), 9, 7, {.cell_x = 2, .cell_y = 1.5, .surface = surface}));
   return make_shape(FieldGround{field, slope_bound(*field)});
+}
+
+// Holes at the border, in the middle, and two that touch at a corner.
+Shape field_with_holes() {
+  std::vector<float> samples;
+  FunctionRandom random(7);
+  for (int i = 0; i < 13 * 11; ++i) samples.push_back(static_cast<float>(random.between(-1, 2)));
+  for (const int i : {0, 13 * 4 + 4, 13 * 4 + 5, 13 * 8 + 9, 13 * 6 + 12}) {
+    samples[static_cast<std::size_t>(i)] = std::numeric_limits<float>::quiet_NaN();
+  }
+  return make_shape(solid_ground(
+      std::make_shared<HeightField>(HeightField::own(std::move(samples), 13, 11, {.cell_x = 2, .cell_y = 1.5}))));
 }
 
 Shape function_ground() {
@@ -77,6 +91,9 @@ std::vector<NamedShape> shape_zoo() {
       {"forty solids", make_shape(Union{many})},
       {"field", field_ground(Surface::bilinear)},
       {"field of triangles", field_ground(Surface::triangles)},
+      {"field with holes", field_with_holes()},
+      {"quarry with holes", make_shape(Subtraction{make_shape(Turned{field_with_holes(), {1, 1, 4}, 0.5}),
+                                                   moved(make_shape(Sphere{3}), {8, 4, 1})})},
       {"function", function_ground()},
       {"village", village},
       {"quarry", make_shape(Subtraction{field_ground(Surface::bilinear),
@@ -189,7 +206,7 @@ struct Holds {
   }
   bool operator()(const FunctionGround& g) const { return p.z <= g.function->value(p.x, p.y); }
   bool operator()(const FieldGround& g) const {
-    const auto h = g.field->height(p.x, p.y);
+    const auto h = (g.holes ? g.holes : g.field)->height(p.x, p.y);
     return h && p.z <= *h;
   }
   bool operator()(const Moved& m) const { return solid_holds(m.shape, p - m.by); }

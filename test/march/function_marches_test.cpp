@@ -67,8 +67,23 @@ TEST(FunctionMarches, ConservativeOnesLoseNothing) {
     EXPECT_LE(undecided, 1 + kRays / 500) << named.name;
     EXPECT_GE(crossings, kRays / 4) << named.name;
     EXPECT_LE(local.exhausted, kRays / 500) << named.name;
-    EXPECT_LE(local.early + local.inexact, 1 + kRays / 500) << named.name;
+    EXPECT_EQ(local.early + local.inexact, 0) << named.name;
     if (HasFailure()) return;  // one function says enough
+  }
+}
+
+// A ridge where two planes meet. Bounds know a crease to first order only: segments as long as the tolerance do not
+// tell a ray from it that passes a thousandth of them above.
+TEST(FunctionMarches, PassCreasesClosely) {
+  const Function planes = make_function(Minimum{make_function(Plane{0, 0.1, 0}), make_function(Plane{0, -0.4, 0})});
+  const HeightFunction ridge(planes);
+  for (const double above : {1e-2, 1e-4, 1e-6, -1e-6, -1e-4}) {
+    const Ray ray{{-1000, 3, above}, {1, 0, 0}, 0, 2345};
+    const Hit hit = march_lipschitz_local(ridge, ray);
+    EXPECT_EQ(hit.status, above > 0 ? HitStatus::miss : HitStatus::hit) << above;
+    if (above < 0) {
+      EXPECT_NEAR(hit.t, 1000 + 10 * above, kTolerance * 1000);
+    }
   }
 }
 
@@ -76,7 +91,7 @@ TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);
     FunctionRandom random(12);
-    int leaving = 0;
+    int leaving = 0, exhausted = 0;
     for (int i = 0; i < kRays / 10; ++i) {
       const double x = random.between(-5000, 5000), y = random.between(-5000, 5000);
       Ray ray;
@@ -102,7 +117,13 @@ TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
         ++leaving;
         const FunctionJudgement judge = judge_function(named.function, later);
         if (judge.verdict == FunctionVerdict::crossing) {
-          EXPECT_TRUE(hit && hit.t <= judge.crossed_by + kTolerance * hit.t) << named.name;
+          // Creases that a ray nearly runs along take many short segments: given up, but not lost.
+          exhausted += hit.status == HitStatus::exhausted;
+          EXPECT_NE(hit.status, HitStatus::miss) << named.name << ": lost the crossing at t = " << judge.crossed_by;
+          EXPECT_NE(hit.status, HitStatus::below) << named.name;
+          if (hit) {
+            EXPECT_LE(hit.t, judge.crossed_by + kTolerance * hit.t) << named.name;
+          }
         }
         if (judge.verdict == FunctionVerdict::clear) {
           EXPECT_FALSE(hit) << named.name << " at t = " << hit.t;
@@ -110,6 +131,7 @@ TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
       }
     }
     EXPECT_GE(leaving, kRays / 40) << named.name;
+    EXPECT_LE(exhausted, kRays / 2000) << named.name;
   }
 }
 

@@ -224,6 +224,22 @@ TEST(FunctionsInShaders, MarchesTellWhatSinglePrecisionAllows) {
   }
 }
 
+// As PassCreasesClosely of function_marches_test, as far as floats tell times: 1000 / 2^22.
+TEST(FunctionsInShaders, PassCreasesClosely) {
+  const HeightFunction ridge(make_function(Minimum{make_function(Plane{0, 0.1, 0}), make_function(Plane{0, -0.4, 0})}));
+  const Program program(ridge.program(FunctionUse::march));
+  const SingleRounding rounding(ridge.program(FunctionUse::march));
+  for (const double above : {1e-2, 1e-4, -1e-4, -1e-2}) {
+    const Ray ray{{-1000, 3, above}, {1, 0, 0}, 0, 2345};
+    const auto prepared = device_function_ray(ridge, rounding, ray, FunctionUse::march, 1e30);
+    for (const bool any : {false, true}) {
+      const Hit hit =
+          hit_from_device(ray, prepared, glsl::scarp_lipschitz_local(*program, prepared.ray, {1e-6f, 1024, kAll}, any));
+      EXPECT_EQ(hit.status, above > 0 ? HitStatus::miss : HitStatus::hit) << above;
+    }
+  }
+}
+
 TEST(FunctionsInShaders, RaysLeaveTheSurface) {
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);

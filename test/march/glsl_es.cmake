@@ -70,9 +70,32 @@ ScarpShapeInstruction scarp_shape_instruction(uint i) {
 }
 float scarp_shape_number(uint i) { return i == 3u ? 1.0 : 0.0; }
 bool scarp_shape_uses(uint op) { return op == kScarpShapeSphere; }
+float scarp_shape_function(uint index, float x, float y) { return 0.0; }
+float scarp_shape_field(uint index, vec3 q, float shrink) { return 0.0; }
 uniform ScarpFunctionRay ray;
-void main() { colour = vec4(scarp_sphere_trace(1u, ray, ScarpSphereTrace(1.0e-6, 1024, 1024), true).time); }
+void main() { colour = vec4(scarp_sphere_trace(1u, ray, ScarpSphereTrace(1.0e-6, 1024, 1024, 1.0e-6), true).time); }
 ")
 check(${WORK}/pasted.frag TRUE)
+# Height fields among shapes, by include.
+file(WRITE ${WORK}/grounds.frag "#version 300 es
+precision highp float;
+precision highp int;
+out vec4 colour;
+#include \"scarp/march/shape_grounds.glsl.h\"
+ScarpShapeInstruction scarp_shape_instruction(uint i) {
+  return ScarpShapeInstruction(kScarpShapeFieldGround, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+}
+float scarp_shape_number(uint i) { return i >= 3u ? 1.0 : 0.0; }
+bool scarp_shape_uses(uint op) { return op == kScarpShapeFieldGround; }
+float scarp_shape_function(uint index, float x, float y) { return 0.0; }
+float scarp_field_sample(int col, int row) { return float(col + row); }
+bool scarp_field_hole(int col, int row) { return col == row; }
+float scarp_shape_field(uint index, vec3 q, float shrink) {
+  return scarp_field_ground(
+      ScarpSolidField(ivec2(7, 5), ivec2(8, 6), 1.0, 1.0, 1.0, 0.0, false, false, true), q, shrink);
+}
+void main() { colour = vec4(scarp_shape_distance(1u, vec3(gl_FragCoord.xy, 1.0))); }
+")
+check(${WORK}/grounds.frag TRUE)
 file(WRITE ${WORK}/bad.frag "#version 300 es\nprecision highp float;\nout vec4 colour;\nvoid main() { precise double x = 1.0; colour = vec4(x); }\n")
 check(${WORK}/bad.frag FALSE)

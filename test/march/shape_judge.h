@@ -14,16 +14,6 @@
 
 namespace scarp::test {
 
-/// Those of the zoo that run on devices: all but grounds.
-inline std::vector<NamedShape> shapes_without_grounds() {
-  std::vector<NamedShape> shapes;
-  for (const NamedShape& named : shape_zoo()) {
-    const DistanceProgram program = compile(named.shape);
-    if (program.functions.empty() && program.fields.empty()) shapes.push_back(named);
-  }
-  return shapes;
-}
-
 /// At what is within 2 or 12 m of the origin, from up to 40 m away, with directions of any length; some begin inside.
 inline Ray shape_ray(FunctionRandom& random) {
   const auto point = [&](double reach) {
@@ -48,6 +38,13 @@ inline std::string shape_objection(const DistanceField& shape, const Ray& ray, d
   }
   const Hit truth = march_sphere_trace(shape, ray);
   if (!truth || (hit && hit.t <= truth.t)) return {};
+  // A ray that begins inside comes out where it is farther than delta.
+  if (hit.status == HitStatus::below) {
+    bool outside = false;
+    for (int i = 0; i <= 1000; ++i)
+      outside = outside || shape.value(ray.at(ray.t_min + (truth.t - ray.t_min) * i / 1000)) > delta;
+    if (!outside) return {};
+  }
   // Past the first crossing: the ray may have been in the solid by no more than delta.
   const double end = std::min(hit ? hit.t : ray.t_max, truth.t + 30 / speed);
   for (int i = 0; i <= 1000; ++i) {

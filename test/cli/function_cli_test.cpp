@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// Terrain functions on the command line: pictures, layers, what is known of them, and as elevation models.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/program.h"
+#include "output/read_png.h"
+#ifdef SCARP_OPENEXR
+#include "output/read_exr.h"
+#endif
+
+namespace scarp {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class Functions : public testing::Test {
+ protected:
+  // A ramp that rises by half a metre per metre eastwards.
+  std::string ramp() const {
+    return scratch_.write("ramp.json", R"({"type": "plane", "height": 7, "slope": [0.5, 0]})");
+  }
+  std::string out(const char* name) const { return scratch_.path(name); }
+  // One line that says `what`, and no file.
+  void expect_refusal(std::vector<std::string> arguments, const std::string& what) const {
+    const auto result = test::run(std::move(arguments));
+    EXPECT_NE(result.status, 0);
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(what), std::string::npos) << result.err;
+  }
+
+  test::Scratch scratch_;
+};
+
+TEST_F(Functions, AreShownByHeight) {
+  const std::string picture = out("a.png");
+  const auto result = test::run({"render", "--function", ramp(), "--look", "height", "--extent", "100", "--eye",
+                                 "-200,0,60", "--target", "0,0,0", "--size", "40x30", "-o", picture});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("(grey 1)"), std::string::npos) << result.out;
+  const test::Rgb image = test::read_png(picture);
+  std::uint8_t least = 255, most = 0;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      const std::uint8_t* p = image.pixel(x, y);
+      EXPECT_TRUE(p[0] == p[1] && p[1] == p[2]);
+      if (p[0] > 0) least = std::min(least, p[0]), most = std::max(most, p[0]);
+      // The ramp rises away from the eye: in a column it gets brighter upwards, and there is no sky below it.
+      if (y > 0 && image.pixel(x, y - 1)[0] > 0) {
+        EXPECT_GE(image.pixel(x, y - 1)[0], p[0]);
+      }
+    }
+  }
+  EXPECT_EQ(least, 1);
+  EXPECT_EQ(most, 255);
+}
+
+#ifdef SCARP_OPENEXR
+TEST_F(Functions, HaveLayers) {
+  const std::string layers = out("a.exr");
+  const auto result = test::run({"render", "--function", ramp(), "--extent", "100", "--eye", "-200,0,60", "--target",
+                                 "0,0,0", "--size", "40x30", "--depth-range", "1,10000", "-o", layers});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const test::Exr exr = test::read_exr(layers);
+  const auto values = [&](const char* name) { return exr.channels.at(name).values; };
+  const auto x = values("P.X"), z = values("P.Z"), depth = values("Z"), normal = values("N.X");
+  EXPECT_EQ(exr.channels.count("depth"), 1u);
+  int hits = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(depth[i])) continue;
+    ++hits;
+    EXPECT_NEAR(z[i], 7 + 0.5 * x[i], 1e-4 * (1 + std::abs(x[i])));
+    EXPECT_NEAR(normal[i], -0.5 / std::sqrt(1.25), 1e-6);
+  }
+  EXPECT_GT(hits, 40 * 30 / 2);
+}
+#endif
+
+TEST_F(Functions, AreToldByInfo) {
+  const auto result = test::run({"info", "--function", "island", "--extent", "4000", "--json"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json info = Json::parse(result.out);
+  EXPECT_EQ(info["octaves"]["march"], 9);
+  EXPECT_EQ(info["octaves"]["normal"], 12);
+  const auto number = [&](const char* of, const char* key) { return info[of][key].get<double>(); };
+  EXPECT_LE(number("everywhere", "low_m"), number("within", "low_m"));
+  EXPECT_LE(number("within", "low_m"), number("seen", "low_m"));
+  EXPECT_GE(number("within", "high_m"), number("seen", "high_m"));
+  EXPECT_GE(number("within", "slope"), number("seen", "slope"));
+  ASSERT_EQ(info["tightness"].size(), 4u);
+  for (const Json& at : info["tightness"]) {
+    EXPECT_GE(at["range"].get<double>(), 1);
+    EXPECT_GE(at["slope"].get<double>(), 1);
+  }
+  // Of a ramp all is known but for rounding.
+  const Json plane = Json::parse(test::run({"info", "--function", ramp(), "--json"}).out);
+  for (const Json& at : plane["tightness"]) {
+    EXPECT_NEAR(at["range"].get<double>(), 1, 1e-9);
+    EXPECT_NEAR(at["slope"].get<double>(), 1, 1e-9);
+  }
+  EXPECT_NE(test::run({"info", "--function", "sea"}).out.find("certified"), std::string::npos);
+}
+
+TEST_F(Functions, AreSampledIntoAnElevationModel) {
+  const std::string dem = out("ramp.tif");
+  const auto result = test::run({"generate", "--function", ramp(), "--size", "33x17", "--cell", "10", "-o", dem});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Json info = Json::parse(test::run({"info", dem, "--json"}).out);
+  EXPECT_EQ(info["cols"], 33);
+  EXPECT_EQ(info["rows"], 17);
+  EXPECT_NEAR(info["min_m"].get<double>(), 7 - 0.5 * 160, 1e-9);
+  EXPECT_NEAR(info["max_m"].get<double>(), 7 + 0.5 * 160, 1e-9);
+  // Cells are measured on the ellipsoid, by differences.
+  EXPECT_NEAR(info["slope_bound"].get<double>(), 0.5, 1e-6);
+}
+
+TEST_F(Functions, SayInOneLineWhatIsWrong) {
+  expect_refusal({"info", "--function", "moon"}, "neither a file that can be read nor one of hills");
+  expect_refusal({"info", "--function", "hills", "--extent", "-1"}, "--extent -1: it must be above 0");
+  expect_refusal({"info", "--function", "hills", "--band", "2"}, "--band: goes with files; leave it out");
+  expect_refusal({"info", "--function", "hills", "a.tif"}, "'a.tif': --function stands in the place of files");
+  expect_refusal({"info"}, "IN (or --function NAME)");
+  expect_refusal({"generate", "--function", "hills", "--seed", "3", "--size", "9", "-o", out("a.tif")}, "--seed");
+  expect_refusal({"generate", "--function", "moon", "--size", "9", "-o", out("a.tif")}, "moon");
+  expect_refusal({"generate", "--function", "hills", "--size", "65536", "--cell", "1000000", "-o", out("a.tif")},
+                 "beyond 2^30 metres");
+  expect_refusal({"render", "--function", "hills", "--depth-range", "1,2", "-o", out("a.png")}, "--depth-range");
+  EXPECT_FALSE(fs::exists(out("a.tif")) || fs::exists(out("a.png")));
+}
+
+}  // namespace
+}  // namespace scarp
