@@ -27,6 +27,10 @@ class Light {
   const dvec3& to_sun() const { return to_sun_; }
   /// Angular radius of the disc.
   double sun_radius() const { return sun_radius_; }
+  /// What on() is made of: sky_share (1 + normal sky_side()) / (1 + sky_side().z) sky() + sun_cosine sun().
+  const vec3& sun() const { return sun_; }
+  const vec3& sky() const { return sky_; }
+  const dvec3& sky_side() const { return sky_side_; }
   /// Light on a surface with this unit normal, in linear light.
   vec3 on(const dvec3& normal, bool in_sun) const;
   /// The same from what the surface sees: `sun_cosine` is the mean cosine to the visible part of the sun's disc, 0..1,

@@ -38,6 +38,7 @@ class Lighting {
   /// Linear light; `rays` and their answers are those that `asked` refers to.
   vec3 on(const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
           std::span<const std::uint8_t> blocked) const;
+  const Light& light() const { return light_; }
   /// Unit vector to the middle of the sun's disc.
   const dvec3& to_sun() const { return light_.to_sun(); }
 

@@ -33,6 +33,8 @@
 
 namespace scarp {
 
+class SunShadow;
+
 enum class Look { shaded, height, steps, error, comanche };
 
 /// "shaded", "height", "steps", "error", "comanche".
@@ -53,6 +55,7 @@ struct PictureSettings {
   std::shared_ptr<const RampStops> ramp_stops{};  ///< instead of `ramp`; null: none
   SunSettings sun{};
   bool shadows = true;  ///< of the sun; false: it shines through the ground
+  std::shared_ptr<const SunShadow> sun_shadow{};  ///< what stands in the sun beside the ground; null: nothing
   int samples = 0;      ///< rays to the sun's disc, and to the sky, per sample of `shaded`; 0..4096; 0: exact hard
                         ///< shadows of the disc's middle and no ambient occlusion
   double ao_distance = kWholeField;      ///< metres within which ground hides the sky, >= 0; 0: no ambient occlusion

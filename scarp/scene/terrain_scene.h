@@ -37,6 +37,8 @@ class TerrainScene {
   const HeightField& field() const { return field_; }
   const MarchEntry& march() const { return *march_; }
   bool on_device() const { return device_ != nullptr; }
+  /// Who answers instead of the CPU; null: nobody.
+  const BatchQueries* device() const { return device_.get(); }
 
  private:
   HeightTarget target() const { return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_}; }

@@ -35,6 +35,8 @@ class OnDevice final : public BatchQueries {
     queries_.occluded(target(), rays, blocked);
   }
 
+  DeviceTerrain terrain() const { return {device_, ground_}; }
+
  private:
   DeviceTarget target() const { return {&field_, &ground_, slope_}; }
 
@@ -54,6 +56,11 @@ TerrainScene terrain_scene_on(const Device& device, HeightField field, const Mar
                               const MarchSettings& settings) {
   auto queries = std::make_shared<OnDevice>(device, field, march, settings);
   return {std::move(field), march, std::move(queries)};
+}
+
+std::optional<DeviceTerrain> device_terrain(const TerrainScene& scene) {
+  if (const auto* on_device = dynamic_cast<const OnDevice*>(scene.device())) return on_device->terrain();
+  return {};
 }
 
 }  // namespace scarp

@@ -5,6 +5,9 @@
 //   render_picture(scene, camera, grid_north_azimuth, settings);
 #pragma once
 
+#include <optional>
+
+#include "scarp/accel/device_ground.h"
 #include "scarp/scene/terrain_scene.h"
 #include "scarp/vk/device.h"
 
@@ -15,5 +18,13 @@ namespace scarp {
 /// the device. Questions throw Error when the device is lost.
 TerrainScene terrain_scene_on(const Device& device, HeightField field, const MarchEntry& march = find_march("max-mip"),
                               const MarchSettings& settings = {});
+
+/// Where the ground of such a scene is, for what draws beside it. Lives as long as the scene and its copies do.
+struct DeviceTerrain {
+  const Device& device;
+  const DeviceGround& ground;
+};
+/// Nothing when another answers the scene's rays.
+std::optional<DeviceTerrain> device_terrain(const TerrainScene& scene);
 
 }  // namespace scarp

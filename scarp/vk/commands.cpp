@@ -150,8 +150,8 @@ void Commands::copy(const RasterTarget& from, std::uint32_t image, const DeviceB
   }
   guarded(impl_->device->name(), "recording", [&] {
     impl_->begin();
-    const vk::ImageSubresourceLayers layers(
-        depth ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor, 0, 0, 1);
+    const vk::ImageSubresourceLayers layers(depth ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor,
+                                            0, 0, 1);
     const vk::BufferImageCopy copy(0, 0, 0, layers, {}, {target.width, target.height, 1});
     impl_->commands.copyImageToBuffer(*target.images[image].image, vk::ImageLayout::eTransferSrcOptimal,
                                       *to.impl().buffer, copy);

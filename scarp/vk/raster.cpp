@@ -14,7 +14,8 @@ constexpr vk::Format kColour = vk::Format::eR32G32B32A32Sfloat, kDepth = vk::For
 
 // Colours are written in one stage, depths in two others.
 constexpr auto kDrawing = vk::PipelineStageFlagBits::eColorAttachmentOutput |
-                          vk::PipelineStageFlagBits::eEarlyFragmentTests | vk::PipelineStageFlagBits::eLateFragmentTests;
+                          vk::PipelineStageFlagBits::eEarlyFragmentTests |
+                          vk::PipelineStageFlagBits::eLateFragmentTests;
 constexpr auto kDrawn = vk::AccessFlagBits::eColorAttachmentWrite | vk::AccessFlagBits::eDepthStencilAttachmentWrite;
 
 void require_draws(const Device& device) {
@@ -65,8 +66,8 @@ vk::raii::RenderPass make_pass(const Device::Impl& device, std::uint32_t colours
                            vk::AttachmentStoreOp::eDontCare,
                            vk::ImageLayout::eUndefined,
                            vk::ImageLayout::eTransferSrcOptimal});
-    references.push_back({i, i == colours ? vk::ImageLayout::eDepthStencilAttachmentOptimal
-                                          : vk::ImageLayout::eColorAttachmentOptimal});
+    references.push_back(
+        {i, i == colours ? vk::ImageLayout::eDepthStencilAttachmentOptimal : vk::ImageLayout::eColorAttachmentOptimal});
   }
   const vk::SubpassDescription subpass({}, vk::PipelineBindPoint::eGraphics, 0, nullptr, colours, references.data(),
                                        nullptr, &references.back());

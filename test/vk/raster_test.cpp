@@ -117,8 +117,7 @@ TEST_F(Drawing, WithoutTheTestTheLastIsSeen) {
 
 // A square of four corners and six indices, drawn twice side by side.
 TEST_F(Drawing, IndicesAndInstances) {
-  const DeviceBuffer corners =
-      buffer_of({{-1, -1, 0.5, 1}, {-0.5, -1, 0.5, 1}, {-1, 1, 0.5, 1}, {-0.5, 1, 0.5, 1}});
+  const DeviceBuffer corners = buffer_of({{-1, -1, 0.5, 1}, {-0.5, -1, 0.5, 1}, {-1, 1, 0.5, 1}, {-0.5, 1, 0.5, 1}});
   const std::vector<std::uint32_t> order = {0, 1, 2, 2, 1, 3};
   const DeviceBuffer indices(device(), 4 * order.size(), "indices");
   upload(indices, 0, order.data(), indices.bytes());
@@ -134,8 +133,7 @@ TEST_F(Drawing, DepthsAlone) {
   const RasterTarget target(device(), kWidth, kHeight, 0);
   const DeviceBuffer corners = buffer_of({{-1, -3, 0.25, 1}, {-1, 1, 0.25, 1}, {3, 1, 0.25, 1}}),
                      depths(device(), 4 * kWidth * kHeight, "depths");
-  const RasterPipeline shadow(device(), kVertex, {}, "depths",
-                              {.push_bytes = sizeof(glsl::CornersPush), .colours = 0});
+  const RasterPipeline shadow(device(), kVertex, {}, "depths", {.push_bytes = sizeof(glsl::CornersPush), .colours = 0});
   const glsl::CornersPush push{corners.address(), kRed, 0};
   Commands commands(device());
   commands.draw(target, {draw_call(shadow, push, 3)});
