@@ -22,6 +22,7 @@ layout(push_constant, scalar) uniform Push { MeshPush push; };
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec3 colour;
+layout(location = 3) flat in vec3 plane_normal;
 
 layout(location = 0) out vec4 shown;  // and 1 where the mesh is seen
 layout(location = 1) out vec4 facing;
@@ -68,22 +69,24 @@ bool mesh_hides_sun(View view, vec3 plane) {
   float slope = abs(dot(plane, map.across)) + abs(dot(plane, map.up));
   float granted = map.reach * map.texel * slope / abs(dot(plane, map.to_sun));
   float height = (dot(from_low, map.to_sun) + granted) / map.range + map.rounding;
-  return SunHeights(view.is.map).heights[texel.y * map.side + texel.x] > height;
+  return SunHeights(view.is.map).heights[texel.y * map.side + texel.x] > max(height, 0.0);
 }
 
 void main() {
   View view = View(push.view);
+  // Vectors are loaded whole: of one in a buffer Mesa's lavapipe (22.3) takes the first number for any.
+  vec4 eye = view.is.eye;
+  vec3 sky_side = view.is.sky_side;
   // Both sides of a triangle are seen: the one that is turned to the eye.
-  vec3 to_eye = view.is.eye.xyz - position * view.is.eye.w;
-  vec3 plane = normalize(cross(dFdx(position), dFdy(position)));
-  plane = dot(plane, to_eye) < 0.0 ? -plane : plane;
+  vec3 to_eye = eye.xyz - position * eye.w;
+  vec3 plane = dot(plane_normal, to_eye) < 0.0 ? -plane_normal : plane_normal;
   vec3 n = normalize(normal);
   n = dot(n, plane) < 0.0 ? -n : n;
   float sun = max(0.0, dot(n, view.is.to_sun));
   // A triangle that turns away from the sun is hidden by itself, whatever its corners' normals say.
   if (dot(plane, view.is.to_sun) <= 0.0) sun = 0.0;
   if (sun > 0.0 && view.is.shadows != 0u && (mesh_hides_sun(view, plane) || terrain_hides_sun(view))) sun = 0.0;
-  float sky = (1.0 + dot(n, view.is.sky_side)) / (1.0 + view.is.sky_side.z);
+  float sky = (1.0 + dot(n, sky_side)) / (1.0 + sky_side.z);
   shown = vec4(colour * (sky * view.is.sky + sun * view.is.sun), 1.0);
   facing = vec4(n, 0.0);
 }

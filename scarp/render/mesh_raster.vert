@@ -15,6 +15,7 @@ layout(push_constant, scalar) uniform Push { MeshPush push; };
 layout(location = 0) out vec3 position;
 layout(location = 1) out vec3 normal;
 layout(location = 2) out vec3 colour;
+layout(location = 3) flat out vec3 plane_normal;
 
 void main() {
   View view = View(push.view);
@@ -22,6 +23,7 @@ void main() {
   position = corner.position;
   normal = corner.normal;
   colour = corner.colour;
+  plane_normal = corner.plane;
   vec4 at = vec4(corner.position, 1.0);
   gl_Position =
       vec4(dot(view.is.clip_x, at), dot(view.is.clip_y, at), dot(view.is.clip_z, at), dot(view.is.clip_w, at));

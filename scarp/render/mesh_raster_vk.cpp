@@ -46,7 +46,7 @@ DeviceTerrain terrain_of(const TerrainScene& scene) {
 }
 
 Box box_of(std::span<const MeshCorner> corners) {
-  if (corners.empty()) throw Error("mesh: has no triangles");
+  if (corners.empty() || corners.size() % 3 != 0) throw Error("mesh: has no triangles");
   Box box{corners.front().position, corners.front().position};
   for (const MeshCorner& corner : corners) {
     box.low = min(box.low, corner.position);
@@ -105,8 +105,13 @@ struct MeshRaster::Impl {
                   {.push_bytes = sizeof(glsl::MeshPush), .colours = kColours}),
         map_pass(terrain.device, kSunMapVertex, {}, "sun map", {.push_bytes = sizeof(glsl::MeshPush), .colours = 0}),
         commands(terrain.device) {
-    for (const MeshCorner& corner : corners)
-      positions.push_back({vec3(corner.position - base), corner.normal, corner.colour});
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      const std::size_t first = i / 3 * 3;
+      const dvec3 a = corners[first].position;
+      const dvec3 plane = cross(corners[first + 1].position - a, corners[first + 2].position - a);
+      positions.push_back({vec3(corners[i].position - base), corners[i].normal,
+                           length(plane) > 0 ? vec3(normalize(plane)) : corners[i].normal, corners[i].colour});
+    }
     upload(vertices, 0, positions.data(), vertices.bytes());
     view.corners = vertices.address();
     view.ground = terrain.ground.address();
@@ -219,7 +224,7 @@ DrawnPoints MeshRaster::draw(const Camera& camera, const DrawnPoints& terrain, c
 
   glsl::MeshView& view = all.view;
   const glm::dmat4 ndc = camera.ndc_from_world();
-  const bool perspective = ndc[3][3] != 1;
+  const bool perspective = row_of(ndc, 3, dvec3(0)) != vec4(0, 0, 0, 1);
   double farthest = all.farthest(camera, all.box);
   for (const float z : terrain.depth) {
     if (!std::isinf(z)) farthest = std::max(farthest, static_cast<double>(z));

@@ -13,7 +13,8 @@ SCARP_GLSL_BEGIN
 
 struct MeshVertex {
   vec3 position;  // metres from the base
-  vec3 normal;
+  vec3 normal;  // for its light
+  vec3 plane;   // unit normal of the triangle, either way
   vec3 colour;  // linear light
 };
 
