@@ -61,7 +61,7 @@ vec4 row_of(const glm::dmat4& m, int row, const dvec3& base, double factor = 1) 
   return vec4(vec3(factor * axis), factor * (dot(axis, base) + m[3][row]));
 }
 
-struct Placing {
+struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
   void add(double number) {
     low = std::min(low, number);
@@ -139,11 +139,15 @@ struct MeshRaster::Impl {
         vec3(dvec3(1 / settings.cell_x, -1 / settings.cell_y, 1 / (settings.scale * settings.exaggeration)));
   }
 
-  // Where corners of the box are along the view axis at most.
-  double farthest(const Camera& camera, const Box& of) const {
-    double depth = 0;
-    for (int i = 0; i < 8; ++i) depth = std::max(depth, dot(of.corner(i) - camera.eye(), camera.forward()));
-    return depth;
+  // What of the view axis without perspective is drawn: some more than what is there. A mesh may be above the eye.
+  Extent drawn_range(const Camera& camera, const DrawnPoints& points) const {
+    Extent range;
+    for (int i = 0; i < 8; ++i) range.add(dot(box.corner(i) - camera.eye(), camera.forward()));
+    for (const float z : points.depth) {
+      if (!std::isinf(z)) range.add(static_cast<double>(z));
+    }
+    const double more = 0x1p-4 * (range.high - range.low) + 1;
+    return {range.low - more, range.high + more};
   }
 
   TerrainScene scene;  // keeps the ground
@@ -172,7 +176,7 @@ std::shared_ptr<const SunShadow> MeshRaster::cast_shadow(const dvec3& to_sun) {
   frame.to_sun = to_sun;
   frame.across = normalize(cross(std::abs(to_sun.z) < 0.9 ? dvec3(0, 0, 1) : dvec3(0, 1, 0), to_sun));
   frame.up = cross(to_sun, frame.across);
-  Placing a, b, h;
+  Extent a, b, h;
   for (const glsl::MeshVertex& corner : all.positions) {
     const dvec3 p(corner.position);
     a.add(dot(p, frame.across));
@@ -225,15 +229,13 @@ DrawnPoints MeshRaster::draw(const Camera& camera, const DrawnPoints& terrain, c
   glsl::MeshView& view = all.view;
   const glm::dmat4 ndc = camera.ndc_from_world();
   const bool perspective = row_of(ndc, 3, dvec3(0)) != vec4(0, 0, 0, 1);
-  double farthest = all.farthest(camera, all.box);
-  for (const float z : terrain.depth) {
-    if (!std::isinf(z)) farthest = std::max(farthest, static_cast<double>(z));
-  }
-  const double far = 2 * farthest;
+  const Extent range = all.drawn_range(camera, terrain);
+  const double span = range.high - range.low;
   view.clip_x = row_of(ndc, 0, all.base);
   view.clip_y = row_of(ndc, 1, all.base, -1);
   view.clip_w = perspective ? row_of(ndc, 3, all.base) : vec4(0, 0, 0, 1);
-  view.clip_z = perspective ? vec4(0, 0, 0, kMeshNear) : row_of(ndc, 2, all.base, -1 / far) + vec4(0, 0, 0, 1);
+  view.clip_z =
+      perspective ? vec4(0, 0, 0, kMeshNear) : row_of(ndc, 2, all.base, -1 / span) + vec4(0, 0, 0, range.high / span);
   view.eye = perspective ? vec4(vec3(camera.eye() - all.base), 1) : vec4(vec3(-camera.forward()), 0);
   view.to_sun = vec3(light.to_sun());
   view.sun = light.sun();
@@ -250,7 +252,7 @@ DrawnPoints MeshRaster::draw(const Camera& camera, const DrawnPoints& terrain, c
   std::vector<float> device_depths(points);
   for (std::size_t i = 0; i < points; ++i) {
     const double z = static_cast<double>(terrain.depth[i]);
-    device_depths[i] = std::isinf(z) ? 0.0f : static_cast<float>(perspective ? kMeshNear / z : 1 - z / far);
+    device_depths[i] = std::isinf(z) ? 0.0f : static_cast<float>(perspective ? kMeshNear / z : (range.high - z) / span);
   }
   upload(depths, 0, device_depths.data(), depths.bytes());
   upload(colours, 0, terrain.colour.data(), colours.bytes());
@@ -274,7 +276,7 @@ DrawnPoints MeshRaster::draw(const Camera& camera, const DrawnPoints& terrain, c
   for (std::size_t i = 0; i < points; ++i) {
     if (!result.mesh[i]) continue;
     const double depth = static_cast<double>(device_depths[i]);
-    result.depth[i] = static_cast<float>(perspective ? kMeshNear / depth : (1 - depth) * far);
+    result.depth[i] = static_cast<float>(perspective ? kMeshNear / depth : range.high - depth * span);
   }
   return result;
 }

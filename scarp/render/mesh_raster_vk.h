@@ -6,7 +6,7 @@
 //        └──── map of what the mesh hides from the sun, read back ◀───────┘  terrain's shadow on the mesh
 //
 // What is nearer is seen. Depths are those of a reversed depth buffer without a far plane, near / z (depth.h),
-// kMeshNear being 1; of cameras without perspective 1 - z / far.
+// kMeshNear being 1; of cameras without perspective (far - z) / (far - near), the planes lying round all that there is.
 #pragma once
 
 #include <memory>
