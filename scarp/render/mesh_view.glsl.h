@@ -13,9 +13,9 @@ SCARP_GLSL_BEGIN
 
 struct MeshVertex {
   vec3 position;  // metres from the base
-  vec3 normal;  // for its light
-  vec3 plane;   // unit normal of the triangle, either way
-  vec3 colour;  // linear light
+  vec3 normal;    // for its light
+  vec3 plane;     // unit normal of the triangle, either way
+  vec3 colour;    // linear light
 };
 
 // What of the mesh is nearest to the sun, on a square of texels across its direction. Texel (i, j) tells of the line to

@@ -232,6 +232,18 @@ TEST_F(MeshOnDevice, AlsoOnAMap) {
   expect_order(field, ball(middle, 10), Camera::top(picture_box(field, false), kWidth, kHeight), 50);
 }
 
+// Level to the camera's axis there is nothing that a place beside could change: depths are near / z but for rounding.
+TEST_F(MeshOnDevice, DepthsOfWhatFacesTheCameraAreRounded) {
+  const HeightField field = ridges();
+  const Camera camera = Camera::look_at({-60, -80, 520}, {60, 70, 450}, 40, kWidth, kHeight);
+  const glm::dmat4 turn = camera.camera_from_world();
+  const dvec3 right(turn[0][0], turn[1][0], turn[2][0]), up(turn[0][1], turn[1][1], turn[2][1]);
+  for (const double z : {0.5, 30.0, 150.0}) {
+    const dvec3 middle = camera.eye() + z * camera.forward();
+    expect_order(field, plate(middle - 0.2 * z * right - 0.15 * z * up, 0.4 * z * right, 0.3 * z * up), camera, 300);
+  }
+}
+
 // Far from the origin of the world floats hold the mesh's size, not its place.
 TEST_F(MeshOnDevice, ASmallMeshFarAway) {
   const HeightField field =
