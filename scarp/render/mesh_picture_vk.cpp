@@ -70,6 +70,7 @@ class MeshPicture {
         camera_(camera),
         settings_(settings),
         shader_(scene.field(), camera, grid_north_azimuth, settings_) {
+    mesh.require_drawable(settings.width * settings.aa, settings.height * settings.aa);
     if (settings.shadows) settings_.sun_shadow = mesh.cast_shadow(shader_.to_sun());
   }
 

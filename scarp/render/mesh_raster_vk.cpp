@@ -216,6 +216,16 @@ std::shared_ptr<const SunShadow> MeshRaster::cast_shadow(const dvec3& to_sun) {
   return std::make_shared<SunShadow>(frame, std::move(heights));
 }
 
+void MeshRaster::require_drawable(int width, int height) const {
+  const Device& device = impl_->terrain.device;
+  const auto most = static_cast<int>(raster_limits(device).most_pixels);
+  if (width <= most && height <= most) return;
+  throw Error(
+      fmt::format("mesh: device '{}' draws {} points a side at most, and the picture has {} x {}; render it smaller or "
+                  "with a smaller aa",
+                  device.description().name, most, width, height));
+}
+
 DrawnPoints MeshRaster::draw(const Camera& camera, const DrawnPoints& terrain, const Light& light, bool shadows) {
   Impl& all = *impl_;
   const Device& device = all.terrain.device;

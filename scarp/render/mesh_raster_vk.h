@@ -56,6 +56,9 @@ class MeshRaster {
   /// The mesh's shadow, for PictureSettings::sun_shadow, and for draw(). `to_sun` is a unit vector, above the horizon.
   std::shared_ptr<const SunShadow> cast_shadow(const dvec3& to_sun);
 
+  /// Throws Error when the device does not draw so many points along a side: before the terrain is rendered for
+  /// nothing.
+  void require_drawable(int width, int height) const;
   /// The terrain's points (`mesh` and `normal` may be empty) with the mesh among them. `shadows`: of the terrain, and,
   /// if it was cast, the mesh's own on itself. Throws Error when there are more points along a side than the device
   /// draws.

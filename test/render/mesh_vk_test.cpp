@@ -10,21 +10,32 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/render/mesh_picture_vk.h"
+#include "scarp/render/mesh_view.glsl.h"
 #include "scarp/scene/terrain_scene_vk.h"
 #include "scarp/vk/raster.h"
 #include "vk/device_under_test.h"
+#include "vk/spirv_layout.h"
 
 namespace scarp::test {
 namespace {
+
+constexpr std::uint32_t kVertex[] = {
+#include "scarp/render/mesh_raster.vert.inc"
+};
+constexpr std::uint32_t kFragment[] = {
+#include "scarp/render/mesh_raster.frag.inc"
+};
 
 constexpr double kUnit = 0x1p-24;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -455,9 +466,37 @@ TEST_F(MeshOnDevice, BadRequestsAreRefused) {
   EXPECT_EQ(error_of([&] { render_with_mesh(scene, mesh, camera, 0, settings); }),
             "mesh: goes with the look 'shaded', not with 'height'");
   settings.look = Look::shaded;
+  const std::uint32_t most = raster_limits(device()).most_pixels;
+  settings.width = static_cast<int>(most / 2 + 1);
+  EXPECT_EQ(error_of([&] { render_with_mesh(scene, mesh, camera, 0, settings); }),
+            "mesh: device '" + device().description().name + "' draws " + std::to_string(most) +
+                " points a side at most, and the picture has " + std::to_string(most + 2) + " x " +
+                std::to_string(2 * kHeight) + "; render it smaller or with a smaller aa");
+  settings.width = kWidth;
   settings.water.emplace();
   EXPECT_EQ(error_of([&] { render_layers_with_mesh(scene, mesh, camera, 0, settings); }),
             "mesh: is not reflected by water; leave one of both out");
+}
+
+TEST(MeshLayout, IsThatOfTheShaders) {
+  using glsl::MeshVertex, glsl::MeshView, glsl::SunMap;
+  for (const auto& words : {std::span<const std::uint32_t>(kVertex), std::span<const std::uint32_t>(kFragment)}) {
+    EXPECT_TRUE(has_struct(
+        words, {offsetof(MeshView, corners),    offsetof(MeshView, ground),         offsetof(MeshView, map),
+                offsetof(MeshView, colours),    offsetof(MeshView, depths),         offsetof(MeshView, clip_x),
+                offsetof(MeshView, clip_y),     offsetof(MeshView, clip_z),         offsetof(MeshView, clip_w),
+                offsetof(MeshView, eye),        offsetof(MeshView, to_sun),         offsetof(MeshView, sun),
+                offsetof(MeshView, sky),        offsetof(MeshView, sky_side),       offsetof(MeshView, sun_map),
+                offsetof(MeshView, base_cell),  offsetof(MeshView, base_place),     offsetof(MeshView, base_z),
+                offsetof(MeshView, base_z_low), offsetof(MeshView, grid_per_metre), offsetof(MeshView, width),
+                offsetof(MeshView, shadows)}));
+    EXPECT_TRUE(has_struct(words, {offsetof(SunMap, low), offsetof(SunMap, across), offsetof(SunMap, up),
+                                   offsetof(SunMap, to_sun), offsetof(SunMap, texel), offsetof(SunMap, side),
+                                   offsetof(SunMap, range), offsetof(SunMap, reach), offsetof(SunMap, rounding)}));
+  }
+  EXPECT_TRUE(has_struct(kVertex, {offsetof(MeshVertex, position), offsetof(MeshVertex, normal),
+                                   offsetof(MeshVertex, plane), offsetof(MeshVertex, colour)}));
+  EXPECT_TRUE(has_array_stride(kVertex, sizeof(MeshVertex)));
 }
 
 TEST(PlacedMesh, StandsOnItsFeetAndTurnsClockwise) {
