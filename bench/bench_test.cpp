@@ -398,6 +398,31 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
 }
 #endif
 
+#ifdef SCARP_BENCH_VULKAN
+// Corners are rounded to a part of a pixel, so pixels beside edges may differ, and no others.
+TEST(ScarpBench, TheDrawnGridHasTheDepthsOfTheRays) {
+  const std::string command =
+      fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
+  if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
+  const json all = output_of("gpu --raster --sizes 129,200 --rays small --repeats 1");
+  expect_head(all);
+  std::multiset<std::string> modes;
+  for (const json& row : all["rows"]) {
+    SCOPED_TRACE(row.dump());
+    expect_fields(row, {"size", "mode", "ms", "spread", "mesh_ratio", "pixels", "triangles_per_pixel", "hit_share",
+                        "differing_rate", "one_alone_rate", "device", "driver", "field"});
+    modes.insert(row["mode"].get<std::string>());
+    EXPECT_GT(row["ms"], 0.0);
+    EXPECT_GT(row["hit_share"], 0.4);
+    if (row["mode"] != "grid-mesh") continue;
+    EXPECT_LT(row["differing_rate"], 1e-3);
+    EXPECT_LT(row["one_alone_rate"], 1e-3);
+  }
+  EXPECT_EQ(modes, (std::multiset<std::string>{"grid-mesh", "grid-mesh", "max-mip", "max-mip", "max-mip, triangles",
+                                               "max-mip, triangles"}));
+}
+#endif
+
 TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   const auto fails = [](const std::string& arguments) {
     return std::system(fmt::format("'{}' {} > /dev/null 2>&1", SCARP_BENCH_PROGRAM, arguments).c_str()) != 0;

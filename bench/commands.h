@@ -87,7 +87,11 @@ struct GpuOptions {
   double miss_limit = 0.001;  ///< share of the hits that naive may miss
   int repeats = 5;
   double pass_limit_s = 10;
+  bool raster = false;
 };
+/// `gpu --raster`: primary rays beside the same triangles drawn; sizes 1025, 2049, 4097, 16385, on CPU
+/// devices 257, 513, 1025, 2049, 4097.
+void run_gpu_raster(const GpuOptions& options, const ReportOptions& report);
 void run_gpu(const GpuOptions& options, const ReportOptions& report);
 
 /// `leaks`: rays aimed at what engines lose, each judged.

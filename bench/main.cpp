@@ -209,6 +209,8 @@ int run(int argc, char** argv) {
                    "seconds; a march that takes longer for a pass traces part of the rays")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  gpu_command->add_flag("--raster", gpu.raster,
+                        "instead: primary rays beside the same grid drawn as two triangles per cell");
   add_json_option(*gpu_command, report);
 #endif
 
@@ -419,7 +421,7 @@ int run(int argc, char** argv) {
   if (*simd_command) run_simd(simd, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
 #ifdef SCARP_BENCH_VULKAN
-  if (*gpu_command) run_gpu(gpu, report);
+  if (*gpu_command) (gpu.raster ? run_gpu_raster : run_gpu)(gpu, report);
 #endif
   if (*leaks_command) run_leaks(leaks, report);
   if (*voxels_command) run_voxels(voxels, report);

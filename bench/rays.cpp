@@ -53,25 +53,13 @@ dvec3 lifted(const HeightField& field, double x, double y) {
   return {fx, fy, fz};
 }
 
-std::vector<BenchRay> primary_rays(const HeightField& field, int width, int height, const RayView& view) {
-  const double extent = std::max(field.width(), field.depth());
-  const dvec3 eye(view.eye.x * field.width(), view.eye.y * field.depth(), field.max_height() + view.eye.z * extent);
-  const dvec3 target(view.target.x * field.width(), view.target.y * field.depth(),
-                     field.min_height() + view.target.z * (field.max_height() - field.min_height()));
-  const dvec3 forward = normalize(target - eye), right = normalize(cross(forward, dvec3(0, 0, 1))),
-              up = cross(right, forward);
-  const double half_height = std::tan(45.0 / 2 * kPi / 180), half_width = half_height * width / height;
-  std::vector<BenchRay> rays;
-  rays.reserve(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
-  for (int tile_y = 0; tile_y < height; tile_y += kTile) {
-    for (int tile_x = 0; tile_x < width; tile_x += kTile) {
-      for (int y = tile_y; y < std::min(tile_y + kTile, height); ++y) {
-        for (int x = tile_x; x < std::min(tile_x + kTile, width); ++x) {
-          const double sx = ((x + 0.5) / width * 2 - 1) * half_width, sy = (1 - (y + 0.5) / height * 2) * half_height;
-          rays.push_back(make_ray(eye, normalize(forward + sx * right + sy * up)));
-        }
-      }
-    }
+std::vector<BenchRay> primary_rays(const PinholeCamera& camera) {
+  std::vector<BenchRay> rays(static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height));
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const auto [x, y] = primary_pixel(i, camera.width);
+    const double sx = ((x + 0.5) / camera.width * 2 - 1) * camera.half_width,
+                 sy = (1 - (y + 0.5) / camera.height * 2) * camera.half_height;
+    rays[i] = make_ray(camera.eye, normalize(camera.forward + sx * camera.right + sy * camera.up));
   }
   return rays;
 }
@@ -235,10 +223,28 @@ RayClass find_ray_class(std::string_view name) {
   throw Error(fmt::format("ray class '{}': unknown; there are: primary, shadow, grazing, ao, nodes, chunk", name));
 }
 
+PinholeCamera primary_camera(const HeightField& field, int width, int height, const RayView& view) {
+  const double extent = std::max(field.width(), field.depth());
+  const dvec3 eye(view.eye.x * field.width(), view.eye.y * field.depth(), field.max_height() + view.eye.z * extent);
+  const dvec3 target(view.target.x * field.width(), view.target.y * field.depth(),
+                     field.min_height() + view.target.z * (field.max_height() - field.min_height()));
+  const dvec3 forward = normalize(target - eye), right = normalize(cross(forward, dvec3(0, 0, 1)));
+  const double half_height = std::tan(45.0 / 2 * kPi / 180);
+  return {width,      height, dvec3(vec3(eye)), right, cross(right, forward), forward, half_height * width / height,
+          half_height};
+}
+
+// Sizes are multiples of the tiles' side.
+PrimaryPixel primary_pixel(std::size_t ray, int width) {
+  const int tile = static_cast<int>(ray / (kTile * kTile)), in_tile = static_cast<int>(ray % (kTile * kTile));
+  const int across = width / kTile;
+  return {tile % across * kTile + in_tile % kTile, tile / across * kTile + in_tile / kTile};
+}
+
 std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayClass>& classes, const RayCounts& counts,
                               std::uint64_t seed, const RayView& view) {
   const HeightField& field = ground.field;
-  const std::vector<BenchRay> primary = primary_rays(field, counts.width, counts.height, view);
+  const std::vector<BenchRay> primary = primary_rays(primary_camera(field, counts.width, counts.height, view));
   const dvec3 sun = direction_to(view.sun_azimuth_deg * kPi / 180, view.sun_altitude_deg * kPi / 180);
   std::vector<RaySet> sets;
   for (const RayClass ray_class : kRayClasses) {

@@ -76,6 +76,20 @@ struct RayView {
   double sun_altitude_deg = 20;
 };
 
+/// The camera of the primary rays; half_width and half_height are tangents of half the angles of view.
+struct PinholeCamera {
+  int width, height;
+  dvec3 eye;  ///< float32 numbers
+  dvec3 right, up, forward;
+  double half_width, half_height;
+};
+PinholeCamera primary_camera(const HeightField& field, int width, int height, const RayView& view = {});
+struct PrimaryPixel {
+  int x, y;
+};
+/// The pixel of a primary ray, from its number.
+PrimaryPixel primary_pixel(std::size_t ray, int width);
+
 /// The classes asked for, in the order of kRayClasses. Deterministic by seed.
 std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayClass>& classes, const RayCounts& counts,
                               std::uint64_t seed, const RayView& view = {});

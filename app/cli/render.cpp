@@ -25,6 +25,7 @@
 #include "app/cli/function_input.h"
 #include "app/cli/look_options.h"
 #include "app/cli/march_options.h"
+#include "app/cli/mesh_options.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
@@ -64,6 +65,7 @@ struct RenderOptions {
   FrameOptions frames;
   DepthOptions depth;
   FigureOptions figure;
+  MeshOptions mesh;
   std::string size, look = "shaded", sun, view, eye, target;
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg;
@@ -137,6 +139,7 @@ ViewSettings settle(RenderOptions& options) {
     throw Error("--depth-range: device depth is a channel of EXR pictures; let the name of the output end in .exr");
   }
   settle_figure(options.figure, picture, options.exr);
+  settle_mesh(options.mesh, options.device, picture);
   if (options.exr) {
     require_exr(options.output);
     if (picture.look != Look::shaded) {
@@ -220,6 +223,7 @@ void require_no_voxel_options(const RenderOptions& options) {
 void require_no_terrain_options(const RenderOptions& options) {
   if (options.frames.several()) throw Error("--path, --turntable: flights go over terrain; leave them out");
   if (options.picture.look == Look::comanche) throw Error("--look comanche: goes with terrain");
+  if (!options.mesh.file.empty()) throw Error("--mesh: stands among terrain; leave it out");
   if (options.field.wrap != Wrap::none) throw Error("--wrap: goes with terrain; leave it out");
   if (options.picture.water || options.picture.fog.kind != FogKind::none || !options.look_options.overlay.empty())
     throw Error("--water, --fog, --overlay: go with terrain; leave them out");
@@ -291,16 +295,16 @@ void tell_if_buried(const Camera& camera, const HeightField& field, const std::s
   fmt::print(stderr, "note: {} is {:.3g} m below the ground\n", whose, *ground - camera.eye().z);
 }
 
-void render_frame(const RenderOptions& options, const TerrainScene& scene, const Camera& camera,
+void render_frame(const RenderOptions& options, const TerrainScene& scene, MeshInput& mesh, const Camera& camera,
                   double grid_north_azimuth, const std::string& name) {
   ReplaceFile file(name);
   const Progress listen = [](double) { return caught_signal() == 0; };
   if (options.exr) {
-    write_layers(file, name, render_layers(scene, camera, grid_north_azimuth, options.picture, listen), camera,
+    write_layers(file, name, mesh.layers(scene, camera, grid_north_azimuth, options.picture, listen), camera,
                  depth_range_of(options.depth));
     return;
   }
-  Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, listen);
+  Picture picture = mesh.picture(scene, camera, grid_north_azimuth, options.picture, listen);
   draw_figure_of(options.figure, options.picture, scene, camera, options.top, picture);
   write_png(file, name, {picture.image.rgb.data(), picture.image.width, picture.image.height});
   tell_if_buried(camera, scene.field(), fmt::format("the eye of '{}'", name));
@@ -313,6 +317,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   ReplaceFile file(options.output);
 
   Watch watch;
+  MeshInput mesh(options.mesh);
   Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
   stop_if_interrupted();
   const double read_s = watch.lap();
@@ -331,6 +336,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   }
   if (field.wraps()) options.picture.plinth = false;
   const TerrainScene scene = scenes.make(std::move(field), march, options.march_settings);
+  mesh.stand_on(scene);
   stop_if_interrupted();
   const double build_s = watch.lap();
 
@@ -340,6 +346,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   // Last: who fails says one line alone.
   const auto tell_notes = [&] {
     for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
+    for (const std::string& note : mesh.notes()) fmt::print(stderr, "note: {}\n", note);
   };
   const double reach = reach_of(options.look_options, scene.field());
   if (options.frames.several()) {
@@ -347,7 +354,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
         frame_cameras(options.frames, box, view, grid_north_azimuth, options.picture.width, options.picture.height);
     for (Camera& camera : cameras) camera.set_reach(reach);
     make_frames(options.frames, options.output, cameras, [&](const Camera& camera, const std::string& name) {
-      render_frame(options, scene, camera, grid_north_azimuth, name);
+      render_frame(options, scene, mesh, camera, grid_north_azimuth, name);
     });
     tell_notes();
     return;
@@ -357,7 +364,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   see_from_afar(options.look_options, box, camera, options.picture);
   if (options.exr) {
     const PictureLayers layers =
-        render_layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
+        mesh.layers(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
     const double render_s = watch.lap();
     write_layers(file, options.output, layers, camera, depth_range_of(options.depth));
     tell_notes();
@@ -365,7 +372,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
     print_times(options, read_s, build_s, render_s, scenes.device);
     return;
   }
-  Picture picture = render_picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
+  Picture picture = mesh.picture(scene, camera, grid_north_azimuth, options.picture, terminal_progress("render"));
   draw_figure_of(options.figure, options.picture, scene, camera, options.top, picture);
   const double render_s = watch.lap();
   write_png(file, options.output, {picture.image.rgb.data(), picture.image.width, picture.image.height});
@@ -488,6 +495,7 @@ void add_render(CLI::App& program) {
   add_frame_options(*command, o.frames);
   add_depth_options(*command, o.depth);
   add_figure_options(*command, o.figure);
+  add_mesh_options(*command, o.mesh);
   add_function_options(*command, o.function, o.march, o.march_settings);
   command->add_option("--march", o.march, "technique, see 'scarp marches' (max-mip; voxel-bricks; lipschitz-local)")
       ->group("Settings of marches");

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "scarp/render/sun_shadow.h"
+
 namespace scarp {
 namespace {
 
@@ -57,6 +59,7 @@ vec3 Lighting::on(const GroundPoint& ground, const LightRays& asked, std::span<c
     sun = sun_cosine(ground, sun_radius(), static_cast<std::uint32_t>(settings_.samples),
                      rays.subspan(asked.sun, count), blocked.subspan(asked.sun, count));
   }
+  if (settings_.shadows && settings_.sun_shadow && settings_.sun_shadow->hides(ground.position)) sun = 0;
   if (asked.end > asked.sky) sky = 1 - sky_occlusion(blocked.subspan(asked.sky, asked.end - asked.sky));
   return light_.on(ground.shading_normal, sun, sky);
 }

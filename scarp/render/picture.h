@@ -34,6 +34,8 @@
 
 namespace scarp {
 
+class SunShadow;
+
 enum class Look { shaded, height, steps, error, comanche };
 
 /// "shaded", "height", "steps", "error", "comanche".
@@ -53,9 +55,10 @@ struct PictureSettings {
   std::string ramp{};  ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
   std::shared_ptr<const RampStops> ramp_stops{};  ///< instead of `ramp`; null: none
   SunSettings sun{};
-  bool shadows = true;  ///< of the sun; false: it shines through the ground
-  int samples = 0;      ///< rays to the sun's disc, and to the sky, per sample of `shaded`; 0..4096; 0: exact hard
-                        ///< shadows of the disc's middle and no ambient occlusion
+  bool shadows = true;                            ///< of the sun; false: it shines through the ground
+  std::shared_ptr<const SunShadow> sun_shadow{};  ///< what stands in the sun beside the ground; null: nothing
+  int samples = 0;  ///< rays to the sun's disc, and to the sky, per sample of `shaded`; 0..4096; 0: exact hard
+                    ///< shadows of the disc's middle and no ambient occlusion
   double ao_distance = kWholeField;      ///< metres within which ground hides the sky, >= 0; 0: no ambient occlusion
   std::uint32_t seed = 0;                ///< of the samples' pattern
   bool plinth = true;                    ///< a block below the terrain: walls down to a common base

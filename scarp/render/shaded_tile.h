@@ -30,6 +30,11 @@ class ShadedTile {
   bool next(RayRound& round);
   /// The mean colours of the pixels, row by row, in linear light, when there is no further round.
   std::vector<vec3> pixels() const;
+  /// Likewise of each point (points_of), with its ray and what that met.
+  const std::vector<vec3>& colours() const { return colours_; }
+  const std::vector<PicturePoint>& points() const { return points_; }
+  const std::vector<Ray>& rays() const { return rays_; }
+  const std::vector<Sight>& sights() const { return sights_; }
 
  private:
   bool ask_light(RayRound& round);

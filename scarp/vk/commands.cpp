@@ -16,6 +16,24 @@ vk::raii::CommandBuffer make_commands(const Device::Impl& device) {
   return std::move(one.front());
 }
 
+constexpr auto kDrawStages = vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
+
+void require_fits(const RasterTarget::Impl& target, const DrawCall& call) {
+  const RasterPipeline::Impl& shader = call.pipeline->impl();
+  if (call.push_bytes != shader.push_bytes) {
+    throw Error(fmt::format("shader '{}': {} bytes of push constants, {} expected", shader.name, call.push_bytes,
+                            shader.push_bytes));
+  }
+  if (shader.colours != target.colours()) {
+    throw Error(fmt::format("shader '{}': writes {} colours, its target has {}", shader.name, shader.colours,
+                            target.colours()));
+  }
+  if (call.indices && std::uint64_t{call.count} * 4 > call.indices->bytes()) {
+    throw Error(fmt::format("shader '{}': {} indices, the buffer '{}' holds {}", shader.name, call.count,
+                            call.indices->impl().name, call.indices->bytes() / 4));
+  }
+}
+
 }  // namespace
 
 struct Commands::Impl {
@@ -80,10 +98,63 @@ void Commands::record_dispatch(const ComputePipeline& pipeline, const void* push
     commands.bindPipeline(vk::PipelineBindPoint::eCompute, *shader.pipeline);
     commands.pushConstants<std::uint8_t>(*shader.layout, vk::ShaderStageFlagBits::eCompute, 0,
                                          {bytes, static_cast<const std::uint8_t*>(push)});
-    impl_->timestamps.begin(commands);
+    impl_->timestamps.begin(commands, vk::PipelineStageFlagBits::eComputeShader);
     commands.dispatch(groups[0], groups[1], groups[2]);
-    impl_->timestamps.end(commands);
+    impl_->timestamps.end(commands, vk::PipelineStageFlagBits::eComputeShader);
     impl_->passes.push_back({shader.name, std::nullopt});
+  });
+}
+
+void Commands::record_draw(const RasterTarget& target, std::span<const DrawCall> calls, float clear_depth) {
+  const RasterTarget::Impl& to = target.impl();
+  for (const DrawCall& call : calls) require_fits(to, call);
+  guarded(impl_->device->name(), "recording '" + calls.front().pipeline->name() + "'", [&] {
+    impl_->begin();
+    const vk::raii::CommandBuffer& commands = impl_->commands;
+    // The images of a pass before may still be read.
+    full_barrier(commands);
+    std::vector<vk::ClearValue> clear(to.images.size());
+    clear.back().setDepthStencil({clear_depth, 0});
+    const vk::Rect2D area({0, 0}, {to.width, to.height});
+    impl_->timestamps.begin(commands, vk::PipelineStageFlagBits::eBottomOfPipe);
+    commands.beginRenderPass({*to.pass, *to.framebuffer, area, clear}, vk::SubpassContents::eInline);
+    for (const DrawCall& call : calls) {
+      const RasterPipeline::Impl& shader = call.pipeline->impl();
+      commands.bindPipeline(vk::PipelineBindPoint::eGraphics, *shader.pipeline);
+      commands.setViewport(0, vk::Viewport(0, 0, static_cast<float>(to.width), static_cast<float>(to.height), 0, 1));
+      commands.setScissor(0, area);
+      if (call.push_bytes > 0) {
+        commands.pushConstants<std::uint8_t>(*shader.layout, kDrawStages, 0,
+                                             {call.push_bytes, static_cast<const std::uint8_t*>(call.push)});
+      }
+      if (call.indices) {
+        commands.bindIndexBuffer(*call.indices->impl().buffer, 0, vk::IndexType::eUint32);
+        commands.drawIndexed(call.count, call.instances, 0, 0, 0);
+      } else {
+        commands.draw(call.count, call.instances, 0, 0);
+      }
+    }
+    commands.endRenderPass();
+    impl_->timestamps.end(commands, vk::PipelineStageFlagBits::eBottomOfPipe);
+    impl_->passes.push_back({calls.front().pipeline->name(), std::nullopt});
+  });
+}
+
+void Commands::copy(const RasterTarget& from, std::uint32_t image, const DeviceBuffer& to) {
+  const RasterTarget::Impl& target = from.impl();
+  const bool depth = image == target.colours();
+  const std::uint64_t bytes = std::uint64_t{target.width} * target.height * (depth ? 4 : 16);
+  if (image > target.colours() || bytes > to.bytes()) {
+    throw Error(fmt::format("device buffer '{}': image {} of {} ({} bytes) does not fit into {} bytes", to.impl().name,
+                            image, target.images.size(), bytes, to.bytes()));
+  }
+  guarded(impl_->device->name(), "recording", [&] {
+    impl_->begin();
+    const vk::ImageSubresourceLayers layers(depth ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor,
+                                            0, 0, 1);
+    const vk::BufferImageCopy copy(0, 0, 0, layers, {}, {target.width, target.height, 1});
+    impl_->commands.copyImageToBuffer(*target.images[image].image, vk::ImageLayout::eTransferSrcOptimal,
+                                      *to.impl().buffer, copy);
   });
 }
 

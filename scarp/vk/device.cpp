@@ -23,13 +23,16 @@ vk::raii::PhysicalDevice chosen(const VulkanInstance& instance, const std::strin
   return devices[choose_device(described(devices), choice)];
 }
 
-// The first family that computes; one with timestamps where there is a choice.
+// The first family that computes; where there is a choice, one that also draws, and then one with timestamps.
 std::uint32_t compute_family(const vk::raii::PhysicalDevice& physical) {
   const auto families = physical.getQueueFamilyProperties();
+  const auto merits = [&](std::uint32_t i) {
+    return (families[i].queueFlags & vk::QueueFlagBits::eGraphics ? 2 : 0) + (families[i].timestampValidBits > 0);
+  };
   std::optional<std::uint32_t> best;
   for (std::uint32_t i = 0; i < families.size(); ++i) {
     if (!(families[i].queueFlags & vk::QueueFlagBits::eCompute)) continue;
-    if (!best || (families[*best].timestampValidBits == 0 && families[i].timestampValidBits > 0)) best = i;
+    if (!best || merits(i) > merits(*best)) best = i;
   }
   return best.value();
 }
@@ -118,12 +121,9 @@ const DeviceDescription& Device::description() const { return impl_->description
 std::vector<std::string> Device::validation_messages() const { return impl_->instance.messages(); }
 
 void full_barrier(const vk::raii::CommandBuffer& commands) {
-  using Stage = vk::PipelineStageFlagBits;
   using Access = vk::AccessFlagBits;
-  const auto stages = Stage::eComputeShader | Stage::eTransfer;
-  const vk::MemoryBarrier barrier(
-      Access::eShaderWrite | Access::eTransferWrite,
-      Access::eShaderRead | Access::eShaderWrite | Access::eTransferRead | Access::eTransferWrite);
+  const auto stages = vk::PipelineStageFlagBits::eAllCommands;
+  const vk::MemoryBarrier barrier(Access::eMemoryWrite, Access::eMemoryRead | Access::eMemoryWrite);
   commands.pipelineBarrier(stages, stages, {}, barrier, {}, {});
 }
 

@@ -39,6 +39,7 @@ struct DeviceAbilities {
   bool float64 = false;
   bool int64 = false;
   bool timestamps = false;
+  bool draws = false;  ///< a queue that computes also draws triangles
 };
 
 /// The first thing that is needed and not there, as in "Vulkan 1.2 (it has 1.1)"; empty when nothing is missing.

@@ -93,6 +93,7 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
     if (!(family.queueFlags & vk::QueueFlagBits::eCompute)) continue;
     abilities.compute_queue = true;
     abilities.timestamps |= family.timestampValidBits > 0;
+    abilities.draws |= static_cast<bool>(family.queueFlags & vk::QueueFlagBits::eGraphics);
   }
   // What follows is asked in structs that an older device does not know.
   if (abilities.api_major > 1 || abilities.api_minor >= 2) {

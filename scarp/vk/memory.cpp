@@ -15,8 +15,8 @@ std::string mebibytes(std::uint64_t bytes) { return fmt::format("{:.1f} MiB", st
 vk::raii::Buffer make_buffer(const Device::Impl& device, std::uint64_t bytes) {
   using Usage = vk::BufferUsageFlagBits;
   return {device.device, vk::BufferCreateInfo({}, bytes,
-                                              Usage::eStorageBuffer | Usage::eTransferSrc | Usage::eTransferDst |
-                                                  Usage::eShaderDeviceAddress)};
+                                              Usage::eStorageBuffer | Usage::eIndexBuffer | Usage::eTransferSrc |
+                                                  Usage::eTransferDst | Usage::eShaderDeviceAddress)};
 }
 
 vk::raii::DeviceMemory make_memory(const Device::Impl& device, const vk::raii::Buffer& buffer) {

@@ -19,15 +19,18 @@ vk::raii::Pipeline make_pipeline(const Device::Impl& device, const vk::raii::Pip
                                  std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> constants) {
   const vk::raii::ShaderModule module(device.device, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
   std::vector<vk::SpecializationMapEntry> entries;
-  for (std::uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, 4});
-  const vk::SpecializationInfo specialisation(static_cast<std::uint32_t>(entries.size()), entries.data(),
-                                              constants.size_bytes(), constants.data());
-  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main",
-                                                &specialisation);
+  const vk::SpecializationInfo special = specialisation(constants, entries);
+  const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &special);
   return {device.device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout)};
 }
 
 }  // namespace
+
+vk::SpecializationInfo specialisation(std::span<const std::uint32_t> constants,
+                                      std::vector<vk::SpecializationMapEntry>& entries) {
+  for (std::uint32_t i = 0; i < constants.size(); ++i) entries.push_back({i, i * 4, 4});
+  return {static_cast<std::uint32_t>(entries.size()), entries.data(), constants.size_bytes(), constants.data()};
+}
 
 ComputePipeline::ComputePipeline(const Device& device, std::span<const std::uint32_t> spirv, const std::string& name,
                                  std::uint32_t push_bytes, std::span<const std::uint32_t> constants) {

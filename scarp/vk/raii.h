@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "scarp/vk/device.h"
 #include "scarp/vk/memory.h"
 #include "scarp/vk/pipeline.h"
+#include "scarp/vk/raster.h"
 
 namespace scarp {
 
@@ -103,6 +105,34 @@ struct ComputePipeline::Impl {
   vk::raii::PipelineLayout layout;
   vk::raii::Pipeline pipeline;
 };
+
+struct DeviceImage {
+  vk::raii::Image image;
+  vk::raii::DeviceMemory memory;
+  vk::raii::ImageView view;
+};
+
+struct RasterTarget::Impl {
+  std::shared_ptr<Device::Impl> device;
+  std::uint32_t width, height;
+  std::vector<DeviceImage> images;  // the colours, then the depths
+  vk::raii::RenderPass pass;
+  vk::raii::Framebuffer framebuffer;
+
+  std::uint32_t colours() const { return static_cast<std::uint32_t>(images.size()) - 1; }
+};
+
+struct RasterPipeline::Impl {
+  std::shared_ptr<Device::Impl> device;
+  std::string name;
+  std::uint32_t push_bytes, colours;
+  vk::raii::PipelineLayout layout;
+  vk::raii::Pipeline pipeline;
+};
+
+/// The specialisation constants 0, 1, 2, ..., for as long as both arguments live.
+vk::SpecializationInfo specialisation(std::span<const std::uint32_t> constants,
+                                      std::vector<vk::SpecializationMapEntry>& entries);
 
 /// All that was recorded before is done, and its writes are seen, before what comes after begins.
 void full_barrier(const vk::raii::CommandBuffer& commands);

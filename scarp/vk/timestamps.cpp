@@ -13,15 +13,15 @@ void Timestamps::reset(const vk::raii::CommandBuffer& commands) {
   if (pool_) commands.resetQueryPool(**pool_, 0, 2 * kMaxPasses);
 }
 
-void Timestamps::begin(const vk::raii::CommandBuffer& commands) {
+void Timestamps::begin(const vk::raii::CommandBuffer& commands, vk::PipelineStageFlagBits stage) {
   if (pool_ && used_ < kMaxPasses) {
-    commands.writeTimestamp(vk::PipelineStageFlagBits::eComputeShader, **pool_, 2 * used_);
+    commands.writeTimestamp(stage, **pool_, 2 * used_);
   }
 }
 
-void Timestamps::end(const vk::raii::CommandBuffer& commands) {
+void Timestamps::end(const vk::raii::CommandBuffer& commands, vk::PipelineStageFlagBits stage) {
   if (pool_ && used_ < kMaxPasses) {
-    commands.writeTimestamp(vk::PipelineStageFlagBits::eComputeShader, **pool_, 2 * used_ + 1);
+    commands.writeTimestamp(stage, **pool_, 2 * used_ + 1);
     ++used_;
   }
 }

@@ -15,8 +15,9 @@ class Timestamps {
 
   /// To be recorded outside of passes, before the first begin() of a run.
   void reset(const vk::raii::CommandBuffer& commands);
-  void begin(const vk::raii::CommandBuffer& commands);
-  void end(const vk::raii::CommandBuffer& commands);
+  /// When what was recorded before has passed the stage: the one in which the pass works, or the last of several.
+  void begin(const vk::raii::CommandBuffer& commands, vk::PipelineStageFlagBits stage);
+  void end(const vk::raii::CommandBuffer& commands, vk::PipelineStageFlagBits stage);
   /// How long each pass took, in nanoseconds; after the run. Nothing where the device has no timestamps, and for passes
   /// beyond kMaxPasses.
   std::vector<std::optional<double>> read(std::size_t passes) const;

@@ -146,6 +146,47 @@ TEST_P(GoldenPicture, IsTheSameOnADevice) {
 }
 #endif
 
+#ifdef SCARP_MESH_ON_DEVICE
+// Drawn and asked on a CPU device, which is the same everywhere.
+TEST(GoldenMesh, AsItWasLookedAt) {
+  if (!fs::exists(kJacksboro))
+    GTEST_SKIP() << "'" << kJacksboro << "' is missing; it comes with Debian's package python-matplotlib-data";
+  const test::Scratch scratch;
+  const std::string picture = scratch.path("picture.png");
+  const fs::path mesh = fs::path(SCARP_SOURCE_DIR) / "examples" / "meshes" / "balloons.obj";
+  std::vector<std::string> arguments{
+      "render", kJacksboro,  "-o",
+      picture,  "--key",     "elevation",
+      "--crs",  "EPSG:4326", "--bounds=-84.41375,36.44625,-84.07791666666667,36.73291666666667"};
+  for (const char* more : {"--exaggeration",
+                           "2",
+                           "--no-plinth",
+                           "--sun",
+                           "240,45",
+                           "--size",
+                           "240x135",
+                           "--eye",
+                           "9000,1000,3600",
+                           "--target",
+                           "17000,14000,1300",
+                           "--fov",
+                           "35",
+                           "--mesh-at",
+                           "15000,9500,700",
+                           "--mesh-scale",
+                           "60",
+                           "--device",
+                           "cpu",
+                           "--mesh"})
+    arguments.emplace_back(more);
+  arguments.push_back(mesh.string());
+  const auto result = test::run_on_device(arguments);
+  if (result.err.find("Vulkan") != std::string::npos) GTEST_SKIP() << result.err;
+  ASSERT_EQ(result.status, 0) << result.err;
+  expect_golden(picture, "mesh-balloons", kMaxDifference);
+}
+#endif
+
 class GoldenScene : public testing::TestWithParam<const char*> {};
 
 // One sample in the middle of each of few pixels. With sanitizers functions are slow: two scenes must do there.

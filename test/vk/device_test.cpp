@@ -158,6 +158,15 @@ TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
 
 // The tests' silence would mean nothing if nobody listened: two copies to one place without a barrier between them, and
 // one beyond the end of a buffer.
+TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
+  const Device other;
+  other.impl()->description.abilities.draws = false;
+  const std::string refusal = "device '" + other.description().name +
+                              "': draws no triangles, none of its queues does; take another ('scarp devices')";
+  EXPECT_EQ(error_of([&] { RasterTarget(other, 16, 16, 1); }), refusal);
+  EXPECT_EQ(error_of([&] { RasterPipeline(other, kTwice, {}, "triangles", {}); }), refusal);
+}
+
 TEST_F(OpenDevice, TellsWhatValidationSays) {
   const Device watched({.validation = true});
   const DeviceBuffer from(watched, 64, "from"), to(watched, 64, "to");

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/source/mesh_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "scarp/base/error.h"
+#include "scarp/source/mesh_corners.h"
+
+namespace scarp {
+
+void refuse_mesh(const std::string& path, const std::string& what) {
+  throw Error(fmt::format("mesh '{}': {}", path, what));
+}
+
+void add_triangle(const std::array<FileCorner, 3>& corners, TriangleMesh& mesh) {
+  const dvec3 across = cross(corners[1].position - corners[0].position, corners[2].position - corners[0].position);
+  const double area = length(across);
+  if (!(area > 0)) return;
+  const bool has_normals =
+      std::all_of(corners.begin(), corners.end(), [](const FileCorner& corner) { return length(corner.normal) > 0; });
+  for (const FileCorner& corner : corners) {
+    mesh.corners.push_back({corner.position, vec3(has_normals ? normalize(corner.normal) : across / area),
+                            glm::clamp(corner.colour, 0.0f, 1.0f)});
+  }
+}
+
+#ifdef SCARP_MESH
+
+namespace {
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return extension;
+}
+
+void require_file(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) refuse_mesh(path, "is a folder");
+  if (!std::filesystem::exists(path, error)) refuse_mesh(path, "cannot be opened; is the name right?");
+}
+
+}  // namespace
+
+TriangleMesh read_mesh(const std::string& path, MeshUp up) {
+  const std::string extension = extension_of(path);
+  const bool binary = extension == ".glb", gltf = binary || extension == ".gltf";
+  if (!gltf && extension != ".obj") refuse_mesh(path, "is not known by its name; meshes end in .obj, .gltf or .glb");
+  require_file(path);
+  TriangleMesh mesh = gltf ? read_gltf(path, binary) : read_obj(path);
+  if (mesh.corners.empty()) {
+    refuse_mesh(path,
+                mesh.notes.empty() ? "has no triangles" : fmt::format("has no triangles ({})", mesh.notes.back()));
+  }
+  if (up == MeshUp::z) return mesh;
+  for (MeshCorner& corner : mesh.corners) {
+    corner.position = {corner.position.x, -corner.position.z, corner.position.y};
+    corner.normal = {corner.normal.x, -corner.normal.z, corner.normal.y};
+  }
+  return mesh;
+}
+
+#else
+
+TriangleMesh read_mesh(const std::string& path, MeshUp) {
+  refuse_mesh(path, "this scarp was built without meshes (SCARP_MESH=OFF)");
+}
+
+#endif
+
+}  // namespace scarp

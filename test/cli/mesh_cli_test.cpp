@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// `scarp render --mesh`: a mesh among terrain, and what is refused.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "test/cli/program.h"
+#include "test/output/read_png.h"
+
+namespace scarp::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A roof of two triangles, 20 units wide, red.
+constexpr const char* kRoof =
+    "mtllib roof.mtl\nv -10 0 -10\nv 10 0 -10\nv 10 0 10\nv -10 0 10\nusemtl red\nf 1 2 3 4\n";
+
+class MeshOption : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(run({"generate", "--size", "65", "-o", dem_}).status, 0);
+    scratch_.write("roof.mtl", "newmtl red\nKd 0.8 0.02 0.02\n");
+  }
+
+  Program::Result render(const std::vector<std::string>& more, bool device = true) const {
+    std::vector<std::string> arguments{"render", dem_, "-o", picture_, "--size", "64x64", "--top", "--aa", "1"};
+    if (device) arguments.insert(arguments.end(), {"--device", "auto"});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_on_device(arguments);
+  }
+  void expect_refusal(const std::vector<std::string>& more, const std::string& what, bool device = true) const {
+    const auto result = render(more, device);
+    EXPECT_NE(result.status, 0) << what;
+    EXPECT_EQ(lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(what), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(picture_));
+  }
+  bool has_device() const {
+    return !nlohmann::json::parse(run_on_device({"devices", "--json"}).out)["devices"].empty();
+  }
+
+  Scratch scratch_;
+  const std::string dem_ = scratch_.path("dem.tif"), picture_ = scratch_.path("picture.png"),
+                    roof_ = scratch_.write("roof.obj", kRoof);
+};
+
+TEST_F(MeshOption, StandsWhereItIsToldTo) {
+  if (!has_device()) GTEST_SKIP() << "no Vulkan device";
+  // 64 pixels for 64 cells of 30 m: a roof of 300 m in the middle, 100 m above the highest ground, or to the west.
+  const auto reds = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"--mesh", roof_, "--mesh-scale", "15"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = render(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const Rgb picture = read_png(picture_);
+    std::vector<int> red(3);  // count, and the middle
+    for (int i = 0; i < 64 * 64; ++i) {
+      const std::uint8_t* rgb = picture.bytes.data() + 3 * i;
+      if (rgb[0] < 2 * rgb[1] || rgb[0] < 100) continue;
+      ++red[0];
+      red[1] += i % 64;
+      red[2] += i / 64;
+    }
+    for (int i : {1, 2}) red[i] /= std::max(1, red[0]);
+    return red;
+  };
+  const auto info = run({"info", dem_}).out;
+  const std::vector<int> middle = reds({"--mesh-at", "960,960,9000"});
+  EXPECT_NEAR(middle[0], 100, 25) << info;
+  EXPECT_NEAR(middle[1], 32, 2);
+  EXPECT_NEAR(middle[2], 32, 2);
+  const std::vector<int> north_west = reds({"--mesh-at", "480,1440,9000"});
+  EXPECT_NEAR(north_west[1], 16, 2);
+  EXPECT_NEAR(north_west[2], 16, 2);
+  // On the ground in the middle, where hills hide a part of what is level.
+  const std::vector<int> on_ground = reds({});
+  EXPECT_GT(on_ground[0], 5);
+  EXPECT_LT(on_ground[0], 100);
+  // In the ground.
+  EXPECT_EQ(reds({"--mesh-at", "960,960,-9000"})[0], 0);
+}
+
+TEST_F(MeshOption, WhatIsWrongIsSaidInOneLine) {
+  expect_refusal({"--mesh", roof_}, "--mesh: is drawn by a Vulkan device; add --device auto", false);
+  expect_refusal({"--mesh-at", "1,2"}, "--mesh-at, --mesh-scale, --mesh-rotate, --mesh-up: go with --mesh FILE");
+  expect_refusal({"--mesh", roof_, "--look", "height"}, "--mesh: goes with the look shaded, not with 'height'");
+  expect_refusal({"--mesh", roof_, "--water", "0"}, "--mesh: is not reflected by --water");
+  expect_refusal({"--mesh", roof_, "--mesh-up", "x"}, "--mesh-up 'x': expected y or z");
+  expect_refusal({"--mesh", roof_, "--mesh-scale", "0"}, "--mesh-scale '0': expected metres per unit");
+  expect_refusal({"--mesh", roof_, "--mesh-rotate", "nan"}, "--mesh-rotate 'nan': expected degrees");
+  if (!has_device()) GTEST_SKIP() << "no Vulkan device";
+  expect_refusal({"--mesh", roof_, "--mesh-at", "here"}, "--mesh-at 'here': expected X,Y or X,Y,Z");
+  expect_refusal({"--mesh", roof_, "--mesh-at", "-500,0"}, "--mesh-at: there is no ground at -500,0");
+  expect_refusal({"--mesh", scratch_.path("none.obj")}, "none.obj': cannot be opened");
+  expect_refusal({"--mesh", scratch_.write("nan.obj", "v 0 nan 0\n")}, "line 1: 'v 0 nan 0': expected finite numbers");
+  expect_refusal({"--mesh", scratch_.write("far.obj", "v 0 0 0\nv 1 0 0\nf 1 2 5\n")}, "a face has corner 5");
+  expect_refusal({"--mesh", scratch_.write("empty.gltf", R"({"asset": {"version": "2.0"}})")}, "has no triangles");
+}
+
+}  // namespace
+}  // namespace scarp::test

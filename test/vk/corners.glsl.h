@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// What corners.vert, corners.frag and the tests agree upon.
+#ifndef TEST_VK_CORNERS_GLSL_H
+#define TEST_VK_CORNERS_GLSL_H
+
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+struct CornersPush {
+  Address corners;  // vec4 each, in clip coordinates
+  vec4 colour;
+  float right;  // that much farther to the right for each instance
+};
+
+SCARP_GLSL_END
+
+#endif
