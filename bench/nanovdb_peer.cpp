@@ -22,7 +22,7 @@ NanovdbPeer::NanovdbPeer(const VoxelGrid& grid) : tree_(std::make_unique<Tree>()
   nanovdb::GridBuilder<float> builder(0.0f);
   auto to = builder.getAccessor();
   for_each_voxel(grid.bounds(), [&](const ivec3& v) {
-    if (grid.solid(v)) to.setValue(nanovdb::Coord(v.x, v.y, v.z), 1.0f);
+    if (grid.solid(v)) to.setValue(nanovdb::Coord(v.x, v.y, v.z), static_cast<float>(grid.entry(v)));
   });
   tree_->handle = builder.getHandle<>();
 }
@@ -60,6 +60,7 @@ VoxelEngine NanovdbPeer::engine(const char* mode, float push) const {
       }
       if (!inside) continue;
       to.hit.status = HitStatus::hit, to.hit.t = static_cast<double>(t), to.hit.voxel = {at[0], at[1], at[2]};
+      to.hit.entry = static_cast<std::uint32_t>(accessor.getValue(at));
     }
   };
   return engine;
