@@ -2,12 +2,9 @@
 // `scarp composite`: another renderer's picture and ours in one, pixel by pixel what is nearer.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -17,6 +14,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/depth_options.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/output/png.h"
 #include "scarp/render/film.h"
 #include "scarp/source/read_raster.h"
@@ -59,13 +57,6 @@ class ExrChannels {
  private:
   std::string path_;
 };
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
 
 void write(const std::string& path, int width, int height, const std::vector<vec3>& colour,
            const std::vector<float>& depth) {

@@ -24,7 +24,7 @@ void add_figure_options(CLI::App& command, FigureOptions& options) {
 
 namespace {
 
-constexpr int kTicks = 6, kColours = 256;
+constexpr int kNumbers = 6, kColours = 256;
 constexpr double kBarShare = 0.25;  // of the picture's width, at most
 
 std::array<std::uint8_t, 3> bytes(vec3 linear) {
@@ -34,7 +34,7 @@ std::array<std::uint8_t, 3> bytes(vec3 linear) {
 std::vector<FigureTick> ticks_of(double low, double high) {
   if (!(high > low)) return {{0.5, fmt::format("{:.6g}", low)}};  // ground without relief
   std::vector<FigureTick> ticks;
-  for (const double number : round_numbers(low, high, kTicks)) {
+  for (const double number : round_numbers(low, high, kNumbers)) {
     ticks.push_back({(number - low) / (high - low), fmt::format("{:.6g}", number)});
   }
   return ticks;

@@ -69,7 +69,7 @@ Camera camera_of(const HeightFunction& function, const FunctionInput& input, con
 }
 
 // Meadows, dry grass and snow by height, rock where it is steep; or one of the ramps.
-SceneLook look_of(const SeenHeights& range, const std::string& ramp, double haze_distance) {
+SceneLook look_of_heights(const SeenHeights& range, const std::string& ramp, double haze_distance) {
   const auto at = [&](double share) { return range.low + share * (range.high - range.low); };
   Material by_height = HeightRamp{ramp, range.low, range.high};
   if (ramp.empty()) {
@@ -171,7 +171,7 @@ void render_function(const FunctionInput& input, FunctionPicture settings, const
     print_error(error, percent);
     return;
   }
-  const SceneLook look = look_of(heights_around(function, input.extent), settings.picture.ramp, haze_distance);
+  const SceneLook look = look_of_heights(heights_around(function, input.extent), settings.picture.ramp, haze_distance);
   const auto [scene, device] = scene_on_device(
       settings.device,
       Scene({scene_function(function, march, settings.march_settings)},

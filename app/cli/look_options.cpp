@@ -5,9 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <glm/common.hpp>
 #include <limits>
 #include <memory>
@@ -16,6 +14,7 @@
 
 #include "app/cli/numbers.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/source/colour_image.h"
 #include "scarp/source/ramp_file.h"
 
@@ -30,13 +29,6 @@ vec3 colour_from(const std::string& text, std::string_view option) {
   if (text.size() != 6 || text.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos) throw wrong();
   const auto rgb = std::stoul(text, nullptr, 16);
   return vec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.0f;
-}
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
 }
 
 int pixels(double number, const std::string& text) {

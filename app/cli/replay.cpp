@@ -22,7 +22,7 @@ namespace {
 
 using Line = std::vector<std::string>;
 
-std::string_view name_of(HitStatus status) {
+std::string_view status_name(HitStatus status) {
   constexpr std::string_view kNames[] = {"miss", "hit", "below", "exhausted"};
   return kNames[static_cast<std::size_t>(status)];
 }
@@ -41,8 +41,7 @@ class Replay {
 
   void print(std::size_t number) const {
     const HeightField& field = dump_.field;
-    fmt::print("ray {} over {} x {} samples of {}\n", number, field.cols(), field.rows(),
-               scarp::name_of(field.sample_type()));
+    fmt::print("ray {} over {} x {} samples of {}\n", number, field.cols(), field.rows(), name_of(field.sample_type()));
     if (!dump_.expected.empty()) fmt::print("expected: {}\n", dump_.expected);
     if (!dump_.answered.empty()) fmt::print("answered: {}\n", dump_.answered);
     std::vector<std::size_t> widths(lines_.front().size());
@@ -75,8 +74,8 @@ class Replay {
     }
     agrees_ = agrees_ && *wrong == 0;
     const auto told = [&](const auto& value) { return hit ? fmt::format("{:.6g}", value) : std::string("-"); };
-    lines_.push_back({std::string(march.name), std::string(scarp::name_of(march.guarantee)),
-                      std::string(name_of(hit.status)), hit ? fmt::format("{:.17g}", hit.t) : "-",
+    lines_.push_back({std::string(march.name), std::string(name_of(march.guarantee)),
+                      std::string(status_name(hit.status)), hit ? fmt::format("{:.17g}", hit.t) : "-",
                       hit ? fmt::format("{} {}", hit.cell.col, hit.cell.row) : "-", told(hit.u), told(hit.v),
                       hit.wall ? "wall" : told(hit ? clearance(hit) : 0), any ? (*any ? "hit" : "none") : "-",
                       all ? std::to_string(all->size()) : "-", wrong});

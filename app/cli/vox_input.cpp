@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <set>
 
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/render/ramp.h"
 #include "scarp/scene/from_volume.h"
 
@@ -17,13 +16,6 @@ namespace scarp::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
 
 bool is_voxel_path(const std::string& path) { return extension_of(path) == ".vox" || extension_of(path) == ".binvox"; }
 

@@ -253,18 +253,7 @@ class VectorWalk {
   void take_ray(std::size_t j, std::size_t index, Lanes& fresh) {
     const Ray& ray = rays_[index];
     const GridRay local = field_.grid_from_world(ray);
-    if (field_.wraps()) {
-      const double copy_x = std::floor((local.origin.x + local.direction.x * ray.t_min) / f_.cols),
-                   copy_y = std::floor((local.origin.y + local.direction.y * ray.t_min) / f_.rows);
-      // The scalar walk knows more ways to begin, and counts farther.
-      if (ray.start == RayStart::free && is_near(local.origin.x, local.origin.y) &&
-          is_near(copy_x * f_.cols, copy_y * f_.rows) && max_mip::countable(local, ray)) {
-        take_copy(j, {index, static_cast<std::int32_t>(copy_x), static_cast<std::int32_t>(copy_y), false}, fresh);
-      } else {
-        answer_alone(index);
-      }
-      return;
-    }
+    if (field_.wraps()) return take_endless(j, index, local, fresh);
     put_ray(r_, j, ray, local);
     if (ray.start == RayStart::on_surface) {
       const SurfaceStart start = begin_on_surface(ray, local);
@@ -295,7 +284,32 @@ class VectorWalk {
   }
 
   // Ground that wraps round is walked over copy by copy, each as ground of its own, with the ray in the copy's frame.
-  // What that rounds is within the doubt, see kFarthestCopy.
+  // What that rounds of heights is within the doubt, see kFarthestCopy; of the first copy nothing may be doubtful, so a
+  // ray that begins next to a border is left to the scalar walk, which knows more ways to begin and counts farther.
+  void take_endless(std::size_t j, std::size_t index, const GridRay& local, Lanes& fresh) {
+    const Ray& ray = rays_[index];
+    if (ray.start == RayStart::on_surface || !is_near(local.origin.x, local.origin.y) ||
+        !max_mip::countable(local, ray)) {
+      return answer_alone(index);
+    }
+    // As the scalar walk does, down to the highest sample at once, over however many copies.
+    double t = ray.t_min;
+    if (local.direction.z < 0 && local.origin.z + local.direction.z * t > f_.highest) {
+      const double quotient = (f_.highest - local.origin.z) / local.direction.z;
+      const double t_top = quotient - 2 * kUnit * std::abs(quotient);
+      if (t_top > ray.t_max) return put_answer(index, {});
+      t = std::max(t, t_top);
+    }
+    const auto begin = [t](double o, double d, double cells) {
+      const double place = o + d * t, copy = std::floor(place / cells), within = place - copy * cells;
+      const bool inside = within > kNearCell && within < cells - kNearCell;
+      return std::pair{copy, inside};
+    };
+    const auto [x, inside_x] = begin(local.origin.x, local.direction.x, f_.cols);
+    const auto [y, inside_y] = begin(local.origin.y, local.direction.y, f_.rows);
+    if (!inside_x || !inside_y || !is_near(x * f_.cols, y * f_.rows)) return answer_alone(index);
+    take_copy(j, {index, static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), false}, fresh);
+  }
   static bool is_near(double x, double y) { return std::abs(x) < kFarthestCopy && std::abs(y) < kFarthestCopy; }
   void take_copy(std::size_t j, const Copy& copy, Lanes& fresh) {
     const Ray& ray = rays_[copy.ray];
@@ -513,11 +527,15 @@ HWY_EXPORT(walk_any);
 
 thread_local VectorStats t_stats;
 
+// Copies of ground that wraps round are to be so wide at least: to go on to the next one takes as long as some cells.
+constexpr int kNarrowestCopy = 128;
+
 // Fields that the vectors do not walk over: those with holes, where a ray that is above all ground may be below the rim
 // of the next cell, and those beyond 32-bit offsets or floats.
 bool walks_over(const HeightTarget& target) {
   const HeightField& field = *target.field;
   if (!field.has_cells() || field.nodata_count() > 0) return false;
+  if (field.wraps() && std::min(field.cols(), field.rows()) < kNarrowestCopy) return false;
   const HeightCode& code = target.pyramid->code();
   return target.pyramid->bytes() < (std::size_t{1} << 32) && code.per_step > 0x1p-100 && code.per_step < 0x1p100 &&
          std::abs(code.base) < 0x1p100;

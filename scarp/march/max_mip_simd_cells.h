@@ -64,7 +64,9 @@ struct CellRays {
   HWY_INLINE VD height(VD t) const { return hn::Add(oz, hn::Mul(dz, t)); }
 
   static HWY_INLINE VD place(VD o, VD d, VD t, VD cell) {
-    return hn::Min(hn::Max(hn::Sub(hn::Add(o, hn::Mul(d, t)), cell), hn::Zero(dd)), hn::Set(dd, 1));
+    // Which of the two zeros it is stays as it is.
+    const VD at = hn::Sub(hn::Add(o, hn::Mul(d, t)), cell), zero = hn::Zero(dd), one = hn::Set(dd, 1);
+    return hn::IfThenElse(hn::Lt(at, zero), zero, hn::IfThenElse(hn::Gt(at, one), one, at));
   }
   HWY_INLINE VD u(VD t) const { return place(ox, dx, t, col); }
   HWY_INLINE VD v(VD t) const { return place(oy, dy, t, row); }

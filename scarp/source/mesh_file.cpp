@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/source/mesh_corners.h"
 
 namespace scarp {
@@ -33,13 +33,6 @@ void add_triangle(const std::array<FileCorner, 3>& corners, TriangleMesh& mesh) 
 #ifdef SCARP_MESH
 
 namespace {
-
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
-}
 
 void require_file(const std::string& path) {
   std::error_code error;
