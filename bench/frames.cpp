@@ -45,6 +45,9 @@ constexpr Air kAirs[] = {{"dry", false, false}, {"water", true, false}, {"fog", 
 
 // Cells along the ray by which ground may be off.
 constexpr double kTolerance = 1;
+// Of the device's pixels by max-mip, the share that may be wrong: floats move a ray by 1/768 pixel (numerics.md, "Whole
+// frames"), so of pixels that an edge goes through 2 in 768 fall on its other side; edges go through less than a third.
+constexpr double kBesideEdges = 2.0 / 768 / 3;
 
 HeightField endless(const FramesOptions& options) {
   ProceduralDem dem;
@@ -295,7 +298,7 @@ void run_frames(const FramesOptions& options, const ReportOptions& report) {
   write_json(report, rows);
   if (worst_exact > 0)
     throw Error(fmt::format("render: {:.3g} % of the pixels of max-mip are wrong", 100 * worst_exact));
-  if (worst_on_device > 1e-3)
+  if (worst_on_device > kBesideEdges)
     throw Error(fmt::format("render: {:.3g} % of max-mip's pixels on the device are wrong", 100 * worst_on_device));
 }
 

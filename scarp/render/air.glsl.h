@@ -58,6 +58,9 @@ SCARP_FN vec3 scarp_fog_colour(real cosine, real sun_tint) {
   return scarp_between(kScarpHorizon, kScarpSunlight, sun_tint * towards);
 }
 
+/// The sine of the lowest sun that casts shadows over endless ground: 0.06 degrees, a ninth of its disc.
+const float kScarpLeastSunRise = 1e-3f;
+
 /// Light of the sky on level ground; the sun gives what lacks to white.
 const vec3 kScarpSkylight = vec3(0.27f, 0.32f, 0.39f);
 

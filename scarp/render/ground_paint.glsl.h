@@ -77,10 +77,15 @@ SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_
   return scarp_linear_from_srgb(scarp_between(colour, kScarpSnow, snow));
 }
 
+/// What keeps quotients finite, far from any number that shows: of walls the cosine to straight up, of level ground the
+/// metres of height to a pixel.
+const float kScarpLeastUpright = 1e-9f;
+const float kScarpLeastPerPixel = 1e-12f;
+
 /// With contour lines over it, `interval` metres apart.
 SCARP_FN vec3 scarp_with_contours(vec3 colour, real height, real3 normal, real footprint, real interval) {
-  real slope = sqrt(max(real(0.0), real(1.0) - normal.z * normal.z)) / max(normal.z, real(1e-9));
-  real per_pixel = max(slope * footprint, real(1e-12));  // metres of height
+  real slope = sqrt(max(real(0.0), real(1.0) - normal.z * normal.z)) / max(normal.z, real(kScarpLeastUpright));
+  real per_pixel = max(slope * footprint, real(kScarpLeastPerPixel));  // metres of height
   real line = floor(height / interval + real(0.5));
   real pixels = abs(height - line * interval) / per_pixel;
   real fifth = abs(line) - real(5.0) * floor(abs(line) / real(5.0) + real(0.1));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scarp/render/air.glsl.h"
 #include "scarp/render/sun_shadow.h"
 
 namespace scarp {
@@ -11,14 +12,11 @@ namespace {
 // Purposes of a pixel's points.
 constexpr std::uint32_t kOfSky = 0, kOfSun = 1;
 
-// The sine of the lowest sun that casts shadows over endless ground.
-constexpr double kLeastSunRise = 1e-3;
-
 // Rays over endless ground need an end: above the highest summit nothing is met, and low rays end far away.
 void end_above_ground(std::span<Ray> rays, double highest) {
   for (Ray& ray : rays) {
     const double rise = std::max(highest - ray.origin.z, 0.0);
-    ray.t_max = rise / std::max(ray.direction.z, kLeastSunRise);
+    ray.t_max = rise / std::max(ray.direction.z, double{glsl::kScarpLeastSunRise});
   }
 }
 

@@ -215,7 +215,7 @@ bool send(ScarpField field, int task, inout Sent sent) {
     end = scarp_two(kScarpNever);
     // Rays over endless ground need an end: above the highest summit nothing is met, and low rays end far away.
     if ((field.flags & kScarpWraps) != 0u)
-      end = scarp_two(max((field.highest - z.high) * s.is.metres_per_sample, 0.0) / max(s.is.to_sun.z, 1e-3));
+      end = scarp_two(max((field.highest - z.high) * s.is.metres_per_sample, 0.0) / max(s.is.to_sun.z, kScarpLeastSunRise));
     how |= kScarpSendFromSurface;
     sent.step = ScarpFixedStep(s.is.sun_step, s.is.sun_interpolate, s.is.sun_steps);
   } else {

@@ -26,9 +26,13 @@ SCARP_FN real3 scarp_refracted(real3 direction, real3 normal, real index) {
   real inside = sqrt(real(1.0) - ratio * ratio * (real(1.0) - cosine * cosine));
   return normalize(ratio * direction + (ratio * cosine - inside) * normal);
 }
+/// The least sine by which mirrored rays rise: less would take them over a thousand metres for each metre of height.
+const float kScarpLeastMirroredRise = 1e-3f;
+
 /// Waves must not send a mirrored ray into the water: it runs along it then.
 SCARP_FN real3 scarp_kept_above(real3 mirrored) {
-  return mirrored.z < real(1e-3) ? normalize(real3(mirrored.x, mirrored.y, real(1e-3))) : mirrored;
+  real least = real(kScarpLeastMirroredRise);
+  return mirrored.z < least ? normalize(real3(mirrored.x, mirrored.y, least)) : mirrored;
 }
 
 const int kScarpWaves = 7;
