@@ -2,7 +2,6 @@
 #include "scarp/accel/octant_cubes.h"
 
 #include <algorithm>
-#include <array>
 
 #include "scarp/accel/octant_rows.h"
 
@@ -20,9 +19,8 @@ OctantCubes::OctantCubes(const VoxelGrid& grid)
   VoxelNearness up(grid, grid.box()), down = up;
   up.along_x(ahead_of(0));
   down.along_x(ahead_of(1));
-  std::array<OctantRows, 8> octants;
-  for (int octant = 0; octant < 8; ++octant) octants[octant] = {octant, octant & 1 ? &down : &up};
-  largest_ = build_octants(octants, grid.box(), sides_);
+  for (int octant = 0; octant < 4; ++octant)
+    largest_ = std::max(largest_, build_octants({octant, true, octant & 1 ? &down : &up}, grid.box(), sides_));
 }
 
 void OctantCubes::update(const VoxelGrid& grid, const VoxelBox& changed) {
@@ -40,7 +38,7 @@ void OctantCubes::update(const VoxelGrid& grid, const VoxelBox& changed) {
     region = intersection(region, grid.box());
     VoxelNearness near(grid, region);
     near.along_x(ahead_of(octant));
-    largest_ = std::max(largest_, build_octants(std::array{OctantRows{octant, &near}}, region, sides_));
+    largest_ = std::max(largest_, build_octants({octant, false, &near}, region, sides_));
   }
 }
 

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Octant cubes, row by row in vectors of bytes.
+// Octant cubes, row by row in vectors of bytes, where they are stored.
 //
-//   ahead in z   C B      near = max(that along x of the same row, max(A, B, C and theirs next in x) - 1)
-//   same slab    A *      A: the row ahead in y; B, C: the same two in the slab ahead
+//   along x   how far the next solid voxel of the same row is (voxel_nearness.h)
+//   along y   in each slab: the least of that and 1 + the row ahead, its voxel and the next one along x
+//   along z   the least of that and 1 + the slab ahead: its row, the row ahead of that, and the next voxels along x
 //
-// Nearness is 255 - side. Along x each row's own solid voxels are spread first; A, B and C hold no steeper steps than
-// 1, nor does what becomes of them, so nothing need be spread along x again. Octants take turns, for each row waits for
-// the one before it.
+// That is exact: what the slab ahead tells changes by 1 from voxel to voxel at most, so nothing of it need go along x
+// and y again. Octants that differ in z alone share all but the last step.
 #pragma once
-
-#include <span>
 
 #include "scarp/accel/voxel_bytes.h"
 #include "scarp/accel/voxel_nearness.h"
@@ -18,11 +16,12 @@ namespace scarp {
 
 struct OctantRows {
   int octant;
-  const VoxelNearness* along_x;  ///< of a region, spread from the side that is ahead: lower voxels where bit 0 is set
+  bool and_opposite;             ///< also the octant that differs in z alone
+  const VoxelNearness* along_x;  ///< of the region, spread from the side that is ahead: lower voxels where bit 0 is set
 };
 
-/// Writes the sides of the voxels of `region` for 1 to 8 octants. Sides ahead of the region are known. `sides`: one
-/// grid above the other, by octant. Returns the largest side written.
-int build_octants(std::span<const OctantRows> octants, const VoxelBox& region, VoxelBytes& sides);
+/// Writes the sides of the voxels of `region`. Sides ahead of the region are known. `sides`: one grid above the other,
+/// by octant. Returns the largest side written.
+int build_octants(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides);
 
 }  // namespace scarp

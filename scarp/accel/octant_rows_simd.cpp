@@ -25,152 +25,175 @@ constexpr hn::CappedTag<std::uint8_t, VoxelNearness::kBlock> d8;
 constexpr std::size_t N = hn::MaxLanes(d8);
 using V = hn::Vec<decltype(d8)>;
 
-constexpr std::uint8_t kSolid = 255;  // as near as can be
+std::size_t to_size(int i) { return static_cast<std::size_t>(i); }
 
-std::size_t blocks(int bytes) {
-  return (static_cast<std::size_t>(bytes) + VoxelNearness::kBlock - 1) / VoxelNearness::kBlock * VoxelNearness::kBlock;
-}
-
-// Of one octant: nearness in the slab that is built and in the one ahead of it. Rows are counted from the one ahead of
-// the region on.
-class Slabs {
+// What is the same for all rows of a region, as an octant sees them along x.
+class Row {
  public:
-  Slabs(const VoxelBox& region, int octant, const VoxelBytes& sides)
-      : region_(region),
-        octant_(octant),
-        sides_(sides),
-        size_({sides.size().x, sides.size().y, sides.size().z / 8}),
-        stride_(blocks(region.high.x - region.low.x) + 2 * kMargin),
-        bytes_(2 * stride_ * static_cast<std::size_t>(region.high.y - region.low.y + 1)),
-        here_(bytes_.data() + kMargin),
-        ahead_(here_ + bytes_.size() / 2) {
-    for (int i = 0; i <= region.high.y - region.low.y; ++i)
-      read(y(i - 1), z(-1), ahead_ + stride_ * static_cast<std::size_t>(i));
+  Row(const VoxelBox& region, const ivec3& grid, bool down)
+      : size_(to_size(region.high.x - region.low.x)),
+        end_((size_ + N - 1) / N * N),
+        down_(down),
+        ends_(down ? region.low.x == 0 : region.high.x == grid.x),
+        bytes_(3 * end_) {
+    std::fill_n(bytes_.begin(), size_, std::uint8_t{255});
+    if (ends_) bytes_[end_ + (down ? 0 : size_ - 1)] = 255;
+    for (std::size_t x = 0; x < size_; ++x)
+      bytes_[2 * end_ + x] = static_cast<std::uint8_t>(std::min<std::size_t>(255, down ? x + 1 : size_ - x));
   }
 
-  // Coordinates of the i-th row, and slab, of the region; -1: ahead of it.
-  int y(int i) const { return down(1) ? region_.low.y + i : region_.high.y - 1 - i; }
-  int z(int i) const { return down(2) ? region_.low.z + i : region_.high.z - 1 - i; }
-  int x_ahead() const { return down(0) ? region_.low.x - 1 : region_.high.x; }
+  bool whole() const { return size_ == end_; }  // of whole vectors
+  bool ends() const { return ends_; }           // at the grid's border
+  std::ptrdiff_t next() const { return down_ ? -1 : 1; }
+  std::ptrdiff_t ahead() const { return down_ ? -1 : static_cast<std::ptrdiff_t>(size_); }
 
-  // Of a slab: the row ahead, then the others, in the octant's order.
-  struct Rows {
-    std::uint8_t* here;
-    const std::uint8_t* ahead;
-    // The first row's, and how far apart they are.
-    const std::uint8_t* own;  // spread along x alone
-    std::uint8_t* to;         // sides
-    std::ptrdiff_t own_apart, to_apart;
-    std::ptrdiff_t next;  // of voxels along x
-    bool ends_ahead;
+  struct Block {
+    std::size_t x, size;
+    V in, edge, away;
   };
-  std::ptrdiff_t rows_apart() const { return static_cast<std::ptrdiff_t>(stride_); }
-  Rows begin_slab(int i, const VoxelNearness& along_x, VoxelBytes& sides) {
-    read(y(-1), z(i), here_);
-    const int first = y(0), window_y = first - region_.low.y, window_z = z(i) - region_.low.z;
-    const std::ptrdiff_t row = along_x.rows_apart();
-    return {here_,
-            ahead_,
-            along_x.row(window_y, window_z),
-            sides.at({region_.low.x, first, z(i) + octant_ * size_.z}),
-            down(1) ? row : -row,
-            down(1) ? size_.x : -size_.x,
-            down(0) ? -1 : 1,
-            x_ahead() < 0 || x_ahead() >= size_.x};
-  }
-  void end_slab() { std::swap(here_, ahead_); }
-
-  // What is known of a voxel ahead of the region; outside of the grid nothing is near.
-  std::uint8_t known(const ivec3& voxel) const {
-    if (glm::any(glm::lessThan(voxel, ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, size_))) return 0;
-    return static_cast<std::uint8_t>(kSolid - sides_[voxel + ivec3(0, 0, octant_ * size_.z)]);
+  // Calls work for each vector of a row, first for what is ahead.
+  template <class Work>
+  HWY_INLINE void for_each_block(const Work& work) const {
+    for (std::size_t i = 0; i < end_; i += N) {
+      const std::size_t x = down_ ? i : end_ - N - i;
+      const std::uint8_t* const bytes = bytes_.data() + x;
+      work(Block{x, std::min(N, size_ - x), hn::LoadU(d8, bytes), hn::LoadU(d8, bytes + end_),
+                 hn::LoadU(d8, bytes + 2 * end_)});
+    }
   }
 
  private:
-  bool down(int axis) const { return octant_ >> axis & 1; }
-
-  // A row ahead of the region, with its voxel ahead of it along x; outside of the grid it stays 0.
-  void read(int y, int z, std::uint8_t* to) const {
-    if (y < 0 || y >= size_.y || z < 0 || z >= size_.z) return;
-    for (int x = region_.low.x; x < region_.high.x; ++x) to[x - region_.low.x] = known({x, y, z});
-    to[x_ahead() - region_.low.x] = known({x_ahead(), y, z});
-  }
-
-  static constexpr std::size_t kMargin = 8;
-
-  VoxelBox region_;
-  int octant_;
-  const VoxelBytes& sides_;
-  ivec3 size_;  // of the grid
-  std::size_t stride_;
+  std::size_t size_, end_;
+  bool down_, ends_;
+  // For each voxel: 255; 255 where the next one is outside of the grid; how far the one ahead of the row is away.
   std::vector<std::uint8_t> bytes_;
-  std::uint8_t *here_, *ahead_;
 };
 
-// The nearer of each voxel and the next one along x.
-HWY_INLINE V widened(const std::uint8_t* from, std::ptrdiff_t next) {
-  return hn::Max(hn::LoadU(d8, from), hn::LoadU(d8, from + next));
+// The less of each side and that of the next voxel; outside of the grid nothing is near.
+HWY_INLINE V least(const std::uint8_t* sides, std::ptrdiff_t next, V edge) {
+  return hn::Min(hn::LoadU(d8, sides), hn::Or(hn::LoadU(d8, sides + next), edge));
 }
 
-// kOne: rows are of one whole vector.
-template <bool kOne>
-int build_rows(std::span<const OctantRows> which, const VoxelBox& region, VoxelBytes& sides) {
-  const ivec3 size = region.high - region.low;
-  std::vector<Slabs> octants;
-  octants.reserve(which.size());
-  for (const OctantRows& octant : which) octants.emplace_back(region, octant.octant, sides);
-  // 255 for the voxels of a row.
-  std::vector<std::uint8_t> row_of(blocks(size.x));
-  std::fill_n(row_of.begin(), size.x, std::uint8_t{255});
-  const std::size_t end = kOne ? N : static_cast<std::size_t>(size.x);
+template <bool kWhole>
+HWY_INLINE void store(V sides, std::size_t size, std::uint8_t* to) {
+  if (kWhole || size == N) {
+    hn::StoreU(sides, d8, to);
+  } else {
+    alignas(64) std::array<std::uint8_t, N> some;
+    hn::Store(sides, d8, some.data());
+    std::memcpy(to, some.data(), size);
+  }
+}
+
+// An octant's sides. Rows and slabs of the region are counted from what is ahead on; -1: ahead of the region.
+class Octant {
+ public:
+  Octant(int octant, const VoxelBox& region, VoxelBytes& sides) : octant_(octant), region_(region) {
+    const ivec3 grid = {sides.size().x, sides.size().y, sides.size().z / 8};
+    first_ = sides.at({region.low.x, place(1, 0), place(2, 0) + octant * grid.z});
+    to_next_row_ = down(1) ? grid.x : -grid.x;
+    to_next_slab_ = (down(2) ? 1 : -1) * std::ptrdiff_t{grid.x} * grid.y;
+    for (const int axis : {1, 2}) begins_[axis] = down(axis) ? region.low[axis] == 0 : region.high[axis] == grid[axis];
+  }
+
+  bool down(int axis) const { return octant_ >> axis & 1; }
+  int count(int axis) const { return region_.high[axis] - region_.low[axis]; }
+  // Counted from the region's lowest one.
+  int from_low(int axis, int i) const { return place(axis, i) - region_.low[axis]; }
+  // Whether what is ahead of the region is in the grid.
+  bool known_ahead(int axis) const { return !begins_[axis]; }
+  std::uint8_t* row(int y, int z) const { return first_ + y * to_next_row_ + z * to_next_slab_; }
+  std::ptrdiff_t to_next_row() const { return to_next_row_; }
+  std::ptrdiff_t to_next_slab() const { return to_next_slab_; }
+
+ private:
+  int place(int axis, int i) const { return down(axis) ? region_.low[axis] + i : region_.high[axis] - 1 - i; }
+
+  int octant_;
+  VoxelBox region_;
+  std::uint8_t* first_;
+  std::ptrdiff_t to_next_row_, to_next_slab_;
+  std::array<bool, 3> begins_{};  // at the grid's border
+};
+
+// What has just been stored is not loaded across vectors at once, which would wait for it: so many slabs take turns.
+constexpr int kTogether = 8;
+
+// Each slab by itself. Stores of bytes might change anything: what loops need stands in variables of their own here and
+// below, or would be loaded again for each row.
+template <bool kWhole>
+void along_y(const Octant& octant, const Row& rows, const VoxelNearness& along_x) {
   const V one = hn::Set(d8, 1), all = hn::Set(d8, 255);
-  V largest = hn::Zero(d8);
-  const std::ptrdiff_t apart = octants[0].rows_apart();
-  std::array<Slabs::Rows, 8> at;
-  for (int slab = 0; slab < size.z; ++slab) {
-    for (std::size_t i = 0; i < octants.size(); ++i) at[i] = octants[i].begin_slab(slab, *which[i].along_x, sides);
-    for (int row = 0; row < size.y; ++row) {
-      for (std::size_t i = 0; i < octants.size(); ++i) {
-        const Slabs::Rows& rows = at[i];
-        const std::ptrdiff_t next = rows.next;
-        const std::uint8_t *const a = rows.here + row * apart, *const c = rows.ahead + row * apart,
-                                  *const b = c + apart, *const own = rows.own + row * rows.own_apart;
-        std::uint8_t *const here = rows.here + (row + 1) * apart, *const to = rows.to + row * rows.to_apart;
-        for (std::size_t x = 0; x < end; x += N) {
-          const V nearest = hn::Max(widened(a + x, next), hn::Max(widened(b + x, next), widened(c + x, next)));
-          const V near = hn::Max(hn::LoadU(d8, own + x), hn::SaturatedSub(nearest, one)), side = hn::Sub(all, near);
-          hn::StoreU(near, d8, here + x);
-          largest = hn::Max(largest, kOne ? side : hn::And(side, hn::LoadU(d8, row_of.data() + x)));
-          if (kOne || x + N <= end) {
-            hn::StoreU(side, d8, to + x);
-          } else {
-            alignas(64) std::array<std::uint8_t, N> some;
-            hn::Store(side, d8, some.data());
-            std::memcpy(to + x, some.data(), end - x);
+  const std::ptrdiff_t next = rows.next(), to_ahead = -octant.to_next_row(), to_next_slab = octant.to_next_slab();
+  for (int begin = 0; begin < octant.count(2); begin += kTogether) {
+    const int slabs = std::min(kTogether, octant.count(2) - begin);
+    for (int y = 0; y < octant.count(1); ++y) {
+      const bool ahead = y > 0 || octant.known_ahead(1);
+      const std::uint8_t* const own_row = along_x.row(octant.from_low(1, y), octant.from_low(2, begin));
+      const std::ptrdiff_t to_next_own = octant.down(2) ? along_x.slabs_apart() : -along_x.slabs_apart();
+      std::uint8_t* const row = octant.row(y, begin);
+      rows.for_each_block([&](const typename Row::Block& block) {
+        const std::uint8_t* own = own_row + block.x;
+        std::uint8_t* to = row + block.x;
+        for (int i = 0; i < slabs; ++i, own += to_next_own, to += to_next_slab) {
+          V side = hn::Sub(all, hn::LoadU(d8, own));
+          if (ahead) side = hn::Min(side, hn::SaturatedAdd(least(to + to_ahead, next, block.edge), one));
+          if (!rows.ends()) {
+            const V known = hn::Set(d8, to[rows.ahead() - static_cast<std::ptrdiff_t>(block.x)]);
+            side = hn::Min(side, hn::SaturatedAdd(known, block.away));
           }
+          store<kWhole>(side, block.size, to);
         }
-        if (rows.ends_ahead) continue;
-        // From the voxel ahead of the row as far as it is the nearest.
-        const std::uint8_t known = octants[i].known({octants[i].x_ahead(), octants[i].y(row), octants[i].z(slab)});
-        here[octants[i].x_ahead() - region.low.x] = known;
-        for (int away = 1; away <= size.x && away < known; ++away) {
-          const int x = next < 0 ? away - 1 : size.x - away;
-          if (here[x] >= known - away) break;
-          here[x] = static_cast<std::uint8_t>(known - away);
-          to[x] = static_cast<std::uint8_t>(kSolid - here[x]);
-        }
-      }
+      });
     }
-    for (Slabs& octant : octants) octant.end_slab();
+  }
+}
+
+// From slab to slab. `flat` has been along y. Returns the largest side.
+template <bool kWhole>
+int along_z(const Octant& flat, const Octant& octant, const Row& rows) {
+  const V one = hn::Set(d8, 1), all = hn::Set(d8, 255);
+  const std::ptrdiff_t next = rows.next(), to_next = octant.to_next_row(), to_ahead = -octant.to_next_slab();
+  const int count = octant.count(1);
+  V largest = hn::Zero(d8);
+  for (int z = 0; z < octant.count(2); ++z) {
+    const std::uint8_t* const flat_row = flat.row(0, flat.down(2) == octant.down(2) ? z : octant.count(2) - 1 - z);
+    std::uint8_t* const row = octant.row(0, z);
+    const bool ahead = z > 0 || octant.known_ahead(2);
+    rows.for_each_block([&](const typename Row::Block& block) {
+      const std::uint8_t* from = flat_row + block.x;
+      std::uint8_t* to = row + block.x;
+      V most = largest;
+      V before = ahead && octant.known_ahead(1) ? least(to + to_ahead - to_next, next, block.edge) : all;
+      for (int y = 0; y < count; ++y, from += to_next, to += to_next) {
+        V side = hn::LoadU(d8, from);
+        if (ahead) {
+          const V beside = least(to + to_ahead, next, block.edge);
+          side = hn::Min(side, hn::SaturatedAdd(hn::Min(before, beside), one));
+          before = beside;
+        }
+        most = hn::Max(most, kWhole ? side : hn::And(side, block.in));
+        store<kWhole>(side, block.size, to);
+      }
+      largest = most;
+    });
   }
   alignas(64) std::array<std::uint8_t, N> lanes;
   hn::Store(largest, d8, lanes.data());
   return *std::max_element(lanes.begin(), lanes.end());
 }
 
-int build(std::span<const OctantRows> octants, const VoxelBox& region, VoxelBytes& sides) {
-  const bool one = region.high.x - region.low.x == static_cast<int>(N);
-  return one ? build_rows<true>(octants, region, sides) : build_rows<false>(octants, region, sides);
+template <bool kWhole>
+int build_rows(const OctantRows& which, const VoxelBox& region, const Row& rows, VoxelBytes& sides) {
+  const Octant octant(which.octant, region, sides);
+  along_y<kWhole>(octant, rows, *which.along_x);
+  const int opposite = which.and_opposite ? along_z<kWhole>(octant, {which.octant ^ 4, region, sides}, rows) : 0;
+  return std::max(opposite, along_z<kWhole>(octant, octant, rows));
+}
+
+int build(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides) {
+  const Row rows(region, sides.size(), which.octant & 1);
+  return rows.whole() ? build_rows<true>(which, region, rows, sides) : build_rows<false>(which, region, rows, sides);
 }
 
 }  // namespace
@@ -186,8 +209,8 @@ HWY_EXPORT(build);
 
 }  // namespace
 
-int build_octants(std::span<const OctantRows> octants, const VoxelBox& region, VoxelBytes& sides) {
-  return HWY_DYNAMIC_DISPATCH(build)(octants, region, sides);
+int build_octants(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides) {
+  return HWY_DYNAMIC_DISPATCH(build)(which, region, sides);
 }
 
 }  // namespace scarp

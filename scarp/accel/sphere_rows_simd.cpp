@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -26,11 +27,12 @@ constexpr hn::CappedTag<std::uint16_t, VoxelNearness::kBlock> d16;
 constexpr hn::Rebind<std::uint8_t, decltype(d16)> d16_bytes;
 constexpr hn::CappedTag<float, VoxelNearness::kBlock / 2> df;
 constexpr hn::RebindToSigned<decltype(df)> di;
-constexpr hn::Rebind<std::uint16_t, decltype(df)> df_shorts;
+constexpr hn::RebindToUnsigned<decltype(df)> du;
 constexpr std::size_t N = hn::MaxLanes(d16);
 using V = hn::Vec<decltype(d16)>;
 
-constexpr int kReach = 255;  // whose square is the largest of 16 bits
+constexpr int kShortBits = 16;
+constexpr int kReach = EmptySpheres::kFarthest + 1;  // whose square is the largest of 16 bits
 
 std::size_t to_size(int i) { return static_cast<std::size_t>(i); }
 
@@ -73,19 +75,25 @@ HWY_INLINE V least(const Lines& lines, int place, std::size_t at) {
   return found;
 }
 
-// Rounded down; whole squares have exact roots.
-template <class Shorts>
-HWY_INLINE Shorts root(Shorts square) {
-  const auto number = hn::ConvertTo(df, hn::PromoteTo(di, square));
-  return hn::DemoteTo(df_shorts, hn::ConvertTo(di, hn::Sqrt(number)));
-}
-HWY_INLINE V roots(V squares) {
 #if HWY_TARGET == HWY_SCALAR
-  return root(squares);
-#else
-  return hn::Combine(d16, root(hn::UpperHalf(df_shorts, squares)), root(hn::LowerHalf(df_shorts, squares)));
-#endif
+HWY_INLINE V roots(V squares) {
+  return hn::Set(d16, static_cast<std::uint16_t>(std::sqrt(static_cast<float>(hn::GetLane(squares)))));
 }
+#else
+// Rounded down, in the lowest bits. To the root of half more, which is no whole number and a half, 2^23 - 1/2 is added:
+// floats have no smaller steps than 1 there, and the sum goes to the nearest.
+HWY_INLINE hn::Vec<decltype(di)> root_bits(hn::Vec<decltype(di)> squares) {
+  const auto root = hn::Sqrt(hn::Add(hn::ConvertTo(df, squares), hn::Set(df, 0.5f)));
+  return hn::BitCast(di, hn::Add(root, hn::Set(df, 8388607.5f)));
+}
+// Rounded down.
+HWY_INLINE V roots(V squares) {
+  const auto pairs = hn::BitCast(du, squares);
+  const auto low = root_bits(hn::BitCast(di, hn::And(pairs, hn::Set(du, 0xffff)))),
+             high = root_bits(hn::BitCast(di, hn::ShiftRight<kShortBits>(pairs)));
+  return hn::OddEven(hn::BitCast(d16, hn::ShiftLeft<kShortBits>(high)), hn::BitCast(d16, low));
+}
+#endif
 
 int build(const VoxelNearness& along_x, const VoxelBox& window, const VoxelBox& region, VoxelBytes& distances) {
   const ivec3 inner = region.high - region.low, outer = window.high - window.low, shift = region.low - window.low;
@@ -95,16 +103,23 @@ int build(const VoxelNearness& along_x, const VoxelBox& window, const VoxelBox& 
   for (std::size_t x = 0; x < end; ++x) in_row[x] = 65535;
 
   Lines rows(stride, outer.y), slabs(stride * to_size(inner.y), outer.z);
+  // Of a slab and both beside it the nearest, row by row, between two rows in which nothing is in sight.
+  std::vector<std::uint8_t> nearest_of_3(stride * to_size(outer.y + 2));
   for (int z = 0; z < outer.z; ++z) {
+    const int below = std::max(z - 1, 0), above = std::min(z + 1, outer.z - 1);
+    for (int y = 0; y < outer.y; ++y) {
+      for (std::size_t x = 0; x < end; x += N) {
+        const auto row = [&](int slab) { return hn::LoadU(d16_bytes, along_x.row(y, slab) + shift.x + x); };
+        hn::StoreU(hn::Max(row(z), hn::Max(row(below), row(above))), d16_bytes,
+                   nearest_of_3.data() + stride * to_size(y + 1) + x);
+      }
+    }
     rows.low = outer.y, rows.high = -1;
     for (int y = 0; y < outer.y; ++y) {
       V any = hn::Zero(d16);
       for (std::size_t x = 0; x < end; x += N) {
-        auto nearest = hn::Zero(d16_bytes);
-        for (int k = std::max(z - 1, 0); k <= std::min(z + 1, outer.z - 1); ++k) {
-          for (int j = std::max(y - 1, 0); j <= std::min(y + 1, outer.y - 1); ++j)
-            nearest = hn::Max(nearest, hn::LoadU(d16_bytes, along_x.row(j, k) + shift.x + x));
-        }
+        const auto row = [&](int i) { return hn::LoadU(d16_bytes, nearest_of_3.data() + stride * to_size(i) + x); };
+        const auto nearest = hn::Max(row(y), hn::Max(row(y + 1), row(y + 2)));
         // Boxes are grown by one along x, too; what is out of sight, 0, stays there.
         const V in = hn::LoadU(d16, in_row.data() + x), near = hn::And(hn::PromoteTo(d16, nearest), in);
         const V away =
@@ -123,13 +138,12 @@ int build(const VoxelNearness& along_x, const VoxelBox& window, const VoxelBox& 
     }
   }
 
-  int largest = 0;
+  V most = hn::Zero(d16);
   alignas(64) std::array<std::uint8_t, N> bytes;
   for (int z = 0; z < inner.z; ++z) {
     for (int y = 0; y < inner.y; ++y) {
       const std::uint8_t* const near = along_x.row(shift.y + y, shift.z + z) + shift.x;
       std::uint8_t* const to = distances.at(region.low + ivec3(0, y, z));
-      V most = hn::Zero(d16);
       for (std::size_t x = 0; x < end; x += N) {
         const V in = hn::LoadU(d16, in_row.data() + x);
         const V found = slabs.empty() ? in : least(slabs, shift.z + z, stride * to_size(y) + x);
@@ -146,10 +160,9 @@ int build(const VoxelNearness& along_x, const VoxelBox& window, const VoxelBox& 
           std::memcpy(to + x, bytes.data(), end - x);
         }
       }
-      largest = std::max<int>(largest, hn::GetLane(hn::MaxOfLanes(d16, most)));
     }
   }
-  return largest;
+  return hn::GetLane(hn::MaxOfLanes(d16, most));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ class VoxelBytes {
   VoxelBytes(const ivec3& size, std::uint8_t value)
       : size_(size),
         bytes_(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z) +
-                   kReadBeyond,
+                   2 * kReadBeyond,
                value) {}
 
   std::size_t index(const ivec3& voxel) const {
@@ -31,16 +31,16 @@ class VoxelBytes {
            static_cast<std::size_t>(size_.x) * (static_cast<std::size_t>(voxel.y) +
                                                 static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(voxel.z));
   }
-  std::uint8_t operator[](const ivec3& voxel) const { return bytes_[index(voxel)]; }
-  std::uint8_t& operator[](const ivec3& voxel) { return bytes_[index(voxel)]; }
-  const std::uint8_t* at(const ivec3& voxel) const { return bytes_.data() + index(voxel); }
-  std::uint8_t* at(const ivec3& voxel) { return bytes_.data() + index(voxel); }
+  std::uint8_t operator[](const ivec3& voxel) const { return *at(voxel); }
+  std::uint8_t& operator[](const ivec3& voxel) { return *at(voxel); }
+  const std::uint8_t* at(const ivec3& voxel) const { return data() + index(voxel); }
+  std::uint8_t* at(const ivec3& voxel) { return bytes_.data() + kReadBeyond + index(voxel); }
 
   const ivec3& size() const { return size_; }
   VoxelBox box() const { return {ivec3(0), size_}; }
-  /// The first voxel's; so many bytes beyond the last one's may be read, as vectors do.
-  const std::uint8_t* data() const { return bytes_.data(); }
-  static constexpr std::size_t kReadBeyond = 7;
+  /// The first voxel's; so many bytes before it and beyond the last one's may be read, as vectors do.
+  const std::uint8_t* data() const { return bytes_.data() + kReadBeyond; }
+  static constexpr std::size_t kReadBeyond = 64;
   std::size_t bytes() const { return bytes_.size(); }
   friend bool operator==(const VoxelBytes&, const VoxelBytes&) = default;
 

@@ -27,10 +27,20 @@ VoxelNearness::VoxelNearness(const VoxelGrid& grid, const VoxelBox& window)
       stride_(used_ + 2 * kMargin),
       bytes_(stride_ * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z) + kBlock) {
   // Brick by brick; what of them lies outside of the window along x is cleared afterwards.
-  const VoxelBox bricks = {window.low >> 2, (window.high + 3) >> 2};
+  const VoxelBox bricks = {window.low >> 2, (window.high + 3) >> 2}, inner = {(window.low + 3) >> 2, window.high >> 2};
+  const std::size_t to_next_row = stride_, to_next_slab = stride_ * static_cast<std::size_t>(size_.y);
   for_each_voxel(bricks, [&](const ivec3& brick) {
     const std::uint64_t mask = grid.masks()[grid.brick_index(brick)];
+    if (mask == 0) return;
     const ivec3 at = 4 * brick - window.low;
+    // Most are whole; what their stores might change is not loaded again.
+    if (inner.contains(brick)) {
+      std::uint8_t* to = row(at.y, at.z) + at.x;
+      for (std::uint64_t bits = mask, left = 4; left > 0; --left, bits >>= 16, to += to_next_slab) {
+        for (unsigned i = 0; i < 4; ++i) std::memcpy(to + i * to_next_row, &kBytesOf[bits >> (4 * i) & 15], 4);
+      }
+      return;
+    }
     for (int z = std::max(0, -at.z); z < std::min(4, size_.z - at.z); ++z) {
       for (int y = std::max(0, -at.y); y < std::min(4, size_.y - at.y); ++y)
         std::memcpy(row(at.y + y, at.z + z) + at.x, &kBytesOf[mask >> (4 * y + 16 * z) & 15], 4);

@@ -56,7 +56,7 @@ class VoxelNearness {
   /// kBlock bytes beyond its voxels; where only upper sides count, those up to a multiple of kBlock are 0.
   std::uint8_t* row(int y, int z) { return rows().row(y, z); }
   const std::uint8_t* row(int y, int z) const { return const_cast<VoxelNearness*>(this)->row(y, z); }
-  std::ptrdiff_t rows_apart() const { return static_cast<std::ptrdiff_t>(stride_); }
+  std::ptrdiff_t slabs_apart() const { return static_cast<std::ptrdiff_t>(stride_) * size_.y; }
 
  private:
   NearRows rows() { return {size_, used_, stride_, bytes_.data() + kMargin}; }
