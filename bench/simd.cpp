@@ -60,20 +60,15 @@ Count count(const Engine& engine, const Engine& scalar, const RaySet& set) {
   return count;
 }
 
-}  // namespace
-
-void run_simd(const SimdOptions& options, const ReportOptions& report) {
-  std::vector<RayClass> classes;
-  for (const std::string& name : options.classes) classes.push_back(find_ray_class(name));
-  const BenchField ground = load_field(options.trace.field);
+void compare(const BenchField& ground, double exaggeration, const std::vector<RayClass>& classes,
+             const SimdOptions& options, Json& rows) {
   const ScarpGround scarp(ground.field);
   std::vector<Engine> engines{scarp.engine(find_march("max-mip"))};
   for (const Variant& variant : kVariants) engines.push_back(scarp.vectors(variant.name, variant.ideas));
-  Json rows = Json::array();
   for (const RaySet& set : make_rays(ground, classes, options.trace.rays, options.trace.ray_seed)) {
     const auto timings = measure(engines, set, {1, options.trace.repeats, options.trace.pass_limit_s});
-    std::vector<std::vector<std::string>> lines{
-        {"class", "ideas", "Mrays/cpu s", "x scalar", "blocks", "use", "cells", "use", "handed over %", "different"}};
+    std::vector<std::vector<std::string>> lines{{"class", "exagg.", "ideas", "Mrays/cpu s", "x scalar", "blocks", "use",
+                                                 "cells", "use", "handed over %", "different"}};
     for (std::size_t e = 0; e < engines.size(); ++e) {
       const Count counted = count(engines[e], engines[0], set);
       const double rays = static_cast<double>(set.size());
@@ -82,6 +77,7 @@ void run_simd(const SimdOptions& options, const ReportOptions& report) {
       };
       Json row;
       row["class"] = name_of(set.ray_class);
+      row["exaggeration"] = exaggeration;
       row["ideas"] = e == 0 ? "scalar" : engines[e].mode;
       row["mrays_per_cpu_s"] = timings[e].mrays_per_cpu_s;
       row["scalar_ratio"] = timings[e].mrays_per_cpu_s / timings[0].mrays_per_cpu_s;
@@ -94,16 +90,27 @@ void run_simd(const SimdOptions& options, const ReportOptions& report) {
       row["busy"] = timings[e].busy;
       row["field"] = ground.name;
       row["size"] = ground.field.cols();
-      lines.push_back({row["class"], row["ideas"], short_number(row["mrays_per_cpu_s"]),
+      lines.push_back({row["class"], short_number(exaggeration), row["ideas"], short_number(row["mrays_per_cpu_s"]),
                        fmt::format("{:.2f}", row["scalar_ratio"].get<double>()), short_number(row["blocks_per_ray"]),
                        short_number(row["block_lanes_used"]), short_number(row["cells_per_ray"]),
                        short_number(row["cell_lanes_used"]),
                        fmt::format("{:.2f}", 100 * row["handed_over"].get<double>()), short_number(row["different"])});
       rows.push_back(std::move(row));
     }
-    print_table(lines, 2);
+    print_table(lines, 3);
     std::fflush(stdout);
   }
+}
+
+}  // namespace
+
+void run_simd(const SimdOptions& options, const ReportOptions& report) {
+  std::vector<RayClass> classes;
+  for (const std::string& name : options.classes) classes.push_back(find_ray_class(name));
+  const BenchField ground = load_field(options.trace.field);
+  Json rows = Json::array();
+  for (const double exaggeration : options.trace.exaggerations)
+    compare(exaggerated(ground, exaggeration), exaggeration, classes, options, rows);
   write_json(report, rows);
 }
 
