@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/mat3x3.hpp>
+#include <span>
 
 #include "scarp/march/voxel_target.h"
 
@@ -25,7 +26,7 @@ struct VoxelPacket {
   template <class Number>
   using Lanes = Number[kRays + 8];  // vectors write beyond the last one
 
-  // Set by the caller, in world space.
+  // Set by load_voxel_packet(), in world space.
   std::size_t count = 0;
   alignas(64) Lanes<double> origin[3], direction[3];
   alignas(64) Lanes<double> t_min, t_max;  ///< t_max: below t_min for rays that are done
@@ -49,6 +50,9 @@ struct VoxelStand {
   glm::dmat3 grid_from_world{1.0};
   dvec3 origin{0.0};
 };
+
+/// Up to kRays world rays; what they know of a surface that they begin on is left out.
+void load_voxel_packet(VoxelPacket& packet, std::span<const Ray> rays);
 
 /// To be called before marches, and again when rays are to go through grids that are turned otherwise.
 void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world);

@@ -66,14 +66,8 @@ class VoxelScene::PacketQuery {
   std::span<const double> t_max() const { return {packet_.t_max, rays_.size()}; }
 
   void load() {
-    packet_.count = rays_.size();
+    load_voxel_packet(packet_, rays_);
     packet_.steps = 0;
-    for (std::size_t i = 0; i < rays_.size(); ++i) {
-      const Ray& ray = rays_[i];
-      for (int axis = 0; axis < 3; ++axis)
-        packet_.origin[axis][i] = ray.origin[axis], packet_.direction[axis][i] = ray.direction[axis];
-      packet_.t_min[i] = ray.t_min, packet_.t_max[i] = ray.t_max;
-    }
     aimed_ = alone_aimed_ = kNoTurn;
   }
 

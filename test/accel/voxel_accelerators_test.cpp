@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "march/instruction_sets.h"
 #include "march/spiteful_voxels.h"
 #include "scarp/accel/brick_masks.h"
 #include "scarp/accel/empty_cubes.h"
@@ -58,23 +59,26 @@ int octant_side(const std::vector<ivec3>& solid, const ivec3& v, int octant) {
 class VoxelAccelerators : public testing::TestWithParam<VoxelGridKind> {};
 
 TEST_P(VoxelAccelerators, AreWhatTheirDefinitionsSay) {
-  Random random(11);
-  for (int i = 0; i < 3; ++i) {
-    VoxelGrid grid = GetParam().make(random);
-    while (grid.size().x * grid.size().y * grid.size().z > 4000) grid = GetParam().make(random);
-    const EmptyCubes cubes(grid);
-    const EmptySpheres spheres(grid);
-    const OctantCubes octants(grid);
-    const BrickMasks bricks(grid);
-    const std::vector<ivec3> solid = solid_voxels(grid);
-    for_each_voxel(grid.box(), [&](const ivec3& v) {
-      ASSERT_EQ(cubes.distance(v), cube_distance(solid, v));
-      ASSERT_EQ(spheres.distance(v), sphere_distance(solid, v));
-      for (int octant = 0; octant < 8; ++octant) ASSERT_EQ(octants.side(v, octant), octant_side(solid, v, octant));
-      if (grid.solid(v)) {
-        ASSERT_TRUE(bricks.sector(v >> 4) >> VoxelGrid::bit_of(v >> 2) & 1);
-      }
-    });
+  for (const std::int64_t set : instruction_sets()) {
+    const InstructionSet chosen(set);
+    Random random(11);
+    for (int i = 0; i < 3; ++i) {
+      VoxelGrid grid = GetParam().make(random);
+      while (grid.size().x * grid.size().y * grid.size().z > 4000) grid = GetParam().make(random);
+      const EmptyCubes cubes(grid);
+      const EmptySpheres spheres(grid);
+      const OctantCubes octants(grid);
+      const BrickMasks bricks(grid);
+      const std::vector<ivec3> solid = solid_voxels(grid);
+      for_each_voxel(grid.box(), [&](const ivec3& v) {
+        ASSERT_EQ(cubes.distance(v), cube_distance(solid, v));
+        ASSERT_EQ(spheres.distance(v), sphere_distance(solid, v));
+        for (int octant = 0; octant < 8; ++octant) ASSERT_EQ(octants.side(v, octant), octant_side(solid, v, octant));
+        if (grid.solid(v)) {
+          ASSERT_TRUE(bricks.sector(v >> 4) >> VoxelGrid::bit_of(v >> 2) & 1);
+        }
+      });
+    }
   }
 }
 
@@ -118,28 +122,31 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelAccelerators, testing::ValuesIn(spiteful_voxe
 
 // Rows of less than a vector, of one, of some; longer than what counts; along each axis; before and after edits.
 TEST(VoxelAccelerators, OfRowsOfAllLengthsAreWhatTheirDefinitionsSay) {
-  Random random(14);
-  for (const ivec3& size : {ivec3(32, 9, 7), ivec3(31, 7, 9), ivec3(33, 6, 5), ivec3(64, 5, 5), ivec3(101, 6, 3),
-                            ivec3(400, 3, 3), ivec3(3, 400, 3), ivec3(3, 3, 400), ivec3(32, 1, 1), ivec3(1, 1, 32)}) {
-    VoxelGrid grid(size, 1);
-    EmptyCubes cubes(grid);
-    EmptySpheres spheres(grid);
-    OctantCubes octants(grid);
-    for (int edit = 0; edit < 6; ++edit) {
-      const ivec3 at = {uniform(random, 0, size.x), uniform(random, 0, size.y), uniform(random, 0, size.z)};
-      const VoxelBox changed = edit == 4 ? grid.clear({ivec3(0), (size + 1) / 2}) : grid.fill({at, at + 1}, 1);
-      cubes.update(grid, changed);
-      spheres.update(grid, changed);
-      octants.update(grid, changed);
-      EXPECT_TRUE(cubes == EmptyCubes(grid));
-      EXPECT_TRUE(spheres == EmptySpheres(grid));
-      EXPECT_TRUE(octants == OctantCubes(grid));
-      const std::vector<ivec3> solid = solid_voxels(grid);
-      for_each_voxel(grid.box(), [&](const ivec3& v) {
-        ASSERT_EQ(cubes.distance(v), cube_distance(solid, v));
-        ASSERT_EQ(spheres.distance(v), sphere_distance(solid, v)) << v.x << " " << v.y << " " << v.z;
-        for (int octant = 0; octant < 8; ++octant) ASSERT_EQ(octants.side(v, octant), octant_side(solid, v, octant));
-      });
+  for (const std::int64_t set : instruction_sets()) {
+    const InstructionSet chosen(set);
+    Random random(14);
+    for (const ivec3& size : {ivec3(32, 9, 7), ivec3(31, 7, 9), ivec3(33, 6, 5), ivec3(64, 5, 5), ivec3(101, 6, 3),
+                              ivec3(400, 3, 3), ivec3(3, 400, 3), ivec3(3, 3, 400), ivec3(32, 1, 1), ivec3(1, 1, 32)}) {
+      VoxelGrid grid(size, 1);
+      EmptyCubes cubes(grid);
+      EmptySpheres spheres(grid);
+      OctantCubes octants(grid);
+      for (int edit = 0; edit < 6; ++edit) {
+        const ivec3 at = {uniform(random, 0, size.x), uniform(random, 0, size.y), uniform(random, 0, size.z)};
+        const VoxelBox changed = edit == 4 ? grid.clear({ivec3(0), (size + 1) / 2}) : grid.fill({at, at + 1}, 1);
+        cubes.update(grid, changed);
+        spheres.update(grid, changed);
+        octants.update(grid, changed);
+        EXPECT_TRUE(cubes == EmptyCubes(grid));
+        EXPECT_TRUE(spheres == EmptySpheres(grid));
+        EXPECT_TRUE(octants == OctantCubes(grid));
+        const std::vector<ivec3> solid = solid_voxels(grid);
+        for_each_voxel(grid.box(), [&](const ivec3& v) {
+          ASSERT_EQ(cubes.distance(v), cube_distance(solid, v));
+          ASSERT_EQ(spheres.distance(v), sphere_distance(solid, v)) << v.x << " " << v.y << " " << v.z;
+          for (int octant = 0; octant < 8; ++octant) ASSERT_EQ(octants.side(v, octant), octant_side(solid, v, octant));
+        });
+      }
     }
   }
 }

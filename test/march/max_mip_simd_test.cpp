@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "hwy/targets.h"
+#include "march/instruction_sets.h"
 #include "march/spiteful.h"
 #include "scarp/march/max_mip.h"
 
@@ -27,18 +27,6 @@ constexpr int kRaysPerPair = 300, kUsualRays = 300, kCameras = 6;
 constexpr bool kAllTypes = false;  // of samples with each kind of ground and surface
 #endif
 constexpr int kRaysPerField = 500;
-
-// Targets that the build has and the machine can run; after the test the choice is the machine's again.
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> all;
-  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) all.push_back(left & -left);
-  return all;
-}
-class Target {
- public:
-  explicit Target(std::int64_t target) { hwy::SetSupportedTargetsForTest(target); }
-  ~Target() { hwy::SetSupportedTargetsForTest(0); }
-};
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
 
@@ -150,7 +138,7 @@ std::vector<Ray> usual_rays(const HeightTarget& target, Random& random) {
 
 TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
   Random random(72);
-  const std::vector<std::int64_t> sets = targets();
+  const std::vector<std::int64_t> sets = instruction_sets();
   ASSERT_FALSE(sets.empty());
   for (const Kind kind : {Kind::plain, Kind::holes, Kind::endless}) {
     for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
@@ -164,7 +152,7 @@ TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
         const std::vector<Ray> rays = usual_rays(target, random);
         const std::vector<Hit> expected = scalar(target, rays);
         for (const std::int64_t set : sets) {
-          const Target only(set);
+          const InstructionSet only(set);
           const std::string name = hwy::TargetName(set);
           for (const std::size_t size :
                {std::size_t{1}, std::size_t{7}, std::size_t{16}, std::size_t{33}, rays.size()}) {
@@ -198,8 +186,8 @@ TEST(MaxMipSimd, VeryLongFields) {
   const std::vector<Ray> rays{along, away, slanted};
   const std::vector<Hit> expected = scalar(target, rays);
   ASSERT_EQ(expected[0].t, wall + 0.5);
-  for (const std::int64_t set : targets()) {
-    const Target only(set);
+  for (const std::int64_t set : instruction_sets()) {
+    const InstructionSet only(set);
     compare(target, rays, expected, rays.size(), {}, hwy::TargetName(set));
   }
 }
@@ -379,8 +367,8 @@ TEST(MaxMipSimd, BeamsLoseNothing) {
     for (int camera = 0; camera < kCameras; ++camera) {
       const std::vector<Ray> rays = tiles_of_a_camera(field, random);
       const std::vector<Hit> expected = scalar(target, rays);
-      for (const std::int64_t set : targets()) {
-        const Target only(set);
+      for (const std::int64_t set : instruction_sets()) {
+        const InstructionSet only(set);
         const std::string name = hwy::TargetName(set);
         take_vector_stats();
         compare(target, rays, expected, rays.size(), {}, name);

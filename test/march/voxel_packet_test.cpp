@@ -10,7 +10,7 @@
 #include <glm/matrix.hpp>
 #include <vector>
 
-#include "hwy/targets.h"
+#include "march/instruction_sets.h"
 #include "march/spiteful_voxels.h"
 #include "scarp/accel/brick_masks.h"
 #include "scarp/accel/empty_cubes.h"
@@ -26,20 +26,14 @@ constexpr int kPackets = 12;
 constexpr int kPackets = 3;
 #endif
 
-std::vector<std::int64_t> targets() {
-  std::vector<std::int64_t> all;
-  for (std::int64_t left = hwy::SupportedTargets(); left != 0; left &= left - 1) all.push_back(left & -left);
-  return all;
-}
-
 double uniform(Random& random) { return std::uniform_real_distribution<double>(0, 1)(random); }
 
 class VoxelPacketOf : public testing::TestWithParam<VoxelGridKind> {};
 
 TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
   int hits = 0;
-  for (const std::int64_t target_of_simd : targets()) {
-    hwy::SetSupportedTargetsForTest(target_of_simd);
+  for (const std::int64_t set : instruction_sets()) {
+    const InstructionSet chosen(set);
     Random random(7);
     for (const VoxelRayKind& kind : spiteful_voxel_rays()) {
       for (int round = 0; round < kPackets; ++round) {
@@ -56,16 +50,14 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
         }
         // As the scene asks them: some rays are left out.
         VoxelPacket packet;
-        packet.count = round % 4 == 0 ? 1 + random() % VoxelPacket::kRays : VoxelPacket::kRays;
-        std::vector<VoxelRay> rays;
-        for (std::size_t i = 0; i < packet.count; ++i) {
-          rays.push_back(kind.make(grid, random));
-          for (int axis = 0; axis < 3; ++axis) {
-            packet.origin[axis][i] = rays[i].origin[axis] + stand.origin[axis];
-            packet.direction[axis][i] = rays[i].direction[axis];
-          }
-          packet.t_min[i] = rays[i].t_min, packet.t_max[i] = rays[i].t_max;
+        std::vector<VoxelRay> rays(round % 4 == 0 ? 1 + random() % VoxelPacket::kRays : VoxelPacket::kRays);
+        std::vector<Ray> in_world;
+        for (VoxelRay& ray : rays) {
+          ray = kind.make(grid, random);
+          in_world.push_back({ray.origin + stand.origin, ray.direction, ray.t_min, ray.t_max});
         }
+        load_voxel_packet(packet, in_world);
+        ASSERT_EQ(packet.count, rays.size());
         const std::uint64_t all = ~std::uint64_t{0} >> (64 - packet.count), asked = round % 5 ? all : all & random();
         aim_voxel_packet(packet, stand.grid_from_world);
         for (const MarchEntry& march : voxel_marches()) {
@@ -106,7 +98,6 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
       }
     }
   }
-  hwy::SetSupportedTargetsForTest(0);
   if (GetParam().name != "empty or full") {
     EXPECT_GT(hits, 100);
   }
