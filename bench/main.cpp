@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "bench/commands.h"
+#include "bench/rays.h"
 #include "scarp/base/error.h"
 
 namespace {
@@ -148,6 +149,8 @@ int run(int argc, char** argv) {
   add_trace_options(*batches_command, batches.trace);
   add_json_option(*batches_command, report);
 
+  std::vector<std::string> all_classes;
+  for (const RayClass ray_class : kRayClasses) all_classes.emplace_back(name_of(ray_class));
   SimdOptions simd;
   CLI::App* simd_command = app.add_subcommand("simd", "the vectors beside the scalar walk, and what each idea gains");
   simd_command->add_option("--size", simd.trace.field.size, "samples per side of the procedural DEM")
@@ -155,7 +158,7 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   simd_command->add_option("--classes", simd.classes, "of rays")
       ->delimiter(',')
-      ->check(CLI::IsMember(simd.classes))
+      ->check(CLI::IsMember(all_classes))
       ->capture_default_str();
   add_trace_options(*simd_command, simd.trace);
   add_json_option(*simd_command, report);

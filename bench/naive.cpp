@@ -52,7 +52,8 @@ class Comparison {
     const TraceOptions& trace = options_.trace;
     const double limit = options_.miss_limit;
     for (const RaySet& set :
-         make_rays(ground, {RayClass::primary, RayClass::shadow, RayClass::grazing}, trace.rays, trace.ray_seed)) {
+         make_rays(ground, {RayClass::primary, RayClass::shadow, RayClass::chunk, RayClass::grazing}, trace.rays,
+                   trace.ray_seed)) {
       const Judge judge(scarp.target(), set, trace.judged, trace.ray_seed);
       std::vector<Contender> contenders{{scarp.engine(find_march("max-mip")), std::nullopt, {}},
                                         {scarp.vectors("max-mip-simd"), std::nullopt, {}}};

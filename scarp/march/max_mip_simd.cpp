@@ -122,13 +122,15 @@ class VectorWalk {
     if (cells >= company || (cells > 0 && cells == busy)) {
       stats_.cell_steps += N;
       stats_.cell_lanes += cells;
-      cell_step<any>(g_, ideas_.put_off, p);
+      cell_step<any>(g_, put_off_all(), p);
     }
     if (busy == 0 || (N - busy >= (ideas_.refill && !together_ ? kFree : N) && !is_empty())) {
       return refill(p, lanes);
     }
     return true;
   }
+
+  HWY_INLINE MI put_off_all() const { return hn::Ne(hn::Set(di, ideas_.put_off ? 1 : 0), hn::Zero(di)); }
 
   bool is_empty() const {
     return next_ >= rays_.size() && copies_.empty() &&
@@ -205,7 +207,10 @@ class VectorWalk {
     if (first_steps == 0 && !doubles) return;
     Packet p;
     p.load(fresh);
-    cell_step<any>(g_, ideas_.put_off, p);
+    const MI may_put_off = put_off_all();
+    // What is to be looked at again in double is not put off, but rays that the scalar walk knows to be above are:
+    // where they begin is its cell's matter.
+    cell_step<any>(g_, doubles ? hn::And(may_put_off, hn::Ne(p.seen, hn::Zero(di))) : may_put_off, p);
     if (doubles) {
       p.store(fresh);
       leave_first_cells<any>(g_, f_, r_, fresh);
@@ -213,7 +218,7 @@ class VectorWalk {
     }
     for (int i = 1; i < first_steps; ++i) {
       block_step(g_, p);
-      cell_step<any>(g_, ideas_.put_off, p);
+      cell_step<any>(g_, may_put_off, p);
     }
     if (first_steps > 0) block_step(g_, p);
     p.store(fresh);

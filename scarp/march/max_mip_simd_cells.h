@@ -9,6 +9,8 @@
 #define SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
 #endif
 
+#include <limits>
+
 #include "scarp/march/max_mip_simd_lanes.h"
 #include "scarp/march/max_mip_simd_rays.h"
 
@@ -51,11 +53,11 @@ struct CellRays {
     back_x = hn::Lt(dx, zero), back_y = hn::Lt(dy, zero);
   }
 
-  // Not along an axis, where times of lines are none.
-  HWY_INLINE MD moves() const {
-    const VD least = hn::Set(dd, 0x1p-1000);
-    return hn::And(hn::Gt(hn::Abs(dx), least), hn::Gt(hn::Abs(dy), least));
-  }
+  // Not along an axis, where times of lines are none, nor almost.
+  static HWY_INLINE MD moves(VD d) { return hn::Gt(hn::Abs(d), hn::Set(dd, 0x1p-1000)); }
+  HWY_INLINE MD moves_x() const { return moves(dx); }
+  HWY_INLINE MD moves_y() const { return moves(dy); }
+  HWY_INLINE MD moves() const { return hn::And(moves_x(), moves_y()); }
   static HWY_INLINE VD line(VD k, VD o, VD per) { return hn::Mul(hn::Sub(k, o), per); }
   HWY_INLINE VD x_in() const { return line(hn::IfThenElse(back_x, next_col, col), ox, per_x); }
   HWY_INLINE VD y_in() const { return line(hn::IfThenElse(back_y, next_row, row), oy, per_y); }
@@ -116,18 +118,26 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
   for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
     const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
     const CellRays c(r, cells, part);
-    const VD t_in = hn::Load(dd, a.t_begin + part), tx = c.x_out(), ty = c.y_out();
+    // A ray along an axis comes to no line of that axis.
+    const MD still_x = hn::Eq(c.dx, zero), still_y = hn::Eq(c.dy, zero);
+    const VD never = hn::Set(dd, std::numeric_limits<double>::infinity());
+    const VD t_in = hn::Load(dd, a.t_begin + part);
+    const VD tx = hn::IfThenElse(still_x, never, c.x_out()), ty = hn::IfThenElse(still_y, never, c.y_out());
+    const MD moves = hn::Or(c.moves(), hn::Or(hn::And(still_x, c.moves_y()), hn::And(still_y, c.moves_x())));
     const VD t_out = hn::Max(hn::Min(tx, ty), t_in), length = hn::Sub(t_out, t_in);
     const MD over_column = hn::Le(tx, ty), over_row = hn::Le(ty, tx);
     const CellRays::Quadratic q = c.clearance_from(t_in);
     const VD out = c.clearance_out(t_out, over_column);
     const VD doubt = rounding(f, c.ox, c.oy, c.oz, c.dx, c.dy, c.dz, hn::Max(hn::Abs(t_in), hn::Abs(t_out)));
-    // A parabola lies no further below its chord.
-    const VD bend = hn::Mul(hn::Mul(hn::Set(dd, 0.25), q.a), hn::Mul(length, length));
-    const VD least = hn::Sub(hn::Min(q.c, out), hn::Max(bend, zero));
+    // The least of a parabola is at its ends or, where it opens upwards, between them. (Its chord less the most that it
+    // can lie below that would hide from rays that begin this low that they rise from the ground.)
+    const VD bottom = hn::Sub(q.c, hn::Div(hn::Mul(hn::Mul(q.b, q.b), hn::Set(dd, 0.25)), q.a));
+    const MD between = hn::And(hn::And(hn::Gt(q.a, zero), hn::Lt(q.b, zero)),
+                               hn::Lt(hn::Neg(q.b), hn::Mul(hn::Add(q.a, q.a), length)));
+    const VD ends = hn::Min(q.c, out), least = hn::IfThenElse(between, hn::Min(ends, bottom), ends);
     const MD falls = hn::And(hn::Gt(q.c, doubt), hn::Lt(out, hn::Neg(doubt)));
     const auto put = [&](MD v, double* to) HWY_ATTR { hn::Store(hn::IfThenElseZero(v, one), dd, to + part); };
-    put(hn::And(c.moves(), hn::Gt(least, doubt)), clear), put(hn::And(c.moves(), falls), through);
+    put(hn::And(moves, hn::Gt(least, doubt)), clear), put(hn::And(moves, falls), through);
     put(over_column, over_x), put(over_row, over_y);
     // Rounded down: what follows looks at the ground from where it is known to be clear.
     const VD way = hn::Div(length, hn::Load(dd, a.t_per_cell + part));
@@ -135,6 +145,8 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
   }
   for (std::size_t j = 0; j < N; ++j) {
     if (!concerns(j)) continue;
+    // That it was looked at in float leaves no doubt; where doubles cannot tell either, the scalar walk begins anew.
+    a.doubt[j] = kNever;
     const std::int32_t x = a.x[j] + (over_x[j] != 0), y = a.y[j] + (over_y[j] != 0);
     const auto T_exit = static_cast<float>(T_out[j]);
     // Its end may be in this cell, see Packet::before_end().

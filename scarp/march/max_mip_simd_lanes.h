@@ -248,10 +248,13 @@ struct Clearance {
 
 HWY_INLINE Clearance bilinear_clearance(const CellCodes& h, VF u0, VF v0, VF u1, VF v1, VF z0, VF z1) {
   const VF in = hn::Sub(z0, bilinear(h, u0, v0)), out = hn::Sub(z1, bilinear(h, u1, v1));
-  // Along the ray the clearance is below its chord by at most -twist (u1 - u0) (v1 - v0) / 4.
+  // Along the ray the clearance is a parabola, below its chord by at most -twist (u1 - u0) (v1 - v0) / 4; where its
+  // ends differ by four times that, and by more than rounding, none of it is below both.
   const VF twist = hn::Sub(hn::Sub(h.h11, h.h01), hn::Sub(h.h10, h.h00));
   const VF bend = hn::Mul(hn::Mul(hn::Sub(u1, u0), hn::Sub(v1, v0)), hn::Mul(twist, hn::Set(df, -0.25f)));
-  return {hn::Sub(hn::Min(in, out), hn::Max(bend, hn::Zero(df))), in, out};
+  const VF steep = hn::MulAdd(bend, hn::Set(df, 4), hn::Set(df, static_cast<float>(kUpright)));
+  const VF below = hn::IfThenZeroElse(hn::Ge(hn::Abs(hn::Sub(out, in)), steep), hn::Max(bend, hn::Zero(df)));
+  return {hn::Sub(hn::Min(in, out), below), in, out};
 }
 
 // Over two triangles: at the ends and at the diagonal, linear in between.
@@ -273,9 +276,10 @@ HWY_INLINE Clearance triangle_clearance(const CellCodes& h, VF u0, VF v0, VF u1,
   return {hn::Min(hn::Min(in, out), hn::IfThenElse(crosses, middle, in)), in, out};
 }
 
-// The cells of the lanes that have come down to one.
+// The cells of the lanes that have come down to one. `may_put_off`: lanes that may go on where they are unsure, if they
+// have been above the ground, to be looked at again should they miss.
 template <bool any, class T>
-HWY_INLINE void cell_step(const VectorGround<T>& g, bool put_off, Packet& p) {
+HWY_INLINE void cell_step(const VectorGround<T>& g, MI may_put_off, Packet& p) {
   const VI zero = hn::Zero(di), one = hn::Set(di, 1);
   const VF f0 = hn::Zero(df);
   const MI cells = hn::And(hn::Eq(p.status, zero), hn::Eq(p.level, zero));
@@ -305,10 +309,9 @@ HWY_INLINE void cell_step(const VectorGround<T>& g, bool put_off, Packet& p) {
     p.status = hn::IfThenElse(hit, hn::Set(di, kHit), p.status);
     unsure = hn::AndNot(hit, unsure);
     p.doubt = hn::IfThenElse(hn::RebindMask(df, doubtful), hn::Min(p.doubt, p.T), p.doubt);
-    if (put_off) {
-      on = hn::Or(on, hn::And(unsure, seen));
-      unsure = hn::AndNot(seen, unsure);
-    }
+    const MI put_off = hn::And(unsure, hn::And(seen, may_put_off));
+    on = hn::Or(on, put_off);
+    unsure = hn::AndNot(put_off, unsure);
   } else {
     p.seen = hn::IfThenElse(clear, one, p.seen);
   }

@@ -245,6 +245,67 @@ TEST(MaxMipSimd, TouchesOfTheHighestSample) {
   }
 }
 
+// A shadow map's rays: from nodes, points of edges and others, by little above the ground or in it, along diagonals,
+// axes and other ways, over ground that is rough from sample to sample: parabolas that dip between the ends of a cell.
+TEST(MaxMipSimd, BeginsCloseAboveRoughGround) {
+  Random random(79);
+  for (const double relief : {0.5, 40.0, 4000.0}) {
+    const int side = 65;
+    std::vector<float> samples;
+    for (int i = 0; i < side * side; ++i) samples.push_back(static_cast<float>(uniform(random, 0, relief)));
+    const HeightField field = HeightField::own(std::move(samples), side, side);
+    const MaxPyramid pyramid(field);
+    const HeightTarget target{&field, &pyramid};
+    std::vector<Ray> rays;
+    for (int i = 0; i < 30 * kUsualRays; ++i) {
+      const auto along = [&](int axis) {
+        const double node = std::floor(uniform(random, 0, side));
+        return i / (axis + 1) % 3 == 0 ? std::min(node + uniform(random, 0, 1), side - 1.0) : node;
+      };
+      Ray ray;
+      const double x = along(0), y = along(1);
+      const double lift = relief * std::exp2(-uniform(random, 1, 55));
+      ray.origin = {x, y, *field.height(x, y) + (i % 7 == 0 ? -lift : lift)};
+      const double turn =
+          i % 3 == 2 ? uniform(random, 0, 6.3) : std::floor(uniform(random, 0, 8)) * 0.78539816339744831;
+      const auto exact = [&](double v) { return i % 3 == 1 ? std::round(1.2 * v) : v; };  // -1, 0, 1
+      ray.direction = {exact(std::cos(turn)), exact(std::sin(turn)),
+                       relief * uniform(random, -1, 1) * uniform(random, 0, 1)};
+      rays.push_back(ray);
+    }
+    const std::vector<Hit> expected = scalar(target, rays);
+    for (const std::int64_t set : instruction_sets()) {
+      const InstructionSet only(set);
+      compare(target, rays, expected, rays.size(), {}, "relief " + std::to_string(relief));
+    }
+  }
+}
+
+// A shadow map's rays: from all nodes to a sun in the north-west, or in the south.
+TEST(MaxMipSimd, RaysFromNodesAreNotLeftToTheScalarWalk) {
+  Random random(80);
+  const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  for (const dvec2 to_sun : {dvec2(-1, 1), dvec2(0, -1)}) {
+    std::vector<Ray> rays;
+    for (int row = 1; row + 1 < field.rows(); ++row) {
+      for (int col = 1; col + 1 < field.cols(); ++col) {
+        const dvec3 node = field.world_from_grid(col, row, 0);
+        Ray ray;
+        ray.origin = {node.x, node.y, *field.height(node.x, node.y) + 1e-4};
+        ray.direction = {to_sun, 0.36 * length(to_sun)};
+        rays.push_back(ray);
+      }
+    }
+    compare(target, rays, scalar(target, rays), rays.size(), {}, "nodes");
+    take_vector_stats();
+    std::vector<std::uint8_t> blocked(rays.size());
+    occluded_max_mip_simd(target, rays, blocked, {});
+    EXPECT_LT(take_vector_stats().handed_over, rays.size() / 10) << to_sun.x << " " << to_sun.y;
+  }
+}
+
 TEST(MaxMipSimd, RaysFromNextToTheGroundAreNotLeftToTheScalarWalk) {
   Random random(75);
   const HeightField field = hills<float>(Surface::bilinear, Kind::plain, random);
