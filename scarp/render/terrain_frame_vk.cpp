@@ -13,6 +13,7 @@
 #include "scarp/base/error.h"
 #include "scarp/march/device_ray.h"
 #include "scarp/render/lake_tile.h"
+#include "scarp/render/sample_directions.h"
 #include "scarp/scene/terrain_scene_vk.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/memory.h"
@@ -174,6 +175,16 @@ void set_air(glsl::FrameSettings& s, const HeightField& field, const Shader& sha
   s.unlit_wall = Shader::unlit_wall();
 }
 
+void set_samples(glsl::FrameSettings& s, const Lighting& lighting, int samples) {
+  s.sun_rays = lighting.sun_rays();
+  s.sky_rays = lighting.sky_rays();
+  s.sun_depth = static_cast<float>(cap_depth(lighting.sun_radius()));
+  s.ao_distance = static_cast<float>(lighting.ao_distance());
+  s.samples = samples;
+  s.seed = lighting.pattern().seed();
+  s.index_bits = lighting.pattern().index_bits();
+}
+
 void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPaint& paint) {
   const GroundPaintSettings& settings = paint.settings();
   s.natural = settings.natural;
@@ -285,7 +296,8 @@ class FrameMaker {
     const std::uint32_t parts =
         (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
         (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) | (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
-        (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0);
+        (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) |
+        (s.samples > 0 ? glsl::kFrameHasSamples : 0);
     const auto found = pipelines_.find(parts);
     if (found != pipelines_.end()) return found->second;
     const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
@@ -339,7 +351,7 @@ class FrameMaker {
 
 bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings) {
   const DeviceTerrain* terrain = scene.device_terrain();
-  if (!terrain || settings.samples > 0) return false;
+  if (!terrain) return false;
   const std::string_view march = scene.march().name;
   const bool stepped = march == "fixed-step" && settings.look == Look::comanche;
   if (!stepped && march != "max-mip") return false;
@@ -364,6 +376,7 @@ Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double
   set_steps(numbers, scene, camera, settings);
   set_water(numbers, field, view.water);
   set_air(numbers, field, view.shader);
+  set_samples(numbers, view.shader.lighting(), settings.samples);
   set_ground(numbers, field, view.shader.paint());
   FrameReport unasked;
   FrameReport& told = report ? *report : unasked;
