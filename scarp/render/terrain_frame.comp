@@ -30,6 +30,7 @@ const bool has_drape = (parts & kFrameHasDrape) != 0u;
 const bool has_contours = (parts & kFrameHasContours) != 0u;
 const bool has_fog = (parts & kFrameHasFog) != 0u;
 const bool has_samples = (parts & kFrameHasSamples) != 0u;
+const bool has_block = (parts & kFrameHasBlock) != 0u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Pixels { uint words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer States { FrameState states[]; };
@@ -38,6 +39,7 @@ layout(push_constant, scalar) uniform Push { FramePush push; };
 
 #include "scarp/march/ground_host.glsl.h"
 #include "scarp/render/terrain_frame_ground.glsl.h"
+#include "scarp/render/terrain_frame_block.glsl.h"
 #include "scarp/render/terrain_frame_light.glsl.h"
 #include "scarp/render/terrain_frame_water.glsl.h"
 
@@ -252,7 +254,13 @@ bool send(ScarpField field, int task, inout Sent sent) {
         if (scarp_two_less(end, water.t)) water.kind = 0;
       }
       if (water.kind != 0) end = water.t;
+      bool hidden = has_block && hidden_by_block(field, end, seen);
+      if (seen.kind == kFrameWall) water.kind = 0;
       water_met = water;
+      if (hidden) {
+        keep(task, seen);
+        return false;
+      }
     }
     if (task != kFrameCamera && water.sea != 0) {
       how |= kScarpSendFromSurface;

@@ -35,6 +35,7 @@ const uint kFrameHasDrape = 8u;
 const uint kFrameHasContours = 16u;
 const uint kFrameHasFog = 32u;
 const uint kFrameHasSamples = 64u;  ///< of sun and sky
+const uint kFrameHasBlock = 128u;   ///< below the terrain
 
 const int kFrameRounds = 16;
 const int kFrameTurns = 3000;
@@ -92,6 +93,9 @@ struct FrameSettings {
   float per_metre;  ///< sample units
   float metres_at_zero;
   float last_row;  ///< rows of samples - 1
+  int block;       ///< 1: there is one below the terrain, down to
+  float base_sample;
+  float base_sample_low;
   // The steps of the look comanche; of rays to the sun those of the march.
   float step;
   int steps;
