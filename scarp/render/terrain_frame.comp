@@ -39,6 +39,7 @@ layout(push_constant, scalar) uniform Push { FramePush push; };
 
 #include "scarp/march/ground_host.glsl.h"
 #include "scarp/render/terrain_frame_ground.glsl.h"
+// These ask it for places and directions.
 #include "scarp/render/terrain_frame_block.glsl.h"
 #include "scarp/render/terrain_frame_light.glsl.h"
 #include "scarp/render/terrain_frame_water.glsl.h"
