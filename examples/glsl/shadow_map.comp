@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(std430, binding = 0) readonly buffer Heights { float heights[]; };  // rows of samples
-layout(std430, binding = 1) readonly buffer Maxima { float maxima[]; };    // codes: level 1, level 2, ...: rows of blocks
+layout(std430, binding = 1) readonly buffer Maxima { float maxima[]; };  // codes: level 1, level 2, ...: rows of blocks
 layout(std430, binding = 2) writeonly buffer Shadows { uint shadows[]; };  // rows of cells: 1 where the sun is hidden
 layout(push_constant) uniform Push {
   int cells;  // per side; there is one more sample

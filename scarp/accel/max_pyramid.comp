@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One level of the maximum and minimum pyramid (max_pyramid.h), bit for bit as the CPU makes it: extremes are compared
-// as whole numbers, and codes of float samples come from tables that the CPU's own formula has made, so that no rounding
-// of the device takes part. An invocation makes one entry.
+// as whole numbers, and codes of float samples come from tables that the CPU's own formula has made, so that no
+// rounding of the device takes part. An invocation makes one entry.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require

@@ -8,12 +8,24 @@
 
 #include "scarp/march/ray_batch.glsl.h"
 // The march asks the batch for its ground.
-#include "scarp/march/fixed_step.glsl.h"
+#include "scarp/march/batch_states.glsl.h"
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  if (i >= batch.count) return;
+  if (!batch_asks(i)) return;
+  ScarpField field = open_ground(batch.ground);
   ScarpRay ray = BatchRays(batch.rays).rays[i];
-  batch_answer(i, scarp_fixed_step(open_ground(batch.ground), ray,
-                                   ScarpFixedStep(batch.step, batch.interpolate, batch.max_steps)));
+  ScarpFixedStep settings = ScarpFixedStep(batch.step, batch.interpolate, batch.max_steps);
+  ScarpHit hit = scarp_no_hit();
+  ScarpSteps steps = scarp_first_step(ray);
+  if (batch.resume != 0u) {
+    hit = BatchAllSteps(batch.states).of[i].hit;
+    steps = BatchAllSteps(batch.states).of[i].steps;
+  }
+  if (scarp_step_on(field, ray, settings, batch.turns, steps, hit)) {
+    batch_answer(i, hit);
+    return;
+  }
+  BatchAllSteps(batch.states).of[i] = BatchSteps(hit, steps);
+  batch_interrupt(i);
 }

@@ -93,7 +93,7 @@ SCARP_FN bool scarp_step_on(ScarpField field, ScarpRay ray, ScarpFixedStep setti
 SCARP_FN ScarpHit scarp_fixed_step(ScarpField field, ScarpRay ray, ScarpFixedStep settings) {
   ScarpHit hit = scarp_no_hit();
   ScarpSteps steps = scarp_first_step(ray);
-  while (!scarp_step_on(field, ray, settings, 2147483647, steps, hit)) {
+  while (!scarp_step_on(field, ray, settings, kScarpAllTurns, steps, hit)) {
   }
   return hit;
 }

@@ -11,19 +11,17 @@
 #include "scarp/accel/function_buffers.glsl.h"
 #include "scarp/march/function_frame.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
+#include "scarp/vk/loop_turns.glsl.h"
 
 SCARP_GLSL_BEGIN
 
-// A march is interrupted after run_steps steps and goes on in the next run. That keeps a run short, where drivers stop
-// what takes seconds; and Mesa's lavapipe leaves all loops of an invocation, without a word, after 65,535 turns in all
-// (LP_MAX_TGSI_LOOP_ITERATIONS of llvmpipe), the interpreter's included: kScarpLoopTurns and kScarpMostInstructions.
+// A march is interrupted after run_steps steps and goes on in the next run: loop_turns.glsl.h says why. The
+// interpreter's turns count, which kScarpMostInstructions limits.
 //
 // Specialisation constants: threads of a workgroup; which march (function_marches.comp), or whether any hit will do
 // (lipschitz_local.comp); what the program has (scarp_uses), so that a shader is made of what it needs: some drivers go
 // through all branches of an instruction.
 
-/// Turns of loops in one run of an invocation, at most.
-const int kScarpLoopTurns = 60000;
 /// Evaluations that may follow the last step of a run: halvings, secants, and what a ray begins and ends with.
 const int kScarpLastEvaluations = 70;
 /// Of a program: so that a run has some steps.

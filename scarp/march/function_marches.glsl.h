@@ -94,7 +94,10 @@ SCARP_FN ScarpFunctionHit scarp_function_by_height(ScarpProgram program, ScarpFu
   float s = ray.state.steps > 0 ? ray.state.s : !from_surface ? 0.0f : naive ? least : kScarpBlindStep * ray.exit;
   float before = ray.state.before;
   float h_before = ray.state.h_before;
-  for (int i = ray.state.steps; s <= ray.exit; ++i) {
+  float h = 0.0f;
+  bool stops = false;
+  int i = ray.state.steps;
+  for (; s <= ray.exit; ++i) {
     if (i == settings.max_steps) {
       scarp_function_tell(kScarpFunctionExhausted, s, hit);
       return hit;
@@ -104,15 +107,11 @@ SCARP_FN ScarpFunctionHit scarp_function_by_height(ScarpProgram program, ScarpFu
       return hit;
     }
     hit.heights += 1u;
-    float h = scarp_clearance(program, ray, s) / ray.speed;
+    h = scarp_clearance(program, ray, s) / ray.speed;
+    // Refined beyond the loop: there neighbours in a vector, which stop at other steps, do it together.
     if (scarp_stops(march, settings, ray, s, h)) {
-      float limit = scarp_hit_limit(march, settings, ray, s);
-      // `relaxed` may come from above or, having overshot, from below.
-      if (!naive && h_before < 0.0f) limit = -limit;
-      float at = scarp_refined(program, ray, march, settings, i > 0 ? settings.refinement : kScarpRefineNone, before,
-                               h_before, s, h, limit, hit);
-      scarp_function_tell(kScarpFunctionHit, at, hit);
-      return hit;
+      stops = true;
+      break;
     }
     if (!naive && h < 0.0f && i == 0) {
       scarp_function_tell(from_surface ? kScarpFunctionHit : kScarpFunctionBelow, s, hit);
@@ -122,6 +121,13 @@ SCARP_FN ScarpFunctionHit scarp_function_by_height(ScarpProgram program, ScarpFu
     h_before = h;
     s = naive ? s + max(settings.factor * abs(h), least) : max(s + settings.factor * h, 0.0f);
   }
+  if (!stops) return hit;
+  float limit = scarp_hit_limit(march, settings, ray, s);
+  // `relaxed` may come from above or, having overshot, from below.
+  if (!naive && h_before < 0.0f) limit = -limit;
+  float at = scarp_refined(program, ray, march, settings, i > 0 ? settings.refinement : kScarpRefineNone, before,
+                           h_before, s, h, limit, hit);
+  scarp_function_tell(kScarpFunctionHit, at, hit);
   return hit;
 }
 
@@ -136,6 +142,8 @@ SCARP_FN ScarpFunctionHit scarp_function_fixed_step(ScarpProgram program, ScarpF
   if (under) hit.status = kScarpFunctionBelow;
   float before = ray.state.before;
   float h_before = ray.state.h_before;
+  float s = 0.0f;
+  float h = 0.0f;
   int first = max(ray.state.steps, from_surface ? 1 : 0);
   for (int i = first;; ++i) {
     if (i == settings.max_steps) {
@@ -147,18 +155,15 @@ SCARP_FN ScarpFunctionHit scarp_function_fixed_step(ScarpProgram program, ScarpF
       return hit;
     }
     // Counted, not summed up, while steps are equal.
-    float s = float(i) * stride;
+    s = float(i) * stride;
     if (settings.least > 0.0f && i > 0) s = before + max(stride, settings.least * (before + ray.travelled));
     s = min(s, ray.exit);
     hit.heights += 1u;
-    float h = scarp_clearance(program, ray, s) / ray.speed;
+    h = scarp_clearance(program, ray, s) / ray.speed;
     if (h > 0.0f || (h == 0.0f && from_surface)) {
       above = true;
     } else if (above && h_before > 0.0f) {
-      float at = scarp_refined(program, ray, kScarpFunctionFixedStep, settings, settings.refinement, before, h_before,
-                               s, h, 0.0f, hit);
-      scarp_function_tell(kScarpFunctionHit, at, hit);
-      return hit;
+      break;  // refined beyond the loop, see above
     } else if (above || (i == 0 && h == 0.0f)) {
       scarp_function_tell(kScarpFunctionHit, s, hit);
       return hit;
@@ -170,6 +175,10 @@ SCARP_FN ScarpFunctionHit scarp_function_fixed_step(ScarpProgram program, ScarpF
     h_before = h;
     if (!(s < ray.exit)) return hit;
   }
+  float at = scarp_refined(program, ray, kScarpFunctionFixedStep, settings, settings.refinement, before, h_before, s, h,
+                           0.0f, hit);
+  scarp_function_tell(kScarpFunctionHit, at, hit);
+  return hit;
 }
 
 /// Never passes the surface, rounding counted: stops above it, within the tolerance or twice the rounding, or gives up.

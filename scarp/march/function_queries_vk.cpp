@@ -31,13 +31,14 @@ struct DeviceMarch {
   std::span<const std::uint32_t> words;
   std::uint32_t choice;  // the shader's
   bool has_any;          // whether it can be asked for any hit, by the next choice
+  int evaluations;       // of the program in a step, at most
 };
 constexpr std::array kDeviceMarches = {
-    DeviceMarch{"naive", kFunctionMarchesWords, glsl::kScarpFunctionNaive, false},
-    DeviceMarch{"fixed-step", kFunctionMarchesWords, glsl::kScarpFunctionFixedStep, false},
-    DeviceMarch{"relaxed", kFunctionMarchesWords, glsl::kScarpFunctionRelaxed, false},
-    DeviceMarch{"lipschitz", kFunctionMarchesWords, glsl::kScarpFunctionLipschitz, false},
-    DeviceMarch{"lipschitz-local", kLipschitzLocalWords, 0, true},
+    DeviceMarch{"naive", kFunctionMarchesWords, glsl::kScarpFunctionNaive, false, 1},
+    DeviceMarch{"fixed-step", kFunctionMarchesWords, glsl::kScarpFunctionFixedStep, false, 1},
+    DeviceMarch{"relaxed", kFunctionMarchesWords, glsl::kScarpFunctionRelaxed, false, 1},
+    DeviceMarch{"lipschitz", kFunctionMarchesWords, glsl::kScarpFunctionLipschitz, false, 1},
+    DeviceMarch{"lipschitz-local", kLipschitzLocalWords, 0, true, 2},
 };
 
 const DeviceMarch& device_march(const MarchEntry& march) {
@@ -91,14 +92,15 @@ glsl::FunctionBatch batch_settings(std::string_view march, const MarchSettings& 
 }
 
 // Steps until a march is interrupted: the interpreter's loop turns once per instruction and step.
-int run_steps(std::size_t instructions) {
+int run_steps(std::size_t instructions, int evaluations) {
   if (instructions > static_cast<std::size_t>(glsl::kScarpMostInstructions)) {
     throw Error(
         fmt::format("terrain function: {} instructions; Vulkan devices take {}: use fewer octaves or warps, or the "
                     "CPU",
                     instructions, glsl::kScarpMostInstructions));
   }
-  return std::max(1, glsl::kScarpLoopTurns / (static_cast<int>(instructions) + 2) - glsl::kScarpLastEvaluations);
+  const int all = glsl::kScarpLoopTurns / (static_cast<int>(instructions) + 2);
+  return std::max(1, (all - glsl::kScarpLastEvaluations) / evaluations);
 }
 
 }  // namespace
@@ -132,7 +134,7 @@ struct DeviceFunctionQueries::Impl {
     batch.code = target.device->address(target.use);
     batch.instructions = static_cast<std::uint32_t>(program.code.size());
     batch.result = program.result;
-    batch.run_steps = run_steps(program.code.size());
+    batch.run_steps = run_steps(program.code.size(), march.evaluations);
     runs.ask(
         pipeline(program, any), batch, asked.size(),
         [&](std::size_t i) {

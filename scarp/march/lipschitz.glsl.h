@@ -35,15 +35,22 @@ SCARP_FN float scarp_leave_time(ScarpField field, ScarpRay ray, ScarpPoint point
   return s + (max(0.0f, min(x, y)) + 9.5367431640625e-7f * ray.cell_time + 4.0f * kScarpUnit * s);
 }
 
-/// What the march finds first.
-SCARP_FN ScarpHit scarp_lipschitz(ScarpField field, ScarpRay ray, ScarpLipschitz settings) {
-  ScarpHit hit = scarp_no_hit();
-  bool on_surface = (ray.flags & kScarpOnSurface) != 0u;
-  float s = on_surface ? ray.cell_time : 0.0f;
-  for (int i = 0; s <= ray.exit; ++i) {
-    if (i == settings.max_steps) {
+/// The time of the first point that the march looks at: a step off the surface.
+SCARP_FN float scarp_lipschitz_begin(ScarpRay ray) {
+  return (ray.flags & kScarpOnSurface) != 0u ? ray.cell_time : 0.0f;
+}
+
+/// On from time s, for some turns, at least a step. False: it is not done. Hosts whose drivers limit the turns of loops
+/// interrupt it so and go on with the same s and hit. Over holes a step counts as all the levels that it may climb:
+/// invocations in a vector wait for one another, whichever climbs.
+SCARP_FN bool scarp_lipschitz_on(ScarpField field, ScarpRay ray, ScarpLipschitz settings, int turns,
+                                 SCARP_INOUT(float) s, SCARP_INOUT(ScarpHit) hit) {
+  int turns_of_step = (field.flags & kScarpHoles) != 0u ? 1 + field.top_level : 1;
+  for (int turn = 0; turn < turns; turn += turns_of_step) {
+    if (!(s <= ray.exit)) return true;
+    if (int(hit.steps) == settings.max_steps) {
       scarp_give_up(s, hit);
-      return hit;
+      return true;
     }
     hit.steps += 1u;
     hit.fetches += 4u;
@@ -53,18 +60,18 @@ SCARP_FN ScarpHit scarp_lipschitz(ScarpField field, ScarpRay ray, ScarpLipschitz
       s = scarp_leave_time(field, ray, point, 0, s);
     } else if (point.clearance < 0.0f) {
       // Under the ground: there from the start, or out of a hole.
-      if (on_surface && i == 0)
+      if ((ray.flags & kScarpOnSurface) != 0u && hit.steps == 1u)
         scarp_tell_point(point, s, kScarpHit, hit);
       else if ((field.flags & kScarpSolid) != 0u && s + ray.travelled > 0.0f)
         scarp_tell_point(point, s, kScarpWall, hit);
-      else if (i == 0)
+      else if (hit.steps == 1u)
         hit.status = kScarpBelow;
       else
         scarp_give_up(s, hit);
-      return hit;
+      return true;
     } else if (free <= settings.tolerance * (s + ray.travelled)) {
       scarp_tell_point(point, s, kScarpHit, hit);
-      return hit;
+      return true;
     } else if ((field.flags & kScarpHoles) == 0u) {
       s += free;
     } else {
@@ -77,6 +84,15 @@ SCARP_FN ScarpHit scarp_lipschitz(ScarpField field, ScarpRay ray, ScarpLipschitz
       }
       s = min(s + free, scarp_leave_time(field, ray, point, level, s));
     }
+  }
+  return false;
+}
+
+/// What the march finds first.
+SCARP_FN ScarpHit scarp_lipschitz(ScarpField field, ScarpRay ray, ScarpLipschitz settings) {
+  ScarpHit hit = scarp_no_hit();
+  float s = scarp_lipschitz_begin(ray);
+  while (!scarp_lipschitz_on(field, ray, settings, kScarpAllTurns, s, hit)) {
   }
   return hit;
 }

@@ -23,7 +23,7 @@ SCARP_GLSL_BEGIN
 struct ScarpLipschitzLocal {
   float tolerance;
   int max_steps;
-  int run_steps;  ///< after so many more bounds and heights the march is interrupted (kScarpFunctionUnderWay), >= 1
+  int run_steps;  ///< after so many more steps, a bound and perhaps a height each, the march is interrupted, >= 1
 };
 
 /// What is proven about a segment: the ray is above the ground until `until`, and under it at `sunk`.
@@ -181,13 +181,15 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
   int ask = begins && from_surface ? kScarpAskOpen : kScarpAskSegment;
   int first = max(1, ray.state.steps);  // 0 is for rays that have not begun
   int steps = first;
-  int evaluations = 0;  // of this run
+  float end = s;
+  float below = 0.0f;  // the clearance at `end`
+  bool crosses = false;
   while (s < ray.exit) {
     if (steps > settings.max_steps) {
       scarp_function_tell(kScarpFunctionExhausted, s, hit);
       return hit;
     }
-    if (evaluations >= settings.run_steps) {
+    if (steps - first >= settings.run_steps) {
       hit.status = kScarpFunctionUnderWay;
       hit.state.s = s;
       hit.state.before = length_;
@@ -197,8 +199,7 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
     }
     hit.bounds += 1u;
     ++steps;
-    ++evaluations;
-    float end = ask == kScarpAskSegment ? min(s + length_, ray.exit) : s;
+    end = ask == kScarpAskSegment ? min(s + length_, ray.exit) : s;
     ScarpProof proof = scarp_proof(program, ray, lift, s, end);
     if (ask == kScarpAskOpen) {
       lift = 4.0f * proof.wide;
@@ -226,12 +227,10 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
     float least = max(shortest, settings.tolerance * (s + ray.travelled));
     if (length_ <= least) {
       hit.heights += 1u;
-      ++evaluations;
-      float h = scarp_clearance(program, ray, end);
-      if (h <= 0.0f || length_ <= shortest) {
-        if (h <= 0.0f && !any) s = scarp_crossing(program, ray, s, end, h, hit);
-        scarp_function_tell(kScarpFunctionHit, s, hit);
-        return hit;
+      below = scarp_clearance(program, ray, end);
+      if (below <= 0.0f || length_ <= shortest) {
+        crosses = true;
+        break;
       }
       // No crossing is known, the bounds are only too wide for so little clearance. Shorter segments tell.
       least = shortest;
@@ -243,6 +242,10 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
                                           : max(gained, kScarpShrink * (end - proof.until)));
     s = proof.until;
   }
+  if (!crosses) return hit;
+  // Beyond the loop: there neighbours in a vector, which come to it at other steps, do it together.
+  if (below <= 0.0f && !any) s = scarp_crossing(program, ray, s, end, below, hit);
+  scarp_function_tell(kScarpFunctionHit, s, hit);
   return hit;
 }
 

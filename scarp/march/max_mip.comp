@@ -8,11 +8,29 @@
 
 #include "scarp/march/ray_batch.glsl.h"
 // The march asks the batch for its ground.
-#include "scarp/march/max_mip.glsl.h"
+#include "scarp/march/batch_states.glsl.h"
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  if (i >= batch.count) return;
+  if (!batch_asks(i)) return;
+  ScarpField field = open_ground(batch.ground);
   ScarpRay ray = BatchRays(batch.rays).rays[i];
-  batch_answer(i, scarp_max_mip(open_ground(batch.ground), ray, batch_any));
+  ScarpHit hit = scarp_no_hit();
+  ScarpWalk walk;
+  bool done = false;
+  if (batch.resume == 0u) {
+    done = !scarp_begin_walk(field, ray, walk, hit);
+  } else {
+    hit = BatchWalks(batch.states).of[i].hit;
+    walk = BatchWalks(batch.states).of[i].walk;
+    ray.z = BatchWalks(batch.states).of[i].z;
+    ray.z_low = BatchWalks(batch.states).of[i].z_low;
+  }
+  if (!done) done = scarp_go_on(field, ray, batch_any, batch.turns, walk, hit);
+  if (done) {
+    batch_answer(i, hit);
+    return;
+  }
+  BatchWalks(batch.states).of[i] = BatchWalk(hit, walk, ray.z, ray.z_low);
+  batch_interrupt(i);
 }

@@ -32,9 +32,6 @@ const int kScarpUnknown = 0;
 const int kScarpAboveGround = 1;
 const int kScarpBelowGround = 2;
 
-/// More turns than any walk takes.
-const int kScarpAllTurns = 2147483647;
-
 /// Where the walk stands.
 struct ScarpWalk {
   ScarpFrame frame;

@@ -17,15 +17,26 @@ struct ScarpNaive {
   int max_steps;
 };
 
-/// What the march finds first.
-SCARP_FN ScarpHit scarp_naive(ScarpField field, ScarpRay ray, ScarpNaive settings) {
-  ScarpHit hit = scarp_no_hit();
-  float least = settings.min_step * (ray.travelled + ray.exit);
-  float s = (ray.flags & kScarpOnSurface) != 0u ? least : 0.0f;
-  for (int i = 0; s <= ray.exit; ++i) {
-    if (i == settings.max_steps) {
+/// The least step, a time.
+SCARP_FN float scarp_naive_least(ScarpRay ray, ScarpNaive settings) {
+  return settings.min_step * (ray.travelled + ray.exit);
+}
+
+/// The time of the first point that the march looks at.
+SCARP_FN float scarp_naive_begin(ScarpRay ray, ScarpNaive settings) {
+  return (ray.flags & kScarpOnSurface) != 0u ? scarp_naive_least(ray, settings) : 0.0f;
+}
+
+/// On from time s, for some turns. False: it is not done. Hosts whose drivers limit the turns of loops interrupt it so
+/// and go on with the same s and hit.
+SCARP_FN bool scarp_naive_on(ScarpField field, ScarpRay ray, ScarpNaive settings, int turns, SCARP_INOUT(float) s,
+                             SCARP_INOUT(ScarpHit) hit) {
+  float least = scarp_naive_least(ray, settings);
+  for (int turn = 0; turn < turns; ++turn) {
+    if (!(s <= ray.exit)) return true;
+    if (int(hit.steps) == settings.max_steps) {
       scarp_give_up(s, hit);
-      return hit;
+      return true;
     }
     hit.steps += 1u;
     hit.fetches += 4u;
@@ -33,10 +44,19 @@ SCARP_FN ScarpHit scarp_naive(ScarpField field, ScarpRay ray, ScarpNaive setting
     float h = point.clearance * ray.per_height;
     if (point.valid && h < settings.tolerance * (s + ray.travelled)) {
       scarp_tell_point(point, s, kScarpHit, hit);
-      return hit;
+      return true;
     }
     // Over a hole there is no height to go by.
     s += max(point.valid ? settings.step_factor * abs(h) : 0.0f, least);
+  }
+  return false;
+}
+
+/// What the march finds first.
+SCARP_FN ScarpHit scarp_naive(ScarpField field, ScarpRay ray, ScarpNaive settings) {
+  ScarpHit hit = scarp_no_hit();
+  float s = scarp_naive_begin(ray, settings);
+  while (!scarp_naive_on(field, ray, settings, kScarpAllTurns, s, hit)) {
   }
   return hit;
 }

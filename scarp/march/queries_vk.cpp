@@ -12,6 +12,19 @@
 #include "scarp/base/parallel.h"
 #include "scarp/march/device_ray.h"
 #include "scarp/march/ray_batch.glsl.h"
+#include "scarp/vk/loop_turns.glsl.h"
+
+namespace scarp::glsl {
+
+// The marches' text asks for samples; here its structs are wanted alone.
+float scarp_sample(int col, int row);
+bool scarp_is_nodata(float value);
+float scarp_maximum(int level, int col, int row);
+float scarp_minimum(int level, int col, int row);
+
+}  // namespace scarp::glsl
+
+#include "scarp/march/batch_states.glsl.h"
 
 namespace scarp {
 namespace {
@@ -40,15 +53,16 @@ struct DeviceMarch {
   std::string_view name;
   std::span<const std::uint32_t> words;
   DeviceRay (*ray)(const HeightField& field, const Ray& ray);
-  bool has_any;  // whether it can be asked for any hit
+  bool has_any;             // whether it can be asked for any hit
+  std::size_t state_bytes;  // of a march that has been interrupted
 };
 
 constexpr std::array kDeviceMarches = {
-    DeviceMarch{"max-mip", kMaxMipWords, device_ray, true},
-    DeviceMarch{"naive", kNaiveWords, sampled_device_ray, false},
-    DeviceMarch{"fixed-step", kFixedStepWords, sampled_device_ray, false},
-    DeviceMarch{"relaxed", kRelaxedWords, sampled_device_ray, false},
-    DeviceMarch{"lipschitz", kLipschitzWords, sampled_device_ray, false},
+    DeviceMarch{"max-mip", kMaxMipWords, device_ray, true, sizeof(glsl::BatchWalk)},
+    DeviceMarch{"naive", kNaiveWords, sampled_device_ray, false, sizeof(glsl::BatchTime)},
+    DeviceMarch{"fixed-step", kFixedStepWords, sampled_device_ray, false, sizeof(glsl::BatchSteps)},
+    DeviceMarch{"relaxed", kRelaxedWords, sampled_device_ray, false, sizeof(glsl::BatchTime)},
+    DeviceMarch{"lipschitz", kLipschitzWords, sampled_device_ray, false, sizeof(glsl::BatchTime)},
 };
 
 const DeviceMarch& device_march(const MarchEntry& march) {
@@ -93,6 +107,11 @@ std::uint32_t checked_slice(std::uint32_t rays) {
   throw Error(fmt::format("device queries: {} rays at once; there can be 1 to {}", rays, kMostRaysAtOnce));
 }
 
+int checked_turns(int turns) {
+  if (turns >= 1 && turns <= glsl::kScarpLoopTurns) return turns;
+  throw Error(fmt::format("device queries: {} turns at once; there can be 1 to {}", turns, glsl::kScarpLoopTurns));
+}
+
 }  // namespace
 
 std::string device_march_names() {
@@ -107,11 +126,13 @@ struct DeviceQueries::Impl {
       : march(device_march(entry)),
         march_settings(march_settings_),
         slice(checked_slice(settings.rays_at_once)),
+        turns(checked_turns(settings.turns_at_once)),
         statistics(settings.statistics),
         closest(pipeline(device, false)),
         any(pipeline(device, march.has_any)),
         rays(device, std::uint64_t{slice} * sizeof(glsl::ScarpRay), "rays"),
         answers(device, std::uint64_t{slice} * sizeof(glsl::ScarpHit), "hits"),
+        states(device, std::uint64_t{slice} * march.state_bytes, "states of rays"),
         commands(device) {}
 
   ComputePipeline pipeline(const Device& device, bool asks_any) const {
@@ -129,6 +150,8 @@ struct DeviceQueries::Impl {
     batch.ground = target.ground->address();
     batch.rays = rays.address();
     batch.hits = answers.address();
+    batch.states = states.address();
+    batch.turns = turns;
     if (!costs.empty() && costs.size() != asked.size())
       throw Error(fmt::format("batch: {} rays, room for {} costs", asked.size(), costs.size()));
     passes.clear();
@@ -156,20 +179,27 @@ struct DeviceQueries::Impl {
     }
   }
 
-  void run(const ComputePipeline& pipeline, const glsl::RayBatch& batch) {
+  // Until no march is under way.
+  void run(const ComputePipeline& pipeline, glsl::RayBatch batch) {
     upload(rays, 0, packed.data(), batch.count * sizeof(glsl::ScarpRay));
-    commands.dispatch(pipeline, batch, {(batch.count + kThreads - 1) / kThreads, 1, 1});
-    commands.run();
-    passes.insert(passes.end(), commands.passes().begin(), commands.passes().end());
-    download(answers, 0, found.data(), batch.count * sizeof(glsl::ScarpHit));
+    batch.resume = 0;
+    do {
+      commands.dispatch(pipeline, batch, {(batch.count + kThreads - 1) / kThreads, 1, 1});
+      commands.run();
+      passes.insert(passes.end(), commands.passes().begin(), commands.passes().end());
+      download(answers, 0, found.data(), batch.count * sizeof(glsl::ScarpHit));
+      batch.resume = 1;
+    } while (std::any_of(found.begin(), found.end(),
+                         [](const glsl::ScarpHit& hit) { return hit.status == glsl::kBatchUnderWay; }));
   }
 
   const DeviceMarch& march;
   MarchSettings march_settings;
   std::uint32_t slice;
+  int turns;
   bool statistics;
   ComputePipeline closest, any;
-  DeviceBuffer rays, answers;
+  DeviceBuffer rays, answers, states;
   Commands commands;
   std::vector<PassTime> passes;
   // Of one slice.

@@ -30,6 +30,8 @@ struct DeviceRayCost {
 struct DeviceQuerySettings {
   bool statistics = false;               ///< whether costs are counted; else they are told as zeros
   std::uint32_t rays_at_once = 1 << 18;  ///< a slice: what is on the device together, 1 to 4,000,000
+  int turns_at_once =
+      60'000;  ///< of a march's loop, then it goes on in the next run, so that runs are short: 1 to 60,000
 };
 
 /// What is marched on a device.
@@ -61,7 +63,7 @@ class DeviceQueries {
   void occluded(const DeviceTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<DeviceRayCost> costs = {});
 
-  /// One for each slice of the last call.
+  /// One for each run of the last call: a slice takes one, and more where marches are longer than turns_at_once.
   const std::vector<PassTime>& passes() const;
 
  private:

@@ -4,8 +4,12 @@
 // accel/ground_buffers.glsl.h.
 //
 //   RayBatch ──rays──▶ ScarpRay ScarpRay ...     one invocation each
-//       │  └──hits───▶ ScarpHit ScarpHit ...     the answers, in the same order
+//       │  ├──hits───▶ ScarpHit ScarpHit ...     the answers, in the same order
+//       │  └──states─▶ batch_states.glsl.h       where marches stand that are not done
 //       └────ground──▶ GroundBuffers
+//
+// A march is interrupted after some turns of its loop (vk/loop_turns.glsl.h) and goes on in the next run, which is the
+// same with `resume`.
 #ifndef SCARP_MARCH_RAY_BATCH_GLSL_H
 #define SCARP_MARCH_RAY_BATCH_GLSL_H
 
@@ -31,7 +35,13 @@ struct RayBatch {
   float tolerance;  ///< naive, relaxed, lipschitz
   int max_steps;    ///< all but max-mip
   int interpolate;  ///< fixed-step: 0 or 1
+  int turns;        ///< of a march's loop in one run
+  uint resume;      ///< 1: marches that have been interrupted go on; the others are answered
+  Address states;
 };
+
+/// The status of a march that goes on in the next run; no ScarpHit's own.
+const int kBatchUnderWay = -1;
 
 #ifndef __cplusplus
 
@@ -40,10 +50,19 @@ layout(constant_id = 1) const bool batch_any = false;
 layout(constant_id = 2) const bool batch_statistics = false;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRays { ScarpRay rays[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer BatchHits { ScarpHit hits[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHits { ScarpHit hits[]; };
 layout(push_constant, scalar) uniform Push { RayBatch batch; };
 
 #include "scarp/march/ground_host.glsl.h"
+
+// Whether this run is to march ray i.
+bool batch_asks(uint i) {
+  if (i >= batch.count) return false;
+  return batch.resume == 0u || BatchHits(batch.hits).hits[i].status == kBatchUnderWay;
+}
+
+// The march of ray i has not come to its end.
+void batch_interrupt(uint i) { BatchHits(batch.hits).hits[i].status = kBatchUnderWay; }
 
 // Writes the answer to ray i.
 void batch_answer(uint i, ScarpHit hit) {

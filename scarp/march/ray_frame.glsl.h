@@ -84,6 +84,8 @@ struct ScarpHit {
 
 /// Later than any time.
 const float kScarpNever = 1.0e30f;
+/// More turns of a loop than any march takes; half of the whole numbers, so that counting past it is no overflow.
+const int kScarpAllTurns = 1073741824;
 /// Unit roundoff of a float, 2^-24.
 const float kScarpUnit = 5.9604644775390625e-8f;
 /// Tiles are 2^kScarpTileLevel cells wide, and no block that is looked at is wider.

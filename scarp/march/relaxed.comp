@@ -8,12 +8,18 @@
 
 #include "scarp/march/ray_batch.glsl.h"
 // The march asks the batch for its ground.
+#include "scarp/march/batch_states.glsl.h"
 #include "scarp/march/relaxed.glsl.h"
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  if (i >= batch.count) return;
+  if (!batch_asks(i)) return;
+  ScarpField field = open_ground(batch.ground);
   ScarpRay ray = BatchRays(batch.rays).rays[i];
-  batch_answer(
-      i, scarp_relaxed(open_ground(batch.ground), ray, ScarpRelaxed(batch.step, batch.tolerance, batch.max_steps)));
+  ScarpRelaxed settings = ScarpRelaxed(batch.step, batch.tolerance, batch.max_steps);
+  ScarpHit hit = scarp_no_hit();
+  float s = scarp_relaxed_begin(ray);
+  batch_go_on(i, hit, s);
+  bool done = scarp_relaxed_on(field, ray, settings, batch.turns, s, hit);
+  batch_answer_or_keep(done, i, hit, s);
 }

@@ -16,16 +16,18 @@ struct ScarpRelaxed {
   int max_steps;
 };
 
-/// What the march finds first.
-SCARP_FN ScarpHit scarp_relaxed(ScarpField field, ScarpRay ray, ScarpRelaxed settings) {
-  ScarpHit hit = scarp_no_hit();
-  bool on_surface = (ray.flags & kScarpOnSurface) != 0u;
-  // The first step off the surface.
-  float s = on_surface ? ray.cell_time : 0.0f;
-  for (int i = 0; s <= ray.exit; ++i) {
-    if (i == settings.max_steps) {
+/// The time of the first point that the march looks at: a step off the surface.
+SCARP_FN float scarp_relaxed_begin(ScarpRay ray) { return (ray.flags & kScarpOnSurface) != 0u ? ray.cell_time : 0.0f; }
+
+/// On from time s, for some turns. False: it is not done. Hosts whose drivers limit the turns of loops interrupt it so
+/// and go on with the same s and hit.
+SCARP_FN bool scarp_relaxed_on(ScarpField field, ScarpRay ray, ScarpRelaxed settings, int turns, SCARP_INOUT(float) s,
+                               SCARP_INOUT(ScarpHit) hit) {
+  for (int turn = 0; turn < turns; ++turn) {
+    if (!(s <= ray.exit)) return true;
+    if (int(hit.steps) == settings.max_steps) {
       scarp_give_up(s, hit);
-      return hit;
+      return true;
     }
     hit.steps += 1u;
     hit.fetches += 4u;
@@ -35,17 +37,26 @@ SCARP_FN ScarpHit scarp_relaxed(ScarpField field, ScarpRay ray, ScarpRelaxed set
       s += ray.cell_time;
     } else if (abs(h) < settings.tolerance * (s + ray.travelled)) {
       scarp_tell_point(point, s, kScarpHit, hit);
-      return hit;
-    } else if (h < 0.0f && i == 0) {
+      return true;
+    } else if (h < 0.0f && hit.steps == 1u) {
       // Below at the first look: the way back would leave the ray's range.
-      if (on_surface)
+      if ((ray.flags & kScarpOnSurface) != 0u)
         scarp_tell_point(point, s, kScarpHit, hit);
       else
         hit.status = kScarpBelow;
-      return hit;
+      return true;
     } else {
       s = max(s + settings.step_factor * h, 0.0f);
     }
+  }
+  return false;
+}
+
+/// What the march finds first.
+SCARP_FN ScarpHit scarp_relaxed(ScarpField field, ScarpRay ray, ScarpRelaxed settings) {
+  ScarpHit hit = scarp_no_hit();
+  float s = scarp_relaxed_begin(ray);
+  while (!scarp_relaxed_on(field, ray, settings, kScarpAllTurns, s, hit)) {
   }
   return hit;
 }

@@ -37,7 +37,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
   ScarpFunctionRay ray = ShapeRays(batch.rays).rays[i];
-  ShapeHits(batch.hits).hits[i] =
-      scarp_sphere_trace(batch.instructions, ray,
-                         ScarpSphereTrace(batch.tolerance, batch.max_steps, batch.run_steps, batch.growth), batch_any != 0u);
+  ShapeHits(batch.hits).hits[i] = scarp_sphere_trace(
+      batch.instructions, ray, ScarpSphereTrace(batch.tolerance, batch.max_steps, batch.run_steps, batch.growth),
+      batch_any != 0u);
 }

@@ -146,8 +146,9 @@ Picture render_lake(const TerrainScene& scene, const Camera& camera, double grid
 #endif
   if (scene.on_device() && settings.look == Look::comanche && scene.march().name == "fixed-step") {
     throw Error(
-        "comanche: on a device fixed-step has no soft light (samples), and the eye must be within 2^22 cells of the "
-        "field; let max-mip march, or the CPU");
+        "comanche: on a device the eye must be within 2^22 cells of the field for fixed-step; let max-mip march, or "
+        "the "
+        "CPU");
   }
   const Lake lake(scene, camera, grid_north_azimuth, settings);
   Image image(settings.width, settings.height);

@@ -39,7 +39,7 @@ std::size_t Lake::most_rays() const {
 LakeTile::LakeTile(const LakeView& view, const PixelTile& tile)
     : view_(view), points_(points_of(tile, view.aa)), looking_(view.plinth) {
   seen_.reserve(points_.size());
-  for (const PicturePoint& point : points_) seen_.push_back({view.camera.ray(point.x, point.y), {}});
+  for (const PicturePoint& point : points_) seen_.push_back({seen_.size(), view.camera.ray(point.x, point.y), {}});
   meetings_.resize(points_.size());
 }
 
@@ -145,7 +145,7 @@ void LakeTile::add_water(std::size_t point, const Water::Meeting& meeting) {
       sent.start = RayStart::on_surface;
       sent.start_cell = *meeting.sea;
     }
-    water_rays_.push_back({sent, {}});
+    water_rays_.push_back({point, sent, {}});
     return water_rays_.size() - 1;
   };
   dvec3 mirrored = reflected(ray.direction, normal);
@@ -188,7 +188,7 @@ bool LakeTile::ask_light(RayRound& round) {
     Seen* seen = ground(asked_points_);
     if (!seen) continue;
     const GroundPoint point = ground_point(shader.field(), seen->ray, seen->sight.hit);
-    open_.push_back({seen, point, shader.lighting().ask(point, points_[asked_points_ % points_.size()], round.rays)});
+    open_.push_back({seen, point, shader.lighting().ask(point, points_[seen->point], round.rays)});
   }
   if (!round.rays.empty()) return true;
   take_light(round);

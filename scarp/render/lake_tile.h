@@ -58,6 +58,7 @@ class LakeTile {
  private:
   // What a ray of the camera, or one that the water sent on, has come to.
   struct Seen {
+    std::size_t point;
     Ray ray;
     Sight sight;
     vec3 light{0.0f};  // of the ground that it met, without air

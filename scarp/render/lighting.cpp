@@ -4,13 +4,11 @@
 #include <algorithm>
 
 #include "scarp/render/air.glsl.h"
+#include "scarp/render/sample_pattern.glsl.h"
 #include "scarp/render/sun_shadow.h"
 
 namespace scarp {
 namespace {
-
-// Purposes of a pixel's points.
-constexpr std::uint32_t kOfSky = 0, kOfSun = 1;
 
 // Rays over endless ground need an end: above the highest summit nothing is met, and low rays end far away.
 void end_above_ground(std::span<Ray> rays, double highest) {
@@ -30,6 +28,9 @@ Lighting::Lighting(const PictureSettings& settings, double grid_north_azimuth, d
       ao_distance_(ao_distance),
       highest_(highest) {}
 
+int Lighting::sun_rays() const { return !settings_.shadows ? 0 : sun_radius() > 0 ? settings_.samples : 1; }
+int Lighting::sky_rays() const { return ao_distance_ > 0 ? settings_.samples : 0; }
+
 std::size_t Lighting::most_rays() const { return static_cast<std::size_t>(std::max(1, 2 * settings_.samples)); }
 
 LightRays Lighting::ask(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const {
@@ -41,10 +42,10 @@ LightRays Lighting::ask(const GroundPoint& ground, const PicturePoint& point, st
   };
   LightRays asked;
   asked.sun = rays.size();
-  if (settings_.shadows) ask_sun(ground, light_.to_sun(), sun_radius(), samples(kOfSun), rays);
+  if (settings_.shadows) ask_sun(ground, light_.to_sun(), sun_radius(), samples(glsl::kScarpPointsOfSun), rays);
   if (highest_) end_above_ground(std::span(rays).subspan(asked.sun), *highest_);
   asked.sky = rays.size();
-  if (settings_.samples > 0 && ao_distance_ > 0) ask_sky(ground, ao_distance_, samples(kOfSky), rays);
+  if (sky_rays() > 0) ask_sky(ground, ao_distance_, samples(glsl::kScarpPointsOfSky), rays);
   asked.end = rays.size();
   return asked;
 }

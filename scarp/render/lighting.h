@@ -38,14 +38,19 @@ class Lighting {
   /// Linear light; `rays` and their answers are those that `asked` refers to.
   vec3 on(const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
           std::span<const std::uint8_t> blocked) const;
+  /// Of a point: to the sun at most, and to the sky.
+  int sun_rays() const;
+  int sky_rays() const;
+  /// Metres; where rays to the sky end.
+  double ao_distance() const { return ao_distance_; }
+  const SamplePattern& pattern() const { return pattern_; }
   const Light& light() const { return light_; }
   /// Unit vector to the middle of the sun's disc.
   const dvec3& to_sun() const { return light_.to_sun(); }
-
- private:
-  // With `samples`; else the sun is a point.
+  /// Of the disc with `samples`; else the sun is a point.
   double sun_radius() const { return settings_.samples > 0 ? light_.sun_radius() : 0; }
 
+ private:
   const PictureSettings& settings_;
   Light light_;
   SamplePattern pattern_;

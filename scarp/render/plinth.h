@@ -35,6 +35,9 @@ class Plinth {
   /// Whether a ray falls past the block: it comes over or under the field's ground below the base, and never rises.
   bool passes_below(const Ray& ray) const;
 
+  /// Of the base, in sample units.
+  double base_sample() const { return base_sample_; }
+
  private:
   HeightField field_;
   double base_sample_;  // in sample units

@@ -43,6 +43,10 @@ class SamplePattern {
   /// The points of pixel (x, y), 0..65535 each. Purposes (any numbers) are independent of one another.
   PixelPoints pixel(int x, int y, std::uint32_t purpose) const;
 
+  std::uint32_t seed() const { return seed_; }
+  /// Of a point's number in its pixel.
+  int index_bits() const { return index_bits_; }
+
  private:
   std::uint32_t seed_;
   int index_bits_;  // of a pixel's block of the sequence

@@ -29,6 +29,8 @@ const bool has_patches = (parts & kFrameHasPatches) != 0u;
 const bool has_drape = (parts & kFrameHasDrape) != 0u;
 const bool has_contours = (parts & kFrameHasContours) != 0u;
 const bool has_fog = (parts & kFrameHasFog) != 0u;
+const bool has_samples = (parts & kFrameHasSamples) != 0u;
+const bool has_block = (parts & kFrameHasBlock) != 0u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Pixels { uint words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer States { FrameState states[]; };
@@ -37,6 +39,9 @@ layout(push_constant, scalar) uniform Push { FramePush push; };
 
 #include "scarp/march/ground_host.glsl.h"
 #include "scarp/render/terrain_frame_ground.glsl.h"
+// These ask it for places and directions.
+#include "scarp/render/terrain_frame_block.glsl.h"
+#include "scarp/render/terrain_frame_light.glsl.h"
 #include "scarp/render/terrain_frame_water.glsl.h"
 
 float eye_height(FrameSeen seen) { return height_of(seen.line.origin.z); }
@@ -83,7 +88,7 @@ vec3 shading_normal(ScarpField field, FrameSeen seen) {
 vec3 lit_ground(ScarpField field, FrameSeen seen) {
   Settings s = settings();
   return ground_colour(field, seen, direction_of(seen), seen.normal) *
-         scarp_light(seen.normal, s.is.sky_side, s.is.sun, seen.sun_cosine, 1.0);
+         scarp_light(seen.normal, s.is.sky_side, s.is.sun, seen.sun_cosine, seen.sky);
 }
 
 vec3 seen_colour(FrameSeen seen) {
@@ -139,6 +144,8 @@ void keep(int ray, FrameSeen seen) {
 
 // The ray that is under way.
 struct Sent {
+  int light;  // of a task of light: which of its rays
+  float weight;
   ScarpSent ray;
   ScarpHit hit;
   ScarpWalk walk;
@@ -157,6 +164,7 @@ FrameSeen no_sight() {
   seen.cell = ivec2(0);
   seen.place = vec2(0.0);
   seen.sun_cosine = 0.0;
+  seen.sky = 0.0;
   seen.normal = vec3(0.0);
   seen.light = vec3(0.0);
   seen.steps = 0u;
@@ -203,19 +211,17 @@ bool send(ScarpField field, int task, inout Sent sent) {
   ivec2 cell = seen.cell;
   vec2 place = seen.place;
   if (light) {
-    seen.normal = shading_normal(field, seen);
-    float cosine = dot(seen.normal, s.is.to_sun);
-    seen.sun_cosine = max(0.0, cosine);
-    keep(task - kFrameSeens, seen);
-    if (!has_shadows || !(cosine > 0.0)) return false;
-    ScarpTwoFloat x = scarp_line_col(seen.line, seen.t);
-    ScarpTwoFloat y = scarp_line_row(seen.line, seen.t);
-    ScarpTwoFloat z = scarp_line_height(seen.line, seen.t);
-    line = ScarpLine(vec3(x.high, y.high, z.high), vec3(x.low, y.low, z.low), s.is.sun_line, s.is.sun_line_low);
-    end = scarp_two(kScarpNever);
-    // Rays over endless ground need an end: above the highest summit nothing is met, and low rays end far away.
-    if ((field.flags & kScarpWraps) != 0u)
-      end = scarp_two(max((field.highest - z.high) * s.is.metres_per_sample, 0.0) / max(s.is.to_sun.z, kScarpLeastSunRise));
+    if (sent.light == 0) {
+      seen.normal = shading_normal(field, seen);
+      seen.sun_cosine = has_shadows ? 0.0 : max(0.0, dot(seen.normal, s.is.to_sun));
+      keep(task - kFrameSeens, seen);
+    }
+    if (light_rays() == 0) return false;
+    LightRay ray = light_ray(field, seen, sent.light);
+    sent.weight = ray.weight;
+    if (!(ray.weight > 0.0)) return false;
+    line = ray.line;
+    end = scarp_two(ray.end);
     how |= kScarpSendFromSurface;
     sent.step = ScarpFixedStep(s.is.sun_step, s.is.sun_interpolate, s.is.sun_steps);
   } else {
@@ -249,7 +255,13 @@ bool send(ScarpField field, int task, inout Sent sent) {
         if (scarp_two_less(end, water.t)) water.kind = 0;
       }
       if (water.kind != 0) end = water.t;
+      bool hidden = has_block && hidden_by_block(field, end, seen);
+      if (seen.kind == kFrameWall) water.kind = 0;
       water_met = water;
+      if (hidden) {
+        keep(task, seen);
+        return false;
+      }
     }
     if (task != kFrameCamera && water.sea != 0) {
       how |= kScarpSendFromSurface;
@@ -303,8 +315,18 @@ void take(ScarpField field, int task, Sent sent) {
   if (task >= kFrameSeens) {
     FrameSeen lit = seen_of(task - kFrameSeens);
     if (lit.kind != kFrameGround) return;
-    if (met) lit.sun_cosine = 0.0;
-    lit.light = lit_ground(field, lit);
+    int rays = light_rays();
+    if (!met && rays > 0) {
+      if (goes_to_sun(sent.light))
+        lit.sun_cosine += sent.weight;
+      else
+        lit.sky += 1.0;
+    }
+    if (sent.light + 1 >= rays) {
+      if (has_samples && has_shadows) lit.sun_cosine /= float(s.is.sun_rays);
+      lit.sky = has_samples && s.is.sky_rays > 0 ? lit.sky / float(s.is.sky_rays) : 1.0;
+      lit.light = lit_ground(field, lit);
+    }
     keep(task - kFrameSeens, lit);
     return;
   }
@@ -375,8 +397,7 @@ vec3 colour_of_point() {
   return colour;
 }
 
-// Point `point` of a pixel.
-void begin_point(uint pixel, int point) {
+void begin_point() {
   Settings s = settings();
   int aa = s.is.aa;
   vec2 at = vec2(float(pixel % uint(s.is.width)), float(pixel / uint(s.is.width))) +
@@ -395,7 +416,7 @@ void begin_point(uint pixel, int point) {
   }
 }
 
-void tell_sight(uint pixel) {
+void tell_sight() {
   FrameSeen camera = seen_of(kFrameCamera);
   FrameWater water = water_met;
   FrameSight sight;
@@ -409,13 +430,15 @@ void tell_sight(uint pixel) {
 void main() {
   slot = gl_GlobalInvocationID.x;
   if (slot >= push.count) return;
-  uint pixel = push.first + slot;
+  pixel = push.first + slot;
   int points = settings().is.aa * settings().is.aa;
   int tasks = settings().is.iterations != 0 ? 1 : kFrameTasks;
   ScarpField field = open_ground(push.ground);
   field.flags = field_flags;
   Sent sent;
-  int point = 0;
+  sent.light = 0;
+  sent.weight = 0.0;
+  point = 0;
   int task = -1;
   bool under_way = false;
   vec3 sum = vec3(0.0);
@@ -428,6 +451,8 @@ void main() {
     sum = all.states[slot].sum;
     camera_seen = all.states[slot].seen[kFrameCamera];
     water_met = all.states[slot].water;
+    sent.light = all.states[slot].light;
+    sent.weight = all.states[slot].weight;
     sent.ray = all.states[slot].sent;
     sent.hit = all.states[slot].hit;
     sent.step = all.states[slot].step;
@@ -438,7 +463,7 @@ void main() {
   }
   for (int round = 0; round < kFrameRounds && point < points; ++round) {
     if (task < 0) {
-      begin_point(pixel, point);
+      begin_point();
       task = 0;
     }
     if (!under_way) under_way = send(field, task, sent);
@@ -449,10 +474,16 @@ void main() {
       under_way = false;
     }
     take(field, task, sent);
+    if (has_samples && task >= kFrameSeens && sent.light + 1 < light_rays() &&
+        seen_of(task - kFrameSeens).kind == kFrameGround) {
+      sent.light += 1;
+      continue;
+    }
+    sent.light = 0;
     // Where there is no water there is but the camera's ray to be lit.
     task = has_water && water_met.kind != 0 ? task + 1 : task == kFrameCamera ? kFrameSeens : kFrameTasks;
     if (task < tasks) continue;
-    if (point == 0 && push.tell_sights != 0u) tell_sight(pixel);
+    if (point == 0 && push.tell_sights != 0u) tell_sight();
     sum += colour_of_point();
     point += 1;
     task = -1;
@@ -465,6 +496,8 @@ void main() {
     all.states[slot].sum = sum;
     all.states[slot].seen[kFrameCamera] = camera_seen;
     all.states[slot].water = water_met;
+    all.states[slot].light = sent.light;
+    all.states[slot].weight = sent.weight;
     all.states[slot].sent = sent.ray;
     all.states[slot].hit = sent.hit;
     all.states[slot].step = sent.step;

@@ -10,9 +10,9 @@
 //       └─ which pixels; whether they go on from their states
 //
 // One invocation makes one pixel, its rays one after another: the camera's, the mirrored one, the one to the water's
-// bottom, those to the sun. It is interrupted after kFrameRounds rays, or kFrameTurns turns of a march: that keeps a
-// run short, and Mesa's lavapipe leaves all loops, without a word, after 65,535 turns in all (function_batch.glsl.h).
-// Its neighbours in a vector wait for the slowest, so what counts is the sum over rays of the most turns of any.
+// bottom, those to sun and sky from where these end. It is interrupted after kFrameRounds rays, or kFrameTurns turns of
+// a march: that keeps a run short (vk/loop_turns.glsl.h says why). Its neighbours in a vector wait for the slowest, so
+// what counts is the sum over rays of the most turns of any.
 #ifndef SCARP_RENDER_TERRAIN_FRAME_GLSL_H
 #define SCARP_RENDER_TERRAIN_FRAME_GLSL_H
 
@@ -34,6 +34,8 @@ const uint kFrameHasPatches = 4u;  ///< detail or natural ground
 const uint kFrameHasDrape = 8u;
 const uint kFrameHasContours = 16u;
 const uint kFrameHasFog = 32u;
+const uint kFrameHasSamples = 64u;  ///< of sun and sky
+const uint kFrameHasBlock = 128u;   ///< below the terrain
 
 const int kFrameRounds = 16;
 const int kFrameTurns = 3000;
@@ -43,7 +45,7 @@ const int kFrameCamera = 0;
 const int kFrameMirror = 1;
 const int kFrameBottom = 2;
 const int kFrameSeens = 3;
-const int kFrameTasks = 6;  ///< and one each to the sun
+const int kFrameTasks = 6;  ///< and one each for its light
 
 /// A wave of the water.
 struct FrameWave {
@@ -91,6 +93,9 @@ struct FrameSettings {
   float per_metre;  ///< sample units
   float metres_at_zero;
   float last_row;  ///< rows of samples - 1
+  int block;       ///< 1: there is one below the terrain, down to
+  float base_sample;
+  float base_sample_low;
   // The steps of the look comanche; of rays to the sun those of the march.
   float step;
   int steps;
@@ -128,6 +133,13 @@ struct FrameSettings {
   vec3 to_sun;
   vec3 sun_line;  ///< in grid units
   vec3 sun_line_low;
+  int sun_rays;     ///< of a point: 0 without shadows, 1 where the sun is a point
+  int sky_rays;     ///< of a point
+  float sun_depth;  ///< of its disc as a cap, 1 - cos(radius); 0: a point
+  float ao_distance;
+  int samples;  ///< of a point, for each purpose: 0 without soft light
+  uint seed;    ///< of SamplePattern
+  int index_bits;
   vec3 sky_side;
   vec3 sun;
   vec3 earth;
@@ -185,7 +197,8 @@ struct FrameSeen {
   ScarpTwoFloat end;
   ivec2 cell;
   vec2 place;
-  float sun_cosine;  ///< what is seen of the sun
+  float sun_cosine;  ///< what is seen of the sun: the sum over its rays, then their mean
+  float sky;         ///< what is seen of the sky: its rays that nothing is in the way of, then their share
   vec3 normal;       ///< of ground, for shading
   vec3 light;        ///< of ground, before the air between
   uint steps;
@@ -206,6 +219,8 @@ struct FrameState {
   int point;      ///< of the pixel
   int task;       ///< -1: the point has not been begun
   int under_way;  ///< 1: the ray of the task is
+  int light;      ///< of a point's rays to sun and sky, which
+  float weight;
   vec3 sum;
   FrameSeen seen[kFrameSeens];
   FrameWater water;

@@ -13,6 +13,7 @@
 #include "scarp/base/error.h"
 #include "scarp/march/device_ray.h"
 #include "scarp/render/lake_tile.h"
+#include "scarp/render/sample_directions.h"
 #include "scarp/scene/terrain_scene_vk.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/memory.h"
@@ -86,7 +87,7 @@ void set_camera(glsl::FrameSettings& s, const HeightField& field, const Camera& 
   s.aa = settings.aa;
 }
 
-void set_field(glsl::FrameSettings& s, const HeightField& field) {
+void set_field(glsl::FrameSettings& s, const HeightField& field, const std::optional<Plinth>& block) {
   const HeightFieldSettings& settings = field.settings();
   const dvec2 cell(settings.cell_x, settings.cell_y);
   split(cell, s.cell, s.cell_low);
@@ -95,6 +96,8 @@ void set_field(glsl::FrameSettings& s, const HeightField& field) {
   s.per_metre = static_cast<float>(1 / (settings.scale * settings.exaggeration));
   s.metres_at_zero = static_cast<float>(field.height_from_sample(0));
   s.last_row = static_cast<float>(field.rows() - 1);
+  s.block = block.has_value();
+  if (block) split(block->base_sample(), s.base_sample, s.base_sample_low);
 }
 
 void set_steps(glsl::FrameSettings& s, const TerrainScene& scene, const Camera& camera,
@@ -172,6 +175,16 @@ void set_air(glsl::FrameSettings& s, const HeightField& field, const Shader& sha
   s.sun = light.sun();
   s.earth = shader.earth();
   s.unlit_wall = Shader::unlit_wall();
+}
+
+void set_samples(glsl::FrameSettings& s, const Lighting& lighting, int samples) {
+  s.sun_rays = lighting.sun_rays();
+  s.sky_rays = lighting.sky_rays();
+  s.sun_depth = static_cast<float>(cap_depth(lighting.sun_radius()));
+  s.ao_distance = static_cast<float>(lighting.ao_distance());
+  s.samples = samples;
+  s.seed = lighting.pattern().seed();
+  s.index_bits = lighting.pattern().index_bits();
 }
 
 void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPaint& paint) {
@@ -285,7 +298,8 @@ class FrameMaker {
     const std::uint32_t parts =
         (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
         (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) | (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
-        (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0);
+        (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) |
+        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (s.block != 0 && !stepped_ ? glsl::kFrameHasBlock : 0);
     const auto found = pipelines_.find(parts);
     if (found != pipelines_.end()) return found->second;
     const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
@@ -339,15 +353,16 @@ class FrameMaker {
 
 bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings) {
   const DeviceTerrain* terrain = scene.device_terrain();
-  if (!terrain || settings.samples > 0) return false;
+  if (!terrain) return false;
   const std::string_view march = scene.march().name;
   const bool stepped = march == "fixed-step" && settings.look == Look::comanche;
   if (!stepped && march != "max-mip") return false;
-  // The steps of `comanche` do not see it.
-  if (!stepped && settings.plinth && !scene.field().wraps()) return false;
+  // The steps of `comanche` do not see a block.
+  const HeightField& field = scene.field();
+  if (!stepped && settings.plinth && !field.wraps() && field.nodata_count() > 0) return false;
   Ray eye;
   eye.origin = camera.eye();
-  const dvec3 place = scene.field().grid_from_world(eye).origin;
+  const dvec3 place = field.grid_from_world(eye).origin;
   return std::abs(place.x) < kFarthestCell && std::abs(place.y) < kFarthestCell;
 }
 
@@ -360,10 +375,11 @@ Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double
   const LakeView& view = lake.view();
   glsl::FrameSettings numbers{};
   set_camera(numbers, field, camera, settings);
-  set_field(numbers, field);
+  set_field(numbers, field, view.plinth);
   set_steps(numbers, scene, camera, settings);
   set_water(numbers, field, view.water);
   set_air(numbers, field, view.shader);
+  set_samples(numbers, view.shader.lighting(), settings.samples);
   set_ground(numbers, field, view.shader.paint());
   FrameReport unasked;
   FrameReport& told = report ? *report : unasked;

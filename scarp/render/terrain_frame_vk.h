@@ -4,9 +4,9 @@
 //
 //   camera, settings ──▶ some hundred numbers ──▶ terrain_frame.comp, a pixel per invocation ──▶ Image
 //
-// Formulas are those of the CPU, from one text (air.glsl.h, water.glsl.h, ground_paint.glsl.h, colour.glsl.h), in
-// single precision; rays are those of the marches (max-mip, fixed-step). render_picture() comes here for scenes that a
-// device answers, see makes_whole_frames().
+// Formulas are those of the CPU, from one text (air.glsl.h, water.glsl.h, ground_paint.glsl.h, colour.glsl.h,
+// sample_pattern.glsl.h, sample_directions.glsl.h), in single precision; rays are those of the marches (max-mip,
+// fixed-step). render_picture() comes here for scenes that a device answers, see makes_whole_frames().
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@
 
 namespace scarp {
 
-/// Whether such a picture is made there as a whole: max-mip or fixed-step, no soft light (samples 0), no block below
-/// the terrain in sight, and an eye less than 2^22 cells off.
+/// Whether such a picture is made there as a whole: max-mip or fixed-step, no holes in the terrain where there is a
+/// block below it, and an eye less than 2^22 cells off.
 bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings);
 
 /// What the ray of the camera through a pixel's first point met.

@@ -75,6 +75,39 @@ TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
   }
 }
 
+// Invocations share a vector and its turns of loops, and come to their last evaluations at different steps: the longest
+// program, and the most of these.
+TEST_F(FunctionsOnDevice, NeighboursDoNotShow) {
+  constexpr int kTogether = 16;
+  Fractal fractal{.damping = 0.1, .octaves = {kMostOctaves, kMostOctaves, kMostOctaves}};
+  Function sum = make_function(fractal);
+  while (true) {
+    ++fractal.seed;
+    const Function more = make_function(Sum{sum, make_function(fractal)});
+    if (HeightFunction(more).program(FunctionUse::march).code.size() > glsl::kScarpMostInstructions) break;
+    sum = more;
+  }
+  const HeightFunction function(sum);
+  const DeviceFunction on_device(device(), function);
+  const DeviceFunctionTarget target{&function, &on_device};
+  FunctionRandom random(22);
+  std::vector<Ray> rays;
+  for (int i = 0; i < kTogether; ++i) rays.push_back(random_ray(function, random));
+  MarchSettings settings;
+  settings.function.refinement = Refinement::bisect;
+  settings.function.halvings = 60;
+  for (const MarchEntry& march : function_marches()) {
+    DeviceFunctionQueries together(device(), march, settings), alone(device(), march, settings, {.rays_at_once = 1});
+    std::vector<Hit> hits(rays.size()), other(rays.size());
+    together.closest_hits(target, rays, hits);
+    alone.closest_hits(target, rays, other);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(hits[i].status, other[i].status) << march.name << ", ray " << i;
+      EXPECT_EQ(hits[i].t, other[i].t) << march.name << ", ray " << i;
+    }
+  }
+}
+
 TEST_F(FunctionsOnDevice, SayWhatIsWrong) {
   const auto message = [](const auto& act) -> std::string {
     try {

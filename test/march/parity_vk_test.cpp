@@ -22,6 +22,18 @@
 #include "vk/device_under_test.h"
 #include "vk/spirv_layout.h"
 
+namespace scarp::glsl {
+
+// The marches' text asks for samples; here its structs are wanted alone.
+float scarp_sample(int col, int row);
+bool scarp_is_nodata(float value);
+float scarp_maximum(int level, int col, int row);
+float scarp_minimum(int level, int col, int row);
+
+}  // namespace scarp::glsl
+
+#include "scarp/march/batch_states.glsl.h"
+
 namespace scarp::test {
 namespace {
 
@@ -137,6 +149,99 @@ TEST_F(QueriesOnDevice, SlicesDoNotShow) {
   EXPECT_GT(steps, hit_count);
 }
 
+// Marches that are interrupted every few turns.
+TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
+  constexpr int kFewTurns = 5, kFewSteps = 60, kFewRays = 4;
+  MarchSettings settings;
+  settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = kFewSteps;
+  settings.lipschitz.max_steps = kFewSteps;
+  std::map<std::string_view, DeviceQueries> at_once, interrupted;
+  for (const MarchEntry& march : height_marches()) {
+    if (!march.gpu) continue;
+    at_once.try_emplace(march.name, device(), march, settings, DeviceQuerySettings{.statistics = true});
+    interrupted.try_emplace(march.name, device(), march, settings,
+                            DeviceQuerySettings{.statistics = true, .turns_at_once = kFewTurns});
+  }
+  Random random(5);
+  int more_runs = 0;
+  for (const FieldKind& fields : spiteful_fields()) {
+    const HeightField field = fields.make(random);
+    const DeviceGround ground(device(), field);
+    const DeviceTarget target{&field, &ground, slope_bound(field)};
+    std::vector<Ray> rays;
+    for (const RayKind& kind : spiteful_rays()) {
+      if ((fields.has & kind.aims_at) != kind.aims_at) continue;
+      for (int i = 0; i < kFewRays; ++i) rays.push_back(kind.make(field, random));
+    }
+    std::vector<Hit> hits(rays.size()), other(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size()), other_blocked(rays.size());
+    std::vector<DeviceRayCost> costs(rays.size()), other_costs(rays.size());
+    for (auto& [march, whole] : at_once) {
+      DeviceQueries& in_pieces = interrupted.at(march);
+      whole.closest_hits(target, rays, hits, costs);
+      EXPECT_LE(whole.passes().size(), 1u);
+      in_pieces.closest_hits(target, rays, other, other_costs);
+      more_runs += in_pieces.passes().size() > 1;
+      whole.occluded(target, rays, blocked);
+      in_pieces.occluded(target, rays, other_blocked);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        SCOPED_TRACE(fmt::format("{} on {}: {}", march, fields.name, text(rays[i])));
+        ASSERT_EQ(text(other[i]), text(hits[i]));
+        ASSERT_EQ(other[i].t, hits[i].t);
+        ASSERT_EQ(other_blocked[i], blocked[i]);
+        ASSERT_EQ(other_costs[i].steps, costs[i].steps);
+        ASSERT_EQ(other_costs[i].fetches, costs[i].fetches);
+      }
+    }
+  }
+  EXPECT_GT(more_runs, 20);
+}
+
+// Longer than lavapipe lets a loop be: over a slope along the ray, close above it for 100,000 cells, then against a
+// wall. Of holes there is one, far from the ray, so that `lipschitz` climbs through all levels at each step.
+TEST_F(QueriesOnDevice, LongMarchesEnd) {
+  constexpr int kCols = 100'001;
+  constexpr float kNodata = -1;
+  const auto ground_at = [](int col, int row) {
+    if (row == 3 && col == 0) return kNodata;
+    return col == kCols - 1 ? 3.0F : row < 2 ? 4.0F * static_cast<float>(1 - row) : 0.0F;
+  };
+  std::vector<float> samples;
+  for (int row = 0; row < 4; ++row) {
+    for (int col = 0; col < kCols; ++col) samples.push_back(ground_at(col, row));
+  }
+  HeightFieldSettings holes;
+  holes.nodata = kNodata;
+  const HeightField field = HeightField::own(samples, kCols, 4, holes);
+  const DeviceGround ground(device(), field);
+  const DeviceTarget target{&field, &ground, slope_bound(field)};
+  // In the row of cells between heights of 4 and 0, where the ground is 1.
+  const Ray ray{{10.5, 2.25, 1.5}, {1, 0, 0}};
+  // Hits are told at a tenth of a metre's clearance or less, and steps are no shorter than floats 100,000 cells away.
+  MarchSettings settings;
+  constexpr int kManySteps = 10'000'000;
+  settings.naive = {.min_step = 1e-6, .tolerance = 1e-7, .max_steps = kManySteps};
+  settings.fixed_step.max_steps = kManySteps;
+  settings.relaxed = {.tolerance = 1e-7, .max_steps = kManySteps};
+  settings.lipschitz = {.tolerance = 5e-7, .max_steps = kManySteps};
+  constexpr std::uint32_t kLavapipeTurns = 65'535;
+  for (const MarchEntry& march : height_marches()) {
+    if (!march.gpu) continue;
+    SCOPED_TRACE(march.name);
+    DeviceQueries asked(device(), march, settings, {.statistics = true});
+    std::vector<Hit> hits(1);
+    std::vector<DeviceRayCost> costs(1);
+    std::vector<std::uint8_t> blocked(1);
+    asked.closest_hits(target, {&ray, 1}, hits, costs);
+    asked.occluded(target, {&ray, 1}, blocked);
+    EXPECT_GT(costs[0].steps, kLavapipeTurns);
+    ASSERT_EQ(hits[0].status, HitStatus::hit);
+    EXPECT_TRUE(blocked[0]);
+    EXPECT_EQ(hits[0].cell.col, kCols - 2);
+    EXPECT_EQ(hits[0].cell.row, 0);
+  }
+}
+
 TEST_F(QueriesOnDevice, SayWhatIsWrong) {
   const auto message = [](const auto& act) -> std::string {
     try {
@@ -160,6 +265,8 @@ TEST_F(QueriesOnDevice, SayWhatIsWrong) {
   hits.resize(2);
   EXPECT_NE(message([&] { queries("lipschitz").closest_hits({&field, &ground}, rays, hits); }), "");
   EXPECT_NE(message([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.rays_at_once = 0}); }), "");
+  EXPECT_EQ(message([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.turns_at_once = 60'001}); }),
+            "device queries: 60001 turns at once; there can be 1 to 60000");
   MarchSettings settings;
   settings.naive.max_steps = 0;
   EXPECT_NE(message([&] { DeviceQueries(device(), find_march("naive"), settings); }), "");
@@ -173,6 +280,12 @@ TEST(Marches, ThoseOfTheTableRunOnDevices) {
 
 constexpr std::uint32_t kShader[] = {
 #include "scarp/march/max_mip.comp.inc"
+};
+constexpr std::uint32_t kFixedStepShader[] = {
+#include "scarp/march/fixed_step.comp.inc"
+};
+constexpr std::uint32_t kNaiveShader[] = {
+#include "scarp/march/naive.comp.inc"
 };
 
 TEST(BatchLayout, IsThatOfTheShaders) {
@@ -188,10 +301,21 @@ TEST(BatchLayout, IsThatOfTheShaders) {
                                    offsetof(ScarpHit, time), offsetof(ScarpHit, time_low), offsetof(ScarpHit, steps),
                                    offsetof(ScarpHit, fetches)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpHit)));
-  EXPECT_TRUE(has_struct(
-      kShader, {offsetof(RayBatch, ground), offsetof(RayBatch, rays), offsetof(RayBatch, hits),
-                offsetof(RayBatch, count), offsetof(RayBatch, step), offsetof(RayBatch, min_step),
-                offsetof(RayBatch, tolerance), offsetof(RayBatch, max_steps), offsetof(RayBatch, interpolate)}));
+  EXPECT_TRUE(has_struct(kShader,
+                         {offsetof(RayBatch, ground), offsetof(RayBatch, rays), offsetof(RayBatch, hits),
+                          offsetof(RayBatch, count), offsetof(RayBatch, step), offsetof(RayBatch, min_step),
+                          offsetof(RayBatch, tolerance), offsetof(RayBatch, max_steps), offsetof(RayBatch, interpolate),
+                          offsetof(RayBatch, turns), offsetof(RayBatch, resume), offsetof(RayBatch, states)}));
+  using glsl::BatchWalk, glsl::BatchSteps, glsl::BatchTime, glsl::ScarpWalk;
+  EXPECT_TRUE(has_struct(kShader, {offsetof(BatchWalk, hit), offsetof(BatchWalk, walk), offsetof(BatchWalk, z),
+                                   offsetof(BatchWalk, z_low)}));
+  EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpWalk, frame), offsetof(ScarpWalk, level), offsetof(ScarpWalk, col),
+                                   offsetof(ScarpWalk, row), offsetof(ScarpWalk, t_in), offsetof(ScarpWalk, side),
+                                   offsetof(ScarpWalk, through), offsetof(ScarpWalk, begun), offsetof(ScarpWalk, start),
+                                   offsetof(ScarpWalk, relief)}));
+  EXPECT_TRUE(has_array_stride(kShader, sizeof(BatchWalk)));
+  EXPECT_TRUE(has_array_stride(kFixedStepShader, sizeof(BatchSteps)));
+  EXPECT_TRUE(has_array_stride(kNaiveShader, sizeof(BatchTime)));
 }
 
 }  // namespace

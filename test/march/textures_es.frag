@@ -11,14 +11,15 @@ uniform int march;
 out vec4 colour;
 
 #include "scarp/march/textures.glsl.h"
+// The marches ask the textures for their ground.
+#include "scarp/march/fixed_step.glsl.h"
 #include "scarp/march/float_ray.glsl.h"
-#include "scarp/march/two_float_ray.glsl.h"
-#include "scarp/march/surface_normal.glsl.h"
+#include "scarp/march/lipschitz.glsl.h"
 #include "scarp/march/max_mip.glsl.h"
 #include "scarp/march/naive.glsl.h"
-#include "scarp/march/fixed_step.glsl.h"
 #include "scarp/march/relaxed.glsl.h"
-#include "scarp/march/lipschitz.glsl.h"
+#include "scarp/march/surface_normal.glsl.h"
+#include "scarp/march/two_float_ray.glsl.h"
 
 void main() {
   ScarpField field;
@@ -34,10 +35,15 @@ void main() {
   ScarpRay ray;
   if (!scarp_ray_from(field, vec3(gl_FragCoord.xy, 9.0), vec3(1.0, 0.25, -0.125), kScarpNever, ray)) discard;
   ScarpHit hit;
-  if (march == 0) hit = scarp_max_mip(field, ray, false);
-  else if (march == 1) hit = scarp_naive(field, ray, ScarpNaive(0.7, 0.01, 0.001, 100));
-  else if (march == 2) hit = scarp_fixed_step(field, ray, ScarpFixedStep(0.5, 1, 100));
-  else if (march == 3) hit = scarp_relaxed(field, ray, ScarpRelaxed(0.4, 0.001, 100));
-  else hit = scarp_lipschitz(field, ray, ScarpLipschitz(0.5, 0.001, 100));
+  if (march == 0)
+    hit = scarp_max_mip(field, ray, false);
+  else if (march == 1)
+    hit = scarp_naive(field, ray, ScarpNaive(0.7, 0.01, 0.001, 100));
+  else if (march == 2)
+    hit = scarp_fixed_step(field, ray, ScarpFixedStep(0.5, 1, 100));
+  else if (march == 3)
+    hit = scarp_relaxed(field, ray, ScarpRelaxed(0.4, 0.001, 100));
+  else
+    hit = scarp_lipschitz(field, ray, ScarpLipschitz(0.5, 0.001, 100));
   colour = vec4(hit.place, hit.time, float(hit.status));
 }

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Walls of the block below the terrain for terrain_frame.comp, which includes this: Plinth (plinth.h) of a field
+// without holes, whose walls stand at its border alone. GLSL.
+
+// The ray's height above the block's base at time t.
+float above_base(ScarpLine line, ScarpTwoFloat t) {
+  Settings s = settings();
+  ScarpTwoFloat base = two(s.is.base_sample, s.is.base_sample_low);
+  return scarp_two_add(scarp_line_height(line, t), scarp_two_negate(base)).high;
+}
+
+// Where a ray of the camera that ends at `end` meets a wall, put into what it has seen. True: the block hides the
+// field, by a wall or because the ray falls past it; there is no ground to be looked for.
+bool hidden_by_block(ScarpField field, ScarpTwoFloat end, inout FrameSeen seen) {
+  Settings s = settings();
+  ScarpLine line = seen.line;
+  ScarpSpan x = scarp_span_x(field, line);
+  ScarpSpan y = scarp_span_y(field, line);
+  ScarpTwoFloat over = scarp_two_later(scarp_two(0.0), scarp_two_later(x.begin, y.begin));
+  if (over.high >= kScarpNever) return true;  // along a side, beside the field
+  if (above_base(line, over) < 0.0) {
+    // One that rises comes in through the base, and sees nothing of the ground from below: the march says so.
+    return line.direction.z < 0.0;
+  }
+  // Through a side of constant column, then one of constant row where that is crossed later: the order of ties.
+  bool through_x = scarp_two_less(scarp_two(0.0), x.begin) && !scarp_two_less(x.begin, over);
+  bool through_y = scarp_two_less(scarp_two(0.0), y.begin) && !scarp_two_less(y.begin, over);
+  if (!through_x && !through_y) return false;
+  if (scarp_two_less(scarp_two_earlier(end, scarp_two_earlier(x.end, y.end)), over)) return false;
+  vec3 direction = line.direction;
+  ScarpAxisPlace col = scarp_axis_place(scarp_line_col(line, over), field.cells.x, false);
+  ScarpAxisPlace row = scarp_axis_place(scarp_line_row(line, over), field.cells.y, false);
+  ivec2 cell = ivec2(col.cell, row.cell);
+  vec2 place = vec2(col.place, row.place);
+  if (through_x) {
+    cell.x = direction.x > 0.0 ? 0 : field.cells.x - 1;
+    place.x = direction.x > 0.0 ? 0.0 : 1.0;
+  } else {
+    cell.y = direction.y > 0.0 ? 0 : field.cells.y - 1;
+    place.y = direction.y > 0.0 ? 0.0 : 1.0;
+  }
+  ScarpTwoFloat z = scarp_line_height(line, over);
+  ScarpCell ground = scarp_cell(field, cell.x, cell.y, z.high);
+  if (z.low > scarp_surface(field, ground, place.x, place.y)) return false;
+  seen.kind = kFrameWall;
+  seen.t = over;
+  seen.cell = cell;
+  seen.place = place;
+  return true;
+}
