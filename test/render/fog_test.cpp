@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-constexpr double kEndless = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Ray ray(const dvec3& origin, const dvec3& direction) {
   Ray r;
@@ -61,8 +61,8 @@ TEST(Fog, ByHeightIsTheIntegralAlongTheRay) {
   // The whole way up: the integral of what lies above.
   const Ray up = ray({0, 0, 350}, {0, 1, 2});
   const double above = per_metre * std::exp(-1.0) * settings.falloff / up.direction.z;
-  EXPECT_NEAR(fog.transmittance(up, kEndless), std::exp(-above), 1e-14);
-  EXPECT_EQ(fog.transmittance(ray({0, 0, 350}, {1, 0, 0}), kEndless), 0);
+  EXPECT_NEAR(fog.transmittance(up, kInfinity), std::exp(-above), 1e-14);
+  EXPECT_EQ(fog.transmittance(ray({0, 0, 350}, {1, 0, 0}), kInfinity), 0);
 }
 
 TEST(Fog, ByDistanceLeavesTwoHundredthsAtTheVisibility) {
@@ -73,7 +73,7 @@ TEST(Fog, ByDistanceLeavesTwoHundredthsAtTheVisibility) {
   const Ray r = ray({0, 0, 0}, {1, 2, 3});
   EXPECT_NEAR(fog.transmittance(r, 1234), 0.02, 1e-15);
   EXPECT_EQ(fog.transmittance(r, 0), 1);
-  EXPECT_EQ(fog.transmittance(r, kEndless), 1) << "the sky stays";
+  EXPECT_EQ(fog.transmittance(r, kInfinity), 1) << "the sky stays";
   const vec3 black(0.0f), seen = fog(r, 1234, black);
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(seen[i], 0.98 * fog.colour(r.direction)[i], 1e-6);
 }
@@ -106,7 +106,7 @@ TEST(Fog, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(find_fog("mist"), Error);
   EXPECT_EQ(find_fog("height"), FogKind::height);
   for (const auto& spoil : {+[](FogSettings& s) { s.visibility = 0; }, +[](FogSettings& s) { s.falloff = -1; },
-                            +[](FogSettings& s) { s.base = kEndless; }, +[](FogSettings& s) { s.sun_tint = 1.5; }}) {
+                            +[](FogSettings& s) { s.base = kInfinity; }, +[](FogSettings& s) { s.sun_tint = 1.5; }}) {
     FogSettings settings = high_fog();
     validate(settings);
     spoil(settings);

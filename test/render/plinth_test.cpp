@@ -9,7 +9,7 @@
 namespace scarp {
 namespace {
 
-constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
 Ray ray_of(dvec3 origin, dvec3 direction) {
   Ray ray;
@@ -88,7 +88,7 @@ TEST(Plinth, RaysFromAboveOrInsideMeetNoWall) {
 TEST(Plinth, HolesHaveWallsToo) {
   // 7 x 3 nodes at 5 m, 1 m apart; the node at column 3 is nodata, so the cells of columns 2 and 3 are holes: x 2..4.
   std::vector<float> samples(21, 5.0f);
-  samples[3] = samples[10] = samples[17] = kHole;
+  samples[3] = samples[10] = samples[17] = kNaN;
   const Plinth plinth(HeightField::own(samples, 7, 3), 0);
   // Down through the hole, eastwards: to the wall at x = 4.
   const auto wall = plinth.intersect(ray_of({2.5, 1.3, 6}, {1, 0, -2}));
@@ -108,7 +108,7 @@ TEST(Plinth, HolesHaveWallsToo) {
 
 TEST(Plinth, OnlyWallsOfTheBorderAreOutermost) {
   std::vector<float> samples(21, 5.0f);
-  samples[3] = samples[10] = samples[17] = kHole;
+  samples[3] = samples[10] = samples[17] = kNaN;
   const Plinth plinth(HeightField::own(samples, 7, 3), 0);
   EXPECT_TRUE(plinth.intersect(ray_of({-2, 1.3, 3}, {1, 0, 0}))->outermost);
   EXPECT_FALSE(plinth.intersect(ray_of({2.5, 1.3, 6}, {1, 0, -2}))->outermost);

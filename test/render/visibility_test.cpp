@@ -14,7 +14,7 @@
 namespace scarp {
 namespace {
 
-constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // cols x rows nodes 1 m apart; height(col, row).
 template <class F>
@@ -73,7 +73,7 @@ TEST(SkyOcclusion, OfAPlaneIsNothingAtAll) {
       for (const double y : {0.1, 16.5, 32.0}) {
         const GroundPoint point = point_at(scene, x, y);
         EXPECT_EQ(mean_of_pixels(
-                      4, 64, [&](const PatternRange& range) { return sky_occlusion(scene, point, kUnlimited, range); }),
+                      4, 64, [&](const PatternRange& range) { return sky_occlusion(scene, point, kInfinity, range); }),
                   0.0)
             << east << ", " << south << " at " << x << ", " << y;
       }
@@ -90,7 +90,7 @@ TEST(SkyOcclusion, AtTheFootOfAWallIsThatOfItsHorizon) {
     // The wall's base begins one cell before its crest.
     const GroundPoint point = point_at(scene, 33 - d, kLength / 2);
     const double hidden = mean_of_pixels(
-        kPixels, kCount, [&](const PatternRange& range) { return sky_occlusion(scene, point, kUnlimited, range); });
+        kPixels, kCount, [&](const PatternRange& range) { return sky_occlusion(scene, point, kInfinity, range); });
     // Past the ends of the wall look the azimuths within atan(d / half its length) of its line.
     const double past_the_ends = std::atan(d / (kLength / 2)) / std::numbers::pi;
     EXPECT_NEAR(hidden, (1 - std::cos(std::atan(height / d))) / 2, four_sigma(kPixels, kCount) + past_the_ends)
@@ -107,7 +107,7 @@ TEST(SkyOcclusion, LooksAsFarAsItIsTold) {
   };
   EXPECT_EQ(within(9.9), 0.0) << "the wall begins at 10 m";
   EXPECT_GT(within(20), 0.1);
-  EXPECT_GT(within(kUnlimited), within(20) + 0.05);
+  EXPECT_GT(within(kInfinity), within(20) + 0.05);
 }
 
 TEST(SkyOcclusion, ARoofHidesNothingFromItsRidge) {
@@ -116,7 +116,7 @@ TEST(SkyOcclusion, ARoofHidesNothingFromItsRidge) {
   const GroundPoint point = point_at(scene, 16.125, 16.5);
   ASSERT_GT(length(point.normal - point.shading_normal), 0.5);
   EXPECT_EQ(
-      mean_of_pixels(4, 256, [&](const PatternRange& range) { return sky_occlusion(scene, point, kUnlimited, range); }),
+      mean_of_pixels(4, 256, [&](const PatternRange& range) { return sky_occlusion(scene, point, kInfinity, range); }),
       0.0);
 }
 
