@@ -88,7 +88,7 @@ vk::raii::Framebuffer make_framebuffer(const Device::Impl& device, const vk::rai
   return {device.device, vk::FramebufferCreateInfo({}, *pass, views, width, height, 1)};
 }
 
-vk::raii::PipelineLayout make_layout(const Device::Impl& device, std::uint32_t push_bytes) {
+vk::raii::PipelineLayout make_drawing_layout(const Device::Impl& device, std::uint32_t push_bytes) {
   const vk::PushConstantRange push(vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
                                    push_bytes);
   vk::PipelineLayoutCreateInfo create;
@@ -173,7 +173,7 @@ RasterPipeline::RasterPipeline(const Device& device, std::span<const std::uint32
   }
   const std::shared_ptr<Device::Impl>& open = device.impl();
   guarded(open->name(), "making the shader '" + name + "'", [&] {
-    vk::raii::PipelineLayout layout = make_layout(*open, settings.push_bytes);
+    vk::raii::PipelineLayout layout = make_drawing_layout(*open, settings.push_bytes);
     vk::raii::Pipeline pipeline = make_pipeline(*open, layout, vertex, fragment, settings, constants);
     impl_.reset(new Impl{open, name, settings.push_bytes, settings.colours, std::move(layout), std::move(pipeline)});
   });

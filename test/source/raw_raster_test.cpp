@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-const std::vector<double> kValues{1, 2, 3, 4, 5, 100};
+const std::vector<double> kHeights{1, 2, 3, 4, 5, 100};
 
 class RawRaster : public Files {
  protected:
@@ -28,18 +28,18 @@ TEST_F(RawRaster, AllTypesAndByteOrdersAreRead) {
     const char* format;
     std::string samples;
   } cases[] = {
-      {"3x2:u8", sample_bytes<std::uint8_t>(kValues)},     {"3x2:i8", sample_bytes<std::int8_t>(kValues)},
-      {"3x2:u16le", sample_bytes<std::uint16_t>(kValues)}, {"3x2:u16be", sample_bytes<std::uint16_t>(kValues, true)},
-      {"3x2:i16le", sample_bytes<std::int16_t>(kValues)},  {"3x2:i16be", sample_bytes<std::int16_t>(kValues, true)},
-      {"3x2:u32le", sample_bytes<std::uint32_t>(kValues)}, {"3x2:u32be", sample_bytes<std::uint32_t>(kValues, true)},
-      {"3x2:i32le", sample_bytes<std::int32_t>(kValues)},  {"3x2:i32be", sample_bytes<std::int32_t>(kValues, true)},
-      {"3x2:f32le", sample_bytes<float>(kValues)},         {"3x2:f32be", sample_bytes<float>(kValues, true)},
-      {"3x2:f64le", sample_bytes<double>(kValues)},        {"3x2:f64be", sample_bytes<double>(kValues, true)}};
+      {"3x2:u8", sample_bytes<std::uint8_t>(kHeights)},     {"3x2:i8", sample_bytes<std::int8_t>(kHeights)},
+      {"3x2:u16le", sample_bytes<std::uint16_t>(kHeights)}, {"3x2:u16be", sample_bytes<std::uint16_t>(kHeights, true)},
+      {"3x2:i16le", sample_bytes<std::int16_t>(kHeights)},  {"3x2:i16be", sample_bytes<std::int16_t>(kHeights, true)},
+      {"3x2:u32le", sample_bytes<std::uint32_t>(kHeights)}, {"3x2:u32be", sample_bytes<std::uint32_t>(kHeights, true)},
+      {"3x2:i32le", sample_bytes<std::int32_t>(kHeights)},  {"3x2:i32be", sample_bytes<std::int32_t>(kHeights, true)},
+      {"3x2:f32le", sample_bytes<float>(kHeights)},         {"3x2:f32be", sample_bytes<float>(kHeights, true)},
+      {"3x2:f64le", sample_bytes<double>(kHeights)},        {"3x2:f64be", sample_bytes<double>(kHeights, true)}};
   for (const auto& c : cases) {
     const Raster raster = read_raster(write_bytes("a.raw", c.samples), as(c.format));
     EXPECT_EQ(3, raster.cols) << c.format;
     EXPECT_EQ(2, raster.rows) << c.format;
-    EXPECT_EQ(kValues, doubles(raster)) << c.format;
+    EXPECT_EQ(kHeights, doubles(raster)) << c.format;
     EXPECT_FALSE(raster.georeference.present);
   }
 }
@@ -52,15 +52,15 @@ TEST_F(RawRaster, SignsAreKept) {
 }
 
 TEST_F(RawRaster, AHeaderIsSkippedAndWhatFollowsIsSaid) {
-  const std::string samples = sample_bytes<std::int16_t>(kValues);
-  EXPECT_EQ(kValues, doubles(read_raster(write_bytes("a.raw", "12345" + samples), as("3x2:i16le+5"))));
+  const std::string samples = sample_bytes<std::int16_t>(kHeights);
+  EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.raw", "12345" + samples), as("3x2:i16le+5"))));
   const Raster raster = read_raster(write_bytes("a.raw", "12345" + samples + "678"), as("3x2:i16le+5"));
-  EXPECT_EQ(kValues, doubles(raster));
+  EXPECT_EQ(kHeights, doubles(raster));
   EXPECT_TRUE(has_note(raster, "3 bytes behind the samples"));
 }
 
 TEST_F(RawRaster, TheLengthMustBeThatOfTheSamples) {
-  const std::string samples = sample_bytes<std::int16_t>(kValues);
+  const std::string samples = sample_bytes<std::int16_t>(kHeights);
   const std::string file = write_bytes("a.raw", samples);
   const std::string shorter = read_error(file, as("3x3:i16le"));
   expect_says(shorter, "has 12 bytes, --raw 3x3:i16le needs 18");
@@ -80,12 +80,12 @@ TEST_F(RawRaster, WhatIsNoFileIsNamed) {
 }
 
 TEST_F(RawRaster, ItsNameSaysNothing) {
-  EXPECT_EQ(kValues, doubles(read_raster(write_bytes("a.npy", sample_bytes<float>(kValues)), as("3x2:f32le"))));
-  EXPECT_EQ(kValues, doubles(read_raster(write_bytes("a.exr", sample_bytes<float>(kValues)), as("3x2:f32le"))));
+  EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.npy", sample_bytes<float>(kHeights)), as("3x2:f32le"))));
+  EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.exr", sample_bytes<float>(kHeights)), as("3x2:f32le"))));
 }
 
 TEST_F(RawRaster, OptionsOfOtherFilesAreRefused) {
-  const std::string file = write_bytes("a.raw", sample_bytes<std::int16_t>(kValues));
+  const std::string file = write_bytes("a.raw", sample_bytes<std::int16_t>(kHeights));
   RasterOptions options = as("3x2:i16le");
   options.encoding = HeightEncoding::terrarium;
   expect_says(read_error(file, options), "--encoding");
@@ -101,7 +101,7 @@ TEST_F(RawRaster, OptionsOfOtherFilesAreRefused) {
 }
 
 TEST_F(RawRaster, NodataWindowAndBoundsApply) {
-  const std::string file = write_bytes("a.raw", sample_bytes<std::int16_t>(kValues));
+  const std::string file = write_bytes("a.raw", sample_bytes<std::int16_t>(kHeights));
   RasterOptions options = as("3x2:i16le");
   options.nodata = 5;
   options.window = {1, 1, 2, 1};

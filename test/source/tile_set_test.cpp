@@ -10,7 +10,7 @@ namespace {
 
 using namespace test;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kHole = std::numeric_limits<double>::quiet_NaN();
 
 class TileSet : public Files {
  protected:
@@ -38,7 +38,7 @@ class TileSet : public Files {
   static std::vector<double> holes_as_nan(const Raster& raster) {
     std::vector<double> samples = doubles(raster);
     for (double& sample : samples) {
-      if (raster.nodata && sample == *raster.nodata) sample = kNan;
+      if (raster.nodata && sample == *raster.nodata) sample = kHole;
     }
     return samples;
   }
@@ -91,7 +91,7 @@ TEST_F(TileSet, AFolderStandsForItsRastersByName) {
   EXPECT_EQ(path("tiles"), raster.path);
   EXPECT_TRUE(has_note(raster, "left out as no rasters: " + path("tiles/README.txt")));
   expect_samples(read_tiles({path("tiles"), tile("c.tif", 0, 2, {9, 9, 9, 9})}, {}),
-                 {1, 2, 5, 6, 3, 4, 7, 8, 9, 9, kNan, kNan, 9, 9, kNan, kNan});
+                 {1, 2, 5, 6, 3, 4, 7, 8, 9, 9, kHole, kHole, 9, 9, kHole, kHole});
 }
 
 TEST_F(TileSet, WhatBelongsToARasterOfAFolderIsNoTile) {
@@ -123,7 +123,7 @@ TEST_F(TileSet, GapsAreHolesMarkedByTheNodataValueOfTheTiles) {
                                    {});
   EXPECT_TRUE(holds<std::int16_t>(raster));
   EXPECT_EQ(-9, raster.nodata);
-  expect_samples(raster, {1, 2, kNan, kNan, 3, kNan, kNan, kNan, kNan, kNan, 5, 6, kNan, kNan, 7, 8});
+  expect_samples(raster, {1, 2, kHole, kHole, 3, kHole, kHole, kHole, kHole, kHole, 5, 6, kHole, kHole, 7, 8});
   EXPECT_TRUE(has_note(raster, "gaps: 8 samples (50 %) are holes"));
 }
 
@@ -143,7 +143,7 @@ TEST_F(TileSet, GapsBetweenTilesWithoutNodataAreNanThatNoSampleCanBe) {
     EXPECT_TRUE(holds<float>(raster));
     EXPECT_EQ(GDALGetDataTypeName(c.type), raster.file_type);
     const std::vector<double>& f = c.samples;
-    expect_samples(raster, {f[0], f[1], kNan, kNan, f[0], f[1], f[2], f[3], kNan, kNan, f[2], f[3]});
+    expect_samples(raster, {f[0], f[1], kHole, kHole, f[0], f[1], f[2], f[3], kHole, kHole, f[2], f[3]});
     EXPECT_TRUE(has_note(raster, "gaps: 4 samples (33.3 %)"));
   }
 }
@@ -162,7 +162,7 @@ TEST_F(TileSet, NodataOfTheCallerWinsOverConflicts) {
   options.nodata = 4;
   const Raster raster = read_tiles({a, b}, options);
   EXPECT_EQ(4, raster.nodata);
-  expect_samples(raster, {1, 2, kNan, kNan, 3, kNan, kNan, kNan, kNan, kNan, 5, 6, kNan, kNan, 7, 8});
+  expect_samples(raster, {1, 2, kHole, kHole, 3, kHole, kHole, kHole, kHole, kHole, 5, 6, kHole, kHole, 7, 8});
   // A value that the samples cannot have marks no gap.
   options.nodata = 40000;
   EXPECT_TRUE(std::isnan(doubles(read_tiles({a, b}, options))[2]));
@@ -177,7 +177,7 @@ TEST_F(TileSet, AMaskHidesNothingOfTheTilesBelow) {
                       EXPECT_EQ(CE_None, d.GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, 0, 2, 2, mask, 2, 2,
                                                                                      GDT_Byte, 0, 0, nullptr));
                     });
-  expect_samples(read_tiles({a, b}, {}), {1, 2, 6, 3, 7, kNan});
+  expect_samples(read_tiles({a, b}, {}), {1, 2, 6, 3, 7, kHole});
 }
 
 TEST_F(TileSet, HeightsInColoursAreDecodedAfterwards) {
@@ -197,10 +197,10 @@ TEST_F(TileSet, HeightsInColoursAreDecodedAfterwards) {
   const auto n = [](int value) { return value * 65536.0 + value * 256 + value; };
   const Raster raster = read_tiles({colours("a.tif", 0, 1, false), colours("b.tif", 3, 0, false)}, options);
   EXPECT_EQ("terrarium", raster.file_type);
-  expect_samples(raster, {n(1), n(1), kNan, 0, 0, n(1), n(1), kNan, 0, 0});
+  expect_samples(raster, {n(1), n(1), kHole, 0, 0, n(1), n(1), kHole, 0, 0});
   const std::string c = colours("c.tif", 0, 1, true), d = colours("d.tif", 1, 2, true);
-  expect_samples(read_tiles({c, d}, options), {n(1), n(2), n(2), n(1), n(2), kNan});
-  expect_samples(read_tiles({d, c}, options), {n(1), n(1), n(2), n(1), n(2), kNan});
+  expect_samples(read_tiles({c, d}, options), {n(1), n(2), n(2), n(1), n(2), kHole});
+  expect_samples(read_tiles({d, c}, options), {n(1), n(1), n(2), n(1), n(2), kHole});
   expect_refused({c, path("a.tif")}, path("a.tif"), "number of bands is 3", options);
   expect_refused({c, tile("g.tif", 0, 0)}, path("g.tif"), "terrarium is decoded from", options);
 }
