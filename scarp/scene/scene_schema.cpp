@@ -147,6 +147,10 @@ Json parse_scene_text(std::string_view text) {
   };
   try {
     return Json::parse(text, look);
+  } catch (const Json::out_of_range& error) {
+    // "[json.exception.out_of_range.406] number overflow parsing '1e999'"
+    const std::string_view what = error.what(), number = what.substr(std::min(what.find('\''), what.size()));
+    throw Error(fmt::format("{}: the number {} is too large; there are none beyond 1.8e308", pointer(levels), number));
   } catch (const Json::exception& error) {
     // "[json.exception.parse_error.101] parse error at line 3, column 5: ..."
     std::string_view what = error.what();

@@ -56,28 +56,48 @@ int octant_side(const std::vector<ivec3>& solid, const ivec3& v, int octant) {
   return least;
 }
 
+// What is built in vectors.
+struct Built {
+  EmptyCubes cubes;
+  EmptySpheres spheres;
+  OctantCubes octants;
+
+  explicit Built(const VoxelGrid& grid) : cubes(grid), spheres(grid), octants(grid) {}
+  void update(const VoxelGrid& grid, const VoxelBox& changed) {
+    cubes.update(grid, changed);
+    spheres.update(grid, changed);
+    octants.update(grid, changed);
+  }
+  friend bool operator==(const Built&, const Built&) = default;
+};
+
+void expect_as_defined(const VoxelGrid& grid, const Built& built) {
+  const std::vector<ivec3> solid = solid_voxels(grid);
+  for_each_voxel(grid.box(), [&](const ivec3& v) {
+    ASSERT_EQ(built.cubes.distance(v), cube_distance(solid, v));
+    ASSERT_EQ(built.spheres.distance(v), sphere_distance(solid, v)) << v.x << " " << v.y << " " << v.z;
+    for (int octant = 0; octant < 8; ++octant) ASSERT_EQ(built.octants.side(v, octant), octant_side(solid, v, octant));
+  });
+}
+
 class VoxelAccelerators : public testing::TestWithParam<VoxelGridKind> {};
 
 TEST_P(VoxelAccelerators, AreWhatTheirDefinitionsSay) {
-  for (const std::int64_t set : instruction_sets()) {
-    const InstructionSet chosen(set);
-    Random random(11);
-    for (int i = 0; i < 3; ++i) {
-      VoxelGrid grid = GetParam().make(random);
-      while (grid.size().x * grid.size().y * grid.size().z > 4000) grid = GetParam().make(random);
-      const EmptyCubes cubes(grid);
-      const EmptySpheres spheres(grid);
-      const OctantCubes octants(grid);
-      const BrickMasks bricks(grid);
-      const std::vector<ivec3> solid = solid_voxels(grid);
-      for_each_voxel(grid.box(), [&](const ivec3& v) {
-        ASSERT_EQ(cubes.distance(v), cube_distance(solid, v));
-        ASSERT_EQ(spheres.distance(v), sphere_distance(solid, v));
-        for (int octant = 0; octant < 8; ++octant) ASSERT_EQ(octants.side(v, octant), octant_side(solid, v, octant));
-        if (grid.solid(v)) {
-          ASSERT_TRUE(bricks.sector(v >> 4) >> VoxelGrid::bit_of(v >> 2) & 1);
-        }
-      });
+  Random random(11);
+  for (int i = 0; i < 3; ++i) {
+    VoxelGrid grid = GetParam().make(random);
+    while (grid.size().x * grid.size().y * grid.size().z > 4000) grid = GetParam().make(random);
+    const Built built(grid);
+    const BrickMasks bricks(grid);
+    expect_as_defined(grid, built);
+    for_each_voxel(grid.box(), [&](const ivec3& v) {
+      if (grid.solid(v)) {
+        ASSERT_TRUE(bricks.sector(v >> 4) >> VoxelGrid::bit_of(v >> 2) & 1);
+      }
+    });
+    for (const std::int64_t set : instruction_sets()) {
+      const InstructionSet chosen(set);
+      EXPECT_TRUE(built == Built(grid));
     }
   }
 }
@@ -96,19 +116,13 @@ TEST_P(VoxelAccelerators, FollowEditsAsIfBuiltAnew) {
   Random random(13);
   for (int i = 0; i < 3; ++i) {
     VoxelGrid grid = GetParam().make(random);
-    EmptyCubes cubes(grid);
-    EmptySpheres spheres(grid);
-    OctantCubes octants(grid);
+    Built built(grid);
     BrickMasks bricks(grid);
     for (int edit = 0; edit < 8; ++edit) {
       const VoxelBox changed = random_edit(grid, random);
-      cubes.update(grid, changed);
-      spheres.update(grid, changed);
-      octants.update(grid, changed);
+      built.update(grid, changed);
       bricks.update(grid, changed);
-      ASSERT_TRUE(cubes == EmptyCubes(grid));
-      ASSERT_TRUE(spheres == EmptySpheres(grid));
-      ASSERT_TRUE(octants == OctantCubes(grid));
+      ASSERT_TRUE(built == Built(grid));
       ASSERT_TRUE(bricks == BrickMasks(grid));
     }
   }
@@ -122,30 +136,23 @@ INSTANTIATE_TEST_SUITE_P(All, VoxelAccelerators, testing::ValuesIn(spiteful_voxe
 
 // Rows of less than a vector, of one, of some; longer than what counts; along each axis; before and after edits.
 TEST(VoxelAccelerators, OfRowsOfAllLengthsAreWhatTheirDefinitionsSay) {
-  for (const std::int64_t set : instruction_sets()) {
-    const InstructionSet chosen(set);
-    Random random(14);
-    for (const ivec3& size : {ivec3(32, 9, 7), ivec3(31, 7, 9), ivec3(33, 6, 5), ivec3(64, 5, 5), ivec3(101, 6, 3),
-                              ivec3(400, 3, 3), ivec3(3, 400, 3), ivec3(3, 3, 400), ivec3(32, 1, 1), ivec3(1, 1, 32)}) {
-      VoxelGrid grid(size, 1);
-      EmptyCubes cubes(grid);
-      EmptySpheres spheres(grid);
-      OctantCubes octants(grid);
-      for (int edit = 0; edit < 6; ++edit) {
-        const ivec3 at = {uniform(random, 0, size.x), uniform(random, 0, size.y), uniform(random, 0, size.z)};
-        const VoxelBox changed = edit == 4 ? grid.clear({ivec3(0), (size + 1) / 2}) : grid.fill({at, at + 1}, 1);
-        cubes.update(grid, changed);
-        spheres.update(grid, changed);
-        octants.update(grid, changed);
-        EXPECT_TRUE(cubes == EmptyCubes(grid));
-        EXPECT_TRUE(spheres == EmptySpheres(grid));
-        EXPECT_TRUE(octants == OctantCubes(grid));
-        const std::vector<ivec3> solid = solid_voxels(grid);
-        for_each_voxel(grid.box(), [&](const ivec3& v) {
-          ASSERT_EQ(cubes.distance(v), cube_distance(solid, v));
-          ASSERT_EQ(spheres.distance(v), sphere_distance(solid, v)) << v.x << " " << v.y << " " << v.z;
-          for (int octant = 0; octant < 8; ++octant) ASSERT_EQ(octants.side(v, octant), octant_side(solid, v, octant));
-        });
+  Random random(14);
+  for (const ivec3& size : {ivec3(32, 9, 7), ivec3(31, 7, 9), ivec3(33, 6, 5), ivec3(64, 5, 5), ivec3(101, 6, 3),
+                            ivec3(400, 3, 3), ivec3(3, 400, 3), ivec3(3, 3, 400), ivec3(32, 1, 1), ivec3(1, 1, 32)}) {
+    VoxelGrid grid(size, 1);
+    Built built(grid);
+    for (int edit = 0; edit < 6; ++edit) {
+      const ivec3 at = {uniform(random, 0, size.x), uniform(random, 0, size.y), uniform(random, 0, size.z)};
+      const VoxelBox changed = edit == 4 ? grid.clear({ivec3(0), (size + 1) / 2}) : grid.fill({at, at + 1}, 1);
+      const Built before = built;
+      built.update(grid, changed);
+      expect_as_defined(grid, built);
+      for (const std::int64_t set : instruction_sets()) {
+        const InstructionSet chosen(set);
+        EXPECT_TRUE(built == Built(grid));
+        Built updated = before;
+        updated.update(grid, changed);
+        EXPECT_TRUE(built == updated);
       }
     }
   }

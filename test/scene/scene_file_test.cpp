@@ -145,7 +145,7 @@ TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
   const std::vector<Case> cases = {
       {"", "no JSON", "line 1"},
       {"{\"objects\": [,]}", "no JSON", "line 1, column 14"},
-      {with_object(R"({"shape": {"sphere": {"radius": 1e999}}})"), "no JSON", "1e999"},
+      {with_object(R"({"shape": {"sphere": {"radius": 1e999}}})"), "/objects/0/shape/sphere/radius", "1e999"},
       {with_object(R"({"shape": {"sphere": {"radius": NaN}}})"), "no JSON", "line 1"},
       {"[]", "/:", "an object with objects"},
       {"{}", "/objects:", "is missing; expected a list of objects"},
