@@ -145,8 +145,8 @@ Builder church() {
 
 // A whole number for a voxel, the same each time.
 int mixed(int x, int y, int z) {
-  std::uint32_t n = static_cast<std::uint32_t>(x * 73856093) ^ static_cast<std::uint32_t>(y * 19349663) ^
-                    static_cast<std::uint32_t>(z * 83492791);
+  std::uint32_t n = static_cast<std::uint32_t>(x) * 73856093U ^ static_cast<std::uint32_t>(y) * 19349663U ^
+                    static_cast<std::uint32_t>(z) * 83492791U;
   n = (n ^ (n >> 15)) * 0x2c1b3c6dU;
   return static_cast<int>((n ^ (n >> 12)) & 0xffff);
 }
