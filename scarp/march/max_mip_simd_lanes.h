@@ -133,7 +133,8 @@ struct Packet {
     // It leaves the field at its end, not through a line.
     e.tx = hn::IfThenElse(hn::RebindMask(df, hn::Gt(e.x, last_x)), never, e.tx);
     e.ty = hn::IfThenElse(hn::RebindMask(df, hn::Gt(e.y, last_y)), never, e.ty);
-    e.T = hn::Min(hn::Min(e.tx, e.ty), end);
+    // A line next to the begin may have been crossed before it as floats have it, which are within rounding of it then.
+    e.T = hn::Max(T, hn::Min(hn::Min(e.tx, e.ty), end));
     return e;
   }
   HWY_INLINE VF height(VF t) const { return hn::MulAdd(dz, t, z); }

@@ -281,6 +281,30 @@ TEST(MaxMipSimd, BeginsCloseAboveRoughGround) {
   }
 }
 
+// Rays that begin by less than floats can tell before a line that they cross late or never, and climb with the ground.
+TEST(MaxMipSimd, BeginsJustBeforeALine) {
+  const int side = 17;
+  std::vector<float> samples;
+  for (int i = 0; i < side * side; ++i) samples.push_back(static_cast<float>(side - 1 - i / side));
+  const HeightField field = HeightField::own(std::move(samples), side, side);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  Random random(81);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 4 * kUsualRays; ++i) {
+    const double x = 5 - std::exp2(-uniform(random, 20, 50)), y = 5 + uniform(random, 0, 1);
+    Ray ray;
+    ray.origin = {x, y, y + std::exp2(-uniform(random, 10, 30))};
+    ray.direction = {i % 2 ? 0 : std::exp2(-uniform(random, 10, 40)), 1, 1 + uniform(random, -0.1, 1)};
+    rays.push_back(ray);
+  }
+  const std::vector<Hit> expected = scalar(target, rays);
+  for (const std::int64_t set : instruction_sets()) {
+    const InstructionSet only(set);
+    compare(target, rays, expected, rays.size(), {}, hwy::TargetName(set));
+  }
+}
+
 // A shadow map's rays: from nodes to a sun in the north-west, or in the south.
 TEST(MaxMipSimd, RaysFromNodesAreNotLeftToTheScalarWalk) {
   Random random(80);
