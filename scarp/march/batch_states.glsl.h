@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Where marches of a batch (ray_batch.glsl.h) stand that have been interrupted, one struct per ray. C++ and GLSL; who
-// includes it has defined what cell_surface.glsl.h and max_mip.glsl.h ask for.
+// Where marches of a batch (ray_batch.glsl.h) stand that have been interrupted, one struct per ray. C++, for the
+// structs, and GLSL, which has defined what cell_surface.glsl.h and max_mip.glsl.h ask for before it includes this.
 #ifndef SCARP_MARCH_BATCH_STATES_GLSL_H
 #define SCARP_MARCH_BATCH_STATES_GLSL_H
 
+#ifdef __cplusplus
+#include "scarp/march/march_host.h"
+#endif
 #include "scarp/march/fixed_step.glsl.h"
 #include "scarp/march/max_mip.glsl.h"
 #include "scarp/vk/glsl_cpp.h"

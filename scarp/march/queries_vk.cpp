@@ -10,21 +10,10 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/batch_states.glsl.h"
 #include "scarp/march/device_ray.h"
 #include "scarp/march/ray_batch.glsl.h"
 #include "scarp/vk/loop_turns.glsl.h"
-
-namespace scarp::glsl {
-
-// The marches' text asks for samples; here its structs are wanted alone.
-float scarp_sample(int col, int row);
-bool scarp_is_nodata(float value);
-float scarp_maximum(int level, int col, int row);
-float scarp_minimum(int level, int col, int row);
-
-}  // namespace scarp::glsl
-
-#include "scarp/march/batch_states.glsl.h"
 
 namespace scarp {
 namespace {

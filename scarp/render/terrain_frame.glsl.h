@@ -16,6 +16,9 @@
 #ifndef SCARP_RENDER_TERRAIN_FRAME_GLSL_H
 #define SCARP_RENDER_TERRAIN_FRAME_GLSL_H
 
+#ifdef __cplusplus
+#include "scarp/march/march_host.h"
+#endif
 #include "scarp/march/fixed_step.glsl.h"
 #include "scarp/march/max_mip.glsl.h"
 #include "scarp/march/two_float_ray.glsl.h"

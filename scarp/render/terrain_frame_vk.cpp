@@ -14,22 +14,11 @@
 #include "scarp/march/device_ray.h"
 #include "scarp/render/lake_tile.h"
 #include "scarp/render/sample_directions.h"
+#include "scarp/render/terrain_frame.glsl.h"
 #include "scarp/scene/terrain_scene_vk.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/memory.h"
 #include "scarp/vk/pipeline.h"
-
-namespace scarp::glsl {
-
-// The marches' text asks for samples; here its structs are wanted alone.
-float scarp_sample(int col, int row);
-bool scarp_is_nodata(float value);
-float scarp_maximum(int level, int col, int row);
-float scarp_minimum(int level, int col, int row);
-
-}  // namespace scarp::glsl
-
-#include "scarp/render/terrain_frame.glsl.h"
 
 namespace scarp {
 namespace {

@@ -15,24 +15,13 @@
 #include "march/spiteful_text.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
+#include "scarp/march/batch_states.glsl.h"
 #include "scarp/march/max_mip.h"
 #include "scarp/march/queries.h"
 #include "scarp/march/queries_vk.h"
 #include "scarp/march/ray_batch.glsl.h"
 #include "vk/device_under_test.h"
 #include "vk/spirv_layout.h"
-
-namespace scarp::glsl {
-
-// The marches' text asks for samples; here its structs are wanted alone.
-float scarp_sample(int col, int row);
-bool scarp_is_nodata(float value);
-float scarp_maximum(int level, int col, int row);
-float scarp_minimum(int level, int col, int row);
-
-}  // namespace scarp::glsl
-
-#include "scarp/march/batch_states.glsl.h"
 
 namespace scarp::test {
 namespace {

@@ -20,21 +20,11 @@
 #include <vector>
 
 #include "scarp/render/picture.h"
+#include "scarp/render/terrain_frame.glsl.h"
 #include "scarp/scene/terrain_scene_vk.h"
 #include "scarp/source/ramp_file.h"
 #include "test/vk/spirv_layout.h"
 #include "vk/device_under_test.h"
-
-namespace scarp::glsl {
-
-float scarp_sample(int col, int row);
-bool scarp_is_nodata(float value);
-float scarp_maximum(int level, int col, int row);
-float scarp_minimum(int level, int col, int row);
-
-}  // namespace scarp::glsl
-
-#include "scarp/render/terrain_frame.glsl.h"
 
 namespace scarp::test {
 namespace {

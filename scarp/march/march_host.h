@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// For C++ that wants the structs of the marches' GLSL text (cell_surface.glsl.h, max_mip.glsl.h) and none of its
+// functions: what the text asks of its host is declared, and nowhere defined.
+#pragma once
+
+namespace scarp::glsl {
+
+float scarp_sample(int col, int row);
+bool scarp_is_nodata(float value);
+float scarp_maximum(int level, int col, int row);
+float scarp_minimum(int level, int col, int row);
+
+}  // namespace scarp::glsl
