@@ -102,9 +102,10 @@ HeightField hills(Surface surface, Kind kind, Random& random) {
 }
 
 // As renderers do that have no rays from the surface: set off by less than the margin of floats, a quarter of a code.
+constexpr double kSetOff = 1e-4;  // metres
 Ray next_to_the_ground(const Ray& on_surface) {
   Ray ray = on_surface;
-  ray.origin.z += 1e-4;
+  ray.origin.z += kSetOff;
   ray.start = RayStart::free;
   return ray;
 }
@@ -317,7 +318,7 @@ TEST(MaxMipSimd, RaysFromNodesAreNotLeftToTheScalarWalk) {
       for (int col = 1; col + 1 < field.cols(); col += kNodesApart) {
         const dvec3 node = field.world_from_grid(col, row, 0);
         Ray ray;
-        ray.origin = {node.x, node.y, *field.height(node.x, node.y) + 1e-4};
+        ray.origin = {node.x, node.y, *field.height(node.x, node.y) + kSetOff};
         ray.direction = {to_sun, 0.36 * length(to_sun)};
         rays.push_back(ray);
       }

@@ -206,13 +206,14 @@ TEST_F(QueriesOnDevice, LongMarchesEnd) {
   const DeviceTarget target{&field, &ground, slope_bound(field)};
   // In the row of cells between heights of 4 and 0, where the ground is 1.
   const Ray ray{{10.5, 2.25, 1.5}, {1, 0, 0}};
-  // Hits are told at a tenth of a metre's clearance or less, and steps are no shorter than floats 100,000 cells away.
+  // Steps are no shorter than floats are apart 100,000 metres away, and hits are told at less clearance than that.
+  constexpr double kLeastStep = 1e-6;  // of the way: a tenth of a metre
   MarchSettings settings;
   constexpr int kManySteps = 10'000'000;
-  settings.naive = {.min_step = 1e-6, .tolerance = 1e-7, .max_steps = kManySteps};
+  settings.naive = {.min_step = kLeastStep, .tolerance = kLeastStep / 10, .max_steps = kManySteps};
   settings.fixed_step.max_steps = kManySteps;
-  settings.relaxed = {.tolerance = 1e-7, .max_steps = kManySteps};
-  settings.lipschitz = {.tolerance = 5e-7, .max_steps = kManySteps};
+  settings.relaxed = {.tolerance = kLeastStep / 10, .max_steps = kManySteps};
+  settings.lipschitz = {.tolerance = kLeastStep / 2, .max_steps = kManySteps};
   constexpr std::uint32_t kLavapipeTurns = 65'535;
   for (const MarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
