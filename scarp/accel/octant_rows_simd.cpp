@@ -24,6 +24,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr hn::CappedTag<std::uint8_t, VoxelNearness::kBlock> d8;
 constexpr std::size_t N = hn::MaxLanes(d8);
 using V = hn::Vec<decltype(d8)>;
+static_assert(N + 1 <= VoxelBytes::kReadBeyond, "vectors are read one voxel beside rows");
 
 std::size_t to_size(int i) { return static_cast<std::size_t>(i); }
 

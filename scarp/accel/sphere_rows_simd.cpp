@@ -84,7 +84,7 @@ HWY_INLINE V roots(V squares) {
 // floats have no smaller steps than 1 there, and the sum goes to the nearest.
 HWY_INLINE hn::Vec<decltype(di)> root_bits(hn::Vec<decltype(di)> squares) {
   const auto root = hn::Sqrt(hn::Add(hn::ConvertTo(df, squares), hn::Set(df, 0.5f)));
-  return hn::BitCast(di, hn::Add(root, hn::Set(df, 8388607.5f)));
+  return hn::BitCast(di, hn::Add(root, hn::Set(df, 0x1p23f - 0.5f)));
 }
 // Rounded down.
 HWY_INLINE V roots(V squares) {

@@ -467,8 +467,10 @@ std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPac
 
 // The eight numbers that a ray begins with.
 constexpr std::size_t kNumbers = 8;
-static_assert(offsetof(Ray, direction) == 3 * sizeof(double) && offsetof(Ray, t_min) == 6 * sizeof(double) &&
-              offsetof(Ray, t_max) == 7 * sizeof(double));
+static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(double) &&
+              offsetof(Ray, t_min) == 6 * sizeof(double) && offsetof(Ray, t_max) == 7 * sizeof(double));
+
+HWY_INLINE const double* numbers_of(const Ray& ray) { return reinterpret_cast<const double*>(&ray); }
 
 // Vectors of four doubles are read for each ray and turned, so that each number goes into an array of its own.
 void load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
@@ -479,7 +481,7 @@ void load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
   constexpr hn::CappedTag<double, 4> d4;
   for (; i + 4 <= count; i += 4) {
     for (std::size_t half = 0; half < kNumbers; half += 4) {
-      const auto numbers = [&](std::size_t ray) HWY_ATTR { return hn::LoadU(d4, &rays[i + ray].origin.x + half); };
+      const auto numbers = [&](std::size_t ray) HWY_ATTR { return hn::LoadU(d4, numbers_of(rays[i + ray]) + half); };
       const auto a = numbers(0), b = numbers(1), c = numbers(2), d = numbers(3);
       const auto ab02 = hn::InterleaveLower(d4, a, b), ab13 = hn::InterleaveUpper(d4, a, b);
       const auto cd02 = hn::InterleaveLower(d4, c, d), cd13 = hn::InterleaveUpper(d4, c, d);
@@ -491,7 +493,7 @@ void load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
   }
 #endif
   for (; i < count; ++i) {
-    for (std::size_t number = 0; number < kNumbers; ++number) to[number][i] = (&rays[i].origin.x)[number];
+    for (std::size_t number = 0; number < kNumbers; ++number) to[number][i] = numbers_of(rays[i])[number];
   }
   packet.count = count;
 }

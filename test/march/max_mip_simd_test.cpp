@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -268,8 +269,8 @@ TEST(MaxMipSimd, BeginsCloseAboveRoughGround) {
       const double lift = relief * std::exp2(-uniform(random, 1, 55));
       ray.origin = {x, y, *field.height(x, y) + (i % 7 == 0 ? -lift : lift)};
       const double turn =
-          i % 3 == 2 ? uniform(random, 0, 6.3) : std::floor(uniform(random, 0, 8)) * 0.78539816339744831;
-      const auto exact = [&](double v) { return i % 3 == 1 ? std::round(1.2 * v) : v; };  // -1, 0, 1
+          i % 3 == 2 ? uniform(random, 0, 6.3) : std::floor(uniform(random, 0, 8)) * (std::numbers::pi / 4);
+      const auto exact = [&](double v) { return i % 3 == 1 ? std::round(v) : v; };  // -1, 0, 1
       ray.direction = {exact(std::cos(turn)), exact(std::sin(turn)),
                        relief * uniform(random, -1, 1) * uniform(random, 0, 1)};
       rays.push_back(ray);
