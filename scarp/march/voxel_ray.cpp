@@ -26,18 +26,20 @@ ivec3 normal_of(VoxelFace face) {
 }
 
 VoxelDirection::VoxelDirection(const dvec3& direction) : given(direction), inverse(1.0 / direction) {
-  const double longest = std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+  // Divisions are what this takes its time for: that by the longest component has been done.
+  const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
   auto& [speed, slowness, step, t_per_s] = quantised;
   for (int axis = 0; axis < 3; ++axis) {
-    speed[axis] = static_cast<std::int64_t>(std::abs(direction[axis]) / longest * (1 << kDirectionBits) + 0.5);
+    speed[axis] = static_cast<std::int64_t>(std::abs(direction[axis]) * per_longest * (1 << kDirectionBits) + 0.5);
     slowness[axis] = 1 / static_cast<double>(speed[axis]);
     step[axis] = direction[axis] < 0 ? -1 : 1;
   }
-  t_per_s = static_cast<double>(1 << (kDirectionBits - kPlaceBits)) / longest;
+  t_per_s = static_cast<double>(1 << (kDirectionBits - kPlaceBits)) * per_longest;
 }
 
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& ray_direction, const VoxelBox& box) {
   const QuantisedDirection& direction = ray_direction.quantised;
+  if (!std::isfinite(direction.t_per_s)) return {};
   // Clip to the box. Of planes that are crossed at once the last one, z, is that by which the ray comes in.
   double t = ray.t_min, t_out = ray.t_max;
   int entered = -1;

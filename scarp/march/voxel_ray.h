@@ -30,7 +30,8 @@
 namespace scarp {
 
 /// In the space of a grid, where voxels have the side 1. The direction is any finite vector but zero; t counts in its
-/// length. [t_min, t_max] is closed, t_min finite.
+/// length. One so short that t for 2^8 of its length is no finite number (below 10^-305) meets nothing.
+/// [t_min, t_max] is closed, t_min finite.
 struct VoxelRay {
   dvec3 origin{0.0};
   dvec3 direction{0.0, 0.0, -1.0};
@@ -68,7 +69,7 @@ struct QuantisedDirection {
   std::array<std::int64_t, 3> speed;  ///< of each axis, 0..2^28, one of them 2^28
   std::array<double, 3> slowness;     ///< 1 / speed
   std::array<int, 3> step;            ///< 1 or -1
-  double t_per_s;                     ///< t for s = n / d as above
+  double t_per_s;                     ///< t for s = n / d as above; not finite: the direction is too short
 };
 
 /// Computed once for all boxes that a ray meets without turning.

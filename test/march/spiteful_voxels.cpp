@@ -147,6 +147,14 @@ const std::vector<VoxelRayKind>& spiteful_voxel_rays() {
        }},
       {"from far away",
        [](const VoxelGrid& g, Random& r) { return through(inside(g, r), normalize(any_direction(r)), 1e7); }},
+      // Down to lengths of which no inverse is a number.
+      {"of any length",
+       [](const VoxelGrid& g, Random& r) {
+         VoxelRay ray = through(inside(g, r), any_direction(r), uniform(r, 0, 50));
+         if (whole(r, 0, 1) == 0) ray.direction[whole(r, 0, 2)] = 0;
+         ray.direction *= std::ldexp(1.0, whole(r, -1070, 1000));
+         return ray;
+       }},
       {"nearly along a plane",
        [](const VoxelGrid& g, Random& r) {
          dvec3 d = any_direction(r), p = lattice_point(g, r);
