@@ -84,8 +84,12 @@ class Voxels final : public SceneField {
     const dvec3 smooth = smooth_normal(scene_.grid(hit), point, shading_.normal_radius, dvec3(normal_of(hit.hit.face)));
     if (smooth == dvec3(0.0)) return normal;
     const dvec3 in_world = scene_.world_from_grid(hit, smooth);
-    // Of a leaf or a thread the other side may weigh more.
-    return dot(in_world, normal) > 0 ? in_world : normal;
+    const double towards = dot(in_world, normal);
+    if (towards > 0) return in_world;
+    // A face of a step that looks up the slope is lit as the slope along it; of a leaf or a thread, where the other
+    // side may weigh more, the face itself comes in.
+    const dvec3 along = in_world - towards * normal;
+    return normalize(along + std::max(0.0, 1 - 2 * length(along)) * normal);
   }
 
   static const VoxelSceneHit* from_of(const FieldHit* from) {

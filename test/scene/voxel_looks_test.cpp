@@ -160,6 +160,28 @@ TEST(SmoothVoxels, AreNotShadedByTheirOwnSteps) {
   EXPECT_EQ(blocked(VoxelNormals::smooth, -1), 100);
 }
 
+// Symmetry gives the answers: a voxel that stands out of a slope which rises along x, seen from up the slope, and a
+// sheet before a thick wall, seen from between them.
+TEST(SmoothVoxels, LightFacesThatLookTheOtherWay) {
+  const auto seen = [](const VoxelGrid& grid, const dvec3& from, const dvec3& direction) {
+    const VoxelScene voxels({model_of(grid)}, std::vector{VoxelPlace{}});
+    const SceneFieldPtr field = scene_voxels(voxels, "voxel-bricks", {.normals = VoxelNormals::smooth});
+    Ray ray;
+    ray.origin = from, ray.direction = direction;
+    return field->surface(ray, field->closest_hit(ray, nullptr, nullptr));
+  };
+  const FieldSurface step =
+      seen(grid_where(ivec3(64, 17, 40),
+                      [](const ivec3& v) { return 2 * v.z < v.x || v == ivec3(30, 8, 15) || v == ivec3(30, 8, 16); }),
+           {40, 8.5, 25.5}, {-1, 0, -1});
+  EXPECT_EQ(step.normal, dvec3(1, 0, 0));
+  EXPECT_LT(length(step.shading_normal - dvec3(0, 0, 1)), 1e-12);
+  const FieldSurface sheet = seen(grid_where(ivec3(24, 17, 17), [](const ivec3& v) { return v.x == 8 || v.x >= 11; }),
+                                  {10, 8.5, 8.5}, {-1, 0, 0});
+  EXPECT_EQ(sheet.normal, dvec3(1, 0, 0));
+  EXPECT_LT(length(sheet.shading_normal - dvec3(1, 0, 0)), 1e-12);
+}
+
 SceneFieldPtr ball(double radius) {
   Shape shape = make_shape(shape::Sphere{radius});
   return scene_shape(DistanceField(std::move(shape)));
