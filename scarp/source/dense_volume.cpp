@@ -142,7 +142,7 @@ DenseVolume read_volume(const std::string& path, const std::string& text) {
     std::error_code error;
     const std::uintmax_t length = std::filesystem::file_size(path, error);
     if (!error) require_length(format, length);
-    return {format, whole_file(path, {})};
+    return {format, whole_file(path, std::string_view())};
   } catch (const Error& error) {
     throw Error(fmt::format("volume '{}': {}", path, error.what()));
   }

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 
 #include "scarp/base/error.h"
 #include "scarp/source/vox_bytes.h"
@@ -243,22 +241,10 @@ VoxFile parse_vox(std::string_view bytes) {
 
 VoxFile read_vox(const std::string& path) {
   try {
-    std::ifstream in(path, std::ios::binary | std::ios::ate);
-    if (!in) throw Error("cannot be opened; is the name right?");
-    const std::streamoff length = in.tellg();
-    if (length < 0) throw Error("cannot be read; is it a file?");
-    const auto size = static_cast<std::uint64_t>(length);
-    in.seekg(0);
-    // Nothing of the file's size is allocated before its beginning has been looked at.
-    std::string bytes(std::min<std::uint64_t>(size, 64), '\0');
-    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    if (!in) throw Error("cannot be read; is it a file?");
-    parse_header(bytes, size);
-    const std::size_t begin = bytes.size();
-    bytes.resize(size);
-    in.read(bytes.data() + begin, static_cast<std::streamsize>(size - begin));
-    if (!in) throw Error("cannot be read to its end");
-    return parse_vox(bytes);
+    return parse_vox(whole_file(path, [](std::string_view first, std::uint64_t size) {
+      parse_header(first, size);
+      return true;
+    }));
   } catch (const Error& error) {
     throw Error(fmt::format("vox '{}': {}", path, error.what()));
   }

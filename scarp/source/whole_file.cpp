@@ -11,23 +11,34 @@
 #include "scarp/base/replace_file.h"
 
 namespace scarp {
+namespace {
 
-std::string whole_file(const std::string& path, std::string_view magic) {
+// More than any header here.
+constexpr std::uint64_t kFirstBytes = 64;
+
+}  // namespace
+
+std::string whole_file(const std::string& path,
+                       const std::function<bool(std::string_view first, std::uint64_t size)>& believe) {
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   if (!in) throw Error("cannot be opened; is the name right?");
   const std::streamoff length = in.tellg();
   if (length < 0) throw Error("cannot be read; is it a file?");
   const auto size = static_cast<std::uint64_t>(length);
   in.seekg(0);
-  std::string bytes(std::min<std::uint64_t>(size, 64), '\0');
+  std::string bytes(std::min(size, kFirstBytes), '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!in) throw Error("cannot be read; is it a file?");
-  if (!bytes.starts_with(magic)) return bytes;
+  if (!believe(bytes, size)) return bytes;
   const std::size_t begin = bytes.size();
   bytes.resize(size);
   in.read(bytes.data() + begin, static_cast<std::streamsize>(size - begin));
   if (!in) throw Error("cannot be read to its end");
   return bytes;
+}
+
+std::string whole_file(const std::string& path, std::string_view magic) {
+  return whole_file(path, [&](std::string_view first, std::uint64_t) { return first.starts_with(magic); });
 }
 
 void write_whole_file(const std::string& path, std::string_view bytes) {
