@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-
 #include "scarp/base/error.h"
 #include "scarp/source/vox_bytes.h"
 #include "scarp/source/vox_scene.h"

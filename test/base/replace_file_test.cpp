@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/refusal.h"
 #include "scarp/base/error.h"
 
 namespace scarp {
@@ -27,12 +28,7 @@ std::string read(const fs::path& path) {
 
 // The text of the Error that the constructor throws; empty when it throws none.
 std::string refusal(const std::string& path) {
-  try {
-    const ReplaceFile file(path);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { ReplaceFile{path}; });
 }
 
 // Root may write anywhere: takes that away while it lives.

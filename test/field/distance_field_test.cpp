@@ -12,6 +12,7 @@
 #include <memory>
 #include <string>
 
+#include "base/refusal.h"
 #include "field/shape_zoo.h"
 #include "scarp/base/error.h"
 #include "scarp/field/distance_run.h"
@@ -306,12 +307,7 @@ TEST(DistanceField, TellsTheNormalWhereTheGradientFails) {
 }
 
 std::string refusal(Form form) {
-  try {
-    make_shape(std::move(form));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { make_shape(std::move(form)); });
 }
 
 TEST(DistanceField, RefusesWhatIsOutOfRange) {

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "base/refusal.h"
 #include "scarp/base/error.h"
 
 namespace scarp {
@@ -21,14 +22,7 @@ HeightField small(const HeightFieldSettings& settings = {}) {
   return HeightField::own<float>({1, 2, 4, 8, 16, 32}, 3, 2, settings);
 }
 
-std::string message(auto&& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
+using test::refusal;
 
 TEST(HeightField, PutsTheSouthWestSampleAtTheOriginAndRowsSouthwards) {
   const HeightField field = small({.cell_x = 10, .cell_y = 5});
@@ -83,15 +77,15 @@ TEST(HeightField, IgnoresANodataValueThatTheSampleTypeCannotHold) {
 }
 
 TEST(HeightField, RefusesWhatItCannotBeInOneLine) {
-  EXPECT_NE(message([] {
+  EXPECT_NE(refusal([] {
               HeightField::own<float>({1, 2, 3}, 2, 2);
             }).find("3 samples given for 2 x 2"),
             std::string::npos);
-  EXPECT_NE(message([] { HeightField::own<float>({}, 0, 0); }).find("at least 1 x 1"), std::string::npos);
-  EXPECT_NE(message([] { small({.cell_x = 0}); }).find("cell_x"), std::string::npos);
-  EXPECT_NE(message([] { small({.scale = -1}); }).find("scale"), std::string::npos);
-  EXPECT_NE(message([] { small({.exaggeration = std::nan("")}); }).find("exaggeration"), std::string::npos);
-  EXPECT_NE(message([] {
+  EXPECT_NE(refusal([] { HeightField::own<float>({}, 0, 0); }).find("at least 1 x 1"), std::string::npos);
+  EXPECT_NE(refusal([] { small({.cell_x = 0}); }).find("cell_x"), std::string::npos);
+  EXPECT_NE(refusal([] { small({.scale = -1}); }).find("scale"), std::string::npos);
+  EXPECT_NE(refusal([] { small({.exaggeration = std::nan("")}); }).find("exaggeration"), std::string::npos);
+  EXPECT_NE(refusal([] {
               HeightField::own<float>({1, 2, 3, HUGE_VALF}, 2, 2);
             }).find("column 1, row 1 is infinite"),
             std::string::npos);

@@ -12,6 +12,7 @@
 #include <map>
 #include <string>
 
+#include "base/refusal.h"
 #include "field/terrain_functions.h"
 #include "scarp/base/error.h"
 
@@ -191,12 +192,7 @@ TEST(HeightFunction, HeightsAreTheSameBitsEverywhere) {
 }
 
 std::string refusal(FunctionShape shape) {
-  try {
-    make_function(std::move(shape));
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { make_function(std::move(shape)); });
 }
 
 TEST(HeightFunction, RefusesWhatIsOutOfRange) {

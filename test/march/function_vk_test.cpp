@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "base/refusal.h"
 #include "field/terrain_functions.h"
 #include "march/function_judge.h"
 #include "march/function_rays.h"
-#include "scarp/base/error.h"
 #include "scarp/march/device_function_ray.h"
 #include "scarp/march/function_batch.glsl.h"
 #include "scarp/march/function_queries_vk.h"
@@ -109,22 +109,14 @@ TEST_F(FunctionsOnDevice, NeighboursDoNotShow) {
 }
 
 TEST_F(FunctionsOnDevice, SayWhatIsWrong) {
-  const auto message = [](const auto& act) -> std::string {
-    try {
-      act();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
-  };
-  EXPECT_EQ(message([&] { DeviceFunctionQueries(device(), find_march("max-mip")); }),
+  EXPECT_EQ(test::refusal([&] { DeviceFunctionQueries(device(), find_march("max-mip")); }),
             "march 'max-mip': does not run over functions on Vulkan devices; there run: naive, fixed-step, relaxed, "
             "lipschitz, lipschitz-local");
   const HeightFunction plane(make_function(Plane{5}));
   const DeviceFunction on_device(device(), plane);
   std::vector<Ray> rays(2);
   std::vector<Hit> hits(1);
-  EXPECT_EQ(message([&] {
+  EXPECT_EQ(test::refusal([&] {
               queries(find_function_march("lipschitz-local")).closest_hits({&plane, &on_device}, rays, hits);
             }),
             "batch: 2 rays, room for 1 answers and 0 costs");

@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "base/refusal.h"
 #include "march/rounding_judge.h"
 #include "march/sampling_rules.h"
 #include "march/spiteful.h"
 #include "march/spiteful_text.h"
 #include "scarp/accel/slope_bound.h"
-#include "scarp/base/error.h"
 #include "scarp/march/batch_states.glsl.h"
 #include "scarp/march/max_mip.h"
 #include "scarp/march/queries.h"
@@ -233,33 +233,25 @@ TEST_F(QueriesOnDevice, LongMarchesEnd) {
 }
 
 TEST_F(QueriesOnDevice, SayWhatIsWrong) {
-  const auto message = [](const auto& act) -> std::string {
-    try {
-      act();
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "";
-  };
   const HeightField field = HeightField::own(std::vector<float>(16, 1.0F), 4, 4);
   const DeviceGround ground(device(), field);
-  EXPECT_EQ(message([&] { DeviceQueries(device(), find_march("exhaustive")); }),
+  EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_march("exhaustive")); }),
             "march 'exhaustive': does not run on Vulkan devices; there run: max-mip, naive, fixed-step, relaxed, "
             "lipschitz");
   std::vector<Ray> rays(2);
   std::vector<Hit> hits(1);
-  EXPECT_EQ(message([&] {
+  EXPECT_EQ(test::refusal([&] {
               queries("max-mip").closest_hits({&field, &ground}, rays, hits);
             }),
             "batch: 2 rays, room for 1 answers");
   hits.resize(2);
-  EXPECT_NE(message([&] { queries("lipschitz").closest_hits({&field, &ground}, rays, hits); }), "");
-  EXPECT_NE(message([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.rays_at_once = 0}); }), "");
-  EXPECT_EQ(message([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.turns_at_once = 60'001}); }),
+  EXPECT_NE(test::refusal([&] { queries("lipschitz").closest_hits({&field, &ground}, rays, hits); }), "");
+  EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.rays_at_once = 0}); }), "");
+  EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.turns_at_once = 60'001}); }),
             "device queries: 60001 turns at once; there can be 1 to 60000");
   MarchSettings settings;
   settings.naive.max_steps = 0;
-  EXPECT_NE(message([&] { DeviceQueries(device(), find_march("naive"), settings); }), "");
+  EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_march("naive"), settings); }), "");
 }
 
 TEST(Marches, ThoseOfTheTableRunOnDevices) {

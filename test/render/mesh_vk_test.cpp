@@ -11,7 +11,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -19,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "scarp/base/error.h"
+#include "base/refusal.h"
 #include "scarp/render/mesh_picture_vk.h"
 #include "scarp/render/mesh_view.glsl.h"
 #include "scarp/scene/terrain_scene_vk.h"
@@ -118,14 +117,7 @@ HeightField walled() {
   return HeightField::own(std::move(samples), kSide, kSide);
 }
 
-std::string error_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::refusal;
 
 class MeshOnDevice : public OnDevice {
  protected:
@@ -456,27 +448,27 @@ TEST_F(MeshOnDevice, LayersHaveTheMesh) {
 TEST_F(MeshOnDevice, BadRequestsAreRefused) {
   const HeightField field = walled();
   const TerrainScene cpu(field, find_march("max-mip")), scene = terrain_scene_on(device(), field);
-  EXPECT_EQ(error_of([&] {
+  EXPECT_EQ(refusal([&] {
               MeshRaster(cpu, ball({0, 0, 0}, 1));
             }),
             "mesh: is drawn by a Vulkan device, and the scene is not on one");
-  EXPECT_EQ(error_of([&] { MeshRaster(scene, {}); }), "mesh: has no triangles");
+  EXPECT_EQ(refusal([&] { MeshRaster(scene, {}); }), "mesh: has no triangles");
   MeshRaster mesh(scene, ball({0, 0, 20}, 1));
   const Camera camera = Camera::top(picture_box(field, true), kWidth, kHeight);
   PictureSettings settings = small_picture();
   settings.look = Look::height;
-  EXPECT_EQ(error_of([&] { render_with_mesh(scene, mesh, camera, 0, settings); }),
+  EXPECT_EQ(refusal([&] { render_with_mesh(scene, mesh, camera, 0, settings); }),
             "mesh: goes with the look 'shaded', not with 'height'");
   settings.look = Look::shaded;
   const std::uint32_t most = raster_limits(device()).most_pixels;
   settings.width = static_cast<int>(most / 2 + 1);
-  EXPECT_EQ(error_of([&] { render_with_mesh(scene, mesh, camera, 0, settings); }),
+  EXPECT_EQ(refusal([&] { render_with_mesh(scene, mesh, camera, 0, settings); }),
             "mesh: device '" + device().description().name + "' draws " + std::to_string(most) +
                 " points a side at most, and the picture has " + std::to_string(most + 2) + " x " +
                 std::to_string(2 * kHeight) + "; render it smaller or with a smaller aa");
   settings.width = kWidth;
   settings.water.emplace();
-  EXPECT_EQ(error_of([&] { render_layers_with_mesh(scene, mesh, camera, 0, settings); }),
+  EXPECT_EQ(refusal([&] { render_layers_with_mesh(scene, mesh, camera, 0, settings); }),
             "mesh: is not reflected by water; leave one of both out");
 }
 
@@ -523,9 +515,9 @@ TEST(PlacedMesh, StandsOnItsFeetAndTurnsClockwise) {
   EXPECT_LT(length(at[1].position - dvec3(98, 198, 50)), 1e-12);
   EXPECT_LT(length(at[2].position - dvec3(102, 202, 58)), 1e-12);
   EXPECT_LT(length(at[0].normal - vec3(1, 0, 0)), 1e-6f);
-  EXPECT_EQ(error_of([&] { placed(mesh, {.scale = 0}); }), "mesh: the scale is 0; it must be above 0");
-  EXPECT_EQ(error_of([&] { placed(mesh, {.scale = 1e308}); }), "mesh: is too large at this scale");
-  EXPECT_EQ(error_of([&] { placed(mesh, {.turn_deg = INFINITY}); }),
+  EXPECT_EQ(refusal([&] { placed(mesh, {.scale = 0}); }), "mesh: the scale is 0; it must be above 0");
+  EXPECT_EQ(refusal([&] { placed(mesh, {.scale = 1e308}); }), "mesh: is too large at this scale");
+  EXPECT_EQ(refusal([&] { placed(mesh, {.turn_deg = INFINITY}); }),
             "mesh: its place and its turn must be finite numbers");
 }
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/refusal.h"
 #include "scarp/base/error.h"
 #include "scarp/field/height_function.h"
 #include "scarp/scene/example_functions.h"
@@ -20,12 +21,7 @@ double value(const std::string& text, double x, double y, FunctionUse use = Func
   return HeightFunction(parsed(text)).value(x, y, use);
 }
 std::string message(const std::string& text) {
-  try {
-    parsed(text);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { parsed(text); });
 }
 
 TEST(FunctionJson, ReadsEveryType) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/refusal.h"
 #include "scarp/base/error.h"
 
 namespace scarp::test {
@@ -73,12 +74,7 @@ TEST(ShapeJson, KeepsMaterials) {
 }
 
 std::string refusal(const std::string& text, const ShapeNames& names = kNames) {
-  try {
-    distance_field_from_json(Json::parse(text), "/objects/2/shape", names);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { distance_field_from_json(Json::parse(text), "/objects/2/shape", names); });
 }
 
 TEST(ShapeJson, TellsWhereItIsWrong) {

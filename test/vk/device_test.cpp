@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <functional>
 
+#include "base/refusal.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/raii.h"
 #include "test/vk/device_under_test.h"
@@ -30,14 +31,7 @@ DeviceDescription described(const std::string& name, DeviceKind kind, const std:
   return device;
 }
 
-std::string error_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::refusal;
 
 TEST(DeviceChoice, TakesTheBestThatFits) {
   const std::vector<DeviceDescription> devices = {
@@ -49,13 +43,13 @@ TEST(DeviceChoice, TakesTheBestThatFits) {
   EXPECT_EQ(choose_device(devices, "cpu"), 0u);
   EXPECT_EQ(choose_device(devices, "uhd"), 2u);
   EXPECT_EQ(choose_device(devices, "h200 SEC"), 4u);
-  EXPECT_EQ(error_of([&] { choose_device(devices, "old"); }), "device 'old': 'Old card' lacks Vulkan 1.2");
-  EXPECT_EQ(error_of([&] {
+  EXPECT_EQ(refusal([&] { choose_device(devices, "old"); }), "device 'old': 'Old card' lacks Vulkan 1.2");
+  EXPECT_EQ(refusal([&] {
               choose_device({devices.begin(), devices.begin() + 2}, "radeon");
             }),
             "device 'radeon': no Vulkan device fits; there are: 'llvmpipe (LLVM 15)' (CPU), 'Old card' (discrete GPU)");
   EXPECT_EQ(choose_device({devices.begin(), devices.begin() + 1}, "auto"), 0u);
-  EXPECT_EQ(error_of([&] {
+  EXPECT_EQ(refusal([&] {
               choose_device({devices.begin(), devices.begin() + 1}, "gpu");
             }),
             "device 'gpu': no Vulkan device fits; there are: 'llvmpipe (LLVM 15)' (CPU)");
@@ -82,7 +76,7 @@ TEST(DeviceAbility, NamesTheFirstThatIsMissing) {
 // What Vulkan throws becomes one line; here it is thrown in place of the driver.
 TEST(DeviceFailure, BecomesOneLine) {
   const auto failing = [](const auto& failure) {
-    return error_of([&] { guarded("Card", "computing", [&] { throw failure; }); });
+    return refusal([&] { guarded("Card", "computing", [&] { throw failure; }); });
   };
   EXPECT_EQ(failing(vk::DeviceLostError("x")),
             "device 'Card': lost while computing: its driver has given up, as after a pass that ran too long; run it "
@@ -122,13 +116,13 @@ TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
   const std::string no_loader = "Vulkan: no loader, libvulkan.so.1 cannot be opened (Debian: libvulkan1)";
   const std::string listed = in_child("VK_DRIVER_FILES", list);
   EXPECT_TRUE(listed == "0: " + none || listed == "0: " + no_loader) << listed;
-  const std::string opened = in_child("VK_DRIVER_FILES", [] { return error_of([] { Device device; }); });
+  const std::string opened = in_child("VK_DRIVER_FILES", [] { return refusal([] { Device device; }); });
   EXPECT_TRUE(opened == none || opened == no_loader) << opened;
 }
 
 TEST(DeviceSettingsTest, ATimeoutIsASpanOfTime) {
   for (const double seconds : {0.0, -1.0, std::nan(""), 1e10}) {
-    EXPECT_NE(error_of([&] { Device device({.timeout_s = seconds}); }).find("timeout"), std::string::npos);
+    EXPECT_NE(refusal([&] { Device device({.timeout_s = seconds}); }).find("timeout"), std::string::npos);
   }
 }
 
@@ -143,17 +137,17 @@ TEST_F(OpenDevice, IsTheOneThatIsListed) {
   for (const DeviceDescription& other : list_devices().devices) listed |= other.name == open.name;
   EXPECT_TRUE(listed);
   EXPECT_EQ(Device({.choice = open.name}).description().name, open.name);
-  EXPECT_EQ(error_of([] {
+  EXPECT_EQ(refusal([] {
               Device device({.choice = "no such device"});
             }).find("device 'no such device': no Vulkan device fits; there are: '"),
             0u);
 }
 
 TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
-  const std::string error = error_of([&] { DeviceBuffer(device(), 1ull << 50, "a continent"); });
+  const std::string error = refusal([&] { DeviceBuffer(device(), 1ull << 50, "a continent"); });
   EXPECT_NE(error.find("no memory for a continent (1073741824.0 MiB): "), std::string::npos) << error;
-  EXPECT_NE(error_of([&] { DeviceBuffer(device(), 0, "nothing"); }), "no error");
-  EXPECT_NE(error_of([&] { DeviceBuffer(device(), 6, "a word and a half"); }), "no error");
+  EXPECT_NE(refusal([&] { DeviceBuffer(device(), 0, "nothing"); }), "");
+  EXPECT_NE(refusal([&] { DeviceBuffer(device(), 6, "a word and a half"); }), "");
 }
 
 // The tests' silence would mean nothing if nobody listened: two copies to one place without a barrier between them, and
@@ -161,10 +155,10 @@ TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
 TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
   const Device other;
   other.impl()->description.abilities.draws = false;
-  const std::string refusal = "device '" + other.description().name +
-                              "': draws no triangles, none of its queues does; take another ('scarp devices')";
-  EXPECT_EQ(error_of([&] { RasterTarget(other, 16, 16, 1); }), refusal);
-  EXPECT_EQ(error_of([&] { RasterPipeline(other, kTwice, {}, "triangles", {}); }), refusal);
+  const std::string expected = "device '" + other.description().name +
+                               "': draws no triangles, none of its queues does; take another ('scarp devices')";
+  EXPECT_EQ(refusal([&] { RasterTarget(other, 16, 16, 1); }), expected);
+  EXPECT_EQ(refusal([&] { RasterPipeline(other, kTwice, {}, "triangles", {}); }), expected);
 }
 
 TEST_F(OpenDevice, TellsWhatValidationSays) {
@@ -192,9 +186,9 @@ TEST_F(OpenDevice, StopsWaitingAfterTheTimeout) {
   const ComputePipeline pipeline(hurried, kTwice, "slow", sizeof(glsl::TwicePush), constants);
   Commands commands(hurried);
   commands.dispatch(pipeline, glsl::TwicePush{words.address(), words.address(), 1 << 20, 200}, {1 << 14, 1, 1});
-  EXPECT_NE(error_of([&] { commands.run(); }).find("'slow' has not finished within 1e-06 s"), std::string::npos);
+  EXPECT_NE(refusal([&] { commands.run(); }).find("'slow' has not finished within 1e-06 s"), std::string::npos);
   // Another run waits for the first; whoever lets go of it waits for it, too.
-  EXPECT_NE(error_of([&] { commands.fill(words, 0, 4, 0); }).find("has not finished"), std::string::npos);
+  EXPECT_NE(refusal([&] { commands.fill(words, 0, 4, 0); }).find("has not finished"), std::string::npos);
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "base/refusal.h"
 #include "scarp/vk/commands.h"
 #include "test/vk/corners.glsl.h"
 #include "test/vk/device_under_test.h"
@@ -25,14 +25,7 @@ constexpr std::uint32_t kFragment[] = {
 constexpr std::uint32_t kWidth = 64, kHeight = 32;
 using glm::vec4;
 
-std::string error_of(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
+using test::refusal;
 
 class Drawing : public test::OnDevice {
  protected:
@@ -147,25 +140,25 @@ TEST_F(Drawing, DepthsAlone) {
 TEST_F(Drawing, BadRequestsAreRefused) {
   const std::string name = device().description().name;
   const std::uint32_t most = raster_limits(device()).most_pixels;
-  EXPECT_EQ(error_of([&] { RasterTarget(device(), most + 1, 1, 1); }),
+  EXPECT_EQ(refusal([&] { RasterTarget(device(), most + 1, 1, 1); }),
             "device '" + name + "': draws into 1 to " + std::to_string(most) + " pixels a side, not " +
                 std::to_string(most + 1) + " x 1");
   EXPECT_GE(raster_limits(device()).subpixel_bits, 4u);
-  EXPECT_EQ(error_of([&] { pipeline({.push_bytes = 130}); }),
+  EXPECT_EQ(refusal([&] { pipeline({.push_bytes = 130}); }),
             "shader 'corners': 130 bytes of push constants; a multiple of 4 up to 128 expected");
   const RasterTarget target(device(), kWidth, kHeight, 0);
   const DeviceBuffer small(device(), 64, "small");
   const RasterPipeline red = pipeline();
   const glsl::CornersPush push{small.address(), kRed, 0};
   Commands commands(device());
-  EXPECT_EQ(error_of([&] { commands.draw(target, {draw_call(red, push, 3)}); }),
+  EXPECT_EQ(refusal([&] { commands.draw(target, {draw_call(red, push, 3)}); }),
             "shader 'corners': writes 1 colours, its target has 0");
   const RasterTarget coloured(device(), kWidth, kHeight, 1);
-  EXPECT_EQ(error_of([&] { commands.draw(coloured, {draw_call(red, 1.0f, 3)}); }),
+  EXPECT_EQ(refusal([&] { commands.draw(coloured, {draw_call(red, 1.0f, 3)}); }),
             "shader 'corners': 4 bytes of push constants, 28 expected");
-  EXPECT_EQ(error_of([&] { commands.draw(coloured, {draw_call(red, push, 30, 1, &small)}); }),
+  EXPECT_EQ(refusal([&] { commands.draw(coloured, {draw_call(red, push, 30, 1, &small)}); }),
             "shader 'corners': 30 indices, the buffer 'small' holds 16");
-  EXPECT_EQ(error_of([&] { commands.copy(target, 0, small); }),
+  EXPECT_EQ(refusal([&] { commands.copy(target, 0, small); }),
             "device buffer 'small': image 0 of 1 (8192 bytes) does not fit into 64 bytes");
 }
 
