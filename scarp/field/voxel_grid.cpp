@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 #include "scarp/base/error.h"
 
@@ -120,46 +121,101 @@ void VoxelGrid::require_entry(std::uint32_t entry) const {
     throw Error(fmt::format("voxel grid: the entry {} does not fit into {} bits", entry, entry_bits_));
 }
 
+// An edit under way: the page that it is at is unpacked, and packed again when it is left.
+class VoxelGrid::Editing {
+ public:
+  explicit Editing(VoxelGrid& grid) : grid_(grid), page_(grid.pages_.size()) {}
+
+  void go_to(const ivec3& brick) {
+    const std::size_t index = grid_.brick_index(brick);
+    if (index / kPageBricks != page_) {
+      pack();
+      page_ = index / kPageBricks;
+      voxels_ = grid_.unpack(page_);
+    }
+    in_page_ = index % kPageBricks;
+  }
+  // A voxel of the brick.
+  template <class ChangeOne>
+  void change(const ivec3& voxel, const ChangeOne& change_one) {
+    const int bit = bit_of(voxel);
+    const std::uint64_t flag = std::uint64_t{1} << bit;
+    std::uint64_t &solid = voxels_.solid[in_page_], &coloured = voxels_.coloured[in_page_];
+    std::uint32_t& entry = voxels_.entries[in_page_ * kVoxelsPerBrick + static_cast<std::size_t>(bit)];
+    Voxel before;
+    if (solid & flag) before = coloured & flag ? entry : 0;
+    const Voxel after = change_one(voxel, before);
+    if (after == before) return;
+    if (after) grid_.require_entry(*after);
+    solid = after ? solid | flag : solid & ~flag;
+    coloured = after ? coloured | flag : coloured & ~flag;
+    entry = after.value_or(0);
+    const VoxelBox here{voxel, voxel + 1};
+    changed_ = around(changed_, here);
+    if (!before) added_ = around(added_, here);
+    if (!after) removed_ = around(removed_, here);
+  }
+  // What may have changed.
+  VoxelBox finish() {
+    pack();
+    grid_.bounds_ = around(grid_.bounds_, added_);
+    // What was cleared matters only where it touches the bounds.
+    const VoxelBox& bounds = grid_.bounds_;
+    const bool inner =
+        glm::all(glm::lessThan(bounds.low, removed_.low)) && glm::all(glm::greaterThan(bounds.high, removed_.high));
+    if (!removed_.empty() && !inner) grid_.bounds_ = grid_.scan_bounds();
+    return changed_;
+  }
+
+ private:
+  void pack() {
+    if (page_ < grid_.pages_.size()) grid_.pack(page_, voxels_);
+  }
+
+  VoxelGrid& grid_;
+  std::size_t page_, in_page_ = 0;
+  PageVoxels voxels_;
+  VoxelBox changed_, added_, removed_;
+};
+
 VoxelBox VoxelGrid::edit(const VoxelBox& box, const Change& change) {
   const VoxelBox inside = intersection(box, this->box());
   if (inside.empty()) return {};
-  const VoxelBox bricks{inside.low >> 2, ((inside.high - 1) >> 2) + 1};
-  // Bricks come in the order of their indices, so each page is unpacked once, and packed when it is left.
-  std::size_t page = pages_.size();
-  PageVoxels voxels;
-  VoxelBox changed, added, removed;
-  for_each_voxel(bricks, [&](const ivec3& brick) {
-    const std::size_t index = brick_index(brick);
-    if (index / kPageBricks != page) {
-      if (page < pages_.size()) pack(page, voxels);
-      page = index / kPageBricks;
-      voxels = unpack(page);
-    }
-    const std::size_t in_page = index % kPageBricks;
-    for_each_voxel(intersection({4 * brick, 4 * brick + 4}, inside), [&](const ivec3& voxel) {
-      const int bit = bit_of(voxel);
-      const std::uint64_t flag = std::uint64_t{1} << bit;
-      std::uint32_t& entry = voxels.entries[in_page * kVoxelsPerBrick + static_cast<std::size_t>(bit)];
-      Voxel before;
-      if (voxels.solid[in_page] & flag) before = voxels.coloured[in_page] & flag ? entry : 0;
-      const Voxel after = change(voxel, before);
-      if (after == before) return;
-      if (after) require_entry(*after);
-      voxels.solid[in_page] = after ? voxels.solid[in_page] | flag : voxels.solid[in_page] & ~flag;
-      voxels.coloured[in_page] = after ? voxels.coloured[in_page] | flag : voxels.coloured[in_page] & ~flag;
-      entry = after.value_or(0);
-      changed = around(changed, {voxel, voxel + 1});
-      if (!before) added = around(added, {voxel, voxel + 1});
-      if (!after) removed = around(removed, {voxel, voxel + 1});
-    });
+  // Bricks come in the order of their indices, so each page is unpacked once.
+  Editing editing(*this);
+  for_each_voxel({inside.low >> 2, ((inside.high - 1) >> 2) + 1}, [&](const ivec3& brick) {
+    editing.go_to(brick);
+    for_each_voxel(intersection({4 * brick, 4 * brick + 4}, inside),
+                   [&](const ivec3& voxel) { editing.change(voxel, change); });
   });
-  pack(page, voxels);
-  bounds_ = around(bounds_, added);
-  // What was cleared matters only where it touches the bounds.
-  const bool inner =
-      glm::all(glm::lessThan(bounds_.low, removed.low)) && glm::all(glm::greaterThan(bounds_.high, removed.high));
-  if (!removed.empty() && !inner) bounds_ = scan_bounds();
-  return changed;
+  return editing.finish();
+}
+
+VoxelBox VoxelGrid::set(std::span<const Placed> voxels) {
+  // Sorted by page, so that each is unpacked once: how many there are before each, and then where the next of it goes.
+  const auto page_of = [&](const Placed& placed) { return brick_index(placed.voxel >> 2) / kPageBricks; };
+  std::size_t low = pages_.size(), high = 0;
+  for (const Placed& placed : voxels) {
+    if (!box().contains(placed.voxel)) continue;
+    low = std::min(low, page_of(placed));
+    high = std::max(high, page_of(placed));
+  }
+  if (low > high) return {};
+  std::vector<std::size_t> begin(high - low + 2);
+  for (const Placed& placed : voxels) {
+    if (box().contains(placed.voxel)) ++begin[page_of(placed) - low + 1];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  std::vector<const Placed*> order(begin.back());
+  for (const Placed& placed : voxels) {
+    if (box().contains(placed.voxel)) order[begin[page_of(placed) - low]++] = &placed;
+  }
+  Editing editing(*this);
+  for (const Placed* placed : order) {
+    editing.go_to(placed->voxel >> 2);
+    editing.change(placed->voxel, [&](const ivec3&, const Voxel&) { return placed->value; });
+  }
+  return editing.finish();
 }
 
 VoxelBox VoxelGrid::set(const ivec3& voxel, std::uint32_t entry) { return fill({voxel, voxel + 1}, entry); }

@@ -78,6 +78,12 @@ class VoxelGrid {
 
   /// What a voxel is to be: its entry, or nothing for empty. `before` is what it was.
   using Voxel = std::optional<std::uint32_t>;
+  struct Placed {
+    ivec3 voxel;
+    Voxel value;
+  };
+  /// Many voxels, wherever they are; of several in one place the last one counts.
+  VoxelBox set(std::span<const Placed> voxels);
   using Change = std::function<Voxel(const ivec3& voxel, const Voxel& before)>;
   /// Asks `change` about each voxel of the box, once, in no particular order.
   VoxelBox edit(const VoxelBox& box, const Change& change);
@@ -105,6 +111,7 @@ class VoxelGrid {
     std::array<std::uint16_t, kRanks> rank_from{};  // entries before each group of kRankBricks bricks
   };
   struct PageVoxels;
+  class Editing;
   using MaskOp = std::uint64_t (*)(std::uint64_t, std::uint64_t);
 
   std::span<const std::uint64_t> entry_masks() const { return coloured_.empty() ? masks_ : coloured_; }

@@ -6,6 +6,7 @@
 
 #include "scarp/march/max_mip_resume.h"
 #include "scarp/march/max_mip_walk.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 namespace {
@@ -15,10 +16,6 @@ using max_mip::kNotClear;
 
 // Beyond this many cells doubles no longer tell one cell from the next.
 constexpr double kFarthestCell = 0x1p51;
-
-double longest_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
-// Whether a direction's length is far from where doubles end.
-bool is_usual(double longest) { return longest > 0x1p-500 && longest < 0x1p500; }
 
 template <Ask ask>
 Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_clear, MarchStats* stats,
@@ -30,14 +27,9 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_cle
   const GridRay local = field.grid_from_world(ray);
   const double longest = longest_of(local.direction);
   if (!is_usual(longest)) {
-    if (!(longest > 0) || !std::isfinite(longest)) return hit;
-    // A direction of extreme length is brought near 1 by a power of two, which rounds nothing; t goes back by the same.
+    if (!is_direction(longest)) return hit;
     const int exponent = std::ilogb(longest);
-    Ray scaled = ray;
-    for (int axis = 0; axis < 3; ++axis) scaled.direction[axis] = std::ldexp(ray.direction[axis], -exponent);
-    scaled.t_min = std::ldexp(ray.t_min, exponent);
-    scaled.t_max = std::ldexp(ray.t_max, exponent);
-    hit = march<ask>(target, scaled, halvings, kNotClear, stats, all);
+    hit = march<ask>(target, scaled_down(ray, exponent), halvings, kNotClear, stats, all);
     if (hit) hit.t = std::ldexp(hit.t, -exponent);
     if (all) {
       for (Hit& one : *all) one.t = std::ldexp(one.t, -exponent);

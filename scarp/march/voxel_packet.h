@@ -51,8 +51,9 @@ struct VoxelStand {
   dvec3 origin{0.0};
 };
 
-/// Up to kRays world rays; what they know of a surface that they begin on is left out.
-void load_voxel_packet(VoxelPacket& packet, std::span<const Ray> rays);
+/// Up to kRays world rays; what they know of a surface that they begin on is left out. False: a direction is not of
+/// usual length (usual_ray.h); of those that are too short marches tell that they meet nothing.
+[[nodiscard]] bool load_voxel_packet(VoxelPacket& packet, std::span<const Ray> rays);
 
 /// To be called before marches, and again when rays are to go through grids that are turned otherwise.
 void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world);

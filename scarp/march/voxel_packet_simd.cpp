@@ -7,6 +7,7 @@
 #include "scarp/accel/brick_masks.h"
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/octant_cubes.h"
+#include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel_ahead.h"
 #include "scarp/march/voxel_packet.h"
 
@@ -481,7 +482,7 @@ static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * size
 HWY_INLINE const double* numbers_of(const Ray& ray) { return reinterpret_cast<const double*>(&ray); }
 
 // Vectors of four doubles are read for each ray and turned, so that each number goes into an array of its own.
-void load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
+bool load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
   double* const to[kNumbers] = {packet.origin[0],    packet.origin[1],    packet.origin[2], packet.direction[0],
                                 packet.direction[1], packet.direction[2], packet.t_min,     packet.t_max};
   std::size_t i = 0;
@@ -504,6 +505,14 @@ void load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
     for (std::size_t number = 0; number < kNumbers; ++number) to[number][i] = numbers_of(rays[i])[number];
   }
   packet.count = count;
+  for (std::size_t o = 0; o < count; o += N) {
+    VD longest = hn::Zero(dd);
+    for (int axis = 0; axis < 3; ++axis) longest = hn::Max(longest, hn::Abs(hn::Load(dd, packet.direction[axis] + o)));
+    const auto usual =
+        hn::And(hn::Gt(longest, hn::Set(dd, kShortestUsual)), hn::Lt(longest, hn::Set(dd, kLongestUsual)));
+    if (!hn::AllTrue(dd, hn::Or(usual, hn::Not(hn::FirstN(dd, count - o))))) return false;
+  }
+  return true;
 }
 
 // VoxelDirection of each ray, the same operations.
@@ -563,8 +572,8 @@ HWY_EXPORT(march_bricks);
 
 }  // namespace
 
-void load_voxel_packet(VoxelPacket& packet, std::span<const Ray> rays) {
-  HWY_DYNAMIC_DISPATCH(load)(packet, rays.data(), rays.size());
+bool load_voxel_packet(VoxelPacket& packet, std::span<const Ray> rays) {
+  return HWY_DYNAMIC_DISPATCH(load)(packet, rays.data(), rays.size());
 }
 
 void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world) {

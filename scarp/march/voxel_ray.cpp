@@ -30,7 +30,9 @@ VoxelDirection::VoxelDirection(const dvec3& direction) : given(direction), inver
   const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
   auto& [speed, slowness, step, t_per_s] = quantised;
   for (int axis = 0; axis < 3; ++axis) {
-    speed[axis] = static_cast<std::int64_t>(std::abs(direction[axis]) * per_longest * (1 << kDirectionBits) + 0.5);
+    // Of too short a direction it is no number.
+    const double share = std::abs(direction[axis]) * per_longest;
+    speed[axis] = share <= 1 ? static_cast<std::int64_t>(share * (1 << kDirectionBits) + 0.5) : 0;
     slowness[axis] = 1 / static_cast<double>(speed[axis]);
     step[axis] = direction[axis] < 0 ? -1 : 1;
   }

@@ -30,7 +30,8 @@
 namespace scarp {
 
 /// In the space of a grid, where voxels have the side 1. The direction is any finite vector but zero; t counts in its
-/// length. One so short that t for 2^8 of its length is no finite number (below 10^-305) meets nothing.
+/// length. One so short that t for 2^8 of its length is no finite number (below 10^-305) meets nothing; scenes bring
+/// such near 1 (usual_ray.h).
 /// [t_min, t_max] is closed, t_min finite.
 struct VoxelRay {
   dvec3 origin{0.0};

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/from_vox.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <limits>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "scarp/base/error.h"
@@ -11,38 +13,90 @@
 namespace scarp {
 namespace {
 
-// Voxels compared in the overlaps of a scene: some minutes.
-constexpr std::int64_t kMostCompared = std::int64_t{1} << 36;
+// What files may ask for before they are refused. Voxels in the boxes of all models, those that lose voxels to others
+// counted once more each: 2 GiB of masks and pages. Pairs of instances that are looked at, and voxels compared where
+// they overlap, each pair as much as some: about a minute each.
+constexpr std::int64_t kMostVoxels = std::int64_t{1} << 34, kMostPairs = std::int64_t{1} << 34,
+                       kMostCompared = std::int64_t{1} << 32, kVoxelsPerPair = 8;
+constexpr std::size_t kPiece = std::size_t{1} << 20;  // voxels put into a grid at once
 
-VoxelGrid grid_of(const VoxModel& model) {
-  VoxelGrid grid(model.size, 8);
-  std::vector<std::uint8_t> indices(static_cast<std::size_t>(model.size.x) * static_cast<std::size_t>(model.size.y) *
-                                    static_cast<std::size_t>(model.size.z));
-  const auto place = [&](int x, int y, int z) {
-    return static_cast<std::size_t>(x + model.size.x * (y + model.size.y * z));
-  };
-  for (const VoxVoxel& v : model.voxels) indices[place(v.x, v.y, v.z)] = v.index;
-  grid.edit(grid.box(), [&](const ivec3& v, const VoxelGrid::Voxel&) {
-    const std::uint8_t index = indices[place(v.x, v.y, v.z)];
-    return index > 0 ? VoxelGrid::Voxel(index) : VoxelGrid::Voxel();
-  });
-  return grid;
+std::int64_t voxels_in(const VoxelBox& box) {
+  const ivec3 size = box.high - box.low;
+  return std::int64_t{size.x} * size.y * size.z;
 }
+
+ivec3 place_of(const VoxVoxel& v) { return {v.x, v.y, v.z}; }
+
+// A model's voxels in the least box around them: canvases are mostly empty.
+struct Model {
+  VoxelBox box;  // in the canvas
+  VoxelGrid grid{ivec3(1), 8};
+};
+
+// The models that are used.
+class Models {
+ public:
+  Models(const VoxFile& file, const std::vector<VoxInstance>& instances) {
+    // Nothing is allocated before all are counted.
+    for (const VoxInstance& instance : instances) {
+      const auto [at, is_new] = models_.try_emplace(instance.model);
+      if (!is_new) continue;
+      for (const VoxVoxel& v : file.models[static_cast<std::size_t>(instance.model)].voxels) {
+        if (v.index > 0) at->second.box = around(at->second.box, {place_of(v), place_of(v) + 1});
+      }
+      count(at->second.box);
+    }
+    for (auto& [index, model] : models_) {
+      if (!model.box.empty()) fill(model, file.models[static_cast<std::size_t>(index)].voxels);
+    }
+  }
+
+  const Model& at(int index) const { return models_.at(index); }
+  // Counts another grid of this box.
+  void count(const VoxelBox& box) {
+    voxels_ += voxels_in(box);
+    if (voxels_ > kMostVoxels) {
+      throw Error(
+          fmt::format("vox scene: the boxes round its models, those that others overlap counted one by one, hold more "
+                      "than {} voxels",
+                      kMostVoxels));
+    }
+  }
+
+ private:
+  // Piece by piece, which bounds what is remembered.
+  static void fill(Model& model, const std::vector<VoxVoxel>& voxels) {
+    model.grid = VoxelGrid(model.box.high - model.box.low, 8);
+    std::vector<VoxelGrid::Placed> placed;
+    for (const VoxVoxel& v : voxels) {
+      placed.push_back({place_of(v) - model.box.low, v.index > 0 ? VoxelGrid::Voxel(v.index) : VoxelGrid::Voxel()});
+      if (placed.size() < kPiece && &v != &voxels.back()) continue;
+      model.grid.set(placed);
+      placed.clear();
+    }
+  }
+
+  std::map<int, Model> models_;
+  std::int64_t voxels_ = 0;
+};
 
 // An instance on the lattice of the world.
 class OnLattice {
  public:
-  OnLattice(const VoxInstance& instance, const VoxelGrid& grid)
-      : grid_(&grid),
+  // canvas: the sides of the model, as the file has it; they turn about its middle.
+  OnLattice(const VoxInstance& instance, const ivec3& canvas, const Model& model)
+      : grid_(&model.grid),
         turn_(instance.turn),
         back_(instance.turn.inverse()),
-        origin_(instance.move - instance.turn(grid.size() / 2)) {
-    if (grid.bounds().empty()) return;
-    const ivec3 a = turn_(grid.bounds().low) + origin_, b = turn_(grid.bounds().high) + origin_;
+        origin_(instance.move - instance.turn(canvas / 2) + instance.turn(model.box.low)) {
+    const VoxelBox& solid = grid_->bounds();
+    if (solid.empty()) return;
+    const ivec3 a = turn_(solid.low) + origin_, b = turn_(solid.high) + origin_;
     bounds_ = {glm::min(a, b), glm::max(a, b)};
   }
 
   const VoxelBox& bounds() const { return bounds_; }
+  const VoxelGrid& grid() const { return *grid_; }
   // The voxel of the grid in the cube of the world whose lowest corner this is: their middles are the same.
   ivec3 grid_voxel(const ivec3& world) const {
     // Twice the coordinates, so that middles are whole.
@@ -66,17 +120,38 @@ class OnLattice {
   VoxelBox bounds_;
 };
 
-// Calls body(a, b) for each pair of boxes that overlap, a before b.
+// Calls body(a, b) for each pair of boxes that overlap, a before b: of those that overlap along one axis, that along
+// which the fewest do.
 template <class Body>
 void for_each_overlap(const std::vector<OnLattice>& instances, const Body& body) {
-  std::vector<std::size_t> order(instances.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  const auto low = [&](std::size_t i) { return instances[i].bounds().low.x; };
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low(a) < low(b); });
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const VoxelBox& box = instances[order[i]].bounds();
-    for (std::size_t j = i + 1; j < order.size() && low(order[j]) < box.high.x; ++j)
-      body(std::min(order[i], order[j]), std::max(order[i], order[j]));
+  std::vector<std::size_t> order, best_order;
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    if (!instances[i].bounds().empty()) order.push_back(i);
+  }
+  std::int64_t least = std::numeric_limits<std::int64_t>::max();
+  int best_axis = 0;
+  std::vector<int> lows;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto low = [&](std::size_t i) { return instances[i].bounds().low[axis]; };
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low(a) < low(b); });
+    lows.clear();
+    for (const std::size_t i : order) lows.push_back(low(i));
+    std::int64_t pairs = 0;
+    for (auto at = lows.begin(); at != lows.end(); ++at) {
+      const VoxelBox& box = instances[order[static_cast<std::size_t>(at - lows.begin())]].bounds();
+      pairs += std::lower_bound(at + 1, lows.end(), box.high[axis]) - (at + 1);
+    }
+    if (pairs < least) least = pairs, best_axis = axis, best_order = order;
+  }
+  if (least > kMostPairs) throw Error("vox scene: more of its models overlap than can be settled");
+  for (std::size_t i = 0; i < best_order.size(); ++i) {
+    const VoxelBox& box = instances[best_order[i]].bounds();
+    for (std::size_t j = i + 1; j < best_order.size(); ++j) {
+      const VoxelBox& other = instances[best_order[j]].bounds();
+      if (other.low[best_axis] >= box.high[best_axis]) break;
+      if (intersection(box, other).empty()) continue;
+      body(std::min(best_order[i], best_order[j]), std::max(best_order[i], best_order[j]));
+    }
   }
 }
 
@@ -91,15 +166,11 @@ VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options) 
     palette[i] = {colour[0], colour[1], colour[2]};
   }
 
-  std::map<int, VoxelGrid> grids;  // of the models that are used
+  Models grids(file, instances);
   std::vector<OnLattice> on_lattice;
   for (const VoxInstance& instance : instances) {
-    auto grid = grids.find(instance.model);
-    if (grid == grids.end()) {
-      const auto index = static_cast<std::size_t>(instance.model);
-      grid = grids.emplace(instance.model, grid_of(file.models[index])).first;
-    }
-    on_lattice.emplace_back(instance, grid->second);
+    const VoxModel& model = file.models[static_cast<std::size_t>(instance.model)];
+    on_lattice.emplace_back(instance, model.size, grids.at(instance.model));
   }
 
   // What lies under another instance is taken out of a copy.
@@ -107,20 +178,21 @@ VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options) 
   std::int64_t compared = 0;
   for_each_overlap(on_lattice, [&](std::size_t first, std::size_t last) {
     const auto [over, under] = file.version >= 200 ? std::pair(first, last) : std::pair(last, first);
-    const VoxelBox common = intersection(on_lattice[over].bounds(), on_lattice[under].bounds());
-    ++compared;
-    if (!common.empty()) {
-      const ivec3 size = common.high - common.low;
-      compared += std::int64_t{size.x} * size.y * size.z;
+    const OnLattice &upper = on_lattice[over], &lower = on_lattice[under];
+    const VoxelBox common = intersection(upper.bounds(), lower.bounds());
+    compared += kVoxelsPerPair + voxels_in(common);
+    if (compared > kMostCompared) throw Error("vox scene: larger overlaps of its models than can be settled");
+    // Layer by layer, which bounds what is remembered.
+    std::vector<VoxelGrid::Placed> hidden;
+    for (int z = common.low.z; z < common.high.z; ++z) {
+      hidden.clear();
+      for_each_voxel({{common.low.x, common.low.y, z}, {common.high.x, common.high.y, z + 1}}, [&](const ivec3& world) {
+        if (upper.solid(world) && lower.solid(world)) hidden.push_back({lower.grid_voxel(world), {}});
+      });
+      if (hidden.empty()) continue;
+      if (!cut.contains(under)) grids.count(lower.grid().box());
+      cut.try_emplace(under, lower.grid()).first->second.set(hidden);
     }
-    if (compared > kMostCompared) throw Error("vox scene: more overlaps of models than can be settled");
-    for_each_voxel(common,
-                   [&, &upper = on_lattice[over], &lower = on_lattice[under], under = under](const ivec3& world) {
-                     if (!upper.solid(world) || !lower.solid(world)) return;
-                     auto grid = cut.find(under);
-                     if (grid == cut.end()) grid = cut.emplace(under, grids.at(instances[under].model)).first;
-                     grid->second.clear(lower.grid_voxel(world));
-                   });
   });
 
   std::vector<std::shared_ptr<const VoxelModel>> models;
@@ -134,7 +206,7 @@ VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options) 
     if (own == cut.end() && known != shared.end()) {
       index = known->second;
     } else {
-      VoxelGrid grid = own != cut.end() ? own->second : grids.at(model);
+      VoxelGrid grid = own != cut.end() ? std::move(own->second) : grids.at(model).grid;
       if (options.voxels.surface_colours) grid.drop_hidden_entries();
       models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march, palette));
       if (own == cut.end()) shared.emplace(model, index);

@@ -14,7 +14,8 @@ struct FromVoxOptions {
 
 /// Entries are palette indices. Where instances overlap, one voxel is left in each place, that which MagicaVoxel shows:
 /// of the instance that comes first in files from version 200 on, and last in those before. An instance that loses
-/// voxels so has a model of its own. Throws Error: no such march, more overlaps than can be settled.
+/// voxels so has a model of its own. Grids are models cut to the least box around their voxels. Throws Error: no such
+/// march, more overlaps than can be settled, models that together span more than 2^34 voxels.
 VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options = {});
 
 }  // namespace scarp

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/march/usual_ray.h"
 #include "scarp/scene/coarse_voxels.h"
 
 namespace scarp {
@@ -112,6 +113,13 @@ struct VoxelScene::Query {
 VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from, VoxelSceneStats* stats) const {
   VoxelSceneHit best;
   if (in_tree_.empty()) return best;
+  if (const double longest = longest_of(ray.direction); !is_usual(longest)) {
+    if (!is_direction(longest)) return best;
+    const int exponent = std::ilogb(longest);
+    best = closest_hit(scaled_down(ray, exponent), from, stats);
+    if (best) best.hit.t = std::ldexp(best.hit.t, -exponent);
+    return best;
+  }
   Query query(*this, ray);
   double t_max = ray.t_max;
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
@@ -141,6 +149,8 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from,
 
 bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   if (in_tree_.empty()) return false;
+  if (const double longest = longest_of(ray.direction); !is_usual(longest))
+    return is_direction(longest) && occluded(scaled_down(ray, std::ilogb(longest)), from);
   // Into the surface that it begins on: of a rounded voxel no neighbour would tell.
   if (rounding_ && from && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0) return true;
   Query query(*this, ray);

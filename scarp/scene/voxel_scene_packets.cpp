@@ -42,12 +42,12 @@ class VoxelScene::PacketQuery {
 
   explicit PacketQuery(const VoxelScene& scene) : scene_(scene) {}
 
-  // hits[i] answers rays[i]; without them whether there is one is asked. False: they go too far apart, and nothing is
-  // known.
+  // hits[i] answers rays[i]; without them whether there is one is asked. False: they go too far apart, or their
+  // directions are of no usual length, and nothing is known.
   bool ask(std::span<const Ray> rays, From from, VoxelSceneHit* hits) {
     rays_ = rays, from_ = from, hits_ = hits;
     found_ = 0, boxes_ = 0;
-    load();
+    if (!load()) return false;
     if (scene_.in_tree_.size() <= kAskedAtOnce) {
       const std::uint64_t all = ~std::uint64_t{0} >> (kRays - rays.size());
       for (const std::uint32_t index : scene_.in_tree_)
@@ -65,10 +65,10 @@ class VoxelScene::PacketQuery {
  private:
   std::span<const double> t_max() const { return {packet_.t_max, rays_.size()}; }
 
-  void load() {
-    load_voxel_packet(packet_, rays_);
+  bool load() {
     packet_.steps = 0;
     aimed_ = alone_aimed_ = kNoTurn;
+    return load_voxel_packet(packet_, rays_);
   }
 
   bool ask_tree() {

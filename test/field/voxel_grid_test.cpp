@@ -61,6 +61,27 @@ TEST_P(Grids, EditsChangeWhatTheySayAndNothingElse) {
   }
 }
 
+// Many at once, beyond the grid and twice in one place as well: as one after the other.
+TEST_P(Grids, ManyVoxelsAreSetAsEachIs) {
+  Random random(5);
+  for (int round = 0; round < 4; ++round) {
+    VoxelGrid grid = GetParam().make(random);
+    Model expected(grid), before(grid);
+    std::vector<VoxelGrid::Placed> placed(1 + random() % 500);
+    for (VoxelGrid::Placed& one : placed) {
+      for (int axis = 0; axis < 3; ++axis) one.voxel[axis] = static_cast<int>(random() % (grid.size()[axis] + 4u)) - 2;
+      if (random() % 3) one.value = 1 + random() % 255;
+      if (grid.box().contains(one.voxel)) expected.at(one.voxel) = one.value;
+    }
+    const VoxelBox dirty = grid.set(placed);
+    expected.expect(grid);
+    for_each_voxel(grid.box(), [&](const ivec3& v) {
+      const bool changed = before.at(v) != expected.at(v);
+      ASSERT_TRUE(dirty.contains(v) || !changed);
+    });
+  }
+}
+
 TEST_P(Grids, TurnAndTurnBack) {
   Random random(4);
   const VoxelGrid grid = GetParam().make(random);

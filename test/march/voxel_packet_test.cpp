@@ -16,6 +16,7 @@
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/octant_cubes.h"
 #include "scarp/march/marches.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp::test {
 namespace {
@@ -56,7 +57,9 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
           ray = kind.make(grid, random);
           in_world.push_back({ray.origin + stand.origin, ray.direction, ray.t_min, ray.t_max});
         }
-        load_voxel_packet(packet, in_world);
+        const bool usual = std::all_of(in_world.begin(), in_world.end(),
+                                       [](const Ray& ray) { return is_usual(longest_of(ray.direction)); });
+        ASSERT_EQ(load_voxel_packet(packet, in_world), usual);
         ASSERT_EQ(packet.count, rays.size());
         const std::uint64_t all = ~std::uint64_t{0} >> (64 - packet.count), asked = round % 5 ? all : all & random();
         aim_voxel_packet(packet, stand.grid_from_world);

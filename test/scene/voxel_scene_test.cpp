@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/voxel_scene.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <random>
 
+#include "base/refusal.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/from_vox.h"
 
@@ -38,9 +40,11 @@ glm::dmat3 turned(Random& random, double scale) {
   return glm::dmat3(glm::rotate(glm::dmat4(1), uniform(random, 0, 6), direction(random))) * scale;
 }
 
-// Each object on its own, by the oracle.
-VoxelSceneHit one_by_one(const std::vector<std::shared_ptr<const VoxelModel>>& models,
-                         const std::vector<VoxelPlace>& places, const Ray& ray) {
+// Each object on its own, by the march that looks at every voxel on the way.
+VoxelSceneHit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, const std::vector<VoxelPlace>& places,
+                         const Ray& ray) {
+  for (auto& model : models)
+    model = std::make_shared<const VoxelModel>(model->grid(), find_voxel_march("voxel-exhaustive"));
   VoxelSceneHit best;
   for (std::uint32_t i = 0; i < places.size(); ++i) {
     const VoxelScene alone(models, std::vector{places[i]});
@@ -48,6 +52,46 @@ VoxelSceneHit one_by_one(const std::vector<std::shared_ptr<const VoxelModel>>& m
     if (hit && (!best || hit.hit.t < best.hit.t)) best = {hit.hit, i};
   }
   return best;
+}
+
+// Lengths are powers of two and components eighths of them, so that nothing is rounded however short the direction is.
+TEST(VoxelScene, TakesDirectionsOfAnyLength) {
+  Random random(3);
+  const auto models = std::vector{model(8, 0.2, "voxel-bricks", random), model(5, 0.5, "voxel-cubes", random)};
+  const VoxelScene scene(models, std::vector{VoxelPlace{0, turned(random, 0.5), {2, 1, 0}}, VoxelPlace{1}});
+  const auto eighths = [&] { return static_cast<double>(static_cast<int>(random() % 17) - 8) / 8; };
+  int hits = 0;
+  for (const int exponent : {-1071, -1030, -1015, -600, -450, 450, 600, 1000, 1023}) {
+    std::vector<Ray> usual(100), extreme;
+    for (Ray& ray : usual) {
+      const dvec3 at(uniform(random, 0, 5), uniform(random, 0, 5), uniform(random, 0, 5));
+      ray.direction = {eighths(), eighths(), eighths()};
+      if (ray.direction == dvec3(0.0)) ray.direction.x = -0.125;
+      ray.origin = at - 32.0 * ray.direction;
+      extreme.push_back(ray);
+      for (int axis = 0; axis < 3; ++axis) extreme.back().direction[axis] = std::ldexp(ray.direction[axis], exponent);
+    }
+    std::vector<VoxelSceneHit> found(usual.size());
+    std::vector<std::uint8_t> blocked(usual.size());
+    scene.closest_hits(extreme, found);
+    scene.occluded(extreme, blocked);
+    for (std::size_t i = 0; i < usual.size(); ++i) {
+      VoxelSceneHit expected = scene.closest_hit(usual[i]);
+      if (expected) expected.hit.t = std::ldexp(expected.hit.t, -exponent);
+      for (const VoxelSceneHit& hit : {scene.closest_hit(extreme[i]), found[i]}) {
+        EXPECT_EQ(hit.hit, expected.hit) << exponent;
+        EXPECT_EQ(hit.object, expected.object) << exponent;
+      }
+      EXPECT_EQ(blocked[i], static_cast<bool>(expected));
+      EXPECT_EQ(scene.occluded(extreme[i]), static_cast<bool>(expected));
+      hits += expected ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hits, 300);
+  Ray none;
+  none.direction = dvec3(0.0);
+  EXPECT_FALSE(scene.closest_hit(none));
+  EXPECT_FALSE(scene.occluded(none));
 }
 
 TEST(VoxelScene, FindsTheNearestOfTurnedAndOverlappingObjects) {
@@ -212,8 +256,76 @@ TEST(FromVox, PutsTurnedVoxelsWhereTheFileSays) {
     const VoxelSceneHit hit = scene.closest_hit(ray);
     ASSERT_TRUE(hit) << bits;
     EXPECT_EQ(hit.hit.t, 4.5);
-    EXPECT_EQ(hit.hit.voxel, ivec3(2, 0, 1));
+    EXPECT_EQ(hit.hit.voxel, ivec3(0));  // of the one voxel that there is
     EXPECT_EQ(scene.normal(ray, hit), dvec3(0, 0, 1));
+  }
+}
+
+// As many models of the largest canvas as shall be, each with the voxels, in a row.
+VoxFile canvases(int models, const std::vector<VoxVoxel>& voxels) {
+  VoxFile file;
+  file.version = 200;
+  VoxGroup all;
+  for (int i = 0; i < models; ++i) {
+    file.models.push_back({ivec3(256), voxels});
+    file.nodes.push_back({2 * i + 1, {}, VoxTransform{2 * i + 2, -1, -1, {{{"_t", fmt::format("{} 0 0", 300 * i)}}}}});
+    file.nodes.push_back({2 * i + 2, {}, VoxShape{{{i, {}}}}});
+    all.children.push_back(2 * i + 1);
+  }
+  file.nodes.insert(file.nodes.begin(), {0, {}, all});
+  return file;
+}
+
+// 256^3 voxels take 2 MiB of masks alone: all of them less than one would as a canvas.
+TEST(FromVox, TakesMemoryForVoxelsAndNotForCanvases) {
+  const VoxelScene scene = voxel_scene_from(canvases(500, {{200, 100, 255, 7}}));
+  EXPECT_EQ(scene.objects(), 500u);
+  EXPECT_LT(scene.bytes(), std::size_t{1} << 21);
+  Ray down;
+  down.origin = {300 * 499 + 200.5 - 128, 100.5 - 128, 500};
+  const VoxelSceneHit hit = scene.closest_hit(down);
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit.object, 499u);
+  EXPECT_EQ(down.at(hit.hit.t).z, 128);
+}
+
+// Small files that ask for much are refused before it is spent.
+TEST(FromVox, RefusesWhatWouldTakeForEver) {
+  const VoxFile wide = canvases(1025, {{0, 0, 0, 1}, {255, 255, 255, 1}});
+  EXPECT_NE(test::refusal([&] { voxel_scene_from(wide); }).find("hold more than 17179869184 voxels"),
+            std::string::npos);
+  // 2^18 instances of a voxel in one place, each group twice the next one.
+  constexpr int kGroups = 18;
+  VoxFile heap = canvases(1, {{0, 0, 0, 1}});
+  heap.nodes.clear();
+  for (int i = 0; i < kGroups; ++i) heap.nodes.push_back({i, {}, VoxGroup{{i + 1, i + 1}}});
+  heap.nodes.push_back({kGroups, {}, VoxShape{{{0, {}}}}});
+  EXPECT_EQ(test::refusal([&] { voxel_scene_from(heap); }),
+            "vox scene: more of its models overlap than can be settled");
+}
+
+// Instances of one voxel side by side, in planes across each axis: that each pair would be looked at takes minutes.
+TEST(FromVox, PlacesAPlaneOfInstancesQuickly) {
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr int kDoublings = 8;  // 2^8 along either axis of the plane
+    VoxFile file = canvases(1, {{0, 0, 0, 1}});
+    file.nodes.clear();
+    for (int i = 0; i < 2 * kDoublings; ++i) {
+      ivec3 move(0);
+      move[(axis + 1 + i / kDoublings) % 3] = 1 << (i % kDoublings);
+      file.nodes.push_back({3 * i, {}, VoxGroup{{3 * i + 1, 3 * i + 2}}});
+      file.nodes.push_back({3 * i + 1, {}, VoxTransform{3 * i + 3, -1, -1, {{}}}});
+      file.nodes.push_back(
+          {3 * i + 2,
+           {},
+           VoxTransform{3 * i + 3, -1, -1, {{{"_t", fmt::format("{} {} {}", move.x, move.y, move.z)}}}}});
+    }
+    file.nodes.push_back({2 * kDoublings * 3, {}, VoxShape{{{0, {}}}}});
+    const VoxelScene scene = voxel_scene_from(file);
+    EXPECT_EQ(scene.objects(), std::size_t{1} << (2 * kDoublings));
+    ivec3 size(1 << kDoublings);
+    size[axis] = 1;
+    EXPECT_EQ(scene.box().high - scene.box().low, dvec3(size));
   }
 }
 

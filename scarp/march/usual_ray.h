@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Rays whose directions are so long or short that their squares or inverses are no numbers are marched as rays of usual
+// length: brought near 1 by a power of two, which rounds nothing; t goes back by the same.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "scarp/base/ray.h"
+
+namespace scarp {
+
+/// The length of the longest component: what the following go by.
+inline double longest_of(const dvec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+
+/// Far from where doubles end.
+constexpr double kShortestUsual = 0x1p-500, kLongestUsual = 0x1p500;
+inline bool is_usual(double longest) { return longest > kShortestUsual && longest < kLongestUsual; }
+
+/// Whether there is a direction at all: neither zero nor infinite nor NaN.
+inline bool is_direction(double longest) { return longest > 0 && std::isfinite(longest); }
+
+/// The ray with its direction divided by 2^exponent, and its range multiplied; its t are 2^exponent times those of
+/// `ray`.
+inline Ray scaled_down(const Ray& ray, int exponent) {
+  Ray scaled = ray;
+  for (int axis = 0; axis < 3; ++axis) scaled.direction[axis] = std::ldexp(ray.direction[axis], -exponent);
+  scaled.t_min = std::ldexp(ray.t_min, exponent);
+  scaled.t_max = std::ldexp(ray.t_max, exponent);
+  return scaled;
+}
+
+}  // namespace scarp
