@@ -39,6 +39,8 @@ const uint kFrameHasContours = 16u;
 const uint kFrameHasFog = 32u;
 const uint kFrameHasSamples = 64u;  ///< of sun and sky
 const uint kFrameHasBlock = 128u;   ///< below the terrain
+/// Walls at the rims of holes that are the block's: those of solid ground the march knows, and they have no base.
+const uint kFrameHasRims = 256u;
 
 const int kFrameRounds = 16;
 const int kFrameTurns = 3000;
@@ -224,6 +226,7 @@ struct FrameState {
   int under_way;  ///< 1: the ray of the task is
   int light;      ///< of a point's rays to sun and sky, which
   float weight;
+  int walls;  ///< 1: the ray sees those at rims
   vec3 sum;
   FrameSeen seen[kFrameSeens];
   FrameWater water;

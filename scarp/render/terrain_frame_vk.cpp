@@ -284,11 +284,14 @@ class FrameMaker {
 
  private:
   const ComputePipeline& pipeline_for(const glsl::FrameSettings& s) {
+    const bool block = s.block != 0 && !stepped_;  // steps do not see it
+    const bool rims = (flags_ & (glsl::kScarpHoles | glsl::kScarpSolid)) == glsl::kScarpHoles;
     const std::uint32_t parts =
         (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
         (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) | (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
         (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) |
-        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (s.block != 0 && !stepped_ ? glsl::kFrameHasBlock : 0);
+        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (block ? glsl::kFrameHasBlock : 0) |
+        (block && rims ? glsl::kFrameHasRims : 0);
     const auto found = pipelines_.find(parts);
     if (found != pipelines_.end()) return found->second;
     const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
@@ -346,12 +349,9 @@ bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const P
   const std::string_view march = scene.march().name;
   const bool stepped = march == "fixed-step" && settings.look == Look::comanche;
   if (!stepped && march != "max-mip") return false;
-  // The steps of `comanche` do not see a block.
-  const HeightField& field = scene.field();
-  if (!stepped && settings.plinth && !field.wraps() && field.nodata_count() > 0) return false;
   Ray eye;
   eye.origin = camera.eye();
-  const dvec3 place = field.grid_from_world(eye).origin;
+  const dvec3 place = scene.field().grid_from_world(eye).origin;
   return std::abs(place.x) < kFarthestCell && std::abs(place.y) < kFarthestCell;
 }
 
