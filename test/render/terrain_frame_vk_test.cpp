@@ -256,6 +256,26 @@ std::vector<Row> rows() {
                    {.exaggeration = 4});
   block_with_holes("solid_block_with_holes", {70, -30, 40}, 0.6, [](PictureSettings& s) { s.look = Look::shaded; },
                    {.exaggeration = 1.5, .solid = true});
+  constexpr double kHigh = 1e7;
+  const auto high_above_zero = [&](const std::string& name, const std::function<void(PictureSettings&)>& change) {
+    add(name, "max-mip",
+        [=](PictureSettings& s) {
+          s.look = Look::shaded;
+          change(s);
+        },
+        {.offset = kHigh});
+    all.back().eye.z += kHigh;
+  };
+  high_above_zero("high_above_zero", [=](PictureSettings& s) {
+    fog(s, FogKind::height);
+    s.fog.base += kHigh;
+    s.ground.contours = 1;
+  });
+  high_above_zero("water_high_above_zero", [=](PictureSettings& s) {
+    water(s);
+    s.water->level += kHigh;
+    s.ground.natural = true;
+  });
   add("shadows_of_steps", "fixed-step", [](PictureSettings& s) { s.shadows = true; });
   add("draped", "max-mip", [](PictureSettings& s) {
     Drape drape{3, 2, {}};
