@@ -399,7 +399,8 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
 #endif
 
 #ifdef SCARP_BENCH_VULKAN
-// Corners are rounded to a part of a pixel, so pixels beside edges may differ, and no others.
+// Corners are rounded to a part of a pixel, so pixels beside edges may show what is on the other side, and nothing
+// else.
 TEST(ScarpBench, TheDrawnGridHasTheDepthsOfTheRays) {
   const std::string command =
       fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
@@ -410,13 +411,12 @@ TEST(ScarpBench, TheDrawnGridHasTheDepthsOfTheRays) {
   for (const json& row : all["rows"]) {
     SCOPED_TRACE(row.dump());
     expect_fields(row, {"size", "mode", "ms", "spread", "mesh_ratio", "pixels", "triangles_per_pixel", "hit_share",
-                        "differing_rate", "one_alone_rate", "device", "driver", "field"});
+                        "differing_rate", "one_alone_rate", "unexplained_rate", "device", "driver", "field"});
     modes.insert(row["mode"].get<std::string>());
     EXPECT_GT(row["ms"], 0.0);
     EXPECT_GT(row["hit_share"], 0.4);
     if (row["mode"] != "grid-mesh") continue;
-    EXPECT_LT(row["differing_rate"], 1e-3);
-    EXPECT_LT(row["one_alone_rate"], 1e-3);
+    EXPECT_EQ(row["unexplained_rate"], 0.0);
   }
   EXPECT_EQ(modes, (std::multiset<std::string>{"grid-mesh", "grid-mesh", "max-mip", "max-mip", "max-mip, triangles",
                                                "max-mip, triangles"}));

@@ -14,9 +14,11 @@
 //   d N_z / (z |N P|)             the march: up to d = 2 rho lower or higher (doc/dev/numerics.md)
 //
 // What differs by more is counted: pixels beside an edge, where the other side of s is another slope or another ridge.
+// There rays through the corners of the square of s tell what drawing may show; what it shows besides is unexplained.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -116,6 +118,17 @@ class GridMesh {
     return depths;
   }
 
+  /// Pixels that corners at `to` from the eye may be drawn beside their places.
+  dvec2 beside(const dvec3& to, std::uint32_t subpixel_bits) const {
+    const double z = dot(to, camera_.forward), sw = terms(to, camera_.forward, 1),
+                 snap = std::ldexp(0.5, -static_cast<int>(subpixel_bits));
+    const auto along = [&](const dvec3& axis, double half, double pixels_across) {
+      return snap + pixels_across / 2 * 8 * kUnit * (terms(to, axis, half) + sw) / z + 4 * kUnit * pixels_across;
+    };
+    return {along(camera_.right, camera_.half_width, camera_.width),
+            along(camera_.up, camera_.half_height, camera_.height)};
+  }
+
   /// What 1/z of a hit of the ray through a pixel may differ by.
   double bound(const HeightField& field, const Hit& hit, const Ray& ray, std::uint32_t subpixel_bits) const {
     const double width = camera_.width, height = camera_.height;
@@ -123,27 +136,23 @@ class GridMesh {
     const double z = dot(to, camera_.forward), plane = std::abs(dot(normal, to));
     const double gx = std::abs(dot(normal, camera_.right)) * 2 * camera_.half_width / width / plane,
                  gy = std::abs(dot(normal, camera_.up)) * 2 * camera_.half_height / height / plane;
-    // The terms of a clip coordinate, each at its largest.
-    const auto terms = [&](const dvec3& axis, double scale) {
-      return (std::abs(axis.x * to.x) + std::abs(axis.y * to.y) + std::abs(axis.z * to.z) + length(axis)) / scale;
-    };
-    const double sw = terms(camera_.forward, 1), snap = std::ldexp(0.5, -static_cast<int>(subpixel_bits));
-    const auto beside = [&](const dvec3& axis, double half, double pixels_across) {
-      return snap + pixels_across / 2 * 8 * kUnit * (terms(axis, half) + sw) / z + 4 * kUnit * pixels_across;
-    };
-    const double sx = beside(camera_.right, camera_.half_width, width),
-                 sy = beside(camera_.up, camera_.half_height, height);
+    const double sw = terms(to, camera_.forward, 1);
+    const dvec2 s = beside(to, subpixel_bits);
     const CellHeights h = field.cell_heights(hit.cell).value();
     const double per_sample = field.settings().scale * field.settings().exaggeration;
     const double relief =
         (std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11})) * per_sample;
     // rho at the far side of a tile of 1,024 cells, with the heights of all of the field for those of the tile.
     const double rho = 16 * kUnit * (3 * (field.max_height() - field.min_height()) + 2049 * relief);
-    return sx * gx + sy * gy + (8 * kUnit * sw / z + 4 * kUnit) / z + 4 * kUnit * (1 / z + width * gx + height * gy) +
+    return s.x * gx + s.y * gy + (8 * kUnit * sw / z + 4 * kUnit) / z + 4 * kUnit * (1 / z + width * gx + height * gy) +
            2 * rho * std::abs(normal.z) / (z * plane);
   }
 
  private:
+  // The terms of a clip coordinate, each at its largest.
+  static double terms(const dvec3& to, const dvec3& axis, double scale) {
+    return (std::abs(axis.x * to.x) + std::abs(axis.y * to.y) + std::abs(axis.z * to.z) + length(axis)) / scale;
+  }
   std::uint64_t pixels() const {
     return static_cast<std::uint64_t>(camera_.width) * static_cast<std::uint64_t>(camera_.height);
   }
@@ -156,6 +165,52 @@ class GridMesh {
   glsl::GridMeshPush push_{};
   std::uint32_t count_ = 0, instances_ = 0;
 };
+
+// A pixel that is drawn otherwise than its ray has it.
+struct Otherwise {
+  double drawn;  // 1/z, 0: nothing
+  Ray ray;
+  std::array<Ray, 4> corners;  // of the square of s
+};
+
+Otherwise otherwise(const PinholeCamera& camera, const GridMesh& mesh, const Ray& ray, double x, double y, double z,
+                    double drawn, std::uint32_t bits) {
+  const dvec3 to = ray.direction * (z / dot(ray.direction, camera.forward));
+  const dvec2 s = mesh.beside(to, bits);
+  Otherwise pixel{drawn, ray, {}};
+  for (int i = 0; i < 4; ++i) {
+    const double at_x = x + (i % 2 ? s.x : -s.x), at_y = y + (i / 2 ? s.y : -s.y);
+    Ray& corner = pixel.corners[static_cast<std::size_t>(i)];
+    corner = ray;
+    corner.direction = camera.forward + (at_x / camera.width * 2 - 1) * camera.half_width * camera.right +
+                       (1 - at_y / camera.height * 2) * camera.half_height * camera.up;
+  }
+  return pixel;
+}
+
+// How many show what neither their own ray nor those through the corners would have, nor anything between.
+std::int64_t unexplained(const std::vector<Otherwise>& pixels, DeviceQueries& queries, const DeviceTarget& target,
+                         const PinholeCamera& camera, const GridMesh& mesh, std::uint32_t bits) {
+  std::int64_t count = 0;
+  for (const Otherwise& pixel : pixels) {
+    std::vector<Ray> rays(pixel.corners.begin(), pixel.corners.end());
+    rays.push_back(pixel.ray);
+    std::vector<Hit> hits(rays.size());
+    queries.closest_hits(target, rays, hits);
+    bool nothing = false;
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      nothing = nothing || !hits[i];
+      if (!hits[i]) continue;
+      const double cast = 1 / dot(rays[i].at(hits[i].t) - rays[i].origin, camera.forward),
+                   bound = mesh.bound(*target.field, hits[i], rays[i], bits);
+      low = std::min(low, cast - bound);
+      high = std::max(high, cast + bound);
+    }
+    count += pixel.drawn == 0 ? !nothing : !(low <= pixel.drawn && pixel.drawn <= high);
+  }
+  return count;
+}
 
 double spread_of(const std::vector<double>& times) {
   const auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());
@@ -194,18 +249,22 @@ void compare(const Device& device, const Device& drawing, const GpuOptions& opti
   const std::vector<float> depths = mesh.depths();
   const std::uint32_t bits = raster_limits(device).subpixel_bits;
   std::int64_t seen = 0, differing = 0, one_alone = 0;
+  std::vector<Otherwise> others;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     const auto [x, y] = primary_pixel(i, counts.width);
     const Ray& ray = set.library_rays[i];
     const double drawn = static_cast<double>(depths[static_cast<std::size_t>(y * counts.width + x)]) / kNear;
     seen += static_cast<bool>(hits[i]);
-    if (!hits[i] || drawn == 0) {
-      one_alone += static_cast<bool>(hits[i]) != (drawn != 0);
-      continue;
-    }
-    const double cast = 1 / dot(ray.at(hits[i].t) - ray.origin, camera.forward);
-    differing += !(std::abs(drawn - cast) <= mesh.bound(triangles, hits[i], ray, bits));
+    if (!hits[i] && drawn == 0) continue;
+    const double z = hits[i] ? dot(ray.at(hits[i].t) - ray.origin, camera.forward) : 1 / drawn;
+    const bool alone = !hits[i] || drawn == 0;
+    if (!alone && std::abs(drawn - 1 / z) <= mesh.bound(triangles, hits[i], ray, bits)) continue;
+    ++(alone ? one_alone : differing);
+    others.push_back(otherwise(camera, mesh, ray, x + 0.5, y + 0.5, z, drawn, bits));
   }
+  const double unexplained_rate =
+      static_cast<double>(unexplained(others, queries, {&triangles, &memory}, camera, mesh, bits)) /
+      static_cast<double>(hits.size());
   const auto add = [&](const char* mode, const std::vector<double>& times) {
     const double pixels = static_cast<double>(hits.size());
     const bool drawn = &times == &mesh_times;
@@ -220,6 +279,7 @@ void compare(const Device& device, const Device& drawing, const GpuOptions& opti
     row["hit_share"] = static_cast<double>(seen) / pixels;
     row["differing_rate"] = drawn ? Json(static_cast<double>(differing) / pixels) : Json();
     row["one_alone_rate"] = drawn ? Json(static_cast<double>(one_alone) / pixels) : Json();
+    row["unexplained_rate"] = drawn ? Json(unexplained_rate) : Json();
     row["device"] = device.description().name;
     row["driver"] = device.description().driver;
     row["field"] = ground.name;
@@ -245,7 +305,7 @@ void run_gpu_raster(const GpuOptions& options, const ReportOptions& report) {
   const RayCounts counts = options.rays.value_or(cpu ? kCpuDeviceRays : RayCounts{});
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{
-      {"samples", "mode", "ms", "x mesh", "triangles/pixel", "hits %", "differ %", "one alone %"}};
+      {"samples", "mode", "ms", "x mesh", "triangles/pixel", "hits %", "differ %", "one alone %", "unexplained %"}};
   const auto percent = [](const Json& share) {
     return share.is_null() ? "-" : short_number(100 * share.get<double>());
   };
@@ -258,7 +318,8 @@ void run_gpu_raster(const GpuOptions& options, const ReportOptions& report) {
       const Json& row = rows[i];
       lines.push_back({short_number(row["size"]), row["mode"], short_number(row["ms"]), short_number(row["mesh_ratio"]),
                        short_number(row["triangles_per_pixel"]), percent(row["hit_share"]),
-                       percent(row["differing_rate"]), percent(row["one_alone_rate"])});
+                       percent(row["differing_rate"]), percent(row["one_alone_rate"]),
+                       percent(row["unexplained_rate"])});
     }
   }
   print_table(lines, 2);

@@ -297,6 +297,44 @@ SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCAR
   return true;
 }
 
+// When and where any-hit looks ahead; from a search over the rays of scarp-bench gpu (doc/dev/decisions.md).
+const uint kScarpPatience = 3u;       // steps of the walk before
+const float kScarpShortWay = 512.0f;  // cells of way below all ground's top up to which looking costs what it saves
+const int kScarpProbeLevel = 3;       // blocks of 8 x 8 cells
+const int kScarpProbes = 12;
+const float kScarpFirstProbe = 8.0f;  // steps in cells
+const float kScarpProbeGrowth = 1.5f;
+
+/// Whether a ray that is above at local time t is, at some point further on, under all of a block: without holes it has
+/// been through the surface before, wherever. A look at the minima of one level at ever longer steps; not over a field
+/// that wraps round.
+SCARP_FN bool scarp_goes_under(ScarpField field, ScarpRay ray, ScarpFrame frame, float t, SCARP_INOUT(ScarpHit) hit) {
+  float relief = field.highest - field.lowest;
+  float last = frame.t_end;
+  if (ray.direction.z > 0.0f) last = min(last, ((field.highest - frame.base) - frame.z) / ray.direction.z);
+  float per_cell = 1.0f / max(abs(ray.direction.x), abs(ray.direction.y));
+  if (!(last - t > kScarpShortWay * per_cell)) return false;
+  float base = (field.code_base - frame.base) + field.code_base_low;
+  float all_heights = abs(base) + abs(field.code_step) * 65535.0f;
+  float step = kScarpFirstProbe * per_cell;
+  for (int i = 0; i < kScarpProbes; ++i) {
+    t += step;
+    step *= kScarpProbeGrowth;
+    if (!(t < last)) return false;
+    int col = frame.begin.x + int(floor(frame.o.x + ray.direction.x * t));
+    int row = frame.begin.y + int(floor(frame.o.y + ray.direction.y * t));
+    // Rounding could have a ray over the field that has left it: by 2^-5 of a cell, as far as probes go (numerics.md).
+    if (col < 1 || row < 1 || col > field.cells.x - 2 || row > field.cells.y - 2) return false;
+    float code = scarp_minimum(kScarpProbeLevel, col >> kScarpProbeLevel, row >> kScarpProbeLevel);
+    hit.fetches += 1u;
+    // Or beside this block, where heights differ by as much as they do anywhere.
+    float rounding = scarp_rounding(frame, ray, t, all_heights, relief);
+    float above = scarp_ray_height(frame, ray, t) - (base + field.code_step * code);
+    if (code > 0.0f && above < -2.0f * rounding) return true;
+  }
+  return false;
+}
+
 /// On from where a walk stands, for some turns; with `any`, to the first certainty that anything is met. False: it is
 /// not done. Hosts whose drivers limit the turns of loops interrupt it so and go on with the same walk and hit.
 SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, SCARP_INOUT(ScarpWalk) walk,
@@ -391,6 +429,11 @@ SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, S
     if (!falling && ray_lowest > field.highest - walk.frame.base) return true;
     if (!(t_line < walk.frame.t_end)) return true;
     walk.t_in = t_out;
+    if (any && hit.steps == kScarpPatience && walk.side == kScarpAboveGround && top >= kScarpProbeLevel &&
+        (field.flags & (kScarpHoles | kScarpWraps)) == 0u && scarp_goes_under(field, ray, walk.frame, walk.t_in, hit)) {
+      hit.status = kScarpHit;
+      return true;
+    }
     if (!scarp_step(field, ray, through_x, top, walk, hit)) return true;
   }
   return false;

@@ -136,16 +136,17 @@ SCARP_FN float scarp_per_power_below(float a) {
 const uint kScarpSendSampled = 1u;      ///< by a march that takes samples: not clipped to the highest one
 const uint kScarpSendFromSurface = 2u;  ///< from the surface of a cell, whose place is given; z is read by samplers
 
-/// The ray of a line from time 0 to `end`, which may be kScarpNever unless the field wraps round. `cell` and `place`
-/// are read from the surface only.
-SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat end, uint how, ivec2 cell, vec2 place) {
+/// The ray of a line from time `begin`, which is 0 from the surface, to `end`, which may be kScarpNever unless the
+/// field wraps round. `cell` and `place` are read from the surface only.
+SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat begin, ScarpTwoFloat end, uint how,
+                              ivec2 cell, vec2 place) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
   bool sampled = (how & kScarpSendSampled) != 0u;
   bool strict = (how & kScarpSendFromSurface) != 0u;
   ScarpSent sent;
   sent.marches = 0;
   sent.per_time = 1.0f;
-  sent.begin = scarp_two(0.0f);
+  sent.begin = begin;
   ScarpRay ray;
   ray.flags = strict ? kScarpOnSurface : 0u;
   ray.cell = cell;

@@ -109,5 +109,6 @@ GroundPaint::Patch GroundPaint::patch(int set, int octave) const {
 }
 
 double GroundPaint::contour_interval() const { return settings_.contours * field_.settings().exaggeration; }
+double GroundPaint::heavy_contour_interval() const { return glsl::kScarpHeavyContour * contour_interval(); }
 
 }  // namespace scarp

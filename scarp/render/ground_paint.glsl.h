@@ -82,17 +82,21 @@ SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_
 const float kScarpLeastUpright = 1e-9f;
 const float kScarpLeastPerPixel = 1e-12f;
 
+/// Every so many contour lines one is heavy, from height 0 on.
+const int kScarpHeavyContour = 5;
+
 /// With contour lines over it, `interval` metres apart.
 SCARP_FN vec3 scarp_with_contours(vec3 colour, real height, real3 normal, real footprint, real interval) {
   real slope = sqrt(max(real(0.0), real(1.0) - normal.z * normal.z)) / max(normal.z, real(kScarpLeastUpright));
   real per_pixel = max(slope * footprint, real(kScarpLeastPerPixel));  // metres of height
   real line = floor(height / interval + real(0.5));
   real pixels = abs(height - line * interval) / per_pixel;
-  real fifth = abs(line) - real(5.0) * floor(abs(line) / real(5.0) + real(0.1));
+  // A tenth of a line more than rounding takes from the quotient.
+  real fifth = abs(line) - real(kScarpHeavyContour) * floor(abs(line) / real(kScarpHeavyContour) + real(0.1));
   bool heavy = fifth == real(0.0);
   real width = heavy ? real(2.0) : real(1.1);
   // Of all lines when 8 pixels apart; none at 3 but for the heavy ones, which are five times as far apart.
-  real apart = interval * (heavy ? real(5.0) : real(1.0)) / per_pixel;
+  real apart = interval * (heavy ? real(kScarpHeavyContour) : real(1.0)) / per_pixel;
   real ink = clamp(width / real(2.0) + real(0.5) - pixels, real(0.0), real(1.0)) *
              scarp_smooth(real(3.0), real(8.0), apart) * (heavy ? real(0.85) : real(0.6));
   return scarp_between(colour, scarp_linear_from_srgb(kScarpContour), ink);

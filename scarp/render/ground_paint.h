@@ -62,6 +62,7 @@ class GroundPaint {
   Patch patch(int set, int octave) const;
   /// Exaggerated metres from line to line.
   double contour_interval() const;
+  double heavy_contour_interval() const;  ///< from one of those to the next
 
  private:
   vec3 draped(const dvec3& position, vec3 below) const;

@@ -27,6 +27,14 @@ bool under_edge(const CellHeights& h, const std::array<int, 2>& cell, const Grid
   return ray.origin.z + t * ray.direction.z <= from + f * (to - from);
 }
 
+// Whether the ray is under the ground of a cell that it is over at t.
+bool under_ground(const HeightField& field, const CellHeights& h, const std::array<int, 2>& cell, const GridRay& ray,
+                  double t) {
+  const double u = std::clamp(ray.origin.x + t * ray.direction.x - cell[0], 0.0, 1.0);
+  const double v = std::clamp(ray.origin.y + t * ray.direction.y - cell[1], 0.0, 1.0);
+  return ray.origin.z + t * ray.direction.z < height_in_cell(field.settings().surface, h, u, v);
+}
+
 }  // namespace
 
 double plinth_base(const HeightField& field) {
@@ -83,6 +91,11 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
   double t = t_in;
   std::size_t crossed = side == 1 ? 1 : 0;
   bool from_outside = side == 0 || side == 1, outermost = from_outside;
+  const bool from_top = side == 2 && local.direction.z < 0;
+  if (!from_outside && !from_top) {
+    const auto heights = field_.cell_heights({cell[0], cell[1]});
+    if (heights && under_ground(field_, *heights, cell, local, t)) return {};
+  }
   while (t <= t_out) {
     const auto heights = field_.cell_heights({cell[0], cell[1]});
     if (heights && from_outside) {

@@ -29,7 +29,8 @@ class Plinth {
     bool outermost;  ///< at the field's border: nothing can be met before it
   };
   /// The first wall that the ray meets from outside within its range. The surface may be met before it; a ray that
-  /// meets the surface between two walls is followed no further.
+  /// meets the surface between two walls is followed no further, nor is one that begins in the rock or comes into it
+  /// through the base.
   std::optional<Wall> intersect(const Ray& ray) const;
 
   /// Whether a ray falls past the block: it comes over or under the field's ground below the base, and never rises.

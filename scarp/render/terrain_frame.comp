@@ -31,6 +31,7 @@ const bool has_contours = (parts & kFrameHasContours) != 0u;
 const bool has_fog = (parts & kFrameHasFog) != 0u;
 const bool has_samples = (parts & kFrameHasSamples) != 0u;
 const bool has_block = (parts & kFrameHasBlock) != 0u;
+const bool has_rims = (parts & kFrameHasRims) != 0u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Pixels { uint words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer States { FrameState states[]; };
@@ -146,6 +147,7 @@ void keep(int ray, FrameSeen seen) {
 struct Sent {
   int light;  // of a task of light: which of its rays
   float weight;
+  bool walls;  // it sees those at rims
   ScarpSent ray;
   ScarpHit hit;
   ScarpWalk walk;
@@ -198,6 +200,12 @@ float stop_of(ScarpField field, FrameSeen seen, float step, float plane) {
   return first + ceil((plane - first) / step) * step;
 }
 
+// The field as a ray has it.
+ScarpField seen_by(ScarpField field, bool walls) {
+  if (has_rims && walls) field.flags |= kScarpSolid;
+  return field;
+}
+
 // Sends the ray of a task; false: there is none, or nothing is on its way.
 bool send(ScarpField field, int task, inout Sent sent) {
   Settings s = settings();
@@ -206,6 +214,7 @@ bool send(ScarpField field, int task, inout Sent sent) {
   sent.hit = scarp_no_hit();
   if (light ? seen.kind != kFrameGround : seen.asked == 0) return false;
   ScarpLine line = seen.line;
+  ScarpTwoFloat begin = scarp_two(0.0);
   ScarpTwoFloat end = seen.end;
   uint how = stepped ? kScarpSendSampled : 0u;
   ivec2 cell = seen.cell;
@@ -255,7 +264,7 @@ bool send(ScarpField field, int task, inout Sent sent) {
         if (scarp_two_less(end, water.t)) water.kind = 0;
       }
       if (water.kind != 0) end = water.t;
-      bool hidden = has_block && hidden_by_block(field, end, seen);
+      bool hidden = has_block && hidden_by_block(field, begin, end, seen);
       if (seen.kind == kFrameWall) water.kind = 0;
       water_met = water;
       if (hidden) {
@@ -269,8 +278,10 @@ bool send(ScarpField field, int task, inout Sent sent) {
       place = water.place;
     }
   }
-  sent.ray = scarp_send(field, line, end, how, cell, place);
+  sent.walls = has_rims && task == kFrameCamera;
+  sent.ray = scarp_send(seen_by(field, sent.walls), line, begin, end, how, cell, place);
   if (sent.ray.marches == 0) return false;
+  if (sent.walls) sent.walls = meets_rims(field, sent.ray.ray);
   if (stepped) {
     sent.steps = scarp_first_step(sent.ray.ray);
     return true;
@@ -438,6 +449,7 @@ void main() {
   Sent sent;
   sent.light = 0;
   sent.weight = 0.0;
+  sent.walls = false;
   point = 0;
   int task = -1;
   bool under_way = false;
@@ -453,6 +465,7 @@ void main() {
     water_met = all.states[slot].water;
     sent.light = all.states[slot].light;
     sent.weight = all.states[slot].weight;
+    sent.walls = all.states[slot].walls != 0;
     sent.ray = all.states[slot].sent;
     sent.hit = all.states[slot].hit;
     sent.step = all.states[slot].step;
@@ -469,7 +482,8 @@ void main() {
     if (!under_way) under_way = send(field, task, sent);
     if (under_way) {
       bool done = stepped ? scarp_step_on(field, sent.ray.ray, sent.step, kFrameTurns, sent.steps, sent.hit)
-                          : scarp_go_on(field, sent.ray.ray, task >= kFrameSeens, kFrameTurns, sent.walk, sent.hit);
+                          : scarp_go_on(seen_by(field, sent.walls), sent.ray.ray, task >= kFrameSeens, kFrameTurns,
+                                        sent.walk, sent.hit);
       if (!done) break;
       under_way = false;
     }
@@ -498,6 +512,7 @@ void main() {
     all.states[slot].water = water_met;
     all.states[slot].light = sent.light;
     all.states[slot].weight = sent.weight;
+    all.states[slot].walls = sent.walls ? 1 : 0;
     all.states[slot].sent = sent.ray;
     all.states[slot].hit = sent.hit;
     all.states[slot].step = sent.step;

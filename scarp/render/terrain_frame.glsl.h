@@ -39,6 +39,8 @@ const uint kFrameHasContours = 16u;
 const uint kFrameHasFog = 32u;
 const uint kFrameHasSamples = 64u;  ///< of sun and sky
 const uint kFrameHasBlock = 128u;   ///< below the terrain
+/// Walls at the rims of holes that are the block's: those of solid ground the march knows, and they have no base.
+const uint kFrameHasRims = 256u;
 
 const int kFrameRounds = 16;
 const int kFrameTurns = 3000;
@@ -74,7 +76,8 @@ struct FrameRampPiece {
   uint count;
 };
 
-/// All but `aa` and what is said to be in pixels is in metres of the world or grid units.
+/// All but `aa` and what is said to be in pixels is in metres of the world or grid units. Heights in metres count from
+/// near the lowest ground: of a height above the sea floats hold less, the higher the ground lies.
 struct FrameSettings {
   // Of the camera, in grid units: the ray through a place in the picture is the sum of these, x pixels to the right and
   // y down. Along its axis it goes a metre per time.
@@ -93,8 +96,9 @@ struct FrameSettings {
   vec2 cell_low;
   vec2 per_cell;
   float metres_per_sample;
-  float per_metre;  ///< sample units
-  float metres_at_zero;
+  float per_metre;        ///< sample units
+  float base_of_heights;  ///< sample units: where metres of heights count from, with what it lies above their zero
+  float metres_at_base;
   float last_row;  ///< rows of samples - 1
   int block;       ///< 1: there is one below the terrain, down to
   float base_sample;
@@ -224,6 +228,7 @@ struct FrameState {
   int under_way;  ///< 1: the ray of the task is
   int light;      ///< of a point's rays to sun and sky, which
   float weight;
+  int walls;  ///< 1: the ray sees those at rims
   vec3 sum;
   FrameSeen seen[kFrameSeens];
   FrameWater water;

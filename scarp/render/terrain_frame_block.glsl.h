@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Walls of the block below the terrain for terrain_frame.comp, which includes this: Plinth (plinth.h) of a field
-// without holes, whose walls stand at its border alone. GLSL.
+// Walls of the block below the terrain for terrain_frame.comp, which includes this: Plinth (plinth.h). GLSL.
+//
+// Without holes they stand at the border alone, and a ray is told there. With holes the march finds them: it takes the
+// ground for solid, on that part of the way that is above the base.
 
 // The ray's height above the block's base at time t.
 float above_base(ScarpLine line, ScarpTwoFloat t) {
@@ -9,19 +11,29 @@ float above_base(ScarpLine line, ScarpTwoFloat t) {
   return scarp_two_add(scarp_line_height(line, t), scarp_two_negate(base)).high;
 }
 
-// Where a ray of the camera that ends at `end` meets a wall, put into what it has seen. True: the block hides the
-// field, by a wall or because the ray falls past it; there is no ground to be looked for.
-bool hidden_by_block(ScarpField field, ScarpTwoFloat end, inout FrameSeen seen) {
+// What the block leaves of the way of a ray of the camera, from `begin` to `end`; a wall at the border is put into what
+// the ray has seen. True: the block hides the field, by a wall or because the ray falls past it; there is no ground to
+// be looked for.
+bool hidden_by_block(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTwoFloat end, inout FrameSeen seen) {
   Settings s = settings();
   ScarpLine line = seen.line;
   ScarpSpan x = scarp_span_x(field, line);
   ScarpSpan y = scarp_span_y(field, line);
   ScarpTwoFloat over = scarp_two_later(scarp_two(0.0), scarp_two_later(x.begin, y.begin));
   if (over.high >= kScarpNever) return true;  // along a side, beside the field
-  if (above_base(line, over) < 0.0) {
-    // One that rises comes in through the base, and sees nothing of the ground from below: the march says so.
-    return line.direction.z < 0.0;
+  bool from_below = above_base(line, over) < 0.0;
+  if (from_below && line.direction.z < 0.0) return true;
+  if (has_rims) {
+    if (line.direction.z == 0.0) return from_below;
+    ScarpTwoFloat base = two(s.is.base_sample, s.is.base_sample_low);
+    ScarpTwoFloat at_base =
+        scarp_time_at(base, line.origin.z, line.origin_low.z, line.direction.z, line.direction_low.z);
+    if (from_below) begin = at_base;
+    if (line.direction.z < 0.0) end = scarp_two_earlier(end, at_base);
+    return false;
   }
+  // One that rises comes in through the base, and sees nothing of the ground from below: the march says so.
+  if (from_below) return false;
   // Through a side of constant column, then one of constant row where that is crossed later: the order of ties.
   bool through_x = scarp_two_less(scarp_two(0.0), x.begin) && !scarp_two_less(x.begin, over);
   bool through_y = scarp_two_less(scarp_two(0.0), y.begin) && !scarp_two_less(y.begin, over);
@@ -41,10 +53,18 @@ bool hidden_by_block(ScarpField field, ScarpTwoFloat end, inout FrameSeen seen) 
   }
   ScarpTwoFloat z = scarp_line_height(line, over);
   ScarpCell ground = scarp_cell(field, cell.x, cell.y, z.high);
+  if (ground.hole) return false;  // of solid ground: the march finds the walls at its rim
   if (z.low > scarp_surface(field, ground, place.x, place.y)) return false;
   seen.kind = kFrameWall;
   seen.t = over;
   seen.cell = cell;
   seen.place = place;
   return true;
+}
+
+// Whether a ray sees walls at rims: not one that begins in the rock.
+bool meets_rims(ScarpField field, ScarpRay ray) {
+  if ((ray.flags & (kScarpFromOutside | kScarpAbove)) != 0u) return true;
+  ScarpCell ground = scarp_cell(field, ray.cell.x, ray.cell.y, ray.z);
+  return ground.hole || ray.z_low >= scarp_surface(field, ground, ray.place.x, ray.place.y);
 }

@@ -52,7 +52,8 @@ vec3 normal_of(vec2 slope) {
 }
 
 float height_of(float sample_height) {
-  return sample_height * settings().is.metres_per_sample + settings().is.metres_at_zero;
+  Settings s = settings();
+  return (sample_height - s.is.base_of_heights) * s.is.metres_per_sample + s.is.metres_at_base;
 }
 
 vec3 ramp_colour(float height) {
@@ -103,8 +104,8 @@ vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction, vec3 shadin
   // What a pixel covers is longer than it is wide where ground is seen from the side: the mean of both.
   float footprint =
       s.is.pixel_width * (s.is.orthographic != 0 ? 1.0 : metres) / sqrt(max(0.05, -dot(direction, normal)));
-  ScarpCell cell = scarp_cell(field, seen.cell.x, seen.cell.y, 0.0);
-  float height = height_of(scarp_bilinear(cell, seen.place.x, seen.place.y));
+  ScarpCell cell = scarp_cell(field, seen.cell.x, seen.cell.y, s.is.base_of_heights);
+  float height = scarp_bilinear(cell, seen.place.x, seen.place.y) * s.is.metres_per_sample + s.is.metres_at_base;
   ScarpPaintPlace place = paint_place(seen.line, seen.t);
   // One place where noise is asked for keeps the shader small.
   vec3 patches = vec3(0.0);

@@ -76,14 +76,23 @@ void set_camera(glsl::FrameSettings& s, const HeightField& field, const Camera& 
   s.aa = settings.aa;
 }
 
-void set_field(glsl::FrameSettings& s, const HeightField& field, const std::optional<Plinth>& block) {
+// Where a frame's heights count from: near the field's lowest, on a heavy contour.
+double zero_of_heights(const HeightField& field, const GroundPaint& paint) {
+  const double low = field.min_height(), apart = paint.heavy_contour_interval();
+  return apart > 0 ? std::floor(low / apart) * apart : low;
+}
+
+void set_field(glsl::FrameSettings& s, const HeightField& field, const std::optional<Plinth>& block,
+               double zero_of_heights) {
   const HeightFieldSettings& settings = field.settings();
   const dvec2 cell(settings.cell_x, settings.cell_y);
   split(cell, s.cell, s.cell_low);
   s.per_cell = glm::vec2(1.0 / cell);
   s.metres_per_sample = static_cast<float>(settings.scale * settings.exaggeration);
   s.per_metre = static_cast<float>(1 / (settings.scale * settings.exaggeration));
-  s.metres_at_zero = static_cast<float>(field.height_from_sample(0));
+  s.base_of_heights = static_cast<float>(field.min_sample());
+  s.metres_at_base =
+      static_cast<float>(field.height_from_sample(static_cast<double>(s.base_of_heights)) - zero_of_heights);
   s.last_row = static_cast<float>(field.rows() - 1);
   s.block = block.has_value();
   if (block) split(block->base_sample(), s.base_sample, s.base_sample_low);
@@ -120,11 +129,11 @@ std::optional<float> sea_sample(const HeightField& field, double level) {
   return {};
 }
 
-void set_water(glsl::FrameSettings& s, const HeightField& field, const Water* water) {
+void set_water(glsl::FrameSettings& s, const HeightField& field, const Water* water, double zero_of_heights) {
   s.water = water != nullptr;
   if (!water) return;
   const HeightFieldSettings& settings = field.settings();
-  s.level = static_cast<float>(water->level());
+  s.level = static_cast<float>(water->level() - zero_of_heights);
   split((water->level() / settings.exaggeration - settings.offset) / settings.scale, s.level_sample,
         s.level_sample_low);
   const std::optional<float> sea = sea_sample(field, water->level());
@@ -144,11 +153,11 @@ void set_water(glsl::FrameSettings& s, const HeightField& field, const Water* wa
   }
 }
 
-void set_air(glsl::FrameSettings& s, const HeightField& field, const Shader& shader) {
+void set_air(glsl::FrameSettings& s, const HeightField& field, const Shader& shader, double zero_of_heights) {
   const FogSettings& fog = shader.fog().settings();
   s.fog = static_cast<int>(fog.kind);
   s.fog_per_metre = static_cast<float>(shader.fog().per_metre());
-  s.fog_base = static_cast<float>(fog.base);
+  s.fog_base = static_cast<float>(fog.base - zero_of_heights);
   s.fog_falloff = static_cast<float>(fog.falloff);
   s.sun_tint = static_cast<float>(fog.sun_tint);
   s.haze_per_metre = static_cast<float>(shader.haze_per_metre());
@@ -176,11 +185,11 @@ void set_samples(glsl::FrameSettings& s, const Lighting& lighting, int samples) 
   s.index_bits = lighting.pattern().index_bits();
 }
 
-void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPaint& paint) {
+void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPaint& paint, double zero_of_heights) {
   const GroundPaintSettings& settings = paint.settings();
   s.natural = settings.natural;
   s.snow_share = static_cast<float>(settings.snow_share);
-  s.low = static_cast<float>(field.min_height());
+  s.low = static_cast<float>(field.min_height() - zero_of_heights);
   // Of level ground any number will do that a float holds.
   constexpr double kLeastRelief = 1e-30;
   s.per_relief = static_cast<float>(1 / std::max(field.max_height() - field.min_height(), kLeastRelief));
@@ -235,9 +244,9 @@ class FrameMaker {
         commands_(device_) {}
 
   Image make(const TerrainScene& scene, const glsl::FrameSettings& numbers, const GroundPaint& paint,
-             const Progress& progress, FrameReport& report) {
+             double zero_of_heights, const Progress& progress, FrameReport& report) {
     glsl::FrameSettings s = numbers;
-    set_ramp(s, paint.ramp());
+    set_ramp(s, paint.ramp(), zero_of_heights);
     if (const Drape* drape = paint.settings().drape.get()) set_drape(s, *drape);
     const ComputePipeline& pipeline = pipeline_for(s);
     Image image(s.width, s.height);
@@ -284,11 +293,14 @@ class FrameMaker {
 
  private:
   const ComputePipeline& pipeline_for(const glsl::FrameSettings& s) {
+    const bool block = s.block != 0 && !stepped_;  // steps do not see it
+    const bool rims = (flags_ & (glsl::kScarpHoles | glsl::kScarpSolid)) == glsl::kScarpHoles;
     const std::uint32_t parts =
         (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
         (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) | (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
         (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) |
-        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (s.block != 0 && !stepped_ ? glsl::kFrameHasBlock : 0);
+        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (block ? glsl::kFrameHasBlock : 0) |
+        (block && rims ? glsl::kFrameHasRims : 0);
     const auto found = pipelines_.find(parts);
     if (found != pipelines_.end()) return found->second;
     const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
@@ -297,12 +309,13 @@ class FrameMaker {
         .first->second;
   }
 
-  void set_ramp(glsl::FrameSettings& s, const Ramp& ramp) {
+  void set_ramp(glsl::FrameSettings& s, const Ramp& ramp, double zero_of_heights) {
     std::vector<glsl::FrameRampPiece> pieces;
     std::vector<vec3> colours;
     for (const Ramp::Piece& piece : ramp.pieces()) {
-      pieces.push_back({static_cast<float>(piece.low), static_cast<float>(piece.high),
-                        static_cast<std::uint32_t>(colours.size()), static_cast<std::uint32_t>(piece.colours.size())});
+      pieces.push_back({static_cast<float>(piece.low - zero_of_heights),
+                        static_cast<float>(piece.high - zero_of_heights), static_cast<std::uint32_t>(colours.size()),
+                        static_cast<std::uint32_t>(piece.colours.size())});
       colours.insert(colours.end(), piece.colours.begin(), piece.colours.end());
     }
     s.ramp_count = static_cast<int>(pieces.size());
@@ -346,12 +359,9 @@ bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const P
   const std::string_view march = scene.march().name;
   const bool stepped = march == "fixed-step" && settings.look == Look::comanche;
   if (!stepped && march != "max-mip") return false;
-  // The steps of `comanche` do not see a block.
-  const HeightField& field = scene.field();
-  if (!stepped && settings.plinth && !field.wraps() && field.nodata_count() > 0) return false;
   Ray eye;
   eye.origin = camera.eye();
-  const dvec3 place = field.grid_from_world(eye).origin;
+  const dvec3 place = scene.field().grid_from_world(eye).origin;
   return std::abs(place.x) < kFarthestCell && std::abs(place.y) < kFarthestCell;
 }
 
@@ -364,16 +374,17 @@ Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double
   const LakeView& view = lake.view();
   glsl::FrameSettings numbers{};
   set_camera(numbers, field, camera, settings);
-  set_field(numbers, field, view.plinth);
+  const double zero = zero_of_heights(field, view.shader.paint());
+  set_field(numbers, field, view.plinth, zero);
   set_steps(numbers, scene, camera, settings);
-  set_water(numbers, field, view.water);
-  set_air(numbers, field, view.shader);
+  set_water(numbers, field, view.water, zero);
+  set_air(numbers, field, view.shader, zero);
   set_samples(numbers, view.shader.lighting(), settings.samples);
-  set_ground(numbers, field, view.shader.paint());
+  set_ground(numbers, field, view.shader.paint(), zero);
   FrameReport unasked;
   FrameReport& told = report ? *report : unasked;
   told.device_s.reset();
-  return static_cast<FrameMaker*>(terrain.kept.get())->make(scene, numbers, view.shader.paint(), progress, told);
+  return static_cast<FrameMaker*>(terrain.kept.get())->make(scene, numbers, view.shader.paint(), zero, progress, told);
 }
 
 }  // namespace scarp

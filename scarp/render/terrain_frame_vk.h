@@ -19,8 +19,7 @@
 
 namespace scarp {
 
-/// Whether such a picture is made there as a whole: max-mip or fixed-step, no holes in the terrain where there is a
-/// block below it, and an eye less than 2^22 cells off.
+/// Whether such a picture is made there as a whole: max-mip or fixed-step, and an eye less than 2^22 cells off.
 bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings);
 
 /// What the ray of the camera through a pixel's first point met.

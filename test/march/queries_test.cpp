@@ -97,41 +97,15 @@ TEST(Queries, RaysFromOutsideAreChecked) {
   EXPECT_TRUE(refused(field, from(2)));
 }
 
-// Hills of several widths: rays along the ground go far before they are stopped, and any-hit looks ahead.
-HeightField hills(Surface surface) {
-  const int cols = 1025, rows = 769;
-  std::vector<float> samples;
-  samples.reserve(static_cast<std::size_t>(cols) * rows);
-  for (int row = 0; row < rows; ++row) {
-    for (int col = 0; col < cols; ++col) {
-      const double x = col, y = row;
-      samples.push_back(static_cast<float>(30 * std::sin(0.021 * x + 0.3) * std::cos(0.017 * y) +
-                                           6 * std::sin(0.11 * x + 0.07 * y) + std::sin(0.9 * x) * std::cos(0.8 * y)));
-    }
-  }
-  return HeightField::own(std::move(samples), cols, rows, {.surface = surface});
-}
-
 TEST(Queries, AnyHitLooksAheadAndAgreesWithTheClosestHit) {
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
-    const HeightField field = hills(surface);
+    const HeightField field = hills(1025, 769, surface);
     const MaxPyramid pyramid(field);
     const HeightTarget target{&field, &pyramid};
     Random random(31);
     int hits = 0, far = 0;
     for (int i = 0; i < 50'000; ++i) {
-      Ray ray;
-      const double x = uniform(random, 0, field.width()), y = uniform(random, 0, field.depth());
-      const auto place = field.place(x, y).value();
-      ray.origin = {x, y, *field.height(x, y)};
-      const double azimuth = uniform(random, 0, 6.2832);
-      ray.direction = {std::cos(azimuth), std::sin(azimuth), uniform(random, -0.01, 0.06)};
-      if (i % 2) {
-        ray.start = RayStart::on_surface;
-        ray.start_cell = place.cell;
-      } else {
-        ray.origin.z += uniform(random, -1, 20);
-      }
+      Ray ray = along_hills(field, random, i % 2);
       // Some end just before what stops them, or just behind.
       const Hit first = march_max_mip(target, ray);
       if (first && i % 3 == 0) ray.t_max = first.t * uniform(random, 0.98, 1.02);

@@ -215,9 +215,12 @@ RoundingJudge::Beliefs RoundingJudge::follow(double until) const {
     if (event.t > until) break;
     if (event.may_leave) now.gone = true;
     if (event.what == Event::hole) {
-      if (!event.brief) now.above = now.below = false;
+      // One that begins this near to the ground may be taken to begin over it.
+      if (!event.brief) {
+        now.above = now.below = false;
+        begun = true;
+      }
       now.unknown = true;
-      begun = true;
       continue;
     }
     const double f = event.clearance, d = kCertain * event.delta;

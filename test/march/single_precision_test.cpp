@@ -125,5 +125,62 @@ TEST(SinglePrecisionAcrossTiles, MaxMipDecidesAsTheSurfaceDoes) {
   }
 }
 
+// Any-hit looks ahead: it agrees with closest-hit all the same, and reads less. Levels and rising rays have no other
+// early answer.
+TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithTheClosestHit) {
+#ifdef NDEBUG
+  constexpr int kRays = 50'000;
+#else
+  constexpr int kRays = 2'000;
+#endif
+  for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+    const HeightField field = hills(2100, 900, surface);
+    const MaxPyramid pyramid(field);
+    glsl::host_field = &field;
+    glsl::host_pyramid = &pyramid;
+    const glsl::ScarpField ground = device_field(field, &pyramid);
+    Random random(32);
+    std::uint64_t hits = 0, closest_fetches = 0, any_fetches = 0;
+    for (int i = 0; i < kRays; ++i) {
+      Ray ray = along_hills(field, random, i % 2);
+      // Some end just before what stops them, or just behind.
+      const Hit first = march_max_mip({&field, &pyramid}, ray);
+      if (first && i % 3 == 0) ray.t_max = first.t * uniform(random, 0.98, 1.02);
+      const DeviceRay prepared = device_ray(field, ray);
+      if (!prepared.marches) continue;
+      const glsl::ScarpHit closest = glsl::scarp_max_mip(ground, prepared.ray, false);
+      const glsl::ScarpHit any = glsl::scarp_max_mip(ground, prepared.ray, true);
+      ASSERT_EQ(any.status == glsl::kScarpHit, closest.status == glsl::kScarpHit) << text(ray);
+      if (closest.status != glsl::kScarpHit || ray.direction.z < 0) continue;
+      ++hits;
+      closest_fetches += closest.fetches;
+      any_fetches += any.fetches;
+    }
+    EXPECT_GT(hits, static_cast<std::uint64_t>(kRays / 5));
+    EXPECT_LT(any_fetches, closest_fetches);
+  }
+}
+
+// Level ground as high as every block's minimum: what goes along it from its surface is not under it.
+TEST(SinglePrecisionLookingAhead, GroundThatARayRunsAlongIsNotInItsWay) {
+  constexpr int kCols = 2100, kRows = 900;
+  std::vector<std::int16_t> samples(std::size_t{kCols} * kRows, 100);
+  samples.back() = 200;
+  const HeightField field = HeightField::own(std::move(samples), kCols, kRows);
+  const MaxPyramid pyramid(field);
+  glsl::host_field = &field;
+  glsl::host_pyramid = &pyramid;
+  const glsl::ScarpField ground = device_field(field, &pyramid);
+  Random random(33);
+  for (int i = 0; i < 1000; ++i) {
+    Ray ray = along_hills(field, random, true);
+    ray.direction.z = 0;
+    const DeviceRay prepared = device_ray(field, ray);
+    EXPECT_EQ(glsl::scarp_max_mip(ground, prepared.ray, true).status,
+              glsl::scarp_max_mip(ground, prepared.ray, false).status)
+        << text(ray);
+  }
+}
+
 }  // namespace
 }  // namespace scarp::test

@@ -40,4 +40,9 @@ const std::vector<RayKind>& spiteful_rays();
 /// Rays over wide fields: long ways, through nodes and along lines where tiles meet.
 const std::vector<RayKind>& rays_across_tiles();
 
+/// Hills of several widths: rays along the ground go far before they are stopped, and any-hit looks ahead.
+HeightField hills(int cols, int rows, Surface surface);
+/// A ray along them, from their surface or from some metres about it.
+Ray along_hills(const HeightField& field, Random& random, bool from_surface);
+
 }  // namespace scarp::test

@@ -261,4 +261,17 @@ const std::vector<FieldKind>& wide_fields() {
   return kinds;
 }
 
+HeightField hills(int cols, int rows, Surface surface) {
+  std::vector<float> samples;
+  samples.reserve(static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows));
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const double x = col, y = row;
+      samples.push_back(static_cast<float>(30 * std::sin(0.021 * x + 0.3) * std::cos(0.017 * y) +
+                                           6 * std::sin(0.11 * x + 0.07 * y) + std::sin(0.9 * x) * std::cos(0.8 * y)));
+    }
+  }
+  return HeightField::own(std::move(samples), cols, rows, {.surface = surface});
+}
+
 }  // namespace scarp::test

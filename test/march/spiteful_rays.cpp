@@ -336,4 +336,19 @@ const std::vector<RayKind>& spiteful_rays() {
   return kinds;
 }
 
+Ray along_hills(const HeightField& field, Random& random, bool from_surface) {
+  Ray ray;
+  const double x = uniform(random, 0, field.width()), y = uniform(random, 0, field.depth());
+  ray.origin = {x, y, *field.height(x, y)};
+  const double azimuth = uniform(random, 0, 6.2832);
+  ray.direction = {std::cos(azimuth), std::sin(azimuth), uniform(random, -0.01, 0.06)};
+  if (from_surface) {
+    ray.start = RayStart::on_surface;
+    ray.start_cell = field.place(x, y).value().cell;
+  } else {
+    ray.origin.z += uniform(random, -1, 20);
+  }
+  return ray;
+}
+
 }  // namespace scarp::test

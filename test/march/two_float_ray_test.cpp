@@ -34,7 +34,13 @@ void split(const dvec3& value, glsl::vec3& high, glsl::vec3& low) {
   low = glsl::vec3(value - dvec3(high));
 }
 
-// The answer for a ray whose range begins at 0; times are brought to a range that floats have.
+// Two floats for a time, which is brought to a range that floats have.
+glsl::ScarpTwoFloat two_floats(double t, int exponent) {
+  const double time = std::min(std::ldexp(t, exponent), double{glsl::kScarpNever});
+  return {static_cast<float>(time), static_cast<float>(time - static_cast<double>(static_cast<float>(time)))};
+}
+
+// The answer for a ray whose range begins at 0 or later.
 Hit march(const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, int turns) {
   const GridRay local = field.grid_from_world(ray);
   const dvec3& d = local.direction;
@@ -43,14 +49,12 @@ Hit march(const HeightField& field, const MaxPyramid& pyramid, const Ray& ray, i
   split(local.origin, line.origin, line.origin_low);
   split({std::ldexp(d.x, -exponent), std::ldexp(d.y, -exponent), std::ldexp(d.z, -exponent)}, line.direction,
         line.direction_low);
-  const double last = std::min(std::ldexp(ray.t_max, exponent), double{glsl::kScarpNever});
-  const glsl::ScarpTwoFloat end{static_cast<float>(last),
-                                static_cast<float>(last - static_cast<double>(static_cast<float>(last)))};
+  const glsl::ScarpTwoFloat begin = two_floats(ray.t_min, exponent), end = two_floats(ray.t_max, exponent);
   const glsl::ScarpField ground = device_field(field, &pyramid);
   const bool strict = ray.start == RayStart::on_surface;
   const glsl::ScarpRay host = strict ? device_ray(field, ray).ray : glsl::ScarpRay{};
   glsl::ScarpSent sent =
-      glsl::scarp_send(ground, line, end, strict ? glsl::kScarpSendFromSurface : 0, host.cell, host.place);
+      glsl::scarp_send(ground, line, begin, end, strict ? glsl::kScarpSendFromSurface : 0, host.cell, host.place);
   DeviceRay prepared;
   prepared.marches = sent.marches != 0;
   glsl::ScarpHit answer = glsl::scarp_no_hit();
@@ -84,13 +88,15 @@ TEST_P(TwoFloatRays, MeetWhatTheSurfaceHas) {
     glsl::host_pyramid = &pyramid;
     for (int i = 0; i < std::min(kRaysPerPair, kRaysPerField); ++i) {
       Ray ray = rays.make(field, random);
-      // Shaders begin their rays at 0.
-      ray.origin = ray.at(ray.t_min);
-      ray.t_max -= ray.t_min;
-      ray.t_min = 0;
+      // Shaders begin their rays at 0, or some cells on.
       const GridRay local = field.grid_from_world(ray);
+      const double skipped = ray.start == RayStart::on_surface || i % 2 == 0 ? 0 : 3 / length(local.direction);
+      ray.origin = ray.at(ray.t_min - skipped);
+      ray.t_max -= ray.t_min - skipped;
+      ray.t_min = skipped;
       // Floats count cells up to 2^31, and lengths of directions that cameras have.
-      const double farthest = std::max(std::abs(local.origin.x), std::abs(local.origin.y));
+      const dvec3 origin = field.grid_from_world(ray).origin;
+      const double farthest = std::max(std::abs(origin.x), std::abs(origin.y));
       if (!(farthest < 0x1p30) || !(length(local.direction) > 0x1p-100 && length(local.direction) < 0x1p100)) continue;
       if (field.wraps() && !(std::abs(ray.t_max) * length(local.direction) < 0x1p23)) continue;
       const Hit hit = march(field, pyramid, ray, 1 + i % 7);

@@ -106,6 +106,21 @@ TEST(Plinth, HolesHaveWallsToo) {
   EXPECT_FALSE(plinth.intersect(ray_of({0.2, 1.3, 5.5}, {1, 0, -1})));
 }
 
+TEST(Plinth, RaysFromTheRockMeetNoWalls) {
+  // A valley of 1 m between plateaus of 5 m: 9 x 2 nodes, of which that of column 4 has no number, so x 3..5 is a hole.
+  std::vector<float> samples;
+  for (int row = 0; row < 2; ++row) {
+    for (int col = 0; col < 9; ++col) samples.push_back(col == 4 ? kNaN : col < 2 ? 5 : col < 6 ? 1 : 5);
+  }
+  const Plinth plinth(HeightField::own(samples, 9, 2), 0);
+  // Out of the slope between columns 1 and 2 in the cell that it begins in, over the hole, into the block behind.
+  EXPECT_FALSE(plinth.intersect(ray_of({1.5, 0.3, 2.9}, {1, 0, -0.7})));
+  EXPECT_TRUE(plinth.intersect(ray_of({1.5, 0.3, 3.1}, {1, 0, -0.7})));
+  // Up through the base: in the rock, or in the shaft of the hole.
+  EXPECT_FALSE(plinth.intersect(ray_of({1.5, 0.3, -0.1}, {1, 0, 0.2})));
+  EXPECT_TRUE(plinth.intersect(ray_of({3.2, 0.3, -0.1}, {1, 0, 0.2})));
+}
+
 TEST(Plinth, OnlyWallsOfTheBorderAreOutermost) {
   std::vector<float> samples(21, 5.0f);
   samples[3] = samples[10] = samples[17] = kNaN;
