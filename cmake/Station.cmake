@@ -20,12 +20,17 @@ function(scarp_compile_options target)
   endif()
 endfunction()
 
-# scarp_unity(target FILES): compiles that many files of the target as one where SCARP_UNITY asks for it. For targets whose files
-# spend their time on the same large headers.
+# scarp_unity(target FILES [ALONE FILE...]): compiles that many files of the target as one where SCARP_UNITY asks for it. For targets
+# whose files spend their time on the same headers. ALONE: files whose local names are those of others; and those with
+# options of their own are compiled alone, too. SCARP_UNITY=programs leaves stations, which include what they need, as they are.
 function(scarp_unity target files)
-  if(SCARP_UNITY)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
+  cmake_parse_arguments(arg "" "" "ALONE" ${ARGN})
+  get_property(stations GLOBAL PROPERTY SCARP_STATIONS)
+  if(NOT SCARP_UNITY STREQUAL "all" AND NOT (SCARP_UNITY STREQUAL "programs" AND NOT target IN_LIST stations))
+    return()
   endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
+  set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 # scarp_quick(FILE...): compiles these without optimisation in the debug build with sanitizers, where that takes a half to a third of
@@ -51,5 +56,7 @@ function(scarp_station name)
   set(vectors ${arg_SOURCES})
   list(FILTER vectors INCLUDE REGEX "_simd\\.cpp$")
   scarp_quick(${vectors})
+  # Highway includes each of them again for every set.
+  set_property(SOURCE ${vectors} PROPERTY SKIP_UNITY_BUILD_INCLUSION ON)
   set_property(GLOBAL APPEND PROPERTY SCARP_STATIONS scarp_${name})
 endfunction()

@@ -1,6 +1,6 @@
 # Installs the built tree and builds a project outside of it against what was installed:
 #   cmake -D ROOT=<checkout> -D BUILD=<build folder> -D WORK=<scratch folder>
-#         -D GENERATOR=... -D CXX=<compiler> -D TYPE=<build type> -D FLAGS=<compiler flags> -P outside.cmake
+#         -D GENERATOR=... -D CXX=<compiler> -D TYPE=<build type> -P outside.cmake
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -15,7 +15,7 @@ endfunction()
 function(outside component)
   set(folder ${WORK}/${component})
   run(${CMAKE_COMMAND} -S ${ROOT}/test/house/outside -B ${folder} -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${WORK}/prefix
-      -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=${TYPE} -D CMAKE_CXX_FLAGS=${FLAGS} -D COMPONENT=${component} ${ARGN})
+      -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=${TYPE} -D COMPONENT=${component} ${ARGN})
   run(${CMAKE_COMMAND} --build ${folder})
   execute_process(COMMAND ${folder}/outside_${component} WORKING_DIRECTORY ${folder} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
