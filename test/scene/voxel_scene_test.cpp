@@ -54,6 +54,56 @@ VoxelSceneHit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, 
   return best;
 }
 
+// A hundred thousand objects of a thousand grids, turned and scaled: those near each ray are asked one by one.
+TEST(VoxelScene, FindsTheNearestOfAHundredThousand) {
+  constexpr int kModels = 1000, kObjects = 100'000, kRays = 100;
+  constexpr double kSide = 300;  // of the cube that they stand in
+  Random random(4);
+  std::vector<std::shared_ptr<const VoxelModel>> models;
+  for (int i = 0; i < kModels; ++i) models.push_back(model(2 + i % 4, 0.5, "voxel-bricks", random));
+  std::vector<VoxelPlace> places;
+  std::vector<double> radii;
+  for (int i = 0; i < kObjects; ++i) {
+    const double scale = uniform(random, 0.1, 1.5);
+    places.push_back({static_cast<std::uint32_t>(i % kModels),
+                      turned(random, scale),
+                      {uniform(random, 0, kSide), uniform(random, 0, kSide), uniform(random, 0, kSide)}});
+    radii.push_back(scale * length(dvec3(models[places.back().model]->grid().size())));
+  }
+  const VoxelScene scene(models, places);
+  std::vector<Ray> rays(kRays);
+  for (Ray& ray : rays) {
+    ray.origin = {uniform(random, 0, kSide), uniform(random, 0, kSide), uniform(random, 0, kSide)};
+    ray.direction = direction(random);
+  }
+  std::vector<VoxelSceneHit> found(kRays);
+  scene.closest_hits(rays, found);
+  int hits = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Ray& ray = rays[i];
+    std::vector<VoxelPlace> near;
+    std::vector<std::shared_ptr<const VoxelModel>> of_near;
+    std::vector<std::uint32_t> index;
+    for (std::uint32_t k = 0; k < kObjects; ++k) {
+      const dvec3 to = places[k].origin - ray.origin;
+      if (length(to - std::max(0.0, dot(to, ray.direction)) * ray.direction) > 1.01 * radii[k]) continue;
+      near.push_back(places[k]);
+      near.back().model = static_cast<std::uint32_t>(of_near.size());
+      of_near.push_back(models[places[k].model]);
+      index.push_back(k);
+    }
+    const VoxelSceneHit expected = one_by_one(of_near, near, ray);
+    ASSERT_EQ(static_cast<bool>(found[i]), static_cast<bool>(expected));
+    ASSERT_EQ(scene.occluded(ray), static_cast<bool>(expected));
+    if (!expected) continue;
+    ++hits;
+    EXPECT_EQ(found[i].object, index[expected.object]);
+    EXPECT_EQ(found[i].hit.voxel, expected.hit.voxel);
+    EXPECT_EQ(scene.closest_hit(ray).hit, found[i].hit);
+  }
+  EXPECT_GT(hits, kRays / 2);
+}
+
 // Lengths are powers of two and components eighths of them, so that nothing is rounded however short the direction is.
 TEST(VoxelScene, TakesDirectionsOfAnyLength) {
   Random random(3);
