@@ -41,6 +41,13 @@ std::string wrong_usage(const CLI::ParseError& error, const CLI::App& called) {
   if (const auto* conversion = dynamic_cast<const CLI::ConversionError*>(&error)) {
     return unconverted(*conversion, called);
   }
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) {
+    // "--fov: 'x': expected ..." as the others are told.
+    std::string text = error.what();
+    const std::size_t end = text.find(": '");
+    if (end != std::string::npos && text.find("expected", end) != std::string::npos) text.erase(end, 1);
+    return text;
+  }
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     // What is missing was perhaps given, under a name that is wrong.
     for (const std::string& argument : called.remaining()) {

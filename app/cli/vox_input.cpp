@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "app/cli/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/render/ramp.h"
@@ -48,15 +49,6 @@ bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& opti
   return true;
 }
 
-void require_no_vox_options(const VoxOptions& options) {
-  constexpr const char* kVoxels = "files of voxels";
-  refuse(options.scene.frame > 0, "--frame", kVoxels);
-  refuse(options.scene.hidden, "--hidden", kVoxels);
-  refuse(options.surface_colours, "--surface-colours", kVoxels);
-  refuse(options.solid_from.has_value(), "--solid-from", kVoxels);
-  refuse(options.up != "z", "--up", kVoxels);
-}
-
 void add_vox_options(CLI::App& command, VoxOptions& options) {
   const std::string group = "Files of voxels";
   command.add_option("--frame", options.scene.frame, "frame of an animation (MagicaVoxel)")
@@ -74,6 +66,7 @@ void add_vox_options(CLI::App& command, VoxOptions& options) {
                   "256x256x128:u16le, x fastest")
       ->group(group);
   command.add_option("--solid-from", options.solid_from, "the least number of a solid voxel of a volume (all above 0)")
+      ->check(number_in(kAnyNumber))
       ->group(group);
   command.add_option("--up", options.up, "y or z: the axis of a binvox file or volume that points up")
       ->check(CLI::IsMember({"y", "z"}))
@@ -90,11 +83,13 @@ void add_vox_look_options(CLI::App& command, VoxLookOptions& options) {
       ->group(group)
       ->capture_default_str();
   command.add_option("--normal-radius", options.normal_radius, "voxels that those of the shape look at, 1 to 8")
+      ->check(number_in({1, 8}))
       ->group(group)
       ->capture_default_str();
   command
       .add_option("--rounded", options.rounding.radius,
                   "radius of the edges that are open, in sides of a voxel, 0 to 0.5")
+      ->check(number_in({0, 0.5}))
       ->group(group)
       ->capture_default_str();
   command.add_flag("--each", options.rounding.each, "with --rounded: every voxel on its own, as a heap of dice")
