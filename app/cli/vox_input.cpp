@@ -33,6 +33,18 @@ std::vector<VoxelColour> colours_of(const std::string& ramp) {
   return list;
 }
 
+// What is wrong with a file that has been read names it, too.
+template <class Work>
+auto naming(const std::string& path, const Work& work) {
+  try {
+    return work();
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(fmt::format("voxels '{}': {}", path, error.what()));
+  }
+}
+
 void refuse(bool given, const char* option, const char* goes_with) {
   if (given) throw Error(fmt::format("{}: goes with {}; leave it out", option, goes_with));
 }
@@ -113,7 +125,7 @@ VoxInput read_voxels(const std::string& path, const VoxOptions& options, const V
   if (volume) return {{}, voxel_scene_from(read_volume(path, options.volume), colours_of(ramp), from)};
   if (binvox) return {{}, voxel_scene_from(read_binvox(path), kPlainVoxels, from)};
   VoxFile document = read_vox(path);
-  VoxelScene scene = voxel_scene_from(document, {options.scene, voxels});
+  VoxelScene scene = naming(path, [&] { return voxel_scene_from(document, {options.scene, voxels}); });
   return {std::move(document), std::move(scene)};
 }
 
@@ -161,7 +173,7 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   Json info;
   info["path"] = path;
   if (input.document) {
-    describe_document(*input.document, options, info);
+    naming(path, [&] { describe_document(*input.document, options, info); });
   } else {
     info["format"] = options.volume.empty() ? "binvox" : "volume";
     const VoxelGrid& grid = input.scene.models()[0]->grid();
