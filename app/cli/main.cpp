@@ -15,7 +15,7 @@
 
 namespace {
 
-constexpr int kFailed = 1, kWrongUsage = 2, kSignalled = 128;
+constexpr int kFailed = 1, kWrongUsage = 2;
 
 int fail(std::string text, int status) {
   scarp::cli::end_progress_line();
@@ -99,7 +99,7 @@ int main(int argc, char** argv) {
     const std::string help = subcommands.empty() ? "scarp --help" : "scarp " + called.get_name() + " --help";
     return fail(wrong_usage(error, called) + "; '" + help + "' tells what there is", kWrongUsage);
   } catch (const scarp::Interrupted& error) {
-    return fail(error.what(), kSignalled + scarp::cli::caught_signal());
+    return fail(error.what(), scarp::cli::kSignalled + scarp::cli::caught_signal());
   } catch (const std::bad_alloc&) {
     return fail("out of memory; a smaller window or picture needs less", kFailed);
   } catch (const std::exception& error) {
