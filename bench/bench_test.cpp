@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -11,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace {
 
@@ -436,6 +439,53 @@ TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   EXPECT_TRUE(fails("gpu --device none-of-that-name --sizes 33 --rays small"));
   EXPECT_TRUE(fails("edits --size 100 --rect 101"));
   EXPECT_TRUE(fails("pyramid --sizes 2 --repeats 1 --json /nowhere/out.json"));
+}
+
+// What a command writes, and whether it did what it was told to.
+std::string text_of(const std::string& arguments, bool succeeds) {
+  const std::string command = fmt::format("'{}' {}", SCARP_BENCH_PROGRAM, arguments);
+  FILE* const pipe = ::popen(command.c_str(), "r");
+  if (pipe == nullptr) return "";
+  std::string text;
+  for (int c; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+  EXPECT_EQ(::pclose(pipe) == 0, succeeds) << command;
+  return text;
+}
+
+// NaN is neither too small nor too large; a check that traces NaN rays traces none, and finds nothing wrong.
+TEST(ScarpBench, NumbersAreFinite) {
+  const std::map<std::string, std::vector<std::string>> options = {
+      {"--rays", {"leaks", "voxel-leaks", "function-leaks"}},
+      {"--embree-rays", {"leaks"}},
+      {"--pass-limit", {"heights", "survey", "naive", "batches", "simd", "voxels"}},
+      {"--exaggerations", {"heights", "naive", "batches", "simd"}},
+      {"--miss-limit", {"naive"}},
+      {"--batches", {"batches"}},
+  };
+  for (const auto& [option, commands] : options) {
+    for (const std::string& command : commands) {
+      for (const std::string value : {"nan", "inf", "-1"}) {
+        const std::string text = text_of(fmt::format("{} {}={} 2>&1 > /dev/null", command, option, value), false);
+        EXPECT_NE(text.find(fmt::format("{}: '{}': expected a ", option, value)), std::string::npos)
+            << command << ": " << text;
+        EXPECT_LT(text.size(), 200u) << text;
+      }
+    }
+  }
+  const auto count = [&](const std::string& command) {
+    const std::string text = text_of(command + " --help", true);
+    int found = 0;
+    for (auto at = text.find(" FLOAT"); at != std::string::npos; at = text.find(" FLOAT", at + 1)) ++found;
+    return found;
+  };
+  for (const std::string command :
+       {"heights", "survey", "naive", "batches", "simd", "voxels", "leaks", "voxel-leaks", "function-leaks", "scenes",
+        "render", "functions", "shapes", "pixel-match", "pyramid", "edits", "extents"}) {
+    int listed = 0;
+    for (const auto& [option, commands] : options)
+      listed += static_cast<int>(std::count(commands.begin(), commands.end(), command));
+    EXPECT_EQ(count(command), listed) << command << ": an option with a number is not in the list above";
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 #include <thread>
 
+#include "app/cli/numbers.h"
 #include "bench/commands.h"
 #include "bench/rays.h"
 #include "scarp/base/error.h"
@@ -14,6 +15,7 @@
 namespace {
 
 using namespace scarp::bench;
+using scarp::cli::kAboveZero, scarp::cli::number_in;
 
 constexpr int kLeastSize = 33, kMostSize = 32767;  // Embree's grids end there
 
@@ -39,7 +41,7 @@ void add_measure_options(CLI::App& command, TraceOptions& trace) {
   command
       .add_option("--pass-limit", trace.pass_limit_s,
                   "seconds; an engine that takes longer for a pass traces part of the rays")
-      ->check(CLI::PositiveNumber)
+      ->check(number_in(kAboveZero))
       ->capture_default_str();
   command
       .add_option_function<std::string>(
@@ -60,7 +62,7 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
   command.add_option("--seed", trace.field.seed, "of the procedural DEM")->capture_default_str();
   command.add_option("--exaggerations", trace.exaggerations, "vertical, one or several")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber)
+      ->check(number_in(kAboveZero))
       ->capture_default_str();
   add_measure_options(command, trace);
   command.add_option("--judged", trace.judged, "rays per class that the oracle answers, too")
@@ -128,7 +130,7 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(kLeastSize, kMostSize))
       ->capture_default_str();
   naive_command->add_option("--miss-limit", naive.miss_limit, "share of the hits that naive may miss")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(number_in({0, 1}))
       ->capture_default_str();
   add_trace_options(*naive_command, naive.trace);
   add_json_option(*naive_command, report);
@@ -144,7 +146,7 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   batches_command->add_option("--batches", batches.batches, "rays in a batch, one or several")
       ->delimiter(',')
-      ->check(CLI::Range(1.0, 1e8))
+      ->check(number_in({1, 1e8}))
       ->capture_default_str();
   add_trace_options(*batches_command, batches.trace);
   add_json_option(*batches_command, report);
@@ -202,7 +204,7 @@ int run(int argc, char** argv) {
       ->add_option("--judged", gpu.judged, "rays per class that the oracle answers, too (20000; for CPU devices 4096)")
       ->check(CLI::Range(1, 100'000'000));
   gpu_command->add_option("--miss-limit", gpu.miss_limit, "share of the hits that naive may miss")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(number_in({0, 1}))
       ->capture_default_str();
   gpu_command->add_option("--repeats", gpu.repeats, "counted passes per march")
       ->check(CLI::Range(1, 1000))
@@ -210,7 +212,7 @@ int run(int argc, char** argv) {
   gpu_command
       ->add_option("--pass-limit", gpu.pass_limit_s,
                    "seconds; a march that takes longer for a pass traces part of the rays")
-      ->check(CLI::PositiveNumber)
+      ->check(number_in(kAboveZero))
       ->capture_default_str();
   gpu_command->add_flag("--raster", gpu.raster,
                         "instead: primary rays beside the same grid drawn as two triangles per cell");
@@ -222,7 +224,7 @@ int run(int argc, char** argv) {
       app.add_subcommand("leaks", "very many rays at what engines lose; fails when Scarp loses one");
   // Written as 1e9, too.
   double leak_rays = static_cast<double>(leaks.rays), embree_rays = static_cast<double>(leaks.embree_rays);
-  leaks_command->add_option("--rays", leak_rays, "in all")->check(CLI::Range(1.0, 1e15))->capture_default_str();
+  leaks_command->add_option("--rays", leak_rays, "in all")->check(number_in({1, 1e15}))->capture_default_str();
   leaks_command->add_option("--seed", leaks.seed, "of fields and rays")->capture_default_str();
   leaks_command->add_option("--large", leaks.large, "samples per side of the large field")
       ->check(CLI::Range(kLeastSize, kMostSize))
@@ -231,7 +233,7 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 40))
       ->capture_default_str();
   leaks_command->add_option("--embree-rays", embree_rays, "at most about so many are also given to Embree")
-      ->check(CLI::Range(0.0, 1e15))
+      ->check(number_in({0, 1e15}))
       ->capture_default_str();
   leaks_command->add_option("--dump", leaks.dump, "file for the first failing rays (leaks-SEED.txt)");
   add_json_option(*leaks_command, report);
@@ -286,7 +288,7 @@ int run(int argc, char** argv) {
   voxels_command
       ->add_option("--pass-limit", voxels.pass_limit_s,
                    "seconds; a technique that takes longer traces part of the rays")
-      ->check(CLI::PositiveNumber)
+      ->check(number_in(kAboveZero))
       ->capture_default_str();
   add_json_option(*voxels_command, report);
 
@@ -295,7 +297,7 @@ int run(int argc, char** argv) {
   CLI::App* voxel_leaks_command =
       app.add_subcommand("voxel-leaks", "very many rays at voxel grids; fails when marches differ");
   voxel_leaks_command->add_option("--rays", voxel_leak_rays, "in all")
-      ->check(CLI::Range(1.0, 1e15))
+      ->check(number_in({1, 1e15}))
       ->capture_default_str();
   voxel_leaks_command->add_option("--seed", voxel_leaks.seed, "of grids and rays")->capture_default_str();
   voxel_leaks_command
@@ -368,7 +370,7 @@ int run(int argc, char** argv) {
       app.add_subcommand("function-leaks", "very many rays at terrain functions; fails when Scarp loses one");
   double function_leak_rays = static_cast<double>(function_leaks.rays);
   function_leaks_command->add_option("--rays", function_leak_rays, "in all")
-      ->check(CLI::Range(1.0, 1e15))
+      ->check(number_in({1, 1e15}))
       ->capture_default_str();
   function_leaks_command->add_option("--seed", function_leaks.seed, "of the rays")->capture_default_str();
   function_leaks_command->add_flag("--all", function_leaks.all, "the approximate marches as well");

@@ -17,6 +17,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/field_options.h"
+#include "app/cli/input_kind.h"
 #include "app/cli/march_options.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
@@ -69,6 +70,7 @@ struct CastOptions {
   MarchSettings march_settings;
   bool any = false, all = false;
   int threads = 0;
+  std::vector<std::string> given;  // the names of the options that were typed
 };
 
 using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&);
@@ -241,6 +243,8 @@ void run(CastOptions options) {
   if (options.output == "-") options.output.clear();
   const MarchEntry& march = find_march(options.march);
   all_hits_of(options, march);  // refuses before files are read
+  require_options_of(InputKind::terrain, options.given);
+  require_settings_of(options.march, options.given, options.march_settings);
   validate(options.march_settings);
   if (options.field.mirror) {
     throw Error("--wrap 'mirror': is for pictures; expected none, periodic or shared");
@@ -317,7 +321,10 @@ void add_cast(CLI::App& program) {
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster, std::string(kRasterCrs));
   command->footer(kTables);
-  command->callback([options] { run(*options); });
+  command->callback([options, command] {
+    options->given = given_options(*command);
+    run(*options);
+  });
 }
 
 }  // namespace scarp::cli

@@ -86,7 +86,6 @@ Json bound_json(const FunctionBound& bound) {
 }  // namespace
 
 Json describe_function(const std::string& name_or_path, double extent) {
-  require_extent(extent);
   const HeightFunction function(read_function(name_or_path));
   Octaves octaves{0, 0, 0};
   find_octaves(function.function(), octaves);

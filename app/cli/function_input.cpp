@@ -54,6 +54,7 @@ Camera camera_of(const HeightFunction& function, const FunctionInput& input, con
   const dvec3 target = settings.target.empty() ? middle : point(settings.target, "--target");
   ViewSettings view = kView;
   if (settings.view_given) view = settings.view;
+  if (settings.fov_given) view.fov_deg = settings.view.fov_deg;
   validate(view);
   if (!settings.eye.empty()) return Camera::look_at(point(settings.eye, "--eye"), target, view.fov_deg, width, height);
   constexpr double kDegree = 3.14159265358979323846 / 180;
@@ -110,7 +111,10 @@ void add_function_option(CLI::App& command, FunctionInput& input, const std::str
           "--function", input.function,
           fmt::format("in the place of files: {}, or a JSON file (doc/user/functions.md)", fmt::join(names, ", ")))
       ->group(kGroup);
-  command.add_option("--extent", input.extent, extent)->group(kGroup)->capture_default_str();
+  command.add_option("--extent", input.extent, extent)
+      ->check(number_in({.least = 0, .most = kFunctionReach, .above_least = true}))
+      ->group(kGroup)
+      ->capture_default_str();
 }
 
 void add_function_options(CLI::App& command, FunctionInput& input, std::string& march, MarchSettings& settings) {
@@ -131,14 +135,8 @@ void add_function_options(CLI::App& command, FunctionInput& input, std::string& 
       ->group(kGroup);
 }
 
-void require_extent(double extent) {
-  if (!(extent > 0 && extent <= kFunctionReach))
-    throw Error(fmt::format("--extent {}: it must be above 0 and at most 2^30 metres", extent));
-}
-
 void render_function(const FunctionInput& input, FunctionPicture settings, const std::string& output) {
-  require_extent(input.extent);
-  const MarchEntry& march = find_function_march(settings.march.empty() ? "lipschitz-local" : settings.march);
+  const MarchEntry& march = find_function_march(settings.march.empty() ? kFunctionMarch : settings.march);
   ReplaceFile file(output);
   const HeightFunction function(read_function(input.function));
   const double haze = settings.haze_given ? settings.picture.haze : kHaze;

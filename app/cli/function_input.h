@@ -14,6 +14,9 @@
 
 namespace scarp::cli {
 
+/// Without --march.
+constexpr const char* kFunctionMarch = "lipschitz-local";
+
 struct FunctionInput {
   std::string function;  // a name or a file; empty: none
   std::string preset;
@@ -29,10 +32,10 @@ void add_function_options(CLI::App& command, FunctionInput& input, std::string& 
 /// What of the command line's settings a function has other defaults for.
 struct FunctionPicture {
   PictureSettings picture;
-  std::string march;  // empty: lipschitz-local
+  std::string march;  // empty: kFunctionMarch
   MarchSettings march_settings;
   ViewSettings view;
-  bool view_given = false, haze_given = false, tolerance_given = false;
+  bool view_given = false, fov_given = false, haze_given = false, tolerance_given = false;
   std::string device{};     // as --device, empty: the CPU
   std::string eye, target;  // as --eye and --target, empty: of the view
   bool exr = false;         // layers instead of a PNG
@@ -40,8 +43,5 @@ struct FunctionPicture {
 };
 
 void render_function(const FunctionInput& input, FunctionPicture settings, const std::string& output);
-
-/// Throws Error for one that is not above 0 or too long.
-void require_extent(double extent);
 
 }  // namespace scarp::cli

@@ -106,10 +106,12 @@ void add_generate(CLI::App& program) {
   command
       ->add_option("--cell", o.terrain.cell_m,
                    fmt::format("metres from sample to sample; above 0, at most {}", kLargestProceduralCell))
+      ->check(number_in({.least = 0, .most = kLargestProceduralCell, .above_least = true}))
       ->capture_default_str();
   command
       ->add_option("--wavelength", o.terrain.wavelength,
                    "of the largest features, in samples, from 2 (the lesser of 1024 and half the longer side)")
+      ->check(number_in({.least = 2}))
       ->excludes(function);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
   command->callback([options] { run(*options); });

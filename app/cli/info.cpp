@@ -13,6 +13,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/function_info.h"
 #include "app/cli/function_input.h"
+#include "app/cli/input_kind.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/scene_input.h"
@@ -129,23 +130,20 @@ void add_info(CLI::App& program) {
     const auto json_of = [](const Json& info) {
       return info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
     };
+    const std::vector<std::string> given = given_options(*command);
     if (!options->function.function.empty()) {
       if (!options->inputs.empty()) {
         throw Error(
             fmt::format("'{}': --function stands in the place of files; give one of both", options->inputs.front()));
       }
-      for (const CLI::Option* option : command->get_options()) {
-        const std::string name = option->get_name();
-        if (option->count() > 0 && name != "--function" && name != "--extent" && name != "--json")
-          throw Error(fmt::format("{}: goes with files; leave it out", name));
-      }
+      require_options_of(InputKind::function, given);
       const Json info = describe_function(options->function.function, options->function.extent);
       fmt::print("{}", options->json ? json_of(info) : function_text_of(info));
       return;
     }
     if (options->inputs.empty()) throw CLI::RequiredError("IN (or --function NAME)");
     const bool scene = is_scene_input(options->inputs), vox = !scene && is_vox_input(options->inputs, options->vox);
-    if (!vox) require_no_vox_options(options->vox);
+    require_options_of(scene ? InputKind::scene : vox ? InputKind::voxels : InputKind::terrain, given);
     const Json info = scene ? describe_scene(options->inputs.front())
                       : vox ? describe_vox(options->inputs.front(), options->vox)
                             : describe(*options);

@@ -51,13 +51,17 @@ void add_look_options(CLI::App& command, LookOptions& o) {
   command.add_option("--ground", o.ground_colours, "ramp, or natural: rock, grass and snow by slope and aspect (ramp)")
       ->group(group);
   command.add_option("--snow-line", o.snow_line, "metres above which natural ground has snow (0.7 of the relief)")
+      ->check(number_in(kAnyNumber))
       ->group(group);
   command.add_option("--detail", o.ground.detail, "strength of patches of noise on the ground, 0 to 1")
+      ->check(number_in({0, 1}))
       ->group(group)
       ->capture_default_str();
   command.add_option("--detail-size", o.ground.detail_size, "of the largest patches in metres (16 cells)")
+      ->check(number_in(kZeroOrMore))
       ->group(group);
   command.add_option("--contours", o.ground.contours, "metres from contour line to contour line; 0: none")
+      ->check(number_in(kZeroOrMore))
       ->group(group)
       ->capture_default_str();
   command.add_option("--overlay", o.overlay, "a picture that lies on the ground, georeferenced where the terrain is")
@@ -65,16 +69,20 @@ void add_look_options(CLI::App& command, LookOptions& o) {
 
   group = "Water";
   command.add_option("--water", o.water, "level in metres: water over all ground below it (looks shaded and comanche)")
+      ->check(number_in(kAnyNumber))
       ->group(group);
   command.add_option("--water-colour", o.water_colour, "RRGGBB: what deep water gives back (1a4055)")->group(group);
   command
       .add_option("--turbidity", o.water_settings.turbidity, "light that water loses besides pure water's, per metre")
+      ->check(number_in(kZeroOrMore))
       ->group(group)
       ->capture_default_str();
   command.add_option("--waves", o.water_settings.waves, "mean slope of the waves, 0 to 0.5; 0: a mirror")
+      ->check(number_in({0, 0.5}))
       ->group(group)
       ->capture_default_str();
   command.add_option("--wavelength", o.water_settings.wavelength, "of the longest wave in metres (two cells)")
+      ->check(number_in(kZeroOrMore))
       ->group(group);
   command.add_flag("--no-reflection", o.no_reflection, "water mirrors the sky alone")->group(group);
   command.add_flag("--no-refraction", o.no_refraction, "water has one colour, whatever its depth")->group(group);
@@ -88,12 +96,16 @@ void add_look_options(CLI::App& command, LookOptions& o) {
       .add_option("--visibility", o.visibility,
                   "metres at which 2 of 100 parts of a contrast are left (the reach, or the field's longer side; more "
                   "from afar)")
+      ->check(number_in(kAboveZero))
       ->group(group);
   command.add_option("--fog-base", o.fog_base, "height in metres where that holds (the water, or the lowest ground)")
+      ->check(number_in(kAnyNumber))
       ->group(group);
   command.add_option("--fog-falloff", o.fog_falloff, "metres of height by which it thins out e times (relief / 4)")
+      ->check(number_in(kAboveZero))
       ->group(group);
   command.add_option("--sun-tint", o.fog_settings.sun_tint, "how warm fog is towards the sun, 0 to 1")
+      ->check(number_in({0, 1}))
       ->group(group)
       ->capture_default_str();
 
@@ -114,6 +126,7 @@ void add_look_options(CLI::App& command, LookOptions& o) {
   command
       .add_option("--reach", o.reach,
                   "metres that the camera sees: needed by fields that wrap round (their longer side)")
+      ->check(number_in(kAboveZero))
       ->group(group);
 }
 
@@ -169,9 +182,6 @@ void settle_look(const LookOptions& o, const std::string& size, std::string_view
   }
   if (o.visibility) picture.fog.visibility = *o.visibility;
   if (o.fog_falloff) picture.fog.falloff = *o.fog_falloff;
-  if (o.reach && !(*o.reach > 0 && std::isfinite(*o.reach))) {
-    throw Error(fmt::format("--reach '{}': expected metres, above 0", *o.reach));
-  }
   if (!o.water) return;
   picture.water = o.water_settings;
   picture.water->level = *o.water;

@@ -15,7 +15,7 @@
 
 namespace {
 
-constexpr int kFailed = 1, kWrongUsage = 2, kSignalled = 128;
+constexpr int kFailed = 1, kWrongUsage = 2;
 
 int fail(std::string text, int status) {
   scarp::cli::end_progress_line();
@@ -40,6 +40,13 @@ std::string unconverted(const CLI::ConversionError& error, const CLI::App& calle
 std::string wrong_usage(const CLI::ParseError& error, const CLI::App& called) {
   if (const auto* conversion = dynamic_cast<const CLI::ConversionError*>(&error)) {
     return unconverted(*conversion, called);
+  }
+  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) {
+    // "--fov: 'x': expected ..." as the others are told.
+    std::string text = error.what();
+    const std::size_t end = text.find(": '");
+    if (end != std::string::npos && text.find("expected", end) != std::string::npos) text.erase(end, 1);
+    return text;
   }
   if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
     // What is missing was perhaps given, under a name that is wrong.
@@ -92,7 +99,7 @@ int main(int argc, char** argv) {
     const std::string help = subcommands.empty() ? "scarp --help" : "scarp " + called.get_name() + " --help";
     return fail(wrong_usage(error, called) + "; '" + help + "' tells what there is", kWrongUsage);
   } catch (const scarp::Interrupted& error) {
-    return fail(error.what(), kSignalled + scarp::cli::caught_signal());
+    return fail(error.what(), scarp::cli::kSignalled + scarp::cli::caught_signal());
   } catch (const std::bad_alloc&) {
     return fail("out of memory; a smaller window or picture needs less", kFailed);
   } catch (const std::exception& error) {

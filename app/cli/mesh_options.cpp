@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -28,9 +27,11 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
           "of the field; on the ground)")
       ->group(group);
   command.add_option("--mesh-scale", options.scale, "metres per unit of the file, above 0")
+      ->check(number_in(kAboveZero))
       ->group(group)
       ->capture_default_str();
   command.add_option("--mesh-rotate", options.turn_deg, "degrees clockwise, seen from above")
+      ->check(number_in(kAnyNumber))
       ->group(group)
       ->capture_default_str();
   command.add_option("--mesh-up", options.up, "the axis that points up in the file, y or z")
@@ -39,13 +40,7 @@ void add_mesh_options(CLI::App& command, MeshOptions& options) {
 }
 
 void settle_mesh(const MeshOptions& options, const std::string& device, const PictureSettings& picture) {
-  if (options.file.empty()) {
-    const MeshOptions none;
-    if (!options.at.empty() || options.scale != none.scale || options.turn_deg != none.turn_deg ||
-        options.up != none.up)
-      throw Error("--mesh-at, --mesh-scale, --mesh-rotate, --mesh-up: go with --mesh FILE");
-    return;
-  }
+  if (options.file.empty()) return;
 #ifndef SCARP_VULKAN
   throw Error("--mesh: this scarp was built without Vulkan (SCARP_VULKAN=OFF); leave it out");
 #endif
@@ -54,10 +49,6 @@ void settle_mesh(const MeshOptions& options, const std::string& device, const Pi
     throw Error(fmt::format("--mesh: goes with the look shaded, not with '{}'", name_of(picture.look)));
   if (picture.water) throw Error("--mesh: is not reflected by --water; leave one of both out");
   if (options.up != "y" && options.up != "z") throw Error(fmt::format("--mesh-up '{}': expected y or z", options.up));
-  if (!(std::isfinite(options.scale) && options.scale > 0))
-    throw Error(fmt::format("--mesh-scale '{}': expected metres per unit of the file, above 0", options.scale));
-  if (!std::isfinite(options.turn_deg))
-    throw Error(fmt::format("--mesh-rotate '{}': expected degrees", options.turn_deg));
 }
 
 #ifdef SCARP_VULKAN

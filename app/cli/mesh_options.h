@@ -20,7 +20,7 @@ struct MeshOptions {
 /// Adds --mesh and what goes with it. `options` must live until the subcommand has run.
 void add_mesh_options(CLI::App& command, MeshOptions& options);
 
-/// Throws Error: --mesh-at and so on without --mesh, and --mesh without `device` or with a picture that has none.
+/// Throws Error: --mesh without `device` or with a picture that has none.
 void settle_mesh(const MeshOptions& options, const std::string& device, const PictureSettings& picture);
 
 /// The mesh that was asked for, and terrain with it; without one all is as ever.

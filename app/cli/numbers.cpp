@@ -6,10 +6,24 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 
 #include "scarp/base/error.h"
 
 namespace scarp::cli {
+namespace {
+
+std::string form_of(const NumberRange& range) {
+  const bool least = std::isfinite(range.least), most = std::isfinite(range.most);
+  if (least && most && range.above_least)
+    return fmt::format("a number above {} and at most {}", range.least, range.most);
+  if (least && most) return fmt::format("a number from {} to {}", range.least, range.most);
+  if (least && range.above_least) return fmt::format("a finite number above {}", range.least);
+  if (least) return fmt::format("a finite number, {} or more", range.least);
+  return "a finite number";
+}
+
+}  // namespace
 
 std::vector<double> numbers_from(std::string_view text, char separator, std::size_t least, std::size_t most,
                                  std::string_view option, std::string_view form) {
@@ -27,6 +41,18 @@ std::vector<double> numbers_from(std::string_view text, char separator, std::siz
     throw Error(fmt::format("{} '{}': expected {}", option, text, form));
   }
   return numbers;
+}
+
+std::function<std::string(const std::string& text)> number_in(const NumberRange& range) {
+  return [range](const std::string& text) -> std::string {
+    // As CLI11 reads it afterwards.
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    if (!text.empty() && *end == '\0' && std::isfinite(number) && number <= range.most &&
+        (range.above_least ? number > range.least : number >= range.least))
+      return {};
+    return fmt::format("'{}': expected {}", text, form_of(range));
+  };
 }
 
 std::string check_whole_number(const std::string& text, std::uint64_t most) {

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Numbers in options: several in one ("315,45", "1280x720"), and whole ones of any size.
+// Numbers in options: several in one ("315,45", "1280x720"), those of a range, and whole ones of any size.
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +15,19 @@ namespace scarp::cli {
 /// more than `most`, or one of them is none.
 std::vector<double> numbers_from(std::string_view text, char separator, std::size_t least, std::size_t most,
                                  std::string_view option, std::string_view form);
+
+/// Which numbers an option takes. All are finite: NaN passes each comparison with a bound, so that one who only
+/// compares takes it.
+struct NumberRange {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+  bool above_least = false;  ///< the least one itself is none of them
+};
+constexpr NumberRange kAnyNumber{}, kZeroOrMore{.least = 0}, kAboveZero{.least = 0, .above_least = true};
+
+/// For CLI::Option::check(), of every option that is a floating point number: empty when the text is one of the range,
+/// else what is wrong. CLI11's own checks let NaN through, and tell of the largest double by its 309 digits.
+std::function<std::string(const std::string& text)> number_in(const NumberRange& range);
 
 /// For CLI::Option::check(): empty when the text is a whole number from 0 to `most`, else what is wrong. CLI11 itself
 /// takes a number that is too large for the largest there is.

@@ -5,44 +5,83 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <memory>
 #include <string>
 
 #include "scarp/base/error.h"
+#include "scarp/base/replace_file.h"
 
 namespace scarp::cli {
 namespace {
 
-volatile std::sig_atomic_t signal_caught = 0;
-bool line_open = false;
+// Of handlers and of all threads.
+std::atomic<int> signal_caught = 0;
+std::atomic<bool> signal_seen = false;  // somebody knows, and is on the way out
+std::atomic<bool> line_open = false;
+static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+// Pictures ask several times a second. What asks less often, as the reading of a large file, is not waited for longer
+// than a person waits.
+constexpr unsigned kPatience = 2;  // seconds
 
 // One tick per 2.5 %, a number every fourth, as GDALTermProgress does.
 constexpr int kTicks = 40;
 constexpr int kTicksPerNumber = 4;
 
+// By means that a handler of signals may use, alone.
+[[noreturn]] void end_now(int number) {
+  remove_temporary_files();
+  constexpr std::string_view kWord = "\nscarp: interrupted\n";
+  const std::size_t skip = line_open ? 0 : 1;
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, kWord.data() + skip, kWord.size() - skip);
+  ::_exit(kSignalled + number);
+}
+
+bool stop_wanted() {
+  if (signal_caught == 0) return false;
+  signal_seen = true;
+  return true;
+}
+
 }  // namespace
 
-extern "C" void scarp_note_signal(int number) { signal_caught = number; }
+extern "C" void scarp_note_signal(int number) {
+  int none = 0;
+  if (!signal_caught.compare_exchange_strong(none, number)) end_now(number);
+  ::alarm(kPatience);
+}
+
+extern "C" void scarp_end_patience(int) {
+  if (!signal_seen) end_now(signal_caught);
+}
 
 void catch_interrupts() {
   struct sigaction action {};
+  // Reads and writes go on: who reads would take the signal for a fault of the file.
+  action.sa_flags = SA_RESTART;
+  // The first handler is not interrupted by the second one, which would take itself for the first.
+  for (const int number : {SIGINT, SIGTERM, SIGALRM}) ::sigaddset(&action.sa_mask, number);
+  action.sa_handler = scarp_end_patience;
+  ::sigaction(SIGALRM, &action, nullptr);
   action.sa_handler = scarp_note_signal;
-  // The handler is gone after the first signal: the second one has its usual effect.
-  action.sa_flags = static_cast<int>(SA_RESETHAND);
   ::sigaction(SIGINT, &action, nullptr);
   ::sigaction(SIGTERM, &action, nullptr);
 }
 
-int caught_signal() { return signal_caught; }
+int caught_signal() {
+  stop_wanted();
+  return signal_caught;
+}
 
 void stop_if_interrupted() {
-  if (signal_caught != 0) throw Interrupted();
+  if (stop_wanted()) throw Interrupted();
 }
 
 Progress terminal_progress(std::string_view what) {
-  if (::isatty(STDERR_FILENO) == 0) return [](double) { return signal_caught == 0; };
+  if (::isatty(STDERR_FILENO) == 0) return [](double) { return !stop_wanted(); };
   // std::function wants to copy its target: the count is shared.
   return [name = std::string(what), ticks = std::make_shared<int>(-1)](double share) {
     const int now = std::clamp(static_cast<int>(share * kTicks), 0, kTicks);
@@ -60,7 +99,7 @@ Progress terminal_progress(std::string_view what) {
       if (*ticks == kTicks) end_progress_line();
     }
     std::fflush(stderr);
-    return signal_caught == 0;
+    return !stop_wanted();
   };
 }
 

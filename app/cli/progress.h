@@ -8,8 +8,12 @@
 
 namespace scarp::cli {
 
+/// The exit status of a program that a signal has ended is this and the signal's number, as shells have it.
+constexpr int kSignalled = 128;
+
 /// From now on the first SIGINT or SIGTERM makes every terminal_progress() ask for a stop, so that files half written
-/// are removed on the way out; a second one ends the program at once.
+/// are removed on the way out. A second one ends the program at once, and so does the first where within two seconds
+/// nobody has asked whether there was one; then, too, the files are removed.
 void catch_interrupts();
 
 /// The signal that was caught, or 0.

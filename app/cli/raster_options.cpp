@@ -77,7 +77,7 @@ void add_raster_options(CLI::App& command, RasterOptions& options, const std::st
           },
           "S[,OFFSET]: height = sample * S + OFFSET, in the vertical unit; not 0")
       ->group(group);
-  command.add_option("--offset", options.offset, "see --scale")->group(group);
+  command.add_option("--offset", options.offset, "see --scale")->check(number_in(kAnyNumber))->group(group);
   command
       .add_option_function<std::string>(
           "--height-range", [&options](const std::string& text) { options.height_range = height_range_from(text); },

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <chrono>
 #include <cmath>
@@ -23,6 +22,7 @@
 #include "app/cli/findings.h"
 #include "app/cli/frames.h"
 #include "app/cli/function_input.h"
+#include "app/cli/input_kind.h"
 #include "app/cli/look_options.h"
 #include "app/cli/march_options.h"
 #include "app/cli/mesh_options.h"
@@ -43,10 +43,7 @@
 namespace scarp::cli {
 namespace {
 
-// What of the options goes with a scene, which says all else itself.
-constexpr std::array<std::string_view, 18> kSceneOptions = {
-    "--device",   "IN",     "--output", "--size",   "--look", "--ramp", "--sun", "--no-shadows", "--samples",
-    "--sun-size", "--view", "--eye",    "--target", "--fov",  "--top",  "--aa",  "--threads",    "--coarse-voxels"};
+constexpr const char* kTerrainMarch = "max-mip";  // without --march
 
 // What was typed. Texts stay texts until run() has a message for them.
 struct RenderOptions {
@@ -209,30 +206,52 @@ void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const 
   print_findings(picture);
 }
 
-// Of pictures of terrain and functions.
-void require_no_voxel_options(const RenderOptions& options) {
-  require_no_vox_options(options.vox);
-  for (const std::string_view option :
-       {"--normals", "--normal-radius", "--rounded", "--each", "--corner-ao", "--coarse-voxels"}) {
-    if (std::find(options.given.begin(), options.given.end(), option) != options.given.end())
-      throw Error(fmt::format("{}: goes with files of voxels; leave it out", option));
+// The looks and numbers that `options` ask for, for what they have effect on.
+void require_company_of(const RenderOptions& options, InputKind kind) {
+  const PictureSettings& picture = options.picture;
+  const bool steps = options.look == "steps", comanche = options.look == "comanche";
+  const LookOptions& look = options.look_options;
+  require_company(
+      {{{"--water-colour", "--turbidity", "--waves", "--wavelength", "--no-reflection", "--no-refraction"},
+        look.water.has_value(),
+        "--water M"},
+       {{"--visibility", "--sun-tint"}, !look.fog.empty() && look.fog != "none", "--fog KIND"},
+       {{"--fog-base", "--fog-falloff"}, look.fog == "height", "--fog height"},
+       {{"--snow-line"}, look.ground_colours == "natural", "--ground natural"},
+       {{"--detail-size"}, look.ground.detail > 0, "--detail S"},
+       {{"--pixel-size", "--steps", "--iterations"}, comanche, "--look comanche"},
+       {{"--error-tolerance"}, options.look == "error", "--look error"},
+       // The number may stand in the scene's file.
+       {{"--sun-size", "--ao-distance", "--seed"}, picture.samples > 0 || kind == InputKind::scene, "--samples N"},
+       {{"--mesh-at", "--mesh-scale", "--mesh-rotate", "--mesh-up"}, !options.mesh.file.empty(), "--mesh FILE"},
+       {{"--normal-radius"}, options.vox_look.normals != "flat", "--normals voxel or smooth"},
+       {{"--ramp"}, kind != InputKind::voxels || !options.vox.volume.empty() || steps, "--volume or --look steps"},
+       {{"--ramp"}, kind != InputKind::scene || steps, "--look steps"}},
+      options.given);
+  if (!options.frames.several()) return;
+  for (const std::string_view option : {"--eye", "--target", "--top"}) {
+    if (is_given(options.given, option))
+      throw Error(fmt::format("{}: --path and --turntable have cameras of their own; leave it out", option));
+  }
+  if (!options.frames.path.empty() && is_given(options.given, "--view"))
+    throw Error("--view: the cameras stand in the table of --path; leave it out");
+}
+
+// Throws Error for what was typed and would have no effect.
+void require_effect(const RenderOptions& options, InputKind kind) {
+  require_options_of(kind, options.given);
+  require_company_of(options, kind);
+  if (kind == InputKind::terrain) {
+    require_settings_of(options.march.empty() ? kTerrainMarch : options.march, options.given, options.march_settings);
+  } else if (options.look == "comanche") {
+    throw Error("--look comanche: goes with terrain");
+  }
+  if (kind == InputKind::function) {
+    require_settings_of(options.march.empty() ? kFunctionMarch : options.march, options.given, options.march_settings);
   }
 }
 
-// Of pictures of anything else.
-void require_no_terrain_options(const RenderOptions& options) {
-  if (options.frames.several()) throw Error("--path, --turntable: flights go over terrain; leave them out");
-  if (options.picture.look == Look::comanche) throw Error("--look comanche: goes with terrain");
-  if (!options.mesh.file.empty()) throw Error("--mesh: stands among terrain; leave it out");
-  if (options.field.wrap != Wrap::none) throw Error("--wrap: goes with terrain; leave it out");
-  if (options.picture.water || options.picture.fog.kind != FogKind::none || !options.look_options.overlay.empty())
-    throw Error("--water, --fog, --overlay: go with terrain; leave them out");
-  if (options.figure.any()) throw Error("--legend, --scale-bar: go with terrain; leave them out");
-}
-
 void render_vox(RenderOptions options, const ViewSettings& view) {
-  require_no_terrain_options(options);
-  if (!options.device.empty()) throw Error("--device: pictures of voxels are made on the CPU; leave it out");
   VoxelSceneOptions voxels;
   if (!options.march.empty()) voxels.march = options.march;
   find_voxel_march(voxels.march);
@@ -259,11 +278,6 @@ void render_vox(RenderOptions options, const ViewSettings& view) {
 
 // The file's own settings hold where no option was given.
 void render_scene_file(RenderOptions options, ViewSettings view) {
-  for (const std::string& option : options.given) {
-    if (std::find(kSceneOptions.begin(), kSceneOptions.end(), option) == kSceneOptions.end())
-      throw Error(fmt::format("{}: of a scene this stands in its file; leave it out", option));
-  }
-  require_no_terrain_options(options);
   ReplaceFile file(options.output);
   Watch watch;
   const SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
@@ -311,7 +325,7 @@ void render_frame(const RenderOptions& options, const TerrainScene& scene, MeshI
 }
 
 void render_terrain(RenderOptions options, const ViewSettings& view) {
-  const MarchEntry& march = find_march(options.march.empty() ? "max-mip" : options.march);
+  const MarchEntry& march = find_march(options.march.empty() ? kTerrainMarch : options.march);
   const SceneMaker scenes = scene_maker(options.device, march);
   // Reserved first: an unwritable place is found before the work and not after it.
   ReplaceFile file(options.output);
@@ -383,38 +397,42 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
 }
 
 void render_function_input(const RenderOptions& options, const ViewSettings& view) {
-  if (!options.inputs.empty()) {
-    throw Error(fmt::format("'{}': --function stands in the place of files; give one of both", options.inputs.front()));
-  }
-  require_no_terrain_options(options);
-  require_no_voxel_options(options);
-  if (options.top) throw Error("--top: a function has no end that a map could show; leave it out");
-  const auto given = [&](const char* option) {
-    return std::find(options.given.begin(), options.given.end(), option) != options.given.end();
-  };
+  const auto given = [&](const char* option) { return is_given(options.given, option); };
   render_function(options.function,
-                  {options.picture, options.march, options.march_settings, view, given("--view"), given("--haze"),
-                   given("--error-tolerance"), options.device, options.eye, options.target, options.exr,
-                   depth_range_of(options.depth)},
+                  {options.picture, options.march, options.march_settings, view, given("--view"), given("--fov"),
+                   given("--haze"), given("--error-tolerance"), options.device, options.eye, options.target,
+                   options.exr, depth_range_of(options.depth)},
                   options.output);
 }
 
+InputKind kind_of(const RenderOptions& options) {
+  if (!options.function.function.empty()) {
+    if (options.inputs.empty()) return InputKind::function;
+    throw Error(fmt::format("'{}': --function stands in the place of files; give one of both", options.inputs.front()));
+  }
+  if (options.inputs.empty()) throw CLI::RequiredError("IN (or --function NAME)");
+  if (!options.function.preset.empty())
+    throw Error("--preset: has the numbers of shaders over functions; add --function");
+  if (is_scene_input(options.inputs)) return InputKind::scene;
+  return is_vox_input(options.inputs, options.vox) ? InputKind::voxels : InputKind::terrain;
+}
+
 void run(RenderOptions options) {
+  const InputKind kind = kind_of(options);
+  require_effect(options, kind);
   const ViewSettings view = settle(options);
   if (!options.eye.empty()) point_from(options.eye, "--eye");
   if (!options.target.empty()) point_from(options.target, "--target");
   const ThreadLimit limit(options.threads);
-  if (!options.function.function.empty()) return render_function_input(options, view);
-  if (options.inputs.empty()) throw CLI::RequiredError("IN (or --function NAME)");
-  if (!options.function.preset.empty())
-    throw Error("--preset: has the numbers of shaders over functions; add --function");
-  if (is_scene_input(options.inputs)) {
-    render_scene_file(std::move(options), view);
-  } else if (is_vox_input(options.inputs, options.vox)) {
-    render_vox(std::move(options), view);
-  } else {
-    require_no_voxel_options(options);
-    render_terrain(std::move(options), view);
+  switch (kind) {
+    case InputKind::terrain:
+      return render_terrain(std::move(options), view);
+    case InputKind::voxels:
+      return render_vox(std::move(options), view);
+    case InputKind::scene:
+      return render_scene_file(std::move(options), view);
+    case InputKind::function:
+      return render_function_input(options, view);
   }
 }
 
@@ -446,9 +464,12 @@ void add_render(CLI::App& program) {
   command
       ->add_option("--sun-size", o.picture.sun.size_deg,
                    "apparent diameter of the sun in degrees for --samples, 0 to 90; 0: hard shadows")
+      ->check(number_in({0, 90}))
       ->capture_default_str();
-  command->add_option("--ao-distance", o.picture.ao_distance,
-                      "metres within which ground hides the sky (the whole field); 0: no ambient occlusion");
+  command
+      ->add_option("--ao-distance", o.picture.ao_distance,
+                   "metres within which ground hides the sky (the whole field); 0: no ambient occlusion")
+      ->check(number_in(kZeroOrMore));
   command->add_option("--seed", o.picture.seed, "of the pattern of --samples")
       ->check([](const std::string& text) {
         return check_whole_number(text, std::numeric_limits<decltype(o.picture.seed)>::max());
@@ -459,12 +480,14 @@ void add_render(CLI::App& program) {
       ->add_option("--haze", o.picture.haze,
                    "share of haze over a distance as long as the field's diagonal (of functions "
                    "over --extent, 0.2), 0 to 0.95")
+      ->check(number_in({0, 0.95}))
       ->capture_default_str();
   command->add_option("--aa", o.picture.aa, "N x N samples per pixel of the shaded look, 1 to 16")
       ->capture_default_str();
   command
       ->add_option("--error-tolerance", o.picture.error_tolerance,
                    "of the error look along the ray, in sides of a cell; of functions in percent of the distance (1)")
+      ->check(number_in(kZeroOrMore))
       ->capture_default_str();
   add_look_options(*command, o.look_options);
   add_device_option(*command, o.device);
@@ -483,6 +506,7 @@ void add_render(CLI::App& program) {
           ->group(from);
   command->add_option("--target", o.target, "X,Y,Z that the eye looks at (the middle)")->group(from)->needs(eye);
   CLI::Option* fov = command->add_option("--fov", o.fov_deg, "vertical angle of view in degrees, 1 to 150")
+                         ->check(number_in({1, 150}))
                          ->group(from)
                          ->capture_default_str();
   command->add_flag("--top", o.top, "a map: straight down, no perspective, grid north up")
@@ -505,9 +529,7 @@ void add_render(CLI::App& program) {
   add_vox_look_options(*command, o.vox_look);
   command->callback([options, command, fov] {
     options->fov_said = fov->count() > 0;
-    for (const CLI::Option* option : command->get_options()) {
-      if (option->count() > 0) options->given.push_back(option->get_name());
-    }
+    options->given = given_options(*command);
     run(*options);
   });
 }

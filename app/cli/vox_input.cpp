@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "app/cli/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/render/ramp.h"
@@ -32,6 +33,18 @@ std::vector<VoxelColour> colours_of(const std::string& ramp) {
   return list;
 }
 
+// What is wrong with a file that has been read names it, too.
+template <class Work>
+auto naming(const std::string& path, const Work& work) {
+  try {
+    return work();
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(fmt::format("voxels '{}': {}", path, error.what()));
+  }
+}
+
 void refuse(bool given, const char* option, const char* goes_with) {
   if (given) throw Error(fmt::format("{}: goes with {}; leave it out", option, goes_with));
 }
@@ -46,15 +59,6 @@ bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& opti
                             vox == inputs.end() ? inputs[1] : *vox));
   }
   return true;
-}
-
-void require_no_vox_options(const VoxOptions& options) {
-  constexpr const char* kVoxels = "files of voxels";
-  refuse(options.scene.frame > 0, "--frame", kVoxels);
-  refuse(options.scene.hidden, "--hidden", kVoxels);
-  refuse(options.surface_colours, "--surface-colours", kVoxels);
-  refuse(options.solid_from.has_value(), "--solid-from", kVoxels);
-  refuse(options.up != "z", "--up", kVoxels);
 }
 
 void add_vox_options(CLI::App& command, VoxOptions& options) {
@@ -74,6 +78,7 @@ void add_vox_options(CLI::App& command, VoxOptions& options) {
                   "256x256x128:u16le, x fastest")
       ->group(group);
   command.add_option("--solid-from", options.solid_from, "the least number of a solid voxel of a volume (all above 0)")
+      ->check(number_in(kAnyNumber))
       ->group(group);
   command.add_option("--up", options.up, "y or z: the axis of a binvox file or volume that points up")
       ->check(CLI::IsMember({"y", "z"}))
@@ -90,11 +95,13 @@ void add_vox_look_options(CLI::App& command, VoxLookOptions& options) {
       ->group(group)
       ->capture_default_str();
   command.add_option("--normal-radius", options.normal_radius, "voxels that those of the shape look at, 1 to 8")
+      ->check(number_in({1, 8}))
       ->group(group)
       ->capture_default_str();
   command
       .add_option("--rounded", options.rounding.radius,
                   "radius of the edges that are open, in sides of a voxel, 0 to 0.5")
+      ->check(number_in({0, 0.5}))
       ->group(group)
       ->capture_default_str();
   command.add_flag("--each", options.rounding.each, "with --rounded: every voxel on its own, as a heap of dice")
@@ -118,7 +125,7 @@ VoxInput read_voxels(const std::string& path, const VoxOptions& options, const V
   if (volume) return {{}, voxel_scene_from(read_volume(path, options.volume), colours_of(ramp), from)};
   if (binvox) return {{}, voxel_scene_from(read_binvox(path), kPlainVoxels, from)};
   VoxFile document = read_vox(path);
-  VoxelScene scene = voxel_scene_from(document, {options.scene, voxels});
+  VoxelScene scene = naming(path, [&] { return voxel_scene_from(document, {options.scene, voxels}); });
   return {std::move(document), std::move(scene)};
 }
 
@@ -166,7 +173,7 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   Json info;
   info["path"] = path;
   if (input.document) {
-    describe_document(*input.document, options, info);
+    naming(path, [&] { describe_document(*input.document, options, info); });
   } else {
     info["format"] = options.volume.empty() ? "binvox" : "volume";
     const VoxelGrid& grid = input.scene.models()[0]->grid();

@@ -35,9 +35,6 @@ struct VoxLookOptions {
 /// file is among others.
 bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& options);
 
-/// Of other inputs: throws Error when one of the options was given.
-void require_no_vox_options(const VoxOptions& options);
-
 /// Adds --frame, --hidden, --volume, ... `options` must live until the subcommand has run.
 void add_vox_options(CLI::App& command, VoxOptions& options);
 /// Adds --normals, --rounded, ...

@@ -11,6 +11,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/field_options.h"
+#include "app/cli/input_kind.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
@@ -37,6 +38,7 @@ struct VoxeliseOptions {
   double voxel = 0;  // 0: not given
   int count = 0;     // 0: not given
   int threads = 0;
+  std::vector<std::string> given;  // the names of the options that were typed
 };
 
 constexpr int kUsualCount = 256;
@@ -65,9 +67,11 @@ Input voxels(const VoxeliseOptions& options) {
 }
 
 Input input_of(const VoxeliseOptions& options) {
-  if (is_vox_input(options.inputs, options.vox)) return voxels(options);
-  require_no_vox_options(options.vox);
-  if (!is_scene_input(options.inputs)) return terrain(options);
+  const bool vox = is_vox_input(options.inputs, options.vox), scene = !vox && is_scene_input(options.inputs);
+  require_options_of(vox ? InputKind::voxels : scene ? InputKind::scene : InputKind::terrain, options.given);
+  require_company({{{"--ramp"}, !vox && !scene, "terrain, whose heights it colours"}}, options.given);
+  if (vox) return voxels(options);
+  if (!scene) return terrain(options);
   SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
   SceneLook look = look_of(document);
   return {std::move(document.scene), std::move(look), std::move(document.notes)};
@@ -142,7 +146,8 @@ void add_voxelise(CLI::App& program) {
   VoxeliseOptions& o = *options;
   add_raster_inputs(*command, o.inputs);
   command->add_option("-o,--output", o.output, "the .vox or .binvox file to write")->required();
-  CLI::Option* voxel = command->add_option("--voxel", o.voxel, "metres of a voxel's side")->check(CLI::PositiveNumber);
+  CLI::Option* voxel =
+      command->add_option("--voxel", o.voxel, "metres of a voxel's side")->check(number_in(kAboveZero));
   command->add_option("--count", o.count, "voxels along the longest side, 2 to 2048 (256)")
       ->check(CLI::Range(2, VoxelGrid::kMaxSide))
       ->excludes(voxel);
@@ -152,7 +157,10 @@ void add_voxelise(CLI::App& program) {
   add_raster_options(*command, o.raster);
   add_field_options(*command, o.field);
   add_vox_options(*command, o.vox);
-  command->callback([options] { run(*options); });
+  command->callback([options, command] {
+    options->given = given_options(*command);
+    run(*options);
+  });
 }
 
 }  // namespace scarp::cli

@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -14,6 +18,37 @@
 namespace scarp {
 
 namespace fs = std::filesystem;
+
+// A list that only grows, of places that are used again: a handler of signals walks it without a lock and meets nothing
+// that was freed. Who takes a name out of its place owns it.
+struct ReplaceFile::Noted {
+  std::atomic<char*> name;
+  Noted* next;
+
+  static Noted* note(const std::string& path) {
+    char* const copy = ::strdup(path.c_str());
+    if (copy == nullptr) throw std::bad_alloc();
+    for (Noted* place = first.load(); place != nullptr; place = place->next) {
+      char* none = nullptr;
+      if (place->name.compare_exchange_strong(none, copy)) return place;
+    }
+    auto* const place = new Noted{copy, first.load()};
+    while (!first.compare_exchange_weak(place->next, place)) continue;
+    return place;
+  }
+  void forget() { std::free(name.exchange(nullptr)); }
+
+  static std::atomic<Noted*> first;
+};
+std::atomic<ReplaceFile::Noted*> ReplaceFile::Noted::first = nullptr;
+static_assert(std::atomic<char*>::is_always_lock_free);
+
+void remove_temporary_files() noexcept {
+  for (ReplaceFile::Noted* place = ReplaceFile::Noted::first.load(); place != nullptr; place = place->next) {
+    // Not freed: that is nothing for a handler of signals.
+    if (const char* name = place->name.exchange(nullptr)) ::unlink(name);
+  }
+}
 
 ReplaceFile::ReplaceFile(std::string path) : path_(std::move(path)) {
   if (path_.empty()) throw Error("output: the file name is empty; name a file");
@@ -35,7 +70,9 @@ ReplaceFile::ReplaceFile(std::string path) : path_(std::move(path)) {
   temporary_ =
       (folder / fmt::format(".{}.{}.part{}", target.stem().string(), ::getpid(), target.extension().string())).string();
   // Opened here, so that an unwritable folder is found before hours of work and not after them.
+  noted_ = Noted::note(temporary_);
   if (!std::ofstream(temporary_, std::ios::binary)) {
+    noted_->forget();
     throw Error(
         fmt::format("output '{}': the folder '{}' cannot be written to; choose another one", path_, folder.string()));
   }
@@ -45,12 +82,14 @@ ReplaceFile::~ReplaceFile() {
   if (temporary_.empty()) return;
   std::error_code ignored;
   fs::remove(temporary_, ignored);
+  noted_->forget();
 }
 
 void ReplaceFile::commit() {
   std::error_code error;
   fs::rename(temporary_, path_, error);
   if (error) throw Error(fmt::format("output '{}': cannot be moved into place: {}", path_, error.message()));
+  noted_->forget();
   temporary_.clear();
 }
 

@@ -24,6 +24,14 @@ class ReplaceFile {
  private:
   std::string path_;
   std::string temporary_;
+  struct Noted;
+  Noted* noted_ = nullptr;  // the temporary name, for remove_temporary_files()
+
+  friend void remove_temporary_files() noexcept;
 };
+
+/// Removes what is under all temporary names, for a program that ends at once, without destructors: it may be called in
+/// a handler of signals, whatever other threads do, and the program must end after it.
+void remove_temporary_files() noexcept;
 
 }  // namespace scarp

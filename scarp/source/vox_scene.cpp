@@ -39,16 +39,17 @@ LatticeRotation turn_of(const VoxAttributes& frame) {
 
 ivec3 move_of(const VoxAttributes& frame) {
   ivec3 move(0);
-  auto text = find_attribute(frame, "_t");
+  const auto text = find_attribute(frame, "_t");
   if (!text) return move;
+  std::string_view rest = *text;
   for (int axis = 0; axis < 3; ++axis) {
-    const std::size_t end = axis < 2 ? text->find(' ') : text->size();
+    const std::size_t end = axis < 2 ? rest.find(' ') : rest.size();
     if (end == std::string_view::npos)
       throw Error(fmt::format("a translation is {}; 'x y z' is needed", printable(*text)));
-    move[axis] = whole(text->substr(0, end), "a coordinate of a translation");
+    move[axis] = whole(rest.substr(0, end), "a coordinate of a translation");
     if (std::abs(std::int64_t{move[axis]}) > kFarthest)
       throw Error(fmt::format("a translation by {} voxels; {} is the most", move[axis], kFarthest));
-    text->remove_prefix(std::min(end + 1, text->size()));
+    rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return move;
 }

@@ -178,5 +178,23 @@ TEST_F(ReplaceFileTest, RefusalsAreOneLineThatNamesTheFile) {
   }
 }
 
+TEST_F(ReplaceFileTest, AProgramThatEndsAtOnceLeavesNothing) {
+  write(path("kept.png"), "old");
+  ReplaceFile first(path("kept.png"));
+  {
+    // Its place in the list is used again.
+    ReplaceFile whole(path("whole.png"));
+    write(whole.temporary_path(), "new");
+    whole.commit();
+    const ReplaceFile dropped(path("dropped.png"));
+  }
+  const ReplaceFile second(path("b.png")), third(path("c.png"));
+  EXPECT_EQ(files(), 5);
+  EXPECT_EXIT((remove_temporary_files(), ::_exit(0)), testing::ExitedWithCode(0), "");
+  EXPECT_EQ(files(), 2);
+  EXPECT_EQ(read(path("kept.png")), "old");
+  EXPECT_EQ(read(path("whole.png")), "new");
+}
+
 }  // namespace
 }  // namespace scarp

@@ -2,6 +2,7 @@
 // The command line from outside: what it prints, what it leaves, how it ends.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <chrono>
@@ -238,13 +239,13 @@ TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
       {{"--seed", "4294967296"}, "0 to 4294967295"},
       {{"--naive-max-steps", "1e9"}, "--naive-max-steps '1e9': expected a whole number"},
       {{"--nodata", "x"}, "--nodata 'x': expected a number"},
-      {{"--lipschitz-max-steps", "0"}, "1 or more"},
-      {{"--shrink", "1.5"}, "at most 1"},
+      {{"--march", "lipschitz", "--lipschitz-max-steps", "0"}, "1 or more"},
+      {{"--shrink", "1.5"}, "0 to 1"},
       {{"--haze", "2"}, "0 to 0.95"},
       {{"--threads", "-1"}, "0"},
       {{"--naive-min-step", "0"}, "above 0"},
-      {{"--relaxed-tolerance", "nan"}, "above 0"},
-      {{"--bisect-halvings", "99"}, "1 to 60"},
+      {{"--march", "relaxed", "--relaxed-tolerance", "0"}, "above 0"},
+      {{"--march", "max-mip-bisect", "--bisect-halvings", "99"}, "1 to 60"},
       {{"--error-tolerance", "-1"}, "0 or more"},
       {{"second.asc"}, "raster 'second.asc': does not exist"},
       {{"--scale", "1,2,3"}, "S[,OFFSET]"},
@@ -423,6 +424,41 @@ TEST_P(Interrupt, LeavesNothing) {
   EXPECT_EQ(result.status, 128 + GetParam()) << result.err;
   EXPECT_TRUE(result.err.ends_with("scarp: interrupted\n")) << result.err;
   EXPECT_EQ(scratch_.files(), Names{"good.asc"});
+}
+
+// Waits at a pipe for a scene that nobody writes, and so asks nobody whether there was a signal.
+TEST_P(Interrupt, EndsWhatDoesNotListen) {
+  const std::string pipe = path("scene.json");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto begun = [&](test::Program& program) {
+    for (int i = 0; i < 2000 && scratch_.files().size() < 2; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ASSERT_EQ(scratch_.files().size(), 2u) << "the output was never begun";
+    ::kill(program.pid(), GetParam());
+  };
+  {
+    test::Program program({"render", pipe, "-o", path("out.png")});
+    begun(program);
+    const auto result = program.result();
+    EXPECT_EQ(result.status, 128 + GetParam()) << result.err;
+    EXPECT_EQ(result.err, "scarp: interrupted\n");
+    EXPECT_EQ(scratch_.files(), Names{"scene.json"});
+  }
+  // After the second signal there is no waiting: its number is told, and not the first one's.
+  const int second = GetParam() == SIGINT ? SIGTERM : SIGINT;
+  test::Program program({"render", pipe, "-o", path("out.png")});
+  begun(program);
+  // Of two that are pending at once the system chooses which comes first.
+  const std::string status = fmt::format("/proc/{}/status", program.pid());
+  for (int i = 0; i < 2000 && test::text_of(status).find("\nShdPnd:\t0000000000000000\n") == std::string::npos; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  ::kill(program.pid(), second);
+  const auto result = program.result();
+  EXPECT_EQ(result.status, 128 + second) << result.err;
+  EXPECT_EQ(result.err, "scarp: interrupted\n");
+  EXPECT_EQ(scratch_.files(), Names{"scene.json"});
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, testing::Values(SIGINT, SIGTERM));

@@ -87,12 +87,12 @@ TEST_F(MeshOption, StandsWhereItIsToldTo) {
 
 TEST_F(MeshOption, WhatIsWrongIsSaidInOneLine) {
   expect_refusal({"--mesh", roof_}, "--mesh: is drawn by a Vulkan device; add --device auto", false);
-  expect_refusal({"--mesh-at", "1,2"}, "--mesh-at, --mesh-scale, --mesh-rotate, --mesh-up: go with --mesh FILE");
+  expect_refusal({"--mesh-at", "1,2"}, "--mesh-at: has no effect without --mesh FILE");
   expect_refusal({"--mesh", roof_, "--look", "height"}, "--mesh: goes with the look shaded, not with 'height'");
   expect_refusal({"--mesh", roof_, "--water", "0"}, "--mesh: is not reflected by --water");
   expect_refusal({"--mesh", roof_, "--mesh-up", "x"}, "--mesh-up 'x': expected y or z");
-  expect_refusal({"--mesh", roof_, "--mesh-scale", "0"}, "--mesh-scale '0': expected metres per unit");
-  expect_refusal({"--mesh", roof_, "--mesh-rotate", "nan"}, "--mesh-rotate 'nan': expected degrees");
+  expect_refusal({"--mesh", roof_, "--mesh-scale", "0"}, "--mesh-scale '0': expected a finite number above 0");
+  expect_refusal({"--mesh", roof_, "--mesh-rotate", "nan"}, "--mesh-rotate 'nan': expected a finite number");
   if (!has_device()) GTEST_SKIP() << "no Vulkan device";
   expect_refusal({"--mesh", roof_, "--mesh-at", "here"}, "--mesh-at 'here': expected X,Y or X,Y,Z");
   expect_refusal({"--mesh", roof_, "--mesh-at", "-500,0"}, "--mesh-at: there is no ground at -500,0");

@@ -182,6 +182,28 @@ TEST_F(CliVox, ASectionHasTheNumbers) {
   EXPECT_EQ(count(cubes, "<text"), 46);
 }
 
+// 2^21 times the same model: groups of two that are the same.
+TEST_F(CliVox, TooLargeASceneIsNamed) {
+  constexpr int kLevels = 21;
+  VoxFile file;
+  file.version = 200;
+  file.models = {{{1, 1, 1}, {{0, 0, 0, 1}}}};
+  for (int i = 0; i < kLevels; ++i) {
+    file.nodes.push_back({2 * i, {}, VoxTransform{2 * i + 1}});
+    file.nodes.push_back({2 * i + 1, {}, VoxGroup{{2 * i + 2, 2 * i + 2}}});
+  }
+  file.nodes.push_back({2 * kLevels, {}, VoxTransform{2 * kLevels + 1}});
+  file.nodes.push_back({2 * kLevels + 1, {}, VoxShape{}});
+  const std::string named = "voxels '" + model_ + "': scene: more than 1048576 models";
+  write_vox(model_, file);
+  expect_refused({"render", model_, "-o", path("out.png")}, named);
+  expect_refused({"info", model_}, named);
+  // Hidden ones are counted by info alone.
+  file.nodes[0].attributes = {{"_hidden", "1"}};
+  write_vox(model_, file);
+  expect_refused({"info", model_}, named);
+}
+
 TEST_F(CliVox, SaysInOneLineWhatDoesNotGo) {
   const std::string out = path("out.png");
   expect_refused({"render", model_, "-o", out, "--rounded", "0.6"}, "0 to 0.5");

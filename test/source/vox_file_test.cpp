@@ -125,7 +125,7 @@ TEST(VoxFile, RefusesScenesThatCannotBe) {
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "two nodes have the number 2", scene_message(twice));
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "none of the lattice's", scene_message(scene_file({{{"_r", "5"}}})));
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "a whole number is needed", scene_message(scene_file({{{"_r", "x"}}})));
-  EXPECT_PRED_FORMAT2(testing::IsSubstring, "'x y z'", scene_message(scene_file({{{"_t", "1 2"}}})));
+  EXPECT_PRED_FORMAT2(testing::IsSubstring, "'1 2'; 'x y z'", scene_message(scene_file({{{"_t", "1 2"}}})));
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "is the most", scene_message(scene_file({{{"_t", "1 2 99999999"}}})));
 }
 

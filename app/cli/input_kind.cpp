@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/input_kind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "scarp/base/error.h"
+
+namespace scarp::cli {
+namespace {
+
+constexpr auto kTerrain = static_cast<unsigned>(InputKind::terrain), kVoxels = static_cast<unsigned>(InputKind::voxels),
+               kScene = static_cast<unsigned>(InputKind::scene), kFunction = static_cast<unsigned>(InputKind::function),
+               kAll = kTerrain | kVoxels | kScene | kFunction;
+
+struct Row {
+  unsigned kinds;
+  std::string_view options;  // with a space between them
+};
+
+// The same name means the same in every subcommand.
+constexpr Row kTable[] = {
+    {kAll,
+     "IN --output --json --threads --size --look --ramp --sun --no-shadows --samples --sun-size --aa "
+     "--view --eye --target --fov --depth-range --depth-reversed --voxel --count --within"},
+    {kTerrain | kVoxels | kScene, "--top"},
+    {kTerrain | kScene | kFunction, "--device"},
+    // A scene has these in its file.
+    {kTerrain | kVoxels | kFunction, "--ao-distance --seed --march"},
+    {kTerrain | kFunction,
+     "--haze --error-tolerance --naive-step-factor --naive-min-step --naive-tolerance --naive-max-steps "
+     "--fixed-step --fixed-step-interpolate --fixed-step-max-steps --relaxed-step-factor "
+     "--relaxed-tolerance --relaxed-max-steps --shrink --lipschitz-tolerance --lipschitz-max-steps "
+     "--local-tolerance --local-max-steps"},
+    {kFunction,
+     "--function --extent --preset --function-reach --function-step --function-step-share --function-tolerance "
+     "--refine --refine-halvings"},
+    {kVoxels | kScene, "--coarse-voxels"},
+    {kVoxels,
+     "--frame --hidden --surface-colours --volume --solid-from --up --normals --normal-radius "
+     "--rounded --each --corner-ao"},
+    {kTerrain, "--bisect-halvings --no-plinth --legend --scale-bar"},
+    // Rays of tables.
+    {kTerrain, "--rays --any --all --raster-crs"},
+    // What the file does not say.
+    {kTerrain,
+     "--band --key --window --nodata --unit --scale --offset --height-range --encoding --raw --channel "
+     "--crs --bounds"},
+    // Surface, ground, water, fog.
+    {kTerrain,
+     "--exaggeration --surface --wrap --solid --ground --snow-line --detail --detail-size --contours "
+     "--overlay --water --water-colour --turbidity --waves --wavelength --no-reflection --no-refraction "
+     "--fog --visibility --fog-base --fog-falloff --sun-tint"},
+    // Flights, large pixels, meshes.
+    {kTerrain,
+     "--path --frames --turntable --overwrite --lowres --pixel-size --steps --shells --step-by-view "
+     "--iterations --reach --mesh --mesh-at --mesh-scale --mesh-rotate --mesh-up"},
+};
+
+unsigned kinds_of(std::string_view option) {
+  for (const auto& [kinds, options] : kTable) {
+    for (std::size_t begin = 0; begin < options.size();) {
+      const std::size_t end = std::min(options.find(' ', begin), options.size());
+      if (options.substr(begin, end - begin) == option) return kinds;
+      begin = end + 1;
+    }
+  }
+  return 0;
+}
+
+// "terrain, scenes and functions".
+std::string names_of(unsigned kinds) {
+  constexpr std::pair<unsigned, std::string_view> kNames[] = {
+      {kTerrain, "terrain"}, {kVoxels, "files of voxels"}, {kScene, "scenes"}, {kFunction, "functions"}};
+  std::string text;
+  for (const auto& [kind, name] : kNames) {
+    if ((kinds & kind) == 0) continue;
+    kinds &= ~kind;
+    text += fmt::format("{}{}", text.empty() ? "" : kinds == 0 ? " and " : ", ", name);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> given_options(const CLI::App& command) {
+  std::vector<std::string> given;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->count() > 0) given.push_back(option->get_name());
+  }
+  return given;
+}
+
+bool is_given(const std::vector<std::string>& given, std::string_view option) {
+  return std::find(given.begin(), given.end(), option) != given.end();
+}
+
+void require_options_of(InputKind kind, const std::vector<std::string>& given) {
+  for (const std::string& option : given) {
+    const unsigned kinds = kinds_of(option);
+    if ((kinds & static_cast<unsigned>(kind)) != 0) continue;
+    throw Error(fmt::format("{}: goes with {}; {}leave it out", option, names_of(kinds),
+                            kind == InputKind::scene ? "what a scene is made of stands in its file; " : ""));
+  }
+}
+
+void require_company(std::initializer_list<Company> rules, const std::vector<std::string>& given) {
+  for (const Company& rule : rules) {
+    if (rule.there) continue;
+    for (const std::string_view option : rule.options) {
+      if (is_given(given, option))
+        throw Error(fmt::format("{}: has no effect without {}; add that, or leave it out", option, rule.others));
+    }
+  }
+}
+
+}  // namespace scarp::cli
