@@ -15,13 +15,13 @@ constexpr auto kTerrain = static_cast<unsigned>(InputKind::terrain), kVoxels = s
                kScene = static_cast<unsigned>(InputKind::scene), kFunction = static_cast<unsigned>(InputKind::function),
                kAll = kTerrain | kVoxels | kScene | kFunction;
 
-struct Row {
+struct OptionRow {
   unsigned kinds;
   std::string_view options;  // with a space between them
 };
 
 // The same name means the same in every subcommand.
-constexpr Row kTable[] = {
+constexpr OptionRow kTable[] = {
     {kAll,
      "IN --output --json --threads --size --look --ramp --sun --no-shadows --samples --sun-size --aa "
      "--view --eye --target --fov --depth-range --depth-reversed --voxel --count --within"},

@@ -113,7 +113,10 @@ void run(const SectionOptions& options) {
   const VoxelModel& model = *models[static_cast<std::size_t>(options.model)];
   const int axis = options.axis == "x" ? 0 : options.axis == "y" ? 1 : 2;
   const int side = model.grid().size()[axis], at = options.at < 0 ? side / 2 : options.at;
-  if (at >= side) throw Error(fmt::format("--at {}: the model has {} layers along {}", at, side, options.axis));
+  if (at >= side) {
+    throw Error(fmt::format("--at {}: the box round the model's voxels has layers 0 to {} along {}", at, side - 1,
+                            options.axis));
+  }
   const VoxelGrid grid = with_margin(model.grid(), options.margin);
   std::string svg;
   if (options.radii == "spheres") {
@@ -143,7 +146,8 @@ void add_section(CLI::App& program) {
   command->add_option("--axis", o.axis, "x, y or z: the layer is across it")
       ->check(CLI::IsMember({"x", "y", "z"}))
       ->capture_default_str();
-  command->add_option("--at", o.at, "which layer, from 0 (the middle)")->check(CLI::Range(0, 2047));
+  command->add_option("--at", o.at, "which layer of the box round the voxels, from 0 (the middle)")
+      ->check(CLI::Range(0, 2047));
   command->add_option("--model", o.model, "which model of a file, from 0")->check(CLI::Range(0, 1 << 20));
   command->add_option("--margin", o.margin, "empty voxels round the model")
       ->check(CLI::Range(0, 100))
