@@ -57,7 +57,8 @@ VoxelSceneHit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, 
 // A hundred thousand objects of a thousand grids, turned and scaled: those near each ray are asked one by one.
 TEST(VoxelScene, FindsTheNearestOfAHundredThousand) {
   constexpr int kModels = 1000, kObjects = 100'000, kRays = 100;
-  constexpr double kSide = 300;  // of the cube that they stand in
+  constexpr double kSide = 300;              // of the cube that they stand in
+  constexpr double kRounding = 1 + 0x1p-30;  // of a distance, generously
   Random random(4);
   std::vector<std::shared_ptr<const VoxelModel>> models;
   for (int i = 0; i < kModels; ++i) models.push_back(model(2 + i % 4, 0.5, "voxel-bricks", random));
@@ -86,7 +87,7 @@ TEST(VoxelScene, FindsTheNearestOfAHundredThousand) {
     std::vector<std::uint32_t> index;
     for (std::uint32_t k = 0; k < kObjects; ++k) {
       const dvec3 to = places[k].origin - ray.origin;
-      if (length(to - std::max(0.0, dot(to, ray.direction)) * ray.direction) > 1.01 * radii[k]) continue;
+      if (length(to - std::max(0.0, dot(to, ray.direction)) * ray.direction) > kRounding * radii[k]) continue;
       near.push_back(places[k]);
       near.back().model = static_cast<std::uint32_t>(of_near.size());
       of_near.push_back(models[places[k].model]);
