@@ -17,6 +17,9 @@
 namespace scarp {
 namespace {
 
+// Of normals: sums of some two hundred terms, each rounded to 2^-53 of itself, a hundredfold.
+constexpr double kRounding = 2e4 * 0x1p-53;
+
 template <class Solid>
 VoxelGrid grid_where(const ivec3& size, const Solid& solid) {
   VoxelGrid grid(size, 24);
@@ -33,9 +36,9 @@ std::shared_ptr<const VoxelModel> model_of(VoxelGrid grid) {
 // Symmetry gives the answer: planes along the axes, and a staircase that all orders of the axes leave as it is.
 TEST(SmoothNormal, IsThatOfPlanes) {
   const VoxelGrid level = grid_where(ivec3(16), [](const ivec3& v) { return v.z < 8; });
-  EXPECT_LT(length(smooth_normal(level, {8.5, 8.5, 8}, 2.5) - dvec3(0, 0, 1)), 1e-12);
+  EXPECT_LT(length(smooth_normal(level, {8.5, 8.5, 8}, 2.5) - dvec3(0, 0, 1)), kRounding);
   const VoxelGrid stairs = grid_where(ivec3(16), [](const ivec3& v) { return v.x + v.y + v.z < 24; });
-  EXPECT_LT(length(smooth_normal(stairs, dvec3(8), 3) - dvec3(1 / std::sqrt(3.0))), 1e-12);
+  EXPECT_LT(length(smooth_normal(stairs, dvec3(8), 3) - dvec3(1 / std::sqrt(3.0))), kRounding);
   EXPECT_EQ(smooth_normal(level, {8, 8, 14}, 3), dvec3(0.0));
 }
 
@@ -44,7 +47,7 @@ TEST(SmoothNormal, IsThatOfPlanes) {
 TEST(SmoothNormal, IsThatOfTheFaceWhereThereIsNone) {
   const VoxelGrid row = grid_where(ivec3(16), [](const ivec3& v) { return v.x == v.z; });
   const dvec3 face(0, 0, 1);
-  EXPECT_LT(length(smooth_normal(row, {8, 8.5, 8}, 3, face) - face), 1e-12);
+  EXPECT_LT(length(smooth_normal(row, {8, 8.5, 8}, 3, face) - face), kRounding);
   for (double x = 7; x < 8; x += 0.01) {
     const dvec3 here = smooth_normal(row, {x, 8.5, 8}, 3, face), next = smooth_normal(row, {x + 0.01, 8.5, 8}, 3, face);
     EXPECT_LT(length(next - here), 0.1) << x;
@@ -59,7 +62,7 @@ TEST(SmoothNormal, TurnsWithTheGrid) {
   for (const LatticeRotation& turn : lattice_rotations()) {
     const VoxelGrid turned = rotated(grid, turn);
     const dvec3 there = turn(point - middle) + 0.5 * dvec3(turned.size());
-    EXPECT_LT(length(smooth_normal(turned, there, 2.5) - turn(smooth_normal(grid, point, 2.5))), 1e-12);
+    EXPECT_LT(length(smooth_normal(turned, there, 2.5) - turn(smooth_normal(grid, point, 2.5))), kRounding);
   }
 }
 
@@ -175,11 +178,11 @@ TEST(SmoothVoxels, LightFacesThatLookTheOtherWay) {
                       [](const ivec3& v) { return 2 * v.z < v.x || v == ivec3(30, 8, 15) || v == ivec3(30, 8, 16); }),
            {40, 8.5, 25.5}, {-1, 0, -1});
   EXPECT_EQ(step.normal, dvec3(1, 0, 0));
-  EXPECT_LT(length(step.shading_normal - dvec3(0, 0, 1)), 1e-12);
+  EXPECT_LT(length(step.shading_normal - dvec3(0, 0, 1)), kRounding);
   const FieldSurface sheet = seen(grid_where(ivec3(24, 17, 17), [](const ivec3& v) { return v.x == 8 || v.x >= 11; }),
                                   {10, 8.5, 8.5}, {-1, 0, 0});
   EXPECT_EQ(sheet.normal, dvec3(1, 0, 0));
-  EXPECT_LT(length(sheet.shading_normal - dvec3(1, 0, 0)), 1e-12);
+  EXPECT_LT(length(sheet.shading_normal - dvec3(1, 0, 0)), kRounding);
 }
 
 SceneFieldPtr ball(double radius) {
@@ -208,7 +211,7 @@ TEST(Voxelised, GroundIsSolidBelow) {
   const Scene scene({scene_heights(HeightField::own(std::move(samples), 9, 9, {}))}, {SceneObject{}});
   const VoxelLattice lattice = lattice_around(scene, 1);
   const VoxelGrid grid = voxelised(scene, lattice, [](const SceneSurface& surface) {
-    EXPECT_LT(length(surface.normal - normalize(dvec3(-0.75, 0, 1))), 1e-12);
+    EXPECT_LT(length(surface.normal - normalize(dvec3(-0.75, 0, 1))), kRounding);
     return 5U;
   });
   for_each_voxel(grid.box(), [&](const ivec3& v) {
