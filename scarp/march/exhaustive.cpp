@@ -59,7 +59,7 @@ struct Piece {
 
 class Ground {
  public:
-  Ground(const HeightField& field, const Ray& ray) : field_(field), ray_(ray) {
+  Ground(const HeightField& field, const Ray& ray) : field_(field) {
     const HeightFieldSettings& to = field.settings();
     ox_ = ray.origin.x / to.cell_x;
     oy_ = field.rows() - 1 - ray.origin.y / to.cell_y;
@@ -207,7 +207,6 @@ class Ground {
   }
 
   const HeightField& field_;
-  const Ray& ray_;
   double ox_, oy_, oz_, dx_, dy_, dz_;  // the ray in cells and sample units
 };
 
@@ -215,7 +214,6 @@ class Ground {
 // has to be below by more than `depth`, what rounding can pretend; a touch is no hit for it.
 std::optional<double> descent(const Piece& p, std::optional<double> depth) {
   const auto below = [&](double f) { return depth ? f < -*depth : f <= 0; };
-  if (!depth && p.c <= 0) return 0;
   const bool ends_below = below(p.last);
   const auto vertex = p.vertex();
   const double lowest = vertex ? (p.a * *vertex + p.b) * *vertex + p.c : kInfinity;
@@ -289,6 +287,11 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
     }
     if (side == Side::below && p.c > 0) side = Side::above;
     const auto depth = on_surface ? std::optional(ground.rounding(p.span.begin)) : std::nullopt;
+    // Who comes to be on the surface has met it, and may rise from there and meet it again in the same piece.
+    if (side == Side::above && !depth && p.c <= 0) {
+      if (!found(ground.hit(p, 0))) return without;
+      side = Side::below;
+    }
     const bool rises = side == Side::below && rises_inside(p);
     const auto s = side == Side::above ? descent(p, depth) : rises ? descent_after_rise(p, depth) : std::nullopt;
     if (rises) side = Side::above;

@@ -162,6 +162,8 @@ TEST_P(Exact, TiesAreDecidedAsDocumented) {
       // At corners of holes the exhaustive march takes every cell that the ray touches, not the chain.
       if (GetParam().holes) continue;
       const HitStatus judged = all_hits_exhaustive(target, ray, hits);
+      const Hit closest = march_exhaustive(target, ray);
+      EXPECT_TRUE(closest.status == judged && (!closest || closest.t == hits.front().t)) << text(field, ray);
       if (!agree(exact, judged, hits)) {
         ++bad;
         ADD_FAILURE() << "exhaustive: " << text(field, ray) << "\n  exact " << text(exact) << "\n  march "
@@ -171,6 +173,21 @@ TEST_P(Exact, TiesAreDecidedAsDocumented) {
   }
   // The rays are aimed well enough to try both.
   EXPECT_GT(hits_seen, kRays / 10 * (bad == 0));
+}
+
+// The ray comes over the border on the surface, rises and comes down again, all in its first cell.
+TEST(Exact, BeginsWithATouchAndComesDownInTheSameCell) {
+  const HeightField field = HeightField::own<float>({0, 1, 2, 0}, 2, 2);
+  const MaxPyramid pyramid(field);
+  // Along the diagonal from the north-east the ground is at 1 - 2 s + 3 s^2, the ray at 1: again on it at s = 2/3.
+  const Ray ray{{2, 2, 1}, {-1, -1, 0}};
+  const ExactAnswer exact = cast_exactly(field, ray);
+  ASSERT_EQ(exact.hits.size(), 2u);
+  std::vector<Hit> hits;
+  for (const auto all : {all_hits_exhaustive, all_hits_max_mip}) {
+    const HitStatus status = all({&field, &pyramid}, ray, hits);
+    EXPECT_TRUE(agree(exact, status, hits)) << text(exact) << text(status, hits);
+  }
 }
 
 std::string name_of_kind(const testing::TestParamInfo<Kind>& info) { return info.param.name; }
