@@ -74,8 +74,9 @@ HeightField::HeightField(SampleType type, const void* data, int cols, int rows, 
       may_have_holes_ = true;
     }
   });
-  state_ =
-      visit_unknown([&](const auto& grid) { return std::make_shared<State>(std::move(owner), TileExtents(grid)); });
+  state_ = visit_unknown([&](const auto& grid) {
+    return std::make_shared<State>(State{std::move(owner), TileExtents(grid)});
+  });
   visit_unknown(
       [&](const auto& grid) { require_shared_border(grid, [&](int col, int row) { return grid.at(col, row); }); });
 }

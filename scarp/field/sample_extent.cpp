@@ -40,7 +40,9 @@ struct IsNodata<float> {
   explicit IsNodata(float value)
       : mask(value == 0 ? IsNaN::kMagnitude : -1), nodata(std::bit_cast<std::int32_t>(value) & mask) {}
   bool operator()(float sample) const {
-    return ((std::bit_cast<std::int32_t>(sample) & mask) == nodata) | IsNaN()(sample);
+    // No branch: both are told.
+    const int is_nodata = (std::bit_cast<std::int32_t>(sample) & mask) == nodata, is_nan = IsNaN()(sample);
+    return (is_nodata | is_nan) != 0;
   }
   std::int32_t mask, nodata;
 };

@@ -48,7 +48,7 @@ Image scaled_up(const Image& image, int factor) {
 class ComancheTile final : public TileWork {
  public:
   ComancheTile(const LakeView& view, const PixelTile& tile, Image& image)
-      : view_(view), tile_(tile), lake_(view, tile), image_(image) {}
+      : tile_(tile), lake_(view, tile), image_(image) {}
 
   bool next(RayRound& round) override {
     if (lake_.next(round)) return true;
@@ -61,7 +61,6 @@ class ComancheTile final : public TileWork {
   }
 
  private:
-  const LakeView& view_;
   PixelTile tile_;
   LakeTile lake_;
   Image& image_;

@@ -26,9 +26,6 @@ constexpr int kRays = 200;
 #else
 constexpr int kRays = 40;
 #endif
-// All functions have lipschitz-local, these alone the others: compiling a march for lavapipe takes longer than running
-// it.
-constexpr std::size_t kOfAllMarches = 2;
 
 class FunctionsOnDevice : public OnDevice {};
 

@@ -327,7 +327,7 @@ TEST(SphereTrace, ShadowsOfTheZooAreThoseOfTheJudge) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(25);
-    int leaving = 0, blocked = 0, undecided = 0;
+    int leaving = 0, blocked = 0;
     for (int i = 0; i < kRays / 4; ++i) {
       const Ray ray = random_ray(field, random);
       const Hit hit = march_sphere_trace(field, ray);
@@ -345,7 +345,6 @@ TEST(SphereTrace, ShadowsOfTheZooAreThoseOfTheJudge) {
         ++blocked;
       } else if (f > 1e-6) {
         const FunctionJudgement judge = judge_shape(named.shape, later, 1 << 16);
-        undecided += judge.verdict == FunctionVerdict::undecided;
         if (judge.verdict == FunctionVerdict::crossing) {
           ASSERT_TRUE(next && next.t <= judge.crossed_by + kTolerance * next.t) << named.name;
         } else if (judge.verdict == FunctionVerdict::clear) {

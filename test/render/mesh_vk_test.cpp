@@ -159,7 +159,9 @@ class MeshOnDevice : public OnDevice {
           const Ray ray = camera.ray(x + 0.5 + dx, y + 0.5 + dy);
           return std::pair(ray, cast(mesh, ray.origin, ray.direction));
         };
-        const auto [ray, met] = met_at(0, 0);
+        const auto straight = met_at(0, 0);
+        const Ray& ray = straight.first;
+        const Met& met = straight.second;
         const double z = std::isinf(met.t) ? kInfinity : dot(ray.at(met.t) - camera.eye(), camera.forward());
         // Of a place on the mesh, of which there is one where it is judged.
         const double w = perspective ? (std::isinf(z) ? 1 : z) : 1;
