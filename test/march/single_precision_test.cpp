@@ -72,7 +72,7 @@ TEST_P(SinglePrecision, MaxMipDecidesAsTheSurfaceDoes) {
   const int others = check(spiteful_fields()[field], kind, 1000 * field + ray, kRaysPerPair);
   // Rays that were not aimed at anything meet a rounding tie once in a blue moon.
   if (kind.name == "random" || kind.name == "from above") {
-    EXPECT_LE(others, kRaysPerPair / 1000);
+    EXPECT_LE(others, std::max(1, kRaysPerPair / 1000));
   }
 }
 
