@@ -12,6 +12,8 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
+#include "scarp/source/incomplete_file.h"
+#include "scarp/source/vrt_sources.h"
 
 namespace scarp {
 namespace {
@@ -216,8 +218,10 @@ void read_rows(GDALRasterBand& band, const RasterWindow& window, int row, int ro
       band.RasterIO(GF_Read, window.col, row, window.cols, rows, out, window.cols, rows, type, 0, 0, nullptr);
   // Some drivers report an error, fill up with zeros, and call that success.
   if (result != CE_None || session.failed()) {
-    throw Error(fmt::format("rows {} to {} cannot be read, the file is cut off or damaged: {}", row, row + rows - 1,
-                            session.reason("GDAL gives no reason")));
+    check_vrt_sources(band);
+    const std::string reason = session.reason("");
+    throw Error(fmt::format("rows {} to {} cannot be read, the file is cut off or damaged{}; {}", row, row + rows - 1,
+                            reason.empty() ? "" : " (" + reason + ")", kFetchAgain));
   }
 }
 

@@ -14,9 +14,11 @@
 #include "scarp/source/file_extension.h"
 #include "scarp/source/gdal_dataset.h"
 #include "scarp/source/gdal_errors.h"
+#include "scarp/source/incomplete_file.h"
 #include "scarp/source/npy_header.h"
 #include "scarp/source/raster_name.h"
 #include "scarp/source/raw_band.h"
+#include "scarp/source/zip_archive.h"
 
 namespace scarp {
 namespace {
@@ -24,9 +26,6 @@ namespace {
 struct FileCloser {
   void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
-
-// /vsizip wants the archive's full name, in braces when it does not end in .zip.
-std::string archive_folder(const std::string& path) { return "/vsizip/{" + full_path(path) + "}"; }
 
 NpyHeader read_header(const std::string& path, const GdalSession& session) {
   const std::unique_ptr<VSILFILE, FileCloser> file(VSIFOpenL(path.c_str(), "rb"));
@@ -71,12 +70,11 @@ RawSampleType sample_type(const NpyHeader& header) {
 
 // The member of an archive to read.
 std::string choose_member(const std::string& path, const std::string& key, const GdalSession& session) {
-  const std::string folder = archive_folder(path);
-  const CPLStringList members(VSIReadDirRecursive(folder.c_str()));
+  if (is_zip(path)) check_end(path);
+  const std::string folder = zip_folder(path);
   std::vector<std::string> rasters;
   std::string all;
-  for (int i = 0; i < members.size(); ++i) {
-    const std::string member = members[i];
+  for (const std::string& member : zip_members(path)) {
     if (!has_extension(member, ".npy")) continue;
     const std::string name = member.substr(0, member.size() - 4);
     if (!key.empty() && (name == key || member == key)) return folder + "/" + member;
@@ -139,8 +137,8 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
   const double needed =
       static_cast<double>(header.data_begin) + static_cast<double>(rows) * static_cast<double>(cols) * header.bytes;
   if (static_cast<double>(bytes) < needed) {
-    throw Error(fmt::format("is cut off: {} samples of {} bytes need {:.0f} bytes, it has {}", shape_text(header),
-                            header.bytes, needed, bytes));
+    throw Error(fmt::format("is cut off: {} samples of {} bytes need {:.0f} bytes, it has {}; {}", shape_text(header),
+                            header.bytes, needed, bytes, kFetchAgain));
   }
 
   std::vector<std::uint8_t> whole;
