@@ -69,6 +69,11 @@ double choose_vertical_unit(GDALRasterBand& band, const RasterPlace& place, cons
     raster.vertical_unit = place.vertical_unit_name;
     return place.vertical_unit;
   }
+  // People who map in feet mostly measure heights in feet.
+  if (const std::string_view foot = foot_of(place.map_unit); !foot.empty()) {
+    raster.notes.push_back(
+        fmt::format("map units are feet; heights are taken as metres; say --unit {} if they are not", foot));
+  }
   return 1;
 }
 

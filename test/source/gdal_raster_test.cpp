@@ -285,6 +285,8 @@ TEST_F(GdalRaster, FeetBecomeMetres) {
   const Raster odd = read_raster(write_tiff("c.tif", GDT_Int16, 2, 1, {1, 2}, unit("furlong")), {});
   EXPECT_EQ(1, odd.scale);
   EXPECT_TRUE(has_note(odd, "furlong"));
+  EXPECT_TRUE(has_note(read_raster(write_tiff("d.tif", GDT_Int16, 2, 1, {1, 2}, unit("1/3 ft")), {}),
+                       "the vertical unit '1/3 ft' is no length known here: metres are assumed"));
   RasterOptions options;
   options.unit = "ft";
   EXPECT_DOUBLE_EQ(0.3048, read_raster(path("c.tif"), options).scale);
