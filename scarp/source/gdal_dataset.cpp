@@ -126,6 +126,11 @@ void flip(Raster& raster, bool rows, bool cols) {
       raster.samples);
 }
 
+// The first band of colours of every kind.
+bool is_of_photographs(GDALColorInterp meaning) {
+  return meaning == GCI_RedBand || meaning == GCI_CyanBand || meaning == GCI_YCbCr_YBand;
+}
+
 bool has_sign(GDALDataType type, bool signed_byte) { return signed_byte || GDALDataTypeIsSigned(type); }
 
 // The greatest value of an integer type.
@@ -150,7 +155,7 @@ int height_band(GDALDataset& dataset, int wanted) {
     if (meaning == GCI_AlphaBand) continue;
     ++heights;
     if (chosen == 0) chosen = b;
-    colours = colours || meaning == GCI_RedBand || meaning == GCI_CyanBand || meaning == GCI_YCbCr_YBand;
+    colours = colours || is_of_photographs(meaning);
   }
   if (heights != 1) {
     throw Error(
@@ -163,6 +168,19 @@ int height_band(GDALDataset& dataset, int wanted) {
         "its samples are indices into a palette of colours, no heights; say --band 1 if they are heights all the same");
   }
   return chosen;
+}
+
+bool is_picture(GDALDataset& dataset) {
+  for (int b = 1; b <= dataset.GetRasterCount(); ++b) {
+    GDALRasterBand& band = *dataset.GetRasterBand(b);
+    if (is_of_photographs(band.GetColorInterpretation()) || band.GetColorTable()) return true;
+  }
+  return false;
+}
+
+bool has_place(GDALDataset& dataset) {
+  GeoTransform map{};
+  return dataset.GetGeoTransform(map.data()) == CE_None;
 }
 
 void settle_height_range(RasterOptions& options, GDALDataType type, bool signed_byte) {
