@@ -62,10 +62,10 @@ std::string examples_in(const std::string& archive) {
   VSIStatBufL status;
   const bool exists = VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG) == 0;
   if (exists && VSI_ISDIR(status.st_mode)) throw Error("is a directory; a raster file is needed");
-  if (exists) {
+  if (exists && VSI_ISREG(status.st_mode)) {
     check_end(path);
     if (is_zip(path)) throw Error("is a .zip archive; " + examples_in(path));
-  } else if (const std::string file = file_inside(path); !file.empty()) {
+  } else if (const std::string file = exists ? "" : file_inside(path); !file.empty()) {
     try {
       check_file(file);
       check_end(file);
