@@ -56,7 +56,7 @@ void add_raster_options(CLI::App& command, RasterOptions& options, const std::st
   command.add_option("--band", options.band, "band to read, from 1 (the only one)")
       ->check(CLI::Range(1, 65536))
       ->group(group);
-  command.add_option("--key", options.key, "array of a .npz file (the only one with two dimensions)")->group(group);
+  command.add_option("--key", options.key, "array of a .npz file (the only one of heights)")->group(group);
   command
       .add_option_function<std::string>(
           "--window", [&options](const std::string& text) { options.window = window_from(text); },

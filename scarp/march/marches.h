@@ -27,7 +27,8 @@ enum class Guarantee {
 
 std::string_view name_of(Guarantee guarantee);
 
-/// `naive`: t += max(step_factor * |h|, min_step * t_exit), stops where h < tolerance * t.
+/// `naive`: t += max(step_factor * |h|, min_step * t_exit), stops where h < tolerance * t; both t counted
+/// from t_min.
 struct NaiveSettings {
   double step_factor = 0.7;     ///< of the vertical distance h, > 0
   double min_step = 1.0 / 512;  ///< least step, as a share of the ray's length to the field's border, > 0
@@ -42,14 +43,14 @@ struct FixedStepSettings {
   int max_steps = 16384;    ///< >= 1
 };
 
-/// `relaxed`: t += step_factor * h, stops where |h| < tolerance * t.
+/// `relaxed`: t += step_factor * h, stops where |h| < tolerance * t; t counted from t_min.
 struct RelaxedSettings {
   double step_factor = 0.4;   ///< of the vertical distance h, > 0
   double tolerance = 0.0015;  ///< height off the ground that counts as a hit, per unit of distance, > 0
   int max_steps = 300;        ///< >= 1
 };
 
-/// `lipschitz`: t += shrink * h, stops where shrink * h <= tolerance * t.
+/// `lipschitz`: t += shrink * h, stops where shrink * h <= tolerance * t; t counted from t_min.
 struct LipschitzSettings {
   double shrink = 0;  ///< of the vertical distance h, above 0 and at most 1; 0: 1 / sqrt(1 + c^2), c the slope bound
   double tolerance = 0.0005;  ///< distance to the ground that counts as a hit, per unit of distance travelled, >= 0

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `relaxed`: the march of many terrain shaders. t += 0.4 * h, a hit where |h| < 0.0015 * t, 300 steps.
+// `relaxed`: the march of many terrain shaders. t += 0.4 * h, a hit where |h| < 0.0015 * t, 300 steps; t
+// counted from t_min.
 //
 // The factor below 1 stands for the slope that nobody computed: on calm ground the march closes in on the surface from
 // above, on steep ground it steps through and comes back (h < 0 steps backwards).

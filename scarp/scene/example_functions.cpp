@@ -5,10 +5,12 @@
 
 #include <array>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "scarp/base/error.h"
 #include "scarp/scene/function_json.h"
+#include "scarp/source/incomplete_file.h"
 
 namespace scarp {
 namespace {
@@ -72,9 +74,13 @@ Function read_function(const std::string& name_or_path) {
     throw Error(fmt::format("function '{}': neither a file that can be read nor one of {}", name_or_path,
                             names.substr(0, names.size() - 2)));
   }
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
   nlohmann::json json;
   try {
-    json = nlohmann::json::parse(file);
+    refuse_lfs_pointer(bytes);
+    json = nlohmann::json::parse(bytes);
+  } catch (const Error& error) {
+    throw Error(fmt::format("function '{}': {}", name_or_path, error.what()));
   } catch (const nlohmann::json::exception& error) {
     std::string_view text = error.what();  // "[json.exception.parse_error.101] parse error at line 1, column 2: ..."
     if (const auto end = text.find("] "); end != std::string_view::npos) text.remove_prefix(end + 2);

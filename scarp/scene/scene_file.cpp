@@ -16,6 +16,7 @@
 #include "scarp/scene/scene_parts.h"
 #include "scarp/scene/scene_places.h"
 #include "scarp/scene/scene_schema.h"
+#include "scarp/source/incomplete_file.h"
 
 namespace scarp {
 namespace {
@@ -30,6 +31,7 @@ std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file && !file.eof()) throw Error("cannot be read; is it there?");
+  refuse_lfs_pointer(text);
   return text;
 }
 

@@ -12,6 +12,8 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
+#include "scarp/source/incomplete_file.h"
+#include "scarp/source/vrt_sources.h"
 
 namespace scarp {
 namespace {
@@ -54,9 +56,7 @@ void for_row_pieces(GDALRasterBand& band, const RasterWindow& window, int bytes_
 
 // What the samples contain besides heights.
 struct Findings {
-  std::int64_t nodata = 0;
   std::int64_t nan = 0;
-  double lowest = std::numeric_limits<double>::infinity();
   double rounding = 0;  // largest change by the conversion to float32
 };
 
@@ -81,13 +81,10 @@ float clean(double source, std::optional<double> nodata, int col, int row, Findi
     ++found.nan;
     return kNan;
   }
-  if (nodata && is_float_nodata(source, *nodata)) {
-    ++found.nodata;
+  if (nodata && is_float_nodata(source, *nodata))
     return std::abs(*nodata) <= FLT_MAX ? static_cast<float>(*nodata) : kNan;
-  }
   if (!(std::abs(source) <= FLT_MAX)) refuse_infinite(source, col, row);
   const float sample = static_cast<float>(source);
-  found.lowest = std::min(found.lowest, source);
   found.rounding = std::max(found.rounding, std::abs(source - sample));
   return sample;
 }
@@ -108,16 +105,8 @@ std::vector<T> read_kept(GDALRasterBand& band, const RasterWindow& window, GDALD
         first[i] = clean(first[i], nodata, window.col + static_cast<int>(i % window.cols),
                          row + static_cast<int>(i / window.cols), found);
       }
-    } else {
-      if (signed_bytes)
-        std::transform(first, first + count, first, [](T s) { return static_cast<T>(static_cast<std::int8_t>(s)); });
-      for (std::ptrdiff_t i = 0; i < count; ++i) {
-        if (nodata && first[i] == *nodata) {
-          ++found.nodata;
-        } else {
-          found.lowest = std::min<double>(found.lowest, first[i]);
-        }
-      }
+    } else if (signed_bytes) {
+      std::transform(first, first + count, first, [](T s) { return static_cast<T>(static_cast<std::int8_t>(s)); });
     }
   });
   return samples;
@@ -177,11 +166,6 @@ bool all_holes(const BandSamples& read) {
       read.samples);
 }
 
-// The value that files without a nodata entry use to mark holes, if the lowest sample looks like one.
-bool looks_like_nodata(double lowest) {
-  return lowest == -32768 || lowest == -32767 || lowest == -9999 || (lowest < -1e30 && std::isfinite(lowest));
-}
-
 template <class T>
 bool holds(double value) {
   return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
@@ -234,8 +218,10 @@ void read_rows(GDALRasterBand& band, const RasterWindow& window, int row, int ro
       band.RasterIO(GF_Read, window.col, row, window.cols, rows, out, window.cols, rows, type, 0, 0, nullptr);
   // Some drivers report an error, fill up with zeros, and call that success.
   if (result != CE_None || session.failed()) {
-    throw Error(fmt::format("rows {} to {} cannot be read, the file is cut off or damaged: {}", row, row + rows - 1,
-                            session.reason("GDAL gives no reason")));
+    check_vrt_sources(band);
+    const std::string reason = session.reason("");
+    throw Error(fmt::format("rows {} to {} cannot be read, the file is cut off or damaged{}; {}", row, row + rows - 1,
+                            reason.empty() ? "" : " (" + reason + ")", kFetchAgain));
   }
 }
 
@@ -299,10 +285,6 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
     throw Error(fmt::format(
         "all {} x {} samples are nodata{}; there is nothing to show: choose another part, or another --nodata",
         window.cols, window.rows, read.nodata ? fmt::format(" ({})", *read.nodata) : ""));
-  }
-  if (looks_like_nodata(found.lowest)) {
-    read.notes.push_back(fmt::format(
-        "the lowest sample is {0:g}, which often marks holes: say --nodata={0:g} if it does", found.lowest));
   }
   return read;
 }

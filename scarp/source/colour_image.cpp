@@ -75,11 +75,6 @@ ColourImage pixels_of(GDALDataset& dataset, int height, const GdalSession& sessi
   return image;
 }
 
-bool has_place(GDALDataset& dataset) {
-  double transform[6];
-  return dataset.GetGeoTransform(transform) == CE_None;
-}
-
 // Of the picture, in units of the raster's CRS.
 dvec2 pixel_size(GDALDataset& dataset, const Georeference& georeference, const GdalSession& session) {
   CPLStringList options;

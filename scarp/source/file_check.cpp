@@ -11,25 +11,22 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
+#include "scarp/source/incomplete_file.h"
 #include "scarp/source/netcdf_size.h"
+#include "scarp/source/raw_band.h"
+#include "scarp/source/zip_archive.h"
 
 namespace scarp {
 namespace {
-
-constexpr std::string_view kLfsPointer = "version https://git-lfs";
 
 struct FileCloser {
   void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
 
-// Up to `count` bytes from the beginning.
-std::string start_of(const std::string& path, std::size_t count) {
-  errno = 0;
-  const std::unique_ptr<VSILFILE, FileCloser> file(VSIFOpenL(path.c_str(), "rb"));
-  if (!file) throw Error(fmt::format("cannot be opened: {}", errno ? std::strerror(errno) : "GDAL gives no reason"));
-  std::string start(count, '\0');
-  start.resize(VSIFReadL(start.data(), 1, count, file.get()));
-  return start;
+void require_bytes(double needed, std::uint64_t has) {
+  if (static_cast<double>(has) < needed) {
+    throw Error(fmt::format("is cut off: its header needs {:.0f} bytes, it has {}; {}", needed, has, kFetchAgain));
+  }
 }
 
 // ENVI's samples lie plainly behind an offset, all bands in one file.
@@ -51,9 +48,29 @@ void check_file(const std::string& path) {
   if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG | VSI_STAT_SIZE_FLAG) != 0) return;
   if (!VSI_ISREG(status.st_mode)) return;
   if (status.st_size == 0) throw Error("is empty (0 bytes); a raster file is needed");
-  if (start_of(path, kLfsPointer.size()) == kLfsPointer) {
-    throw Error("is a Git LFS pointer, not the file itself; fetch it with: git lfs pull");
+  refuse_lfs_pointer(bytes_from(path, 0, kLfsPointer.size()));
+}
+
+void check_end(const std::string& path) {
+  const auto size = static_cast<std::uint64_t>(file_bytes(path));
+  if (is_zip(path)) {
+    if (!has_zip_end(path))
+      throw Error(fmt::format("is cut off: the record that archives end with is missing; {}", kFetchAgain));
+    return;
   }
+  const std::string start = bytes_from(path, 0, kNetcdfHeaderBytes);
+  if (const std::optional<double> classic = netcdf_classic_bytes(start)) require_bytes(*classic, size);
+  if (const std::optional<double> hdf5 = hdf5_bytes(start)) require_bytes(*hdf5, size);
+}
+
+std::string bytes_from(const std::string& path, std::uint64_t begin, std::size_t count) {
+  errno = 0;
+  const std::unique_ptr<VSILFILE, FileCloser> file(VSIFOpenL(path.c_str(), "rb"));
+  if (!file) throw Error(fmt::format("cannot be opened: {}", errno ? std::strerror(errno) : "GDAL gives no reason"));
+  std::string bytes(count, '\0');
+  VSIFSeekL(file.get(), begin, SEEK_SET);
+  bytes.resize(VSIFReadL(bytes.data(), 1, count, file.get()));
+  return bytes;
 }
 
 void check_length(GDALDataset& dataset) {
@@ -64,10 +81,8 @@ void check_length(GDALDataset& dataset) {
   VSIStatBufL status;
   if (files.empty() || VSIStatL(files[0], &status) != 0) return;
   const std::optional<double> least =
-      netcdf ? netcdf_classic_bytes(start_of(files[0], kNetcdfHeaderBytes)) : envi_bytes(dataset);
-  if (least && static_cast<double>(status.st_size) < *least) {
-    throw Error(fmt::format("is cut off: its header needs {:.0f} bytes, it has {}", *least, status.st_size));
-  }
+      netcdf ? netcdf_classic_bytes(bytes_from(files[0], 0, kNetcdfHeaderBytes)) : envi_bytes(dataset);
+  if (least) require_bytes(*least, status.st_size);
 }
 
 }  // namespace scarp

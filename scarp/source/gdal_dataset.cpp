@@ -12,6 +12,7 @@
 #include "scarp/source/band_samples.h"
 #include "scarp/source/decoded_dataset.h"
 #include "scarp/source/raster_place.h"
+#include "scarp/source/suspected_nodata.h"
 #include "scarp/source/vertical_unit.h"
 
 namespace scarp {
@@ -68,6 +69,11 @@ double choose_vertical_unit(GDALRasterBand& band, const RasterPlace& place, cons
     raster.vertical_unit = place.vertical_unit_name;
     return place.vertical_unit;
   }
+  // People who map in feet mostly measure heights in feet.
+  if (const std::string_view foot = foot_of(place.map_unit); !foot.empty()) {
+    raster.notes.push_back(
+        fmt::format("map units are feet; heights are taken as metres; say --unit {} if they are not", foot));
+  }
   return 1;
 }
 
@@ -120,6 +126,18 @@ void flip(Raster& raster, bool rows, bool cols) {
       raster.samples);
 }
 
+// The first band of colours of every kind.
+bool is_of_photographs(GDALColorInterp meaning) {
+  return meaning == GCI_RedBand || meaning == GCI_CyanBand || meaning == GCI_YCbCr_YBand;
+}
+
+bool has_sign(GDALDataType type, bool signed_byte) { return signed_byte || GDALDataTypeIsSigned(type); }
+
+// The greatest value of an integer type.
+double greatest_integer(GDALDataType type, bool with_sign) {
+  return std::exp2(GDALGetDataTypeSizeBits(type) - (with_sign ? 1 : 0)) - 1;
+}
+
 }  // namespace
 
 int height_band(GDALDataset& dataset, int wanted) {
@@ -137,7 +155,7 @@ int height_band(GDALDataset& dataset, int wanted) {
     if (meaning == GCI_AlphaBand) continue;
     ++heights;
     if (chosen == 0) chosen = b;
-    colours = colours || meaning == GCI_RedBand || meaning == GCI_CyanBand || meaning == GCI_YCbCr_YBand;
+    colours = colours || is_of_photographs(meaning);
   }
   if (heights != 1) {
     throw Error(
@@ -152,6 +170,19 @@ int height_band(GDALDataset& dataset, int wanted) {
   return chosen;
 }
 
+bool is_picture(GDALDataset& dataset) {
+  for (int b = 1; b <= dataset.GetRasterCount(); ++b) {
+    GDALRasterBand& band = *dataset.GetRasterBand(b);
+    if (is_of_photographs(band.GetColorInterpretation()) || band.GetColorTable()) return true;
+  }
+  return false;
+}
+
+bool has_place(GDALDataset& dataset) {
+  GeoTransform map{};
+  return dataset.GetGeoTransform(map.data()) == CE_None;
+}
+
 void settle_height_range(RasterOptions& options, GDALDataType type, bool signed_byte) {
   if (!options.height_range) return;
   const HeightRange range = *options.height_range;
@@ -163,12 +194,12 @@ void settle_height_range(RasterOptions& options, GDALDataType type, bool signed_
     throw Error(fmt::format("the height range {},{} is empty; --height-range LOW,HIGH with LOW < HIGH is needed",
                             range.low, range.high));
   const bool floating = GDALDataTypeIsFloating(type);
-  if (!floating && (signed_byte || GDALDataTypeIsSigned(type)))
+  if (!floating && has_sign(type, signed_byte))
     throw Error(
         fmt::format("its samples are signed ({}), for which --height-range has no meaning; say --scale "
                     "S,OFFSET",
                     GDALGetDataTypeName(type)));
-  const double greatest = floating ? 1 : std::exp2(GDALGetDataTypeSizeBits(type)) - 1;
+  const double greatest = floating ? 1 : greatest_integer(type, false);
   options.scale = (range.high - range.low) / greatest;
   options.offset = range.low;
   options.height_range.reset();
@@ -197,10 +228,15 @@ Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession
   BandSamples read = read_band(band, window, options.nodata, session, progress);
   raster.samples = std::move(read.samples);
   raster.nodata = read.nodata;
+  const GDALDataType type = band.GetRasterDataType();
+  std::optional<double> greatest;
+  if (!GDALDataTypeIsFloating(type)) greatest = greatest_integer(type, has_sign(type, is_signed_byte(band)));
+  const std::vector<std::string> suspected = suspected_nodata(raster, greatest);
   if (raster.scale < 0) apply_negative_scale(raster);
   flip(raster, place.flip_rows, place.flip_cols);
 
   raster.notes.insert(raster.notes.end(), read.notes.begin(), read.notes.end());
+  raster.notes.insert(raster.notes.end(), suspected.begin(), suspected.end());
   raster.notes.insert(raster.notes.end(), place.notes.begin(), place.notes.end());
   const auto& warnings = session.warnings();
   for (std::size_t i = 0; i < std::min(warnings.size(), kWarningsWorthANote); ++i)

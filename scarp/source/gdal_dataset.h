@@ -30,6 +30,12 @@ int height_band(GDALDataset& dataset, int wanted);
 /// Error whose text has no file name: an empty range, signed samples, another scale beside it.
 void settle_height_range(RasterOptions& options, GDALDataType type, bool signed_byte);
 
+/// Whether it has colours for people to look at: bands of red, green and blue, or a palette.
+bool is_picture(GDALDataset& dataset);
+
+/// Whether it says where it lies on a map.
+bool has_place(GDALDataset& dataset);
+
 /// Reads the band that the options name, or the colours that they call an encoding. `path` of the result stays empty.
 /// Throws Error whose text has no file name.
 Raster read_dataset(GDALDataset& dataset, const RasterOptions& options, GdalSession& session, const Progress& progress);

@@ -6,9 +6,15 @@
 
 #include <algorithm>
 #include <mutex>
+#include <string_view>
 
 namespace scarp {
 namespace {
+
+// Whether a text is for GDAL's own developers: with a memory address, or the number that stands for none (2^32 - 1).
+bool is_riddle(std::string_view text) {
+  return text.find("0x") != std::string_view::npos || text.find("4294967295") != std::string_view::npos;
+}
 
 std::string one_line(const char* text) {
   std::string line = text;
@@ -37,7 +43,7 @@ void CPL_STDCALL GdalSession::collect(CPLErr level, CPLErrorNum, const char* tex
 }
 
 std::string GdalSession::reason(const std::string& otherwise) const {
-  return errors_.empty() ? otherwise : errors_.front();
+  return errors_.empty() || is_riddle(errors_.front()) ? otherwise : errors_.front();
 }
 
 GdalOption::GdalOption(const char* name, const char* value) : name_(name) {

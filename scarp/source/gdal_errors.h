@@ -20,7 +20,8 @@ class GdalSession {
 
   /// Whether an error (not a warning) came since the last clear().
   bool failed() const { return !errors_.empty(); }
-  /// The first error in one line (the later ones only repeat it from farther away), or `otherwise` when GDAL gave none.
+  /// The first error in one line (the later ones only repeat it from farther away), or `otherwise` when GDAL gave none
+  /// that says something to people.
   std::string reason(const std::string& otherwise) const;
   /// The different warnings, in one line each.
   const std::vector<std::string>& warnings() const { return warnings_; }

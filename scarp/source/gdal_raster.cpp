@@ -4,20 +4,76 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 #include "scarp/base/error.h"
 #include "scarp/source/file_check.h"
 #include "scarp/source/file_extension.h"
 #include "scarp/source/gdal_dataset.h"
 #include "scarp/source/gdal_errors.h"
+#include "scarp/source/incomplete_file.h"
 #include "scarp/source/raster_name.h"
+#include "scarp/source/zip_archive.h"
 
 namespace scarp {
 namespace {
+
+// The file that a name of GDAL's has inside: /vsizip/FILE/MEMBER, NETCDF:FILE:VARIABLE. Empty when there is none.
+std::string file_inside(const std::string& path) {
+  constexpr std::string_view kZip = "/vsizip/";
+  VSIStatBufL status;
+  const auto is_file = [&](const std::string& name) {
+    return VSIStatL(name.c_str(), &status) == 0 && VSI_ISREG(status.st_mode);
+  };
+  if (path.starts_with(kZip)) {
+    std::string name = path.substr(kZip.size());
+    if (name.starts_with('{')) {
+      name = name.substr(1, name.find('}') - 1);
+      return is_file(name) ? name : "";
+    }
+    while (!name.empty() && !is_file(name))
+      name.resize(name.find_last_of('/') == std::string::npos ? 0 : name.find_last_of('/'));
+    return name;
+  }
+  std::size_t begin = path.find(':'), end = path.rfind(':');
+  if (begin == std::string::npos || begin == end) return {};
+  ++begin;
+  if (end > begin + 1 && path[begin] == '"' && path[end - 1] == '"') ++begin, --end;
+  const std::string name = path.substr(begin, end - begin);
+  return is_file(name) ? name : "";
+}
+
+// What a .zip has in it, for those who named the archive instead.
+std::string examples_in(const std::string& archive) {
+  constexpr std::size_t kMembersNamed = 3;
+  const std::vector<std::string> members = zip_members(archive);
+  // GDAL knows where the archive's name ends by .zip, or by braces.
+  const std::string in_name = has_extension(archive, ".zip") ? archive : "{" + archive + "}";
+  std::string text;
+  for (std::size_t i = 0; i < std::min(members.size(), kMembersNamed); ++i)
+    text += fmt::format("{}/vsizip/{}/{}", i == 0 ? "" : ", ", in_name, members[i]);
+  if (members.size() > kMembersNamed) text += fmt::format(" or {} more", members.size() - kMembersNamed);
+  return text.empty() ? "it is empty" : "name a raster in it: " + text;
+}
 
 [[noreturn]] void refuse_unopened(const std::string& path, const GdalSession& session) {
   VSIStatBufL status;
   const bool exists = VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG) == 0;
   if (exists && VSI_ISDIR(status.st_mode)) throw Error("is a directory; a raster file is needed");
+  if (exists && VSI_ISREG(status.st_mode)) {
+    check_end(path);
+    if (is_zip(path)) throw Error("is a .zip archive; " + examples_in(path));
+  } else if (const std::string file = exists ? "" : file_inside(path); !file.empty()) {
+    try {
+      check_file(file);
+      check_end(file);
+    } catch (const Error& error) {
+      throw Error(fmt::format("'{}' {}", file, error.what()));
+    }
+    if (is_zip(file)) throw Error(fmt::format("does not exist in '{}'; {}", file, examples_in(file)));
+  }
   // Names such as NETCDF:"f.nc":var and inline XML are no paths.
   if (!exists && path.find_first_of(":<") == std::string::npos) throw Error("does not exist; name a raster file");
   if (exists && has_extension(path, ".hgt")) {
@@ -25,8 +81,9 @@ namespace {
         "is no whole .hgt tile: its name must tell its corner (N46W123.hgt), its length must be that of 1201 x 1201 or "
         "3601 x 3601 samples of 2 bytes");
   }
-  throw Error(fmt::format("is no raster that GDAL {} can read: {}", GDALVersionInfo("RELEASE_NAME"),
-                          session.reason("it gives no reason")));
+  throw Error(fmt::format("is no raster that GDAL {} can read: {}{}", GDALVersionInfo("RELEASE_NAME"),
+                          session.reason("it does not say why"),
+                          exists ? fmt::format("; if it should be one, {}", kFetchAgain) : ""));
 }
 
 }  // namespace

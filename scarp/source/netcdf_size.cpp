@@ -108,4 +108,20 @@ std::optional<double> netcdf_classic_bytes(std::string_view start) {
   return least;
 }
 
+std::optional<double> hdf5_bytes(std::string_view start) {
+  // Behind the signature and the version of the superblock, that of a kind: where it tells how many bytes addresses
+  // have, and the address of the end, which are little-endian.
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  constexpr struct { std::size_t address_bytes, end; } kSuperblocks[] = {{13, 40}, {13, 44}, {9, 28}, {9, 28}};
+  if (start.substr(0, kSignature.size()) != kSignature || start.size() <= kSignature.size()) return {};
+  const auto version = static_cast<unsigned char>(start[kSignature.size()]);
+  if (version >= std::size(kSuperblocks)) return {};
+  const auto [address_bytes, end] = kSuperblocks[version];
+  constexpr std::size_t kAddressBytes = 8;  // as every file has it that is written on a machine of today
+  if (start.size() < end + kAddressBytes || start[address_bytes] != kAddressBytes) return {};
+  double bytes = 0;
+  for (std::size_t i = kAddressBytes; i-- > 0;) bytes = bytes * 256 + static_cast<unsigned char>(start[end + i]);
+  return bytes;
+}
+
 }  // namespace scarp

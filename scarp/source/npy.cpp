@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
+#include <cmath>
+#include <cstring>
 #include <limits>
 #include <memory>
 #include <string_view>
@@ -14,9 +16,11 @@
 #include "scarp/source/file_extension.h"
 #include "scarp/source/gdal_dataset.h"
 #include "scarp/source/gdal_errors.h"
+#include "scarp/source/incomplete_file.h"
 #include "scarp/source/npy_header.h"
 #include "scarp/source/raster_name.h"
 #include "scarp/source/raw_band.h"
+#include "scarp/source/zip_archive.h"
 
 namespace scarp {
 namespace {
@@ -24,9 +28,6 @@ namespace {
 struct FileCloser {
   void operator()(VSILFILE* file) const { VSIFCloseL(file); }
 };
-
-// /vsizip wants the archive's full name, in braces when it does not end in .zip.
-std::string archive_folder(const std::string& path) { return "/vsizip/{" + full_path(path) + "}"; }
 
 NpyHeader read_header(const std::string& path, const GdalSession& session) {
   const std::unique_ptr<VSILFILE, FileCloser> file(VSIFOpenL(path.c_str(), "rb"));
@@ -58,65 +59,120 @@ std::optional<std::pair<std::int64_t, std::int64_t>> raster_shape(const NpyHeade
   return std::pair(shape[0], shape[1]);
 }
 
-RawSampleType sample_type(const NpyHeader& header) {
-  if (const auto type = raw_sample_type(header.kind, header.bytes)) return *type;
-  const std::string_view word = header.kind == 'b'   ? "true and false"
-                                : header.kind == 'c' ? "complex numbers"
-                                : header.kind == 'O' ? "Python objects"
-                                : header.kind == 'V' ? "structures"
-                                                     : "";
-  throw Error(fmt::format("holds samples of type '{}'{}; i1 u1 i2 u2 i4 u4 f4 f8 are read: convert with .astype('f4')",
-                          header.descr, word.empty() ? "" : fmt::format(" ({})", word)));
+bool is_half(const NpyHeader& header) { return header.kind == 'f' && header.bytes == 2; }
+
+bool is_readable(const NpyHeader& header) {
+  return is_half(header) || raw_sample_type(header.kind, header.bytes).has_value();
 }
 
-// The member of an archive to read.
+// What else an array may hold, in words; empty for what has none.
+std::string_view word_of(const NpyHeader& header) {
+  switch (header.kind) {
+    case 'b':
+      return "true and false";
+    case 'c':
+      return "complex numbers";
+    case 'O':
+      return "Python objects";
+    case 'V':
+      return "structures";
+    default:
+      return "";
+  }
+}
+
+// Halves are read as what has their size, and turned into float32 afterwards.
+RawSampleType sample_type(const NpyHeader& header) {
+  if (is_half(header)) return {GDT_UInt16, false};
+  if (const auto type = raw_sample_type(header.kind, header.bytes)) return *type;
+  const std::string_view word = word_of(header);
+  throw Error(
+      fmt::format("holds samples of type '{}'{}; i1 u1 i2 u2 i4 u4 i8 u8 f2 f4 f8 are read: convert with .astype('f4')",
+                  header.descr, word.empty() ? "" : fmt::format(" ({})", word)));
+}
+
+// The value of an IEEE 754 half: a sign, 5 bits of exponent, 10 of fraction.
+float half_value(std::uint16_t bits) {
+  const int exponent = bits >> 10 & 31, fraction = bits & 1023;
+  float value = 0;
+  if (exponent == 31) {
+    value = fraction ? std::numeric_limits<float>::quiet_NaN() : std::numeric_limits<float>::infinity();
+  } else {
+    value = exponent ? std::ldexp(1024.0f + static_cast<float>(fraction), exponent - 25)
+                     : std::ldexp(static_cast<float>(fraction), -24);
+  }
+  return bits >> 15 ? -value : value;
+}
+
+// The member of an archive to read: the only raster. Arrays of other types (a mask) do not count beside it.
 std::string choose_member(const std::string& path, const std::string& key, const GdalSession& session) {
-  const std::string folder = archive_folder(path);
-  const CPLStringList members(VSIReadDirRecursive(folder.c_str()));
-  std::vector<std::string> rasters;
+  if (is_zip(path)) check_end(path);
+  const std::string folder = zip_folder(path);
+  std::vector<std::string> rasters, unreadable;
   std::string all;
-  for (int i = 0; i < members.size(); ++i) {
-    const std::string member = members[i];
+  for (const std::string& member : zip_members(path)) {
     if (!has_extension(member, ".npy")) continue;
     const std::string name = member.substr(0, member.size() - 4);
     if (!key.empty() && (name == key || member == key)) return folder + "/" + member;
-    const NpyHeader header = read_header(folder + "/" + member, session);
-    all += fmt::format("{}{} ({})", all.empty() ? "" : ", ", name, shape_text(header));
-    if (raster_shape(header)) rasters.push_back(member);
+    all += fmt::format("{}{}", all.empty() ? "" : ", ", name);
+    try {
+      const NpyHeader header = read_header(folder + "/" + member, session);
+      const bool readable = is_readable(header);
+      all += fmt::format(" ({}{})", shape_text(header), readable ? "" : fmt::format(" of '{}'", header.descr));
+      if (raster_shape(header)) (readable ? rasters : unreadable).push_back(member);
+    } catch (const Error&) {
+      all += " (not read)";
+      unreadable.push_back(member);
+    }
   }
   if (all.empty())
     throw Error(fmt::format("is no .npz archive with arrays: {}", session.reason("no member ends in .npy")));
   if (!key.empty()) throw Error(fmt::format("holds no array '{}'; --key takes one of: {}", key, all));
+  // Reading it tells what is wrong with it.
+  if (rasters.empty() && unreadable.size() == 1) rasters.swap(unreadable);
   if (rasters.size() != 1) {
-    throw Error(fmt::format("holds {} arrays with two dimensions; choose one with --key: {}", rasters.size(), all));
+    throw Error(
+        fmt::format("holds {} arrays of heights in two dimensions; choose one with --key: {}", rasters.size(), all));
   }
   return folder + "/" + rasters.front();
 }
 
-// Arrays in Fortran order lie in the file column by column. A packed file can be read forwards only, so they are read
-// whole and shown to the reader through strides. `bytes` must outlive the dataset.
-GDALDatasetUniquePtr open_fortran(GDALDataset& transposed, const NpyHeader& header, std::vector<std::uint8_t>& bytes,
-                                  GdalSession& session) {
-  GDALRasterBand& band = *transposed.GetRasterBand(1);
-  const int rows = transposed.GetRasterXSize(), cols = transposed.GetRasterYSize();
-  const RasterWindow all{0, 0, rows, cols};
-  refuse_beyond_memory(all, header.bytes);
-  bytes.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols) *
-               static_cast<std::size_t>(header.bytes));
-  read_rows(band, all, 0, cols, band.GetRasterDataType(), bytes.data(), session);
+// Arrays that GDAL does not see as they lie in the file are read whole and shown to the reader from memory: those in
+// Fortran order, column by column, through strides (a packed file can be read forwards only), and halves. `bytes` must
+// outlive the dataset.
+GDALDatasetUniquePtr open_in_memory(GDALDataset& stored, const NpyHeader& header, std::vector<std::uint8_t>& bytes,
+                                    GdalSession& session) {
+  GDALRasterBand& band = *stored.GetRasterBand(1);
+  const int width = stored.GetRasterXSize(), height = stored.GetRasterYSize();
+  const int cols = header.fortran_order ? height : width, rows = header.fortran_order ? width : height;
+  const RasterWindow all{0, 0, width, height};
+  const GDALDataType type = is_half(header) ? GDT_Float32 : band.GetRasterDataType();
+  const int sample_bytes = GDALGetDataTypeSizeBytes(type);
+  refuse_beyond_memory(all, sample_bytes);
+  const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  bytes.resize(count * static_cast<std::size_t>(sample_bytes));
+  read_rows(band, all, 0, height, band.GetRasterDataType(), bytes.data(), session);
+  // In place, from the last one: a float takes the room of two halves.
+  for (std::size_t i = is_half(header) ? count : 0; i-- > 0;) {
+    std::uint16_t half = 0;
+    std::memcpy(&half, bytes.data() + i * sizeof(half), sizeof(half));
+    const float value = half_value(half);
+    std::memcpy(bytes.data() + i * sizeof(value), &value, sizeof(value));
+  }
   GDALDriver* const memory = GetGDALDriverManager()->GetDriverByName("MEM");
   GDALDatasetUniquePtr dataset(memory ? memory->Create("", cols, rows, 0, GDT_Byte, nullptr) : nullptr);
   char pointer[64] = {};
   CPLPrintPointer(pointer, bytes.data(), sizeof(pointer) - 1);
   CPLStringList strides;
   strides.SetNameValue("DATAPOINTER", pointer);
-  strides.SetNameValue("PIXELOFFSET", fmt::format("{}", std::int64_t{header.bytes} * rows).c_str());
-  strides.SetNameValue("LINEOFFSET", fmt::format("{}", header.bytes).c_str());
-  if (!dataset || dataset->AddBand(band.GetRasterDataType(), strides.List()) != CE_None) {
-    throw Error(fmt::format("cannot be opened in Fortran order: {}", session.reason("GDAL gives no reason")));
+  const std::int64_t along = sample_bytes, across = std::int64_t{sample_bytes} * width;
+  strides.SetNameValue("PIXELOFFSET", fmt::format("{}", header.fortran_order ? across : along).c_str());
+  strides.SetNameValue("LINEOFFSET", fmt::format("{}", header.fortran_order ? along : across).c_str());
+  if (!dataset || dataset->AddBand(type, strides.List()) != CE_None) {
+    throw Error(fmt::format("cannot be opened from memory: {}", session.reason("GDAL gives no reason")));
   }
-  if (const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE")) {
-    dataset->GetRasterBand(1)->SetMetadataItem("PIXELTYPE", type, "IMAGE_STRUCTURE");
+  if (const char* sign = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE")) {
+    dataset->GetRasterBand(1)->SetMetadataItem("PIXELTYPE", sign, "IMAGE_STRUCTURE");
   }
   return dataset;
 }
@@ -139,8 +195,8 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
   const double needed =
       static_cast<double>(header.data_begin) + static_cast<double>(rows) * static_cast<double>(cols) * header.bytes;
   if (static_cast<double>(bytes) < needed) {
-    throw Error(fmt::format("is cut off: {} samples of {} bytes need {:.0f} bytes, it has {}", shape_text(header),
-                            header.bytes, needed, bytes));
+    throw Error(fmt::format("is cut off: {} samples of {} bytes need {:.0f} bytes, it has {}; {}", shape_text(header),
+                            header.bytes, needed, bytes, kFetchAgain));
   }
 
   std::vector<std::uint8_t> whole;
@@ -149,8 +205,12 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
   // The memory image of an array in Fortran order is that of its transpose.
   GDALDatasetUniquePtr dataset =
       open_raw_band({file, file_cols, file_rows, type, header.bytes, header.big_endian, header.data_begin}, session);
-  if (header.fortran_order) dataset = open_fortran(*dataset, header, whole, session);
+  if (header.fortran_order || is_half(header)) dataset = open_in_memory(*dataset, header, whole, session);
   Raster raster = read_dataset(*dataset, options, session, progress);
+  if (is_half(header)) {
+    raster.file_type = "Float16";
+    raster.notes.push_back("Float16 samples became float32, none was rounded");
+  }
   if (header.shape.size() == 3)
     raster.notes.push_back(fmt::format("an array of {}, read as {} x {}", shape_text(header), rows, cols));
   return raster;

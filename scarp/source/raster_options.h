@@ -48,7 +48,7 @@ struct RasterOptions {
   HeightEncoding encoding = HeightEncoding::none;  ///< of heights in the colours of 3 or 4 Byte bands
   std::optional<RawFormat> raw;  ///< the file is bare samples, whatever its name; default: by name and content
   std::string channel;           ///< name of the channel of an EXR; default: the only one, else Y, else R
-  std::string key;               ///< name of the array in a .npz; default: the only one with two dimensions
+  std::string key;               ///< name of the array in a .npz; default: the only one of heights
 };
 
 }  // namespace scarp

@@ -162,6 +162,7 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
   }
   geo.crs_name = name_of(*crs);
   crs->StripVertical();
+  if (crs->IsProjected() || crs->IsLocal()) place.map_unit = crs->GetLinearUnits();
   geo.crs_wkt = wkt_of(*crs);
   const GroundScale ground =
       ground_scale_at(geo.crs_wkt, first_x + (window.cols - 1) / 2.0 * step_x, (first_y + last_y) / 2);

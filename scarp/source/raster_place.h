@@ -19,6 +19,7 @@ struct RasterPlace {
   Georeference georeference;       ///< of the window's samples, after the flips
   bool flip_rows = false;          ///< the file's rows run from south to north
   bool flip_cols = false;          ///< the file's columns run from east to west
+  double map_unit = 0;             ///< metres per unit of a projected or local CRS; 0: there is none
   double vertical_unit = 0;        ///< metres per unit of a vertical CRS; 0: there is none
   std::string vertical_unit_name;  ///< its name
   std::vector<std::string> notes;

@@ -21,6 +21,8 @@ std::optional<RawSampleType> raw_sample_type(char kind, int bytes) {
   if (kind == 'u' && bytes == 1) return plain(GDT_Byte);
   if (kind == 'u' && bytes == 2) return plain(GDT_UInt16);
   if (kind == 'u' && bytes == 4) return plain(GDT_UInt32);
+  if (kind == 'i' && bytes == 8) return plain(GDT_Int64);
+  if (kind == 'u' && bytes == 8) return plain(GDT_UInt64);
   if (kind == 'f' && bytes == 4) return plain(GDT_Float32);
   if (kind == 'f' && bytes == 8) return plain(GDT_Float64);
   return {};

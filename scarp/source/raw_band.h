@@ -18,8 +18,7 @@ struct RawSampleType {
   bool signed_bytes;  ///< GDAL before 3.7: Byte, and a remark that it has a sign
 };
 
-/// `kind` is 'i' signed, 'u' unsigned, 'f' float. Nothing for what GDAL cannot read raw, or Scarp does not (64-bit
-/// integers, half floats).
+/// `kind` is 'i' signed, 'u' unsigned, 'f' float. Nothing for what GDAL cannot read raw (half floats).
 std::optional<RawSampleType> raw_sample_type(char kind, int bytes);
 
 /// The name by which GDAL finds the file from anywhere: absolute, unless it is one of GDAL's own (/vsi...).

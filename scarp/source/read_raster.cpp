@@ -61,7 +61,7 @@ Raster read_tiles(const std::vector<std::string>& inputs, const RasterOptions& o
   std::vector<std::string> files, notes;
   for (const std::string& input : inputs) {
     if (!options.raw && !is_npy_path(input) && is_tile_folder(input)) {
-      const std::vector<std::string> found = rasters_in(input, notes);
+      const std::vector<std::string> found = rasters_in(input, options, notes);
       files.insert(files.end(), found.begin(), found.end());
     } else {
       files.push_back(input);

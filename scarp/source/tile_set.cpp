@@ -235,9 +235,11 @@ bool is_tile_folder(const std::string& path) {
   return VSI_ISDIR(status.st_mode) && !GDALIdentifyDriverEx(path.c_str(), GDAL_OF_RASTER, nullptr, nullptr);
 }
 
-std::vector<std::string> rasters_in(const std::string& folder, std::vector<std::string>& notes) {
+std::vector<std::string> rasters_in(const std::string& folder, const RasterOptions& options,
+                                    std::vector<std::string>& notes) {
+  const bool colours_are_heights = options.band != 0 || options.encoding != HeightEncoding::none;
   const CPLStringList entries(VSIReadDir(folder.c_str()));
-  std::vector<std::string> found, others;
+  std::vector<std::string> found, others, pictures;
   // Files that belong to a raster: overviews, masks, what a virtual raster is made of.
   std::set<std::string> parts;
   for (int i = 0; i < entries.size(); ++i) {
@@ -249,24 +251,34 @@ std::vector<std::string> rasters_in(const std::string& folder, std::vector<std::
       others.push_back(path);
       continue;
     }
-    found.push_back(path);
     const GDALDatasetUniquePtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY));
+    const bool left_out = dataset && !colours_are_heights && is_picture(*dataset) && !has_place(*dataset);
+    (left_out ? pictures : found).push_back(path);
     const CPLStringList files(dataset ? dataset->GetFileList() : nullptr);
     for (int f = 1; f < files.size(); ++f) parts.insert(files[f]);
   }
   std::erase_if(found, [&](const std::string& path) { return parts.contains(path); });
-  std::erase_if(others, [&](const std::string& path) { return parts.contains(path); });
   std::sort(found.begin(), found.end());
-  std::sort(others.begin(), others.end());
+  const auto leave_out = [&](std::vector<std::string>& files, std::string_view why) {
+    std::erase_if(files, [&](const std::string& path) { return parts.contains(path); });
+    if (files.empty()) return;
+    std::sort(files.begin(), files.end());
+    notes.push_back(fmt::format("left out as {}: {}{}", why, files.front(),
+                                files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1)));
+  };
+  leave_out(others, "no rasters");
+  leave_out(pictures, "pictures without a place");
+  if (found.empty() && !pictures.empty()) {
+    throw Error(fmt::format(
+        "raster '{}': is a folder of pictures without a place, as '{}'; say --encoding terrain-rgb or terrarium if "
+        "their colours encode heights",
+        folder, pictures.front()));
+  }
   if (found.empty()) {
     throw Error(
         fmt::format("raster '{}': is a folder without a raster that GDAL {} can read; its subfolders are not "
                     "searched",
                     folder, GDALVersionInfo("RELEASE_NAME")));
-  }
-  if (!others.empty()) {
-    notes.push_back(fmt::format("left out as no rasters: {}{}", others.front(),
-                                others.size() == 1 ? "" : fmt::format(" and {} more", others.size() - 1)));
   }
   return found;
 }

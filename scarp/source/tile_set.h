@@ -20,9 +20,11 @@ namespace scarp {
 /// Whether this is a folder of files, and no raster of GDAL's that is stored as one.
 bool is_tile_folder(const std::string& path);
 
-/// The rasters in a folder, by name; subfolders are not searched. What is left out is said in a note. Throws Error
-/// "raster 'folder': ..." when there is none.
-std::vector<std::string> rasters_in(const std::string& folder, std::vector<std::string>& notes);
+/// The rasters in a folder, by name; subfolders are not searched. Pictures are left out, by which those are meant that
+/// have colours and no place, unless the options call colours heights: what was rendered from a folder into it is no
+/// tile of the next time. What is left out is said in notes. Throws Error "raster 'folder': ..." when there is none.
+std::vector<std::string> rasters_in(const std::string& folder, const RasterOptions& options,
+                                    std::vector<std::string>& notes);
 
 struct TileSet {
   GDALDatasetUniquePtr dataset;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/source/vertical_unit.h"
 
+#include <cmath>
 #include <string>
 
 namespace scarp {
@@ -26,9 +27,15 @@ constexpr Unit kUnits[] = {
     {6 * kFoot, " fathom fathoms "},
 };
 
+// Feet of other countries (Clarke's, the Indian, the Gold Coast's) differ from the international one by 5e-5 at most,
+// the two of the US by 2e-6; units of the same length by the rounding of their texts, 1e-9 or so.
+constexpr double kFeetDiffer = 1e-4, kSameLength = 1e-7;
+
 }  // namespace
 
 std::optional<double> metres_per_vertical_unit(std::string_view name) {
+  // "1/3 ft", "10 m" and "m^2" are other units than the word in them.
+  if (name.find_first_of("0123456789/*^%") != std::string_view::npos) return {};
   // "U.S. survey foot", "us-ft" and "Foot_US" differ by case and punctuation only.
   std::string plain = " ";
   for (const char c : name) {
@@ -41,6 +48,11 @@ std::optional<double> metres_per_vertical_unit(std::string_view name) {
     if (unit.names.find(plain) != std::string_view::npos) return unit.metres;
   }
   return {};
+}
+
+std::string_view foot_of(double metres) {
+  if (!(std::abs(metres - kFoot) <= kFeetDiffer * kFoot)) return "";
+  return std::abs(metres - kUsSurveyFoot) <= kSameLength * kFoot ? "us-ft" : "ft";
 }
 
 }  // namespace scarp

@@ -11,4 +11,8 @@ namespace scarp {
 /// known here.
 std::optional<double> metres_per_vertical_unit(std::string_view name);
 
+/// "ft" or "us-ft" when a unit of so many metres is a foot, the international one, that of the US or another country's;
+/// else empty.
+std::string_view foot_of(double metres);
+
 }  // namespace scarp

@@ -7,12 +7,13 @@
 #include <type_traits>
 
 #include "scarp/base/error.h"
+#include "scarp/source/incomplete_file.h"
 
 namespace scarp {
 
 std::string_view VoxBytes::take(std::size_t count) {
   if (count > rest_.size())
-    throw Error(fmt::format("is cut off: {} bytes are needed, {} are left", count, rest_.size()));
+    throw Error(fmt::format("is cut off: {} bytes are needed, {} are left; {}", count, rest_.size(), kFetchAgain));
   const std::string_view taken = rest_.substr(0, count);
   rest_.remove_prefix(count);
   return taken;
@@ -28,8 +29,8 @@ std::int32_t VoxBytes::number() {
 std::size_t VoxBytes::count(std::size_t least_bytes) {
   const auto count = static_cast<std::uint32_t>(number());
   if (count > rest_.size() / least_bytes)
-    throw Error(fmt::format("is cut off: {} entries need {} bytes at least, {} are left", count,
-                            std::uint64_t{count} * least_bytes, rest_.size()));
+    throw Error(fmt::format("is cut off: {} entries need {} bytes at least, {} are left; {}", count,
+                            std::uint64_t{count} * least_bytes, rest_.size(), kFetchAgain));
   return count;
 }
 

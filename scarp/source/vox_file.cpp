@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "scarp/base/error.h"
+#include "scarp/source/incomplete_file.h"
 #include "scarp/source/vox_bytes.h"
 #include "scarp/source/vox_scene.h"
 #include "scarp/source/whole_file.h"
@@ -12,7 +13,6 @@ namespace scarp {
 namespace {
 
 constexpr std::string_view kMagic = "VOX ";
-constexpr std::string_view kLfsPointer = "version https://git-lfs";
 constexpr std::size_t kHeaderBytes = 20;  // up to the children of MAIN
 constexpr int kMaxSide = 256;
 
@@ -148,8 +148,7 @@ class Parser {
 // The version; the bytes up to the children of MAIN have been looked at.
 int parse_header(std::string_view bytes, std::uint64_t file_bytes) {
   if (bytes.empty()) throw Error("is empty (0 bytes); a MagicaVoxel file is needed");
-  if (bytes.substr(0, kLfsPointer.size()) == kLfsPointer)
-    throw Error("is a Git LFS pointer, not the file itself; fetch it with: git lfs pull");
+  refuse_lfs_pointer(bytes);
   if (bytes.substr(0, kMagic.size()) != kMagic) {
     std::string begin;
     for (const char byte : bytes.substr(0, kMagic.size()))
@@ -157,7 +156,8 @@ int parse_header(std::string_view bytes, std::uint64_t file_bytes) {
     throw Error(fmt::format("is no MagicaVoxel file: it begins with the bytes {}, not with 'VOX '", begin));
   }
   if (bytes.size() < kHeaderBytes)
-    throw Error(fmt::format("is cut off: it has {} bytes, the header alone needs {}", bytes.size(), kHeaderBytes));
+    throw Error(fmt::format("is cut off: it has {} bytes, the header alone needs {}; {}", bytes.size(), kHeaderBytes,
+                            kFetchAgain));
   VoxBytes header(bytes.substr(kMagic.size()));
   const int version = header.number();
   if (version != 150 && version != 200) throw Error(fmt::format("has version {}; 150 and 200 are read", version));
@@ -165,8 +165,8 @@ int parse_header(std::string_view bytes, std::uint64_t file_bytes) {
   const auto content = static_cast<std::uint32_t>(header.number()),
              children = static_cast<std::uint32_t>(header.number());
   if (std::uint64_t{content} + children > file_bytes - kHeaderBytes) {
-    throw Error(fmt::format("is cut off: its header says {} bytes, it has {}",
-                            kHeaderBytes + std::uint64_t{content} + children, file_bytes));
+    throw Error(fmt::format("is cut off: its header says {} bytes, it has {}; {}",
+                            kHeaderBytes + std::uint64_t{content} + children, file_bytes, kFetchAgain));
   }
   return version;
 }

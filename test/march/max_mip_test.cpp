@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -281,18 +282,27 @@ Ray any_ray(const HeightField& field) {
   return {from, point() - from};
 }
 
-RC_GTEST_PROP(MaxMip, ALaterStartNeverFindsAnEarlierHit, ()) {
+RC_GTEST_PROP(MaxMip, ALaterStartFindsNoEarlierHitAndLosesNone, ()) {
   static const Terrain terrain = hills();
   Ray ray = any_ray(terrain.field);
   const Hit first = terrain.cast(ray);
   ray.t_min = *rc::gen::inRange(0, 1000) * 1e-3;
   const Hit later = terrain.cast(ray);
+  // Of a clearance (numerics.md), for rays of any_ray().
+  const double rounding = 16 * 0x1p-53 * (2 * 60 + 4 * (257 + 193) * 30);
+  if (first && first.t > ray.t_min) {
+    // Whether it begins beside the field, above the ground or below it (to rise before that hit), the ray still has it
+    // before it. Only where it begins on the ground as far as two clearances can tell, that here and the march's, it
+    // may be seen on either side.
+    const dvec3 start = ray.at(ray.t_min);
+    const std::optional<double> ground = terrain.field.height(start.x, start.y);
+    if (!ground || std::abs(start.z - *ground) > 2 * rounding) RC_ASSERT(later);
+  }
   if (later) {
     RC_ASSERT(later.t >= ray.t_min);
-    // Either root may be off by the rounding of a clearance (numerics.md) over the speed at which the ray closes in.
+    // Either root may be off by the rounding of a clearance over the speed at which the ray closes in.
     const dvec2 slope = terrain.field.gradient(later.cell, later.u, later.v);
     const double closing = std::abs(ray.direction.z - slope.x * ray.direction.x - slope.y * ray.direction.y);
-    const double rounding = 16 * 0x1p-53 * (2 * 60 + 4 * (257 + 193) * 30);
     if (first) RC_ASSERT((first.t - later.t) * closing <= 2 * rounding);
     RC_ASSERT(first || first.status == HitStatus::below);
   }

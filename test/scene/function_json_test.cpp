@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -127,6 +129,20 @@ TEST(ExampleFunctions, AreGood) {
   }
   EXPECT_THROW(example_function("moon"), Error);
   EXPECT_THROW(read_function("/nowhere.json"), Error);
+}
+
+TEST(ExampleFunctions, AGitLfsPointerIsNamed) {
+  const auto path = std::filesystem::temp_directory_path() / "scarp-function-pointer.json";
+  std::ofstream(path) << "version https://git-lfs.github.com/spec/v1\n";
+  try {
+    read_function(path.string());
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(
+        "function '" + path.string() + "': is a Git LFS pointer, not the file itself; fetch it with: git lfs pull",
+        std::string(error.what()));
+  }
+  std::filesystem::remove(path);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // Small files for the tests of readers, in a folder that goes away with the test.
 #pragma once
 
+#include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
@@ -11,6 +12,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scarp/base/error.h"
@@ -38,6 +40,22 @@ class Files : public ::testing::Test {
   std::string bytes_of(const std::string& file) const {
     std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  /// A .zip with compressed members: names and bytes.
+  std::string write_zip(const std::string& name,
+                        const std::vector<std::pair<std::string, std::string>>& members) const {
+    const std::string archive = "/vsizip/{" + path(name) + "}";
+    // The archive stays open between its members, or only the first one would be in it.
+    VSILFILE* whole = VSIFOpenL(archive.c_str(), "wb");
+    for (const auto& [member, bytes] : members) {
+      VSILFILE* file = VSIFOpenL((archive + "/" + member).c_str(), "wb");
+      if (!file) break;
+      EXPECT_EQ(bytes.size(), VSIFWriteL(bytes.data(), 1, bytes.size(), file));
+      VSIFCloseL(file);
+    }
+    VSIFCloseL(whole);
+    return path(name);
   }
 
   /// A GeoTIFF whose bands all hold `samples`; `edit` sees the dataset before it is closed.

@@ -129,8 +129,77 @@ TEST_F(GdalRaster, AllNodataIsRefused) {
   expect_says(read_error(write_tiff("b.tif", GDT_Float32, 2, 1, {kNan, kNan})), "nodata");
 }
 
-TEST_F(GdalRaster, UndeclaredNodataIsSuspected) {
-  EXPECT_TRUE(has_note(read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {-9999, 5}), {}), "--nodata=-9999"));
+// Heights of 100 to 140 m and `mark`. What the note tells to say is said, and the mark is a hole.
+class SuspectedNodata : public GdalRaster {
+ protected:
+  std::string marked(GDALDataType type, double mark, double scale = 1) const {
+    return write_tiff("a.tif", type, 3, 2, {100, 110, 120, mark, 130, 140},
+                      [&](GDALDataset& d) { d.GetRasterBand(1)->SetScale(scale); });
+  }
+  static void expect_advice_that_works(const std::string& file, const std::string& what) {
+    const std::string before = ", which often marks holes: say --nodata=";
+    for (const std::string& note : read_raster(file, {}).notes) {
+      const std::size_t at = note.find(before);
+      if (at == std::string::npos) continue;
+      RasterOptions options;
+      options.nodata = std::stod(note.substr(at + before.size()));
+      const Raster raster = read_raster(file, options);
+      const double sample = doubles(raster)[3];
+      EXPECT_TRUE(std::isnan(sample) || sample == raster.nodata) << what << ": " << note;
+      EXPECT_FALSE(has_note(raster, "often marks holes")) << what;
+      return;
+    }
+    ADD_FAILURE() << what << ": no note";
+  }
+};
+
+TEST_F(SuspectedNodata, WhatTheNoteTellsToSayMakesHoles) {
+  constexpr double kFloatMax = std::numeric_limits<float>::max();
+  const struct {
+    GDALDataType type;
+    std::vector<double> marks;
+  } cases[] = {
+      {GDT_Byte, {255}},
+      {GDT_Int16, {-32768, -32767, -9999, 32767}},
+      {GDT_UInt16, {65535}},
+      {GDT_Int32, {-2147483648.0, -99999, 2147483647}},
+      {GDT_UInt32, {4294967295}},
+      {GDT_Float32,
+       {-kFloatMax, kFloatMax, -9999, -99999, -999999, 99999, 1e20, -1e20, 9.969209968386869e36, -9999.9e2}},
+      {GDT_Float64, {-kFloatMax, kFloatMax, -99999.1, 1e20, -3.402823e38}},
+  };
+  for (const auto& c : cases) {
+    for (const double mark : c.marks)
+      expect_advice_that_works(marked(c.type, mark), fmt::format("{} {}", GDALGetDataTypeName(c.type), mark));
+  }
+  EXPECT_TRUE(has_note(read_raster(marked(GDT_Float32, 99999), {}), "99999, more than 20 km from all others"));
+}
+
+TEST_F(SuspectedNodata, WhatHeightsCanBeIsLetBe) {
+  const auto quiet = [](const std::string& file) {
+    const Raster raster = read_raster(file, {});
+    EXPECT_FALSE(has_note(raster, "often marks holes")) << ::testing::PrintToString(doubles(raster));
+  };
+  // Peaks, trenches and towers; the far ends only where the unit makes them far.
+  for (const double height : {0.0, -11000.0, 8849.0, 19000.0}) quiet(marked(GDT_Float32, height));
+  quiet(marked(GDT_UInt32, 4000000, 0.001));
+  expect_advice_that_works(marked(GDT_UInt32, 4000000, 0.01), "decimal centimetres");
+  expect_advice_that_works(marked(GDT_UInt32, 4000000, -0.01), "heights that fall with the samples");
+  // Samples that fill their type, evenly or nearly so.
+  quiet(write_tiff("b.tif", GDT_Byte, 3, 1, {0, 128, 255}));
+  quiet(write_tiff("b.tif", GDT_UInt16, 4, 1, {0, 20000, 40000, 65535}));
+  quiet(write_tiff("b.tif", GDT_Float64, 3, 1, {0, 4e9, 8e9}));
+  // One value lies apart from nothing.
+  quiet(write_tiff("b.tif", GDT_UInt16, 2, 1, {65535, 65535}));
+  // What a mask or the file's own nodata value hides is no sample.
+  quiet(write_tiff("b.tif", GDT_Int16, 3, 1, {1, -9999, 2}, nodata(-9999)));
+  const GdalOption inside("GDAL_TIFF_INTERNAL_MASK", "YES");
+  quiet(write_tiff("c.tif", GDT_Int16, 3, 1, {1, -9999, 2}, [](GDALDataset& d) {
+    d.CreateMaskBand(GMF_PER_DATASET);
+    std::uint8_t mask[] = {255, 0, 255};
+    EXPECT_EQ(CE_None,
+              d.GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, 0, 3, 1, mask, 3, 1, GDT_Byte, 0, 0, nullptr));
+  }));
 }
 
 TEST_F(GdalRaster, AMaskMakesHolesInFloat32) {
@@ -216,6 +285,8 @@ TEST_F(GdalRaster, FeetBecomeMetres) {
   const Raster odd = read_raster(write_tiff("c.tif", GDT_Int16, 2, 1, {1, 2}, unit("furlong")), {});
   EXPECT_EQ(1, odd.scale);
   EXPECT_TRUE(has_note(odd, "furlong"));
+  EXPECT_TRUE(has_note(read_raster(write_tiff("d.tif", GDT_Int16, 2, 1, {1, 2}, unit("1/3 ft")), {}),
+                       "the vertical unit '1/3 ft' is no length known here: metres are assumed"));
   RasterOptions options;
   options.unit = "ft";
   EXPECT_DOUBLE_EQ(0.3048, read_raster(path("c.tif"), options).scale);

@@ -38,6 +38,27 @@ TEST(NetcdfSize, IsUnknownForOtherFilesAndCutHeaders) {
     EXPECT_FALSE(netcdf_classic_bytes(std::string_view(whole).substr(0, n)).has_value()) << n;
 }
 
+TEST(Hdf5Size, IsInEverySuperblock) {
+  const auto header = [](char version, std::size_t address_bytes, std::size_t end) {
+    std::string bytes(end + 8, '\0');
+    bytes.replace(0, 8, "\x89HDF\r\n\x1a\n");
+    bytes[8] = version;
+    bytes[address_bytes] = 8;
+    bytes[end] = 0x34;
+    bytes[end + 1] = 0x12;
+    bytes[end + 4] = 1;
+    return bytes;
+  };
+  for (const std::string& bytes : {header(0, 13, 40), header(1, 13, 44), header(2, 9, 28), header(3, 9, 28)}) {
+    EXPECT_EQ(4294967296.0 + 0x1234, hdf5_bytes(bytes)) << int{bytes[8]};
+    for (std::size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(hdf5_bytes(std::string_view(bytes).substr(0, n))) << n;
+  }
+  EXPECT_FALSE(hdf5_bytes(header(4, 9, 28)));
+  std::string short_addresses = header(0, 13, 40);
+  short_addresses[13] = 4;
+  EXPECT_FALSE(hdf5_bytes(short_addresses));
+}
+
 TEST(NetcdfSize, SurvivesAnyBytes) {
   EXPECT_TRUE(rc::check("a damaged header is understood or not", [] {
     std::string bytes = header(30, 20);

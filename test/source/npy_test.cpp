@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/source/npy.h"
 
-#include <cpl_vsi.h>
-
+#include <cmath>
 #include <cstdint>
 
 #include "source/files.h"
@@ -19,23 +18,11 @@ class Npy : public Files {
                         const std::string& samples, bool fortran = false) {
     return write_bytes(name, npy_bytes(npy_dictionary(descr, shape, fortran), samples));
   }
-  // A .npz with compressed members.
-  std::string write_npz(const std::string& name, const std::vector<std::pair<std::string, std::string>>& members) {
-    const std::string archive = "/vsizip/{" + path(name) + "}";
-    // The archive stays open between its members, or only the first one would be in it.
-    VSILFILE* whole = VSIFOpenL(archive.c_str(), "wb");
-    for (const auto& [member, bytes] : members) {
-      VSILFILE* file = VSIFOpenL((archive + "/" + member).c_str(), "wb");
-      if (!file) break;
-      EXPECT_EQ(bytes.size(), VSIFWriteL(bytes.data(), 1, bytes.size(), file));
-      VSIFCloseL(file);
-    }
-    VSIFCloseL(whole);
-    return path(name);
-  }
 };
 
 const std::vector<double> kValues{1, 2, 3, 4, 5, 100};
+// The same as IEEE halves.
+const std::string kHalves = sample_bytes<std::uint16_t>({0x3c00, 0x4000, 0x4200, 0x4400, 0x4500, 0x5640});
 
 TEST_F(Npy, AllTypesAndByteOrdersAreRead) {
   struct Case {
@@ -50,6 +37,10 @@ TEST_F(Npy, AllTypesAndByteOrdersAreRead) {
                         {">u2", sample_bytes<std::uint16_t>(kValues, true)},
                         {"<i4", sample_bytes<std::int32_t>(kValues)},
                         {">u4", sample_bytes<std::uint32_t>(kValues, true)},
+                        {"<i8", sample_bytes<std::int64_t>(kValues)},
+                        {">i8", sample_bytes<std::int64_t>(kValues, true)},
+                        {"<u8", sample_bytes<std::uint64_t>(kValues)},
+                        {"<f2", kHalves},
                         {"<f4", sample_bytes<float>(kValues)},
                         {">f4", sample_bytes<float>(kValues, true)},
                         {"<f8", sample_bytes<double>(kValues)},
@@ -63,6 +54,41 @@ TEST_F(Npy, AllTypesAndByteOrdersAreRead) {
   EXPECT_TRUE(
       holds<std::int16_t>(read_raster(write_npy("a.npy", "<i2", "(2, 3)", sample_bytes<std::int16_t>(kValues)), {})));
   EXPECT_TRUE(holds<float>(read_raster(write_npy("a.npy", ">f4", "(2, 3)", sample_bytes<float>(kValues, true)), {})));
+}
+
+TEST_F(Npy, TypesThatFieldsDoNotHaveBecomeFloat32WithAWord) {
+  const Raster wide =
+      read_raster(write_npy("a.npy", "<i8", "(2, 3)", sample_bytes<std::int64_t>({16777217, -2, 3, 4, 5, 6})), {});
+  EXPECT_TRUE(holds<float>(wide));
+  EXPECT_EQ("Int64", wide.file_type);
+  EXPECT_EQ(-2, doubles(wide)[1]);
+  EXPECT_TRUE(has_note(wide, "Int64 samples became float32, rounded by 1 at most"));
+  const Raster half = read_raster(write_npy("a.npy", "<f2", "(2, 3)", kHalves), {});
+  EXPECT_TRUE(holds<float>(half));
+  EXPECT_EQ("Float16", half.file_type);
+  EXPECT_TRUE(has_note(half, "Float16 samples became float32, none was rounded"));
+}
+
+TEST_F(Npy, HalvesOfAllKindsHaveTheirValues) {
+  // -2; the largest one; 1/3, rounded; the least normal one, the greatest and the least below it; NaN.
+  const std::vector<double> bits{0xc000, 0x7bff, 0x3555, 0x0400, 0x03ff, 0x0001, 0x7e00, 0x8000};
+  const std::vector<double> values{-2, 65504, 1365.0 / 4096, 0x1p-14, 1023 * 0x1p-24, 0x1p-24, 0, 0};
+  for (const bool big_endian : {false, true}) {
+    for (const bool fortran : {false, true}) {
+      const std::string file = write_npy("a.npy", big_endian ? ">f2" : "<f2", fortran ? "(8, 1)" : "(1, 8)",
+                                         sample_bytes<std::uint16_t>(bits, big_endian), fortran);
+      const std::vector<double> read = doubles(read_raster(file, {}));
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        if (bits[i] == 0x7e00) {
+          EXPECT_TRUE(std::isnan(read[i]));
+        } else {
+          EXPECT_EQ(values[i], read[i]) << i;
+        }
+      }
+    }
+  }
+  expect_says(read_error(write_npy("a.npy", "<f2", "(1, 2)", sample_bytes<std::uint16_t>({0, 0xfc00}))),
+              "column 1, row 0 is minus infinity");
 }
 
 TEST_F(Npy, SignedBytesKeepTheirSign) {
@@ -82,6 +108,11 @@ TEST_F(Npy, FortranOrderIsTheSameArray) {
   RasterOptions options;
   options.window = {1, 1, 2, 1};
   EXPECT_EQ((std::vector<double>{5, 100}), doubles(read_raster(file, options)));
+  const std::string halves = sample_bytes<std::uint16_t>({0x3c00, 0x4400, 0x4000, 0x4500, 0x4200, 0x5640});
+  EXPECT_EQ((std::vector<double>{5, 100}),
+            doubles(read_raster(write_npy("a.npy", "<f2", "(2, 3)", halves, true), options)));
+  EXPECT_EQ(kValues, doubles(read_raster(
+                         write_npy("a.npy", ">i8", "(2, 3)", sample_bytes<std::int64_t>(columns, true), true), {})));
 }
 
 TEST_F(Npy, ExtentsOfOneAreLeftOutOfThree) {
@@ -101,7 +132,7 @@ TEST_F(Npy, OtherShapesAreRefused) {
 }
 
 TEST_F(Npy, OtherTypesAreRefusedByName) {
-  for (const char* descr : {"|b1", "<c8", "|O", "<f2", "<i8", "<u8", "<f16", "|S5", "<U7", "|V4", "<M8[ns]"}) {
+  for (const char* descr : {"|b1", "<c8", "|O", "<f16", "|S5", "<U7", "|V4", "<M8[ns]"}) {
     const std::string text = read_error(write_npy("a.npy", descr, "(2, 3)", std::string(1000, '\0')));
     expect_says(text, descr);
     expect_says(text, "f4");
@@ -126,7 +157,7 @@ TEST_F(Npy, ShorterFilesThanTheHeaderSaysAreRefusedBeforeAllocation) {
 TEST_F(Npy, TheOnlyRasterOfAnArchiveIsFound) {
   const std::string height = npy_bytes(npy_dictionary("<i2", "(2, 3)"), sample_bytes<std::int16_t>(kValues));
   const std::string number = npy_bytes(npy_dictionary("<f8", "()"), sample_bytes<double>({30}));
-  const std::string file = write_npz("a.npz", {{"height.npy", height}, {"dx.npy", number}});
+  const std::string file = write_zip("a.npz", {{"height.npy", height}, {"dx.npy", number}});
   EXPECT_EQ(kValues, doubles(read_raster(file, {})));
   RasterOptions options;
   options.key = "height";
@@ -141,16 +172,33 @@ TEST_F(Npy, TheOnlyRasterOfAnArchiveIsFound) {
 
 TEST_F(Npy, SeveralRastersOfAnArchiveNeedAKey) {
   const std::string a = npy_bytes(npy_dictionary("<i2", "(2, 3)"), sample_bytes<std::int16_t>(kValues));
-  const std::string file = write_npz("a.npz", {{"a.npy", a}, {"b.npy", a}});
+  const std::string file = write_zip("a.npz", {{"a.npy", a}, {"b.npy", a}});
   const std::string text = read_error(file);
   expect_says(text, "--key");
   expect_says(text, "a (2 x 3), b (2 x 3)");
 }
 
+TEST_F(Npy, ArraysThatAreNoHeightsDoNotCountInAnArchive) {
+  const std::string height = npy_bytes(npy_dictionary("<i2", "(2, 3)"), sample_bytes<std::int16_t>(kValues));
+  const std::string mask = npy_bytes(npy_dictionary("|b1", "(2, 3)"), std::string(6, '\1'));
+  const std::string table =
+      npy_bytes("{'descr': [('z', '<f4')], 'fortran_order': False, 'shape': (2, 3), }", std::string(24, '\0'));
+  EXPECT_EQ(kValues, doubles(read_raster(write_zip("a.npz", {{"dem.npy", height}, {"m.npy", mask}}), {})));
+  EXPECT_EQ(kValues, doubles(read_raster(write_zip("b.npz", {{"t.npy", table}, {"dem.npy", height}}), {})));
+  // Alone they are refused for what they are, of several one is asked for.
+  expect_says(read_error(write_zip("c.npz", {{"m.npy", mask}})), "'|b1' (true and false)");
+  expect_says(read_error(write_zip("d.npz", {{"t.npy", table}})), "structures");
+  expect_says(read_error(write_zip("e.npz", {{"m.npy", mask}, {"t.npy", table}})),
+              "holds 0 arrays of heights in two dimensions; choose one with --key: m (2 x 3 of '|b1'), t (not read)");
+  RasterOptions options;
+  options.key = "m";
+  expect_says(error_of([&] { read_raster(path("a.npz"), options); }), "true and false");
+}
+
 TEST_F(Npy, AFortranArrayInAnArchiveIsRead) {
   const std::string a =
       npy_bytes(npy_dictionary("<i2", "(2, 3)", true), sample_bytes<std::int16_t>({1, 4, 2, 5, 3, 100}));
-  EXPECT_EQ(kValues, doubles(read_raster(write_npz("a.npz", {{"a.npy", a}}), {})));
+  EXPECT_EQ(kValues, doubles(read_raster(write_zip("a.npz", {{"a.npy", a}}), {})));
 }
 
 TEST_F(Npy, ADamagedArchiveIsRefused) {
@@ -158,11 +206,11 @@ TEST_F(Npy, ADamagedArchiveIsRefused) {
   std::vector<double> noise(40000);
   for (std::size_t i = 0; i < noise.size(); ++i) noise[i] = static_cast<double>(i * i * 7919 % 65521);
   const std::string a = npy_bytes(npy_dictionary("<u2", "(200, 200)"), sample_bytes<std::uint16_t>(noise));
-  const std::string file = write_npz("b.npz", {{"a.npy", a}});
+  const std::string file = write_zip("b.npz", {{"a.npy", a}});
   EXPECT_NO_THROW(read_raster(file, {}));
   std::string bytes = bytes_of(file);
   write_bytes("cut.npz", bytes.substr(0, bytes.size() / 2));
-  expect_says(read_error(path("cut.npz")), "raster '");
+  expect_says(read_error(path("cut.npz")), "is cut off");
   bytes.replace(bytes.size() / 2, 2000, 2000, '\xff');
   write_bytes("bad.npz", bytes);
   expect_says(read_error(path("bad.npz")), "raster '");

@@ -52,6 +52,25 @@ TEST_F(RasterPlaceTest, PixelIsPointIsNotShiftedTwice) {
   EXPECT_EQ(500015, read(edit).georeference.map_from_node[0]);
 }
 
+TEST_F(RasterPlaceTest, HeightsOnAMapInFeetAreAskedFor) {
+  const auto map = [](const char* crs) { return placed({6000000, 30, 0, 2000000, 0, -30}, crs); };
+  const std::string note = "map units are feet; heights are taken as metres; say --unit ";
+  EXPECT_TRUE(has_note(read(map("EPSG:2227")), note + "us-ft"));
+  EXPECT_TRUE(has_note(read(placed({700000, 30, 0, 1000000, 0, -30}, "EPSG:2222")), note + "ft"));
+  // Whoever says what heights are is not asked: the caller, the band, the vertical CRS, a map in metres.
+  RasterOptions options;
+  options.unit = "us-ft";
+  const auto in_metres = [&](GDALDataset& d) {
+    map("EPSG:2227")(d);
+    d.GetRasterBand(1)->SetUnitType("m");
+  };
+  for (const Raster& raster :
+       {read(map("EPSG:2227"), options), read(in_metres), read(map("EPSG:2227+5703")), read(map("EPSG:2227+6360")),
+        read(placed({500000, 30, 0, 5000000, 0, -20}, "EPSG:32610")),
+        read(placed({10, 0.1, 0, 45, 0, -0.1}, "EPSG:4326"))})
+    EXPECT_FALSE(has_note(raster, "feet")) << raster.georeference.crs_name;
+}
+
 TEST_F(RasterPlaceTest, AWindowMovesThePlace) {
   RasterOptions options;
   options.window = {1, 1, 2, 1};

@@ -94,6 +94,45 @@ TEST_F(TileSet, AFolderStandsForItsRastersByName) {
                  {1, 2, 5, 6, 3, 4, 7, 8, 9, 9, kHole, kHole, 9, 9, kHole, kHole});
 }
 
+TEST_F(TileSet, PicturesInAFolderAreLeftOut) {
+  std::filesystem::create_directory(path("tiles"));
+  tile("tiles/b.tif", 2, 0, {5, 6, 7, 8});
+  tile("tiles/a.tif", 0, 0);
+  const auto picture = [&](const std::string& name, int bands, const std::function<void(GDALDataset&)>& edit = {}) {
+    return write_tiff(name, GDT_Byte, 2, 2, {1, 2, 3, 4}, edit, bands, {bands == 1 ? nullptr : "PHOTOMETRIC=RGB"});
+  };
+  const std::string colours = picture("tiles/0.tif", 3);
+  expect_samples(read_raster(path("tiles"), {}), {1, 2, 5, 6, 3, 4, 7, 8});
+  EXPECT_TRUE(has_note(read_raster(path("tiles"), {}), "left out as pictures without a place: " + colours));
+  picture("tiles/1.tif", 1, [](GDALDataset& d) {
+    GDALColorTable table;
+    const GDALColorEntry red{255, 0, 0, 255};
+    table.SetColorEntry(1, &red);
+    d.GetRasterBand(1)->SetColorTable(&table);
+  });
+  picture("tiles/c.tif", 4);
+  EXPECT_TRUE(has_note(read_raster(path("tiles"), {}), "as pictures without a place: " + colours + " and 2 more"));
+
+  // Those who say that colours are heights, or name a picture, mean it.
+  RasterOptions options;
+  options.band = 1;
+  expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif': has no georeference");
+  options = {};
+  options.encoding = HeightEncoding::terrarium;
+  expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif': has no georeference");
+  expect_refused({colours, path("tiles/a.tif")}, colours, "colour photograph");
+
+  // A picture with a place is no finished figure, but a mistake to be told.
+  tile("tiles/d.tif", 4, 0, {1, 2, 3, 4}, GDT_Byte, {}, 3, {"PHOTOMETRIC=RGB"});
+  expect_says(error_of([&] { read_raster(path("tiles"), {}); }), "d.tif': is a colour photograph");
+
+  std::filesystem::create_directory(path("album"));
+  picture("album/a.tif", 3);
+  const std::string text = read_error(path("album"));
+  expect_says(text, "a folder of pictures without a place, as '" + path("album/a.tif") + "'");
+  expect_says(text, "--encoding");
+}
+
 TEST_F(TileSet, WhatBelongsToARasterOfAFolderIsNoTile) {
   std::filesystem::create_directory(path("tiles"));
   const std::string file = tile("tiles/a.tif", 0, 0);
