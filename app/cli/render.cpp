@@ -23,6 +23,7 @@
 #include "app/cli/frames.h"
 #include "app/cli/function_input.h"
 #include "app/cli/input_kind.h"
+#include "app/cli/kept_inputs.h"
 #include "app/cli/look_options.h"
 #include "app/cli/march_options.h"
 #include "app/cli/mesh_options.h"
@@ -69,6 +70,7 @@ struct RenderOptions {
   bool fov_said = false, top = false, no_shadows = false, no_plinth = false;
   int threads = 0;
   std::vector<std::string> given;  // the names of the options that were typed
+  std::vector<std::string> typed;  // and their values
 };
 
 // Seconds since it was made or last asked.
@@ -281,6 +283,7 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
   ReplaceFile file(options.output);
   Watch watch;
   const SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
+  keep_inputs(options.output, document.files);
   stop_if_interrupted();
   const double read_s = watch.lap();
   options.picture = picture_of(document, options.picture, options.given);
@@ -339,7 +342,12 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   const std::vector<std::string> notes = raster.notes;
   const std::string path = raster.path;
 
-  read_look_files(options.look_options, raster, options.field, options.picture);
+  const std::vector<std::string> look_files =
+      read_look_files(options.look_options, raster, options.field, options.picture);
+  std::vector<std::string>& files = options.typed;
+  files.insert(files.end(), raster.files.begin(), raster.files.end());
+  files.insert(files.end(), look_files.begin(), look_files.end());
+  keep_inputs(options.output, files);
   HeightField field = height_field_from(std::move(raster), options.field);
   if (!field.has_cells()) {
     throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed", path,
@@ -367,6 +375,9 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
     std::vector<Camera> cameras =
         frame_cameras(options.frames, box, view, grid_north_azimuth, options.picture.width, options.picture.height);
     for (Camera& camera : cameras) camera.set_reach(reach);
+    // Without --overwrite nothing is written over.
+    for (int i = 0; options.frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
+      keep_inputs(frame_name(options.output, i), files);
     make_frames(options.frames, options.output, cameras, [&](const Camera& camera, const std::string& name) {
       render_frame(options, scene, mesh, camera, grid_north_azimuth, name);
     });
@@ -421,6 +432,7 @@ void run(RenderOptions options) {
   const InputKind kind = kind_of(options);
   require_effect(options, kind);
   const ViewSettings view = settle(options);
+  keep_inputs(options.output, options.typed);
   if (!options.eye.empty()) point_from(options.eye, "--eye");
   if (!options.target.empty()) point_from(options.target, "--target");
   const ThreadLimit limit(options.threads);
@@ -530,6 +542,7 @@ void add_render(CLI::App& program) {
   command->callback([options, command, fov] {
     options->fov_said = fov->count() > 0;
     options->given = given_options(*command);
+    options->typed = typed_values(*command);
     run(*options);
   });
 }

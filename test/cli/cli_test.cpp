@@ -7,9 +7,13 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "cli/program.h"
 #include "output/read_png.h"
@@ -188,6 +192,86 @@ TEST_F(Cli, AnUnwritableOutputIsFoundBeforeTheWork) {
     EXPECT_NE(result.err.find("output '"), std::string::npos) << result.err;
   }
   EXPECT_EQ(scratch_.files(), before);
+}
+
+// By no subcommand that writes, and whatever it is that it reads.
+TEST_F(Cli, NothingIsWrittenOverWhatItIsMadeOf) {
+  const auto terrain = [&](const std::string& name, int west = 0) {
+    return write(name, fmt::format("ncols 2\nnrows 2\nxllcorner {}\nyllcorner 0\ncellsize 10\n1 2\n3 4\n", west));
+  };
+  const std::string dem = terrain("dem.png"), folder = path("tiles"), image = path("image.png"),
+                    rays = write("rays.csv", "x,y,z,dx,dy,dz\n5,5,99,0,0,-1\n"), volume = write("volume.svg", "\1"),
+                    function = write("wave.tif", R"({"type": "plane", "slope": [1, 0]})"), model = path("model.vox"),
+                    flight = write("flight-00.png", "x,y,z,tx,ty,tz\n5,-9,9,5,5,5\n");
+  std::filesystem::create_directory(folder);
+  std::filesystem::copy(dem, folder + "/west.png");
+  std::filesystem::rename(terrain("east.png", 20), folder + "/east.png");
+  std::filesystem::create_symlink(dem, path("link.png"));
+  const std::vector<std::uint8_t> colours(std::size_t{3} * 2 * 2, 99);
+  ReplaceFile file(image);
+  write_png(file, image, {colours.data(), 2, 2});
+  const auto virtual_raster = [&](const std::string& name, const std::string& of) {
+    return write(
+        name,
+        fmt::format(
+            R"(<VRTDataset rasterXSize="2" rasterYSize="2"><GeoTransform>0,10,0,20,0,-10</GeoTransform><VRTRasterBand dataType="Byte" band="1">
+<SimpleSource><SourceFilename relativeToVRT="1">{}</SourceFilename><SourceBand>1</SourceBand></SimpleSource>
+</VRTRasterBand></VRTDataset>)",
+            of));
+  };
+  const std::string over_dem = virtual_raster("dem.vrt", "dem.png"),
+                    over_image = virtual_raster("image.vrt", "image.png"), table = terrain("dem.csv"),
+                    over_table = virtual_raster("table.vrt", "dem.csv");
+  ASSERT_EQ(run({"voxelise", dem, "-o", model, "--count", "4"}).status, 0);
+  const std::string voxels = write("voxels.json", R"({"objects": [{"voxels": {"file": "model.vox"}}]})"),
+                    heights = write("heights.json", R"({"objects": [{"heights": {"file": "dem.vrt"}}]})"),
+                    village = write("village.json", R"({"objects": [{"scene": "heights.json"}]})");
+
+  const struct {
+    Names arguments;
+    std::string output;
+  } cases[] = {
+      {{"render", dem}, dem},
+      {{"render", dem}, path("./dem.png")},
+      {{"render", dem}, path("link.png")},
+      {{"render", path("link.png")}, dem},
+      {{"render", folder}, folder + "/west.png"},
+      {{"render", folder + "/west.png", folder + "/east.png"}, folder + "/east.png"},
+      {{"render", over_dem}, dem},
+      {{"render", dem, "--ramp", image}, image},
+      {{"render", dem, "--overlay", image}, image},
+      {{"render", dem, "--overlay", over_image}, image},
+      {{"render", heights}, dem},
+      {{"render", village}, dem},
+      {{"render", "--function", image}, image},
+      {{"render", dem, "--path", flight, "--overwrite"}, path("flight-##.png")},
+      {{"cast", dem, "--rays", rays}, rays},
+      {{"cast", dem, "--rays", "-"}, rays},
+      {{"cast", over_table, "--rays", rays}, table},
+      {{"composite", dem, image}, dem},
+      {{"composite", dem, image}, image},
+      {{"voxelise", model}, model},
+      {{"voxelise", voxels}, model},
+      {{"section", volume, "--volume", "1x1x1:u8"}, volume},
+      {{"generate", "--size", "2", "--function", function}, function},
+  };
+  for (const auto& c : cases) {
+    std::map<std::string, std::string> before, after;
+    const auto look = [&](std::map<std::string, std::string>& files) {
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(scratch_.path("")))
+        if (entry.is_regular_file()) files[entry.path()] = test::text_of(entry.path());
+    };
+    look(before);
+    Names arguments = c.arguments;
+    arguments.insert(arguments.end(), {"-o", c.output});
+    const auto result = test::Program(arguments, nullptr, rays).result();
+    const std::string what = fmt::format("{}: {}", fmt::join(arguments, " "), result.err);
+    EXPECT_EQ(result.status, 1) << what;
+    EXPECT_EQ(test::lines(result.err), 1) << what;
+    EXPECT_NE(result.err.find("': is the input"), std::string::npos) << what;
+    look(after);
+    EXPECT_TRUE(before == after) << what;
+  }
 }
 
 TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
