@@ -55,6 +55,11 @@ std::function<std::string(const std::string& text)> number_in(const NumberRange&
   };
 }
 
+std::string metres_text(double metres) {
+  // Three digits of numbers from 1000 on would be an exponent's.
+  return metres < 100 ? fmt::format("{:.3g}", metres) : fmt::format("{:.0f}", metres);
+}
+
 std::string check_whole_number(const std::string& text, std::uint64_t most) {
   std::uint64_t number = 0;
   const char* const end = text.data() + text.size();

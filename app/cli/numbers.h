@@ -33,4 +33,7 @@ std::function<std::string(const std::string& text)> number_in(const NumberRange&
 /// takes a number that is too large for the largest there is.
 std::string check_whole_number(const std::string& text, std::uint64_t most);
 
+/// A length above 0 for messages, three digits of it at least and no power of ten: "0.25", "17.3", "3660".
+std::string metres_text(double metres);
+
 }  // namespace scarp::cli

@@ -35,6 +35,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/output/png.h"
+#include "scarp/render/field_view.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/ramp.h"
 #include "scarp/scene/from_raster.h"
@@ -170,12 +171,22 @@ Camera camera_of(const RenderOptions& options, const ViewSettings& view, const B
   return Camera::look_at(point_from(options.eye, "--eye"), target, options.fov_deg, width, height);
 }
 
+// `raised` becomes the most that an eye was.
+Camera framed_camera(const RenderOptions& options, const ViewSettings& view, const HeightField& field, const Box& box,
+                     double grid_north_azimuth, double& raised) {
+  const FieldView framed =
+      view_of_field(field, box, view, grid_north_azimuth, options.picture.width, options.picture.height);
+  raised = std::max(raised, framed.raised);
+  return framed.camera;
+}
+
 Camera terrain_camera(const RenderOptions& options, const ViewSettings& view, const HeightField& field, const Box& box,
-                      double grid_north_azimuth) {
+                      double grid_north_azimuth, double& raised) {
   if (options.picture.look == Look::comanche && !options.top && options.view.empty() && options.eye.empty()) {
     return flight_camera(field, grid_north_azimuth, options.fov_deg, options.picture.width, options.picture.height);
   }
-  return camera_of(options, view, box, grid_north_azimuth);
+  if (options.top || !options.eye.empty()) return camera_of(options, view, box, grid_north_azimuth);
+  return framed_camera(options, view, field, box, grid_north_azimuth, raised);
 }
 
 void print_times(const RenderOptions& options, double read_s, double build_s, double render_s,
@@ -309,7 +320,7 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
 void tell_if_buried(const Camera& camera, const HeightField& field, const std::string& whose = "the eye") {
   const auto ground = field.height(camera.eye().x, camera.eye().y);
   if (!ground || camera.eye().z >= *ground) return;
-  fmt::print(stderr, "note: {} is {:.3g} m below the ground\n", whose, *ground - camera.eye().z);
+  fmt::print(stderr, "note: {} is {} m below the ground\n", whose, metres_text(*ground - camera.eye().z));
 }
 
 void render_frame(const RenderOptions& options, const TerrainScene& scene, MeshInput& mesh, const Camera& camera,
@@ -366,14 +377,21 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   finish_look(options.look_options, scene.field(), options.picture);
   // Last: who fails says one line alone.
+  double raised = 0;  // metres, of the eye, the most of all frames
   const auto tell_notes = [&] {
     for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
     for (const std::string& note : mesh.notes()) fmt::print(stderr, "note: {}\n", note);
+    if (raised > 0) {
+      fmt::print(stderr, "note: the eye is raised by {}{} m, out of the ground\n",
+                 options.frames.several() ? "up to " : "", metres_text(raised));
+    }
   };
   const double reach = reach_of(options.look_options, scene.field());
   if (options.frames.several()) {
-    std::vector<Camera> cameras =
-        frame_cameras(options.frames, box, view, grid_north_azimuth, options.picture.width, options.picture.height);
+    std::vector<Camera> cameras = frame_cameras(
+        options.frames, view, options.picture.width, options.picture.height, [&](const ViewSettings& turned) {
+          return framed_camera(options, turned, scene.field(), box, grid_north_azimuth, raised);
+        });
     for (Camera& camera : cameras) camera.set_reach(reach);
     // Without --overwrite nothing is written over.
     for (int i = 0; options.frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
@@ -384,7 +402,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
     tell_notes();
     return;
   }
-  Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth);
+  Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth, raised);
   camera.set_reach(reach);
   see_from_afar(options.look_options, box, camera, options.picture);
   if (options.exr) {

@@ -194,6 +194,14 @@ TEST_F(Cli, AnUnwritableOutputIsFoundBeforeTheWork) {
   EXPECT_EQ(scratch_.files(), before);
 }
 
+TEST_F(Cli, AnEyeBelowTheGroundIsToldInPlainNumbers) {
+  // The ground is at 3.5 m there.
+  const auto result = run(
+      {"render", good(), "-o", path("out.png"), "--size", "8x6", "--eye", "15,10,-3656.5", "--target", "15,20,-3656"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("the eye is 3660 m below the ground"), std::string::npos) << result.err;
+}
+
 // By no subcommand that writes, and whatever it is that it reads.
 TEST_F(Cli, NothingIsWrittenOverWhatItIsMadeOf) {
   const auto terrain = [&](const std::string& name, int west = 0) {
