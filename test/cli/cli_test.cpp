@@ -553,7 +553,26 @@ TEST_P(Interrupt, EndsWhatDoesNotListen) {
   EXPECT_EQ(scratch_.files(), Names{"scene.json"});
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT));
+
+// As under nohup.
+TEST_F(Cli, ASignalThatIsIgnoredStaysSo) {
+  const std::string pipe = path("scene.json");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  // Asks whether there was a signal when it has read the scene.
+  test::Program program({"render", pipe, "-o", path("out.png"), "--size", "8x6"}, nullptr, "/dev/null",
+                        test::Ignored::inherited);
+  std::signal(SIGHUP, before);
+  // It has its handlers when it waits at the pipe: this waits for it there.
+  std::ofstream scene(pipe);
+  ::kill(program.pid(), SIGHUP);
+  scene << R"({"objects": [{"shape": {"sphere": {"radius": 3}}}]})";
+  scene.close();
+  const auto result = program.result();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+}
 
 }  // namespace
 }  // namespace scarp
