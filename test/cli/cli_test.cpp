@@ -380,6 +380,20 @@ TEST_F(Cli, WhatIsNeededIsAskedFor) {
   }
 }
 
+TEST_F(Cli, AWordThatIsNoSubcommandIsToldWhichThereAre) {
+  for (const Names& arguments : {Names{"rendr"}, {"rendr", good(), "-o", path("out.png")}}) {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_EQ(result.err.find("scarp: 'rendr': is no subcommand; expected render, cast, "), 0u) << result.err;
+  }
+  const auto file = run({good()});
+  EXPECT_EQ(file.status, 2);
+  EXPECT_EQ(file.err, fmt::format("scarp: '{0}': is a file and no subcommand; did you mean 'scarp render {0} -o "
+                                  "out.png'?\n",
+                                  good()));
+}
+
 TEST_F(Cli, AWrongNameIsToldBeforeWhatIsMissing) {
   EXPECT_NE(run({"render", "--ouput", "x.png"}).err.find("--ouput"), std::string::npos);
 }
