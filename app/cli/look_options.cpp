@@ -188,9 +188,6 @@ void settle_look(const LookOptions& o, const std::string& size, std::string_view
   picture.water->reflection = !o.no_reflection;
   picture.water->refraction = !o.no_refraction;
   if (!o.water_colour.empty()) picture.water->srgb = colour_from(o.water_colour, "--water-colour");
-  if (!comanche && picture.look != Look::shaded) {
-    throw Error(fmt::format("--water: goes with the looks shaded and comanche, not with '{}'", name_of(picture.look)));
-  }
 }
 
 std::vector<std::string> read_look_files(const LookOptions& o, const Raster& raster, const FieldOptions& field,

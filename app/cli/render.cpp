@@ -222,7 +222,7 @@ void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const 
 // The looks and numbers that `options` ask for, for what they have effect on.
 void require_company_of(const RenderOptions& options, InputKind kind) {
   const PictureSettings& picture = options.picture;
-  const bool steps = options.look == "steps", comanche = options.look == "comanche";
+  const bool steps = options.look == "steps";
   const LookOptions& look = options.look_options;
   require_company(
       {{{"--water-colour", "--turbidity", "--waves", "--wavelength", "--no-reflection", "--no-refraction"},
@@ -232,8 +232,6 @@ void require_company_of(const RenderOptions& options, InputKind kind) {
        {{"--fog-base", "--fog-falloff"}, look.fog == "height", "--fog height"},
        {{"--snow-line"}, look.ground_colours == "natural", "--ground natural"},
        {{"--detail-size"}, look.ground.detail > 0, "--detail S"},
-       {{"--pixel-size", "--steps", "--iterations"}, comanche, "--look comanche"},
-       {{"--error-tolerance"}, options.look == "error", "--look error"},
        // The number may stand in the scene's file.
        {{"--sun-size", "--ao-distance", "--seed"}, picture.samples > 0 || kind == InputKind::scene, "--samples N"},
        {{"--mesh-at", "--mesh-scale", "--mesh-rotate", "--mesh-up"}, !options.mesh.file.empty(), "--mesh FILE"},
@@ -253,6 +251,8 @@ void require_company_of(const RenderOptions& options, InputKind kind) {
 // Throws Error for what was typed and would have no effect.
 void require_effect(const RenderOptions& options, InputKind kind) {
   require_options_of(kind, options.given);
+  find_look(options.look);
+  require_options_of_look(options.look, kind, options.given);
   require_company_of(options, kind);
   if (kind == InputKind::terrain) {
     require_settings_of(options.march.empty() ? kTerrainMarch : options.march, options.given, options.march_settings);
