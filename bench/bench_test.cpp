@@ -2,6 +2,7 @@
 // scarp-bench runs from end to end and writes what README.md promises. No time is judged here.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -452,6 +454,21 @@ std::string text_of(const std::string& arguments, bool succeeds) {
   return text;
 }
 
+TEST(ScarpBench, WrongUsageIsOneLineOfTheProgram) {
+  for (const char* arguments : {"", "heights --sizes 5", "heights --sizes much", "heights --size 129", "hights"}) {
+    const std::string file =
+        (std::filesystem::temp_directory_path() / fmt::format("scarp-bench-{}.err", getpid())).string();
+    const int status = std::system(fmt::format("'{}' {} 2> '{}'", SCARP_BENCH_PROGRAM, arguments, file).c_str());
+    std::ifstream stream(file);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    std::filesystem::remove(file);
+    EXPECT_EQ(WEXITSTATUS(status), 2) << arguments;
+    EXPECT_EQ(text.find("scarp-bench: "), 0u) << text;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    EXPECT_NE(text.find("--help' tells what there is"), std::string::npos) << text;
+  }
+}
+
 // NaN is neither too small nor too large; a check that traces NaN rays traces none, and finds nothing wrong.
 TEST(ScarpBench, NumbersAreFinite) {
   const std::map<std::string, std::vector<std::string>> options = {
@@ -466,7 +483,7 @@ TEST(ScarpBench, NumbersAreFinite) {
     for (const std::string& command : commands) {
       for (const std::string value : {"nan", "inf", "-1"}) {
         const std::string text = text_of(fmt::format("{} {}={} 2>&1 > /dev/null", command, option, value), false);
-        EXPECT_NE(text.find(fmt::format("{}: '{}': expected a ", option, value)), std::string::npos)
+        EXPECT_NE(text.find(fmt::format("{} '{}': expected a ", option, value)), std::string::npos)
             << command << ": " << text;
         EXPECT_LT(text.size(), 200u) << text;
       }

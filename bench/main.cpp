@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "app/cli/numbers.h"
+#include "app/cli/wrong_usage.h"
 #include "bench/commands.h"
 #include "bench/rays.h"
 #include "scarp/base/error.h"
@@ -414,7 +415,13 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*pixel_match_command, report);
 
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help
+    std::fprintf(stderr, "scarp-bench: %s\n", scarp::cli::wrong_usage(error, app).c_str());
+    return scarp::cli::kWrongUsage;
+  }
   voxel_leaks.rays = static_cast<std::int64_t>(voxel_leak_rays);
   leaks.rays = static_cast<std::int64_t>(leak_rays);
   function_leaks.rays = static_cast<std::int64_t>(function_leak_rays);

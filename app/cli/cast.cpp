@@ -18,6 +18,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/field_options.h"
 #include "app/cli/input_kind.h"
+#include "app/cli/kept_inputs.h"
 #include "app/cli/march_options.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
@@ -71,6 +72,7 @@ struct CastOptions {
   bool any = false, all = false;
   int threads = 0;
   std::vector<std::string> given;  // the names of the options that were typed
+  std::vector<std::string> typed;  // and their values
 };
 
 using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&);
@@ -259,6 +261,7 @@ void run(CastOptions options) {
                       options.coordinates, kRasterCrs));
     }
   }
+  keep_inputs(options.output, options.typed);
   const ThreadLimit limit(options.threads);
   // Who reads the table may go away, as `head` does: then the program ends as others do, without a word.
   if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);
@@ -266,6 +269,7 @@ void run(CastOptions options) {
   const RayTable table = read_rays(options.rays);
   HitTable out(options.output, options.any ? TableKind::blocked : TableKind::hits, table.carried);
   Raster raster = read(options);
+  keep_inputs(options.output, raster.files);
   stop_if_interrupted();
   std::vector<std::string> notes = raster.notes;
   const CoordinateFrame frame = frame_of(options, raster);
@@ -323,6 +327,7 @@ void add_cast(CLI::App& program) {
   command->footer(kTables);
   command->callback([options, command] {
     options->given = given_options(*command);
+    options->typed = typed_values(*command);
     run(*options);
   });
 }

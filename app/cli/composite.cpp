@@ -13,6 +13,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/depth_options.h"
+#include "app/cli/kept_inputs.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/output/png.h"
@@ -139,7 +140,10 @@ void add_composite(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--alpha", o.alpha, "their channel of opacity, with which their colours are multiplied");
   add_depth_options(*command, o.depth);
-  command->callback([options] { run(*options); });
+  command->callback([options, command] {
+    keep_inputs(options->output, typed_values(*command));
+    run(*options);
+  });
 }
 
 }  // namespace scarp::cli

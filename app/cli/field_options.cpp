@@ -14,7 +14,7 @@ namespace {
 
 double exaggeration_from(const std::string& text) {
   constexpr std::string_view kForm = "a number above 0";
-  const double number = numbers_from(text, ',', 1, 1, "--exaggeration", kForm).front();
+  const double number = ground_numbers_from(text, 1, 1, "--exaggeration", kForm).front();
   if (!(number > 0)) throw Error(fmt::format("--exaggeration '{}': expected {}", text, kForm));
   return number;
 }

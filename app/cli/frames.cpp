@@ -63,15 +63,15 @@ void settle_frames(const FrameOptions& o, const std::string& output) {
   }
 }
 
-std::vector<Camera> frame_cameras(const FrameOptions& o, const Box& box, const ViewSettings& view,
-                                  double grid_north_azimuth, int width, int height) {
+std::vector<Camera> frame_cameras(const FrameOptions& o, const ViewSettings& view, int width, int height,
+                                  const std::function<Camera(const ViewSettings&)>& framed) {
   std::vector<Camera> cameras;
   if (o.turntable) {
     const int frames = o.frames > 0 ? o.frames : kTurntableFrames;
     for (int i = 0; i < frames; ++i) {
       ViewSettings turned = view;
       turned.azimuth_deg += 360.0 * i / frames;
-      cameras.push_back(Camera::framed(box, turned, grid_north_azimuth, width, height));
+      cameras.push_back(framed(turned));
     }
     return cameras;
   }

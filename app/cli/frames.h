@@ -27,9 +27,10 @@ void add_frame_options(CLI::App& command, FrameOptions& options);
 /// once.
 void settle_frames(const FrameOptions& options, const std::string& output);
 
-/// Where the frames are seen from. `view` and `box` are those of a turntable. Throws Error naming file and line.
-std::vector<Camera> frame_cameras(const FrameOptions& options, const Box& box, const ViewSettings& view,
-                                  double grid_north_azimuth, int width, int height);
+/// Where the frames are seen from; `framed` makes those of a turntable, which begins at `view`. Throws Error naming
+/// file and line.
+std::vector<Camera> frame_cameras(const FrameOptions& options, const ViewSettings& view, int width, int height,
+                                  const std::function<Camera(const ViewSettings&)>& framed);
 
 /// The output's name with frame i (from 0) in place of its #s, at least as many digits.
 std::string frame_name(const std::string& output, int i);

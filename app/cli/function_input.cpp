@@ -62,8 +62,8 @@ Camera camera_of(const HeightFunction& function, const FunctionInput& input, con
       target + view.distance * input.extent * towards(view.azimuth_deg * kDegree, view.elevation_deg * kDegree, 0);
   const double least = function.value(eye.x, eye.y) + 0.01 * input.extent;
   if (eye.z < least) {
-    fmt::print(stderr, "note: the eye is raised by {:.0f} m, to {:.0f} m above the ground\n", least - eye.z,
-               0.01 * input.extent);
+    fmt::print(stderr, "note: the eye is raised by {} m, to {} m above the ground\n", metres_text(least - eye.z),
+               metres_text(0.01 * input.extent));
     eye.z = least;
   }
   return Camera::look_at(eye, target, view.fov_deg, width, height);

@@ -12,6 +12,7 @@
 #include <string>
 
 #include "app/cli/commands.h"
+#include "app/cli/kept_inputs.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
@@ -114,7 +115,10 @@ void add_generate(CLI::App& program) {
       ->check(number_in({.least = 2}))
       ->excludes(function);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
-  command->callback([options] { run(*options); });
+  command->callback([options, command] {
+    keep_inputs(options->output, typed_values(*command));
+    run(*options);
+  });
 }
 
 }  // namespace scarp::cli

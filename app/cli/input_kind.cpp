@@ -59,15 +59,54 @@ constexpr OptionRow kTable[] = {
      "--iterations --reach --mesh --mesh-at --mesh-scale --mesh-rotate --mesh-up"},
 };
 
+struct LookRow {
+  unsigned kinds;
+  std::string_view looks, options;  // with a space between them
+};
+
+// What not all looks read. --size and --lowres tell of one another elsewhere.
+constexpr LookRow kLookTable[] = {
+    {kAll, "shaded", "--no-shadows --sun-size --aa --normals --normal-radius --corner-ao"},
+    // Of functions it also says where rays end.
+    {kTerrain, "shaded", "--haze"},
+    {kAll, "shaded comanche",
+     "--sun --samples --ao-distance --seed --ground --snow-line --detail --detail-size --contours --overlay --water "
+     "--water-colour --turbidity --waves --wavelength --no-reflection --no-refraction --fog --visibility --fog-base "
+     "--fog-falloff --sun-tint"},
+    {kAll, "shaded steps comanche", "--ramp"},
+    {kAll, "error", "--error-tolerance"},
+    {kAll, "comanche", "--pixel-size --steps --shells --step-by-view --iterations"},
+};
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+bool has_word(std::string_view text, std::string_view word) {
+  const auto words = words_of(text);
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
 unsigned kinds_of(std::string_view option) {
   for (const auto& [kinds, options] : kTable) {
-    for (std::size_t begin = 0; begin < options.size();) {
-      const std::size_t end = std::min(options.find(' ', begin), options.size());
-      if (options.substr(begin, end - begin) == option) return kinds;
-      begin = end + 1;
-    }
+    if (has_word(options, option)) return kinds;
   }
   return 0;
+}
+
+// "the looks shaded, steps and comanche" of "shaded steps comanche".
+std::string looks_text(std::string_view looks) {
+  const auto words = words_of(looks);
+  std::string text = words.size() == 1 ? "the look " : "the looks ";
+  for (std::size_t i = 0; i < words.size(); ++i)
+    text += fmt::format("{}{}", i == 0 ? "" : i + 1 == words.size() ? " and " : ", ", words[i]);
+  return text;
 }
 
 // "terrain, scenes and functions".
@@ -103,6 +142,15 @@ void require_options_of(InputKind kind, const std::vector<std::string>& given) {
     if ((kinds & static_cast<unsigned>(kind)) != 0) continue;
     throw Error(fmt::format("{}: goes with {}; {}leave it out", option, names_of(kinds),
                             kind == InputKind::scene ? "what a scene is made of stands in its file; " : ""));
+  }
+}
+
+void require_options_of_look(std::string_view look, InputKind kind, const std::vector<std::string>& given) {
+  for (const std::string& option : given) {
+    for (const auto& [kinds, looks, options] : kLookTable) {
+      if ((kinds & static_cast<unsigned>(kind)) == 0 || !has_word(options, option) || has_word(looks, look)) continue;
+      throw Error(fmt::format("{}: goes with {}, not with '{}'; leave it out", option, looks_text(looks), look));
+    }
   }
 }
 

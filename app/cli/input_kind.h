@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which options go with which inputs, and which with one another: what would have no effect is refused by name.
+// Which options go with which inputs and looks, and which with one another: what would have no effect is refused by
+// name.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,6 +22,9 @@ bool is_given(const std::vector<std::string>& given, std::string_view option);
 /// Throws Error for the first option that was given and does not go with the kind of input. One that is not in the
 /// table goes with none: who adds an option has to say there what it is for.
 void require_options_of(InputKind kind, const std::vector<std::string>& given);
+
+/// Throws Error for the first option that was given and that the look does not read, of an input of this kind.
+void require_options_of_look(std::string_view look, InputKind kind, const std::vector<std::string>& given);
 
 /// Options that have no effect without another one.
 struct Company {

@@ -188,16 +188,15 @@ void settle_look(const LookOptions& o, const std::string& size, std::string_view
   picture.water->reflection = !o.no_reflection;
   picture.water->refraction = !o.no_refraction;
   if (!o.water_colour.empty()) picture.water->srgb = colour_from(o.water_colour, "--water-colour");
-  if (!comanche && picture.look != Look::shaded) {
-    throw Error(fmt::format("--water: goes with the looks shaded and comanche, not with '{}'", name_of(picture.look)));
-  }
 }
 
-void read_look_files(const LookOptions& o, const Raster& raster, const FieldOptions& field, PictureSettings& picture) {
-  if (o.overlay.empty()) return;
+std::vector<std::string> read_look_files(const LookOptions& o, const Raster& raster, const FieldOptions& field,
+                                         PictureSettings& picture) {
+  if (o.overlay.empty()) return {};
   if (field.mirror) throw Error("--overlay: goes with a terrain as it is; leave --wrap mirror out");
   ColourImage image = read_overlay(o.overlay, raster.georeference, raster.cols, raster.rows);
   picture.ground.drape = std::make_shared<Drape>(Drape{image.width, image.height, std::move(image.rgba)});
+  return std::move(image.files);
 }
 
 void see_from_afar(const LookOptions& o, const Box& box, const Camera& camera, PictureSettings& picture) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scarp/march/marches.h"
 #include "scarp/render/picture.h"
@@ -33,9 +34,9 @@ void add_look_options(CLI::App& command, LookOptions& options);
 void settle_look(const LookOptions& options, const std::string& size, std::string_view march,
                  const MarchSettings& march_settings, PictureSettings& picture);
 
-/// Reads the files that the options name, for a raster that is about to become a field.
-void read_look_files(const LookOptions& options, const Raster& raster, const FieldOptions& field,
-                     PictureSettings& picture);
+/// Reads the files that the options name, for a raster that is about to become a field. Returns all that were opened.
+std::vector<std::string> read_look_files(const LookOptions& options, const Raster& raster, const FieldOptions& field,
+                                         PictureSettings& picture);
 
 /// What follows from the field where nothing was said: visibility, base and falloff of the fog.
 void finish_look(const LookOptions& options, const HeightField& field, PictureSettings& picture);

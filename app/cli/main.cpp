@@ -6,16 +6,20 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
 
 #include "app/cli/commands.h"
 #include "app/cli/progress.h"
+#include "app/cli/wrong_usage.h"
 #include "scarp/base/error.h"
 
 namespace {
 
-constexpr int kFailed = 1, kWrongUsage = 2;
+using scarp::cli::kWrongUsage;
+constexpr int kFailed = 1;
 
 int fail(std::string text, int status) {
   scarp::cli::end_progress_line();
@@ -23,38 +27,6 @@ int fail(std::string text, int status) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   std::fprintf(stderr, "scarp: %s\n", text.c_str());
   return status;
-}
-
-// "--fov 'x': expected a number" for a value that CLI11 could not convert.
-std::string unconverted(const CLI::ConversionError& error, const CLI::App& called) {
-  for (const CLI::Option* option : called.get_options()) {
-    const std::string name = option->get_name();
-    const std::string before = "Could not convert: " + name + " = ", text = error.what();
-    if (!text.starts_with(before)) continue;
-    return name + " '" + text.substr(before.size()) + "': expected " +
-           (option->get_type_name() == "FLOAT" ? "a number" : "a whole number");
-  }
-  return error.what();
-}
-
-std::string wrong_usage(const CLI::ParseError& error, const CLI::App& called) {
-  if (const auto* conversion = dynamic_cast<const CLI::ConversionError*>(&error)) {
-    return unconverted(*conversion, called);
-  }
-  if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr) {
-    // "--fov: 'x': expected ..." as the others are told.
-    std::string text = error.what();
-    const std::size_t end = text.find(": '");
-    if (end != std::string::npos && text.find("expected", end) != std::string::npos) text.erase(end, 1);
-    return text;
-  }
-  if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) {
-    // What is missing was perhaps given, under a name that is wrong.
-    for (const std::string& argument : called.remaining()) {
-      if (argument.starts_with('-')) return "The following argument was not expected: " + argument;
-    }
-  }
-  return error.what();
 }
 
 int flush_output() {
@@ -94,10 +66,12 @@ int main(int argc, char** argv) {
       program.exit(error);
       return flush_output();
     }
-    const auto subcommands = program.get_subcommands();
-    const CLI::App& called = subcommands.empty() ? program : *subcommands.front();
-    const std::string help = subcommands.empty() ? "scarp --help" : "scarp " + called.get_name() + " --help";
-    return fail(wrong_usage(error, called) + "; '" + help + "' tells what there is", kWrongUsage);
+    const std::string word = scarp::cli::unknown_subcommand(program);
+    std::error_code no_file;
+    if (!word.empty() && std::filesystem::exists(word, no_file))
+      return fail("'" + word + "': is a file and no subcommand; did you mean 'scarp render " + word + " -o out.png'?",
+                  kWrongUsage);
+    return fail(scarp::cli::wrong_usage(error, program), kWrongUsage);
   } catch (const scarp::Interrupted& error) {
     return fail(error.what(), scarp::cli::kSignalled + scarp::cli::caught_signal());
   } catch (const std::bad_alloc&) {

@@ -43,6 +43,16 @@ std::vector<double> numbers_from(std::string_view text, char separator, std::siz
   return numbers;
 }
 
+std::vector<double> ground_numbers_from(std::string_view text, std::size_t least, std::size_t most,
+                                        std::string_view option, std::string_view form) {
+  std::vector<double> numbers = numbers_from(text, ',', least, most, option, form);
+  for (const double number : numbers) {
+    if (std::abs(number) > kMostOfGround)
+      throw Error(fmt::format("{} '{}': expected numbers from {} to {}", option, text, -kMostOfGround, kMostOfGround));
+  }
+  return numbers;
+}
+
 std::function<std::string(const std::string& text)> number_in(const NumberRange& range) {
   return [range](const std::string& text) -> std::string {
     // As CLI11 reads it afterwards.
@@ -53,6 +63,11 @@ std::function<std::string(const std::string& text)> number_in(const NumberRange&
       return {};
     return fmt::format("'{}': expected {}", text, form_of(range));
   };
+}
+
+std::string metres_text(double metres) {
+  // Three digits of numbers from 1000 on would be an exponent's.
+  return metres < 100 ? fmt::format("{:.3g}", metres) : fmt::format("{:.0f}", metres);
 }
 
 std::string check_whole_number(const std::string& text, std::uint64_t most) {

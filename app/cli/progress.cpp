@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -22,6 +23,9 @@ std::atomic<int> signal_caught = 0;
 std::atomic<bool> signal_seen = false;  // somebody knows, and is on the way out
 std::atomic<bool> line_open = false;
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);
+
+// What users, shells and systems end programs by. HUP: the terminal is gone.
+constexpr std::array kEndings = {SIGINT, SIGTERM, SIGHUP, SIGQUIT};
 
 // Pictures ask several times a second. What asks less often, as the reading of a large file, is not waited for longer
 // than a person waits.
@@ -63,12 +67,19 @@ void catch_interrupts() {
   // Reads and writes go on: who reads would take the signal for a fault of the file.
   action.sa_flags = SA_RESTART;
   // The first handler is not interrupted by the second one, which would take itself for the first.
-  for (const int number : {SIGINT, SIGTERM, SIGALRM}) ::sigaddset(&action.sa_mask, number);
+  for (const int number : kEndings) ::sigaddset(&action.sa_mask, number);
+  ::sigaddset(&action.sa_mask, SIGALRM);
   action.sa_handler = scarp_end_patience;
   ::sigaction(SIGALRM, &action, nullptr);
   action.sa_handler = scarp_note_signal;
-  ::sigaction(SIGINT, &action, nullptr);
-  ::sigaction(SIGTERM, &action, nullptr);
+  for (const int number : kEndings) {
+    struct sigaction before {};
+    ::sigaction(number, nullptr, &before);
+    // nohup, and shells for what they start with &.
+    if (before.sa_handler != SIG_IGN) ::sigaction(number, &action, nullptr);
+  }
+  // A file as large as a limit lets it be is a full disk, of which who writes tells.
+  std::signal(SIGXFSZ, SIG_IGN);
 }
 
 int caught_signal() {

@@ -11,9 +11,11 @@ namespace scarp::cli {
 /// The exit status of a program that a signal has ended is this and the signal's number, as shells have it.
 constexpr int kSignalled = 128;
 
-/// From now on the first SIGINT or SIGTERM makes every terminal_progress() ask for a stop, so that files half written
-/// are removed on the way out. A second one ends the program at once, and so does the first where within two seconds
-/// nobody has asked whether there was one; then, too, the files are removed.
+/// From now on the first SIGINT, SIGTERM, SIGHUP or SIGQUIT makes every terminal_progress() ask for a stop, so that
+/// files half written are removed on the way out. A second one ends the program at once, and so does the first where
+/// within two seconds nobody has asked whether there was one; then, too, the files are removed. One that was ignored
+/// when the program was started stays so. A limit on the size of files (SIGXFSZ) makes writing fail and does not end
+/// the program.
 void catch_interrupts();
 
 /// The signal that was caught, or 0.

@@ -25,13 +25,13 @@ RasterWindow window_from(const std::string& text) {
 }
 
 MapBounds bounds_from(const std::string& text) {
-  const auto n = numbers_from(text, ',', 4, 4, "--bounds",
-                              "W,S,E,N in units of the CRS, for example -84.415,36.568,-84.127,36.734");
+  const auto n = ground_numbers_from(text, 4, 4, "--bounds",
+                                     "W,S,E,N in units of the CRS, for example -84.415,36.568,-84.127,36.734");
   return {n[0], n[1], n[2], n[3]};
 }
 
 HeightRange height_range_from(const std::string& text) {
-  const auto n = numbers_from(text, ',', 2, 2, "--height-range", "LOW,HIGH in the vertical unit, for example 0,2400");
+  const auto n = ground_numbers_from(text, 2, 2, "--height-range", "LOW,HIGH in the vertical unit, for example 0,2400");
   return {n[0], n[1]};
 }
 
@@ -69,7 +69,7 @@ void add_raster_options(CLI::App& command, RasterOptions& options, const std::st
       .add_option_function<std::string>(
           "--scale",
           [&command, &options](const std::string& text) {
-            const auto n = numbers_from(text, ',', 1, 2, "--scale", "S[,OFFSET], for example 0.1 or 0.1,-10000");
+            const auto n = ground_numbers_from(text, 1, 2, "--scale", "S[,OFFSET], for example 0.1 or 0.1,-10000");
             if (n.size() == 2 && command.count("--offset") > 0)
               throw Error(fmt::format("--scale '{}' has an offset already; leave out --offset", text));
             options.scale = n[0];
@@ -77,7 +77,9 @@ void add_raster_options(CLI::App& command, RasterOptions& options, const std::st
           },
           "S[,OFFSET]: height = sample * S + OFFSET, in the vertical unit; not 0")
       ->group(group);
-  command.add_option("--offset", options.offset, "see --scale")->check(number_in(kAnyNumber))->group(group);
+  command.add_option("--offset", options.offset, "see --scale")
+      ->check(number_in({-kMostOfGround, kMostOfGround}))
+      ->group(group);
   command
       .add_option_function<std::string>(
           "--height-range", [&options](const std::string& text) { options.height_range = height_range_from(text); },

@@ -23,6 +23,7 @@
 #include "app/cli/frames.h"
 #include "app/cli/function_input.h"
 #include "app/cli/input_kind.h"
+#include "app/cli/kept_inputs.h"
 #include "app/cli/look_options.h"
 #include "app/cli/march_options.h"
 #include "app/cli/mesh_options.h"
@@ -34,6 +35,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/output/png.h"
+#include "scarp/render/field_view.h"
 #include "scarp/render/picture.h"
 #include "scarp/render/ramp.h"
 #include "scarp/scene/from_raster.h"
@@ -69,6 +71,7 @@ struct RenderOptions {
   bool fov_said = false, top = false, no_shadows = false, no_plinth = false;
   int threads = 0;
   std::vector<std::string> given;  // the names of the options that were typed
+  std::vector<std::string> typed;  // and their values
 };
 
 // Seconds since it was made or last asked.
@@ -168,12 +171,22 @@ Camera camera_of(const RenderOptions& options, const ViewSettings& view, const B
   return Camera::look_at(point_from(options.eye, "--eye"), target, options.fov_deg, width, height);
 }
 
+// `raised` becomes the most that an eye was.
+Camera framed_camera(const RenderOptions& options, const ViewSettings& view, const HeightField& field, const Box& box,
+                     double grid_north_azimuth, double& raised) {
+  const FieldView framed =
+      view_of_field(field, box, view, grid_north_azimuth, options.picture.width, options.picture.height);
+  raised = std::max(raised, framed.raised);
+  return framed.camera;
+}
+
 Camera terrain_camera(const RenderOptions& options, const ViewSettings& view, const HeightField& field, const Box& box,
-                      double grid_north_azimuth) {
+                      double grid_north_azimuth, double& raised) {
   if (options.picture.look == Look::comanche && !options.top && options.view.empty() && options.eye.empty()) {
     return flight_camera(field, grid_north_azimuth, options.fov_deg, options.picture.width, options.picture.height);
   }
-  return camera_of(options, view, box, grid_north_azimuth);
+  if (options.top || !options.eye.empty()) return camera_of(options, view, box, grid_north_azimuth);
+  return framed_camera(options, view, field, box, grid_north_azimuth, raised);
 }
 
 void print_times(const RenderOptions& options, double read_s, double build_s, double render_s,
@@ -209,7 +222,7 @@ void write_scene_picture(const RenderOptions& options, ReplaceFile& file, const 
 // The looks and numbers that `options` ask for, for what they have effect on.
 void require_company_of(const RenderOptions& options, InputKind kind) {
   const PictureSettings& picture = options.picture;
-  const bool steps = options.look == "steps", comanche = options.look == "comanche";
+  const bool steps = options.look == "steps";
   const LookOptions& look = options.look_options;
   require_company(
       {{{"--water-colour", "--turbidity", "--waves", "--wavelength", "--no-reflection", "--no-refraction"},
@@ -219,8 +232,6 @@ void require_company_of(const RenderOptions& options, InputKind kind) {
        {{"--fog-base", "--fog-falloff"}, look.fog == "height", "--fog height"},
        {{"--snow-line"}, look.ground_colours == "natural", "--ground natural"},
        {{"--detail-size"}, look.ground.detail > 0, "--detail S"},
-       {{"--pixel-size", "--steps", "--iterations"}, comanche, "--look comanche"},
-       {{"--error-tolerance"}, options.look == "error", "--look error"},
        // The number may stand in the scene's file.
        {{"--sun-size", "--ao-distance", "--seed"}, picture.samples > 0 || kind == InputKind::scene, "--samples N"},
        {{"--mesh-at", "--mesh-scale", "--mesh-rotate", "--mesh-up"}, !options.mesh.file.empty(), "--mesh FILE"},
@@ -240,6 +251,8 @@ void require_company_of(const RenderOptions& options, InputKind kind) {
 // Throws Error for what was typed and would have no effect.
 void require_effect(const RenderOptions& options, InputKind kind) {
   require_options_of(kind, options.given);
+  find_look(options.look);
+  require_options_of_look(options.look, kind, options.given);
   require_company_of(options, kind);
   if (kind == InputKind::terrain) {
     require_settings_of(options.march.empty() ? kTerrainMarch : options.march, options.given, options.march_settings);
@@ -281,6 +294,7 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
   ReplaceFile file(options.output);
   Watch watch;
   const SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
+  keep_inputs(options.output, document.files);
   stop_if_interrupted();
   const double read_s = watch.lap();
   options.picture = picture_of(document, options.picture, options.given);
@@ -306,7 +320,7 @@ void render_scene_file(RenderOptions options, ViewSettings view) {
 void tell_if_buried(const Camera& camera, const HeightField& field, const std::string& whose = "the eye") {
   const auto ground = field.height(camera.eye().x, camera.eye().y);
   if (!ground || camera.eye().z >= *ground) return;
-  fmt::print(stderr, "note: {} is {:.3g} m below the ground\n", whose, *ground - camera.eye().z);
+  fmt::print(stderr, "note: {} is {} m below the ground\n", whose, metres_text(*ground - camera.eye().z));
 }
 
 void render_frame(const RenderOptions& options, const TerrainScene& scene, MeshInput& mesh, const Camera& camera,
@@ -339,7 +353,12 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   const std::vector<std::string> notes = raster.notes;
   const std::string path = raster.path;
 
-  read_look_files(options.look_options, raster, options.field, options.picture);
+  const std::vector<std::string> look_files =
+      read_look_files(options.look_options, raster, options.field, options.picture);
+  std::vector<std::string>& files = options.typed;
+  files.insert(files.end(), raster.files.begin(), raster.files.end());
+  files.insert(files.end(), look_files.begin(), look_files.end());
+  keep_inputs(options.output, files);
   HeightField field = height_field_from(std::move(raster), options.field);
   if (!field.has_cells()) {
     throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed", path,
@@ -358,22 +377,32 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
   if (options.top && options.size.empty()) fit_size_to_ground(box, options.picture);
   finish_look(options.look_options, scene.field(), options.picture);
   // Last: who fails says one line alone.
+  double raised = 0;  // metres, of the eye, the most of all frames
   const auto tell_notes = [&] {
     for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
     for (const std::string& note : mesh.notes()) fmt::print(stderr, "note: {}\n", note);
+    if (raised > 0) {
+      fmt::print(stderr, "note: the eye is raised by {}{} m, out of the ground\n",
+                 options.frames.several() ? "up to " : "", metres_text(raised));
+    }
   };
   const double reach = reach_of(options.look_options, scene.field());
   if (options.frames.several()) {
-    std::vector<Camera> cameras =
-        frame_cameras(options.frames, box, view, grid_north_azimuth, options.picture.width, options.picture.height);
+    std::vector<Camera> cameras = frame_cameras(
+        options.frames, view, options.picture.width, options.picture.height, [&](const ViewSettings& turned) {
+          return framed_camera(options, turned, scene.field(), box, grid_north_azimuth, raised);
+        });
     for (Camera& camera : cameras) camera.set_reach(reach);
+    // Without --overwrite nothing is written over.
+    for (int i = 0; options.frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
+      keep_inputs(frame_name(options.output, i), files);
     make_frames(options.frames, options.output, cameras, [&](const Camera& camera, const std::string& name) {
       render_frame(options, scene, mesh, camera, grid_north_azimuth, name);
     });
     tell_notes();
     return;
   }
-  Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth);
+  Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth, raised);
   camera.set_reach(reach);
   see_from_afar(options.look_options, box, camera, options.picture);
   if (options.exr) {
@@ -421,6 +450,7 @@ void run(RenderOptions options) {
   const InputKind kind = kind_of(options);
   require_effect(options, kind);
   const ViewSettings view = settle(options);
+  keep_inputs(options.output, options.typed);
   if (!options.eye.empty()) point_from(options.eye, "--eye");
   if (!options.target.empty()) point_from(options.target, "--target");
   const ThreadLimit limit(options.threads);
@@ -530,6 +560,7 @@ void add_render(CLI::App& program) {
   command->callback([options, command, fov] {
     options->fov_said = fov->count() > 0;
     options->given = given_options(*command);
+    options->typed = typed_values(*command);
     run(*options);
   });
 }

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "app/cli/commands.h"
+#include "app/cli/kept_inputs.h"
 #include "app/cli/vox_input.h"
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
@@ -153,7 +154,10 @@ void add_section(CLI::App& program) {
       ->check(CLI::Range(0, 100))
       ->capture_default_str();
   add_vox_options(*command, o.vox);
-  command->callback([options] { run(*options); });
+  command->callback([options, command] {
+    keep_inputs(options->output, typed_values(*command));
+    run(*options);
+  });
 }
 
 }  // namespace scarp::cli

@@ -12,6 +12,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/field_options.h"
 #include "app/cli/input_kind.h"
+#include "app/cli/kept_inputs.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
@@ -47,23 +48,24 @@ struct Input {
   Scene scene;
   SceneLook look;
   std::vector<std::string> notes;
+  std::vector<std::string> files;  // that were read, beside those that were typed
 };
 
 Input terrain(const VoxeliseOptions& options) {
   Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
   stop_if_interrupted();
   const std::string path = raster.path;
-  std::vector<std::string> notes = raster.notes;
+  std::vector<std::string> notes = raster.notes, files = raster.files;
   HeightField field = height_field_from(std::move(raster), options.field);
   if (!field.has_cells() || field.all_nodata())
     throw Error(fmt::format("raster '{}': there is no ground between its samples", path));
   const HeightRamp ramp{options.ramp, field.min_height(), field.max_height()};
-  return {Scene({scene_heights(std::move(field))}, {SceneObject{}}), {{ramp}}, std::move(notes)};
+  return {Scene({scene_heights(std::move(field))}, {SceneObject{}}), {{ramp}}, std::move(notes), std::move(files)};
 }
 
 Input voxels(const VoxeliseOptions& options) {
   VoxInput input = read_voxels(options.inputs.front(), options.vox, {}, {});
-  return {Scene({scene_voxels(std::move(input.scene), VoxelSceneOptions{}.march)}, {SceneObject{}}), {}, {}};
+  return {Scene({scene_voxels(std::move(input.scene), VoxelSceneOptions{}.march)}, {SceneObject{}}), {}, {}, {}};
 }
 
 Input input_of(const VoxeliseOptions& options) {
@@ -74,7 +76,7 @@ Input input_of(const VoxeliseOptions& options) {
   if (!scene) return terrain(options);
   SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
   SceneLook look = look_of(document);
-  return {std::move(document.scene), std::move(look), std::move(document.notes)};
+  return {std::move(document.scene), std::move(look), std::move(document.notes), std::move(document.files)};
 }
 
 std::optional<WorldBox> box_of(const VoxeliseOptions& options) {
@@ -109,6 +111,7 @@ void run(const VoxeliseOptions& options) {
   const std::optional<WorldBox> within = box_of(options);
   const ThreadLimit limit(options.threads);
   const Input input = input_of(options);
+  keep_inputs(options.output, input.files);
   stop_if_interrupted();
   const double side = side_of(options, input.scene, within);
   const VoxelLattice lattice = lattice_around(input.scene, side, within);
@@ -159,6 +162,7 @@ void add_voxelise(CLI::App& program) {
   add_vox_options(*command, o.vox);
   command->callback([options, command] {
     options->given = given_options(*command);
+    keep_inputs(options->output, typed_values(*command));
     run(*options);
   });
 }

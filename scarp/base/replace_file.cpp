@@ -86,7 +86,14 @@ ReplaceFile::~ReplaceFile() {
 }
 
 void ReplaceFile::commit() {
-  std::error_code error;
+  std::error_code error, none;
+  // Who may read a file does not change when it is written anew, whatever the writer made of the temporary one.
+  const fs::file_status before = fs::status(path_, none);
+  const fs::perms wanted = before.permissions() & fs::perms::all;
+  if (fs::exists(before) && (fs::status(temporary_, none).permissions() & fs::perms::all) != wanted) {
+    fs::permissions(temporary_, wanted, error);
+    if (error) throw Error(fmt::format("output '{}': cannot keep its permissions: {}", path_, error.message()));
+  }
   fs::rename(temporary_, path_, error);
   if (error) throw Error(fmt::format("output '{}': cannot be moved into place: {}", path_, error.message()));
   noted_->forget();

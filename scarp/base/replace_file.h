@@ -7,7 +7,8 @@
 namespace scarp {
 
 /// Reserves a temporary name in the folder of `path`, with the same extension, so that writers which go by the name
-/// work. commit() moves it into place in one step; without commit() the destructor removes what was written.
+/// work. commit() moves it into place in one step, with the permissions of the file that it replaces; without commit()
+/// the destructor removes what was written.
 class ReplaceFile {
  public:
   /// Throws Error when `path` is empty, is a directory, or lies in a folder that does not exist or cannot be written.

@@ -15,6 +15,41 @@ void require(bool good, std::string_view what, double value, std::string_view ra
   if (!good) throw Error(fmt::format("height field: {} is {}; it must be {}", what, value, range));
 }
 
+// No height or length of a field is larger, in metres, and none of its units smaller than one over it: products of
+// three such numbers, as normals and distances have them, stay within doubles (2^1023). By settings and the type of the
+// samples, not by the samples: edits cannot lead beyond.
+constexpr double kFarthest = 0x1p300;
+
+// The largest magnitude that a sample may have.
+double largest_sample(SampleType type) {
+  switch (type) {
+    case SampleType::int16:
+      return -double{std::numeric_limits<std::int16_t>::lowest()};
+    case SampleType::uint16:
+      return std::numeric_limits<std::uint16_t>::max();
+    case SampleType::float32:
+      break;
+  }
+  return std::numeric_limits<float>::max();
+}
+
+void require_reach(SampleType type, int cols, int rows, const HeightFieldSettings& s) {
+  const auto within = [](double unit, double most) { return unit >= 1 / kFarthest && most <= kFarthest; };
+  const double cell = std::min(s.cell_x, s.cell_y), longest = std::max(s.cell_x * cols, s.cell_y * rows);
+  if (!within(cell, longest)) {
+    throw Error(
+        fmt::format("height field: {} x {} samples with cells of {:g} x {:g} m; cells above 2^-300 m and sides up to "
+                    "2^300 m are needed",
+                    cols, rows, s.cell_x, s.cell_y));
+  }
+  if (!within(s.scale * s.exaggeration, (largest_sample(type) * s.scale + std::abs(s.offset)) * s.exaggeration)) {
+    throw Error(fmt::format(
+        "height field: heights are (sample * {:g} + {:g}) * {:g}; of {} samples they must stay below 2^300 m, and "
+        "be more than 2^-300 m from one to the next",
+        s.scale, s.offset, s.exaggeration, name_of(type)));
+  }
+}
+
 // A nodata value that the sample type cannot hold marks nothing: no stored sample can be equal to it.
 template <class T>
 bool representable(double value) {
@@ -60,6 +95,7 @@ HeightField::HeightField(SampleType type, const void* data, int cols, int rows, 
   require(positive(settings.scale), "scale", settings.scale, "finite and above 0");
   require(std::isfinite(settings.offset), "offset", settings.offset, "finite");
   require(positive(settings.exaggeration), "exaggeration", settings.exaggeration, "finite and above 0");
+  require_reach(type, cols, rows, settings);
   per_cell_x_ = 1 / settings.cell_x;
   per_cell_y_ = 1 / settings.cell_y;
   z_offset_ = settings.offset * settings.exaggeration;

@@ -75,7 +75,8 @@ Camera Camera::look_at(const dvec3& eye, const dvec3& target, double fov_deg, in
   return camera;
 }
 
-Camera Camera::framed(const Box& box, const ViewSettings& settings, double grid_north_azimuth, int width, int height) {
+Camera Camera::framed(const Box& box, const ViewSettings& settings, double grid_north_azimuth, int width, int height,
+                      const std::optional<dvec3>& focus) {
   validate(settings);
   const double azimuth = glm::radians(settings.azimuth_deg), elevation = glm::radians(settings.elevation_deg);
   Camera camera;
@@ -101,7 +102,12 @@ Camera Camera::framed(const Box& box, const ViewSettings& settings, double grid_
   const double depth = std::min({sideways.nearest_depth(), upwards.nearest_depth(),
                                  nearest_corner - kLeastDistance * length(box.high - box.low)});
   camera.eye_ = middle + sideways.middle() * camera.right_ + upwards.middle() * camera.up_ +
-                settings.distance * depth * camera.forward_;
+                std::max(1.0, settings.distance) * depth * camera.forward_;
+  if (settings.distance < 1) {
+    // Its place beside the box's middle, too, is that of an eye with the whole box before it.
+    const dvec3 near = focus.value_or(middle);
+    camera.eye_ = near + settings.distance * (camera.eye_ - near);
+  }
   return camera;
 }
 

@@ -33,7 +33,8 @@ struct Box {
 struct ViewSettings {
   double azimuth_deg = 190;   ///< compass azimuth at which the camera stands as seen from what it looks at; finite
   double elevation_deg = 35;  ///< its angle above the horizon from there; 0..90
-  double distance = 1;        ///< in multiples of the distance at which the field just fits into the picture; > 0
+  double distance = 1;        ///< in multiples of the distance at which the field just fits into the picture; > 0.
+                              ///< Below 1 the eye goes straight towards the focus of Camera::framed()
   double fov_deg = 30;        ///< vertical angle of view; 1..150
 };
 
@@ -46,8 +47,10 @@ class Camera {
   /// Throws Error: eye and target are one point or not finite, fov_deg outside 1..150. `width`, `height` in pixels.
   static Camera look_at(const dvec3& eye, const dvec3& target, double fov_deg, int width, int height);
   /// A perspective camera that has the whole box in the picture, as large as a small margin lets it be (at distance 1).
+  /// What nearer views go towards is `focus`, the middle of the box where none is given; it should lie in the box.
   /// Throws Error for settings out of their range.
-  static Camera framed(const Box& box, const ViewSettings& settings, double grid_north_azimuth, int width, int height);
+  static Camera framed(const Box& box, const ViewSettings& settings, double grid_north_azimuth, int width, int height,
+                       const std::optional<dvec3>& focus = {});
   /// An orthographic camera looking straight down, the grid's north up, square pixels on the ground. The box fits in
   /// exactly: its border is the picture's border in one of the two directions.
   static Camera top(const Box& box, int width, int height);
@@ -79,6 +82,8 @@ class Camera {
   double pixel_width(double depth) const { return 2 * half_width_ / width_ * (orthographic_ ? 1 : depth); }
 
   const dvec3& eye() const { return eye_; }
+  /// It looks the same way from there.
+  void move_eye(const dvec3& eye) { eye_ = eye; }
   const dvec3& forward() const { return forward_; }
 
  private:

@@ -100,6 +100,7 @@ HeightsWithPlace heights_from(const Json& json, const std::string& path, const F
       raster = read_tiles(inputs, options, around.progress);
     }
     for (const std::string& note : raster.notes) around.notes->push_back(note);
+    for (const std::string& file : raster.files) around.files->push_back(file);
     FieldOptions field_options;
     field_options.exaggeration = json.value("exaggeration", 1.0);
     field_options.surface = json.value("surface", "bilinear") == "triangles" ? Surface::triangles : Surface::bilinear;
@@ -184,7 +185,9 @@ FieldWithPlace voxels_from(const Json& json, const std::string& path, const Fiel
                                            : VoxelNormals::flat;
     shading.normal_radius = json.value("normal_radius", shading.normal_radius);
     shading.corner_ao = json.value("corner_ao", false);
-    VoxelScene scene = voxels_of_file(json, path, resolved(around, json["file"]), options);
+    const std::string file = resolved(around, json["file"]);
+    VoxelScene scene = voxels_of_file(json, path, file, options);
+    around.files->push_back(file);
     const WorldBox box = scene.box();
     dvec3 shift(0.0);
     if (json.value("centred", false) && box.low.x <= box.high.x)

@@ -40,6 +40,7 @@ struct Whole {
   std::vector<SceneFieldPtr> fields;
   std::vector<Material> materials;
   std::vector<std::string> notes;
+  std::vector<std::string> files;       // that have been read
   std::vector<std::string> open_files;  // that are being read, each in the one before
   Progress progress;
 };
@@ -49,6 +50,7 @@ class Reader {
  public:
   Reader(const std::string& path, Whole& whole) : path_(path), whole_(whole) {
     json_ = parse_scene_text(text_of(path));
+    whole_.files.push_back(path);
     check_scene_schema(json_);
     around_.folder = fs::path(path).parent_path().string();
     around_.functions = [this](const std::string& name, std::string_view at) { return function_of(name, at); };
@@ -57,6 +59,7 @@ class Reader {
     };
     around_.field = [this](const std::string& name, const std::string& at) { return field_named(name, at); };
     around_.notes = &whole_.notes;
+    around_.files = &whole_.files;
     around_.progress = whole_.progress;
   }
 
@@ -269,7 +272,8 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
                  sun_from(json),
                  picture_from(json),
                  {},
-                 std::move(whole.notes)};
+                 std::move(whole.notes),
+                 std::move(whole.files)};
   if (!file.scene.endless() && !(file.scene.box().low.x <= file.scene.box().high.x))
     throw Error("/objects: none of them has anything to see: voxels without a solid one, or heights without a cell");
   file.materials = std::move(whole.materials);

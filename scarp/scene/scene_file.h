@@ -58,6 +58,7 @@ struct SceneFile {
   ScenePicture picture;
   std::optional<double> haze_distance;  ///< metres
   std::vector<std::string> notes;       ///< of readers, one line each, for people
+  std::vector<std::string> files;       ///< all that were read: this one, other scenes, heights, voxels
 };
 
 /// Reads the file and everything that it names. Throws Error in one line with the file and the place in it, as a JSON

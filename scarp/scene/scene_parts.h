@@ -26,6 +26,7 @@ struct FieldSurroundings {
   std::function<int(const std::string& name, const std::string& path)> material;
   std::function<std::pair<const nlohmann::json*, std::string>(const std::string& name, const std::string& path)> field;
   std::vector<std::string>* notes;  ///< of readers
+  std::vector<std::string>* files;  ///< that have been read
   Progress progress;
 };
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/base/vec.h"
@@ -56,7 +57,7 @@ GDALDatasetUniquePtr in_colours(GDALDatasetUniquePtr dataset, const GdalSession&
 }
 
 ColourImage pixels_of(GDALDataset& dataset, int height, const GdalSession& session) {
-  ColourImage image{dataset.GetRasterXSize(), height, {}};
+  ColourImage image{dataset.GetRasterXSize(), height, {}, {}};
   image.rgba.assign(4 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(height), 255);
   const int bands = dataset.GetRasterCount();
   for (int channel = 0; channel < 4; ++channel) {
@@ -109,13 +110,19 @@ ColourImage read_overlay(const std::string& path, const Georeference& georeferen
   GdalSession session;
   const StrictReading strict;
   try {
-    GDALDatasetUniquePtr dataset = in_colours(open_gdal_raster(path, session), session);
+    GDALDatasetUniquePtr stored = open_gdal_raster(path, session);
+    const std::vector<std::string> files = files_of(*stored);
+    GDALDatasetUniquePtr dataset = in_colours(std::move(stored), session);
     const bool placed = has_place(*dataset);
     if (placed != georeference.present) {
       throw Error(placed ? "has a place on the earth, and the raster has none; give it one with --crs and --bounds"
                          : "has no place on the earth, and the raster has one; gdal_translate -a_srs -a_ullr gives it");
     }
-    if (!placed) return pixels_of(*dataset, dataset->GetRasterYSize(), session);
+    if (!placed) {
+      ColourImage image = pixels_of(*dataset, dataset->GetRasterYSize(), session);
+      image.files = files;
+      return image;
+    }
     const auto& m = georeference.map_from_node;
     const double west = m[0], east = m[0] + (cols - 1) * m[1], north = m[3], south = m[3] + (rows - 1) * m[5];
     CPLStringList arguments;
@@ -143,6 +150,7 @@ ColourImage read_overlay(const std::string& path, const Georeference& georeferen
         GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options.options, &wrong)));
     if (!warped) throw Error(session.reason("cannot be brought onto the raster"));
     ColourImage image = pixels_of(*warped, warped->GetRasterYSize(), session);
+    image.files = files;
     bool seen = false;
     for (std::size_t i = 3; i < image.rgba.size() && !seen; i += 4) seen = image.rgba[i] != 0;
     if (!seen) {

@@ -15,6 +15,7 @@ struct ColourImage {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgba;
+  std::vector<std::string> files;  ///< as Raster::files
 };
 
 /// The first row of a picture of 8 bits per channel, grey, palette or colours. Throws Error naming the file.

@@ -140,6 +140,13 @@ double greatest_integer(GDALDataType type, bool with_sign) {
 
 }  // namespace
 
+std::vector<std::string> files_of(GDALDataset& dataset) {
+  const CPLStringList list(dataset.GetFileList());
+  std::vector<std::string> files;
+  for (int i = 0; i < list.size(); ++i) files.emplace_back(list[i]);
+  return files;
+}
+
 int height_band(GDALDataset& dataset, int wanted) {
   const int count = dataset.GetRasterCount();
   if (count == 0) refuse_container(dataset);
@@ -217,6 +224,7 @@ Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession
   settle_height_range(options, band.GetRasterDataType(), is_signed_byte(band));
   const RasterWindow window = choose_window(dataset, options.window);
   Raster raster;
+  raster.files = files_of(stored);
   raster.cols = window.cols;
   raster.rows = window.rows;
   raster.file_type = decoded ? std::string(name_of(options.encoding)) : GDALGetDataTypeName(band.GetRasterDataType());

@@ -5,6 +5,7 @@
 #include <gdal_priv.h>
 
 #include <string>
+#include <vector>
 
 #include "scarp/base/progress.h"
 #include "scarp/source/gdal_errors.h"
@@ -22,6 +23,9 @@ struct StrictReading {
 
 /// Opens any raster of GDAL's; on the stack there must be a StrictReading. Throws Error whose text has no file name.
 GDALDatasetUniquePtr open_gdal_raster(const std::string& path, const GdalSession& session);
+
+/// The files that it is made of, with those that a virtual raster names.
+std::vector<std::string> files_of(GDALDataset& dataset);
 
 /// The band of heights: `wanted`, or with 0 the only one. Throws Error whose text has no file name.
 int height_band(GDALDataset& dataset, int wanted);

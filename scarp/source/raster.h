@@ -24,6 +24,7 @@ struct Raster {
   std::string path;           ///< as opened, for messages
   std::string file_type;      ///< sample type in the file, GDAL's name: "Int16"
   std::string vertical_unit;  ///< as the file says: "metre", "US survey foot", ...; empty: not said, metres assumed
+  std::vector<std::string> files;  ///< all that were opened: tiles, and what a virtual raster is made of, too
   std::vector<std::string> notes;  ///< what was converted or assumed, one line each, for people
 };
 

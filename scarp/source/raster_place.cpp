@@ -148,6 +148,18 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
   geo.present = true;
   geo.map_from_node = {first_x, step_x, 0, first_y, 0, -step_y};
 
+  // Once round the earth and a half: from 0 to 360 and on both sides of either border. More is another CRS.
+  constexpr double kFarthestLongitude = 540;
+  if (crs && crs->IsGeographic()) {
+    const double west = first_x - 0.5 * step_x, east = first_x + (window.cols - 0.5) * step_x,
+                 to_degrees = crs->GetAngularUnits() * 180 / std::numbers::pi;
+    if (!(std::max(std::abs(west), std::abs(east)) * to_degrees <= kFarthestLongitude)) {
+      throw Error(
+          fmt::format("its longitudes go from {:.10g} to {:.10g}; the CRS is {}, which has them within {} degrees: "
+                      "give the right --crs or --bounds",
+                      west, east, name_of(*crs), kFarthestLongitude));
+    }
+  }
   if (!crs) {
     geo.cell_x_m = step_x;
     geo.cell_y_m = step_y;

@@ -89,6 +89,7 @@ Raster read_tiles(const std::vector<std::string>& inputs, const RasterOptions& o
       return whole;
     });
   }
+  raster.files.insert(raster.files.end(), files.begin(), files.end());
   raster.notes.insert(raster.notes.begin(), notes.begin(), notes.end());
   return raster;
 }

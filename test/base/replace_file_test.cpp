@@ -101,6 +101,20 @@ TEST_F(ReplaceFileTest, CommitReplacesWhatWasThere) {
   EXPECT_EQ(files(), 1);
 }
 
+TEST_F(ReplaceFileTest, CommitKeepsWhoMayRead) {
+  const auto mode = [&] { return static_cast<int>(fs::status(path("a.png")).permissions()); };
+  write(path("a.png"), "old");
+  for (const int before : {0640, 0600, 0666}) {
+    fs::permissions(path("a.png"), fs::perms(before));
+    ReplaceFile file(path("a.png"));
+    // As writers do that make the file anew.
+    fs::remove(file.temporary_path());
+    write(file.temporary_path(), "new");
+    file.commit();
+    EXPECT_EQ(mode(), before);
+  }
+}
+
 TEST_F(ReplaceFileTest, WithoutCommitNothingIsLeftAndTheOldFileStays) {
   write(path("a.png"), "old");
   {

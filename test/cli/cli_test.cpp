@@ -7,9 +7,13 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdint>
+#include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "cli/program.h"
 #include "output/read_png.h"
@@ -190,6 +194,94 @@ TEST_F(Cli, AnUnwritableOutputIsFoundBeforeTheWork) {
   EXPECT_EQ(scratch_.files(), before);
 }
 
+TEST_F(Cli, AnEyeBelowTheGroundIsToldInPlainNumbers) {
+  // The ground is at 3.5 m there.
+  const auto result = run(
+      {"render", good(), "-o", path("out.png"), "--size", "8x6", "--eye", "15,10,-3656.5", "--target", "15,20,-3656"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("the eye is 3660 m below the ground"), std::string::npos) << result.err;
+}
+
+// By no subcommand that writes, and whatever it is that it reads.
+TEST_F(Cli, NothingIsWrittenOverWhatItIsMadeOf) {
+  const auto terrain = [&](const std::string& name, int west = 0) {
+    return write(name, fmt::format("ncols 2\nnrows 2\nxllcorner {}\nyllcorner 0\ncellsize 10\n1 2\n3 4\n", west));
+  };
+  const std::string dem = terrain("dem.png"), folder = path("tiles"), image = path("image.png"),
+                    rays = write("rays.csv", "x,y,z,dx,dy,dz\n5,5,99,0,0,-1\n"), volume = write("volume.svg", "\1"),
+                    function = write("wave.tif", R"({"type": "plane", "slope": [1, 0]})"), model = path("model.vox"),
+                    flight = write("flight-00.png", "x,y,z,tx,ty,tz\n5,-9,9,5,5,5\n");
+  std::filesystem::create_directory(folder);
+  std::filesystem::copy(dem, folder + "/west.png");
+  std::filesystem::rename(terrain("east.png", 20), folder + "/east.png");
+  std::filesystem::create_symlink(dem, path("link.png"));
+  const std::vector<std::uint8_t> colours(std::size_t{3} * 2 * 2, 99);
+  ReplaceFile file(image);
+  write_png(file, image, {colours.data(), 2, 2});
+  const auto virtual_raster = [&](const std::string& name, const std::string& of) {
+    return write(
+        name,
+        fmt::format(
+            R"(<VRTDataset rasterXSize="2" rasterYSize="2"><GeoTransform>0,10,0,20,0,-10</GeoTransform><VRTRasterBand dataType="Byte" band="1">
+<SimpleSource><SourceFilename relativeToVRT="1">{}</SourceFilename><SourceBand>1</SourceBand></SimpleSource>
+</VRTRasterBand></VRTDataset>)",
+            of));
+  };
+  const std::string over_dem = virtual_raster("dem.vrt", "dem.png"),
+                    over_image = virtual_raster("image.vrt", "image.png"), table = terrain("dem.csv"),
+                    over_table = virtual_raster("table.vrt", "dem.csv");
+  ASSERT_EQ(run({"voxelise", dem, "-o", model, "--count", "4"}).status, 0);
+  const std::string voxels = write("voxels.json", R"({"objects": [{"voxels": {"file": "model.vox"}}]})"),
+                    heights = write("heights.json", R"({"objects": [{"heights": {"file": "dem.vrt"}}]})"),
+                    village = write("village.json", R"({"objects": [{"scene": "heights.json"}]})");
+
+  const struct {
+    Names arguments;
+    std::string output;
+  } cases[] = {
+      {{"render", dem}, dem},
+      {{"render", dem}, path("./dem.png")},
+      {{"render", dem}, path("link.png")},
+      {{"render", path("link.png")}, dem},
+      {{"render", folder}, folder + "/west.png"},
+      {{"render", folder + "/west.png", folder + "/east.png"}, folder + "/east.png"},
+      {{"render", over_dem}, dem},
+      {{"render", dem, "--ramp", image}, image},
+      {{"render", dem, "--overlay", image}, image},
+      {{"render", dem, "--overlay", over_image}, image},
+      {{"render", heights}, dem},
+      {{"render", village}, dem},
+      {{"render", "--function", image}, image},
+      {{"render", dem, "--path", flight, "--overwrite"}, path("flight-##.png")},
+      {{"cast", dem, "--rays", rays}, rays},
+      {{"cast", dem, "--rays", "-"}, rays},
+      {{"cast", over_table, "--rays", rays}, table},
+      {{"composite", dem, image}, dem},
+      {{"composite", dem, image}, image},
+      {{"voxelise", model}, model},
+      {{"voxelise", voxels}, model},
+      {{"section", volume, "--volume", "1x1x1:u8"}, volume},
+      {{"generate", "--size", "2", "--function", function}, function},
+  };
+  for (const auto& c : cases) {
+    std::map<std::string, std::string> before, after;
+    const auto look = [&](std::map<std::string, std::string>& files) {
+      for (const auto& entry : std::filesystem::recursive_directory_iterator(scratch_.path("")))
+        if (entry.is_regular_file()) files[entry.path()] = test::text_of(entry.path());
+    };
+    look(before);
+    Names arguments = c.arguments;
+    arguments.insert(arguments.end(), {"-o", c.output});
+    const auto result = test::Program(arguments, nullptr, rays).result();
+    const std::string what = fmt::format("{}: {}", fmt::join(arguments, " "), result.err);
+    EXPECT_EQ(result.status, 1) << what;
+    EXPECT_EQ(test::lines(result.err), 1) << what;
+    EXPECT_NE(result.err.find("': is the input"), std::string::npos) << what;
+    look(after);
+    EXPECT_TRUE(before == after) << what;
+  }
+}
+
 TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
   good();
   const Names before = scratch_.files();
@@ -250,6 +342,12 @@ TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
       {{"second.asc"}, "raster 'second.asc': does not exist"},
       {{"--scale", "1,2,3"}, "S[,OFFSET]"},
       {{"--scale", "0"}, "not 0"},
+      {{"--scale", "1e300"}, "--scale '1e300': expected numbers from -1073741824 to 1073741824"},
+      {{"--offset", "1e20"}, "--offset '1e20': expected a number from -1073741824 to 1073741824"},
+      {{"--exaggeration", "1e30"}, "--exaggeration '1e30': expected numbers from"},
+      {{"--bounds", "0,0,1e300,1e300"}, "--bounds '0,0,1e300,1e300': expected numbers from"},
+      {{"--height-range", "0,1e30"}, "--height-range '0,1e30': expected numbers from"},
+      {{"--crs", "EPSG:4326", "--bounds", "500000,4000000,501000,4001000"}, "longitudes go from"},
       {{"--scale", "2,5", "--offset", "7"}, "leave out --offset"},
       {{"--scale", "2", "--height-range", "0,1"}, "twice"},
       {{"--height-range", "5"}, "LOW,HIGH"},
@@ -286,6 +384,20 @@ TEST_F(Cli, WhatIsNeededIsAskedFor) {
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
     EXPECT_NE(result.err.find("--help"), std::string::npos) << result.err;
   }
+}
+
+TEST_F(Cli, AWordThatIsNoSubcommandIsToldWhichThereAre) {
+  for (const Names& arguments : {Names{"rendr"}, {"rendr", good(), "-o", path("out.png")}}) {
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 2);
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_EQ(result.err.find("scarp: 'rendr': is no subcommand; expected render, cast, "), 0u) << result.err;
+  }
+  const auto file = run({good()});
+  EXPECT_EQ(file.status, 2);
+  EXPECT_EQ(file.err, fmt::format("scarp: '{0}': is a file and no subcommand; did you mean 'scarp render {0} -o "
+                                  "out.png'?\n",
+                                  good()));
 }
 
 TEST_F(Cli, AWrongNameIsToldBeforeWhatIsMissing) {
@@ -461,7 +573,26 @@ TEST_P(Interrupt, EndsWhatDoesNotListen) {
   EXPECT_EQ(scratch_.files(), Names{"scene.json"});
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, testing::Values(SIGINT, SIGTERM));
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT));
+
+// As under nohup.
+TEST_F(Cli, ASignalThatIsIgnoredStaysSo) {
+  const std::string pipe = path("scene.json");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const auto before = std::signal(SIGHUP, SIG_IGN);
+  // Asks whether there was a signal when it has read the scene.
+  test::Program program({"render", pipe, "-o", path("out.png"), "--size", "8x6"}, nullptr, "/dev/null",
+                        test::Ignored::inherited);
+  std::signal(SIGHUP, before);
+  // It has its handlers when it waits at the pipe: this waits for it there.
+  std::ofstream scene(pipe);
+  ::kill(program.pid(), SIGHUP);
+  scene << R"({"objects": [{"shape": {"sphere": {"radius": 3}}}]})";
+  scene.close();
+  const auto result = program.result();
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+}
 
 }  // namespace
 }  // namespace scarp

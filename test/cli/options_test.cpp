@@ -4,11 +4,14 @@
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <regex>
 #include <string>
 #include <vector>
 
 #include "app/cli/input_kind.h"
+#include "base/refusal.h"
 #include "cli/program.h"
 #include "scarp/base/error.h"
 #include "scarp/source/vox_file.h"
@@ -117,6 +120,8 @@ class WithoutEffect : public testing::Test {
     EXPECT_EQ(scratch_.files(), before) << what;
   }
 
+  std::string path(const std::string& name) const { return scratch_.path(name); }
+
   test::Scratch scratch_;
   const std::string vox_ = scratch_.path("model.vox"), out_ = scratch_.path("out.png"),
                     dem_ = scratch_.write("dem.asc",
@@ -189,8 +194,8 @@ TEST_F(WithoutEffect, IsRefusedOfTerrain) {
   expect_refused(render, {"--fog-falloff", "1", "--fog", "distance"}, "--fog height");
   expect_refused(render, {"--snow-line", "1"}, "--ground natural");
   expect_refused(render, {"--detail-size", "1"}, "--detail S");
-  expect_refused(render, {"--steps", "9"}, "--look comanche");
-  expect_refused(render, {"--error-tolerance", "1"}, "--look error");
+  expect_refused(render, {"--steps", "9"}, "goes with the look comanche");
+  expect_refused(render, {"--error-tolerance", "1"}, "goes with the look error");
   expect_refused(render, {"--sun-size", "1"}, "--samples N");
   expect_refused(render, {"--mesh-up", "y"}, "--mesh FILE");
   const Names flight{"render", dem_, "-o", scratch_.path("out-##.png"), "--turntable"};
@@ -217,6 +222,110 @@ TEST_F(WithoutEffect, IsRefusedOfScenesAndFunctions) {
   expect_refused(function, {"--rounded", "0.1"}, "goes with files of voxels");
   expect_refused(function, {"--refine", "secant"}, "--march naive");
   expect_refused(function, {"--refine-halvings", "3", "--march", "naive"}, "--refine bisect");
+}
+
+// Each option of a picture is refused by the looks that do not read it, and makes another picture with those that do.
+TEST_F(WithoutEffect, IsRefusedOfLooks) {
+  struct Case {
+    Names options;     // the one that is meant, and its value
+    Names looks;       // that read it
+    Names others{};    // that it needs
+    bool seen = true;  // in a picture as small as this one
+  };
+  const Names soft{"--samples", "4"}, fog{"--fog", "height"}, lake{"--water", "30"}, lit{"shaded", "comanche"},
+      steps{"--march", "fixed-step", "--reach", "200"};
+  const std::vector<Case> cases = {
+      {{"--ramp", "magma"}, {"shaded", "steps", "comanche"}},
+      {{"--sun", "100,20"}, lit},
+      {{"--no-shadows"}, {"shaded"}},
+      {{"--samples", "4"}, lit},
+      {{"--sun-size", "60"}, {"shaded"}, soft},
+      {{"--ao-distance", "1"}, lit, soft},
+      {{"--seed", "7"}, lit, soft},
+      {{"--aa", "3"}, {"shaded"}},
+      {{"--haze", "0.9"}, {"shaded"}},
+      {{"--error-tolerance", "1e-9"}, {"error"}},
+      {{"--ground", "natural"}, lit},
+      {{"--snow-line", "1"}, lit, {"--ground", "natural"}},
+      {{"--detail", "1"}, lit},
+      {{"--detail-size", "3"}, lit, {"--detail", "1"}},
+      {{"--contours", "7"}, lit},
+      {{"--overlay", path("overlay.asc")}, lit, {}, false},
+      {{"--water", "30"}, lit},
+      {{"--water-colour", "ff0000"}, lit, lake},
+      {{"--turbidity", "3"}, lit, lake},
+      {{"--waves", "0.4"}, lit, lake},
+      {{"--wavelength", "2"}, lit, lake, false},
+      {{"--no-reflection"}, lit, lake},
+      {{"--no-refraction"}, lit, lake},
+      {{"--fog", "distance"}, lit},
+      {{"--visibility", "20"}, lit, fog},
+      {{"--fog-base", "90"}, lit, fog},
+      {{"--fog-falloff", "1"}, lit, fog},
+      {{"--sun-tint", "1"}, lit, fog, false},
+      {{"--pixel-size", "2"}, {"comanche"}},
+      {{"--steps", "3"}, {"comanche"}, steps},
+      {{"--shells"}, {"comanche"}, steps, false},
+      {{"--step-by-view"}, {"comanche"}, steps, false},
+      {{"--iterations"}, {"comanche"}},
+  };
+  const std::string rough = scratch_.write(
+      "rough.asc",
+      "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 70 3 40\n9 2 60 30\n5 50 8 20\n90 4 10 6\n");
+  const auto picture = [&](const std::string& look, const Names& options, const Names& others) {
+    Names arguments{
+        "render", rough,   "-o",        out_,       "--look",  look, look == "comanche" ? "--lowres" : "--size",
+        "24x18",  "--eye", "15,-20,90", "--target", "15,15,20"};
+    if (look == "error") arguments.insert(arguments.end(), {"--march", "naive"});
+    arguments.insert(arguments.end(), others.begin(), others.end());
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 0) << fmt::format("{}: {}", fmt::join(arguments, " "), result.err);
+    return test::text_of(out_);
+  };
+  std::map<Names, std::string> without;
+  for (const Case& c : cases) {
+    for (const std::string look : {"shaded", "height", "steps", "error", "comanche"}) {
+      const std::string what = fmt::format("{} with {}", fmt::join(c.options, " "), look);
+      if (std::find(c.looks.begin(), c.looks.end(), look) == c.looks.end()) {
+        const std::string form = c.looks.size() == 1 ? "goes with the look " : "goes with the looks ";
+        const std::string text =
+            test::refusal([&] { cli::require_options_of_look(look, cli::InputKind::terrain, {c.options.front()}); });
+        EXPECT_EQ(text.find(c.options.front() + ": " + form + c.looks.front()), 0u) << what << ": " << text;
+        continue;
+      }
+      if (!c.seen) continue;
+      Names key = c.others;
+      key.push_back(look);
+      if (!without.contains(key)) without[key] = picture(look, {}, c.others);
+      EXPECT_TRUE(picture(look, c.options, c.others) != without[key]) << what;
+    }
+  }
+  // Whoever adds an option says here which looks read it.
+  const Names of_all = {"--help",   "--output", "--size",  "--look",   "--no-plinth", "--threads",
+                        "--device", "--lowres", "--reach", "--legend", "--scale-bar"},
+              of_voxels = {"--normals", "--normal-radius", "--rounded", "--each", "--corner-ao", "--coarse-voxels"};
+  const std::string help = run({"render", "--help"}).out;
+  for (const char* group : {"Options", "Ground", "Water", "Fog", "Look comanche", "Looks of voxels"}) {
+    const auto begin = help.find(fmt::format("\n{}:\n", group));
+    ASSERT_NE(begin, std::string::npos) << group;
+    const std::string text = help.substr(begin, help.find("\n\n", begin + 1) - begin);
+    const std::regex form("\n  (?:-[a-z],)?(--[a-z-]+)");
+    for (std::sregex_iterator at(text.begin(), text.end(), form), end; at != end; ++at) {
+      const std::string option = (*at)[1];
+      const auto is = [&](const std::string& name) { return name == option; };
+      EXPECT_TRUE(std::any_of(of_all.begin(), of_all.end(), is) ||
+                  std::any_of(of_voxels.begin(), of_voxels.end(), is) ||
+                  std::any_of(cases.begin(), cases.end(), [&](const Case& c) { return c.options.front() == option; }))
+          << option;
+    }
+  }
+  expect_refused({"render", rough, "-o", out_ + ".png"}, {"--sun", "1,30", "--look", "height"},
+                 "goes with the looks shaded and comanche, not with 'height'; leave it out");
+  for (const std::string look : {"height", "steps"}) {
+    expect_refused({"render", vox_, "-o", out_}, {"--normals", "smooth", "--look", look}, "goes with the look shaded");
+    expect_refused({"render", vox_, "-o", out_}, {"--corner-ao", "--look", look}, "goes with the look shaded");
+  }
 }
 
 TEST_F(WithoutEffect, IsNoLongerTheAngleOfViewOfFunctions) {

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -51,11 +52,14 @@ inline std::string text_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// Whether signals that this process ignores are ignored by what it starts.
+enum class Ignored : bool { reset, inherited };
+
 /// A running `scarp`; its output goes into files of a folder of its own.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments, const char* out_path = nullptr,
-                   const std::string& in_path = "/dev/null") {
+                   const std::string& in_path = "/dev/null", Ignored ignored = Ignored::reset) {
     arguments.insert(arguments.begin(), SCARP_PROGRAM);
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
@@ -66,7 +70,18 @@ class Program {
     ::posix_spawn_file_actions_addopen(&actions, 0, in_path.c_str(), O_RDONLY, 0);
     ::posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    const int error = ::posix_spawn(&pid_, SCARP_PROGRAM, &actions, nullptr, argv.data(), environ);
+    ::posix_spawnattr_t attributes;
+    ::posix_spawnattr_init(&attributes);
+    if (ignored == Ignored::reset) {
+      // The tests themselves may run under nohup.
+      ::sigset_t signals;
+      ::sigemptyset(&signals);
+      for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXFSZ}) ::sigaddset(&signals, number);
+      ::posix_spawnattr_setsigdefault(&attributes, &signals);
+      ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
+    }
+    const int error = ::posix_spawn(&pid_, SCARP_PROGRAM, &actions, &attributes, argv.data(), environ);
+    ::posix_spawnattr_destroy(&attributes);
     ::posix_spawn_file_actions_destroy(&actions);
     if (error != 0) throw std::runtime_error("cannot start " SCARP_PROGRAM);
   }

@@ -84,6 +84,15 @@ TEST(HeightField, RefusesWhatItCannotBeInOneLine) {
   EXPECT_NE(refusal([] { HeightField::own<float>({}, 0, 0); }).find("at least 1 x 1"), std::string::npos);
   EXPECT_NE(refusal([] { small({.cell_x = 0}); }).find("cell_x"), std::string::npos);
   EXPECT_NE(refusal([] { small({.scale = -1}); }).find("scale"), std::string::npos);
+  for (const HeightFieldSettings& absurd : {HeightFieldSettings{.cell_x = 1e300},
+                                            {.cell_y = 1e-300},
+                                            {.scale = 1e300},
+                                            {.scale = 1e-300},
+                                            {.scale = 1e60, .exaggeration = 1e60},
+                                            {.offset = -1e300},
+                                            {.exaggeration = 1e308}}) {
+    EXPECT_NE(refusal([&] { small(absurd); }).find("2^300 m"), std::string::npos);
+  }
   EXPECT_NE(refusal([] { small({.exaggeration = std::nan("")}); }).find("exaggeration"), std::string::npos);
   EXPECT_NE(refusal([] {
               HeightField::own<float>({1, 2, 3, HUGE_VALF}, 2, 2);

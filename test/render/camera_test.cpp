@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 #include <limits>
+#include <optional>
 
 #include "scarp/base/error.h"
 #include "scarp/render/compass.h"
@@ -121,6 +122,26 @@ TEST(Camera, DistanceCountsInFramedOnes) {
   // Both lie on one axis; on it, distances count from the place beside the box's middle.
   EXPECT_NEAR(length(cross(b - a, forward)), 0, 1e-6);
   EXPECT_NEAR(dot(kBox.middle() - b, forward) / dot(kBox.middle() - a, forward), 3, 1e-9);
+}
+
+// The focus stays where it is in the picture, and the eye ends there.
+TEST(Camera, NearerViewsGoTowardsTheirFocus) {
+  const dvec3 other(12000, 20000, 1200);
+  for (const std::optional<dvec3>& given : {std::optional<dvec3>(), std::optional(other)}) {
+    const dvec3 focus = given.value_or(kBox.middle());
+    const auto framed = [&](double distance) {
+      return Camera::framed(kBox, {.elevation_deg = 10, .distance = distance}, 0.1, 640, 360, given);
+    };
+    const Camera whole = framed(1);
+    EXPECT_EQ(whole.eye(), Camera::framed(kBox, {.elevation_deg = 10}, 0.1, 640, 360).eye()) << "is the whole box";
+    for (const double distance : {0.9, 0.3, 0.01}) {
+      const Camera near = framed(distance);
+      EXPECT_EQ(near.forward(), whole.forward());
+      EXPECT_NEAR(length(near.eye() - focus), distance * length(whole.eye() - focus), 1e-6);
+      EXPECT_NEAR(near.pixel(focus)->x, whole.pixel(focus)->x, 1e-6);
+      EXPECT_NEAR(near.pixel(focus)->y, whole.pixel(focus)->y, 1e-6);
+    }
+  }
 }
 
 TEST(Camera, TopMapsNodesToPixels) {

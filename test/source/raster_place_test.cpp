@@ -113,6 +113,13 @@ TEST_F(RasterPlaceTest, DegreesLieOnAPlane) {
   EXPECT_EQ("WGS 84 (EPSG:4326)", geo.crs_name);
 }
 
+TEST_F(RasterPlaceTest, LongitudesBeyondTheEarthAreAnotherCrs) {
+  EXPECT_NO_THROW(read(placed({360, 1, 0, 40, 0, -1}, "EPSG:4326")));
+  for (const double west : {500000.0, 541.0, -541.0}) {
+    expect_says(error(placed({west, 0.01, 0, 40, 0, -0.01}, "EPSG:4326")), "longitudes go from");
+  }
+}
+
 TEST_F(RasterPlaceTest, AWholeHemisphereIsNoPlaneAndSaysSo) {
   EXPECT_TRUE(has_note(read(placed({0, 1, 0, 80, 0, -40}, "EPSG:4326")), "wider"));
 }
@@ -163,7 +170,8 @@ TEST_F(RasterPlaceTest, WrongCrsAndBoundsAreRefused) {
   expect_says(error({}, options), "'EPSG:999999' is not known");
   options.crs = "EPSG:4326";
   expect_says(error({}, options), "--bounds");
-  expect_says(error(placed({500000, 30, 0, 5000000, 0, -30}), options), "latitude");
+  expect_says(error(placed({500000, 30, 0, 5000000, 0, -30}), options), "longitudes");
+  expect_says(error(placed({50, 30, 0, 5000000, 0, -30}), options), "latitude");
   options.bounds = {10, 45, 9, 46};
   expect_says(error({}, options), "west < east");
   options.bounds = {10, 46, 11, 45};
