@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <map>
 #include <string>
@@ -14,6 +13,7 @@
 
 #include "march/spiteful.h"
 #include "march/spiteful_text.h"
+#include "march/texture_levels.h"
 #include "march/textures_vk.glsl.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/accel/slope_bound.h"
@@ -47,12 +47,7 @@ void run(Device::Impl& device, const Record& record) {
 // An image of floats with mip levels; level l has `sizes[l]`, filled from `texels[l]`, `channels` floats per texel.
 class Texture {
  public:
-  struct Level {
-    std::uint32_t cols, rows;
-    std::vector<float> texels;
-  };
-
-  Texture(const Device& open, const std::vector<Level>& levels, std::uint32_t channels)
+  Texture(const Device& open, const std::vector<TextureLevel>& levels, std::uint32_t channels)
       : device_(*open.impl()),
         image_(device_.device,
                vk::ImageCreateInfo({}, vk::ImageType::e2D, format(channels), {levels[0].cols, levels[0].rows, 1},
@@ -77,7 +72,7 @@ class Texture {
       change(commands, vk::ImageLayout::eUndefined, vk::ImageLayout::eTransferDstOptimal);
     });
     for (std::uint32_t level = 0; level < levels.size(); ++level) {
-      const Level& of = levels[level];
+      const TextureLevel& of = levels[level];
       const DeviceBuffer texels(open, of.texels.size() * sizeof(float), "texels");
       upload(texels, 0, of.texels.data(), of.texels.size() * sizeof(float));
       run(device_, [&](const auto& commands) {
@@ -108,37 +103,6 @@ class Texture {
   vk::raii::DeviceMemory memory_;
   vk::raii::ImageView view_;
 };
-
-std::vector<Texture::Level> heights_of(const HeightField& field) {
-  Texture::Level level{static_cast<std::uint32_t>(field.cols()), static_cast<std::uint32_t>(field.rows()), {}};
-  field.visit([&](const auto& grid) {
-    for (int row = 0; row < field.rows(); ++row) {
-      for (int col = 0; col < field.cols(); ++col) level.texels.push_back(static_cast<float>(grid.at(col, row)));
-    }
-  });
-  return {level};
-}
-
-std::vector<Texture::Level> bounds_of(const MaxPyramid& pyramid) {
-  std::vector<Texture::Level> levels;
-  std::uint32_t cols = std::bit_ceil(static_cast<std::uint32_t>(pyramid.levels()[0].cols));
-  std::uint32_t rows = std::bit_ceil(static_cast<std::uint32_t>(pyramid.levels()[0].rows));
-  for (const auto& of : pyramid.levels()) {
-    Texture::Level level{cols, rows, std::vector<float>(std::size_t{2} * cols * rows)};
-    for (int row = 0; row < of.rows; ++row) {
-      for (int col = 0; col < of.cols; ++col) {
-        const std::ptrdiff_t entry = of.begin + std::ptrdiff_t{row} * of.cols + col;
-        float* texel = &level.texels[2 * (static_cast<std::size_t>(row) * cols + static_cast<std::size_t>(col))];
-        texel[0] = pyramid.maxima()[entry];
-        texel[1] = pyramid.minima()[entry];
-      }
-    }
-    levels.push_back(std::move(level));
-    cols = std::max(cols / 2, 1U);
-    rows = std::max(rows / 2, 1U);
-  }
-  return levels;
-}
 
 // The pipeline with its two textures.
 class TextureMarch {
