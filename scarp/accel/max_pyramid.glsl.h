@@ -7,8 +7,8 @@
 
 SCARP_GLSL_BEGIN
 
-// A workgroup makes this many entries of a level: kPyramidGroupCols x kPyramidGroupRows, no more than the 128 that every
-// device has (maxComputeWorkGroupInvocations of Vulkan 1.2).
+// A workgroup makes this many entries of a level: kPyramidGroupCols x kPyramidGroupRows, no more than the 128 that
+// every device has (maxComputeWorkGroupInvocations of Vulkan 1.2).
 const uint kPyramidGroupCols = 32u;
 const uint kPyramidGroupRows = 4u;
 
