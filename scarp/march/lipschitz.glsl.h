@@ -12,9 +12,9 @@ SCARP_GLSL_BEGIN
 
 /// LipschitzSettings of marches.h.
 struct ScarpLipschitz {
-  float shrink;  ///< 1 / sqrt(1 + c^2), c the field's slope bound
-  float tolerance;
-  int max_steps;
+  float shrink;     ///< of the vertical distance: 1 / sqrt(1 + c^2), c the field's slope bound
+  float tolerance;  ///< distance to the ground that is a hit, per unit of distance travelled, >= 0
+  int max_steps;    ///< points that are looked at, >= 1; more: kScarpExhausted
 };
 
 /// Time until the ray leaves cell numbers [begin, end) of an axis, from a place in cell number `cell`; places are
@@ -91,7 +91,9 @@ SCARP_FN bool scarp_lipschitz_on(ScarpField field, ScarpRay ray, ScarpLipschitz 
   return false;
 }
 
-/// What the march finds first.
+/// A ray of scarp_ray(), scarp_ray_from() or sampled_device_ray() (device_ray.h), to its exit: the first point within
+/// the tolerance above the ground; none is passed, but for rounding, as long as `shrink` is right. A ray from the
+/// surface is looked at from a cell away on. The answer's time counts from the ray's begin.
 SCARP_FN ScarpHit scarp_lipschitz(ScarpField field, ScarpRay ray, ScarpLipschitz settings) {
   ScarpHit hit = scarp_no_hit();
   float s = scarp_lipschitz_begin(ray);

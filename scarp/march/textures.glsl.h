@@ -31,10 +31,11 @@ SCARP_FN bool scarp_is_nodata(float value) {
   return value == scarp_nodata || (floatBitsToUint(value) & 0x7fffffffu) > 0x7f800000u;
 }
 
-/// Codes of a block, level 1 and up; the minimum is 0 where there is none.
+/// The maximum code of a block, level 1 and up.
 SCARP_FN float scarp_maximum(int level, int col, int row) {
   return texelFetch(scarp_bounds, ivec2(col, row), level - 1).x;
 }
+/// The minimum code; 0 where there is none.
 SCARP_FN float scarp_minimum(int level, int col, int row) {
   return texelFetch(scarp_bounds, ivec2(col, row), level - 1).y;
 }
