@@ -27,10 +27,10 @@ struct ScarpLine {
 
 /// A ray of a march, and how its times lie on the line: t = begin + time * per_time.
 struct ScarpSent {
-  int marches;  ///< 0: there is nothing of the field on the way
+  int marches;          ///< 0: there is nothing of the field on the way
   ScarpRay ray;         ///< means something where it marches
   ScarpTwoFloat begin;  ///< on the line
-  float per_time;  ///< a power of two
+  float per_time;       ///< a power of two
 };
 
 /// Coordinates of a line's point.
