@@ -22,6 +22,7 @@
 #include "scarp/vk/memory.h"
 #include "scarp/vk/raii.h"
 #include "vk/device_under_test.h"
+#include "vk/spirv_layout.h"
 
 namespace scarp::test {
 namespace {
@@ -197,6 +198,8 @@ std::vector<Realisation> realisations(double slope) {
       {"lipschitz", glsl::kTexturesLipschitz, sampled_device_ray,
        push(1 / std::hypot(1.0, slope), 0, s.lipschitz.tolerance, 0)}};
 }
+
+TEST(TexturesLayout, IsThatOfTheShader) { EXPECT_TRUE(is_laid_out_like<glsl::TexturesPush>(kWords)); }
 
 class TexturesOnDevice : public OnDevice {};
 
