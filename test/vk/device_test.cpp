@@ -3,10 +3,12 @@
 #include "scarp/vk/device.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -183,6 +185,39 @@ TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
   EXPECT_NE(refusal([&] { DeviceBuffer(device(), 0, "nothing"); }), "");
   EXPECT_NE(refusal([&] { DeviceBuffer(device(), 6, "a word and a half"); }), "");
 }
+
+// The sanitizer's own memory is beyond any limit.
+#ifndef __SANITIZE_ADDRESS__
+// On a CPU device, whose memory is that of the process, in a process of its own.
+TEST_F(OpenDevice, SaysThatMemoryIsUsedUpAndGoesOn) {
+  if (device().description().kind != DeviceKind::cpu) GTEST_SKIP() << "this device has memory of its own";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto use_up = [] {
+    const Device limited({.choice = "cpu"});
+    // What has been asked for once is there from then on.
+    const std::uint32_t word = 7;
+    upload(DeviceBuffer(limited, 4096, "the first"), 0, &word, 4);
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    constexpr std::uint64_t kBytes = 1 << 28, kMore = 5 * kBytes / 2;
+    const ::rlim_t limit = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + kMore;
+    const ::rlimit both{limit, limit};
+    if (::setrlimit(RLIMIT_AS, &both) != 0) ::_exit(2);
+    std::vector<DeviceBuffer> all;
+    std::string said;
+    while (said.empty() && all.size() < 10) said = refusal([&] { all.emplace_back(limited, kBytes, "a lake"); });
+    const std::size_t made = all.size();
+    all.clear();
+    const std::string after = refusal([&] { upload(DeviceBuffer(limited, kBytes, "another"), 0, &word, 4); });
+    std::fprintf(stderr, "%zu made; %s; then: %s.\n", made, said.c_str(), after.c_str());
+    ::_exit(0);
+  };
+  EXPECT_EXIT(
+      use_up(), testing::ExitedWithCode(0),
+      "[12] made; device '.*': no memory for a lake .256.0 MiB.: it uses the memory of the machine, which gives no "
+      "more; then: \\.");
+}
+#endif
 
 TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
   const Device other;
