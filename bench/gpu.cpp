@@ -26,6 +26,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// 480 x 270 as far as it goes in whole tiles of 8 pixels.
 constexpr RayCounts kCpuDeviceRays{480, 264, 1 << 16, 1 << 16, 256};
 constexpr std::int64_t kJudged = 20000, kCpuDeviceJudged = 4096;
 // Naive is searched for in class chunk, where so many times more rays are judged: what is right on a few rays need not

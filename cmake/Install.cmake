@@ -39,7 +39,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake ${CMAKE_CURRENT_BIN
         DESTINATION ${package_folder})
 
 # The shader texts: as they are, for hosts with #include, under the paths that they include one another by; and each
-# march with all that it needs in one file, for pasting.
+# march, and the ground in textures, with all that it needs in one file, for pasting.
 set(shader_folder ${CMAKE_INSTALL_DATADIR}/scarp/glsl)
 set(marches_as_text max_mip naive fixed_step relaxed lipschitz)
 set(function_marches_as_text function_marches lipschitz_local sphere_trace)
@@ -55,7 +55,7 @@ foreach(text IN LISTS shader_texts)
 endforeach()
 set(flat_texts "")
 list(TRANSFORM shader_texts PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE all_texts)
-foreach(name IN LISTS marches_as_text function_marches_as_text)
+foreach(name IN LISTS marches_as_text function_marches_as_text ITEMS textures)
   set(files ${PROJECT_SOURCE_DIR}/scarp/march/${name}.glsl.h)
   if(name IN_LIST marches_as_text)
     string(PREPEND files ${PROJECT_SOURCE_DIR}/scarp/march/float_ray.glsl.h,)

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "app/cli/device_option.h"
 #include "app/cli/field_options.h"
 #include "app/cli/input_kind.h"
 #include "app/cli/kept_inputs.h"
@@ -31,6 +32,7 @@
 #include "scarp/march/wall.h"
 #include "scarp/output/hit_table.h"
 #include "scarp/scene/from_raster.h"
+#include "scarp/scene/terrain_scene.h"
 #include "scarp/source/coordinates.h"
 #include "scarp/source/ray_table.h"
 #include "scarp/source/read_raster.h"
@@ -68,6 +70,7 @@ struct CastOptions {
   RasterOptions raster;
   FieldOptions field;
   std::string march = "max-mip";
+  std::string device;
   MarchSettings march_settings;
   bool any = false, all = false;
   int threads = 0;
@@ -80,6 +83,10 @@ using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&
 // The march's function for all hits, null when those are not asked for.
 AllHits all_hits_of(const CastOptions& options, const MarchEntry& march) {
   if (!options.all) return nullptr;
+  if (!options.device.empty()) {
+    throw Error(fmt::format("--all --device {}: devices tell the first hit of a ray alone; leave one of both out",
+                            options.device));
+  }
   if (march.name == "max-mip") return all_hits_max_mip;
   if (march.name == "exhaustive") return all_hits_exhaustive;
   throw Error(fmt::format("--all --march {}: all hits are found by max-mip and exhaustive only", march.name));
@@ -147,8 +154,8 @@ std::string place_of_raster(std::span<const Ray> rays, const HeightField& field,
 // Answers rays and writes what they met, piece by piece.
 class Caster {
  public:
-  Caster(const CastOptions& options, const HeightField& field, const MarchEntry& march, const CoordinateFrame& frame,
-         const RayTable& table, HitTable& out)
+  Caster(const CastOptions& options, const HeightField& field, const MarchEntry& march, const SceneMaker& scenes,
+         const CoordinateFrame& frame, const RayTable& table, HitTable& out)
       : field_(field),
         march_(march),
         settings_(options.march_settings),
@@ -156,6 +163,10 @@ class Caster {
         table_(table),
         out_(out),
         all_(all_hits_of(options, march)) {
+    if (!options.device.empty()) {
+      on_device_.emplace(scenes.make(field, march, settings_));
+      return;
+    }
     if (march.needs_pyramid) pyramid_.emplace(field);
     target_ = {&field_, pyramid_ ? &*pyramid_ : nullptr,
                march.needs_slope ? slope_bound(field) : std::numeric_limits<double>::quiet_NaN()};
@@ -163,7 +174,13 @@ class Caster {
 
   void blocked(std::size_t first, std::span<const Ray> rays) {
     std::vector<std::uint8_t> answers(rays.size());
-    timed([&] { occluded(target_, rays, answers, march_, settings_); });
+    timed([&] {
+      if (on_device_) {
+        on_device_->occluded(rays, answers);
+      } else {
+        occluded(target_, rays, answers, march_, settings_);
+      }
+    });
     hits_ += static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1));
     out_.add(static_cast<std::int64_t>(first), answers);
   }
@@ -182,7 +199,13 @@ class Caster {
       });
     } else {
       std::vector<Hit> closest(rays.size());
-      timed([&] { closest_hits(target_, rays, closest, march_, settings_); });
+      timed([&] {
+        if (on_device_) {
+          on_device_->closest_hits(rays, closest);
+        } else {
+          closest_hits(target_, rays, closest, march_, settings_);
+        }
+      });
       for (std::size_t i = 0; i < rays.size(); ++i) found[i] = {closest[i]};
     }
     write(first, rays, found);
@@ -235,6 +258,7 @@ class Caster {
   const RayTable& table_;
   HitTable& out_;
   AllHits all_;
+  std::optional<TerrainScene> on_device_;  // in the place of the target
   std::optional<MaxPyramid> pyramid_;
   HeightTarget target_;
   std::size_t hits_ = 0;
@@ -262,6 +286,7 @@ void run(CastOptions options) {
     }
   }
   keep_inputs(options.output, options.typed);
+  const SceneMaker scenes = scene_maker(options.device, march);
   const ThreadLimit limit(options.threads);
   // Who reads the table may go away, as `head` does: then the program ends as others do, without a word.
   if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);
@@ -280,7 +305,7 @@ void run(CastOptions options) {
   if (field.all_nodata()) notes.push_back("all samples are nodata: every ray misses; is the nodata value right?");
   stop_if_interrupted();
 
-  Caster caster(options, field, march, frame, table, out);
+  Caster caster(options, field, march, scenes, frame, table, out);
   const Progress progress = terminal_progress("cast");
   for (std::size_t first = 0; first < rays.size(); first += kPiece) {
     const std::size_t count = std::min(kPiece, rays.size() - first);
@@ -300,9 +325,10 @@ void run(CastOptions options) {
     if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
   }
   if (::isatty(STDERR_FILENO) != 0) {
-    fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s\n", rays.size(), caster.hits(),
+    fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s{}\n", rays.size(), caster.hits(),
                options.any ? "blocked" : "hits", caster.seconds(),
-               static_cast<double>(rays.size()) / std::max(caster.seconds(), 1e-9) * 1e-6);
+               static_cast<double>(rays.size()) / std::max(caster.seconds(), 1e-9) * 1e-6,
+               scenes.device.empty() ? "" : ", on " + scenes.device);
   }
 }
 
@@ -320,6 +346,7 @@ void add_cast(CLI::App& program) {
   CLI::Option* any = command->add_flag("--any", o.any, "only whether anything is in the way: ray,blocked (0 or 1)");
   command->add_flag("--all", o.all, "all hits of each ray in the order of t, not the first only")->excludes(any);
   command->add_option("--march", o.march, "technique, see 'scarp marches'")->capture_default_str();
+  add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
   add_field_options(*command, o.field);
   add_march_options(*command, o.march_settings);

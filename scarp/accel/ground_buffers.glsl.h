@@ -94,8 +94,9 @@ float ground_sample_value(Ground ground, uint bits) {
   return ground.is.sample_type == kGroundInt16 ? float(bitfieldExtract(int(bits), 0, 16)) : float(bits);
 }
 
-// The column east and the row south of one; beyond the last only where the field wraps round.
+// The column east of one; beyond the last only where the field wraps round.
 uint ground_east(Ground ground, uint col) { return col + 1u < ground.is.cols ? col + 1u : 0u; }
+// And the row south of one.
 uint ground_south(Ground ground, uint row) { return row + 1u < ground.is.rows ? row + 1u : 0u; }
 
 // The four samples of a cell, in sample units: x at (col, row), y at (col+1, row), z at (col, row+1), w at both.
@@ -115,8 +116,10 @@ uint ground_entry(Ground ground, uint level, uint col, uint row) {
   GroundLevel at = ground.is.levels[level - 1u];
   return GroundWords(ground.is.pyramid).words[at.begin + row * at.cols + col];
 }
+// The maximum code of an entry, and the minimum, 0 where there is none.
 uint ground_maximum(uint entry) { return entry & 0xffffu; }
-uint ground_minimum(uint entry) { return entry >> 16; }  // 0: none
+// And the minimum.
+uint ground_minimum(uint entry) { return entry >> 16; }
 
 #endif
 

@@ -7,9 +7,10 @@
 
 SCARP_GLSL_BEGIN
 
-// A workgroup makes this many entries of a level: kPyramidGroupCols x kPyramidGroupRows.
+// A workgroup makes this many entries of a level: kPyramidGroupCols x kPyramidGroupRows, no more than the 128 that
+// every device has (maxComputeWorkGroupInvocations of Vulkan 1.2).
 const uint kPyramidGroupCols = 32u;
-const uint kPyramidGroupRows = 8u;
+const uint kPyramidGroupRows = 4u;
 
 // Codes of float samples are looked up: ceilings[code] is the key of the greatest float that is encoded above as `code`
 // or less, floors[code] the key of the least that is encoded below as `code` or more.

@@ -12,8 +12,9 @@ constexpr std::uint32_t kShader[] = {
 #include "scarp/accel/max_pyramid.comp.inc"
 };
 
-// Workgroups along one side of a dispatch; every device allows this many.
+// What every device allows: workgroups along one side of a dispatch, and invocations in one.
 constexpr int kMaxGroups = 65535;
+static_assert(glsl::kPyramidGroupCols * glsl::kPyramidGroupRows <= 128);
 
 }  // namespace
 

@@ -37,7 +37,9 @@ SCARP_FN ScarpCell scarp_cell(ScarpField field, int col, int row, float base) {
   return cell;
 }
 
+/// The lowest corner of a cell that is no hole.
 SCARP_FN float scarp_lowest(ScarpCell cell) { return min(min(cell.h00, cell.h10), min(cell.h01, cell.h11)); }
+/// The highest one.
 SCARP_FN float scarp_highest(ScarpCell cell) { return max(max(cell.h00, cell.h10), max(cell.h01, cell.h11)); }
 
 /// Height of the surface at a place in the cell.
@@ -46,12 +48,14 @@ SCARP_FN float scarp_bilinear(ScarpCell cell, float u, float v) {
                                            ((cell.h11 - cell.h01) - (cell.h10 - cell.h00)) * (u * v));
   return height;
 }
+/// Of one of its two triangles: the one with (col+1, row+1), or the one with (col, row).
 SCARP_FN float scarp_triangle(ScarpCell cell, bool south_east, float u, float v) {
   SCARP_PRECISE float north_west_height = cell.h00 + ((cell.h10 - cell.h00) * u + (cell.h01 - cell.h00) * v);
   SCARP_PRECISE float south_east_height =
       cell.h11 - ((cell.h11 - cell.h01) * (1.0f - u) + (cell.h11 - cell.h10) * (1.0f - v));
   return south_east ? south_east_height : north_west_height;
 }
+/// Of the surface that the field has: bilinear, or the triangle that the place is in.
 SCARP_FN float scarp_surface(ScarpField field, ScarpCell cell, float u, float v) {
   return (field.flags & kScarpTriangles) != 0u ? scarp_triangle(cell, u + v > 1.0f, u, v) : scarp_bilinear(cell, u, v);
 }
@@ -92,6 +96,7 @@ struct ScarpQuadratic {
   float a, b, c;
 };
 
+/// The clearance of a ray over a cell, s counting from local time t.
 SCARP_FN ScarpQuadratic scarp_quadratic(ScarpFrame frame, ScarpRay ray, ScarpCell cell, int col, int row, float t) {
   float u = scarp_place_x(frame, ray, t, col);
   float v = scarp_place_y(frame, ray, t, row);

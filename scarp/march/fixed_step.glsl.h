@@ -11,19 +11,20 @@ SCARP_GLSL_BEGIN
 
 /// FixedStepSettings of marches.h.
 struct ScarpFixedStep {
-  float step;       ///< in cells
-  int interpolate;  ///< 0: the first sample that is not above
-  int max_steps;
+  float step;       ///< cells, their shorter side (ScarpRay::cell_time), > 0
+  int interpolate;  ///< 0: a hit is put on the first point that is not above; 1: between it and the point before
+  int max_steps;    ///< points that are looked at, >= 1; more: kScarpExhausted
 };
 
 /// Where the march stands.
 struct ScarpSteps {
-  int next;   ///< the point to be looked at
-  int above;  ///< 1: the last point over ground was above it
-  int known;  ///< 1: the point before was over ground
-  float s_before;
-  float clearance_before;
+  int next;                ///< the point to be looked at
+  int above;               ///< 1: the last point over ground was above it
+  int known;               ///< 1: the point before was over ground
+  float s_before;          ///< time of the last point
+  float clearance_before;  ///< sample units that the ray was above the ground there; 0 over a hole
 };
+/// Where the march of a ray begins: at its first point, or at the second from the surface.
 SCARP_FN ScarpSteps scarp_first_step(ScarpRay ray) {
   ScarpSteps steps;
   steps.above = (ray.flags & kScarpOnSurface) != 0u ? 1 : 0;
@@ -89,7 +90,9 @@ SCARP_FN bool scarp_step_on(ScarpField field, ScarpRay ray, ScarpFixedStep setti
   return false;
 }
 
-/// What the march finds first.
+/// A ray of scarp_ray(), scarp_ray_from() or sampled_device_ray() (device_ray.h), to its exit: the first point that is
+/// on or below the ground after one that was above, or between the two. The answer's time counts from the ray's begin.
+/// Passes over what is thinner than a step; the points are those of the march in double.
 SCARP_FN ScarpHit scarp_fixed_step(ScarpField field, ScarpRay ray, ScarpFixedStep settings) {
   ScarpHit hit = scarp_no_hit();
   ScarpSteps steps = scarp_first_step(ray);

@@ -29,7 +29,9 @@ struct ScarpBound {
   float low, high;
 };
 
+/// How far a bound gets from its middle, by its line.
 SCARP_FN float scarp_reach(ScarpBound t) { return (abs(t.slope) + t.rest) * (1.0f + kScarpSlack); }
+/// The largest magnitude in its range.
 SCARP_FN float scarp_most(ScarpBound t) { return max(abs(t.low), abs(t.high)); }
 
 /// low and high also from the line, and the line from low and high where it says less.
@@ -47,6 +49,7 @@ SCARP_FN ScarpBound scarp_settled(ScarpBound t) {
   }
   return out_;
 }
+/// All that is known is that it lies between low and high.
 SCARP_FN ScarpBound scarp_range(float low, float high) {
   ScarpBound t;
   t.low = low;
@@ -56,6 +59,7 @@ SCARP_FN ScarpBound scarp_range(float low, float high) {
   t.rest = 0.5f * (high - low) * (1.0f + kScarpSlack) + kScarpSlack * abs(t.mid.high);
   return t;
 }
+/// A number that is the same all along the segment.
 SCARP_FN ScarpBound scarp_exactly(ScarpTwoFloat k) {
   ScarpBound t;
   t.mid = k;
@@ -66,6 +70,7 @@ SCARP_FN ScarpBound scarp_exactly(ScarpTwoFloat k) {
   return t;
 }
 
+/// Of k0 a + k1 b + k2, as scarp_two_combine() computes it.
 SCARP_FN ScarpBound scarp_bound_combine(ScarpTwoFloat k0, ScarpBound a, ScarpTwoFloat k1, ScarpBound b,
                                         ScarpTwoFloat k2) {
   float ka = abs(k0.high);
@@ -80,9 +85,11 @@ SCARP_FN ScarpBound scarp_bound_combine(ScarpTwoFloat k0, ScarpBound a, ScarpTwo
   t.high = k0.high * (k0.high < 0.0f ? a.low : a.high) + k1.high * (k1.high < 0.0f ? b.low : b.high) + k2.high + slack;
   return scarp_settled(t);
 }
+/// Of k0 a + k1 b.
 SCARP_FN ScarpBound scarp_bound_sum(float k0, ScarpBound a, float k1, ScarpBound b) {
   return scarp_bound_combine(scarp_two(k0), a, scarp_two(k1), b, scarp_two(0.0f));
 }
+/// Of -a.
 SCARP_FN ScarpBound scarp_bound_negate(ScarpBound a) {
   ScarpBound t;
   t.mid = scarp_two_negate(a.mid);
@@ -107,6 +114,7 @@ SCARP_FN ScarpBound scarp_bound_turn(ScarpTwoFloat k0, ScarpBound a, ScarpTwoFlo
   return t;
 }
 
+/// Of a b.
 SCARP_FN ScarpBound scarp_bound_multiply(ScarpBound a, ScarpBound b) {
   float ra = scarp_reach(a);
   float rb = scarp_reach(b);
@@ -139,6 +147,7 @@ SCARP_FN ScarpBound scarp_bound_composed(ScarpBound a, ScarpTwoFloat f, float of
   t.high = high;
   return scarp_settled(t);
 }
+/// Of a^2, never below 0.
 SCARP_FN ScarpBound scarp_bound_square(ScarpBound a) {
   float p = a.low * a.low;
   float q = a.high * a.high;
@@ -148,15 +157,18 @@ SCARP_FN ScarpBound scarp_bound_square(ScarpBound a) {
                               2.0f * a.mid.high, 2.0f, max(0.0f, least - kScarpSlack * most),
                               most + kScarpSlack * most);
 }
+/// Of |a|.
 SCARP_FN ScarpBound scarp_bound_absolute(ScarpBound a) {
   if (a.low >= 0.0f) return a;
   if (a.high <= 0.0f) return scarp_bound_negate(a);
   return scarp_range(0.0f, max(-a.low, a.high));
 }
+/// Of a, not below `low` and not above `high`.
 SCARP_FN ScarpBound scarp_bound_clamp(ScarpBound a, float low, float high) {
   if (a.low >= low && a.high <= high) return a;
   return scarp_range(clamp(a.low, low, high), clamp(a.high, low, high));
 }
+/// Of the sine of an angle in radians.
 SCARP_FN ScarpBound scarp_bound_sine(ScarpBound a) {
   float sine;
   float cosine;
@@ -198,11 +210,13 @@ SCARP_FN ScarpBound scarp_bound_smooth_minimum(ScarpBound a, ScarpBound b, float
   t.high = scarp_smooth_minimum(scarp_two(a.high), scarp_two(b.high), radius).high + kScarpSlack * size;
   return scarp_settled(t);
 }
+/// Of scarp_terrace(), which never falls: by its values at both ends.
 SCARP_FN ScarpBound scarp_bound_terrace(ScarpBound a, ScarpInstruction at) {
   float slack = kScarpSlack * (scarp_most(a) + at.k0) * (1.0f + kScarpSteepestFade / at.k1);
   return scarp_range(scarp_terrace(scarp_two(a.low), scarp_k0(at), scarp_k2(at), at.k1).high - slack,
                      scarp_terrace(scarp_two(a.high), scarp_k0(at), scarp_k2(at), at.k1).high + slack);
 }
+/// Of scarp_radial(), by the nearest and the farthest place.
 SCARP_FN ScarpBound scarp_bound_radial(ScarpBound x, ScarpBound y, ScarpInstruction at) {
   float near_x = max(0.0f, max(x.low - at.k0, at.k0 - x.high));
   float near_y = max(0.0f, max(y.low - at.k1, at.k1 - y.high));

@@ -16,13 +16,15 @@
 
 SCARP_GLSL_BEGIN
 
-/// Coordinates of the ray's point at time s.
+/// x of the ray's point at time s, metres.
 SCARP_FN ScarpTwoFloat scarp_ray_x(ScarpFunctionRay ray, float s) {
   return scarp_two_line(0.0f, ray.origin.x, ray.origin_low.x, ray.direction.x, ray.direction_low.x, s);
 }
+/// And y.
 SCARP_FN ScarpTwoFloat scarp_ray_y(ScarpFunctionRay ray, float s) {
   return scarp_two_line(0.0f, ray.origin.y, ray.origin_low.y, ray.direction.y, ray.direction_low.y, s);
 }
+/// And its height.
 SCARP_FN ScarpTwoFloat scarp_ray_z(ScarpFunctionRay ray, float s) {
   return scarp_two_line(0.0f, ray.origin.z, ray.origin_low.z, ray.direction.z, ray.direction_low.z, s);
 }

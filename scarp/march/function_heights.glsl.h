@@ -34,18 +34,21 @@ struct ScarpProgram {
   uint result;  ///< register
 };
 
+/// The first number of an instruction as two floats.
 SCARP_FN ScarpTwoFloat scarp_k0(ScarpInstruction at) {
   ScarpTwoFloat k;
   k.high = at.k0;
   k.low = at.k0_low;
   return k;
 }
+/// The second one.
 SCARP_FN ScarpTwoFloat scarp_k1(ScarpInstruction at) {
   ScarpTwoFloat k;
   k.high = at.k1;
   k.low = at.k1_low;
   return k;
 }
+/// The third one.
 SCARP_FN ScarpTwoFloat scarp_k2(ScarpInstruction at) {
   ScarpTwoFloat k;
   k.high = at.k2;
@@ -79,6 +82,7 @@ SCARP_FN void scarp_sine(ScarpTwoFloat angle, SCARP_OUT(float) sine, SCARP_OUT(f
 
 /// The share of a in the smooth minimum of a and b = a - apart.
 SCARP_FN float scarp_smooth_share(float apart, float radius) { return clamp(0.5f - 0.5f * apart / radius, 0.0f, 1.0f); }
+/// The lower of a and b; where they are less than `radius` apart, lower than both by up to radius / 4.
 SCARP_FN ScarpTwoFloat scarp_smooth_minimum(ScarpTwoFloat a, ScarpTwoFloat b, float radius) {
   float apart = scarp_two_add(a, scarp_two_negate(b)).high;
   float t = scarp_smooth_share(apart, radius);

@@ -29,10 +29,10 @@ struct ScarpFunctionMarch {
   float least;      ///< naive: least step, a share of the ray's length; fixed-step: share of the distance travelled
   float tolerance;  ///< per unit of distance
   float metres;     ///< naive, relaxed: metres off the ground that are a hit at any distance
-  int max_steps;
-  uint refinement;  ///< kScarpRefineNone and so on
-  int halvings;
-  int run_steps;  ///< after so many more steps the march is interrupted (kScarpFunctionUnderWay), at least 1
+  int max_steps;    ///< heights that are looked at, >= 1; more: kScarpFunctionExhausted
+  uint refinement;  ///< of the last interval: kScarpRefineNone and so on
+  int halvings;     ///< of kScarpRefineBisect
+  int run_steps;    ///< after so many more steps the march is interrupted (kScarpFunctionUnderWay), at least 1
 };
 
 /// Interrupts a march at time s, after so many steps in all.
@@ -131,6 +131,7 @@ SCARP_FN ScarpFunctionHit scarp_function_by_height(ScarpProgram program, ScarpFu
   return hit;
 }
 
+/// `fixed-step` over a function: points at equal distances, or at growing ones with `least`.
 SCARP_FN ScarpFunctionHit scarp_function_fixed_step(ScarpProgram program, ScarpFunctionRay ray,
                                                     ScarpFunctionMarch settings) {
   ScarpFunctionHit hit = scarp_function_miss();
@@ -214,7 +215,7 @@ SCARP_FN ScarpFunctionHit scarp_function_lipschitz(ScarpProgram program, ScarpFu
   return hit;
 }
 
-/// Any of them.
+/// The first point that a march (kScarpFunctionNaive and so on) takes for a hit, over the ground of a program.
 SCARP_FN ScarpFunctionHit scarp_function_march(ScarpProgram program, ScarpFunctionRay ray, uint march,
                                                ScarpFunctionMarch settings) {
   if (march == kScarpFunctionFixedStep) return scarp_function_fixed_step(program, ray, settings);

@@ -12,19 +12,21 @@ SCARP_GLSL_BEGIN
 
 /// LipschitzSettings of marches.h.
 struct ScarpLipschitz {
-  float shrink;  ///< 1 / sqrt(1 + c^2), c the field's slope bound
-  float tolerance;
-  int max_steps;
+  float shrink;     ///< of the vertical distance: 1 / sqrt(1 + c^2), c the field's slope bound
+  float tolerance;  ///< distance to the ground that is a hit, per unit of distance travelled, >= 0
+  int max_steps;    ///< points that are looked at, >= 1; more: kScarpExhausted
 };
 
-/// Time until the ray leaves cell numbers [begin, end) of an axis, from a place in cell number `cell`.
+/// Time until the ray leaves cell numbers [begin, end) of an axis, from a place in cell number `cell`; places are
+/// rounded, here and there, by half a unit.
 SCARP_FN float scarp_time_to_border(int begin, int end, int cell, float place, float direction, float per_direction) {
   if (direction == 0.0f) return kScarpNever;
-  return (float((direction > 0.0f ? end : begin) - cell) - place) * per_direction;
+  return (float((direction > 0.0f ? end : begin) - cell) - place) * per_direction + kScarpUnit * abs(per_direction);
 }
 
 /// When the ray, over a point at s, leaves the block of 2^level x 2^level cells that holds it: a little later, so that
-/// it has, by 2^-20 of a cell and what s rounds by.
+/// it has, by 2^-20 of a cell and what times round by: 3 units of the way ahead, 2.5 more where the device divides, and
+/// 2 of the sum.
 SCARP_FN float scarp_leave_time(ScarpField field, ScarpRay ray, ScarpPoint point, int level, float s) {
   int col = (point.cell.x >> level) << level;
   int row = (point.cell.y >> level) << level;
@@ -32,7 +34,8 @@ SCARP_FN float scarp_leave_time(ScarpField field, ScarpRay ray, ScarpPoint point
                                  ray.direction.x, ray.per_direction.x);
   float y = scarp_time_to_border(row, min(row + (1 << level), field.cells.y), point.cell.y, point.place.y,
                                  ray.direction.y, ray.per_direction.y);
-  return s + (max(0.0f, min(x, y)) + 9.5367431640625e-7f * ray.cell_time + 4.0f * kScarpUnit * s);
+  float ahead = max(0.0f, min(x, y));
+  return s + (ahead + 9.5367431640625e-7f * ray.cell_time + 8.0f * kScarpUnit * (s + ahead));
 }
 
 /// The time of the first point that the march looks at: a step off the surface.
@@ -88,7 +91,9 @@ SCARP_FN bool scarp_lipschitz_on(ScarpField field, ScarpRay ray, ScarpLipschitz 
   return false;
 }
 
-/// What the march finds first.
+/// A ray of scarp_ray(), scarp_ray_from() or sampled_device_ray() (device_ray.h), to its exit: the first point within
+/// the tolerance above the ground; none is passed, but for rounding, as long as `shrink` is right. A ray from the
+/// surface is looked at from a cell away on. The answer's time counts from the ray's begin.
 SCARP_FN ScarpHit scarp_lipschitz(ScarpField field, ScarpRay ray, ScarpLipschitz settings) {
   ScarpHit hit = scarp_no_hit();
   float s = scarp_lipschitz_begin(ray);

@@ -21,9 +21,9 @@ SCARP_GLSL_BEGIN
 
 /// LipschitzLocalSettings of marches.h.
 struct ScarpLipschitzLocal {
-  float tolerance;
-  int max_steps;
-  int run_steps;  ///< after so many more steps, a bound and perhaps a height each, the march is interrupted, >= 1
+  float tolerance;  ///< length of the last interval, per unit of distance travelled, >= 0
+  int max_steps;    ///< >= 1; more: kScarpFunctionExhausted
+  int run_steps;    ///< after so many more steps, a bound and perhaps a height each, the march is interrupted, >= 1
 };
 
 /// What is proven about a segment: the ray is above the ground until `until`, and under it at `sunk`.
@@ -152,7 +152,8 @@ const int kScarpAskOpen = 0;     ///< the begin: what bounds of a point leave op
 const int kScarpAskSegment = 1;  ///< the next segment
 const int kScarpAskPoint = 2;    ///< its begin, where the segment tells nothing
 
-/// What the march finds first. With `any` a hit's time means nothing.
+/// What a ray meets first over the ground of a program, within the tolerance of it; with `any` a hit's time means
+/// nothing. No crossing is passed, rounding counted (ray.rounding).
 SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunctionRay ray_,
                                                 ScarpLipschitzLocal settings, bool any) {
   ScarpFunctionHit hit = scarp_function_miss();

@@ -11,10 +11,10 @@ SCARP_GLSL_BEGIN
 
 /// NaiveSettings of marches.h.
 struct ScarpNaive {
-  float step_factor;
-  float min_step;
-  float tolerance;
-  int max_steps;
+  float step_factor;  ///< of the vertical distance h, > 0
+  float min_step;     ///< least step, as a share of the ray's length to the field's border, > 0
+  float tolerance;    ///< height above the ground that is a hit, per unit of distance, >= 0
+  int max_steps;      ///< points that are looked at, >= 1; more: kScarpExhausted
 };
 
 /// The least step, a time.
@@ -52,7 +52,9 @@ SCARP_FN bool scarp_naive_on(ScarpField field, ScarpRay ray, ScarpNaive settings
   return false;
 }
 
-/// What the march finds first.
+/// A ray of scarp_ray(), scarp_ray_from() or sampled_device_ray() (device_ray.h), to its exit: the first point that is
+/// not above the ground by more than the tolerance, one-sided, so that points below it are hits wherever they are. The
+/// answer's time counts from the ray's begin. Passes over what is thinner than a step.
 SCARP_FN ScarpHit scarp_naive(ScarpField field, ScarpRay ray, ScarpNaive settings) {
   ScarpHit hit = scarp_no_hit();
   float s = scarp_naive_begin(ray, settings);

@@ -34,6 +34,7 @@ struct ScarpNoiseBound {
   float height, slope, curvature, third;
   float n_off, slope_off, curvature_off;
 };
+/// Those of a kind of noise; numerics.md derives them.
 SCARP_FN ScarpNoiseBound scarp_noise_bound(uint kind) {
   ScarpNoiseBound bound;
   bound.height = 1.0f;
@@ -62,6 +63,7 @@ SCARP_FN ScarpNoiseBound scarp_noise_bound(uint kind) {
   return bound;
 }
 
+/// Mixes the bits of a number, as field/noise.h does.
 SCARP_FN uint scarp_mix(uint x) {
   uint a = (x ^ (x >> 16)) * 0x7feb352du;
   uint b = (a ^ (a >> 15)) * 0x846ca68bu;
@@ -95,6 +97,7 @@ SCARP_FN uint scarp_wrapped(float whole) {
   float rest = high - floor(high * 1.52587890625e-5f) * 65536.0f;
   return (uint(rest) << 16) + uint(low);
 }
+/// Where a coordinate is, counted in cells of the lattice.
 SCARP_FN ScarpLattice scarp_lattice(ScarpTwoFloat p) {
   float whole = floor(p.high);
   SCARP_PRECISE float rest = (p.high - whole) + p.low;
@@ -112,10 +115,14 @@ SCARP_FN float scarp_fade(float t) {
   SCARP_PRECISE float f = r * r * r * (r * (r * 6.0f - 15.0f) + 10.0f);
   return t < 0.5f ? f : 1.0f - f;
 }
+/// The first derivative of the fade.
 SCARP_FN float scarp_fade_slope(float t) { return 30.0f * (t * t) * ((t - 1.0f) * (t - 1.0f)); }
+/// The second one.
 SCARP_FN float scarp_fade_curvature(float t) { return 60.0f * t * (t * 2.0f - 1.0f) * (t - 1.0f); }
+/// a at t = 0, b at t = 1.
 SCARP_FN float scarp_lerp(float a, float b, float t) { return a + t * (b - a); }
 
+/// Numbers at the corners, faded: with derivatives per cell of the lattice; errors within scarp_noise_bound().
 SCARP_FN ScarpNoise scarp_value_noise(uint seed, ScarpLattice x, ScarpLattice y) {
   uint west = scarp_mix(seed + x.cell);
   uint east_side = scarp_mix(seed + (x.cell + 1u));
@@ -139,6 +146,7 @@ SCARP_FN ScarpNoise scarp_value_noise(uint seed, ScarpLattice x, ScarpLattice y)
   return noise;
 }
 
+/// Slopes at the corners, faded; likewise.
 SCARP_FN ScarpNoise scarp_perlin_noise(uint seed, ScarpLattice x, ScarpLattice y) {
   const float kScale = 1.41421356f;
   uint west = scarp_mix(seed + x.cell);
@@ -190,6 +198,7 @@ SCARP_FN void scarp_simplex_corner(uint hash, float dx, float dy, SCARP_INOUT(Sc
   noise.xy += 48.0f * m2 * dx * dy * plane - k * (dx * gy + dy * gx);
 }
 
+/// Slopes at the corners of triangles; x and y in units of the noise, as field/noise.h has them. Likewise.
 SCARP_FN ScarpNoise scarp_simplex_noise(uint seed, ScarpTwoFloat x, ScarpTwoFloat y) {
   ScarpTwoFloat skew;  // (sqrt(3) - 1) / 2
   skew.high = 0.3660254180431365966796875f;

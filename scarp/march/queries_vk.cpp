@@ -162,7 +162,9 @@ struct DeviceQueries::Impl {
       parallel_for(static_cast<std::int64_t>(count), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
           answer(first + i, prepared[i], found[i]);
-          if (!costs.empty()) costs[first + i] = {found[i].steps, found[i].fetches};
+          // A ray with nothing to march takes a look all the same, at nothing.
+          if (!costs.empty())
+            costs[first + i] = prepared[i].marches ? DeviceRayCost{found[i].steps, found[i].fetches} : DeviceRayCost{};
         }
       });
     }

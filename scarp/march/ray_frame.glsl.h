@@ -28,15 +28,15 @@ const uint kScarpSolid = 8u;      ///< there is rock under the sheet
 
 /// What a march has to know of a height field besides its samples and bounds. All in sample units.
 struct ScarpField {
-  ivec2 cells;      ///< columns and rows of cells, at least 1
-  ivec2 samples;    ///< columns and rows of samples; as many as cells where the last is followed by the first
-  int top_level;    ///< of the pyramid, at least 1; 0: there is none
-  uint flags;       ///< kScarpTriangles and so on
-  float code_base;  ///< height of a pyramid entry: code_base + code_base_low + code_step * code
-  float code_base_low;
-  float code_step;
-  float lowest;   ///< sample
-  float highest;  ///< sample
+  ivec2 cells;          ///< columns and rows of cells, at least 1
+  ivec2 samples;        ///< columns and rows of samples; as many as cells where the last is followed by the first
+  int top_level;        ///< of the pyramid, at least 1; 0: there is none
+  uint flags;           ///< kScarpTriangles and so on
+  float code_base;      ///< height of a pyramid entry: code_base + code_base_low + code_step * code
+  float code_base_low;  ///< what a float of the base leaves
+  float code_step;      ///< height of one code
+  float lowest;         ///< sample
+  float highest;        ///< sample
 };
 
 const uint kScarpOnSurface = 1u;    ///< begins on the surface of its cell: above it by definition, z is not read
@@ -47,17 +47,17 @@ const uint kScarpUpright = 8u;      ///< straight up or down: direction.x and .y
 /// A ray that begins over the field. Whoever has doubles gives all numbers as two floats (march/device_ray.h); the low
 /// parts may be zero.
 struct ScarpRay {
-  ivec2 cell;  ///< over which it begins
-  vec2 place;  ///< where in it, 0..1, both ends included
-  vec2 place_low;
-  vec3 direction;  ///< the larger of abs x, abs y is 1 to 2, unless it is upright: then abs z is
-  vec3 direction_low;
+  ivec2 cell;          ///< over which it begins
+  vec2 place;          ///< where in it, 0..1, both ends included
+  vec2 place_low;      ///< what floats of it leave, here and below
+  vec3 direction;      ///< the larger of abs x, abs y is 1 to 2, unless it is upright: then abs z is
+  vec3 direction_low;  ///< likewise
   vec2 per_direction;  ///< 1 / direction; anything where that is 0
   float z;             ///< at its begin
-  float z_low;
-  float end;  ///< the last time, included; at most kScarpNever
-  float end_low;
-  uint flags;  ///< kScarpOnSurface and so on
+  float z_low;         ///< likewise
+  float end;           ///< the last time, included; at most kScarpNever
+  float end_low;       ///< likewise
+  uint flags;          ///< kScarpOnSurface and so on
   // For the marches that take samples along the ray (ground.glsl.h).
   float travelled;   ///< time from the begin of the ray's range to this ray's
   float exit;        ///< when it leaves the field or its range ends
@@ -73,13 +73,13 @@ const int kScarpWall = 4;       ///< a hit, of the wall under a border or a hole
 
 /// The answer. Cell, place and time mean something for hits (the time for exhausted, too).
 struct ScarpHit {
-  int status;  ///< kScarpMiss and so on
-  ivec2 cell;
-  vec2 place;  ///< in the cell, 0..1
-  float time;  ///< time + time_low is the ray's time there
-  float time_low;
-  uint steps;    ///< blocks, cells or points looked at
-  uint fetches;  ///< samples and entries of the pyramid read
+  int status;      ///< kScarpMiss and so on
+  ivec2 cell;      ///< column and row, counted from the field's first
+  vec2 place;      ///< in the cell, 0..1
+  float time;      ///< time + time_low is the ray's time there
+  float time_low;  ///< may be as large as `time`: it counts from the tile's begin
+  uint steps;      ///< blocks, cells or points looked at
+  uint fetches;    ///< samples and entries of the pyramid read
 };
 
 /// Later than any time.
@@ -106,6 +106,7 @@ struct ScarpFrame {
   float t_end;  ///< the ray's end, in local time
 };
 
+/// A miss at no cost: what marches begin with.
 SCARP_FN ScarpHit scarp_no_hit() {
   ScarpHit hit;
   hit.status = kScarpMiss;
@@ -149,6 +150,7 @@ SCARP_FN float scarp_line_x(ScarpFrame frame, ScarpRay ray, int k) {
   SCARP_PRECISE float t = ((float(k - frame.begin.x) - frame.o.x) - frame.o_low.x) * ray.per_direction.x;
   return t;
 }
+/// And line k of the rows.
 SCARP_FN float scarp_line_y(ScarpFrame frame, ScarpRay ray, int k) {
   if (ray.direction.y == 0.0f) return k + frame.lap.y > ray.cell.y ? kScarpNever : -kScarpNever;
   SCARP_PRECISE float t = ((float(k - frame.begin.y) - frame.o.y) - frame.o_low.y) * ray.per_direction.y;
@@ -160,6 +162,7 @@ SCARP_FN float scarp_place_x(ScarpFrame frame, ScarpRay ray, float t, int col) {
   SCARP_PRECISE float u = ((frame.o.x - float(col - frame.begin.x)) + frame.o_low.x) + ray.direction.x * t;
   return clamp(u, 0.0f, 1.0f);
 }
+/// And in a row of cells.
 SCARP_FN float scarp_place_y(ScarpFrame frame, ScarpRay ray, float t, int row) {
   SCARP_PRECISE float v = ((frame.o.y - float(row - frame.begin.y)) + frame.o_low.y) + ray.direction.y * t;
   return clamp(v, 0.0f, 1.0f);

@@ -51,6 +51,7 @@ struct ScarpFunctionHit {
   ScarpFunctionState state;
 };
 
+/// A miss at no cost: what marches begin with.
 SCARP_FN ScarpFunctionHit scarp_function_miss() {
   ScarpFunctionHit hit;
   hit.status = kScarpFunctionMiss;
@@ -64,6 +65,7 @@ SCARP_FN ScarpFunctionHit scarp_function_miss() {
   hit.state.phase = 0u;
   return hit;
 }
+/// Puts a status and its time into an answer.
 SCARP_FN void scarp_function_tell(int status, float s, SCARP_INOUT(ScarpFunctionHit) hit) {
   hit.status = status;
   hit.time = s;

@@ -11,9 +11,9 @@ SCARP_GLSL_BEGIN
 
 /// RelaxedSettings of marches.h.
 struct ScarpRelaxed {
-  float step_factor;
-  float tolerance;
-  int max_steps;
+  float step_factor;  ///< of the vertical distance h, > 0
+  float tolerance;    ///< height off the ground, above or below, that is a hit, per unit of distance, > 0
+  int max_steps;      ///< points that are looked at, >= 1; more: kScarpExhausted
 };
 
 /// The time of the first point that the march looks at: a step off the surface.
@@ -52,7 +52,9 @@ SCARP_FN bool scarp_relaxed_on(ScarpField field, ScarpRay ray, ScarpRelaxed sett
   return false;
 }
 
-/// What the march finds first.
+/// A ray of scarp_ray(), scarp_ray_from() or sampled_device_ray() (device_ray.h), to its exit: a point within the
+/// tolerance of the ground, to which the march also comes back from below. The answer's time counts from the ray's
+/// begin. Perhaps not the first such place.
 SCARP_FN ScarpHit scarp_relaxed(ScarpField field, ScarpRay ray, ScarpRelaxed settings) {
   ScarpHit hit = scarp_no_hit();
   float s = scarp_relaxed_begin(ray);

@@ -28,8 +28,11 @@ float scarp_shape_field(uint index, vec3 q, float shrink);
 /// Terrain functions end here, metres from their origin in x and y; beyond, the ground goes on as it is there.
 const float kScarpFunctionReach = 1073741824.0f;
 
+/// Length of a vector of two.
 SCARP_FN float scarp_length2(float x, float y) { return sqrt(x * x + y * y); }
+/// And of three.
 SCARP_FN float scarp_length3(float x, float y, float z) { return sqrt(x * x + y * y + z * z); }
+/// Three of the program's numbers, from the k-th on.
 SCARP_FN vec3 scarp_numbers3(uint k) {
   return vec3(scarp_shape_number(k), scarp_shape_number(k + 1u), scarp_shape_number(k + 2u));
 }
@@ -38,10 +41,12 @@ SCARP_FN vec3 scarp_numbers3(uint k) {
 SCARP_FN float scarp_corner2(float x, float y) {
   return scarp_length2(max(x, 0.0f), max(y, 0.0f)) + min(max(x, y), 0.0f);
 }
+/// The same in three dimensions.
 SCARP_FN float scarp_corner3(float x, float y, float z) {
   return scarp_length3(max(x, 0.0f), max(y, 0.0f), max(z, 0.0f)) + min(max(max(x, y), z), 0.0f);
 }
 
+/// To a cone, upright about the origin: its radii at the lower and the upper end, half its height.
 SCARP_FN float scarp_cone(vec3 q, float below, float above, float half_) {
   float r = scarp_length2(q.x, q.y);
   float beyond = abs(q.z) - half_;
@@ -76,6 +81,7 @@ SCARP_FN float scarp_solid(uint op, uint k, vec3 p) {
   return (scarp_length3(q.x / n.x, q.y / n.y, q.z / n.z) - 1.0f) * scarp_shape_number(k + 6u);
 }
 
+/// The nearer of two distances; where they are less than `radius` apart, less than both by up to radius / 4.
 SCARP_FN float scarp_smooth_union(float a, float b, float radius) {
   float t = clamp(0.5f + 0.5f * (b - a) / radius, 0.0f, 1.0f);
   return b + t * (a - b) - radius * t * (1.0f - t);
@@ -97,6 +103,7 @@ struct ScarpCopy {
   float count;
   float half_;
 };
+/// Of a coordinate; k: where the numbers of the repetition begin, axis: 0 to 2.
 SCARP_FN ScarpCopy scarp_nearest_copy(float p, uint k, uint axis) {
   ScarpCopy copy;
   copy.period = scarp_shape_number(k + 3u + axis);
@@ -119,6 +126,7 @@ SCARP_FN float scarp_folded(float p, uint k, uint axis, bool next) {
   float number = copy.number + (next ? (copy.off < 0.0f ? -1.0f : 1.0f) : 0.0f);
   return p - number * copy.period;
 }
+/// All three; a bit of the mask for each axis says that the next copy is meant.
 SCARP_FN vec3 scarp_folded3(vec3 p, uint k, uint mask) {
   return vec3(scarp_folded(p.x, k, 0u, (mask & 1u) != 0u), scarp_folded(p.y, k, 1u, (mask & 2u) != 0u),
               scarp_folded(p.z, k, 2u, (mask & 4u) != 0u));
@@ -135,6 +143,7 @@ SCARP_FN float scarp_copy_away(float p, uint k, uint axis, bool next) {
   }
   return max(away - copy.half_, 0.0f);
 }
+/// Least distance to the copy that a mask means; kScarpEndless where there is none.
 SCARP_FN float scarp_neighbour_bound(vec3 p, uint k, uint mask) {
   float x = scarp_copy_away(p.x, k, 0u, (mask & 1u) != 0u);
   float y = scarp_copy_away(p.y, k, 1u, (mask & 2u) != 0u);

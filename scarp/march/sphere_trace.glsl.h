@@ -24,10 +24,10 @@ SCARP_GLSL_BEGIN
 
 /// SphereTraceSettings of marches.h.
 struct ScarpSphereTrace {
-  float tolerance;
-  int max_steps;
-  int run_steps;  ///< after so many more steps the march is interrupted (kScarpFunctionUnderWay), at least 1
-  float growth;   ///< of what values are off by, per metre of the ray
+  float tolerance;  ///< length of the last interval, per unit of distance travelled, >= 0
+  int max_steps;    ///< >= 1; more: kScarpFunctionExhausted
+  int run_steps;    ///< after so many more steps the march is interrupted (kScarpFunctionUnderWay), at least 1
+  float growth;     ///< of what values are off by, per metre of the ray
 };
 
 // Where a ray is: ScarpFunctionState::phase.
@@ -40,7 +40,8 @@ const uint kScarpTraceBegan = 8u;   ///< a bit: it began inside
 
 const int kScarpClosingSteps = 6;
 
-/// What the march finds first. With `any` a hit's time means nothing.
+/// What a ray meets first of the shape of `count` instructions, within the tolerance or what values are off by; with
+/// `any` a hit's time means nothing. No crossing deeper than 4 times that is passed.
 SCARP_FN ScarpFunctionHit scarp_sphere_trace(uint count, ScarpFunctionRay ray, ScarpSphereTrace settings, bool any) {
   ScarpFunctionHit hit = scarp_function_miss();
   float r = ray.rounding + settings.growth * (ray.speed * ray.state.s);

@@ -28,6 +28,7 @@ struct ScarpNode {
   bool valid;
   float value;
 };
+/// The one at (col, row), which may be beyond the border: there a field that wraps goes on with itself.
 SCARP_FN ScarpNode scarp_node(ScarpField field, int col, int row) {
   ScarpNode node;
   node.valid = false;

@@ -27,10 +27,10 @@ struct ScarpLine {
 
 /// A ray of a march, and how its times lie on the line: t = begin + time * per_time.
 struct ScarpSent {
-  int marches;  ///< 0: there is nothing of the field on the way
-  ScarpRay ray;
-  ScarpTwoFloat begin;
-  float per_time;  ///< a power of two
+  int marches;          ///< 0: there is nothing of the field on the way
+  ScarpRay ray;         ///< means something where it marches
+  ScarpTwoFloat begin;  ///< on the line
+  float per_time;       ///< a power of two
 };
 
 /// Coordinates of a line's point.
@@ -40,12 +40,15 @@ SCARP_FN ScarpTwoFloat scarp_along(float origin, float origin_low, float directi
   SCARP_PRECISE float low = at.low + direction * t.low;
   return scarp_two_sum(at.high, low);
 }
+/// Where a line is at time t: the column, from column 0.
 SCARP_FN ScarpTwoFloat scarp_line_col(ScarpLine line, ScarpTwoFloat t) {
   return scarp_along(line.origin.x, line.origin_low.x, line.direction.x, line.direction_low.x, t);
 }
+/// The row, from row 0.
 SCARP_FN ScarpTwoFloat scarp_line_row(ScarpLine line, ScarpTwoFloat t) {
   return scarp_along(line.origin.y, line.origin_low.y, line.direction.y, line.direction_low.y, t);
 }
+/// The height in sample units.
 SCARP_FN ScarpTwoFloat scarp_line_height(ScarpLine line, ScarpTwoFloat t) {
   return scarp_along(line.origin.z, line.origin_low.z, line.direction.z, line.direction_low.z, t);
 }
@@ -60,10 +63,12 @@ SCARP_FN ScarpTwoFloat scarp_time_at(ScarpTwoFloat at, float origin, float origi
   return scarp_two_sum(quotient, -left / direction);
 }
 
+/// The larger of two times; a where they are the same.
 SCARP_FN ScarpTwoFloat scarp_two_later(ScarpTwoFloat a, ScarpTwoFloat b) {
   if (scarp_two_less(a, b)) return b;
   return a;
 }
+/// The smaller one; b where they are the same.
 SCARP_FN ScarpTwoFloat scarp_two_earlier(ScarpTwoFloat a, ScarpTwoFloat b) {
   if (scarp_two_less(a, b)) return a;
   return b;
@@ -73,6 +78,7 @@ SCARP_FN ScarpTwoFloat scarp_two_earlier(ScarpTwoFloat a, ScarpTwoFloat b) {
 struct ScarpSpan {
   ScarpTwoFloat begin, end;
 };
+/// Along one axis, of which the line's numbers are given; `cells` is its last line.
 SCARP_FN ScarpSpan scarp_span(float origin, float origin_low, float direction, float direction_low, float cells) {
   ScarpSpan span;
   if (direction == 0.0f) {
@@ -88,9 +94,11 @@ SCARP_FN ScarpSpan scarp_span(float origin, float origin_low, float direction, f
   span.end = scarp_two_later(first, last);
   return span;
 }
+/// Over the columns.
 SCARP_FN ScarpSpan scarp_span_x(ScarpField field, ScarpLine line) {
   return scarp_span(line.origin.x, line.origin_low.x, line.direction.x, line.direction_low.x, float(field.cells.x));
 }
+/// Over the rows.
 SCARP_FN ScarpSpan scarp_span_y(ScarpField field, ScarpLine line) {
   return scarp_span(line.origin.y, line.origin_low.y, line.direction.y, line.direction_low.y, float(field.cells.y));
 }
@@ -100,6 +108,7 @@ struct ScarpAxisPlace {
   int cell;
   float place, place_low;
 };
+/// Of a coordinate, counted from sample 0. Beyond the border it is the border, or the next copy of a field that wraps.
 SCARP_FN ScarpAxisPlace scarp_axis_place(ScarpTwoFloat at, int cells, bool wraps) {
   float whole = floor(at.high);
   ScarpTwoFloat rest = scarp_two_sum(at.high - whole, at.low);
@@ -128,6 +137,7 @@ SCARP_FN ScarpAxisPlace scarp_axis_place(ScarpTwoFloat at, int cells, bool wraps
 
 /// The power of two no larger than a float, and its inverse; 2^-125 <= |a| < 2^126.
 SCARP_FN float scarp_power_below(float a) { return uintBitsToFloat(floatBitsToUint(a) & 0x7f800000u); }
+/// 1 / scarp_power_below(a), exact.
 SCARP_FN float scarp_per_power_below(float a) {
   return uintBitsToFloat(0x7f000000u - (floatBitsToUint(a) & 0x7f800000u));
 }

@@ -19,22 +19,8 @@ std::vector<DeviceDescription> described(const std::vector<vk::raii::PhysicalDev
 
 vk::raii::PhysicalDevice chosen(const VulkanInstance& instance, const std::string& choice) {
   const auto devices = instance.physical_devices();
-  if (devices.empty()) throw Error(kNoDriver);
+  if (devices.empty()) throw Error(no_driver());
   return devices[choose_device(described(devices), choice)];
-}
-
-// The first family that computes; where there is a choice, one that also draws, and then one with timestamps.
-std::uint32_t compute_family(const vk::raii::PhysicalDevice& physical) {
-  const auto families = physical.getQueueFamilyProperties();
-  const auto merits = [&](std::uint32_t i) {
-    return (families[i].queueFlags & vk::QueueFlagBits::eGraphics ? 2 : 0) + (families[i].timestampValidBits > 0);
-  };
-  std::optional<std::uint32_t> best;
-  for (std::uint32_t i = 0; i < families.size(); ++i) {
-    if (!(families[i].queueFlags & vk::QueueFlagBits::eCompute)) continue;
-    if (!best || merits(i) > merits(*best)) best = i;
-  }
-  return best.value();
 }
 
 vk::raii::Device open(const vk::raii::PhysicalDevice& physical, std::uint32_t family,
@@ -65,7 +51,7 @@ std::string vulkan_failure(vk::Result result, const std::string& device, const s
     case vk::Result::eErrorOutOfHostMemory:
       return fmt::format("{}: out of memory while {}", where, what);
     case vk::Result::eErrorIncompatibleDriver:  // what the loader says where there is none
-      return kNoDriver;
+      return no_driver();
     default:
       return fmt::format("{}: {} while {}", where, vk::to_string(result), what);
   }
@@ -75,7 +61,7 @@ Device::Impl::Impl(const DeviceSettings& chosen_settings, VulkanInstance opened)
     : settings(chosen_settings),
       instance(std::move(opened)),
       physical(chosen(instance, settings.choice)),
-      queue_family(compute_family(physical)),
+      queue_family(compute_family(physical.getQueueFamilyProperties()).value()),
       memory(physical.getMemoryProperties()),
       device(open(physical, queue_family, (description = describe(physical)).abilities)),
       queue(device, queue_family, 0),

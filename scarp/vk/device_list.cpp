@@ -36,10 +36,11 @@ std::string lower(std::string text) {
 }
 
 bool fits(const DeviceDescription& device, const std::string& choice) {
-  if (choice == "auto") return true;
-  if (choice == "cpu") return device.kind == DeviceKind::cpu;
-  if (choice == "gpu") return device.kind != DeviceKind::cpu && device.kind != DeviceKind::other;
-  return lower(device.name).find(lower(choice)) != std::string::npos;
+  const std::string word = lower(choice);
+  if (word == "auto") return true;
+  if (word == "cpu") return device.kind == DeviceKind::cpu;
+  if (word == "gpu") return device.kind != DeviceKind::cpu && device.kind != DeviceKind::other;
+  return lower(device.name).find(word) != std::string::npos;
 }
 
 }  // namespace
@@ -70,6 +71,18 @@ std::string missing_ability(const DeviceAbilities& abilities) {
   return {};
 }
 
+std::optional<std::uint32_t> compute_family(std::span<const vk::QueueFamilyProperties> families) {
+  const auto merits = [&](std::uint32_t i) {
+    return (families[i].queueFlags & vk::QueueFlagBits::eGraphics ? 2 : 0) + (families[i].timestampValidBits > 0);
+  };
+  std::optional<std::uint32_t> best;
+  for (std::uint32_t i = 0; i < families.size(); ++i) {
+    if (!(families[i].queueFlags & vk::QueueFlagBits::eCompute)) continue;
+    if (!best || merits(i) > merits(*best)) best = i;
+  }
+  return best;
+}
+
 DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
   DeviceDescription description;
   const vk::PhysicalDeviceProperties properties = device.getProperties();
@@ -89,11 +102,11 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
   DeviceAbilities& abilities = description.abilities;
   abilities.api_major = VK_API_VERSION_MAJOR(properties.apiVersion);
   abilities.api_minor = VK_API_VERSION_MINOR(properties.apiVersion);
-  for (const vk::QueueFamilyProperties& family : device.getQueueFamilyProperties()) {
-    if (!(family.queueFlags & vk::QueueFlagBits::eCompute)) continue;
+  const std::vector<vk::QueueFamilyProperties> families = device.getQueueFamilyProperties();
+  if (const auto used = compute_family(families)) {
     abilities.compute_queue = true;
-    abilities.timestamps |= family.timestampValidBits > 0;
-    abilities.draws |= static_cast<bool>(family.queueFlags & vk::QueueFlagBits::eGraphics);
+    abilities.timestamps = families[*used].timestampValidBits > 0;
+    abilities.draws = static_cast<bool>(families[*used].queueFlags & vk::QueueFlagBits::eGraphics);
   }
   // What follows is asked in structs that an older device does not know.
   if (abilities.api_major > 1 || abilities.api_minor >= 2) {
@@ -125,7 +138,7 @@ DeviceList list_devices() {
     list.why_none = error.what();
     return list;
   }
-  if (list.devices.empty()) list.why_none = kNoDriver;
+  if (list.devices.empty()) list.why_none = no_driver();
   return list;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The Vulkan loader, an instance, and what the validation layer says.
 #include <array>
+#include <cstdlib>
 
 #include "scarp/vk/raii.h"
 
@@ -17,7 +18,21 @@ bool has_validation_layer(const vk::raii::Context& context) {
                      [](const auto& layer) { return std::string_view(layer.layerName.data()) == kValidationLayer; });
 }
 
+// Variables of the loader that say where drivers are looked for, and nowhere else.
+std::string where_drivers_are_sought() {
+  for (const char* name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) {
+    if (const char* value = std::getenv(name)) return std::string("; drivers are looked for in ") + name + "=" + value;
+  }
+  return {};
+}
+
 }  // namespace
+
+std::string no_driver() {
+  const std::string sought = where_drivers_are_sought();
+  if (!sought.empty()) return "Vulkan: no driver is found" + sought;
+  return "Vulkan: no driver is installed (Debian, for any CPU: mesa-vulkan-drivers)";
+}
 
 VkBool32 VKAPI_PTR VulkanInstance::collect(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
                                            const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages) {
@@ -33,7 +48,7 @@ VulkanInstance::VulkanInstance(bool validation) : messages_(std::make_unique<Mes
   } catch (const std::runtime_error&) {
     throw Error("Vulkan: no loader, libvulkan.so.1 cannot be opened (Debian: libvulkan1)");
   }
-  guarded("", "opening it", [&] {
+  const auto open = [&] {
     const vk::ApplicationInfo application("scarp", 0, "scarp", 0, VK_API_VERSION_1_2);
     vk::InstanceCreateInfo create({}, &application);
     if (!validation) {
@@ -53,6 +68,15 @@ VulkanInstance::VulkanInstance(bool validation) : messages_(std::make_unique<Mes
     messenger_.emplace(*instance_, vk::DebugUtilsMessengerCreateInfoEXT({}, Severity::eWarning | Severity::eError,
                                                                         Type::eValidation | Type::ePerformance, collect,
                                                                         messages_.get()));
+  };
+  guarded("", "opening it", [&] {
+    try {
+      open();
+    } catch (const vk::OutOfHostMemoryError&) {
+      throw Error(
+          "Vulkan: its loader is out of memory, as it also says of a driver's manifest (.json) that is damaged" +
+          where_drivers_are_sought());
+    }
   });
 }
 

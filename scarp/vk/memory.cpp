@@ -63,7 +63,10 @@ DeviceBuffer::DeviceBuffer(const Device& device, std::uint64_t bytes, const std:
       const std::uint64_t address = open->device.getBufferAddress({*buffer});
       impl_.reset(new Impl{open, name, bytes, std::move(memory), std::move(buffer), address});
     } catch (const vk::OutOfDeviceMemoryError&) {
-      refuse("it has " + mebibytes(description.memory_bytes) + ", part of which is in use");
+      // What a CPU device tells of its memory is a number of the driver's, and no limit.
+      refuse(description.kind == DeviceKind::cpu
+                 ? "it uses the memory of the machine, which gives no more"
+                 : "it has " + mebibytes(description.memory_bytes) + ", part of which is in use");
     }
   });
 }

@@ -21,7 +21,8 @@
 
 namespace scarp {
 
-constexpr const char* kNoDriver = "Vulkan: no driver is installed (Debian, for any CPU: mesa-vulkan-drivers)";
+/// That there is no driver, and where one was looked for.
+std::string no_driver();
 
 /// What a failure of Vulkan means for who asked for `what`; `device` names the device.
 std::string vulkan_failure(vk::Result result, const std::string& device, const std::string& what);
@@ -59,6 +60,10 @@ class VulkanInstance {
   std::optional<vk::raii::Instance> instance_;
   std::optional<vk::raii::DebugUtilsMessengerEXT> messenger_;
 };
+
+/// Of a device's queue families, the one that work is given to: the first that computes; where there is a choice, one
+/// that also draws, and then one with timestamps.
+std::optional<std::uint32_t> compute_family(std::span<const vk::QueueFamilyProperties> families);
 
 DeviceDescription describe(const vk::raii::PhysicalDevice& device);
 

@@ -15,6 +15,8 @@
 #include "scarp/accel/height_encode.h"
 #include "scarp/accel/max_pyramid.glsl.h"
 #include "scarp/accel/max_pyramid.h"
+#include "scarp/march/queries_vk.h"
+#include "test/march/rounding_judge.h"
 #include "test/vk/device_under_test.h"
 
 namespace scarp {
@@ -64,8 +66,8 @@ const std::vector<std::pair<int, int>> kSizes{
 
 class DeviceGrounds : public test::OnDevice {
  protected:
-  void expect_same(const HeightField& field) {
-    const DeviceGround ground(device(), field);
+  void expect_same(const HeightField& field) { expect_same(field, DeviceGround(device(), field)); }
+  void expect_same(const HeightField& field, const DeviceGround& ground) {
     const MaxPyramid pyramid(field);
     ASSERT_EQ(ground.levels().size(), static_cast<std::size_t>(pyramid.top_level()));
     if (!field.has_cells()) return;
@@ -177,8 +179,8 @@ TEST_F(DeviceGrounds, AnUpdateMakesNothingElseAnew) {
 }
 
 // More samples than one storage buffer of lavapipe holds (128 MiB), and a level wider than one dispatch; the checked
-// build takes half a minute for that and contents itself with a long row.
-TEST_F(DeviceGrounds, PyramidsOfLongFieldsAreTheCpusToo) {
+// build takes half a minute for that and contents itself with a long row. Rays meet what is there.
+TEST_F(DeviceGrounds, LongFieldsAreLikeOthers) {
 #ifdef NDEBUG
   const int cols = 17'500'000;
 #else
@@ -186,7 +188,31 @@ TEST_F(DeviceGrounds, PyramidsOfLongFieldsAreTheCpusToo) {
 #endif
   std::vector<float> samples(2 * std::size_t{cols});
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = static_cast<float>(i * i % 65521);
-  expect_same(HeightField::own(std::move(samples), cols, 2));
+  const HeightField field = HeightField::own(std::move(samples), cols, 2);
+  const DeviceGround ground(device(), field);
+  expect_same(field, ground);
+
+  std::mt19937 random(23);
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  std::vector<Ray> rays(1000);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    // Half of them over the last samples, which lie beyond the range.
+    rays[i].origin = {uniform(i % 2 ? 0.97 * cols : 0, cols - 1), uniform(0, 1), uniform(66000, 70000)};
+    rays[i].direction = {i % 4 < 2 ? 1.0 : -1.0, uniform(-1, 1) / 1024, -uniform(5, 500)};
+    rays[i].t_max = 1000;
+  }
+  std::vector<Hit> hits(rays.size());
+  DeviceQueries(device(), find_march("max-mip"), {}, {.rays_at_once = 1000})
+      .closest_hits({&field, &ground}, rays, hits);
+  int met = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    met += static_cast<bool>(hits[i]);
+    ASSERT_EQ(test::RoundingJudge(field, rays[i]).objection(hits[i]), "")
+        << rays[i].origin.x << ", cell " << hits[i].cell.col;
+  }
+  EXPECT_GT(met, 500);
 }
 
 // What a shader reads through ground_buffers.glsl.h: four heights of each cell, and whether it is a hole.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
@@ -401,6 +402,71 @@ TEST_F(Cast, AFieldWithoutCellsSaysThatEveryRayMisses) {
   EXPECT_NE(result.err.find("every ray misses"), std::string::npos) << result.err;
   EXPECT_EQ(rows_of(result.out).at(0).at("status"), "miss");
 }
+
+#ifdef SCARP_VULKAN
+// Rows of a device are those of the CPU, but for delta of numerics.md, by which the CPU's rays are raised and lowered:
+// where these three agree, so does the device, and its hits are no farther from the CPU's than theirs.
+TEST_F(Cast, ADeviceAnswersLikeTheCpu) {
+  const auto devices = nlohmann::json::parse(test::run_on_device({"devices", "--json"}).out);
+  if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
+  // The border is shared; a hole. Cells of 1 m, heights 100 to 105.
+  constexpr int kSide = 9;
+  constexpr double kDelta = 2 * 16 * 0x1p-24 * (3 * 5 + (2 * kSide + 1) * 5);
+  std::string field =
+      fmt::format("ncols {0}\nnrows {0}\nxllcenter 0\nyllcenter 0\ncellsize 1\nNODATA_value -9999\n", kSide);
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) {
+      const int height = 100 + (3 * (col % (kSide - 1)) + 5 * (row % (kSide - 1))) % 6;
+      field += row == 4 && col == 5 ? "-9999 " : fmt::format("{} ", height);
+    }
+  }
+  const std::string dem = write("shared.asc", field);
+  const auto table = [&](double raised) {
+    std::string text = "x,y,z,dx,dy,dz,t_max\n";
+    for (int i = 0; i < 200; ++i) {
+      const double x = 0.37 + 0.0401 * i, dx = (i * 7 % 13 - 6) * 0.31, dy = (i * 5 % 11 - 5) * 0.27;
+      const bool below = i % 20 == 19;
+      text += fmt::format("{},{},{},{},{},{},30\n", x, 8.11 - x, (below ? 98.5 : 105.4) + raised, dx, dy,
+                          i % 20 == 18 ? 0.4 : -0.35);
+    }
+    return text;
+  };
+  const auto cast = [&](double raised, Names more) {
+    Names arguments{"cast", dem, "--rays", rays(table(raised))};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = test::run_on_device(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return rows_of(result.out);
+  };
+  for (const std::string wrap : {"none", "shared"}) {
+    const Names options{"--wrap", wrap};
+    const auto cpu = cast(0, options), low = cast(-kDelta, options), high = cast(kDelta, options);
+    const auto device = cast(0, {"--wrap", wrap, "--device", "auto"});
+    const auto blocked = cast(0, {"--wrap", wrap, "--any", "--device", "auto"});
+    ASSERT_EQ(device.size(), cpu.size());
+    std::map<std::string, int> compared;
+    for (std::size_t i = 0; i < cpu.size(); ++i) {
+      EXPECT_EQ(blocked[i].at("blocked") == "1", device[i].at("status") == "hit") << i;
+      const std::string status = cpu[i].at("status");
+      if (low[i].at("status") != status || high[i].at("status") != status) continue;
+      ++compared[status];
+      ASSERT_EQ(device[i].at("status"), status) << i;
+      if (status != "hit") continue;
+      const double t = number(cpu[i], "t");
+      const double off = std::max(std::abs(number(low[i], "t") - t), std::abs(number(high[i], "t") - t));
+      // The device's time is two floats, from a begin in double.
+      EXPECT_LE(std::abs(number(device[i], "t") - t), off + 0x1p-22 * t) << i;
+    }
+    EXPECT_GT(compared["hit"], 60) << wrap;
+    EXPECT_GT(compared["miss"], 5) << wrap;
+    EXPECT_GT(compared["below"], 2) << wrap;
+  }
+  expect_rays_refused("x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n", "--all --device auto: devices tell the first hit",
+                      {"--all", "--device", "auto"});
+  expect_rays_refused("x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n", "march 'exhaustive' does not run on Vulkan devices",
+                      {"--march", "exhaustive", "--device", "auto"});
+}
+#endif
 
 }  // namespace
 }  // namespace scarp

@@ -16,33 +16,35 @@ endfunction()
 
 check(${ROOT}/test/march/textures_es.frag TRUE)
 
-# The text that is installed for pasting, after what a host defines.
-file(READ ${FLAT}/max_mip.glsl march)
-file(WRITE ${WORK}/pasted.frag "#version 300 es
-precision highp float;
-precision highp int;
-uniform highp sampler2D heights;
-out vec4 colour;
-float scarp_sample(int col, int row) { return texelFetch(heights, ivec2(col, row), 0).x; }
-bool scarp_is_nodata(float value) { return false; }
-float scarp_maximum(int level, int col, int row) { return texelFetch(heights, ivec2(col, row), level).x; }
-float scarp_minimum(int level, int col, int row) { return texelFetch(heights, ivec2(col, row), level).x; }
-${march}
-uniform int top;
-void main() {
-  ScarpField field;
-  field.cells = ivec2(63, 63);
-  field.samples = ivec2(64, 64);
-  field.top_level = top;
-  field.flags = 0u;
-  field.code_base = field.code_base_low = field.lowest = 0.0;
-  field.code_step = field.highest = 1.0;
-  ScarpRay ray = scarp_ray(ivec2(1, 2), vec2(0.5, 0.5), 3.0, vec3(1.0, 0.5, -0.5), kScarpNever, 0u);
-  colour = vec4(scarp_max_mip(field, ray, true).time);
-}
-")
+# paste(TEXT MARK NAMES OUT): TEXT with the installed texts of those names, one after the other, in the place of MARK.
+function(paste text mark names out)
+  set(pasted "")
+  foreach(name IN LISTS names)
+    file(READ ${FLAT}/${name} installed)
+    string(APPEND pasted "${installed}")
+  endforeach()
+  string(REPLACE "${mark}" "${pasted}" whole "${text}")
+  file(WRITE ${out} "${whole}")
+endfunction()
+
+# The shader of the user's document, with what it says is to be pasted, in its order.
+file(READ ${ROOT}/doc/user/glsl.md document)
+string(REGEX MATCH "\n```glsl\n(.*\n)```\n" ignored "${document}")
+set(shader "${CMAKE_MATCH_1}")
+string(REGEX MATCH "// here the text of ([a-z_.]+), then that of ([a-z_.]+)\n" mark "${shader}")
+if(NOT mark)
+  message(FATAL_ERROR "doc/user/glsl.md does not say what is to be pasted into its shader")
+endif()
+paste("${shader}" "${mark}" "${CMAKE_MATCH_1};${CMAKE_MATCH_2}" ${WORK}/pasted.frag)
 check(${WORK}/pasted.frag TRUE)
-# And that over a function, here of one instruction.
+# All marches pasted after one another, over the same textures.
+file(READ ${ROOT}/test/march/textures_es.frag shader)
+string(REGEX REPLACE "\n#include [^\n]*" "" without "${shader}")
+string(REPLACE "// The marches ask the textures for their ground.\n" "MARCHES" shader "${without}")
+paste("${shader}" "MARCHES" "textures.glsl;max_mip.glsl;naive.glsl;fixed_step.glsl;relaxed.glsl;lipschitz.glsl" ${WORK}/pasted.frag)
+check(${WORK}/pasted.frag TRUE)
+
+# The march over a function, here of one instruction.
 file(READ ${FLAT}/lipschitz_local.glsl march)
 file(WRITE ${WORK}/pasted.frag "#version 300 es
 precision highp float;

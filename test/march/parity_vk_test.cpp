@@ -295,9 +295,9 @@ TEST(BatchLayout, IsThatOfTheShaders) {
                                    offsetof(ScarpWalk, row), offsetof(ScarpWalk, t_in), offsetof(ScarpWalk, side),
                                    offsetof(ScarpWalk, through), offsetof(ScarpWalk, begun), offsetof(ScarpWalk, start),
                                    offsetof(ScarpWalk, relief)}));
-  EXPECT_TRUE(has_array_stride(kShader, sizeof(BatchWalk)));
-  EXPECT_TRUE(has_array_stride(kFixedStepShader, sizeof(BatchSteps)));
-  EXPECT_TRUE(has_array_stride(kNaiveShader, sizeof(BatchTime)));
+  EXPECT_TRUE(is_laid_out_like<BatchWalk>(kShader));
+  EXPECT_TRUE(is_laid_out_like<BatchSteps>(kFixedStepShader));
+  EXPECT_TRUE(is_laid_out_like<BatchTime>(kNaiveShader));
 }
 
 }  // namespace

@@ -87,5 +87,34 @@ INSTANTIATE_TEST_SUITE_P(Marches, SinglePrecisionSampling,
                          testing::Values("naive", "relaxed", "lipschitz", "fixed-step", "fixed-step, plain"),
                          [](const auto& of) { return test_name(of.param); });
 
+// `lipschitz` over holes: else it would take another step in a block that it has left.
+TEST(SinglePrecisionSampling, LeavesBlocks) {
+  constexpr int kSide = 129, kRays = 4000;
+  const HeightField field = HeightField::own(std::vector<float>(kSide * kSide, 0.0F), kSide, kSide);
+  const MaxPyramid pyramid(field);
+  glsl::host_field = &field;
+  glsl::host_pyramid = &pyramid;
+  const glsl::ScarpField on_device = device_field(field, &pyramid);
+  Random random(11);
+  int left = 0;
+  for (int i = 0; i < kRays; ++i) {
+    Ray ray;
+    ray.origin = {uniform(random, 0, kSide - 1), uniform(random, 0, kSide - 1), 1};
+    // Some nearly along an axis: the slower a line is crossed, the more its time rounds.
+    ray.direction = {uniform(random, -1, 1), uniform(random, -1, 1) * std::exp2(-uniform(random, 0, 12)), -0.001};
+    const DeviceRay prepared = sampled_device_ray(field, ray);
+    ASSERT_TRUE(prepared.marches);
+    const float s = static_cast<float>(uniform(random, 0, 1)) * prepared.ray.exit;
+    const int level = whole(random, 0, pyramid.top_level());
+    const glsl::ScarpPoint from = glsl::scarp_point(on_device, prepared.ray, s);
+    const float after = glsl::scarp_leave_time(on_device, prepared.ray, from, level, s);
+    if (after > prepared.ray.exit) continue;
+    ++left;
+    const glsl::ScarpPoint to = glsl::scarp_point(on_device, prepared.ray, after);
+    EXPECT_TRUE(to.cell.x >> level != from.cell.x >> level || to.cell.y >> level != from.cell.y >> level) << text(ray);
+  }
+  EXPECT_GT(left, kRays / 4);
+}
+
 }  // namespace
 }  // namespace scarp::test

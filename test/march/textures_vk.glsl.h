@@ -8,12 +8,25 @@
 
 SCARP_GLSL_BEGIN
 
+// The specialisation constant of the march.
+const int kTexturesMaxMip = 0;
+const int kTexturesNaive = 1;
+const int kTexturesFixedStep = 2;
+const int kTexturesRelaxed = 3;
+const int kTexturesLipschitz = 4;
+
+// Settings as RayBatch has them.
 struct TexturesPush {
   Address rays;
   Address hits;
   ScarpField field;
   float nodata;
   uint count;
+  float step;
+  float min_step;
+  float tolerance;
+  int max_steps;
+  int interpolate;
 };
 
 SCARP_GLSL_END

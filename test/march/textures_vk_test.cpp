@@ -1,24 +1,28 @@
 // SPDX-License-Identifier: MIT
-// max-mip over textures, as WebGL has them, on a Vulkan device: the answers are those over buffers, bit for bit,
-// because it is the same text on the same numbers.
+// The marches over textures, as WebGL has them, on a Vulkan device: the answers are those over buffers, bit for bit,
+// because it is the same text on the same numbers. What those over buffers may be, parity_vk_test.cpp asks the judge.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <bit>
+#include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "march/spiteful.h"
 #include "march/spiteful_text.h"
+#include "march/texture_levels.h"
 #include "march/textures_vk.glsl.h"
 #include "scarp/accel/max_pyramid.h"
+#include "scarp/accel/slope_bound.h"
 #include "scarp/march/device_ray.h"
 #include "scarp/march/queries_vk.h"
 #include "scarp/vk/memory.h"
 #include "scarp/vk/raii.h"
 #include "vk/device_under_test.h"
+#include "vk/spirv_layout.h"
 
 namespace scarp::test {
 namespace {
@@ -44,12 +48,7 @@ void run(Device::Impl& device, const Record& record) {
 // An image of floats with mip levels; level l has `sizes[l]`, filled from `texels[l]`, `channels` floats per texel.
 class Texture {
  public:
-  struct Level {
-    std::uint32_t cols, rows;
-    std::vector<float> texels;
-  };
-
-  Texture(const Device& open, const std::vector<Level>& levels, std::uint32_t channels)
+  Texture(const Device& open, const std::vector<TextureLevel>& levels, std::uint32_t channels)
       : device_(*open.impl()),
         image_(device_.device,
                vk::ImageCreateInfo({}, vk::ImageType::e2D, format(channels), {levels[0].cols, levels[0].rows, 1},
@@ -74,7 +73,7 @@ class Texture {
       change(commands, vk::ImageLayout::eUndefined, vk::ImageLayout::eTransferDstOptimal);
     });
     for (std::uint32_t level = 0; level < levels.size(); ++level) {
-      const Level& of = levels[level];
+      const TextureLevel& of = levels[level];
       const DeviceBuffer texels(open, of.texels.size() * sizeof(float), "texels");
       upload(texels, 0, of.texels.data(), of.texels.size() * sizeof(float));
       run(device_, [&](const auto& commands) {
@@ -106,41 +105,10 @@ class Texture {
   vk::raii::ImageView view_;
 };
 
-std::vector<Texture::Level> heights_of(const HeightField& field) {
-  Texture::Level level{static_cast<std::uint32_t>(field.cols()), static_cast<std::uint32_t>(field.rows()), {}};
-  field.visit([&](const auto& grid) {
-    for (int row = 0; row < field.rows(); ++row) {
-      for (int col = 0; col < field.cols(); ++col) level.texels.push_back(static_cast<float>(grid.at(col, row)));
-    }
-  });
-  return {level};
-}
-
-std::vector<Texture::Level> bounds_of(const MaxPyramid& pyramid) {
-  std::vector<Texture::Level> levels;
-  std::uint32_t cols = std::bit_ceil(static_cast<std::uint32_t>(pyramid.levels()[0].cols));
-  std::uint32_t rows = std::bit_ceil(static_cast<std::uint32_t>(pyramid.levels()[0].rows));
-  for (const auto& of : pyramid.levels()) {
-    Texture::Level level{cols, rows, std::vector<float>(std::size_t{2} * cols * rows)};
-    for (int row = 0; row < of.rows; ++row) {
-      for (int col = 0; col < of.cols; ++col) {
-        const std::ptrdiff_t entry = of.begin + std::ptrdiff_t{row} * of.cols + col;
-        float* texel = &level.texels[2 * (static_cast<std::size_t>(row) * cols + static_cast<std::size_t>(col))];
-        texel[0] = pyramid.maxima()[entry];
-        texel[1] = pyramid.minima()[entry];
-      }
-    }
-    levels.push_back(std::move(level));
-    cols = std::max(cols / 2, 1U);
-    rows = std::max(rows / 2, 1U);
-  }
-  return levels;
-}
-
 // The pipeline with its two textures.
 class TextureMarch {
  public:
-  explicit TextureMarch(const Device& open)
+  TextureMarch(const Device& open, std::int32_t march, bool any)
       : device_(*open.impl()),
         sampler_(device_.device,
                  vk::SamplerCreateInfo({}, vk::Filter::eNearest, vk::Filter::eNearest, vk::SamplerMipmapMode::eNearest,
@@ -156,7 +124,11 @@ class TextureMarch {
     const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(glsl::TexturesPush));
     layout_ = vk::raii::PipelineLayout(device_.device, vk::PipelineLayoutCreateInfo({}, *set_layout_, push));
     const vk::raii::ShaderModule module(device_.device, vk::ShaderModuleCreateInfo({}, sizeof kWords, kWords));
-    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main");
+    const vk::Bool32 constants[] = {static_cast<vk::Bool32>(march), any};
+    const vk::SpecializationMapEntry entries[] = {{0, 0, sizeof constants[0]},
+                                                  {1, sizeof constants[0], sizeof constants[1]}};
+    const vk::SpecializationInfo specialised(2, entries, sizeof constants, constants);
+    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &specialised);
     pipeline_ = vk::raii::Pipeline(device_.device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
     const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, 2);
     pool_ = vk::raii::DescriptorPool(
@@ -188,53 +160,120 @@ class TextureMarch {
   vk::raii::DescriptorPool pool_;
 };
 
+// A march over buffers and over textures, with the same settings.
+struct Realisation {
+  std::string_view name;
+  std::int32_t constant;
+  DeviceRay (*prepare)(const HeightField& field, const Ray& ray);
+  glsl::TexturesPush settings;  // nothing else of it
+};
+
+constexpr int kMostSteps = 300;
+
+MarchSettings march_settings() {
+  MarchSettings settings;
+  settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = kMostSteps;
+  settings.lipschitz.max_steps = kMostSteps;
+  return settings;
+}
+
+std::vector<Realisation> realisations(double slope) {
+  const MarchSettings s = march_settings();
+  const auto push = [](double step, double min_step, double tolerance, int interpolate) {
+    glsl::TexturesPush settings{};
+    settings.step = static_cast<float>(step);
+    settings.min_step = static_cast<float>(min_step);
+    settings.tolerance = static_cast<float>(tolerance);
+    settings.max_steps = kMostSteps;
+    settings.interpolate = interpolate;
+    return settings;
+  };
+  return {
+      {"max-mip", glsl::kTexturesMaxMip, device_ray, {}},
+      {"naive", glsl::kTexturesNaive, sampled_device_ray,
+       push(s.naive.step_factor, s.naive.min_step, s.naive.tolerance, 0)},
+      {"fixed-step", glsl::kTexturesFixedStep, sampled_device_ray,
+       push(s.fixed_step.step, 0, 0, s.fixed_step.interpolate)},
+      {"relaxed", glsl::kTexturesRelaxed, sampled_device_ray, push(s.relaxed.step_factor, 0, s.relaxed.tolerance, 0)},
+      {"lipschitz", glsl::kTexturesLipschitz, sampled_device_ray,
+       push(1 / std::hypot(1.0, slope), 0, s.lipschitz.tolerance, 0)}};
+}
+
+TEST(TexturesLayout, IsThatOfTheShader) { EXPECT_TRUE(is_laid_out_like<glsl::TexturesPush>(kWords)); }
+
 class TexturesOnDevice : public OnDevice {};
 
-TEST_F(TexturesOnDevice, MaxMipAnswersAsOverBuffers) {
-  constexpr int kRaysPerKind = 20;
-  DeviceQueries over_buffers(device());
-  TextureMarch over_textures(device());
-  int hit_count = 0;
+TEST_F(TexturesOnDevice, EveryMarchAnswersAsOverBuffers) {
+  constexpr int kRaysPerKind = 8;
+  std::map<std::string_view, DeviceQueries> over_buffers;
+  std::map<std::pair<int, bool>, TextureMarch> over_textures;
+  for (const Realisation& of : realisations(0)) {
+    over_buffers.try_emplace(of.name, device(), find_march(of.name), march_settings());
+    over_textures.try_emplace({of.constant, false}, device(), of.constant, false);
+  }
+  over_textures.try_emplace({glsl::kTexturesMaxMip, true}, device(), glsl::kTexturesMaxMip, true);
+  EXPECT_EQ(over_buffers.size(),
+            static_cast<std::size_t>(std::count_if(height_marches().begin(), height_marches().end(),
+                                                   [](const auto& march) { return march.gpu; })));
+  std::map<std::string_view, int> hit_counts;
   for (const FieldKind& fields : spiteful_fields()) {
     Random random(5);
     const HeightField field = fields.make(random);
     if (!field.has_cells() || field.all_nodata()) continue;
     const MaxPyramid pyramid(field);
     const DeviceGround ground(device(), field);
+    const DeviceTarget target{&field, &ground, slope_bound(field)};
     const Texture heights(device(), heights_of(field), 1), bounds(device(), bounds_of(pyramid), 2);
     std::vector<Ray> rays;
     for (const RayKind& kind : spiteful_rays()) {
       if ((fields.has & kind.aims_at) != kind.aims_at) continue;
       for (int i = 0; i < kRaysPerKind; ++i) rays.push_back(kind.make(field, random));
     }
-    std::vector<Hit> expected(rays.size());
-    over_buffers.closest_hits({&field, &ground}, rays, expected);
-
-    std::vector<DeviceRay> prepared;
-    std::vector<glsl::ScarpRay> packed;
-    for (const Ray& ray : rays) {
-      prepared.push_back(device_ray(field, ray));
-      packed.push_back(prepared.back().ray);
-    }
-    std::vector<glsl::ScarpHit> answers(rays.size());
-    const DeviceBuffer on_device(device(), packed.size() * sizeof packed[0], "rays");
-    const DeviceBuffer found(device(), answers.size() * sizeof answers[0], "hits");
-    upload(on_device, 0, packed.data(), packed.size() * sizeof packed[0]);
-    const double nodata = field.settings().nodata.value_or(NAN);
-    over_textures.dispatch(heights, bounds,
-                           {on_device.address(), found.address(), device_field(field, &pyramid),
-                            static_cast<float>(nodata), static_cast<std::uint32_t>(rays.size())});
-    download(found, 0, answers.data(), answers.size() * sizeof answers[0]);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Hit hit = hit_from_device(rays[i], prepared[i], answers[i]);
-      hit_count += static_cast<bool>(hit);
-      ASSERT_TRUE(hit.status == expected[i].status && hit.t == expected[i].t && hit.cell == expected[i].cell &&
-                  hit.wall == expected[i].wall)
-          << fields.name << ": " << text(rays[i]) << "\n  over textures " << text(hit) << "\n  over buffers "
-          << text(expected[i]);
+    for (const Realisation& of : realisations(target.slope)) {
+      SCOPED_TRACE(std::string(of.name) + " on " + std::string(fields.name));
+      std::vector<DeviceRay> prepared;
+      std::vector<glsl::ScarpRay> packed;
+      for (const Ray& ray : rays) {
+        prepared.push_back(of.prepare(field, ray));
+        packed.push_back(prepared.back().ray);
+        // There is nothing to march.
+        if (!prepared.back().marches) packed.back().exit = -1;
+      }
+      const DeviceBuffer on_device(device(), packed.size() * sizeof packed[0], "rays");
+      upload(on_device, 0, packed.data(), packed.size() * sizeof packed[0]);
+      const DeviceBuffer found(device(), rays.size() * sizeof(glsl::ScarpHit), "hits");
+      glsl::TexturesPush push = of.settings;
+      push.rays = on_device.address();
+      push.hits = found.address();
+      push.field = device_field(field, &pyramid);
+      push.nodata = static_cast<float>(field.settings().nodata.value_or(NAN));
+      push.count = static_cast<std::uint32_t>(rays.size());
+      const auto ask = [&](bool any) {
+        over_textures.at({of.constant, any}).dispatch(heights, bounds, push);
+        std::vector<glsl::ScarpHit> answers(rays.size());
+        download(found, 0, answers.data(), answers.size() * sizeof answers[0]);
+        std::vector<Hit> hits;
+        for (std::size_t i = 0; i < rays.size(); ++i) hits.push_back(hit_from_device(rays[i], prepared[i], answers[i]));
+        return hits;
+      };
+      std::vector<Hit> expected(rays.size());
+      over_buffers.at(of.name).closest_hits(target, rays, expected);
+      const std::vector<Hit> hits = ask(false);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        hit_counts[of.name] += static_cast<bool>(hits[i]);
+        ASSERT_TRUE(hits[i].status == expected[i].status && hits[i].t == expected[i].t &&
+                    hits[i].cell == expected[i].cell && hits[i].wall == expected[i].wall)
+            << text(rays[i]) << "\n  over textures " << text(hits[i]) << "\n  over buffers " << text(expected[i]);
+      }
+      if (of.name != "max-mip") continue;
+      std::vector<std::uint8_t> blocked(rays.size());
+      over_buffers.at(of.name).occluded(target, rays, blocked);
+      const std::vector<Hit> any = ask(true);
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        ASSERT_EQ(static_cast<bool>(any[i]), blocked[i] != 0) << "any: " << text(rays[i]);
     }
   }
-  EXPECT_GT(hit_count, 2000);
+  for (const auto& [march, count] : hit_counts) EXPECT_GT(count, 400) << march;
 }
 
 }  // namespace

@@ -461,22 +461,12 @@ TEST(TerrainFrameLayout, IsThatOfTheShader) {
                                    offsetof(FrameWave, turns_low), offsetof(FrameWave, metres)}));
   EXPECT_TRUE(has_struct(kShader, {offsetof(FramePatch, along), offsetof(FramePatch, along_low),
                                    offsetof(FramePatch, across), offsetof(FramePatch, across_low)}));
-  EXPECT_TRUE(has_array_stride(kShader, sizeof(FrameRampPiece)));
-  EXPECT_TRUE(has_array_stride(kShader, sizeof(glsl::FrameState)));
-  // Of the settings, which are many: where each block of them begins.
-  using S = glsl::FrameSettings;
-  bool found = false;
-  for (const Offsets& offsets : struct_offsets(kShader)) {
-    const auto has = [&](std::size_t offset) {
-      return std::find(offsets.begin(), offsets.end(), static_cast<std::uint32_t>(offset)) != offsets.end();
-    };
-    found |= offsets.back() == offsetof(S, drape_height) && has(offsetof(S, reach)) && has(offsetof(S, cell)) &&
-             has(offsetof(S, block)) && has(offsetof(S, step)) && has(offsetof(S, water)) && has(offsetof(S, wave)) &&
-             has(offsetof(S, fog)) && has(offsetof(S, to_sun)) && has(offsetof(S, sun_rays)) &&
-             has(offsetof(S, natural)) && has(offsetof(S, patches)) && has(offsetof(S, ramp_pieces)) &&
-             has(offsetof(S, drape));
-  }
-  EXPECT_TRUE(found);
+  EXPECT_TRUE(is_laid_out_like<FrameRampPiece>(kShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameSettings>(kShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameState>(kShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameSeen>(kShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameWater>(kShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::ScarpSent>(kShader));
 }
 
 }  // namespace

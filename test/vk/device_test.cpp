@@ -3,12 +3,18 @@
 #include "scarp/vk/device.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <optional>
+#include <vector>
 
 #include "base/refusal.h"
 #include "scarp/vk/commands.h"
@@ -41,6 +47,9 @@ TEST(DeviceChoice, TakesTheBestThatFits) {
   EXPECT_EQ(choose_device(devices, "auto"), 3u);
   EXPECT_EQ(choose_device(devices, "gpu"), 3u);
   EXPECT_EQ(choose_device(devices, "cpu"), 0u);
+  EXPECT_EQ(choose_device(devices, "CPU"), 0u);
+  EXPECT_EQ(choose_device(devices, "Gpu"), 3u);
+  EXPECT_EQ(choose_device(devices, "AUTO"), 3u);
   EXPECT_EQ(choose_device(devices, "uhd"), 2u);
   EXPECT_EQ(choose_device(devices, "h200 SEC"), 4u);
   EXPECT_EQ(refusal([&] { choose_device(devices, "old"); }), "device 'old': 'Old card' lacks Vulkan 1.2");
@@ -73,6 +82,20 @@ TEST(DeviceAbility, NamesTheFirstThatIsMissing) {
   EXPECT_EQ(without(&DeviceAbilities::buffer_device_address), "the feature bufferDeviceAddress");
 }
 
+// What is told of timestamps and drawing is told of the queue that is opened.
+TEST(DeviceQueues, OneThatDrawsIsPreferredThenOneWithTimestamps) {
+  using Bits = vk::QueueFlagBits;
+  const vk::QueueFamilyProperties transfers(Bits::eTransfer, 1, 64), computes(Bits::eCompute, 1, 0),
+      computes_timed(Bits::eCompute, 1, 64), draws(Bits::eGraphics | Bits::eCompute, 1, 0),
+      draws_timed(Bits::eGraphics | Bits::eCompute, 1, 36), only_draws(Bits::eGraphics, 1, 64);
+  const auto chosen = [](std::vector<vk::QueueFamilyProperties> families) { return compute_family(families); };
+  EXPECT_EQ(chosen({}), std::nullopt);
+  EXPECT_EQ(chosen({transfers, only_draws}), std::nullopt);
+  EXPECT_EQ(chosen({transfers, computes, computes_timed}), 2u);
+  EXPECT_EQ(chosen({computes_timed, draws}), 1u);
+  EXPECT_EQ(chosen({draws, computes_timed, draws_timed, draws_timed}), 2u);
+}
+
 // What Vulkan throws becomes one line; here it is thrown in place of the driver.
 TEST(DeviceFailure, BecomesOneLine) {
   const auto failing = [](const auto& failure) {
@@ -87,13 +110,14 @@ TEST(DeviceFailure, BecomesOneLine) {
 }
 
 // In a process of its own: the loader reads its environment once.
-std::string in_child(const char* variable, const std::function<std::string()>& f) {
+std::string in_child(const char* drivers, const std::function<std::string()>& f) {
   int ends[2];
   if (::pipe(ends) != 0) return "no pipe";
   const ::pid_t child = ::fork();
   if (child == 0) {
-    ::setenv(variable, "/nonexistent", 1);
-    ::setenv("VK_ICD_FILENAMES", "/nonexistent", 1);
+    // Older loaders know the second name alone.
+    ::setenv("VK_DRIVER_FILES", drivers, 1);
+    ::setenv("VK_ICD_FILENAMES", drivers, 1);
     const std::string text = f();
     const bool written = ::write(ends[1], text.data(), text.size()) == static_cast<::ssize_t>(text.size());
     ::_exit(written ? 0 : 1);
@@ -112,12 +136,24 @@ TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
     const DeviceList devices = list_devices();
     return std::to_string(devices.devices.size()) + ": " + devices.why_none;
   };
-  const std::string none = "Vulkan: no driver is installed (Debian, for any CPU: mesa-vulkan-drivers)";
+  const std::string none = "Vulkan: no driver is found; drivers are looked for in VK_DRIVER_FILES=/nonexistent";
   const std::string no_loader = "Vulkan: no loader, libvulkan.so.1 cannot be opened (Debian: libvulkan1)";
-  const std::string listed = in_child("VK_DRIVER_FILES", list);
+  const std::string listed = in_child("/nonexistent", list);
   EXPECT_TRUE(listed == "0: " + none || listed == "0: " + no_loader) << listed;
-  const std::string opened = in_child("VK_DRIVER_FILES", [] { return refusal([] { Device device; }); });
+  const std::string opened = in_child("/nonexistent", [] { return refusal([] { Device device; }); });
   EXPECT_TRUE(opened == none || opened == no_loader) << opened;
+  const std::string manifest = testing::TempDir() + "scarp-damaged-driver-" + std::to_string(::getpid()) + ".json";
+  std::ofstream(manifest) << "x";
+  const std::string damaged = in_child(manifest.c_str(), list);
+  // Other loaders may pass over it.
+  EXPECT_TRUE(damaged ==
+                  "0: Vulkan: its loader is out of memory, as it also says of a driver's manifest (.json) that is "
+                  "damaged; drivers are looked for in VK_DRIVER_FILES=" +
+                      manifest ||
+              damaged == "0: Vulkan: no driver is found; drivers are looked for in VK_DRIVER_FILES=" + manifest ||
+              damaged == "0: " + no_loader)
+      << damaged;
+  std::filesystem::remove(manifest);
 }
 
 TEST(DeviceSettingsTest, ATimeoutIsASpanOfTime) {
@@ -150,8 +186,39 @@ TEST_F(OpenDevice, SaysHowMuchMemoryItDoesNotHave) {
   EXPECT_NE(refusal([&] { DeviceBuffer(device(), 6, "a word and a half"); }), "");
 }
 
-// The tests' silence would mean nothing if nobody listened: two copies to one place without a barrier between them, and
-// one beyond the end of a buffer.
+// The sanitizer's own memory is beyond any limit.
+#ifndef __SANITIZE_ADDRESS__
+// On a CPU device, whose memory is that of the process, in a process of its own.
+TEST_F(OpenDevice, SaysThatMemoryIsUsedUpAndGoesOn) {
+  if (device().description().kind != DeviceKind::cpu) GTEST_SKIP() << "this device has memory of its own";
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto use_up = [] {
+    const Device limited({.choice = "cpu"});
+    // What has been asked for once is there from then on.
+    const std::uint32_t word = 7;
+    upload(DeviceBuffer(limited, 4096, "the first"), 0, &word, 4);
+    std::uint64_t pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    constexpr std::uint64_t kBytes = 1 << 28, kMore = 5 * kBytes / 2;
+    const ::rlim_t limit = pages * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE)) + kMore;
+    const ::rlimit both{limit, limit};
+    if (::setrlimit(RLIMIT_AS, &both) != 0) ::_exit(2);
+    std::vector<DeviceBuffer> all;
+    std::string said;
+    while (said.empty() && all.size() < 10) said = refusal([&] { all.emplace_back(limited, kBytes, "a lake"); });
+    const std::size_t made = all.size();
+    all.clear();
+    const std::string after = refusal([&] { upload(DeviceBuffer(limited, kBytes, "another"), 0, &word, 4); });
+    std::fprintf(stderr, "%zu made; %s; then: %s.\n", made, said.c_str(), after.c_str());
+    ::_exit(0);
+  };
+  EXPECT_EXIT(
+      use_up(), testing::ExitedWithCode(0),
+      "[12] made; device '.*': no memory for a lake .256.0 MiB.: it uses the memory of the machine, which gives no "
+      "more; then: \\.");
+}
+#endif
+
 TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
   const Device other;
   other.impl()->description.abilities.draws = false;
@@ -161,6 +228,8 @@ TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
   EXPECT_EQ(refusal([&] { RasterPipeline(other, kTwice, {}, "triangles", {}); }), expected);
 }
 
+// The tests' silence would mean nothing if nobody listened: two copies to one place without a barrier between them, and
+// one beyond the end of a buffer.
 TEST_F(OpenDevice, TellsWhatValidationSays) {
   const Device watched({.validation = true});
   const DeviceBuffer from(watched, 64, "from"), to(watched, 64, "to");

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <iterator>
+#include <vector>
 
 #include "test/vk/spirv_layout.h"
 #include "test/vk/twice.glsl.h"
@@ -22,6 +24,21 @@ TEST(ShaderLayout, IsThatOfTheSharedStruct) {
   EXPECT_FALSE(test::has_struct(kTwice, {0, 8, 16}));
   EXPECT_TRUE(test::has_array_stride(kTwice, 4));
   EXPECT_FALSE(test::has_array_stride(kTwice, 12));
+  EXPECT_TRUE(test::is_laid_out_like<TwicePush>(kTwice));
+  struct Longer {
+    TwicePush push;
+    float more;
+  };
+  EXPECT_FALSE(test::is_laid_out_like<Longer>(kTwice));
+  // A gap, as other layouts than `scalar` have them: the second member four bytes on.
+  std::vector<std::uint32_t> gapped(std::begin(kTwice), std::end(kTwice));
+  const auto second = [&](std::size_t at) {
+    return (gapped[at] & 0xffff) == 72 && gapped[at + 2] == 1 && gapped[at + 3] == 35;  // OpMemberDecorate, Offset
+  };
+  std::size_t at = 5;
+  while (!second(at)) at += gapped[at] >> 16;
+  gapped[at + 4] += 4;
+  EXPECT_FALSE(test::is_laid_out_like<TwicePush>(gapped));
 }
 
 }  // namespace

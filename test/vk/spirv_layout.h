@@ -43,4 +43,46 @@ inline bool has_struct(std::span<const std::uint32_t> spirv, const Offsets& offs
   return std::find(structs.begin(), structs.end(), offsets) != structs.end();
 }
 
+/// Whether C++ and the shader have T, whose text they share, in the same places. Both put its members in the order of
+/// the text and without gaps: C++ because none is aligned to more than its four bytes or smaller than that; the shader
+/// where this finds its structs so, and one of T's size among them.
+template <class T>
+bool is_laid_out_like(std::span<const std::uint32_t> spirv) {
+  static_assert(alignof(T) == 4 && sizeof(T) % 4 == 0);
+  constexpr std::uint32_t kTypeInt = 21, kTypeFloat = 22, kTypeVector = 23, kTypeArray = 28, kTypeRuntimeArray = 29,
+                          kTypeStruct = 30, kConstant = 43, kMemberDecorate = 72, kOffset = 35, kHeaderWords = 5;
+  std::map<std::uint32_t, Offsets> offsets;
+  std::map<std::uint32_t, std::uint32_t> bytes, constants;
+  std::vector<std::uint32_t> structs;
+  bool gaps = false;
+  // Decorations come before types, and types before those that have them.
+  for (std::size_t at = kHeaderWords; at < spirv.size(); at += spirv[at] >> 16) {
+    const std::uint32_t *word = &spirv[at], operation = word[0] & 0xffff, words = word[0] >> 16;
+    if (operation == kMemberDecorate && word[3] == kOffset) {
+      Offsets& of = offsets[word[1]];
+      of.resize(std::max<std::size_t>(of.size(), word[2] + 1));
+      of[word[2]] = word[4];
+    } else if (operation == kTypeInt || operation == kTypeFloat) {
+      bytes[word[1]] = word[2] / 8;
+    } else if (operation == kTypeVector) {
+      bytes[word[1]] = bytes[word[2]] * word[3];
+    } else if (operation == kConstant) {
+      constants[word[2]] = word[3];
+    } else if (operation == kTypeArray) {
+      bytes[word[1]] = bytes[word[2]] * constants[word[3]];
+    } else if (operation == kTypeRuntimeArray) {
+      bytes[word[1]] = 0;
+    } else if (operation == kTypeStruct && offsets.contains(word[1])) {
+      std::uint32_t size = 0;
+      for (std::uint32_t member = 0; member + 2 < words; ++member) {
+        gaps |= offsets[word[1]][member] != size;
+        size += bytes[word[2 + member]];
+      }
+      bytes[word[1]] = size;
+      structs.push_back(size);
+    }
+  }
+  return !gaps && std::find(structs.begin(), structs.end(), sizeof(T)) != structs.end();
+}
+
 }  // namespace scarp::test

@@ -1,0 +1,56 @@
+# What the command line is without Vulkan, in a build that has it: no file asks for a header that is not there then, and the files that
+# are other then compile (the target without_vulkan). The stations are built without it in `tsan`.
+#   cmake -D ROOT=<checkout> -D BUILD=<build folder> -P without_vulkan.cmake
+cmake_minimum_required(VERSION 3.25)
+
+# check(FILE RESULT): headers of Vulkan outside of #ifdef SCARP_VULKAN.
+function(check file result)
+  file(STRINGS ${file} lines REGEX "^#")
+  set(found ${${result}})
+  set(depth 0)
+  set(vulkan 0)  # the depth at which SCARP_VULKAN was asked for; 0: not
+  foreach(line IN LISTS lines)
+    if(line MATCHES "^#if")
+      math(EXPR depth "${depth} + 1")
+      if(line STREQUAL "#ifdef SCARP_VULKAN")
+        set(vulkan ${depth})
+      endif()
+    elseif(line MATCHES "^#(else|endif)")
+      if(vulkan EQUAL depth)
+        set(vulkan 0)
+      endif()
+      if(line STREQUAL "#endif")
+        math(EXPR depth "${depth} - 1")
+      endif()
+    elseif(NOT vulkan AND line MATCHES "^#include \"(scarp/vk/.*|.*_vk[.]h)\"")
+      list(APPEND found "${file} includes ${CMAKE_MATCH_1}")
+    endif()
+  endforeach()
+  set(${result} "${found}" PARENT_SCOPE)
+endfunction()
+
+set(proof ${CMAKE_CURRENT_BINARY_DIR}/without-vulkan-proof.cpp)
+file(WRITE ${proof} "#ifdef SCARP_VULKAN\n#include \"scarp/vk/good.h\"\n#else\n#include \"scarp/vk/bad.h\"\n#endif\n#include \"scarp/scene/bad_vk.h\"\n")
+set(breaches "")
+check(${proof} breaches)
+file(REMOVE ${proof})
+list(LENGTH breaches count)
+if(NOT count EQUAL 2)
+  message(FATAL_ERROR "the check is broken: 2 breaches planted, found ${breaches}")
+endif()
+
+set(breaches "")
+file(GLOB files ${ROOT}/app/cli/*.h ${ROOT}/app/cli/*.cpp)
+list(REMOVE_ITEM files ${ROOT}/app/cli/devices.cpp)  # is built with Vulkan alone
+foreach(file IN LISTS files)
+  check(${file} breaches)
+endforeach()
+if(breaches)
+  list(JOIN breaches "\n  " said)
+  message(FATAL_ERROR "without Vulkan this is not there:\n  ${said}")
+endif()
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${BUILD} --target without_vulkan OUTPUT_VARIABLE said ERROR_VARIABLE said
+                RESULT_VARIABLE failed)
+if(failed)
+  message(FATAL_ERROR "without Vulkan this does not compile:\n${said}")
+endif()
