@@ -362,7 +362,21 @@ TEST_P(TerrainFrames, AreTheCpusPictures) {
   EXPECT_LT(uniform, 3 * kWidth * kHeight / 2) << "there is something to be seen";
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TerrainFrames, testing::ValuesIn(rows()), [](const auto& row) { return row.param.name; });
+// Nearly all of the time goes to drivers, which are no code of ours: where memory is watched, every third row will do.
+std::vector<Row> tried_rows() {
+#ifdef NDEBUG
+  return rows();
+#else
+  std::vector<Row> some;
+  for (std::size_t i = 0; const Row& row : rows()) {
+    if (i++ % 3 == 0) some.push_back(row);
+  }
+  return some;
+#endif
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TerrainFrames, testing::ValuesIn(tried_rows()),
+                         [](const auto& row) { return row.param.name; });
 
 class TerrainFrame : public OnDevice {};
 
