@@ -24,7 +24,7 @@ namespace {
 constexpr int kRaysPerPair = 10'000, kUsualRays = 3000, kCameras = 60, kNodesApart = 1;
 constexpr bool kAllTypes = true;
 #else
-constexpr int kRaysPerPair = 100, kUsualRays = 100, kCameras = 6, kNodesApart = 6;
+constexpr int kRaysPerPair = 40, kUsualRays = 100, kCameras = 2, kNodesApart = 6;
 constexpr bool kAllTypes = false;  // of samples with each kind of ground and surface
 #endif
 constexpr int kRaysPerField = 500;
