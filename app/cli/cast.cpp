@@ -325,9 +325,10 @@ void run(CastOptions options) {
     if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
   }
   if (::isatty(STDERR_FILENO) != 0) {
+    constexpr double kTick_s = 1e-9;  // of the clock: few rays may take less
     fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s{}\n", rays.size(), caster.hits(),
                options.any ? "blocked" : "hits", caster.seconds(),
-               static_cast<double>(rays.size()) / std::max(caster.seconds(), 1e-9) * 1e-6,
+               static_cast<double>(rays.size()) / std::max(caster.seconds(), kTick_s) * 1e-6,
                scenes.device.empty() ? "" : ", on " + scenes.device);
   }
 }

@@ -126,6 +126,8 @@ TEST(Camera, DistanceCountsInFramedOnes) {
 
 // The focus stays where it is in the picture, and the eye ends there.
 TEST(Camera, NearerViewsGoTowardsTheirFocus) {
+  // Of metres and pixels: some dozen roundings of coordinates below 2^17 m are 2^-53 * 2^17 * 2^6 or less than 2^-30.
+  constexpr double kRounding = 0x1p-30;
   const dvec3 other(12000, 20000, 1200);
   for (const std::optional<dvec3>& given : {std::optional<dvec3>(), std::optional(other)}) {
     const dvec3 focus = given.value_or(kBox.middle());
@@ -137,9 +139,9 @@ TEST(Camera, NearerViewsGoTowardsTheirFocus) {
     for (const double distance : {0.9, 0.3, 0.01}) {
       const Camera near = framed(distance);
       EXPECT_EQ(near.forward(), whole.forward());
-      EXPECT_NEAR(length(near.eye() - focus), distance * length(whole.eye() - focus), 1e-6);
-      EXPECT_NEAR(near.pixel(focus)->x, whole.pixel(focus)->x, 1e-6);
-      EXPECT_NEAR(near.pixel(focus)->y, whole.pixel(focus)->y, 1e-6);
+      EXPECT_NEAR(length(near.eye() - focus), distance * length(whole.eye() - focus), kRounding);
+      EXPECT_NEAR(near.pixel(focus)->x, whole.pixel(focus)->x, kRounding);
+      EXPECT_NEAR(near.pixel(focus)->y, whole.pixel(focus)->y, kRounding);
     }
   }
 }
