@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <vector>
 
 #include "bench/commands.h"
@@ -64,7 +65,7 @@ void compare(const BenchField& ground, double exaggeration, const std::vector<Ra
              const SimdOptions& options, Json& rows) {
   const ScarpGround scarp(ground.field);
   std::vector<Engine> engines{scarp.engine(find_march("max-mip"))};
-  for (const Variant& variant : kVariants) engines.push_back(scarp.vectors(variant.name, variant.ideas));
+  for (const Variant& variant : kVariants) if (!getenv("ONLY") || std::string(getenv("ONLY")) == variant.name) engines.push_back(scarp.vectors(variant.name, variant.ideas));
   for (const RaySet& set : make_rays(ground, classes, options.trace.rays, options.trace.ray_seed)) {
     const auto timings = measure(engines, set, {1, options.trace.repeats, options.trace.pass_limit_s});
     std::vector<std::vector<std::string>> lines{{"class", "exagg.", "ideas", "Mrays/cpu s", "x scalar", "blocks", "use",
