@@ -154,7 +154,13 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
                                HWY_ATTR { hn::Store(hn::DemoteTo(di_part, v), di_part, to + part); };
     const auto put = [part](VD v, float* to) HWY_ATTR { hn::Store(hn::DemoteTo(df_part, v), df_part, to + part); };
     put_whole(then, a.status), put_whole(hn::IfThenElse(clear, one, seen), a.seen);
-    put_whole(hn::IfThenElse(clear, x, whole(a.x)), a.x), put_whole(hn::IfThenElse(clear, y, whole(a.y)), a.y);
+    {
+      const auto x0 = hn::Load(di_part, a.x + part), y0 = hn::Load(di_part, a.y + part);
+      put_whole(hn::IfThenElse(clear, x, whole(a.x)), a.x), put_whole(hn::IfThenElse(clear, y, whole(a.y)), a.y);
+      const auto crossed = hn::Or(hn::Xor(x0, hn::Load(di_part, a.x + part)), hn::Xor(y0, hn::Load(di_part, a.y + part)));
+      const auto one_i = hn::Set(di_part, 1);
+      hn::Store(hn::IfThenElse(hn::Gt(crossed, one_i), one_i, hn::Load(di_part, a.level + part)), di_part, a.level + part);
+    }
     put(hn::IfThenElse(clear, way, place(a.T)), a.T);
     // That it was looked at in float leaves no doubt; where doubles cannot tell either, the scalar walk begins anew.
     put(hn::IfThenElse(looked_at, hn::Set(dd, kNever), place(a.doubt)), a.doubt);
