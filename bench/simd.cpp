@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdio>
-#include <cstdlib>
 #include <vector>
 
 #include "bench/commands.h"
@@ -26,18 +25,10 @@ const Variant kVariants[] = {
     {"no-refill", {.refill = false}},
     {"no-wait", {.wait = false}},
     {"no-doubles", {.doubles = false}},
-    {"no-first-cells", {.first_cells = false}},
     {"no-put-off", {.put_off = false}},
     {"no-find-hits", {.find_hits = false}},
     {"no-beam", {.beam = false}},
-    {"none",
-     {.refill = false,
-      .wait = false,
-      .doubles = false,
-      .first_cells = false,
-      .put_off = false,
-      .find_hits = false,
-      .beam = false}},
+    {"none", {.refill = false, .wait = false, .doubles = false, .put_off = false, .find_hits = false, .beam = false}},
 };
 
 // What a pass over all rays counts, and how many answers are not those of the scalar walk.
@@ -65,7 +56,7 @@ void compare(const BenchField& ground, double exaggeration, const std::vector<Ra
              const SimdOptions& options, Json& rows) {
   const ScarpGround scarp(ground.field);
   std::vector<Engine> engines{scarp.engine(find_march("max-mip"))};
-  for (const Variant& variant : kVariants) if (!getenv("ONLY") || std::string(getenv("ONLY")) == variant.name) engines.push_back(scarp.vectors(variant.name, variant.ideas));
+  for (const Variant& variant : kVariants) engines.push_back(scarp.vectors(variant.name, variant.ideas));
   for (const RaySet& set : make_rays(ground, classes, options.trace.rays, options.trace.ray_seed)) {
     const auto timings = measure(engines, set, {1, options.trace.repeats, options.trace.pass_limit_s});
     std::vector<std::vector<std::string>> lines{{"class", "exagg.", "ideas", "Mrays/cpu s", "x scalar", "blocks", "use",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -15,11 +16,12 @@
 
 // This file is compiled once for each instruction set.
 // Vectors of a length that the compiler does not know cannot be members.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | HWY_SSE4 | HWY_AVX2 | HWY_AVX3_DL)
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/march/max_mip_simd.cpp"
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first.
+#include "hwy/cache_control.h"
 #include "hwy/highway.h"
 #include "scarp/march/max_mip_simd_beam.h"
 #include "scarp/march/max_mip_simd_cells.h"
@@ -193,7 +195,8 @@ class VectorWalk {
     }
   }
 
-  // The first steps of any-hit are taken here, where all lanes are busy: most rays begin near the ground, at a cell.
+  // First cells are left here, where all lanes are busy. Rays of any-hit begin next to the ground as a rule: doubles
+  // look at once where floats would be unsure of most.
   void take_rays(Lanes& fresh) {
     if (field_.wraps()) {
       take_endless(fresh);
@@ -201,25 +204,24 @@ class VectorWalk {
       take_bounded(fresh);
     }
     prepare(f_, r_, fresh);
-    const int first_steps = any && ideas_.first_cells ? kFirstSteps : 0;
-    const bool doubles = ideas_.doubles && !g_.triangles && begins_over_field(fresh);
-    if (first_steps == 0 && !doubles) return;
-    if (any && doubles) leave_first_cells<any>(g_, f_, r_, fresh, kWalking);
-    Packet p;
-    p.load(fresh);
-    const MI may_put_off = put_off_all();
-    if (!any || !doubles) cell_step<any>(g_, may_put_off, p);
-    if (!any && doubles) {
+    if (!ideas_.doubles || g_.triangles || !begins_over_field(fresh)) return;
+    if constexpr (any) {
+      leave_first_cells<any>(g_, f_, r_, fresh, kWalking);
+    } else {
+      Packet p;
+      p.load(fresh);
+      cell_step<any>(g_, put_off_all(), p);
       p.store(fresh);
       leave_first_cells<any>(g_, f_, r_, fresh, kUnsure);
-      p.load(fresh);
     }
-    for (int i = 1; i < first_steps; ++i) {
-      block_step(g_, p);
-      cell_step<any>(g_, may_put_off, p);
-    }
-    if (first_steps > 0) block_step(g_, p);
-    p.store(fresh);
+  }
+
+  // The rays of a vector into the caches. Each ray is read once, so all of them come from memory, and what reads ahead
+  // of programs by itself stops at the border of each page.
+  void prefetch_rays(std::size_t first) const {
+    if (first >= rays_.size()) return;
+    const auto bytes = std::as_bytes(rays_.subspan(first, std::min(N, rays_.size() - first)));
+    for (std::size_t i = 0; i < bytes.size(); i += kCacheLine) hwy::Prefetch(&bytes[i]);
   }
 
   void take_bounded(Lanes& fresh) {
@@ -230,10 +232,7 @@ class VectorWalk {
       std::fill_n(r_.dx, N, 0), std::fill_n(r_.dy, N, 0);
       return;
     }
-    {
-      const char* ahead = reinterpret_cast<const char*>(rays_.data() + first + kAhead * N);
-      for (std::size_t line = 0; line < N * sizeof(Ray); line += 64) __builtin_prefetch(ahead + line, 0, 3);
-    }
+    prefetch_rays(first + kAhead);
     r_.load(f_, [&](std::size_t j) -> const Ray& { return rays_[first + std::min(j, count - 1)]; });
     bool all_free = true;
     for (std::size_t j = 0; j < count; ++j) {
@@ -263,7 +262,7 @@ class VectorWalk {
         take_copy(j, copies_.back(), fresh);
         copies_.pop_back();
       } else if (next_ < rays_.size()) {
-        take_endless(j, next_++, fresh);
+        begin_endless(j, next_++, fresh);
       }
     }
   }
@@ -317,7 +316,7 @@ class VectorWalk {
   // Ground that wraps round is walked over copy by copy, each as ground of its own, with the ray in the copy's frame.
   // What that rounds of heights is within the doubt, see kFarthestCopy; of the first copy nothing may be doubtful, so a
   // ray that begins next to a border is left to the scalar walk, which knows more ways to begin and counts farther.
-  void take_endless(std::size_t j, std::size_t index, Lanes& fresh) {
+  void begin_endless(std::size_t j, std::size_t index, Lanes& fresh) {
     const Ray& ray = rays_[index];
     const GridRay local = field_.grid_from_world(ray);
     if (ray.start == RayStart::on_surface || !is_near(local.origin.x, local.origin.y) ||
@@ -432,9 +431,10 @@ class VectorWalk {
     GridRays rays;
     Cells cells;
     alignas(64) double t_clear[N], t[N], u[N], v[N], height[N], found[N];
-    rays.load(f_, [&](std::size_t i) -> const Ray& { return rays_[static_cast<std::size_t>(c.ray[i < c.count ? i : 0])]; });
+    const auto filled = [&](std::size_t i) { return i < c.count ? i : 0; };
+    rays.load(f_, [&](std::size_t i) -> const Ray& { return rays_[static_cast<std::size_t>(c.ray[filled(i)])]; });
     for (std::size_t i = 0; i < N; ++i) {
-      const std::size_t k = i < c.count ? i : 0;
+      const std::size_t k = filled(i);
       cells.load(g_, i, c.col[k], c.row[k], c.copy_x[k] * f_.cols, c.copy_y[k] * f_.rows);
       t_clear[i] = c.t_clear[k];
     }
@@ -500,9 +500,9 @@ class VectorWalk {
   // From a search over the rays of scarp-bench (decisions.md): lanes that wait until they are served.
   static constexpr std::size_t kCompany = std::max<std::size_t>(1, any ? N / 4 : N * 3 / 8);
   static constexpr std::size_t kFree = std::max<std::size_t>(1, any ? N / 4 : N / 2);
-  static constexpr int kPackets = any ? 3 : 2;  // vectors in turn: while one waits for memory, others compute
-  static constexpr int kFirstSteps = 2;
-  static constexpr std::size_t kAhead = 4;
+  static constexpr int kPackets = any ? 3 : 2;   // vectors in turn: while one waits for memory, others compute
+  static constexpr std::size_t kAhead = 64;      // rays that are on their way into the caches
+  static constexpr std::size_t kCacheLine = 64;  // bytes; where lines are longer some are asked for twice
   static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that are a beam
   static constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << N) - 1;
   static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding

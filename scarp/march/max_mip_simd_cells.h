@@ -9,6 +9,7 @@
 #define SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
 #endif
 
+#include <algorithm>
 #include <limits>
 
 #include "scarp/march/max_mip_simd_lanes.h"
@@ -100,25 +101,26 @@ struct CellRays {
   }
 };
 
-// Rays in the cell that they begin in, set off next to the ground as shadow rays are: within the margin of floats, which
-// would leave each of them to the scalar walk. Those that are above the ground on all of their way through it go on
-// behind it; any-hit is answered by those that are certain to fall under it. `concerned` is the status of the rays that
-// are looked at, before floats do or after they were unsure; what doubles cannot tell is kUnsure.
+// Rays in the cell that they begin in, set off next to the ground as shadow rays are: within the margin of floats,
+// which would leave each of them to the scalar walk. Those that are above the ground on all of their way through it go
+// on behind it; any-hit is answered by those that are certain to fall under it. `concerned` is the status of the rays
+// that are looked at, before floats do or after they were unsure; what doubles cannot tell is kUnsure.
 template <bool any, class T>
 HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a,
                                     Status concerned) {
+  if (std::find(a.status, a.status + N, concerned) == a.status + N) return;
   Cells cells;
   for (std::size_t j = 0; j < N; ++j) cells.load(g, j, a.x[j] ^ a.mirror_x[j], a.y[j] ^ a.mirror_y[j]);
   for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
     const auto whole = [part](const std::int32_t* from)
                            HWY_ATTR { return hn::PromoteTo(dd, hn::Load(di_part, from + part)); };
-    const auto place = [part](const float* from)
-                           HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df_part, from + part)); };
+    const auto place = [part](const float* from) HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df_part, from + part)); };
     const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
     const VD status = whole(a.status), seen = whole(a.seen);
-    // Rays that the scalar walk knows to be above may be in doubt where they begin: that is its cell's matter.
-    const MD at_begin = hn::And(hn::Eq(hn::Add(whole(a.level), seen), zero), hn::Eq(place(a.T), zero));
-    const MD looked_at = hn::And(hn::Eq(status, hn::Set(dd, concerned)), at_begin);
+    const MD at_begin = hn::And(hn::Eq(whole(a.level), zero), hn::Eq(place(a.T), zero));
+    MD looked_at = hn::And(hn::Eq(status, hn::Set(dd, concerned)), at_begin);
+    // Rays that the scalar walk knows to be above may be in doubt where they begin: floats put that off.
+    if (concerned == kWalking) looked_at = hn::And(looked_at, hn::Eq(seen, zero));
     const CellRays c(r, cells, part);
     // A ray along an axis comes to no line of that axis.
     const MD still_x = hn::Eq(c.dx, zero), still_y = hn::Eq(c.dy, zero);
@@ -154,13 +156,14 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
                                HWY_ATTR { hn::Store(hn::DemoteTo(di_part, v), di_part, to + part); };
     const auto put = [part](VD v, float* to) HWY_ATTR { hn::Store(hn::DemoteTo(df_part, v), df_part, to + part); };
     put_whole(then, a.status), put_whole(hn::IfThenElse(clear, one, seen), a.seen);
-    {
-      const auto x0 = hn::Load(di_part, a.x + part), y0 = hn::Load(di_part, a.y + part);
-      put_whole(hn::IfThenElse(clear, x, whole(a.x)), a.x), put_whole(hn::IfThenElse(clear, y, whole(a.y)), a.y);
-      const auto crossed = hn::Or(hn::Xor(x0, hn::Load(di_part, a.x + part)), hn::Xor(y0, hn::Load(di_part, a.y + part)));
-      const auto one_i = hn::Set(di_part, 1);
-      hn::Store(hn::IfThenElse(hn::Gt(crossed, one_i), one_i, hn::Load(di_part, a.level + part)), di_part, a.level + part);
-    }
+    const auto from_x = hn::Load(di_part, a.x + part), from_y = hn::Load(di_part, a.y + part);
+    const auto to_x = hn::DemoteTo(di_part, hn::IfThenElse(clear, x, whole(a.x)));
+    const auto to_y = hn::DemoteTo(di_part, hn::IfThenElse(clear, y, whole(a.y)));
+    hn::Store(to_x, di_part, a.x + part), hn::Store(to_y, di_part, a.y + part);
+    // One level up where the line is the border of a block, as Packet::leave() has it.
+    const auto crossed = hn::ShiftRight<1>(hn::Or(hn::Xor(from_x, to_x), hn::Xor(from_y, to_y)));
+    const auto up = hn::Min(crossed, hn::Set(di_part, 1));
+    hn::Store(hn::Max(hn::Load(di_part, a.level + part), up), di_part, a.level + part);
     put(hn::IfThenElse(clear, way, place(a.T)), a.T);
     // That it was looked at in float leaves no doubt; where doubles cannot tell either, the scalar walk begins anew.
     put(hn::IfThenElse(looked_at, hn::Set(dd, kNever), place(a.doubt)), a.doubt);

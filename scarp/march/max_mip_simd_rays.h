@@ -43,12 +43,10 @@ struct GridRays {
     const auto& [per_cell_x, per_cell_y, z_offset, per_scale] = f.scales;
     const VD zero = hn::Zero(dd), cols = hn::Set(dd, f.cols);
     for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
-      const auto turn = [part](double* numbers, auto by) HWY_ATTR {
-        hn::Store(by(hn::Load(dd, numbers + part)), dd, numbers + part);
-      };
-      const auto scale = [&](double* numbers, double per) HWY_ATTR {
-        turn(numbers, [per](VD v) HWY_ATTR { return hn::Mul(v, hn::Set(dd, per)); });
-      };
+      const auto turn = [part](double* numbers, auto by)
+                            HWY_ATTR { hn::Store(by(hn::Load(dd, numbers + part)), dd, numbers + part); };
+      const auto scale = [&](double* numbers, double per)
+                             HWY_ATTR { turn(numbers, [per](VD v) HWY_ATTR { return hn::Mul(v, hn::Set(dd, per)); }); };
       turn(ox, [&](VD x) HWY_ATTR {
         const VD col = hn::Mul(x, hn::Set(dd, per_cell_x));
         return hn::IfThenElse(hn::And(hn::Le(x, hn::Set(dd, f.width)), hn::Lt(cols, col)), cols, col);
@@ -57,9 +55,7 @@ struct GridRays {
         const VD row = hn::Sub(hn::Set(dd, f.last_row), hn::Mul(y, hn::Set(dd, per_cell_y)));
         return hn::IfThenElse(hn::And(hn::Le(y, hn::Set(dd, f.depth)), hn::Lt(row, zero)), zero, row);
       });
-      turn(oz, [&](VD z) HWY_ATTR {
-        return hn::Mul(hn::Sub(z, hn::Set(dd, z_offset)), hn::Set(dd, per_scale));
-      });
+      turn(oz, [&](VD z) HWY_ATTR { return hn::Mul(hn::Sub(z, hn::Set(dd, z_offset)), hn::Set(dd, per_scale)); });
       scale(dx, per_cell_x), scale(dy, -per_cell_y), scale(dz, per_scale);
     }
   }
