@@ -219,9 +219,9 @@ class VectorWalk {
   // The rays of a vector into the caches. Each ray is read once, so all of them come from memory, and what reads ahead
   // of programs by itself stops at the border of each page.
   void prefetch_rays(std::size_t first) const {
-    if (first >= rays_.size()) return;
-    const auto bytes = std::as_bytes(rays_.subspan(first, std::min(N, rays_.size() - first)));
-    for (std::size_t i = 0; i < bytes.size(); i += kCacheLine) hwy::Prefetch(&bytes[i]);
+    if (first + N > rays_.size()) return;
+    const auto* bytes = reinterpret_cast<const std::byte*>(&rays_[first]);
+    for (std::size_t i = 0; i < N * sizeof(Ray); i += kCacheLine) hwy::Prefetch(bytes + i);
   }
 
   void take_bounded(Lanes& fresh) {
