@@ -311,8 +311,8 @@ TEST_F(Cast, FilesAndStreams) {
   EXPECT_EQ(to_file.status, 0) << to_file.err;
   EXPECT_EQ(to_file.out, "");
   EXPECT_EQ(test::text_of(path("hits.csv")), to_stdout.out);
-  EXPECT_EQ(test::Program(with({"-"}), nullptr, path("rays.csv")).result().out, to_stdout.out);
-  EXPECT_NE(test::Program(with({"-"})).result().err.find("rays '-': is empty"), std::string::npos);
+  EXPECT_EQ(run(with({"-"}), path("rays.csv")).out, to_stdout.out);
+  EXPECT_NE(run(with({"-"})).err.find("rays '-': is empty"), std::string::npos);
   EXPECT_EQ(run(with({path("rays.csv"), "-o", path("hits.npy")})).status, 0);
   EXPECT_EQ(test::text_of(path("hits.npy")).size() % 64, 14 * 8 % 64u);
   // What one cast wrote, the next one reads: a table whose fields it knows or passes over.

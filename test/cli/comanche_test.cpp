@@ -147,8 +147,9 @@ TEST(Flight, AFullDiskLeavesTheFramesBefore) {
   const rlimit small{2500, before.rlim_max};
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
   const auto result =
-      test::run({"render", dem, "-o", scratch.path("f#.png"), "--path", scratch.path("path.csv"), "--size", "160x120",
-                 "--aa", "1", "--no-plinth", "--detail", "1", "--detail-size", "4"});
+      test::Program({"render", dem, "-o", scratch.path("f#.png"), "--path", scratch.path("path.csv"), "--size",
+                     "160x120", "--aa", "1", "--no-plinth", "--detail", "1", "--detail-size", "4"})
+          .result();
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("f2.png"), std::string::npos) << result.err;

@@ -27,7 +27,7 @@ class MeshOption : public testing::Test {
     scratch_.write("roof.mtl", "newmtl red\nKd 0.8 0.02 0.02\n");
   }
 
-  Program::Result render(const std::vector<std::string>& more, bool device = true) const {
+  Result render(const std::vector<std::string>& more, bool device = true) const {
     std::vector<std::string> arguments{"render", dem_, "-o", picture_, "--size", "64x64", "--top"};
     // Of the look shaded.
     if (std::find(more.begin(), more.end(), "--look") == more.end()) arguments.insert(arguments.end(), {"--aa", "1"});

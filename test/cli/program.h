@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs the built `scarp` as a user does.
+// Runs `scarp` as a user does.
 #pragma once
 
 #include <fcntl.h>
@@ -13,9 +13,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "cli/starts.h"
 
 namespace scarp::test {
 
@@ -55,7 +58,41 @@ inline std::string text_of(const std::string& path) {
 /// Whether signals that this process ignores are ignored by what it starts.
 enum class Ignored : bool { reset, inherited };
 
-/// A running `scarp`; its output goes into files of a folder of its own.
+/// How a process is started. The tests themselves may run under nohup.
+class StartAttributes {
+ public:
+  explicit StartAttributes(Ignored ignored) {
+    ::posix_spawnattr_init(&attributes_);
+    if (ignored == Ignored::inherited) return;
+    ::sigset_t signals;
+    ::sigemptyset(&signals);
+    for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXFSZ}) ::sigaddset(&signals, number);
+    ::posix_spawnattr_setsigdefault(&attributes_, &signals);
+    ::posix_spawnattr_setflags(&attributes_, POSIX_SPAWN_SETSIGDEF);
+  }
+  ~StartAttributes() { ::posix_spawnattr_destroy(&attributes_); }
+  StartAttributes(const StartAttributes&) = delete;
+  StartAttributes& operator=(const StartAttributes&) = delete;
+
+  const ::posix_spawnattr_t* get() const { return &attributes_; }
+
+ private:
+  ::posix_spawnattr_t attributes_;
+};
+
+/// How a run of `scarp` went.
+struct Result {
+  int status;  ///< exit status, or 1000 + the signal that ended it
+  std::string out, err;
+};
+
+inline Result result_of(int status, const Streams& streams) {
+  // A device, as /dev/full, has no end.
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
+          std::filesystem::is_regular_file(streams.out) ? text_of(streams.out) : "", text_of(streams.err)};
+}
+
+/// The built program, running; its output goes into files of a folder of its own.
 class Program {
  public:
   explicit Program(std::vector<std::string> arguments, const char* out_path = nullptr,
@@ -64,56 +101,65 @@ class Program {
     std::vector<char*> argv;
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
-    const std::string out = out_path != nullptr ? out_path : streams_.path("out"), err = streams_.path("err");
+    streams_ = {in_path, out_path != nullptr ? out_path : folder_.path("out"), folder_.path("err")};
     ::posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
-    ::posix_spawn_file_actions_addopen(&actions, 0, in_path.c_str(), O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    ::posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
-    ::posix_spawnattr_t attributes;
-    ::posix_spawnattr_init(&attributes);
-    if (ignored == Ignored::reset) {
-      // The tests themselves may run under nohup.
-      ::sigset_t signals;
-      ::sigemptyset(&signals);
-      for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXFSZ}) ::sigaddset(&signals, number);
-      ::posix_spawnattr_setsigdefault(&attributes, &signals);
-      ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF);
-    }
-    const int error = ::posix_spawn(&pid_, SCARP_PROGRAM, &actions, &attributes, argv.data(), environ);
-    ::posix_spawnattr_destroy(&attributes);
+    ::posix_spawn_file_actions_addopen(&actions, 0, streams_.in.c_str(), O_RDONLY, 0);
+    ::posix_spawn_file_actions_addopen(&actions, 1, streams_.out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    ::posix_spawn_file_actions_addopen(&actions, 2, streams_.err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    const StartAttributes attributes(ignored);
+    const int error = ::posix_spawn(&pid_, SCARP_PROGRAM, &actions, attributes.get(), argv.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
     if (error != 0) throw std::runtime_error("cannot start " SCARP_PROGRAM);
   }
 
   ::pid_t pid() const { return pid_; }
 
-  struct Result {
-    int status;  ///< exit status, or 1000 + the signal that ended it
-    std::string out, err;
-  };
   /// Waits for its end.
   Result result() {
     int status = 0;
     ::waitpid(pid_, &status, 0);
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status), text_of(streams_.path("out")),
-            text_of(streams_.path("err"))};
+    return result_of(status, streams_);
   }
 
  private:
-  Scratch streams_;
+  Scratch folder_;
+  Streams streams_;
   ::pid_t pid_ = 0;
 };
 
-inline Program::Result run(std::vector<std::string> arguments) { return Program(std::move(arguments)).result(); }
+/// Whether the leak sanitizer looks at what is run.
+enum class Leaks : bool { found, kept };
+
+/// Runs `scarp`. SCARP_STARTER: forked by a process that has loaded it (starts.h); else the built program, which those
+/// tests ask for that are about starts and ends.
+inline Result run(const std::vector<std::string>& arguments, const std::string& in_path = "/dev/null",
+                  Leaks leaks = Leaks::found) {
+  const bool kept = leaks == Leaks::kept;
+  // And of what the driver's compiler frees less is kept, as in the tests that open one themselves
+  // (test/CMakeLists.txt).
+  if (kept) ::setenv("ASAN_OPTIONS", "detect_leaks=0:quarantine_size_mb=32", 1);
+#ifdef SCARP_STARTER
+  // A sanitizer reads its options once, when its process is started.
+  const auto start = [] {
+    return std::make_unique<const Starter>(SCARP_STARTER, StartAttributes(Ignored::reset).get());
+  };
+  static std::unique_ptr<const Starter> starters[2];
+  if (!starters[kept]) starters[kept] = start();
+  const Scratch folder;
+  const Streams streams{in_path, folder.path("out"), folder.path("err")};
+  Result result = result_of(starters[kept]->run(arguments, streams), streams);
+#else
+  Result result = Program(arguments, nullptr, in_path).result();
+#endif
+  if (kept) ::unsetenv("ASAN_OPTIONS");
+  return result;
+}
 
 /// As run(), where `scarp` opens a Vulkan driver: what Mesa's lavapipe keeps when it is unloaded is no leak of Scarp's,
 /// and the leak sanitizer cannot tell any more whose it is.
-inline Program::Result run_on_device(std::vector<std::string> arguments) {
-  ::setenv("ASAN_OPTIONS", "detect_leaks=0", 1);
-  Program::Result result = run(std::move(arguments));
-  ::unsetenv("ASAN_OPTIONS");
-  return result;
+inline Result run_on_device(const std::vector<std::string>& arguments) {
+  return run(arguments, "/dev/null", Leaks::kept);
 }
 
 inline std::ptrdiff_t lines(const std::string& text) { return std::count(text.begin(), text.end(), '\n'); }

@@ -20,13 +20,13 @@ class RenderOnDevice : public testing::Test {
  protected:
   void SetUp() override { ASSERT_EQ(run({"generate", "--size", "65", "-o", dem_}).status, 0); }
 
-  Program::Result render(std::vector<std::string> more) const {
+  Result render(std::vector<std::string> more) const {
     std::vector<std::string> arguments{"render", dem_, "-o", picture_, "--size", "60x40"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_on_device(std::move(arguments));
   }
   // One line that says `what`, and no file.
-  void expect_refusal(const Program::Result& result, const std::string& what) const {
+  void expect_refusal(const Result& result, const std::string& what) const {
     EXPECT_NE(result.status, 0);
     EXPECT_EQ(lines(result.err), 1) << result.err;
     EXPECT_NE(result.err.find(what), std::string::npos) << result.err;

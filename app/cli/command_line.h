@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// The command line: finds the subcommand, and turns whatever went wrong into one line and an exit status.
+//
+//   0 done   1 failed (files, data, values)   2 wrong usage   128 + n ended by signal n
+#pragma once
+
+namespace scarp::cli {
+
+/// What main() does. To be called once per process: handlers of signals and the state of progress are the process's.
+int run_command_line(int argc, char** argv);
+
+}  // namespace scarp::cli

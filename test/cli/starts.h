@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// Calls `scarp` without starting it: a process that has loaded the command line and its libraries, and no more, forks
+// itself for each call. Most calls of the tests take less time than the system does to load GDAL's hundred libraries.
+//
+// The process (starter.cpp) is spoken to over a socket: a call is a list of words, its answer the status of waitpid().
+#pragma once
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace scarp::test {
+
+/// The starter's end of the socket.
+constexpr int kStarterSocket = 3;
+
+/// Files for the standard streams.
+struct Streams {
+  std::string in, out, err;
+};
+
+inline bool send_bytes(int socket, const void* bytes, std::size_t size) {
+  for (const char* at = static_cast<const char*>(bytes); size > 0;) {
+    const ::ssize_t sent = ::send(socket, at, size, MSG_NOSIGNAL);
+    if (sent <= 0) return false;
+    at += sent;
+    size -= static_cast<std::size_t>(sent);
+  }
+  return true;
+}
+
+inline bool receive_bytes(int socket, void* bytes, std::size_t size) {
+  return size == 0 || ::recv(socket, bytes, size, MSG_WAITALL) == static_cast<::ssize_t>(size);
+}
+
+inline bool send_words(int socket, const std::vector<std::string>& words) {
+  const std::uint64_t count = words.size();
+  if (!send_bytes(socket, &count, sizeof count)) return false;
+  for (const std::string& word : words) {
+    const std::uint64_t size = word.size();
+    if (!send_bytes(socket, &size, sizeof size) || !send_bytes(socket, word.data(), size)) return false;
+  }
+  return true;
+}
+
+/// False where the other side is gone.
+inline bool receive_words(int socket, std::vector<std::string>& words) {
+  std::uint64_t count = 0;
+  if (!receive_bytes(socket, &count, sizeof count)) return false;
+  words.resize(count);
+  for (std::string& word : words) {
+    std::uint64_t size = 0;
+    if (!receive_bytes(socket, &size, sizeof size)) return false;
+    word.resize(size);
+    if (!receive_bytes(socket, word.data(), size)) return false;
+  }
+  return true;
+}
+
+/// A starter, which ends with this object or this process.
+class Starter {
+ public:
+  Starter(const char* program, const ::posix_spawnattr_t* attributes) {
+    int ends[2];
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) throw std::runtime_error("no socket");
+    ::posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_adddup2(&actions, ends[1], kStarterSocket);
+    char* argv[] = {const_cast<char*>(program), nullptr};
+    const int error = ::posix_spawn(&pid_, program, &actions, attributes, argv, environ);
+    ::posix_spawn_file_actions_destroy(&actions);
+    ::close(ends[1]);
+    socket_ = ends[0];
+    if (error != 0) throw std::runtime_error(std::string("cannot start ") + program);
+  }
+  ~Starter() {
+    ::close(socket_);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  Starter(const Starter&) = delete;
+  Starter& operator=(const Starter&) = delete;
+
+  /// Runs `scarp` in the environment of this process; the status of waitpid().
+  int run(const std::vector<std::string>& arguments, const Streams& streams) const {
+    std::vector<std::string> settings;
+    for (char** setting = environ; *setting != nullptr; ++setting) settings.emplace_back(*setting);
+    int status = 0;
+    if (!send_words(socket_, {streams.in, streams.out, streams.err}) || !send_words(socket_, settings) ||
+        !send_words(socket_, arguments) || !receive_bytes(socket_, &status, sizeof status)) {
+      throw std::runtime_error("the starter of scarp is gone");
+    }
+    return status;
+  }
+
+ private:
+  int socket_ = -1;
+  ::pid_t pid_ = 0;
+};
+
+}  // namespace scarp::test
