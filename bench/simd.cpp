@@ -25,18 +25,10 @@ const Variant kVariants[] = {
     {"no-refill", {.refill = false}},
     {"no-wait", {.wait = false}},
     {"no-doubles", {.doubles = false}},
-    {"no-first-cells", {.first_cells = false}},
     {"no-put-off", {.put_off = false}},
     {"no-find-hits", {.find_hits = false}},
     {"no-beam", {.beam = false}},
-    {"none",
-     {.refill = false,
-      .wait = false,
-      .doubles = false,
-      .first_cells = false,
-      .put_off = false,
-      .find_hits = false,
-      .beam = false}},
+    {"none", {.refill = false, .wait = false, .doubles = false, .put_off = false, .find_hits = false, .beam = false}},
 };
 
 // What a pass over all rays counts, and how many answers are not those of the scalar walk.

@@ -130,6 +130,11 @@ class HeightField {
     return (s * settings_.scale + settings_.offset) * settings_.exaggeration;
   }
 
+  /// What grid_from_world() subtracts and multiplies by: for those who turn many rays at once, by its operations.
+  struct GridScales {
+    double per_cell_x, per_cell_y, z_offset, per_scale;
+  };
+  GridScales grid_scales() const { return {per_cell_x_, per_cell_y_, z_offset_, per_scale_}; }
   GridRay grid_from_world(const Ray& ray) const {
     return {{col_from_x(ray.origin.x), row_from_y(ray.origin.y), (ray.origin.z - z_offset_) * per_scale_},
             {ray.direction.x * per_cell_x_, -ray.direction.y * per_cell_y_, ray.direction.z * per_scale_}};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #define HWY_TARGET_INCLUDE "scarp/march/max_mip_simd.cpp"
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first.
+#include "hwy/cache_control.h"
 #include "hwy/highway.h"
 #include "scarp/march/max_mip_simd_beam.h"
 #include "scarp/march/max_mip_simd_cells.h"
@@ -84,7 +86,11 @@ class VectorWalk {
           .upright =
               std::max(std::abs(low), std::abs(high)) + std::abs(field_.settings().offset) / field_.settings().scale,
           .mask = static_cast<double>(side - 1),
-          .from_outside = static_cast<double>(std::max(g_.top - 3, 0))};
+          .from_outside = static_cast<double>(std::max(g_.top - 3, 0)),
+          .scales = field_.grid_scales(),
+          .last_row = static_cast<double>(field_.rows() - 1),
+          .width = field_.wraps() ? -kNever : field_.width(),
+          .depth = field_.wraps() ? -kNever : field_.depth()};
   }
 
   void run(VectorStats& stats) {
@@ -189,8 +195,66 @@ class VectorWalk {
     }
   }
 
-  // The first steps of any-hit are taken here, where all lanes are busy: most rays begin near the ground, at a cell.
+  // First cells are left here, where all lanes are busy. Rays of any-hit begin next to the ground as a rule: doubles
+  // look at once where floats would be unsure of most.
   void take_rays(Lanes& fresh) {
+    if (field_.wraps()) {
+      take_endless(fresh);
+    } else {
+      take_bounded(fresh);
+    }
+    prepare(f_, r_, fresh);
+    if (!ideas_.doubles || g_.triangles || !begins_over_field(fresh)) return;
+    if constexpr (any) {
+      leave_first_cells<any>(g_, f_, r_, fresh, kWalking);
+    } else {
+      Packet p;
+      p.load(fresh);
+      cell_step<any>(g_, put_off_all(), p);
+      p.store(fresh);
+      leave_first_cells<any>(g_, f_, r_, fresh, kUnsure);
+    }
+  }
+
+  // The rays of a vector into the caches. Each ray is read once, so all of them come from memory, and what reads ahead
+  // of programs by itself stops at the border of each page.
+  void prefetch_rays(std::size_t first) const {
+    if (first + N > rays_.size()) return;
+    const auto* bytes = reinterpret_cast<const std::byte*>(&rays_[first]);
+    for (std::size_t i = 0; i < N * sizeof(Ray); i += kCacheLine) hwy::Prefetch(bytes + i);
+  }
+
+  void take_bounded(Lanes& fresh) {
+    const std::size_t first = next_, count = std::min(N, rays_.size() - first);
+    next_ += count;
+    for (std::size_t j = count; j < N; ++j) fresh.ray[j] = -1;
+    if (count == 0) {
+      std::fill_n(r_.dx, N, 0), std::fill_n(r_.dy, N, 0);
+      return;
+    }
+    prefetch_rays(first + kAhead);
+    r_.load(f_, [&](std::size_t j) -> const Ray& { return rays_[first + std::min(j, count - 1)]; });
+    bool all_free = true;
+    for (std::size_t j = 0; j < count; ++j) {
+      fresh.ray[j] = static_cast<std::int32_t>(first + j), r_.seen[j] = fresh.copy_x[j] = fresh.copy_y[j] = 0;
+      all_free &= rays_[first + j].start == RayStart::free;
+    }
+    for (std::size_t j = count; j < N; ++j) r_.dx[j] = r_.dy[j] = 0;
+    for (std::size_t j = 0; !all_free && j < count; ++j) {
+      if (rays_[first + j].start == RayStart::on_surface) take_on_surface(j, first + j, fresh);
+    }
+  }
+  void take_on_surface(std::size_t j, std::size_t index, Lanes& fresh) {
+    const Ray& ray = rays_[index];
+    const SurfaceStart start = begin_on_surface(ray, field_.grid_from_world(ray));
+    if (start.decided) {
+      fresh.ray[j] = -1, r_.dx[j] = r_.dy[j] = 0;
+      put_answer(index, start.hit);
+    } else {
+      r_.oz[j] = start.z, r_.t_min[j] = start.t, r_.seen[j] = start.above;
+    }
+  }
+  void take_endless(Lanes& fresh) {
     for (std::size_t j = 0; j < N; ++j) {
       fresh.ray[j] = -1, fresh.copy_x[j] = fresh.copy_y[j] = 0;
       r_.dx[j] = r_.dy[j] = 0;
@@ -198,30 +262,9 @@ class VectorWalk {
         take_copy(j, copies_.back(), fresh);
         copies_.pop_back();
       } else if (next_ < rays_.size()) {
-        take_ray(j, next_++, fresh);
+        begin_endless(j, next_++, fresh);
       }
     }
-    prepare(f_, r_, fresh);
-    const int first_steps = any && ideas_.first_cells ? kFirstSteps : 0;
-    const bool doubles = ideas_.doubles && !g_.triangles && begins_over_field(fresh);
-    if (first_steps == 0 && !doubles) return;
-    Packet p;
-    p.load(fresh);
-    const MI may_put_off = put_off_all();
-    // What is to be looked at again in double is not put off, but rays that the scalar walk knows to be above are:
-    // where they begin is its cell's matter.
-    cell_step<any>(g_, doubles ? hn::And(may_put_off, hn::Ne(p.seen, hn::Zero(di))) : may_put_off, p);
-    if (doubles) {
-      p.store(fresh);
-      leave_first_cells<any>(g_, f_, r_, fresh);
-      p.load(fresh);
-    }
-    for (int i = 1; i < first_steps; ++i) {
-      block_step(g_, p);
-      cell_step<any>(g_, may_put_off, p);
-    }
-    if (first_steps > 0) block_step(g_, p);
-    p.store(fresh);
   }
 
   static bool begins_over_field(const Lanes& fresh) {
@@ -254,24 +297,6 @@ class VectorWalk {
     to.t_min[j] = ray.t_min, to.t_max[j] = ray.t_max, to.seen[j] = 0;
   }
 
-  // A ray into the grid, unless it is answered at once.
-  void take_ray(std::size_t j, std::size_t index, Lanes& fresh) {
-    const Ray& ray = rays_[index];
-    const GridRay local = field_.grid_from_world(ray);
-    if (field_.wraps()) return take_endless(j, index, local, fresh);
-    put_ray(r_, j, ray, local);
-    if (ray.start == RayStart::on_surface) {
-      const SurfaceStart start = begin_on_surface(ray, local);
-      if (start.decided) {
-        r_.dx[j] = r_.dy[j] = 0;
-        put_answer(index, start.hit);
-        return;
-      }
-      r_.oz[j] = start.z, r_.t_min[j] = start.t, r_.seen[j] = start.above;
-    }
-    fresh.ray[j] = static_cast<std::int32_t>(index);
-  }
-
   void put_answer(std::size_t index, const Hit& hit) {
     if constexpr (any) {
       answers_[index] = hit.status == HitStatus::hit;
@@ -291,8 +316,9 @@ class VectorWalk {
   // Ground that wraps round is walked over copy by copy, each as ground of its own, with the ray in the copy's frame.
   // What that rounds of heights is within the doubt, see kFarthestCopy; of the first copy nothing may be doubtful, so a
   // ray that begins next to a border is left to the scalar walk, which knows more ways to begin and counts farther.
-  void take_endless(std::size_t j, std::size_t index, const GridRay& local, Lanes& fresh) {
+  void begin_endless(std::size_t j, std::size_t index, Lanes& fresh) {
     const Ray& ray = rays_[index];
+    const GridRay local = field_.grid_from_world(ray);
     if (ray.start == RayStart::on_surface || !is_near(local.origin.x, local.origin.y) ||
         !max_mip::countable(local, ray)) {
       return answer_alone(index);
@@ -405,10 +431,10 @@ class VectorWalk {
     GridRays rays;
     Cells cells;
     alignas(64) double t_clear[N], t[N], u[N], v[N], height[N], found[N];
+    const auto filled = [&](std::size_t i) { return i < c.count ? i : 0; };
+    rays.load(f_, [&](std::size_t i) -> const Ray& { return rays_[static_cast<std::size_t>(c.ray[filled(i)])]; });
     for (std::size_t i = 0; i < N; ++i) {
-      const std::size_t k = i < c.count ? i : 0;
-      const Ray& ray = rays_[static_cast<std::size_t>(c.ray[k])];
-      put_ray(rays, i, ray, field_.grid_from_world(ray));
+      const std::size_t k = filled(i);
       cells.load(g_, i, c.col[k], c.row[k], c.copy_x[k] * f_.cols, c.copy_y[k] * f_.rows);
       t_clear[i] = c.t_clear[k];
     }
@@ -474,8 +500,9 @@ class VectorWalk {
   // From a search over the rays of scarp-bench (decisions.md): lanes that wait until they are served.
   static constexpr std::size_t kCompany = std::max<std::size_t>(1, any ? N / 4 : N * 3 / 8);
   static constexpr std::size_t kFree = std::max<std::size_t>(1, any ? N / 4 : N / 2);
-  static constexpr int kPackets = any ? 3 : 2;  // vectors in turn: while one waits for memory, others compute
-  static constexpr int kFirstSteps = 2;
+  static constexpr int kPackets = any ? 3 : 2;   // vectors in turn: while one waits for memory, others compute
+  static constexpr std::size_t kAhead = 64;      // rays that are on their way into the caches
+  static constexpr std::size_t kCacheLine = 64;  // bytes; where lines are longer some are asked for twice
   static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that are a beam
   static constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << N) - 1;
   static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding

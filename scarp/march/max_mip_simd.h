@@ -28,13 +28,12 @@ namespace scarp {
 /// The ideas that make it fast, each of which can be left out to see what it gains (`scarp-bench simd`). The answers
 /// are the same.
 struct VectorIdeas {
-  bool refill = true;       ///< lanes get new rays when some are done, not when all are
-  bool wait = true;         ///< lanes at cells wait for company
-  bool doubles = true;      ///< rays that begin over the field: their first cells in double
-  bool first_cells = true;  ///< any-hit: the first steps of new rays are taken together
-  bool put_off = true;      ///< any-hit: a doubtful cell is decided only if nothing stops the ray behind it
-  bool find_hits = true;    ///< closest hit: computed for many rays at once
-  bool beam = true;         ///< closest hit: rays that come from above together start together
+  bool refill = true;     ///< lanes get new rays when some are done, not when all are
+  bool wait = true;       ///< lanes at cells wait for company
+  bool doubles = true;    ///< rays that begin over the field: their first cells in double
+  bool put_off = true;    ///< any-hit: a doubtful cell is decided only if nothing stops the ray behind it
+  bool find_hits = true;  ///< closest hit: computed for many rays at once
+  bool beam = true;       ///< closest hit: rays that come from above together start together
 };
 
 /// hits[i] is march_max_mip() of rays[i], bit for bit. On the calling thread; the spans have the same length, below

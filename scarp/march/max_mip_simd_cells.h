@@ -9,6 +9,7 @@
 #define SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
 #endif
 
+#include <algorithm>
 #include <limits>
 
 #include "scarp/march/max_mip_simd_lanes.h"
@@ -100,23 +101,26 @@ struct CellRays {
   }
 };
 
-// Rays that are unsure in the cell that they begin in, because they are set off next to the ground as shadow rays are:
-// within the margin of floats, which would leave each of them to the scalar walk. Those that are above the ground on
-// all of their way through it go on behind it; any-hit is answered by those that are certain to fall under it.
+// Rays in the cell that they begin in, set off next to the ground as shadow rays are: within the margin of floats,
+// which would leave each of them to the scalar walk. Those that are above the ground on all of their way through it go
+// on behind it; any-hit is answered by those that are certain to fall under it. `concerned` is the status of the rays
+// that are looked at, before floats do or after they were unsure; what doubles cannot tell is kUnsure.
 template <bool any, class T>
-HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a) {
-  const auto concerns = [&](std::size_t j) { return a.status[j] == kUnsure && a.T[j] == 0; };
-  Cells cells = {};
-  bool some = false;
-  for (std::size_t j = 0; j < N; ++j) {
-    if (!concerns(j)) continue;
-    cells.load(g, j, a.x[j] ^ a.mirror_x[j], a.y[j] ^ a.mirror_y[j]);
-    some = true;
-  }
-  if (!some) return;
-  alignas(64) double T_out[N], over_x[N], over_y[N], clear[N], through[N];
+HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a,
+                                    Status concerned) {
+  if (std::find(a.status, a.status + N, concerned) == a.status + N) return;
+  Cells cells;
+  for (std::size_t j = 0; j < N; ++j) cells.load(g, j, a.x[j] ^ a.mirror_x[j], a.y[j] ^ a.mirror_y[j]);
   for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
+    const auto whole = [part](const std::int32_t* from)
+                           HWY_ATTR { return hn::PromoteTo(dd, hn::Load(di_part, from + part)); };
+    const auto place = [part](const float* from) HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df_part, from + part)); };
     const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
+    const VD status = whole(a.status), seen = whole(a.seen);
+    const MD at_begin = hn::And(hn::Eq(whole(a.level), zero), hn::Eq(place(a.T), zero));
+    MD looked_at = hn::And(hn::Eq(status, hn::Set(dd, concerned)), at_begin);
+    // Rays that the scalar walk knows to be above may be in doubt where they begin: floats put that off.
+    if (concerned == kWalking) looked_at = hn::And(looked_at, hn::Eq(seen, zero));
     const CellRays c(r, cells, part);
     // A ray along an axis comes to no line of that axis.
     const MD still_x = hn::Eq(c.dx, zero), still_y = hn::Eq(c.dy, zero);
@@ -135,28 +139,34 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
     const MD between = hn::And(hn::And(hn::Gt(q.a, zero), hn::Lt(q.b, zero)),
                                hn::Lt(hn::Neg(q.b), hn::Mul(hn::Add(q.a, q.a), length)));
     const VD ends = hn::Min(q.c, out), least = hn::IfThenElse(between, hn::Min(ends, bottom), ends);
-    const MD falls = hn::And(hn::Gt(q.c, doubt), hn::Lt(out, hn::Neg(doubt)));
-    const auto put = [&](MD v, double* to) HWY_ATTR { hn::Store(hn::IfThenElseZero(v, one), dd, to + part); };
-    put(hn::And(moves, hn::Gt(least, doubt)), clear), put(hn::And(moves, falls), through);
-    put(over_column, over_x), put(over_row, over_y);
+    const MD falls = hn::And(hn::Gt(q.c, doubt), hn::Lt(least, hn::Neg(doubt)));
     // Rounded down: what follows looks at the ground from where it is known to be clear.
-    const VD way = hn::Div(length, hn::Load(dd, a.t_per_cell + part));
-    hn::Store(hn::Mul(way, hn::Sub(one, hn::Set(dd, 0x1p-22))), dd, T_out + part);
-  }
-  for (std::size_t j = 0; j < N; ++j) {
-    if (!concerns(j)) continue;
-    // That it was looked at in float leaves no doubt; where doubles cannot tell either, the scalar walk begins anew.
-    a.doubt[j] = kNever;
-    const std::int32_t x = a.x[j] + (over_x[j] != 0), y = a.y[j] + (over_y[j] != 0);
-    const auto T_exit = static_cast<float>(T_out[j]);
+    const VD way = hn::Mul(hn::Div(length, hn::Load(dd, a.t_per_cell + part)), hn::Set(dd, 1 - 0x1p-22));
+    const VD x = hn::Add(whole(a.x), hn::IfThenElseZero(over_column, one));
+    const VD y = hn::Add(whole(a.y), hn::IfThenElseZero(over_row, one));
     // Its end may be in this cell, see Packet::before_end().
-    const float least_end = a.end[j] * (1 - 0x1p-20f) - static_cast<float>(4 * kSideways);
-    if (!(T_exit < least_end) || x > a.last_x[j] || y > a.last_y[j]) continue;
-    if (clear[j] != 0) {
-      a.status[j] = kWalking, a.seen[j] = 1, a.x[j] = x, a.y[j] = y, a.T[j] = T_exit;
-    } else if (any && through[j] != 0) {
-      a.status[j] = kHit;
-    }
+    const VD least_end = hn::Sub(hn::Mul(place(a.end), hn::Set(dd, 1 - 0x1p-20)), hn::Set(dd, 4 * kSideways));
+    const MD leaves = hn::And(hn::And(hn::And(looked_at, moves), hn::Lt(way, least_end)),
+                              hn::And(hn::Le(x, whole(a.last_x)), hn::Le(y, whole(a.last_y))));
+    const MD clear = hn::And(leaves, hn::Gt(least, doubt));
+    VD then = hn::IfThenElse(looked_at, hn::Set(dd, kUnsure), status);
+    if (any) then = hn::IfThenElse(hn::And(leaves, falls), hn::Set(dd, kHit), then);
+    then = hn::IfThenElse(clear, hn::Set(dd, kWalking), then);
+    const auto put_whole = [part](VD v, std::int32_t* to)
+                               HWY_ATTR { hn::Store(hn::DemoteTo(di_part, v), di_part, to + part); };
+    const auto put = [part](VD v, float* to) HWY_ATTR { hn::Store(hn::DemoteTo(df_part, v), df_part, to + part); };
+    put_whole(then, a.status), put_whole(hn::IfThenElse(clear, one, seen), a.seen);
+    const auto from_x = hn::Load(di_part, a.x + part), from_y = hn::Load(di_part, a.y + part);
+    const auto to_x = hn::DemoteTo(di_part, hn::IfThenElse(clear, x, whole(a.x)));
+    const auto to_y = hn::DemoteTo(di_part, hn::IfThenElse(clear, y, whole(a.y)));
+    hn::Store(to_x, di_part, a.x + part), hn::Store(to_y, di_part, a.y + part);
+    // One level up where the line is the border of a block, as Packet::leave() has it.
+    const auto crossed = hn::ShiftRight<1>(hn::Or(hn::Xor(from_x, to_x), hn::Xor(from_y, to_y)));
+    const auto up = hn::Min(crossed, hn::Set(di_part, 1));
+    hn::Store(hn::Max(hn::Load(di_part, a.level + part), up), di_part, a.level + part);
+    put(hn::IfThenElse(clear, way, place(a.T)), a.T);
+    // That it was looked at in float leaves no doubt; where doubles cannot tell either, the scalar walk begins anew.
+    put(hn::IfThenElse(looked_at, hn::Set(dd, kNever), place(a.doubt)), a.doubt);
   }
 }
 

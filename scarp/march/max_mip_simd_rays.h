@@ -10,18 +10,14 @@
 
 #include <limits>
 
+#include "scarp/field/height_field.h"
 #include "scarp/march/max_mip_simd_lanes.h"
+#include "scarp/march/ray_numbers_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
-
-// Rays in grid units, one for each lane.
-struct GridRays {
-  alignas(64) double ox[N], oy[N], oz[N], dx[N], dy[N], dz[N], t_min[N], t_max[N];
-  std::int32_t seen[N];
-};
 
 // The field as the way into the vectors needs it; heights in sample units.
 struct FieldFrame {
@@ -30,6 +26,39 @@ struct FieldFrame {
   double upright;              // see rounding_of_clearance()
   double mask;                 // of mirrored cells: column c is column mask - c
   double from_outside;         // the level of rays from above or outside
+  HeightField::GridScales scales;
+  double last_row;      // of samples
+  double width, depth;  // metres up to which positions are taken as within; none where the ground wraps round
+};
+
+// Rays in grid units, one for each lane.
+struct GridRays {
+  alignas(64) double ox[N], oy[N], oz[N], dx[N], dy[N], dz[N], t_min[N], t_max[N];
+  std::int32_t seen[N];
+
+  // ray(0) to ray(N - 1), by the operations of HeightField::grid_from_world().
+  template <class RayAt>
+  HWY_INLINE void load(const FieldFrame& f, const RayAt& ray) {
+    load_ray_numbers(ray, N, {ox, oy, oz, dx, dy, dz, t_min, t_max});
+    const auto& [per_cell_x, per_cell_y, z_offset, per_scale] = f.scales;
+    const VD zero = hn::Zero(dd), cols = hn::Set(dd, f.cols);
+    for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
+      const auto turn = [part](double* numbers, auto by)
+                            HWY_ATTR { hn::Store(by(hn::Load(dd, numbers + part)), dd, numbers + part); };
+      const auto scale = [&](double* numbers, double per)
+                             HWY_ATTR { turn(numbers, [per](VD v) HWY_ATTR { return hn::Mul(v, hn::Set(dd, per)); }); };
+      turn(ox, [&](VD x) HWY_ATTR {
+        const VD col = hn::Mul(x, hn::Set(dd, per_cell_x));
+        return hn::IfThenElse(hn::And(hn::Le(x, hn::Set(dd, f.width)), hn::Lt(cols, col)), cols, col);
+      });
+      turn(oy, [&](VD y) HWY_ATTR {
+        const VD row = hn::Sub(hn::Set(dd, f.last_row), hn::Mul(y, hn::Set(dd, per_cell_y)));
+        return hn::IfThenElse(hn::And(hn::Le(y, hn::Set(dd, f.depth)), hn::Lt(row, zero)), zero, row);
+      });
+      turn(oz, [&](VD z) HWY_ATTR { return hn::Mul(hn::Sub(z, hn::Set(dd, z_offset)), hn::Set(dd, per_scale)); });
+      scale(dx, per_cell_x), scale(dy, -per_cell_y), scale(dz, per_scale);
+    }
+  }
 };
 
 // Four times rounding_of_clearance() of a ray up to time t.

@@ -19,6 +19,7 @@
 #include "hwy/foreach_target.h"
 // foreach_target.h comes first.
 #include "hwy/highway.h"
+#include "scarp/march/ray_numbers_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scarp {
@@ -474,36 +475,10 @@ std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPac
   return met;
 }
 
-// The eight numbers that a ray begins with.
-constexpr std::size_t kNumbers = 8;
-static_assert(offsetof(Ray, origin) == 0 && offsetof(Ray, direction) == 3 * sizeof(double) &&
-              offsetof(Ray, t_min) == 6 * sizeof(double) && offsetof(Ray, t_max) == 7 * sizeof(double));
-
-HWY_INLINE const double* numbers_of(const Ray& ray) { return reinterpret_cast<const double*>(&ray); }
-
-// Vectors of four doubles are read for each ray and turned, so that each number goes into an array of its own.
 bool load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
-  double* const to[kNumbers] = {packet.origin[0],    packet.origin[1],    packet.origin[2], packet.direction[0],
-                                packet.direction[1], packet.direction[2], packet.t_min,     packet.t_max};
-  std::size_t i = 0;
-#if HWY_CAP_GE256
-  constexpr hn::CappedTag<double, 4> d4;
-  for (; i + 4 <= count; i += 4) {
-    for (std::size_t half = 0; half < kNumbers; half += 4) {
-      const auto numbers = [&](std::size_t ray) HWY_ATTR { return hn::LoadU(d4, numbers_of(rays[i + ray]) + half); };
-      const auto a = numbers(0), b = numbers(1), c = numbers(2), d = numbers(3);
-      const auto ab02 = hn::InterleaveLower(d4, a, b), ab13 = hn::InterleaveUpper(d4, a, b);
-      const auto cd02 = hn::InterleaveLower(d4, c, d), cd13 = hn::InterleaveUpper(d4, c, d);
-      hn::StoreU(hn::ConcatLowerLower(d4, cd02, ab02), d4, to[half] + i);
-      hn::StoreU(hn::ConcatLowerLower(d4, cd13, ab13), d4, to[half + 1] + i);
-      hn::StoreU(hn::ConcatUpperUpper(d4, cd02, ab02), d4, to[half + 2] + i);
-      hn::StoreU(hn::ConcatUpperUpper(d4, cd13, ab13), d4, to[half + 3] + i);
-    }
-  }
-#endif
-  for (; i < count; ++i) {
-    for (std::size_t number = 0; number < kNumbers; ++number) to[number][i] = numbers_of(rays[i])[number];
-  }
+  load_ray_numbers([rays](std::size_t i) -> const Ray& { return rays[i]; }, count,
+                   {packet.origin[0], packet.origin[1], packet.origin[2], packet.direction[0], packet.direction[1],
+                    packet.direction[2], packet.t_min, packet.t_max});
   packet.count = count;
   for (std::size_t o = 0; o < count; o += N) {
     VD longest = hn::Zero(dd);

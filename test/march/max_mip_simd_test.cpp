@@ -163,7 +163,6 @@ TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
           compare(target, rays, expected, rays.size(), {.refill = false}, name + ", no refill");
           compare(target, rays, expected, rays.size(), {.wait = false}, name + ", no waiting");
           compare(target, rays, expected, rays.size(), {.doubles = false}, name + ", no doubles");
-          compare(target, rays, expected, rays.size(), {.first_cells = false}, name + ", no first cells");
           compare(target, rays, expected, rays.size(), {.put_off = false}, name + ", nothing put off");
           compare(target, rays, expected, rays.size(), {.find_hits = false}, name + ", no hits found");
           compare(target, rays, expected, rays.size(), {.beam = false}, name + ", no beam");
