@@ -40,7 +40,7 @@ struct GridRays {
   template <class RayAt>
   HWY_INLINE void load(const FieldFrame& f, const RayAt& ray) {
     load_ray_numbers(ray, N, {ox, oy, oz, dx, dy, dz, t_min, t_max});
-    const auto& [per_cell_x, per_cell_y, z_offset, per_scale] = f.scales;
+    const HeightField::GridScales& s = f.scales;
     const VD zero = hn::Zero(dd), cols = hn::Set(dd, f.cols);
     for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
       const auto turn = [part](double* numbers, auto by)
@@ -48,15 +48,15 @@ struct GridRays {
       const auto scale = [&](double* numbers, double per)
                              HWY_ATTR { turn(numbers, [per](VD v) HWY_ATTR { return hn::Mul(v, hn::Set(dd, per)); }); };
       turn(ox, [&](VD x) HWY_ATTR {
-        const VD col = hn::Mul(x, hn::Set(dd, per_cell_x));
+        const VD col = hn::Mul(x, hn::Set(dd, s.per_cell_x));
         return hn::IfThenElse(hn::And(hn::Le(x, hn::Set(dd, f.width)), hn::Lt(cols, col)), cols, col);
       });
       turn(oy, [&](VD y) HWY_ATTR {
-        const VD row = hn::Sub(hn::Set(dd, f.last_row), hn::Mul(y, hn::Set(dd, per_cell_y)));
+        const VD row = hn::Sub(hn::Set(dd, f.last_row), hn::Mul(y, hn::Set(dd, s.per_cell_y)));
         return hn::IfThenElse(hn::And(hn::Le(y, hn::Set(dd, f.depth)), hn::Lt(row, zero)), zero, row);
       });
-      turn(oz, [&](VD z) HWY_ATTR { return hn::Mul(hn::Sub(z, hn::Set(dd, z_offset)), hn::Set(dd, per_scale)); });
-      scale(dx, per_cell_x), scale(dy, -per_cell_y), scale(dz, per_scale);
+      turn(oz, [&](VD z) HWY_ATTR { return hn::Mul(hn::Sub(z, hn::Set(dd, s.z_offset)), hn::Set(dd, s.per_scale)); });
+      scale(dx, s.per_cell_x), scale(dy, -s.per_cell_y), scale(dz, s.per_scale);
     }
   }
 };
