@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -206,13 +207,13 @@ class VectorWalk {
     prepare(f_, r_, fresh);
     if (!ideas_.doubles || g_.triangles || !begins_over_field(fresh)) return;
     if constexpr (any) {
-      leave_first_cells<any>(g_, f_, r_, fresh, kWalking);
+      leave_first_cells<any>(g_, f_, r_, fresh);
     } else {
       Packet p;
       p.load(fresh);
       cell_step<any>(g_, put_off_all(), p);
       p.store(fresh);
-      leave_first_cells<any>(g_, f_, r_, fresh, kUnsure);
+      leave_first_cells<any>(g_, f_, r_, fresh);
     }
   }
 

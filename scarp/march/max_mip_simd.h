@@ -8,10 +8,11 @@
 //
 // Rays of a camera start together, deep in the field: max_mip_simd_beam.h.
 //
-// What the vectors say is proven, for single precision with a margin (doc/dev/numerics.md): that a ray is above the
-// ground up to a time, or that it is above at one time and below at a later one. Any-hit needs no more. The closest hit
-// is computed as march_max_mip() computes it, in double; what no margin decides goes to march_max_mip() and
-// occluded_max_mip(), from the time on up to which the ray is above. So the answers are theirs, bit for bit.
+// What the vectors say is proven, for single precision with a margin, in first cells for double (doc/dev/numerics.md):
+// that a ray is above the ground up to a time, or that it is above at one time and below at a later one. Any-hit needs
+// no more. The closest hit is computed as march_max_mip() computes it, in double; what no margin decides goes to
+// march_max_mip() and occluded_max_mip(), from the time on up to which the ray is above. So the answers are theirs, bit
+// for bit.
 //
 // Source: T. Aila, S. Laine, "Understanding the efficiency of ray traversal on GPUs", HPG 2009 (lanes that are
 // refilled, leaves put off); the walk is that of max_mip.h. Cost: none per field but the pyramid; pays from some 32

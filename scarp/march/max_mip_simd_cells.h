@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cells in vectors of double, for max_mip_simd.cpp: hits as the scalar walk computes them, and the first cells of rays
-// that begin closer to the ground than floats can tell.
+// Cells in vectors of double, for max_mip_simd.cpp: hits as the scalar walk computes them, and the first cells of rays,
+// which may begin closer to the ground than floats can tell.
 // Read once for each instruction set.
 #if defined(SCARP_MARCH_MAX_MIP_SIMD_CELLS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
@@ -9,7 +9,6 @@
 #define SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
 #endif
 
-#include <algorithm>
 #include <limits>
 
 #include "scarp/march/max_mip_simd_lanes.h"
@@ -103,12 +102,18 @@ struct CellRays {
 
 // Rays in the cell that they begin in, set off next to the ground as shadow rays are: within the margin of floats,
 // which would leave each of them to the scalar walk. Those that are above the ground on all of their way through it go
-// on behind it; any-hit is answered by those that are certain to fall under it. `concerned` is the status of the rays
-// that are looked at, before floats do or after they were unsure; what doubles cannot tell is kUnsure.
+// on behind it; any-hit is answered by those that are certain to fall under it. Closest: where floats were unsure.
+// Any-hit: at once, but for rays that the scalar walk knows to be above, which may be in doubt where they begin: floats
+// put that off.
 template <bool any, class T>
-HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a,
-                                    Status concerned) {
-  if (std::find(a.status, a.status + N, concerned) == a.status + N) return;
+HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a) {
+  constexpr Status kConcerned = any ? kWalking : kUnsure;
+  const auto concerns = [&](std::size_t j) {
+    return a.status[j] == kConcerned && a.level[j] == 0 && !(any && a.seen[j]);
+  };
+  std::size_t concerned = 0;
+  for (std::size_t j = 0; j < N; ++j) concerned += concerns(j);
+  if (concerned == 0) return;
   Cells cells;
   for (std::size_t j = 0; j < N; ++j) cells.load(g, j, a.x[j] ^ a.mirror_x[j], a.y[j] ^ a.mirror_y[j]);
   for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
@@ -116,11 +121,9 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
                            HWY_ATTR { return hn::PromoteTo(dd, hn::Load(di_part, from + part)); };
     const auto place = [part](const float* from) HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df_part, from + part)); };
     const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
-    const VD status = whole(a.status), seen = whole(a.seen);
-    const MD at_begin = hn::And(hn::Eq(whole(a.level), zero), hn::Eq(place(a.T), zero));
-    MD looked_at = hn::And(hn::Eq(status, hn::Set(dd, concerned)), at_begin);
-    // Rays that the scalar walk knows to be above may be in doubt where they begin: floats put that off.
-    if (concerned == kWalking) looked_at = hn::And(looked_at, hn::Eq(seen, zero));
+    const VD status = whole(a.status), seen = whole(a.seen), level = whole(a.level);
+    const MD at_begin = hn::Eq(any ? hn::Add(level, seen) : level, zero);
+    const MD looked_at = hn::And(hn::Eq(status, hn::Set(dd, kConcerned)), at_begin);
     const CellRays c(r, cells, part);
     // A ray along an axis comes to no line of that axis.
     const MD still_x = hn::Eq(c.dx, zero), still_y = hn::Eq(c.dy, zero);
@@ -144,17 +147,16 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
     const VD way = hn::Mul(hn::Div(length, hn::Load(dd, a.t_per_cell + part)), hn::Set(dd, 1 - 0x1p-22));
     const VD x = hn::Add(whole(a.x), hn::IfThenElseZero(over_column, one));
     const VD y = hn::Add(whole(a.y), hn::IfThenElseZero(over_row, one));
-    // Its end may be in this cell, see Packet::before_end().
+    // Its end may be in this cell, see Packet::before_end(): floats tell whether it is above up to there.
     const VD least_end = hn::Sub(hn::Mul(place(a.end), hn::Set(dd, 1 - 0x1p-20)), hn::Set(dd, 4 * kSideways));
     const MD leaves = hn::And(hn::And(hn::And(looked_at, moves), hn::Lt(way, least_end)),
                               hn::And(hn::Le(x, whole(a.last_x)), hn::Le(y, whole(a.last_y))));
     const MD clear = hn::And(leaves, hn::Gt(least, doubt));
-    VD then = hn::IfThenElse(looked_at, hn::Set(dd, kUnsure), status);
+    VD then = hn::IfThenElse(leaves, hn::Set(dd, kUnsure), status);
     if (any) then = hn::IfThenElse(hn::And(leaves, falls), hn::Set(dd, kHit), then);
     then = hn::IfThenElse(clear, hn::Set(dd, kWalking), then);
     const auto put_whole = [part](VD v, std::int32_t* to)
                                HWY_ATTR { hn::Store(hn::DemoteTo(di_part, v), di_part, to + part); };
-    const auto put = [part](VD v, float* to) HWY_ATTR { hn::Store(hn::DemoteTo(df_part, v), df_part, to + part); };
     put_whole(then, a.status), put_whole(hn::IfThenElse(clear, one, seen), a.seen);
     const auto from_x = hn::Load(di_part, a.x + part), from_y = hn::Load(di_part, a.y + part);
     const auto to_x = hn::DemoteTo(di_part, hn::IfThenElse(clear, x, whole(a.x)));
@@ -164,9 +166,7 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
     const auto crossed = hn::ShiftRight<1>(hn::Or(hn::Xor(from_x, to_x), hn::Xor(from_y, to_y)));
     const auto up = hn::Min(crossed, hn::Set(di_part, 1));
     hn::Store(hn::Max(hn::Load(di_part, a.level + part), up), di_part, a.level + part);
-    put(hn::IfThenElse(clear, way, place(a.T)), a.T);
-    // That it was looked at in float leaves no doubt; where doubles cannot tell either, the scalar walk begins anew.
-    put(hn::IfThenElse(looked_at, hn::Set(dd, kNever), place(a.doubt)), a.doubt);
+    hn::Store(hn::DemoteTo(df_part, hn::IfThenElse(clear, way, place(a.T))), df_part, a.T + part);
   }
 }
 

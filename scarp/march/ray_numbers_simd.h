@@ -45,7 +45,7 @@ HWY_INLINE void load_ray_numbers(const RayAt& ray, std::size_t count, double* co
       hn::StoreU(hn::ConcatUpperUpper(d4, cd13, ab13), d4, to[half + 3] + i);
     }
   }
-  if (count % 4 == 0) return;
+  if (count % 4 == 0) return;  // as compilers know where the count is a constant
 #endif
   for (; i < count; ++i) {
     for (std::size_t number = 0; number < kRayNumbers; ++number) to[number][i] = numbers_of(i)[number];

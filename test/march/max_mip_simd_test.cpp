@@ -485,5 +485,28 @@ TEST(MaxMipSimd, HandsOverFewRays) {
   EXPECT_LT(take_vector_stats().handed_over, rays.size() / 2);
 }
 
+// Nor those that end in the cell that they begin in, which floats can tell where the ground is gentle.
+TEST(MaxMipSimd, HandsOverFewRaysThatEndWhereTheyBegin) {
+  Random random(74);
+  constexpr int kSide = 33;
+  std::vector<float> samples(kSide * kSide);
+  for (float& sample : samples) sample = static_cast<float>(uniform(random, 0, 0.5));
+  const HeightField field = HeightField::own(std::move(samples), kSide, kSide);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  std::vector<Ray> rays(4096);
+  for (Ray& ray : rays) {
+    const double x = uniform(random, 1, kSide - 2), y = uniform(random, 1, kSide - 2);
+    ray.origin = {x, y, *field.height(x, y) + 0.1};
+    ray.direction = {uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, 0, 1)};
+    ray.t_max = uniform(random, 0, 0.5);
+  }
+  std::vector<std::uint8_t> blocked(rays.size());
+  take_vector_stats();
+  occluded_max_mip_simd(target, rays, blocked);
+  EXPECT_LT(take_vector_stats().handed_over, rays.size() / 5);
+  for (std::size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(blocked[i] != 0, occluded_max_mip(target, rays[i])) << i;
+}
+
 }  // namespace
 }  // namespace scarp::test
