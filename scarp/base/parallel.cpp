@@ -56,10 +56,11 @@ void parallel_for(std::int64_t count, std::int64_t grain, const std::function<vo
   const auto run_piece = [&](std::int64_t begin, std::int64_t end) {
     body(begin, end);
     if (!progress) return;
-    const std::int64_t now = done += end - begin;
-    // Whoever finds another thread reporting leaves it to that one: a report is never worth a wait.
+    done += end - begin;
+    // Whoever finds another thread reporting leaves it to that one: a report is never worth a wait. The share is read
+    // under the lock; read before it, an older one could follow a newer one.
     const std::unique_lock<std::mutex> lock(reporting, std::try_to_lock);
-    if (lock && !progress(static_cast<double>(now) / static_cast<double>(count))) {
+    if (lock && !progress(static_cast<double>(done) / static_cast<double>(count))) {
       stopped = true;
       context.cancel_group_execution();
     }

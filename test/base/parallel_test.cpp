@@ -75,6 +75,18 @@ TEST(ParallelFor, ReportsSharesOneAtATimeAndEndsAtOne) {
   }
 }
 
+// Many short pieces, so that threads come to report just after one another.
+TEST(ParallelFor, NeverReportsLessThanBefore) {
+  double last = 0;
+  parallel_for(
+      1'000'000, 1, [](std::int64_t, std::int64_t) {},
+      [&](double share) {
+        EXPECT_GE(share, last);
+        last = share;
+        return true;
+      });
+}
+
 TEST(ParallelFor, StopsWithInterruptedWhenTheReportSaysSo) {
   std::atomic<int> pieces{0};
   EXPECT_THROW(parallel_for(
