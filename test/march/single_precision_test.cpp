@@ -10,6 +10,7 @@
 
 #include "march/glsl_host.h"
 #include "march/rounding_judge.h"
+#include "march/shader_ray.h"
 #include "march/spiteful.h"
 #include "march/spiteful_text.h"
 #include "scarp/march/device_ray.h"
@@ -90,23 +91,13 @@ TEST(SinglePrecisionFromFloats, MaxMipDecidesAsTheSurfaceDoes) {
       glsl::host_pyramid = &pyramid;
       const glsl::ScarpField ground = device_field(field, &pyramid);
       for (int i = 0; i < 100; ++i) {
-        const Ray made = spiteful_rays()[kind].make(field, random);
-        const GridRay local = field.grid_from_world(made);
-        const glsl::vec3 origin(local.origin), direction(local.direction);
-        const double speed = std::max(std::abs(double{direction.x}), std::abs(double{direction.y}));
-        if (!(speed > 0)) continue;
-        const auto end = static_cast<float>(std::min(made.t_max * speed, double{glsl::kScarpNever}));
-        // The same ray in the world, but for doubles' rounding.
-        Ray ray;
-        ray.origin = field.world_from_grid(origin.x, origin.y, origin.z);
-        ray.direction = field.world_from_grid(origin.x + double{direction.x}, origin.y + double{direction.y},
-                                              origin.z + double{direction.z}) -
-                        ray.origin;
-        ray.t_max = end < glsl::kScarpNever ? end / speed : HUGE_VAL;
+        const auto made = shader_ray(field, spiteful_rays()[kind].make(field, random));
+        if (!made) continue;
+        const Ray& ray = made->ray;
         DeviceRay prepared;
-        prepared.marches = glsl::scarp_ray_from(ground, origin, direction, end, prepared.ray);
+        prepared.marches = glsl::scarp_ray_from(ground, made->origin, made->direction, made->end, prepared.ray);
         prepared.begin = double{prepared.ray.travelled};
-        prepared.per_time = 1 / speed;
+        prepared.per_time = 1 / made->speed;
         glsl::ScarpHit answer{};
         if (prepared.marches) answer = glsl::scarp_max_mip(ground, prepared.ray, false);
         const Hit hit = hit_from_device(ray, prepared, answer);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "march/rounding_judge.h"
+#include "march/shader_ray.h"
 #include "march/spiteful.h"
 #include "march/spiteful_text.h"
 #include "march/texture_levels.h"
@@ -202,19 +203,9 @@ TEST_F(TexturesAsEs, MaxMipDecidesAsTheSurfaceDoes) {
     std::vector<double> speeds;
     while (rays.size() < std::size_t{kWidth} * kHeight) {
       // The first four kinds are free and begin at 0.
-      const Ray made = spiteful_rays()[rays.size() % 4].make(field, random);
-      const GridRay local = field.grid_from_world(made);
-      const glsl::vec3 origin(local.origin), direction(local.direction);
-      const double speed = std::max(std::abs(double{direction.x}), std::abs(double{direction.y}));
-      if (!(speed > 0)) continue;
-      const auto end = static_cast<float>(std::min(made.t_max * speed, double{glsl::kScarpNever}));
-      // The same ray in the world, but for doubles' rounding.
-      Ray ray;
-      ray.origin = field.world_from_grid(origin.x, origin.y, origin.z);
-      ray.direction = field.world_from_grid(origin.x + double{direction.x}, origin.y + double{direction.y},
-                                            origin.z + double{direction.z}) -
-                      ray.origin;
-      ray.t_max = end < glsl::kScarpNever ? end / speed : HUGE_VAL;
+      const auto made = shader_ray(field, spiteful_rays()[rays.size() % 4].make(field, random));
+      if (!made) continue;
+      const auto [origin, direction, speed, end, ray] = *made;
       rays.push_back(ray);
       speeds.push_back(speed);
       origins.texels.insert(origins.texels.end(), {origin.x, origin.y, origin.z, 0});
