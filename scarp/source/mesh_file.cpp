@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
+#include "scarp/source/incomplete_file.h"
 #include "scarp/source/mesh_corners.h"
 
 namespace scarp {
@@ -38,6 +40,11 @@ void require_file(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) refuse_mesh(path, "is a folder");
   if (!std::filesystem::exists(path, error)) refuse_mesh(path, "cannot be opened; is the name right?");
+  // What is no file, such as a pipe, is read once only.
+  if (!std::filesystem::is_regular_file(path, error)) return;
+  std::string start(kLfsPointer.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start == kLfsPointer) refuse_mesh(path, kLfsAdvice);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
+#include "scarp/source/incomplete_file.h"
 
 namespace scarp {
 namespace {
@@ -24,7 +25,7 @@ class CptReader {
       throw Error(fmt::format("ramp '{}': cannot be opened; name a .cpt file, a .png or a built-in ramp", path_));
     std::string text;
     while (std::getline(in, text)) {
-      ++line_;
+      if (++line_ == 1 && text.starts_with(kLfsPointer)) throw Error(fmt::format("ramp '{}': {}", path_, kLfsAdvice));
       take(text);
     }
     if (in.bad()) throw Error(fmt::format("ramp '{}': cannot be read", path_));

@@ -17,6 +17,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/source/csv_rows.h"
+#include "scarp/source/incomplete_file.h"
 #include "scarp/source/npy_header.h"
 
 namespace scarp {
@@ -321,6 +322,7 @@ std::string RayTable::where(std::size_t row) const {
 
 RayTable parse_ray_csv(std::string_view bytes) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("is UTF-16; save it as UTF-8");
+  refuse_lfs_pointer(bytes);
   CsvRows rows(bytes);
   if (!rows.next()) throw Error(fmt::format("is empty; a header is needed, in which {}", kNeeded));
   if (double number = 0; parse(trimmed(rows.fields().front()), number)) {

@@ -102,6 +102,10 @@ TEST_F(MeshFiles, BadObjIsRefused) {
   EXPECT_EQ(refusal("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "has no triangles");
   EXPECT_EQ(refusal("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "has no triangles");
   EXPECT_EQ(refusal("empty.obj", ""), "has no triangles");
+  for (const char* name : {"pointer.obj", "pointer.gltf", "pointer.glb"}) {
+    EXPECT_EQ(refusal(name, "version https://git-lfs.github.com/spec/v1\n"),
+              "is a Git LFS pointer, not the file itself; fetch it with: git lfs pull");
+  }
   EXPECT_NE(refusal("zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n"), "read");
   EXPECT_EQ(refusal("model.stl", ""), "is not known by its name; meshes end in .obj, .gltf or .glb");
   EXPECT_THROW(read_mesh((folder_ / "none.obj").string()), Error);

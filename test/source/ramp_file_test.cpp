@@ -63,6 +63,7 @@ TEST(RampFile, RefusesInOneLine) {
   EXPECT_NE(CptFile("0 1/2 1 3/4\n").refusal().find("expected R/G/B"), std::string::npos);
   EXPECT_NE(CptFile("# COLOR_MODEL = HSV\n0 0 0 0 1 2 3 4\n").refusal().find("must be RGB"), std::string::npos);
   EXPECT_NE(CptFile("0 0 0 0 5 1 1 1\n4 0 0 0 9 1 1 1\n").refusal().find("line 2: begins at 4"), std::string::npos);
+  EXPECT_NE(CptFile("version https://git-lfs.github.com/spec/v1\n").refusal().find("git lfs pull"), std::string::npos);
 }
 
 TEST(RampFile, ARowIsEvenlySpaced) {

@@ -148,6 +148,7 @@ TEST(RayCsv, BadHeadersAreRefused) {
   expect_csv_refused("x,y,z,dx,dy,dz,tx,ty,tz\n", "directions and targets");
   expect_csv_refused("x,y,z,dx,dy,dz,start_row\n", "no column 'start_col', which goes with 'start_row'");
   expect_csv_refused(std::string("\xFF\xFEx\0,\0", 6), "UTF-16");
+  expect_csv_refused("version https://git-lfs.github.com/spec/v1\n", "git lfs pull");
 }
 
 TEST(RayCsv, BadQuotesAreRefused) {
