@@ -1,3 +1,12 @@
+# scarp_link_soon(target): links with LLVM's linker, where there is one, in a third to a half of the time. For what nobody is given to use.
+find_program(SCARP_LLD ld.lld)
+mark_as_advanced(SCARP_LLD)
+function(scarp_link_soon target)
+  if(SCARP_LLD)
+    target_link_options(${target} PRIVATE -fuse-ld=lld)
+  endif()
+endfunction()
+
 # scarp_compile_options(target): warnings, sanitizers and strict floating point for what is built here.
 # Private on purpose: nobody who links Scarp inherits them.
 function(scarp_compile_options target)
@@ -12,6 +21,7 @@ function(scarp_compile_options target)
     # What is found ends the program: undefined behaviour that is only printed fails no test.
     target_compile_options(${target} PRIVATE -fsanitize=${SCARP_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
     target_link_options(${target} PUBLIC -fsanitize=${SCARP_SANITIZE})
+    scarp_link_soon(${target})
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
       # Checks of every pointer for null and alignment take a third of the time to compile; the address sanitizer reports
       # null pointers as well. Its checks are what g++ takes for reading values that were never set.

@@ -20,8 +20,8 @@ struct Event {
   }
 };
 
-// What keeps the ray in and out of the voxels that some axes have left. No event: it is there from the beginning, or for
-// good.
+// What keeps the ray in and out of the voxels that some axes have left. No event: it is there from the beginning, or
+// for good.
 struct Visit {
   std::optional<Event> in, out;
 };
