@@ -20,36 +20,26 @@ struct Event {
   }
 };
 
-// What keeps the ray in and out of a voxel along one axis. No event: it is there from the beginning, or for good.
-struct Passage {
+// What keeps the ray in and out of the voxels that some axes have left. No event: it is there from the beginning, or
+// for good.
+struct Visit {
   std::optional<Event> in, out;
 };
 
-std::optional<Passage> passage(const QuantisedRay& ray, const ivec3& voxel, int axis) {
-  const std::int64_t planes = std::int64_t{voxel[axis] - ray.voxel[axis]} * ray.direction.step[axis];
+// Cuts the visit to where the ray is in the voxels at that place along the axis; false when nothing is left.
+bool cut(Visit& visit, const QuantisedRay& ray, int axis, int place) {
+  const std::int64_t planes = std::int64_t{place - ray.voxel[axis]} * ray.direction.step[axis];
   const std::int64_t speed = ray.direction.speed[axis], first = ray.to_plane[axis], side = 1 << 20;
-  if (planes < 0 || (planes > 0 && speed == 0)) return {};
-  Passage passage;
-  if (planes > 0) passage.in = Event{first + (planes - 1) * side, speed, axis};
-  if (speed > 0) passage.out = Event{first + planes * side, speed, axis};
-  return passage;
-}
-
-struct Visit {
-  std::optional<Event> in;  // none: the first voxel
-};
-
-std::optional<Visit> visit(const QuantisedRay& ray, const ivec3& voxel) {
-  Visit visit;
-  std::optional<Event> out;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::optional<Passage> along = passage(ray, voxel, axis);
-    if (!along) return {};
-    if (along->in && (!visit.in || *visit.in < *along->in)) visit.in = along->in;
-    if (along->out && (!out || *along->out < *out)) out = along->out;
-    if (visit.in && out && !(*visit.in < *out)) return {};
+  if (planes < 0 || (planes > 0 && speed == 0)) return false;
+  if (planes > 0) {
+    const Event in{first + (planes - 1) * side, speed, axis};
+    if (!visit.in || *visit.in < in) visit.in = in;
   }
-  return visit;
+  if (speed > 0) {
+    const Event out{first + planes * side, speed, axis};
+    if (!visit.out || out < *visit.out) visit.out = out;
+  }
+  return !visit.in || !visit.out || *visit.in < *visit.out;
 }
 
 }  // namespace
@@ -59,12 +49,17 @@ VoxelHit march_voxel_exhaustive(const VoxelTarget& target, const QuantisedRay& r
   ivec3 voxel(-1);
   std::uint32_t looked_at = 0;
   for (int z = target.box.low.z; z < target.box.high.z; ++z) {
+    Visit layer;
+    if (!cut(layer, ray, 2, z)) continue;
     for (int y = target.box.low.y; y < target.box.high.y; ++y) {
+      Visit row = layer;
+      if (!cut(row, ray, 1, y)) continue;
       for (int x = target.box.low.x; x < target.box.high.x; ++x) {
         if (!target.grid->solid({x, y, z})) continue;
         ++looked_at;
-        const std::optional<Visit> here = visit(ray, {x, y, z});
-        if (!here || (first && !(here->in && first->in ? *here->in < *first->in : !here->in))) continue;
+        Visit here = row;
+        if (!cut(here, ray, 0, x)) continue;
+        if (first && !(here.in && first->in ? *here.in < *first->in : !here.in)) continue;
         first = here;
         voxel = {x, y, z};
       }

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // A byte may round the other way where the mathematical library's pow, exp, sin or cos differs in its last bit.
-constexpr int kRounding = 2;
+constexpr int kByteRounding = 2;
 // And a ray may pass the other side of a crest or a shadow's edge: that changes one of a pixel's four samples, at most
 // from white to black, and does so in few pixels. Of one sample per pixel it changes all.
 constexpr int kMaxDifference = 140, kAnyDifference = 255;
@@ -51,7 +51,7 @@ void expect_golden(const std::string& picture, const std::string& name, int most
     int here = 0;
     for (std::size_t i = pixel; i < pixel + 3; ++i) here = std::max(here, std::abs(now.bytes[i] - golden.bytes[i]));
     largest = std::max(largest, here);
-    differing += here > kRounding;
+    differing += here > kByteRounding;
     // Amplified, so that one sees it.
     std::fill_n(difference.begin() + static_cast<std::ptrdiff_t>(pixel), 3,
                 static_cast<std::uint8_t>(std::min(255, 8 * here)));

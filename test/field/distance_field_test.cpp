@@ -23,9 +23,9 @@ namespace {
 using namespace shape;
 
 #ifdef NDEBUG
-constexpr int kSamples = 10'000;
+constexpr int kPlaces = 10'000;
 #else
-constexpr int kSamples = 400;
+constexpr int kPlaces = 400;
 #endif
 constexpr double kReach = 60;  // of the positions below, from the origin
 
@@ -84,14 +84,14 @@ TEST(DistanceField, SignIsThatOfSets) {
     const DistanceField field(named.shape);
     FunctionRandom random(1);
     int inside = 0;
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kPlaces; ++i) {
       const dvec3 p = some_position(field, random);
       inside += field.value(p) < 0;
       expect_sign_of_sets(field, named.shape, p, named.name);
       if (HasFatalFailure()) return;
     }
-    EXPECT_GT(inside, kSamples / 20) << named.name;
-    EXPECT_LT(inside, kSamples - kSamples / 20) << named.name;
+    EXPECT_GT(inside, kPlaces / 20) << named.name;
+    EXPECT_LT(inside, kPlaces - kPlaces / 20) << named.name;
   }
 }
 
@@ -99,7 +99,7 @@ TEST(DistanceField, ValuesChangeByAMetrePerMetre) {
   for (const NamedShape& named : shape_zoo()) {
     const DistanceField field(named.shape);
     FunctionRandom random(2);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kPlaces; ++i) {
       const dvec3 p = some_position(field, random);
       expect_lipschitz(field, p, anywhere(random), named.name);
       expect_lipschitz(field, p, p + anywhere(random, std::exp2(random.between(-30, 2))), named.name);
@@ -143,7 +143,7 @@ TEST(DistanceField, SingleSolidsAreExactOutside) {
     if (!exact) continue;
     const DistanceField field(named.shape);
     FunctionRandom random(3);
-    for (int i = 0; i < kSamples / 4; ++i) {
+    for (int i = 0; i < kPlaces / 4; ++i) {
       const dvec3 p = anywhere(random);
       const double f = field.value(p);
       if (f <= 0) continue;
@@ -159,7 +159,7 @@ TEST(DistanceField, RoundingIsWithinItsBound) {
     const DistanceField field(named.shape);
     if (!field.program().functions.empty() || !field.program().fields.empty()) continue;  // heights are doubles
     FunctionRandom random(4);
-    for (int i = 0; i < kSamples; ++i) {
+    for (int i = 0; i < kPlaces; ++i) {
       const double reach = std::exp2(random.between(-2, 25));
       const dvec3 p = random.between(0, 1) < 0.5 ? anywhere(random, reach) : near_surface(field, random);
       const long double exact =
@@ -175,7 +175,7 @@ TEST(DistanceField, GradientsAreThoseOfDifferences) {
     const DistanceField field(named.shape);
     FunctionRandom random(5);
     int creases = 0;
-    const int samples = kSamples / 4;
+    const int samples = kPlaces / 4;
     for (int i = 0; i < samples; ++i) {
       const dvec3 p = i % 2 ? anywhere(random) : near_surface(field, random, 0.1);
       const auto differences = [&](double h) {
@@ -206,7 +206,7 @@ TEST(DistanceField, SegmentBoundsAreNeverExceeded) {
     for (const double size : {0.001, 0.03, 1.0, 20.0}) {
       FunctionRandom random(6);
       double rest = 0;
-      const int segments = kSamples / 40;
+      const int segments = kPlaces / 40;
       for (int i = 0; i < segments; ++i) {
         const dvec3 from = some_position(field, random),
                     direction = normalize(anywhere(random)) * random.between(0.5, 2);
@@ -248,7 +248,7 @@ TEST(DistanceField, AUnionOfManyIsTheLeastOfAll) {
     fields.emplace_back(part);
   }
   const DistanceField all(make_shape(Union{parts}));
-  for (int i = 0; i < kSamples / 10; ++i) {
+  for (int i = 0; i < kPlaces / 10; ++i) {
     const dvec3 p = anywhere(random);
     double least = 1e300, next = 1e300;
     int material = -1;
@@ -284,7 +284,7 @@ TEST(DistanceField, SmoothOperationsStayWithinAQuarterOfTheRadius) {
   const DistanceField fa(a), fb(b), both(make_shape(Union{{a, b}, 0.8})), common(make_shape(Intersection{{a, b}, 0.8})),
       cut(make_shape(Subtraction{a, b, 0.8}));
   double most = 0;
-  for (int i = 0; i < kSamples; ++i) {
+  for (int i = 0; i < kPlaces; ++i) {
     const dvec3 p = anywhere(random, 4);
     const double x = fa.value(p), y = fb.value(p), slack = 1e-12;
     const double rounded = std::min(x, y) - both.value(p);

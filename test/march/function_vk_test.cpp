@@ -22,9 +22,9 @@ namespace scarp::test {
 namespace {
 
 #ifdef NDEBUG
-constexpr int kRays = 200;
+constexpr int kDeviceRays = 200;
 #else
-constexpr int kRays = 40;
+constexpr int kDeviceRays = 40;
 #endif
 
 class FunctionsOnDevice : public OnDevice {};
@@ -46,7 +46,7 @@ TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
     const DeviceFunctionTarget target{&function, &on_device};
     FunctionRandom random(21);
     std::vector<Ray> rays;
-    for (int i = 0; i < kRays; ++i) rays.push_back(random_ray(function, random));
+    for (int i = 0; i < kDeviceRays; ++i) rays.push_back(random_ray(function, random));
     std::vector<Hit> hits(rays.size());
     std::vector<std::uint32_t> steps(rays.size());
     std::vector<std::uint8_t> blocked(rays.size());
@@ -67,7 +67,7 @@ TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
         met += bool(hits[i]);
         if (HasFailure()) return;
       }
-      EXPECT_GE(met, kRays / 8) << march.name << " over " << named.name;
+      EXPECT_GE(met, kDeviceRays / 8) << march.name << " over " << named.name;
     }
   }
 }

@@ -19,9 +19,9 @@ namespace scarp::test {
 namespace {
 
 #ifdef NDEBUG
-constexpr int kRays = 500;
+constexpr int kShapeRays = 500;
 #else
-constexpr int kRays = 60;
+constexpr int kShapeRays = 60;
 #endif
 
 // Making a shader for lavapipe takes longer than its rays: shape_single_test has all.
@@ -45,7 +45,7 @@ TEST_F(ShapesOnDevice, MarchesTellWhatSinglePrecisionAllows) {
     const DeviceShape on_device(device(), field);
     FunctionRandom random(11);
     std::vector<Ray> rays;
-    for (int i = 0; i < kRays; ++i) rays.push_back(shape_ray(random));
+    for (int i = 0; i < kShapeRays; ++i) rays.push_back(shape_ray(random));
     std::vector<Hit> hits(rays.size());
     std::vector<std::uint32_t> steps(rays.size());
     std::vector<std::uint8_t> blocked(rays.size());
@@ -81,23 +81,23 @@ TEST_F(ShapesOnDevice, RefuseWhatTakesTooLong) {
   }
 }
 
-constexpr std::uint32_t kShader[] = {
+constexpr std::uint32_t kShapeShader[] = {
 #include "scarp/march/sphere_trace.comp.inc"
 };
 
 TEST(ShapeBatchLayout, IsThatOfTheShaders) {
   using glsl::ShapeBatch, glsl::ScarpShapeInstruction;
   EXPECT_TRUE(has_struct(
-      kShader, {offsetof(ShapeBatch, code), offsetof(ShapeBatch, numbers), offsetof(ShapeBatch, grounds),
-                offsetof(ShapeBatch, rays), offsetof(ShapeBatch, hits), offsetof(ShapeBatch, count),
-                offsetof(ShapeBatch, instructions), offsetof(ShapeBatch, tolerance), offsetof(ShapeBatch, max_steps),
-                offsetof(ShapeBatch, run_steps), offsetof(ShapeBatch, growth)}));
+      kShapeShader, {offsetof(ShapeBatch, code), offsetof(ShapeBatch, numbers), offsetof(ShapeBatch, grounds),
+                     offsetof(ShapeBatch, rays), offsetof(ShapeBatch, hits), offsetof(ShapeBatch, count),
+                     offsetof(ShapeBatch, instructions), offsetof(ShapeBatch, tolerance),
+                     offsetof(ShapeBatch, max_steps), offsetof(ShapeBatch, run_steps), offsetof(ShapeBatch, growth)}));
   using glsl::ScarpShapeGround;
-  EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpShapeGround, data), offsetof(ScarpShapeGround, holes),
-                                   offsetof(ScarpShapeGround, count), offsetof(ScarpShapeGround, result),
-                                   offsetof(ScarpShapeGround, has_holes), offsetof(ScarpShapeGround, none)}));
-  EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpShapeGround)));
-  EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpShapeInstruction)));
+  EXPECT_TRUE(has_struct(kShapeShader, {offsetof(ScarpShapeGround, data), offsetof(ScarpShapeGround, holes),
+                                        offsetof(ScarpShapeGround, count), offsetof(ScarpShapeGround, result),
+                                        offsetof(ScarpShapeGround, has_holes), offsetof(ScarpShapeGround, none)}));
+  EXPECT_TRUE(has_array_stride(kShapeShader, sizeof(ScarpShapeGround)));
+  EXPECT_TRUE(has_array_stride(kShapeShader, sizeof(ScarpShapeInstruction)));
   EXPECT_EQ(sizeof(ScarpShapeInstruction), 32u);
 }
 

@@ -12,26 +12,26 @@
 namespace scarp {
 namespace {
 
-constexpr std::uint32_t kTwice[] = {
+constexpr std::uint32_t kTwiceWords[] = {
 #include "test/vk/twice.comp.inc"
 };
 
 TEST(ShaderLayout, IsThatOfTheSharedStruct) {
   using glsl::TwicePush;
-  EXPECT_TRUE(test::has_struct(kTwice, {offsetof(TwicePush, from), offsetof(TwicePush, to), offsetof(TwicePush, count),
-                                        offsetof(TwicePush, rounds)}));
-  EXPECT_FALSE(test::has_struct(kTwice, {0, 8, 12, 16}));
-  EXPECT_FALSE(test::has_struct(kTwice, {0, 8, 16}));
-  EXPECT_TRUE(test::has_array_stride(kTwice, 4));
-  EXPECT_FALSE(test::has_array_stride(kTwice, 12));
-  EXPECT_TRUE(test::is_laid_out_like<TwicePush>(kTwice));
+  EXPECT_TRUE(test::has_struct(kTwiceWords, {offsetof(TwicePush, from), offsetof(TwicePush, to),
+                                             offsetof(TwicePush, count), offsetof(TwicePush, rounds)}));
+  EXPECT_FALSE(test::has_struct(kTwiceWords, {0, 8, 12, 16}));
+  EXPECT_FALSE(test::has_struct(kTwiceWords, {0, 8, 16}));
+  EXPECT_TRUE(test::has_array_stride(kTwiceWords, 4));
+  EXPECT_FALSE(test::has_array_stride(kTwiceWords, 12));
+  EXPECT_TRUE(test::is_laid_out_like<TwicePush>(kTwiceWords));
   struct Longer {
     TwicePush push;
     float more;
   };
-  EXPECT_FALSE(test::is_laid_out_like<Longer>(kTwice));
+  EXPECT_FALSE(test::is_laid_out_like<Longer>(kTwiceWords));
   // A gap, as other layouts than `scalar` have them: the second member four bytes on.
-  std::vector<std::uint32_t> gapped(std::begin(kTwice), std::end(kTwice));
+  std::vector<std::uint32_t> gapped(std::begin(kTwiceWords), std::end(kTwiceWords));
   const auto second = [&](std::size_t at) {
     return (gapped[at] & 0xffff) == 72 && gapped[at + 2] == 1 && gapped[at + 3] == 35;  // OpMemberDecorate, Offset
   };

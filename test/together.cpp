@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Runs the tests of some of its files: where several test programs are built as one (TOGETHER in test/CMakeLists.txt),
+// a test of ctest is still the files of one of them, in a process of its own. SCARP_TEST_FILES: their names, with
+// commas between. Without it, and with --gtest_filter, all files count.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+#include <sstream>
+#include <string>
+
+namespace {
+
+// What --gtest_filter takes: all tests of these files by name. Empty when one of the files has none.
+std::string tests_of(const std::string& files) {
+  std::set<std::string> wanted, found;
+  std::istringstream names(files);
+  for (std::string name; std::getline(names, name, ',');) wanted.insert(name);
+  std::string filter;
+  const testing::UnitTest& all = *testing::UnitTest::GetInstance();
+  for (int i = 0; i < all.total_test_suite_count(); ++i) {
+    const testing::TestSuite& suite = *all.GetTestSuite(i);
+    for (int k = 0; k < suite.total_test_count(); ++k) {
+      const testing::TestInfo& test = *suite.GetTestInfo(k);
+      const std::string file = std::filesystem::path(test.file()).filename();
+      if (!wanted.contains(file)) continue;
+      found.insert(file);
+      filter.append(suite.name()).append(".").append(test.name()).append(":");
+    }
+  }
+  return found == wanted ? filter : "";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  const char* files = std::getenv("SCARP_TEST_FILES");
+  if (files && testing::GTEST_FLAG(filter) == "*") {
+    const std::string filter = tests_of(files);
+    if (filter.empty()) {
+      std::fprintf(stderr, "a file of '%s' has no tests in %s\n", files, argv[0]);
+      return 1;
+    }
+    testing::GTEST_FLAG(filter) = filter;
+  }
+  return RUN_ALL_TESTS();
+}
