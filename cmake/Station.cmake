@@ -1,8 +1,9 @@
-# scarp_link_soon(target): links with LLVM's linker, where there is one, in a third to a half of the time. For what nobody is given to use.
-find_program(SCARP_LLD ld.lld)
-mark_as_advanced(SCARP_LLD)
+# scarp_link_soon(target): links with LLVM's linker, where the compiler finds it, in a third to a half of the time. For what nobody is given to
+# use. `-D SCARP_LLD=OFF`: the system's. LLVM's does not read what g++ leaves for optimisation at link time.
+include(CheckLinkerFlag)
+check_linker_flag(CXX -fuse-ld=lld SCARP_LLD)
 function(scarp_link_soon target)
-  if(SCARP_LLD)
+  if(SCARP_LLD AND NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
     target_link_options(${target} PRIVATE -fuse-ld=lld)
   endif()
 endfunction()

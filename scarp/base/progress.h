@@ -6,8 +6,9 @@
 
 namespace scarp {
 
-/// Called now and then with the share that is done, 0..1 and never less than before, from one thread at a time.
-/// Returning false stops the task, which then throws Interrupted. An empty function means: no reports, no stop.
+/// Called now and then with the share that is done, 0..1, from one thread at a time. It never falls, but where a task
+/// has parts, as the files of a scene, it is told of each. Returning false stops the task, which then throws
+/// Interrupted. An empty function means: no reports, no stop.
 using Progress = std::function<bool(double)>;
 
 }  // namespace scarp

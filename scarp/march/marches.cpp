@@ -110,7 +110,7 @@ constexpr std::array kMarches = {
                    "tolerance 0.000001 of the distance, 1024 steps",
                    "bounds the ground anew on every segment of the ray; never passes, long steps where it is calm"),
     voxel_march("voxel-exhaustive", VoxelAccelerator::none, march_voxel_exhaustive, nullptr, nullptr,
-                "every solid voxel on its own, in rationals: the judge of the voxel marches, slow"),
+                "solid voxels one by one, in rationals: the judge of the voxel marches, slow"),
     voxel_march("voxel-planes", VoxelAccelerator::none, march_voxel_planes, occluded_voxel_planes,
                 march_packet_voxel_planes, "from plane to plane, voxel by voxel"),
     voxel_march("voxel-spheres", VoxelAccelerator::spheres, march_voxel_spheres, occluded_voxel_spheres, nullptr,

@@ -322,7 +322,6 @@ std::string RayTable::where(std::size_t row) const {
 
 RayTable parse_ray_csv(std::string_view bytes) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("is UTF-16; save it as UTF-8");
-  refuse_lfs_pointer(bytes);
   CsvRows rows(bytes);
   if (!rows.next()) throw Error(fmt::format("is empty; a header is needed, in which {}", kNeeded));
   if (double number = 0; parse(trimmed(rows.fields().front()), number)) {
@@ -363,6 +362,7 @@ RayTable parse_ray_npy(std::string_view bytes) {
 RayTable read_rays(const std::string& path) {
   try {
     const std::string bytes = bytes_of(path);
+    refuse_lfs_pointer(bytes);
     const bool npy = bytes.starts_with("\x93NUMPY") || (path.ends_with(".npy") && !bytes.empty());
     RayTable table = npy ? parse_ray_npy(bytes) : parse_ray_csv(bytes);
     table.path = path;

@@ -356,8 +356,8 @@ TEST(FromVox, RefusesWhatWouldTakeForEver) {
 }
 
 // Instances of one voxel side by side, in planes across each axis: more pairs than are looked at, but for the other
-// axes. 2^kDoublings are along either axis of a plane; under the sanitizers so few that no axis would be refused: they
-// look for what placing does to memory, which comes again with each instance.
+// axes. 2^kDoublings are along either axis of a plane. In debug builds they are so few that no axis would be refused:
+// only what placing does to memory is looked at there.
 #ifdef NDEBUG
 constexpr int kDoublings = 9;
 #else

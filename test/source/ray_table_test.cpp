@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/source/ray_table.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 
 #include "scarp/base/error.h"
@@ -148,7 +152,6 @@ TEST(RayCsv, BadHeadersAreRefused) {
   expect_csv_refused("x,y,z,dx,dy,dz,tx,ty,tz\n", "directions and targets");
   expect_csv_refused("x,y,z,dx,dy,dz,start_row\n", "no column 'start_col', which goes with 'start_row'");
   expect_csv_refused(std::string("\xFF\xFEx\0,\0", 6), "UTF-16");
-  expect_csv_refused("version https://git-lfs.github.com/spec/v1\n", "git lfs pull");
 }
 
 TEST(RayCsv, BadQuotesAreRefused) {
@@ -233,6 +236,15 @@ TEST(ReadRays, TheFileIsNamed) {
   expect_refused([](const std::string& path) { return read_rays(path); }, "/no/such/rays.csv",
                  "rays '/no/such/rays.csv': cannot be opened");
   expect_refused([](const std::string& path) { return read_rays(path); }, "/", "rays '/': is a directory");
+}
+
+TEST(ReadRays, GitLfsPointersAreNamedSo) {
+  for (const char* ending : {".csv", ".npy"}) {
+    const std::string path = fmt::format("{}scarp-rays-{}{}", testing::TempDir(), ::getpid(), ending);
+    std::ofstream(path) << "version https://git-lfs.github.com/spec/v1\n";
+    expect_refused([](const std::string& of) { return read_rays(of); }, path, "': is a Git LFS pointer");
+    std::filesystem::remove(path);
+  }
 }
 
 }  // namespace
