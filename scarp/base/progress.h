@@ -6,8 +6,8 @@
 
 namespace scarp {
 
-/// Called now and then with the share that is done, 0..1, from one thread at a time. It never falls, but where a task
-/// has parts, as the files of a scene, it is told of each. Returning false stops the task, which then throws
+/// Called now and then with the share that is done, 0..1, from one thread at a time. It never falls; where a task has
+/// parts, such as the files of a scene, it begins anew with each. Returning false stops the task, which then throws
 /// Interrupted. An empty function means: no reports, no stop.
 using Progress = std::function<bool(double)>;
 
