@@ -116,7 +116,8 @@ TEST(ScarpBench, EnginesAgreeOnWhatIsHit) {
 }
 
 TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
-  const json all = output_of("naive --size 129 --exaggerations 1,4 --rays small --repeats 1");
+  const json all =
+      output_of("naive --size 129 --exaggerations 1,4 --rays small --repeats 1 --judged 2000 --pass-limit 0.02");
   expect_head(all);
   for (const json& row : all["rows"]) {
     expect_fields(row, {"size",
