@@ -21,6 +21,15 @@
 namespace scarp::cli {
 namespace {
 
+// Ways to a field of which twice are as far as its corners behind: they are farther off than the field's longer side
+// and the way to it by less than half of that side, and who sees all of a field is farther away.
+constexpr double kFarthestCorner = 2;
+
+// Metres from the camera to the nearest point of a box.
+double way_to(const Box& box, const Camera& camera) {
+  return length(glm::clamp(camera.eye(), box.low, box.high) - camera.eye());
+}
+
 vec3 colour_from(const std::string& text, std::string_view option) {
   const auto wrong = [&] {
     return Error(
@@ -124,8 +133,9 @@ void add_look_options(CLI::App& command, LookOptions& o) {
   command.add_flag("--iterations", o.comanche.iterations, "a picture of the steps, black (none) to white (all)")
       ->group(group);
   command
-      .add_option("--reach", o.reach,
-                  "metres that the camera sees: needed by fields that wrap round (their longer side)")
+      .add_option(
+          "--reach", o.reach,
+          "metres that the camera sees: needed by fields that wrap round (their longer side; more from outside)")
       ->check(number_in(kAboveZero))
       ->group(group);
 }
@@ -202,13 +212,11 @@ std::vector<std::string> read_look_files(const LookOptions& o, const Raster& ras
 void see_from_afar(const LookOptions& o, const Box& box, const Camera& camera, PictureSettings& picture) {
   constexpr double kWays = 10;
   if (o.visibility) return;
-  const dvec3 nearest = glm::clamp(camera.eye(), box.low, box.high);
-  picture.fog.visibility += kWays * length(nearest - camera.eye());
+  picture.fog.visibility += kWays * way_to(box, camera);
 }
 
 void finish_look(const LookOptions& o, const HeightField& field, PictureSettings& picture) {
-  const double reach = reach_of(o, field);
-  if (!o.visibility) picture.fog.visibility = std::isfinite(reach) ? reach : default_reach(field);
+  if (!o.visibility) picture.fog.visibility = o.reach.value_or(default_reach(field));
   const double exaggeration = field.settings().exaggeration;
   const double relief = field.max_height() - field.min_height();
   if (o.snow_line && relief > 0) {
@@ -222,9 +230,10 @@ void finish_look(const LookOptions& o, const HeightField& field, PictureSettings
   if (!o.fog_falloff) picture.fog.falloff = std::max(1.0, (field.max_height() - field.min_height()) / 4);
 }
 
-double reach_of(const LookOptions& o, const HeightField& field) {
+double reach_of(const LookOptions& o, const HeightField& field, const Box& box, const Camera& camera) {
   if (o.reach) return *o.reach;
-  return field.wraps() ? default_reach(field) : std::numeric_limits<double>::infinity();
+  if (!field.wraps()) return std::numeric_limits<double>::infinity();
+  return default_reach(field) + kFarthestCorner * way_to(box, camera);
 }
 
 }  // namespace scarp::cli

@@ -44,7 +44,9 @@ void finish_look(const LookOptions& options, const HeightField& field, PictureSe
 /// grows by ten times the way there, on which less than a third of a contrast is lost then.
 void see_from_afar(const LookOptions& options, const Box& box, const Camera& camera, PictureSettings& picture);
 
-/// How far the camera's rays go: infinitely far, but for fields that wrap round.
-double reach_of(const LookOptions& options, const HeightField& field);
+/// How far the camera's rays go: infinitely far, but for fields that wrap round. There, where nothing was said, the
+/// field's longer side, and from outside of its box twice the way to it more, so that who sees all
+/// of it sees its corners.
+double reach_of(const LookOptions& options, const HeightField& field, const Box& box, const Camera& camera);
 
 }  // namespace scarp::cli

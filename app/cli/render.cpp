@@ -386,13 +386,15 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
                  options.frames.several() ? "up to " : "", metres_text(raised));
     }
   };
-  const double reach = reach_of(options.look_options, scene.field());
+  const auto set_reach = [&](Camera& camera) {
+    camera.set_reach(reach_of(options.look_options, scene.field(), box, camera));
+  };
   if (options.frames.several()) {
     std::vector<Camera> cameras = frame_cameras(
         options.frames, view, options.picture.width, options.picture.height, [&](const ViewSettings& turned) {
           return framed_camera(options, turned, scene.field(), box, grid_north_azimuth, raised);
         });
-    for (Camera& camera : cameras) camera.set_reach(reach);
+    for (Camera& camera : cameras) set_reach(camera);
     // Without --overwrite nothing is written over.
     for (int i = 0; options.frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
       keep_inputs(frame_name(options.output, i), files);
@@ -403,7 +405,7 @@ void render_terrain(RenderOptions options, const ViewSettings& view) {
     return;
   }
   Camera camera = terrain_camera(options, view, scene.field(), box, grid_north_azimuth, raised);
-  camera.set_reach(reach);
+  set_reach(camera);
   see_from_afar(options.look_options, box, camera, options.picture);
   if (options.exr) {
     const PictureLayers layers =

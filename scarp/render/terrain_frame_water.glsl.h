@@ -55,19 +55,24 @@ FrameWater water_on(ScarpField field, ScarpLine line, ScarpTwoFloat end) {
   ScarpAxisPlace row = scarp_axis_place(scarp_line_row(line, t), field.cells.y, wraps);
   ivec2 cell = ivec2(col.cell, row.cell);
   vec2 place = vec2(col.place, row.place);
-  ScarpTwoFloat z = scarp_line_height(line, t);
+  bool from_above = same_time(t, from);
+  ScarpTwoFloat z = level;
+  if (!from_above) z = scarp_line_height(line, t);
   ScarpCell ground = scarp_cell(field, cell.x, cell.y, z.high);
   if (ground.hole) return found;
+  float surface = scarp_surface(field, ground, place.x, place.y);
+  // Who sees the level where the ground is higher, looks from under the ground.
+  if (from_above && surface > z.low) return found;
   found.t = t;
   found.cell = cell;
   found.place = place;
-  if (same_time(t, from)) {
+  if (from_above) {
     found.kind = 1;
     found.sea = is_sea(field, cell) ? 1 : 0;
     return found;
   }
   // A side: only over the ground that stands there.
-  if (z.low <= scarp_surface(field, ground, place.x, place.y)) return found;
+  if (z.low <= surface) return found;
   bool through_x = same_time(t, x.begin);
   found.kind = through_x ? 2 : 3;
   found.normal = through_x ? vec3(line.direction.x > 0.0 ? -1.0 : 1.0, 0.0, 0.0)

@@ -80,7 +80,11 @@ std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
   const auto from_above = [&](double t) -> std::optional<Meeting> {
     const dvec3 p = ray.at(t);
     const auto place = field_.place(p.x, p.y);
-    if (place && field_.nodata_count() > 0 && !field_.cell_heights(place->cell)) return {};
+    if (place) {
+      // Who sees the level where the ground is higher, looks from under the ground.
+      const auto ground = field_.height(p.x, p.y);
+      if (!ground || *ground > level_) return {};
+    }
     Meeting meeting{t, {0, 0, 1}};
     if (place && is_sea(place->cell)) meeting.sea = place->cell;
     return meeting;

@@ -55,7 +55,7 @@ class Water {
     std::optional<Cell> sea{};  ///< the cell of is_sea() there, if it is one
   };
   /// Where a ray comes into the water from outside, within its range; ground may be met before. Nothing where the ray
-  /// begins in the water, and over holes.
+  /// begins in the water, over holes, and where the ground is above the level.
   std::optional<Meeting> meets(const Ray& ray) const;
   /// Whether all corners of a cell are exactly at the level: a sea that the elevation model has as flat ground. Nobody
   /// knows how deep it is.

@@ -13,6 +13,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/source/incomplete_file.h"
+#include "scarp/source/suspected_nodata.h"
 #include "scarp/source/vrt_sources.h"
 
 namespace scarp {
@@ -61,10 +62,12 @@ struct Findings {
 };
 
 // Whether a float sample is the nodata value as far as files can say: texts like -3.402823e+38 miss the value by some
-// units in the last place. The width is that of GDAL's own test (4 epsilons, gdal_priv.h: ARE_REAL_EQUAL).
+// units in the last place. The width is that of GDAL's own test (4 epsilons, gdal_priv.h: ARE_REAL_EQUAL); for marks
+// that no height comes near to, it is that of texts of six digits, printf's usual number: half a unit of the sixth.
 bool is_float_nodata(double sample, double nodata) {
-  return sample == nodata ||
-         (std::isfinite(nodata) && std::abs(sample - nodata) <= 4 * double{FLT_EPSILON} * std::abs(nodata));
+  constexpr double kSixDigits = 0.5e-5;
+  const double width = std::abs(nodata) > kBeyondHeights ? kSixDigits : 4 * double{FLT_EPSILON};
+  return sample == nodata || (std::isfinite(nodata) && std::abs(sample - nodata) <= width * std::abs(nodata));
 }
 
 [[noreturn]] void refuse_infinite(double value, int col, int row) {

@@ -13,8 +13,6 @@ namespace scarp {
 namespace {
 
 constexpr double kLowMarks[] = {-32768, -32767, -9999, -99999, -999999};
-// Marks such as -3.4e38, 1e38 and 9.96e36 (netCDF's) are beyond it, and nothing that is measured is.
-constexpr double kBeyondHeights = 1e30;
 // From the Challenger Deep, -10,935 m, to the top of the Everest, 8,849 m, rounded up: no heights of the Earth are
 // farther apart, so no step between two that are neighbours in their order is larger.
 constexpr double kReliefOfTheEarth_m = 20000;
@@ -54,7 +52,10 @@ std::vector<std::string> suspected_nodata(const Raster& raster, std::optional<do
   std::vector<std::string> notes;
   const auto look_at = [&](std::string_view end, double value, bool marked, bool marked_if_apart, double gap,
                            double range_of_others) {
-    const bool apart = ends.several && gap > range_of_others;
+    // Of two values alone either is apart from the other; ground is near height 0 rather than far from it.
+    const bool of_two = ends.lowest == ends.below_highest;
+    const bool apart = ends.several && gap > range_of_others &&
+                       (!of_two || std::abs(value) == std::max(std::abs(ends.lowest), std::abs(ends.highest)));
     const bool far = apart && gap * std::abs(raster.scale) > kReliefOfTheEarth_m;
     if (!marked && !(marked_if_apart && apart) && !far) return;
     notes.push_back(

@@ -158,6 +158,19 @@ TEST(Flight, AFullDiskLeavesTheFramesBefore) {
   EXPECT_EQ(test::read_png(scratch.path("f1.png")).width, 160);
 }
 
+TEST(Reach, FromAboveEndlessGroundIsSeen) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch), out = scratch.path("out.png");
+  for (const std::string wrap : {"mirror", "periodic"}) {
+    const auto result =
+        test::run({"render", dem, "-o", out, "--top", "--wrap", wrap, "--look", "height", "--size", "40x40"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto bytes = test::read_png(out).bytes;
+    EXPECT_GT(*std::max_element(bytes.begin(), bytes.end()) - *std::min_element(bytes.begin(), bytes.end()), 100)
+        << wrap;
+  }
+}
+
 TEST(Overlay, LiesWhereItsPlaceIs) {
   const test::Scratch scratch;
   const std::string dem = hill(scratch);

@@ -198,6 +198,21 @@ TEST(Water, StandsInItsBasin) {
   EXPECT_TRUE(lake.meets(down));
 }
 
+TEST(Water, UnderHigherGroundThereIsNone) {
+  const HeightField field = flat(7, 11, 1);
+  WaterSettings settings;
+  settings.level = 4;
+  const Water below(settings, field);
+  Ray ray;
+  ray.origin = {-3, 5, 6};
+  ray.direction = normalize(dvec3(2, 0, -1));
+  EXPECT_FALSE(below.meets(ray)) << "in under the edge of the ground, down to the level";
+  settings.level = 7;
+  const Water sea(settings, field);
+  ray.origin.z = 9;
+  EXPECT_TRUE(sea.meets(ray)) << "ground just at the level";
+}
+
 TEST(Water, AFlatSeaAtTheLevelIsWater) {
   const TerrainScene scene(flat(0), find_march("max-mip"));
   PictureSettings settings = plain(32, 24);

@@ -92,6 +92,15 @@ TEST_F(GdalRaster, NodataNearTheLargestFloatIsFoundThoughItsTextIsRounded) {
   EXPECT_EQ(7, doubles(raster)[1]);
 }
 
+TEST_F(GdalRaster, NodataOfSixDigitsIsFoundWhereNoHeightIsNear) {
+  const double mark = -std::numeric_limits<float>::max();
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Float32, 2, 1, {mark, 7}, nodata(-3.40282e+38)), {});
+  ASSERT_TRUE(raster.nodata.has_value());
+  EXPECT_EQ(static_cast<float>(*raster.nodata), std::get<std::vector<float>>(raster.samples)[0]);
+  const Raster heights = read_raster(write_tiff("b.tif", GDT_Float32, 2, 1, {1000.004, 7}, nodata(1000)), {});
+  EXPECT_NE(static_cast<float>(*heights.nodata), std::get<std::vector<float>>(heights.samples)[0]);
+}
+
 TEST_F(GdalRaster, DoubleNodataBeyondFloatBecomesNan) {
   const Raster raster = read_raster(
       write_tiff("a.tif", GDT_Float64, 2, 1, {-1.7976931348623157e308, 7}, nodata(-1.7976931348623157e308)), {});
@@ -152,6 +161,12 @@ class SuspectedNodata : public GdalRaster {
     ADD_FAILURE() << what << ": no note";
   }
 };
+
+TEST_F(SuspectedNodata, OfTwoValuesTheOneFarFromZeroIsNamed) {
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_UInt16, 2, 1, {100, 65535}), {});
+  EXPECT_TRUE(has_note(raster, "--nodata=65535"));
+  EXPECT_FALSE(has_note(raster, "--nodata=100 "));
+}
 
 TEST_F(SuspectedNodata, WhatTheNoteTellsToSayMakesHoles) {
   constexpr double kFloatMax = std::numeric_limits<float>::max();
