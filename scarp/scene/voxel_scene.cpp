@@ -110,6 +110,12 @@ struct VoxelScene::Query {
   }
 };
 
+// A ray into the rounded voxel that it begins on hits there, at once, as one into a cube does: of that no neighbour,
+// where the walk begins, would tell.
+bool VoxelScene::begins_into(const Ray& ray, const VoxelSceneHit* from) const {
+  return rounding_ && from && ray.t_min <= ray.t_max && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0;
+}
+
 VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from, VoxelSceneStats* stats) const {
   VoxelSceneHit best;
   if (in_tree_.empty()) return best;
@@ -122,6 +128,11 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from,
   }
   Query query(*this, ray);
   double t_max = ray.t_max;
+  if (begins_into(ray, from)) {
+    best = *from;
+    best.hit.t = t_max = ray.t_min;
+  }
+  // Asked even when that is known: of hits at the same t the first object's counts.
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
     const std::uint32_t index = in_tree_[in_tree];
     const Object& object = objects_[index];
@@ -151,8 +162,7 @@ bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   if (in_tree_.empty()) return false;
   if (const double longest = longest_of(ray.direction); !is_usual(longest))
     return is_direction(longest) && occluded(scaled_down(ray, std::ilogb(longest)), from);
-  // Into the surface that it begins on: of a rounded voxel no neighbour would tell.
-  if (rounding_ && from && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0) return true;
+  if (begins_into(ray, from)) return true;
   Query query(*this, ray);
   bool blocked = false;
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
