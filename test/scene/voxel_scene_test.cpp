@@ -305,6 +305,22 @@ TEST(VoxelModel, FollowsEdits) {
   }
 }
 
+TEST(VoxelModel, IsTrueToItsGridAfterAnEditThatThrows) {
+  for (const MarchEntry& march : voxel_marches()) {
+    VoxelModel model(VoxelGrid(ivec3(20), 8), march);
+    EXPECT_THROW(model.edit([](VoxelGrid& grid) {
+      grid.fill({{5, 5, 5}, {9, 9, 9}}, 3);
+      return grid.set({0, 0, 0}, 256);
+    }),
+                 Error);
+    VoxelRay ray;
+    ray.origin = {6.5, 6.5, 30};
+    const auto quantised = quantise(ray, model.box());
+    ASSERT_TRUE(quantised) << march.name;
+    EXPECT_EQ(march.voxel_cpu(model.target(), *quantised, nullptr).t, 21) << march.name;
+  }
+}
+
 VoxFile two_cubes(int version) {
   VoxFile file;
   file.version = version;
