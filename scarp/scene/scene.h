@@ -71,7 +71,8 @@ struct SceneStats {
 /// Immutable. Questions may be asked from many threads at once, unless others than the CPU answer.
 class Scene {
  public:
-  /// Throws Error naming the object: a field that is not there, a placement that is no turn with a scale above 0.
+  /// Throws Error naming the object: a field that is not there, a placement that is no turn with a scale above 0; or a
+  /// field that is null.
   Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects);
 
   /// The same scene, whose batches are answered field by field: by a device, see scene_vk.h. Used by one thread at a

@@ -49,7 +49,10 @@ VoxelScene::VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, st
                        const VoxelRounding& rounding)
     : models_(std::move(models)), rounding_(rounding) {
   validate(rounding);
-  for (const auto& model : models_) targets_.push_back(model->target());
+  for (const auto& model : models_) {
+    if (!model) throw Error(fmt::format("voxel scene: model {} is null", targets_.size()));
+    targets_.push_back(model->target());
+  }
   std::unordered_map<std::string, std::uint32_t> turns;
   std::vector<WorldBox> boxes;
   for (const VoxelPlace& place : places) {

@@ -53,8 +53,8 @@ struct VoxelSceneStats {
 /// Immutable. Questions may be asked from many threads at once.
 class VoxelScene {
  public:
-  /// Throws Error, naming the place: a model that is not there, a matrix that is no rotation with a scale; a rounding
-  /// out of its range. Models are shared with the caller, who may not change them any more.
+  /// Throws Error, naming the place: a model that is not there, a matrix that is no rotation with a scale; a model that
+  /// is null, a rounding out of its range. Models are shared with the caller, who may not change them any more.
   VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places,
              const VoxelRounding& rounding = {});
 

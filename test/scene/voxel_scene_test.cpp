@@ -284,6 +284,7 @@ TEST(VoxelScene, RefusesWhatIsNoPlace) {
   refused({0, glm::dmat3(1, 0, 0, 0, 2, 0, 0, 0, 1), dvec3(0)});
   refused({0, glm::dmat3(1, 0, 0, 1, 1, 0, 0, 0, 1), dvec3(0)});
   refused({0, glm::dmat3(1.0), dvec3(std::nan(""))});
+  EXPECT_EQ(test::refusal([&] { VoxelScene({models[0], nullptr}, {}); }), "voxel scene: model 1 is null");
   EXPECT_FALSE(VoxelScene({}, {}).closest_hit(Ray{}));
 }
 
