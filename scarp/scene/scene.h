@@ -7,7 +7,7 @@
 //
 // Rays are answered in the space of each object; t counts in the length of the world's direction throughout. Of hits at
 // the same t that of the object that comes first counts. A ray that begins on the surface of a hit begins there by the
-// rule of its object, and free for all others: no ray is pushed off.
+// rule of its object, and free for all others: no ray is pushed off, but the shadow rays of voxels with smooth normals.
 #pragma once
 
 #include <cstddef>
@@ -84,8 +84,9 @@ class Scene {
   /// met none. A march that gives up hides nothing that is hit behind. `stats`, when given, is overwritten.
   SceneHit closest_hit(const SceneRay& ray, SceneStats* stats = nullptr) const;
   /// Whether closest_hit() would tell a hit: of the surfaces that throw shadows. These are those that are seen, but for
-  /// terrain functions of which octaves for shadows are others than for the march (Octaves of field/function_node.h):
-  /// there the two may differ, for those surfaces do.
+  /// two kinds, of which the two answers may differ: terrain functions of which octaves for shadows are others than for
+  /// the march (Octaves of field/function_node.h), and voxels with smooth normals (VoxelNormals::smooth) where `from`
+  /// is one of theirs: the ray begins above their steps then (scene_voxels()).
   bool occluded(const SceneRay& ray) const;
 
   /// hits[i] is closest_hit(rays[i]), bit for bit (on a device as it finds it); steps[i], when asked for, is what that
