@@ -80,8 +80,10 @@ class Scene {
   Scene answered_by(std::shared_ptr<FieldQueries> queries) const;
   bool on_device() const { return queries_ != nullptr; }
 
-  /// The nearest hit. Without one: exhausted when a march gave up, else below when the ray began below a surface and
-  /// met none. A march that gives up hides nothing that is hit behind. `stats`, when given, is overwritten.
+  /// The nearest hit. Without one: exhausted when a march gave up, else below when an object that was asked says so:
+  /// the ray began below its ground and met nothing. Objects whose boxes the ray does not meet need not be asked, so
+  /// below a ground that ends it may also be told as a miss; within() tells where a point is. A march that gives up
+  /// hides nothing that is hit behind. `stats`, when given, is overwritten.
   SceneHit closest_hit(const SceneRay& ray, SceneStats* stats = nullptr) const;
   /// Whether closest_hit() would tell a hit: of the surfaces that throw shadows. These are those that are seen, but for
   /// two kinds, of which the two answers may differ: terrain functions of which octaves for shadows are others than for
