@@ -100,6 +100,10 @@ VoxelGrid::PageVoxels VoxelGrid::unpack(std::size_t page) const {
 void VoxelGrid::pack(std::size_t page, const PageVoxels& voxels) {
   const std::size_t first = page * kPageBricks, count = std::min<std::size_t>(kPageBricks, masks_.size() - first);
   std::size_t entries = 0;
+  for (std::size_t brick = 0; brick < count; ++brick) entries += std::popcount(voxels.coloured[brick]);
+  // Before anything is stored: it may throw.
+  std::vector<std::uint64_t> words((entries * static_cast<std::size_t>(entry_bits_) + 63) / 64);
+  entries = 0;
   for (std::size_t brick = 0; brick < count; ++brick) {
     if (brick % kRankBricks == 0) pages_[page].rank_from[brick / kRankBricks] = static_cast<std::uint16_t>(entries);
     entries += std::popcount(voxels.coloured[brick]);
@@ -107,7 +111,6 @@ void VoxelGrid::pack(std::size_t page, const PageVoxels& voxels) {
     masks_[first + brick] = voxels.solid[brick];
     if (!coloured_.empty()) coloured_[first + brick] = voxels.coloured[brick];
   }
-  std::vector<std::uint64_t> words((entries * static_cast<std::size_t>(entry_bits_) + 63) / 64);
   std::size_t rank = 0;
   for (std::size_t brick = 0; brick < count; ++brick) {
     for (std::uint64_t rest = voxels.coloured[brick]; rest != 0; rest &= rest - 1)
@@ -121,10 +124,16 @@ void VoxelGrid::require_entry(std::uint32_t entry) const {
     throw Error(fmt::format("voxel grid: the entry {} does not fit into {} bits", entry, entry_bits_));
 }
 
-// An edit under way: the page that it is at is unpacked, and packed again when it is left.
+// An edit under way: the page that it is at is unpacked, and packed again when it is left. One that is not finished,
+// because something was thrown, loses the page that it is at, and the grid is true to the others.
 class VoxelGrid::Editing {
  public:
   explicit Editing(VoxelGrid& grid) : grid_(grid), page_(grid.pages_.size()) {}
+  Editing(const Editing&) = delete;
+  Editing& operator=(const Editing&) = delete;
+  ~Editing() {
+    if (!finished_) grid_.bounds_ = grid_.scan_bounds();
+  }
 
   void go_to(const ivec3& brick) {
     const std::size_t index = grid_.brick_index(brick);
@@ -164,6 +173,7 @@ class VoxelGrid::Editing {
     const bool inner =
         glm::all(glm::lessThan(bounds.low, removed_.low)) && glm::all(glm::greaterThan(bounds.high, removed_.high));
     if (!removed_.empty() && !inner) grid_.bounds_ = grid_.scan_bounds();
+    finished_ = true;
     return changed_;
   }
 
@@ -176,6 +186,7 @@ class VoxelGrid::Editing {
   std::size_t page_, in_page_ = 0;
   PageVoxels voxels_;
   VoxelBox changed_, added_, removed_;
+  bool finished_ = false;
 };
 
 VoxelBox VoxelGrid::edit(const VoxelBox& box, const Change& change) {
@@ -192,6 +203,9 @@ VoxelBox VoxelGrid::edit(const VoxelBox& box, const Change& change) {
 }
 
 VoxelBox VoxelGrid::set(std::span<const Placed> voxels) {
+  for (const Placed& placed : voxels) {
+    if (placed.value) require_entry(*placed.value);
+  }
   // Sorted by page, so that each is unpacked once: how many there are before each, and then where the next of it goes.
   const auto page_of = [&](const Placed& placed) { return brick_index(placed.voxel >> 2) / kPageBricks; };
   std::size_t low = pages_.size(), high = 0;

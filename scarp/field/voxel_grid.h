@@ -63,7 +63,8 @@ class VoxelGrid {
   std::uint32_t entry(const ivec3& voxel) const;
 
   // Edits. Parts outside of the grid are left out; what they return is a box around all voxels that may have changed,
-  // which accelerators and scenes need to be told. Entries must fit into entry_bits(); Error otherwise.
+  // which accelerators and scenes need to be told. Entries must fit into entry_bits(); Error otherwise,
+  // and nothing is changed (but by edit()).
 
   VoxelBox set(const ivec3& voxel, std::uint32_t entry);
   VoxelBox clear(const ivec3& voxel);
@@ -85,7 +86,9 @@ class VoxelGrid {
   /// Many voxels, wherever they are; of several in one place the last one counts.
   VoxelBox set(std::span<const Placed> voxels);
   using Change = std::function<Voxel(const ivec3& voxel, const Voxel& before)>;
-  /// Asks `change` about each voxel of the box, once, in no particular order.
+  /// Asks `change` about each voxel of the box, once, in no particular order. Where it throws, or its entry does not
+  /// fit, some of the voxels that it was asked about are changed and others are not; counts and bounds are true to
+  /// those that there are then.
   VoxelBox edit(const VoxelBox& box, const Change& change);
 
   // Booleans with another grid of the same size and entry_bits, on the masks; Error when they differ.

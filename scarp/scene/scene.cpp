@@ -57,7 +57,10 @@ void require_same_length(std::size_t rays, std::size_t answers) {
 Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects)
     : fields_(std::move(fields)), objects_(std::move(objects)) {
   std::vector<std::optional<WorldBox>> field_boxes;
-  for (const SceneFieldPtr& field : fields_) field_boxes.push_back(field->box());
+  for (const SceneFieldPtr& field : fields_) {
+    if (!field) throw Error(fmt::format("scene: field {} is null", field_boxes.size()));
+    field_boxes.push_back(field->box());
+  }
   for (const SceneObject& object : objects_) {
     const auto index = static_cast<std::size_t>(&object - objects_.data());
     if (object.field >= fields_.size()) {

@@ -7,7 +7,7 @@
 //
 // Rays are answered in the space of each object; t counts in the length of the world's direction throughout. Of hits at
 // the same t that of the object that comes first counts. A ray that begins on the surface of a hit begins there by the
-// rule of its object, and free for all others: no ray is pushed off.
+// rule of its object, and free for all others: no ray is pushed off, but the shadow rays of voxels with smooth normals.
 #pragma once
 
 #include <cstddef>
@@ -71,7 +71,8 @@ struct SceneStats {
 /// Immutable. Questions may be asked from many threads at once, unless others than the CPU answer.
 class Scene {
  public:
-  /// Throws Error naming the object: a field that is not there, a placement that is no turn with a scale above 0.
+  /// Throws Error naming the object: a field that is not there, a placement that is no turn with a scale above 0; or a
+  /// field that is null.
   Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects);
 
   /// The same scene, whose batches are answered field by field: by a device, see scene_vk.h. Used by one thread at a
@@ -79,12 +80,15 @@ class Scene {
   Scene answered_by(std::shared_ptr<FieldQueries> queries) const;
   bool on_device() const { return queries_ != nullptr; }
 
-  /// The nearest hit. Without one: exhausted when a march gave up, else below when the ray began below a surface and
-  /// met none. A march that gives up hides nothing that is hit behind. `stats`, when given, is overwritten.
+  /// The nearest hit. Without one: exhausted when a march gave up, else below when an object that was asked says so:
+  /// the ray began below its ground and met nothing. Objects whose boxes the ray does not meet need not be asked, so
+  /// below a ground that ends it may also be told as a miss; within() tells where a point is. A march that gives up
+  /// hides nothing that is hit behind. `stats`, when given, is overwritten.
   SceneHit closest_hit(const SceneRay& ray, SceneStats* stats = nullptr) const;
   /// Whether closest_hit() would tell a hit: of the surfaces that throw shadows. These are those that are seen, but for
-  /// terrain functions of which octaves for shadows are others than for the march (Octaves of field/function_node.h):
-  /// there the two may differ, for those surfaces do.
+  /// two kinds, of which the two answers may differ: terrain functions of which octaves for shadows are others than for
+  /// the march (Octaves of field/function_node.h), and voxels with smooth normals (VoxelNormals::smooth) where `from`
+  /// is one of theirs: the ray begins above their steps then (scene_voxels()).
   bool occluded(const SceneRay& ray) const;
 
   /// hits[i] is closest_hit(rays[i]), bit for bit (on a device as it finds it); steps[i], when asked for, is what that

@@ -3,7 +3,7 @@
 // shapes and voxels, in the field's own space.
 //
 // A ray that begins on the surface of a hit does so by the field's own rule (cell, place, voxel): nothing is pushed
-// off.
+// off, but for the shadow rays of voxels with smooth normals.
 #pragma once
 
 #include <cstdint>
@@ -63,7 +63,8 @@ class SceneField {
   /// `ray` counts as free, but for `from`: a hit of this field on whose surface it begins, or null. `stats`, when
   /// given, is overwritten.
   virtual FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const = 0;
-  /// Whether closest_hit() would tell a hit; of a function with fewer octaves for shadows, of that surface.
+  /// Whether closest_hit() would tell a hit; of a function with fewer octaves for shadows, of that surface; `from`
+  /// voxels with smooth normals, of the ray from above their steps.
   virtual bool occluded(const Ray& ray, const FieldHit* from) const = 0;
   virtual FieldSurface surface(const Ray& ray, const FieldHit& hit) const = 0;
 
@@ -105,7 +106,9 @@ SceneFieldPtr scene_function(HeightFunction function, const MarchEntry& march = 
 SceneFieldPtr scene_shape(DistanceField shape, const MarchEntry& march = find_distance_march("sphere-trace"),
                           const MarchSettings& settings = {});
 
-/// The objects of a voxel scene as one; each model has its march. Throws Error for a shading out of its range.
+/// The objects of a voxel scene as one; each model has its march. With VoxelNormals::smooth, occluded() moves a ray
+/// that begins on a voxel up the smooth normal, by sqrt(3) voxels, lest it be shaded by the steps of what looks smooth.
+/// Throws Error for a shading out of its range.
 SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march, const VoxelShading& shading = {});
 
 }  // namespace scarp

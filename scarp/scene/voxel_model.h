@@ -42,10 +42,18 @@ class VoxelModel {
   /// Black for entries beyond the palette.
   VoxelColour colour(std::uint32_t entry) const;
 
-  /// Changes the grid and what was built from it. `edit(grid)` returns the dirty box.
+  /// Changes the grid and what was built from it. `edit(grid)` returns the dirty box; when it throws, all is built
+  /// again over what it left.
   template <class Edit>
   void edit(const Edit& edit) {
-    update(edit(grid_));
+    VoxelBox changed = grid_.box();
+    try {
+      changed = edit(grid_);
+    } catch (...) {
+      update(changed);
+      throw;
+    }
+    update(changed);
   }
 
   /// Memory that it takes, with all that was built.

@@ -49,7 +49,10 @@ VoxelScene::VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, st
                        const VoxelRounding& rounding)
     : models_(std::move(models)), rounding_(rounding) {
   validate(rounding);
-  for (const auto& model : models_) targets_.push_back(model->target());
+  for (const auto& model : models_) {
+    if (!model) throw Error(fmt::format("voxel scene: model {} is null", targets_.size()));
+    targets_.push_back(model->target());
+  }
   std::unordered_map<std::string, std::uint32_t> turns;
   std::vector<WorldBox> boxes;
   for (const VoxelPlace& place : places) {
@@ -110,6 +113,12 @@ struct VoxelScene::Query {
   }
 };
 
+// A ray into the rounded voxel that it begins on hits there, at once, as one into a cube does: of that no neighbour,
+// where the walk begins, would tell.
+bool VoxelScene::begins_into(const Ray& ray, const VoxelSceneHit* from) const {
+  return rounding_ && from && ray.t_min <= ray.t_max && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0;
+}
+
 VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from, VoxelSceneStats* stats) const {
   VoxelSceneHit best;
   if (in_tree_.empty()) return best;
@@ -122,6 +131,11 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from,
   }
   Query query(*this, ray);
   double t_max = ray.t_max;
+  if (begins_into(ray, from)) {
+    best = *from;
+    best.hit.t = t_max = ray.t_min;
+  }
+  // Asked even when that is known: of hits at the same t the first object's counts.
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
     const std::uint32_t index = in_tree_[in_tree];
     const Object& object = objects_[index];
@@ -151,8 +165,7 @@ bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   if (in_tree_.empty()) return false;
   if (const double longest = longest_of(ray.direction); !is_usual(longest))
     return is_direction(longest) && occluded(scaled_down(ray, std::ilogb(longest)), from);
-  // Into the surface that it begins on: of a rounded voxel no neighbour would tell.
-  if (rounding_ && from && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0) return true;
+  if (begins_into(ray, from)) return true;
   Query query(*this, ray);
   bool blocked = false;
   tree_.traverse(ray, [&](std::uint32_t in_tree) {

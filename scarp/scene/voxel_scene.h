@@ -53,8 +53,8 @@ struct VoxelSceneStats {
 /// Immutable. Questions may be asked from many threads at once.
 class VoxelScene {
  public:
-  /// Throws Error, naming the place: a model that is not there, a matrix that is no rotation with a scale; a rounding
-  /// out of its range. Models are shared with the caller, who may not change them any more.
+  /// Throws Error, naming the place: a model that is not there, a matrix that is no rotation with a scale; a model that
+  /// is null, a rounding out of its range. Models are shared with the caller, who may not change them any more.
   VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places,
              const VoxelRounding& rounding = {});
 
@@ -65,12 +65,12 @@ class VoxelScene {
   VoxelSceneHit closest_hit(const Ray& ray, VoxelSceneStats* stats = nullptr) const {
     return closest_hit(ray, nullptr, stats);
   }
-  /// The same for a ray that starts on the face that another one hit, when `from` is not null.
+  /// The same for a ray that starts on the face that another one hit, when `from` is not null: one that goes into the
+  /// solid hits that voxel at t_min, one that leaves it does not hit it again.
   VoxelSceneHit closest_hit(const Ray& ray, const VoxelSceneHit* from, VoxelSceneStats* stats) const;
   /// Whether anything is in the way.
   bool occluded(const Ray& ray) const { return occluded(ray, nullptr); }
-  /// The same for a ray that starts on the face that another one hit, on its outer side. It cannot hit that voxel
-  /// again.
+  /// The same for a ray that starts on the face that another one hit, as closest_hit() with `from`.
   bool occluded_from(const VoxelSceneHit& hit, const Ray& ray) const { return occluded(ray, &hit); }
 
   /// hits[i] is closest_hit(rays[i], from[i], nullptr), bit for bit, on the calling thread; without `from` all rays are
@@ -120,6 +120,7 @@ class VoxelScene {
   struct Query;
   class PacketQuery;
 
+  bool begins_into(const Ray& ray, const VoxelSceneHit* from) const;
   bool occluded(const Ray& ray, const VoxelSceneHit* from) const;
   template <class Together, class Alone>
   void by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from, VoxelSceneHit* hits,

@@ -162,6 +162,31 @@ TEST(VoxelGrid, PacksEntriesOfEachWidth) {
   }
 }
 
+// More pages than one, so that some are stored before.
+TEST(VoxelGrid, IsWholeAfterAnEditThatThrows) {
+  VoxelGrid grid({48, 32, 16}, 4);
+  grid.set({20, 20, 8}, 5);
+  std::vector<VoxelGrid::Placed> placed;
+  for (int i = 0; i < 16; ++i) placed.push_back({{i, i, i}, 1u});
+  placed.push_back({{47, 31, 15}, 16u});
+  Model before(grid);
+  EXPECT_THROW(grid.set(placed), Error);
+  before.expect(grid);
+
+  // By an entry that does not fit, and by itself: as it fills, and as it clears.
+  const auto edit = [&](const VoxelGrid::Voxel& to, const std::function<VoxelGrid::Voxel()>& last) {
+    int asked = 0;
+    grid.edit(grid.box(), [&](const ivec3&, const VoxelGrid::Voxel&) { return ++asked == 20'000 ? last() : to; });
+  };
+  const auto thrown = []() -> VoxelGrid::Voxel { throw 1; };
+  EXPECT_THROW(edit(3u, [] { return VoxelGrid::Voxel(16); }), Error);
+  EXPECT_GT(grid.solid_count(), 10'000);
+  Model(grid).expect(grid);
+  EXPECT_THROW(edit({}, thrown), int);
+  EXPECT_LT(grid.solid_count(), 10'000);
+  Model(grid).expect(grid);
+}
+
 TEST(VoxelGrid, RefusesSizesOutOfRange) {
   EXPECT_THROW(VoxelGrid({0, 1, 1}), Error);
   EXPECT_THROW(VoxelGrid({1, 2049, 1}), Error);

@@ -10,6 +10,7 @@
 #include <random>
 #include <vector>
 
+#include "base/refusal.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/field_queries.h"
 
@@ -300,6 +301,7 @@ TEST(SceneOfManyFields, RefusesWhatCannotStand) {
   };
   EXPECT_EQ(refused({}, 0), "taken");
   EXPECT_NE(refused({}, 1).find("object 0: its field 1"), std::string::npos);
+  EXPECT_EQ(test::refusal([] { Scene({ball(1), nullptr}, {}); }), "scene: field 1 is null");
   EXPECT_NE(refused({.scale = 0}, 0).find("scale above 0"), std::string::npos);
   EXPECT_NE(refused({.turn = glm::dmat3(1.01)}, 0).find("rotation"), std::string::npos);
   EXPECT_NE(refused({.origin = {0, NAN, 0}}, 0).find("finite place"), std::string::npos);

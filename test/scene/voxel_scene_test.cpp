@@ -215,6 +215,66 @@ TEST(VoxelScene, ShadowRaysDoNotHitWhatTheyLeave) {
   EXPECT_EQ(free, 2000);
 }
 
+// Cubes and rounded ones alike: into the solid is a hit at once, and any-hit says so, too; one by one and in batches.
+TEST(VoxelScene, RaysFromASurfaceIntoItHitItAtOnce) {
+  // Rays that go in less steeply may leave a cube's face by an edge, as quantised; those that do not come to its plane
+  // within what that moves them by, 2^-17 voxel (voxel_ray.h).
+  constexpr double kSteep = 0.01, kOffRay = 0x1p-17 / kSteep;
+  Random random(5);
+  VoxelGrid grid(ivec3(12), 4);
+  grid.edit(grid.box(), [&](const ivec3&, const VoxelGrid::Voxel&) {
+    return uniform(random, 0, 1) < 0.3 ? VoxelGrid::Voxel(1 + random() % 15) : VoxelGrid::Voxel();
+  });
+  const std::vector places = {VoxelPlace{0, turned(random, 0.5), dvec3(3)}};
+  const std::vector models = {std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))};
+  for (const VoxelRounding& rounding : std::vector<VoxelRounding>{{}, {0.1, false}, {0.5, false}, {0.3, true}}) {
+    const VoxelScene scene(models, places, rounding);
+    const dvec3 middle = 0.5 * (scene.box().low + scene.box().high);
+    std::vector<VoxelSceneHit> first;
+    std::vector<Ray> rays;
+    std::vector<dvec3> normals;
+    for (int i = 0; i < 2000; ++i) {
+      Ray ray;
+      ray.direction = direction(random);
+      ray.origin = middle + direction(random) - 10.0 * ray.direction;
+      const VoxelSceneHit hit = scene.closest_hit(ray);
+      if (!hit) continue;
+      Ray on;
+      on.origin = ray.at(hit.hit.t);
+      on.direction = direction(random);
+      first.push_back(hit), rays.push_back(on), normals.push_back(scene.normal(on.origin, hit));
+    }
+    std::vector<const VoxelSceneHit*> from;
+    for (const VoxelSceneHit& hit : first) from.push_back(&hit);
+    std::vector<VoxelSceneHit> hits(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size());
+    scene.closest_hits(rays, hits, from);
+    scene.occluded(rays, blocked, from);
+    int into = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const VoxelSceneHit hit = scene.closest_hit(rays[i], from[i], nullptr);
+      EXPECT_EQ(hit.hit, hits[i].hit);
+      EXPECT_EQ(static_cast<bool>(hit), scene.occluded_from(first[i], rays[i])) << rounding.radius << ' ' << i;
+      EXPECT_EQ(static_cast<bool>(hit), blocked[i] != 0);
+      if (!(dot(normals[i], rays[i].direction) < -kSteep)) continue;
+      ++into;
+      ASSERT_TRUE(hit) << rounding.radius << ' ' << i;
+      EXPECT_LE(hit.hit.t, kOffRay);
+      if (!rounding) continue;
+      EXPECT_EQ(hit.hit.t, 0);
+      EXPECT_EQ(hit.hit.voxel, first[i].hit.voxel);
+      EXPECT_EQ(hit.hit.entry, first[i].hit.entry);
+    }
+    EXPECT_GT(into, 500);
+    // A ray that ends before it begins meets nothing.
+    Ray none = rays[0];
+    none.direction = -normals[0];
+    none.t_max = -1;
+    EXPECT_FALSE(scene.closest_hit(none, from[0], nullptr));
+    EXPECT_FALSE(scene.occluded_from(first[0], none));
+  }
+}
+
 TEST(VoxelScene, RefusesWhatIsNoPlace) {
   Random random(4);
   const std::vector models = {model(3, 0.5, "voxel-planes", random)};
@@ -224,6 +284,7 @@ TEST(VoxelScene, RefusesWhatIsNoPlace) {
   refused({0, glm::dmat3(1, 0, 0, 0, 2, 0, 0, 0, 1), dvec3(0)});
   refused({0, glm::dmat3(1, 0, 0, 1, 1, 0, 0, 0, 1), dvec3(0)});
   refused({0, glm::dmat3(1.0), dvec3(std::nan(""))});
+  EXPECT_EQ(test::refusal([&] { VoxelScene({models[0], nullptr}, {}); }), "voxel scene: model 1 is null");
   EXPECT_FALSE(VoxelScene({}, {}).closest_hit(Ray{}));
 }
 
@@ -242,6 +303,22 @@ TEST(VoxelModel, FollowsEdits) {
     EXPECT_EQ(hit.voxel, ivec3(6, 6, 7));
     EXPECT_EQ(hit.t, 22);
     EXPECT_EQ(model.colour(hit.entry), (VoxelColour{3, 0, 0}));
+  }
+}
+
+TEST(VoxelModel, IsTrueToItsGridAfterAnEditThatThrows) {
+  for (const MarchEntry& march : voxel_marches()) {
+    VoxelModel model(VoxelGrid(ivec3(20), 8), march);
+    EXPECT_THROW(model.edit([](VoxelGrid& grid) {
+      grid.fill({{5, 5, 5}, {9, 9, 9}}, 3);
+      return grid.set({0, 0, 0}, 256);
+    }),
+                 Error);
+    VoxelRay ray;
+    ray.origin = {6.5, 6.5, 30};
+    const auto quantised = quantise(ray, model.box());
+    ASSERT_TRUE(quantised) << march.name;
+    EXPECT_EQ(march.voxel_cpu(model.target(), *quantised, nullptr).t, 21) << march.name;
   }
 }
 
