@@ -54,7 +54,8 @@ void require_reach(SampleType type, int cols, int rows, const HeightFieldSetting
 template <class T>
 bool representable(double value) {
   if constexpr (std::is_floating_point_v<T>) {
-    return !std::isfinite(value) || std::abs(value) <= std::numeric_limits<T>::max();
+    if (!std::isfinite(value)) return true;
+    return std::abs(value) <= std::numeric_limits<T>::max() && (value == 0 || static_cast<T>(value) != 0);
   } else {
     return value >= std::numeric_limits<T>::lowest() && value <= std::numeric_limits<T>::max() &&
            value == std::floor(value);

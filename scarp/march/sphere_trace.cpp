@@ -124,19 +124,19 @@ class Trace {
       return false;
     }
     began_inside_ = true;
-    hit.status = HitStatus::below;
-    const Walk walk = follow(t, Side::inside);
-    if (walk.ended == Ended::exhausted) hit = exhausted(walk.t);
-    if (walk.ended != Ended::crossing) return false;
-    t = std::max(walk.beyond, walk.t + least_at(walk.t));
-    if (t >= t_exit_) return false;
-    // Out of the surface as from one: where the ray turns back into it at once, it never was outside.
-    if (leave(t, hit)) return true;
-    if (hit) {
+    for (;;) {
       hit = Hit{};
       hit.status = HitStatus::below;
+      const Walk walk = follow(t, Side::inside);
+      if (walk.ended == Ended::exhausted) hit = exhausted(walk.t);
+      if (walk.ended != Ended::crossing) return false;
+      t = std::max(walk.beyond, walk.t + least_at(walk.t));
+      if (t >= t_exit_) return false;
+      // Out of the surface as from one: where the ray turns back into it at once, as at the seam of two solids that
+      // touch, it never was outside, and goes on inside.
+      if (leave(t, hit)) return true;
+      if (!hit) return false;
     }
-    return false;
   }
 
   // From the surface: on, as long as the ray provably does not lose more distance than rounding, until it is clear of

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -18,6 +19,10 @@
 
 namespace scarp {
 namespace {
+
+// Samples of a generated field, 4 GiB: no fewer than those of the largest field of scarp-bench leaks, and a line of a
+// file shall not ask for all memory.
+constexpr std::int64_t kMostGenerated = std::int64_t{1} << 30;
 
 constexpr std::string_view kHead = "scarp-rays 1";
 
@@ -228,6 +233,9 @@ class Reader {
   void read_generator() {
     if (generator_ || !samples_.empty()) fail("the samples are already there");
     if (type_ != SampleType::float32) fail("generated samples are float32");
+    if (std::int64_t{cols_} * rows_ > kMostGenerated) {
+      fail(fmt::format("{} x {} samples; dumps generate {} at most", cols_, rows_, kMostGenerated));
+    }
     ProceduralDem dem{.cols = cols_, .rows = rows_};
     dem.kind = choice("kind", {"fbm", "ridged"}) == 0 ? TerrainKind::fbm : TerrainKind::ridged;
     dem.seed = whole<std::uint64_t>("seed");

@@ -70,6 +70,11 @@ bool is_float_nodata(double sample, double nodata) {
   return sample == nodata || (std::isfinite(nodata) && std::abs(sample - nodata) <= width * std::abs(nodata));
 }
 
+// Neither beyond the largest float nor so small that it would become the height 0.
+bool float_can_hold(double nodata) {
+  return std::abs(nodata) <= FLT_MAX && (nodata == 0 || static_cast<float>(nodata) != 0);
+}
+
 [[noreturn]] void refuse_infinite(double value, int col, int row) {
   throw Error(
       fmt::format("the sample at column {}, row {} is {}; heights must be finite: say --nodata={} if it marks holes",
@@ -84,8 +89,7 @@ float clean(double source, std::optional<double> nodata, int col, int row, Findi
     ++found.nan;
     return kNan;
   }
-  if (nodata && is_float_nodata(source, *nodata))
-    return std::abs(*nodata) <= FLT_MAX ? static_cast<float>(*nodata) : kNan;
+  if (nodata && is_float_nodata(source, *nodata)) return float_can_hold(*nodata) ? static_cast<float>(*nodata) : kNan;
   if (!(std::abs(source) <= FLT_MAX)) refuse_infinite(source, col, row);
   const float sample = static_cast<float>(source);
   found.rounding = std::max(found.rounding, std::abs(source - sample));
@@ -270,7 +274,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   }
   // Float holes whose mark float32 cannot hold are NaN by now.
   if (std::holds_alternative<std::vector<float>>(read.samples) && read.nodata) {
-    if (std::abs(*read.nodata) <= FLT_MAX) {
+    if (float_can_hold(*read.nodata)) {
       read.nodata = static_cast<double>(static_cast<float>(*read.nodata));
     } else {
       read.nodata.reset();

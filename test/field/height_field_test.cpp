@@ -74,6 +74,8 @@ TEST(HeightField, IgnoresANodataValueThatTheSampleTypeCannotHold) {
   EXPECT_EQ(HeightField::own<std::uint16_t>({1, 2, 3, 4}, 2, 2, {.nodata = -9999}).nodata_count(), 0);
   EXPECT_EQ(HeightField::own<std::int16_t>({1, 2, 3, 4}, 2, 2, {.nodata = 2.5}).nodata_count(), 0);
   EXPECT_EQ(HeightField::own<float>({1, 2, 3, 4}, 2, 2, {.nodata = 1e300}).nodata_count(), 0);
+  EXPECT_EQ(HeightField::own<float>({0, 2, 3, 4}, 2, 2, {.nodata = 1e-50}).nodata_count(), 0) << "it is not 0";
+  EXPECT_EQ(HeightField::own<float>({0, 2, 3, 4}, 2, 2, {.nodata = 0}).nodata_count(), 1);
 }
 
 TEST(HeightField, RefusesWhatItCannotBeInOneLine) {

@@ -222,6 +222,30 @@ TEST(SphereTrace, RaysFromInsideHitWhatTheyMeetLater) {
   EXPECT_EQ(march_sphere_trace(block, {{0, 0, 0}, {0, 0, 1}}).status, HitStatus::below);
 }
 
+TEST(SphereTrace, RaysFromInsideGoOnThroughSeams) {
+  const auto block = [](double half, double z) { return make_shape(Moved{make_shape(Box{{1, 1, half}}), {0, 0, z}}); };
+  // Two that touch, or nearly do, from z = 1 to 3, and one from -3 to -1.
+  for (const double gap : {-1e-3, 0.0, 1e-13, 1e-11, 1e-9, 1e-8, 1e-6, 1e-4}) {
+    const DistanceField field(make_shape(Union{{block(0.5, 2.5 + gap), block(0.5, 1.5), block(1, -2)}}));
+    const Ray down{{0.1, 0.2, 2.5}, {0.1, 0.05, -1}};
+    const Hit hit = march_sphere_trace(field, down);
+    ASSERT_EQ(hit.status, HitStatus::hit) << gap;
+    EXPECT_TRUE(occluded_sphere_trace(field, down)) << gap;
+    // At the lower block, or in the gap where it is wide enough to be seen.
+    if (gap < 1e-9) {
+      EXPECT_NEAR(hit.t, 3.5, 1e-6) << gap;
+    }
+  }
+  std::vector<Shape> bricks{make_shape(Moved{make_shape(Box{{1, 4, 4}}), {20, 0, 0}})};
+  for (int i = 0; i < 5; ++i) bricks.push_back(make_shape(Moved{make_shape(Box{{0.5, 1, 1}}), {i, 0, 0}}));
+  const DistanceField wall(make_shape(Union{bricks}));
+  for (int i = -10; i <= 10; ++i) {
+    const Hit hit = march_sphere_trace(wall, {{0, 0, 0}, {1, 0.01 * i, 0.003 * i}});
+    ASSERT_EQ(hit.status, HitStatus::hit) << i;
+    EXPECT_NEAR(hit.t, 19, 1e-6) << i;
+  }
+}
+
 // A ray that a hit sends on: its origin is where the hit was told to be.
 Ray sent_on(const Ray& ray, const Hit& hit, const dvec3& direction) {
   Ray on;

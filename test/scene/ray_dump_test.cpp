@@ -164,6 +164,8 @@ TEST_F(RayDumps, AreRefusedInOneLineThatNamesTheLine) {
             "line 3: kind 'hills': there are: fbm, ridged");
   EXPECT_EQ(refusal(head + "field float32 2 2\ngenerate fbm 1 1 0\nrow 1 2\n"),
             "line 4: the samples are generated; there can be no rows");
+  EXPECT_EQ(refusal(head + "field float32 65536 65536\ngenerate ridged 1 1 0\n"),
+            "line 3: 65536 x 65536 samples; dumps generate 1073741824 at most");
   EXPECT_THROW(read_ray_dumps("/nowhere/rays.txt"), Error);
   EXPECT_THROW(write_ray_dumps("/nowhere/rays.txt", {}), Error);
 }

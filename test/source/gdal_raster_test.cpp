@@ -101,6 +101,12 @@ TEST_F(GdalRaster, NodataOfSixDigitsIsFoundWhereNoHeightIsNear) {
   EXPECT_NE(static_cast<float>(*heights.nodata), std::get<std::vector<float>>(heights.samples)[0]);
 }
 
+TEST_F(GdalRaster, NodataTooSmallForFloatIsNotZero) {
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Float32, 2, 1, {0, 7}, nodata(1e-50)), {});
+  EXPECT_FALSE(raster.nodata.has_value());
+  EXPECT_EQ(doubles(raster)[0], 0);
+}
+
 TEST_F(GdalRaster, DoubleNodataBeyondFloatBecomesNan) {
   const Raster raster = read_raster(
       write_tiff("a.tif", GDT_Float64, 2, 1, {-1.7976931348623157e308, 7}, nodata(-1.7976931348623157e308)), {});
