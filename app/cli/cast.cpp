@@ -23,6 +23,8 @@
 #include "app/cli/march_options.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
+#include "app/cli/scene_input.h"
+#include "app/cli/vox_input.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -182,6 +184,7 @@ class Caster {
       }
     });
     hits_ += static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1));
+    count_below(rays, answers);
     out_.add(static_cast<std::int64_t>(first), answers);
   }
 
@@ -212,6 +215,8 @@ class Caster {
   }
 
   std::size_t hits() const { return hits_; }
+  /// Of blocked(): rays that are not, for they began below the ground and never came above.
+  std::size_t below() const { return below_; }
   double seconds() const { return seconds_; }
 
  private:
@@ -220,6 +225,26 @@ class Caster {
     const auto begin = std::chrono::steady_clock::now();
     work();
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  }
+
+  // Only rays that begin under the height of the ground are asked once more: nearly all begin above.
+  void count_below(std::span<const Ray> rays, std::span<const std::uint8_t> blocked) {
+    std::vector<Ray> low;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (blocked[i]) continue;
+      const dvec3 begin = rays[i].at(rays[i].t_min);
+      const auto ground = field_.height(begin.x, begin.y);
+      if (ground && begin.z < *ground) low.push_back(rays[i]);
+    }
+    if (low.empty()) return;
+    std::vector<Hit> closest(low.size());
+    if (on_device_) {
+      on_device_->closest_hits(low, closest);
+    } else {
+      closest_hits(target_, low, closest, march_, settings_);
+    }
+    below_ += static_cast<std::size_t>(
+        std::count_if(closest.begin(), closest.end(), [](const Hit& hit) { return hit.status == HitStatus::below; }));
   }
 
   void write(std::size_t first, std::span<const Ray> rays, const std::vector<std::vector<Hit>>& found) {
@@ -261,7 +286,7 @@ class Caster {
   std::optional<TerrainScene> on_device_;  // in the place of the target
   std::optional<MaxPyramid> pyramid_;
   HeightTarget target_;
-  std::size_t hits_ = 0;
+  std::size_t hits_ = 0, below_ = 0;
   double seconds_ = 0;
 };
 
@@ -272,8 +297,8 @@ void run(CastOptions options) {
   require_options_of(InputKind::terrain, options.given);
   require_settings_of(options.march, options.given, options.march_settings);
   validate(options.march_settings);
-  if (options.field.mirror) {
-    throw Error("--wrap 'mirror': is for pictures; expected none, periodic or shared");
+  if (is_vox_input(options.inputs, {}) || is_scene_input(options.inputs)) {
+    throw Error(fmt::format("'{}': cast asks elevation models, not voxels and scenes", options.inputs.front()));
   }
   if (!options.coordinates.empty()) {
     try {
@@ -320,6 +345,13 @@ void run(CastOptions options) {
   out.commit();
   // Last: who fails says one line alone.
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
+  if (caster.below() > 0) {
+    fmt::print(
+        stderr,
+        "note: {} of {} rays begin below the ground and never come above it; they are told as not blocked, and as "
+        "'below' without --any\n",
+        caster.below(), rays.size());
+  }
   if (caster.hits() == 0 && !rays.empty()) {
     const std::string note = place_of_raster(rays, field, frame);
     if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
@@ -349,7 +381,7 @@ void add_cast(CLI::App& program) {
   command->add_option("--march", o.march, "technique, see 'scarp marches'")->capture_default_str();
   add_device_option(*command, o.device);
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
-  add_field_options(*command, o.field);
+  add_field_options(*command, o.field, BeyondBorders::wraps);
   add_march_options(*command, o.march_settings);
   add_raster_options(*command, o.raster, std::string(kRasterCrs));
   command->footer(kTables);

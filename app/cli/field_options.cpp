@@ -30,17 +30,18 @@ struct Beyond {
   bool mirror = false;
 };
 
-Beyond wrap_from(const std::string& text) {
+Beyond wrap_from(const std::string& text, bool mirrors) {
   if (text == "none") return {};
   if (text == "periodic") return {Wrap::periodic};
   if (text == "shared") return {Wrap::shared_border};
-  if (text == "mirror") return {Wrap::periodic, true};
-  throw Error(fmt::format("--wrap '{}': expected none, periodic, shared or mirror", text));
+  if (text == "mirror" && mirrors) return {Wrap::periodic, true};
+  throw Error(
+      fmt::format("--wrap '{}': expected none, periodic{}", text, mirrors ? ", shared or mirror" : " or shared"));
 }
 
 }  // namespace
 
-void add_field_options(CLI::App& command, FieldOptions& options) {
+void add_field_options(CLI::App& command, FieldOptions& options, BeyondBorders borders) {
   const std::string group = "Surface";
   const auto add = [&](const char* name, auto& value, auto from, const char* help, const char* otherwise) {
     command
@@ -52,18 +53,23 @@ void add_field_options(CLI::App& command, FieldOptions& options) {
   add("--exaggeration", options.exaggeration, exaggeration_from, "heights times this; above 0", "1");
   add("--surface", options.surface, surface_from, "between the samples: bilinear, or triangles (two per cell)",
       "bilinear");
-  command
-      .add_option_function<std::string>(
-          "--wrap",
-          [&options](const std::string& text) {
-            const Beyond beyond = wrap_from(text);
-            options.wrap = beyond.wrap;
-            options.mirror = beyond.mirror;
-          },
-          "beyond the border: none, periodic (the first column follows the last), shared (the last repeats the first), "
-          "or mirror (the field and its mirror images, without a seam)")
-      ->default_str("none")
-      ->group(group);
+  if (borders != BeyondBorders::none) {
+    const bool mirrors = borders == BeyondBorders::mirrors;
+    std::string help =
+        "beyond the border: none, periodic (the first column follows the last), shared (the last repeats the first)";
+    if (mirrors) help += ", or mirror (the field and its mirror images, without a seam)";
+    command
+        .add_option_function<std::string>(
+            "--wrap",
+            [&options, mirrors](const std::string& text) {
+              const Beyond beyond = wrap_from(text, mirrors);
+              options.wrap = beyond.wrap;
+              options.mirror = beyond.mirror;
+            },
+            help)
+        ->default_str("none")
+        ->group(group);
+  }
   command.add_flag("--solid", options.solid, "rock under the surface: rays hit the walls at borders and holes")
       ->group(group);
 }

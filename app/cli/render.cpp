@@ -482,7 +482,7 @@ void add_render(CLI::App& program) {
       ->required();
   command->add_option("--size", o.size, "WIDTHxHEIGHT in pixels (1280x720; with --top the shape of the ground)");
   command->add_option("--look", o.look, "shaded, height, steps, error, comanche")->capture_default_str();
-  add_field_options(*command, o.field);
+  add_field_options(*command, o.field, BeyondBorders::mirrors);
   command->add_option(
       "--sun", o.sun,
       "AZIMUTH,ALTITUDE of the sun in degrees, compass and above the horizon (315,45; of voxels 235,45)");

@@ -87,11 +87,11 @@ std::optional<WorldBox> box_of(const VoxeliseOptions& options) {
 }
 
 double side_of(const VoxeliseOptions& options, const Scene& scene, const std::optional<WorldBox>& within) {
+  if (!within && scene.endless())
+    throw Error("--within: the scene has no end; say of which box voxels are made, XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH");
   if (options.voxel > 0) return options.voxel;
   // Voxels stay what they are.
   if (options.count == 0 && is_vox_input(options.inputs, options.vox)) return 1;
-  if (!within && scene.endless())
-    throw Error("--within: the scene has no end; say of which box voxels are made, XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH");
   const WorldBox& box = within ? *within : scene.box();
   const dvec3 size = box.high - box.low;
   // One less, for the lattice does not begin where the box does.
@@ -158,7 +158,7 @@ void add_voxelise(CLI::App& program) {
   command->add_option("--ramp", o.ramp, "colours by height, of terrain")->capture_default_str();
   command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
   add_raster_options(*command, o.raster);
-  add_field_options(*command, o.field);
+  add_field_options(*command, o.field, BeyondBorders::none);
   add_vox_options(*command, o.vox);
   command->callback([options, command] {
     options->given = given_options(*command);

@@ -243,6 +243,31 @@ TEST_F(Cast, AllHitsStandInTheOrderOfT) {
   expect_rays_refused("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n", "--any", {"--all", "--any"});
 }
 
+TEST_F(Cast, RaysFromBelowAreNoted) {
+  hills("10 10 10 10 10\n10 10 10 10 10\n10 10 10 10 10\n10 10 10 10 10");
+  // From below up, from above down, from above up.
+  rays("x,y,z,dx,dy,dz\n15,15,5,0.1,0,1\n15,15,15,0.1,0,-1\n15,15,15,0.1,0,1\n");
+  const Names arguments{"cast", path("hills.asc"), "--crs", "local", "--rays", path("rays.csv")};
+  Names any = arguments;
+  any.push_back("--any");
+  const auto told = run(any);
+  const auto rows = rows_of(told.out);
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].at("blocked"), "0");
+  EXPECT_EQ(rows[1].at("blocked"), "1");
+  EXPECT_NE(told.err.find("note: 1 of 3 rays begin below the ground"), std::string::npos) << told.err;
+  EXPECT_EQ(rows_of(run(arguments).out)[0].at("status"), "below");
+}
+
+TEST_F(Cast, AsksElevationModelsAlone) {
+  rays("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n");
+  for (const std::string name : {"model.vox", "scene.json"}) {
+    const auto refused = run({"cast", write(name, "VOX "), "--rays", path("rays.csv")});
+    EXPECT_NE(refused.status, 0);
+    EXPECT_NE(refused.err.find("cast asks elevation models"), std::string::npos) << refused.err;
+  }
+}
+
 TEST_F(Cast, SurfaceOptionsReachTheRays) {
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 8 0 0\n0 0 0 0 0");
   const auto cast = [&](const std::string& table, const Names& options) {

@@ -135,7 +135,6 @@ TEST_F(WithoutEffect, IsRefusedOfVoxels) {
   for (const Names& options : {Names{"--exaggeration", "2"},
                                {"--solid"},
                                {"--surface", "triangles"},
-                               {"--wrap", "none"},
                                {"--nodata", "5"},
                                {"--band", "1"},
                                {"--crs", "EPSG:4326"},
@@ -143,6 +142,7 @@ TEST_F(WithoutEffect, IsRefusedOfVoxels) {
     expect_refused(render, options, "goes with terrain; leave it out");
     expect_refused(make, options, "goes with terrain; leave it out");
   }
+  expect_refused(render, {"--wrap", "none"}, "goes with terrain; leave it out");
   expect_refused(info, {"--nodata", "5"}, "goes with terrain; leave it out");
   expect_refused(info, {"--extent", "5"}, "goes with functions; leave it out");
   expect_refused(make, {"--ramp", "grey"}, "terrain");
