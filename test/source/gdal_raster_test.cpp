@@ -102,8 +102,10 @@ TEST_F(GdalRaster, NodataOfSixDigitsIsFoundWhereNoHeightIsNear) {
 }
 
 TEST_F(GdalRaster, NodataTooSmallForFloatIsNotZero) {
-  const Raster raster = read_raster(write_tiff("a.tif", GDT_Float32, 2, 1, {0, 7}, nodata(1e-50)), {});
-  EXPECT_FALSE(raster.nodata.has_value());
+  RasterOptions options;
+  options.nodata = 1e-50;
+  const Raster raster = read_raster(write_tiff("a.tif", GDT_Float32, 2, 1, {0, 7}), options);
+  EXPECT_FALSE(raster.nodata.has_value()) << *raster.nodata;
   EXPECT_EQ(doubles(raster)[0], 0);
 }
 
