@@ -349,7 +349,7 @@ void run(CastOptions options) {
     fmt::print(
         stderr,
         "note: {} of {} rays begin below the ground and never come above it; they are told as not blocked, and as "
-        "'below' without --any\n",
+        "'below' without --any: are their heights right?\n",
         caster.below(), rays.size());
   }
   if (caster.hits() == 0 && !rays.empty()) {
@@ -376,7 +376,8 @@ void add_cast(CLI::App& program) {
   command->add_option("-o,--output", o.output, "the table of hits, .csv or .npy; -: CSV to standard output (-)");
   command->add_option("--crs", o.coordinates,
                       "coordinates of rays and hits: local, map or lonlat (map; local where the raster has no place)");
-  CLI::Option* any = command->add_flag("--any", o.any, "only whether anything is in the way: ray,blocked (0 or 1)");
+  CLI::Option* any = command->add_flag(
+      "--any", o.any, "only whether a ray hits anything: ray,blocked (1; 0 also from below the ground)");
   command->add_flag("--all", o.all, "all hits of each ray in the order of t, not the first only")->excludes(any);
   command->add_option("--march", o.march, "technique, see 'scarp marches'")->capture_default_str();
   add_device_option(*command, o.device);

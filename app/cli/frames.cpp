@@ -40,12 +40,13 @@ void add_frame_options(CLI::App& command, FrameOptions& o) {
           "a table of cameras: columns x,y,z of the eye and tx,ty,tz of the target, or dx,dy,dz of the direction, "
           "in metres as --eye has them; the output is frame-####.png")
       ->group(group);
+  // Before --frames, which goes with it: of options that are refused together the first one is named.
+  command.add_flag("--turntable", o.turntable, "once round, clockwise seen from above, beginning at --view")
+      ->group(group);
   command
       .add_option("--frames", o.frames,
                   "pictures along the path, which goes smoothly through its rows (one per row); of a turntable 120")
       ->check(CLI::Range(1, kMostFrames))
-      ->group(group);
-  command.add_flag("--turntable", o.turntable, "once round, clockwise seen from above, beginning at --view")
       ->group(group);
   command.add_flag("--overwrite", o.overwrite, "makes frames that are there anew; else only those that are missing")
       ->group(group);

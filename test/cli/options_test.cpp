@@ -218,6 +218,7 @@ TEST_F(WithoutEffect, IsRefusedOfScenesAndFunctions) {
   for (const Names& options : {Names{"--exaggeration", "2"}, {"--water", "3"}, {"--no-plinth"}}) {
     expect_refused(function, options, "goes with terrain; leave it out");
   }
+  expect_refused(function, {"--turntable", "--frames", "2"}, "goes with terrain; leave it out");
   expect_refused(function, {"--top"}, "goes with terrain, files of voxels and scenes");
   expect_refused(function, {"--rounded", "0.1"}, "goes with files of voxels");
   expect_refused(function, {"--refine", "secant"}, "--march naive");
