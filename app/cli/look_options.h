@@ -45,8 +45,8 @@ void finish_look(const LookOptions& options, const HeightField& field, PictureSe
 void see_from_afar(const LookOptions& options, const Box& box, const Camera& camera, PictureSettings& picture);
 
 /// How far the camera's rays go: infinitely far, but for fields that wrap round. There, where nothing was said, the
-/// field's longer side, and from outside of its box twice the way to it more, so that who sees all
-/// of it sees its corners.
+/// field's longer side, and from outside of its box twice the way to it more, so that who sees all of it sees its
+/// corners.
 double reach_of(const LookOptions& options, const HeightField& field, const Box& box, const Camera& camera);
 
 }  // namespace scarp::cli

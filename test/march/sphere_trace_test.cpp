@@ -231,10 +231,10 @@ TEST(SphereTrace, RaysFromInsideGoOnThroughSeams) {
     const Hit hit = march_sphere_trace(field, down);
     ASSERT_EQ(hit.status, HitStatus::hit) << gap;
     EXPECT_TRUE(occluded_sphere_trace(field, down)) << gap;
-    // At the lower block, or in the gap where it is wide enough to be seen.
-    if (gap < 1e-9) {
-      EXPECT_NEAR(hit.t, 3.5, 1e-6) << gap;
-    }
+    // At the lower block; or, where there is a gap and it is seen, behind it.
+    const double seam = 0.5, lower = 3.5;
+    const bool in_gap = gap > 0 && std::abs(hit.t - seam) <= gap + kTolerance * seam;
+    EXPECT_TRUE(in_gap || std::abs(hit.t - lower) <= kTolerance * lower) << gap << ": " << hit.t;
   }
   std::vector<Shape> bricks{make_shape(Moved{make_shape(Box{{1, 4, 4}}), {20, 0, 0}})};
   for (int i = 0; i < 5; ++i) bricks.push_back(make_shape(Moved{make_shape(Box{{0.5, 1, 1}}), {i, 0, 0}}));
@@ -242,7 +242,7 @@ TEST(SphereTrace, RaysFromInsideGoOnThroughSeams) {
   for (int i = -10; i <= 10; ++i) {
     const Hit hit = march_sphere_trace(wall, {{0, 0, 0}, {1, 0.01 * i, 0.003 * i}});
     ASSERT_EQ(hit.status, HitStatus::hit) << i;
-    EXPECT_NEAR(hit.t, 19, 1e-6) << i;
+    EXPECT_NEAR(hit.t, 19, kTolerance * 19) << i;
   }
 }
 
