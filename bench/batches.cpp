@@ -14,7 +14,7 @@
 #include "bench/protocol.h"
 #include "bench/scarp_engine.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/queries.h"
+#include "scarp/march/height/queries.h"
 
 namespace scarp::bench {
 namespace {

@@ -17,8 +17,8 @@
 #include "bench/scarp_engine.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/max_mip.h"
-#include "scarp/march/rounding.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/rounding.h"
 
 namespace scarp::bench {
 namespace {

@@ -13,11 +13,11 @@
 #include "bench/protocol.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/render/picture.h"
+#include "scarp/render/frame/picture.h"
 #include "scarp/scene/from_raster.h"
 #include "scarp/source/procedural_dem.h"
 #ifdef SCARP_BENCH_VULKAN
-#include "scarp/render/terrain_frame_vk.h"
+#include "scarp/render/frame/terrain_frame_vk.h"
 #include "scarp/scene/terrain_scene_vk.h"
 #endif
 

@@ -14,7 +14,7 @@
 #include "bench/random.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/function_exhaustive.h"
+#include "scarp/march/function/function_exhaustive.h"
 #include "scarp/march/marches.h"
 #include "scarp/scene/example_functions.h"
 

@@ -19,11 +19,11 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/field/height_function.h"
-#include "scarp/march/function_exhaustive.h"
+#include "scarp/march/function/function_exhaustive.h"
+#include "scarp/march/function/presets.h"
 #include "scarp/march/marches.h"
-#include "scarp/march/presets.h"
 #ifdef SCARP_BENCH_VULKAN
-#include "scarp/march/function_queries_vk.h"
+#include "scarp/march/function/function_queries_vk.h"
 #endif
 
 namespace scarp::bench {

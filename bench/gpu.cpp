@@ -19,7 +19,7 @@
 #include "bench/naive_search.h"
 #include "bench/scarp_engine.h"
 #include "scarp/base/error.h"
-#include "scarp/march/queries_vk.h"
+#include "scarp/march/height/queries_vk.h"
 
 namespace scarp::bench {
 namespace {

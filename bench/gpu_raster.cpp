@@ -27,7 +27,7 @@
 #include "bench/grid_mesh.glsl.h"
 #include "scarp/accel/device_ground.h"
 #include "scarp/base/error.h"
-#include "scarp/march/queries_vk.h"
+#include "scarp/march/height/queries_vk.h"
 #include "scarp/vk/raster.h"
 
 namespace scarp::bench {

@@ -6,7 +6,7 @@
 
 #include "bench/random.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/exhaustive.h"
+#include "scarp/march/height/exhaustive.h"
 
 namespace scarp::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scarp/accel/max_pyramid.h"
-#include "scarp/march/max_mip.h"
+#include "scarp/march/height/max_mip.h"
 
 namespace scarp::bench {
 namespace {

@@ -18,9 +18,9 @@
 #include "bench/protocol.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/exhaustive.h"
-#include "scarp/march/max_mip.h"
-#include "scarp/march/queries.h"
+#include "scarp/march/height/exhaustive.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/queries.h"
 #include "scarp/scene/ray_dump.h"
 
 namespace scarp::bench {

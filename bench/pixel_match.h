@@ -2,7 +2,7 @@
 // A picture of voxels, ray by ray, beside the same picture drawn as quads.
 //
 // How far a ray may be off, and so how wide the margin about edges has to be: quantised where it comes into an object
-// of L voxels a side, it stays within e = 2^-21 + 2^-29 L voxel of itself in each axis (scarp/march/voxel_ray.h),
+// of L voxels a side, it stays within e = 2^-21 + 2^-29 L voxel of itself in each axis (scarp/march/voxel/voxel_ray.h),
 // sqrt(3) e in space. In the picture, at the depth W, that is at most
 //
 //   sqrt(3) e side sqrt(1 + x^2 + y^2) / (W pixel)     x, y: tangents of the angles at the picture's corner

@@ -12,7 +12,7 @@
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/max_mip.h"
+#include "scarp/march/height/max_mip.h"
 
 namespace scarp::bench {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "bench/engine.h"
 #include "bench/fields.h"
-#include "scarp/march/max_mip_simd.h"
+#include "scarp/march/height/max_mip_simd.h"
 
 namespace scarp::bench {
 

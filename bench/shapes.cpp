@@ -18,8 +18,8 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/field/distance_field.h"
-#include "scarp/march/shape_exhaustive.h"
-#include "scarp/march/sphere_trace.h"
+#include "scarp/march/shape/shape_exhaustive.h"
+#include "scarp/march/shape/sphere_trace.h"
 
 namespace scarp::bench {
 namespace {

@@ -8,8 +8,8 @@
 #include "bench/commands.h"
 #include "bench/protocol.h"
 #include "bench/scarp_engine.h"
-#include "scarp/march/max_mip.h"
-#include "scarp/march/max_mip_simd.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/max_mip_simd.h"
 
 namespace scarp::bench {
 namespace {

@@ -41,12 +41,13 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake ${CMAKE_CURRENT_BIN
 # The shader texts: as they are, for hosts with #include, under the paths that they include one another by; and each
 # march, and the ground in textures, with all that it needs in one file, for pasting.
 set(shader_folder ${CMAKE_INSTALL_DATADIR}/scarp/glsl)
-set(marches_as_text max_mip naive fixed_step relaxed lipschitz)
-set(function_marches_as_text function_marches lipschitz_local sphere_trace)
+set(marches_as_text height/max_mip naive fixed_step relaxed lipschitz)
+set(function_marches_as_text function/function_marches function/lipschitz_local shape/sphere_trace)
 set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/ground_buffers.glsl.h scarp/accel/function_buffers.glsl.h
     scarp/accel/shape_buffers.glsl.h)
-foreach(name ${marches_as_text} ${function_marches_as_text} two_float ray_frame float_ray two_float_ray cell_surface surface_normal ground textures noise
-        function_heights function_bounds function_frame ray_states shape_distance shape_grounds)
+foreach(name ${marches_as_text} ${function_marches_as_text} two_float ray_states height/ray_frame height/float_ray height/two_float_ray
+        height/cell_surface height/surface_normal height/ground height/textures function/noise function/function_heights
+        function/function_bounds function/function_frame shape/shape_distance shape/shape_grounds)
   list(APPEND shader_texts scarp/march/${name}.glsl.h)
 endforeach()
 foreach(text IN LISTS shader_texts)
@@ -55,12 +56,13 @@ foreach(text IN LISTS shader_texts)
 endforeach()
 set(flat_texts "")
 list(TRANSFORM shader_texts PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE all_texts)
-foreach(name IN LISTS marches_as_text function_marches_as_text ITEMS textures)
+foreach(name IN LISTS marches_as_text function_marches_as_text ITEMS height/textures)
   set(files ${PROJECT_SOURCE_DIR}/scarp/march/${name}.glsl.h)
   if(name IN_LIST marches_as_text)
-    string(PREPEND files ${PROJECT_SOURCE_DIR}/scarp/march/float_ray.glsl.h,)
+    string(PREPEND files ${PROJECT_SOURCE_DIR}/scarp/march/height/float_ray.glsl.h,)
   endif()
-  set(flat ${PROJECT_BINARY_DIR}/glsl/${name}.glsl)
+  cmake_path(GET name FILENAME flat_name)
+  set(flat ${PROJECT_BINARY_DIR}/glsl/${flat_name}.glsl)
   set(flatten ${CMAKE_CURRENT_SOURCE_DIR}/cmake/FlattenGlsl.cmake)
   add_custom_command(OUTPUT ${flat}
     COMMAND ${CMAKE_COMMAND} -D ROOT=${PROJECT_SOURCE_DIR} -D OUT=${flat}

@@ -7,7 +7,7 @@
 #include <cstdio>
 
 #include "scarp/field/height_function.h"
-#include "scarp/march/lipschitz_local.h"
+#include "scarp/march/function/lipschitz_local.h"
 
 namespace {
 

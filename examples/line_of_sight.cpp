@@ -6,7 +6,7 @@
 
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/field/height_field.h"
-#include "scarp/march/max_mip.h"
+#include "scarp/march/height/max_mip.h"
 
 namespace {
 

@@ -17,7 +17,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/output/png.h"
-#include "scarp/render/film.h"
+#include "scarp/render/frame/film.h"
 #include "scarp/source/read_raster.h"
 #ifdef SCARP_OPENEXR
 #include "scarp/output/exr.h"

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "scarp/render/depth.h"
+#include "scarp/render/camera/depth.h"
 
 namespace scarp::cli {
 

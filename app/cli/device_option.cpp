@@ -7,7 +7,7 @@
 
 #include "scarp/base/error.h"
 #ifdef SCARP_VULKAN
-#include "scarp/march/queries_vk.h"
+#include "scarp/march/height/queries_vk.h"
 #include "scarp/scene/scene_vk.h"
 #include "scarp/scene/terrain_scene_vk.h"
 #endif

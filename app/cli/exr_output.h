@@ -6,8 +6,8 @@
 #include <string>
 
 #include "scarp/base/replace_file.h"
-#include "scarp/render/depth.h"
-#include "scarp/render/layers.h"
+#include "scarp/render/camera/depth.h"
+#include "scarp/render/frame/layers.h"
 
 namespace scarp::cli {
 

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "scarp/output/figure.h"
-#include "scarp/render/ramp.h"
+#include "scarp/render/surface/ramp.h"
 #endif
 
 namespace scarp::cli {

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "scarp/render/picture.h"
+#include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {
 

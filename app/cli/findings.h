@@ -2,7 +2,7 @@
 // What `scarp render` found besides the picture.
 #pragma once
 
-#include "scarp/render/picture.h"
+#include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {
 

@@ -9,7 +9,7 @@
 
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
-#include "scarp/render/camera_path.h"
+#include "scarp/render/camera/camera_path.h"
 #include "scarp/source/ray_table.h"
 
 namespace scarp::cli {

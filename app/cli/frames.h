@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "scarp/render/camera.h"
+#include "scarp/render/camera/camera.h"
 
 namespace scarp::cli {
 

@@ -15,11 +15,11 @@
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
-#include "scarp/march/presets.h"
+#include "scarp/march/function/presets.h"
 #include "scarp/output/png.h"
-#include "scarp/render/compass.h"
-#include "scarp/render/ramp.h"
-#include "scarp/render/scene_picture.h"
+#include "scarp/render/camera/compass.h"
+#include "scarp/render/frame/scene_picture.h"
+#include "scarp/render/surface/ramp.h"
 #include "scarp/scene/example_functions.h"
 
 namespace scarp::cli {

@@ -8,9 +8,9 @@
 #include <string>
 
 #include "scarp/march/marches.h"
-#include "scarp/render/depth.h"
-#include "scarp/render/function_error.h"
-#include "scarp/render/picture.h"
+#include "scarp/render/camera/depth.h"
+#include "scarp/render/frame/picture.h"
+#include "scarp/render/look/function_error.h"
 
 namespace scarp::cli {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scarp/march/marches.h"
-#include "scarp/render/picture.h"
+#include "scarp/render/frame/picture.h"
 #include "scarp/scene/from_raster.h"
 
 namespace scarp::cli {

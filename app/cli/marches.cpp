@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "scarp/march/function/presets.h"
 #include "scarp/march/marches.h"
-#include "scarp/march/presets.h"
 
 namespace scarp::cli {
 namespace {

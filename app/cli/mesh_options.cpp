@@ -11,7 +11,7 @@
 #include "scarp/base/error.h"
 #include "scarp/source/mesh_file.h"
 #ifdef SCARP_VULKAN
-#include "scarp/render/mesh_picture_vk.h"
+#include "scarp/render/frame/mesh_picture_vk.h"
 #endif
 
 namespace scarp::cli {

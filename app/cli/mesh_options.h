@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "scarp/render/layers.h"
-#include "scarp/render/picture.h"
+#include "scarp/render/frame/layers.h"
+#include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {
 

@@ -12,9 +12,9 @@
 #include "app/cli/commands.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
-#include "scarp/march/exhaustive.h"
-#include "scarp/march/max_mip.h"
-#include "scarp/march/rounding.h"
+#include "scarp/march/height/exhaustive.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/rounding.h"
 #include "scarp/scene/ray_dump.h"
 
 namespace scarp::cli {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "scarp/render/camera.h"
-#include "scarp/render/scene_picture.h"
+#include "scarp/render/camera/camera.h"
+#include "scarp/render/frame/scene_picture.h"
 #include "scarp/scene/scene_file.h"
 
 namespace scarp::cli {

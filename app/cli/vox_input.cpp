@@ -10,7 +10,7 @@
 #include "app/cli/numbers.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
-#include "scarp/render/ramp.h"
+#include "scarp/render/surface/ramp.h"
 #include "scarp/scene/from_volume.h"
 
 namespace scarp::cli {

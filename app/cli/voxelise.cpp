@@ -20,7 +20,7 @@
 #include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/render/voxel_colours.h"
+#include "scarp/render/surface/voxel_colours.h"
 #include "scarp/scene/from_raster.h"
 #include "scarp/scene/to_vox.h"
 #include "scarp/scene/voxelised.h"

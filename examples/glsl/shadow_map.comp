@@ -25,8 +25,8 @@ float scarp_maximum(int level, int col, int row) {
 }
 float scarp_minimum(int level, int col, int row) { return 0.0; }  // there are none
 
-#include "scarp/march/float_ray.glsl.h"
-#include "scarp/march/max_mip.glsl.h"
+#include "scarp/march/height/float_ray.glsl.h"
+#include "scarp/march/height/max_mip.glsl.h"
 
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A terrain function in the memory of a Vulkan device: its three programs, which shaders interpret
-// (march/function_heights.glsl.h).
+// (march/function/function_heights.glsl.h).
 #pragma once
 
 #include <cstdint>

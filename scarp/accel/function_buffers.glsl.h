@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A terrain function as it lies in a device's memory: the instructions of its program (field/function_program.h), one
 // after the other, 64 bytes each. DeviceFunction (device_function.h) makes it; the interpreter of shaders
-// (march/function_heights.glsl.h) reads it.
+// (march/function/function_heights.glsl.h) reads it.
 #ifndef SCARP_ACCEL_FUNCTION_BUFFERS_GLSL_H
 #define SCARP_ACCEL_FUNCTION_BUFFERS_GLSL_H
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A distance field as it lies in a device's memory: the instructions of its program (field/distance_program.h), 32
-// bytes each, their numbers as floats, and where its grounds are. DeviceShape (march/shape_queries_vk.h) makes it; the
-// interpreter of shaders (march/shape_distance.glsl.h) reads it.
+// bytes each, their numbers as floats, and where its grounds are. DeviceShape (march/shape/shape_queries_vk.h) makes
+// it; the interpreter of shaders (march/shape/shape_distance.glsl.h) reads it.
 #ifndef SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H
 #define SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H
 

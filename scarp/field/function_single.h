@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What single precision makes of a terrain function: how far the height that a shader computes
-// (march/function_heights.glsl.h) may be from the true one, over a square of positions, and how far apart the bounds of
-// a segment stay however short it is (march/function_bounds.glsl.h).
+// (march/function/function_heights.glsl.h) may be from the true one, over a square of positions, and how far apart the
+// bounds of a segment stay however short it is (march/function/function_bounds.glsl.h).
 //
 // A number of the program is followed as the range of its true values and the most that its computed value is off. Two
 // floats are right to kPair of what goes into an operation, twice what scarp_two_combine() promises; what is computed
@@ -19,7 +19,7 @@ inline constexpr double kFloat = 0x1p-24, kPair = 0x1p-43;
 /// Numbers above this are too near to where floats end.
 inline constexpr double kMostSingle = 0x1p60;
 
-/// By which bounds of ranges are widened, kScarpSlack of march/function_bounds.glsl.h.
+/// By which bounds of ranges are widened, kScarpSlack of march/function/function_bounds.glsl.h.
 inline constexpr double kRangeSlack = 0x1p-20;
 
 struct Single {
@@ -112,7 +112,7 @@ inline Single radial(const Single& x, const Single& y, const FunctionInstruction
                   x.fits && y.fits);
 }
 
-/// What noise as computed is off by where its place is exact: kScarpNoiseBound of march/noise.glsl.h.
+/// What noise as computed is off by where its place is exact: kScarpNoiseBound of march/function/noise.glsl.h.
 inline double noise_off(NoiseKind kind) {
   return kind == NoiseKind::simplex ? 0x1p-15 : kind == NoiseKind::perlin ? 0x1p-17 : 0x1p-18;
 }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/march/function_ray.h"
+#include "scarp/march/function/function_ray.h"
 #include "scarp/march/ray_clip.h"
 
 namespace scarp {

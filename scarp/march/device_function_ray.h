@@ -21,7 +21,7 @@ struct DeviceFunctionRay {
   HitStatus known = HitStatus::miss;
 };
 
-/// `ray` must be valid (validate() of march/queries.h), `reach` metres at most it is followed.
+/// `ray` must be valid (validate() of march/height/queries.h), `reach` metres at most it is followed.
 DeviceFunctionRay device_function_ray(const HeightFunction& function, const SingleRounding& rounding, const Ray& ray,
                                       FunctionUse use, double reach);
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "scarp/base/error.h"
-#include "scarp/march/ground.h"
+#include "scarp/march/height/ground.h"
 
 namespace scarp {
 namespace {

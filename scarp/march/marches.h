@@ -13,8 +13,8 @@
 #include "scarp/field/distance_field.h"
 #include "scarp/field/height_field.h"
 #include "scarp/field/height_function.h"
-#include "scarp/march/voxel_packet.h"
-#include "scarp/march/voxel_target.h"
+#include "scarp/march/voxel/voxel_packet.h"
+#include "scarp/march/voxel/voxel_target.h"
 
 namespace scarp {
 

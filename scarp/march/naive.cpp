@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/march/ground.h"
+#include "scarp/march/height/ground.h"
 
 namespace scarp {
 namespace {

@@ -6,9 +6,9 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
-#include "scarp/march/ray_batch.glsl.h"
+#include "scarp/march/height/ray_batch.glsl.h"
 // The march asks the batch for its ground.
-#include "scarp/march/batch_states.glsl.h"
+#include "scarp/march/height/batch_states.glsl.h"
 #include "scarp/march/relaxed.glsl.h"
 
 void main() {

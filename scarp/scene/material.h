@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What surfaces of a scene look like, as plain data; render/surface_colour.h makes colours of it.
+// What surfaces of a scene look like, as plain data; render/surface/surface_colour.h makes colours of it.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct PlainColour {
   vec3 colour{0.6f};
 };
 
-/// A ramp of render/ramp.h over heights.
+/// A ramp of render/surface/ramp.h over heights.
 struct HeightRamp {
   std::string ramp;          ///< a name of ramp_names()
   double low = 0, high = 1;  ///< metres of world z, low <= high

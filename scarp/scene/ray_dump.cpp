@@ -15,7 +15,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
-#include "scarp/march/queries.h"
+#include "scarp/march/height/queries.h"
 
 namespace scarp {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
-#include "scarp/march/wall.h"
+#include "scarp/march/height/wall.h"
 #include "scarp/scene/scene_field.h"
 
 namespace scarp {

@@ -13,9 +13,9 @@
 #include "scarp/accel/device_ground.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
-#include "scarp/march/function_queries_vk.h"
-#include "scarp/march/queries_vk.h"
-#include "scarp/march/shape_queries_vk.h"
+#include "scarp/march/function/function_queries_vk.h"
+#include "scarp/march/height/queries_vk.h"
+#include "scarp/march/shape/shape_queries_vk.h"
 
 namespace scarp {
 namespace {

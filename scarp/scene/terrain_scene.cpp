@@ -8,7 +8,7 @@
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/queries.h"
+#include "scarp/march/height/queries.h"
 
 namespace scarp {
 namespace {

@@ -23,8 +23,8 @@ class TerrainScene {
   /// A scene on a device, which answers with the same field, march and settings. Used by one thread at a time.
   TerrainScene(HeightField field, const MarchEntry& march, std::shared_ptr<BatchQueries> device);
 
-  /// hits[i] is the first hit of rays[i], which must be valid (march/queries.h), as the march finds it. `steps`, when
-  /// not empty, is what each ray cost (MarchStats). Uses all threads. Throws Error when spans differ in length.
+  /// hits[i] is the first hit of rays[i], which must be valid (march/height/queries.h), as the march finds it. `steps`,
+  /// when not empty, is what each ray cost (MarchStats). Uses all threads. Throws Error when spans differ in length.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps = {}) const;
   /// blocked[i] is 1 where closest_hits would tell a hit, else 0, without computing where when the march can do that.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;

@@ -8,7 +8,7 @@
 
 #include "scarp/accel/device_ground.h"
 #include "scarp/accel/slope_bound.h"
-#include "scarp/march/queries_vk.h"
+#include "scarp/march/height/queries_vk.h"
 
 namespace scarp {
 namespace {

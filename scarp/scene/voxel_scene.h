@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scarp/march/rounded_voxels.h"
+#include "scarp/march/voxel/rounded_voxels.h"
 #include "scarp/scene/box_tree.h"
 #include "scarp/scene/voxel_model.h"
 

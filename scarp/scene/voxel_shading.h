@@ -3,7 +3,7 @@
 #pragma once
 
 #include "scarp/field/voxel_grid.h"
-#include "scarp/march/voxel_ray.h"
+#include "scarp/march/voxel/voxel_ray.h"
 
 namespace scarp {
 

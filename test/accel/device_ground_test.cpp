@@ -15,8 +15,8 @@
 #include "scarp/accel/height_encode.h"
 #include "scarp/accel/max_pyramid.glsl.h"
 #include "scarp/accel/max_pyramid.h"
-#include "scarp/march/queries_vk.h"
-#include "test/march/rounding_judge.h"
+#include "scarp/march/height/queries_vk.h"
+#include "test/march/height/rounding_judge.h"
 #include "test/vk/device_under_test.h"
 
 namespace scarp {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
-#include "scarp/march/queries.h"
+#include "scarp/march/height/queries.h"
 
 namespace scarp {
 namespace {

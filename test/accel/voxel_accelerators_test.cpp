@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "march/instruction_sets.h"
-#include "march/spiteful_voxels.h"
+#include "march/voxel/spiteful_voxels.h"
 #include "scarp/accel/brick_masks.h"
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"

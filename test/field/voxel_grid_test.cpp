@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-#include "march/spiteful_voxels.h"
+#include "march/voxel/spiteful_voxels.h"
 #include "scarp/base/error.h"
 #include "scarp/field/rotate_voxels.h"
 

@@ -83,7 +83,7 @@ file(WRITE ${WORK}/grounds.frag "#version 300 es
 precision highp float;
 precision highp int;
 out vec4 colour;
-#include \"scarp/march/shape_grounds.glsl.h\"
+#include \"scarp/march/shape/shape_grounds.glsl.h\"
 ScarpShapeInstruction scarp_shape_instruction(uint i) {
   return ScarpShapeInstruction(kScarpShapeFieldGround, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
 }

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "march/spiteful.h"
+#include "march/height/spiteful.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
-#include "scarp/march/exhaustive.h"
+#include "scarp/march/height/exhaustive.h"
 
 namespace scarp::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "march/rounding_judge.h"
+#include "march/height/rounding_judge.h"
 #include "scarp/march/marches.h"
 
 namespace scarp::test {

@@ -5,7 +5,7 @@
 
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/field/height_field.h"
-#include "scarp/march/max_mip.h"
+#include "scarp/march/height/max_mip.h"
 
 int main() {
   const std::vector<std::int16_t> samples(9, 5);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scarp/output/png.h"
-#include "scarp/render/picture.h"
+#include "scarp/render/frame/picture.h"
 #include "scarp/scene/terrain_scene.h"
 
 int main() {

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/function/function_queries_vk.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "scarp/base/error.h"
+#include "scarp/march/device_function_ray.h"
+#include "scarp/march/function/function_batch.glsl.h"
+#include "scarp/march/function/function_marches.glsl.h"
+#include "scarp/march/ray_runs_vk.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::uint32_t kFunctionMarchesWords[] = {
+#include "scarp/march/function/function_marches.comp.inc"
+};
+constexpr std::uint32_t kLipschitzLocalWords[] = {
+#include "scarp/march/function/lipschitz_local.comp.inc"
+};
+
+struct DeviceMarch {
+  std::string_view name;
+  std::span<const std::uint32_t> words;
+  std::uint32_t choice;  // the shader's
+  bool has_any;          // whether it can be asked for any hit, by the next choice
+  int evaluations;       // of the program in a step, at most
+};
+constexpr std::array kDeviceMarches = {
+    DeviceMarch{"naive", kFunctionMarchesWords, glsl::kScarpFunctionNaive, false, 1},
+    DeviceMarch{"fixed-step", kFunctionMarchesWords, glsl::kScarpFunctionFixedStep, false, 1},
+    DeviceMarch{"relaxed", kFunctionMarchesWords, glsl::kScarpFunctionRelaxed, false, 1},
+    DeviceMarch{"lipschitz", kFunctionMarchesWords, glsl::kScarpFunctionLipschitz, false, 1},
+    DeviceMarch{"lipschitz-local", kLipschitzLocalWords, 0, true, 2},
+};
+
+const DeviceMarch& device_march(const MarchEntry& march) {
+  std::string names;
+  for (const DeviceMarch& candidate : kDeviceMarches) {
+    if (candidate.name == march.name) return candidate;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", candidate.name);
+  }
+  throw Error(
+      fmt::format("march '{}': does not run over functions on Vulkan devices; there run: {}", march.name, names));
+}
+
+void set_refinement(glsl::FunctionBatch& batch, Refinement refinement, int halvings) {
+  batch.refinement = refinement == Refinement::secant   ? glsl::kScarpRefineSecant
+                     : refinement == Refinement::bisect ? glsl::kScarpRefineBisect
+                                                        : glsl::kScarpRefineNone;
+  batch.halvings = halvings;
+}
+
+glsl::FunctionBatch batch_settings(std::string_view march, const MarchSettings& settings, double slope) {
+  glsl::FunctionBatch batch{};
+  set_refinement(batch, settings.function.refinement, settings.function.halvings);
+  batch.metres = static_cast<float>(settings.function.tolerance);
+  if (march == "naive") {
+    batch.factor = static_cast<float>(settings.naive.step_factor);
+    batch.least = static_cast<float>(settings.naive.min_step);
+    batch.tolerance = static_cast<float>(settings.naive.tolerance);
+    batch.max_steps = settings.naive.max_steps;
+  } else if (march == "fixed-step") {
+    batch.factor = static_cast<float>(settings.function.step);
+    batch.least = static_cast<float>(settings.function.step_share);
+    batch.max_steps = settings.fixed_step.max_steps;
+    if (settings.function.refinement == Refinement::none && settings.fixed_step.interpolate)
+      batch.refinement = glsl::kScarpRefineSecant;
+  } else if (march == "relaxed") {
+    batch.factor = static_cast<float>(settings.relaxed.step_factor);
+    batch.tolerance = static_cast<float>(settings.relaxed.tolerance);
+    batch.max_steps = settings.relaxed.max_steps;
+  } else if (march == "lipschitz") {
+    // Less by more than its roundings, here and in the step.
+    const double shrink =
+        settings.lipschitz.shrink > 0 ? settings.lipschitz.shrink : (1 - 0x1p-20) / std::hypot(1.0, slope);
+    batch.factor = static_cast<float>(shrink);
+    batch.tolerance = static_cast<float>(settings.lipschitz.tolerance);
+    batch.max_steps = settings.lipschitz.max_steps;
+  } else {
+    batch.tolerance = static_cast<float>(settings.lipschitz_local.tolerance);
+    batch.max_steps = settings.lipschitz_local.max_steps;
+  }
+  return batch;
+}
+
+// Steps until a march is interrupted: the interpreter's loop turns once per instruction and step.
+int run_steps(std::size_t instructions, int evaluations) {
+  if (instructions > static_cast<std::size_t>(glsl::kScarpMostInstructions)) {
+    throw Error(
+        fmt::format("terrain function: {} instructions; Vulkan devices take {}: use fewer octaves or warps, or the "
+                    "CPU",
+                    instructions, glsl::kScarpMostInstructions));
+  }
+  const int all = glsl::kScarpLoopTurns / (static_cast<int>(instructions) + 2);
+  return std::max(1, (all - glsl::kScarpLastEvaluations) / evaluations);
+}
+
+}  // namespace
+
+struct DeviceFunctionQueries::Impl {
+  Impl(const Device& device_, const MarchEntry& entry, const MarchSettings& march_settings_,
+       const DeviceQuerySettings& settings)
+      : march(device_march(entry)),
+        march_settings(march_settings_),
+        device(device_),
+        runs(device_, settings.rays_at_once) {}
+
+  // Made of what the program has, when it is first asked for.
+  const ComputePipeline& pipeline(const FunctionProgram& program, bool any) {
+    const std::uint32_t choice = march.choice + (any && march.has_any ? 1 : 0), parts = function_parts(program);
+    const auto made = pipelines.find({choice, parts});
+    if (made != pipelines.end()) return made->second;
+    const std::uint32_t constants[] = {RayRuns::kThreads, choice, parts};
+    return pipelines
+        .try_emplace({choice, parts}, device, march.words, std::string(march.name) + " over functions",
+                     std::uint32_t{sizeof(glsl::FunctionBatch)}, constants)
+        .first->second;
+  }
+
+  // Calls answer(i, prepared, hit) for each ray, on all threads.
+  template <class Answer>
+  void ask(const DeviceFunctionTarget& target, bool any, std::span<const Ray> asked, const Answer& answer) {
+    const FunctionProgram& program = target.function->program(target.use);
+    glsl::FunctionBatch batch =
+        batch_settings(march.name, march_settings, target.function->bound_everywhere(target.use).slope);
+    batch.code = target.device->address(target.use);
+    batch.instructions = static_cast<std::uint32_t>(program.code.size());
+    batch.result = program.result;
+    batch.run_steps = run_steps(program.code.size(), march.evaluations);
+    runs.ask(
+        pipeline(program, any), batch, asked.size(),
+        [&](std::size_t i) {
+          return device_function_ray(*target.function, target.device->rounding(target.use), asked[i], target.use,
+                                     march_settings.function.reach);
+        },
+        answer);
+  }
+
+  const DeviceMarch& march;
+  MarchSettings march_settings;
+  Device device;
+  RayRuns runs;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, ComputePipeline> pipelines;  // by choice and parts
+};
+
+DeviceFunctionQueries::DeviceFunctionQueries(const Device& device, const MarchEntry& march,
+                                             const MarchSettings& march_settings, const DeviceQuerySettings& settings) {
+  validate(march_settings);
+  impl_ = std::make_unique<Impl>(device, march, march_settings, settings);
+}
+DeviceFunctionQueries::DeviceFunctionQueries(DeviceFunctionQueries&&) noexcept = default;
+DeviceFunctionQueries& DeviceFunctionQueries::operator=(DeviceFunctionQueries&&) noexcept = default;
+DeviceFunctionQueries::~DeviceFunctionQueries() = default;
+
+void DeviceFunctionQueries::set_march_settings(const MarchSettings& march_settings) {
+  validate(march_settings);
+  impl_->march_settings = march_settings;
+}
+
+void DeviceFunctionQueries::closest_hits(const DeviceFunctionTarget& target, std::span<const Ray> rays,
+                                         std::span<Hit> hits, std::span<std::uint32_t> steps) {
+  require_room(rays.size(), hits.size(), steps.size());
+  impl_->ask(target, false, rays,
+             [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
+               hits[i] = hit_from_device(rays[i], prepared, answer);
+               if (!steps.empty()) steps[i] = answer.bounds + answer.heights;
+             });
+}
+
+void DeviceFunctionQueries::occluded(const DeviceFunctionTarget& target, std::span<const Ray> rays,
+                                     std::span<std::uint8_t> blocked) {
+  require_room(rays.size(), blocked.size());
+  impl_->ask(target, true, rays,
+             [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
+               blocked[i] = is_blocked(prepared, answer);
+             });
+}
+
+const std::vector<PassTime>& DeviceFunctionQueries::passes() const { return impl_->runs.passes(); }
+
+}  // namespace scarp

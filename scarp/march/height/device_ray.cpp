@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/height/device_ray.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scarp/march/height/grid_axis.h"
+
+namespace scarp {
+namespace {
+
+// Who moves by less, in cells, over the whole way is taken to stand still: far below what floats tell apart in a cell.
+constexpr double kStandstill = 0x1p-40;
+// Samples per cell beyond which a ray is taken to be upright: floats hold no more.
+constexpr double kSteepest = 0x1p80;
+constexpr double kUnit = 0x1p-53;
+// Positions up to which doubles tell a cell from the next well enough.
+constexpr double kFarthestCell = 0x1p40;
+
+struct Pair {
+  float high, low;
+};
+
+Pair pair(double x) {
+  const auto high = static_cast<float>(x);
+  return {high, static_cast<float>(x - static_cast<double>(high))};
+}
+
+bool inside(double o, int cells) { return o >= 0 && o <= cells; }
+
+// A ray as two floats per number. Times beyond kScarpNever are told as that.
+void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec3& direction, double length) {
+  const Pair u = pair(place.x), v = pair(place.y), z = pair(height);
+  out.cell = {cell.col, cell.row};
+  out.place = {u.high, v.high};
+  out.place_low = {u.low, v.low};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Pair d = pair(direction[axis]);
+    out.direction[axis] = d.high;
+    out.direction_low[axis] = d.low;
+    if (axis < 2 && direction[axis] != 0) {
+      const double never{glsl::kScarpNever};
+      out.per_direction[axis] = static_cast<float>(std::clamp(1 / direction[axis], -never, never));
+    }
+  }
+  const Pair end = pair(std::min(length, double{glsl::kScarpNever}));
+  out.z = z.high;
+  out.z_low = z.low;
+  out.end = end.high;
+  out.end_low = end.low;
+}
+
+// A ray for max-mip.
+template <bool Wraps>
+DeviceRay on_grid(const HeightField& field, const Ray& ray) {
+  DeviceRay result;
+  GridRay local = field.grid_from_world(ray);
+  // The longer horizontal component, or that of an upright ray, is brought to 1 to 2 by a power of two: exactly.
+  double speed = std::max(std::abs(local.direction.x), std::abs(local.direction.y));
+  if (speed == 0) speed = std::abs(local.direction.z);
+  if (!(speed > 0) || !std::isfinite(speed)) return result;
+  const int exponent = std::ilogb(speed);
+  for (int axis = 0; axis < 3; ++axis) local.direction[axis] = std::ldexp(local.direction[axis], -exponent);
+  const double first = std::ldexp(ray.t_min, exponent), last = std::ldexp(ray.t_max, exponent);
+  result.per_time = std::ldexp(1.0, -exponent);
+  const bool strict = ray.start == RayStart::on_surface;
+  glsl::ScarpRay& out = result.ray;
+
+  if constexpr (Wraps) {
+    for (int axis = 0; axis < 2; ++axis) {
+      for (const double t : {first, last}) {
+        if (!(std::abs(local.origin[axis] + local.direction[axis] * t) < kFarthestCell)) {
+          result.known = HitStatus::exhausted;
+          result.begin = first;
+          return result;
+        }
+      }
+    }
+  }
+  GridAxis<Wraps> x(local.origin.x, local.direction.x, field.cell_cols());
+  GridAxis<Wraps> y(local.origin.y, local.direction.y, field.cell_rows());
+  double begin = first, end = last, way = last;
+  Cell cell = ray.start_cell;
+  if (strict) {
+    x.begin_in(cell.col, begin);
+    y.begin_in(cell.row, begin);
+    out.flags |= glsl::kScarpOnSurface;
+  }
+  if constexpr (!Wraps) {
+    if ((!x.moves() && !inside(local.origin.x, x.cells)) || (!y.moves() && !inside(local.origin.y, y.cells)))
+      return result;
+    const double border = std::max(x.enter_time(), y.enter_time());
+    way = std::min({last, x.exit_time(), y.exit_time()});
+    if (!strict) {
+      if (border >= begin) out.flags |= glsl::kScarpFromOutside;
+      begin = std::max(begin, border);
+      if (!(begin <= way)) return result;
+    }
+  }
+  const double highest = field.max_sample(), lowest = field.min_sample();
+  const double z = local.origin.z, dz = local.direction.z;
+  bool before = false;
+  if (!strict && z + dz * begin > highest) {
+    if (!(dz < 0)) return result;
+    const double quotient = (highest - z) / dz, top = quotient - 2 * kUnit * std::abs(quotient);
+    if (top > way) return result;
+    out.flags |= glsl::kScarpAbove;
+    before = top > begin;
+    begin = std::max(begin, top);
+  }
+  if (!strict)
+    cell = before ? Cell{x.cell_before(begin), y.cell_before(begin)} : Cell{x.cell_after(begin), y.cell_after(begin)};
+
+  const double u = x.place(begin, cell.col), v = y.place(begin, cell.row);
+  // What is left of the way: only walls are met above or below all ground.
+  const double height = z + dz * begin, relief = std::max(highest - lowest, 1.0);
+  const bool walls = field.settings().solid && field.nodata_count() > 0;
+  double low_way = way;
+  if (dz < 0 && !(walls && std::isfinite(way))) low_way = begin + (std::max(height - lowest, 0.0) + relief) / -dz;
+  if (dz > 0) low_way = begin + (std::max(highest - height, 0.0) + relief) / dz;
+  if (!std::isfinite(way)) end = low_way;
+  const double exit = way;
+  way = std::min(way, low_way);
+  const auto stands = [&](const GridAxis<Wraps>& axis) {
+    return std::abs(axis.direction) * (way - begin) < kStandstill;
+  };
+  dvec3 direction{stands(x) ? 0 : x.direction, stands(y) ? 0 : y.direction, dz};
+  // Who stands still does not come to a border by himself.
+  if (direction.x == 0 && x.moves() && !Wraps) end = std::min(end, x.exit_time());
+  if (direction.y == 0 && y.moves() && !Wraps) end = std::min(end, y.exit_time());
+  double length = std::max(end - begin, 0.0);
+  if ((direction.x == 0 && direction.y == 0) || std::abs(dz) > kSteepest) {
+    out.flags |= glsl::kScarpUpright;
+    const int upright = dz == 0 ? 0 : std::ilogb(dz);
+    direction = {0, 0, std::ldexp(dz, -upright)};
+    length = std::ldexp(std::min(end, exit) - begin, upright);
+    begin = std::ldexp(begin, upright);
+    result.per_time = std::ldexp(result.per_time, -upright);
+  }
+
+  pack(out, cell, {u, v}, height, direction, length);
+  result.begin = begin;
+  result.marches = true;
+  return result;
+}
+
+}  // namespace
+
+glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyramid) {
+  const HeightFieldSettings& settings = field.settings();
+  glsl::ScarpField result{};
+  result.cells = {field.cell_cols(), field.cell_rows()};
+  result.samples = {field.cols(), field.rows()};
+  result.flags = (settings.surface == Surface::triangles ? glsl::kScarpTriangles : 0) |
+                 (field.nodata_count() > 0 ? glsl::kScarpHoles : 0) | (field.wraps() ? glsl::kScarpWraps : 0) |
+                 (settings.solid ? glsl::kScarpSolid : 0);
+  result.lowest = static_cast<float>(field.min_sample());
+  result.highest = static_cast<float>(field.max_sample());
+  if (pyramid) {
+    const Pair base = pair(pyramid->code().base);
+    result.top_level = pyramid->top_level();
+    result.code_base = base.high;
+    result.code_base_low = base.low;
+    result.code_step = static_cast<float>(pyramid->code().step);
+  }
+  return result;
+}
+
+DeviceRay device_ray(const HeightField& field, const Ray& ray) {
+  if (!field.has_cells() || field.all_nodata()) return {};
+  return field.wraps() ? on_grid<true>(field, ray) : on_grid<false>(field, ray);
+}
+
+DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray) {
+  DeviceRay result;
+  if (!field.has_cells() || field.all_nodata()) return result;
+  GridRay local = field.grid_from_world(ray);
+  const double longest =
+      std::max({std::abs(local.direction.x), std::abs(local.direction.y), std::abs(local.direction.z)});
+  if (!(longest > 0) || !std::isfinite(longest)) return result;
+  const int exponent = std::ilogb(longest);
+  dvec3 world;
+  for (int axis = 0; axis < 3; ++axis) {
+    local.direction[axis] = std::ldexp(local.direction[axis], -exponent);
+    world[axis] = std::ldexp(ray.direction[axis], -exponent);
+  }
+  const double first = std::ldexp(ray.t_min, exponent);
+  double begin = first, end = std::ldexp(ray.t_max, exponent);
+  const auto clip = [&](double low, double high, double o, double d) {
+    if (d == 0) {
+      if (!(o >= low && o <= high)) end = -HUGE_VAL;
+      return;
+    }
+    const double a = (low - o) / d, b = (high - o) / d;
+    begin = std::max(begin, std::min(a, b));
+    end = std::min(end, std::max(a, b));
+  };
+  const int cells[] = {field.cell_cols(), field.cell_rows()};
+  if (!field.wraps()) {
+    for (int axis = 0; axis < 2; ++axis) clip(0, cells[axis], local.origin[axis], local.direction[axis]);
+  }
+  if (std::isinf(end)) clip(field.min_sample(), field.max_sample(), local.origin.z, local.direction.z);
+  if (!(begin <= end) || std::isinf(end)) return result;
+  int cell[2];
+  double place[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    double position = local.origin[axis] + local.direction[axis] * begin;
+    if (field.wraps()) position -= std::floor(position / cells[axis]) * cells[axis];
+    position = std::clamp(position, 0.0, static_cast<double>(cells[axis]));
+    cell[axis] = std::min(static_cast<int>(position), cells[axis] - 1);
+    place[axis] = position - cell[axis];
+  }
+  glsl::ScarpRay& out = result.ray;
+  if (ray.start == RayStart::on_surface) out.flags |= glsl::kScarpOnSurface;
+  if (begin > first) out.flags |= glsl::kScarpFromOutside;
+  pack(out, {cell[0], cell[1]}, {place[0], place[1]}, local.origin.z + local.direction.z * begin, local.direction,
+       end - begin);
+  const HeightFieldSettings& settings = field.settings();
+  const double speed = length(world);
+  out.travelled = static_cast<float>(begin - first);
+  out.exit = static_cast<float>(end - begin);
+  out.per_height = static_cast<float>(settings.scale * settings.exaggeration / speed);
+  out.cell_time = static_cast<float>(std::min(settings.cell_x, settings.cell_y) / speed);
+  result.per_time = std::ldexp(1.0, -exponent);
+  result.begin = begin;
+  result.marches = true;
+  return result;
+}
+
+Hit hit_from_device(const Ray& ray, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
+  Hit hit;
+  if (!prepared.marches) {
+    hit.status = prepared.known;
+    if (hit.status == HitStatus::exhausted) hit.t = ray.t_min;
+    return hit;
+  }
+  const double time = prepared.begin + static_cast<double>(answer.time) + static_cast<double>(answer.time_low);
+  const double t = std::clamp(time * prepared.per_time, ray.t_min, ray.t_max);
+  switch (answer.status) {
+    case glsl::kScarpMiss:
+      return hit;
+    case glsl::kScarpBelow:
+      hit.status = HitStatus::below;
+      return hit;
+    case glsl::kScarpExhausted:
+      hit.status = HitStatus::exhausted;
+      hit.t = t;
+      return hit;
+    default:
+      hit.status = HitStatus::hit;
+      hit.wall = answer.status == glsl::kScarpWall;
+  }
+  hit.t = t;
+  hit.cell = {answer.cell.x, answer.cell.y};
+  hit.u = static_cast<double>(answer.place.x);
+  hit.v = static_cast<double>(answer.place.y);
+  hit.height = ray.at(t).z;
+  return hit;
+}
+
+}  // namespace scarp

@@ -1,0 +1,354 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/height/exhaustive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+namespace scarp {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+struct Span {
+  double begin = -kInfinity, end = kInfinity;
+  bool empty() const { return !(begin <= end); }
+};
+
+Span common(Span a, Span b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
+
+// When o + d t lies in [low, low + size]. Neighbouring strips compute their common border alike, so their spans meet
+// exactly. A ray that does not move along the axis belongs to [low, low + size), the last strip of all being closed.
+Span strip(double o, double d, double low, double size, bool last) {
+  if (d == 0) return o >= low && (o < low + size || (last && o == low + size)) ? Span{} : Span{1, 0};
+  const double a = (low - o) / d, b = (low + size - o) / d;
+  return {std::min(a, b), std::max(a, b)};
+}
+
+// The part of the ray over one cell or triangle, and ray height - surface height there: f = a s^2 + b s + c, s = t -
+// span.begin.
+struct Piece {
+  Span span;
+  Cell cell;
+  double col, row;       // of the cell, in a field that wraps round of the copy that the ray is over
+  double a, b, c, last;  // last: f at the span's end
+
+  double length() const { return span.end - span.begin; }
+  // The two places where f = 0, the lower first; nothing when there are none.
+  std::optional<Span> roots() const {
+    if (a == 0) {
+      if (b == 0) return {};
+      return b < 0 ? Span{-c / b, kInfinity} : Span{-kInfinity, -c / b};
+    }
+    const double d = b * b - 4 * a * c;
+    if (d < 0) return {};
+    const double q = -0.5 * (b + std::copysign(std::sqrt(d), b));
+    if (q == 0) return Span{0, 0};
+    return Span{std::min(q / a, c / q), std::max(q / a, c / q)};
+  }
+  // Where a parabola has its lowest or highest point, if inside the piece.
+  std::optional<double> vertex() const {
+    if (a == 0) return {};
+    const double s = -b / (2 * a);
+    if (!(s > 0 && s < length())) return {};
+    return s;
+  }
+};
+
+class Ground {
+ public:
+  Ground(const HeightField& field, const Ray& ray) : field_(field) {
+    const HeightFieldSettings& to = field.settings();
+    ox_ = ray.origin.x / to.cell_x;
+    oy_ = field.rows() - 1 - ray.origin.y / to.cell_y;
+    oz_ = (ray.origin.z / to.exaggeration - to.offset) / to.scale;
+    dx_ = ray.direction.x / to.cell_x;
+    dy_ = -ray.direction.y / to.cell_y;
+    dz_ = ray.direction.z / (to.exaggeration * to.scale);
+  }
+
+  void move_height(double by) { oz_ += by; }
+
+  // The pieces over the cell at (col, row), which in a field that wraps round may be in any copy: one, or one for each
+  // triangle, or none over a hole.
+  void add_pieces(double col, double row, Span span, std::vector<Piece>& to) const {
+    const Cell cell{within(col, field_.cell_cols()), within(row, field_.cell_rows())};
+    const auto h = field_.cell_heights(cell);
+    if (!h) return;
+    if (field_.settings().surface == Surface::bilinear) {
+      to.push_back(bilinear_piece(*h, cell, col, row, span));
+      return;
+    }
+    // Where x + y is that of the diagonal the ray goes from one triangle to the other.
+    const double across = dx_ + dy_, parting = (col + row + 1 - ox_ - oy_) / across;
+    if (across != 0 && parting > span.begin && parting < span.end) {
+      to.push_back(triangle_piece(*h, cell, col, row, {span.begin, parting}));
+      to.push_back(triangle_piece(*h, cell, col, row, {parting, span.end}));
+    } else {
+      to.push_back(triangle_piece(*h, cell, col, row, span));
+    }
+  }
+
+  Piece bilinear_piece(const CellHeights& h, Cell cell, double col, double row, Span span) const {
+    Piece p{span, cell, col, row, 0, 0, 0, 0};
+    const double u = inside(ox_ + dx_ * span.begin - col), v = inside(oy_ + dy_ * span.begin - row);
+    const double gu = (h.h10 - h.h00) * (1 - v) + (h.h11 - h.h01) * v;
+    const double gv = (h.h01 - h.h00) * (1 - u) + (h.h11 - h.h10) * u;
+    p.a = -(h.h00 - h.h10 - h.h01 + h.h11) * dx_ * dy_;
+    p.b = dz_ - gu * dx_ - gv * dy_;
+    p.c = oz_ + dz_ * span.begin - bilinear(h, u, v);
+    // An upright ray may have no end: then the sign of its movement tells on which side it ends.
+    p.last = std::isinf(span.end)
+                 ? std::copysign(kInfinity, dz_)
+                 : oz_ + dz_ * span.end -
+                       bilinear(h, inside(ox_ + dx_ * span.end - col), inside(oy_ + dy_ * span.end - row));
+    return p;
+  }
+
+  Piece triangle_piece(const CellHeights& h, Cell cell, double col, double row, Span span) const {
+    Piece p{span, cell, col, row, 0, 0, 0, 0};
+    const double middle = std::isinf(span.end) ? span.begin : 0.5 * (span.begin + span.end);
+    const bool upper = (ox_ + dx_ * middle - col) + (oy_ + dy_ * middle - row) <= 1;
+    const double gu = upper ? h.h10 - h.h00 : h.h11 - h.h01, gv = upper ? h.h01 - h.h00 : h.h11 - h.h10;
+    const auto clearance = [&](double t) {
+      const double u = inside(ox_ + dx_ * t - col), v = inside(oy_ + dy_ * t - row);
+      const double ground =
+          upper ? h.h00 * (1 - u - v) + h.h10 * u + h.h01 * v : h.h11 * (u + v - 1) + h.h01 * (1 - u) + h.h10 * (1 - v);
+      return oz_ + dz_ * t - ground;
+    };
+    p.b = dz_ - gu * dx_ - gv * dy_;
+    p.c = clearance(span.begin);
+    p.last = std::isinf(span.end) ? std::copysign(kInfinity, dz_) : clearance(span.end);
+    return p;
+  }
+
+  // The surface right under a point of the cell; nothing over a hole.
+  std::optional<double> clearance_at(Cell cell, double t) const {
+    const auto h = field_.cell_heights(cell);
+    if (!h) return {};
+    const auto copy = [&](double position, int c, int cells) {
+      return field_.wraps() ? c + std::round((position - c - 0.5) / cells) * cells : c;
+    };
+    const double col = copy(ox_ + dx_ * t, cell.col, field_.cell_cols());
+    const double row = copy(oy_ + dy_ * t, cell.row, field_.cell_rows());
+    const Span here{t, t};
+    return field_.settings().surface == Surface::bilinear ? bilinear_piece(*h, cell, col, row, here).c
+                                                          : triangle_piece(*h, cell, col, row, here).c;
+  }
+
+  // What rounding can add to f around t: 16 units in the last place of all that goes into it.
+  double rounding(double t) const {
+    const HeightFieldSettings& to = field_.settings();
+    const double heights = std::max(std::abs(field_.min_sample()), std::abs(field_.max_sample())) + std::abs(oz_) +
+                           std::abs(dz_ * t) + std::abs(to.offset) / to.scale;
+    const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t) + field_.rows();
+    return 16 * 0x1p-53 * (heights + places * (field_.max_sample() - field_.min_sample()));
+  }
+
+  // The same for the times of lines: a quotient for the origin, a difference and a quotient.
+  double rounding_of_time(double t) const {
+    const double speed = std::max(std::abs(dx_), std::abs(dy_));
+    const double places = std::abs(ox_) + std::abs(oy_) + std::abs(dx_ * t) + std::abs(dy_ * t);
+    return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
+  }
+
+  // All pieces of the ray, in the order of t. The range is finite in a field that wraps round.
+  std::vector<Piece> pieces(Span range) const {
+    std::vector<Piece> found;
+    const int cols = field_.cell_cols(), rows = field_.cell_rows();
+    const bool wraps = field_.wraps();
+    const auto touched = [&](double o, double d, Span over, int cells) {
+      const double from = d == 0 ? o : o + d * over.begin, to = d == 0 ? o : o + d * over.end;
+      const double first = std::floor(std::min(from, to)) - 1, last = std::floor(std::max(from, to)) + 1;
+      return wraps ? Span{first, last} : Span{std::clamp(first, 0.0, cells - 1.0), std::clamp(last, 0.0, cells - 1.0)};
+    };
+    const Span over_rows = touched(oy_, dy_, range, rows);
+    for (double row = over_rows.begin; row <= over_rows.end; ++row) {
+      const Span over_row = common(range, strip(oy_, dy_, row, 1, !wraps && row == rows - 1));
+      if (over_row.empty()) continue;
+      // Columns that the ray can touch in this row, one more on either side for rounding.
+      const Span over_cols = touched(ox_, dx_, over_row, cols);
+      for (double col = over_cols.begin; col <= over_cols.end; ++col) {
+        const Span over_cell = common(over_row, strip(ox_, dx_, col, 1, !wraps && col == cols - 1));
+        if (!over_cell.empty()) add_pieces(col, row, over_cell, found);
+      }
+    }
+    std::stable_sort(found.begin(), found.end(), [](const Piece& p, const Piece& q) {
+      return p.span.begin != q.span.begin ? p.span.begin < q.span.begin : p.span.end < q.span.end;
+    });
+    return found;
+  }
+
+  // When the ray's line comes over the field; long ago where the field has no border.
+  double border() const {
+    if (field_.wraps()) return -kInfinity;
+    return std::max(strip(ox_, dx_, 0, field_.cell_cols(), true).begin,
+                    strip(oy_, dy_, 0, field_.cell_rows(), true).begin);
+  }
+
+  Hit hit(const Piece& piece, double s) const {
+    Hit hit;
+    hit.status = HitStatus::hit;
+    hit.t = piece.span.begin + std::clamp(s, 0.0, piece.length());
+    hit.cell = piece.cell;
+    hit.u = inside(ox_ + dx_ * hit.t - piece.col);
+    hit.v = inside(oy_ + dy_ * hit.t - piece.row);
+    hit.height = field_.height_from_sample(oz_ + dz_ * hit.t);
+    return hit;
+  }
+
+ private:
+  static double inside(double x) { return std::clamp(x, 0.0, 1.0); }
+  static int within(double cell, int cells) { return static_cast<int>(cell - std::floor(cell / cells) * cells); }
+  static double bilinear(const CellHeights& h, double u, double v) {
+    return (h.h00 * (1 - u) + h.h10 * u) * (1 - v) + (h.h01 * (1 - u) + h.h11 * u) * v;
+  }
+
+  const HeightField& field_;
+  double ox_, oy_, oz_, dx_, dy_, dz_;  // the ray in cells and sample units
+};
+
+// First s in the piece at which a ray that comes from above is on or below the surface. A ray that began on the surface
+// has to be below by more than `depth`, what rounding can pretend; a touch is no hit for it.
+std::optional<double> descent(const Piece& p, std::optional<double> depth) {
+  const auto below = [&](double f) { return depth ? f < -*depth : f <= 0; };
+  const bool ends_below = below(p.last);
+  const auto vertex = p.vertex();
+  const double lowest = vertex ? (p.a * *vertex + p.b) * *vertex + p.c : kInfinity;
+  if (!ends_below && !(p.a > 0 && below(lowest))) return {};
+  const auto roots = p.roots();
+  if (!roots) return ends_below ? p.length() : *vertex;
+  // f falls through zero at the lower root of a cup and at the upper root of a cap.
+  return p.a < 0 ? roots->end : roots->begin;
+}
+
+// Whether a ray that is below at the piece's begin comes out in between.
+bool rises_inside(const Piece& p) {
+  const auto vertex = p.vertex();
+  return vertex && p.a < 0 && (p.a * *vertex + p.b) * *vertex + p.c > 0;
+}
+
+// The first s at which such a ray is back on or below the surface, as descent().
+std::optional<double> descent_after_rise(const Piece& p, std::optional<double> depth) {
+  if (!(depth ? p.last < -*depth : p.last <= 0)) return {};
+  return p.roots() ? p.roots()->end : p.length();
+}
+
+// Goes along the ray; found(hit) says whether to go on. Returns below when the ray began so, else miss.
+template <class Found>
+HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, const Found& found) {
+  HitStatus without = HitStatus::miss;
+  if (!field.has_cells()) return without;
+  Ground ground(field, ray);
+  const bool on_surface = ray.start == RayStart::on_surface;
+  enum class Side { unknown, above, below } side = Side::unknown;
+  if (on_surface) {
+    const auto start = ground.clearance_at(ray.start_cell, ray.t_min);
+    if (!start) return without;
+    ground.move_height(-*start);
+    side = Side::above;
+  }
+  const auto pieces = ground.pieces({ray.t_min, ray.t_max});
+  if (stats) stats->steps = stats->cell_tests = static_cast<std::uint32_t>(pieces.size());
+  const double entry = std::max(ray.t_min, ground.border());
+  // A ray from the surface may come over its cell a rounding later.
+  const double start = on_surface ? ray.t_min + ground.rounding_of_time(ray.t_min) : -kInfinity;
+  double reached = start;
+  bool first = on_surface;
+  for (const Piece& p : pieces) {
+    if (first && p.cell == ray.start_cell && p.span.begin <= start) {
+      // f = s (a s + b): the root at the start is no hit.
+      reached = std::max(reached, p.span.end);
+      if (p.length() == 0) continue;
+      first = false;
+      const double last = std::isinf(p.length()) ? p.last : (p.a * p.length() + p.b) * p.length();
+      const double lowest = p.a > 0 && p.vertex() ? (p.a * *p.vertex() + p.b) * *p.vertex() : last;
+      if (!(lowest < -ground.rounding(ray.t_min))) continue;
+      if (!found(ground.hit(p, p.b < 0 || p.a == 0 ? 0 : -p.b / p.a))) return without;
+      if (last <= 0) side = Side::below;
+      continue;
+    }
+    if (p.span.begin > reached) side = Side::unknown;  // a hole lies in between, or nothing at all yet
+    reached = std::max(reached, p.span.end);
+    if (side == Side::unknown) {
+      side = p.c < 0 ? Side::below : Side::above;
+      if (side == Side::below && !on_surface && &p == &pieces.front() && p.span.begin <= entry) {
+        without = HitStatus::below;
+      }
+      // Through the border or out of a hole, unless it began in this cell.
+      const bool came_in = p.span.begin > ray.t_min || ground.border() >= ray.t_min;
+      if (side == Side::below && field.settings().solid && came_in) {
+        Hit hit = ground.hit(p, 0);
+        hit.wall = true;
+        if (!found(hit)) return without;
+      }
+    }
+    if (side == Side::below && p.c > 0) side = Side::above;
+    const auto depth = on_surface ? std::optional(ground.rounding(p.span.begin)) : std::nullopt;
+    // Who comes to be on the surface has met it, and may rise from there and meet it again in the same piece.
+    if (side == Side::above && !depth && p.c <= 0) {
+      if (!found(ground.hit(p, 0))) return without;
+      side = Side::below;
+    }
+    const bool rises = side == Side::below && rises_inside(p);
+    const auto s = side == Side::above ? descent(p, depth) : rises ? descent_after_rise(p, depth) : std::nullopt;
+    if (rises) side = Side::above;
+    if (s) {
+      if (!found(ground.hit(p, *s))) return without;
+      side = Side::below;
+    }
+    if (side == Side::below && (p.last > 0 || (rises && !s))) side = Side::above;
+  }
+  return without;
+}
+
+// The products of a very long or very short direction's components do not fit a double: it is followed as one of a
+// length near 1, and t given back in its own. By powers of two, so that nothing is rounded.
+class OfUsualLength {
+ public:
+  explicit OfUsualLength(const Ray& ray) : ray_(ray) {
+    const dvec3& d = ray.direction;
+    std::frexp(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), &exponent_);
+    if (std::abs(exponent_) < 128) exponent_ = 0;
+    for (int axis = 0; axis < 3; ++axis) ray_.direction[axis] = std::ldexp(d[axis], -exponent_);
+    ray_.t_min = std::ldexp(ray.t_min, exponent_);
+    ray_.t_max = std::ldexp(ray.t_max, exponent_);
+  }
+  const Ray& ray() const { return ray_; }
+  Hit in_own_length(Hit hit) const {
+    hit.t = std::ldexp(hit.t, -exponent_);
+    return hit;
+  }
+
+ private:
+  Ray ray_;
+  int exponent_ = 0;
+};
+
+}  // namespace
+
+Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats) {
+  if (stats) *stats = {};
+  Hit answer;
+  const OfUsualLength usual(ray);
+  const HitStatus without = follow(*target.field, usual.ray(), stats, [&](const Hit& hit) {
+    answer = usual.in_own_length(hit);
+    return false;
+  });
+  if (!answer) answer.status = without;
+  return answer;
+}
+
+HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
+  hits.clear();
+  const OfUsualLength usual(ray);
+  const HitStatus without = follow(*target.field, usual.ray(), nullptr, [&](const Hit& hit) {
+    hits.push_back(usual.in_own_length(hit));
+    return true;
+  });
+  return hits.empty() ? without : HitStatus::hit;
+}
+
+}  // namespace scarp

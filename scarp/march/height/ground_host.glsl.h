@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+// What the marches ask of their host (cell_surface.glsl.h, max_mip.glsl.h), answered from accel/ground_buffers.glsl.h.
+// GLSL. Who includes it calls open_ground() before a march: what is the same for all samples is read once.
+#ifndef SCARP_MARCH_GROUND_HOST_GLSL_H
+#define SCARP_MARCH_GROUND_HOST_GLSL_H
+
+#include "scarp/accel/ground_buffers.glsl.h"
+#include "scarp/march/height/ray_frame.glsl.h"
+
+Ground opened;
+GroundWords opened_samples, opened_pyramid;
+uint opened_words, opened_type;
+float opened_hole;
+
+/// The ground at an address, as the marches want to know it.
+ScarpField open_ground(Address address) {
+  Ground ground = Ground(address);
+  opened = ground;
+  opened_samples = GroundWords(ground.is.samples);
+  opened_pyramid = GroundWords(ground.is.pyramid);
+  opened_words = ground.is.sample_words;
+  opened_type = ground.is.sample_type;
+  opened_hole = ground_sample_value(ground, ground.is.hole);
+  ScarpField field;
+  field.cells = ivec2(ground.is.cell_cols, ground.is.cell_rows);
+  field.samples = ivec2(ground.is.cols, ground.is.rows);
+  field.top_level = int(ground.is.top_level);
+  field.flags = (ground.is.triangles != 0u ? kScarpTriangles : 0u) | (ground.is.has_holes != 0u ? kScarpHoles : 0u) |
+                (ground.is.wrap != kGroundWrapNone ? kScarpWraps : 0u) | (ground.is.solid != 0u ? kScarpSolid : 0u);
+  field.code_base = ground.is.code_base;
+  field.code_base_low = ground.is.code_base_low;
+  field.code_step = ground.is.code_step;
+  field.lowest = ground.is.min_sample;
+  field.highest = ground.is.max_sample;
+  return field;
+}
+
+float scarp_sample(int col, int row) {
+  uint begin = uint(row) * opened_words;
+  if (opened_type == kGroundFloat32) return uintBitsToFloat(opened_samples.words[begin + uint(col)]);
+  uint word = opened_samples.words[begin + (uint(col) >> 1)];
+  if (opened_type == kGroundInt16) return float(bitfieldExtract(int(word), (col & 1) << 4, 16));
+  return float(bitfieldExtract(word, (col & 1) << 4, 16));
+}
+
+// All nodata floats are stored as one NaN, which is known by its bits: comparisons of NaN are the compiler's.
+bool scarp_is_nodata(float value) {
+  if (opened_type == kGroundFloat32) return (floatBitsToUint(value) & 0x7fffffffu) > 0x7f800000u;
+  return value == opened_hole;
+}
+
+uint pyramid_entry(int level, int col, int row) {
+  GroundLevel at = opened.is.levels[level - 1];
+  return opened_pyramid.words[at.begin + uint(row) * at.cols + uint(col)];
+}
+float scarp_maximum(int level, int col, int row) { return float(ground_maximum(pyramid_entry(level, col, row))); }
+float scarp_minimum(int level, int col, int row) { return float(ground_minimum(pyramid_entry(level, col, row))); }
+
+#endif

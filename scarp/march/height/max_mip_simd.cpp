@@ -1,0 +1,608 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/height/max_mip_simd.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/max_mip_resume.h"
+
+// This file is compiled once for each instruction set.
+// Vectors of a length that the compiler does not know cannot be members.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "scarp/march/height/max_mip_simd.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h comes first.
+#include "hwy/cache_control.h"
+#include "hwy/highway.h"
+#include "scarp/march/height/max_mip_simd_beam.h"
+#include "scarp/march/height/max_mip_simd_cells.h"
+#include "scarp/march/height/max_mip_simd_lanes.h"
+#include "scarp/march/height/max_mip_simd_rays.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace scarp {
+namespace HWY_NAMESPACE {
+namespace {
+
+// Rays that may hit in a cell.
+struct Candidates {
+  std::size_t count = 0;
+  std::int32_t ray[N], col[N], row[N], seen[N], copy_x[N], copy_y[N];
+  double t_clear[N];
+};
+
+// A ray that is to walk over a copy of a ground that wraps round.
+struct Copy {
+  std::size_t ray;
+  std::int32_t x, y;
+  bool seen;  // above the ground so far
+};
+
+// The walk of many rays, one batch on one thread.
+template <bool any, class T>
+class VectorWalk {
+ public:
+  using Answer = std::conditional_t<any, std::uint8_t, Hit>;
+
+  VectorWalk(const HeightTarget& target, const SampleGrid<T>& grid, std::span<const Ray> rays, Answer* answers,
+             const VectorIdeas& ideas)
+      : target_(target), field_(*target.field), rays_(rays), answers_(answers), ideas_(ideas) {
+    const MaxPyramid& pyramid = *target.pyramid;
+    const HeightCode& code = pyramid.code();
+    g_ = {};
+    g_.maxima = pyramid.maxima();
+    g_.samples = grid.data, g_.stride = grid.row_stride;
+    g_.last_col = grid.cell_cols - 1, g_.last_row = grid.cell_rows - 1, g_.top = pyramid.top_level();
+    for (int level = 1; level <= g_.top; ++level) {
+      g_.level_begin[level] = static_cast<std::int32_t>(pyramid.levels()[static_cast<std::size_t>(level - 1)].begin);
+    }
+    g_.base = static_cast<float>(code.base), g_.per_step = static_cast<float>(code.per_step);
+    g_.offset = static_cast<float>((static_cast<double>(g_.base) - code.base) * code.per_step);
+    g_.triangles = field_.settings().surface == Surface::triangles;
+    g_.seam_col = field_.wraps() ? g_.last_col : -1, g_.seam_row = field_.wraps() ? g_.last_row : -1;
+    const double low = field_.min_sample(), high = field_.max_sample(), relief = high - low;
+    const double cell_relief = std::min(relief, pyramid.cell_relief() * code.step);
+    g_.margin_per_cell = static_cast<float>(4 * kSideways * cell_relief * code.per_step);
+    // No less than 2: a mask of 0 would not tell what is mirrored.
+    const auto side = std::bit_ceil(static_cast<unsigned>(std::max({grid.cell_cols, grid.cell_rows, 2})));
+    f_ = {.cols = static_cast<double>(grid.cell_cols),
+          .rows = static_cast<double>(grid.cell_rows),
+          .sample_rows = static_cast<double>(field_.rows()) +
+                         (field_.wraps() ? 8 * kFarthestCopy + 2.0 * (grid.cell_cols + grid.cell_rows) : 0),
+          .highest = high,
+          .base = code.base,
+          .per_step = code.per_step,
+          .relief = relief,
+          .cell_relief = cell_relief,
+          .upright =
+              std::max(std::abs(low), std::abs(high)) + std::abs(field_.settings().offset) / field_.settings().scale,
+          .mask = static_cast<double>(side - 1),
+          .from_outside = static_cast<double>(std::max(g_.top - 3, 0)),
+          .scales = field_.grid_scales(),
+          .last_row = static_cast<double>(field_.rows() - 1),
+          .width = field_.wraps() ? -kNever : field_.width(),
+          .depth = field_.wraps() ? -kNever : field_.depth()};
+  }
+
+  void run(VectorStats& stats) {
+    Packet packets[kPackets];
+    for (int k = 0; k < kPackets; ++k) {
+      Lanes& lanes = lanes_[k];
+      lanes = {};
+      std::fill_n(lanes.ray, N, -1);
+      std::fill_n(lanes.status, N, kMiss);
+      packets[k].load(lanes);
+      refill(packets[k], lanes);
+    }
+    for (bool live = true; live;) {
+      live = false;
+      for (Packet& p : packets) block_step(g_, p);
+      for (int k = 0; k < kPackets; ++k) live = follow_up(packets[k], lanes_[k]) || live;
+    }
+    if constexpr (!any) {
+      if (candidates_.count > 0) find_hits();
+    }
+    stats.block_lanes += stats_.block_lanes, stats.block_steps += stats_.block_steps;
+    stats.cell_lanes += stats_.cell_lanes, stats.cell_steps += stats_.cell_steps;
+    stats.handed_over += stats_.handed_over, stats.beam_rays += stats_.beam_rays;
+  }
+
+ private:
+  // Cells and new rays, when enough lanes wait for them. False: no lane has a ray, and there are no more.
+  HWY_INLINE bool follow_up(Packet& p, Lanes& lanes) {
+    const VI zero = hn::Zero(di);
+    const MI walking = p.walking(), at_cells = hn::And(walking, hn::Eq(p.level, zero));
+    const std::size_t busy = hn::CountTrue(di, walking), cells = hn::CountTrue(di, at_cells);
+    stats_.block_steps += N;
+    stats_.block_lanes += busy - cells;
+    const std::size_t company = ideas_.wait ? kCompany : 1;
+    if (cells >= company || (cells > 0 && cells == busy)) {
+      stats_.cell_steps += N;
+      stats_.cell_lanes += cells;
+      cell_step<any>(g_, put_off_all(), p);
+    }
+    if (busy == 0 || (N - busy >= (ideas_.refill && !together_ ? kFree : N) && !is_empty())) {
+      return refill(p, lanes);
+    }
+    return true;
+  }
+
+  HWY_INLINE MI put_off_all() const { return hn::Ne(hn::Set(di, ideas_.put_off ? 1 : 0), hn::Zero(di)); }
+
+  bool is_empty() const {
+    return next_ >= rays_.size() && copies_.empty() &&
+           std::all_of(waiting_, waiting_ + kFresh, [](std::uint64_t w) { return w == 0; });
+  }
+
+  // Answers the rays that are done and puts new ones into their lanes. False: no lane has a ray.
+  HWY_NOINLINE bool refill(Packet& p, Lanes& a) {
+    const std::uint64_t walking = bits_of(p.walking());
+    std::uint64_t idle = ~walking & kAllLanes;
+    p.store(a);
+    answer(p, a, idle);
+    for (std::uint64_t rest = idle; rest != 0; rest &= rest - 1) a.ray[std::countr_zero(rest)] = -1;
+    bool live = walking != 0;
+    while (idle != 0 && find_waiting()) {
+      const Lanes& fresh = fresh_[fresh_at_];
+      std::uint64_t& waiting = waiting_[fresh_at_];
+      alignas(64) std::int32_t from[N] = {}, taken[N] = {};
+      for (; idle != 0 && waiting != 0; idle &= idle - 1, waiting &= waiting - 1) {
+        const int j = std::countr_zero(idle), i = std::countr_zero(waiting);
+        from[j] = i, taken[j] = 1;
+        a.ray[j] = fresh.ray[i], a.t_begin[j] = fresh.t_begin[i], a.t_per_cell[j] = fresh.t_per_cell[i];
+        a.copy_x[j] = fresh.copy_x[i], a.copy_y[j] = fresh.copy_y[i];
+      }
+      p.take(fresh, from, taken);
+      live = true;
+    }
+    return live;
+  }
+
+  // Whether rays wait for a lane, in fresh_[fresh_at_].
+  bool find_waiting() {
+    for (;;) {
+      for (; fresh_at_ < kFresh; ++fresh_at_) {
+        if (waiting_[fresh_at_] != 0) return true;
+      }
+      if (next_ >= rays_.size() && copies_.empty()) return false;
+      take_rays();
+    }
+  }
+
+  // The next rays into fresh_. Those that need no walk are answered.
+  HWY_NOINLINE void take_rays() {
+    fresh_at_ = 0;
+    for (Lanes& fresh : fresh_) take_rays(fresh);
+    if (!any && ideas_.beam) {
+      const std::uint64_t rays = follow_beam(g_, fresh_, kFresh, beam_length_);
+      stats_.beam_rays += rays;
+      together_ = rays > 0;
+    }
+    for (std::size_t k = 0; k < kFresh; ++k) {
+      Packet p;
+      p.load(fresh_[k]);
+      waiting_[k] = bits_of(p.walking());
+      answer(p, fresh_[k], ~waiting_[k] & kAllLanes);
+    }
+  }
+
+  // First cells are left here, where all lanes are busy. Rays of any-hit begin next to the ground as a rule: doubles
+  // look at once where floats would be unsure of most.
+  void take_rays(Lanes& fresh) {
+    if (field_.wraps()) {
+      take_endless(fresh);
+    } else {
+      take_bounded(fresh);
+    }
+    prepare(f_, r_, fresh);
+    if (!ideas_.doubles || g_.triangles || !begins_over_field(fresh)) return;
+    if constexpr (any) {
+      leave_first_cells<any>(g_, f_, r_, fresh);
+    } else {
+      Packet p;
+      p.load(fresh);
+      cell_step<any>(g_, put_off_all(), p);
+      p.store(fresh);
+      leave_first_cells<any>(g_, f_, r_, fresh);
+    }
+  }
+
+  // The rays of a vector into the caches. Each ray is read once, so all of them come from memory, and what reads ahead
+  // of programs by itself stops at the border of each page.
+  void prefetch_rays(std::size_t first) const {
+    if (first + N > rays_.size()) return;
+    const auto* bytes = reinterpret_cast<const std::byte*>(&rays_[first]);
+    for (std::size_t i = 0; i < N * sizeof(Ray); i += kCacheLine) hwy::Prefetch(bytes + i);
+  }
+
+  void take_bounded(Lanes& fresh) {
+    const std::size_t first = next_, count = std::min(N, rays_.size() - first);
+    next_ += count;
+    for (std::size_t j = count; j < N; ++j) fresh.ray[j] = -1;
+    if (count == 0) {
+      std::fill_n(r_.dx, N, 0), std::fill_n(r_.dy, N, 0);
+      return;
+    }
+    prefetch_rays(first + kAhead);
+    r_.load(f_, [&](std::size_t j) -> const Ray& { return rays_[first + std::min(j, count - 1)]; });
+    bool all_free = true;
+    for (std::size_t j = 0; j < count; ++j) {
+      fresh.ray[j] = static_cast<std::int32_t>(first + j), r_.seen[j] = fresh.copy_x[j] = fresh.copy_y[j] = 0;
+      all_free &= rays_[first + j].start == RayStart::free;
+    }
+    for (std::size_t j = count; j < N; ++j) r_.dx[j] = r_.dy[j] = 0;
+    for (std::size_t j = 0; !all_free && j < count; ++j) {
+      if (rays_[first + j].start == RayStart::on_surface) take_on_surface(j, first + j, fresh);
+    }
+  }
+  void take_on_surface(std::size_t j, std::size_t index, Lanes& fresh) {
+    const Ray& ray = rays_[index];
+    const SurfaceStart start = begin_on_surface(ray, field_.grid_from_world(ray));
+    if (start.decided) {
+      fresh.ray[j] = -1, r_.dx[j] = r_.dy[j] = 0;
+      put_answer(index, start.hit);
+    } else {
+      r_.oz[j] = start.z, r_.t_min[j] = start.t, r_.seen[j] = start.above;
+    }
+  }
+  void take_endless(Lanes& fresh) {
+    for (std::size_t j = 0; j < N; ++j) {
+      fresh.ray[j] = -1, fresh.copy_x[j] = fresh.copy_y[j] = 0;
+      r_.dx[j] = r_.dy[j] = 0;
+      if (!copies_.empty()) {
+        take_copy(j, copies_.back(), fresh);
+        copies_.pop_back();
+      } else if (next_ < rays_.size()) {
+        begin_endless(j, next_++, fresh);
+      }
+    }
+  }
+
+  static bool begins_over_field(const Lanes& fresh) {
+    for (std::size_t j = 0; j < N; ++j) {
+      if (fresh.status[j] == kWalking && fresh.level[j] == 0) return true;
+    }
+    return false;
+  }
+
+  // The scalar walk believes in the start cell, the vectors in positions: they follow where the two agree, and where
+  // the cell is not left before the ray begins.
+  HWY_NOINLINE SurfaceStart begin_on_surface(const Ray& ray, const GridRay& local) const {
+    const auto is_in = [&](double o, double d, int cell) {
+      return std::abs(o + d * ray.t_min - cell - 0.5) < 0.5 + kNearCell;
+    };
+    if (is_in(local.origin.x, local.direction.x, ray.start_cell.col) &&
+        is_in(local.origin.y, local.direction.y, ray.start_cell.row)) {
+      const SurfaceStart start = start_max_mip(target_, ray);
+      if (start.decided || start.t >= ray.t_min) return start;
+    }
+    SurfaceStart decided;
+    decided.decided = true;
+    decided.hit = march_max_mip(target_, ray);
+    return decided;
+  }
+
+  static void put_ray(GridRays& to, std::size_t j, const Ray& ray, const GridRay& local) {
+    to.ox[j] = local.origin.x, to.oy[j] = local.origin.y, to.oz[j] = local.origin.z;
+    to.dx[j] = local.direction.x, to.dy[j] = local.direction.y, to.dz[j] = local.direction.z;
+    to.t_min[j] = ray.t_min, to.t_max[j] = ray.t_max, to.seen[j] = 0;
+  }
+
+  void put_answer(std::size_t index, const Hit& hit) {
+    if constexpr (any) {
+      answers_[index] = hit.status == HitStatus::hit;
+    } else {
+      answers_[index] = hit;
+    }
+  }
+  HWY_NOINLINE void answer_alone(std::size_t index) {
+    ++stats_.handed_over;
+    if constexpr (any) {
+      answers_[index] = occluded_max_mip(target_, rays_[index]);
+    } else {
+      answers_[index] = march_max_mip(target_, rays_[index]);
+    }
+  }
+
+  // Ground that wraps round is walked over copy by copy, each as ground of its own, with the ray in the copy's frame.
+  // What that rounds of heights is within the doubt, see kFarthestCopy; of the first copy nothing may be doubtful, so a
+  // ray that begins next to a border is left to the scalar walk, which knows more ways to begin and counts farther.
+  void begin_endless(std::size_t j, std::size_t index, Lanes& fresh) {
+    const Ray& ray = rays_[index];
+    const GridRay local = field_.grid_from_world(ray);
+    if (ray.start == RayStart::on_surface || !is_near(local.origin.x, local.origin.y) ||
+        !max_mip::countable(local, ray)) {
+      return answer_alone(index);
+    }
+    // As the scalar walk does, down to the highest sample at once, over however many copies.
+    double t = ray.t_min;
+    if (local.direction.z < 0 && local.origin.z + local.direction.z * t > f_.highest) {
+      const double quotient = (f_.highest - local.origin.z) / local.direction.z;
+      const double t_top = quotient - 2 * kUnit * std::abs(quotient);
+      if (t_top > ray.t_max) return put_answer(index, {});
+      t = std::max(t, t_top);
+    }
+    const auto begin = [t](double o, double d, double cells) {
+      const double place = o + d * t, copy = std::floor(place / cells), within = place - copy * cells;
+      const bool inside = within > kNearCell && within < cells - kNearCell;
+      return std::pair{copy, inside};
+    };
+    const auto [x, inside_x] = begin(local.origin.x, local.direction.x, f_.cols);
+    const auto [y, inside_y] = begin(local.origin.y, local.direction.y, f_.rows);
+    if (!inside_x || !inside_y || !is_near(x * f_.cols, y * f_.rows)) return answer_alone(index);
+    take_copy(j, {index, static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), false}, fresh);
+  }
+  static bool is_near(double x, double y) { return std::abs(x) < kFarthestCopy && std::abs(y) < kFarthestCopy; }
+  void take_copy(std::size_t j, const Copy& copy, Lanes& fresh) {
+    const Ray& ray = rays_[copy.ray];
+    put_ray(r_, j, ray, field_.grid_from_world(ray));
+    r_.ox[j] -= copy.x * f_.cols, r_.oy[j] -= copy.y * f_.rows, r_.seen[j] = copy.seen;
+    fresh.ray[j] = static_cast<std::int32_t>(copy.ray);
+    fresh.copy_x[j] = copy.x, fresh.copy_y[j] = copy.y;
+  }
+  // A ray that has met nothing in its copy: on to the next one, if it goes so far. Where borders of both axes are
+  // crossed almost at once, either may come first.
+  HWY_NOINLINE void leave_copy(const Lanes& a, std::size_t j) {
+    Copy copy{static_cast<std::size_t>(a.ray[j]), a.copy_x[j], a.copy_y[j], a.seen[j] != 0};
+    const Ray& ray = rays_[copy.ray];
+    const GridRay local = field_.grid_from_world(ray);
+    const auto exit = [](double o, double d, double from, double cells) {
+      return d == 0 ? std::numeric_limits<double>::infinity() : ((d > 0 ? from + cells : from) - o) / d;
+    };
+    const double x = exit(local.origin.x, local.direction.x, copy.x * f_.cols, f_.cols);
+    const double y = exit(local.origin.y, local.direction.y, copy.y * f_.rows, f_.rows);
+    const double t = std::min(x, y), dz = local.direction.z, height = local.origin.z + dz * t;
+    const double upright = f_.upright + std::abs(local.origin.z) + std::abs(dz * t);
+    const double doubt = kRoundings * kUnit * (upright + f_.sample_rows * f_.relief);
+    const bool ends = !(t < ray.t_max) || (dz >= 0 && height > f_.highest + doubt);
+    if (ends) {
+      put_answer(copy.ray, {});
+      return;
+    }
+    if (x <= y) copy.x += local.direction.x > 0 ? 1 : -1;
+    if (!(x <= y)) copy.y += local.direction.y > 0 ? 1 : -1;
+    is_near(copy.x * f_.cols, copy.y * f_.rows) ? copies_.push_back(copy) : answer_alone(copy.ray);
+  }
+
+  // Answers the rays of some lanes of p, which are in memory, too.
+  HWY_INLINE void answer(const Packet& p, const Lanes& a, std::uint64_t lanes) {
+    if constexpr (any) {
+      const MI hits = hn::Eq(p.status, hn::Set(di, kHit)), misses = hn::Eq(p.status, hn::Set(di, kMiss));
+      const MI certain = hn::RebindMask(di, hn::Ge(p.doubt, hn::Set(df, kNever)));
+      const std::uint64_t hit = bits_of(hits), sure = bits_of(hn::Or(hits, hn::And(misses, certain)));
+      for (std::uint64_t rest = lanes & sure; rest != 0; rest &= rest - 1) {
+        const int j = std::countr_zero(rest);
+        if (a.ray[j] < 0) continue;
+        if (field_.wraps() && !(hit >> j & 1)) {
+          leave_copy(a, static_cast<std::size_t>(j));
+        } else {
+          answers_[a.ray[j]] = hit >> j & 1;
+        }
+      }
+      lanes &= ~sure;
+    }
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto j = static_cast<std::size_t>(std::countr_zero(lanes));
+      if (a.ray[j] >= 0) answer(a, j);
+    }
+  }
+  void answer(const Lanes& a, std::size_t j) {
+    const std::int32_t ray = a.ray[j];
+    const auto time = [&](float cells) { return a.t_begin[j] + static_cast<double>(cells) * a.t_per_cell[j]; };
+    if constexpr (any) {
+      ++stats_.handed_over;
+      answers_[ray] = resume_occluded_max_mip(target_, rays_[static_cast<std::size_t>(ray)],
+                                              a.doubt[j] < kNever ? time(a.doubt[j]) : max_mip::kNotClear);
+    } else {
+      if (a.status[j] == kMiss) {
+        if (field_.wraps()) {
+          leave_copy(a, j);
+        } else {
+          answers_[ray] = Hit{};
+        }
+        return;
+      }
+      if (a.status[j] == kAlone) {
+        answer_alone(static_cast<std::size_t>(ray));
+        return;
+      }
+      Candidates& c = candidates_;
+      c.ray[c.count] = ray, c.seen[c.count] = a.seen[j];
+      c.copy_x[c.count] = a.copy_x[j], c.copy_y[c.count] = a.copy_y[j];
+      c.col[c.count] = a.x[j] ^ a.mirror_x[j], c.row[c.count] = a.y[j] ^ a.mirror_y[j];
+      c.t_clear[c.count] = time(a.T[j]);
+      if (++c.count == N) find_hits();
+    }
+  }
+
+  // Hits in the cells of the candidates as march_max_mip() computes them, bit for bit: the same operations in the same
+  // order, for the usual way through a cell. It is asked where the way is another one, and where there is no hit.
+  HWY_NOINLINE void find_hits() {
+    Candidates& c = candidates_;
+    GridRays rays;
+    Cells cells;
+    alignas(64) double t_clear[N], t[N], u[N], v[N], height[N], found[N];
+    const auto filled = [&](std::size_t i) { return i < c.count ? i : 0; };
+    rays.load(f_, [&](std::size_t i) -> const Ray& { return rays_[static_cast<std::size_t>(c.ray[filled(i)])]; });
+    for (std::size_t i = 0; i < N; ++i) {
+      const std::size_t k = filled(i);
+      cells.load(g_, i, c.col[k], c.row[k], c.copy_x[k] * f_.cols, c.copy_y[k] * f_.rows);
+      t_clear[i] = c.t_clear[k];
+    }
+    for (std::size_t h = 0; h < N; h += hn::MaxLanes(dd)) {
+      const VD zero = hn::Zero(dd), one = hn::Set(dd, 1), two = hn::Set(dd, 2), four = hn::Set(dd, 4);
+      const CellRays r(rays, cells, h);
+      const VD vt_min = hn::Load(dd, rays.t_min + h), vt_max = hn::Load(dd, rays.t_max + h);
+      const VD tx = r.x_out(), ty = r.y_out();
+      const VD first_x = hn::Load(dd, cells.first_x + h), first_y = hn::Load(dd, cells.first_y + h);
+      const VD last_x = hn::IfThenElse(r.back_x, first_x, hn::Add(first_x, hn::Set(dd, f_.cols)));
+      const VD last_y = hn::IfThenElse(r.back_y, first_y, hn::Add(first_y, hn::Set(dd, f_.rows)));
+      const VD exit_x = CellRays::line(last_x, r.ox, r.per_x), exit_y = CellRays::line(last_y, r.oy, r.per_y);
+      const VD t_in = hn::Max(vt_min, hn::Max(r.x_in(), r.y_in()));
+      const VD t_end = hn::Min(vt_max, hn::Min(exit_x, exit_y));
+      const VD t_line = hn::Min(tx, ty), t_out = hn::Min(t_line, t_end), length = hn::Sub(t_out, t_in);
+      const auto [a, b, cc] = r.clearance_from(t_in);
+      const VD z_in = r.height(t_in), z_out = r.height(t_out);
+      const VD out = r.clearance_out(t_out, hn::Le(tx, ty));
+      const VD t_far = hn::Max(hn::Abs(t_in), hn::Abs(t_out));
+      const VD doubt = rounding(f_, r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, t_far);
+      // Above until it comes into the cell: known up to t_clear, and from there on because of how steep ground is.
+      const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, t_clear + h)), zero);
+      const VD steepest =
+          hn::Add(hn::Abs(r.dz), hn::Mul(hn::Add(hn::Abs(r.dx), hn::Abs(r.dy)), hn::Set(dd, f_.cell_relief)));
+      const auto above = hn::Gt(cc, hn::Add(hn::Mul(gap, steepest), doubt));
+      // march_max_mip() begins where the ray comes down to the highest sample, not before.
+      const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), r.oz), r.dz);
+      const VD t_top = hn::Sub(quotient, hn::Mul(hn::Set(dd, 2 * kUnit), hn::Abs(quotient)));
+      const auto begun = hn::Or(hn::Ge(r.dz, zero), hn::Ge(t_line, t_top));
+      const auto visited = hn::And(hn::And(hn::Lt(t_in, t_line), hn::Le(t_line, t_end)), hn::And(begun, r.moves()));
+      const auto usual = hn::And(above, visited);
+      const VD highest = hn::Max(hn::Max(r.h00, r.h10), hn::Max(r.h01, r.h11));
+      const VD lowest = hn::IfThenElse(hn::Lt(r.dz, zero), z_out, z_in);
+      const VD square = hn::Mul(b, b), ac4 = hn::Mul(hn::Mul(four, a), cc);
+      const auto dips = hn::And(hn::And(hn::Gt(a, zero), hn::Lt(b, zero)),
+                                hn::And(hn::Lt(hn::Neg(b), hn::Mul(hn::Mul(two, a), length)), hn::Ge(square, ac4)));
+      const auto hit = hn::And(hn::And(usual, hn::Not(hn::Gt(lowest, highest))), hn::Or(hn::Le(out, zero), dips));
+      const VD root = hn::Sqrt(hn::Max(zero, hn::Sub(square, ac4)));
+      const auto falls = hn::Lt(b, zero);
+      const VD s = hn::Div(hn::IfThenElse(falls, hn::Mul(two, cc), hn::Neg(hn::Add(b, root))),
+                           hn::IfThenElse(falls, hn::Sub(root, b), hn::Mul(two, a)));
+      const VD in_cell = hn::IfThenElseZero(hn::Ge(s, zero), hn::Min(s, length));
+      const VD time = hn::Min(hn::Max(hn::Add(t_in, in_cell), vt_min), vt_max);
+      hn::Store(time, dd, t + h);
+      hn::Store(r.u(time), dd, u + h), hn::Store(r.v(time), dd, v + h), hn::Store(r.height(time), dd, height + h);
+      hn::Store(hn::IfThenElseZero(hit, one), dd, found + h);
+    }
+    const bool usual = ideas_.find_hits && !g_.triangles;
+    for (std::size_t i = 0; i < c.count; ++i) {
+      const Ray& ray = rays_[static_cast<std::size_t>(c.ray[i])];
+      Hit& to = answers_[c.ray[i]];
+      if (usual && found[i] != 0 && ray.start == RayStart::free) {
+        to.status = HitStatus::hit, to.t = t[i], to.cell = {c.col[i], c.row[i]}, to.u = u[i], to.v = v[i];
+        to.height = field_.height_from_sample(height[i]), to.wall = false;
+      } else {
+        ++stats_.handed_over;
+        to = resume_max_mip(target_, ray, c.seen[i] ? c.t_clear[i] : max_mip::kNotClear);
+      }
+    }
+    c.count = 0;
+  }
+
+  // From a search over the rays of scarp-bench (decisions.md): lanes that wait until they are served.
+  static constexpr std::size_t kCompany = std::max<std::size_t>(1, any ? N / 4 : N * 3 / 8);
+  static constexpr std::size_t kFree = std::max<std::size_t>(1, any ? N / 4 : N / 2);
+  static constexpr int kPackets = any ? 3 : 2;   // vectors in turn: while one waits for memory, others compute
+  static constexpr std::size_t kAhead = 64;      // rays that are on their way into the caches
+  static constexpr std::size_t kCacheLine = 64;  // bytes; where lines are longer some are asked for twice
+  static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that are a beam
+  static constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << N) - 1;
+  static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
+  // Cells, to the origin of a ray and to the last copy that is walked over here. Sideways, |origin| + |way| along x and
+  // y, it is then no farther than eight times that and twice the sides of a copy: in the frames of copies, too.
+  static constexpr double kFarthestCopy = 0x1p17;
+
+  const HeightTarget& target_;
+  const HeightField& field_;
+  std::span<const Ray> rays_;
+  Answer* answers_;
+  const VectorIdeas& ideas_;
+  VectorGround<T> g_;
+  FieldFrame f_;
+  GridRays r_;
+  Lanes fresh_[kFresh], lanes_[kPackets];
+  std::size_t next_ = 0, fresh_at_ = kFresh;
+  std::vector<Copy> copies_;            // that wait to be walked over
+  std::uint64_t waiting_[kFresh] = {};  // lanes of fresh_ whose rays wait for a lane in lanes_
+  float beam_length_ = 0;               // of the last beam
+  bool together_ = false;  // whether the rays in fresh_ are a beam: as they start together they end together
+  Candidates candidates_;
+  VectorStats stats_;
+};
+
+template <bool any, class Answer>
+void walk(const HeightTarget& target, std::span<const Ray> rays, Answer* answers, const VectorIdeas& ideas,
+          VectorStats& stats) {
+  target.field->visit([&](const auto& grid) {
+    using T = std::remove_cvref_t<decltype(grid.data[0])>;
+    VectorWalk<any, T>(target, grid, rays, answers, ideas).run(stats);
+  });
+}
+void walk_closest(const HeightTarget& target, std::span<const Ray> rays, Hit* hits, const VectorIdeas& ideas,
+                  VectorStats& stats) {
+  walk<false>(target, rays, hits, ideas, stats);
+}
+void walk_any(const HeightTarget& target, std::span<const Ray> rays, std::uint8_t* blocked, const VectorIdeas& ideas,
+              VectorStats& stats) {
+  walk<true>(target, rays, blocked, ideas, stats);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace scarp
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scarp {
+namespace {
+
+HWY_EXPORT(walk_closest);
+HWY_EXPORT(walk_any);
+
+thread_local VectorStats t_stats;
+
+// Copies of ground that wraps round are to be so wide at least: to go on to the next one takes as long as some cells.
+constexpr int kNarrowestCopy = 128;
+
+// Fields that the vectors do not walk over: those with holes, where a ray that is above all ground may be below the rim
+// of the next cell, and those beyond 32-bit offsets or floats.
+bool walks_over(const HeightTarget& target) {
+  const HeightField& field = *target.field;
+  if (!field.has_cells() || field.nodata_count() > 0) return false;
+  if (field.wraps() && std::min(field.cols(), field.rows()) < kNarrowestCopy) return false;
+  const HeightCode& code = target.pyramid->code();
+  return target.pyramid->bytes() < (std::size_t{1} << 32) && code.per_step > 0x1p-100 && code.per_step < 0x1p100 &&
+         std::abs(code.base) < 0x1p100;
+}
+
+}  // namespace
+
+void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
+                               const VectorIdeas& ideas) {
+  if (walks_over(target)) {
+    HWY_DYNAMIC_DISPATCH(walk_closest)(target, rays, hits.data(), ideas, t_stats);
+  } else {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = march_max_mip(target, rays[i]);
+  }
+}
+
+void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                           const VectorIdeas& ideas) {
+  if (walks_over(target)) {
+    HWY_DYNAMIC_DISPATCH(walk_any)(target, rays, blocked.data(), ideas, t_stats);
+  } else {
+    for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = occluded_max_mip(target, rays[i]);
+  }
+}
+
+void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits) {
+  closest_hits_max_mip_simd(target, rays, hits, {});
+}
+
+void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked) {
+  occluded_max_mip_simd(target, rays, blocked, {});
+}
+
+VectorStats take_vector_stats() { return std::exchange(t_stats, {}); }
+
+}  // namespace scarp
+#endif

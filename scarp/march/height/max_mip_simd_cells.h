@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// Cells in vectors of double, for max_mip_simd.cpp: hits as the scalar walk computes them, and the first cells of rays,
+// which may begin closer to the ground than floats can tell.
+// Read once for each instruction set.
+#if defined(SCARP_MARCH_MAX_MIP_SIMD_CELLS_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
+#undef SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
+#else
+#define SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
+#endif
+
+#include <limits>
+
+#include "scarp/march/height/max_mip_simd_lanes.h"
+#include "scarp/march/height/max_mip_simd_rays.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace scarp {
+namespace HWY_NAMESPACE {
+namespace {
+
+using MD = hn::Mask<decltype(dd)>;
+
+// One cell for each lane, and its corners in sample units. `first`: the first lines of its copy of the ground; 0 where
+// the ground does not wrap round, or rays are in the frame of the copy.
+struct Cells {
+  alignas(64) double col[N], row[N], h00[N], h10[N], h01[N], h11[N], first_x[N], first_y[N];
+
+  template <class T>
+  HWY_INLINE void load(const VectorGround<T>& g, std::size_t j, std::int32_t to_col, std::int32_t to_row,
+                       double first_col = 0, double first_row = 0) {
+    const T *north = g.samples + to_row * g.stride + to_col, *south = north + g.south(to_row);
+    const std::ptrdiff_t east = g.east(to_col);
+    first_x[j] = first_col, first_y[j] = first_row;
+    col[j] = first_col + to_col, row[j] = first_row + to_row;
+    h00[j] = static_cast<double>(north[0]), h10[j] = static_cast<double>(north[east]);
+    h01[j] = static_cast<double>(south[0]), h11[j] = static_cast<double>(south[east]);
+  }
+};
+
+// Rays in their cells, with the operations of the scalar walk in its order, so that results have its bits.
+struct CellRays {
+  VD ox, oy, oz, dx, dy, dz, per_x, per_y, col, row, next_col, next_row, h00, h10, h01, h11;
+  MD back_x, back_y;
+
+  HWY_INLINE CellRays(const GridRays& r, const Cells& c, std::size_t part) {
+    const auto at = [part](const double* from) HWY_ATTR { return hn::Load(dd, from + part); };
+    const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
+    ox = at(r.ox), oy = at(r.oy), oz = at(r.oz), dx = at(r.dx), dy = at(r.dy), dz = at(r.dz);
+    per_x = hn::Div(one, dx), per_y = hn::Div(one, dy);
+    col = at(c.col), row = at(c.row), next_col = hn::Add(col, one), next_row = hn::Add(row, one);
+    h00 = at(c.h00), h10 = at(c.h10), h01 = at(c.h01), h11 = at(c.h11);
+    back_x = hn::Lt(dx, zero), back_y = hn::Lt(dy, zero);
+  }
+
+  // Not along an axis, where times of lines are none, nor almost.
+  static HWY_INLINE MD moves(VD d) { return hn::Gt(hn::Abs(d), hn::Set(dd, 0x1p-1000)); }
+  HWY_INLINE MD moves_x() const { return moves(dx); }
+  HWY_INLINE MD moves_y() const { return moves(dy); }
+  HWY_INLINE MD moves() const { return hn::And(moves_x(), moves_y()); }
+  static HWY_INLINE VD line(VD k, VD o, VD per) { return hn::Mul(hn::Sub(k, o), per); }
+  HWY_INLINE VD x_in() const { return line(hn::IfThenElse(back_x, next_col, col), ox, per_x); }
+  HWY_INLINE VD y_in() const { return line(hn::IfThenElse(back_y, next_row, row), oy, per_y); }
+  HWY_INLINE VD x_out() const { return line(hn::IfThenElse(back_x, col, next_col), ox, per_x); }
+  HWY_INLINE VD y_out() const { return line(hn::IfThenElse(back_y, row, next_row), oy, per_y); }
+  HWY_INLINE VD height(VD t) const { return hn::Add(oz, hn::Mul(dz, t)); }
+
+  static HWY_INLINE VD place(VD o, VD d, VD t, VD cell) {
+    // Which of the two zeros it is stays as it is.
+    const VD at = hn::Sub(hn::Add(o, hn::Mul(d, t)), cell), zero = hn::Zero(dd), one = hn::Set(dd, 1);
+    return hn::IfThenElse(hn::Lt(at, zero), zero, hn::IfThenElse(hn::Gt(at, one), one, at));
+  }
+  HWY_INLINE VD u(VD t) const { return place(ox, dx, t, col); }
+  HWY_INLINE VD v(VD t) const { return place(oy, dy, t, row); }
+
+  // CellQuadratic: the clearance s after t_in is c + b s + a s^2.
+  struct Quadratic {
+    VD a, b, c;
+  };
+  HWY_INLINE Quadratic clearance_from(VD t_in) const {
+    const VD u0 = u(t_in), v0 = v(t_in);
+    const VD hu = hn::Sub(h10, h00), hv = hn::Sub(h01, h00), twist = hn::Sub(hn::Sub(h11, h01), hu);
+    Quadratic q;
+    q.a = hn::Mul(hn::Mul(hn::Sub(hn::Sub(h10, h00), hn::Sub(h11, h01)), dx), dy);
+    q.b = hn::Sub(dz, hn::Add(hn::Add(hn::Mul(hu, dx), hn::Mul(hv, dy)),
+                              hn::Mul(twist, hn::Add(hn::Mul(u0, dy), hn::Mul(v0, dx)))));
+    q.c = hn::Sub(height(t_in),
+                  hn::Add(hn::Add(hn::Add(h00, hn::Mul(hu, u0)), hn::Mul(hv, v0)), hn::Mul(hn::Mul(twist, u0), v0)));
+    return q;
+  }
+
+  // clearance() at t, where the ray leaves the cell through a line: of a column, or of a row.
+  HWY_INLINE VD clearance_out(VD t, MD through_column) const {
+    const auto edge = [](VD p, VD q, VD w) HWY_ATTR {
+      return hn::Min(hn::Max(hn::Add(p, hn::Mul(w, hn::Sub(q, p))), hn::Min(p, q)), hn::Max(p, q));
+    };
+    const VD on_x = edge(hn::IfThenElse(back_x, h00, h10), hn::IfThenElse(back_x, h01, h11), v(t));
+    const VD on_y = edge(hn::IfThenElse(back_y, h00, h01), hn::IfThenElse(back_y, h10, h11), u(t));
+    return hn::Sub(height(t), hn::IfThenElse(through_column, on_x, on_y));
+  }
+};
+
+// Rays in the cell that they begin in, set off next to the ground as shadow rays are: within the margin of floats,
+// which would leave each of them to the scalar walk. Those that are above the ground on all of their way through it go
+// on behind it; any-hit is answered by those that are certain to fall under it. Closest: where floats were unsure.
+// Any-hit: at once, but for rays that the scalar walk knows to be above, which may be in doubt where they begin: floats
+// put that off.
+template <bool any, class T>
+HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a) {
+  constexpr Status kConcerned = any ? kWalking : kUnsure;
+  const auto concerns = [&](std::size_t j) {
+    return a.status[j] == kConcerned && a.level[j] == 0 && !(any && a.seen[j]);
+  };
+  std::size_t concerned = 0;
+  for (std::size_t j = 0; j < N; ++j) concerned += concerns(j);
+  if (concerned == 0) return;
+  Cells cells;
+  for (std::size_t j = 0; j < N; ++j) cells.load(g, j, a.x[j] ^ a.mirror_x[j], a.y[j] ^ a.mirror_y[j]);
+  for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
+    const auto whole = [part](const std::int32_t* from)
+                           HWY_ATTR { return hn::PromoteTo(dd, hn::Load(di_part, from + part)); };
+    const auto place = [part](const float* from) HWY_ATTR { return hn::PromoteTo(dd, hn::Load(df_part, from + part)); };
+    const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
+    const VD status = whole(a.status), seen = whole(a.seen), level = whole(a.level);
+    const MD at_begin = hn::Eq(any ? hn::Add(level, seen) : level, zero);
+    const MD looked_at = hn::And(hn::Eq(status, hn::Set(dd, kConcerned)), at_begin);
+    const CellRays c(r, cells, part);
+    // A ray along an axis comes to no line of that axis.
+    const MD still_x = hn::Eq(c.dx, zero), still_y = hn::Eq(c.dy, zero);
+    const VD never = hn::Set(dd, std::numeric_limits<double>::infinity());
+    const VD t_in = hn::Load(dd, a.t_begin + part);
+    const VD tx = hn::IfThenElse(still_x, never, c.x_out()), ty = hn::IfThenElse(still_y, never, c.y_out());
+    const MD moves = hn::Or(c.moves(), hn::Or(hn::And(still_x, c.moves_y()), hn::And(still_y, c.moves_x())));
+    const VD t_out = hn::Max(hn::Min(tx, ty), t_in), length = hn::Sub(t_out, t_in);
+    const MD over_column = hn::Le(tx, ty), over_row = hn::Le(ty, tx);
+    const CellRays::Quadratic q = c.clearance_from(t_in);
+    const VD out = c.clearance_out(t_out, over_column);
+    const VD doubt = rounding(f, c.ox, c.oy, c.oz, c.dx, c.dy, c.dz, hn::Max(hn::Abs(t_in), hn::Abs(t_out)));
+    // The least of a parabola is at its ends or, where it opens upwards, between them. (Its chord less the most that it
+    // can lie below that would hide from rays that begin this low that they rise from the ground.)
+    const VD bottom = hn::Sub(q.c, hn::Div(hn::Mul(hn::Mul(q.b, q.b), hn::Set(dd, 0.25)), q.a));
+    const MD between = hn::And(hn::And(hn::Gt(q.a, zero), hn::Lt(q.b, zero)),
+                               hn::Lt(hn::Neg(q.b), hn::Mul(hn::Add(q.a, q.a), length)));
+    const VD ends = hn::Min(q.c, out), least = hn::IfThenElse(between, hn::Min(ends, bottom), ends);
+    const MD falls = hn::And(hn::Gt(q.c, doubt), hn::Lt(least, hn::Neg(doubt)));
+    // Rounded down: what follows looks at the ground from where it is known to be clear.
+    const VD way = hn::Mul(hn::Div(length, hn::Load(dd, a.t_per_cell + part)), hn::Set(dd, 1 - 0x1p-22));
+    const VD x = hn::Add(whole(a.x), hn::IfThenElseZero(over_column, one));
+    const VD y = hn::Add(whole(a.y), hn::IfThenElseZero(over_row, one));
+    // Its end may be in this cell, see Packet::before_end(): floats tell whether it is above up to there.
+    const VD least_end = hn::Sub(hn::Mul(place(a.end), hn::Set(dd, 1 - 0x1p-20)), hn::Set(dd, 4 * kSideways));
+    const MD leaves = hn::And(hn::And(hn::And(looked_at, moves), hn::Lt(way, least_end)),
+                              hn::And(hn::Le(x, whole(a.last_x)), hn::Le(y, whole(a.last_y))));
+    const MD clear = hn::And(leaves, hn::Gt(least, doubt));
+    VD then = hn::IfThenElse(leaves, hn::Set(dd, kUnsure), status);
+    if (any) then = hn::IfThenElse(hn::And(leaves, falls), hn::Set(dd, kHit), then);
+    then = hn::IfThenElse(clear, hn::Set(dd, kWalking), then);
+    const auto put_whole = [part](VD v, std::int32_t* to)
+                               HWY_ATTR { hn::Store(hn::DemoteTo(di_part, v), di_part, to + part); };
+    put_whole(then, a.status), put_whole(hn::IfThenElse(clear, one, seen), a.seen);
+    const auto from_x = hn::Load(di_part, a.x + part), from_y = hn::Load(di_part, a.y + part);
+    const auto to_x = hn::DemoteTo(di_part, hn::IfThenElse(clear, x, whole(a.x)));
+    const auto to_y = hn::DemoteTo(di_part, hn::IfThenElse(clear, y, whole(a.y)));
+    hn::Store(to_x, di_part, a.x + part), hn::Store(to_y, di_part, a.y + part);
+    // One level up where the line is the border of a block, as Packet::leave() has it.
+    const auto crossed = hn::ShiftRight<1>(hn::Or(hn::Xor(from_x, to_x), hn::Xor(from_y, to_y)));
+    const auto up = hn::Min(crossed, hn::Set(di_part, 1));
+    hn::Store(hn::Max(hn::Load(di_part, a.level + part), up), di_part, a.level + part);
+    hn::Store(hn::DemoteTo(df_part, hn::IfThenElse(clear, way, place(a.T))), df_part, a.T + part);
+  }
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace scarp
+HWY_AFTER_NAMESPACE();
+
+#endif

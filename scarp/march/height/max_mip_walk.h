@@ -1,0 +1,604 @@
+// SPDX-License-Identifier: MIT
+// The walk of `max-mip`, for all questions asked of it: see max_mip.h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "scarp/march/height/cell_surface.h"
+#include "scarp/march/height/grid_axis.h"
+#include "scarp/march/height/max_mip_resume.h"
+#include "scarp/march/height/rounding.h"
+#include "scarp/march/marches.h"
+
+// Internal linkage, though in a header: included by one file, which lets the compiler put functions that are called
+// once into their caller. With them outside, the walk keeps its state in memory, and a ray takes a tenth longer; for
+// the same reason the usual way through a cell is inlined, and the rare ones are not.
+namespace scarp::max_mip {
+namespace {
+
+/// What is asked: the closest hit in closed form or by halving, whether there is one, or all of them.
+enum class Ask { closest, bisected, any, all };
+
+// Where the ray is, as far as known, at the entry of the current cell. Without holes it is unknown in the first cell
+// only.
+enum class Side { unknown, above, below };
+
+// How the ray came to where it is: through a line of constant column (x) or row (y), or not through a line.
+enum class Through { point, x_line, y_line };
+
+template <class T, bool Holes, bool Wraps, Ask ask>
+class Walk {
+ public:
+  /// `all` is where the hits go when all are asked for. Up to `t_clear` the ray is known to be above the ground by more
+  /// than rounding: the walk begins in the cell that holds it.
+  Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray,
+       const GridRay& local, int halvings, double t_clear, Hit& answer, std::vector<Hit>* all)
+      : field_(field),
+        grid_(grid),
+        levels_(pyramid.levels().data()),
+        top_(pyramid.top_level()),
+        code_(pyramid.code()),
+        maxima_(pyramid.maxima()),
+        minima_(pyramid.minima()),
+        x_(local.origin.x, local.direction.x, grid.cell_cols),
+        y_(local.origin.y, local.direction.y, grid.cell_rows),
+        z_(local.origin.z),
+        dz_(local.direction.z),
+        t_in_(ray.t_min),
+        t_end_(ray.t_max),
+        strict_(ray.start == RayStart::on_surface),
+        triangles_(field.settings().surface == Surface::triangles),
+        solid_(field.settings().solid),
+        halvings_(halvings),
+        t_clear_(t_clear),
+        ray_(ray),
+        answer_(answer),
+        all_(all) {}
+
+  void run() {
+    if (strict_) {
+      if (!leave_start_cell()) return;
+      if (t_clear_ > t_in_ && !skip_on(t_clear_)) return;
+    } else {
+      if (!enter()) return;
+      if (!x_.moves() && !y_.moves()) return vertical();
+    }
+    while (walk()) enter_next_copy();
+  }
+
+  /// Of a ray from the surface only the first cell.
+  SurfaceStart start() {
+    SurfaceStart start;
+    start.decided = !leave_start_cell();
+    start.t = t_in_;
+    start.z = z_;
+    start.above = side_ == Side::above;
+    return start;
+  }
+
+  MarchStats stats;
+
+ private:
+  using Axis = GridAxis<Wraps>;
+
+  double ray_height(double t) const { return z_ + dz_ * t; }
+
+  CellQuadratic quadratic(const CellHeights& h, double t) const {
+    return {h, x_.place(t, col_), y_.place(t, row_), x_.direction, y_.direction, ray_height(t), dz_};
+  }
+  CellPlane plane(const CellHeights& h, bool south_east, double t) const {
+    return {h, south_east, x_.place(t, col_), y_.place(t, row_), x_.direction, y_.direction, ray_height(t), dz_};
+  }
+  bool south_east(double t) const { return x_.place(t, col_) + y_.place(t, row_) > 1; }
+
+  // Height of the surface under a point of the ray in the current cell.
+  double surface(const CellHeights& h, double t) const {
+    return triangles_ ? plane(h, south_east(t), t).surface : quadratic(h, t).surface;
+  }
+
+  // How far the ray is above the surface where it comes into or leaves the current cell. At a line, both neighbours
+  // compute the same value from the same two nodes.
+  double clearance(const CellHeights& h, Through through, bool leaving, double t) const {
+    switch (through) {
+      case Through::x_line: {
+        const bool high = (x_.ahead == 1) == leaving;
+        return ray_height(t) - edge_height(high ? h.h10 : h.h00, high ? h.h11 : h.h01, y_.place(t, row_));
+      }
+      case Through::y_line: {
+        const bool high = (y_.ahead == 1) == leaving;
+        return ray_height(t) - edge_height(high ? h.h01 : h.h00, high ? h.h11 : h.h10, x_.place(t, col_));
+      }
+      case Through::point:
+        break;
+    }
+    return ray_height(t) - surface(h, t);
+  }
+
+  // Clips the ray to the field and to the highest sample; finds the first cell.
+  bool enter() {
+    if (!Wraps) {
+      const double border = std::max(x_.enter_time(), y_.enter_time());
+      from_outside_ = border >= t_in_;
+      t_in_ = std::max(t_in_, border);
+      // A coarse block may reach beyond the last row or column; the ray's end does not.
+      t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
+      // A ray along an axis is inside the strip or it is not; written so that NaN is a miss.
+      if ((!x_.moves() && !(x_.origin >= 0 && x_.origin <= x_.cells)) ||
+          (!y_.moves() && !(y_.origin >= 0 && y_.origin <= y_.cells))) {
+        return false;
+      }
+    }
+    if (!(t_in_ <= t_end_)) return false;
+    // A ray that begins between the lowest and the highest ground is likely to begin near the ground, where wide skips
+    // are not to be had; one that comes from outside crosses open air first, though blocks that span the field are
+    // seldom free.
+    const int from_outside = std::max(top_ - 3, 0);
+    level_ = t_in_ == ray_.t_min ? 0 : from_outside;
+    const double highest = field_.max_sample();
+    double t_begin = t_clear_;
+    if (ray_height(t_in_) > highest) {
+      if (!(dz_ < 0)) return false;
+      // Down to the highest sample, less the two roundings of the quotient.
+      const double quotient = (highest - z_) / dz_, t_top = quotient - 2 * kUnit * std::abs(quotient);
+      if (t_top > t_end_) return false;
+      side_ = Side::above;
+      level_ = from_outside;
+      t_begin = std::max(t_begin, t_top);
+    }
+    if (t_begin > t_in_) {
+      if (t_begin == t_clear_) level_ = 0;
+      return skip_to(t_begin);
+    }
+    col_ = x_.cell_after(t_in_);
+    row_ = y_.cell_after(t_in_);
+    return true;
+  }
+
+  // On to the cell that holds a time up to which the ray is above the ground, and back to where that cell begins, so
+  // that a peak which the ray just touches is still ahead. False: the ray ends before.
+  bool skip_to(double t) {
+    if (t > t_end_) return false;
+    side_ = Side::above;
+    col_ = x_.cell_before(t);
+    row_ = y_.cell_before(t);
+    t_in_ = std::max({t_in_, x_.line_time(col_ + 1 - x_.ahead), y_.line_time(row_ + 1 - y_.ahead)});
+    return true;
+  }
+
+  // The same from within a cell, never to one behind it: next to a start on a line, which is in the cell that it is
+  // said to be in, not all lines behind are crossed before.
+  bool skip_on(double t) {
+    const int col = col_, row = row_;
+    const double t_in = t_in_;
+    if (!skip_to(t)) return false;
+    if ((col_ - col) * x_.step <= 0) col_ = col;
+    if ((row_ - row) * y_.step <= 0) row_ = row;
+    t_in_ = t_in;
+    if (col_ != col) t_in_ = std::max(t_in_, x_.line_time(col_ + 1 - x_.ahead));
+    if (row_ != row) t_in_ = std::max(t_in_, y_.line_time(row_ + 1 - y_.ahead));
+    return true;
+  }
+
+  // A ray that begins on the surface: its height is that of the surface, the root at the start is divided out of the
+  // clearance in the first cell, and what is left decides. False: answered.
+  bool leave_start_cell() {
+    col_ = ray_.start_cell.col;
+    row_ = ray_.start_cell.row;
+    if (!x_.inside(col_) || !y_.inside(row_) || (Holes && grid_.is_hole(col_, row_))) return false;
+    x_.begin_in(col_, t_in_);
+    y_.begin_in(row_, t_in_);
+    const CellHeights h = grid_.cell(col_, row_);
+    z_ = surface(h, t_in_) - dz_ * t_in_;
+    if (!Wraps) t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
+    const double tx = x_.line_time(col_ + x_.ahead), ty = y_.line_time(row_ + y_.ahead);
+    const double t_line = std::min(tx, ty), t_out = std::min(t_line, t_end_);
+    ++stats.cell_tests;
+    side_ = Side::above;
+    if (!x_.moves() && !y_.moves()) {
+      // Straight down is below at once; the range may have no end.
+      if (dz_ < 0 && t_end_ > t_in_ && is_hit(dz_ * (t_end_ - t_in_), t_in_)) answer(0.0);
+      return false;
+    }
+    if (t_out > t_in_) {
+      if (triangles_) {
+        const Through exit = t_line > t_end_ ? Through::point : tx <= ty ? Through::x_line : Through::y_line;
+        if (test_triangles(h, clearance(h, exit, true, t_out), t_out)) return false;
+      } else if (falls_from_start(quadratic(h, t_in_), t_out - t_in_)) {
+        return false;
+      }
+    }
+    level_ = 0;
+    t_in_ = t_line;
+    after_x_ = tx <= ty;
+    if (!(t_in_ < t_end_)) return false;
+    if (Holes) through_ = after_x_ ? Through::x_line : Through::y_line;
+    Axis& axis = after_x_ ? x_ : y_;
+    int& cell = after_x_ ? col_ : row_;
+    cell += axis.step;
+    if (!axis.inside(cell)) {
+      if (!Wraps) return false;
+      cell = axis.enter_next_copy();
+    }
+    return true;
+  }
+
+  // The bilinear cell in which a ray begins on the surface: f(s) = s (a s + b) is below right after the start, or after
+  // the second root, if anywhere by more than rounding. True: answered.
+  bool falls_from_start(const CellQuadratic& f, double length) {
+    const bool dips = f.a > 0 && f.b < 0 && -f.b < 2 * f.a * length;
+    const double last = length * (f.a * length + f.b), lowest = dips ? -f.b * f.b / (4 * f.a) : last;
+    if (!(lowest < 0 && is_hit(lowest, t_in_))) return false;
+    if (answer(f.b < 0 || f.a == 0 ? 0.0 : f.b / -f.a)) return true;
+    if (last <= rounding_of_clearance(t_in_ + length)) side_ = Side::below;
+    return false;
+  }
+
+  // Whether a ray that is above at t is, at some point further on, under all of a block: without holes it has been
+  // through the surface before, wherever. A look at the minima of one level at ever longer steps, which a cache holds;
+  // rays along the ground are mostly stopped by hills that are wider than a block. True: answered.
+  bool goes_under(double t) {
+    if (Wraps || top_ < kProbeLevel) return false;
+    const Level& at = levels_[kProbeLevel - 1];
+    const double t_last = dz_ > 0 ? std::min(t_end_, (field_.max_sample() - z_) / dz_) : t_end_;
+    const double t_per_cell = 1 / std::max(std::abs(x_.direction), std::abs(y_.direction));
+    if (!(t_last - t > kShortWay * t_per_cell)) return false;
+    const double code_z = (z_ - code_.base) * code_.per_step, code_dz = dz_ * code_.per_step;
+    double step = kFirstProbe * t_per_cell;
+    for (int i = 0; i < kProbes; ++i) {
+      t += step;
+      step *= kProbeGrowth;
+      if (!(t < t_last)) return false;
+      const std::ptrdiff_t row = y_.near(y_.at(t)) >> kProbeLevel, col = x_.near(x_.at(t)) >> kProbeLevel;
+      const std::uint16_t minimum = minima_[at.begin + row * at.cols + col];
+      // The position is rounded, too, and that of the next block then as good: the bound covers it.
+      if (code_z + code_dz * t < minimum && falls_under(minimum, t)) {
+        answer_.status = HitStatus::hit;
+        return true;
+      }
+    }
+    return false;
+  }
+
+  // Straight up or down: one cell, one height.
+  void vertical() {
+    ++stats.steps;
+    if (Holes && grid_.is_hole(col_, row_)) return;
+    ++stats.cell_tests;
+    const double ground = surface(grid_.cell(col_, row_), t_in_), above = ray_height(t_in_) - ground;
+    if (above < 0 && side_ != Side::above) {
+      answer_.status = HitStatus::below;
+    } else if (above <= 0) {
+      answer(0.0);
+    } else if (ray_height(t_end_) <= ground) {
+      answer((ground - z_) / dz_ - t_in_);
+    }
+  }
+
+  // The walk through one copy of the grid; true: it has left for the next one. It keeps, in locals, the block at the
+  // current level and the times at which the ray leaves it through its two far lines. One level down is a question to
+  // the line in the middle: is it behind? No cell is ever found from a position.
+  bool walk() {
+    const bool falling = dz_ < 0;
+    const Axis x = x_, y = y_;
+    // The ray's height as a code, less what rounding can add to it: the pyramid is compared without decoding it.
+    const double per_step = code_.per_step, highest = field_.max_sample();
+    const double farthest = std::max(std::abs(t_in_), std::abs(t_end_));
+    const double upright = std::abs(z_) + std::abs(dz_) * farthest + std::abs(code_.base) + std::abs(highest);
+    const double code_z = (z_ - code_.base - kCodeRoundings * kUnit * upright) * per_step, code_dz = dz_ * per_step;
+    const double highest_code = (highest - code_.base) * per_step;
+    // A coarse block may reach beyond the last row or column; the walk does not.
+    const double t_end = Wraps ? std::min({t_end_, x.exit_time(), y.exit_time()}) : t_end_;
+    int level = level_, col = col_ >> level, row = row_ >> level;
+    double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
+    std::uint32_t steps = 0, level_changes = 0;
+    bool left = false;
+    for (;;) {
+      const bool through_x = tx <= ty;  // a tie: first through the line of constant column
+      const double t_line = through_x ? tx : ty;
+      const double t_out = std::min(t_line, t_end);
+      // The ray's height is linear: lowest at one end of the block.
+      const double t_lowest = falling ? t_out : t_in, lowest_code = code_z + code_dz * t_lowest;
+      ++steps;
+      if (level > 0) {
+        const Level& at = levels_[level - 1];
+        const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
+        const double maximum = maxima_[entry];
+        if (lowest_code > maximum && (side_ != Side::below || risen_above(maxima_[entry], t_lowest))) {
+          // Where there are holes, the last cell may be one: the next begins with a question. Passing a block's corner
+          // is not leaving the ground.
+          if (!Holes) {
+            side_ = Side::above;
+          } else if (t_out > t_in) {
+            side_ = Side::unknown;
+          }
+        } else if (side_ == Side::below && under(ray_height(falling ? t_in : t_out), minima_[entry])) {
+          if (lost(t_out)) break;
+        } else {
+          if (ask == Ask::any && falling && side_ == Side::above && falls_under(minima_[entry], t_lowest)) {
+            answer_.status = HitStatus::hit;
+            break;
+          }
+          --level;
+          ++level_changes;
+          // After a line of constant column, rows' lines of the same time are still ahead: the order of ties. The near
+          // side of a narrow last block is the seam, which was crossed to come here.
+          const double middle_x = x.line_time((2 * col + 1) << level), middle_y = y.line_time((2 * row + 1) << level);
+          const bool entered = Wraps && !y.ahead && ((2 * row + 1) << level) >= y.cells;
+          const bool behind_x = middle_x <= t_in, behind_y = after_x_ && !entered ? middle_y < t_in : middle_y <= t_in;
+          col = std::min(2 * col + (behind_x ? x.ahead : 1 - x.ahead), (x.cells - 1) >> level);
+          row = std::min(2 * row + (behind_y ? y.ahead : 1 - y.ahead), (y.cells - 1) >> level);
+          tx = behind_x ? tx : middle_x;
+          ty = behind_y ? ty : middle_y;
+          continue;
+        }
+      } else if (Holes && grid_.is_hole(col, row)) {
+        // Passing the corner of a hole is not leaving the ground.
+        if (t_line > t_in) side_ = Side::unknown;
+        if (lost(t_in)) break;
+      } else {
+        const CellHeights h = grid_.cell(col, row);
+        const double maximum = std::max(std::max(h.h00, h.h10), std::max(h.h01, h.h11));
+        const double lowest = ray_height(t_lowest);
+        if (lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_lowest))) {
+          side_ = Side::above;
+        } else {
+          col_ = col, row_ = row, t_in_ = t_in;
+          if (test_cell(h, through_x, t_line, t_out)) break;
+        }
+      }
+      if (Holes) begun_ = true;
+      if (!falling && lowest_code > highest_code) break;
+      if (!(t_line < t_end)) {
+        left = t_end < t_end_;
+        // A line of constant column that is crossed together with the seam of the rows comes first, too.
+        const bool another_column =
+            static_cast<unsigned>(col + x.step) <= static_cast<unsigned>((x.cells - 1) >> level);
+        if (!(left && through_x && t_line == t_end && another_column)) break;
+        left = false;
+      }
+      t_in = t_line;
+      if (ask == Ask::any && !Holes && steps == kPatience && side_ == Side::above && goes_under(t_in)) break;
+      after_x_ = through_x;
+      if (Holes) through_ = through_x ? Through::x_line : Through::y_line;
+      bool new_parent;
+      if (through_x) {
+        col += x.step;
+        if (static_cast<unsigned>(col) > static_cast<unsigned>((x.cells - 1) >> level)) break;
+        new_parent = (col & 1) != x.ahead;
+      } else {
+        row += y.step;
+        if (static_cast<unsigned>(row) > static_cast<unsigned>((y.cells - 1) >> level)) break;
+        new_parent = (row & 1) != y.ahead;
+      }
+      if (new_parent && level < top_) {
+        ++level;
+        ++level_changes;
+        col >>= 1;
+        row >>= 1;
+        tx = x.line_time((col + x.ahead) << level);
+        ty = y.line_time((row + y.ahead) << level);
+      } else if (through_x) {
+        tx = x.line_time((col + x.ahead) << level);
+      } else {
+        ty = y.line_time((row + y.ahead) << level);
+      }
+    }
+    stats.steps += steps;
+    stats.level_changes += level_changes;
+    if (left) {
+      t_in_ = t_end;
+      level_ = level;
+      col_ = std::min(col << level, x.cells - 1);
+      row_ = std::min(row << level, y.cells - 1);
+    }
+    return left;
+  }
+
+  // Over the seam: as over any line, the column before the row when both are crossed at once. A seam parts blocks of
+  // all levels, so the walk goes one level up.
+  void enter_next_copy() {
+    after_x_ = x_.exit_time() <= y_.exit_time();
+    (after_x_ ? col_ : row_) = (after_x_ ? x_ : y_).enter_next_copy();
+    if (Holes) through_ = after_x_ ? Through::x_line : Through::y_line;
+    level_ = std::min(level_ + 1, top_);
+  }
+
+  // Whether a ray that was below is above all of a block by more than rounding: see test_cell().
+  bool risen_above(std::uint16_t maximum, double t_lowest) const {
+    return ray_height(t_lowest) - code_.height(maximum) > rounding_of_clearance(t_lowest);
+  }
+
+  // Whether a ray that is below stays so over all of a block, which then has no holes.
+  bool under(double highest, std::uint16_t minimum) const {
+    return minimum != MaxPyramid::kNoMinimum && highest < code_.height(minimum);
+  }
+
+  // Whether a ray that was above before has at t, over a block without holes, come under all of the block: it has been
+  // through the surface, wherever. By more than rounding, so that closest() finds the hit, too.
+  bool falls_under(std::uint16_t minimum, double t) const {
+    const double height = ray_height(t);
+    return under(height, minimum) && code_.height(minimum) - height > 2 * rounding_of_clearance(t);
+  }
+
+  // The surface of the current cell; true: answered. Otherwise side_ is that of the way out.
+  [[gnu::always_inline]] bool test_cell(const CellHeights& h, bool through_x, double t_line, double t_out) {
+    ++stats.cell_tests;
+    if (strict_) {
+      // It is in the cell that it is said to begin in; by rounding, lines around that may be crossed before it begins,
+      // when its place is clamped and its height must not run ahead.
+      t_in_ = std::max(t_in_, ray_.t_min);
+      t_out = std::max(t_out, ray_.t_min);
+    }
+    if (side_ == Side::unknown && find_side(h)) return true;
+    const Through exit = t_line > t_end_ ? Through::point : through_x ? Through::x_line : Through::y_line;
+    const double out = clearance(h, exit, true, t_out);
+    return triangles_ ? test_triangles(h, out, t_out) : test_bilinear(h, out, t_out);
+  }
+
+  // Begins with the question where the ray is; true: that is the answer. There is no crossing before this one to agree
+  // with. A ray that comes over a rim within rounding of it touches it, whatever the sign: else one through the corner
+  // of a hole, above on the one side, could be below on the other.
+  [[gnu::noinline]] bool find_side(const CellHeights& h) {
+    const double in = clearance(h, through_, false, t_in_);
+    const double relief = std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
+    const bool on_rim = in <= 0 && -in <= scarp::rounding_of_clearance(field_, grid_ray(), t_in_, relief);
+    if (on_rim && !strict_) {
+      side_ = Side::below;
+      return answer(0.0);
+    }
+    side_ = in >= 0 || on_rim ? Side::above : Side::below;
+    if (side_ == Side::above) return false;
+    if (solid_ && (begun_ || from_outside_)) return answer(0.0, true);
+    if (!begun_ && answer_.status == HitStatus::miss) answer_.status = HitStatus::below;
+    return false;
+  }
+
+  [[gnu::always_inline]] bool test_bilinear(const CellHeights& h, double out, double t_out) {
+    const double length = t_out - t_in_;
+    if (side_ == Side::above) {
+      if (out <= 0 && is_hit(out, t_out)) {
+        if (hit_in_cell(quadratic(h, t_in_), length)) return true;
+        side_ = Side::below;
+        return lost(t_out);
+      }
+      if constexpr (ask == Ask::bisected) return false;
+      // Only where the clearance along the ray is a cup can the ray come down and go up again.
+      if (!(CellQuadratic::curvature(h, x_.direction, y_.direction) > 0)) return false;
+      const CellQuadratic f = quadratic(h, t_in_);
+      if (!f.dips(length) || !is_hit(f.vertex_value(), t_in_)) return false;
+      if (hit_in_cell(f, length)) return true;
+      // All hits: after this one it has risen only beyond rounding, as any ray from below.
+      if (out <= rounding_of_clearance(t_out)) side_ = Side::below;
+      return false;
+    }
+    if (out > rounding_of_clearance(t_out)) {
+      side_ = Side::above;
+      return false;
+    }
+    if constexpr (ask == Ask::bisected) return false;
+    const CellQuadratic f = quadratic(h, t_in_);
+    if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_)) {
+      // It has come out in between, and goes on as any ray from above.
+      side_ = Side::above;
+      if (!(out <= 0 && is_hit(out, t_out))) return false;
+      if (hit_in_cell(f, length)) return true;
+      side_ = Side::below;
+    }
+    return lost(t_out);
+  }
+
+  // Two triangles: the signs at the way in, at the diagonal, if it is crossed, and at the way out; in between the
+  // clearance is linear.
+  [[gnu::noinline]] bool test_triangles(const CellHeights& h, double out, double t_out) {
+    const double sum = static_cast<double>(x_.global_line(col_) + y_.global_line(row_) + 1);
+    const double t_diagonal = (sum - (x_.origin + y_.origin)) / (x_.direction + y_.direction);
+    double t_begin = t_in_;
+    // A ray along diagonals crosses none: the quotient is infinite or NaN.
+    if (t_diagonal > t_in_ && t_diagonal < t_out) {
+      const double crossing = ray_height(t_diagonal) - edge_height(h.h10, h.h01, y_.place(t_diagonal, row_));
+      if (test_triangle(h, t_begin, crossing, t_diagonal)) return true;
+      t_begin = t_diagonal;
+    }
+    return test_triangle(h, t_begin, out, t_out) || (side_ == Side::below && lost(t_out));
+  }
+
+  // One triangle, from t_begin, where side_ tells the sign, to t_out. True: answered.
+  bool test_triangle(const CellHeights& h, double t_begin, double out, double t_out) {
+    if (side_ == Side::below) {
+      if (out > rounding_of_clearance(t_out)) side_ = Side::above;
+      return false;
+    }
+    if (!(out <= 0 && is_hit(out, t_out))) return false;
+    side_ = Side::below;
+    if constexpr (ask == Ask::any) return answer(0.0);
+    const CellPlane f = plane(h, south_east(0.5 * (t_begin + t_out)), t_begin);
+    const double s = f.c > 0 ? f.root() : 0.0;
+    return answer(t_begin - t_in_ + (s >= 0 ? std::min(s, t_out - t_begin) : t_out - t_begin));
+  }
+
+  // Whether a ray that is not above can never hit again: falling, and under the lowest ground, with no holes' walls
+  // ahead.
+  bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample() && !(Holes && solid_); }
+
+  // For the places where a sign alone is not enough: a ray from below has risen only beyond it (else one that rises
+  // through a node could be seen above at one line and, by rounding, not above at the next: a hit from below), a ray
+  // from the surface is strictly below only beyond it, and so is a ray under a block.
+  double rounding_of_clearance(double t) const { return scarp::rounding_of_clearance(field_, grid_ray(), t); }
+  GridRay grid_ray() const { return {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}; }
+
+  // Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly
+  // below.
+  bool is_hit(double clearance, double t) const { return !strict_ || clearance < -rounding_of_clearance(t); }
+
+  // The signs have decided that there is a hit in the cell; the quadratic only says where.
+  bool hit_in_cell(const CellQuadratic& f, double length) {
+    if constexpr (ask == Ask::any) return answer(0.0);
+    if constexpr (ask == Ask::bisected) {
+      double low = 0, high = length;
+      for (int i = 0; i < halvings_; ++i) {
+        const double middle = 0.5 * (low + high);
+        (f.at(middle) > 0 ? low : high) = middle;
+      }
+      return answer(high);
+    }
+    const double s = f.falling_root();
+    return answer(s >= 0 ? std::min(s, length) : 0.0);
+  }
+
+  // A hit at t_in + s in the current cell; true: nothing more is asked.
+  bool answer(double s, bool wall = false) {
+    answer_.status = HitStatus::hit;
+    if constexpr (ask == Ask::any) return true;
+    const double t = std::clamp(t_in_ + s, ray_.t_min, ray_.t_max);
+    answer_.t = t;
+    answer_.cell = {col_, row_};
+    answer_.u = x_.place(t, col_);
+    answer_.v = y_.place(t, row_);
+    answer_.height = field_.height_from_sample(ray_height(t));
+    answer_.wall = wall;
+    if constexpr (ask == Ask::all) all_->push_back(answer_);
+    return ask != Ask::all;
+  }
+
+  using Level = MaxPyramid::Level;
+
+  // When and where any-hit looks ahead; from a search over the rays of scarp-bench (decisions.md).
+  static constexpr std::uint32_t kPatience = 3;  // steps of the walk before: half of the rays need no more
+  static constexpr int kProbeLevel = 3;          // blocks of 8 x 8 cells
+  static constexpr int kProbes = 24;
+  static constexpr double kFirstProbe = 8, kProbeGrowth = 1.2;  // steps in cells
+  static constexpr double kShortWay = 128;                      // cells up to which the walk is as fast
+  static constexpr double kUnit = 0x1p-53;                      // unit roundoff of double
+  static constexpr double kCodeRoundings = 8;                   // 6 on the way to a code, see numerics.md
+
+  const HeightField& field_;
+  const SampleGrid<T>& grid_;
+  const Level* levels_;
+  int top_;
+  HeightCode code_;
+  const std::uint16_t *maxima_, *minima_;
+  Axis x_, y_;
+  double z_, dz_;  // ray height in sample units
+  double t_in_, t_end_;
+  bool strict_, triangles_, solid_;
+  int halvings_;
+  double t_clear_;
+  const Ray& ray_;
+
+  int col_ = 0, row_ = 0;  // the cell that the ray is in: this is the state, times are derived from it
+  int level_ = 0;
+  Side side_ = Side::unknown;
+  Through through_ = Through::point;
+  bool after_x_ = false;       // whether the last line crossed was one of constant column
+  bool from_outside_ = false;  // whether the ray came in through the border
+  // With holes: whether anything has been left behind; only the first cell can say that the ray began below.
+  bool begun_ = false;
+  Hit& answer_;
+  std::vector<Hit>* all_;
+};
+
+}  // namespace
+}  // namespace scarp::max_mip

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// A batch of rays on a device: what the compute shaders of the marches and the C++ that calls them (queries_vk.h) agree
+// upon, and the ground as the marches ask for it (cell_surface.glsl.h, max_mip.glsl.h), from
+// accel/ground_buffers.glsl.h.
+//
+//   RayBatch ──rays──▶ ScarpRay ScarpRay ...     one invocation each
+//       │  ├──hits───▶ ScarpHit ScarpHit ...     the answers, in the same order
+//       │  └──states─▶ batch_states.glsl.h       where marches stand that are not done
+//       └────ground──▶ GroundBuffers
+//
+// A march is interrupted after some turns of its loop (vk/loop_turns.glsl.h) and goes on in the next run, which is the
+// same with `resume`.
+#ifndef SCARP_MARCH_RAY_BATCH_GLSL_H
+#define SCARP_MARCH_RAY_BATCH_GLSL_H
+
+#include "scarp/accel/ground_buffers.glsl.h"
+#include "scarp/march/height/ray_frame.glsl.h"
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+// Specialisation constants of all marches.
+const uint kBatchThreads = 0u;     // of a workgroup
+const uint kBatchAny = 1u;         // whether anything is hit, instead of what first: max-mip only
+const uint kBatchStatistics = 2u;  // whether steps and fetches are told, or zeros
+
+/// The push constants of all marches. Settings that a march has none of mean nothing.
+struct RayBatch {
+  Address ground;
+  Address rays;
+  Address hits;
+  uint count;
+  float step;       ///< naive, relaxed: step factor; fixed-step: the step, in cells; lipschitz: shrink factor
+  float min_step;   ///< naive
+  float tolerance;  ///< naive, relaxed, lipschitz
+  int max_steps;    ///< all but max-mip
+  int interpolate;  ///< fixed-step: 0 or 1
+  int turns;        ///< of a march's loop in one run
+  uint resume;      ///< 1: marches that have been interrupted go on; the others are answered
+  Address states;
+};
+
+/// The status of a march that goes on in the next run; no ScarpHit's own.
+const int kBatchUnderWay = -1;
+
+#ifndef __cplusplus
+
+layout(local_size_x_id = 0) in;
+layout(constant_id = 1) const bool batch_any = false;
+layout(constant_id = 2) const bool batch_statistics = false;
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRays { ScarpRay rays[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHits { ScarpHit hits[]; };
+layout(push_constant, scalar) uniform Push { RayBatch batch; };
+
+#include "scarp/march/height/ground_host.glsl.h"
+
+// Whether this run is to march ray i.
+bool batch_asks(uint i) {
+  if (i >= batch.count) return false;
+  return batch.resume == 0u || BatchHits(batch.hits).hits[i].status == kBatchUnderWay;
+}
+
+// The march of ray i has not come to its end.
+void batch_interrupt(uint i) { BatchHits(batch.hits).hits[i].status = kBatchUnderWay; }
+
+// Writes the answer to ray i.
+void batch_answer(uint i, ScarpHit hit) {
+  if (!batch_statistics) {
+    hit.steps = 0u;
+    hit.fetches = 0u;
+  }
+  BatchHits(batch.hits).hits[i] = hit;
+}
+
+#endif
+
+SCARP_GLSL_END
+
+#endif

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: MIT
+// A ray over a height field in single precision: the field and the ray as a shader is given them, and the frame of
+// reference in which floats are exact enough.
+//
+//   +-----------+-----------+     A frame is a tile of the grid, 1,024 cells wide at most. In it the ray begins anew:
+//   at |           | o---      |     time s0 it is at o, and times, columns, rows and heights count from there. o comes
+//   from |        __-+-          |     the ray's own numbers in twice a float's precision, never from the frame before,
+//   so |    _--    |           |     nothing accumulates; and s0 is a float, whatever it was computed from: it has no
+//   error.
+//   +-----------+-----------+
+//
+// Units: x in columns, y in rows (southwards), z in sample units. Time s counts from the ray's begin, in lengths of its
+// direction, whose longer horizontal component is 1 to 2 cells. Derivation of what rounding does: doc/dev/numerics.md.
+//
+// Text of C++ and of GLSL, GLSL ES 3.0 included.
+#ifndef SCARP_MARCH_RAY_FRAME_GLSL_H
+#define SCARP_MARCH_RAY_FRAME_GLSL_H
+
+#include "scarp/march/two_float.glsl.h"
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+const uint kScarpTriangles = 1u;  ///< two triangles per cell instead of a bilinear patch
+const uint kScarpHoles = 2u;      ///< some samples are nodata
+const uint kScarpWraps = 4u;      ///< the field goes on with itself
+const uint kScarpSolid = 8u;      ///< there is rock under the sheet
+
+/// What a march has to know of a height field besides its samples and bounds. All in sample units.
+struct ScarpField {
+  ivec2 cells;          ///< columns and rows of cells, at least 1
+  ivec2 samples;        ///< columns and rows of samples; as many as cells where the last is followed by the first
+  int top_level;        ///< of the pyramid, at least 1; 0: there is none
+  uint flags;           ///< kScarpTriangles and so on
+  float code_base;      ///< height of a pyramid entry: code_base + code_base_low + code_step * code
+  float code_base_low;  ///< what a float of the base leaves
+  float code_step;      ///< height of one code
+  float lowest;         ///< sample
+  float highest;        ///< sample
+};
+
+const uint kScarpOnSurface = 1u;    ///< begins on the surface of its cell: above it by definition, z is not read
+const uint kScarpFromOutside = 2u;  ///< comes in through the border
+const uint kScarpAbove = 4u;        ///< begins no lower than the highest sample
+const uint kScarpUpright = 8u;      ///< straight up or down: direction.x and .y are 0
+
+/// A ray that begins over the field. Whoever has doubles gives all numbers as two floats (march/height/device_ray.h);
+/// the low parts may be zero.
+struct ScarpRay {
+  ivec2 cell;          ///< over which it begins
+  vec2 place;          ///< where in it, 0..1, both ends included
+  vec2 place_low;      ///< what floats of it leave, here and below
+  vec3 direction;      ///< the larger of abs x, abs y is 1 to 2, unless it is upright: then abs z is
+  vec3 direction_low;  ///< likewise
+  vec2 per_direction;  ///< 1 / direction; anything where that is 0
+  float z;             ///< at its begin
+  float z_low;         ///< likewise
+  float end;           ///< the last time, included; at most kScarpNever
+  float end_low;       ///< likewise
+  uint flags;          ///< kScarpOnSurface and so on
+  // For the marches that take samples along the ray (ground.glsl.h).
+  float travelled;   ///< time from the begin of the ray's range to this ray's
+  float exit;        ///< when it leaves the field or its range ends
+  float per_height;  ///< time in which the ray goes as far as one sample unit is high
+  float cell_time;   ///< time in which it goes as far as a cell is long, its shorter side
+};
+
+const int kScarpMiss = 0;
+const int kScarpHit = 1;
+const int kScarpBelow = 2;      ///< began below the surface and never came from above to it
+const int kScarpExhausted = 3;  ///< a limit was reached: nothing is known beyond the time
+const int kScarpWall = 4;       ///< a hit, of the wall under a border or a hole's rim
+
+/// The answer. Cell, place and time mean something for hits (the time for exhausted, too).
+struct ScarpHit {
+  int status;      ///< kScarpMiss and so on
+  ivec2 cell;      ///< column and row, counted from the field's first
+  vec2 place;      ///< in the cell, 0..1
+  float time;      ///< time + time_low is the ray's time there
+  float time_low;  ///< may be as large as `time`: it counts from the tile's begin
+  uint steps;      ///< blocks, cells or points looked at
+  uint fetches;    ///< samples and entries of the pyramid read
+};
+
+/// Later than any time.
+const float kScarpNever = 1.0e30f;
+/// More turns of a loop than any march takes; half of the whole numbers, so that counting past it is no overflow.
+const int kScarpAllTurns = 1073741824;
+/// Unit roundoff of a float, 2^-24.
+const float kScarpUnit = 5.9604644775390625e-8f;
+/// Tiles are 2^kScarpTileLevel cells wide, and no block that is looked at is wider.
+const int kScarpTileLevel = 10;
+/// Cells up to which a ray is followed over a field that wraps round: floats count whole numbers up to 2^24.
+const int kScarpFarthestCell = 8388608;
+
+/// The ray in a tile.
+struct ScarpFrame {
+  ivec2 begin;  ///< the tile's first column and row
+  ivec2 end;    ///< its last ones + 1
+  ivec2 lap;    ///< the first column and row of this copy of the field; 0 but where it wraps round
+  vec2 o;       ///< where the ray is at local time 0, counted from `begin`
+  vec2 o_low;
+  float s0;     ///< the ray's time at local time 0
+  float base;   ///< heights count from it
+  float z;      ///< the ray's height at local time 0, counted from `base`
+  float t_end;  ///< the ray's end, in local time
+};
+
+/// A miss at no cost: what marches begin with.
+SCARP_FN ScarpHit scarp_no_hit() {
+  ScarpHit hit;
+  hit.status = kScarpMiss;
+  hit.cell = ivec2(0, 0);
+  hit.place = vec2(0.0f, 0.0f);
+  hit.time = kScarpNever;
+  hit.time_low = 0.0f;
+  hit.steps = 0u;
+  hit.fetches = 0u;
+  return hit;
+}
+
+/// The frame of the tile that holds `cell` of the copy of the field that begins at `lap`; local time 0 is the ray's
+/// time s0. Error of o: 2^-45 of the cells from the ray's begin.
+SCARP_FN ScarpFrame scarp_frame(ScarpField field, ScarpRay ray, ivec2 cell, ivec2 lap, float s0) {
+  ScarpFrame frame;
+  frame.begin = ivec2((cell.x >> kScarpTileLevel) << kScarpTileLevel, (cell.y >> kScarpTileLevel) << kScarpTileLevel);
+  frame.end = ivec2(min(frame.begin.x + (1 << kScarpTileLevel), field.cells.x),
+                    min(frame.begin.y + (1 << kScarpTileLevel), field.cells.y));
+  frame.lap = lap;
+  frame.s0 = s0;
+  ScarpTwoFloat x = scarp_two_line(float(ray.cell.x - lap.x - frame.begin.x), ray.place.x, ray.place_low.x,
+                                   ray.direction.x, ray.direction_low.x, s0);
+  ScarpTwoFloat y = scarp_two_line(float(ray.cell.y - lap.y - frame.begin.y), ray.place.y, ray.place_low.y,
+                                   ray.direction.y, ray.direction_low.y, s0);
+  ScarpTwoFloat z = scarp_two_line(0.0f, ray.z, ray.z_low, ray.direction.z, ray.direction_low.z, s0);
+  frame.o = vec2(x.high, y.high);
+  frame.o_low = vec2(x.low, y.low);
+  frame.base = z.high;
+  frame.z = z.low;
+  SCARP_PRECISE float end = (ray.end - s0) + ray.end_low;
+  frame.t_end = end;
+  return frame;
+}
+
+/// When the ray crosses line k of the columns, in local time: by ONE expression, whoever asks. Each operation rounds
+/// monotonically, so lines are crossed in their order.
+SCARP_FN float scarp_line_x(ScarpFrame frame, ScarpRay ray, int k) {
+  // A ray along a line belongs to the cell that it begins in.
+  if (ray.direction.x == 0.0f) return k + frame.lap.x > ray.cell.x ? kScarpNever : -kScarpNever;
+  SCARP_PRECISE float t = ((float(k - frame.begin.x) - frame.o.x) - frame.o_low.x) * ray.per_direction.x;
+  return t;
+}
+/// And line k of the rows.
+SCARP_FN float scarp_line_y(ScarpFrame frame, ScarpRay ray, int k) {
+  if (ray.direction.y == 0.0f) return k + frame.lap.y > ray.cell.y ? kScarpNever : -kScarpNever;
+  SCARP_PRECISE float t = ((float(k - frame.begin.y) - frame.o.y) - frame.o_low.y) * ray.per_direction.y;
+  return t;
+}
+
+/// Place in a column of cells at local time t, 0..1.
+SCARP_FN float scarp_place_x(ScarpFrame frame, ScarpRay ray, float t, int col) {
+  SCARP_PRECISE float u = ((frame.o.x - float(col - frame.begin.x)) + frame.o_low.x) + ray.direction.x * t;
+  return clamp(u, 0.0f, 1.0f);
+}
+/// And in a row of cells.
+SCARP_FN float scarp_place_y(ScarpFrame frame, ScarpRay ray, float t, int row) {
+  SCARP_PRECISE float v = ((frame.o.y - float(row - frame.begin.y)) + frame.o_low.y) + ray.direction.y * t;
+  return clamp(v, 0.0f, 1.0f);
+}
+
+/// The ray's height at local time t, counted from the frame's base.
+SCARP_FN float scarp_ray_height(ScarpFrame frame, ScarpRay ray, float t) {
+  SCARP_PRECISE float z = frame.z + ray.direction.z * t;
+  return z;
+}
+
+/// The most that rounding adds to ray height - surface height at local time t, in sample units, where surface heights,
+/// counted from the base, are up to `height` and differ by `relief` from one corner of a cell to another: 16 units of
+/// the quantities that go into it, of which numerics.md counts 12.
+SCARP_FN float scarp_rounding(ScarpFrame frame, ScarpRay ray, float t, float height, float relief) {
+  float sideways = abs(ray.direction.x * t) + abs(ray.direction.y * t) + 1.0f;
+  return 16.0f * kScarpUnit * (abs(frame.z) + abs(ray.direction.z * t) + height + sideways * relief);
+}
+
+SCARP_GLSL_END
+
+#endif

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/voxel/voxel_bricks.h"
+
+#include <array>
+#include <cstdint>
+
+#include "scarp/accel/brick_masks.h"
+#include "scarp/march/voxel/voxel_ahead.h"
+#include "scarp/march/voxel/voxel_loop.h"
+
+namespace scarp {
+namespace {
+
+bool pair_empty(std::uint64_t mask, int bit) { return (mask >> (bit & kEven) & kPair) == 0; }
+
+// The aligned block of 2^level voxels a side around a voxel.
+VoxelBox block(const ivec3& voxel, int level) {
+  const ivec3 low = (voxel >> level) << level;
+  return {low, low + (1 << level)};
+}
+
+auto brick_by_brick(const VoxelTarget& target, const QuantisedRay& ray) {
+  const std::array<int, 3>& step = ray.direction.step;
+  const int octant = (step[0] < 0 ? 1 : 0) | (step[1] < 0 ? 2 : 0) | (step[2] < 0 ? 4 : 0);
+  return [&grid = *target.grid, &bricks = *target.bricks, &ahead = kAhead[octant]](VoxelWalk& walk, const ivec3& voxel,
+                                                                                   bool& solid) {
+    const ivec3 brick = voxel >> 2;
+    const int bit = VoxelGrid::bit_of(voxel);
+    const std::uint64_t mask = grid.mask(brick) & ahead[bit];
+    if (mask != 0) {
+      solid = mask >> bit & 1;
+      if (solid) return false;
+      return pair_empty(mask, bit) ? walk.leave(block(voxel, 1)) : walk.step();
+    }
+    const int brick_bit = VoxelGrid::bit_of(brick);
+    const std::uint64_t sector = bricks.sector(brick >> 2) & ahead[brick_bit];
+    // The brick's own bit may be set, by what lies behind the ray.
+    if ((sector & ~(std::uint64_t{1} << brick_bit)) == 0) return walk.leave(block(voxel, 4));
+    return walk.leave(block(voxel, pair_empty(sector, brick_bit) ? 3 : 2));
+  };
+}
+
+}  // namespace
+
+VoxelHit march_voxel_bricks(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats) {
+  return first_voxel(target, ray, stats, brick_by_brick(target, ray));
+}
+
+bool occluded_voxel_bricks(const VoxelTarget& target, const QuantisedRay& ray) {
+  return any_voxel(target, ray, brick_by_brick(target, ray));
+}
+
+}  // namespace scarp

@@ -1,0 +1,576 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "scarp/accel/brick_masks.h"
+#include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/octant_cubes.h"
+#include "scarp/march/usual_ray.h"
+#include "scarp/march/voxel/voxel_ahead.h"
+#include "scarp/march/voxel/voxel_packet.h"
+
+// This file is compiled once for each instruction set.
+// Vectors of a length that the compiler does not know cannot be members.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "scarp/march/voxel/voxel_packet_simd.cpp"
+#include "hwy/foreach_target.h"
+// foreach_target.h comes first.
+#include "hwy/highway.h"
+#include "scarp/march/ray_numbers_simd.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace scarp {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr hn::CappedTag<double, 8> dd;
+constexpr hn::RebindToSigned<decltype(dd)> di;
+constexpr hn::RebindToUnsigned<decltype(dd)> du;
+constexpr hn::Rebind<std::int32_t, decltype(dd)> di_part;
+constexpr hn::Rebind<float, decltype(dd)> df_part;
+constexpr std::size_t N = hn::MaxLanes(dd);
+using VD = hn::Vec<decltype(dd)>;
+using VI = hn::Vec<decltype(di)>;
+using MD = hn::Mask<decltype(dd)>;
+using MI = hn::Mask<decltype(di)>;
+
+constexpr std::size_t kVectors = VoxelPacket::kRays / N;
+constexpr std::size_t kSaved = 4;  // vectors: below that moving rays costs more than it saves
+// 2^52 as a double: its last bits count ones.
+constexpr double kOnes = 0x1p52;
+
+// Whole numbers in 64 bits whose upper halves are 0.
+#if HWY_TARGET == HWY_SCALAR
+HWY_INLINE VI product(VI a, VI b) { return hn::Set(di, hn::GetLane(a) * hn::GetLane(b)); }
+HWY_INLINE VI lesser(VI a, VI b) { return hn::Min(a, b); }
+#else
+constexpr hn::Repartition<std::uint32_t, decltype(dd)> du32;
+constexpr hn::Repartition<std::int32_t, decltype(dd)> di32;
+HWY_INLINE VI product(VI a, VI b) { return hn::BitCast(di, hn::MulEven(hn::BitCast(du32, a), hn::BitCast(du32, b))); }
+HWY_INLINE VI lesser(VI a, VI b) { return hn::BitCast(di, hn::Min(hn::BitCast(di32, a), hn::BitCast(di32, b))); }
+#endif
+// 0 <= a < 2^52.
+HWY_INLINE VD as_double(VI a) {
+  const VI ones = hn::BitCast(di, hn::Set(dd, kOnes));
+  return hn::Sub(hn::BitCast(dd, hn::Or(a, ones)), hn::Set(dd, kOnes));
+}
+// The nearest whole number, 0 <= a < 2^51.
+HWY_INLINE VI nearest(VD a) {
+  return hn::Xor(hn::BitCast(di, hn::Add(a, hn::Set(dd, kOnes))), hn::BitCast(di, hn::Set(dd, kOnes)));
+}
+// Rounded towards 0, |a| < 2^31.
+HWY_INLINE VI truncated(VD a) { return hn::PromoteTo(di, hn::DemoteTo(di_part, a)); }
+
+HWY_INLINE MI lanes_of(std::uint64_t bits) {
+  const std::uint8_t some = static_cast<std::uint8_t>(bits & ((std::uint64_t{1} << N) - 1));
+  return hn::LoadMaskBits(di, &some);
+}
+HWY_INLINE std::uint64_t bits_of(MI mask) {
+  std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(di, mask, bits);
+  return bits[0];
+}
+
+// grid_from_world * v, as glm has it.
+HWY_INLINE void transform(const glm::dmat3& m, const VD (&v)[3], VD (&to)[3]) {
+  for (int i = 0; i < 3; ++i) {
+    to[i] = hn::Add(hn::Add(hn::Mul(hn::Set(dd, m[0][i]), v[0]), hn::Mul(hn::Set(dd, m[1][i]), v[1])),
+                    hn::Mul(hn::Set(dd, m[2][i]), v[2]));
+  }
+}
+
+// What the marches look at: whether voxels are solid, and else how many planes may be crossed along each axis. `at` are
+// the voxels, mirrored where rays go down.
+struct Seen {
+  MI solid;
+  VI planes[3];
+};
+
+HWY_INLINE VI index_in(const VI (&v)[3], const ivec3& size) {
+  return hn::Add(v[0], product(hn::Set(di, size.x), hn::Add(v[1], product(hn::Set(di, size.y), v[2]))));
+}
+HWY_INLINE VI bit_in(const VI (&v)[3]) {
+  const VI three = hn::Set(di, 3);
+  return hn::Or(hn::And(v[0], three),
+                hn::Or(hn::ShiftLeft<2>(hn::And(v[1], three)), hn::ShiftLeft<4>(hn::And(v[2], three))));
+}
+HWY_INLINE VI shifted(VI word, VI by) { return hn::BitCast(di, hn::Shr(hn::BitCast(du, word), hn::BitCast(du, by))); }
+HWY_INLINE VI gather_words(const std::uint64_t* words, VI index) {
+  return hn::GatherIndex(di, reinterpret_cast<const std::int64_t*>(words), index);
+}
+HWY_INLINE VI gather_bytes(const std::uint8_t* bytes, VI offset) {
+  return hn::And(hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(bytes), offset), hn::Set(di, 255));
+}
+
+// One plane after the other.
+struct PlanesLook {
+  static constexpr bool kSingle = true;
+  const VoxelGrid& grid;
+
+  explicit PlanesLook(const VoxelTarget& target) : grid(*target.grid) {}
+  HWY_INLINE Seen operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
+    const VI brick[3] = {hn::ShiftRight<2>(v[0]), hn::ShiftRight<2>(v[1]), hn::ShiftRight<2>(v[2])};
+    const VI mask = gather_words(grid.masks().data(), hn::IfThenElseZero(alive, index_in(brick, grid.bricks())));
+    const VI one = hn::Set(di, 1);
+    return {hn::Ne(hn::And(shifted(mask, bit_in(v)), one), hn::Zero(di)), {one, one, one}};
+  }
+};
+
+// Cubes around voxels, or ahead of them: a byte each.
+struct CubesLook {
+  static constexpr bool kSingle = false;
+  const VoxelBytes& bytes;
+
+  explicit CubesLook(const VoxelTarget& target) : bytes(target.cubes->distances()) {}
+  HWY_INLINE Seen operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
+    const VI index = hn::IfThenElseZero(alive, index_in(v, bytes.size()));
+    const VI distance = gather_bytes(bytes.data(), index);
+    return {hn::Eq(distance, hn::Zero(di)), {distance, distance, distance}};
+  }
+};
+
+struct OctantsLook {
+  static constexpr bool kSingle = false;
+  const VoxelBytes& bytes;
+  ivec3 size;
+
+  explicit OctantsLook(const VoxelTarget& target) : bytes(target.octants->sides()), size(target.grid->size()) {}
+  HWY_INLINE Seen operator()(const VI (&v)[3], const VI (&)[3], const VI (&down)[3], MI alive) const {
+    const VI octant = hn::Or(hn::And(down[0], hn::Set(di, 1)),
+                             hn::Or(hn::And(down[1], hn::Set(di, 2)), hn::And(down[2], hn::Set(di, 4))));
+    const VI z = hn::Add(v[2], product(octant, hn::Set(di, size.z)));
+    const VI index = hn::IfThenElseZero(alive, index_in({v[0], v[1], z}, size));
+    const VI side = gather_bytes(bytes.data(), index);
+    return {hn::Eq(side, hn::Zero(di)), {side, side, side}};
+  }
+};
+
+// Blocks of 2^level voxels, as in voxel_bricks.cpp.
+struct BricksLook {
+  static constexpr bool kSingle = false;
+  const VoxelGrid& grid;
+  const BrickMasks& bricks;
+
+  explicit BricksLook(const VoxelTarget& target) : grid(*target.grid), bricks(*target.bricks) {}
+  static HWY_INLINE MI pair_empty(VI mask, VI bit) {
+    const VI pair = shifted(mask, hn::And(bit, hn::Set(di, kEven)));
+    return hn::Eq(hn::And(pair, hn::Set(di, static_cast<std::int64_t>(kPair))), hn::Zero(di));
+  }
+  HWY_INLINE Seen operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive) const {
+    const VI zero = hn::Zero(di), one = hn::Set(di, 1);
+    const VI octant = hn::Or(hn::And(down[0], hn::Set(di, 64)),
+                             hn::Or(hn::And(down[1], hn::Set(di, 128)), hn::And(down[2], hn::Set(di, 256))));
+    const VI brick[3] = {hn::ShiftRight<2>(v[0]), hn::ShiftRight<2>(v[1]), hn::ShiftRight<2>(v[2])};
+    const VI bit = bit_in(v);
+    const VI mask =
+        hn::And(gather_words(grid.masks().data(), hn::IfThenElseZero(alive, index_in(brick, grid.bricks()))),
+                gather_words(kAhead[0].data(), hn::Or(octant, bit)));
+    const MI solid = hn::Ne(hn::And(shifted(mask, bit), one), zero);
+    VI last = hn::IfThenElseZero(pair_empty(mask, bit), one);  // side of the block - 1
+    const MI clear = hn::And(alive, hn::Eq(mask, zero));
+    if (!hn::AllFalse(di, clear)) {
+      const VI sector[3] = {hn::ShiftRight<2>(brick[0]), hn::ShiftRight<2>(brick[1]), hn::ShiftRight<2>(brick[2])};
+      const VI brick_bit = bit_in(brick),
+               own = hn::BitCast(di, hn::Shl(hn::BitCast(du, one), hn::BitCast(du, brick_bit)));
+      const VI bricks_of =
+          hn::And(gather_words(bricks.masks().data(), hn::IfThenElseZero(clear, index_in(sector, bricks.sectors()))),
+                  gather_words(kAhead[0].data(), hn::Or(octant, brick_bit)));
+      const VI small = hn::IfThenElse(pair_empty(bricks_of, brick_bit), hn::Set(di, 7), hn::Set(di, 3));
+      const MI all = hn::Eq(hn::AndNot(own, bricks_of), zero);
+      last = hn::IfThenElse(clear, hn::IfThenElse(all, hn::Set(di, 15), small), last);
+    }
+    // From a voxel, counted in the ray's way, to the end of its block.
+    const VI side = hn::Add(last, one);
+    return {solid,
+            {hn::Sub(side, hn::And(at[0], last)), hn::Sub(side, hn::And(at[1], last)),
+             hn::Sub(side, hn::And(at[2], last))}};
+  }
+};
+
+// Rays on their way through one box, in lanes; after each compaction those that are done are gone.
+struct Walk {
+  using Numbers = VoxelPacket::Lanes<std::int64_t>;
+  // at: the voxel, mirrored where the ray goes down; end: the first one beyond the box.
+  alignas(64) Numbers next[3], at[3], end[3], speed[3], down[3];
+  // crossed: the axis whose plane was crossed last; before the first step kEntered and that by which it came in.
+  alignas(64) Numbers crossed, ray;
+  alignas(64) VoxelPacket::Lanes<double> slowness[3];
+  std::size_t lanes = 0;               // in use
+  std::uint64_t alive[kVectors] = {};  // lanes of each vector
+  std::uint64_t solid[kVectors] = {};  // that have come to a solid voxel and wait to be told: many cost as much as one
+
+  static constexpr std::int64_t kEntered = 8, kInside = 7;
+};
+
+// Lanes of a vector whose bits are set, in order; hn::Compress() of Highway 1.0.3 copies its table to the stack each
+// time.
+constexpr auto make_orders() {
+  std::array<std::array<std::int64_t, N>, std::size_t{1} << N> orders{};
+  for (std::size_t bits = 0; bits < orders.size(); ++bits) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < N; ++i) {
+      if (bits >> i & 1) orders[bits][count++] = static_cast<std::int64_t>(i);
+    }
+  }
+  return orders;
+}
+alignas(64) constexpr auto kOrders = make_orders();
+
+// Writes chosen lanes of one vector after another.
+class Chosen {
+ public:
+  explicit HWY_INLINE Chosen(std::uint64_t bits) : order_(hn::SetTableIndices(di, kOrders[bits].data())) {}
+  HWY_INLINE void append(VI lanes, std::int64_t* to) const { hn::StoreU(hn::TableLookupLanes(lanes, order_), di, to); }
+  HWY_INLINE void append(VD lanes, double* to) const {
+    append(hn::BitCast(di, lanes), reinterpret_cast<std::int64_t*>(to));
+  }
+
+ private:
+  decltype(hn::SetTableIndices(di, kOrders[0].data())) order_;
+};
+
+// 1 / speed, to 2^-23 of itself: enough to tell quotients of up to 2,048 to less than a half, and sooner done than in
+// double.
+HWY_INLINE VD slowness_of(VI speed) {
+  const auto single = hn::DemoteTo(df_part, as_double(speed));
+  return hn::PromoteTo(dd, hn::Div(hn::Set(df_part, 1.0f), single));
+}
+
+// quantise() of voxel_ray.cpp, the same operations in the same order. Rays that come into the box are put on their way;
+// which they are.
+HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& packet, std::size_t o, MI rays,
+                    Walk& walk) {
+  const VD zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
+  VD from[3], origin[3];
+  for (int i = 0; i < 3; ++i) from[i] = hn::Sub(hn::Load(dd, packet.origin[i] + o), hn::Set(dd, stand.origin[i]));
+  transform(stand.grid_from_world, from, origin);
+  VD t = hn::Load(dd, packet.t_min + o), t_out = hn::Load(dd, packet.t_max + o);
+  MD alive = hn::And(hn::RebindMask(dd, rays), hn::Lt(hn::Load(dd, packet.t_per_s + o), hn::Inf(dd)));
+  VI entered = hn::Set(di, Walk::kInside);
+  MD down[3];
+  VD given[3];
+  for (int i = 0; i < 3; ++i) {
+    const VD low = hn::Set(dd, box.low[i]), high = hn::Set(dd, box.high[i]);
+    const VD inverse = hn::Load(dd, packet.inverse[i] + o);
+    given[i] = hn::Load(dd, packet.given[i] + o);
+    down[i] = hn::Lt(given[i], zero);
+    const MD level = hn::Eq(given[i], zero);
+    alive = hn::And(alive, hn::Or(hn::Not(level), hn::And(hn::Ge(origin[i], low), hn::Lt(origin[i], high))));
+    const VD to_low = hn::Mul(hn::Sub(low, origin[i]), inverse), to_high = hn::Mul(hn::Sub(high, origin[i]), inverse);
+    const VD near = hn::IfThenElse(down[i], to_high, to_low), far = hn::IfThenElse(down[i], to_low, to_high);
+    const MD later = hn::AndNot(level, hn::Ge(near, t));
+    entered = hn::IfThenElse(hn::RebindMask(di, later), hn::Set(di, Walk::kEntered + i), entered);
+    t = hn::IfThenElse(hn::And(later, hn::Gt(near, t)), near, t);
+    t_out = hn::IfThenElse(hn::AndNot(level, hn::Lt(far, t_out)), far, t_out);
+  }
+  alive = hn::And(alive, hn::Le(t, t_out));
+  if (hn::AllFalse(dd, alive)) return hn::RebindMask(di, alive);
+  VD voxel[3];
+  VI next[3];
+  for (int i = 0; i < 3; ++i) {
+    const VD low = hn::Set(dd, box.low[i]), high = hn::Set(dd, box.high[i]);
+    VD place = hn::Add(origin[i], hn::Mul(t, given[i]));
+    place = hn::IfThenElse(hn::Gt(place, low), place, low);
+    place = hn::IfThenElse(hn::Lt(place, high), place, high);
+    const MD in_here = hn::RebindMask(dd, hn::Eq(entered, hn::Set(di, Walk::kEntered + i)));
+    const VD whole = hn::Trunc(place);
+    voxel[i] = hn::Sub(whole, hn::IfThenElseZero(hn::And(down[i], hn::Eq(whole, place)), one));
+    alive = hn::And(alive, hn::Or(in_here, hn::And(hn::Ge(voxel[i], low), hn::Lt(voxel[i], high))));
+    place = hn::IfThenElse(in_here, hn::IfThenElse(down[i], high, low), place);
+    voxel[i] = hn::IfThenElse(in_here, hn::IfThenElse(down[i], hn::Sub(high, one), low), voxel[i]);
+    const VD distance = hn::IfThenElse(down[i], hn::Sub(place, voxel[i]), hn::Sub(hn::Add(voxel[i], one), place));
+    const VD places = hn::Add(hn::Mul(distance, hn::Set(dd, static_cast<double>(kVoxelPlaces))), hn::Set(dd, 0.5));
+    next[i] = truncated(hn::Min(hn::Max(places, zero), hn::Set(dd, static_cast<double>(kVoxelPlaces))));
+  }
+  const MI in = hn::RebindMask(di, alive);
+  const Chosen chosen(bits_of(in));
+  const std::size_t to = walk.lanes;
+  for (int i = 0; i < 3; ++i) {
+    const VI speed = hn::Load(di, packet.speed[i] + o), side = hn::Load(di, packet.down[i] + o);
+    // A plane that is never reached: at speed 0 any distance above 0 comes last.
+    const MI never = hn::Eq(speed, hn::Zero(di));
+    const VI end = hn::IfThenElse(hn::RebindMask(di, down[i]), hn::Set(di, -box.low[i]), hn::Set(di, box.high[i]));
+    chosen.append(hn::IfThenElse(never, hn::Set(di, 1), next[i]), walk.next[i] + to);
+    chosen.append(hn::Xor(truncated(voxel[i]), side), walk.at[i] + to);
+    chosen.append(end, walk.end[i] + to);
+    chosen.append(speed, walk.speed[i] + to);
+    chosen.append(side, walk.down[i] + to);
+    chosen.append(slowness_of(speed), walk.slowness[i] + to);
+  }
+  chosen.append(entered, walk.crossed + to);
+  chosen.append(hn::Iota(di, static_cast<std::int64_t>(o)), walk.ray + to);
+  walk.lanes += hn::CountTrue(di, in);
+  hn::Store(t, dd, packet.t_in + o);
+  return in;
+}
+
+// VoxelWalk::hit() of rays in solid voxels.
+HWY_INLINE void finish(VoxelPacket& packet, const Walk& walk, std::size_t o, MI solid) {
+  const VI crossed = hn::Load(di, walk.crossed + o), ray = hn::Load(di, walk.ray + o);
+  VI next = hn::Load(di, walk.next[0] + o), speed = hn::Load(di, walk.speed[0] + o);
+  VI down = hn::Load(di, walk.down[0] + o);
+  const MI walked = hn::Lt(crossed, hn::Set(di, 3));
+  const VI axis = hn::And(crossed, hn::Set(di, 3));
+  for (int i = 1; i < 3; ++i) {
+    const MI here = hn::Eq(axis, hn::Set(di, i));
+    next = hn::IfThenElse(here, hn::Load(di, walk.next[i] + o), next);
+    speed = hn::IfThenElse(here, hn::Load(di, walk.speed[i] + o), speed);
+    down = hn::IfThenElse(here, hn::Load(di, walk.down[i] + o), down);
+  }
+  const VI safe = hn::IfThenElseZero(solid, ray);
+  const VD t_in = hn::GatherIndex(dd, packet.t_in, safe), t_max = hn::GatherIndex(dd, packet.t_max, safe);
+  const VI distance = hn::IfThenElseZero(walked, hn::Sub(next, hn::Set(di, kVoxelPlaces)));
+  const VD on_the_way =
+      hn::Mul(hn::Div(as_double(distance), as_double(speed)), hn::GatherIndex(dd, packet.t_per_s, safe));
+  const VD t = hn::IfThenElse(hn::RebindMask(dd, walked), hn::Add(t_in, on_the_way), t_in);
+  const MI hit = hn::And(solid, hn::RebindMask(di, hn::Not(hn::Gt(t, t_max))));
+  const VI inside = hn::Set(di, static_cast<std::int64_t>(VoxelFace::inside));
+  const VI face =
+      hn::IfThenElse(hn::Eq(crossed, hn::Set(di, Walk::kInside)), inside, hn::Sub(hn::Add(axis, axis), down));
+  const Chosen chosen(bits_of(hit));
+  const std::size_t to = packet.hits;
+  chosen.append(t, packet.t + to);
+  chosen.append(face, packet.face + to);
+  chosen.append(ray, packet.ray + to);
+  for (int i = 0; i < 3; ++i)
+    chosen.append(hn::Xor(hn::Load(di, walk.at[i] + o), hn::Load(di, walk.down[i] + o)), packet.voxel[i] + to);
+  packet.hits += hn::CountTrue(di, hit);
+}
+
+HWY_NOINLINE void finish_all(VoxelPacket& packet, Walk& walk) {
+  for (std::size_t o = 0; o < walk.lanes; o += N) {
+    if (walk.solid[o / N] != 0) finish(packet, walk, o, lanes_of(walk.solid[o / N]));
+    walk.solid[o / N] = 0;
+  }
+}
+
+// VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; those that are still on their way. The
+// others stay as they are.
+template <class Look>
+HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::size_t o, MI alive) {
+  const VI one = hn::Set(di, 1), zero = hn::Zero(di);
+  VI at[3], next[3], speed[3], down[3], voxel[3], end[3];
+  for (int i = 0; i < 3; ++i) {
+    at[i] = hn::Load(di, walk.at[i] + o), next[i] = hn::Load(di, walk.next[i] + o);
+    end[i] = hn::Load(di, walk.end[i] + o);
+    speed[i] = hn::Load(di, walk.speed[i] + o), down[i] = hn::Load(di, walk.down[i] + o);
+    voxel[i] = hn::Xor(at[i], down[i]);
+  }
+  const Seen seen = look(voxel, at, down, alive);
+  const MI solid = hn::And(alive, seen.solid);
+  if (!hn::AllFalse(di, solid)) {
+    walk.solid[o / N] |= bits_of(solid);
+    alive = hn::AndNot(seen.solid, alive);
+    if (hn::AllFalse(di, alive)) return alive;
+  }
+  packet.steps += hn::CountTrue(di, alive);
+
+  // The first plane that leaves the part.
+  VI out[3];
+  for (int i = 0; i < 3; ++i) {
+    out[i] = next[i];
+    if constexpr (!Look::kSingle) {
+      const VI planes = lesser(seen.planes[i], hn::Sub(end[i], at[i]));
+      out[i] = hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(hn::Sub(planes, one)));
+    }
+  }
+  const MI y_first = hn::Lt(product(out[1], speed[0]), product(out[0], speed[1]));
+  VI distance = hn::IfThenElse(y_first, out[1], out[0]), pace = hn::IfThenElse(y_first, speed[1], speed[0]);
+  const MI z_first = hn::Lt(product(out[2], pace), product(distance, speed[2]));
+  const VI axis = hn::IfThenElse(z_first, hn::Set(di, 2), hn::IfThenElseZero(y_first, one));
+
+  VI crossed[3];
+  if constexpr (Look::kSingle) {
+    for (int i = 0; i < 3; ++i) crossed[i] = hn::IfThenElseZero(hn::Eq(axis, hn::Set(di, i)), one);
+  } else {
+    distance = hn::IfThenElse(z_first, out[2], distance), pace = hn::IfThenElse(z_first, speed[2], pace);
+    VD slowness = hn::Load(dd, walk.slowness[0] + o);
+    slowness = hn::IfThenElse(hn::RebindMask(dd, y_first), hn::Load(dd, walk.slowness[1] + o), slowness);
+    slowness = hn::IfThenElse(hn::RebindMask(dd, z_first), hn::Load(dd, walk.slowness[2] + o), slowness);
+    for (int i = 0; i < 3; ++i) {
+      VI ahead = hn::Sub(product(distance, speed[i]), product(next[i], pace));
+      // Of what is crossed at once with the last plane a higher axis comes after it.
+      if (i > 0) ahead = hn::IfThenElse(hn::Lt(axis, hn::Set(di, i)), hn::Sub(ahead, one), ahead);
+      const VI a = hn::BitCast(di, hn::ShiftRight<kPlaceBits>(hn::BitCast(du, ahead)));
+      // The nearest quotient is the one rounded down, or one more.
+      const VI quotient = nearest(hn::Mul(as_double(a), slowness)), rest = hn::Sub(a, product(quotient, pace));
+      const VI planes = hn::Add(hn::Add(quotient, one), hn::BroadcastSignBit(rest));
+      crossed[i] = hn::IfThenZeroElse(hn::Lt(ahead, zero), planes);
+    }
+  }
+  MI inside = alive;
+  for (int i = 0; i < 3; ++i) {
+    crossed[i] = hn::IfThenElseZero(alive, crossed[i]);
+    at[i] = hn::Add(at[i], crossed[i]);
+    hn::Store(at[i], di, walk.at[i] + o);
+    hn::Store(hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(crossed[i])), di, walk.next[i] + o);
+    inside = hn::And(inside, hn::Lt(at[i], end[i]));
+  }
+  hn::Store(hn::IfThenElse(alive, axis, hn::Load(di, walk.crossed + o)), di, walk.crossed + o);
+  return inside;
+}
+
+// Rays that are still on their way, close together.
+HWY_NOINLINE void compact(Walk& walk) {
+  std::size_t to = 0;
+  for (std::size_t o = 0; o < walk.lanes; o += N) {
+    const std::uint64_t bits = walk.alive[o / N];
+    if (bits == 0) continue;
+    const Chosen chosen(bits);
+    for (int i = 0; i < 3; ++i) {
+      chosen.append(hn::Load(di, walk.next[i] + o), walk.next[i] + to);
+      chosen.append(hn::Load(di, walk.at[i] + o), walk.at[i] + to);
+      chosen.append(hn::Load(di, walk.end[i] + o), walk.end[i] + to);
+      chosen.append(hn::Load(di, walk.speed[i] + o), walk.speed[i] + to);
+      chosen.append(hn::Load(di, walk.down[i] + o), walk.down[i] + to);
+      chosen.append(hn::Load(dd, walk.slowness[i] + o), walk.slowness[i] + to);
+    }
+    chosen.append(hn::Load(di, walk.crossed + o), walk.crossed + to);
+    chosen.append(hn::Load(di, walk.ray + o), walk.ray + to);
+    to += hn::CountTrue(di, lanes_of(bits));
+  }
+  walk.lanes = to;
+}
+
+// Sets which lanes are in use: all of the first ones.
+HWY_INLINE void wake(Walk& walk) {
+  for (std::size_t o = 0; o < walk.lanes; o += N) {
+    const std::size_t here = walk.lanes - o < N ? walk.lanes - o : N;
+    walk.alive[o / N] = (std::uint64_t{1} << here) - 1;
+  }
+}
+
+template <class Look>
+std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+  const Look look(target);
+  std::uint64_t met = 0;
+  Walk walk;
+  packet.hits = 0;
+  for (std::size_t o = 0; o < packet.count; o += N) {
+    if ((rays >> o & ((std::uint64_t{1} << N) - 1)) == 0) continue;
+    met |= bits_of(enter(target.box, stand, packet, o, lanes_of(rays >> o), walk)) << o;
+  }
+  wake(walk);
+  for (std::size_t live = walk.lanes; live > 0;) {
+    live = 0;
+    for (std::size_t o = 0; o < walk.lanes; o += N) {
+      std::uint64_t& alive = walk.alive[o / N];
+      if (alive == 0) continue;
+      alive = bits_of(advance(look, packet, walk, o, lanes_of(alive)));
+      live += static_cast<std::size_t>(hn::CountTrue(di, lanes_of(alive)));
+    }
+    // Where that saves vectors.
+    if (live > 0 && live + kSaved * N <= walk.lanes) {
+      finish_all(packet, walk);
+      compact(walk);
+      wake(walk);
+    }
+  }
+  finish_all(packet, walk);
+  return met;
+}
+
+bool load(VoxelPacket& packet, const Ray* rays, std::size_t count) {
+  load_ray_numbers([rays](std::size_t i) -> const Ray& { return rays[i]; }, count,
+                   {packet.origin[0], packet.origin[1], packet.origin[2], packet.direction[0], packet.direction[1],
+                    packet.direction[2], packet.t_min, packet.t_max});
+  packet.count = count;
+  for (std::size_t o = 0; o < count; o += N) {
+    VD longest = hn::Zero(dd);
+    for (int axis = 0; axis < 3; ++axis) longest = hn::Max(longest, hn::Abs(hn::Load(dd, packet.direction[axis] + o)));
+    const auto usual =
+        hn::And(hn::Gt(longest, hn::Set(dd, kShortestUsual)), hn::Lt(longest, hn::Set(dd, kLongestUsual)));
+    if (!hn::AllTrue(dd, hn::Or(usual, hn::Not(hn::FirstN(dd, count - o))))) return false;
+  }
+  return true;
+}
+
+// VoxelDirection of each ray, the same operations.
+void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
+  const VD whole = hn::Set(dd, static_cast<double>(1 << kDirectionBits)), half = hn::Set(dd, 0.5);
+  for (std::size_t o = 0; o < packet.count; o += N) {
+    VD world[3], given[3], inverse[3];
+    for (int i = 0; i < 3; ++i) world[i] = hn::Load(dd, packet.direction[i] + o);
+    transform(grid_from_world, world, given);
+    for (int i = 0; i < 3; ++i) {
+      inverse[i] = hn::Div(hn::Set(dd, 1.0), given[i]);
+      hn::Store(given[i], dd, packet.given[i] + o);
+      hn::Store(inverse[i], dd, packet.inverse[i] + o);
+      hn::Store(hn::VecFromMask(di, hn::RebindMask(di, hn::Lt(given[i], hn::Zero(dd)))), di, packet.down[i] + o);
+    }
+    const VD per_longest = hn::Min(hn::Min(hn::Abs(inverse[0]), hn::Abs(inverse[1])), hn::Abs(inverse[2]));
+    for (int i = 0; i < 3; ++i) {
+      const VD share = hn::Mul(hn::Mul(hn::Abs(given[i]), per_longest), whole);
+      hn::Store(truncated(hn::Add(share, half)), di, packet.speed[i] + o);
+    }
+    const VD per_s = hn::Set(dd, static_cast<double>(1 << (kDirectionBits - kPlaceBits)));
+    hn::Store(hn::Mul(per_s, per_longest), dd, packet.t_per_s + o);
+  }
+}
+
+std::uint64_t march_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                           std::uint64_t rays) {
+  return march<PlanesLook>(target, stand, packet, rays);
+}
+std::uint64_t march_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
+  return march<CubesLook>(target, stand, packet, rays);
+}
+std::uint64_t march_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                            std::uint64_t rays) {
+  return march<OctantsLook>(target, stand, packet, rays);
+}
+std::uint64_t march_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                           std::uint64_t rays) {
+  return march<BricksLook>(target, stand, packet, rays);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace scarp
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace scarp {
+namespace {
+
+HWY_EXPORT(load);
+HWY_EXPORT(aim);
+HWY_EXPORT(march_planes);
+HWY_EXPORT(march_cubes);
+HWY_EXPORT(march_octants);
+HWY_EXPORT(march_bricks);
+
+}  // namespace
+
+bool load_voxel_packet(VoxelPacket& packet, std::span<const Ray> rays) {
+  return HWY_DYNAMIC_DISPATCH(load)(packet, rays.data(), rays.size());
+}
+
+void aim_voxel_packet(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
+  HWY_DYNAMIC_DISPATCH(aim)(packet, grid_from_world);
+}
+
+std::uint64_t march_packet_voxel_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                        std::uint64_t rays) {
+  return HWY_DYNAMIC_DISPATCH(march_planes)(target, stand, packet, rays);
+}
+std::uint64_t march_packet_voxel_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                       std::uint64_t rays) {
+  return HWY_DYNAMIC_DISPATCH(march_cubes)(target, stand, packet, rays);
+}
+std::uint64_t march_packet_voxel_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                         std::uint64_t rays) {
+  return HWY_DYNAMIC_DISPATCH(march_octants)(target, stand, packet, rays);
+}
+std::uint64_t march_packet_voxel_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                        std::uint64_t rays) {
+  return HWY_DYNAMIC_DISPATCH(march_bricks)(target, stand, packet, rays);
+}
+
+}  // namespace scarp
+#endif

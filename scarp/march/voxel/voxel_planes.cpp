@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/voxel/voxel_planes.h"
+
+#include "scarp/march/voxel/voxel_loop.h"
+
+namespace scarp {
+namespace {
+
+auto plane_by_plane(const VoxelTarget& target) {
+  return [&grid = *target.grid](VoxelWalk& walk, const ivec3& voxel, bool& solid) {
+    solid = grid.solid(voxel);
+    return !solid && walk.step();
+  };
+}
+
+}  // namespace
+
+VoxelHit march_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats) {
+  return first_voxel(target, ray, stats, plane_by_plane(target));
+}
+
+bool occluded_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray) {
+  return any_voxel(target, ray, plane_by_plane(target));
+}
+
+}  // namespace scarp

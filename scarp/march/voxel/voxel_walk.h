@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// The way of a quantised ray from voxel to voxel, or over many at once, in whole numbers: what the voxel marches share.
+//
+//   along each axis the ray crosses planes at the distances  next, next + 2^20, next + 2 * 2^20, ...
+//   which stand for                                          s = distance / speed
+//
+// All planes of all axes, in the order of s and then of the axis, are the ray's events. A position is a number of
+// events that have happened; a voxel is what follows from it. A skip finds the first event that leaves a box, and
+// counts for the other axes how many come before it. So the position after a skip is the one that single steps would
+// have reached.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "scarp/march/voxel/voxel_target.h"
+
+namespace scarp {
+
+class VoxelWalk {
+ public:
+  explicit VoxelWalk(const QuantisedRay& ray, const VoxelBox& box)
+      : ray_(ray),
+        speed_(ray.direction.speed),
+        step_(ray.direction.step),
+        next_(ray.to_plane),
+        voxel_(ray.voxel),
+        box_(box) {}
+
+  const ivec3& voxel() const { return voxel_; }
+
+  /// Crosses the next plane. False when that leaves the box.
+  bool step() {
+    cross(first(next_));
+    return in_box();
+  }
+
+  /// Crosses planes until one of them leaves `part`, a box around the voxel. False when that leaves the box of the
+  /// walk, beyond which `part` may reach.
+  bool leave(const VoxelBox& part) {
+    std::array<std::int64_t, 3> out;
+    for (int i = 0; i < 3; ++i) {
+      const int planes = step_[i] > 0 ? std::min(part.high[i], box_.high[i]) - voxel_[i]
+                                      : voxel_[i] - std::max(part.low[i], box_.low[i]) + 1;
+      out[i] = next_[i] + (std::int64_t{planes} - 1) * kVoxelPlaces;
+    }
+    const int axis = first(out);
+    const std::int64_t distance = out[axis], speed = speed_[axis];
+    const double slowness = ray_.direction.slowness[axis];
+    // Along each axis all planes with next + k 2^20 over its speed no later than distance over speed; those of a higher
+    // axis that would be crossed at once with the last one are crossed after it.
+    for (int i = 0; i < 3; ++i) {
+      const std::int64_t ahead = distance * speed_[i] - next_[i] * speed - (i > axis ? 1 : 0);
+      const std::int64_t planes = quotient(ahead >> kPlaceBits, speed, slowness) + 1;
+      advance(i, ahead < 0 ? 0 : planes);
+    }
+    axis_ = axis;
+    return in_box();
+  }
+
+  /// Crosses the next plane, and then all that the ray reaches before it has gone `voxels` further. False when that
+  /// leaves the box.
+  bool step_and_travel(std::int64_t voxels, std::int64_t travel_per_voxel) {
+    const int axis = first(next_);
+    const std::int64_t distance = next_[axis];
+    cross(axis);
+    if (!in_box()) return false;
+    if (voxels == 0) return true;
+    // s in 2^-28, rounded down.
+    const std::int64_t from = (distance << kDirectionBits) / speed_[axis];
+    const std::int64_t until = from + voxels * travel_per_voxel;
+    bool inside = true;
+    for (int i = 0; i < 3; ++i) {
+      if (speed_[i] == 0) continue;
+      const std::int64_t ahead = until * speed_[i] - (next_[i] << kDirectionBits) - 1;
+      if (ahead < 0) continue;
+      advance(i, (ahead >> (kDirectionBits + kPlaceBits)) + 1);
+      inside = inside && voxel_[i] >= box_.low[i] && voxel_[i] < box_.high[i];
+    }
+    return inside;
+  }
+
+  /// The hit in the voxel it stands in.
+  VoxelHit hit(const VoxelGrid& grid) const {
+    VoxelHit hit;
+    hit.t = t();
+    if (hit.t > ray_.t_max) return hit = {};
+    hit.status = HitStatus::hit;
+    hit.face = axis_ < 0 ? ray_.face : static_cast<VoxelFace>(2 * axis_ + (step_[axis_] < 0 ? 1 : 0));
+    hit.voxel = voxel_;
+    hit.entry = grid.entry(voxel_);
+    return hit;
+  }
+  bool in_range() const { return t() <= ray_.t_max; }
+
+ private:
+  // The axis whose distance comes first. Where speed is 0 the distance is no less than 2^32, and comes last.
+  int first(const std::array<std::int64_t, 3>& distance) const {
+    const bool y_first = distance[1] * speed_[0] < distance[0] * speed_[1];
+    const int axis = y_first ? 1 : 0;
+    return distance[2] * speed_[axis] < distance[axis] * speed_[2] ? 2 : axis;
+  }
+  void advance(int axis, std::int64_t planes) {
+    next_[axis] += planes * kVoxelPlaces;
+    voxel_[axis] += step_[axis] * static_cast<int>(planes);
+  }
+  void cross(int axis) {
+    advance(axis, 1);
+    axis_ = axis;
+  }
+  bool in_box() const { return voxel_[axis_] >= box_.low[axis_] && voxel_[axis_] < box_.high[axis_]; }
+  double t() const { return axis_ < 0 ? ray_.t : ray_.t_at(axis_, next_[axis_] - kVoxelPlaces); }
+
+  // a / speed, rounded down, for 0 <= a < 2^53: by a product, corrected.
+  static std::int64_t quotient(std::int64_t a, std::int64_t speed, double slowness) {
+    const auto q = static_cast<std::int64_t>(static_cast<double>(a) * slowness);
+    const std::int64_t rest = a - q * speed;
+    return q - (rest < 0 ? 1 : 0) + (rest >= speed ? 1 : 0);
+  }
+
+  const QuantisedRay& ray_;
+  const std::array<std::int64_t, 3> speed_;
+  const std::array<int, 3> step_;
+  std::array<std::int64_t, 3> next_;
+  ivec3 voxel_;
+  const VoxelBox box_;
+  int axis_ = -1;  // crossed last
+};
+
+}  // namespace scarp

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Places, normals and colours of the ground for terrain_frame.comp, which includes this. GLSL.
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Settings { FrameSettings is; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RampPieces { FrameRampPiece pieces[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RampColours { vec3 colours[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Drape { uint texels[]; };
+
+Settings settings() { return Settings(push.settings); }
+
+/// Metres of the world, x east and y north.
+struct ScarpPaintPlace {
+  ScarpTwoFloat x, y;
+};
+
+ScarpTwoFloat two(float high, float low) { return ScarpTwoFloat(high, low); }
+
+ScarpPaintPlace paint_place(ScarpLine line, ScarpTwoFloat t) {
+  Settings s = settings();
+  ScarpTwoFloat north = scarp_two_add(scarp_two(s.is.last_row), scarp_two_negate(scarp_line_row(line, t)));
+  return ScarpPaintPlace(scarp_two_multiply(scarp_line_col(line, t), two(s.is.cell.x, s.is.cell_low.x)),
+                         scarp_two_multiply(north, two(s.is.cell.y, s.is.cell_low.y)));
+}
+
+ScarpTwoFloat weighed(ScarpPaintPlace place, vec2 high, vec2 low) {
+  return scarp_two_combine(two(high.x, low.x), place.x, two(high.y, low.y), place.y, scarp_two(0.0));
+}
+
+float scarp_paint_noise(ScarpPaintPlace place, int set, int octave, float size) {
+  FramePatch of = settings().is.patches[set * kFrameOctaves + octave];
+  return scarp_noise(kScarpPerlinNoise, uint(octave + 1), weighed(place, of.along, of.along_low),
+                     weighed(place, of.across, of.across_low))
+      .n;
+}
+
+#include "scarp/render/surface/ground_paint.glsl.h"
+
+// Between unit vectors of the world and directions of the grid.
+vec3 world_direction(vec3 grid) {
+  Settings s = settings();
+  return vec3(grid.x * s.is.cell.x, -grid.y * s.is.cell.y, grid.z * s.is.metres_per_sample);
+}
+vec3 grid_direction(vec3 world) {
+  Settings s = settings();
+  return vec3(world.x * s.is.per_cell.x, -world.y * s.is.per_cell.y, world.z * s.is.per_metre);
+}
+// Unit normal of a surface with this slope per column and row.
+vec3 normal_of(vec2 slope) {
+  Settings s = settings();
+  vec2 metres = slope * s.is.metres_per_sample * s.is.per_cell;
+  return normalize(vec3(-metres.x, metres.y, 1.0));
+}
+
+float height_of(float sample_height) {
+  Settings s = settings();
+  return (sample_height - s.is.base_of_heights) * s.is.metres_per_sample + s.is.metres_at_base;
+}
+
+vec3 ramp_colour(float height) {
+  Settings s = settings();
+  int first = 0;
+  int last = s.is.ramp_count - 1;
+  // The first piece that ends at or above it.
+  while (first < last) {
+    int middle = (first + last) / 2;
+    if (RampPieces(s.is.ramp_pieces).pieces[middle].high < height)
+      first = middle + 1;
+    else
+      last = middle;
+  }
+  FrameRampPiece piece = RampPieces(s.is.ramp_pieces).pieces[first];
+  ScarpTablePlace at = scarp_table_place(height, piece.low, piece.high, int(piece.count));
+  RampColours table = RampColours(s.is.ramp_colours);
+  uint entry = piece.begin + uint(at.entry);
+  return table.colours[entry] * (1.0 - at.place) + table.colours[entry + 1u] * at.place;
+}
+
+vec3 draped(ScarpField field, ivec2 cell, vec2 place, vec3 below) {
+  Settings s = settings();
+  vec2 at = vec2((float(cell.x) + place.x) / float(field.cells.x),
+                 (float(cell.y) + place.y + (float(field.cells.y) - s.is.last_row)) / float(field.cells.y));
+  if ((field.flags & kScarpWraps) != 0u) at = fract(at);
+  ivec2 size = ivec2(s.is.drape_width, s.is.drape_height);
+  vec2 texel = clamp(at * vec2(size) - 0.5, vec2(0.0), vec2(size - 1));
+  ivec2 corner = ivec2(texel);
+  vec2 f = texel - vec2(corner);
+  vec3 sum = vec3(0.0);
+  float opacity = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 c = min(corner + ivec2(i % 2, i / 2), size - 1);
+    uint word = Drape(s.is.drape).texels[c.y * size.x + c.x];
+    vec4 rgba = vec4(float(word & 255u), float((word >> 8) & 255u), float((word >> 16) & 255u), float(word >> 24));
+    float weight = (i % 2 != 0 ? f.x : 1.0 - f.x) * (i / 2 != 0 ? f.y : 1.0 - f.y) * rgba.w / 255.0;
+    sum += weight * scarp_linear_from_srgb(rgba.xyz / 255.0);
+    opacity += weight;
+  }
+  return sum + (1.0 - opacity) * below;
+}
+
+vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction, vec3 shading_normal) {
+  Settings s = settings();
+  float metres = seen.t.high * seen.metres;
+  vec3 normal = normal_of(scarp_slope(field, seen.cell, seen.place));
+  // What a pixel covers is longer than it is wide where ground is seen from the side: the mean of both.
+  float footprint =
+      s.is.pixel_width * (s.is.orthographic != 0 ? 1.0 : metres) / sqrt(max(0.05, -dot(direction, normal)));
+  ScarpCell cell = scarp_cell(field, seen.cell.x, seen.cell.y, s.is.base_of_heights);
+  float height = scarp_bilinear(cell, seen.place.x, seen.place.y) * s.is.metres_per_sample + s.is.metres_at_base;
+  ScarpPaintPlace place = paint_place(seen.line, seen.t);
+  // One place where noise is asked for keeps the shader small.
+  vec3 patches = vec3(0.0);
+  for (int set = 0; set < (has_patches ? kScarpPatchSets : 0); ++set) {
+    if (set == kScarpDetail ? s.is.detail == 0.0 : s.is.natural == 0) continue;
+    float patch_sum = scarp_patches(place, set, s.is.detail_size, footprint);
+    if (set == kScarpDetail) patches.x = patch_sum;
+    if (set == kScarpBlur) patches.y = patch_sum;
+    if (set == kScarpRough) patches.z = patch_sum;
+  }
+  vec3 colour;
+  if (has_patches && s.is.natural != 0)
+    colour = scarp_natural((height - s.is.low) * s.is.per_relief, shading_normal, s.is.from_sun, s.is.snow_share,
+                           patches.y, patches.z);
+  else
+    colour = ramp_colour(height);
+  if (has_drape) colour = draped(field, seen.cell, seen.place, colour);
+  if (has_patches && s.is.detail > 0.0) colour *= max(0.0, 1.0 + s.is.detail * patches.x);
+  if (has_contours) colour = scarp_with_contours(colour, height, shading_normal, footprint, s.is.contours);
+  return colour;
+}

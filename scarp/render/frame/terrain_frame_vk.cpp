@@ -1,0 +1,390 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/frame/terrain_frame_vk.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "scarp/base/error.h"
+#include "scarp/march/height/device_ray.h"
+#include "scarp/render/frame/lake_tile.h"
+#include "scarp/render/frame/terrain_frame.glsl.h"
+#include "scarp/render/light/sample_directions.h"
+#include "scarp/scene/terrain_scene_vk.h"
+#include "scarp/vk/commands.h"
+#include "scarp/vk/memory.h"
+#include "scarp/vk/pipeline.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::uint32_t kThreads = 64;
+// What is on the device together: so that states of interrupted invocations have some 100 MB at most.
+constexpr std::int64_t kPixelsAtOnce = 1 << 17;
+constexpr double kFarthestCell = 0x1p22;
+
+constexpr std::uint32_t kWords[] = {
+#include "scarp/render/frame/terrain_frame.comp.inc"
+};
+
+void split(const dvec3& value, vec3& high, vec3& low) {
+  high = vec3(value);
+  low = vec3(value - dvec3(high));
+}
+void split(const dvec2& value, glm::vec2& high, glm::vec2& low) {
+  high = glm::vec2(value);
+  low = glm::vec2(value - dvec2(high));
+}
+void split(double value, float& high, float& low) {
+  high = static_cast<float>(value);
+  low = static_cast<float>(value - static_cast<double>(high));
+}
+float never_if_infinite(double value) { return std::isinf(value) ? glsl::kScarpNever : static_cast<float>(value); }
+
+// A line in grid units; `origin` is a place, or a difference of places.
+glsl::ScarpLine line_of(const HeightField& field, const dvec3& origin, bool place, const dvec3& direction) {
+  const auto difference = [&](const dvec3& d) {
+    Ray ray;
+    ray.direction = d;
+    return field.grid_from_world(ray).direction;
+  };
+  Ray ray;
+  ray.origin = origin;
+  glsl::ScarpLine line;
+  split(place ? field.grid_from_world(ray).origin : difference(origin), line.origin, line.origin_low);
+  split(difference(direction), line.direction, line.direction_low);
+  return line;
+}
+
+void set_camera(glsl::FrameSettings& s, const HeightField& field, const Camera& camera,
+                const PictureSettings& settings) {
+  const Camera::PixelRays rays = camera.pixel_rays();
+  s.line = line_of(field, rays.origin, true, rays.direction);
+  s.line_right = line_of(field, rays.origin_right, false, rays.right);
+  s.line_down = line_of(field, rays.origin_down, false, rays.down);
+  s.forward = vec3(camera.forward());
+  s.reach = never_if_infinite(camera.reach());
+  s.pixel_width = static_cast<float>(camera.pixel_width(1));
+  s.orthographic = camera.orthographic();
+  s.width = settings.width;
+  s.height = settings.height;
+  s.aa = settings.aa;
+}
+
+// Where a frame's heights count from: near the field's lowest, on a heavy contour.
+double zero_of_heights(const HeightField& field, const GroundPaint& paint) {
+  const double low = field.min_height(), apart = paint.heavy_contour_interval();
+  return apart > 0 ? std::floor(low / apart) * apart : low;
+}
+
+void set_field(glsl::FrameSettings& s, const HeightField& field, const std::optional<Plinth>& block,
+               double zero_of_heights) {
+  const HeightFieldSettings& settings = field.settings();
+  const dvec2 cell(settings.cell_x, settings.cell_y);
+  split(cell, s.cell, s.cell_low);
+  s.per_cell = glm::vec2(1.0 / cell);
+  s.metres_per_sample = static_cast<float>(settings.scale * settings.exaggeration);
+  s.per_metre = static_cast<float>(1 / (settings.scale * settings.exaggeration));
+  s.base_of_heights = static_cast<float>(field.min_sample());
+  s.metres_at_base =
+      static_cast<float>(field.height_from_sample(static_cast<double>(s.base_of_heights)) - zero_of_heights);
+  s.last_row = static_cast<float>(field.rows() - 1);
+  s.block = block.has_value();
+  if (block) split(block->base_sample(), s.base_sample, s.base_sample_low);
+}
+
+void set_steps(glsl::FrameSettings& s, const TerrainScene& scene, const Camera& camera,
+               const PictureSettings& settings) {
+  const HeightField& field = scene.field();
+  const ComancheSettings& comanche = settings.comanche;
+  const double reach = std::isfinite(camera.reach()) ? camera.reach() : default_reach(field);
+  const bool stepped = scene.march().name == "fixed-step";
+  s.step = static_cast<float>(reach / comanche.steps);
+  s.steps = comanche.steps;
+  s.interpolate = comanche.interpolate;
+  s.shells = comanche.shells;
+  s.step_by_view = comanche.step_by_view;
+  const FixedStepSettings& march = scene.device_terrain()->settings.fixed_step;
+  s.sun_step = static_cast<float>(march.step * std::min(field.settings().cell_x, field.settings().cell_y));
+  s.sun_steps = march.max_steps;
+  s.sun_interpolate = march.interpolate;
+  s.iterations = settings.look == Look::comanche && comanche.iterations;
+  s.most_steps = stepped ? comanche.steps : 256;
+}
+
+// The sample whose height is the water's level to the last bit, if there is one.
+std::optional<float> sea_sample(const HeightField& field, double level) {
+  const HeightFieldSettings& settings = field.settings();
+  const auto near = static_cast<float>((level / settings.exaggeration - settings.offset) / settings.scale);
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const float candidate :
+       {near, std::round(near), std::nextafter(near, kInfinity), std::nextafter(near, -kInfinity)}) {
+    if (field.height_from_sample(static_cast<double>(candidate)) == level) return candidate;
+  }
+  return {};
+}
+
+void set_water(glsl::FrameSettings& s, const HeightField& field, const Water* water, double zero_of_heights) {
+  s.water = water != nullptr;
+  if (!water) return;
+  const HeightFieldSettings& settings = field.settings();
+  s.level = static_cast<float>(water->level() - zero_of_heights);
+  split((water->level() / settings.exaggeration - settings.offset) / settings.scale, s.level_sample,
+        s.level_sample_low);
+  const std::optional<float> sea = sea_sample(field, water->level());
+  s.has_sea = sea.has_value();
+  s.sea_sample = sea.value_or(0.0f);
+  s.reflection = water->settings().reflection;
+  s.refraction = water->settings().refraction;
+  s.waves = static_cast<float>(water->settings().waves);
+  s.deep = water->deep();
+  s.water_per_metre = water->per_metre();
+  for (int i = 0; i < glsl::kScarpWaves; ++i) {
+    glsl::FrameWave& wave = s.wave[i];
+    const dvec2 along = Water::wave_direction(i);
+    wave.along = glm::vec2(along);
+    split(along / water->wavelength(i), wave.turns, wave.turns_low);
+    wave.metres = static_cast<float>(water->wavelength(i));
+  }
+}
+
+void set_air(glsl::FrameSettings& s, const HeightField& field, const Shader& shader, double zero_of_heights) {
+  const FogSettings& fog = shader.fog().settings();
+  s.fog = static_cast<int>(fog.kind);
+  s.fog_per_metre = static_cast<float>(shader.fog().per_metre());
+  s.fog_base = static_cast<float>(fog.base - zero_of_heights);
+  s.fog_falloff = static_cast<float>(fog.falloff);
+  s.sun_tint = static_cast<float>(fog.sun_tint);
+  s.haze_per_metre = static_cast<float>(shader.haze_per_metre());
+  s.clear_distance = static_cast<float>(shader.clear_distance());
+  s.no_descent = shader.horizon_below();
+  const Light& light = shader.lighting().light();
+  s.shadows = shader.settings().shadows;
+  s.to_sun = vec3(light.to_sun());
+  const glsl::ScarpLine line = line_of(field, {}, false, light.to_sun());
+  s.sun_line = line.direction;
+  s.sun_line_low = line.direction_low;
+  s.sky_side = vec3(light.sky_side());
+  s.sun = light.sun();
+  s.earth = shader.earth();
+  s.unlit_wall = Shader::unlit_wall();
+}
+
+void set_samples(glsl::FrameSettings& s, const Lighting& lighting, int samples) {
+  s.sun_rays = lighting.sun_rays();
+  s.sky_rays = lighting.sky_rays();
+  s.sun_depth = static_cast<float>(cap_depth(lighting.sun_radius()));
+  s.ao_distance = static_cast<float>(lighting.ao_distance());
+  s.samples = samples;
+  s.seed = lighting.pattern().seed();
+  s.index_bits = lighting.pattern().index_bits();
+}
+
+void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPaint& paint, double zero_of_heights) {
+  const GroundPaintSettings& settings = paint.settings();
+  s.natural = settings.natural;
+  s.snow_share = static_cast<float>(settings.snow_share);
+  s.low = static_cast<float>(field.min_height() - zero_of_heights);
+  // Of level ground any number will do that a float holds.
+  constexpr double kLeastRelief = 1e-30;
+  s.per_relief = static_cast<float>(1 / std::max(field.max_height() - field.min_height(), kLeastRelief));
+  s.from_sun = glm::vec2(paint.away_from_sun());
+  s.detail = static_cast<float>(settings.detail);
+  s.detail_size = static_cast<float>(paint.detail_size());
+  s.contours = static_cast<float>(settings.contours > 0 ? paint.contour_interval() : 0);
+  for (int i = 0; i < glsl::kFramePatches; ++i) {
+    const GroundPaint::Patch patch = paint.patch(i / glsl::kFrameOctaves, i % glsl::kFrameOctaves);
+    split(patch.along, s.patches[i].along, s.patches[i].along_low);
+    split(patch.across, s.patches[i].across, s.patches[i].across_low);
+  }
+}
+
+// A buffer that is made again when it is too small, and written when what is to be in it has changed.
+class KeptBuffer {
+ public:
+  explicit KeptBuffer(const char* name) : name_(name) {}
+
+  /// At least so large; contents are lost when it grows.
+  const DeviceBuffer& reserve(const Device& device, std::uint64_t bytes) {
+    if (!buffer_ || buffer_->bytes() < bytes) {
+      buffer_.reset();
+      kept_.clear();
+      buffer_.emplace(device, bytes, name_);
+    }
+    return *buffer_;
+  }
+  template <class T>
+  std::uint64_t keep(const Device& device, std::span<const T> values) {
+    const std::span<const std::byte> bytes = std::as_bytes(values);
+    if (buffer_ && std::equal(bytes.begin(), bytes.end(), kept_.begin(), kept_.end())) return buffer_->address();
+    reserve(device, bytes.size());
+    upload(*buffer_, 0, bytes.data(), bytes.size());
+    kept_.assign(bytes.begin(), bytes.end());
+    return buffer_->address();
+  }
+
+ private:
+  const char* name_;
+  std::optional<DeviceBuffer> buffer_;
+  std::vector<std::byte> kept_;
+};
+
+class FrameMaker {
+ public:
+  // Of one scene: its march and its field.
+  explicit FrameMaker(const TerrainScene& scene)
+      : device_(scene.device_terrain()->device),
+        stepped_(scene.march().name == "fixed-step"),
+        flags_(device_field(scene.field(), nullptr).flags),
+        commands_(device_) {}
+
+  Image make(const TerrainScene& scene, const glsl::FrameSettings& numbers, const GroundPaint& paint,
+             double zero_of_heights, const Progress& progress, FrameReport& report) {
+    glsl::FrameSettings s = numbers;
+    set_ramp(s, paint.ramp(), zero_of_heights);
+    if (const Drape* drape = paint.settings().drape.get()) set_drape(s, *drape);
+    const ComputePipeline& pipeline = pipeline_for(s);
+    Image image(s.width, s.height);
+    const std::int64_t pixels = std::int64_t{s.width} * s.height, most = std::min(pixels, kPixelsAtOnce);
+    const DeviceBuffer& words = pixels_.reserve(device_, 4 * static_cast<std::uint64_t>(most));
+    glsl::FramePush push{};
+    push.settings = settings_.keep(device_, std::span<const glsl::FrameSettings>(&s, 1));
+    push.ground = scene.device_terrain()->ground.address();
+    push.pixels = words.address();
+    push.states = states_.reserve(device_, static_cast<std::uint64_t>(most) * sizeof(glsl::FrameState)).address();
+    const DeviceBuffer* sights = nullptr;
+    if (report.tells_sightings) {
+      report.sightings.resize(static_cast<std::size_t>(pixels));
+      sights = &sights_.reserve(device_, static_cast<std::uint64_t>(pixels) * sizeof(glsl::FrameSight));
+      push.sights = sights->address();
+      push.tell_sights = 1;
+    }
+    for (std::int64_t first = 0; first < pixels; first += most) {
+      push.first = static_cast<std::uint32_t>(first);
+      push.count = static_cast<std::uint32_t>(std::min(most, pixels - first));
+      found_.resize(push.count);
+      push.resume = 0;
+      do {
+        if (progress && !progress(static_cast<double>(first) / static_cast<double>(pixels))) throw Interrupted();
+        commands_.dispatch(pipeline, push, {(push.count + kThreads - 1) / kThreads, 1, 1});
+        commands_.run();
+        for (const PassTime& pass : commands_.passes()) {
+          if (pass.nanoseconds) report.device_s = report.device_s.value_or(0) + 1e-9 * *pass.nanoseconds;
+        }
+        download(words, 0, found_.data(), 4 * std::uint64_t{push.count});
+        push.resume = 1;
+      } while (std::find(found_.begin(), found_.end(), 0u) != found_.end());
+      std::uint8_t* rgb = image.rgb.data() + 3 * first;
+      for (const std::uint32_t word : found_) {
+        *rgb++ = static_cast<std::uint8_t>(word);
+        *rgb++ = static_cast<std::uint8_t>(word >> 8);
+        *rgb++ = static_cast<std::uint8_t>(word >> 16);
+      }
+    }
+    if (sights) take_sights(*sights, report.sightings);
+    if (progress && !progress(1.0)) throw Interrupted();
+    return image;
+  }
+
+ private:
+  const ComputePipeline& pipeline_for(const glsl::FrameSettings& s) {
+    const bool block = s.block != 0 && !stepped_;  // steps do not see it
+    const bool rims = (flags_ & (glsl::kScarpHoles | glsl::kScarpSolid)) == glsl::kScarpHoles;
+    const std::uint32_t parts =
+        (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
+        (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) | (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
+        (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) |
+        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (block ? glsl::kFrameHasBlock : 0) |
+        (block && rims ? glsl::kFrameHasRims : 0);
+    const auto found = pipelines_.find(parts);
+    if (found != pipelines_.end()) return found->second;
+    const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
+    return pipelines_
+        .emplace(parts, ComputePipeline(device_, kWords, "terrain frame", sizeof(glsl::FramePush), constants))
+        .first->second;
+  }
+
+  void set_ramp(glsl::FrameSettings& s, const Ramp& ramp, double zero_of_heights) {
+    std::vector<glsl::FrameRampPiece> pieces;
+    std::vector<vec3> colours;
+    for (const Ramp::Piece& piece : ramp.pieces()) {
+      pieces.push_back({static_cast<float>(piece.low - zero_of_heights),
+                        static_cast<float>(piece.high - zero_of_heights), static_cast<std::uint32_t>(colours.size()),
+                        static_cast<std::uint32_t>(piece.colours.size())});
+      colours.insert(colours.end(), piece.colours.begin(), piece.colours.end());
+    }
+    s.ramp_count = static_cast<int>(pieces.size());
+    s.ramp_pieces = pieces_.keep(device_, std::span<const glsl::FrameRampPiece>(pieces));
+    s.ramp_colours = colours_.keep(device_, std::span<const vec3>(colours));
+  }
+
+  void set_drape(glsl::FrameSettings& s, const Drape& drape) {
+    s.drape_width = drape.width;
+    s.drape_height = drape.height;
+    s.drape = drape_.keep(device_, std::span<const std::uint8_t>(drape.rgba));
+  }
+
+  static void take_sights(const DeviceBuffer& from, std::vector<FrameSighting>& sightings) {
+    std::vector<glsl::FrameSight> sights(sightings.size());
+    download(from, 0, sights.data(), sights.size() * sizeof(glsl::FrameSight));
+    for (std::size_t i = 0; i < sights.size(); ++i) {
+      const glsl::FrameSight& sight = sights[i];
+      sightings[i] = {static_cast<FrameSighting::Kind>(sight.kind),
+                      static_cast<double>(sight.t),
+                      {sight.cell.x, sight.cell.y},
+                      sight.steps};
+    }
+  }
+
+  Device device_;
+  bool stepped_;
+  std::uint32_t flags_;
+  std::map<std::uint32_t, ComputePipeline> pipelines_;  // by what the picture has
+  Commands commands_;
+  KeptBuffer settings_{"a frame's settings"}, pieces_{"a ramp"}, colours_{"a ramp's colours"}, drape_{"an overlay"},
+      pixels_{"pixels"}, states_{"a frame's states"}, sights_{"a frame's sights"};
+  std::vector<std::uint32_t> found_;
+};
+
+}  // namespace
+
+bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings) {
+  const DeviceTerrain* terrain = scene.device_terrain();
+  if (!terrain) return false;
+  const std::string_view march = scene.march().name;
+  const bool stepped = march == "fixed-step" && settings.look == Look::comanche;
+  if (!stepped && march != "max-mip") return false;
+  Ray eye;
+  eye.origin = camera.eye();
+  const dvec3 place = scene.field().grid_from_world(eye).origin;
+  return std::abs(place.x) < kFarthestCell && std::abs(place.y) < kFarthestCell;
+}
+
+Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
+                         const PictureSettings& settings, const Progress& progress, FrameReport* report) {
+  const DeviceTerrain& terrain = *scene.device_terrain();
+  if (!terrain.kept) terrain.kept = std::make_shared<FrameMaker>(scene);
+  const HeightField& field = scene.field();
+  const Lake lake(scene, camera, grid_north_azimuth, settings);
+  const LakeView& view = lake.view();
+  glsl::FrameSettings numbers{};
+  set_camera(numbers, field, camera, settings);
+  const double zero = zero_of_heights(field, view.shader.paint());
+  set_field(numbers, field, view.plinth, zero);
+  set_steps(numbers, scene, camera, settings);
+  set_water(numbers, field, view.water, zero);
+  set_air(numbers, field, view.shader, zero);
+  set_samples(numbers, view.shader.lighting(), settings.samples);
+  set_ground(numbers, field, view.shader.paint(), zero);
+  FrameReport unasked;
+  FrameReport& told = report ? *report : unasked;
+  told.device_s.reset();
+  return static_cast<FrameMaker*>(terrain.kept.get())->make(scene, numbers, view.shader.paint(), zero, progress, told);
+}
+
+}  // namespace scarp

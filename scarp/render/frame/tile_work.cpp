@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/frame/tile_work.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+
+namespace scarp {
+namespace {
+
+using Question = RayRound::Question;
+
+constexpr std::size_t kRaysAtOnce = 1 << 18;  // on a device
+
+void answer(const TerrainScene& scene, RayRound& round) {
+  if (round.question == Question::any) {
+    round.blocked.resize(round.rays.size());
+    return scene.occluded(round.rays, round.blocked);
+  }
+  round.hits.resize(round.rays.size());
+  round.steps.resize(round.question == Question::closest_cost ? round.rays.size() : 0);
+  scene.closest_hits(round.rays, round.hits, round.steps);
+}
+
+struct OpenTile {
+  std::unique_ptr<TileWork> work;
+  RayRound round;
+  bool open = true;
+  std::size_t first = 0;  // of its rays in the batch
+};
+
+// One batch for all tiles that ask the same.
+class Together {
+ public:
+  void answer(const TerrainScene& scene, std::vector<OpenTile>& tiles, Question question) {
+    std::size_t rays = 0;
+    for (OpenTile& tile : tiles) {
+      if (!asks(tile, question)) continue;
+      tile.first = rays;
+      rays += tile.round.rays.size();
+    }
+    if (rays == 0) return;
+    batch_.question = question;
+    batch_.rays.resize(rays);
+    for_each(tiles, question, [&](OpenTile& tile) {
+      std::copy(tile.round.rays.begin(), tile.round.rays.end(), batch_.rays.begin() + at(tile.first));
+    });
+    scarp::answer(scene, batch_);
+    for_each(tiles, question, [&](OpenTile& tile) {
+      const std::size_t count = tile.round.rays.size();
+      hand_out(batch_.blocked, tile.first, count, question == Question::any, tile.round.blocked);
+      hand_out(batch_.hits, tile.first, count, question != Question::any, tile.round.hits);
+      hand_out(batch_.steps, tile.first, count, question == Question::closest_cost, tile.round.steps);
+    });
+  }
+
+ private:
+  static bool asks(const OpenTile& tile, Question question) { return tile.open && tile.round.question == question; }
+  static std::ptrdiff_t at(std::size_t i) { return static_cast<std::ptrdiff_t>(i); }
+
+  template <class Body>
+  static void for_each(std::vector<OpenTile>& tiles, Question question, const Body& body) {
+    parallel_for(static_cast<std::int64_t>(tiles.size()), 1, [&](std::int64_t begin, std::int64_t end) {
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+        if (asks(tiles[i], question)) body(tiles[i]);
+      }
+    });
+  }
+
+  template <class Answer>
+  static void hand_out(const std::vector<Answer>& all, std::size_t first, std::size_t count, bool asked,
+                       std::vector<Answer>& answers) {
+    if (asked) answers.assign(all.begin() + at(first), all.begin() + at(first + count));
+  }
+
+  RayRound batch_;
+};
+
+void work_together(const TerrainScene& scene, const PixelTiles& tiles, std::size_t tiles_at_once,
+                   const MakeTileWork& make, const Progress& progress) {
+  Together together;
+  for (std::int64_t first = 0; first < tiles.count(); first += static_cast<std::int64_t>(tiles_at_once)) {
+    // Nothing is known of the share within a round; what counts is to hear that somebody wants to stop.
+    Progress listen;
+    if (progress) {
+      listen = [&](double) { return progress(static_cast<double>(first) / static_cast<double>(tiles.count())); };
+    }
+    std::vector<OpenTile> group(std::min(tiles_at_once, static_cast<std::size_t>(tiles.count() - first)));
+    for (bool open = true; open;) {
+      parallel_for(
+          static_cast<std::int64_t>(group.size()), 1,
+          [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t i = begin; i < end; ++i) {
+              OpenTile& tile = group[static_cast<std::size_t>(i)];
+              if (!tile.work) tile.work = make(tiles[first + i]);
+              if (tile.open) tile.open = tile.work->next(tile.round);
+            }
+          },
+          listen);
+      for (const Question question : {Question::closest, Question::closest_cost, Question::any}) {
+        together.answer(scene, group, question);
+      }
+      open = std::any_of(group.begin(), group.end(), [](const OpenTile& tile) { return tile.open; });
+    }
+  }
+  if (progress && !progress(1.0)) throw Interrupted();
+}
+
+}  // namespace
+
+void work_on_tiles(const TerrainScene& scene, const PixelTiles& tiles, std::size_t most_rays, const MakeTileWork& make,
+                   const Progress& progress) {
+  if (scene.on_device()) return work_together(scene, tiles, kRaysAtOnce / most_rays, make, progress);
+  parallel_for(
+      tiles.count(), 1,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) {
+          const std::unique_ptr<TileWork> work = make(tiles[i]);
+          RayRound round;
+          while (work->next(round)) answer(scene, round);
+        }
+      },
+      progress);
+}
+
+}  // namespace scarp

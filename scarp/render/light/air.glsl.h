@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Sky, fog and the light of sun and sky: the formulas of sky.h, fog.h and light.h. Text of C++ and of GLSL.
+#ifndef SCARP_RENDER_AIR_GLSL_H
+#define SCARP_RENDER_AIR_GLSL_H
+
+#include "scarp/render/surface/colour.glsl.h"
+
+SCARP_GLSL_BEGIN
+
+const vec3 kScarpZenith = vec3(0.12f, 0.30f, 0.66f);
+const vec3 kScarpHorizon = vec3(0.80f, 0.87f, 0.93f);
+const vec3 kScarpNadir = vec3(0.60f, 0.66f, 0.72f);
+const vec3 kScarpSunlight = vec3(1.0f, 0.83f, 0.58f);  ///< of fog, towards the sun
+
+/// Colour of the sky in linear light towards a unit vector with this z. The haze gives way with the 3rd power of 1 - z
+/// upwards, with its power of 1.5 downwards.
+SCARP_FN vec3 scarp_sky_colour(real z) {
+  real far = real(1.0) - min(abs(z), real(1.0));
+  if (z >= real(0.0)) return scarp_between(kScarpHorizon, kScarpZenith, real(1.0) - far * far * far);
+  return scarp_between(kScarpHorizon, kScarpNadir, real(1.0) - far * sqrt(far));
+}
+
+/// FogKind.
+const int kScarpNoFog = 0;
+const int kScarpFogByDistance = 1;
+const int kScarpFogByHeight = 2;
+const int kScarpFogByIterations = 3;
+
+/// (1 - exp(-x)) / x, which goes through 1 at 0: by its series where the difference would cancel.
+SCARP_FN real scarp_mean_of_decay(real x) {
+  if (abs(x) >= real(0.0625)) return (real(1.0) - exp(-x)) / x;
+  real sum = real(1.0);
+  for (int n = 10; n > 1; --n) sum = real(1.0) - x / real(n) * sum;
+  return sum;
+}
+
+/// What comes through fog from t metres along a ray that begins at height `z` and rises by `rise` per metre.
+/// `per_metre` at the height `base`; by height it thins out by the factor e every `falloff` metres.
+SCARP_FN real scarp_fog_transmittance(int kind, real per_metre, real base, real falloff, real z, real rise, real t) {
+  if (kind == kScarpFogByDistance) return exp(-per_metre * t);
+  if (kind != kScarpFogByHeight) return real(1.0);
+  real here = per_metre * exp(-(z - base) / falloff);
+  return exp(-here * t * scarp_mean_of_decay(t * (rise / falloff)));
+}
+/// The same from where there is nothing more.
+SCARP_FN real scarp_fog_transmittance_of_sky(int kind, real per_metre, real base, real falloff, real z, real rise) {
+  if (kind != kScarpFogByHeight) return real(1.0);
+  real here = per_metre * exp(-(z - base) / falloff);
+  return rise > real(0.0) ? exp(-here / (rise / falloff)) : real(0.0);
+}
+
+/// Colour of fog in linear light, `cosine` of the angle between view and sun: warm with its 8th power.
+SCARP_FN vec3 scarp_fog_colour(real cosine, real sun_tint) {
+  real towards = max(real(0.0), cosine);
+  towards *= towards;
+  towards *= towards;
+  towards *= towards;
+  return scarp_between(kScarpHorizon, kScarpSunlight, sun_tint * towards);
+}
+
+/// The sine of the lowest sun that casts shadows over endless ground: 0.06 degrees, a ninth of its disc.
+const float kScarpLeastSunRise = 1e-3f;
+
+/// Light of the sky on level ground; the sun gives what lacks to white.
+const vec3 kScarpSkylight = vec3(0.27f, 0.32f, 0.39f);
+
+/// Light on a surface with this unit normal. The sky is brightest towards `sky_side` and seen by the share
+/// `sky_share`; `sun` is the sun's light on what faces it, `sun_cosine` the mean cosine to what is seen of its disc.
+SCARP_FN vec3 scarp_light(real3 normal, real3 sky_side, vec3 sun, real sun_cosine, real sky_share) {
+  real sky = sky_share * (real(1.0) + dot(normal, sky_side)) / (real(1.0) + sky_side.z);
+  return float(sky) * kScarpSkylight + float(sun_cosine) * sun;
+}
+
+SCARP_GLSL_END
+
+#endif

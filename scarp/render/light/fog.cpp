@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/light/fog.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "scarp/base/error.h"
+#include "scarp/render/light/air.glsl.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::array<std::string_view, 4> kNames = {"none", "distance", "height", "iterations"};
+
+const double kContrastLeft = std::log(50.0);
+
+void require(bool good, std::string_view what, double value, std::string_view range) {
+  if (!good) throw Error(fmt::format("fog: {} is {}; it must be {}", what, value, range));
+}
+
+}  // namespace
+
+std::string_view name_of(FogKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
+
+FogKind find_fog(std::string_view name) {
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (kNames[i] == name) return static_cast<FogKind>(i);
+  }
+  throw Error(fmt::format("fog '{}': unknown; there are: {}", name, fmt::join(kNames, ", ")));
+}
+
+void validate(const FogSettings& settings) {
+  require(std::isfinite(settings.visibility) && settings.visibility > 0, "the visibility", settings.visibility,
+          "above 0 metres");
+  require(std::isfinite(settings.base), "the base", settings.base, "a finite height in metres");
+  require(std::isfinite(settings.falloff) && settings.falloff > 0, "the falloff", settings.falloff, "above 0 metres");
+  require(settings.sun_tint >= 0 && settings.sun_tint <= 1, "the sun's tint", settings.sun_tint, "0 to 1");
+}
+
+Fog::Fog(const FogSettings& settings, const dvec3& to_sun)
+    : settings_(settings), per_metre_(kContrastLeft / settings.visibility), to_sun_(to_sun) {}
+
+double Fog::transmittance(const Ray& ray, double t) const {
+  const FogSettings& s = settings_;
+  const auto kind = static_cast<int>(s.kind);
+  if (std::isinf(t)) {
+    return glsl::scarp_fog_transmittance_of_sky(kind, per_metre_, s.base, s.falloff, ray.origin.z, ray.direction.z);
+  }
+  return glsl::scarp_fog_transmittance(kind, per_metre_, s.base, s.falloff, ray.origin.z, ray.direction.z, t);
+}
+
+vec3 Fog::colour(const dvec3& direction) const {
+  return glsl::scarp_fog_colour(dot(direction, to_sun_), settings_.sun_tint);
+}
+
+vec3 Fog::operator()(const Ray& ray, double t, vec3 behind) const {
+  if (settings_.kind == FogKind::none || settings_.kind == FogKind::iterations) return behind;
+  return glsl::scarp_between(colour(ray.direction), behind, transmittance(ray, t));
+}
+
+vec3 Fog::by_share(const Ray& ray, double share, vec3 behind) const {
+  return glsl::scarp_between(behind, colour(ray.direction), std::clamp(share, 0.0, 1.0));
+}
+
+}  // namespace scarp

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/light/lighting.h"
+
+#include <algorithm>
+
+#include "scarp/render/light/air.glsl.h"
+#include "scarp/render/light/sample_pattern.glsl.h"
+#include "scarp/render/light/sun_shadow.h"
+
+namespace scarp {
+namespace {
+
+// Rays over endless ground need an end: above the highest summit nothing is met, and low rays end far away.
+void end_above_ground(std::span<Ray> rays, double highest) {
+  for (Ray& ray : rays) {
+    const double rise = std::max(highest - ray.origin.z, 0.0);
+    ray.t_max = rise / std::max(ray.direction.z, double{glsl::kScarpLeastSunRise});
+  }
+}
+
+}  // namespace
+
+Lighting::Lighting(const PictureSettings& settings, double grid_north_azimuth, double ao_distance,
+                   std::optional<double> highest)
+    : settings_(settings),
+      light_(settings.sun, grid_north_azimuth),
+      pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
+      ao_distance_(ao_distance),
+      highest_(highest) {}
+
+int Lighting::sun_rays() const { return !settings_.shadows ? 0 : sun_radius() > 0 ? settings_.samples : 1; }
+int Lighting::sky_rays() const { return ao_distance_ > 0 ? settings_.samples : 0; }
+
+std::size_t Lighting::most_rays() const { return static_cast<std::size_t>(std::max(1, 2 * settings_.samples)); }
+
+LightRays Lighting::ask(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const {
+  const auto samples = [&](std::uint32_t purpose) {
+    const auto count = static_cast<std::uint32_t>(settings_.samples);
+    if (count == 0) return PatternRange{};  // a point of a sun needs none
+    return PatternRange{pattern_.pixel(point.pixel_x, point.pixel_y, purpose),
+                        count * static_cast<std::uint32_t>(point.index), count};
+  };
+  LightRays asked;
+  asked.sun = rays.size();
+  if (settings_.shadows) ask_sun(ground, light_.to_sun(), sun_radius(), samples(glsl::kScarpPointsOfSun), rays);
+  if (highest_) end_above_ground(std::span(rays).subspan(asked.sun), *highest_);
+  asked.sky = rays.size();
+  if (sky_rays() > 0) ask_sky(ground, ao_distance_, samples(glsl::kScarpPointsOfSky), rays);
+  asked.end = rays.size();
+  return asked;
+}
+
+vec3 Lighting::on(const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
+                  std::span<const std::uint8_t> blocked) const {
+  double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = ground.openness;
+  if (settings_.shadows) {
+    const std::size_t count = asked.sky - asked.sun;
+    sun = sun_cosine(ground, sun_radius(), static_cast<std::uint32_t>(settings_.samples),
+                     rays.subspan(asked.sun, count), blocked.subspan(asked.sun, count));
+  }
+  if (settings_.shadows && settings_.sun_shadow && settings_.sun_shadow->hides(ground.position)) sun = 0;
+  if (asked.end > asked.sky) sky = 1 - sky_occlusion(blocked.subspan(asked.sky, asked.end - asked.sky));
+  return light_.on(ground.shading_normal, sun, sky);
+}
+
+}  // namespace scarp

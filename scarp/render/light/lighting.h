@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The light on a point of any surface: which rays have to be asked for it, and what their answers make of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "scarp/render/frame/film.h"
+#include "scarp/render/frame/picture.h"
+#include "scarp/render/light/light.h"
+#include "scarp/render/light/sample_pattern.h"
+#include "scarp/render/light/visibility.h"
+
+namespace scarp {
+
+/// Rays about the light of one point, among others.
+struct LightRays {
+  std::size_t sun = 0;  ///< the first to the sun; up to that to the sky
+  std::size_t sky = 0;  ///< the first to the sky
+  std::size_t end = 0;
+};
+
+/// Refers to the settings.
+class Lighting {
+ public:
+  /// `ao_distance` takes the place of that in the settings. `highest` is given where ground has no end: above it
+  /// nothing is met, and rays to the sun end there.
+  Lighting(const PictureSettings& settings, double grid_north_azimuth, double ao_distance,
+           std::optional<double> highest = {});
+
+  /// How many rays ask() appends at most.
+  std::size_t most_rays() const;
+  /// Appends what has to be known of the light on a point.
+  LightRays ask(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const;
+  /// Linear light; `rays` and their answers are those that `asked` refers to.
+  vec3 on(const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
+          std::span<const std::uint8_t> blocked) const;
+  /// Of a point: to the sun at most, and to the sky.
+  int sun_rays() const;
+  int sky_rays() const;
+  /// Metres; where rays to the sky end.
+  double ao_distance() const { return ao_distance_; }
+  const SamplePattern& pattern() const { return pattern_; }
+  const Light& light() const { return light_; }
+  /// Unit vector to the middle of the sun's disc.
+  const dvec3& to_sun() const { return light_.to_sun(); }
+  /// Of the disc with `samples`; else the sun is a point.
+  double sun_radius() const { return settings_.samples > 0 ? light_.sun_radius() : 0; }
+
+ private:
+  const PictureSettings& settings_;
+  Light light_;
+  SamplePattern pattern_;
+  double ao_distance_;
+  std::optional<double> highest_;
+};
+
+}  // namespace scarp

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/look/comanche.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "scarp/base/error.h"
+#include "scarp/march/fixed_step.h"
+#include "scarp/render/camera/compass.h"
+#include "scarp/render/frame/lake_tile.h"
+#include "scarp/render/frame/picture.h"
+#include "scarp/render/frame/tile_work.h"
+#ifdef SCARP_VULKAN
+#include "scarp/render/frame/terrain_frame_vk.h"
+#endif
+
+namespace scarp {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void require(bool good, std::string_view what, int value, std::string_view range) {
+  if (!good) throw Error(fmt::format("comanche: {} is {}; it must be {}", what, value, range));
+}
+
+// Where a ray comes to be over the field: from there on fixed-step counts its samples.
+double entry(const HeightField& field, const Ray& ray) {
+  if (field.wraps()) return ray.t_min;
+  const auto from = [](double o, double d, double high) {
+    return d == 0 ? -kInfinity : std::min(-o / d, (high - o) / d);
+  };
+  return std::max({ray.t_min, from(ray.origin.x, ray.direction.x, field.width()),
+                   from(ray.origin.y, ray.direction.y, field.depth())});
+}
+
+Image scaled_up(const Image& image, int factor) {
+  Image large(image.width * factor, image.height * factor);
+  for (int y = 0; y < large.height; ++y) {
+    for (int x = 0; x < large.width; ++x) std::copy_n(image.pixel(x / factor, y / factor), 3, large.pixel(x, y));
+  }
+  return large;
+}
+
+class ComancheTile final : public TileWork {
+ public:
+  ComancheTile(const LakeView& view, const PixelTile& tile, Image& image)
+      : tile_(tile), lake_(view, tile), image_(image) {}
+
+  bool next(RayRound& round) override {
+    if (lake_.next(round)) return true;
+    std::size_t i = 0;
+    const std::vector<vec3> colours = lake_.pixels();
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (int x = tile_.x0; x < tile_.x1; ++x) set_pixel(image_, x, y, colours[i++]);
+    }
+    return false;
+  }
+
+ private:
+  PixelTile tile_;
+  LakeTile lake_;
+  Image& image_;
+};
+
+}  // namespace
+
+void validate(const ComancheSettings& settings) {
+  require(settings.scale >= 1 && settings.scale <= 64, "the scale", settings.scale, "1 to 64");
+  require(settings.steps >= 1 && settings.steps <= 65536, "the number of steps", settings.steps, "1 to 65536");
+}
+
+double default_reach(const HeightField& field) { return std::max(field.width(), field.depth()); }
+
+Camera flight_camera(const HeightField& field, double grid_north_azimuth, double fov_deg, int width, int height) {
+  constexpr double kAbove = 1.0, kDown = 0.2;  // of the relief; of the way ahead
+  const double low = field.min_height(), relief = field.max_height() - low;
+  const double x = 0.3 * field.width(), y = 0.1 * field.depth();
+  dvec3 eye(x, y, low + kAbove * relief);
+  const double clear = field.height(x, y).value_or(low) + 0.1 * relief;
+  eye.z = std::max(eye.z, clear);
+  return Camera::look_at(eye, eye + towards(0, -std::atan(kDown), grid_north_azimuth), fov_deg, width, height);
+}
+
+StepMarch::StepMarch(const HeightField& field, const ComancheSettings& settings, double reach, const dvec3& forward)
+    : field_(field), settings_(settings), step_(reach / settings.steps), forward_(forward) {}
+
+double StepMarch::by_view(double step, const dvec3& direction) const {
+  return settings_.step_by_view ? step / std::max(length(dvec2(direction)), 1 / kLongestStep) : step;
+}
+
+StepMarch::Answer StepMarch::march(const Ray& ray, const Water* water) const {
+  // No ray of a picture leaves its axis by 90 degrees.
+  const double step = settings_.shells ? step_ : step_ / dot(ray.direction, forward_);
+  return march(ray, water, by_view(step, ray.direction));
+}
+
+Hit StepMarch::march(const Ray& ray) const { return march(ray, nullptr, by_view(step_, ray.direction)).hit; }
+
+StepMarch::Answer StepMarch::march(const Ray& ray, const Water* water, double step) const {
+  Answer answer;
+  const double highest = field_.max_height();
+  Ray marched = ray;
+  marched.t_max = std::min(ray.t_max, ray.t_min + step * settings_.steps);
+  if (ray.direction.z > 0) {
+    const double leaves = (highest - ray.origin.z) / ray.direction.z;
+    if (leaves < ray.t_min) {
+      answer.steps = 1;
+      return answer;
+    }
+    marched.t_max = std::min(marched.t_max, leaves + step);
+  }
+  double plane = kInfinity, stop = kInfinity;  // where the ray meets the water, and where the march finds that out
+  if (water) {
+    if (const auto meeting = water->meets(ray)) {
+      plane = meeting->t;
+      const double first = entry(field_, ray);
+      stop = first + std::ceil((plane - first) / step) * step;
+      marched.t_max = std::min(marched.t_max, stop);
+    }
+  }
+  MarchSettings settings;
+  settings.fixed_step = {step / std::min(field_.settings().cell_x, field_.settings().cell_y), settings_.interpolate,
+                         settings_.steps + 1};
+  MarchStats stats;
+  answer.hit = march_fixed_step({&field_}, marched, settings, &stats);
+  answer.steps = std::min(stats.steps, static_cast<std::uint32_t>(settings_.steps));
+  // As the text has it, ground is asked for first and water then, at each sample; in between, what comes first counts.
+  const bool ended_at_water = stop <= marched.t_max;
+  answer.t = settings_.interpolate ? plane : stop;
+  answer.water = ended_at_water && (!answer.hit || (settings_.interpolate && plane < answer.hit.t));
+  if (answer.water) answer.hit = {};
+  return answer;
+}
+
+Picture render_lake(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
+                    const PictureSettings& settings, const Progress& progress) {
+#ifdef SCARP_VULKAN
+  if (makes_whole_frames(scene, camera, settings)) {
+    return {render_whole_frame(scene, camera, grid_north_azimuth, settings, progress), {}, {}};
+  }
+#endif
+  if (scene.on_device() && settings.look == Look::comanche && scene.march().name == "fixed-step") {
+    throw Error(
+        "comanche: on a device the eye must be within 2^22 cells of the field for fixed-step; let max-mip march, or "
+        "the "
+        "CPU");
+  }
+  const Lake lake(scene, camera, grid_north_azimuth, settings);
+  Image image(settings.width, settings.height);
+  work_on_tiles(
+      scene, PixelTiles(settings.width, settings.height, settings.aa), lake.most_rays(),
+      [&](const PixelTile& tile) { return std::make_unique<ComancheTile>(lake.view(), tile, image); }, progress);
+  return {std::move(image), {}, {}};
+}
+
+Picture render_comanche(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
+                        const PictureSettings& settings, const Progress& progress) {
+  return {scaled_up(render_lake(scene, camera, grid_north_azimuth, settings, progress).image, settings.comanche.scale),
+          {},
+          {}};
+}
+
+}  // namespace scarp

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// The look `comanche`: endless terrain in few large pixels, as flight simulators of the nineties and the founding text
+// on a ray caster for semi-voxel terrain have it. With the march `fixed-step` it is the picture of that text, faults
+// and all; with an exact march the same picture without them.
+//
+//                     fixed-step                                     exact marches
+//   steps             reach / steps apart, on planes parallel to     none
+//                     the picture, or on spheres (`shells`)
+//   coast             the first sample below the level (plain), or   the plane itself
+//                     between the last two samples
+//   crests            what is thinner than a step is passed          all
+//   looking up        left where nothing is higher                   the same
+//
+// `step_by_view` is the text's wish, long steps looking down and short ones at grazing angles: samples are equally far
+// apart on the map, not along the ray, so a ray that falls steeply takes steps up to kLongestStep times as long.
+#pragma once
+
+#include <cstdint>
+
+#include "scarp/base/progress.h"
+#include "scarp/render/surface/water.h"
+#include "scarp/scene/terrain_scene.h"
+
+namespace scarp {
+
+class Camera;
+struct Picture;
+struct PictureSettings;
+
+struct ComancheSettings {
+  int scale = 3;              ///< sides of the picture's large pixels in pixels of the image, 1..64
+  int steps = 256;            ///< of `fixed-step` over the reach, 1..65536
+  bool shells = false;        ///< samples on spheres round the eye, as normalised rays give them; else on planes
+  bool step_by_view = false;  ///< longer steps looking down
+  bool interpolate = true;    ///< whether a hit is put between the last two samples, or on the last
+  bool iterations = false;    ///< a picture of the steps instead, from black (0) to white (the most)
+};
+
+/// Throws Error naming the first setting out of its range.
+void validate(const ComancheSettings& settings);
+
+/// Of the step at a grazing angle, `step_by_view`.
+constexpr double kLongestStep = 8;
+
+/// A camera low over the field's south, looking north: what a picture of endless ground is for.
+Camera flight_camera(const HeightField& field, double grid_north_azimuth, double fov_deg, int width, int height);
+
+/// How far a picture of a field reaches where nothing ends it: once across the field.
+double default_reach(const HeightField& field);
+
+/// Rays as the founding text steps them, on the calling thread. Refers to the field.
+class StepMarch {
+ public:
+  /// `reach` in metres; `forward` is the camera's unit axis.
+  StepMarch(const HeightField& field, const ComancheSettings& settings, double reach, const dvec3& forward);
+
+  struct Answer {
+    Hit hit;
+    bool water = false;  ///< the ray came to the water first, at t
+    double t = 0;
+    std::uint32_t steps = 0;
+  };
+  /// Of a ray of the camera; directions have length 1. `water` may be null.
+  Answer march(const Ray& ray, const Water* water) const;
+  /// Of a ray that comes from elsewhere: there are no planes for it.
+  Hit march(const Ray& ray) const;
+  int most_steps() const { return settings_.steps; }
+
+ private:
+  Answer march(const Ray& ray, const Water* water, double step) const;
+  double by_view(double step, const dvec3& direction) const;
+
+  const HeightField& field_;
+  ComancheSettings settings_;
+  double step_;
+  dvec3 forward_;
+};
+
+/// A picture with water in the look `shaded`. `settings` are valid.
+Picture render_lake(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
+                    const PictureSettings& settings, const Progress& progress);
+
+/// The picture, settings.comanche.scale times as wide and high as the settings say. `settings` are valid.
+Picture render_comanche(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
+                        const PictureSettings& settings, const Progress& progress);
+
+}  // namespace scarp

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Colours: from sRGB to linear light and back, and between two of them. Text of C++ and of GLSL.
+#ifndef SCARP_RENDER_COLOUR_GLSL_H
+#define SCARP_RENDER_COLOUR_GLSL_H
+
+#include "scarp/vk/real.glsl.h"
+
+SCARP_GLSL_BEGIN
+
+/// From one to the other, share 0..1.
+SCARP_FN vec3 scarp_between(vec3 from, vec3 to, real share) {
+  float f = float(share);
+  return from * (1.0f - f) + to * f;
+}
+
+/// sRGB 0..1 to linear light (IEC 61966-2-1).
+SCARP_FN float scarp_linear_channel(float s) { return s <= 0.04045f ? s / 12.92f : pow((s + 0.055f) / 1.055f, 2.4f); }
+SCARP_FN vec3 scarp_linear_from_srgb(vec3 srgb) {
+  return vec3(scarp_linear_channel(srgb.x), scarp_linear_channel(srgb.y), scarp_linear_channel(srgb.z));
+}
+
+/// And back to 0..255, rounded, clamped.
+SCARP_FN float scarp_srgb_byte(float linear) {
+  float c = clamp(linear, 0.0f, 1.0f);
+  float s = c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 1.0f / 2.4f) - 0.055f;
+  return floor(255.0f * s + 0.5f);
+}
+
+/// Where a value lies in a table of `count` colours, evenly spaced from `low` to `high`: entry + place, 0..1, to the
+/// next one.
+struct ScarpTablePlace {
+  int entry;
+  float place;
+};
+SCARP_FN ScarpTablePlace scarp_table_place(real value, real low, real high, int count) {
+  real extent = high - low;
+  real share = extent > real(0.0) ? clamp((value - low) / extent, real(0.0), real(1.0)) : real(0.0);
+  real at = share * real(count - 1);
+  ScarpTablePlace found;
+  found.entry = min(int(at), count - 2);
+  found.place = float(at - real(found.entry));
+  return found;
+}
+
+SCARP_GLSL_END
+
+#endif

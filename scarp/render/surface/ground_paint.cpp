@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/surface/ground_paint.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "scarp/base/error.h"
+#include "scarp/field/noise.h"
+
+namespace scarp::glsl {
+namespace {
+
+using ScarpPaintPlace = dvec2;
+
+double scarp_paint_noise(const dvec2& place, int set, int octave, double size);
+
+}  // namespace
+}  // namespace scarp::glsl
+
+#include "scarp/render/surface/ground_paint.glsl.h"
+
+namespace scarp::glsl {
+namespace {
+
+double scarp_paint_noise(const dvec2& place, int /*set*/, int octave, double size) {
+  const dvec2 grain = scarp_patch_grain(octave);
+  const double along = (grain.x * place.x + grain.y * place.y) / (2 * size),
+               across = (grain.x * place.y - grain.y * place.x) / size;
+  return noise(NoiseKind::perlin, static_cast<std::uint32_t>(octave + 1), along, across);
+}
+
+}  // namespace
+}  // namespace scarp::glsl
+
+namespace scarp {
+namespace {
+
+void require(bool good, std::string_view what, double value, std::string_view range) {
+  if (!good) throw Error(fmt::format("ground: {} is {}; it must be {}", what, value, range));
+}
+
+}  // namespace
+
+void validate(const GroundPaintSettings& settings) {
+  require(std::isfinite(settings.snow_share), "the snow line", settings.snow_share, "a finite share of the relief");
+  require(settings.detail >= 0 && settings.detail <= 1, "the detail", settings.detail, "0 to 1");
+  require(std::isfinite(settings.detail_size) && settings.detail_size >= 0, "the detail's size", settings.detail_size,
+          "0 or more metres");
+  require(std::isfinite(settings.contours) && settings.contours >= 0, "the distance of contour lines",
+          settings.contours, "0 or more metres");
+}
+
+GroundPaint::GroundPaint(const GroundPaintSettings& settings, const HeightField& field, Ramp ramp, const dvec3& to_sun)
+    : settings_(settings),
+      field_(field),
+      ramp_(std::move(ramp)),
+      away_from_sun_(-to_sun.x, -to_sun.y),
+      low_(field.min_height()),
+      relief_(std::max(field.max_height() - low_, 1e-300)),
+      detail_size_(settings.detail_size > 0 ? settings.detail_size
+                                            : 16 * std::min(field.settings().cell_x, field.settings().cell_y)) {}
+
+vec3 GroundPaint::draped(const dvec3& position, vec3 below) const {
+  const Drape& image = *settings_.drape;
+  double x = position.x / field_.width(), y = 1 - position.y / field_.depth();
+  if (field_.wraps()) {
+    x -= std::floor(x);
+    y -= std::floor(y);
+  }
+  const double col = std::clamp(x * image.width - 0.5, 0.0, image.width - 1.0),
+               row = std::clamp(y * image.height - 0.5, 0.0, image.height - 1.0);
+  const int c0 = static_cast<int>(col), r0 = static_cast<int>(row);
+  vec3 sum(0.0f);
+  float opacity = 0;
+  for (int i = 0; i < 4; ++i) {
+    const int c = std::min(c0 + i % 2, image.width - 1), r = std::min(r0 + i / 2, image.height - 1);
+    const std::uint8_t* p = image.rgba.data() + 4 * (std::int64_t{r} * image.width + c);
+    const auto weight = static_cast<float>((i % 2 ? col - c0 : 1 - (col - c0)) * (i / 2 ? row - r0 : 1 - (row - r0))) *
+                        static_cast<float>(p[3]) / 255.0f;
+    sum += weight * linear_from_srgb(vec3(p[0], p[1], p[2]) / 255.0f);
+    opacity += weight;
+  }
+  return sum + (1 - opacity) * below;
+}
+
+vec3 GroundPaint::operator()(const dvec3& position, double height, const dvec3& normal, double footprint) const {
+  const auto patches = [&](int set) { return glsl::scarp_patches(dvec2(position), set, detail_size_, footprint); };
+  vec3 colour = settings_.natural
+                    ? glsl::scarp_natural((height - low_) / relief_, normal, away_from_sun_, settings_.snow_share,
+                                          patches(glsl::kScarpBlur), patches(glsl::kScarpRough))
+                    : ramp_(height);
+  if (settings_.drape) colour = draped(position, colour);
+  if (settings_.detail > 0) {
+    colour *= static_cast<float>(std::max(0.0, 1 + settings_.detail * patches(glsl::kScarpDetail)));
+  }
+  if (settings_.contours > 0) colour = glsl::scarp_with_contours(colour, height, normal, footprint, contour_interval());
+  return colour;
+}
+
+GroundPaint::Patch GroundPaint::patch(int set, int octave) const {
+  double size = glsl::scarp_patch_size(set, detail_size_);
+  for (int i = 0; i < octave; ++i) size = glsl::scarp_smaller_patch(size);
+  const dvec2 grain = glsl::scarp_patch_grain(octave);
+  return {grain / (2 * size), dvec2(-grain.y, grain.x) / size};
+}
+
+double GroundPaint::contour_interval() const { return settings_.contours * field_.settings().exaggeration; }
+double GroundPaint::heavy_contour_interval() const { return glsl::kScarpHeavyContour * contour_interval(); }
+
+}  // namespace scarp

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// Colours of ground: the formulas of ground_paint.h. Text of C++ and of GLSL. Who includes it has defined, before,
+//   struct ScarpPaintPlace, a place on the ground, and
+//   real scarp_paint_noise(ScarpPaintPlace place, int set, int octave, real size)
+//                                              Perlin noise, seed octave + 1, of patches of so many metres; `set` and
+//                                              `octave` name them: see scarp_patches()
+#ifndef SCARP_RENDER_GROUND_PAINT_GLSL_H
+#define SCARP_RENDER_GROUND_PAINT_GLSL_H
+
+#include "scarp/render/surface/colour.glsl.h"
+
+SCARP_GLSL_BEGIN
+
+// sRGB.
+const vec3 kScarpMeadow = vec3(0.36f, 0.43f, 0.22f);
+const vec3 kScarpForest = vec3(0.20f, 0.30f, 0.16f);
+const vec3 kScarpDry = vec3(0.60f, 0.55f, 0.36f);
+const vec3 kScarpRock = vec3(0.47f, 0.43f, 0.40f);
+const vec3 kScarpScree = vec3(0.60f, 0.56f, 0.51f);
+const vec3 kScarpSnow = vec3(0.93f, 0.95f, 0.98f);
+const vec3 kScarpContour = vec3(0.24f, 0.16f, 0.10f);
+
+/// Sets of patches: what they are for, their octaves and the largest, in sizes of the detail.
+const int kScarpDetail = 0;
+const int kScarpBlur = 1;
+const int kScarpRough = 2;
+const int kScarpPatchSets = 3;
+const int kScarpMostOctaves = 4;
+SCARP_FN int scarp_patch_octaves(int set) { return set == kScarpDetail ? 4 : set == kScarpBlur ? 3 : 2; }
+SCARP_FN real scarp_patch_size(int set, real detail_size) {
+  return set == kScarpDetail ? detail_size : set == kScarpBlur ? real(3.0) * detail_size : real(0.7) * detail_size;
+}
+/// Of the next octave.
+SCARP_FN real scarp_smaller_patch(real size) { return size / real(2.17); }
+
+/// Along what, in x and y of the world, patches of an octave are stretched: alternating directions, so that no two
+/// octaves have one grain. They are twice as long there as across.
+SCARP_FN real2 scarp_patch_grain(int octave) {
+  return octave % 2 == 0 ? real2(real(0.8), real(0.6)) : real2(real(0.6), real(-0.8));
+}
+
+SCARP_FN real scarp_smooth(real from, real to, real x) {
+  real s = clamp((x - from) / (to - from), real(0.0), real(1.0));
+  return s * s * (real(3.0) - real(2.0) * s);
+}
+
+/// Noise of a set; what is smaller than a pixel, `footprint` metres wide, is left out.
+SCARP_FN real scarp_patches(ScarpPaintPlace place, int set, real detail_size, real footprint) {
+  real size = scarp_patch_size(set, detail_size);
+  real sum = real(0.0);
+  real weight = real(1.0);
+  for (int i = 0; i < scarp_patch_octaves(set); ++i) {
+    real seen = clamp(size / (real(2.0) * footprint) - real(1.0), real(0.0), real(1.0));
+    if (seen == real(0.0)) break;
+    sum += weight * seen * scarp_paint_noise(place, set, i, size);
+    size = scarp_smaller_patch(size);
+    weight *= real(0.62);
+  }
+  return sum;
+}
+
+/// Rock, grass and snow, in linear light: `share` of the relief that the ground is high, `normal` unit, `from_sun` x
+/// and y away from the sun, `snow_share` where snow begins, `blur` and `rough` the patches of these sets.
+SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_share, real blur, real rough) {
+  real steep = sqrt(max(real(0.0), real(1.0) - normal.z * normal.z));
+  vec3 colour =
+      scarp_between(kScarpForest, kScarpMeadow, scarp_smooth(real(0.08), real(0.35), share + real(0.10) * blur));
+  colour = scarp_between(colour, kScarpDry, scarp_smooth(real(0.30), real(0.62), share + real(0.16) * blur));
+  vec3 rock = scarp_between(kScarpRock, kScarpScree, scarp_smooth(real(-0.4), real(0.6), rough));
+  // Sines of slopes between which grass gives way to rock.
+  colour = scarp_between(
+      colour, rock, scarp_smooth(real(0.45), real(0.68), steep + real(0.10) * blur + real(0.35) * (share - real(0.5))));
+  // How much lower snow lies on the shadowed side, how wide its border is, and cosines below which it slides off.
+  real line = snow_share - real(0.10) * (normal.x * from_sun.x + normal.y * from_sun.y);
+  real snow = scarp_smooth(line - real(0.05), line + real(0.05), share + real(0.07) * blur) *
+              scarp_smooth(real(0.55), real(0.72), normal.z + real(0.06) * rough);
+  return scarp_linear_from_srgb(scarp_between(colour, kScarpSnow, snow));
+}
+
+/// What keeps quotients finite, far from any number that shows: of walls the cosine to straight up, of level ground the
+/// metres of height to a pixel.
+const float kScarpLeastUpright = 1e-9f;
+const float kScarpLeastPerPixel = 1e-12f;
+
+/// Every so many contour lines one is heavy, from height 0 on.
+const int kScarpHeavyContour = 5;
+
+/// With contour lines over it, `interval` metres apart.
+SCARP_FN vec3 scarp_with_contours(vec3 colour, real height, real3 normal, real footprint, real interval) {
+  real slope = sqrt(max(real(0.0), real(1.0) - normal.z * normal.z)) / max(normal.z, real(kScarpLeastUpright));
+  real per_pixel = max(slope * footprint, real(kScarpLeastPerPixel));  // metres of height
+  real line = floor(height / interval + real(0.5));
+  real pixels = abs(height - line * interval) / per_pixel;
+  // A tenth of a line more than rounding takes from the quotient.
+  real fifth = abs(line) - real(kScarpHeavyContour) * floor(abs(line) / real(kScarpHeavyContour) + real(0.1));
+  bool heavy = fifth == real(0.0);
+  real width = heavy ? real(2.0) : real(1.1);
+  // Of all lines when 8 pixels apart; none at 3 but for the heavy ones, which are five times as far apart.
+  real apart = interval * (heavy ? real(kScarpHeavyContour) : real(1.0)) / per_pixel;
+  real ink = clamp(width / real(2.0) + real(0.5) - pixels, real(0.0), real(1.0)) *
+             scarp_smooth(real(3.0), real(8.0), apart) * (heavy ? real(0.85) : real(0.6));
+  return scarp_between(colour, scarp_linear_from_srgb(kScarpContour), ink);
+}
+
+SCARP_GLSL_END
+
+#endif

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/surface/water.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+
+#include "scarp/base/error.h"
+#include "scarp/render/surface/ramp.h"
+#include "scarp/render/surface/water.glsl.h"
+
+namespace scarp {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Pure water, per metre at 650, 550 and 450 nm: R. M. Pope and E. S. Fry, "Absorption spectrum (380-700 nm) of pure
+// water. II", Applied Optics 36, 1997, table 3.
+constexpr vec3 kPureWater(0.340f, 0.0565f, 0.00922f);
+
+// Wave i is shorter than the one before by this factor and turned by the golden angle: no two repeat one another.
+constexpr std::size_t kWaves = glsl::kScarpWaves;
+constexpr double kShorter = 0.71;
+constexpr double kTurn = 2.399963229728653;
+// Towards these the waves run.
+const std::array<dvec2, kWaves> kAlong = [] {
+  std::array<dvec2, kWaves> along;
+  for (std::size_t i = 0; i < kWaves; ++i) {
+    const double angle = kTurn * static_cast<double>(i) + 0.4;
+    along[i] = {std::cos(angle), std::sin(angle)};
+  }
+  return along;
+}();
+
+void require(bool good, std::string_view what, double value, std::string_view range) {
+  if (!good) throw Error(fmt::format("water: {} is {}; it must be {}", what, value, range));
+}
+
+// The range of t in which a ray is in [0, high] along one axis.
+struct Span {
+  double from = -kInfinity, to = kInfinity;
+};
+Span span_in(double origin, double direction, double high) {
+  if (direction == 0) return origin >= 0 && origin <= high ? Span{} : Span{kInfinity, -kInfinity};
+  const double a = -origin / direction, b = (high - origin) / direction;
+  return {std::min(a, b), std::max(a, b)};
+}
+
+}  // namespace
+
+void validate(const WaterSettings& settings) {
+  require(std::isfinite(settings.level), "the level", settings.level, "a finite height in metres");
+  require(std::isfinite(settings.turbidity) && settings.turbidity >= 0, "the turbidity", settings.turbidity,
+          "0 or more per metre");
+  require(settings.waves >= 0 && settings.waves <= 0.5, "the waves' slope", settings.waves, "0 to 0.5");
+  require(std::isfinite(settings.wavelength) && settings.wavelength >= 0, "the wavelength", settings.wavelength,
+          "0 or more metres");
+  for (int i = 0; i < 3; ++i) {
+    require(settings.srgb[i] >= 0 && settings.srgb[i] <= 1, "a part of the colour", settings.srgb[i], "0 to 1");
+  }
+}
+
+double schlick(double cosine, double index) { return glsl::scarp_schlick(cosine, index); }
+
+Water::Water(const WaterSettings& settings, const HeightField& field)
+    : settings_(settings),
+      field_(field),
+      level_(settings.level * field.settings().exaggeration),
+      wavelength_(settings.wavelength > 0 ? settings.wavelength
+                                          : 2 * std::min(field.settings().cell_x, field.settings().cell_y)),
+      deep_(linear_from_srgb(settings.srgb)),
+      per_metre_(kPureWater + static_cast<float>(settings.turbidity)) {}
+
+std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
+  const dvec3 &o = ray.origin, &d = ray.direction;
+  const auto from_above = [&](double t) -> std::optional<Meeting> {
+    const dvec3 p = ray.at(t);
+    const auto place = field_.place(p.x, p.y);
+    if (place) {
+      // Who sees the level where the ground is higher, looks from under the ground.
+      const auto ground = field_.height(p.x, p.y);
+      if (!ground || *ground > level_) return {};
+    }
+    Meeting meeting{t, {0, 0, 1}};
+    if (place && is_sea(place->cell)) meeting.sea = place->cell;
+    return meeting;
+  };
+  if (field_.wraps()) {
+    const double t = (level_ - o.z) / d.z;
+    if (!(d.z < 0) || !(t >= ray.t_min && t <= ray.t_max)) return {};
+    return from_above(t);
+  }
+  // The basin is a box without a floor: the last of its three borders to be crossed is where the ray comes in.
+  const Span x = span_in(o.x, d.x, field_.width()), y = span_in(o.y, d.y, field_.depth());
+  Span z;
+  if (d.z == 0) {
+    if (o.z > level_) return {};
+  } else {
+    (d.z < 0 ? z.from : z.to) = (level_ - o.z) / d.z;
+  }
+  const double t = std::max({x.from, y.from, z.from}), end = std::min({x.to, y.to, z.to});
+  if (!(t < end) || !(t >= ray.t_min && t <= ray.t_max)) return {};
+  if (t == z.from) return from_above(t);
+  // A side: only over the ground that stands there.
+  const bool through_x = t == x.from;
+  dvec3 p = ray.at(t);
+  p.x = std::clamp(p.x, 0.0, field_.width());
+  p.y = std::clamp(p.y, 0.0, field_.depth());
+  const auto ground = field_.height(p.x, p.y);
+  if (!ground || p.z <= *ground) return {};
+  return Meeting{t, through_x ? dvec3(d.x > 0 ? -1 : 1, 0, 0) : dvec3(0, d.y > 0 ? -1 : 1, 0)};
+}
+
+bool Water::is_sea(Cell cell) const {
+  const auto heights = field_.cell_heights(cell);
+  if (!heights) return false;
+  for (const double sample : {heights->h00, heights->h01, heights->h10, heights->h11}) {
+    if (field_.height_from_sample(sample) != level_) return false;
+  }
+  return true;
+}
+
+double Water::leaves(const Ray& ray) const {
+  if (field_.wraps()) return kInfinity;
+  return std::min(span_in(ray.origin.x, ray.direction.x, field_.width()).to,
+                  span_in(ray.origin.y, ray.direction.y, field_.depth()).to);
+}
+
+dvec3 Water::normal_at(const dvec3& position, double footprint) const {
+  if (settings_.waves == 0) return {0, 0, 1};
+  dvec2 tilt(0.0);
+  double wavelength = wavelength_;
+  for (std::size_t i = 0; i < kWaves; ++i, wavelength *= kShorter) {
+    const double seen = glsl::scarp_wave_seen(wavelength, footprint);
+    if (seen == 0) break;
+    const dvec2& along = kAlong[i];
+    const double turns = (along.x * position.x + along.y * position.y) / wavelength;
+    tilt += seen * glsl::scarp_wave_slope(static_cast<int>(i), turns, settings_.waves) * along;
+  }
+  return normalize(dvec3(-tilt.x, -tilt.y, 1));
+}
+
+dvec2 Water::wave_direction(int i) { return kAlong[static_cast<std::size_t>(i)]; }
+double Water::wavelength(int i) const { return wavelength_ * std::pow(kShorter, i); }
+
+vec3 Water::through(vec3 behind, double distance) const {
+  return glsl::scarp_through_water(behind, deep_, per_metre_, static_cast<float>(distance));
+}
+
+vec3 Water::sunlight(double depth, const dvec3& to_sun) const {
+  const double way = glsl::scarp_sun_way(depth, to_sun.z, kWaterIndex);
+  return glsl::scarp_left_after(per_metre_, static_cast<float>(way));
+}
+
+dvec3 reflected(const dvec3& direction, const dvec3& normal) { return glsl::scarp_reflected(direction, normal); }
+
+dvec3 refracted(const dvec3& direction, const dvec3& normal, double index) {
+  return glsl::scarp_refracted(direction, normal, index);
+}
+
+}  // namespace scarp

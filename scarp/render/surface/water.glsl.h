@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+// What water does to light: the formulas of water.h. Text of C++ and of GLSL.
+#ifndef SCARP_RENDER_WATER_GLSL_H
+#define SCARP_RENDER_WATER_GLSL_H
+
+#include "scarp/vk/real.glsl.h"
+
+SCARP_GLSL_BEGIN
+
+/// The share that is reflected, Schlick's formula; `cosine` of the angle to the normal, `index` of refraction.
+SCARP_FN real scarp_schlick(real cosine, real index) {
+  real root = (index - real(1.0)) / (index + real(1.0));
+  real r0 = root * root;
+  real c = real(1.0) - clamp(cosine, real(0.0), real(1.0));
+  return r0 + (real(1.0) - r0) * c * c * c * c * c;
+}
+
+/// Mirrored at a unit normal against `direction`.
+SCARP_FN real3 scarp_reflected(real3 direction, real3 normal) {
+  return direction - real(2.0) * dot(direction, normal) * normal;
+}
+/// Refracted on the way in (Snell).
+SCARP_FN real3 scarp_refracted(real3 direction, real3 normal, real index) {
+  real ratio = real(1.0) / index;
+  real cosine = -dot(direction, normal);
+  real inside = sqrt(real(1.0) - ratio * ratio * (real(1.0) - cosine * cosine));
+  return normalize(ratio * direction + (ratio * cosine - inside) * normal);
+}
+/// The least sine by which mirrored rays rise: less would take them over a thousand metres for each metre of height.
+const float kScarpLeastMirroredRise = 1e-3f;
+
+/// Waves must not send a mirrored ray into the water: it runs along it then.
+SCARP_FN real3 scarp_kept_above(real3 mirrored) {
+  real least = real(kScarpLeastMirroredRise);
+  return mirrored.z < least ? normalize(real3(mirrored.x, mirrored.y, least)) : mirrored;
+}
+
+const int kScarpWaves = 7;
+
+/// How much is seen of a wave that is so long where a pixel is `footprint` metres wide: nothing when it is as long as
+/// two pixels, all when it is as long as four.
+SCARP_FN real scarp_wave_seen(real wavelength, real footprint) {
+  return clamp(wavelength / (real(2.0) * footprint) - real(1.0), real(0.0), real(1.0));
+}
+/// The slope of wave i where it has turned by `turns` since the origin, for waves that have the mean slope `slope`
+/// together: that of a cos is its height by sqrt(2), and slopes of different directions add up squared.
+SCARP_FN real scarp_wave_slope(int i, real turns, real slope) {
+  return slope * sqrt(real(2.0) / real(kScarpWaves)) * cos(real(6.283185307179586) * turns + real(i));
+}
+
+/// The share of light, per colour, that is left after some metres (Beer).
+SCARP_FN vec3 scarp_left_after(vec3 per_metre, float metres) {
+  return vec3(exp(-per_metre.x * metres), exp(-per_metre.y * metres), exp(-per_metre.z * metres));
+}
+/// What is behind, through some metres of water of the colour `deep`.
+SCARP_FN vec3 scarp_through_water(vec3 behind, vec3 deep, vec3 per_metre, float metres) {
+  vec3 left = scarp_left_after(per_metre, metres);
+  return behind * left + deep * (vec3(1.0f) - left);
+}
+/// Metres that sunlight goes through the water to a bottom `depth` metres below its level. Below the surface the sun
+/// stands higher: sin = cos(altitude) / n from the vertical.
+SCARP_FN real scarp_sun_way(real depth, real to_sun_z, real index) {
+  real sideways = sqrt(max(real(0.0), real(1.0) - to_sun_z * to_sun_z)) / index;
+  return max(real(0.0), depth) / sqrt(real(1.0) - sideways * sideways);
+}
+
+SCARP_GLSL_END
+
+#endif

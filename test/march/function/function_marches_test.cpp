@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: MIT
+// Marches over terrain functions against proofs by interval arithmetic: the conservative ones lose nothing.
+#include "scarp/march/function/function_marches.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "field/terrain_functions.h"
+#include "march/function/function_rays.h"
+#include "scarp/base/error.h"
+#include "scarp/march/function/function_exhaustive.h"
+#include "scarp/march/function/lipschitz_local.h"
+#include "scarp/march/function/lipschitz_local_simd.h"
+#include "scarp/march/function/presets.h"
+
+namespace scarp::test {
+namespace {
+
+#ifdef NDEBUG
+constexpr int kRays = 10'000;
+#else
+constexpr int kRays = 60;
+#endif
+
+// The last interval of lipschitz-local: of several crossings in it any may be told.
+constexpr double kTolerance = LipschitzLocalSettings{}.tolerance;
+
+struct Counts {
+  int hits = 0, misses = 0, exhausted = 0, early = 0, inexact = 0;
+};
+
+void expect_nothing_lost(const NamedFunction& named, const FunctionJudgement& judge, const Ray& ray, const Hit& hit,
+                         double tolerance, Counts& counts) {
+  counts.hits += hit.status == HitStatus::hit;
+  counts.misses += hit.status == HitStatus::miss;
+  counts.exhausted += hit.status == HitStatus::exhausted;
+  EXPECT_NE(hit.status, HitStatus::below) << named.name;
+  if (judge.verdict == FunctionVerdict::crossing) {
+    EXPECT_NE(hit.status, HitStatus::miss) << named.name << ": lost the crossing at t = " << judge.crossed_by;
+    if (hit) {
+      EXPECT_LE(hit.t, judge.crossed_by + tolerance * (hit.t - ray.t_min)) << named.name;
+      counts.inexact += judge.clear_until - hit.t > 2 * kTolerance * (hit.t - ray.t_min);
+    }
+  } else if (judge.verdict == FunctionVerdict::clear) {
+    counts.early += bool(hit);
+  }
+}
+
+TEST(FunctionMarches, ConservativeOnesLoseNothing) {
+  for (const NamedFunction& named : terrain_functions()) {
+    const HeightFunction function(named.function);
+    FunctionRandom random(11);
+    Counts global, local;
+    int crossings = 0, undecided = 0;
+    for (int i = 0; i < kRays; ++i) {
+      const Ray ray = random_ray(function, random);
+      const FunctionJudgement judge = judge_function(named.function, ray);
+      crossings += judge.verdict == FunctionVerdict::crossing;
+      undecided += judge.verdict == FunctionVerdict::undecided;
+      expect_nothing_lost(named, judge, ray, march_lipschitz(function, ray), 0, global);
+      expect_nothing_lost(named, judge, ray, march_lipschitz_local(function, ray), kTolerance, local);
+    }
+    // The judge decides nearly always, and lipschitz-local agrees with it: not only conservative, but right.
+    EXPECT_LE(undecided, 1 + kRays / 500) << named.name;
+    EXPECT_GE(crossings, kRays / 4) << named.name;
+    EXPECT_LE(local.exhausted, kRays / 500) << named.name;
+    EXPECT_EQ(local.early + local.inexact, 0) << named.name;
+    if (HasFailure()) return;  // one function says enough
+  }
+}
+
+// A ridge where two planes meet. Bounds know a crease to first order only: segments as long as the tolerance do not
+// tell a ray from it that passes a thousandth of them above.
+TEST(FunctionMarches, PassCreasesClosely) {
+  const Function planes = make_function(Minimum{make_function(Plane{0, 0.1, 0}), make_function(Plane{0, -0.4, 0})});
+  const HeightFunction ridge(planes);
+  for (const double above : {1e-2, 1e-4, 1e-6, -1e-6, -1e-4}) {
+    const Ray ray{{-1000, 3, above}, {1, 0, 0}, 0, 2345};
+    const Hit hit = march_lipschitz_local(ridge, ray);
+    EXPECT_EQ(hit.status, above > 0 ? HitStatus::miss : HitStatus::hit) << above;
+    if (above < 0) {
+      EXPECT_NEAR(hit.t, 1000 + 10 * above, kTolerance * 1000);
+    }
+  }
+}
+
+TEST(FunctionMarches, RaysFromTheSurfaceLoseNothing) {
+  for (const NamedFunction& named : terrain_functions()) {
+    const HeightFunction function(named.function);
+    FunctionRandom random(12);
+    int leaving = 0, exhausted = 0;
+    for (int i = 0; i < kRays / 10; ++i) {
+      const double x = random.between(-5000, 5000), y = random.between(-5000, 5000);
+      Ray ray;
+      ray.origin = {x, y, function.value(x, y)};
+      const double azimuth = random.between(0, 6.28318);
+      ray.direction = {std::cos(azimuth), std::sin(azimuth), random.between(-0.2, 0.8)};
+      ray.t_max = 5000;
+      ray.start = RayStart::on_surface;
+      const Hit hit = march_lipschitz_local(function, ray);
+      // A millimetre on, the ray is either free, and judged from there, or it has gone into the ground.
+      Ray later = ray;
+      later.start = RayStart::free;
+      later.t_min = 1e-3;
+      const dvec3 p = later.at(later.t_min);
+      const double clearance = p.z - function.value(p.x, p.y);
+      // That of heights, of the ray's own height, and of the place where it begins, which is rounded, too.
+      const FunctionBound near = function.bound({x - 1, x + 1, y - 1, y + 1});
+      const double rounding =
+          near.rounding + 0x1p-49 * (std::abs(p.z) + (1 + near.slope) * (std::abs(x) + std::abs(y) + 1));
+      if (clearance < -rounding) {
+        EXPECT_TRUE(hit && hit.t <= later.t_min) << named.name;
+      } else if (clearance > rounding) {
+        ++leaving;
+        const FunctionJudgement judge = judge_function(named.function, later);
+        if (judge.verdict == FunctionVerdict::crossing) {
+          // Creases that a ray nearly runs along take many short segments: given up, but not lost.
+          exhausted += hit.status == HitStatus::exhausted;
+          EXPECT_NE(hit.status, HitStatus::miss) << named.name << ": lost the crossing at t = " << judge.crossed_by;
+          EXPECT_NE(hit.status, HitStatus::below) << named.name;
+          if (hit) {
+            EXPECT_LE(hit.t, judge.crossed_by + kTolerance * hit.t) << named.name;
+          }
+        }
+        if (judge.verdict == FunctionVerdict::clear) {
+          EXPECT_FALSE(hit) << named.name << " at t = " << hit.t;
+        }
+      }
+    }
+    EXPECT_GE(leaving, kRays / 40) << named.name;
+    EXPECT_LE(exhausted, kRays / 2000) << named.name;
+  }
+}
+
+const HeightFunction& bowl() {
+  static const HeightFunction function(make_function(Sines{{{10, 100, 0, 0}}}));
+  return function;
+}
+
+TEST(FunctionMarches, FollowRaysOfAnyDirection) {
+  const HeightFunction plane(make_function(Plane{5}));
+  // Upright, level, and with a direction of any length.
+  const Hit down = march_lipschitz_local(plane, {{1, 2, 9}, {0, 0, -4}});
+  ASSERT_TRUE(down);
+  EXPECT_NEAR(down.t, 1, kTolerance);
+  EXPECT_EQ(march_lipschitz_local(plane, {{1, 2, 9}, {0, 0, 1}}).status, HitStatus::miss);
+  EXPECT_EQ(march_lipschitz_local(plane, {{1, 2, 9}, {1, 0, 0}}).status, HitStatus::miss);
+  EXPECT_EQ(march_lipschitz_local(plane, {{1, 2, 4}, {0, 0, 1}}).status, HitStatus::below);
+  EXPECT_EQ(march_lipschitz_local(bowl(), {{25, 2, 9}, {0, 0, 1}}).status, HitStatus::below);
+  // Level, between the crests: sin(2 pi x / 100) = 0.5 at x = 25 / 3.
+  const Hit level = march_lipschitz_local(bowl(), {{-25, 3, 5}, {0.5, 0, 0}});
+  ASSERT_TRUE(level);
+  EXPECT_NEAR(level.t, 2 * (25 + 25.0 / 3), 1e-4);
+  for (const MarchEntry& march : function_marches()) {
+    MarchStats stats;
+    const Hit hit = march.function_cpu(bowl(), {{-25, 3, 5}, {0.5, 0, 0}, 0, 200}, {}, &stats, FunctionUse::march);
+    ASSERT_TRUE(hit) << march.name;
+    EXPECT_NEAR(hit.t, 2 * (25 + 25.0 / 3), 1);
+    EXPECT_GT(stats.steps, 5u);
+  }
+}
+
+TEST(FunctionMarches, RespectTheRange) {
+  Ray ray{{-25, 3, 5}, {1, 0, 0}};
+  ray.t_max = 33;
+  EXPECT_EQ(march_lipschitz_local(bowl(), ray).status, HitStatus::miss);
+  ray.t_max = 34;
+  EXPECT_TRUE(march_lipschitz_local(bowl(), ray));
+  ray.t_min = 50;  // inside the crest
+  ray.t_max = 60;
+  EXPECT_EQ(march_lipschitz_local(bowl(), ray).status, HitStatus::below);
+}
+
+TEST(FunctionMarches, EndAtTheirReach) {
+  const Ray ray{{-25, 3, 5}, {2, 0, 0}};  // meets the ground after 33.3 m
+  for (const MarchEntry& march : function_marches()) {
+    MarchSettings settings;
+    settings.function.reach = 30;
+    EXPECT_EQ(march.function_cpu(bowl(), ray, settings, nullptr, FunctionUse::march).status, HitStatus::miss);
+    settings.function.reach = 40;
+    EXPECT_TRUE(march.function_cpu(bowl(), ray, settings, nullptr, FunctionUse::march)) << march.name;
+  }
+}
+
+TEST(FunctionMarches, TellUsedUpStepsFromHits) {
+  const Ray ray{{-25, 3, 5}, {1, 0, 0}, 0, 200};
+  MarchSettings settings;
+  settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = 2;
+  settings.lipschitz.max_steps = settings.lipschitz_local.max_steps = 2;
+  for (const MarchEntry& march : function_marches()) {
+    EXPECT_EQ(march.function_cpu(bowl(), ray, settings, nullptr, FunctionUse::march).status, HitStatus::exhausted)
+        << march.name;
+  }
+}
+
+TEST(FunctionMarches, TheTableNamesThem) {
+  std::vector<std::string_view> names;
+  for (const MarchEntry& march : function_marches()) {
+    names.push_back(march.name);
+    EXPECT_EQ(&find_function_march(march.name), &march);
+    EXPECT_NE(march.fields.find("function"), std::string_view::npos);
+  }
+  EXPECT_EQ(names, (std::vector<std::string_view>{"naive", "fixed-step", "relaxed", "lipschitz", "lipschitz-local"}));
+  EXPECT_THROW(find_function_march("max-mip"), Error);
+  EXPECT_THROW(find_march("lipschitz-local"), Error);
+}
+
+TEST(FunctionMarches, ValidateTheirSettings) {
+  const auto bad = [](auto change) {
+    MarchSettings settings;
+    validate(settings);
+    change(settings);
+    EXPECT_THROW(validate(settings), Error);
+  };
+  bad([](MarchSettings& s) { s.lipschitz_local.tolerance = -1; });
+  bad([](MarchSettings& s) { s.lipschitz_local.max_steps = 0; });
+  bad([](MarchSettings& s) { s.function.step = 0; });
+  bad([](MarchSettings& s) { s.function.reach = 0; });
+  bad([](MarchSettings& s) { s.function.step_share = -1; });
+  bad([](MarchSettings& s) { s.function.tolerance = NAN; });
+  bad([](MarchSettings& s) { s.function.halvings = 0; });
+  bad([](MarchSettings& s) { s.relaxed.tolerance = 0; });
+  EXPECT_EQ(find_refinement("secant"), Refinement::secant);
+  EXPECT_THROW(find_refinement("newton"), Error);
+}
+
+// The numbers, by what they do over a ramp: a ray along x at height 2 is 102 - t above it.
+TEST(FunctionMarches, PresetsHaveTheirNumbers) {
+  const HeightFunction ramp(make_function(Plane{0, 1, 0}));
+  const Ray ray{{-100, 0, 2}, {1, 0, 0}, 0, 200};
+  const auto steps = [&](std::string_view name, double& t) {
+    const MarchPreset& preset = find_march_preset(name);
+    validate(preset.settings);
+    MarchStats stats;
+    const Hit hit =
+        find_function_march(preset.march).function_cpu(ramp, ray, preset.settings, &stats, FunctionUse::march);
+    EXPECT_TRUE(hit) << name;
+    t = hit.t;
+    return stats.steps;
+  };
+  // After n steps of share s the clearance is 102 (1 - s)^n, and t what is missing to 102.
+  const auto expected = [](double share, double tolerance) {
+    std::uint32_t n = 0;
+    for (double h = 102; !(h < tolerance * (102 - h)); h *= 1 - share) ++n;
+    return n + 1;
+  };
+  double t = 0;
+  EXPECT_EQ(steps("elevated", t), expected(0.4, 0.0015));
+  EXPECT_EQ(steps("rainforest", t), expected(0.8, 0.001));
+  EXPECT_LT(t, 102);
+  EXPECT_EQ(steps("iq2002", t), 12u);  // 0, 10, ..., 110
+  EXPECT_NEAR(t, 102, 1e-12);
+  EXPECT_EQ(steps("castle", t), 2u);
+  EXPECT_EQ(t, 102);
+  // Towards the ramp for ever, but for the least step, 2^-40 of the way out: under it by no more than that.
+  EXPECT_LE(steps("snowy", t), 64u);
+  EXPECT_TRUE(t > 102 && t <= 102 + 200 * 0x1p-40);
+  EXPECT_THROW(find_march_preset("comanche"), Error);
+}
+
+// A ramp, on which every march's last interval is known.
+TEST(FunctionMarches, FixedStepCountsItsSamples) {
+  const HeightFunction ramp(make_function(Plane{0, 1, 0}));
+  const Ray ray{{-100, 0, 2}, {2, 0, 0}, 0, 60};  // over x = 2 at t = 51
+  MarchSettings settings;
+  settings.function.step = 3;  // t = 0, 1.5, ..., 51 exactly: the 35th
+  MarchStats stats;
+  Hit hit = march_fixed_step(ramp, ray, settings, &stats);
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit.t, 51);
+  EXPECT_EQ(stats.steps, 35u);
+  settings.function.step = 4;  // 50, 52
+  EXPECT_NEAR(march_fixed_step(ramp, ray, settings).t, 51, 1e-12);
+  settings.fixed_step.interpolate = false;
+  EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 52);
+  settings.function.refinement = Refinement::bisect;
+  settings.function.halvings = 10;
+  EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 51);  // a dyadic share of the step
+  settings.function.refinement = Refinement::none;
+  settings.function.step_share = 0.5;  // 0, 2, 4, 6, 9, 13.5, 20.25, 30.375, 45.5625, 60 (68.3, the end)
+  hit = march_fixed_step(ramp, ray, settings, &stats);
+  EXPECT_EQ(hit.t, 60);
+  EXPECT_EQ(stats.steps, 10u);
+  // A ray that begins under the ramp is below; one that comes up and goes down again is not.
+  EXPECT_EQ(march_fixed_step(ramp, {{10, 0, 2}, {1, 0, 0}, 0, 60}, settings).status, HitStatus::below);
+  EXPECT_EQ(march_fixed_step(bowl(), {{10, 0, 5}, {1, 0, 0}, 0, 60}, {}).status, HitStatus::below);
+  EXPECT_TRUE(march_fixed_step(bowl(), {{10, 0, 5}, {1, 0, 0}, 0, 160}, {}));
+}
+
+TEST(FunctionMarches, RefineTheLastInterval) {
+  const HeightFunction ramp(make_function(Plane{0, 1, 0}));
+  const Ray ray{{-100, 0, 2}, {1, 0, 0}, 0, 200};  // clearance 102 - t, which is 0.01 t at 102 / 1.01
+  MarchSettings settings;
+  settings.relaxed.tolerance = settings.naive.tolerance = 0.01;
+  for (const std::string_view name : {"naive", "relaxed"}) {
+    const FunctionMarch march = find_function_march(name).function_cpu;
+    settings.function.refinement = Refinement::none;
+    const Hit plain = march(ramp, ray, settings, nullptr, FunctionUse::march);
+    settings.function.refinement = Refinement::bisect;
+    const Hit halved = march(ramp, ray, settings, nullptr, FunctionUse::march);
+    settings.function.refinement = Refinement::secant;
+    const Hit secant = march(ramp, ray, settings, nullptr, FunctionUse::march);
+    EXPECT_GT(plain.t - halved.t, 0.01);
+    // 24 halvings of an interval shorter than 2; the secant meets the limit of the last sample, 0.01 of its t.
+    EXPECT_NEAR(halved.t, 102 / 1.01, 2 * 0x1p-24);
+    EXPECT_NEAR(secant.t, 102 - 0.01 * plain.t, 1e-12);
+  }
+  // Metres that count as a hit at any distance.
+  settings.function = {.tolerance = 3, .refinement = Refinement::bisect};
+  settings.relaxed.tolerance = 0;
+  EXPECT_NEAR(march_relaxed(ramp, ray, settings).t, 99, 4 * 0x1p-24);
+}
+
+TEST(FunctionMarches, VectorsAnswerBitForBit) {
+  std::vector<NamedFunction> functions = terrain_functions();
+  functions.push_back({"both at once", make_function(Maximum{functions[2].function, functions[9].function}), false});
+  for (const NamedFunction& named : functions) {
+    const HeightFunction function(named.function);
+    FunctionRandom random(14);
+    std::vector<Ray> rays;
+    for (int i = 0; i < 150; ++i) {
+      Ray ray = random_ray(function, random);
+      if (i % 3 == 0) {
+        ray.origin.z = function.value(ray.origin.x, ray.origin.y);
+        ray.start = RayStart::on_surface;
+      }
+      if (i % 7 == 0) ray.origin.z -= 3000;
+      if (i % 11 == 0) ray.direction = {0, 0, -1};
+      if (i % 13 == 0) ray.origin.x += 1e7;
+      rays.push_back(ray);
+    }
+    MarchSettings settings;
+    settings.lipschitz_local.max_steps = 60;
+    for (const std::size_t count : {rays.size(), std::size_t{1}, std::size_t{0}}) {
+      std::vector<Hit> hits(count);
+      std::vector<std::uint32_t> steps(count);
+      closest_hits_lipschitz_local_simd(function, std::span(rays).first(count), hits, settings, steps,
+                                        FunctionUse::shadow);
+      for (std::size_t i = 0; i < count; ++i) {
+        MarchStats stats;
+        const Hit hit = march_lipschitz_local(function, rays[i], settings, &stats, FunctionUse::shadow);
+        ASSERT_EQ(hits[i].status, hit.status) << named.name << ", ray " << i;
+        ASSERT_EQ(hits[i].t, hit.t) << named.name << ", ray " << i;
+        ASSERT_EQ(hits[i].height, hit.height);
+        ASSERT_EQ(steps[i], stats.steps + stats.cell_tests) << named.name << ", ray " << i;
+      }
+    }
+  }
+}
+
+TEST(FunctionMarches, LocalBoundsTakeFewerEvaluations) {
+  const HeightFunction function(make_function(Fractal{}));
+  FunctionRandom random(13);
+  double global = 0, local = 0;
+  for (int i = 0; i < 400; ++i) {
+    const Ray ray = random_ray(function, random);
+    MarchSettings settings;
+    settings.lipschitz.max_steps = 100'000;
+    MarchStats stats;
+    march_lipschitz(function, ray, settings, &stats);
+    global += stats.steps;
+    march_lipschitz_local(function, ray, {}, &stats);
+    local += stats.steps + stats.cell_tests;
+  }
+  EXPECT_GE(global, 2 * local);
+}
+
+}  // namespace
+}  // namespace scarp::test

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: MIT
+// The marches on a Vulkan device, on the oracle's fields and rays: their answers are what single precision allows
+// (RoundingJudge), any-hit agrees with closest-hit, and validation has nothing to say.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/refusal.h"
+#include "march/height/rounding_judge.h"
+#include "march/height/spiteful.h"
+#include "march/height/spiteful_text.h"
+#include "march/sampling_rules.h"
+#include "scarp/accel/slope_bound.h"
+#include "scarp/march/height/batch_states.glsl.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/queries.h"
+#include "scarp/march/height/queries_vk.h"
+#include "scarp/march/height/ray_batch.glsl.h"
+#include "vk/device_under_test.h"
+#include "vk/spirv_layout.h"
+
+namespace scarp::test {
+namespace {
+
+// Two fields of each kind, and as many rays of each kind over them; the judge takes most of the time.
+#ifdef NDEBUG
+constexpr int kRaysPerKind = 200;
+#else
+constexpr int kRaysPerKind = 25;
+#endif
+constexpr int kFieldsPerKind = 2;
+
+// Compiling a march for lavapipe takes longer than running it: once for all fields.
+DeviceQueries& queries(std::string_view march) {
+  static std::map<std::string_view, DeviceQueries> all;
+  const auto found = all.find(march);
+  if (found != all.end()) return found->second;
+  return all
+      .emplace(march, DeviceQueries(*device_under_test().device, find_march(march), {},
+                                    {.statistics = true, .rays_at_once = 3000}))
+      .first->second;
+}
+
+// Casts rays of all kinds over a field with all marches that run on devices.
+void check(const Device& device, const FieldKind& fields, const std::vector<RayKind>& ray_kinds, int rays_per_kind,
+           Random& random) {
+  const HeightField field = fields.make(random);
+  const DeviceGround ground(device, field);
+  const DeviceTarget target{&field, &ground, slope_bound(field)};
+  std::vector<Ray> rays;
+  std::vector<std::string_view> kinds;
+  for (const RayKind& kind : ray_kinds) {
+    if ((fields.has & kind.aims_at) != kind.aims_at) continue;
+    for (int i = 0; i < rays_per_kind; ++i) {
+      rays.push_back(kind.make(field, random));
+      kinds.push_back(kind.name);
+    }
+  }
+  std::vector<RoundingJudge> judges;
+  judges.reserve(rays.size());
+  for (const Ray& ray : rays) judges.emplace_back(field, ray);
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> blocked(rays.size());
+  for (const MarchEntry& march : height_marches()) {
+    if (!march.gpu) continue;
+    queries(march.name).closest_hits(target, rays, hits);
+    queries(march.name).occluded(target, rays, blocked);
+    int bad = 0;
+    for (std::size_t i = 0; i < rays.size() && bad < 3; ++i) {
+      std::string objection =
+          march.guarantee == Guarantee::exact
+              ? judges[i].objection(hits[i])
+              : sampling_objection(march.name, {}, field, target.slope, rays[i], judges[i], hits[i]);
+      if (blocked[i] != static_cast<bool>(hits[i])) objection += " any-hit contradicts closest-hit";
+      if (objection.empty()) continue;
+      ++bad;
+      ADD_FAILURE() << march.name << ": " << objection << "\n  on " << fields.name << ", ray " << kinds[i] << ": "
+                    << text(rays[i]) << "\n  " << text(hits[i]);
+    }
+  }
+}
+
+class ParityOnDevice : public OnDevice, public testing::WithParamInterface<std::size_t> {};
+
+TEST_P(ParityOnDevice, AnswersAreThoseOfTheSurface) {
+  Random random(GetParam());
+  for (int i = 0; i < kFieldsPerKind; ++i) {
+    check(device(), spiteful_fields()[GetParam()], spiteful_rays(), kRaysPerKind, random);
+  }
+}
+
+class ParityAcrossTiles : public OnDevice {};
+
+TEST_F(ParityAcrossTiles, AnswersAreThoseOfTheSurface) {
+  Random random(1);
+  for (const FieldKind& fields : wide_fields()) check(device(), fields, rays_across_tiles(), kRaysPerKind / 2, random);
+}
+
+std::vector<std::size_t> all_fields() {
+  std::vector<std::size_t> all(spiteful_fields().size());
+  for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(Spiteful, ParityOnDevice, testing::ValuesIn(all_fields()),
+                         [](const auto& of) { return test_name(std::string(spiteful_fields()[of.param].name)); });
+
+class QueriesOnDevice : public OnDevice {};
+
+TEST_F(QueriesOnDevice, SlicesDoNotShow) {
+  Random random(3);
+  const HeightField field = spiteful_fields()[4].make(random);
+  const DeviceGround ground(device(), field);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 1000; ++i) rays.push_back(spiteful_rays()[1].make(field, random));
+  std::vector<Hit> hits(rays.size()), other(rays.size());
+  std::vector<DeviceRayCost> costs(rays.size()), none(rays.size());
+  DeviceQueries whole(device(), find_march("max-mip"), {}, {.statistics = true});
+  DeviceQueries sliced(device(), find_march("max-mip"), {}, {.rays_at_once = 77});
+  whole.closest_hits({&field, &ground}, rays, hits, costs);
+  sliced.closest_hits({&field, &ground}, rays, other, none);
+  EXPECT_EQ(whole.passes().size(), 1u);
+  EXPECT_EQ(sliced.passes().size(), 13u);
+  std::uint64_t steps = 0, hit_count = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(hits[i].status, other[i].status);
+    EXPECT_EQ(hits[i].t, other[i].t);
+    EXPECT_GE(costs[i].fetches + 3, costs[i].steps);
+    EXPECT_EQ(none[i].steps, 0u);
+    steps += costs[i].steps;
+    hit_count += static_cast<bool>(hits[i]);
+  }
+  EXPECT_GT(hit_count, 300u);
+  EXPECT_GT(steps, hit_count);
+}
+
+// Marches that are interrupted every few turns.
+TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
+  constexpr int kFewTurns = 5, kFewSteps = 60, kFewRays = 4;
+  MarchSettings settings;
+  settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = kFewSteps;
+  settings.lipschitz.max_steps = kFewSteps;
+  std::map<std::string_view, DeviceQueries> at_once, interrupted;
+  for (const MarchEntry& march : height_marches()) {
+    if (!march.gpu) continue;
+    at_once.try_emplace(march.name, device(), march, settings, DeviceQuerySettings{.statistics = true});
+    interrupted.try_emplace(march.name, device(), march, settings,
+                            DeviceQuerySettings{.statistics = true, .turns_at_once = kFewTurns});
+  }
+  Random random(5);
+  int more_runs = 0;
+  for (const FieldKind& fields : spiteful_fields()) {
+    const HeightField field = fields.make(random);
+    const DeviceGround ground(device(), field);
+    const DeviceTarget target{&field, &ground, slope_bound(field)};
+    std::vector<Ray> rays;
+    for (const RayKind& kind : spiteful_rays()) {
+      if ((fields.has & kind.aims_at) != kind.aims_at) continue;
+      for (int i = 0; i < kFewRays; ++i) rays.push_back(kind.make(field, random));
+    }
+    std::vector<Hit> hits(rays.size()), other(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size()), other_blocked(rays.size());
+    std::vector<DeviceRayCost> costs(rays.size()), other_costs(rays.size());
+    for (auto& [march, whole] : at_once) {
+      DeviceQueries& in_pieces = interrupted.at(march);
+      whole.closest_hits(target, rays, hits, costs);
+      EXPECT_LE(whole.passes().size(), 1u);
+      in_pieces.closest_hits(target, rays, other, other_costs);
+      more_runs += in_pieces.passes().size() > 1;
+      whole.occluded(target, rays, blocked);
+      in_pieces.occluded(target, rays, other_blocked);
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        SCOPED_TRACE(fmt::format("{} on {}: {}", march, fields.name, text(rays[i])));
+        ASSERT_EQ(text(other[i]), text(hits[i]));
+        ASSERT_EQ(other[i].t, hits[i].t);
+        ASSERT_EQ(other_blocked[i], blocked[i]);
+        ASSERT_EQ(other_costs[i].steps, costs[i].steps);
+        ASSERT_EQ(other_costs[i].fetches, costs[i].fetches);
+      }
+    }
+  }
+  EXPECT_GT(more_runs, 20);
+}
+
+// Longer than lavapipe lets a loop be: over a slope along the ray, close above it for 100,000 cells, then against a
+// wall. Of holes there is one, far from the ray, so that `lipschitz` climbs through all levels at each step.
+TEST_F(QueriesOnDevice, LongMarchesEnd) {
+  constexpr int kCols = 100'001;
+  constexpr float kNodata = -1;
+  const auto ground_at = [](int col, int row) {
+    if (row == 3 && col == 0) return kNodata;
+    return col == kCols - 1 ? 3.0F : row < 2 ? 4.0F * static_cast<float>(1 - row) : 0.0F;
+  };
+  std::vector<float> samples;
+  for (int row = 0; row < 4; ++row) {
+    for (int col = 0; col < kCols; ++col) samples.push_back(ground_at(col, row));
+  }
+  HeightFieldSettings holes;
+  holes.nodata = kNodata;
+  const HeightField field = HeightField::own(samples, kCols, 4, holes);
+  const DeviceGround ground(device(), field);
+  const DeviceTarget target{&field, &ground, slope_bound(field)};
+  // In the row of cells between heights of 4 and 0, where the ground is 1.
+  const Ray ray{{10.5, 2.25, 1.5}, {1, 0, 0}};
+  // Steps are no shorter than floats are apart 100,000 metres away, and hits are told at less clearance than that.
+  constexpr double kLeastStep = 1e-6;  // of the way: a tenth of a metre
+  MarchSettings settings;
+  constexpr int kManySteps = 10'000'000;
+  settings.naive = {.min_step = kLeastStep, .tolerance = kLeastStep / 10, .max_steps = kManySteps};
+  settings.fixed_step.max_steps = kManySteps;
+  settings.relaxed = {.tolerance = kLeastStep / 10, .max_steps = kManySteps};
+  settings.lipschitz = {.tolerance = kLeastStep / 2, .max_steps = kManySteps};
+  constexpr std::uint32_t kLavapipeTurns = 65'535;
+  for (const MarchEntry& march : height_marches()) {
+    if (!march.gpu) continue;
+    SCOPED_TRACE(march.name);
+    DeviceQueries asked(device(), march, settings, {.statistics = true});
+    std::vector<Hit> hits(1);
+    std::vector<DeviceRayCost> costs(1);
+    std::vector<std::uint8_t> blocked(1);
+    asked.closest_hits(target, {&ray, 1}, hits, costs);
+    asked.occluded(target, {&ray, 1}, blocked);
+    EXPECT_GT(costs[0].steps, kLavapipeTurns);
+    ASSERT_EQ(hits[0].status, HitStatus::hit);
+    EXPECT_TRUE(blocked[0]);
+    EXPECT_EQ(hits[0].cell.col, kCols - 2);
+    EXPECT_EQ(hits[0].cell.row, 0);
+  }
+}
+
+TEST_F(QueriesOnDevice, SayWhatIsWrong) {
+  const HeightField field = HeightField::own(std::vector<float>(16, 1.0F), 4, 4);
+  const DeviceGround ground(device(), field);
+  EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_march("exhaustive")); }),
+            "march 'exhaustive': does not run on Vulkan devices; there run: max-mip, naive, fixed-step, relaxed, "
+            "lipschitz");
+  std::vector<Ray> rays(2);
+  std::vector<Hit> hits(1);
+  EXPECT_EQ(test::refusal([&] {
+              queries("max-mip").closest_hits({&field, &ground}, rays, hits);
+            }),
+            "batch: 2 rays, room for 1 answers");
+  hits.resize(2);
+  EXPECT_NE(test::refusal([&] { queries("lipschitz").closest_hits({&field, &ground}, rays, hits); }), "");
+  EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.rays_at_once = 0}); }), "");
+  EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.turns_at_once = 60'001}); }),
+            "device queries: 60001 turns at once; there can be 1 to 60000");
+  MarchSettings settings;
+  settings.naive.max_steps = 0;
+  EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_march("naive"), settings); }), "");
+}
+
+TEST(Marches, ThoseOfTheTableRunOnDevices) {
+  for (const MarchEntry& march : height_marches()) {
+    EXPECT_EQ(march.gpu, device_march_names().find(std::string(march.name)) != std::string::npos) << march.name;
+  }
+}
+
+constexpr std::uint32_t kShader[] = {
+#include "scarp/march/height/max_mip.comp.inc"
+};
+constexpr std::uint32_t kFixedStepShader[] = {
+#include "scarp/march/fixed_step.comp.inc"
+};
+constexpr std::uint32_t kNaiveShader[] = {
+#include "scarp/march/naive.comp.inc"
+};
+
+TEST(BatchLayout, IsThatOfTheShaders) {
+  using glsl::ScarpRay, glsl::ScarpHit, glsl::RayBatch;
+  EXPECT_TRUE(has_struct(
+      kShader, {offsetof(ScarpRay, cell), offsetof(ScarpRay, place), offsetof(ScarpRay, place_low),
+                offsetof(ScarpRay, direction), offsetof(ScarpRay, direction_low), offsetof(ScarpRay, per_direction),
+                offsetof(ScarpRay, z), offsetof(ScarpRay, z_low), offsetof(ScarpRay, end), offsetof(ScarpRay, end_low),
+                offsetof(ScarpRay, flags), offsetof(ScarpRay, travelled), offsetof(ScarpRay, exit),
+                offsetof(ScarpRay, per_height), offsetof(ScarpRay, cell_time)}));
+  EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpRay)));
+  EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpHit, status), offsetof(ScarpHit, cell), offsetof(ScarpHit, place),
+                                   offsetof(ScarpHit, time), offsetof(ScarpHit, time_low), offsetof(ScarpHit, steps),
+                                   offsetof(ScarpHit, fetches)}));
+  EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpHit)));
+  EXPECT_TRUE(has_struct(kShader,
+                         {offsetof(RayBatch, ground), offsetof(RayBatch, rays), offsetof(RayBatch, hits),
+                          offsetof(RayBatch, count), offsetof(RayBatch, step), offsetof(RayBatch, min_step),
+                          offsetof(RayBatch, tolerance), offsetof(RayBatch, max_steps), offsetof(RayBatch, interpolate),
+                          offsetof(RayBatch, turns), offsetof(RayBatch, resume), offsetof(RayBatch, states)}));
+  using glsl::BatchWalk, glsl::BatchSteps, glsl::BatchTime, glsl::ScarpWalk;
+  EXPECT_TRUE(has_struct(kShader, {offsetof(BatchWalk, hit), offsetof(BatchWalk, walk), offsetof(BatchWalk, z),
+                                   offsetof(BatchWalk, z_low)}));
+  EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpWalk, frame), offsetof(ScarpWalk, level), offsetof(ScarpWalk, col),
+                                   offsetof(ScarpWalk, row), offsetof(ScarpWalk, t_in), offsetof(ScarpWalk, side),
+                                   offsetof(ScarpWalk, through), offsetof(ScarpWalk, begun), offsetof(ScarpWalk, start),
+                                   offsetof(ScarpWalk, relief)}));
+  EXPECT_TRUE(is_laid_out_like<BatchWalk>(kShader));
+  EXPECT_TRUE(is_laid_out_like<BatchSteps>(kFixedStepShader));
+  EXPECT_TRUE(is_laid_out_like<BatchTime>(kNaiveShader));
+}
+
+}  // namespace
+}  // namespace scarp::test

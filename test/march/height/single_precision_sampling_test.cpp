@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+// The shader text of the marches that take samples, compiled as C++ with floats: they do what their texts say.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "march/glsl_host.h"
+#include "march/height/rounding_judge.h"
+#include "march/height/spiteful.h"
+#include "march/height/spiteful_text.h"
+#include "march/sampling_rules.h"
+#include "scarp/accel/slope_bound.h"
+#include "scarp/march/fixed_step.glsl.h"
+#include "scarp/march/height/device_ray.h"
+#include "scarp/march/lipschitz.glsl.h"
+#include "scarp/march/naive.glsl.h"
+#include "scarp/march/relaxed.glsl.h"
+
+namespace scarp::test {
+namespace {
+
+constexpr int kFieldsPerPair = 2;
+#ifdef NDEBUG
+constexpr int kRaysPerField = 40;
+#else
+constexpr int kRaysPerField = 10;
+#endif
+
+glsl::ScarpHit march_as_shader(std::string_view march, const MarchSettings& s, double slope,
+                               const glsl::ScarpField& field, const glsl::ScarpRay& ray) {
+  const auto f = [](double x) { return static_cast<float>(x); };
+  if (march == "naive")
+    return glsl::scarp_naive(field, ray,
+                             {f(s.naive.step_factor), f(s.naive.min_step), f(s.naive.tolerance), s.naive.max_steps});
+  if (march == "relaxed")
+    return glsl::scarp_relaxed(field, ray, {f(s.relaxed.step_factor), f(s.relaxed.tolerance), s.relaxed.max_steps});
+  if (march == "lipschitz")
+    return glsl::scarp_lipschitz(field, ray,
+                                 {f(1 / std::hypot(1.0, slope)), f(s.lipschitz.tolerance), s.lipschitz.max_steps});
+  return glsl::scarp_fixed_step(field, ray, {f(s.fixed_step.step), s.fixed_step.interpolate, s.fixed_step.max_steps});
+}
+
+struct Marched {
+  std::string_view march;
+  MarchSettings settings;
+};
+
+class SinglePrecisionSampling : public testing::TestWithParam<std::string> {};
+
+TEST_P(SinglePrecisionSampling, KeepsItsRule) {
+  Marched marched{GetParam(), {}};
+  if (marched.march == "fixed-step, plain") {
+    marched.march = "fixed-step";
+    marched.settings.fixed_step.interpolate = false;
+  }
+  int hits = 0;
+  for (const Pair& pair : pairs()) {
+    const FieldKind& fields = spiteful_fields()[pair.field];
+    const RayKind& rays = spiteful_rays()[pair.ray];
+    Random random(1000 * pair.field + pair.ray);
+    for (int i = 0; i < kFieldsPerPair; ++i) {
+      const HeightField field = fields.make(random);
+      const MaxPyramid pyramid(field);
+      const double slope = slope_bound(field);
+      glsl::host_field = &field;
+      glsl::host_pyramid = &pyramid;
+      for (int j = 0; j < kRaysPerField; ++j) {
+        const Ray ray = rays.make(field, random);
+        const DeviceRay prepared = sampled_device_ray(field, ray);
+        glsl::ScarpHit answer{};
+        if (prepared.marches)
+          answer = march_as_shader(marched.march, marched.settings, slope, device_field(field, &pyramid), prepared.ray);
+        const Hit hit = hit_from_device(ray, prepared, answer);
+        hits += static_cast<bool>(hit);
+        const std::string objection =
+            sampling_objection(marched.march, marched.settings, field, slope, ray, RoundingJudge(field, ray), hit);
+        ASSERT_EQ(objection, "") << fields.name << ", " << rays.name << ": " << text(ray) << "\n  " << text(hit);
+      }
+    }
+  }
+  EXPECT_GT(hits, 100 * kRaysPerField);
+}
+
+INSTANTIATE_TEST_SUITE_P(Marches, SinglePrecisionSampling,
+                         testing::Values("naive", "relaxed", "lipschitz", "fixed-step", "fixed-step, plain"),
+                         [](const auto& of) { return test_name(of.param); });
+
+// `lipschitz` over holes: else it would take another step in a block that it has left.
+TEST(SinglePrecisionSampling, LeavesBlocks) {
+  constexpr int kSide = 129, kRays = 4000;
+  const HeightField field = HeightField::own(std::vector<float>(kSide * kSide, 0.0F), kSide, kSide);
+  const MaxPyramid pyramid(field);
+  glsl::host_field = &field;
+  glsl::host_pyramid = &pyramid;
+  const glsl::ScarpField on_device = device_field(field, &pyramid);
+  Random random(11);
+  int left = 0;
+  for (int i = 0; i < kRays; ++i) {
+    Ray ray;
+    ray.origin = {uniform(random, 0, kSide - 1), uniform(random, 0, kSide - 1), 1};
+    // Some nearly along an axis: the slower a line is crossed, the more its time rounds.
+    ray.direction = {uniform(random, -1, 1), uniform(random, -1, 1) * std::exp2(-uniform(random, 0, 12)), -0.001};
+    const DeviceRay prepared = sampled_device_ray(field, ray);
+    ASSERT_TRUE(prepared.marches);
+    const float s = static_cast<float>(uniform(random, 0, 1)) * prepared.ray.exit;
+    const int level = whole(random, 0, pyramid.top_level());
+    const glsl::ScarpPoint from = glsl::scarp_point(on_device, prepared.ray, s);
+    const float after = glsl::scarp_leave_time(on_device, prepared.ray, from, level, s);
+    if (after > prepared.ray.exit) continue;
+    ++left;
+    const glsl::ScarpPoint to = glsl::scarp_point(on_device, prepared.ray, after);
+    EXPECT_TRUE(to.cell.x >> level != from.cell.x >> level || to.cell.y >> level != from.cell.y >> level) << text(ray);
+  }
+  EXPECT_GT(left, kRays / 4);
+}
+
+}  // namespace
+}  // namespace scarp::test

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Voxel grids and rays chosen to hurt.
+#pragma once
+
+#include <functional>
+#include <random>
+#include <string_view>
+#include <vector>
+
+#include "march/height/spiteful.h"
+#include "scarp/field/voxel_grid.h"
+#include "scarp/march/voxel/voxel_ray.h"
+
+namespace scarp::test {
+
+struct VoxelGridKind {
+  std::string_view name;
+  std::function<VoxelGrid(Random&)> make;
+};
+
+struct VoxelRayKind {
+  std::string_view name;
+  std::function<VoxelRay(const VoxelGrid&, Random&)> make;
+};
+
+const std::vector<VoxelGridKind>& spiteful_voxel_grids();
+const std::vector<VoxelRayKind>& spiteful_voxel_rays();
+
+/// Fills, clears or paints a random box, ball or voxel; returns the dirty box.
+VoxelBox random_edit(VoxelGrid& grid, Random& random);
+
+}  // namespace scarp::test

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/frame/layers.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+constexpr int kWidth = 48, kHeight = 32;
+
+// 33 x 33 nodes, 1 m apart, on the plane z = 7 + x / 4 - y / 2.
+HeightField plane() {
+  std::vector<float> samples;
+  for (int row = 0; row < 33; ++row) {
+    for (int col = 0; col < 33; ++col) {
+      samples.push_back(7 + 0.25f * static_cast<float>(col) - 0.5f * static_cast<float>(32 - row));
+    }
+  }
+  return HeightField::own(std::move(samples), 33, 33);
+}
+
+PictureSettings small() {
+  PictureSettings settings;
+  settings.width = kWidth;
+  settings.height = kHeight;
+  settings.plinth = false;
+  return settings;
+}
+
+TEST(Layers, TellWhereTheMiddleOfThePixelIsOnAPlane) {
+  const TerrainScene scene(plane(), find_march("max-mip"));
+  const dvec3 normal = normalize(dvec3(-0.25, 0.5, 1));
+  for (const Camera& camera : {Camera::look_at({10, 60, 40}, {16, 16, 3}, 40, kWidth, kHeight),
+                               Camera::top(picture_box(scene.field(), false), kWidth, kHeight)}) {
+    const PictureLayers layers = render_layers(scene, camera, 0, small());
+    int hits = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const std::size_t i = static_cast<std::size_t>(y * kWidth + x);
+        const Ray ray = camera.ray(x + 0.5, y + 0.5);
+        const double t = dot(dvec3(0, 0, 7) - ray.origin, normal) / dot(ray.direction, normal);
+        const dvec3 p = ray.at(t);
+        MarchStats stats;
+        scene.closest_hit(ray, &stats);
+        EXPECT_EQ(layers.steps[i], stats.steps);
+        if (p.x < 0 || p.x > 32 || p.y < 0 || p.y > 32) {
+          EXPECT_EQ(layers.depth[i], std::numeric_limits<float>::infinity());
+          EXPECT_EQ(layers.normal[i], vec3(0));
+          EXPECT_EQ(layers.position[i], vec3(0));
+          continue;
+        }
+        ++hits;
+        // One rounding to float each.
+        const auto near = [](float value, double expected) {
+          return std::abs(value - expected) <= 1e-12 + std::abs(expected) * std::numeric_limits<float>::epsilon() / 2;
+        };
+        EXPECT_TRUE(near(layers.depth[i], t * dot(ray.direction, camera.forward()))) << x << ", " << y;
+        for (int axis = 0; axis < 3; ++axis) {
+          EXPECT_TRUE(near(layers.position[i][axis], p[axis])) << x << ", " << y << ": " << p[axis];
+          EXPECT_TRUE(near(layers.normal[i][axis], normal[axis])) << x << ", " << y;
+        }
+      }
+    }
+    EXPECT_GT(hits, kWidth * kHeight / 4);
+    EXPECT_LT(hits, kWidth * kHeight) << "some rays miss";
+  }
+}
+
+TEST(Layers, TheColourIsThePicturesBeforeItsTransfer) {
+  const TerrainScene scene(plane(), find_march("max-mip"));
+  PictureSettings settings = small();
+  settings.plinth = true;
+  settings.samples = 4;
+  const Camera camera = Camera::framed(picture_box(scene.field(), true), {}, 0, kWidth, kHeight);
+  const PictureLayers layers = render_layers(scene, camera, 0, settings);
+  const Image image = render_picture(scene, camera, 0, settings).image;
+  Image developed(kWidth, kHeight);
+  for (int i = 0; i < kWidth * kHeight; ++i) {
+    set_pixel(developed, i % kWidth, i / kWidth, layers.colour[static_cast<std::size_t>(i)]);
+  }
+  EXPECT_EQ(developed.rgb, image.rgb);
+}
+
+TEST(Layers, WallsOfTheBlockCountAsMet) {
+  const TerrainScene scene(plane(), find_march("max-mip"));
+  PictureSettings settings = small();
+  settings.plinth = true;
+  // Level, from the south, below the ground's border: the wall at y = 0.
+  const Camera camera = Camera::look_at({16, -20, 2}, {16, 0, 2}, 2, kWidth, kHeight);
+  const PictureLayers layers = render_layers(scene, camera, 0, settings);
+  for (std::size_t i = 0; i < layers.depth.size(); ++i) {
+    EXPECT_FLOAT_EQ(layers.depth[i], 20);
+    EXPECT_EQ(layers.normal[i], vec3(0, -1, 0));
+    EXPECT_NEAR(layers.position[i].y, 0, 1e-6);
+    EXPECT_EQ(layers.steps[i], 0u);
+  }
+}
+
+TEST(Layers, WallsOfSolidGroundAreNoSurface) {
+  HeightFieldSettings solid;
+  solid.solid = true;
+  std::vector<float> samples(33 * 33);
+  for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = 7 + static_cast<float>(i % 33 % 3);
+  const TerrainScene scene(HeightField::own(std::move(samples), 33, 33, solid), find_march("max-mip"));
+  // Level, from the south, below the ground's border: the wall at y = 0.
+  const Camera camera = Camera::look_at({16, -20, 6.6}, {16, 0, 6.6}, 2, kWidth, kHeight);
+  PictureSettings settings = small();
+  settings.haze = 0;  // it depends on the size of the block
+  const PictureLayers layers = render_layers(scene, camera, 0, settings);
+  settings.plinth = true;
+  const PictureLayers block = render_layers(scene, camera, 0, settings);
+  for (std::size_t i = 0; i < layers.depth.size(); ++i) {
+    EXPECT_FLOAT_EQ(layers.depth[i], 20);
+    EXPECT_EQ(layers.normal[i], vec3(0, -1, 0));
+    EXPECT_EQ(layers.colour[i], block.colour[i]) << "that of the block's wall";
+  }
+}
+
+TEST(Layers, GoWithTheLookShadedAlone) {
+  const TerrainScene scene(plane(), find_march("max-mip"));
+  const Camera camera = Camera::top(picture_box(scene.field(), false), kWidth, kHeight);
+  for (const Look look : {Look::height, Look::steps, Look::error}) {
+    PictureSettings settings = small();
+    settings.look = look;
+    EXPECT_THROW(render_layers(scene, camera, 0, settings), Error);
+  }
+  PictureSettings settings = small();
+  settings.samples = -1;
+  EXPECT_THROW(render_layers(scene, camera, 0, settings), Error);
+  EXPECT_THROW(render_layers(scene, camera, 0, small(), [](double) { return false; }), Interrupted);
+}
+
+}  // namespace
+}  // namespace scarp

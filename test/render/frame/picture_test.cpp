@@ -1,0 +1,364 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/frame/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <glm/trigonometric.hpp>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+
+namespace scarp {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// side x side nodes, 1 m apart, at `ground` metres, to be changed by `edit(samples, side)`.
+template <class F>
+HeightField field_of(int side, float ground, F&& edit) {
+  std::vector<float> samples(static_cast<std::size_t>(side * side), ground);
+  edit(samples, side);
+  return HeightField::own(std::move(samples), side, side);
+}
+void nothing(std::vector<float>&, int) {}
+
+// A map with 10 pixels per cell, everything plain.
+PictureSettings map_settings(const HeightField& field) {
+  PictureSettings settings;
+  settings.width = 10 * field.cell_cols();
+  settings.height = 10 * field.cell_rows();
+  settings.aa = 1;
+  settings.haze = 0;
+  settings.ramp = "grey";
+  return settings;
+}
+
+Picture map_of(const HeightField& field, const PictureSettings& settings, double grid_north = 0,
+               std::string_view march = "max-mip") {
+  const Camera camera = Camera::top(picture_box(field, false), settings.width, settings.height);
+  return render_picture(TerrainScene(field, find_march(march)), camera, grid_north, settings);
+}
+
+// Of that map the two rows of pixels next to its middle. Row 1 lies where row 100 of 200 does, the lower of the two.
+Image middle_of(const HeightField& field, PictureSettings settings, double grid_north = 0) {
+  constexpr int kRows = 2;
+  Box box = picture_box(field, false);
+  const double middle = box.middle().y, half = (box.high.y - middle) * kRows / settings.height;
+  box.low.y = middle - half, box.high.y = middle + half;
+  settings.height = kRows;
+  const Camera camera = Camera::top(box, settings.width, settings.height);
+  return render_picture(TerrainScene(field, find_march("max-mip")), camera, grid_north, settings).image;
+}
+
+int red(const Image& image, int x, int y) { return image.pixel(x, y)[0]; }
+
+// A wall 4 m high along column 10 of 21, its flanks one cell wide.
+HeightField wall() {
+  return field_of(21, 0, [](std::vector<float>& samples, int side) {
+    for (int row = 0; row < side; ++row) samples[static_cast<std::size_t>(row * side + 10)] = 4;
+  });
+}
+
+// How bright level ground at x is, on the map of the wall with the sun in the west at 45 degrees.
+int brightness_at(double x, double grid_north, bool shadows) {
+  const HeightField field = wall();
+  PictureSettings settings = map_settings(field);
+  settings.ramp = "viridis";
+  settings.sun = {270, 45};
+  settings.shadows = shadows;
+  return red(middle_of(field, settings, grid_north), static_cast<int>(10 * x), 1);
+}
+
+TEST(Picture, ShadowsEndWhereTheSunSaysSo) {
+  // 4 m at 45 degrees: the shadow of the crest at x = 10 ends at x = 14.
+  const int lit = brightness_at(17, 0, true);
+  EXPECT_LT(brightness_at(13.8, 0, true), 0.8 * lit);
+  EXPECT_EQ(brightness_at(14.3, 0, true), lit);
+  EXPECT_EQ(brightness_at(7, 0, true), lit) << "the side towards the sun";
+  EXPECT_EQ(brightness_at(13.8, 0, false), lit) << "hill shade only";
+}
+
+TEST(Picture, TheSunKnowsTrueNorth) {
+  // The raster's up is compass south, so the compass's west is its east.
+  const double upside_down = glm::radians(180.0);
+  const int lit = brightness_at(3, upside_down, true);
+  EXPECT_LT(brightness_at(6.2, upside_down, true), 0.8 * lit);
+  EXPECT_EQ(brightness_at(13.8, upside_down, true), lit);
+}
+
+TEST(Picture, LevelGroundInTheSunHasTheColourOfItsRamp) {
+  const HeightField field = field_of(5, 30, nothing);
+  PictureSettings settings = map_settings(field);
+  settings.ramp = "hypsometric";
+  const Image image = map_of(field, settings).image;
+  EXPECT_EQ(int{image.pixel(20, 20)[0]}, 0x78);
+  EXPECT_EQ(int{image.pixel(20, 20)[1]}, 0x9b);
+  EXPECT_EQ(int{image.pixel(20, 20)[2]}, 0x74);
+}
+
+TEST(Picture, SamplesLeaveLevelGroundInTheSunAsItIs) {
+  const HeightField field = field_of(5, 30, nothing);
+  PictureSettings settings = map_settings(field);
+  settings.ramp = "hypsometric";
+  settings.samples = 16;
+  const Image image = map_of(field, settings).image;
+  for (const auto& [x, y] : {std::pair(20, 20), {0, 0}, {39, 39}}) {
+    // The mean cosine over the samples of the sun's disc is not quite that of its middle.
+    EXPECT_NEAR(image.pixel(x, y)[0], 0x78, 1);
+    EXPECT_NEAR(image.pixel(x, y)[1], 0x9b, 1);
+    EXPECT_NEAR(image.pixel(x, y)[2], 0x74, 1);
+  }
+}
+
+TEST(Picture, SamplesDependOnPixelAndSeedAndNotOnThreads) {
+  const HeightField field = wall();
+  PictureSettings settings = map_settings(field);
+  settings.width = settings.height = 60;
+  settings.aa = 2;
+  settings.samples = 5;
+  settings.sun.size_deg = 20;
+  const auto with_threads = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return map_of(field, settings).image.rgb;
+  };
+  const auto one = with_threads(1);
+  EXPECT_EQ(with_threads(4), one);
+  EXPECT_EQ(with_threads(0), one);
+  settings.seed = 1;
+  EXPECT_NE(with_threads(1), one);
+}
+
+TEST(Picture, SamplesOfAPixelDrawPointsOfTheirOwn) {
+  // Where half of a wide sun is seen, one ray to it finds it or not. With the same ray for all four samples of a pixel
+  // half of the pixels would be dark; with rays of their own, spread as well as four can be, none is.
+  const HeightField field = wall();
+  PictureSettings settings = map_settings(field);
+  settings.ramp = "viridis";
+  settings.sun = {270, 45, 20};
+  settings.aa = 2;
+  settings.samples = 1;
+  settings.ao_distance = 0;
+  const Image image = map_of(field, settings).image;
+  const int dark = red(image, 122, 100);
+  int found_dark = 0;
+  for (int y = 50; y < 150; ++y) found_dark += red(image, 140, y) == dark;
+  EXPECT_LT(found_dark, 10);
+}
+
+TEST(Picture, OcclusionDarkensTheFootOfAWallInItsShadow) {
+  const HeightField field = wall();
+  PictureSettings settings = map_settings(field);
+  settings.ramp = "viridis";
+  settings.sun = {270, 45};
+  settings.samples = 16;
+  const auto row = [&] {
+    std::vector<int> reds;
+    const Image image = middle_of(field, settings);
+    // Beyond x = 12 m the shading normal is upright, and before 13.9 m the shadow is whole.
+    for (const double x : {12.2, 13.8, 19.0}) reds.push_back(red(image, static_cast<int>(10 * x), 1));
+    return reds;
+  };
+  const auto with = row();
+  settings.ao_distance = 0;
+  const auto without = row();
+  EXPECT_LT(with[0], with[1]);
+  EXPECT_LT(with[1], without[1]);
+  EXPECT_EQ(without[0], without[1]) << "without occlusion a shadow is even";
+  EXPECT_LT(without[1], with[2]) << "level ground in the sun";
+}
+
+TEST(Picture, HolesShowTheSky) {
+  const HeightField field = field_of(
+      9, 30, [](std::vector<float>& samples, int side) { samples[static_cast<std::size_t>(4 * side + 4)] = kNaN; });
+  const Image image = map_of(field, map_settings(field)).image;
+  EXPECT_NE(red(image, 40, 40), red(image, 10, 10));
+  // Outside of the field, in a wider picture, is the same sky.
+  PictureSettings wide = map_settings(field);
+  wide.width *= 2;
+  const Image beside = map_of(field, wide).image;
+  EXPECT_EQ(red(image, 40, 40), red(beside, 1, 40));
+}
+
+TEST(Picture, HeightIsLinearFromOneAndMissesAreBlack) {
+  // Ten steps from 100 m in the west to 110 m in the east, with a hole.
+  const HeightField field = field_of(11, 0, [](std::vector<float>& samples, int side) {
+    for (int i = 0; i < side * side; ++i) samples[static_cast<std::size_t>(i)] = static_cast<float>(100 + i % side);
+    samples[60] = kNaN;
+  });
+  PictureSettings settings = map_settings(field);
+  settings.look = Look::height;
+  const Image image = map_of(field, settings).image;
+  for (const int x : {0, 20, 77, 99}) EXPECT_NEAR(red(image, x, 5), 1 + 25.4 * (x + 0.5) / 10, 0.5001) << x;
+  EXPECT_EQ(red(image, 50, 50), 0);
+}
+
+TEST(Picture, StepsCountWhatTheMarchReports) {
+  const TerrainScene scene(wall(), find_march("max-mip"));
+  PictureSettings settings;
+  settings.width = 40;
+  settings.height = 30;
+  settings.look = Look::steps;
+  settings.ramp = "grey";
+  settings.plinth = false;
+  const Camera camera = Camera::framed(picture_box(scene.field(), false), {.azimuth_deg = 160}, 0, 40, 30);
+  const Picture picture = render_picture(scene, camera, 0, settings);
+  ASSERT_TRUE(picture.steps);
+  double sum = 0;
+  std::uint32_t most = 0;
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) {
+      MarchStats stats;
+      scene.closest_hit(camera.ray(x + 0.5, y + 0.5), &stats);
+      sum += stats.steps;
+      if (stats.steps >= most) {
+        most = stats.steps;
+        EXPECT_EQ(red(picture.image, x, y) == 255, most == picture.steps->most);
+      }
+    }
+  }
+  EXPECT_EQ(picture.steps->most, most);
+  EXPECT_EQ(picture.steps->least, 0u) << "rays beside the field";
+  EXPECT_NEAR(picture.steps->mean, sum / (40 * 30), 1e-9);
+}
+
+// From the south, just above the ground, towards a spike in the middle of a plain.
+Picture errors_at_a_spike(std::string_view march, const MarchSettings& march_settings = {}) {
+  const HeightField field = field_of(
+      65, 0, [](std::vector<float>& samples, int side) { samples[static_cast<std::size_t>(32 * side + 32)] = 20; });
+  PictureSettings settings;
+  settings.width = settings.height = 64;
+  settings.look = Look::error;
+  const Camera camera = Camera::look_at({32, -20, 12}, {32, 32, 8}, 25, settings.width, settings.height);
+  return render_picture(TerrainScene(field, find_march(march), march_settings), camera, 0, settings);
+}
+
+TEST(ErrorLook, ANaiveMarchLosesASpike) {
+  MarchSettings coarse;
+  coarse.naive.min_step = 0.2;
+  const Picture picture = errors_at_a_spike("naive", coarse);
+  ASSERT_TRUE(picture.errors);
+  const ErrorCounts& counts = *picture.errors;
+  EXPECT_GT(counts[Verdict::lost] + counts[Verdict::late], 10);
+  EXPECT_EQ(std::accumulate(counts.pixels.begin(), counts.pixels.end(), std::int64_t{0}), 64 * 64);
+  // Lost ground is red.
+  std::int64_t reds = 0;
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      const std::uint8_t* p = picture.image.pixel(x, y);
+      reds += p[0] > 60 && p[1] < p[0] / 3 && p[2] < p[0] / 3;
+    }
+  }
+  EXPECT_EQ(reds, counts[Verdict::lost]);
+}
+
+TEST(ErrorLook, AnExactMarchHasNoErrors) {
+  const Picture picture = errors_at_a_spike("max-mip");
+  const ErrorCounts& counts = *picture.errors;
+  EXPECT_GT(counts[Verdict::right_hit], 500);
+  EXPECT_GT(counts[Verdict::right_miss], 500);
+  for (const Verdict wrong : {Verdict::lost, Verdict::invented, Verdict::early, Verdict::late, Verdict::gave_up}) {
+    EXPECT_EQ(counts[wrong], 0) << name_of(wrong);
+  }
+}
+
+TEST(ErrorLook, TheVerdictIsByStatusThenByDistance) {
+  const auto hit = [](double t) {
+    Hit h;
+    h.status = HitStatus::hit;
+    h.t = t;
+    return h;
+  };
+  const auto other = [](HitStatus status) {
+    Hit h;
+    h.status = status;
+    return h;
+  };
+  const Hit miss = other(HitStatus::miss), below = other(HitStatus::below), exhausted = other(HitStatus::exhausted);
+  EXPECT_EQ(judge(hit(5), hit(5.1), 0.2), Verdict::right_hit);
+  EXPECT_EQ(judge(hit(4.8), hit(5.1), 0.2), Verdict::early);
+  EXPECT_EQ(judge(hit(5.4), hit(5.1), 0.2), Verdict::late);
+  EXPECT_EQ(judge(miss, hit(5), 0.2), Verdict::lost);
+  EXPECT_EQ(judge(below, hit(5), 0.2), Verdict::lost);
+  EXPECT_EQ(judge(hit(5), miss, 0.2), Verdict::invented);
+  EXPECT_EQ(judge(miss, miss, 0.2), Verdict::right_miss);
+  EXPECT_EQ(judge(exhausted, hit(5), 0.2), Verdict::gave_up);
+  EXPECT_EQ(judge(exhausted, miss, 0.2), Verdict::gave_up);
+  EXPECT_EQ(judge(hit(5), below, 0.2), Verdict::not_judged);
+}
+
+TEST(Picture, ThePlinthStandsBelowTheBorder) {
+  const HeightField field = field_of(21, 100, nothing);
+  const TerrainScene scene(field, find_march("max-mip"));
+  PictureSettings settings;
+  settings.width = 200;
+  settings.height = 100;
+  const Camera camera =
+      Camera::framed(picture_box(field, true), {.azimuth_deg = 180, .elevation_deg = 20}, 0, 200, 100);
+  const auto p = camera.pixel({10, 0, 100 - 0.3}).value();
+  const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
+  const Image with = render_picture(scene, camera, 0, settings).image;
+  settings.plinth = false;
+  const Image without = render_picture(scene, camera, 0, settings).image;
+  EXPECT_LT(red(with, x, y), 160) << "earth";
+  EXPECT_GT(red(without, x, y), 200) << "sky";
+}
+
+TEST(Picture, ANameOfALookIsFoundAndAnUnknownOneListsThem) {
+  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error})
+    EXPECT_EQ(find_look(name_of(look)), look);
+  EXPECT_THROW(find_look("pretty"), Error);
+}
+
+TEST(Picture, SettingsOutOfRangeAreRefused) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const PictureSettings& bad : {PictureSettings{.width = 0},
+                                     {.width = -5},
+                                     {.height = 0},
+                                     {.width = 1000000, .height = 1000000},
+                                     {.width = 65536, .height = 65536},
+                                     {.aa = 0},
+                                     {.aa = 17},
+                                     {.ramp = "jet"},
+                                     {.haze = nan},
+                                     {.haze = 1},
+                                     {.error_tolerance = -1},
+                                     {.error_tolerance = nan},
+                                     {.samples = -1},
+                                     {.samples = 4097},
+                                     {.ao_distance = -1},
+                                     {.ao_distance = nan},
+                                     {.sun = {315, -1}},
+                                     {.sun = {315, 45, -1}},
+                                     {.sun = {315, 45, nan}},
+                                     {.sun = {315, 45, 91}}}) {
+    EXPECT_THROW(validate(bad), Error);
+  }
+  EXPECT_NO_THROW(validate(PictureSettings{}));
+}
+
+TEST(Picture, AFieldWithNothingToSeeIsAnError) {
+  const Camera camera = Camera::look_at({0, -5, 5}, {0, 0, 0}, 30, 8, 8);
+  PictureSettings settings;
+  settings.width = settings.height = 8;
+  const MarchEntry& march = find_march("max-mip");
+  EXPECT_THROW(render_picture(TerrainScene(field_of(1, 5, nothing), march), camera, 0, settings), Error);
+  EXPECT_THROW(render_picture(TerrainScene(field_of(3, kNaN, nothing), march), camera, 0, settings), Error);
+}
+
+TEST(Picture, StopsWhenItIsAskedTo) {
+  const HeightField field = wall();
+  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error}) {
+    PictureSettings settings = map_settings(field);
+    settings.look = look;
+    const Camera camera = Camera::top(picture_box(field, false), settings.width, settings.height);
+    EXPECT_THROW(
+        render_picture(TerrainScene(field, find_march("max-mip")), camera, 0, settings, [](double) { return false; }),
+        Interrupted);
+  }
+}
+
+}  // namespace
+}  // namespace scarp

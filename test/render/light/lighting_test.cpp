@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/light/lighting.h"
+
+#include <gtest/gtest.h>
+
+namespace scarp {
+namespace {
+
+vec3 light_on(double openness, int samples, std::uint8_t sky_blocked) {
+  PictureSettings settings;
+  settings.samples = samples;
+  settings.shadows = false;
+  const Lighting lighting(settings, 0, kWholeField);
+  // Its back to the sun: what is left is the sky's.
+  const GroundPoint ground{{0, 0, 0}, {}, -lighting.to_sun(), -lighting.to_sun(), openness};
+  std::vector<Ray> rays;
+  const LightRays asked = lighting.ask(ground, {0.5, 0.5, 0, 0, 0}, rays);
+  const std::vector<std::uint8_t> blocked(rays.size(), sky_blocked);
+  return lighting.on(ground, asked, rays, blocked);
+}
+
+TEST(Lighting, OpennessIsAShareOfTheSky) {
+  const vec3 open = light_on(1, 0, 0);
+  EXPECT_GT(open.x, 0);
+  EXPECT_FLOAT_EQ(light_on(0.25, 0, 0).x, 0.25F * open.x);
+  EXPECT_EQ(light_on(0, 0, 0), vec3(0.0F));
+}
+
+TEST(Lighting, OpennessDoesNotCountWhereTheSkyIsAsked) {
+  EXPECT_EQ(light_on(0.25, 8, 0), light_on(1, 8, 0));
+  EXPECT_EQ(light_on(1, 8, 1), vec3(0.0F));
+}
+
+}  // namespace
+}  // namespace scarp

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/surface/ground_paint.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+// 0 to 100 m over 100 m.
+HeightField slope() {
+  std::vector<float> samples;
+  for (int row = 0; row < 11; ++row) {
+    for (int col = 0; col < 11; ++col) samples.push_back(10.0f * static_cast<float>(col));
+  }
+  HeightFieldSettings settings;
+  settings.cell_x = settings.cell_y = 10;
+  return HeightField::own(std::move(samples), 11, 11, settings);
+}
+
+const dvec3 kSun = normalize(dvec3(-1, 0, 1));
+
+GroundPaint paint(const GroundPaintSettings& settings, const HeightField& field) {
+  return {settings, field, Ramp("grey", 0, 100), kSun};
+}
+
+TEST(GroundPaint, ContoursAreAtTheirHeightsAndSoWideInPixels) {
+  const HeightField field = slope();
+  const GroundPaint with = paint({.contours = 20}, field), without = paint({}, field);
+  const dvec3 normal = normalize(dvec3(-1, 0, 1));
+  constexpr double kPixel = 0.25;
+  for (double height = 1; height < 99; height += 0.05) {
+    const dvec3 p(height, 50, height);
+    const bool inked = with(p, height, normal, kPixel) != without(p, height, normal, kPixel);
+    const double line = std::round(height / 20);
+    // Slope 1: as many metres sideways as upwards. Every fifth line is heavier: half of 2.0 pixels instead of 1.1, and
+    // half a pixel of blur on both.
+    const double reach = (line == 0 || line == 5 ? 1.5 : 1.05) * kPixel, off = std::abs(height - line * 20);
+    if (std::abs(off - reach) < 1e-6) continue;
+    EXPECT_EQ(inked, off < reach) << height;
+  }
+  // Lines closer than three pixels are no lines.
+  EXPECT_EQ(with({20, 50, 20}, 20, normal, 8), without({20, 50, 20}, 20, normal, 8));
+}
+
+TEST(GroundPaint, RockIsSteepAndSnowIsHigh) {
+  const HeightField field = slope();
+  const GroundPaint natural = paint({.natural = true, .snow_share = 0.7}, field);
+  const auto at = [&](double height, const dvec3& normal) {
+    return natural({50, 50, height}, height, normalize(normal), 1e9);
+  };
+  const vec3 meadow = at(20, {0, 0, 1}), rock = at(20, {1, 0, 0.5}), snow = at(95, {0, 0, 1}),
+             cliff = at(95, {1, 0, 0.3});
+  EXPECT_GT(meadow.y, meadow.x) << "green";
+  EXPECT_GT(rock.x, rock.y);
+  EXPECT_GT(snow.x, 0.7f);
+  EXPECT_LT(cliff.x, 0.5f) << "too steep for snow";
+  // Just below the line there is more of it on the side away from the sun, in the west.
+  EXPECT_GT(at(68, {0.4, 0, 1}).z, at(68, {-0.4, 0, 1}).z);
+}
+
+TEST(GroundPaint, DrapesAPictureOverTheField) {
+  const HeightField field = slope();
+  auto drape = std::make_shared<Drape>(Drape{2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 9, 9, 9, 0}});
+  const GroundPaint paper = paint({.drape = drape}, field);
+  const auto at = [&](double x, double y) { return paper({x, y, 0}, 100, {0, 0, 1}, 1); };
+  EXPECT_EQ(at(0, 100), vec3(1, 0, 0)) << "the north-west";
+  EXPECT_EQ(at(100, 100), vec3(0, 1, 0));
+  EXPECT_EQ(at(0, 0), vec3(0, 0, 1));
+  EXPECT_EQ(at(100, 0), vec3(1, 1, 1)) << "transparent: the ramp below, white at its top";
+  const vec3 middle = at(50, 100);
+  EXPECT_NEAR(middle.x, 0.5, 1e-6);
+  EXPECT_NEAR(middle.y, 0.5, 1e-6);
+}
+
+TEST(GroundPaint, DetailIsGoneFarAway) {
+  const HeightField field = slope();
+  const GroundPaint rough = paint({.detail = 0.5, .detail_size = 10}, field), smooth = paint({}, field);
+  int different = 0;
+  for (int i = 0; i < 100; ++i) {
+    const dvec3 p(7.3 * i, 3.9 * i, 0);
+    different += rough(p, 60, {0, 0, 1}, 0.1) != smooth(p, 60, {0, 0, 1}, 0.1);
+    EXPECT_EQ(rough(p, 60, {0, 0, 1}, 10), smooth(p, 60, {0, 0, 1}, 10));
+  }
+  EXPECT_GT(different, 90);
+}
+
+TEST(GroundPaint, RampsOfFilesKeepTheirValues) {
+  RampStops stops;
+  stops.slices = {{-10, 0, {0, 0, 1}, {0, 0, 1}}, {0, 50, {0, 1, 0}, {1, 0, 0}}};
+  const Ramp ramp(stops, 0, 100, 2);  // twice exaggerated
+  EXPECT_EQ(ramp(-5), vec3(0, 0, 1));
+  EXPECT_EQ(ramp(1e-9).z, 0) << "a break";
+  EXPECT_EQ(ramp(100), vec3(1, 0, 0));
+  EXPECT_EQ(ramp(1e9), vec3(1, 0, 0));
+  EXPECT_EQ(ramp(-1e9), vec3(0, 0, 1));
+  EXPECT_NEAR(ramp(50).x, linear_from_srgb(vec3(0.5f)).x, 1e-6) << "mixed as the file's colours are";
+  stops.slices = {{-1, 0, {0, 0, 0}, {1, 1, 1}}, {0, 1, {0, 0, 0}, {1, 0, 0}}};
+  stops.stretched = stops.hinged = true;
+  const Ramp hinged(stops, -20, 400);
+  EXPECT_EQ(hinged(-20), vec3(0, 0, 0));
+  EXPECT_NEAR(hinged(-1e-9).y, 1, 1e-6);
+  EXPECT_EQ(hinged(400), vec3(1, 0, 0));
+}
+
+TEST(GroundPaint, RefusesWhatIsOutOfRange) {
+  EXPECT_THROW(validate(GroundPaintSettings{.detail = 2}), Error);
+  EXPECT_THROW(validate(GroundPaintSettings{.detail_size = -1}), Error);
+  EXPECT_THROW(validate(GroundPaintSettings{.contours = -1}), Error);
+  EXPECT_THROW(validate(GroundPaintSettings{.snow_share = NAN}), Error);
+}
+
+}  // namespace
+}  // namespace scarp
