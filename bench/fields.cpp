@@ -12,7 +12,7 @@
 #include "scarp/base/error.h"
 #include "scarp/source/procedural_dem.h"
 #ifdef SCARP_BENCH_GDAL
-#include "scarp/scene/from_raster.h"
+#include "scarp/scene/file/from_raster.h"
 #include "scarp/source/read_raster.h"
 #endif
 

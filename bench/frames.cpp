@@ -14,7 +14,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/render/frame/picture.h"
-#include "scarp/scene/from_raster.h"
+#include "scarp/scene/file/from_raster.h"
 #include "scarp/source/procedural_dem.h"
 #ifdef SCARP_BENCH_VULKAN
 #include "scarp/render/frame/terrain_frame_vk.h"

@@ -16,7 +16,7 @@
 #include "scarp/base/parallel.h"
 #include "scarp/march/function/function_exhaustive.h"
 #include "scarp/march/marches.h"
-#include "scarp/scene/example_functions.h"
+#include "scarp/scene/file/example_functions.h"
 
 namespace scarp::bench {
 namespace {

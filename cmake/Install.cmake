@@ -1,10 +1,10 @@
 # The two targets that others link, and their way into an installed tree:
-#   scarp::core   base, vk, field, accel, march: needs neither GDAL, libpng nor OpenEXR
+#   scarp::core   base, vk, field, accel, march, scene: needs neither GDAL, libpng nor OpenEXR
 #   scarp::scarp  all stations
 # find_package(scarp COMPONENTS core) reads scarp-core-targets.cmake alone and asks for nothing that core does not use.
 include(CMakePackageConfigHelpers)
 
-set(core_stations scarp_base scarp_field scarp_accel scarp_march)
+set(core_stations scarp_base scarp_field scarp_accel scarp_march scarp_scene)
 if(SCARP_VULKAN)
   list(APPEND core_stations scarp_vk)
 endif()
@@ -74,7 +74,7 @@ add_custom_target(scarp_flat_texts ALL DEPENDS ${flat_texts})
 install(FILES ${flat_texts} DESTINATION ${shader_folder})
 
 # For editors that complete scene files by their schema.
-install(FILES scarp/scene/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/scarp)
+install(FILES scarp/scene/file/scene.schema.json DESTINATION ${CMAKE_INSTALL_DATADIR}/scarp)
 
 # The command line's target comes into being after this file was read.
 function(scarp_install_app)

@@ -33,7 +33,7 @@
 #include "scarp/march/height/queries.h"
 #include "scarp/march/height/wall.h"
 #include "scarp/output/hit_table.h"
-#include "scarp/scene/from_raster.h"
+#include "scarp/scene/file/from_raster.h"
 #include "scarp/scene/terrain_scene.h"
 #include "scarp/source/coordinates.h"
 #include "scarp/source/ray_table.h"

@@ -4,7 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "scarp/scene/from_raster.h"
+#include "scarp/scene/file/from_raster.h"
 
 namespace scarp::cli {
 

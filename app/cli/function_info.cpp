@@ -13,7 +13,7 @@
 
 #include "app/cli/function_input.h"
 #include "scarp/field/height_function.h"
-#include "scarp/scene/example_functions.h"
+#include "scarp/scene/file/example_functions.h"
 
 namespace scarp::cli {
 namespace {

@@ -20,7 +20,7 @@
 #include "scarp/render/camera/compass.h"
 #include "scarp/render/frame/scene_picture.h"
 #include "scarp/render/surface/ramp.h"
-#include "scarp/scene/example_functions.h"
+#include "scarp/scene/file/example_functions.h"
 
 namespace scarp::cli {
 namespace {

@@ -18,7 +18,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/field/height_function.h"
-#include "scarp/scene/example_functions.h"
+#include "scarp/scene/file/example_functions.h"
 #include "scarp/source/procedural_dem_file.h"
 
 namespace scarp::cli {

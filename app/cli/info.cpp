@@ -21,7 +21,7 @@
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
-#include "scarp/scene/from_raster.h"
+#include "scarp/scene/file/from_raster.h"
 #include "scarp/source/read_raster.h"
 
 namespace scarp::cli {

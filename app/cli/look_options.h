@@ -10,7 +10,7 @@
 
 #include "scarp/march/marches.h"
 #include "scarp/render/frame/picture.h"
-#include "scarp/scene/from_raster.h"
+#include "scarp/scene/file/from_raster.h"
 
 namespace scarp::cli {
 

@@ -38,8 +38,8 @@
 #include "scarp/render/camera/field_view.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/render/surface/ramp.h"
-#include "scarp/scene/from_raster.h"
-#include "scarp/scene/from_vox.h"
+#include "scarp/scene/file/from_raster.h"
+#include "scarp/scene/file/from_vox.h"
 #include "scarp/source/read_raster.h"
 
 namespace scarp::cli {

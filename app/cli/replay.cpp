@@ -15,7 +15,7 @@
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/rounding.h"
-#include "scarp/scene/ray_dump.h"
+#include "scarp/scene/file/ray_dump.h"
 
 namespace scarp::cli {
 namespace {
@@ -138,7 +138,7 @@ void add_replay(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "replay", "Send rays out of a text file through all marches; fails when exact ones differ");
   const auto path = std::make_shared<std::string>();
-  command->add_option("FILE", *path, "rays as scarp-bench leaks and the tests write them (scarp/scene/ray_dump.h)")
+  command->add_option("FILE", *path, "rays as scarp-bench leaks and the tests write them (scarp/scene/file/ray_dump.h)")
       ->required();
   command->callback([path] { replay(*path); });
 }

@@ -8,7 +8,7 @@
 
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/scene_picture.h"
-#include "scarp/scene/scene_file.h"
+#include "scarp/scene/file/scene_file.h"
 
 namespace scarp::cli {
 

@@ -11,7 +11,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/render/surface/ramp.h"
-#include "scarp/scene/from_volume.h"
+#include "scarp/scene/file/from_volume.h"
 
 namespace scarp::cli {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "scarp/scene/from_vox.h"
+#include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/voxel_shading.h"
 
 namespace scarp::cli {

@@ -8,10 +8,10 @@
 #include "scarp/base/error.h"
 #include "scarp/field/rotate_voxels.h"
 #include "scarp/scene/coarse_voxels.h"
-#include "scarp/scene/from_volume.h"
-#include "scarp/scene/from_vox.h"
+#include "scarp/scene/file/from_volume.h"
+#include "scarp/scene/file/from_vox.h"
+#include "scarp/scene/file/to_vox.h"
 #include "scarp/scene/scene.h"
-#include "scarp/scene/to_vox.h"
 #include "scarp/scene/voxelised.h"
 
 namespace scarp {

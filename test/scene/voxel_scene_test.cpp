@@ -10,7 +10,7 @@
 
 #include "base/refusal.h"
 #include "scarp/base/error.h"
-#include "scarp/scene/from_vox.h"
+#include "scarp/scene/file/from_vox.h"
 
 namespace scarp {
 namespace {

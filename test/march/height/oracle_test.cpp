@@ -26,7 +26,7 @@
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/queries.h"
-#include "scarp/scene/ray_dump.h"
+#include "scarp/scene/file/ray_dump.h"
 
 namespace scarp::test {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Scene files: what is read, and that everything wrong is told in one line with its place.
-#include "scarp/scene/scene_file.h"
+#include "scarp/scene/file/scene_file.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -12,12 +12,12 @@
 
 #include "scarp/accel/solid_ground.h"
 #include "scarp/base/error.h"
-#include "scarp/scene/from_raster.h"
-#include "scarp/scene/from_volume.h"
-#include "scarp/scene/from_vox.h"
-#include "scarp/scene/json_object.h"
-#include "scarp/scene/scene_parts.h"
-#include "scarp/scene/shape_json.h"
+#include "scarp/scene/file/from_raster.h"
+#include "scarp/scene/file/from_volume.h"
+#include "scarp/scene/file/from_vox.h"
+#include "scarp/scene/file/json_object.h"
+#include "scarp/scene/file/scene_parts.h"
+#include "scarp/scene/file/shape_json.h"
 #include "scarp/source/procedural_dem.h"
 #include "scarp/source/read_raster.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/scene_places.h"
+#include "scarp/scene/file/scene_places.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/to_vox.h"
+#include "scarp/scene/file/to_vox.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/scene_parts.h"
+#include "scarp/scene/file/scene_parts.h"
 
 namespace scarp {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/function_json.h"
+#include "scarp/scene/file/function_json.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/example_functions.h"
-#include "scarp/scene/json_object.h"
+#include "scarp/scene/file/example_functions.h"
+#include "scarp/scene/file/json_object.h"
 
 namespace scarp {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/json_object.h"
+#include "scarp/scene/file/json_object.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/shape_json.h"
+#include "scarp/scene/file/shape_json.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/example_functions.h"
+#include "scarp/scene/file/example_functions.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/function_json.h"
+#include "scarp/scene/file/function_json.h"
 #include "scarp/source/incomplete_file.h"
 
 namespace scarp {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/ray_dump.h"
+#include "scarp/scene/file/ray_dump.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/from_raster.h"
+#include "scarp/scene/file/from_raster.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/from_volume.h"
+#include "scarp/scene/file/from_volume.h"
 
 #include <algorithm>
 #include <limits>

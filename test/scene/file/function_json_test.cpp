@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Terrain functions from JSON: every type, and what is told of those that are wrong.
-#include "scarp/scene/function_json.h"
+#include "scarp/scene/file/function_json.h"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include "base/refusal.h"
 #include "scarp/base/error.h"
 #include "scarp/field/height_function.h"
-#include "scarp/scene/example_functions.h"
+#include "scarp/scene/file/example_functions.h"
 
 namespace scarp::test {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/scene_file.h"
+#include "scarp/scene/file/scene_file.h"
 
 #include <fmt/format.h>
 
@@ -12,10 +12,10 @@
 #include <utility>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/example_functions.h"
-#include "scarp/scene/scene_parts.h"
-#include "scarp/scene/scene_places.h"
-#include "scarp/scene/scene_schema.h"
+#include "scarp/scene/file/example_functions.h"
+#include "scarp/scene/file/scene_parts.h"
+#include "scarp/scene/file/scene_places.h"
+#include "scarp/scene/file/scene_schema.h"
 #include "scarp/source/incomplete_file.h"
 
 namespace scarp {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "scarp/base/progress.h"
-#include "scarp/scene/function_json.h"
+#include "scarp/scene/file/function_json.h"
 #include "scarp/scene/material.h"
 #include "scarp/scene/scene_field.h"
 

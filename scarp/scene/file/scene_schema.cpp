@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/scene_schema.h"
+#include "scarp/scene/file/scene_schema.h"
 
 // g++ 12 sees overlaps in "[" + std::to_string(index), of which valijson is full (GCC bug 105651).
 #if defined(__GNUC__) && !defined(__clang__)
@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/json_object.h"
+#include "scarp/scene/file/json_object.h"
 
 namespace scarp {
 namespace {

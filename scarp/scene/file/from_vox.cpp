@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/from_vox.h"
+#include "scarp/scene/file/from_vox.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shapes from JSON: what they say is what is built; what is wrong is told with its place.
-#include "scarp/scene/shape_json.h"
+#include "scarp/scene/file/shape_json.h"
 
 #include <gtest/gtest.h>
 
