@@ -9,7 +9,7 @@
 #include <string>
 
 #include "bench/rays.h"
-#include "scarp/march/marches.h"
+#include "scarp/base/ray.h"
 
 namespace scarp::bench {
 

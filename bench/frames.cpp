@@ -131,7 +131,7 @@ struct Maker {
 };
 
 std::vector<Maker> makers(const HeightField& field, const FramesOptions& options) {
-  const MarchEntry &max_mip = find_march("max-mip"), &fixed = find_march("fixed-step");
+  const HeightMarchEntry &max_mip = find_height_march("max-mip"), &fixed = find_height_march("fixed-step");
   std::vector<Maker> all;
   all.push_back({"cpu", TerrainScene(field, max_mip), TerrainScene(field, fixed)});
   if (options.device.empty()) return all;
@@ -217,7 +217,7 @@ void run_frames(const FramesOptions& options, const ReportOptions& report) {
   const double level = field.min_height() + 0.25 * (field.max_height() - field.min_height());
   const std::vector<Camera> cameras = flight(field, options);
   const std::vector<Maker> all = makers(field, options);
-  const TerrainScene oracle(field, find_march("exhaustive"));
+  const TerrainScene oracle(field, find_height_march("exhaustive"));
   constexpr std::size_t kAirCount = std::size(kAirs), kOfMaker = std::size(kWays) * kAirCount;
 
   std::vector<FrameTimes> timings(all.size() * kOfMaker);

@@ -15,7 +15,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/function/function_exhaustive.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/function/function_table.h"
 #include "scarp/scene/file/example_functions.h"
 
 namespace scarp::bench {
@@ -70,8 +70,8 @@ struct Row {
 }  // namespace
 
 void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions& report) {
-  std::vector<const MarchEntry*> marches;
-  for (const MarchEntry& march : function_marches()) {
+  std::vector<const FunctionMarchEntry*> marches;
+  for (const FunctionMarchEntry& march : function_marches()) {
     if (options.all || march.guarantee == Guarantee::conservative) marches.push_back(&march);
   }
   MarchSettings settings;
@@ -96,7 +96,7 @@ void run_function_leaks(const FunctionLeaksOptions& options, const ReportOptions
         mine.clear += judge.verdict == FunctionVerdict::clear;
         mine.undecided += judge.verdict == FunctionVerdict::undecided;
         for (std::size_t m = 0; m < marches.size(); ++m) {
-          const Hit hit = marches[m]->function_cpu(function, ray, settings, nullptr, FunctionUse::march);
+          const Hit hit = marches[m]->cpu(function, ray, settings, nullptr, FunctionUse::march);
           const bool local = marches[m]->name == "lipschitz-local";
           // The other ones say themselves how far above the ground they stop: only what they pass is wrong.
           count(judge, ray, hit, local ? settings.lipschitz_local.tolerance : 0, mine.marches[m]);

@@ -20,8 +20,8 @@
 #include "scarp/base/parallel.h"
 #include "scarp/field/height_function.h"
 #include "scarp/march/function/function_exhaustive.h"
+#include "scarp/march/function/function_table.h"
 #include "scarp/march/function/presets.h"
-#include "scarp/march/marches.h"
 #ifdef SCARP_BENCH_VULKAN
 #include "scarp/march/function/function_queries_vk.h"
 #endif
@@ -83,7 +83,7 @@ using AnswerAll = std::function<void(std::span<const Ray> rays, std::span<Hit> h
 
 struct March {
   std::string name;
-  const MarchEntry* entry;
+  const FunctionMarchEntry* entry;
   MarchSettings settings;
   bool vectors = false;
   std::function<AnswerAll(const HeightFunction&)> elsewhere{};  // null: on the CPU
@@ -93,7 +93,7 @@ struct March {
 // Over functions in the memory of a device.
 std::vector<March> marches_on(const Device& device, const MarchSettings& settings) {
   std::vector<March> all;
-  for (const MarchEntry& march : function_marches()) {
+  for (const FunctionMarchEntry& march : function_marches()) {
     const auto queries = std::make_shared<DeviceFunctionQueries>(device, march, settings);
     all.push_back({fmt::format("{} on the device", march.name), &march, settings, false,
                    [device, queries](const HeightFunction& function) -> AnswerAll {
@@ -119,9 +119,9 @@ std::vector<March> marches_over_functions(const FunctionsOptions& options) {
     all.push_back({"lipschitz-local", &find_function_march("lipschitz-local"), settings});
     return all;
   }
-  for (const MarchEntry& march : function_marches()) {
+  for (const FunctionMarchEntry& march : function_marches()) {
     all.push_back({std::string(march.name), &march, settings});
-    if (march.function_simd) all.push_back({fmt::format("{}-simd", march.name), &march, settings, true});
+    if (march.simd) all.push_back({fmt::format("{}-simd", march.name), &march, settings, true});
   }
   if (options.device.empty()) return all;
 #ifdef SCARP_BENCH_VULKAN
@@ -166,11 +166,11 @@ void run_functions(const FunctionsOptions& options, const ReportOptions& report)
       for (int pass = 0; pass < options.repeats; ++pass) {
         heights = bounds = 0;
         const auto start = std::chrono::steady_clock::now();
-        if (march.vectors) march.entry->function_simd(function, rays, hits, march.settings, {}, FunctionUse::march);
+        if (march.vectors) march.entry->batch(function, rays, hits, march.settings, {}, FunctionUse::march);
         if (answer) answer(rays, hits, steps);
         for (std::size_t i = 0; i < rays.size() && !march.vectors && !answer; ++i) {
           MarchStats stats;
-          hits[i] = march.entry->function_cpu(function, rays[i], march.settings, &stats, FunctionUse::march);
+          hits[i] = march.entry->cpu(function, rays[i], march.settings, &stats, FunctionUse::march);
           heights += stats.cell_tests, bounds += stats.steps;
         }
         const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;

@@ -79,7 +79,7 @@ struct Ground {
 // A march on the device: once to be timed, on all rays of a class at once if that can be, and once to count.
 struct DeviceMarch {
   DeviceMarch(const Device& device, const char* name, const RayCounts& rays)
-      : march(find_march(name)),
+      : march(find_height_march(name)),
         timed(device, march, {}, {false, all_of(rays)}),
         counting(device, march, {}, {true, kMostCountedAtOnce}) {}
 
@@ -89,7 +89,7 @@ struct DeviceMarch {
     return static_cast<std::uint32_t>(std::min<std::int64_t>(most, kMostRaysAtOnce));
   }
 
-  const MarchEntry& march;
+  const HeightMarchEntry& march;
   DeviceQueries timed, counting;
 };
 

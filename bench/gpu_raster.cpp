@@ -233,7 +233,7 @@ void compare(const Device& device, const Device& drawing, const GpuOptions& opti
   const RaySet set = std::move(make_rays(ground, {RayClass::primary}, counts, options.ray_seed).front());
   const PinholeCamera camera = primary_camera(ground.field, counts.width, counts.height);
   const auto all = static_cast<std::uint32_t>(set.rays.size());
-  DeviceQueries queries(device, find_march("max-mip"), {}, {false, all});
+  DeviceQueries queries(device, find_height_march("max-mip"), {}, {false, all});
   GridMesh mesh(drawing, triangles, drawn_memory, camera);
   std::vector<Hit> hits(set.rays.size());
   std::vector<double> ray_times, bilinear_times, mesh_times;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/engine.h"
+#include "scarp/march/height/height_target.h"
 
 namespace scarp::bench {
 

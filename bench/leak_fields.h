@@ -12,6 +12,7 @@
 #include "bench/embree_peer.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/field/height_field.h"
+#include "scarp/march/height/height_target.h"
 #include "scarp/source/procedural_dem.h"
 
 namespace scarp::bench {

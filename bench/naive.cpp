@@ -27,7 +27,7 @@ struct Contender {
 Contender naive_with(const ScarpGround& scarp, const Judge& judge, const char* mode, const NaiveSettings& settings) {
   MarchSettings all;
   all.naive = settings;
-  Contender contender{scarp.engine(find_march("naive"), all), settings, {}};
+  Contender contender{scarp.engine(find_height_march("naive"), all), settings, {}};
   contender.engine.mode = mode;
   contender.judged = judge.judge(contender.engine);
   return contender;
@@ -55,7 +55,7 @@ class Comparison {
          make_rays(ground, {RayClass::primary, RayClass::shadow, RayClass::chunk, RayClass::grazing}, trace.rays,
                    trace.ray_seed)) {
       const Judge judge(scarp.target(), set, trace.judged, trace.ray_seed);
-      std::vector<Contender> contenders{{scarp.engine(find_march("max-mip")), std::nullopt, {}},
+      std::vector<Contender> contenders{{scarp.engine(find_height_march("max-mip")), std::nullopt, {}},
                                         {scarp.vectors("max-mip-simd"), std::nullopt, {}}};
       for (Contender& max_mip : contenders) max_mip.judged = judge.judge(max_mip.engine);
       contenders.push_back(naive_with(scarp, judge, "naive-default", {}));

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp::bench {
 

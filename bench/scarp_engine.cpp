@@ -42,26 +42,32 @@ ScarpGround::ScarpGround(const HeightField& field)
       }()),
       slope_bound_(slope_bound(field)) {}
 
-Engine ScarpGround::engine(const MarchEntry& march, const MarchSettings& settings) const {
+Engine ScarpGround::engine(const HeightMarchEntry& march, const MarchSettings& settings) const {
   Engine engine;
   engine.name = "scarp";
   engine.mode = march.name;
   engine.bytes = sample_bytes(field_) + (march.needs_pyramid ? static_cast<double>(pyramid_.bytes()) : 0);
   engine.peak_bytes = engine.bytes;
   engine.build_s = march.needs_pyramid ? build_s_ : 0;
-  const HeightTarget to = target();
-  const HeightMarch cpu = march.cpu;
-  const auto closest = [=](const Ray& ray, MarchStats* stats) { return cpu(to, ray, settings, stats); };
-  if (const HeightOcclusion occluded = march.cpu_occluded) {
-    set_functions(engine, closest, [=](const Ray& ray) { return occluded(to, ray); });
-  } else {
-    set_functions(engine, closest, [=](const Ray& ray) { return closest(ray, nullptr).status == HitStatus::hit; });
-  }
+  set_functions(
+      engine,
+      [=, to = target(), cpu = march.cpu](const Ray& ray, MarchStats* stats) { return cpu(to, ray, settings, stats); },
+      [=, to = target(), occluded = march.occluded](const Ray& ray) { return occluded(to, ray, settings); });
+  return engine;
+}
+
+Engine ScarpGround::closest_only(const HeightMarchEntry& march, const MarchSettings& settings) const {
+  Engine engine = this->engine(march, settings);
+  engine.mode = std::string(march.name) + "-closest";
+  const auto closest = [=, to = target(), cpu = march.cpu](const Ray& ray, MarchStats* stats) {
+    return cpu(to, ray, settings, stats);
+  };
+  set_functions(engine, closest, [=](const Ray& ray) { return closest(ray, nullptr).status == HitStatus::hit; });
   return engine;
 }
 
 Engine ScarpGround::vectors(const std::string& mode, const VectorIdeas& ideas) const {
-  Engine engine = this->engine(find_march("max-mip"));
+  Engine engine = this->engine(find_height_march("max-mip"));
   engine.mode = mode;
   const HeightTarget to = target();
   engine.trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
@@ -84,16 +90,12 @@ Engine ScarpGround::vectors(const std::string& mode, const VectorIdeas& ideas) c
 
 std::vector<Engine> ScarpGround::engines() const {
   std::vector<Engine> engines;
-  for (const MarchEntry& march : height_marches()) {
+  for (const HeightMarchEntry& march : height_marches()) {
     if (march.name == "exhaustive") continue;
     engines.push_back(engine(march));
     if (march.simd) engines.push_back(vectors(std::string(march.name) + "-simd"));
-    if (!march.cpu_occluded) continue;
-    // The same question by way of the closest hit: what a function of its own for any hit gains.
-    MarchEntry closest_only = march;
-    closest_only.cpu_occluded = nullptr;
-    Engine& closest = engines.emplace_back(engine(closest_only));
-    closest.mode = std::string(march.name) + "-closest";
+    // What an any-hit query of its own gains.
+    if (march.own_any_hit) engines.push_back(closest_only(march));
   }
   return engines;
 }

@@ -6,6 +6,7 @@
 
 #include "bench/engine.h"
 #include "bench/fields.h"
+#include "scarp/march/height/height_table.h"
 #include "scarp/march/height/max_mip_simd.h"
 
 namespace scarp::bench {
@@ -20,7 +21,10 @@ class ScarpGround {
 
   /// One march of the table under the given settings. Rays that only ask whether they are blocked go to the march's own
   /// function for that where there is one.
-  Engine engine(const MarchEntry& march, const MarchSettings& settings = {}) const;
+  Engine engine(const HeightMarchEntry& march, const MarchSettings& settings = {}) const;
+
+  /// The same, but any-hit rays are answered by the closest hit.
+  Engine closest_only(const HeightMarchEntry& march, const MarchSettings& settings = {}) const;
 
   /// `max-mip` in vectors, with all of their ideas or some.
   Engine vectors(const std::string& mode, const VectorIdeas& ideas = {}) const;

@@ -19,6 +19,7 @@
 #include "scarp/base/parallel.h"
 #include "scarp/field/distance_field.h"
 #include "scarp/march/shape/shape_exhaustive.h"
+#include "scarp/march/shape/shape_table.h"
 #include "scarp/march/shape/sphere_trace.h"
 
 namespace scarp::bench {
@@ -143,7 +144,7 @@ struct Row {
   std::vector<Hit> hits;
 };
 
-Row timed(const DistanceField& field, const std::vector<Ray>& rays, DistanceMarch march, int repeats) {
+Row timed(const DistanceField& field, const std::vector<Ray>& rays, ShapeMarch march, int repeats) {
   Row row;
   row.hits.resize(rays.size());
   for (int pass = 0; pass < repeats; ++pass) {
@@ -186,7 +187,7 @@ void run_shapes(const ShapesOptions& options, const ReportOptions& report) {
         }
       });
       for (const bool plain : {false, true}) {
-        const DistanceMarch march = plain ? by_balls : march_sphere_trace;
+        const ShapeMarch march = plain ? by_balls : march_sphere_trace;
         const char* const name = plain ? "balls alone" : "sphere-trace";
         const Row row = timed(field, rays, march, options.repeats);
         int crossings = 0, misses = 0, clear = 0, false_hits = 0, given_up = 0;

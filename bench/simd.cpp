@@ -55,7 +55,7 @@ Count count(const Engine& engine, const Engine& scalar, const RaySet& set) {
 void compare(const BenchField& ground, double exaggeration, const std::vector<RayClass>& classes,
              const SimdOptions& options, Json& rows) {
   const ScarpGround scarp(ground.field);
-  std::vector<Engine> engines{scarp.engine(find_march("max-mip"))};
+  std::vector<Engine> engines{scarp.engine(find_height_march("max-mip"))};
   for (const Variant& variant : kVariants) engines.push_back(scarp.vectors(variant.name, variant.ideas));
   for (const RaySet& set : make_rays(ground, classes, options.trace.rays, options.trace.ray_seed)) {
     const auto timings = measure(engines, set, {1, options.trace.repeats, options.trace.pass_limit_s});

@@ -36,7 +36,7 @@ class Survey {
   void run(const BenchField& ground) {
     const ScarpGround scarp(ground.field);
     std::vector<std::unique_ptr<EmbreePeer>> peers;
-    std::vector<Engine> engines{scarp.engine(find_march("max-mip")), scarp.vectors("max-mip-simd")};
+    std::vector<Engine> engines{scarp.engine(find_height_march("max-mip")), scarp.vectors("max-mip-simd")};
     const std::size_t ours = engines.size();
     for (const std::string& name : options_.peers) {
       const EmbreeSurface surface = name == "embree-grid" ? EmbreeSurface::grid : EmbreeSurface::triangles;

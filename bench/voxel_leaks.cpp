@@ -97,7 +97,7 @@ struct Together {
   template <class Wrong>
   void ask(const VoxelModel& model, const Wrong& wrong) {
     aim_voxel_packet(packet, glm::dmat3(1.0));
-    model.march().voxel_simd(model.target(), {}, packet, ~std::uint64_t{0} >> (VoxelPacket::kRays - packet.count));
+    model.march().packet(model.target(), {}, packet, ~std::uint64_t{0} >> (VoxelPacket::kRays - packet.count));
     std::array<VoxelHit, VoxelPacket::kRays> hits{};
     for (std::size_t k = 0; k < packet.hits; ++k) {
       VoxelHit& hit = hits[static_cast<std::size_t>(packet.ray[k])];
@@ -125,7 +125,7 @@ void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& repo
       Random random(options.seed, static_cast<std::uint64_t>(index));
       const VoxelGrid grid = random_grid(random);
       std::vector<VoxelModel> models;
-      for (const MarchEntry& march : exact) models.emplace_back(grid, march);
+      for (const VoxelMarchEntry& march : exact) models.emplace_back(grid, march);
       const auto tell = [&](std::int64_t i) {
         const auto kind = static_cast<std::size_t>(i % kRayKinds);
         ++counts[kind].wrong;
@@ -136,7 +136,7 @@ void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& repo
       const auto ask_together = [&] {
         if (together.packet.count == 0) return;
         for (const VoxelModel& model : models) {
-          if (model.march().voxel_simd) together.ask(model, tell);
+          if (model.march().simd) together.ask(model, tell);
         }
         together.packet.count = 0;
       };
@@ -148,14 +148,14 @@ void run_voxel_leaks(const VoxelLeaksOptions& options, const ReportOptions& repo
         if (grid.bounds().empty()) continue;
         const auto quantised = quantise(ray, grid.bounds());
         if (!quantised) continue;
-        const VoxelHit hit = exact[0].voxel_cpu(models[0].target(), *quantised, nullptr);
+        const VoxelHit hit = exact[0].cpu(models[0].target(), *quantised, nullptr);
         count.hits += hit ? 1 : 0;
         bool right = true;
         for (std::size_t m = 1; m < exact.size(); ++m)
-          right = right && exact[m].voxel_cpu(models[m].target(), *quantised, nullptr) == hit;
+          right = right && exact[m].cpu(models[m].target(), *quantised, nullptr) == hit;
         if (random.below(options.judge_every) == 0) {
           ++count.judged;
-          right = right && voxel_marches()[0].voxel_cpu(models[0].target(), *quantised, nullptr) == hit;
+          right = right && voxel_marches()[0].cpu(models[0].target(), *quantised, nullptr) == hit;
         }
         if (!right) tell(i);
         together.add(ray, hit, i);

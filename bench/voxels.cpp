@@ -175,7 +175,7 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
   const std::vector<VoxelPlace> places = object_places(n);
   std::vector<Technique> techniques;
   std::vector<VoxelEngine> engines;
-  for (const MarchEntry& march : voxel_marches().subspan(1)) {
+  for (const VoxelMarchEntry& march : voxel_marches().subspan(1)) {
     for (const auto extent : {VoxelModel::Extent::grid, VoxelModel::Extent::bounds}) {
       VoxelGrid grid = voxel_object(set);
       const std::size_t lossless = VoxelModel(grid, march, {}, extent).bytes();
@@ -246,7 +246,7 @@ void measure_grid(const char* name, const VoxelGrid& grid, const VoxelsOptions& 
   const std::vector<Ray> rays = octant_rays(dvec3(grid.size()), options.width);
   std::vector<std::unique_ptr<VoxelScene>> scenes;
   std::vector<VoxelEngine> engines;
-  for (const MarchEntry& march : voxel_marches().subspan(1)) {
+  for (const VoxelMarchEntry& march : voxel_marches().subspan(1)) {
     const auto model = std::make_shared<const VoxelModel>(grid, march);
     scenes.push_back(std::make_unique<VoxelScene>(std::vector{model}, std::vector{VoxelPlace{}}));
     add_engines(*scenes.back(), march.name, "bounds", static_cast<double>(model->bytes()), engines);

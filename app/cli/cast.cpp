@@ -83,7 +83,7 @@ struct CastOptions {
 using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&);
 
 // The march's function for all hits, null when those are not asked for.
-AllHits all_hits_of(const CastOptions& options, const MarchEntry& march) {
+AllHits all_hits_of(const CastOptions& options, const HeightMarchEntry& march) {
   if (!options.all) return nullptr;
   if (!options.device.empty()) {
     throw Error(fmt::format("--all --device {}: devices tell the first hit of a ray alone; leave one of both out",
@@ -156,7 +156,7 @@ std::string place_of_raster(std::span<const Ray> rays, const HeightField& field,
 // Answers rays and writes what they met, piece by piece.
 class Caster {
  public:
-  Caster(const CastOptions& options, const HeightField& field, const MarchEntry& march, const SceneMaker& scenes,
+  Caster(const CastOptions& options, const HeightField& field, const HeightMarchEntry& march, const SceneMaker& scenes,
          const CoordinateFrame& frame, const RayTable& table, HitTable& out)
       : field_(field),
         march_(march),
@@ -277,7 +277,7 @@ class Caster {
   }
 
   const HeightField& field_;
-  const MarchEntry& march_;
+  const HeightMarchEntry& march_;
   MarchSettings settings_;
   const CoordinateFrame& frame_;
   const RayTable& table_;
@@ -292,7 +292,7 @@ class Caster {
 
 void run(CastOptions options) {
   if (options.output == "-") options.output.clear();
-  const MarchEntry& march = find_march(options.march);
+  const HeightMarchEntry& march = find_height_march(options.march);
   all_hits_of(options, march);  // refuses before files are read
   require_options_of(InputKind::terrain, options.given);
   require_settings_of(options.march, options.given, options.march_settings);

@@ -15,7 +15,7 @@
 namespace scarp::cli {
 namespace {
 
-TerrainScene scene_on_cpu(HeightField field, const MarchEntry& march, const MarchSettings& settings) {
+TerrainScene scene_on_cpu(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings) {
   return {std::move(field), march, settings};
 }
 
@@ -31,7 +31,7 @@ void add_device_option(CLI::App& command, std::string& device) {
       });
 }
 
-SceneMaker scene_maker(const std::string& device, const MarchEntry& march) {
+SceneMaker scene_maker(const std::string& device, const HeightMarchEntry& march) {
   if (device.empty()) return {scene_on_cpu, {}};
 #ifdef SCARP_VULKAN
   if (!march.gpu) {
@@ -39,7 +39,7 @@ SceneMaker scene_maker(const std::string& device, const MarchEntry& march) {
                             device_march_names()));
   }
   const Device opened({.choice = device});
-  return {[opened](HeightField field, const MarchEntry& of, const MarchSettings& settings) {
+  return {[opened](HeightField field, const HeightMarchEntry& of, const MarchSettings& settings) {
             return terrain_scene_on(opened, std::move(field), of, settings);
           },
           opened.description().name};

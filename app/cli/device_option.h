@@ -14,13 +14,13 @@ namespace scarp::cli {
 void add_device_option(CLI::App& command, std::string& device);
 
 struct SceneMaker {
-  std::function<TerrainScene(HeightField field, const MarchEntry& march, const MarchSettings& settings)> make;
+  std::function<TerrainScene(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings)> make;
   std::string device;  ///< its name; empty: the marches of the CPU
 };
 
 /// Opens the device, so that what is wrong with the choice is known before a file is read. Throws Error: there is no
 /// such device, it lacks something, the march does not run on devices, this program was built without Vulkan.
-SceneMaker scene_maker(const std::string& device, const MarchEntry& march);
+SceneMaker scene_maker(const std::string& device, const HeightMarchEntry& march);
 
 struct SceneOnDevice {
   Scene scene;

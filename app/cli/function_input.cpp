@@ -136,7 +136,7 @@ void add_function_options(CLI::App& command, FunctionInput& input, std::string& 
 }
 
 void render_function(const FunctionInput& input, FunctionPicture settings, const std::string& output) {
-  const MarchEntry& march = find_function_march(settings.march.empty() ? kFunctionMarch : settings.march);
+  const FunctionMarchEntry& march = find_function_march(settings.march.empty() ? kFunctionMarch : settings.march);
   ReplaceFile file(output);
   const HeightFunction function(read_function(input.function));
   const double haze = settings.haze_given ? settings.picture.haze : kHaze;

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/march_settings.h"
 #include "scarp/render/camera/depth.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/render/look/function_error.h"

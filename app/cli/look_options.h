@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/march_settings.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/scene/file/from_raster.h"
 

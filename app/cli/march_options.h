@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp::cli {
 

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: MIT
-// `scarp marches`: the table of marching techniques, for people or as Markdown for the documentation.
+// `scarp marches`: the tables of marching techniques, for people or as Markdown for the documentation.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/cli/commands.h"
+#include "scarp/march/function/function_table.h"
 #include "scarp/march/function/presets.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_table.h"
+#include "scarp/march/shape/shape_table.h"
+#include "scarp/march/voxel/voxel_table.h"
 
 namespace scarp::cli {
 namespace {
@@ -19,19 +23,37 @@ using Row = std::array<std::string, 6>;
 const Row kHeads = {"name", "guarantee", "fields", "runs on", "parameters", "description"};
 const Row kPresetHeads = {"preset", "march", "numbers", "left out", "source", ""};
 
-Row row_of(const MarchEntry& march) {
-  std::string runs_on;
-  if (march.cpu != nullptr || march.function_cpu != nullptr || march.voxel_cpu != nullptr ||
-      march.distance_cpu != nullptr)
-    runs_on += "cpu";
-  if (march.simd != nullptr || march.function_simd != nullptr || march.voxel_simd != nullptr) runs_on += ", simd";
-  if (march.gpu) runs_on += ", gpu";
-  return {std::string(march.name),
-          std::string(name_of(march.guarantee)),
-          std::string(march.fields),
-          runs_on,
-          march.parameters.empty() ? "-" : std::string(march.parameters),
-          std::string(march.description)};
+// The rows of all tables. A march of several kinds of field has one row, which names them all.
+class Rows {
+ public:
+  template <class Table>
+  void add(std::string_view field, const Table& table) {
+    for (const MarchEntry& march : table) add(field, march);
+  }
+  std::vector<Row> rows() const { return rows_; }
+
+ private:
+  void add(std::string_view field, const MarchEntry& march) {
+    for (Row& row : rows_) {
+      if (row[0] != march.name) continue;
+      row[2] += fmt::format(", {}", field);
+      return;
+    }
+    rows_.push_back({std::string(march.name), std::string(name_of(march.guarantee)), std::string(field),
+                     fmt::format("cpu{}{}", march.simd ? ", simd" : "", march.gpu ? ", gpu" : ""),
+                     march.parameters.empty() ? "-" : std::string(march.parameters), std::string(march.description)});
+  }
+
+  std::vector<Row> rows_;
+};
+
+std::vector<Row> march_rows() {
+  Rows all;
+  all.add("height field", height_marches());
+  all.add("function", function_marches());
+  all.add("voxel grid", voxel_marches());
+  all.add("shape", shape_marches());
+  return all.rows();
 }
 
 Row row_of(const MarchPreset& preset) {
@@ -90,7 +112,7 @@ void add_marches(CLI::App& program) {
     if (*presets) {
       for (const MarchPreset& preset : march_presets()) rows.push_back(row_of(preset));
     } else {
-      for (const MarchEntry& march : marches()) rows.push_back(row_of(march));
+      rows = march_rows();
     }
     if (*markdown) return print_markdown(*presets ? kPresetHeads : kHeads, rows);
     if (*presets) return print_presets(rows);

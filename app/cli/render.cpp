@@ -339,7 +339,7 @@ void render_frame(const RenderOptions& options, const TerrainScene& scene, MeshI
 }
 
 void render_terrain(RenderOptions options, const ViewSettings& view) {
-  const MarchEntry& march = find_march(options.march.empty() ? kTerrainMarch : options.march);
+  const HeightMarchEntry& march = find_height_march(options.march.empty() ? kTerrainMarch : options.march);
   const SceneMaker scenes = scene_maker(options.device, march);
   // Reserved first: an unwritable place is found before the work and not after it.
   ReplaceFile file(options.output);

@@ -34,7 +34,7 @@ class Replay {
       : dump_(dump), pyramid_(dump.field), target_{&dump.field, &pyramid_, slope_bound(dump.field)} {
     lines_.push_back({"march", "guarantee", "status", "t", "cell", "u", "v", "clearance", "any", "hits", ""});
     judge_ = march_exhaustive(target_, dump.ray);
-    for (const MarchEntry& march : height_marches()) add(march);
+    for (const HeightMarchEntry& march : height_marches()) add(march);
   }
 
   bool agrees() const { return agrees_; }
@@ -57,10 +57,10 @@ class Replay {
   }
 
  private:
-  void add(const MarchEntry& march) {
+  void add(const HeightMarchEntry& march) {
     const Hit hit = march.cpu(target_, dump_.ray, {}, nullptr);
     std::optional<bool> any;
-    if (march.cpu_occluded) any = march.cpu_occluded(target_, dump_.ray);
+    if (march.own_any_hit) any = march.occluded(target_, dump_.ray, {});
     std::optional<std::vector<Hit>> all;
     if (march.cpu == march_exhaustive) all_hits_exhaustive(target_, dump_.ray, all.emplace());
     if (march.cpu == march_max_mip) all_hits_max_mip(target_, dump_.ray, all.emplace());

@@ -7,7 +7,6 @@
 
 #include "scarp/accel/function_words.h"
 #include "scarp/accel/shape_words.h"
-#include "scarp/march/marches.h"
 #include "scarp/march/ray_states.glsl.h"
 
 namespace scarp {

@@ -9,7 +9,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// FixedStepSettings of marches.h.
+/// FixedStepSettings of march_settings.h.
 struct ScarpFixedStep {
   float step;       ///< cells, their shorter side (ScarpRay::cell_time), > 0
   int interpolate;  ///< 0: a hit is put on the first point that is not above; 1: between it and the point before

@@ -10,7 +10,8 @@
 // founding texts, first plain, then interpolating the last two samples. Cost: one height per step.
 #pragma once
 
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_target.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 

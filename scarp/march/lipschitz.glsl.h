@@ -10,7 +10,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// LipschitzSettings of marches.h.
+/// LipschitzSettings of march_settings.h.
 struct ScarpLipschitz {
   float shrink;     ///< of the vertical distance: 1 / sqrt(1 + c^2), c the field's slope bound
   float tolerance;  ///< distance to the ground that is a hit, per unit of distance travelled, >= 0

@@ -18,7 +18,8 @@
 // fields, where c is that of the steepest cell.
 #pragma once
 
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_target.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 

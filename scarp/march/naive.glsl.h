@@ -9,7 +9,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// NaiveSettings of marches.h.
+/// NaiveSettings of march_settings.h.
 struct ScarpNaive {
   float step_factor;  ///< of the vertical distance h, > 0
   float min_step;     ///< least step, as a share of the ray's length to the field's border, > 0

@@ -12,7 +12,8 @@
 // step.
 #pragma once
 
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_target.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 

@@ -9,7 +9,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// RelaxedSettings of marches.h.
+/// RelaxedSettings of march_settings.h.
 struct ScarpRelaxed {
   float step_factor;  ///< of the vertical distance h, > 0
   float tolerance;    ///< height off the ground, above or below, that is a hit, per unit of distance, > 0

@@ -10,7 +10,8 @@
 // procedural_shader_framework; the constants go back to I. Quilez, "Elevated", 2009. Cost: up to 300 heights per ray.
 #pragma once
 
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_target.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 

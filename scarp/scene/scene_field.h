@@ -15,7 +15,9 @@
 
 #include "scarp/field/distance_field.h"
 #include "scarp/field/height_function.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/function/function_table.h"
+#include "scarp/march/height/height_table.h"
+#include "scarp/march/shape/shape_table.h"
 #include "scarp/scene/box_tree.h"
 #include "scarp/scene/voxel_scene.h"
 #include "scarp/scene/voxel_shading.h"
@@ -43,9 +45,17 @@ struct FieldSurface {
 
 /// What a field is made of, for those who answer its rays elsewhere (field_queries.h).
 struct SceneFieldParts {
-  std::variant<const HeightField*, const HeightFunction*, const DistanceField*, const VoxelScene*> of;
-  const MarchEntry* march = nullptr;        ///< null for voxels
-  const MarchSettings* settings = nullptr;  ///< likewise
+  template <class Field, class Entry>
+  struct Marched {
+    const Field* field;
+    const Entry* march;
+    const MarchSettings* settings;
+  };
+  using Heights = Marched<HeightField, HeightMarchEntry>;
+  using Function = Marched<HeightFunction, FunctionMarchEntry>;
+  using Shape = Marched<DistanceField, ShapeMarchEntry>;
+
+  std::variant<Heights, Function, Shape, const VoxelScene*> of;
 };
 
 /// Immutable; asked from many threads at once.
@@ -95,15 +105,16 @@ using SceneFieldPtr = std::shared_ptr<const SceneField>;
 
 /// `march` is a row of height_marches(); the field must not wrap round. Builds what the march needs. Throws Error for
 /// a setting out of its range, a field that wraps round.
-SceneFieldPtr scene_heights(HeightField field, const MarchEntry& march = find_march("max-mip"),
+SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march = find_height_march("max-mip"),
                             const MarchSettings& settings = {});
 
 /// `march` is a row of function_marches(). Throws Error for a setting out of its range.
-SceneFieldPtr scene_function(HeightFunction function, const MarchEntry& march = find_function_march("lipschitz-local"),
+SceneFieldPtr scene_function(HeightFunction function,
+                             const FunctionMarchEntry& march = find_function_march("lipschitz-local"),
                              const MarchSettings& settings = {});
 
-/// `march` is a row of distance_marches(). Throws Error for a setting out of its range.
-SceneFieldPtr scene_shape(DistanceField shape, const MarchEntry& march = find_distance_march("sphere-trace"),
+/// `march` is a row of shape_marches(). Throws Error for a setting out of its range.
+SceneFieldPtr scene_shape(DistanceField shape, const ShapeMarchEntry& march = find_shape_march("sphere-trace"),
                           const MarchSettings& settings = {});
 
 /// The objects of a voxel scene as one; each model has its march. With VoxelNormals::smooth, occluded() moves a ray

@@ -14,7 +14,7 @@ dvec3 upward(const dvec2& slope) { return normalize(dvec3(-slope.x, -slope.y, 1)
 
 class FunctionField final : public SceneField {
  public:
-  FunctionField(HeightFunction function, const MarchEntry& march, const MarchSettings& settings)
+  FunctionField(HeightFunction function, const FunctionMarchEntry& march, const MarchSettings& settings)
       : function_(std::move(function)), march_(march), settings_(settings) {
     validate(settings_);
   }
@@ -25,29 +25,26 @@ class FunctionField final : public SceneField {
   std::optional<double> height(double x, double y) const override { return function_.value(x, y); }
 
   FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
-    return field_hit(march_.function_cpu(function_, started(ray, from, false), settings_, stats, FunctionUse::march));
+    return field_hit(march_.cpu(function_, started(ray, from, false), settings_, stats, FunctionUse::march));
   }
   bool occluded(const Ray& ray, const FieldHit* from) const override {
-    return static_cast<bool>(
-        march_.function_cpu(function_, started(ray, from, true), settings_, nullptr, FunctionUse::shadow));
+    return static_cast<bool>(march_.cpu(function_, started(ray, from, true), settings_, nullptr, FunctionUse::shadow));
   }
-  bool likes_batches() const override { return march_.function_simd != nullptr; }
+  bool likes_batches() const override { return march_.simd; }
   void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
                     std::span<FieldHit> hits) const override {
-    if (!march_.function_simd) return SceneField::closest_hits(rays, from, hits);
     std::vector<Ray> begun(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) begun[i] = started(rays[i], from[i], false);
     std::vector<Hit> own(rays.size());
-    march_.function_simd(function_, begun, own, settings_, {}, FunctionUse::march);
+    march_.batch(function_, begun, own, settings_, {}, FunctionUse::march);
     std::transform(own.begin(), own.end(), hits.begin(), field_hit);
   }
   void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
                 std::span<std::uint8_t> blocked) const override {
-    if (!march_.function_simd) return SceneField::occluded(rays, from, blocked);
     std::vector<Ray> begun(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) begun[i] = started(rays[i], from[i], true);
     std::vector<Hit> own(rays.size());
-    march_.function_simd(function_, begun, own, settings_, {}, FunctionUse::shadow);
+    march_.batch(function_, begun, own, settings_, {}, FunctionUse::shadow);
     std::transform(own.begin(), own.end(), blocked.begin(), [](const Hit& hit) { return hit ? 1 : 0; });
   }
   std::optional<FieldSurface> within(const dvec3& p) const override {
@@ -62,7 +59,7 @@ class FunctionField final : public SceneField {
             normal,
             {}};
   }
-  SceneFieldParts parts() const override { return {&function_, &march_, &settings_}; }
+  SceneFieldParts parts() const override { return {SceneFieldParts::Function{&function_, &march_, &settings_}}; }
   Ray started(const Ray& ray, const FieldHit* from, bool shadow) const override {
     Ray r = SceneField::started(ray, from, shadow);
     if (shadow && from) {
@@ -76,13 +73,13 @@ class FunctionField final : public SceneField {
   static FieldHit field_hit(const Hit& hit) { return {hit.status, hit.t, hit}; }
 
   HeightFunction function_;
-  const MarchEntry& march_;
+  const FunctionMarchEntry& march_;
   MarchSettings settings_;
 };
 
 }  // namespace
 
-SceneFieldPtr scene_function(HeightFunction function, const MarchEntry& march, const MarchSettings& settings) {
+SceneFieldPtr scene_function(HeightFunction function, const FunctionMarchEntry& march, const MarchSettings& settings) {
   return std::make_shared<FunctionField>(std::move(function), march, settings);
 }
 

@@ -16,7 +16,7 @@ FieldHit field_hit(const Hit& hit) { return {hit.status, hit.t, hit}; }
 
 class Heights final : public SceneField {
  public:
-  Heights(HeightField field, const MarchEntry& march, const MarchSettings& settings)
+  Heights(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings)
       : field_(std::move(field)), march_(march), settings_(settings) {
     if (field_.wraps()) throw Error("heights in a scene: the field must not wrap round");
     validate(settings_);
@@ -39,8 +39,7 @@ class Heights final : public SceneField {
   }
   bool occluded(const Ray& ray, const FieldHit* from) const override {
     const Ray r = started(ray, from, true);
-    if (march_.cpu_occluded) return march_.cpu_occluded(target(), r);
-    return static_cast<bool>(march_.cpu(target(), r, settings_, nullptr));
+    return march_.occluded(target(), r, settings_);
   }
   FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
     const Hit& own = std::get<Hit>(hit.own);
@@ -59,20 +58,18 @@ class Heights final : public SceneField {
     return FieldSurface{field_.normal(cell, u, v), field_.shading_normal(cell, u, v), {}};
   }
 
-  bool likes_batches() const override { return march_.simd && march_.simd_occluded; }
+  bool likes_batches() const override { return march_.simd; }
   void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
                     std::span<FieldHit> hits) const override {
-    if (!march_.simd) return SceneField::closest_hits(rays, from, hits);
     std::vector<Hit> own(rays.size());
-    march_.simd(target(), begun(rays, from), own);
+    march_.batch(target(), begun(rays, from), own, settings_);
     std::transform(own.begin(), own.end(), hits.begin(), field_hit);
   }
   void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
                 std::span<std::uint8_t> blocked) const override {
-    if (!march_.simd_occluded) return SceneField::occluded(rays, from, blocked);
-    march_.simd_occluded(target(), begun(rays, from), blocked);
+    march_.occluded_batch(target(), begun(rays, from), blocked, settings_);
   }
-  SceneFieldParts parts() const override { return {&field_, &march_, &settings_}; }
+  SceneFieldParts parts() const override { return {SceneFieldParts::Heights{&field_, &march_, &settings_}}; }
   // In which cell it begins the march knows from the ray. On a wall it begins free: the wall is behind it.
   Ray started(const Ray& ray, const FieldHit* from, bool) const override {
     Ray r = ray;
@@ -93,7 +90,7 @@ class Heights final : public SceneField {
   HeightTarget target() const { return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_}; }
 
   HeightField field_;
-  const MarchEntry& march_;
+  const HeightMarchEntry& march_;
   MarchSettings settings_;
   std::optional<MaxPyramid> pyramid_;
   double slope_ = std::numeric_limits<double>::quiet_NaN();
@@ -101,7 +98,7 @@ class Heights final : public SceneField {
 
 }  // namespace
 
-SceneFieldPtr scene_heights(HeightField field, const MarchEntry& march, const MarchSettings& settings) {
+SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings) {
   return std::make_shared<Heights>(std::move(field), march, settings);
 }
 

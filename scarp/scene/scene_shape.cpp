@@ -9,7 +9,7 @@ namespace {
 
 class ShapeField final : public SceneField {
  public:
-  ShapeField(DistanceField shape, const MarchEntry& march, const MarchSettings& settings)
+  ShapeField(DistanceField shape, const ShapeMarchEntry& march, const MarchSettings& settings)
       : shape_(std::move(shape)), march_(march), settings_(settings) {
     validate(settings_);
   }
@@ -24,12 +24,11 @@ class ShapeField final : public SceneField {
   }
 
   FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
-    const Hit hit = march_.distance_cpu(shape_, started(ray, from, false), settings_, stats);
+    const Hit hit = march_.cpu(shape_, started(ray, from, false), settings_, stats);
     return {hit.status, hit.t, hit};
   }
   bool occluded(const Ray& ray, const FieldHit* from) const override {
-    if (march_.distance_cpu_occluded) return march_.distance_cpu_occluded(shape_, started(ray, from, true), settings_);
-    return static_cast<bool>(closest_hit(ray, from, nullptr));
+    return march_.occluded(shape_, started(ray, from, true), settings_);
   }
   FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
     const dvec3 p = ray.at(hit.t), normal = shape_.normal(p);
@@ -40,17 +39,17 @@ class ShapeField final : public SceneField {
     const dvec3 normal = shape_.normal(p);
     return FieldSurface{normal, normal, {}, shape_.material(p)};
   }
-  SceneFieldParts parts() const override { return {&shape_, &march_, &settings_}; }
+  SceneFieldParts parts() const override { return {SceneFieldParts::Shape{&shape_, &march_, &settings_}}; }
 
  private:
   DistanceField shape_;
-  const MarchEntry& march_;
+  const ShapeMarchEntry& march_;
   MarchSettings settings_;
 };
 
 }  // namespace
 
-SceneFieldPtr scene_shape(DistanceField shape, const MarchEntry& march, const MarchSettings& settings) {
+SceneFieldPtr scene_shape(DistanceField shape, const ShapeMarchEntry& march, const MarchSettings& settings) {
   return std::make_shared<ShapeField>(std::move(shape), march, settings);
 }
 

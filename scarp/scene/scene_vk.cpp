@@ -34,19 +34,19 @@ class Marches {
   explicit Marches(const Device& device) : device_(device) {}
 
   const Device& device() const { return device_; }
-  DeviceQueries& heights(const MarchEntry& march, const MarchSettings& settings, bool count) {
+  DeviceQueries& heights(const HeightMarchEntry& march, const MarchSettings& settings, bool count) {
     auto& queries = heights_[{&march, count}];
     if (!queries) queries = std::make_unique<DeviceQueries>(device_, march, settings, DeviceQuerySettings{count});
     queries->set_march_settings(settings);
     return *queries;
   }
-  DeviceFunctionQueries& functions(const MarchEntry& march, const MarchSettings& settings) {
+  DeviceFunctionQueries& functions(const FunctionMarchEntry& march, const MarchSettings& settings) {
     auto& queries = functions_[&march];
     if (!queries) queries = std::make_unique<DeviceFunctionQueries>(device_, march, settings);
     queries->set_march_settings(settings);
     return *queries;
   }
-  DeviceShapeQueries& shapes(const MarchEntry& march, const MarchSettings& settings) {
+  DeviceShapeQueries& shapes(const ShapeMarchEntry& march, const MarchSettings& settings) {
     auto& queries = shapes_[&march];
     if (!queries) queries = std::make_unique<DeviceShapeQueries>(device_, march, settings);
     queries->set_march_settings(settings);
@@ -55,16 +55,17 @@ class Marches {
 
  private:
   Device device_;
-  std::map<std::pair<const MarchEntry*, bool>, std::unique_ptr<DeviceQueries>> heights_;  // bool: whether it counts
-  std::map<const MarchEntry*, std::unique_ptr<DeviceFunctionQueries>> functions_;
-  std::map<const MarchEntry*, std::unique_ptr<DeviceShapeQueries>> shapes_;
+  std::map<std::pair<const HeightMarchEntry*, bool>, std::unique_ptr<DeviceQueries>>
+      heights_;  // bool: whether it counts
+  std::map<const FunctionMarchEntry*, std::unique_ptr<DeviceFunctionQueries>> functions_;
+  std::map<const ShapeMarchEntry*, std::unique_ptr<DeviceShapeQueries>> shapes_;
 };
 
 class HeightsOnDevice final : public FieldOnDevice {
  public:
-  HeightsOnDevice(Marches& marches, const HeightField& field, const SceneFieldParts& parts)
-      : marches_(marches), field_(field), parts_(parts), ground_(marches.device(), field) {
-    if (parts.march->needs_slope) slope_ = slope_bound(field);
+  HeightsOnDevice(Marches& marches, const SceneFieldParts::Heights& parts)
+      : marches_(marches), parts_(parts), ground_(marches.device(), *parts.field) {
+    if (parts.march->needs_slope) slope_ = slope_bound(*parts.field);
     queries(false);
   }
 
@@ -79,58 +80,55 @@ class HeightsOnDevice final : public FieldOnDevice {
 
  private:
   DeviceQueries& queries(bool count) { return marches_.heights(*parts_.march, *parts_.settings, count); }
-  DeviceTarget target() const { return {&field_, &ground_, slope_}; }
+  DeviceTarget target() const { return {parts_.field, &ground_, slope_}; }
 
   Marches& marches_;
-  const HeightField& field_;
-  SceneFieldParts parts_;
+  SceneFieldParts::Heights parts_;
   DeviceGround ground_;
   double slope_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 class FunctionOnDevice final : public FieldOnDevice {
  public:
-  FunctionOnDevice(Marches& marches, const HeightFunction& function, const SceneFieldParts& parts)
-      : marches_(marches), function_(function), parts_(parts), device_(marches.device(), function) {
+  FunctionOnDevice(Marches& marches, const SceneFieldParts::Function& parts)
+      : marches_(marches), parts_(parts), device_(marches.device(), *parts.field) {
     queries();
   }
 
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
-    queries().closest_hits({&function_, &device_, FunctionUse::march}, rays, hits, steps);
+    queries().closest_hits({parts_.field, &device_, FunctionUse::march}, rays, hits, steps);
   }
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
-    queries().occluded({&function_, &device_, FunctionUse::shadow}, rays, blocked);
+    queries().occluded({parts_.field, &device_, FunctionUse::shadow}, rays, blocked);
   }
 
  private:
   DeviceFunctionQueries& queries() { return marches_.functions(*parts_.march, *parts_.settings); }
 
   Marches& marches_;
-  const HeightFunction& function_;
-  SceneFieldParts parts_;
+  SceneFieldParts::Function parts_;
   DeviceFunction device_;
 };
 
 class ShapeOnDevice final : public FieldOnDevice {
  public:
-  ShapeOnDevice(Marches& marches, const DistanceField& shape, const SceneFieldParts& parts)
-      : marches_(marches), shape_(shape), parts_(parts), device_(marches.device(), shape) {
+  ShapeOnDevice(Marches& marches, const SceneFieldParts::Shape& parts)
+      : marches_(marches), parts_(parts), device_(marches.device(), *parts.field) {
     queries();
   }
 
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
-    queries().closest_hits({&shape_, &device_}, rays, hits, steps);
+    queries().closest_hits({parts_.field, &device_}, rays, hits, steps);
   }
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
-    queries().occluded({&shape_, &device_}, rays, blocked);
+    queries().occluded({parts_.field, &device_}, rays, blocked);
   }
 
  private:
   DeviceShapeQueries& queries() { return marches_.shapes(*parts_.march, *parts_.settings); }
 
   Marches& marches_;
-  const DistanceField& shape_;
-  SceneFieldParts parts_;
+  SceneFieldParts::Shape parts_;
   DeviceShape device_;
 };
 
@@ -160,12 +158,12 @@ class OnDevice final : public FieldQueries {
  private:
   std::unique_ptr<FieldOnDevice> made(const SceneField& field) {
     const SceneFieldParts parts = field.parts();
-    if (const auto* const* heights = std::get_if<const HeightField*>(&parts.of))
-      return std::make_unique<HeightsOnDevice>(marches_, **heights, parts);
-    if (const auto* const* function = std::get_if<const HeightFunction*>(&parts.of))
-      return std::make_unique<FunctionOnDevice>(marches_, **function, parts);
-    if (const auto* const* shape = std::get_if<const DistanceField*>(&parts.of))
-      return std::make_unique<ShapeOnDevice>(marches_, **shape, parts);
+    if (const auto* heights = std::get_if<SceneFieldParts::Heights>(&parts.of))
+      return std::make_unique<HeightsOnDevice>(marches_, *heights);
+    if (const auto* function = std::get_if<SceneFieldParts::Function>(&parts.of))
+      return std::make_unique<FunctionOnDevice>(marches_, *function);
+    if (const auto* shape = std::get_if<SceneFieldParts::Shape>(&parts.of))
+      return std::make_unique<ShapeOnDevice>(marches_, *shape);
     throw Error("does not run on Vulkan devices; heights, functions and shapes do: ask the CPU");
   }
   std::vector<Ray> started(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,

@@ -56,7 +56,7 @@ class Voxels final : public SceneField {
           corner_openness(scene_.grid(own), own.hit.voxel, own.hit.face, scene_.place_in_grid(own, ray.at(own.hit.t)));
     return surface;
   }
-  SceneFieldParts parts() const override { return {&scene_, nullptr, nullptr}; }
+  SceneFieldParts parts() const override { return {&scene_}; }
 
   std::optional<FieldSurface> within(const dvec3& p) const override {
     const auto colour = scene_.colour_at(p);

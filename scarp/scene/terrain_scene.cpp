@@ -17,14 +17,14 @@ constexpr std::int64_t kRaysPerPiece = 256;
 
 }  // namespace
 
-TerrainScene::TerrainScene(HeightField field, const MarchEntry& march, const MarchSettings& settings)
+TerrainScene::TerrainScene(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings)
     : field_(std::move(field)), march_(&march), settings_(settings) {
   validate(settings_);
   if (march.needs_pyramid) pyramid_.emplace(field_);
   if (march.needs_slope) slope_ = slope_bound(field_);
 }
 
-TerrainScene::TerrainScene(HeightField field, const MarchEntry& march, std::shared_ptr<BatchQueries> device)
+TerrainScene::TerrainScene(HeightField field, const HeightMarchEntry& march, std::shared_ptr<BatchQueries> device)
     : field_(std::move(field)), march_(&march), device_(std::move(device)) {}
 
 void TerrainScene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) const {
@@ -58,10 +58,7 @@ Hit TerrainScene::closest_hit(const Ray& ray, MarchStats* stats) const {
 }
 
 bool TerrainScene::occluded(const Ray& ray) const {
-  if (!device_) {
-    if (march_->cpu_occluded) return march_->cpu_occluded(target(), ray);
-    return static_cast<bool>(closest_hit(ray));
-  }
+  if (!device_) return march_->occluded(target(), ray, settings_);
   std::uint8_t blocked = 0;
   device_->occluded({&ray, 1}, {&blocked, 1});
   return blocked != 0;

@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_table.h"
 #include "scarp/scene/batch_queries.h"
 
 namespace scarp {
@@ -19,9 +19,9 @@ namespace scarp {
 class TerrainScene {
  public:
   /// Builds what the march needs. Throws Error when a setting is out of its range. `march` is a row of marches().
-  TerrainScene(HeightField field, const MarchEntry& march, const MarchSettings& settings = {});
+  TerrainScene(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings = {});
   /// A scene on a device, which answers with the same field, march and settings. Used by one thread at a time.
-  TerrainScene(HeightField field, const MarchEntry& march, std::shared_ptr<BatchQueries> device);
+  TerrainScene(HeightField field, const HeightMarchEntry& march, std::shared_ptr<BatchQueries> device);
 
   /// hits[i] is the first hit of rays[i], which must be valid (march/height/queries.h), as the march finds it. `steps`,
   /// when not empty, is what each ray cost (MarchStats). Uses all threads. Throws Error when spans differ in length.
@@ -35,7 +35,7 @@ class TerrainScene {
   bool occluded(const Ray& ray) const;
 
   const HeightField& field() const { return field_; }
-  const MarchEntry& march() const { return *march_; }
+  const HeightMarchEntry& march() const { return *march_; }
   bool on_device() const { return device_ != nullptr; }
   /// What a device holds of it; null: none does.
   const DeviceTerrain* device_terrain() const { return device_ ? device_->terrain() : nullptr; }
@@ -44,7 +44,7 @@ class TerrainScene {
   HeightTarget target() const { return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_}; }
 
   HeightField field_;
-  const MarchEntry* march_;
+  const HeightMarchEntry* march_;
   MarchSettings settings_;
   std::optional<MaxPyramid> pyramid_;
   double slope_ = std::numeric_limits<double>::quiet_NaN();  // only where the march asks for it

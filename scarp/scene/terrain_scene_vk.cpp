@@ -15,7 +15,7 @@ namespace {
 
 class OnDevice final : public BatchQueries {
  public:
-  OnDevice(const Device& device, HeightField field, const MarchEntry& march, const MarchSettings& settings)
+  OnDevice(const Device& device, HeightField field, const HeightMarchEntry& march, const MarchSettings& settings)
       : device_(device),
         field_(std::move(field)),
         march_(march),
@@ -42,7 +42,7 @@ class OnDevice final : public BatchQueries {
 
   Device device_;
   HeightField field_;
-  const MarchEntry& march_;
+  const HeightMarchEntry& march_;
   MarchSettings settings_;
   DeviceQueries queries_;
   std::optional<DeviceQueries> counting_;  // made when steps are asked for: counting takes time
@@ -53,7 +53,7 @@ class OnDevice final : public BatchQueries {
 
 }  // namespace
 
-TerrainScene terrain_scene_on(const Device& device, HeightField field, const MarchEntry& march,
+TerrainScene terrain_scene_on(const Device& device, HeightField field, const HeightMarchEntry& march,
                               const MarchSettings& settings) {
   auto queries = std::make_shared<OnDevice>(device, field, march, settings);
   return {std::move(field), march, std::move(queries)};

@@ -16,7 +16,8 @@ namespace scarp {
 /// Samples and pyramid are put into the device's memory, and its marches answer all rays, in single precision
 /// (march/height/queries_vk.h). Throws Error: the march does not run on devices, a setting is out of its range, no
 /// memory on the device. Questions throw Error when the device is lost.
-TerrainScene terrain_scene_on(const Device& device, HeightField field, const MarchEntry& march = find_march("max-mip"),
+TerrainScene terrain_scene_on(const Device& device, HeightField field,
+                              const HeightMarchEntry& march = find_height_march("max-mip"),
                               const MarchSettings& settings = {});
 
 /// What a device holds of a terrain scene.

@@ -6,9 +6,9 @@
 
 namespace scarp {
 
-VoxelModel::VoxelModel(VoxelGrid grid, const MarchEntry& march, std::vector<VoxelColour> palette, Extent extent)
+VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette, Extent extent)
     : grid_(std::move(grid)), march_(&march), palette_(std::move(palette)), extent_(extent) {
-  switch (march.voxel_accelerator) {
+  switch (march.accelerator) {
     case VoxelAccelerator::spheres:
       built_.emplace<EmptySpheres>(grid_);
       break;

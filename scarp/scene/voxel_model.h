@@ -12,7 +12,7 @@
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/octant_cubes.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/voxel/voxel_table.h"
 
 namespace scarp {
 
@@ -30,11 +30,11 @@ class VoxelModel {
 
   /// Builds what the march, a row of voxel_marches(), needs. Without a palette the entries are RGB, red in the lowest
   /// 8 bits. Throws Error when the grid is too large for the march.
-  VoxelModel(VoxelGrid grid, const MarchEntry& march, std::vector<VoxelColour> palette = {},
+  VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette = {},
              Extent extent = Extent::bounds);
 
   const VoxelGrid& grid() const { return grid_; }
-  const MarchEntry& march() const { return *march_; }
+  const VoxelMarchEntry& march() const { return *march_; }
   /// The voxels that rays are followed in; empty when none is solid.
   const VoxelBox& box() const { return box_; }
   VoxelTarget target() const;
@@ -63,7 +63,7 @@ class VoxelModel {
   void update(const VoxelBox& changed);
 
   VoxelGrid grid_;
-  const MarchEntry* march_;
+  const VoxelMarchEntry* march_;
   std::vector<VoxelColour> palette_;
   Extent extent_;
   VoxelBox box_;

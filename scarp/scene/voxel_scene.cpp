@@ -108,7 +108,7 @@ struct VoxelScene::Query {
   VoxelHit rounded(std::uint32_t index, double t_max, const VoxelSceneHit* from, MarchStats* stats) {
     const std::uint32_t model = scene.objects_[index].model;
     const VoxelRay local = in_grid(index, t_max);
-    return first_rounded_voxel(scene.targets_[model], scene.models_[model]->march().voxel_cpu, local, direction,
+    return first_rounded_voxel(scene.targets_[model], scene.models_[model]->march().cpu, local, direction,
                                scene.rounding_, from && from->object == index ? &from->hit.voxel : nullptr, stats);
   }
 };
@@ -146,7 +146,7 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from,
     } else {
       const auto quantised = query.quantised(index, t_max, from);
       if (!quantised) return t_max;
-      hit = models_[object.model]->march().voxel_cpu(targets_[object.model], *quantised, stats ? &steps : nullptr);
+      hit = models_[object.model]->march().cpu(targets_[object.model], *quantised, stats ? &steps : nullptr);
     }
     if (stats) {
       ++stats->boxes;
@@ -171,13 +171,10 @@ bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
     const std::uint32_t index = in_tree_[in_tree];
     const Object& object = objects_[index];
-    const MarchEntry& march = models_[object.model]->march();
     if (rounding_) {
       blocked = static_cast<bool>(query.rounded(index, ray.t_max, from, nullptr));
     } else if (const auto quantised = query.quantised(index, ray.t_max, from)) {
-      blocked = march.voxel_cpu_occluded
-                    ? march.voxel_cpu_occluded(targets_[object.model], *quantised)
-                    : static_cast<bool>(march.voxel_cpu(targets_[object.model], *quantised, nullptr));
+      blocked = models_[object.model]->march().occluded(targets_[object.model], *quantised);
     }
     return blocked ? -std::numeric_limits<double>::infinity() : ray.t_max;
   });

@@ -112,8 +112,8 @@ class VoxelScene::PacketQuery {
     const Object& object = scene_.objects_[index];
     const Turn& turn = scene_.turns_[object.turn];
     const VoxelTarget& target = scene_.targets_[object.model];
-    const MarchEntry& march = scene_.models_[object.model]->march();
-    std::uint64_t alone = march.voxel_simd ? 0 : open;
+    const VoxelMarchEntry& march = scene_.models_[object.model]->march();
+    std::uint64_t alone = march.simd ? 0 : open;
     if (!from_.empty()) {
       for_each_bit(open, [&](std::size_t i) {
         if (from_[i] && from_[i]->object == index) alone |= std::uint64_t{1} << i;
@@ -123,7 +123,7 @@ class VoxelScene::PacketQuery {
     if (const std::uint64_t together = open & ~alone; together != 0) {
       if (aimed_ != object.turn) aim_voxel_packet(packet_, turn.grid_from_world);
       aimed_ = object.turn;
-      meeting.met = march.voxel_simd(target, {turn.grid_from_world, object.origin}, packet_, together);
+      meeting.met = march.packet(target, {turn.grid_from_world, object.origin}, packet_, together);
       for (std::size_t k = 0; k < packet_.hits; ++k) {
         const auto i = static_cast<std::size_t>(packet_.ray[k]);
         meeting.hit |= std::uint64_t{1} << i;
@@ -149,7 +149,7 @@ class VoxelScene::PacketQuery {
       const auto quantised = quantise(ray, directions_[i], target.box);
       if (!quantised) return;
       MarchStats stats;
-      const VoxelHit hit = march.voxel_cpu(target, *quantised, &stats);
+      const VoxelHit hit = march.cpu(target, *quantised, &stats);
       packet_.steps += stats.steps;
       meeting.met |= std::uint64_t{1} << i;
       if (!hit) return;

@@ -204,7 +204,7 @@ TEST_F(DeviceGrounds, LongFieldsAreLikeOthers) {
     rays[i].t_max = 1000;
   }
   std::vector<Hit> hits(rays.size());
-  DeviceQueries(device(), find_march("max-mip"), {}, {.rays_at_once = 1000})
+  DeviceQueries(device(), find_height_march("max-mip"), {}, {.rays_at_once = 1000})
       .closest_hits({&field, &ground}, rays, hits);
   int met = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -7,7 +7,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/fixed_step.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_table.h"
 #include "scarp/march/naive.h"
 #include "scarp/march/relaxed.h"
 
@@ -152,9 +152,9 @@ TEST(SamplingMarches, DoNotDependOnTheLengthOfTheDirection) {
 
 TEST(MarchTable, NamesAreUniqueAndFoundAndTheOracleIsFirst) {
   EXPECT_EQ(height_marches().front().name, "exhaustive");
-  for (const MarchEntry& entry : height_marches()) EXPECT_EQ(&find_march(entry.name), &entry);
+  for (const HeightMarchEntry& entry : height_marches()) EXPECT_EQ(&find_height_march(entry.name), &entry);
   try {
-    find_march("max mip");
+    find_height_march("max mip");
     FAIL();
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("'max mip'"), std::string::npos);

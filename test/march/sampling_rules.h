@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "march/height/rounding_judge.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp::test {
 

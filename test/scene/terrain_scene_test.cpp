@@ -27,7 +27,7 @@ TEST(TerrainScene, OccludedIsWhetherThereIsAHitWithEveryMarch) {
   const HeightField field = waves(40);
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> place(-5, 45), height(-6, 8), way(-1, 1);
-  for (const MarchEntry& march : height_marches()) {
+  for (const HeightMarchEntry& march : height_marches()) {
     const TerrainScene scene(field, march);
     int hits = 0;
     for (int i = 0; i < 2000; ++i) {
@@ -43,7 +43,7 @@ TEST(TerrainScene, OccludedIsWhetherThereIsAHitWithEveryMarch) {
 }
 
 TEST(TerrainScene, ABatchIsAnsweredAsItsRaysAre) {
-  const TerrainScene scene(waves(40), find_march("max-mip"));
+  const TerrainScene scene(waves(40), find_height_march("max-mip"));
   std::mt19937_64 random(8);
   std::uniform_real_distribution<double> place(-5, 45), height(-6, 8), way(-1, 1);
   std::vector<Ray> rays(3000);
@@ -73,7 +73,7 @@ TEST(TerrainScene, ABatchIsAnsweredAsItsRaysAre) {
 }
 
 TEST(TerrainScene, StatisticsAreThoseOfTheMarch) {
-  const TerrainScene scene(waves(40), find_march("max-mip"));
+  const TerrainScene scene(waves(40), find_height_march("max-mip"));
   Ray down;
   down.origin = {10.3, 10.6, 50};
   down.direction = {0.1, 0.2, -1};
@@ -86,7 +86,7 @@ TEST(TerrainScene, StatisticsAreThoseOfTheMarch) {
 TEST(TerrainScene, SettingsOutOfRangeAreRefused) {
   MarchSettings settings;
   settings.naive.min_step = 0;
-  EXPECT_THROW(TerrainScene(waves(4), find_march("naive"), settings), Error);
+  EXPECT_THROW(TerrainScene(waves(4), find_height_march("naive"), settings), Error);
 }
 
 }  // namespace

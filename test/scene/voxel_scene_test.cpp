@@ -289,7 +289,7 @@ TEST(VoxelScene, RefusesWhatIsNoPlace) {
 }
 
 TEST(VoxelModel, FollowsEdits) {
-  for (const MarchEntry& march : voxel_marches()) {
+  for (const VoxelMarchEntry& march : voxel_marches()) {
     VoxelModel model(VoxelGrid(ivec3(20), 8), march);
     EXPECT_TRUE(model.box().empty());
     model.edit([](VoxelGrid& grid) { return grid.fill({{5, 5, 5}, {9, 9, 9}}, 3); });
@@ -298,7 +298,7 @@ TEST(VoxelModel, FollowsEdits) {
     ray.origin = {6.5, 6.5, 30};
     const auto quantised = quantise(ray, model.box());
     ASSERT_TRUE(quantised);
-    const VoxelHit hit = march.voxel_cpu(model.target(), *quantised, nullptr);
+    const VoxelHit hit = march.cpu(model.target(), *quantised, nullptr);
     ASSERT_TRUE(hit) << march.name;
     EXPECT_EQ(hit.voxel, ivec3(6, 6, 7));
     EXPECT_EQ(hit.t, 22);
@@ -307,7 +307,7 @@ TEST(VoxelModel, FollowsEdits) {
 }
 
 TEST(VoxelModel, IsTrueToItsGridAfterAnEditThatThrows) {
-  for (const MarchEntry& march : voxel_marches()) {
+  for (const VoxelMarchEntry& march : voxel_marches()) {
     VoxelModel model(VoxelGrid(ivec3(20), 8), march);
     EXPECT_THROW(model.edit([](VoxelGrid& grid) {
       grid.fill({{5, 5, 5}, {9, 9, 9}}, 3);
@@ -318,7 +318,7 @@ TEST(VoxelModel, IsTrueToItsGridAfterAnEditThatThrows) {
     ray.origin = {6.5, 6.5, 30};
     const auto quantised = quantise(ray, model.box());
     ASSERT_TRUE(quantised) << march.name;
-    EXPECT_EQ(march.voxel_cpu(model.target(), *quantised, nullptr).t, 21) << march.name;
+    EXPECT_EQ(march.cpu(model.target(), *quantised, nullptr).t, 21) << march.name;
   }
 }
 

@@ -41,7 +41,7 @@ constexpr std::array kDeviceMarches = {
     DeviceMarch{"lipschitz-local", kLipschitzLocalWords, 0, true, 2},
 };
 
-const DeviceMarch& device_march(const MarchEntry& march) {
+const DeviceMarch& device_march(const FunctionMarchEntry& march) {
   std::string names;
   for (const DeviceMarch& candidate : kDeviceMarches) {
     if (candidate.name == march.name) return candidate;
@@ -106,7 +106,7 @@ int run_steps(std::size_t instructions, int evaluations) {
 }  // namespace
 
 struct DeviceFunctionQueries::Impl {
-  Impl(const Device& device_, const MarchEntry& entry, const MarchSettings& march_settings_,
+  Impl(const Device& device_, const FunctionMarchEntry& entry, const MarchSettings& march_settings_,
        const DeviceQuerySettings& settings)
       : march(device_march(entry)),
         march_settings(march_settings_),
@@ -151,7 +151,7 @@ struct DeviceFunctionQueries::Impl {
   std::map<std::pair<std::uint32_t, std::uint32_t>, ComputePipeline> pipelines;  // by choice and parts
 };
 
-DeviceFunctionQueries::DeviceFunctionQueries(const Device& device, const MarchEntry& march,
+DeviceFunctionQueries::DeviceFunctionQueries(const Device& device, const FunctionMarchEntry& march,
                                              const MarchSettings& march_settings, const DeviceQuerySettings& settings) {
   validate(march_settings);
   impl_ = std::make_unique<Impl>(device, march, march_settings, settings);

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "scarp/accel/device_function.h"
+#include "scarp/march/function/function_table.h"
 #include "scarp/march/height/queries_vk.h"
-#include "scarp/march/marches.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
 
@@ -34,7 +34,8 @@ class DeviceFunctionQueries {
  public:
   /// `march` is a row of function_marches(); of the settings `rays_at_once` counts. Throws Error: the march does not
   /// run on devices, a setting out of its range, no memory on the device.
-  explicit DeviceFunctionQueries(const Device& device, const MarchEntry& march = find_function_march("lipschitz-local"),
+  explicit DeviceFunctionQueries(const Device& device,
+                                 const FunctionMarchEntry& march = find_function_march("lipschitz-local"),
                                  const MarchSettings& march_settings = {}, const DeviceQuerySettings& settings = {});
   DeviceFunctionQueries(DeviceFunctionQueries&&) noexcept;
   DeviceFunctionQueries& operator=(DeviceFunctionQueries&&) noexcept;

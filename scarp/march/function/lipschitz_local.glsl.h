@@ -19,7 +19,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// LipschitzLocalSettings of marches.h.
+/// LipschitzLocalSettings of march_settings.h.
 struct ScarpLipschitzLocal {
   float tolerance;  ///< length of the last interval, per unit of distance travelled, >= 0
   int max_steps;    ///< >= 1; more: kScarpFunctionExhausted

@@ -22,7 +22,7 @@
 
 #include "scarp/base/ray.h"
 #include "scarp/field/height_function.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 

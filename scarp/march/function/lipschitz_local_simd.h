@@ -11,7 +11,9 @@
 #include <cstdint>
 #include <span>
 
-#include "scarp/march/marches.h"
+#include "scarp/base/ray.h"
+#include "scarp/field/height_function.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <string_view>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 

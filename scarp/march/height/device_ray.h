@@ -7,8 +7,8 @@
 // the field.
 #pragma once
 
+#include "scarp/march/height/height_target.h"
 #include "scarp/march/height/ray_frame.glsl.h"
-#include "scarp/march/marches.h"
 
 namespace scarp {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_target.h"
 #include "scarp/march/ray_clip.h"
 
 namespace scarp {

@@ -20,7 +20,8 @@
 
 #include <vector>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_target.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 

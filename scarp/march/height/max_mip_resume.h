@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "scarp/field/height_field.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_target.h"
 
 namespace scarp {
 

@@ -22,7 +22,7 @@
 #include <cstdint>
 #include <span>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_target.h"
 
 namespace scarp {
 

@@ -9,9 +9,9 @@
 
 #include "scarp/march/height/cell_surface.h"
 #include "scarp/march/height/grid_axis.h"
+#include "scarp/march/height/height_target.h"
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/rounding.h"
-#include "scarp/march/marches.h"
 
 // Internal linkage, though in a header: included by one file, which lets the compiler put functions that are called
 // once into their caller. With them outside, the walk keeps its state in memory, and a ray takes a tenth longer; for

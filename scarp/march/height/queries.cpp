@@ -84,28 +84,26 @@ void in_vectors(const HeightField& field, std::span<const Ray> rays, std::span<R
 
 }  // namespace
 
-void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits, const MarchEntry& march,
-                  const MarchSettings& settings) {
+void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
+                  const HeightMarchEntry& march, const MarchSettings& settings) {
   require_same_length(rays.size(), hits.size());
   if (march.simd && rays.size() >= kFewForVectors) {
-    return in_vectors(*target.field, rays, hits,
-                      [&](std::span<const Ray> some, std::span<Hit> answers) { march.simd(target, some, answers); });
+    return in_vectors(*target.field, rays, hits, [&](std::span<const Ray> some, std::span<Hit> answers) {
+      march.batch(target, some, answers, settings);
+    });
   }
   for_each_ray(*target.field, rays, [&](std::size_t i) { hits[i] = march.cpu(target, rays[i], settings, nullptr); });
 }
 
 void occluded(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-              const MarchEntry& march, const MarchSettings& settings) {
+              const HeightMarchEntry& march, const MarchSettings& settings) {
   require_same_length(rays.size(), blocked.size());
-  if (march.simd_occluded && rays.size() >= kFewForVectors) {
+  if (march.simd && rays.size() >= kFewForVectors) {
     return in_vectors(*target.field, rays, blocked, [&](std::span<const Ray> some, std::span<std::uint8_t> answers) {
-      march.simd_occluded(target, some, answers);
+      march.occluded_batch(target, some, answers, settings);
     });
   }
-  for_each_ray(*target.field, rays, [&](std::size_t i) {
-    blocked[i] = march.cpu_occluded ? march.cpu_occluded(target, rays[i])
-                                    : march.cpu(target, rays[i], settings, nullptr).status == HitStatus::hit;
-  });
+  for_each_ray(*target.field, rays, [&](std::size_t i) { blocked[i] = march.occluded(target, rays[i], settings); });
 }
 
 void validate(const Ray& ray, const HeightField& field) {

@@ -12,17 +12,17 @@
 #include <cstdint>
 #include <span>
 
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_table.h"
 
 namespace scarp {
 
 /// hits[i] is march.cpu(target, rays[i], settings), bit for bit. Throws Error when the spans differ in length.
 void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
-                  const MarchEntry& march = find_march("max-mip"), const MarchSettings& settings = {});
+                  const HeightMarchEntry& march = find_height_march("max-mip"), const MarchSettings& settings = {});
 
 /// blocked[i] is 1 where closest_hits would tell a hit, else 0. Throws Error when the spans differ in length.
 void occluded(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-              const MarchEntry& march = find_march("max-mip"), const MarchSettings& settings = {});
+              const HeightMarchEntry& march = find_height_march("max-mip"), const MarchSettings& settings = {});
 
 /// Throws Error, in one line, when a ray cannot be followed over the field: an origin or direction that is not finite,
 /// a direction of zero, a range that is not one, an infinite t_max in a field that wraps round, a start cell that does

@@ -54,7 +54,7 @@ constexpr std::array kDeviceMarches = {
     DeviceMarch{"lipschitz", kLipschitzWords, sampled_device_ray, false, sizeof(glsl::BatchTime)},
 };
 
-const DeviceMarch& device_march(const MarchEntry& march) {
+const DeviceMarch& device_march(const HeightMarchEntry& march) {
   for (const DeviceMarch& candidate : kDeviceMarches) {
     if (candidate.name == march.name) return candidate;
   }
@@ -110,7 +110,7 @@ std::string device_march_names() {
 }
 
 struct DeviceQueries::Impl {
-  Impl(const Device& device, const MarchEntry& entry, const MarchSettings& march_settings_,
+  Impl(const Device& device, const HeightMarchEntry& entry, const MarchSettings& march_settings_,
        const DeviceQuerySettings& settings)
       : march(device_march(entry)),
         march_settings(march_settings_),
@@ -199,7 +199,7 @@ struct DeviceQueries::Impl {
   std::vector<glsl::ScarpHit> found;
 };
 
-DeviceQueries::DeviceQueries(const Device& device, const MarchEntry& march, const MarchSettings& march_settings,
+DeviceQueries::DeviceQueries(const Device& device, const HeightMarchEntry& march, const MarchSettings& march_settings,
                              const DeviceQuerySettings& settings) {
   validate(march_settings);
   impl_ = std::make_unique<Impl>(device, march, march_settings, settings);

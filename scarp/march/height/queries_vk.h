@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays by the batch on a Vulkan device: queries.h for the marches that run there (MarchEntry::gpu).
+// Rays by the batch on a Vulkan device: queries.h for the marches that run there (HeightMarchEntry::gpu).
 //
 //   rays, double ──▶ clipped, two floats per number ──▶ device, a slice at a time ──▶ answers ──▶ hits, double
 //
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "scarp/accel/device_ground.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/height/height_table.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
 
@@ -46,7 +46,7 @@ struct DeviceTarget {
 class DeviceQueries {
  public:
   /// Throws Error: the march does not run on devices (which do), a setting out of its range, no memory on the device.
-  explicit DeviceQueries(const Device& device, const MarchEntry& march = find_march("max-mip"),
+  explicit DeviceQueries(const Device& device, const HeightMarchEntry& march = find_height_march("max-mip"),
                          const MarchSettings& march_settings = {}, const DeviceQuerySettings& settings = {});
   DeviceQueries(DeviceQueries&&) noexcept;
   DeviceQueries& operator=(DeviceQueries&&) noexcept;

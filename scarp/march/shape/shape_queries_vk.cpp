@@ -131,7 +131,7 @@ struct DeviceShapeQueries::Impl {
   std::map<std::array<std::uint32_t, 3>, ComputePipeline> pipelines;  // by choice, parts, and those of functions
 };
 
-DeviceShapeQueries::DeviceShapeQueries(const Device& device, const MarchEntry& march,
+DeviceShapeQueries::DeviceShapeQueries(const Device& device, const ShapeMarchEntry& march,
                                        const MarchSettings& march_settings, const DeviceQuerySettings& settings) {
   if (march.name != "sphere-trace") {
     throw Error(

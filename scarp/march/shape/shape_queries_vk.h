@@ -15,7 +15,7 @@
 #include "scarp/accel/device_ground.h"
 #include "scarp/accel/shape_words.h"
 #include "scarp/march/height/queries_vk.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/shape/shape_table.h"
 #include "scarp/vk/device.h"
 #include "scarp/vk/memory.h"
 
@@ -53,9 +53,9 @@ struct DeviceShapeTarget {
 /// One march, ready to run against any shape of a device. Used by one thread at a time.
 class DeviceShapeQueries {
  public:
-  /// `march` is a row of distance_marches(). Throws Error: the march does not run on devices, a setting out of its
+  /// `march` is a row of shape_marches(). Throws Error: the march does not run on devices, a setting out of its
   /// range, no memory on the device.
-  explicit DeviceShapeQueries(const Device& device, const MarchEntry& march = find_distance_march("sphere-trace"),
+  explicit DeviceShapeQueries(const Device& device, const ShapeMarchEntry& march = find_shape_march("sphere-trace"),
                               const MarchSettings& march_settings = {}, const DeviceQuerySettings& settings = {});
   DeviceShapeQueries(DeviceShapeQueries&&) noexcept;
   DeviceShapeQueries& operator=(DeviceShapeQueries&&) noexcept;

@@ -22,7 +22,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// SphereTraceSettings of marches.h.
+/// SphereTraceSettings of march_settings.h.
 struct ScarpSphereTrace {
   float tolerance;  ///< length of the last interval, per unit of distance travelled, >= 0
   int max_steps;    ///< >= 1; more: kScarpFunctionExhausted

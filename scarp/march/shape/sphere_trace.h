@@ -20,7 +20,9 @@
 // 39(2), 2020.
 #pragma once
 
-#include "scarp/march/marches.h"
+#include "scarp/base/ray.h"
+#include "scarp/field/distance_field.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 

@@ -104,7 +104,7 @@ class ErrorTile final : public TileWork {
 ErrorPicture render_error(const TerrainScene& scene, const Camera& camera, int width, int height, double tolerance,
                           const Progress& progress) {
   const HeightField& field = scene.field();
-  const TerrainScene oracle(field, find_march("exhaustive"));
+  const TerrainScene oracle(field, find_height_march("exhaustive"));
   const Light light(SunSettings{}, 0);
   ErrorPicture picture{Image(width, height), {}};
   picture.counts.tolerance_m = tolerance * std::min(field.settings().cell_x, field.settings().cell_y);

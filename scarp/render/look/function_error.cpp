@@ -29,7 +29,7 @@ bool contradicts(const Hit& hit, const FunctionJudgement& judge, const Ray& ray,
 
 }  // namespace
 
-FunctionErrorPicture render_function_error(const HeightFunction& function, const MarchEntry& march,
+FunctionErrorPicture render_function_error(const HeightFunction& function, const FunctionMarchEntry& march,
                                            const MarchSettings& march_settings, const Camera& camera,
                                            const FunctionErrorSettings& settings, const Progress& progress) {
   validate(march_settings);
@@ -54,7 +54,7 @@ FunctionErrorPicture render_function_error(const HeightFunction& function, const
             Ray ray = camera.ray(x + 0.5, y + 0.5);
             ray.t_max = settings.reach;
             const Hit truth = march_lipschitz_local(function, ray, exact);
-            const Hit answer = march.function_cpu(function, ray, march_settings, nullptr, FunctionUse::march);
+            const Hit answer = march.cpu(function, ray, march_settings, nullptr, FunctionUse::march);
             const Verdict verdict = judge(answer, truth, settings.share * (truth ? truth.t : 0));
             ++counts[static_cast<std::size_t>(verdict)];
             vec3 colour = linear_from_srgb(srgb_of(verdict));

@@ -5,7 +5,7 @@
 // interval bisection as well (function_exhaustive.h), and contradictions are counted.
 #pragma once
 
-#include "scarp/march/marches.h"
+#include "scarp/march/function/function_table.h"
 #include "scarp/render/look/error_look.h"
 
 namespace scarp {
@@ -26,7 +26,7 @@ struct FunctionErrorPicture {
 
 /// `march` is a row of function_marches(). Throws Error for settings out of their range, Interrupted when progress asks
 /// for it.
-FunctionErrorPicture render_function_error(const HeightFunction& function, const MarchEntry& march,
+FunctionErrorPicture render_function_error(const HeightFunction& function, const FunctionMarchEntry& march,
                                            const MarchSettings& march_settings, const Camera& camera,
                                            const FunctionErrorSettings& settings, const Progress& progress = {});
 

@@ -158,7 +158,7 @@ void for_each_overlap(const std::vector<OnLattice>& instances, const Body& body)
 }  // namespace
 
 VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options) {
-  const MarchEntry& march = find_voxel_march(options.voxels.march);
+  const VoxelMarchEntry& march = find_voxel_march(options.voxels.march);
   const std::vector<VoxInstance> instances = vox_instances(file, options.scene);
   std::vector<VoxelColour> palette(256);
   for (std::size_t i = 1; i < palette.size(); ++i) {

@@ -174,7 +174,7 @@ VoxelScene voxels_of_file(const Json& json, const std::string& path, const std::
 }
 
 FieldWithPlace voxels_from(const Json& json, const std::string& path, const FieldSurroundings& around,
-                           const MarchEntry& march) {
+                           const VoxelMarchEntry& march) {
   try {
     VoxelSceneOptions options{march.name, json.value("surface_colours", false), {}};
     options.rounding = {json.value("rounded", 0.0), json.value("each", false)};
@@ -269,7 +269,7 @@ FieldWithPlace field_from_json(const Json& json, const std::string& path, const 
   const MarchSettings settings =
       json.contains("settings") ? march_settings_from_json(json["settings"], path + "/settings") : MarchSettings{};
   // The march that the field has, or that which suits its kind.
-  const auto march = [&](const MarchEntry& (*find)(std::string_view), const char* usual) -> const MarchEntry& {
+  const auto march = [&](const auto& find, const char* usual) -> const auto& {
     try {
       return find(json.value("march", usual));
     } catch (const Error&) {
@@ -279,16 +279,16 @@ FieldWithPlace field_from_json(const Json& json, const std::string& path, const 
   const std::string inner = path + "/" + kind;
   const Json& field = json[kind];
   if (kind == kKinds[0]) {
-    const MarchEntry& by = march(find_march, "max-mip");
+    const HeightMarchEntry& by = march(find_height_march, "max-mip");
     HeightsWithPlace made = heights_from(field, inner, around);
     return {scene_heights(std::move(made.field), by, settings), made.shift};
   }
   if (kind == kKinds[1]) {
-    const MarchEntry& by = march(find_function_march, "lipschitz-local");
+    const FunctionMarchEntry& by = march(find_function_march, "lipschitz-local");
     return {scene_function(HeightFunction(function_from_json(field, inner, around.functions)), by, settings)};
   }
   if (kind == kKinds[2]) {
-    const MarchEntry& by = march(find_distance_march, "sphere-trace");
+    const ShapeMarchEntry& by = march(find_shape_march, "sphere-trace");
     const ShapeNames names{around.material, [&](const Json& ground, const std::string& at) {
                              try {
                                return ground_from(ground, at, around);

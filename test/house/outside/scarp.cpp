@@ -9,7 +9,7 @@
 
 int main() {
   const std::vector<std::int16_t> samples{0, 1, 2, 1, 5, 1, 2, 1, 0};
-  const scarp::TerrainScene scene(scarp::HeightField::own(samples, 3, 3), scarp::find_march("max-mip"));
+  const scarp::TerrainScene scene(scarp::HeightField::own(samples, 3, 3), scarp::find_height_march("max-mip"));
   scarp::PictureSettings settings;
   settings.width = 32;
   settings.height = 32;

@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
-#include "scarp/march/marches.h"
+#include "scarp/base/ray.h"
+#include "scarp/field/height_function.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp::test {
 

@@ -12,9 +12,11 @@
 #include "march/function/function_rays.h"
 #include "scarp/base/error.h"
 #include "scarp/march/function/function_exhaustive.h"
+#include "scarp/march/function/function_table.h"
 #include "scarp/march/function/lipschitz_local.h"
 #include "scarp/march/function/lipschitz_local_simd.h"
 #include "scarp/march/function/presets.h"
+#include "scarp/march/height/height_table.h"
 
 namespace scarp::test {
 namespace {
@@ -154,9 +156,9 @@ TEST(FunctionMarches, FollowRaysOfAnyDirection) {
   const Hit level = march_lipschitz_local(bowl(), {{-25, 3, 5}, {0.5, 0, 0}});
   ASSERT_TRUE(level);
   EXPECT_NEAR(level.t, 2 * (25 + 25.0 / 3), 1e-4);
-  for (const MarchEntry& march : function_marches()) {
+  for (const FunctionMarchEntry& march : function_marches()) {
     MarchStats stats;
-    const Hit hit = march.function_cpu(bowl(), {{-25, 3, 5}, {0.5, 0, 0}, 0, 200}, {}, &stats, FunctionUse::march);
+    const Hit hit = march.cpu(bowl(), {{-25, 3, 5}, {0.5, 0, 0}, 0, 200}, {}, &stats, FunctionUse::march);
     ASSERT_TRUE(hit) << march.name;
     EXPECT_NEAR(hit.t, 2 * (25 + 25.0 / 3), 1);
     EXPECT_GT(stats.steps, 5u);
@@ -176,12 +178,12 @@ TEST(FunctionMarches, RespectTheRange) {
 
 TEST(FunctionMarches, EndAtTheirReach) {
   const Ray ray{{-25, 3, 5}, {2, 0, 0}};  // meets the ground after 33.3 m
-  for (const MarchEntry& march : function_marches()) {
+  for (const FunctionMarchEntry& march : function_marches()) {
     MarchSettings settings;
     settings.function.reach = 30;
-    EXPECT_EQ(march.function_cpu(bowl(), ray, settings, nullptr, FunctionUse::march).status, HitStatus::miss);
+    EXPECT_EQ(march.cpu(bowl(), ray, settings, nullptr, FunctionUse::march).status, HitStatus::miss);
     settings.function.reach = 40;
-    EXPECT_TRUE(march.function_cpu(bowl(), ray, settings, nullptr, FunctionUse::march)) << march.name;
+    EXPECT_TRUE(march.cpu(bowl(), ray, settings, nullptr, FunctionUse::march)) << march.name;
   }
 }
 
@@ -190,22 +192,20 @@ TEST(FunctionMarches, TellUsedUpStepsFromHits) {
   MarchSettings settings;
   settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = 2;
   settings.lipschitz.max_steps = settings.lipschitz_local.max_steps = 2;
-  for (const MarchEntry& march : function_marches()) {
-    EXPECT_EQ(march.function_cpu(bowl(), ray, settings, nullptr, FunctionUse::march).status, HitStatus::exhausted)
-        << march.name;
+  for (const FunctionMarchEntry& march : function_marches()) {
+    EXPECT_EQ(march.cpu(bowl(), ray, settings, nullptr, FunctionUse::march).status, HitStatus::exhausted) << march.name;
   }
 }
 
 TEST(FunctionMarches, TheTableNamesThem) {
   std::vector<std::string_view> names;
-  for (const MarchEntry& march : function_marches()) {
+  for (const FunctionMarchEntry& march : function_marches()) {
     names.push_back(march.name);
     EXPECT_EQ(&find_function_march(march.name), &march);
-    EXPECT_NE(march.fields.find("function"), std::string_view::npos);
   }
   EXPECT_EQ(names, (std::vector<std::string_view>{"naive", "fixed-step", "relaxed", "lipschitz", "lipschitz-local"}));
   EXPECT_THROW(find_function_march("max-mip"), Error);
-  EXPECT_THROW(find_march("lipschitz-local"), Error);
+  EXPECT_THROW(find_height_march("lipschitz-local"), Error);
 }
 
 TEST(FunctionMarches, ValidateTheirSettings) {
@@ -235,8 +235,7 @@ TEST(FunctionMarches, PresetsHaveTheirNumbers) {
     const MarchPreset& preset = find_march_preset(name);
     validate(preset.settings);
     MarchStats stats;
-    const Hit hit =
-        find_function_march(preset.march).function_cpu(ramp, ray, preset.settings, &stats, FunctionUse::march);
+    const Hit hit = find_function_march(preset.march).cpu(ramp, ray, preset.settings, &stats, FunctionUse::march);
     EXPECT_TRUE(hit) << name;
     t = hit.t;
     return stats.steps;
@@ -296,7 +295,7 @@ TEST(FunctionMarches, RefineTheLastInterval) {
   MarchSettings settings;
   settings.relaxed.tolerance = settings.naive.tolerance = 0.01;
   for (const std::string_view name : {"naive", "relaxed"}) {
-    const FunctionMarch march = find_function_march(name).function_cpu;
+    const FunctionMarch march = find_function_march(name).cpu;
     settings.function.refinement = Refinement::none;
     const Hit plain = march(ramp, ray, settings, nullptr, FunctionUse::march);
     settings.function.refinement = Refinement::bisect;

@@ -17,6 +17,7 @@
 #include "scarp/march/device_function_ray.h"
 #include "scarp/march/function/function_marches.glsl.h"
 #include "scarp/march/function/function_marches.h"
+#include "scarp/march/function/function_table.h"
 #include "scarp/march/function/lipschitz_local.glsl.h"
 #include "scarp/march/function/noise.glsl.h"
 
@@ -201,7 +202,7 @@ TEST(FunctionsInShaders, MarchesTellWhatSinglePrecisionAllows) {
     for (int i = 0; i < kRays; ++i) {
       const Ray ray = random_ray(function, random);
       const auto prepared = device_function_ray(function, rounding, ray, FunctionUse::march, 1e30);
-      for (const MarchEntry& entry : function_marches()) {
+      for (const FunctionMarchEntry& entry : function_marches()) {
         const glsl::ScarpFunctionHit answer =
             prepared.marches ? march(program, prepared, entry.name, {}, function.bound_everywhere().slope)
                              : glsl::scarp_function_miss();
@@ -213,7 +214,7 @@ TEST(FunctionsInShaders, MarchesTellWhatSinglePrecisionAllows) {
         hits += bool(hit), exhausted += hit.status == HitStatus::exhausted;
         cost += answer.bounds;
         MarchStats stats;
-        entry.function_cpu(function, ray, {}, &stats, FunctionUse::march);
+        entry.cpu(function, ray, {}, &stats, FunctionUse::march);
         cpu_cost += stats.steps;
       }
     }

@@ -29,7 +29,7 @@ constexpr int kDeviceRays = 40;
 
 class FunctionsOnDevice : public OnDevice {};
 
-DeviceFunctionQueries& queries(const MarchEntry& march) {
+DeviceFunctionQueries& queries(const FunctionMarchEntry& march) {
   static std::map<std::string_view, DeviceFunctionQueries> all;
   const auto found = all.find(march.name);
   if (found != all.end()) return found->second;
@@ -50,7 +50,7 @@ TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
     std::vector<Hit> hits(rays.size());
     std::vector<std::uint32_t> steps(rays.size());
     std::vector<std::uint8_t> blocked(rays.size());
-    for (const MarchEntry& march : function_marches()) {
+    for (const FunctionMarchEntry& march : function_marches()) {
       ASSERT_TRUE(march.gpu) << march.name;
       if (march.name != "lipschitz-local" && f > 0) continue;
       queries(march).closest_hits(target, rays, hits, steps);
@@ -93,7 +93,7 @@ TEST_F(FunctionsOnDevice, NeighboursDoNotShow) {
   MarchSettings settings;
   settings.function.refinement = Refinement::bisect;
   settings.function.halvings = 60;
-  for (const MarchEntry& march : function_marches()) {
+  for (const FunctionMarchEntry& march : function_marches()) {
     DeviceFunctionQueries together(device(), march, settings), alone(device(), march, settings, {.rays_at_once = 1});
     std::vector<Hit> hits(rays.size()), other(rays.size());
     together.closest_hits(target, rays, hits);
@@ -106,7 +106,9 @@ TEST_F(FunctionsOnDevice, NeighboursDoNotShow) {
 }
 
 TEST_F(FunctionsOnDevice, SayWhatIsWrong) {
-  EXPECT_EQ(test::refusal([&] { DeviceFunctionQueries(device(), find_march("max-mip")); }),
+  FunctionMarchEntry unknown = find_function_march("naive");
+  unknown.name = "max-mip";
+  EXPECT_EQ(test::refusal([&] { DeviceFunctionQueries(device(), unknown); }),
             "march 'max-mip': does not run over functions on Vulkan devices; there run: naive, fixed-step, relaxed, "
             "lipschitz, lipschitz-local");
   const HeightFunction plane(make_function(Plane{5}));

@@ -383,7 +383,7 @@ TEST_P(Oracle, ExactMarchesAgreeWithTheJudge) {
                       << text(judge.nominal()) << "\n  march " << answer << "\n  scarp replay "
                       << dumped(field, ray, text(judge.nominal()), std::string(answer));
       };
-      for (const MarchEntry& march : height_marches()) {
+      for (const HeightMarchEntry& march : height_marches()) {
         const bool exact = march.guarantee == Guarantee::exact;
         if (march.cpu == march_exhaustive || (!exact && i % kRaysPerApproximation != 0)) continue;
         const Hit hit = march.cpu(target, ray, {}, nullptr);

@@ -40,7 +40,7 @@ DeviceQueries& queries(std::string_view march) {
   const auto found = all.find(march);
   if (found != all.end()) return found->second;
   return all
-      .emplace(march, DeviceQueries(*device_under_test().device, find_march(march), {},
+      .emplace(march, DeviceQueries(*device_under_test().device, find_height_march(march), {},
                                     {.statistics = true, .rays_at_once = 3000}))
       .first->second;
 }
@@ -65,7 +65,7 @@ void check(const Device& device, const FieldKind& fields, const std::vector<RayK
   for (const Ray& ray : rays) judges.emplace_back(field, ray);
   std::vector<Hit> hits(rays.size());
   std::vector<std::uint8_t> blocked(rays.size());
-  for (const MarchEntry& march : height_marches()) {
+  for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
     queries(march.name).closest_hits(target, rays, hits);
     queries(march.name).occluded(target, rays, blocked);
@@ -119,8 +119,8 @@ TEST_F(QueriesOnDevice, SlicesDoNotShow) {
   for (int i = 0; i < 1000; ++i) rays.push_back(spiteful_rays()[1].make(field, random));
   std::vector<Hit> hits(rays.size()), other(rays.size());
   std::vector<DeviceRayCost> costs(rays.size()), none(rays.size());
-  DeviceQueries whole(device(), find_march("max-mip"), {}, {.statistics = true});
-  DeviceQueries sliced(device(), find_march("max-mip"), {}, {.rays_at_once = 77});
+  DeviceQueries whole(device(), find_height_march("max-mip"), {}, {.statistics = true});
+  DeviceQueries sliced(device(), find_height_march("max-mip"), {}, {.rays_at_once = 77});
   whole.closest_hits({&field, &ground}, rays, hits, costs);
   sliced.closest_hits({&field, &ground}, rays, other, none);
   EXPECT_EQ(whole.passes().size(), 1u);
@@ -145,7 +145,7 @@ TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
   settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = kFewSteps;
   settings.lipschitz.max_steps = kFewSteps;
   std::map<std::string_view, DeviceQueries> at_once, interrupted;
-  for (const MarchEntry& march : height_marches()) {
+  for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
     at_once.try_emplace(march.name, device(), march, settings, DeviceQuerySettings{.statistics = true});
     interrupted.try_emplace(march.name, device(), march, settings,
@@ -215,7 +215,7 @@ TEST_F(QueriesOnDevice, LongMarchesEnd) {
   settings.relaxed = {.tolerance = kLeastStep / 10, .max_steps = kManySteps};
   settings.lipschitz = {.tolerance = kLeastStep / 2, .max_steps = kManySteps};
   constexpr std::uint32_t kLavapipeTurns = 65'535;
-  for (const MarchEntry& march : height_marches()) {
+  for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
     SCOPED_TRACE(march.name);
     DeviceQueries asked(device(), march, settings, {.statistics = true});
@@ -235,7 +235,7 @@ TEST_F(QueriesOnDevice, LongMarchesEnd) {
 TEST_F(QueriesOnDevice, SayWhatIsWrong) {
   const HeightField field = HeightField::own(std::vector<float>(16, 1.0F), 4, 4);
   const DeviceGround ground(device(), field);
-  EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_march("exhaustive")); }),
+  EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_height_march("exhaustive")); }),
             "march 'exhaustive': does not run on Vulkan devices; there run: max-mip, naive, fixed-step, relaxed, "
             "lipschitz");
   std::vector<Ray> rays(2);
@@ -246,16 +246,17 @@ TEST_F(QueriesOnDevice, SayWhatIsWrong) {
             "batch: 2 rays, room for 1 answers");
   hits.resize(2);
   EXPECT_NE(test::refusal([&] { queries("lipschitz").closest_hits({&field, &ground}, rays, hits); }), "");
-  EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.rays_at_once = 0}); }), "");
-  EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_march("max-mip"), {}, {.turns_at_once = 60'001}); }),
-            "device queries: 60001 turns at once; there can be 1 to 60000");
+  EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_height_march("max-mip"), {}, {.rays_at_once = 0}); }), "");
+  EXPECT_EQ(
+      test::refusal([&] { DeviceQueries(device(), find_height_march("max-mip"), {}, {.turns_at_once = 60'001}); }),
+      "device queries: 60001 turns at once; there can be 1 to 60000");
   MarchSettings settings;
   settings.naive.max_steps = 0;
-  EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_march("naive"), settings); }), "");
+  EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_height_march("naive"), settings); }), "");
 }
 
 TEST(Marches, ThoseOfTheTableRunOnDevices) {
-  for (const MarchEntry& march : height_marches()) {
+  for (const HeightMarchEntry& march : height_marches()) {
     EXPECT_EQ(march.gpu, device_march_names().find(std::string(march.name)) != std::string::npos) << march.name;
   }
 }

@@ -40,7 +40,7 @@ TEST(Queries, ABatchAnswersAsItsRaysDo) {
     for (int i = 0; i < kRaysPerPair; ++i) {
       for (const RayKind& kind : spiteful_rays()) rays.push_back(kind.make(field, random));
     }
-    for (const MarchEntry& march : height_marches()) {
+    for (const HeightMarchEntry& march : height_marches()) {
       std::vector<Hit> hits(rays.size());
       std::vector<std::uint8_t> blocked(rays.size(), 7);
       closest_hits(target, rays, hits, march);

@@ -208,7 +208,7 @@ TEST_F(TexturesOnDevice, EveryMarchAnswersAsOverBuffers) {
   std::map<std::string_view, DeviceQueries> over_buffers;
   std::map<std::pair<int, bool>, TextureMarch> over_textures;
   for (const Realisation& of : realisations(0)) {
-    over_buffers.try_emplace(of.name, device(), find_march(of.name), march_settings());
+    over_buffers.try_emplace(of.name, device(), find_height_march(of.name), march_settings());
     over_textures.try_emplace({of.constant, false}, device(), of.constant, false);
   }
   over_textures.try_emplace({glsl::kTexturesMaxMip, true}, device(), glsl::kTexturesMaxMip, true);

@@ -36,7 +36,7 @@ bool is_one_of(const std::string& name) {
 class ShapesOnDevice : public OnDevice {};
 
 TEST_F(ShapesOnDevice, MarchesTellWhatSinglePrecisionAllows) {
-  DeviceShapeQueries queries(device(), find_distance_march("sphere-trace"), {}, {.rays_at_once = 256});
+  DeviceShapeQueries queries(device(), find_shape_march("sphere-trace"), {}, {.rays_at_once = 256});
   int shapes = 0;
   for (const NamedShape& named : shape_zoo()) {
     if (!is_one_of(named.name)) continue;

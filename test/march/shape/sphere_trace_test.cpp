@@ -15,6 +15,7 @@
 #include "field/shape_zoo.h"
 #include "scarp/base/error.h"
 #include "scarp/march/shape/shape_exhaustive.h"
+#include "scarp/march/shape/shape_table.h"
 
 namespace scarp::test {
 namespace {
@@ -400,11 +401,11 @@ TEST(SphereTrace, TellsUsedUpStepsFromHits) {
 }
 
 TEST(SphereTrace, IsInTheTable) {
-  const MarchEntry& march = find_distance_march("sphere-trace");
-  EXPECT_EQ(march.distance_cpu, march_sphere_trace);
+  const ShapeMarchEntry& march = find_shape_march("sphere-trace");
+  EXPECT_EQ(march.cpu, march_sphere_trace);
   EXPECT_EQ(march.guarantee, Guarantee::conservative);
-  EXPECT_EQ(distance_marches().size(), 1u);
-  EXPECT_THROW(find_distance_march("max-mip"), Error);
+  EXPECT_EQ(shape_marches().size(), 1u);
+  EXPECT_THROW(find_shape_march("max-mip"), Error);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/octant_cubes.h"
-#include "scarp/march/marches.h"
+#include "scarp/march/voxel/voxel_table.h"
 
 namespace scarp::test {
 namespace {
@@ -61,11 +61,11 @@ TEST_P(VoxelOracle, AllMarchesAgreeWithExhaustive) {
       const VoxelRay ray = rays.make(*grid, random);
       const std::optional<QuantisedRay> quantised = quantise(ray, target.box);
       if (!quantised) continue;
-      const VoxelHit expected = voxel_marches().front().voxel_cpu(target, *quantised, nullptr);
+      const VoxelHit expected = voxel_marches().front().cpu(target, *quantised, nullptr);
       if (expected) ++hits;
-      for (const MarchEntry& march : voxel_marches().subspan(1)) {
-        const VoxelHit hit = march.voxel_cpu(target, *quantised, nullptr);
-        const bool blocked = march.voxel_cpu_occluded(target, *quantised);
+      for (const VoxelMarchEntry& march : voxel_marches().subspan(1)) {
+        const VoxelHit hit = march.cpu(target, *quantised, nullptr);
+        const bool blocked = march.occluded(target, *quantised);
         if (hit == expected && blocked == static_cast<bool>(expected)) continue;
         ++failures;
         ADD_FAILURE() << march.name << " on " << GetParam().name << ", " << rays.name << ": " << text(hit)
@@ -94,7 +94,7 @@ TEST(VoxelOracle, StaysWithTheRay) {
     const VoxelTarget target{&grid, grid.box()};
     const auto quantised = quantise(ray, target.box);
     if (!quantised) continue;
-    const VoxelHit hit = voxel_marches().front().voxel_cpu(target, *quantised, nullptr);
+    const VoxelHit hit = voxel_marches().front().cpu(target, *quantised, nullptr);
     if (!hit) continue;
     const dvec3 p = ray.origin + hit.t * ray.direction;
     for (int axis = 0; axis < 3; ++axis) {

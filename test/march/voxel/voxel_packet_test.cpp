@@ -15,8 +15,8 @@
 #include "scarp/accel/brick_masks.h"
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/octant_cubes.h"
-#include "scarp/march/marches.h"
 #include "scarp/march/usual_ray.h"
+#include "scarp/march/voxel/voxel_table.h"
 
 namespace scarp::test {
 namespace {
@@ -63,10 +63,10 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
         ASSERT_EQ(packet.count, rays.size());
         const std::uint64_t all = ~std::uint64_t{0} >> (64 - packet.count), asked = round % 5 ? all : all & random();
         aim_voxel_packet(packet, stand.grid_from_world);
-        for (const MarchEntry& march : voxel_marches()) {
-          if (!march.voxel_simd) continue;
+        for (const VoxelMarchEntry& march : voxel_marches()) {
+          if (!march.simd) continue;
           packet.steps = 0;
-          const std::uint64_t met = march.voxel_simd(target, stand, packet, asked);
+          const std::uint64_t met = march.packet(target, stand, packet, asked);
           ASSERT_EQ(met & ~asked, 0u);
           std::vector<std::size_t> hit_of(VoxelPacket::kRays, packet.hits);
           for (std::size_t k = 0; k < packet.hits; ++k) {
@@ -86,7 +86,7 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
             ASSERT_EQ(met >> i & 1, quantised ? 1u : 0u) << march.name << ", " << kind.name;
             if (!quantised) continue;
             MarchStats stats;
-            const VoxelHit hit = march.voxel_cpu(target, *quantised, &stats);
+            const VoxelHit hit = march.cpu(target, *quantised, &stats);
             const std::size_t k = hit_of[i];
             ASSERT_EQ(k < packet.hits, static_cast<bool>(hit)) << march.name << ", " << kind.name;
             steps += stats.steps;

@@ -34,7 +34,7 @@ PictureSettings small() {
 }
 
 TEST(Layers, TellWhereTheMiddleOfThePixelIsOnAPlane) {
-  const TerrainScene scene(plane(), find_march("max-mip"));
+  const TerrainScene scene(plane(), find_height_march("max-mip"));
   const dvec3 normal = normalize(dvec3(-0.25, 0.5, 1));
   for (const Camera& camera : {Camera::look_at({10, 60, 40}, {16, 16, 3}, 40, kWidth, kHeight),
                                Camera::top(picture_box(scene.field(), false), kWidth, kHeight)}) {
@@ -73,7 +73,7 @@ TEST(Layers, TellWhereTheMiddleOfThePixelIsOnAPlane) {
 }
 
 TEST(Layers, TheColourIsThePicturesBeforeItsTransfer) {
-  const TerrainScene scene(plane(), find_march("max-mip"));
+  const TerrainScene scene(plane(), find_height_march("max-mip"));
   PictureSettings settings = small();
   settings.plinth = true;
   settings.samples = 4;
@@ -88,7 +88,7 @@ TEST(Layers, TheColourIsThePicturesBeforeItsTransfer) {
 }
 
 TEST(Layers, WallsOfTheBlockCountAsMet) {
-  const TerrainScene scene(plane(), find_march("max-mip"));
+  const TerrainScene scene(plane(), find_height_march("max-mip"));
   PictureSettings settings = small();
   settings.plinth = true;
   // Level, from the south, below the ground's border: the wall at y = 0.
@@ -107,7 +107,7 @@ TEST(Layers, WallsOfSolidGroundAreNoSurface) {
   solid.solid = true;
   std::vector<float> samples(33 * 33);
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = 7 + static_cast<float>(i % 33 % 3);
-  const TerrainScene scene(HeightField::own(std::move(samples), 33, 33, solid), find_march("max-mip"));
+  const TerrainScene scene(HeightField::own(std::move(samples), 33, 33, solid), find_height_march("max-mip"));
   // Level, from the south, below the ground's border: the wall at y = 0.
   const Camera camera = Camera::look_at({16, -20, 6.6}, {16, 0, 6.6}, 2, kWidth, kHeight);
   PictureSettings settings = small();
@@ -123,7 +123,7 @@ TEST(Layers, WallsOfSolidGroundAreNoSurface) {
 }
 
 TEST(Layers, GoWithTheLookShadedAlone) {
-  const TerrainScene scene(plane(), find_march("max-mip"));
+  const TerrainScene scene(plane(), find_height_march("max-mip"));
   const Camera camera = Camera::top(picture_box(scene.field(), false), kWidth, kHeight);
   for (const Look look : {Look::height, Look::steps, Look::error}) {
     PictureSettings settings = small();

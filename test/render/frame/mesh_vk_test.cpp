@@ -130,7 +130,7 @@ class MeshOnDevice : public OnDevice {
   }
   // The terrain through the middles of pixels, by the CPU.
   static DrawnPoints terrain_of(const HeightField& field, const Camera& camera) {
-    const TerrainScene cpu(field, find_march("max-mip"));
+    const TerrainScene cpu(field, find_height_march("max-mip"));
     DrawnPoints points{kWidth, kHeight, {}, {}, {}, {}};
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
@@ -266,7 +266,7 @@ TEST_F(MeshOnDevice, TerrainHidesTheSunFromTheMesh) {
   const std::vector<MeshCorner> mesh = ball({30, 41, 18}, 7);
   const Camera camera = Camera::look_at({60, 80, 40}, {30, 41, 18}, 30, kWidth, kHeight);
   for (const double azimuth : {180.0, 150.0, 0.0}) {
-    const TerrainScene scene = terrain_scene_on(device(), field), cpu(field, find_march("max-mip"));
+    const TerrainScene scene = terrain_scene_on(device(), field), cpu(field, find_height_march("max-mip"));
     MeshRaster raster(scene, mesh);
     const Light light({.azimuth_deg = azimuth, .altitude_deg = 35}, 0);
     const DrawnPoints drawn = raster.draw(camera, terrain_of(field, camera), light, true);
@@ -395,7 +395,7 @@ PictureSettings small_picture() {
 // are not made on the device as a whole, as by a march that is not exact.
 TEST_F(MeshOnDevice, APictureWithoutTheMeshInItIsTheSame) {
   const HeightField field = ridges(true);
-  const TerrainScene scene = terrain_scene_on(device(), field, find_march("lipschitz"));
+  const TerrainScene scene = terrain_scene_on(device(), field, find_height_march("lipschitz"));
   const Camera camera = Camera::framed(picture_box(field, true), {}, 0, kWidth, kHeight);
   MeshRaster mesh(scene, ball({-5000, -9000, 3000}, 5));
   PictureSettings settings = small_picture();
@@ -449,7 +449,7 @@ TEST_F(MeshOnDevice, LayersHaveTheMesh) {
 
 TEST_F(MeshOnDevice, BadRequestsAreRefused) {
   const HeightField field = walled();
-  const TerrainScene cpu(field, find_march("max-mip")), scene = terrain_scene_on(device(), field);
+  const TerrainScene cpu(field, find_height_march("max-mip")), scene = terrain_scene_on(device(), field);
   EXPECT_EQ(refusal([&] {
               MeshRaster(cpu, ball({0, 0, 0}, 1));
             }),

@@ -39,7 +39,7 @@ PictureSettings map_settings(const HeightField& field) {
 Picture map_of(const HeightField& field, const PictureSettings& settings, double grid_north = 0,
                std::string_view march = "max-mip") {
   const Camera camera = Camera::top(picture_box(field, false), settings.width, settings.height);
-  return render_picture(TerrainScene(field, find_march(march)), camera, grid_north, settings);
+  return render_picture(TerrainScene(field, find_height_march(march)), camera, grid_north, settings);
 }
 
 // Of that map the two rows of pixels next to its middle. Row 1 lies where row 100 of 200 does, the lower of the two.
@@ -50,7 +50,7 @@ Image middle_of(const HeightField& field, PictureSettings settings, double grid_
   box.low.y = middle - half, box.high.y = middle + half;
   settings.height = kRows;
   const Camera camera = Camera::top(box, settings.width, settings.height);
-  return render_picture(TerrainScene(field, find_march("max-mip")), camera, grid_north, settings).image;
+  return render_picture(TerrainScene(field, find_height_march("max-mip")), camera, grid_north, settings).image;
 }
 
 int red(const Image& image, int x, int y) { return image.pixel(x, y)[0]; }
@@ -196,7 +196,7 @@ TEST(Picture, HeightIsLinearFromOneAndMissesAreBlack) {
 }
 
 TEST(Picture, StepsCountWhatTheMarchReports) {
-  const TerrainScene scene(wall(), find_march("max-mip"));
+  const TerrainScene scene(wall(), find_height_march("max-mip"));
   PictureSettings settings;
   settings.width = 40;
   settings.height = 30;
@@ -232,7 +232,7 @@ Picture errors_at_a_spike(std::string_view march, const MarchSettings& march_set
   settings.width = settings.height = 64;
   settings.look = Look::error;
   const Camera camera = Camera::look_at({32, -20, 12}, {32, 32, 8}, 25, settings.width, settings.height);
-  return render_picture(TerrainScene(field, find_march(march), march_settings), camera, 0, settings);
+  return render_picture(TerrainScene(field, find_height_march(march), march_settings), camera, 0, settings);
 }
 
 TEST(ErrorLook, ANaiveMarchLosesASpike) {
@@ -291,7 +291,7 @@ TEST(ErrorLook, TheVerdictIsByStatusThenByDistance) {
 
 TEST(Picture, ThePlinthStandsBelowTheBorder) {
   const HeightField field = field_of(21, 100, nothing);
-  const TerrainScene scene(field, find_march("max-mip"));
+  const TerrainScene scene(field, find_height_march("max-mip"));
   PictureSettings settings;
   settings.width = 200;
   settings.height = 100;
@@ -343,7 +343,7 @@ TEST(Picture, AFieldWithNothingToSeeIsAnError) {
   const Camera camera = Camera::look_at({0, -5, 5}, {0, 0, 0}, 30, 8, 8);
   PictureSettings settings;
   settings.width = settings.height = 8;
-  const MarchEntry& march = find_march("max-mip");
+  const HeightMarchEntry& march = find_height_march("max-mip");
   EXPECT_THROW(render_picture(TerrainScene(field_of(1, 5, nothing), march), camera, 0, settings), Error);
   EXPECT_THROW(render_picture(TerrainScene(field_of(3, kNaN, nothing), march), camera, 0, settings), Error);
 }
@@ -354,9 +354,9 @@ TEST(Picture, StopsWhenItIsAskedTo) {
     PictureSettings settings = map_settings(field);
     settings.look = look;
     const Camera camera = Camera::top(picture_box(field, false), settings.width, settings.height);
-    EXPECT_THROW(
-        render_picture(TerrainScene(field, find_march("max-mip")), camera, 0, settings, [](double) { return false; }),
-        Interrupted);
+    EXPECT_THROW(render_picture(TerrainScene(field, find_height_march("max-mip")), camera, 0, settings,
+                                [](double) { return false; }),
+                 Interrupted);
   }
 }
 

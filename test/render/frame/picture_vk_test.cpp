@@ -114,7 +114,7 @@ class Judged final : public BatchQueries {
   void judge(const Ray& ray, const Hit& hit) const {
     if (testing::Test::HasFailure()) return;
     const HeightField& field = cpu_.field();
-    const MarchEntry& march = cpu_.march();
+    const HeightMarchEntry& march = cpu_.march();
     const RoundingJudge truth(field, ray);
     const std::string objection = march.guarantee == Guarantee::exact
                                       ? truth.objection(hit)
@@ -160,7 +160,7 @@ class PicturesOnDevice : public OnDevice {
   };
   Scenes scenes(bool solid, bool plinth, std::string_view march = "max-mip") const {
     const HeightField field = ridges(solid);
-    return {TerrainScene(field, find_march(march)), terrain_scene_on(device(), field, find_march(march)),
+    return {TerrainScene(field, find_height_march(march)), terrain_scene_on(device(), field, find_height_march(march)),
             camera_of(field, plinth)};
   }
   static Camera camera_of(const HeightField& field, bool plinth, double raised = 0) {
@@ -229,7 +229,7 @@ TEST_F(PicturesOnDevice, Error) {
 
 // A march decides as on the CPU, but for what is within delta: so it looks at as much.
 TEST_F(PicturesOnDevice, StepsAreTheCpus) {
-  for (const MarchEntry& march : height_marches()) {
+  for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
     SCOPED_TRACE(march.name);
     const Scenes of = scenes(false, true, march.name);
@@ -272,7 +272,7 @@ TEST_F(PicturesOnDevice, Layers) {
 
 // Marches that take samples may stop elsewhere, each ray by its own rule.
 TEST_F(PicturesOnDevice, EveryMarchMakesThem) {
-  for (const MarchEntry& march : height_marches()) {
+  for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu || march.guarantee == Guarantee::exact) continue;
     const Scenes of = scenes(false, true, march.name);
     std::shared_ptr<Judged> judge;

@@ -333,8 +333,8 @@ TEST_P(TerrainFrames, AreTheCpusPictures) {
   const Row& row = GetParam();
   const HeightField field = hills(row.field, row.holes);
   const PictureSettings settings = settings_of(row);
-  const TerrainScene cpu(field, find_march(row.march));
-  const TerrainScene on_device = terrain_scene_on(device(), field, find_march(row.march));
+  const TerrainScene cpu(field, find_height_march(row.march));
+  const TerrainScene on_device = terrain_scene_on(device(), field, find_height_march(row.march));
   const Camera straight = camera_of(row, field, {0, 0});
   ASSERT_TRUE(makes_whole_frames(on_device, straight, settings));
   std::vector<std::uint8_t> low, high;
@@ -392,8 +392,8 @@ TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
     settings.aa = stepped ? 1 : 3;
     settings.shadows = !stepped;
     settings.comanche.steps = 65536;
-    const TerrainScene cpu(field, find_march(row.march));
-    const TerrainScene on_device = terrain_scene_on(device(), field, find_march(row.march));
+    const TerrainScene cpu(field, find_height_march(row.march));
+    const TerrainScene on_device = terrain_scene_on(device(), field, find_height_march(row.march));
     Camera camera = Camera::look_at({10, 7, 12.9}, {20, 40, 4}, kFov, 12, 12);
     camera.set_reach(100);
     const Image a = render_picture(cpu, camera, 0, settings).image,
@@ -408,8 +408,8 @@ TEST_F(TerrainFrame, TellsWhatItsRaysHaveMet) {
   const Row row = rows()[6];
   const HeightField field = hills(row.field);
   const PictureSettings settings = settings_of(row);
-  const TerrainScene cpu(field, find_march("max-mip"));
-  const TerrainScene on_device = terrain_scene_on(device(), field, find_march("max-mip"));
+  const TerrainScene cpu(field, find_height_march("max-mip"));
+  const TerrainScene on_device = terrain_scene_on(device(), field, find_height_march("max-mip"));
   const Camera camera = camera_of(row, field, {0, 0});
   FrameReport report{.tells_sightings = true};
   render_whole_frame(on_device, camera, 0, settings, {}, &report);
@@ -449,11 +449,11 @@ TEST_F(TerrainFrame, LeavesTheRestToTheRounds) {
   const Row row = rows()[6];
   const HeightField endless = hills(row.field), ends = hills({});
   const auto on_device = [&](const HeightField& field, const char* march) {
-    return terrain_scene_on(device(), field, find_march(march));
+    return terrain_scene_on(device(), field, find_height_march(march));
   };
   PictureSettings settings = settings_of(row);
   const Camera camera = camera_of(row, endless, {0, 0});
-  EXPECT_FALSE(makes_whole_frames(TerrainScene(endless, find_march("max-mip")), camera, settings));
+  EXPECT_FALSE(makes_whole_frames(TerrainScene(endless, find_height_march("max-mip")), camera, settings));
   EXPECT_FALSE(makes_whole_frames(on_device(endless, "relaxed"), camera, settings));
   settings.plinth = true;
   EXPECT_TRUE(makes_whole_frames(on_device(endless, "max-mip"), camera, settings)) << "endless ground has none";

@@ -73,7 +73,7 @@ class Curious final : public TileWork {
 };
 
 TerrainScene echo_scene(const std::shared_ptr<Echo>& echo) {
-  return {HeightField::own(std::vector<float>(4), 2, 2), find_march("max-mip"), echo};
+  return {HeightField::own(std::vector<float>(4), 2, 2), find_height_march("max-mip"), echo};
 }
 
 TEST(TileWork, OnADeviceTilesAskTogetherAndGetTheirOwnAnswers) {
@@ -97,7 +97,7 @@ TEST(TileWork, OnADeviceTilesAskTogetherAndGetTheirOwnAnswers) {
 }
 
 TEST(TileWork, StopsWhenItIsAskedTo) {
-  const TerrainScene on_cpu(HeightField::own(std::vector<float>(4), 2, 2), find_march("max-mip"));
+  const TerrainScene on_cpu(HeightField::own(std::vector<float>(4), 2, 2), find_height_march("max-mip"));
   const auto echo = std::make_shared<Echo>();
   for (const TerrainScene& scene : {on_cpu, echo_scene(echo)}) {
     std::atomic<int> made{0};

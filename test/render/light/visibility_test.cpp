@@ -23,7 +23,7 @@ TerrainScene scene_of(int cols, int rows, F&& height) {
   for (int row = 0; row < rows; ++row) {
     for (int col = 0; col < cols; ++col) samples.push_back(static_cast<float>(height(col, row)));
   }
-  return TerrainScene(HeightField::own(std::move(samples), cols, rows), find_march("max-mip"));
+  return TerrainScene(HeightField::own(std::move(samples), cols, rows), find_height_march("max-mip"));
 }
 
 // Straight below (x, y).

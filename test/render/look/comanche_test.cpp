@@ -64,7 +64,7 @@ TEST(Comanche, EndlessGroundLooksLikeTheTiledField) {
       settings.water = WaterSettings{.level = 1.1, .waves = 0};
       settings.fog.kind = FogKind::distance;
       settings.fog.visibility = 60;
-      const TerrainScene wrapped(endless(), find_march(march)), laid_out(tiled(), find_march(march));
+      const TerrainScene wrapped(endless(), find_height_march(march)), laid_out(tiled(), find_height_march(march));
       // Six periods from the border of the tiled field, 40 cells of sight and 40 of mirrored sight: no ray comes to it.
       constexpr double kOffset = 6 * kPeriod;
       const dvec3 eye(7.25, 4.5, 6), ahead(0.5, 0.75, -0.25), offset(kOffset, kOffset, 0);
@@ -150,7 +150,7 @@ TEST(Comanche, RaysThatLookUpLeave) {
 }
 
 TEST(Comanche, ThePictureOfStepsIsBlackToWhite) {
-  const TerrainScene scene(endless(), find_march("fixed-step"));
+  const TerrainScene scene(endless(), find_height_march("fixed-step"));
   PictureSettings settings = comanche(48, 36);
   settings.comanche.iterations = true;
   settings.comanche.scale = 3;

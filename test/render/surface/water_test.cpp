@@ -65,7 +65,7 @@ HeightField cone() {
 
 TEST(Water, TheCoastOfAConeIsACircle) {
   constexpr int kSide = 192;
-  const TerrainScene scene(cone(), find_march("max-mip"));
+  const TerrainScene scene(cone(), find_height_march("max-mip"));
   PictureSettings settings = plain(kSide, kSide);
   settings.water->level = kLevel;
   settings.shadows = false;
@@ -99,7 +99,7 @@ TEST(Water, TheCoastOfAConeIsACircle) {
 }
 
 TEST(Water, ReflectsTheSkyThatIsThere) {
-  const TerrainScene scene(flat(0), find_march("max-mip"));
+  const TerrainScene scene(flat(0), find_height_march("max-mip"));
   PictureSettings settings = plain(64, 48);
   settings.water->level = 50;
   settings.water->turbidity = 1e6;  // no bottom to be seen
@@ -125,7 +125,7 @@ TEST(Water, ReflectsTheSkyThatIsThere) {
 
 TEST(Water, AbsorbsByTheDepthAsTraced) {
   const double depth = 3;
-  const TerrainScene scene(flat(10), find_march("max-mip"));
+  const TerrainScene scene(flat(10), find_height_march("max-mip"));
   PictureSettings settings = plain(32, 32);
   settings.sun.altitude_deg = 90;
   const Camera camera = Camera::look_at({4000, 4000, 400}, {4000, 4200, 0}, 40, 32, 32);
@@ -214,7 +214,7 @@ TEST(Water, UnderHigherGroundThereIsNone) {
 }
 
 TEST(Water, AFlatSeaAtTheLevelIsWater) {
-  const TerrainScene scene(flat(0), find_march("max-mip"));
+  const TerrainScene scene(flat(0), find_height_march("max-mip"));
   PictureSettings settings = plain(32, 24);
   settings.water->level = 0;
   const Camera camera = Camera::look_at({4000, 3000, 900}, {4100, 4200, 0}, 40, 32, 24);
@@ -254,7 +254,7 @@ TEST(Water, RefusesWhatIsOutOfRange) {
     spoil(settings);
     EXPECT_THROW(validate(settings), Error);
   }
-  const TerrainScene scene(flat(0), find_march("max-mip"));
+  const TerrainScene scene(flat(0), find_height_march("max-mip"));
   PictureSettings settings = plain(8, 8);
   settings.water->level = 500;
   const Camera camera = Camera::look_at({4000, 100, 300}, {4000, 3000, 0}, 50, 8, 8);

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Looks up a row of a table of marches by its name.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "scarp/base/error.h"
+#include "scarp/march/march_entry.h"
+
+namespace scarp {
+
+/// Throws Error listing the names when the table has no such row.
+template <class Entry>
+const Entry& find_entry(std::span<const Entry> table, std::string_view name) {
+  std::string names;
+  for (const Entry& entry : table) {
+    if (entry.name == name) return entry;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
+  }
+  throw Error(fmt::format("march '{}': unknown; there are: {}", name, names));
+}
+
+}  // namespace scarp

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/function/function_table.h"
+
+#include <array>
+
+#include "scarp/march/find_entry.h"
+#include "scarp/march/function/function_marches.h"
+#include "scarp/march/function/lipschitz_local.h"
+#include "scarp/march/function/lipschitz_local_simd.h"
+#include "scarp/march/sampling_entries.h"
+
+namespace scarp {
+namespace {
+
+// A row whose batch query asks for one ray after the other.
+template <FunctionMarch march>
+constexpr FunctionMarchEntry function_march(const MarchEntry& common) {
+  FunctionMarchEntry entry{common};
+  entry.cpu = march;
+  entry.batch = [](const HeightFunction& function, std::span<const Ray> rays, std::span<Hit> hits,
+                   const MarchSettings& settings, std::span<std::uint32_t> steps, FunctionUse use) {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      MarchStats stats;
+      hits[i] = march(function, rays[i], settings, &stats, use);
+      if (!steps.empty()) steps[i] = stats.steps + stats.cell_tests;
+    }
+  };
+  return entry;
+}
+
+constexpr FunctionMarchEntry lipschitz_local() {
+  FunctionMarchEntry entry = function_march<march_lipschitz_local>(
+      {.name = "lipschitz-local",
+       .guarantee = Guarantee::conservative,
+       .simd = true,
+       .gpu = true,
+       .parameters = "tolerance 0.000001 of the distance, 1024 steps",
+       .description = "bounds the ground anew on every segment of the ray; never passes, long steps where it is calm"});
+  entry.batch = closest_hits_lipschitz_local_simd;
+  return entry;
+}
+
+constexpr std::array kTable = {
+    function_march<march_naive>(kNaiveEntry),
+    function_march<march_fixed_step>(kFixedStepEntry),
+    function_march<march_relaxed>(kRelaxedEntry),
+    function_march<march_lipschitz>(kLipschitzEntry),
+    lipschitz_local(),
+};
+
+}  // namespace
+
+std::span<const FunctionMarchEntry> function_marches() { return kTable; }
+const FunctionMarchEntry& find_function_march(std::string_view name) { return find_entry(function_marches(), name); }
+
+}  // namespace scarp

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/height/height_table.h"
+
+#include <array>
+
+#include "scarp/march/find_entry.h"
+#include "scarp/march/fixed_step.h"
+#include "scarp/march/height/exhaustive.h"
+#include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/max_mip_simd.h"
+#include "scarp/march/lipschitz.h"
+#include "scarp/march/naive.h"
+#include "scarp/march/relaxed.h"
+#include "scarp/march/sampling_entries.h"
+
+namespace scarp {
+namespace {
+
+// A row whose any-hit and batch queries ask for one closest hit after the other.
+template <HeightMarch march>
+constexpr HeightMarchEntry height_march(const MarchEntry& common, bool needs_pyramid, bool needs_slope) {
+  HeightMarchEntry entry{common};
+  entry.needs_pyramid = needs_pyramid;
+  entry.needs_slope = needs_slope;
+  entry.cpu = march;
+  entry.occluded = [](const HeightTarget& target, const Ray& ray, const MarchSettings& settings) {
+    return march(target, ray, settings, nullptr).status == HitStatus::hit;
+  };
+  entry.batch = [](const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
+                   const MarchSettings& settings) {
+    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = march(target, rays[i], settings, nullptr);
+  };
+  entry.occluded_batch = [](const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                            const MarchSettings& settings) {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      blocked[i] = march(target, rays[i], settings, nullptr).status == HitStatus::hit;
+  };
+  return entry;
+}
+
+constexpr HeightMarchEntry max_mip() {
+  HeightMarchEntry entry = height_march<march_max_mip>(
+      {.name = "max-mip",
+       .guarantee = Guarantee::exact,
+       .simd = true,
+       .gpu = true,
+       .description = "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
+      true, false);
+  entry.own_any_hit = true;
+  entry.occluded = [](const HeightTarget& target, const Ray& ray, const MarchSettings&) {
+    return occluded_max_mip(target, ray);
+  };
+  entry.batch = [](const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits, const MarchSettings&) {
+    closest_hits_max_mip_simd(target, rays, hits);
+  };
+  entry.occluded_batch = [](const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                            const MarchSettings&) { occluded_max_mip_simd(target, rays, blocked); };
+  return entry;
+}
+
+constexpr std::array kTable = {
+    height_march<march_exhaustive>(
+        {.name = "exhaustive",
+         .guarantee = Guarantee::exact,
+         .description = "every cell under the ray on its own, in double: the judge of the others, slow"},
+        false, false),
+    max_mip(),
+    height_march<march_max_mip_bisect>(
+        {.name = "max-mip-bisect",
+         .guarantee = Guarantee::approximate,
+         .parameters = "16 halvings",
+         .description = "the same walk with the paper's binary search in the cell; passes rays that dip into a cell"},
+        true, false),
+    height_march<march_naive>(kNaiveEntry, false, false),
+    height_march<march_fixed_step>(kFixedStepEntry, false, false),
+    height_march<march_relaxed>(kRelaxedEntry, false, false),
+    height_march<march_lipschitz>(kLipschitzEntry, true, true),
+};
+
+}  // namespace
+
+std::span<const HeightMarchEntry> height_marches() { return kTable; }
+const HeightMarchEntry& find_height_march(std::string_view name) { return find_entry(height_marches(), name); }
+
+}  // namespace scarp

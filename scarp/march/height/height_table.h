@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// The marches of height fields.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+#include "scarp/march/height/height_target.h"
+#include "scarp/march/march_entry.h"
+#include "scarp/march/march_settings.h"
+
+namespace scarp {
+
+/// The closest hit of a ray in world space. `stats`, unless null, is overwritten.
+using HeightMarch = Hit (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings,
+                            MarchStats* stats);
+/// Whether the closest hit is a hit.
+using HeightOcclusion = bool (*)(const HeightTarget& target, const Ray& ray, const MarchSettings& settings);
+
+/// The two above for many rays, on the calling thread; the answers are bit for bit those for single rays. The spans
+/// have the same length.
+using HeightMarchBatch = void (*)(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
+                                  const MarchSettings& settings);
+using HeightOcclusionBatch = void (*)(const HeightTarget& target, std::span<const Ray> rays,
+                                      std::span<std::uint8_t> blocked, const MarchSettings& settings);
+
+/// A row. No function is null: a technique without an any-hit query or a batch query of its own has one made of `cpu`.
+struct HeightMarchEntry : MarchEntry {
+  bool needs_pyramid = false;  ///< HeightTarget::pyramid must be given
+  bool needs_slope = false;    ///< HeightTarget::slope must be given
+  bool own_any_hit = false;    ///< `occluded` is not made of `cpu`
+  HeightMarch cpu = nullptr;   ///< scalar C++
+  HeightOcclusion occluded = nullptr;
+  HeightMarchBatch batch = nullptr;  ///< in vectors if `simd`
+  HeightOcclusionBatch occluded_batch = nullptr;
+};
+
+/// The oracle, `exhaustive`, comes first.
+std::span<const HeightMarchEntry> height_marches();
+/// Throws Error listing the names when there is no such march.
+const HeightMarchEntry& find_height_march(std::string_view name);
+
+}  // namespace scarp

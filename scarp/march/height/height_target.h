@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// What the marches of height fields take.
+#pragma once
+
+#include <limits>
+
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/base/ray.h"
+#include "scarp/field/height_field.h"
+
+namespace scarp {
+
+/// A height field and what was built for it.
+struct HeightTarget {
+  const HeightField* field = nullptr;
+  const MaxPyramid* pyramid = nullptr;  ///< null: only for marches that do not need it
+  /// slope_bound(*field), metres per metre; NaN: only for marches that do not need it.
+  double slope = std::numeric_limits<double>::quiet_NaN();
+};
+
+}  // namespace scarp

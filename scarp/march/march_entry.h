@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// The columns that the tables of marches share. Each kind of field has a table of its own:
+//
+//   height/height_table.h   function/function_table.h   shape/shape_table.h   voxel/voxel_table.h
+//
+// The command line, benchmarks, tests and documentation read the tables: a technique in a table is tested against its
+// oracle. Techniques do not include the tables.
+#pragma once
+
+#include <string_view>
+
+#include "scarp/march/guarantee.h"
+
+namespace scarp {
+
+struct MarchEntry {
+  std::string_view name{};  ///< as typed: "max-mip"
+  Guarantee guarantee = Guarantee::approximate;
+  bool simd = false;               ///< answers batches in vectors
+  bool gpu = false;                ///< runs on Vulkan devices
+  std::string_view parameters{};   ///< its settings with their defaults, for people
+  std::string_view description{};  ///< one line
+};
+
+}  // namespace scarp

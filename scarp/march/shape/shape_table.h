@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// The marches of shapes. Their oracle is shape_exhaustive.h.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "scarp/base/ray.h"
+#include "scarp/field/distance_field.h"
+#include "scarp/march/march_entry.h"
+#include "scarp/march/march_settings.h"
+
+namespace scarp {
+
+/// The closest hit of a ray in world space. `stats`, unless null, is overwritten.
+using ShapeMarch = Hit (*)(const DistanceField& shape, const Ray& ray, const MarchSettings& settings,
+                           MarchStats* stats);
+/// Whether the closest hit is a hit.
+using ShapeOcclusion = bool (*)(const DistanceField& shape, const Ray& ray, const MarchSettings& settings);
+
+/// A row. No function is null.
+struct ShapeMarchEntry : MarchEntry {
+  ShapeMarch cpu = nullptr;  ///< scalar C++
+  ShapeOcclusion occluded = nullptr;
+};
+
+std::span<const ShapeMarchEntry> shape_marches();
+/// Throws Error listing the names when there is no such march.
+const ShapeMarchEntry& find_shape_march(std::string_view name);
+
+}  // namespace scarp

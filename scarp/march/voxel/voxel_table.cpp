@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/voxel/voxel_table.h"
+
+#include <array>
+
+#include "scarp/march/find_entry.h"
+#include "scarp/march/voxel/voxel_bricks.h"
+#include "scarp/march/voxel/voxel_cubes.h"
+#include "scarp/march/voxel/voxel_exhaustive.h"
+#include "scarp/march/voxel/voxel_octants.h"
+#include "scarp/march/voxel/voxel_planes.h"
+#include "scarp/march/voxel/voxel_spheres.h"
+
+namespace scarp {
+namespace {
+
+constexpr VoxelMarchEntry voxel_march(std::string_view name, VoxelAccelerator accelerator, VoxelMarch cpu,
+                                      VoxelOcclusion occluded, VoxelPacketMarch packet, std::string_view description) {
+  return {{.name = name, .guarantee = Guarantee::exact, .simd = packet != nullptr, .description = description},
+          accelerator,
+          cpu,
+          occluded,
+          packet};
+}
+
+bool occluded_voxel_exhaustive(const VoxelTarget& target, const QuantisedRay& ray) {
+  return static_cast<bool>(march_voxel_exhaustive(target, ray));
+}
+
+constexpr std::array kTable = {
+    voxel_march("voxel-exhaustive", VoxelAccelerator::none, march_voxel_exhaustive, occluded_voxel_exhaustive, nullptr,
+                "solid voxels one by one, in rationals: the judge of the voxel marches, slow"),
+    voxel_march("voxel-planes", VoxelAccelerator::none, march_voxel_planes, occluded_voxel_planes,
+                march_packet_voxel_planes, "from plane to plane, voxel by voxel"),
+    voxel_march("voxel-spheres", VoxelAccelerator::spheres, march_voxel_spheres, occluded_voxel_spheres, nullptr,
+                "over the empty sphere around each voxel"),
+    voxel_march("voxel-cubes", VoxelAccelerator::cubes, march_voxel_cubes, occluded_voxel_cubes,
+                march_packet_voxel_cubes, "out of the largest empty cube around each voxel"),
+    voxel_march("voxel-octants", VoxelAccelerator::octants, march_voxel_octants, occluded_voxel_octants,
+                march_packet_voxel_octants,
+                "out of the largest empty cube ahead of each voxel, one for each octant of directions"),
+    voxel_march("voxel-bricks", VoxelAccelerator::bricks, march_voxel_bricks, occluded_voxel_bricks,
+                march_packet_voxel_bricks,
+                "out of empty blocks of 2 to 16 voxels, told by bit masks; the smallest memory"),
+};
+
+}  // namespace
+
+std::span<const VoxelMarchEntry> voxel_marches() { return kTable; }
+const VoxelMarchEntry& find_voxel_march(std::string_view name) { return find_entry(voxel_marches(), name); }
+
+}  // namespace scarp

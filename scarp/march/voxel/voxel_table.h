@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// The marches of voxel grids.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "scarp/march/march_entry.h"
+#include "scarp/march/voxel/voxel_packet.h"
+#include "scarp/march/voxel/voxel_target.h"
+
+namespace scarp {
+
+/// What a voxel march needs of VoxelTarget besides the grid.
+enum class VoxelAccelerator { none, spheres, cubes, octants, bricks };
+
+/// A row. `cpu` and `occluded` are not null: a technique without an any-hit query of its own has one made of `cpu`.
+struct VoxelMarchEntry : MarchEntry {
+  VoxelAccelerator accelerator = VoxelAccelerator::none;
+  VoxelMarch cpu = nullptr;  ///< scalar C++
+  VoxelOcclusion occluded = nullptr;
+  VoxelPacketMarch packet = nullptr;  ///< many rays at once in vectors; given if `simd`
+};
+
+/// The oracle, `voxel-exhaustive`, comes first.
+std::span<const VoxelMarchEntry> voxel_marches();
+/// Throws Error listing the names when there is no such march.
+const VoxelMarchEntry& find_voxel_march(std::string_view name);
+
+}  // namespace scarp
