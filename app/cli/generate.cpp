@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -16,6 +14,7 @@
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
 #include "scarp/field/height_function.h"
 #include "scarp/scene/file/example_functions.h"
@@ -62,9 +61,7 @@ void run(GenerateOptions options) {
   if (!kind) throw Error(fmt::format("--kind '{}': expected fbm or ridged", options.kind));
   terrain.kind = *kind;
   // A name that ends in .png is a slip: what is there is a picture, and no program would open the new file as one.
-  std::string extension = std::filesystem::path(options.output).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = extension_of(options.output);
   if (!options.output.empty() && extension != ".tif" && extension != ".tiff") {
     throw Error(
         fmt::format("output '{}': terrain is written as GeoTIFF; let the name end in .tif or .tiff", options.output));

@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <memory>
 #include <string>
@@ -33,6 +31,7 @@
 #include "app/cli/scene_input.h"
 #include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
 #include "scarp/output/png.h"
 #include "scarp/render/camera/field_view.h"
@@ -131,10 +130,7 @@ ViewSettings settle(RenderOptions& options) {
   validate(view);
   validate(options.march_settings);
   settle_frames(options.frames, options.output);
-  std::string extension = std::filesystem::path(options.output).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  options.exr = extension == ".exr";
+  options.exr = extension_of(options.output) == ".exr";
   if (const auto range = depth_range_of(options.depth); range && !options.exr) {
     throw Error("--depth-range: device depth is a channel of EXR pictures; let the name of the output end in .exr");
   }
@@ -148,7 +144,7 @@ ViewSettings settle(RenderOptions& options) {
                       "their own; leave --look out, or let the name of the output end in .png",
                       options.look));
     }
-  } else if (!options.output.empty() && extension != ".png") {
+  } else if (!options.output.empty() && extension_of(options.output) != ".png") {
     throw Error(fmt::format("output '{}': pictures are written as PNG or EXR; let the name end in .png or .exr",
                             options.output));
   }

@@ -4,24 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <map>
 
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 
 namespace scarp::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool is_scene_path(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension == ".json";
-}
+bool is_scene_path(const std::string& path) { return extension_of(path) == ".json"; }
 
 // Sets what the file has, unless the option was given.
 class Taking {

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
@@ -16,6 +14,7 @@
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/base/replace_file.h"
 
 namespace scarp::cli {
@@ -99,10 +98,7 @@ void write_text(const std::string& path, const std::string& text) {
 }
 
 void run(const SectionOptions& options) {
-  std::string extension = std::filesystem::path(options.output).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  if (extension != ".svg")
+  if (extension_of(options.output) != ".svg")
     throw Error(fmt::format("output '{}': sections are written as SVG; let the name end in .svg", options.output));
   if (!is_vox_input(options.inputs, options.vox))
     throw Error(fmt::format("'{}': a section is of voxels; expected a .vox or .binvox file, or --volume",

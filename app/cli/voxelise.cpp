@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <utility>
@@ -19,6 +17,7 @@
 #include "app/cli/scene_input.h"
 #include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
 #include "scarp/render/surface/voxel_colours.h"
 #include "scarp/scene/file/from_raster.h"
@@ -99,9 +98,7 @@ double side_of(const VoxeliseOptions& options, const Scene& scene, const std::op
 }
 
 void run(const VoxeliseOptions& options) {
-  std::string extension = std::filesystem::path(options.output).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = extension_of(options.output);
   if (extension != ".vox" && extension != ".binvox") {
     throw Error(
         fmt::format("output '{}': voxels are written as MagicaVoxel or binvox; let the name end in .vox or "

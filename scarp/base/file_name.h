@@ -8,12 +8,15 @@
 
 namespace scarp {
 
-/// What a path ends with from its last dot on, in lower case: ".tif" of "a/B.TIF"; "" where there is none.
+/// ASCII letters in lower case.
+inline std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+/// The extension of a path in lower case: ".tif" of "a/B.TIF"; "" without one.
 inline std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
-  return extension;
+  return lower_case(std::filesystem::path(path).extension().string());
 }
 
 }  // namespace scarp

@@ -6,15 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cctype>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <iterator>
 #include <limits>
 
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 
 namespace scarp {
 namespace {
@@ -74,9 +73,7 @@ std::string npy_header(std::span<const std::string_view> columns, std::int64_t r
 
 bool is_npy(const std::string& path) {
   if (path.empty()) return false;
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = extension_of(path);
   if (extension == ".npy") return true;
   if (extension == ".csv") return false;
   throw Error(fmt::format("output '{}': tables are written as CSV or .npy; let the name end in .csv or .npy", path));

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/source/file_check.h"
-#include "scarp/source/file_extension.h"
 #include "scarp/source/gdal_dataset.h"
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/incomplete_file.h"
@@ -50,7 +50,7 @@ std::string examples_in(const std::string& archive) {
   constexpr std::size_t kMembersNamed = 3;
   const std::vector<std::string> members = zip_members(archive);
   // GDAL knows where the archive's name ends by .zip, or by braces.
-  const std::string in_name = has_extension(archive, ".zip") ? archive : "{" + archive + "}";
+  const std::string in_name = extension_of(archive) == ".zip" ? archive : "{" + archive + "}";
   std::string text;
   for (std::size_t i = 0; i < std::min(members.size(), kMembersNamed); ++i)
     text += fmt::format("{}/vsizip/{}/{}", i == 0 ? "" : ", ", in_name, members[i]);
@@ -76,7 +76,7 @@ std::string examples_in(const std::string& archive) {
   }
   // Names such as NETCDF:"f.nc":var and inline XML are no paths.
   if (!exists && path.find_first_of(":<") == std::string::npos) throw Error("does not exist; name a raster file");
-  if (exists && has_extension(path, ".hgt")) {
+  if (exists && extension_of(path) == ".hgt") {
     throw Error(
         "is no whole .hgt tile: its name must tell its corner (N46W123.hgt), its length must be that of 1201 x 1201 or "
         "3601 x 3601 samples of 2 bytes");

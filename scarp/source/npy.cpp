@@ -11,9 +11,9 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/source/band_samples.h"
 #include "scarp/source/file_check.h"
-#include "scarp/source/file_extension.h"
 #include "scarp/source/gdal_dataset.h"
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/incomplete_file.h"
@@ -111,7 +111,7 @@ std::string choose_member(const std::string& path, const std::string& key, const
   std::vector<std::string> rasters, unreadable;
   std::string all;
   for (const std::string& member : zip_members(path)) {
-    if (!has_extension(member, ".npy")) continue;
+    if (!lower_case(member).ends_with(".npy")) continue;
     const std::string name = member.substr(0, member.size() - 4);
     if (!key.empty() && (name == key || member == key)) return folder + "/" + member;
     all += fmt::format("{}{}", all.empty() ? "" : ", ", name);
@@ -218,14 +218,14 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
 
 }  // namespace
 
-bool is_npy_path(const std::string& path) { return has_extension(path, ".npy") || has_extension(path, ".npz"); }
+bool is_npy_path(const std::string& path) { return extension_of(path) == ".npy" || extension_of(path) == ".npz"; }
 
 Raster read_npy(const std::string& path, const RasterOptions& options, const Progress& progress) {
   GdalSession session;
   return read_named(path, [&] {
     file_bytes(path);
     check_file(path);
-    const bool archive = has_extension(path, ".npz");
+    const bool archive = extension_of(path) == ".npz";
     if (!archive && !options.key.empty())
       throw Error("--key names an array in a .npz file, which this is not; leave it out");
     const std::string file = archive ? choose_member(path, options.key, session) : full_path(path);

@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/source/exr_raster.h"
-#include "scarp/source/file_extension.h"
 #include "scarp/source/gdal_dataset.h"
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/gdal_raster.h"
@@ -23,8 +23,8 @@ constexpr std::size_t kFilesNamed = 3;
 
 // What only some files have a use for.
 void refuse_foreign_options(const std::string& path, const RasterOptions& options) {
-  const bool raw = options.raw.has_value(), exr = !raw && has_extension(path, ".exr"),
-             archive = !raw && has_extension(path, ".npz"), array = !raw && is_npy_path(path);
+  const bool raw = options.raw.has_value(), exr = !raw && extension_of(path) == ".exr",
+             archive = !raw && extension_of(path) == ".npz", array = !raw && is_npy_path(path);
   const auto refuse = [&](std::string_view text) {
     throw Error(fmt::format("raster '{}': {}; leave it out", path, text));
   };
@@ -38,7 +38,7 @@ Raster read_file(const std::string& path, const RasterOptions& options, const Pr
   refuse_foreign_options(path, options);
   if (options.raw) return read_raw(path, options, progress);
   if (is_npy_path(path)) return read_npy(path, options, progress);
-  if (has_extension(path, ".exr")) return read_exr(path, options, progress);
+  if (extension_of(path) == ".exr") return read_exr(path, options, progress);
   return read_gdal_raster(path, options, progress);
 }
 
@@ -73,7 +73,7 @@ Raster read_tiles(const std::vector<std::string>& inputs, const RasterOptions& o
   } else {
     for (const std::string& file : files) {
       refuse_foreign_options(file, options);
-      if (options.raw || is_npy_path(file) || has_extension(file, ".exr"))
+      if (options.raw || is_npy_path(file) || extension_of(file) == ".exr")
         throw Error(fmt::format(
             "raster '{}': has no georeference, by which one of several tiles finds its place; read it alone, or "
             "convert it to GeoTIFF first",

@@ -2,8 +2,9 @@
 // Which devices there are, what each can do, and which one is meant.
 #include <fmt/format.h>
 
-#include <cctype>
+#include <algorithm>
 
+#include "scarp/base/file_name.h"
 #include "scarp/vk/raii.h"
 
 namespace scarp {
@@ -30,17 +31,12 @@ DeviceKind kind_of(vk::PhysicalDeviceType type) {
   return DeviceKind::other;
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 bool fits(const DeviceDescription& device, const std::string& choice) {
-  const std::string word = lower(choice);
+  const std::string word = lower_case(choice);
   if (word == "auto") return true;
   if (word == "cpu") return device.kind == DeviceKind::cpu;
   if (word == "gpu") return device.kind != DeviceKind::cpu && device.kind != DeviceKind::other;
-  return lower(device.name).find(word) != std::string::npos;
+  return lower_case(device.name).find(word) != std::string::npos;
 }
 
 }  // namespace

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -12,6 +10,7 @@
 
 #include "scarp/accel/solid_ground.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/scene/file/from_raster.h"
 #include "scarp/scene/file/from_volume.h"
 #include "scarp/scene/file/from_vox.h"
@@ -157,15 +156,12 @@ VoxelScene voxels_of_file(const Json& json, const std::string& path, const std::
     }
   };
   const VoxelColour colour = json.contains("colour") ? colour_from(json["colour"]) : kPlainVoxels;
-  std::string extension = std::filesystem::path(file).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
   if (json.contains("volume")) {
     refuse({"frame", "hidden"}, "goes with MagicaVoxel files; leave it out");
     return voxel_scene_from(read_volume(file, json["volume"]), std::vector{colour}, volume);
   }
   refuse({"solid_from"}, "goes with volume; leave it out");
-  if (extension == ".binvox") {
+  if (extension_of(file) == ".binvox") {
     refuse({"frame", "hidden"}, "goes with MagicaVoxel files; leave it out");
     return voxel_scene_from(read_binvox(file), colour, volume);
   }
