@@ -20,13 +20,13 @@ constexpr float kHighest = std::numeric_limits<float>::max();
 Key key_of(float sample) { return glsl::float_key(std::bit_cast<std::uint32_t>(sample)); }
 float sample_of(Key key) { return std::bit_cast<float>(glsl::float_bits(key)); }
 
-// Of a float about as high as a place on the scale of codes.
+// Key of a float near a place on the code scale.
 Key key_near(const HeightCode& code, double place) {
   return key_of(static_cast<float>(std::clamp(code.base + code.step * place, -double{kHighest}, double{kHighest})));
 }
 
-// The greatest key in [low, high] for which `holds`, which is true for all keys up to one and for none beyond; low must
-// be such a key. Looks near `guess` first, at steps that double.
+// Returns the greatest key in [low, high] for which `holds`. `holds` must be true up to some key and false after it,
+// and true for `low`. Searches near `guess` first, with doubling steps.
 template <class Holds>
 Key last_key(Key low, Key high, Key guess, Holds holds) {
   Key step = 1;
@@ -87,7 +87,7 @@ std::vector<std::uint32_t> code_tables(const HeightCode& code) {
   parallel_for(kCodes, 1 << 12, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t at = begin; at < end; ++at) {
       const auto wanted = static_cast<std::uint16_t>(at);
-      // A block that is all holes has the key 0, and no sample may be below the ceiling of code 0.
+      // A block of holes has key 0, and no sample may lie below the ceiling of code 0.
       const auto above = [&](Key key) { return code_above(code, key) <= wanted; };
       tables[static_cast<std::size_t>(at)] =
           above(least) ? last_key(least, greatest, key_near(code, wanted - kClear), above) : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: the codes of float samples as tables, for devices that lack the CPU's double precision.
+// Private to the station: height codes of float samples as tables, for devices without double precision.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace scarp {
 
-/// Ceilings, then floors, of all codes, as keys: see max_pyramid.glsl.h. They say of every float what encode_above()
-/// and encode_below() make of it, since both rise with the sample.
+/// Returns ceilings, then floors, of all codes, as keys (see max_pyramid.glsl.h). Both encode_above() and
+/// encode_below() are monotone in the sample, so the tables determine the code of every float.
 std::vector<std::uint32_t> code_tables(const HeightCode& code);
 
 }  // namespace scarp

@@ -14,7 +14,7 @@ std::vector<std::size_t> begins_of(const HeightFunction& function) {
 
 }  // namespace
 
-// A plane's program may be empty: buffers are not.
+// The program of a plane may be empty, but buffers may not.
 DeviceFunction::DeviceFunction(const Device& device, const HeightFunction& function)
     : begins_(begins_of(function)),
       code_(device, (begins_.back() + 1) * sizeof(glsl::ScarpInstruction), "a terrain function") {

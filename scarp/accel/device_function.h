@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A terrain function in the memory of a Vulkan device: its three programs, which shaders interpret
+// A terrain function in device memory: its three programs, interpreted by shaders
 // (march/function/function_heights.glsl.h).
 #pragma once
 
@@ -13,20 +13,21 @@
 
 namespace scarp {
 
+/// A terrain function in device memory.
 class DeviceFunction {
  public:
-  /// Throws Error: no memory for it, numbers that do not fit into floats.
+  /// Throws Error if the device lacks memory or a constant does not fit in single precision.
   DeviceFunction(const Device& device, const HeightFunction& function);
 
-  /// Of the program's first instruction.
+  /// Address of the program's first instruction.
   std::uint64_t address(FunctionUse use) const;
-  /// What heights as computed on the device are off by.
+  /// Error bound of heights computed on the device.
   const SingleRounding& rounding(FunctionUse use) const { return rounding_[static_cast<std::size_t>(use)]; }
-  /// On the device.
+  /// Size on the device.
   std::uint64_t bytes() const { return code_.bytes(); }
 
  private:
-  std::vector<std::size_t> begins_;  // of the programs, in instructions; and the end
+  std::vector<std::size_t> begins_;  // first instruction of each program, then the end
   DeviceBuffer code_;
   std::vector<SingleRounding> rounding_;
 };

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A height field in the memory of a Vulkan device: its samples and its pyramid, which the device makes itself. Shaders
-// read it through ground_buffers.glsl.h, from one address:
+// A height field in device memory: its samples, and its pyramid, which the device builds. Shaders read it through
+// ground_buffers.glsl.h, from one address:
 //
 //   const DeviceGround ground(device, field);
 //   push.ground = ground.address();               // Address in the push constants of the shader
 //   Ground(push.ground) ... ground_cell(...)      // in GLSL
 //
-// Memory: the samples as they are (an odd row of 16-bit samples is padded), and 4/3 bytes per cell. Any size whose
-// samples fit into one allocation of the device, up to 2^31 - 1 words of samples.
+// Memory: the samples (odd rows of 16-bit samples are padded) and 4/3 bytes per cell. The samples must fit in one
+// allocation of the device, and in 2^31 - 1 words.
 #pragma once
 
 #include <cstdint>
@@ -24,28 +24,29 @@
 
 namespace scarp {
 
+/// A height field and its pyramid in device memory.
 class DeviceGround {
  public:
-  /// Copies the samples and builds the pyramid. `reserve` as in MaxPyramid. Throws Error: no memory for it (how much
-  /// was asked), the device is lost.
+  /// Copies the samples and builds the pyramid. `reserve` as in MaxPyramid. Throws Error if the device lacks memory
+  /// (stating the size) or is lost.
   DeviceGround(const Device& device, const HeightField& field,
                const std::optional<SampleRange>& reserve = std::nullopt);
 
-  /// After an edit of the same field: copies the samples around `changed` and makes the entries over it again, as
-  /// MaxPyramid::update() does; all of them when float samples have left the range of the codes.
+  /// Updates the device after an edit of the same field: copies the samples around `changed` and recomputes the pyramid
+  /// entries over it, as MaxPyramid::update() does. Rebuilds all entries if float samples leave the range of the codes.
   void update(const HeightField& field, const CellBox& changed);
 
-  /// Of the GroundBuffers.
+  /// Address of the GroundBuffers.
   std::uint64_t address() const { return header_.address(); }
-  /// What is there.
+  /// Layout of the buffers on the device.
   const glsl::GroundBuffers& layout() const { return layout_; }
   const HeightCode& code() const { return code_; }
   const std::vector<PyramidLevel>& levels() const { return levels_; }
-  /// On the device.
+  /// Size on the device.
   std::uint64_t bytes() const;
-  /// All entries, level 1 first: maximum code | minimum code << 16.
+  /// Returns all entries, level 1 first: maximum code | minimum code << 16.
   std::vector<std::uint32_t> read_pyramid() const;
-  /// The passes of the last build or update, in order.
+  /// Passes of the last build or update, in order.
   const std::vector<PassTime>& passes() const { return commands_.passes(); }
 
  private:

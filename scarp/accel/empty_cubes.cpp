@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-// Eight bytes, 1 where the bit is 0.
+// Eight bytes, 1 for each bit that is 0.
 constexpr std::array<std::uint64_t, 256> make_zeros() {
   std::array<std::uint64_t, 256> zeros{};
   for (unsigned bits = 0; bits < 256; ++bits) {
@@ -42,20 +42,20 @@ EmptyCubes::EmptyCubes(const VoxelGrid& grid, CubeBuilder builder)
 
 void EmptyCubes::update(const VoxelGrid& grid, const VoxelBox& changed) {
   if (changed.empty()) return;
-  // A voxel changes where its nearest solid one was in the box, or is there now and nearer than before: no farther than
-  // its distance before the edit. A box whose surroundings are all nearer to something else than to it bounds that.
+  // A voxel changes if its nearest solid voxel was in the box, or is there now and is nearer than before: at most its
+  // previous distance away. If everything around the box is nearer to other solid voxels, that bounds the region.
   int reach = 1;
   for (;; reach *= 2) {
     const VoxelBox region = intersection(changed.grown(reach), grid.box());
     if (region == grid.box() || reach >= kFarthest) break;
-    // The outermost voxels of the region: none of them may be as far from solid ones as from the edit.
+    // The outermost voxels of the region: none of them may be as far from solid voxels as from the edit.
     bool nearer = true;
     for (int axis = 0; axis < 3 && nearer; ++axis) {
       for (const bool up : {false, true}) {
         VoxelBox side = region;
         (up ? side.low : side.high)[axis] = up ? region.high[axis] - 1 : region.low[axis] + 1;
         const int away = up ? side.low[axis] - (changed.high[axis] - 1) : changed.low[axis] - side.low[axis];
-        // On the grid's own border nothing lies beyond.
+        // There is nothing beyond the border of the grid.
         if (up ? region.high[axis] == grid.size()[axis] : region.low[axis] == 0) continue;
         for_each_voxel(side, [&](const ivec3& v) { nearer = nearer && distances_[v] < away; });
       }
@@ -68,7 +68,7 @@ void EmptyCubes::update(const VoxelGrid& grid, const VoxelBox& changed) {
 void EmptyCubes::rows(const VoxelGrid& grid, const VoxelBox& region) {
   const VoxelBox seen = intersection(region.grown(1), grid.box());
   VoxelNearness near(grid, seen);
-  // What is beyond the region's border is known.
+  // Distances beyond the region's border are known.
   for_each_row(seen, [&](int y, int z) {
     std::uint8_t* const row = near.row(y - seen.low.y, z - seen.low.z);
     const bool inner = y >= region.low.y && y < region.high.y && z >= region.low.z && z < region.high.z;
@@ -85,7 +85,7 @@ void EmptyCubes::bit_parallel(const VoxelGrid& grid) {
   VoxelRows rows(grid);
   const ivec3& size = grid.size();
   const std::size_t groups = (static_cast<std::size_t>(size.x) + 7) / 8;
-  // Eight counters to a word, each row begins a new one.
+  // Eight counters per word; each row starts a new word.
   std::vector<std::uint64_t> counters(groups * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
   for (int round = 0; round < kFarthest && !rows.full(); ++round) {
     if (round > 0) rows.dilate();

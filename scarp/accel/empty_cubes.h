@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// For each voxel the distance D to the nearest solid one in the axis where it is farther (Chebyshev's), 0 for solid
-// voxels: the cube of radius D - 1 around the voxel is empty. Outside of the grid all is empty; 255 stands for 255 and
-// more.
+// Chebyshev distance D from each voxel to the nearest solid voxel, 0 for solid voxels: the cube of radius D - 1 around
+// the voxel is empty. Space outside the grid is empty; distances are capped at 255.
 //
-// Three builders with one result:
-//   rows          one axis after the other, 16 voxels at once (voxel_nearness.h). O(n): the one that is used, and for
-//                 edits
-//   bit_parallel  the solid voxels grow by one in all directions, 64 voxels at once, and every voxel counts how long it
-//                 stays outside. O(n D): fast where nothing is far from solid voxels
-//   summed_area   sums of all voxels before each (a summed-area table, in 64 bits), then a binary search for the
-//                 largest empty cube. O(n log n). Source: C. Leak, "Raymarching voxel rendering"; F. Crow, "Summed-area
-//                 tables for texture mapping", SIGGRAPH 1984
-// Cost: a byte per voxel.
+// Three builders with identical results:
+//   rows          one axis after the other, 16 voxels at a time (voxel_nearness.h). O(n): the default, and used for
+//   edits bit_parallel  dilates the solid voxels by one in all directions, 64 voxels at a time, and counts how long
+//   each voxel
+//                 stays outside. O(n D): fast if no voxel is far from solid ones
+//   summed_area   a summed-area table in 64 bits, then a binary search for the largest empty cube. O(n log n). Source:
+//                 C. Leak, "Raymarching voxel rendering"; F. Crow, "Summed-area tables for texture mapping", SIGGRAPH
+//                 1984
+// Cost: one byte per voxel.
 #pragma once
 
 #include <cstddef>
@@ -22,15 +21,16 @@ namespace scarp {
 
 enum class CubeBuilder { rows, bit_parallel, summed_area };
 
+/// Chebyshev distances of a voxel grid.
 class EmptyCubes {
  public:
   static constexpr int kFarthest = 255;
 
-  /// Throws Error for grids above kMaxAcceleratedSide.
+  /// Throws Error for grids larger than kMaxAcceleratedSide.
   explicit EmptyCubes(const VoxelGrid& grid, CubeBuilder builder = CubeBuilder::rows);
 
-  /// After an edit of the same grid, with the box that it returned: as if built anew. Looks again at voxels as far from
-  /// the box as the largest distance before the edit.
+  /// Updates the distances after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits voxels
+  /// up to the largest previous distance from the box.
   void update(const VoxelGrid& grid, const VoxelBox& changed);
 
   int distance(const ivec3& voxel) const { return distances_[voxel]; }

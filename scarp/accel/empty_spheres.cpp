@@ -14,7 +14,7 @@ EmptySpheres::EmptySpheres(const VoxelGrid& grid) : distances_(glm::min(grid.siz
 
 void EmptySpheres::update(const VoxelGrid& grid, const VoxelBox& changed) {
   if (changed.empty()) return;
-  // Distances of boxes are rounded down, and a voxel less than those of coordinates.
+  // Distances between boxes are rounded down, and one voxel less than those between coordinates.
   build(grid, intersection(changed.grown(largest_ + 2), grid.box()));
 }
 
@@ -24,7 +24,7 @@ void EmptySpheres::build(const VoxelGrid& grid, const VoxelBox& region) {
     largest_ = kFarthest;
     return;
   }
-  // What is farther away does not count.
+  // Voxels farther away do not count.
   const VoxelBox window = intersection(region.grown(kFarthest + 2), grid.box());
   VoxelNearness near(grid, window);
   near.along_x({});

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// For each empty voxel the distance from its box to the box of the nearest solid voxel, rounded down: from any of its
-// points a ray may travel so far and meets nothing. Outside of the grid all is empty; 254 stands for 254 and more.
+// Euclidean distance from the box of each empty voxel to the box of the nearest solid voxel, rounded down: the length
+// that a ray may travel from any point of the voxel without a hit. Space outside the grid is empty; distances are
+// capped at 254.
 //
-//   the distance of two boxes, |delta| voxels apart along an axis, is sqrt(sum of max(0, |delta| - 1)^2): that of the
-//   voxel to the nearest one of the solid voxels grown by one in all directions
+//   two boxes |delta| voxels apart along each axis are sqrt(sum of max(0, |delta| - 1)^2) apart: the distance from the
+//   voxel to the nearest voxel of the solid ones, dilated by one in all directions
 //
-// Built one axis after the other, exact in whole numbers (sphere_rows.h). Cost: a byte per voxel.
+// Built one axis after the other, exact in integers (sphere_rows.h). Cost: one byte per voxel.
 #pragma once
 
 #include <cstddef>
@@ -14,19 +15,20 @@
 
 namespace scarp {
 
+/// Euclidean distances of a voxel grid.
 class EmptySpheres {
  public:
   static constexpr int kFarthest = 254;
   static constexpr int kSolid = 255;
 
-  /// Throws Error for grids above kMaxAcceleratedSide.
+  /// Throws Error for grids larger than kMaxAcceleratedSide.
   explicit EmptySpheres(const VoxelGrid& grid);
 
-  /// After an edit of the same grid, with the box that it returned: as if built anew. Looks again at voxels as far from
-  /// the box as the largest distance before the edit.
+  /// Updates the distances after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits voxels
+  /// up to the largest previous distance from the box.
   void update(const VoxelGrid& grid, const VoxelBox& changed);
 
-  /// kSolid for solid voxels.
+  /// Returns kSolid for solid voxels.
   int distance(const ivec3& voxel) const { return distances_[voxel]; }
   std::size_t bytes() const { return sizeof(*this) + distances_.bytes(); }
   friend bool operator==(const EmptySpheres& a, const EmptySpheres& b) { return a.distances_ == b.distances_; }
@@ -35,7 +37,7 @@ class EmptySpheres {
   void build(const VoxelGrid& grid, const VoxelBox& region);
 
   VoxelBytes distances_;
-  int largest_ = 0;  // no distance is larger
+  int largest_ = 0;  // upper bound of all distances
 };
 
 }  // namespace scarp

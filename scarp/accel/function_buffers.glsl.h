@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A terrain function as it lies in a device's memory: the instructions of its program (field/function_program.h), one
-// after the other, 64 bytes each. DeviceFunction (device_function.h) makes it; the interpreter of shaders
-// (march/function/function_heights.glsl.h) reads it.
+// Layout of a terrain function in device memory: the instructions of its program (field/function_program.h), 64 bytes
+// each. DeviceFunction (device_function.h) writes it; the shader interpreter (march/function/function_heights.glsl.h)
+// reads it.
 #ifndef SCARP_ACCEL_FUNCTION_BUFFERS_GLSL_H
 #define SCARP_ACCEL_FUNCTION_BUFFERS_GLSL_H
 
@@ -9,7 +9,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Of ScarpInstruction::op, the values of FunctionOp.
+/// Values of ScarpInstruction::op, equal to FunctionOp.
 const uint kScarpConstant = 0u;
 const uint kScarpCombine = 1u;
 const uint kScarpTurn = 2u;
@@ -27,17 +27,17 @@ const uint kScarpNoiseSlope = 13u;
 const uint kScarpTerrace = 14u;
 const uint kScarpRadial = 15u;
 
-/// What a program has, as bits: 1 << op, and of noise 1 << (kScarpNoiseBit + kind).
+/// Bits for the contents of a program: 1 << op, and 1 << (kScarpNoiseBit + kind) for noise.
 const uint kScarpNoiseBit = 16u;
 
-/// Registers there are; 0 and 1 hold x and y when the program begins.
+/// Number of registers. Registers 0 and 1 hold x and y at the start of the program.
 const int kScarpRegisters = 64;
 
-/// FunctionInstruction, its numbers as sums of two floats.
+/// FunctionInstruction with each constant as the sum of two floats.
 struct ScarpInstruction {
   uint op;
-  uint kind;  ///< of noise: NoiseKind
-  uint to;    ///< registers written: to, and of some to_x and to_y
+  uint kind;  ///< NoiseKind, for noise
+  uint to;    ///< registers written: `to`, and to_x and to_y by some operations
   uint to_x;
   uint to_y;
   uint a;  ///< registers read
@@ -45,7 +45,7 @@ struct ScarpInstruction {
   uint seed;
   float k0, k0_low;
   float k1, k1_low;
-  float k2, k2_low;  ///< of kScarpTerrace 1 / k0
+  float k2, k2_low;  ///< 1 / k0 for kScarpTerrace
   float k3, k3_low;
 };
 

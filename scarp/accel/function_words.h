@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A terrain function as shaders interpret it, and how far their heights may be from the true ones.
+// Encodes terrain functions for shaders and bounds the error of heights computed there.
 #pragma once
 
 #include <array>
@@ -12,19 +12,19 @@
 
 namespace scarp {
 
-/// One program of a function.
+/// Returns the words of one program.
 std::vector<glsl::ScarpInstruction> function_words(const FunctionProgram& program);
 
-/// What is in it: 1 << op, 1 << (kScarpNoiseBit + kind).
+/// Returns the contents of a program as bits: 1 << op, 1 << (kScarpNoiseBit + kind).
 std::uint32_t function_parts(const FunctionProgram& program);
 
-/// What heights of one program as shaders compute them are off by, by where they are.
+/// Error bound of heights of one program as computed by shaders, by position.
 class SingleRounding {
  public:
-  /// Throws Error for a function whose numbers do not fit into floats.
+  /// Throws Error if a constant does not fit in single precision.
   explicit SingleRounding(const FunctionProgram& program);
 
-  /// Metres, at positions up to `reach` from the origin along each axis; reach at most kFunctionReach.
+  /// Returns the bound in metres for positions up to `reach` (<= kFunctionReach) from the origin along each axis.
   double at(double reach) const;
 
  private:

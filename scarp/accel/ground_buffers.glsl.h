@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: MIT
-// A height field and its pyramid as they lie in a device's memory: what DeviceGround (device_ground.h) makes and
-// shaders read. Everything is reached from one address, that of a GroundBuffers:
+// Layout of a height field and its pyramid in device memory, written by DeviceGround (device_ground.h) and read by
+// shaders. Everything is reached from the address of a GroundBuffers:
 //
-//   GroundBuffers ──samples──▶ words, rows from north to south, sample_words of them per row; a word is one float32
-//         │                    sample or two of 16 bits, the lower half first; the last half of an odd row means
-//         nothing └──pyramid──▶ one word per block: maximum code | minimum code << 16; the entry of block (col, row) of
-//         a level
-//                       is at levels[level - 1].begin + row * cols + col, level 1 .. top_level, as in MaxPyramid
+//   GroundBuffers ──samples──▶ words, rows from north to south, sample_words per row; a word is one float32 sample or
+//   two
+//         │                    16-bit samples, the lower half first; the last half of an odd row is undefined
+//         └──pyramid──▶ one word per block: maximum code | minimum code << 16; the entry of block (col, row) of a level
+//         is
+//                       levels[level - 1].begin + row * cols + col, level 1 .. top_level, as in MaxPyramid
 //
-// Codes are bit for bit those of MaxPyramid: height = base + step * code, maxima rounded up, minima down, minimum 0:
-// none (a hole, or as low as codes go). For 16-bit samples base and step are exact (-32768 or 0, and 1). A hole is a
-// sample whose bits are `hole`, when has_holes: all nodata floats, NaN among them, are stored as one NaN.
+// Codes equal those of MaxPyramid bit for bit: height = base + step * code, maxima rounded up, minima down. Minimum 0
+// means none (a hole, or the lowest code). For 16-bit samples base (-32768 or 0) and step (1) are exact. If has_holes,
+// a sample whose bits are `hole` is a hole: all nodata floats, including NaN, are stored as one NaN.
 //
-// A shader that includes this enables GL_GOOGLE_include_directive, GL_EXT_scalar_block_layout, GL_EXT_buffer_reference
-// and GL_EXT_buffer_reference_uvec2. It needs no 64-bit integers and no 16-bit types.
+// Shaders that include this file enable GL_GOOGLE_include_directive, GL_EXT_scalar_block_layout,
+// GL_EXT_buffer_reference and GL_EXT_buffer_reference_uvec2. It requires neither 64-bit integers nor 16-bit types.
 #ifndef SCARP_ACCEL_GROUND_BUFFERS_GLSL_H
 #define SCARP_ACCEL_GROUND_BUFFERS_GLSL_H
 
@@ -21,48 +22,50 @@
 
 SCARP_GLSL_BEGIN
 
-// GroundBuffers::sample_type, the values of SampleType.
+// Values of GroundBuffers::sample_type, equal to SampleType.
 const uint kGroundInt16 = 0u;
 const uint kGroundUint16 = 1u;
 const uint kGroundFloat32 = 2u;
 
-// GroundBuffers::wrap, the values of Wrap.
+// Values of GroundBuffers::wrap, equal to Wrap.
 const uint kGroundWrapNone = 0u;
 const uint kGroundWrapPeriodic = 1u;
 const uint kGroundWrapSharedBorder = 2u;
 
-// Levels of the largest field that 31 bits can count.
+// Levels of the largest field that 31 bits can index.
 const uint kGroundMaxLevels = 31u;
 
+/// Position and size of a pyramid level.
 struct GroundLevel {
-  uint begin;  // of its entries, in words from the begin of level 1
+  uint begin;  // first entry, in words from the start of level 1
   uint cols;
   uint rows;
 };
 
+/// Layout and properties of a height field in device memory.
 struct GroundBuffers {
   Address samples;
   Address pyramid;
   uint cols;  // samples
   uint rows;
-  uint cell_cols;  // cols - 1, or cols where the last column is followed by the first
+  uint cell_cols;  // cols - 1, or cols if the last column is followed by the first
   uint cell_rows;
-  uint sample_words;  // words from one row of samples to the next
+  uint sample_words;  // words per row of samples
   uint sample_type;
   uint has_holes;  // 0 or 1
-  uint hole;       // the bits of a nodata sample
+  uint hole;       // bits of a nodata sample
   uint triangles;  // 0: bilinear; 1: two triangles per cell
   uint wrap;
   uint solid;      // 0 or 1
   uint top_level;  // 0: no cells, no pyramid
-  // height = (code_base + code_base_low) + (code_step + code_step_low) * code in sample units, each sum rounded twice
-  // to float, so that it is right to 2^-48 of its size.
+  // height = (code_base + code_base_low) + (code_step + code_step_low) * code in sample units. Each sum of two floats
+  // is accurate to 2^-48 of its magnitude.
   float code_base;
   float code_base_low;
   float code_step;
   float code_step_low;
   float code_per_step;  // 1 / step, rounded
-  float min_sample;     // of the field as it is; means nothing when all samples are nodata
+  float min_sample;     // of the current samples; undefined if all samples are nodata
   float max_sample;
   float cell_x;  // metres, rounded
   float cell_y;
@@ -76,7 +79,7 @@ struct GroundBuffers {
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GroundWords { uint words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Ground { GroundBuffers is; };
 
-// The bits of a sample: 16 or 32 of them. The sample must exist.
+// Returns the 16 or 32 bits of a sample, which must exist.
 uint ground_sample_bits(Ground ground, uint col, uint row) {
   GroundWords samples = GroundWords(ground.is.samples);
   uint begin = row * ground.is.sample_words;
@@ -85,22 +88,22 @@ uint ground_sample_bits(Ground ground, uint col, uint row) {
   return (col & 1u) != 0u ? word >> 16 : word & 0xffffu;
 }
 
-// Whether a sample is nodata, from its bits.
+// Returns whether a sample is nodata, from its bits.
 bool ground_is_nodata(Ground ground, uint bits) { return ground.is.has_holes != 0u && bits == ground.is.hole; }
 
-// The value of a sample in sample units, from its bits; exact.
+// Returns the value of a sample in sample units, from its bits; exact.
 float ground_sample_value(Ground ground, uint bits) {
   if (ground.is.sample_type == kGroundFloat32) return uintBitsToFloat(bits);
   return ground.is.sample_type == kGroundInt16 ? float(bitfieldExtract(int(bits), 0, 16)) : float(bits);
 }
 
-// The column east of one; beyond the last only where the field wraps round.
+// Returns the column to the east; wraps around after the last one.
 uint ground_east(Ground ground, uint col) { return col + 1u < ground.is.cols ? col + 1u : 0u; }
-// And the row south of one.
+// Returns the row to the south; wraps around after the last one.
 uint ground_south(Ground ground, uint row) { return row + 1u < ground.is.rows ? row + 1u : 0u; }
 
-// The four samples of a cell, in sample units: x at (col, row), y at (col+1, row), z at (col, row+1), w at both.
-// Returns false when the cell is a hole; the values mean nothing then.
+// The four samples of a cell, in sample units: x at (col, row), y at (col+1, row), z at (col, row+1), w at (col+1,
+// row+1). Returns false for a hole; the values are then undefined.
 bool ground_cell(Ground ground, uint col, uint row, out vec4 heights) {
   uint east = ground_east(ground, col), south = ground_south(ground, row);
   uvec4 bits = uvec4(ground_sample_bits(ground, col, row), ground_sample_bits(ground, east, row),
@@ -111,14 +114,14 @@ bool ground_cell(Ground ground, uint col, uint row, out vec4 heights) {
            ground_is_nodata(ground, bits.w));
 }
 
-// The entry of a block of the pyramid, level 1 .. top_level: maximum code | minimum code << 16.
+// Returns the entry of a pyramid block, level 1 .. top_level: maximum code | minimum code << 16.
 uint ground_entry(Ground ground, uint level, uint col, uint row) {
   GroundLevel at = ground.is.levels[level - 1u];
   return GroundWords(ground.is.pyramid).words[at.begin + row * at.cols + col];
 }
-// The maximum code of an entry, and the minimum, 0 where there is none.
+// Returns the maximum code of an entry.
 uint ground_maximum(uint entry) { return entry & 0xffffu; }
-// And the minimum.
+// Returns the minimum code of an entry; 0 means none.
 uint ground_minimum(uint entry) { return entry >> 16; }
 
 #endif

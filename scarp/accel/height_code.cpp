@@ -22,8 +22,8 @@ bool is_in_range(const HeightField& field, const SampleRange& range) {
 
 HeightCode height_code(SampleType type, const SampleRange& range) {
   if (type != SampleType::float32) return {type == SampleType::int16 ? -32768.0 : 0.0, 1, 1};
-  // The lowest sample gets code 1, half a step clear of rounding, since code 0 says that there is no minimum; the step
-  // grows until the highest code stands for no less than the highest sample.
+  // The lowest sample gets code 1, half a step clear of rounding, because code 0 means no minimum. The step grows until
+  // the highest code is not below the highest sample.
   const double magnitude = std::max(std::abs(range.low), std::abs(range.high));
   double step = std::max((range.high - range.low) / (kTopCode - 2), kLeastStep * magnitude);
   if (!(step > 0)) step = 0x1p-20;

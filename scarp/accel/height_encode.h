@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: samples made into codes.
+// Private to the station: encodes samples as height codes.
 #pragma once
 
 #include <cstdint>
@@ -12,11 +12,11 @@ namespace scarp {
 
 constexpr double kTopCode = 65535;
 
-// From samples to codes, outwards. Floats are moved by kClear of a step first, more than all that rounding does. Let M
-// be the greatest magnitude that codes have to hold: no step is below kLeastStep * M, which two neighbouring floats do
-// not ask for either. A place, at most 2^16 steps, is off by 4 * 2^-53 of itself; the height that a code stands for by
-// 2^-51 M, which is 2^-11 steps. All in double and without branches, of which compilers make vector instructions. A
-// block of holes has -infinity here, and the lowest code.
+// Encodes outwards. Floats are first moved by kClear of a step, more than all rounding errors. Let M be the greatest
+// magnitude that codes cover: steps are at least kLeastStep * M, which even adjacent floats do not require. A place, at
+// most 2^16 steps, has a relative error of 4 * 2^-53; the height of a code has an error of 2^-51 M, which is 2^-11
+// steps. All in double and without branches, so that compilers vectorise it. Blocks of holes have -infinity here, and
+// the lowest code.
 constexpr double kClear = 0x1p-8, kLeastStep = 0x1p-40;
 
 template <class T>

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A height field that is edited while others ask it: queries and edits take turns, nothing is copied.
+// A height field that can be edited while other threads query it. Queries and edits take turns; nothing is copied.
 //
 //   reader  --[ epoch 7 ]------[ epoch 7 ]--------------[ epoch 8 ]---
 //   reader  ----[ epoch 7 ]----------------              [ epoch 8 ]--
 //   edit                          waits  [ copy, update ]
 //
-// A reader holds a Reading for as long as its answers have to agree: a ray, a batch, a frame. All that it asks
-// meanwhile sees one epoch of the field. An edit waits for the readings that are held, and readings that come after it
-// wait for the edit: neither side starves the other. What an edit holds up is the copy of its samples and the update of
-// the pyramid over them, about 0.1 to 0.2 ms for 256 x 256 samples of a large field.
+// A reader holds a Reading while its queries must be consistent: for a ray, a batch, a frame. All these queries see one
+// epoch of the field. An edit waits for current readings, and later readings wait for the edit, so neither side
+// starves. An edit blocks readers while it copies its samples and updates the pyramid over them: 0.1 to 0.2 ms for 256
+// x 256 samples of a large field.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,14 @@
 
 namespace scarp {
 
+/// A height field and its pyramid, shared by readers and editors.
 class LiveField {
  public:
-  /// Builds the pyramid; `reserve` as there. Field and samples must not be changed in any other way afterwards.
+  /// Builds the pyramid; `reserve` as in MaxPyramid. The field and its samples must not be changed in any other way.
   explicit LiveField(HeightField field, const std::optional<SampleRange>& reserve = std::nullopt);
 
-  /// The field as it is at one epoch. Edits wait while it lives: a thread that holds one must not edit, nor
-  /// take another, which would wait for an edit that waits for the first.
+  /// The field at one epoch. Edits wait during its lifetime: a thread that holds a Reading must not edit, and must not
+  /// take another Reading, which could wait for an edit that waits for the first.
   class Reading {
    public:
     const HeightField& field() const { return live_->field_; }
@@ -41,11 +42,11 @@ class LiveField {
     std::shared_lock<std::shared_mutex> held_;
   };
 
-  /// May be called from any thread; waits for an edit that runs or waits.
+  /// Thread-safe. Waits for running and waiting edits.
   Reading read() const { return Reading(*this); }
 
-  /// HeightField::set_samples and the update of the pyramid, as one step for all readers; returns the new epoch. May be
-  /// called from any thread. Throws Error as set_samples() does, and changes nothing then.
+  /// Sets samples and updates the pyramid in one step for all readers; returns the new epoch. Thread-safe. Throws Error
+  /// as HeightField::set_samples() does, and then changes nothing.
   template <class T>
   std::uint64_t edit(const SampleRect& rect, const T* samples, std::ptrdiff_t stride);
 
@@ -53,7 +54,7 @@ class LiveField {
   HeightField field_;
   MaxPyramid pyramid_;
   std::uint64_t epoch_ = 0;
-  mutable std::mutex turnstile_;  // held by an edit from the moment it waits: readings that come later queue here
+  mutable std::mutex turnstile_;  // held by an edit from when it starts to wait: later readings queue here
   mutable std::shared_mutex held_;
 };
 

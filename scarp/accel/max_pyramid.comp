@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// One level of the maximum and minimum pyramid (max_pyramid.h), bit for bit as the CPU makes it: extremes are compared
-// as whole numbers, and codes of float samples come from tables that the CPU's own formula has made, so that no
-// rounding of the device takes part. An invocation makes one entry.
+// Builds one level of the maximum and minimum pyramid (max_pyramid.h), bit for bit as the CPU does. Extremes are
+// compared as integers, and codes of float samples come from tables computed on the CPU, so device rounding does not
+// matter. Each invocation writes one entry.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -15,8 +15,8 @@ layout(local_size_x = kPyramidGroupCols, local_size_y = kPyramidGroupRows) in;
 layout(push_constant, scalar) uniform Push { PyramidPush push; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer PyramidEntries { uint words[]; };
 
-// The extremes of some cells as keys, whole numbers in the order of the samples; holes have the key 0 for both, so that
-// they raise no maximum and leave no minimum.
+// Extremes of some cells as keys: integers in the order of the samples. Holes have key 0 for both, so that they raise
+// no maximum and leave no minimum.
 struct Extremes {
   uint highest;
   uint lowest;
@@ -52,13 +52,13 @@ void add_cell(uvec2 north, uvec2 south, uint hole, inout Extremes extremes) {
 uint ceiling(uint code) { return GroundWords(push.codes).words[code]; }
 uint floor_of(uint code) { return GroundWords(push.codes).words[kPyramidCodes + code]; }
 
-// The code that a key is likely to have, `beyond` its place; only the tables know.
+// Estimates the code of a key, `beyond` its place; the tables decide.
 uint guess_code(Ground ground, uint key, float beyond) {
   float place = (uintBitsToFloat(float_bits(key)) - ground.is.code_base) * ground.is.code_per_step + beyond;
   return min(uint(clamp(place, 0.0, 65535.0)), kPyramidCodes - 1u);
 }
 
-// The least code whose ceiling is not below the key.
+// Returns the least code whose ceiling is not below the key.
 uint code_above(Ground ground, uint key) {
   uint guess = guess_code(ground, key, 1.0), low = 0u, high = kPyramidCodes - 1u;
   if (key <= ceiling(guess)) {
@@ -80,7 +80,7 @@ uint code_above(Ground ground, uint key) {
   return low;
 }
 
-// The greatest code whose floor is not above the key.
+// Returns the greatest code whose floor is not above the key.
 uint code_below(Ground ground, uint key) {
   uint guess = guess_code(ground, key, 0.0), low = 0u, high = kPyramidCodes - 1u;
   if (key >= floor_of(guess)) {
@@ -102,7 +102,7 @@ uint code_below(Ground ground, uint key) {
   return low;
 }
 
-// Level 1: two cells by two, of three samples by three; fewer at an odd end, where the last two samples are the same.
+// Level 1: 2 x 2 cells from 3 x 3 samples; fewer at an odd end, where the last two samples coincide.
 uint entry_from_samples(Ground ground, uvec2 at) {
   uvec2 first = 2u * at;
   bool wide = first.x + 1u < ground.is.cell_cols, high = first.y + 1u < ground.is.cell_rows;
@@ -131,7 +131,7 @@ uint entry_from_samples(Ground ground, uvec2 at) {
   return extremes.highest | extremes.lowest << 16;
 }
 
-// Other levels: two entries by two, fewer at an odd end.
+// Other levels: 2 x 2 entries; fewer at an odd end.
 uint entry_from_finer(Ground ground, uvec2 at) {
   GroundLevel finer = ground.is.levels[push.level - 2u];
   GroundWords entries = GroundWords(ground.is.pyramid);

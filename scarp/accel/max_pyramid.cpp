@@ -13,13 +13,13 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kEntriesPerPiece = 1 << 16;
-// Rows of codes that are asked for ahead of the one at work: more would keep a processor from other requests.
+// Rows prefetched ahead. More would keep the processor from other requests.
 constexpr int kRowsAhead = 4;
 
 std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntriesPerPiece / std::max(cols, 1)); }
 
-// One row of cells, columns [begin, end), of a field with holes: the extremes of each cell's four corners; for holes
-// the lowest for both, so that they raise no maximum and leave no minimum.
+// One row of cells, columns [begin, end), of a field with holes: the extremes of each cell's four corners. Holes get
+// the lowest value for both, so that they raise no maximum and leave no minimum.
 template <class T>
 void extremes_of_cells(const SampleGrid<T>& grid, int row, int begin, int end, T* highest, T* lowest) {
   constexpr T kHole =
@@ -37,7 +37,7 @@ void extremes_of_cells(const SampleGrid<T>& grid, int row, int begin, int end, T
   }
 }
 
-// A row of coarser entries from two finer ones (twice the same at an odd end). An odd last column stands alone.
+// A row of coarser entries from two finer ones (the same twice at an odd end). An odd last column stands alone.
 template <class T, class Pick>
 void pick_of_four(const T* north, const T* south, int fine_cols, T* coarse, Pick pick) {
   const int pairs = fine_cols / 2;
@@ -49,8 +49,8 @@ void pick_of_four(const T* north, const T* south, int fine_cols, T* coarse, Pick
 constexpr auto kHigher = [](auto a, auto b) { return std::max(a, b); };
 constexpr auto kLower = [](auto a, auto b) { return std::min(a, b); };
 
-// Extremes of blocks of 2 x 2 cells where there are no holes: of 3 x 3 samples, first down each column of samples, then
-// across. `south` is `middle` at an odd end of the field.
+// Extremes of blocks of 2 x 2 cells without holes, from 3 x 3 samples: first down each sample column, then across.
+// `south` equals `middle` at an odd end of the field.
 template <class T>
 void extremes_of_samples(const SampleGrid<T>& grid, const T* north, const T* middle, const T* south, int begin, int end,
                          T* highest, T* lowest, T* high, T* low) {
@@ -62,7 +62,7 @@ void extremes_of_samples(const SampleGrid<T>& grid, const T* north, const T* mid
     lowest[i] = least < c ? least : c;
   }
   if (end == grid.cols) {
-    // The last cell of a field that wraps round ends at the first column.
+    // The last cell of a wrapped field ends at the first column.
     highest[plain] = std::max({north[0], middle[0], south[0]});
     lowest[plain] = std::min({north[0], middle[0], south[0]});
   }
@@ -77,7 +77,7 @@ void extremes_of_samples(const SampleGrid<T>& grid, const T* north, const T* mid
   }
 }
 
-// The most that the codes of an entry differ by.
+// The largest difference between the codes of an entry.
 int most_relief(const std::uint16_t* maxima, const std::uint16_t* minima, int count) {
   std::uint16_t most = 0;
   for (int i = 0; i < count; ++i) most = std::max(most, static_cast<std::uint16_t>(maxima[i] - minima[i]));
@@ -90,7 +90,7 @@ void raise(std::atomic<int>& to, int value) {
   }
 }
 
-// Level 1, from the samples; the rows in between live for a moment only.
+// Level 1, from the samples. Intermediate rows are temporary.
 template <class T>
 void build_first(const SampleGrid<T>& grid, const HeightCode& code, const CellBox& part, int cols,
                  std::uint16_t* maxima, std::uint16_t* minima, std::atomic<int>& relief) {
@@ -148,7 +148,7 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
   levels_ = pyramid_levels(field);
   if (levels_.empty()) return;
   entries_ = static_cast<std::size_t>(levels_.back().begin + 1);
-  // Not zeroed: each entry is written by the thread that makes it.
+  // Not zeroed: the thread that builds an entry writes it first.
   shared_->maxima.reset(new std::uint16_t[entries_ + 1]);
   shared_->minima.reset(new std::uint16_t[entries_ + 1]);
   shared_->maxima[entries_] = shared_->minima[entries_] = 0;

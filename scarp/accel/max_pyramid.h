@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Maximum and minimum mipmap of a height field: for every block of 2^level x 2^level cells, a height that no point of
-// the surface in it exceeds, and one that no point is below.
+// Maximum and minimum mipmap of a height field: for every block of 2^level x 2^level cells, an upper and a lower bound
+// of the surface in it.
 //
-//   level 0: the cells themselves, the extremes of FOUR corner samples each (both surfaces stay between them). Not
-//   stored:
-//            who looks at a cell needs its samples anyway, and a quarter of the memory holds all other levels
-//   level l: (n + 1) / 2 entries per side for n at level l-1, so odd sizes keep their last row and column; in a field
-//            that wraps round, no block straddles the seam
-//   top:     one entry, on level 1 at least
+//   level 0: the cells themselves, the extremes of their FOUR corner samples (both surfaces stay between them). Not
+//            stored: a cell test needs the samples anyway, and all other levels take a quarter of the memory
+//   level l: (n + 1) / 2 entries per side for n at level l-1, so odd sizes keep their last row and column; in a
+//            wrapped field no block straddles the seam
+//   top:     one entry; level 1 at least
 //
-// Entries are 16-bit codes, rounded outwards: height = base + step * code. For 16-bit samples codes are the samples and
-// nothing is rounded. A hole is left out of the maxima; a block with a hole has no minimum (kNoMinimum).
+// Entries are 16-bit codes, rounded outwards: height = base + step * code. For 16-bit samples codes equal the samples,
+// without rounding. Maxima ignore holes; a block with a hole has no minimum (kNoMinimum).
 //
 // Source: A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic height field
-// rendering", I3D 2008 (maxima of cells instead of samples: those of samples do not bound what lies between them).
-// Cost: 4/3 bytes per cell; built in one pass over the samples and one over each level.
+// rendering", I3D 2008 (with maxima of cells instead of samples: maxima of samples do not bound the surface between
+// them). Cost: 4/3 bytes per cell; built in one pass over the samples and one over each level.
 #pragma once
 
 #include <cstddef>
@@ -29,47 +28,48 @@
 
 namespace scarp {
 
-/// Cheap to copy: copies share the levels and see one another's updates. Built from a field, it does not refer to it
-/// afterwards. Nothing but update() changes a pyramid; while it runs, no query may.
+/// A maximum and minimum pyramid. Copies are cheap: they share the levels and see one another's updates. A pyramid does
+/// not refer to the field it was built from. Only update() changes a pyramid, and must not run concurrently with
+/// queries.
 class MaxPyramid {
  public:
-  /// The code of a block without a minimum: it has a hole, or is as low as codes go.
+  /// Code of a block without a minimum: it has a hole, or the lowest code.
   static constexpr std::uint16_t kNoMinimum = 0;
 
-  /// Builds all levels, on all threads. A field without cells has a pyramid without levels. `reserve` widens the range
-  /// of the codes of float samples to what later edits will stay in; 16-bit samples never leave theirs.
+  /// Builds all levels, on all threads. A field without cells has no levels. `reserve` widens the code range of float
+  /// samples for later edits; 16-bit samples never leave their range.
   explicit MaxPyramid(const HeightField& field, const std::optional<SampleRange>& reserve = std::nullopt);
 
-  /// After an edit of the same field: computes the entries over `changed` again and no others, so that the levels are
-  /// those of a pyramid built anew with the same range. When float samples have left that range all is built anew.
+  /// Recomputes the entries over `changed` after an edit of the same field, so that the levels equal a rebuild with the
+  /// same range. Rebuilds everything if float samples leave the range.
   void update(const HeightField& field, const CellBox& changed);
 
-  /// Levels are 1 .. top_level(); 0 when the field has no cells.
+  /// Coarsest level; levels are 1 .. top_level(). 0 if the field has no cells.
   int top_level() const { return static_cast<int>(levels_.size()); }
   std::size_t bytes() const { return 2 * entries_ * sizeof(std::uint16_t); }
 
   using Level = PyramidLevel;
-  /// Levels 1, 2, ...; their entries lie in rows from north to south, no padding. Behind the last one there is room for
-  /// another: vectors read two entries where they need one.
+  /// Levels 1, 2, ...; entries in rows from north to south, no padding. One extra entry is allocated after the last:
+  /// vector code reads two entries at a time.
   const std::vector<Level>& levels() const { return levels_; }
   const HeightCode& code() const { return shared_->code; }
   const std::uint16_t* maxima() const { return shared_->maxima.get(); }
   const std::uint16_t* minima() const { return shared_->minima.get(); }
 
-  /// Bounds of one block in sample units, level from 1 to top_level(): the minimum is -infinity when there is none, the
-  /// maximum that of code 0 when the block is all holes.
+  /// Bounds of one block in sample units, level 1 .. top_level(): the minimum is -infinity if there is none, the
+  /// maximum of a block of holes is that of code 0.
   double maximum(int level, int col, int row) const;
   double minimum(int level, int col, int row) const;
 
-  /// No two points of a cell differ by more, in steps of the code; where there are holes, up to 65535. After edits it
-  /// may be more than a pyramid built anew would say.
+  /// Upper bound of the height difference within any cell, in code steps; up to 65535 with holes. After edits it may
+  /// exceed that of a rebuild.
   int cell_relief() const { return shared_->cell_relief; }
 
  private:
-  // What copies share.
+  // State shared by copies.
   struct Shared {
     HeightCode code;
-    SampleRange range;  // what the codes can hold
+    SampleRange range;  // range of the codes
     int cell_relief = 0;
     std::unique_ptr<std::uint16_t[]> maxima, minima;
   };

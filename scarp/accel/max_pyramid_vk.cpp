@@ -12,7 +12,7 @@ constexpr std::uint32_t kShader[] = {
 #include "scarp/accel/max_pyramid.comp.inc"
 };
 
-// What every device allows: workgroups along one side of a dispatch, and invocations in one.
+// Limits that every device supports: workgroups along one side of a dispatch, and invocations per workgroup.
 constexpr int kMaxGroups = 65535;
 static_assert(glsl::kPyramidGroupCols * glsl::kPyramidGroupRows <= 128);
 

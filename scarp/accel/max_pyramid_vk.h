@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The maximum and minimum pyramid made on a Vulkan device: max_pyramid.comp, one pass for each level. Its entries are
-// bit for bit those of MaxPyramid, at any size and after any edit. DeviceGround uses it.
+// Builds the maximum and minimum pyramid on a Vulkan device: one pass of max_pyramid.comp per level. Entries equal
+// those of MaxPyramid bit for bit, at any size and after any edit. Used by DeviceGround.
 #pragma once
 
 #include <cstdint>
@@ -14,12 +14,13 @@
 
 namespace scarp {
 
+/// The compute passes that build a pyramid.
 class PyramidPasses {
  public:
   explicit PyramidPasses(const Device& device);
 
-  /// Records the passes that make all entries over `changed` anew, finer levels first, with barriers before and
-  /// between. `ground` is the address of the field's GroundBuffers, `codes` that of the tables of float samples.
+  /// Records the passes that recompute all entries over `changed`, finer levels first, with barriers before and
+  /// between. `ground` is the address of the field's GroundBuffers, `codes` that of the tables for float samples.
   void record(Commands& commands, std::uint64_t ground, std::uint64_t codes, const HeightField& field,
               const CellBox& changed) const;
 

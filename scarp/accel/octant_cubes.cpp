@@ -8,7 +8,7 @@
 namespace scarp {
 namespace {
 
-// Along x.
+// Neighbours ahead along x.
 VoxelNearness::Sides ahead_of(int octant) { return {.lower = (octant & 1) != 0, .upper = (octant & 1) == 0}; }
 
 }  // namespace

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Octant cubes, row by row in vectors of bytes, where they are stored.
+// Builds octant cubes row by row, in place, in byte vectors.
 //
-//   along x   how far the next solid voxel of the same row is (voxel_nearness.h)
-//   along y   in each slab: the least of that and 1 + the row ahead, its voxel and the next one along x
-//   along z   the least of that and 1 + the slab ahead: its row, the row ahead of that, and the next voxels along x
+//   along x   distance to the next solid voxel of the same row (voxel_nearness.h)
+//   along y   in each slab: the minimum of that and 1 + the row ahead, its voxel and the next one along x
+//   along z   the minimum of that and 1 + the slab ahead: its row, the row ahead of that, and the next voxels along x
 //
-// That is exact: what the slab ahead tells changes by 1 from voxel to voxel at most, so nothing of it need go along x
+// This is exact: values of the slab ahead differ by at most 1 between adjacent voxels, so they need not spread along x
 // and y again. Octants that differ in z alone share all but the last step.
 #pragma once
 
@@ -16,12 +16,12 @@ namespace scarp {
 
 struct OctantRows {
   int octant;
-  bool and_opposite;             ///< also the octant that differs in z alone
-  const VoxelNearness* along_x;  ///< of the region, spread from the side that is ahead: lower voxels where bit 0 is set
+  bool and_opposite;             ///< also computes the octant that differs in z alone
+  const VoxelNearness* along_x;  ///< of the region, spread from the side ahead: lower voxels if bit 0 is set
 };
 
-/// Writes the sides of the voxels of `region`. Sides ahead of the region are known. `sides`: one grid above the other,
-/// by octant. Returns the largest side written.
+/// Writes the sides of the voxels of `region`; sides ahead of the region must be known. `sides` stacks one grid per
+/// octant along z. Returns the largest side written.
 int build_octants(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides);
 
 }  // namespace scarp

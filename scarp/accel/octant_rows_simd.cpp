@@ -6,12 +6,12 @@
 
 #include "scarp/accel/octant_rows.h"
 
-// This file is compiled once for each instruction set.
+// Compiled once per instruction set.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/accel/octant_rows_simd.cpp"
 #include "hwy/foreach_target.h"
-// foreach_target.h comes first.
+// foreach_target.h must come first.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,7 +28,7 @@ static_assert(N + 1 <= VoxelBytes::kReadBeyond, "vectors are read one voxel besi
 
 std::size_t to_size(int i) { return static_cast<std::size_t>(i); }
 
-// What is the same for all rows of a region, as an octant sees them along x.
+// State common to all rows of a region, as an octant sees them along x.
 class Row {
  public:
   Row(const VoxelBox& region, const ivec3& grid, bool down)
@@ -43,8 +43,8 @@ class Row {
       bytes_[2 * end_ + x] = static_cast<std::uint8_t>(std::min<std::size_t>(255, down ? x + 1 : size_ - x));
   }
 
-  bool whole() const { return size_ == end_; }  // of whole vectors
-  bool ends() const { return ends_; }           // at the grid's border
+  bool whole() const { return size_ == end_; }  // whether the row consists of whole vectors
+  bool ends() const { return ends_; }           // whether it ends at the grid's border
   std::ptrdiff_t next() const { return down_ ? -1 : 1; }
   std::ptrdiff_t ahead() const { return down_ ? -1 : static_cast<std::ptrdiff_t>(size_); }
 
@@ -52,7 +52,7 @@ class Row {
     std::size_t x, size;
     V in, edge, away;
   };
-  // Calls work for each vector of a row, first for what is ahead.
+  // Calls `work` for each vector of a row, starting with the one ahead.
   template <class Work>
   HWY_INLINE void for_each_block(const Work& work) const {
     for (std::size_t i = 0; i < end_; i += N) {
@@ -66,11 +66,11 @@ class Row {
  private:
   std::size_t size_, end_;
   bool down_, ends_;
-  // For each voxel: 255; 255 where the next one is outside of the grid; how far the one ahead of the row is away.
+  // For each voxel: 255; 255 if the next one is outside the grid; distance of the voxel ahead of the row.
   std::vector<std::uint8_t> bytes_;
 };
 
-// The less of each side and that of the next voxel; outside of the grid nothing is near.
+// Minimum of each side and that of the next voxel. Space outside the grid is empty.
 HWY_INLINE V least(const std::uint8_t* sides, std::ptrdiff_t next, V edge) {
   return hn::Min(hn::LoadU(d8, sides), hn::Or(hn::LoadU(d8, sides + next), edge));
 }
@@ -86,7 +86,7 @@ HWY_INLINE void store(V sides, std::size_t size, std::uint8_t* to) {
   }
 }
 
-// An octant's sides. Rows and slabs of the region are counted from what is ahead on; -1: ahead of the region.
+// Sides of one octant. Rows and slabs of the region count from the side ahead; -1 is ahead of the region.
 class Octant {
  public:
   Octant(int octant, const VoxelBox& region, VoxelBytes& sides) : octant_(octant), region_(region) {
@@ -99,9 +99,9 @@ class Octant {
 
   bool down(int axis) const { return octant_ >> axis & 1; }
   int count(int axis) const { return region_.high[axis] - region_.low[axis]; }
-  // Counted from the region's lowest one.
+  // Counted from the lowest one of the region.
   int from_low(int axis, int i) const { return place(axis, i) - region_.low[axis]; }
-  // Whether what is ahead of the region is in the grid.
+  // Whether the space ahead of the region is in the grid.
   bool known_ahead(int axis) const { return !begins_[axis]; }
   std::uint8_t* row(int y, int z) const { return first_ + y * to_next_row_ + z * to_next_slab_; }
   std::ptrdiff_t to_next_row() const { return to_next_row_; }
@@ -117,11 +117,11 @@ class Octant {
   std::array<bool, 3> begins_{};  // at the grid's border
 };
 
-// What has just been stored is not loaded across vectors at once, which would wait for it: so many slabs take turns.
+// Loads that straddle recent stores would stall, so this many slabs take turns.
 constexpr int kTogether = 8;
 
-// Each slab by itself. Stores of bytes might change anything: what loops need stands in variables of their own here and
-// below, or would be loaded again for each row.
+// Each slab by itself. Byte stores may alias anything: loop variables are local copies, here and below; otherwise they
+// would be reloaded for each row.
 template <bool kWhole>
 void along_y(const Octant& octant, const Row& rows, const VoxelNearness& along_x) {
   const V one = hn::Set(d8, 1), all = hn::Set(d8, 255);
@@ -150,7 +150,7 @@ void along_y(const Octant& octant, const Row& rows, const VoxelNearness& along_x
   }
 }
 
-// From slab to slab. `flat` has been along y. Returns the largest side.
+// From slab to slab. `flat` has been processed along y. Returns the largest side.
 template <bool kWhole>
 int along_z(const Octant& flat, const Octant& octant, const Row& rows) {
   const V one = hn::Set(d8, 1), all = hn::Set(d8, 255);

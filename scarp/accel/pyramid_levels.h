@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The levels of a pyramid over a height field's cells, wherever its entries lie.
+// Level layout of a pyramid over a height field's cells.
 #pragma once
 
 #include <cstddef>
@@ -9,24 +9,23 @@
 
 namespace scarp {
 
-/// Where a level begins, in entries from the begin of level 1, and its size; rows from north to south, no padding.
+/// Offset of a level in entries from the start of level 1, and its size; rows from north to south, no padding.
 struct PyramidLevel {
   std::ptrdiff_t begin;
   int cols;
   int rows;
 };
 
-/// Levels 1, 2, ... up to the first of one entry, each half of the one below, rounded up; none where there are no
-/// cells.
+/// Returns levels 1, 2, ... up to the first with one entry, each half the size of the finer one, rounded up; none
+/// without cells.
 std::vector<PyramidLevel> pyramid_levels(const HeightField& field);
 
-/// The entries of the next coarser level over some cells, or over some entries.
+/// Returns the entries of the next coarser level that cover a box of cells or entries.
 inline CellBox coarser(const CellBox& box) {
   return {box.col_begin / 2, box.row_begin / 2, (box.col_end + 1) / 2, (box.row_end + 1) / 2};
 }
 
-/// Boxes inside the field that hold the cells of one that begins at -1, beyond the seam of a field that wraps round:
-/// they are at the other side.
+/// Splits a box of a wrapped field that begins at -1, beyond the seam, into boxes within the field.
 std::vector<CellBox> parts_inside(const HeightField& field, const CellBox& box);
 
 }  // namespace scarp

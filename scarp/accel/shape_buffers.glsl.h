@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A distance field as it lies in a device's memory: the instructions of its program (field/distance_program.h), 32
-// bytes each, their numbers as floats, and where its grounds are. DeviceShape (march/shape/shape_queries_vk.h) makes
-// it; the interpreter of shaders (march/shape/shape_distance.glsl.h) reads it.
+// Layout of a distance field in device memory: the instructions of its program (field/distance_program.h), 32 bytes
+// each, its constants as floats, and its grounds. DeviceShape (march/shape/shape_queries_vk.h) writes it; the shader
+// interpreter (march/shape/shape_distance.glsl.h) reads it.
 #ifndef SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H
 #define SCARP_ACCEL_SHAPE_BUFFERS_GLSL_H
 
@@ -9,7 +9,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Of ScarpShapeInstruction::op, the values of DistanceOp.
+/// Values of ScarpShapeInstruction::op, equal to DistanceOp.
 const uint kScarpShapeTurn = 0u;
 const uint kScarpShapeFold = 1u;
 const uint kScarpShapeNeighbour = 2u;
@@ -34,30 +34,30 @@ const uint kScarpShapeRestBound = 20u;
 const uint kScarpShapeSkipFar = 21u;
 const uint kScarpShapeSkipCopy = 22u;
 
-/// Registers there are, of positions and of values; position 0 holds the position when the program begins, value 0 the
-/// result when it ends.
+/// Number of registers, for positions and for values. Position 0 holds the position at the start of the program, value
+/// 0 the result at its end.
 const int kScarpShapeRegisters = 32;
-/// In the place of infinity.
+/// Replaces infinity.
 const float kScarpEndless = 1.0e30f;
 
-/// DistanceInstruction without its material, which hosts look up in double.
+/// DistanceInstruction without its material, which the host evaluates in double.
 struct ScarpShapeInstruction {
   uint op;
   uint to;  ///< register written
   uint a;   ///< registers read
   uint b;
   uint mask;
-  uint number;  ///< where its constants begin
-  uint index;   ///< of grounds: functions first, fields behind them
+  uint number;  ///< index of its first constant
+  uint index;   ///< index of a ground: functions first, then fields
   uint none;
 };
 
-/// A ground among a shape's parts.
+/// A ground in a shape.
 struct ScarpShapeGround {
-  Address data;   ///< of a function its instructions, of a field its GroundBuffers
-  Address holes;  ///< GroundBuffers of the field whose holes it has
-  uint count;     ///< of a function: of its instructions
-  uint result;    ///< of a function: register
+  Address data;   ///< instructions of a function, or GroundBuffers of a field
+  Address holes;  ///< GroundBuffers of the field that defines the holes
+  uint count;     ///< number of instructions of a function
+  uint result;    ///< result register of a function
   uint has_holes;
   uint none;
 };

@@ -17,7 +17,7 @@ ShapeWords shape_words(const DistanceProgram& program) {
   const double endless{glsl::kScarpEndless};
   for (const double number : program.numbers)
     words.numbers.push_back(static_cast<float>(std::clamp(number, -endless, endless)));
-  // Solids are read with the numbers that the longest of them has.
+  // Shaders read as many constants for any solid as the longest one has.
   words.numbers.resize(words.numbers.size() + 8);
   return words;
 }
@@ -34,9 +34,9 @@ std::uint32_t shape_function_parts(const DistanceProgram& program) {
   return parts;
 }
 
-// The counts of doubles (distance_program.cpp), at 2^-24 instead of 2^-53, and half as many again: numbers are rounded
-// to floats, and roots and divisions of devices are right to 2.5 units. Functions have their own, which grow in steps:
-// the line over these.
+// The error counts for doubles (distance_program.cpp), at 2^-24 instead of 2^-53, times 1.5: constants are rounded to
+// floats, and roots and divisions of devices are accurate to 2.5 units. Functions have their own bounds, which grow in
+// steps; this is the line above them.
 ShapeSingleRounding::ShapeSingleRounding(const DistanceField& shape) {
   const DistanceProgram& program = shape.program();
   at_origin_ = 0x1.8p29 * program.rounding;
@@ -49,7 +49,7 @@ ShapeSingleRounding::ShapeSingleRounding(const DistanceField& shape) {
     const double away = program.function_away[in.index];
     const double least = factor * heights.at(away / scale);
     at_origin = std::max(at_origin, least);
-    // A step at 2^i metres of the function's own is met from `begin` metres of the shape's on.
+    // A step at 2^i metres of the function starts at `begin` metres of the shape.
     for (double reach = 1; reach < kFunctionReach; reach *= 2) {
       const double begin = reach * scale - away;
       if (begin > 0) per_metre = std::max(per_metre, (factor * heights.at(2 * reach) - least) / begin);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A distance field as shaders interpret it, and what their values are off by.
+// Encodes distance fields for shaders and bounds the error of values computed there.
 #pragma once
 
 #include <cstdint>
@@ -10,19 +10,20 @@
 
 namespace scarp {
 
+/// Instructions and constants of a shape for shaders.
 struct ShapeWords {
   std::vector<glsl::ScarpShapeInstruction> code;
   std::vector<float> numbers;
 };
 
 ShapeWords shape_words(const DistanceProgram& program);
-/// What is in it: 1 << op.
+/// Returns the operations in a program as bits: 1 << op.
 std::uint32_t shape_parts(const DistanceProgram& program);
-/// What its grounds that are functions have, as function_parts().
+/// Returns the contents of its function grounds, as function_parts() does.
 std::uint32_t shape_function_parts(const DistanceProgram& program);
 
-/// What values as shaders compute them are off by, metres: so much at the origin, and so much more per metre that the
-/// position is away from it. Throws Error for a function whose numbers do not fit into floats.
+/// Error bound of values as computed by shaders, in metres: a value at the origin, plus a rate per metre of distance
+/// from it. Throws Error if a constant of a function does not fit in single precision.
 class ShapeSingleRounding {
  public:
   explicit ShapeSingleRounding(const DistanceField& shape);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A height field as a solid among shapes.
+// Turns a height field into a solid for distance fields.
 #pragma once
 
 #include <memory>
@@ -8,9 +8,9 @@
 
 namespace scarp {
 
-/// What make_shape() takes: the field with its slope bound. Of a field with holes a copy is made whose holes are
-/// filled, and the field itself says where they are (field/ground_holes.h); it may not be edited then. Throws Error for
-/// a field that is missing, or nodata all over.
+/// Returns the argument for make_shape(): the field with its slope bound. If the field has holes, copies it with the
+/// holes filled, and uses the original for their positions (field/ground_holes.h); it must not be edited then. Throws
+/// Error if the field is null or all nodata.
 shape::FieldGround solid_ground(std::shared_ptr<const HeightField> field);
 
 }  // namespace scarp

@@ -8,12 +8,12 @@
 #include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/sphere_rows.h"
 
-// This file is compiled once for each instruction set.
+// Compiled once per instruction set.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/accel/sphere_rows_simd.cpp"
 #include "hwy/foreach_target.h"
-// foreach_target.h comes first.
+// foreach_target.h must come first.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -32,15 +32,15 @@ constexpr std::size_t N = hn::MaxLanes(d16);
 using V = hn::Vec<decltype(d16)>;
 
 constexpr int kShortBits = 16;
-constexpr int kReach = EmptySpheres::kFarthest + 1;  // whose square is the largest of 16 bits
+constexpr int kReach = EmptySpheres::kFarthest + 1;  // its square is the largest in 16 bits
 
 std::size_t to_size(int i) { return static_cast<std::size_t>(i); }
 
-// Squares in rows, or in slabs of rows, one after the other.
+// Squares in rows, or in slabs of rows, consecutive.
 struct Lines {
   std::vector<std::uint16_t> squares;
   std::size_t stride;
-  int low, high = -1;  // the first and the last line that hold anything
+  int low, high = -1;  // first and last line that are not empty
 
   Lines(std::size_t each, int count) : squares(each * to_size(count)), stride(each), low(count) {}
   std::uint16_t* line(int i) { return squares.data() + stride * to_size(i); }
@@ -52,7 +52,7 @@ struct Lines {
   bool empty() const { return low > high; }
 };
 
-// The least of all lines, of which one holds something, as seen from line `place`.
+// Minimum over all lines, at least one of them not empty, as seen from line `place`.
 HWY_INLINE V least(const Lines& lines, int place, std::size_t at) {
   V found = hn::Set(d16, 65535);
   int away = 1;
@@ -67,7 +67,7 @@ HWY_INLINE V least(const Lines& lines, int place, std::size_t at) {
   for (; away <= end; ++away) {
     const V square = hn::Set(d16, static_cast<std::uint16_t>(away * away));
     if (hn::AllTrue(d16, hn::Eq(hn::Max(found, square), square))) break;
-    // A line that is nearer than `away`, one of the ends time and again, is told too far: no harm is done.
+    // A line nearer than `away` (an end line, repeated) counts as too far, which is harmless.
     const V nearest =
         hn::Min(lines.load(std::max(place - away, lines.low), at), lines.load(std::min(place + away, lines.high), at));
     found = hn::Min(found, hn::SaturatedAdd(nearest, square));
@@ -80,8 +80,8 @@ HWY_INLINE V roots(V squares) {
   return hn::Set(d16, static_cast<std::uint16_t>(std::sqrt(static_cast<float>(hn::GetLane(squares)))));
 }
 #else
-// Rounded down, in the lowest bits. To the root of half more, which is no whole number and a half, 2^23 - 1/2 is added:
-// floats have no smaller steps than 1 there, and the sum goes to the nearest.
+// Root rounded down, in the lowest bits. Adds 2^23 - 1/2 to the root of the square plus one half, which is never an
+// integer plus one half: floats there have steps of 1, and the sum rounds to nearest.
 HWY_INLINE hn::Vec<decltype(di)> root_bits(hn::Vec<decltype(di)> squares) {
   const auto root = hn::Sqrt(hn::Add(hn::ConvertTo(df, squares), hn::Set(df, 0.5f)));
   return hn::BitCast(di, hn::Add(root, hn::Set(df, 0x1p23f - 0.5f)));
@@ -103,7 +103,7 @@ int build(const VoxelNearness& along_x, const VoxelBox& window, const VoxelBox& 
   for (std::size_t x = 0; x < end; ++x) in_row[x] = 65535;
 
   Lines rows(stride, outer.y), slabs(stride * to_size(inner.y), outer.z);
-  // Of a slab and both beside it the nearest, row by row, between two rows in which nothing is in sight.
+  // Nearest within a slab and both adjacent ones, row by row, between two rows where nothing is in range.
   std::vector<std::uint8_t> nearest_of_3(stride * to_size(outer.y + 2));
   for (int z = 0; z < outer.z; ++z) {
     const int below = std::max(z - 1, 0), above = std::min(z + 1, outer.z - 1);
@@ -120,7 +120,7 @@ int build(const VoxelNearness& along_x, const VoxelBox& window, const VoxelBox& 
       for (std::size_t x = 0; x < end; x += N) {
         const auto row = [&](int i) { return hn::LoadU(d16_bytes, nearest_of_3.data() + stride * to_size(i) + x); };
         const auto nearest = hn::Max(row(y), hn::Max(row(y + 1), row(y + 2)));
-        // Boxes are grown by one along x, too; what is out of sight, 0, stays there.
+        // Boxes are dilated by one along x, too; out of range, 0, stays 0.
         const V in = hn::LoadU(d16, in_row.data() + x), near = hn::And(hn::PromoteTo(d16, nearest), in);
         const V away =
             hn::IfThenElse(hn::Eq(near, hn::Zero(d16)), hn::Set(d16, 255), hn::SaturatedSub(hn::Set(d16, 254), near));

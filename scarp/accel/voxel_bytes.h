@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A byte per voxel: what accelerators of voxel grids store.
+// One byte per voxel: storage of voxel accelerators.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,13 @@
 
 namespace scarp {
 
-/// Accelerators with bytes per voxel are built for grids up to this side.
+/// Maximum grid side for accelerators with bytes per voxel.
 constexpr int kMaxAcceleratedSide = 512;
 
-/// Throws Error naming `what` when the grid is larger.
+/// Throws Error naming `what` if the grid is larger.
 void require_accelerable(const VoxelGrid& grid, std::string_view what);
 
-/// x fastest.
+/// Bytes of a grid, x fastest.
 class VoxelBytes {
  public:
   VoxelBytes(const ivec3& size, std::uint8_t value)
@@ -38,7 +38,7 @@ class VoxelBytes {
 
   const ivec3& size() const { return size_; }
   VoxelBox box() const { return {ivec3(0), size_}; }
-  /// The first voxel's; so many bytes before it and beyond the last one's may be read, as vectors do.
+  /// First voxel. kReadBeyond bytes before it and after the last one are readable, for vector code.
   const std::uint8_t* data() const { return bytes_.data() + kReadBeyond; }
   static constexpr std::size_t kReadBeyond = 64;
   std::size_t bytes() const { return bytes_.size(); }

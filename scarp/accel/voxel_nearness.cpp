@@ -8,7 +8,7 @@
 namespace scarp {
 namespace {
 
-// Four bytes, 255 where the bit is set.
+// Four bytes, 255 for each set bit.
 constexpr std::array<std::uint32_t, 16> make_bytes_of() {
   std::array<std::uint32_t, 16> bytes{};
   for (unsigned bits = 0; bits < 16; ++bits) {
@@ -26,14 +26,14 @@ VoxelNearness::VoxelNearness(const VoxelGrid& grid, const VoxelBox& window)
       used_((static_cast<std::size_t>(size_.x) + kBlock - 1) / kBlock * kBlock),
       stride_(used_ + 2 * kMargin),
       bytes_(stride_ * static_cast<std::size_t>(size_.y) * static_cast<std::size_t>(size_.z) + kBlock) {
-  // Brick by brick; what of them lies outside of the window along x is cleared afterwards.
+  // Brick by brick; bits outside the window along x are cleared afterwards.
   const VoxelBox bricks = {window.low >> 2, (window.high + 3) >> 2}, inner = {(window.low + 3) >> 2, window.high >> 2};
   const std::size_t to_next_row = stride_, to_next_slab = stride_ * static_cast<std::size_t>(size_.y);
   for_each_voxel(bricks, [&](const ivec3& brick) {
     const std::uint64_t mask = grid.masks()[grid.brick_index(brick)];
     if (mask == 0) return;
     const ivec3 at = 4 * brick - window.low;
-    // Most are whole; what their stores might change is not loaded again.
+    // Most bricks are whole. Separated so that values which stores might alias are not reloaded.
     if (inner.contains(brick)) {
       std::uint8_t* to = row(at.y, at.z) + at.x;
       for (std::uint64_t bits = mask, left = 4; left > 0; --left, bits >>= 16, to += to_next_slab) {

@@ -4,12 +4,12 @@
 
 #include "scarp/accel/voxel_nearness.h"
 
-// This file is compiled once for each instruction set.
+// Compiled once per instruction set.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/accel/voxel_nearness_simd.cpp"
 #include "hwy/foreach_target.h"
-// foreach_target.h comes first.
+// foreach_target.h must come first.
 #include "hwy/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,17 +23,16 @@ constexpr hn::CappedTag<std::uint8_t, VoxelNearness::kBlock> d8;
 constexpr std::size_t N = hn::MaxLanes(d8);
 using V = hn::Vec<decltype(d8)>;
 
-constexpr std::size_t kFarthest = 255;  // steps that count
+constexpr std::size_t kFarthest = 255;  // maximum number of steps
 
-// Each number, or what is greater of its neighbours in a row.
+// Maximum of each value and its neighbours in a row.
 HWY_INLINE V widened(const std::uint8_t* from) {
   return hn::Max(hn::LoadU(d8, from), hn::Max(hn::LoadU(d8, from - 1), hn::LoadU(d8, from + 1)));
 }
 
-// What has just been stored is not loaded across vectors at once, which would wait for it: slabs and columns of rows
-// take each step together.
+// Loads that straddle recent stores would stall, so slabs and columns of rows take each step together.
 
-// kOne: rows are of one vector.
+// kOne: each row is one vector.
 template <bool kLower, bool kUpper, bool kOne>
 HWY_INLINE void stride_by(std::size_t stride, const NearRows& rows, const std::uint8_t* HWY_RESTRICT from,
                           std::uint8_t* HWY_RESTRICT to) {
@@ -52,7 +51,7 @@ HWY_INLINE void stride_by(std::size_t stride, const NearRows& rows, const std::u
 template <bool kLower, bool kUpper, bool kOne>
 void rows_along_x(const NearRows& rows) {
   const std::size_t reach = std::min<std::size_t>(static_cast<std::size_t>(rows.size.x) - 1, kFarthest - 1);
-  // The rows of a slab, twice, each between bytes that stay 0.
+  // Rows of a slab, in two copies, between bytes that stay 0.
   const std::size_t wide = 2 * rows.used, count = static_cast<std::size_t>(rows.size.y);
   std::vector<std::uint8_t> slabs(2 * (wide * count + rows.used));
   std::uint8_t *here = slabs.data() + rows.used, *next = here + slabs.size() / 2;
@@ -68,7 +67,7 @@ void rows_along_x(const NearRows& rows) {
       }
     }
     if (hn::AllTrue(d8, hn::Eq(any, hn::Zero(d8)))) continue;
-    // After strides of 1, 2, ..., n all within 2 n - 1 steps is known.
+    // After strides of 1, 2, ..., n, everything within 2 n - 1 steps is known.
     for (std::size_t stride = 1; stride <= reach; stride *= 2) {
       stride_by<kLower, kUpper, kOne>(stride, rows, here, next);
       std::swap(here, next);
@@ -112,7 +111,7 @@ void along_y(const NearRows& rows) {
 
 void along_z(const NearRows& rows) {
   const V step = hn::Set(d8, 1);
-  // The rows of a slab, widened, between two that are 0.
+  // Rows of a slab, widened, between two rows of zeros.
   std::vector<std::uint8_t> slab(rows.used * (static_cast<std::size_t>(rows.size.y) + 2));
   const auto pass = [&](int from, int to) {
     for (int i = 0; i < rows.size.y; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The voxels of a grid as rows of bits along x: 64 at once.
+// Voxels of a grid as rows of bits along x, 64 per word.
 #pragma once
 
 #include <cstddef>
@@ -26,9 +26,9 @@ struct VoxelRows {
   }
   bool test(const ivec3& voxel) const { return row(voxel.y, voxel.z)[voxel.x / 64] >> (voxel.x % 64) & 1; }
 
-  /// Sets all voxels whose coordinates each differ by at most 1 from those of a set one.
+  /// Sets all voxels within Chebyshev distance 1 of a set one.
   void dilate();
-  /// Whether all voxels of the grid are set.
+  /// Returns whether all voxels of the grid are set.
   bool full() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one exception that leaves the library.
+// The exceptions that the library throws.
 #pragma once
 
 #include <stdexcept>
@@ -7,13 +7,13 @@
 
 namespace scarp {
 
-/// Thrown at the library's edge (files, arguments). The text is one line: what, where, what would be right.
+/// Base of all exceptions thrown by the library. The text is one line: `FILE: what is wrong (what to do)`.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown when a long task stops because its progress callback asked it to (Ctrl-C in the command line).
+/// Thrown when a progress callback stops a long task, as Ctrl-C does in the command line.
 class Interrupted : public Error {
  public:
   Interrupted() : Error("interrupted") {}

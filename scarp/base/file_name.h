@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// File name extensions in lower case.
 #pragma once
 
 #include <algorithm>
@@ -8,13 +9,13 @@
 
 namespace scarp {
 
-/// ASCII letters in lower case.
+/// Returns the text with ASCII letters in lower case.
 inline std::string lower_case(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
   return text;
 }
 
-/// The extension of a path in lower case: ".tif" of "a/B.TIF"; "" without one.
+/// Returns the extension of a path in lower case, with its dot: ".tif" for "a/B.TIF"; "" if there is none.
 inline std::string extension_of(const std::string& path) {
   return lower_case(std::filesystem::path(path).extension().string());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The 24 rotations that map a lattice of voxels onto itself: quarter turns, exact in whole numbers.
+// The 24 rotations that map a voxel lattice onto itself, exact in integers.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace scarp {
 
-/// Coordinate i of a turned vector is sign[i] * v[axis[i]]: row i of a matrix with one entry. `axis` is a permutation
-/// of 0, 1, 2; signs are 1 or -1.
+/// A signed permutation: component i of the rotated vector is sign[i] * v[axis[i]]. `axis` is a permutation of 0, 1, 2;
+/// signs are 1 or -1.
 struct LatticeRotation {
   std::array<int, 3> axis{0, 1, 2};
   std::array<int, 3> sign{1, 1, 1};
@@ -29,7 +29,7 @@ struct LatticeRotation {
     return back;
   }
 
-  /// 1 for rotations, -1 for mirrored ones.
+  /// Returns 1 for rotations, -1 for reflections.
   int determinant() const {
     const bool odd = (axis[0] > axis[1]) ^ (axis[0] > axis[2]) ^ (axis[1] > axis[2]);
     return (odd ? -1 : 1) * sign[0] * sign[1] * sign[2];
@@ -38,7 +38,7 @@ struct LatticeRotation {
   friend bool operator==(const LatticeRotation&, const LatticeRotation&) = default;
 };
 
-/// What b, and then a, does.
+/// Returns the composition that applies b first, then a.
 inline LatticeRotation operator*(const LatticeRotation& a, const LatticeRotation& b) {
   LatticeRotation both;
   for (int i = 0; i < 3; ++i) {
@@ -48,7 +48,7 @@ inline LatticeRotation operator*(const LatticeRotation& a, const LatticeRotation
   return both;
 }
 
-/// All 24, the identity first.
+/// Returns all 24 rotations, the identity first.
 inline std::array<LatticeRotation, 24> lattice_rotations() {
   constexpr std::array<std::array<int, 3>, 6> kPermutations = {
       {{0, 1, 2}, {0, 2, 1}, {1, 0, 2}, {1, 2, 0}, {2, 0, 1}, {2, 1, 0}}};

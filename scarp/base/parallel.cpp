@@ -20,9 +20,9 @@ namespace scarp {
 
 namespace {
 
-// The thread sanitizer cannot look into TBB's library and takes every hand-over of work for a race. Its builds compile
-// this file without it and are told here what TBB guarantees: what was written before the loop is seen by every piece,
-// and what the pieces wrote is seen after it. In other builds this does nothing.
+// The thread sanitizer cannot see into TBB and reports every hand-over of work as a race. Sanitizer builds compile this
+// file without instrumentation and annotate what TBB guarantees: pieces see what was written before the loop, and code
+// after the loop sees what pieces wrote. In other builds this does nothing.
 #ifdef SCARP_TSAN
 class HandOver {
  public:
@@ -47,7 +47,7 @@ struct HandOver {
 void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body,
                   const Progress& progress) {
   if (count <= 0) return;
-  // One piece: nobody else need be woken for it.
+  // A single piece runs here: no other thread need wake.
   if (count <= grain && !progress) return body(0, count);
   tbb::task_group_context context;
   std::atomic<std::int64_t> done{0};
@@ -57,8 +57,8 @@ void parallel_for(std::int64_t count, std::int64_t grain, const std::function<vo
     body(begin, end);
     if (!progress) return;
     done += end - begin;
-    // Whoever finds another thread reporting leaves it to that one: a report is never worth a wait. The share is read
-    // under the lock; read before it, an older one could follow a newer one.
+    // A thread that finds another one reporting skips its report instead of waiting. The fraction is read under the
+    // lock; otherwise an older value could follow a newer one.
     const std::unique_lock<std::mutex> lock(reporting, std::try_to_lock);
     if (lock && !progress(static_cast<double>(done) / static_cast<double>(count))) {
       stopped = true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Loops over many independent pieces of work, on all cores (oneTBB).
+// Parallel loops over independent work items (oneTBB).
 #pragma once
 
 #include <cstdint>
@@ -9,13 +9,13 @@
 
 namespace scarp {
 
-/// Calls body(begin, end) for pieces of [0, count) of at most `grain` (>= 1), in any order, on all threads that the
-/// process may use. Reports progress and throws Interrupted when it is asked to stop; lets the body's exceptions
-/// through.
+/// Calls body(begin, end) for disjoint pieces of [0, count), each of at most `grain` (>= 1) items, in any order and on
+/// all threads available to the process. Throws Interrupted if `progress` returns false; rethrows exceptions of the
+/// body.
 void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body,
                   const Progress& progress = {});
 
-/// Limits the threads of every later parallel_for while it lives; threads >= 1, or 0 for all.
+/// Limits the threads of every parallel_for that starts during its lifetime: threads >= 1, or 0 for all.
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

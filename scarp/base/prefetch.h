@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Memory that is asked for before it is written. The rows of a large array lie pages apart: no processor guesses the
-// next one, and each begins with a walk through the page tables.
+// Prefetching for writes. The rows of a large array lie pages apart: hardware prefetchers do not predict the next row,
+// and each row starts with a page-table walk.
 #pragma once
 
 namespace scarp {
 
-/// Asks for `count` values from `values` on; they need not exist.
+/// Prefetches `count` values for writing. The addresses need not be valid.
 template <class T>
 void prefetch_for_write(const T* values, int count) {
   constexpr int kPerLine = 64 / sizeof(T);

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Progress of a long task, and the way to stop it.
+// Progress of a long task, and a way to stop it.
 #pragma once
 
 #include <functional>
 
 namespace scarp {
 
-/// Called now and then with the share that is done, 0..1, from one thread at a time. It never falls; where a task has
-/// parts, such as the files of a scene, it begins anew with each. Returning false stops the task, which then throws
-/// Interrupted. An empty function means: no reports, no stop.
+/// Callback that receives the completed fraction, 0..1, from one thread at a time. The fraction never decreases, but
+/// starts again at 0 with each part of a task (each file of a scene). If the callback returns false, the task throws
+/// Interrupted. An empty function disables reports.
 using Progress = std::function<bool(double)>;
 
 }  // namespace scarp

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Output that is whole or not there: written beside its place, then renamed into it.
+// Atomic file output: writes a temporary file, then renames it.
 #pragma once
 
 #include <string>
 
 namespace scarp {
 
-/// Reserves a temporary name in the folder of `path`, with the same extension, so that writers which go by the name
-/// work. commit() moves it into place in one step, with the permissions of the file that it replaces; without commit()
-/// the destructor removes what was written.
+/// Reserves a temporary name in the folder of `path`, with the same extension for writers that choose a format by it.
+/// commit() renames it to `path`, with the permissions of the file that it replaces. Without commit() the destructor
+/// deletes the temporary file.
 class ReplaceFile {
  public:
-  /// Throws Error when `path` is empty, is a directory, or lies in a folder that does not exist or cannot be written.
+  /// Throws Error if `path` is empty, is a directory, or lies in a folder that does not exist or is not writable.
   explicit ReplaceFile(std::string path);
   ~ReplaceFile();
   ReplaceFile(const ReplaceFile&) = delete;
   ReplaceFile& operator=(const ReplaceFile&) = delete;
 
-  /// Where to write.
+  /// Path to write to.
   const std::string& temporary_path() const { return temporary_; }
-  /// Throws Error when the file cannot be moved into place.
+  /// Throws Error if the file cannot be renamed.
   void commit();
 
  private:
@@ -31,8 +31,8 @@ class ReplaceFile {
   friend void remove_temporary_files() noexcept;
 };
 
-/// Removes what is under all temporary names, for a program that ends at once, without destructors: it may be called in
-/// a handler of signals, whatever other threads do, and the program must end after it.
+/// Deletes all temporary files. For programs that end without running destructors: safe in a signal handler, whatever
+/// other threads do. The program must end after this call.
 void remove_temporary_files() noexcept;
 
 }  // namespace scarp

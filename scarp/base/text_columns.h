@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Columns of a table that pass through unread: names, remarks, keys of other tables.
+// Text columns that pass from an input table to an output table unchanged.
 #pragma once
 
 #include <cstddef>
@@ -8,10 +8,10 @@
 
 namespace scarp {
 
-/// Plain data: what a reader of tables does not know, a writer of tables may want to repeat.
+/// Columns that a table reader does not interpret and a table writer may repeat: names, remarks, keys of other tables.
 struct TextColumns {
   std::vector<std::string> names;  ///< one per column
-  std::vector<std::string> cells;  ///< row by row, names.size() each, without the quotes that a file may need
+  std::vector<std::string> cells;  ///< row-major, names.size() per row, unquoted
 
   const std::string& at(std::size_t row, std::size_t column) const { return cells[row * names.size() + column]; }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Vectors: GLM's, in double, and whole numbers for voxels, under the names that GLSL gives them.
+// GLM vectors and functions in namespace scarp: double precision, and integers for voxels, with their GLSL names.
 #pragma once
 
 #include <glm/geometric.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How the distances of single solids bend.
+// Curvature bounds of the distances of single solids.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,16 +11,16 @@ namespace {
 
 double sign_of(double x) { return x < 0 ? -1 : 1; }
 
-// A distance from a point, line or core that is `away`: it bends by 1 / away, or less where that is convex.
+// Distance to a point, line or core that is `away`: its curvature is at most 1 / away.
 double bend_of(double away, double r) { return away > r ? 1 / (away - r) : kCreased; }
 
-// Away from the z axis; any direction on it.
+// Direction away from the z axis; arbitrary on the axis.
 dvec3 from_axis(const dvec3& q, double distance) {
   return distance > 0 ? dvec3(q.x / distance, q.y / distance, 0) : dvec3(1, 0, 0);
 }
 
-// Of the corner where all of `a` are negative; `sign` and `axis` tell how each grows: a_i by 1 per metre along axis[i].
-// bend[i] is that of a_i itself.
+// The corner where all of `a` are negative; a_i grows by 1 per metre along `sign` times axis[i]. bend[i] is the
+// curvature of a_i itself.
 template <std::size_t N>
 Bent corner(const std::array<double, N>& a, const std::array<dvec3, N>& axis, const std::array<double, N>& bend,
             double r) {
@@ -28,7 +28,7 @@ Bent corner(const std::array<double, N>& a, const std::array<dvec3, N>& axis, co
   for (std::size_t i = 1; i < N; ++i) {
     if (a[i] > a[top]) top = i;
   }
-  // One face alone, in all of the ball: the others are behind their planes, and behind this one.
+  // A single face in the whole ball: the other planes are behind this one.
   bool alone = true;
   for (std::size_t i = 0; i < N; ++i) alone = alone && (i == top || (a[i] + r <= 0 && a[i] + r <= a[top] - r));
   if (alone) return {a[top], axis[top], bend[top]};
@@ -48,22 +48,22 @@ Bent bent_cone(const dvec3& q, const double* k, double r) {
   const double below = k[0], above = k[1], half = k[2], from_z = length2(q.x, q.y);
   const dvec3 outwards = from_axis(q, from_z);
   const double dr = below - above, side = std::hypot(dr, 2 * half);
-  // The side's normal is (2 half, dr) / side in the half plane of (radius, z); along it the side runs (dr, -2 half).
+  // The side's normal is (2 half, dr) / side in the half plane of (radius, z); the side runs along (dr, -2 half).
   const double normal_r = 2 * half / side, normal_z = dr / side;
   const double off = (from_z - above) * normal_r + (q.z - half) * normal_z;
-  const double along = (from_z - above) * normal_z - (q.z - half) * normal_r;  // 0 above to `side` below
+  const double along = (from_z - above) * normal_z - (q.z - half) * normal_r;  // 0 at the top to `side` at the bottom
   const double beyond = std::abs(q.z) - half;
   const double value = cone(q, k);
   const dvec3 side_normal = outwards * normal_r + dvec3(0, 0, normal_z);
   const dvec3 disc_normal(0, 0, sign_of(q.z));
-  // Faces alone in all of the ball.
+  // A single face in the whole ball.
   if (along - r >= 0 && along + r <= side && beyond + r <= off - r && (off - r >= 0 || beyond + r <= 0)) {
     return {value, side_normal, r > 0 ? bend_of(from_z, r) : 0};
   }
   const double rim = q.z < 0 ? below : above;
   if (from_z + r <= rim && std::abs(q.z) > r && off + r <= beyond - r) return {value, disc_normal, 0};
   if (value > 0) {
-    // To the nearest point, which is a rim's or a face's.
+    // To the nearest point, on a rim or a face.
     const double clamped = std::clamp(along, 0.0, side);
     const double side_r = from_z - (above + clamped * normal_z), side_z = q.z - (half - clamped * normal_r);
     const double disc_r = positive(from_z - rim);

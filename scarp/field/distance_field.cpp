@@ -15,10 +15,9 @@ using distance::BentMode;
 using distance::GradientMode;
 using distance::PointMode;
 
-// The gradient of something that changes by no more than 1 per metre, from the corners of a tetrahedron; of its
-// length nothing is known where there is a crease.
+// Gradient of a 1-Lipschitz function from the corners of a tetrahedron; its length is arbitrary at a crease.
 dvec3 from_differences(const DistanceField& field, const dvec3& p) {
-  constexpr double kStep = 0x1p-17;  // of the position: between the cube roots of rounding, 2^-53, and of 1
+  constexpr double kStep = 0x1p-17;  // relative step: between the cube roots of the rounding error, 2^-53, and of 1
   const double h = kStep * std::max({1.0, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
   dvec3 sum(0.0);
   for (const dvec3& corner : {dvec3(1, -1, -1), dvec3(-1, -1, 1), dvec3(-1, 1, -1), dvec3(1, 1, 1)}) {
@@ -57,7 +56,7 @@ dvec3 DistanceField::gradient(const dvec3& position) const {
 dvec3 DistanceField::normal(const dvec3& position) const {
   dvec3 g = distance::run(program_, GradientMode{FunctionUse::normal}, {position, kNoTurn}).value.gradient;
   if (!(length(g) > 0)) g = from_differences(*this, position);
-  // Where all directions are the same, up is as good as any.
+  // Where the gradient vanishes, any direction is valid; use up.
   return length(g) > 0 ? normalize(g) : dvec3(0, 0, 1);
 }
 
@@ -65,7 +64,7 @@ DistanceSegment DistanceField::along(const dvec3& origin, const dvec3& direction
                                      bool rates) const {
   const dvec3 p = origin + 0.5 * (t0 + t1) * direction, d = 0.5 * (t1 - t0) * direction;
   const double radius = length(d) * (1 + 0x1p-40);
-  // Once for the values in the middle, once for what is computed at other positions.
+  // Once for the values in the middle, once for values computed at other positions.
   const double rounding = 2 * this->rounding(length(p) + radius);
   const BentMode::Value v = distance::run(program_, BentMode{radius, rates}, {p, d}).value;
   return {v.f.mid, v.f.slope[0], v.f.rest + rounding, v.f.low - rounding, v.f.high + rounding, v.rate_low, v.rate_high};

@@ -16,7 +16,7 @@ dvec2 clamped_to(const HeightField& field, const dvec3& q) {
   return {std::clamp(q.x, 0.0, field.width()), std::clamp(q.y, 0.0, field.depth())};
 }
 
-// How far out of the field a position is, negative within.
+// Distance outside the field's border, negative inside.
 double beyond_border(const HeightField& field, const dvec3& q) {
   if (field.wraps()) return -std::numeric_limits<double>::infinity();
   return corner2(std::max(-q.x, q.x - field.width()), std::max(-q.y, q.y - field.depth()));
@@ -26,7 +26,7 @@ double beyond_border(const HeightField& field, const dvec3& q) {
 
 double field_ground_value(const HeightField& field, const HeightField* holes, const dvec3& q, double shrink) {
   const dvec2 at = clamped_to(field, q);
-  // The field has no holes, so there is a height.
+  // The field has no holes, so the height exists.
   const double value = std::max((q.z - field.height(at.x, at.y).value_or(0)) * shrink, beyond_border(field, q));
   return holes ? std::max(value, over_hole(*holes, at, 0).value) : value;
 }
@@ -54,7 +54,7 @@ FieldSlope field_slope(const HeightField& field, const dvec3& q, const dvec3& d,
   const HeightFieldSettings& settings = field.settings();
   const double x = field.wraps() ? q.x - std::floor(q.x / field.width()) * field.width() : q.x;
   const double y = field.wraps() ? q.y - std::floor(q.y / field.depth()) * field.depth() : q.y;
-  // A little wider than the segment, for the rounding of places.
+  // Slightly wider than the segment, for the rounding of positions.
   constexpr double kRoom = 0x1p-30;
   const double col_low = (x - std::abs(d.x)) / settings.cell_x - kRoom,
                col_high = (x + std::abs(d.x)) / settings.cell_x + kRoom;
@@ -159,13 +159,13 @@ BentMode::Value BentMode::rest_bound(const Value& a, const Position& p, const do
   double least = kCreased;
   for (int axis = 0; axis < 3; ++axis) {
     if (k[3 + axis] == 0) continue;
-    // Where the segment stays on one side of the copy's middle its neighbours were looked at.
+    // If the segment stays on one side of the copy's centre, its neighbours have been evaluated.
     const double off = std::abs(nearest_copy(p.p[axis], k, axis).off);
     if (mask && off >= radius && off + radius <= k[3 + axis]) continue;
     least = std::min(least, std::sqrt(rest_bound_along(p.p, k, axis)) - radius);
   }
   if (least >= a.f.high) return a;
-  // In the middle all that matters was looked at, if the shape is exact.
+  // At the middle everything relevant has been evaluated, if the shape is exact.
   const double lowest = std::min(a.f.low, least);
   return from_range(mask ? std::max(lowest, a.f.mid - a.f.rest - radius) : lowest, a.f.high);
 }
@@ -207,7 +207,7 @@ BentMode::Value BentMode::field_ground(const HeightField& field, const HeightFie
   const OverHole hole = over_hole(*holes, at, radius / scale);
   const double value = hole.value * scale;
   if (value + radius <= ground.f.low) return ground;
-  // Where the segment may be beside the field, the rim is that of where it is clamped to.
+  // Where the segment may be outside the field, the rim is that of the clamped position.
   const bool flat = hole.flat && at.x == q.x && at.y == q.y && beyond_border(field, q) * scale + radius < 0;
   const Value rim = from_bent({value, dvec3(hole.gradient, 0), flat ? 0 : kCreased}, p.d);
   return negative(minimum(negative(ground), negative(rim)));
@@ -217,7 +217,7 @@ BentMode::Value BentMode::field_without_holes(const HeightField& field, const do
   const double scale = k[3], shrink = k[4], factor = shrink * scale;
   const dvec3 q = (p.p - dvec3(k[0], k[1], k[2])) / scale, d = p.d / scale;
   const double value = field_ground_value(field, nullptr, q, shrink) * scale;
-  // By the walls alone, or over the ground alone; where they meet what is known of any distance.
+  // By the walls alone, or over the ground alone; where they meet, only the Lipschitz bound holds.
   if (!field.wraps()) {
     const double border = beyond_border(field, q) * scale;
     const dvec2 at = clamped_to(field, q);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The program of a shape with gradients, and over segments of a ray.
+// Evaluates the program of a shape with gradients, and over segments of a ray.
 //
-//   BentMode   a value is a line along the segment and how far the truth strays from it (function_taylor.h). A solid
-//              tells its value and gradient in the middle, and how strongly its distance bends anywhere in the ball
-//              around the segment: a distance to a convex core bends by 1 / (distance to the core), a flat face not.
-//              Where there is a crease in the ball all that is known is that values change by a metre per metre.
+//   BentMode   A value is a linear function along the segment and a bound of the deviation (function_taylor.h). A solid
+//              provides its value and gradient at the middle, and a bound of its curvature in the ball around the
+//              segment: a distance to a convex core has curvature 1 / (distance to the core), a flat face none. If
+//              there is a crease in the ball, the only bound is the Lipschitz constant 1.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,8 @@
 
 namespace scarp::distance {
 
-/// A distance within a ball: at its middle the value and the gradient, and the most that the second derivative can be
-/// in any direction anywhere in the ball; infinite where there may be a crease.
+/// A distance within a ball: value and gradient at its centre, and the maximum of the second derivative in any
+/// direction anywhere in the ball; infinite if there may be a crease.
 struct Bent {
   double value;
   dvec3 gradient;
@@ -26,24 +26,24 @@ struct Bent {
 
 inline constexpr double kCreased = std::numeric_limits<double>::infinity();
 
-/// Of a solid at q from its centre, in a ball of radius r.
+/// Returns the model of a solid at q from its centre, in a ball of radius r.
 Bent bent_solid(DistanceOp op, const dvec3& q, const double* k, double r);
-/// Of outside().
+/// Returns the model of outside().
 Bent bent_outside(const dvec3& p, const double* k, double r);
 
 /// Gradient of field_ground_value().
 dvec3 field_ground_gradient(const HeightField& field, const HeightField* holes, const dvec3& q, double shrink);
-/// A slope range: what field heights may do from -d to d around a place, as a rate per d.
+/// Slope range of field heights from -d to d around a position, as a rate per d.
 struct FieldSlope {
   double low, high;
 };
 FieldSlope field_slope(const HeightField& field, const dvec3& q, const dvec3& d, double slope);
 
-/// Values with gradients.
+/// Evaluates values with gradients.
 struct GradientMode {
   struct Position {
     dvec3 p;
-    Turn turn;  // rows: what of a direction of the world each axis here is
+    Turn turn;  // row i: axis i of this frame in world directions
   };
   struct Value {
     double value;
@@ -103,17 +103,17 @@ struct GradientMode {
   }
 };
 
-/// Values over the segment from p - d to p + d.
+/// Evaluates bounds over the segment from p - d to p + d.
 struct BentMode {
   struct Position {
     dvec3 p, d;
   };
   struct Value {
     function::Taylor<1> f;
-    double rate_low, rate_high;  // of the derivative by s, s from -1 to 1
+    double rate_low, rate_high;  // bounds of the derivative by s, s in [-1, 1]
   };
   double radius = 0;   // length of d, rounded up
-  bool rates = false;  // whether rates are asked for
+  bool rates = false;  // whether to compute rates
 
   void turn(const Position& p, const double* k, Position& out) const {
     PointMode<double>{}.turn(p.p, k, out.p);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs the program of a shape: once over positions (PointMode, here), with gradients and over segments of rays
-// (distance_local.h). A mode says what positions and values are and what the instructions do to them.
+// Interpreter for the program of a shape, over positions (PointMode, here), with gradients, or over segments of rays
+// (distance_local.h). A mode defines positions, values and the effect of each instruction.
 #pragma once
 
 #include <algorithm>
@@ -85,7 +85,7 @@ Result<typename Mode::Value> run(const DistanceProgram& program, const Mode& mod
       case DistanceOp::smooth_intersect:
       case DistanceOp::subtract:
       case DistanceOp::smooth_subtract: {
-        // max(a, b) = -min(-a, -b); to subtract is to intersect with all but b.
+        // max(a, b) = -min(-a, -b); subtraction intersects with the complement of b.
         const bool cut = in.op == DistanceOp::subtract || in.op == DistanceOp::smooth_subtract;
         const bool smooth = in.op == DistanceOp::smooth_intersect || in.op == DistanceOp::smooth_subtract;
         const auto a = mode.negative(v[in.a]), b = cut ? v[in.b] : mode.negative(v[in.b]);
@@ -112,15 +112,15 @@ Result<typename Mode::Value> run(const DistanceProgram& program, const Mode& mod
   return {v[0], material[0]};
 }
 
-/// Terrain functions end at their reach; beyond, the ground goes on as it is there.
+/// Clamps to the reach of terrain functions; the ground continues constant beyond it.
 inline dvec3 within_reach(const dvec3& q) {
   return {std::clamp(q.x, -kFunctionReach, kFunctionReach), std::clamp(q.y, -kFunctionReach, kFunctionReach), q.z};
 }
-/// Height over the ground of a field at a position in its frame, where x and y are clamped to it; with its walls.
-/// `holes` as in FieldGround.
+/// Scaled height above the ground of a field, including its walls, at a position in its frame, with x and y clamped to
+/// it. `holes` as in FieldGround.
 double field_ground_value(const HeightField& field, const HeightField* holes, const dvec3& q, double shrink);
 
-/// Positions and values as they are.
+/// Evaluates plain positions and values.
 template <class T>
 struct PointMode {
   using Position = Vec<T>;
@@ -175,7 +175,7 @@ struct PointMode {
   Value negative(Value a) const { return -a; }
   Value minimum(Value a, Value b) const { return std::min(a, b); }
   Value smooth_minimum(Value a, Value b, double radius) const { return distance::smooth_minimum(a, b, T(radius)); }
-  // Inside of the box the distance to it is negative and no more than the value.
+  // Inside the box the distance to it is negative and does not exceed the value.
   Value clamp(Value a, const Position& p, const double* k) const {
     const T away = outside(p, k);
     return away > 0 ? std::max(a, away) : a;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The distances of single solids, each about its own middle: k are the numbers of its instruction after the centre.
+// Distance functions of single solids about their centre; k are the constants after the centre.
 //
-// Signed and exact but for the ellipsoid, a bound: the norm |q / radii| changes by at most 1 / (the smallest radius)
-// per metre. Source of the formulas: elementary geometry; J. C. Hart, "Sphere tracing", 1996, appendix A; that of the
-// cone after I. Quilez, "Distance functions", 2008.
+// Signed and exact except for the ellipsoid, a bound: the norm |q / radii| changes by at most 1 / (smallest radius) per
+// metre. Sources: elementary geometry; J. C. Hart, "Sphere tracing", 1996, appendix A; the cone after I. Quilez,
+// "Distance functions", 2008.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ T positive(T a) {
   return std::max(a, T(0));
 }
 
-/// Of a position to the quarter or eighth of space where all coordinates are negative.
+/// Distance to the quadrant or octant where all coordinates are negative.
 template <class T>
 T corner2(T x, T y) {
   return length2(positive(x), positive(y)) + std::min(std::max(x, y), T(0));
@@ -67,7 +67,7 @@ template <class T>
 T cone(const Vec<T>& q, const double* k) {
   const T below = T(k[0]), above = T(k[1]), half = T(k[2]);
   const T r = length2(q.x, q.y), beyond = std::abs(q.z) - half;
-  // To the nearer disc, and to the side: from its upper end `along` of the way down.
+  // To the nearer disc, and to the side, `along` of the way down from its upper end.
   const T disc = length2(positive(r - (q.z < 0 ? below : above)), beyond);
   const T dr = below - above, dz = -2 * half;
   const T along = std::clamp(((r - above) * dr + (q.z - half) * dz) / (dr * dr + dz * dz), T(0), T(1));
@@ -84,14 +84,14 @@ T ellipsoid(const Vec<T>& q, const double* k) {
   return (length3(q.x / T(k[0]), q.y / T(k[1]), q.z / T(k[2])) - 1) * T(k[3]);
 }
 
-/// Of a position to a box, 0 within it; k: low, high.
+/// Distance to a box, 0 inside; k: low, high.
 template <class T>
 T outside(const Vec<T>& p, const double* k) {
   return length3(positive(std::max(T(k[0]) - p.x, p.x - T(k[3]))), positive(std::max(T(k[1]) - p.y, p.y - T(k[4]))),
                  positive(std::max(T(k[2]) - p.z, p.z - T(k[5]))));
 }
 
-/// The share of a in the smooth minimum, which is lower than both by radius / 4 at most.
+/// Weight of a in the smooth minimum, which is lower than both by at most radius / 4.
 template <class T>
 T smooth_share(T a, T b, T radius) {
   return std::clamp(T(0.5) + T(0.5) * (b - a) / radius, T(0), T(1));
@@ -102,7 +102,7 @@ T smooth_minimum(T a, T b, T radius) {
   return b + t * (a - b) - radius * t * (1 - t);
 }
 
-/// Which copy along an axis is the nearest, and how far from its middle a position is; k: the 12 numbers of copies.
+/// Index of the nearest copy along an axis, and the offset from its centre; k: the 12 numbers of copies.
 template <class T>
 struct Copy {
   T number, off;
@@ -115,7 +115,7 @@ Copy<T> nearest_copy(T p, const double* k, int axis) {
   if (count > 0) number = std::clamp(number, -count, count);
   return {number, away - number * period};
 }
-/// Whether there is a copy next to the nearest one on the side where the position is.
+/// Whether the nearest copy has a neighbour on the position's side.
 template <class T>
 bool has_neighbour(const Copy<T>& copy, const double* k, int axis) {
   const T count = T(k[6 + axis]);
@@ -138,7 +138,7 @@ Vec<T> folded_next(const Vec<T>& p, const double* k, int mask) {
   }
   return q;
 }
-/// Least distance of a position to the neighbour along the axes of `mask`; infinite where there is none.
+/// Lower bound of the distance to the adjacent copy along the axes of `mask`; infinite if there is none.
 template <class T>
 T neighbour_bound(const Vec<T>& p, const double* k, int mask) {
   T sum = 0;
@@ -154,7 +154,7 @@ T neighbour_bound(const Vec<T>& p, const double* k, int mask) {
   }
   return std::sqrt(sum);
 }
-/// Least distance of a position to all copies along an axis but the nearest and its neighbour; squared.
+/// Lower bound of the squared distance to all copies along an axis except the nearest and its neighbour.
 template <class T>
 T rest_bound_along(const Vec<T>& p, const double* k, int axis) {
   T sum = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Turns of space, as rows of a matrix.
+// Rotations as rows of a matrix.
 #pragma once
 
 #include <array>
@@ -14,11 +14,11 @@ using Turn = std::array<dvec3, 3>;
 inline constexpr Turn kNoTurn{dvec3{1, 0, 0}, dvec3{0, 1, 0}, dvec3{0, 0, 1}};
 
 inline dvec3 turned(const Turn& m, const dvec3& p) { return {dot(m[0], p), dot(m[1], p), dot(m[2], p)}; }
-/// The turn back, which for turns is the transpose.
+/// Inverse rotation: the transpose.
 inline Turn back(const Turn& m) {
   return {dvec3{m[0].x, m[1].x, m[2].x}, dvec3{m[0].y, m[1].y, m[2].y}, dvec3{m[0].z, m[1].z, m[2].z}};
 }
-/// First b, then a.
+/// Composition: b first, then a.
 inline Turn after(const Turn& a, const Turn& b) {
   const Turn columns = back(b);
   Turn m;
@@ -27,10 +27,10 @@ inline Turn after(const Turn& a, const Turn& b) {
   }
   return m;
 }
-/// Counter-clockwise as seen from the axis' end (Rodrigues' formula). Quarter turns about the axes are exact.
+/// Counter-clockwise rotation seen from the axis' end (Rodrigues' formula). Quarter turns about the axes are exact.
 inline Turn turn_about(const dvec3& axis, double angle) {
   const dvec3 n = normalize(axis);
-  // cos(pi / 2) in doubles is 6e-17, and so on: below 2^-50 it is a quarter turn that was meant.
+  // cos(pi / 2) is 6e-17 in double: values below 2^-50 are meant as quarter turns.
   const auto snapped = [](double x) {
     return std::abs(x) < 0x1p-50 ? 0.0 : std::abs(x) > 1 - 0x1p-50 ? std::copysign(1.0, x) : x;
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The instructions of a terrain function on a number with its M derivatives (forward differentiation): analytic
-// gradients over plain numbers, bounds of slopes over Taylor models.
+// Terrain function instructions on a number with M derivatives (forward differentiation): analytic gradients over plain
+// numbers, slope bounds over Taylor models.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct Jet {
   std::array<T, M> d{};
 };
 
-/// Whether the smaller of a and b is known to be a, or b; over a segment it may be either.
+/// Which of a and b is known to be smaller; over a segment it may be either.
 enum class Order { first, second, either };
 inline Order order_of(double a, double b) { return a <= b ? Order::first : Order::second; }
 template <std::size_t N>

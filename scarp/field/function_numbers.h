@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The instructions of a terrain function on plain numbers: what heights are.
+// Terrain function instructions on plain numbers: defines heights.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ inline double minimum(double a, double b) { return std::min(a, b); }
 inline double maximum(double a, double b) { return std::max(a, b); }
 inline double reciprocal(double a) { return 1 / a; }
 
-/// The share of a in the smooth minimum.
+/// Weight of a in the smooth minimum.
 inline double smooth_share(double a, double b, double radius) { return clamp(0.5 + 0.5 * (b - a) / radius, 0, 1); }
 inline double smooth_minimum(double a, double b, double radius) {
   const double t = smooth_share(a, b, radius);
@@ -30,7 +30,7 @@ inline double smooth_minimum(double a, double b, double radius) {
 
 inline double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 inline double fade_slope(double t) { return 30 * (t * t) * ((t - 1) * (t - 1)); }
-inline constexpr double kSteepestFade = 1.875;  // at 1/2
+inline constexpr double kSteepestFade = 1.875;  // maximum slope of the fade, at 1/2
 
 inline double terrace_phase(double a, double step, double rise, double& floor) {
   const double steps = a / step;
@@ -47,7 +47,7 @@ inline double terrace_slope(double a, double step, double rise) {
   return fade_slope(terrace_phase(a, step, rise, floor)) / rise;
 }
 
-/// How far into the mask a distance from its centre is: 0 at and beyond the outer radius, 1 at and within the inner.
+/// Phase of the mask at a distance from its centre: 0 from the outer radius on, 1 within the inner.
 inline double radial_phase(double distance, double inner, double outer) {
   return clamp((outer - distance) / (outer - inner), 0, 1);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Runs the program of a terrain function over one kind of number: doubles, Taylor models, or either with derivatives.
+// Interpreter for the program of a terrain function over doubles or Taylor models, either with derivatives or without.
 #pragma once
 
 #include "scarp/field/function_jet.h"

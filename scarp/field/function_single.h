@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What single precision makes of a terrain function: how far the height that a shader computes
-// (march/function/function_heights.glsl.h) may be from the true one, over a square of positions, and how far apart the
-// bounds of a segment stay however short it is (march/function/function_bounds.glsl.h).
+// Single-precision error bounds of a terrain function over a square of positions: for heights computed by shaders
+// (march/function/function_heights.glsl.h), and for the remaining width of segment bounds as segments shrink
+// (march/function/function_bounds.glsl.h).
 //
-// A number of the program is followed as the range of its true values and the most that its computed value is off. Two
-// floats are right to kPair of what goes into an operation, twice what scarp_two_combine() promises; what is computed
-// in floats, noise above all, adds its own count (doc/dev/numerics.md, "Functions in single precision").
+// Each number of the program is tracked as the range of its true values and a bound of its error. Pairs of floats are
+// accurate to kPair of an operation's operands, twice the bound of scarp_two_combine(); single floats, mainly in noise,
+// add their own error (doc/dev/numerics.md, "Functions in single precision").
 #pragma once
 
 #include <algorithm>
@@ -16,19 +16,19 @@
 namespace scarp::function {
 
 inline constexpr double kFloat = 0x1p-24, kPair = 0x1p-43;
-/// Numbers above this are too near to where floats end.
+/// Maximum magnitude of numbers, clear of float overflow.
 inline constexpr double kMostSingle = 0x1p60;
 
-/// By which bounds of ranges are widened, kScarpSlack of march/function/function_bounds.glsl.h.
+/// Widening of range bounds: kScarpSlack of march/function/function_bounds.glsl.h.
 inline constexpr double kRangeSlack = 0x1p-20;
 
 struct Single {
-  double low = 0, high = 0;  ///< of the true values
-  double error = 0;          ///< of heights, and of bounds over segments that shrink to a point, at most
-  double range = 0;          ///< the same of the ranges that bounds tell
-  bool fits = true;          ///< in floats
-  double root = -1;          ///< of a square: the error of what was squared, else negative
-  double inverse = -1;       ///< of 1 + squares: the error of its reciprocal, else negative
+  double low = 0, high = 0;  ///< range of the true values
+  double error = 0;          ///< error bound of heights, and of bounds over segments that shrink to a point
+  double range = 0;          ///< error bound of range results
+  bool fits = true;          ///< whether the values fit in floats
+  double root = -1;          ///< for squares: error of the squared value, otherwise negative
+  double inverse = -1;       ///< for 1 + squares: error of the reciprocal, otherwise negative
 
   double most() const { return std::max(std::abs(low), std::abs(high)) + error; }
 };
@@ -37,7 +37,7 @@ inline Single single_of(double low, double high, double error, double range, boo
   return {low, high, error, std::max(error, range),
           fits && low > -kMostSingle && high < kMostSingle && error < kMostSingle};
 }
-/// Of an instruction that bounds go through by their ranges, at least in places.
+/// Result of an instruction that bounds evaluate by ranges, at least in places.
 inline Single by_range(double low, double high, double error, double range, bool fits) {
   return single_of(low, high, std::max(error, range), range, fits);
 }
@@ -51,7 +51,7 @@ inline Single combine(double k0, const Single& a, double k1, const Single& b, do
   Single out = single_of(std::min(p, q) + std::min(r, s) + k2, std::max(p, q) + std::max(r, s) + k2,
                          ka * a.error + kb * b.error + kPair * size, ka * a.range + kb * b.range + kRangeSlack * size,
                          a.fits && b.fits);
-  // 1 / (1 + k x^2) changes by at most 3 sqrt(3) / 8 sqrt(k) per x.
+  // 1 / (1 + k x^2) changes by at most 3 sqrt(3) / 8 sqrt(k) per unit of x.
   if (a.root >= 0 && b.root >= 0 && k0 >= 0 && k1 >= 0 && k2 == 1)
     out.inverse = 0.65 * (std::sqrt(k0) * a.root + std::sqrt(k1) * b.root);
   return out;
@@ -88,19 +88,19 @@ inline Single maximum(const Single& a, const Single& b) {
   return by_range(std::max(a.low, b.low), std::max(a.high, b.high), std::max(a.error, b.error),
                   a.range + b.range + kRangeSlack * (a.most() + b.most()), a.fits && b.fits);
 }
-/// Its share of a is right to 4 units within the radius, exact beyond, and matters least where it is not 0 or 1.
+/// The weight of a is accurate to 4 units within the radius, exact beyond, and matters least near 0 and 1.
 inline Single smooth_minimum(const Single& a, const Single& b, double radius) {
   const double size = a.most() + b.most() + radius;
   return single_of(std::min(a.low, b.low) - 0.25 * radius, std::min(a.high, b.high),
                    std::max(a.error, b.error) + 2 * kRangeSlack * size,
                    std::max(a.range, b.range) + 2 * kRangeSlack * size, a.fits && b.fits);
 }
-/// The true a is at least 1, the computed one 1 plus what is not negative.
+/// The true a is at least 1; the computed one is 1 plus a non-negative value.
 inline Single reciprocal(const Single& a) {
   const double error = a.inverse >= 0 ? a.inverse : 2 * a.error;
   return single_of(0, 1, std::min(1.0, error) + kRangeSlack, std::min(1.0, 2 * a.range) + kRangeSlack, a.fits);
 }
-/// `step` * (whole + fade): the fade of a phase that is right to 6 units over `rise`.
+/// `step` * (whole + fade): the fade of a phase accurate to 6 units over `rise`.
 inline Single terrace(const Single& a, double step, double rise) {
   const double steepest = kSteepestFade / rise, slack = kRangeSlack * (a.most() + step) * (1 + steepest);
   return by_range(a.low - step, a.high + step, steepest * a.error + slack, steepest * a.range + slack, a.fits);
@@ -112,7 +112,7 @@ inline Single radial(const Single& x, const Single& y, const FunctionInstruction
                   x.fits && y.fits);
 }
 
-/// What noise as computed is off by where its place is exact: kScarpNoiseBound of march/function/noise.glsl.h.
+/// Error of computed noise at an exact position: scarp_noise_bound() of march/function/noise.glsl.h.
 inline double noise_off(NoiseKind kind) {
   return kind == NoiseKind::simplex ? 0x1p-15 : kind == NoiseKind::perlin ? 0x1p-17 : 0x1p-18;
 }
@@ -137,7 +137,7 @@ inline Single noise_value(const FunctionInstruction& in, const Single& a, const 
   return n;
 }
 
-/// Heights over positions at most `reach` metres from the origin along each axis.
+/// Heights at positions up to `reach` metres from the origin along each axis.
 inline Single single_height(const FunctionProgram& program, double reach) {
   const Single place = single_of(-reach, reach, kPair * reach, kRangeSlack * reach, true);
   return run(program, place, place);

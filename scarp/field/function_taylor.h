@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The instructions of a terrain function on Taylor models: a straight line (or plane) over a segment (or rectangle) and
-// how far the function strays from it. This is what certified bounds are made of.
+// Terrain function instructions on Taylor models: a linear function over a segment (or rectangle) and a bound of the
+// deviation. Certified bounds are computed with these.
 //
 //        ___high____________________            over s in [-1, 1]^N the true function is
 //              ___---  mid + slope s + rest       within rest of mid + slope . s,
 //        __---    .  .  mid + slope s             and between low and high;
-//          ___---  . .  mid + slope s - rest      what doubles make of it at any point there
-//        _low_______________________              is within `error` of the true value
+//          ___---  . .  mid + slope s - rest      values computed in double at any point
+//        _low_______________________              are within `error` of the true value
 //
-// Rounding of the bounds themselves: every operation widens its results by kSlack times the magnitudes that went into
-// it, twice what fewer than 8 roundings of 2^-53 can do. Noise is bounded by its value and gradient at the middle and
-// by bound_of() (noise.h), to second order where the segment is short against the lattice, by its range where it is
-// not, and then without looking at the lattice at all.
+// Rounding of the bounds themselves: every operation widens its results by kSlack times the magnitude of its operands,
+// twice the effect of fewer than 8 roundings of 2^-53. Noise is bounded by its value and gradient at the middle and by
+// bound_of() (noise.h), to second order if the segment is short relative to the lattice; otherwise by its range,
+// without evaluating the lattice.
 //
 // Source: K. Makino, M. Berz, "Taylor models and other validated functional inclusion methods", 2003; the local bound
 // on a segment of the ray as in E. Galin et al., "Segment tracing using local Lipschitz bounds", Eurographics 2020.
@@ -44,7 +44,7 @@ struct Taylor {
   double most() const { return std::max(std::abs(low), std::abs(high)) + error; }
 };
 
-/// low and high also from the line, and the line from low and high where it says less.
+/// Intersects low and high with the range of the linear model, and flattens the model if the range is tighter.
 template <std::size_t N>
 inline void settle(Taylor<N>& t) {
   const double reach = t.reach(), slack = kSlack * (std::abs(t.mid) + reach);
@@ -58,7 +58,7 @@ inline void settle(Taylor<N>& t) {
   }
 }
 
-/// All that is known is a range. `low` and `high` must already be outside of what rounding can do.
+/// A model that knows only a range. `low` and `high` must already include rounding errors.
 template <std::size_t N>
 Taylor<N> from_range(double low, double high, double error) {
   Taylor<N> t;
@@ -90,7 +90,7 @@ Taylor<N> combine(double k0, const Taylor<N>& a, double k1, const Taylor<N>& b, 
   return t;
 }
 
-/// k0 a + k1 b of places, whose line says nearly all: their range is that of the line.
+/// k0 a + k1 b of positions, whose linear model is nearly exact: their range is that of the model.
 template <std::size_t N>
 Taylor<N> turned_place(double k0, const Taylor<N>& a, double k1, const Taylor<N>& b) {
   Taylor<N> t;
@@ -122,7 +122,7 @@ Taylor<N> multiply(const Taylor<N>& a, const Taylor<N>& b) {
   return t;
 }
 
-/// f(a) from f and f' at a.mid, the most that |f''| is over the range, and the range and error of f.
+/// f(a) from f and f' at a.mid, the maximum of |f''| over the range, and the range and error of f.
 template <std::size_t N>
 Taylor<N> composed(const Taylor<N>& a, double f, double f1, double f2, double low, double high, double error) {
   Taylor<N> t;
@@ -157,8 +157,8 @@ Taylor<N> clamp(const Taylor<N>& a, double low, double high) {
   return from_range<N>(clamp(a.low, low, high), clamp(a.high, low, high), a.error);
 }
 
-// The C library's sine and cosine are taken to be right within 2 units of the last place, which is what the GNU one
-// says of itself with room to spare.
+// Assumes that the C library's sine and cosine are accurate to 2 units in the last place; GNU's documented error is
+// well below that.
 template <std::size_t N>
 Taylor<N> sine(const Taylor<N>& a) {
   return composed(a, std::sin(a.mid), std::cos(a.mid), 1, -1, 1, a.error + kSlack);
@@ -168,7 +168,7 @@ Taylor<N> cosine(const Taylor<N>& a) {
   return composed(a, std::cos(a.mid), -std::sin(a.mid), 1, -1, 1, a.error + kSlack);
 }
 
-/// The minimum by (a + b - |a - b|) / 2, which keeps the line.
+/// The minimum as (a + b - |a - b|) / 2, which keeps the linear model.
 template <std::size_t N>
 Taylor<N> minimum(const Taylor<N>& a, const Taylor<N>& b) {
   Taylor<N> t;
@@ -201,7 +201,7 @@ template <std::size_t N>
 Taylor<N> smooth_share(const Taylor<N>& a, const Taylor<N>& b, double radius) {
   return clamp(combine(0.5 / radius, b, -0.5 / radius, a, 0.5), 0, 1);
 }
-/// The smooth minimum is b + phi(b - a) with phi' = -share and |phi''| <= 1 / (2 radius).
+/// The smooth minimum is b + phi(b - a) with phi' = -weight and |phi''| <= 1 / (2 radius).
 template <std::size_t N>
 Taylor<N> smooth_minimum(const Taylor<N>& a, const Taylor<N>& b, double radius) {
   Taylor<N> t;
@@ -224,7 +224,7 @@ Taylor<N> terrace(const Taylor<N>& a, double step, double rise) {
   return from_range<N>(terrace(a.low, step, rise) - slack, terrace(a.high, step, rise) + slack,
                        a.error * kSteepestFade / rise + slack);
 }
-/// Range of the fade's slope, which grows until 1/2 and falls after it, between two phases.
+/// Range of the fade's slope between two phases. The slope rises until 1/2 and falls after it.
 inline std::array<double, 2> fade_slope_range(double low, double high) {
   const double a = fade_slope(low), b = fade_slope(high);
   return {std::max(0.0, std::min(a, b) - 8 * kSlack),
@@ -241,7 +241,7 @@ Taylor<N> terrace_slope(const Taylor<N>& a, double step, double rise) {
   return from_range<N>(least / rise * (1 - kSlack), most / rise * (1 + kSlack), kSteepestFade / rise);
 }
 
-/// Distances from the mask's centre, nearest and farthest, over the ranges of x and y.
+/// Minimum and maximum distance from the mask's centre over the ranges of x and y.
 template <std::size_t N>
 std::array<double, 2> radial_range(const Taylor<N>& x, const Taylor<N>& y, const FunctionInstruction& in) {
   const auto away = [](double low, double high, double centre, double& near, double& far) {
@@ -270,7 +270,7 @@ void radial_slope(const Taylor<N>& x, const Taylor<N>& y, const FunctionInstruct
   const double width = in.k3 - in.k2;
   const auto [least, most] =
       fade_slope_range(radial_phase(far, in.k2, in.k3) * (1 - kSlack), radial_phase(near, in.k2, in.k3) * (1 + kSlack));
-  // The unit vector away from the centre: anything where the centre is near, a quotient of ranges elsewhere.
+  // Unit vector away from the centre: unbounded direction near the centre, a quotient of ranges elsewhere.
   const double steepest = most / width * (1 + kSlack), calmest = least / width * (1 - kSlack);
   const auto part = [&, near = near, far = far](double low, double high) {
     double from = -1, to = 1;
@@ -278,14 +278,14 @@ void radial_slope(const Taylor<N>& x, const Taylor<N>& y, const FunctionInstruct
       from = std::max(-1.0, low / (low < 0 ? near : far) - kSlack);
       to = std::min(1.0, high / (high < 0 ? far : near) + kSlack);
     }
-    // The mask falls outwards.
+    // The mask decreases outwards.
     return from_range<N>(-to * (to > 0 ? steepest : calmest), -from * (from > 0 ? calmest : steepest), steepest);
   };
   out_x = part(x.low - in.k0, x.high - in.k0);
   out_y = part(y.low - in.k1, y.high - in.k1);
 }
 
-/// How far the position (a, b) gets from its middle.
+/// Maximum distance of the position (a, b) from its middle.
 template <std::size_t N>
 double wander(const Taylor<N>& a, const Taylor<N>& b) {
   double sum = std::sqrt(a.rest * a.rest + b.rest * b.rest);
@@ -293,8 +293,8 @@ double wander(const Taylor<N>& a, const Taylor<N>& b) {
   return sum * (1 + kSlack);
 }
 
-/// The derivative d of noise at the middle, its own derivatives dx and dy there, and bounds of it, of its first and of
-/// its second derivatives, over a segment that gets r away from the middle.
+/// The derivative d of noise at the middle, its own derivatives dx and dy there, and bounds of it and of its first and
+/// second derivatives, over a segment within distance r of the middle.
 template <std::size_t N>
 Taylor<N> derivative_over(const Taylor<N>& a, const Taylor<N>& b, double r, double d, double dx, double dy, double most,
                           double first, double second, double rounding) {
@@ -310,17 +310,18 @@ Taylor<N> derivative_over(const Taylor<N>& a, const Taylor<N>& b, double r, doub
   return t;
 }
 
-/// Noise over a segment that is short against the lattice. Along it the second derivative is q at the middle, and the
-/// parabola q s^2 / 2 stays within |q| / 4 of q / 4:
+/// Noise over a segment that is short relative to the lattice. The second derivative along it is q at the middle, and
+/// the parabola q s^2 / 2 stays within |q| / 4 of q / 4:
 ///
 ///      q/2  .             .          n = mid + slope s + q s^2 / 2 +- third r^3 / 6
 ///             .         .
-///      q/4 - - - . - . - - - -       what is off the line bends it as well: |off| (half + |off| / 2) |H|, H the second
+///      q/4 - - - . - . - - - -       the offset from the line adds curvature: |off| (half + |off| / 2) |H|, H the
+///      second
 ///        0 ________.__________       derivatives, |H| the root of their squares
 ///          s = -1     0     1
 ///
-/// The other bound, curvature r^2 / 2 without a look at q, is smaller where the segment is longer. `rounding` is that
-/// of n and each of its derivatives; r < 1.
+/// The other bound, curvature r^2 / 2 without q, is smaller for longer segments. `rounding` is that of n and of each of
+/// its derivatives; r < 1.
 inline Taylor<1> value_over(const Taylor<1>& a, const Taylor<1>& b, double r, const NoiseJet& jet,
                             const NoiseBound& bound, double hessian, double curvature, double rounding) {
   const double sx = a.slope[0], sy = b.slope[0];
@@ -340,7 +341,7 @@ inline Taylor<1> value_over(const Taylor<1>& a, const Taylor<1>& b, double r, co
   return t;
 }
 
-/// Noise over a segment, with its derivatives as far as they are asked for.
+/// Noise over a segment, with the requested derivatives.
 template <std::size_t N>
 struct NoiseOver {
   Taylor<N> n, x, y, xx, xy, yy;
@@ -364,7 +365,7 @@ NoiseOver<N> noise_over(const FunctionInstruction& in, const Taylor<N>& a, const
     return out;
   }
   const NoiseJet jet = noise_jet(in.kind, in.seed, a.mid, b.mid);
-  // The second derivative in any direction, anywhere on the segment: that at the middle, or the bound.
+  // Bound of the second derivative in any direction anywhere on the segment: that at the middle, or the global bound.
   const double hessian = std::sqrt(jet.xx * jet.xx + 2 * jet.xy * jet.xy + jet.yy * jet.yy) * (1 + kSlack);
   const double curvature = std::min(bound.curvature, hessian + bound.third * r + rounding);
   if constexpr (N == 1) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Holes of a height field whose ground is a solid: where there is no ground, there is a shaft without a bottom.
+// Holes of a height field used as a solid: bottomless shafts.
 //
-//   over_hole   how far a place is from the nearest rim, on which side of it: positive over a hole. Together with the
-//               height over a ground that goes on across the hole (filled_holes) this makes a function that changes by
-//               no more than a metre per metre and is positive just where there is no solid:
+//   over_hole   signed distance to the nearest rim, positive over a hole. Combined with the height above a ground that
+//               continues across the hole (filled_holes) it gives a 1-Lipschitz function that is positive exactly
+//               outside the solid:
 //
-//                 ____        ____             max(height over the ground / sqrt(1 + c^2), over_hole)
+//                 ____        ____             max(height above the ground / sqrt(1 + c^2), over_hole)
 //                 ####|......|####   . filled
 //                 ####|      |####
 #pragma once
@@ -15,16 +15,16 @@
 namespace scarp {
 
 struct OverHole {
-  double value;    ///< metres to the rim, negative over the ground; no farther than the shorter side of a cell
-  dvec2 gradient;  ///< of the value, in metres per metre; 0 where no rim is that near
-  bool flat;       ///< within the radius asked for it is linear
+  double value;    ///< metres to the rim, negative over ground; capped at the shorter side of a cell
+  dvec2 gradient;  ///< of the value, in metres per metre; 0 if no rim is within the cap
+  bool flat;       ///< whether it is linear within the requested radius
 };
 
-/// At a place of the field, x and y in metres; off the field that of its nearest cell would be wrong: clamp it before.
+/// `place` is a position in the field, x and y in metres; clamp positions outside the field first.
 OverHole over_hole(const HeightField& field, dvec2 place, double radius);
 
-/// The field with heights in the place of nodata: as high as a cone of this slope (metres per metre) under each sample
-/// that there is, but no lower than the lowest of them. Samples become float32. Throws Error when there are none.
+/// Returns the field with nodata replaced by heights: the maximum over all samples of a cone with this slope (metres
+/// per metre) below the sample, but at least the lowest sample. Samples become float32. Throws Error if all are nodata.
 HeightField filled_holes(const HeightField& field, double slope);
 
 }  // namespace scarp

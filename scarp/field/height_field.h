@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A height field: samples at the nodes of a grid, a bilinear surface between them.
+// A height field: samples at the nodes of a grid, and a surface between them.
 //
 //   world (right-handed, metres)          grid (left-handed)
 //     y north                               col ->
-//     ^        o--o--o--o                 row  o--o--o--o     samples sit at the nodes o
+//     ^        o--o--o--o                 row  o--o--o--o     samples are at the nodes o
 //     |        |  |  |  |                  |   |  |  |  |     a cell is the square between 4 samples
 //     |        o--o--o--o                  v   o--o--o--o     N x M samples have (N-1) x (M-1) cells
 //     +--> x east, z up                        |  |  |  |
 //   the south-west sample is at (0, 0)         o--o--o--o
 //
 // The surface is a sheet seen from above. A cell with a nodata sample at one of its four corners is a hole: rays pass.
-// A field that wraps round covers the whole plane: world (x, y) and (x + width(), y), (x, y + depth()) are the same
-// place.
+// A wrapped field covers the whole plane: world (x, y), (x + width(), y) and (x, y + depth()) are the same point.
 #pragma once
 
 #include <algorithm>
@@ -35,38 +34,39 @@ namespace scarp {
 
 enum class SampleType : std::uint8_t { int16, uint16, float32 };
 
-/// "int16", "uint16" or "float32".
+/// Returns "int16", "uint16" or "float32".
 std::string_view name_of(SampleType type);
 
-/// What lies between the samples.
+/// Interpolation between the samples.
 enum class Surface : std::uint8_t {
-  bilinear,   ///< in each cell the bilinear patch through its four samples
-  triangles,  ///< two triangles per cell, parted by the diagonal from (col+1, row) to (col, row+1), as mesh engines do
+  bilinear,   ///< the bilinear patch through the four samples of each cell
+  triangles,  ///< two triangles per cell, split along the diagonal from (col+1, row) to (col, row+1), as in mesh
+              ///< engines
 };
 
-/// What lies beyond the border.
+/// Continuation beyond the border.
 enum class Wrap : std::uint8_t {
-  none,          ///< nothing: N x M samples have (N-1) x (M-1) cells
-  periodic,      ///< the field again; the last column is followed by the first: N x M cells, period N and M cells
-  shared_border  ///< the field again; the last column and row repeat the first: (N-1) x (M-1) cells and period
+  none,          ///< none: N x M samples have (N-1) x (M-1) cells
+  periodic,      ///< repeats; the last column is followed by the first: N x M cells, period N and M cells
+  shared_border  ///< repeats; the last column and row equal the first: (N-1) x (M-1) cells and period
 };
 
-/// How samples become a surface in metres.
+/// Mapping from samples to a surface in metres.
 struct HeightFieldSettings {
-  double cell_x = 1.0;                          ///< metres from one column to the next, > 0
-  double cell_y = 1.0;                          ///< metres from one row to the next, > 0
+  double cell_x = 1.0;                          ///< column spacing in metres, > 0
+  double cell_y = 1.0;                          ///< row spacing in metres, > 0
   double scale = 1.0;                           ///< z = (sample * scale + offset) * exaggeration; > 0
   double offset = 0.0;                          ///< metres
   double exaggeration = 1.0;                    ///< > 0
-  std::optional<double> nodata = std::nullopt;  ///< sample value of a hole; NaN is one in float32 anyway
+  std::optional<double> nodata = std::nullopt;  ///< sample value of a hole; NaN is always a hole in float32
   Surface surface = Surface::bilinear;
   Wrap wrap = Wrap::none;
-  /// Whether there is rock under the sheet: then a ray that comes in below it through the border or out of a hole hits
-  /// the wall there. One that begins inside is below, as without.
+  /// Whether the field is solid below the sheet: rays that enter below it through the border or out of a hole hit the
+  /// wall there. Rays that start inside are `below`, as without it.
   bool solid = false;
 };
 
-/// Height of a cell's surface at (u, v) in it, 0..1, in sample units.
+/// Returns the height of a cell's surface at (u, v), each 0..1, in sample units.
 inline double height_in_cell(Surface surface, const CellHeights& h, double u, double v) {
   if (surface == Surface::bilinear) {
     const double north = h.h00 + u * (h.h10 - h.h00), south = h.h01 + u * (h.h11 - h.h01);
@@ -76,7 +76,7 @@ inline double height_in_cell(Surface surface, const CellHeights& h, double u, do
   return h.h11 + (1 - u) * (h.h01 - h.h11) + (1 - v) * (h.h10 - h.h11);
 }
 
-/// Cells [col_begin, col_end) x [row_begin, row_end). In a field that wraps round a begin may be -1: the last ones.
+/// Cells [col_begin, col_end) x [row_begin, row_end). In a wrapped field a begin may be -1, the last column or row.
 struct CellBox {
   int col_begin = 0;
   int row_begin = 0;
@@ -90,17 +90,17 @@ struct GridRay {
   dvec3 direction;
 };
 
-/// Cheap to copy: copies share the samples and see one another's edits. Nothing but set_samples() and samples_changed()
-/// changes a field; while one of them runs, no query may (accel/live_field.h keeps them apart).
+/// A height field. Copies are cheap: they share the samples and see one another's edits. Only set_samples() and
+/// samples_changed() change a field, and must not run concurrently with queries (accel/live_field.h synchronises them).
 class HeightField {
  public:
-  /// Over memory of the caller's, which is not copied and must outlive every copy of the field. `row_stride` counts
-  /// samples. Throws Error: fewer than 1 column or row, a setting out of its range, an infinite sample (which one), a
-  /// shared border whose two sides differ (where).
+  /// Wraps caller-owned memory without copying; it must outlive every copy of the field. `row_stride` counts samples.
+  /// Throws Error for fewer than 1 column or row, a setting out of range, an infinite sample (with its position), or a
+  /// shared border whose sides differ (with the position).
   template <class T>
   static HeightField view(const T* samples, int cols, int rows, std::ptrdiff_t row_stride,
                           const HeightFieldSettings& settings = {});
-  /// Takes the samples, rows from north to south, size cols * rows. Throws as view() does.
+  /// Takes ownership of cols * rows samples, rows from north to south. Throws as view() does.
   template <class T>
   static HeightField own(std::vector<T> samples, int cols, int rows, const HeightFieldSettings& settings = {});
 
@@ -108,7 +108,7 @@ class HeightField {
   int rows() const { return rows_; }
   int cell_cols() const { return cols_ - (settings_.wrap == Wrap::periodic ? 0 : 1); }
   int cell_rows() const { return rows_ - (settings_.wrap == Wrap::periodic ? 0 : 1); }
-  /// False for a single row or column (unless periodic): then every ray misses.
+  /// False for a single row or column (unless periodic): every ray misses.
   bool has_cells() const { return cell_cols() > 0 && cell_rows() > 0; }
   bool wraps() const { return settings_.wrap != Wrap::none; }
   SampleType sample_type() const { return type_; }
@@ -116,13 +116,13 @@ class HeightField {
   std::int64_t nodata_count() const { return state_->extents.whole().nodata; }
   bool all_nodata() const { return nodata_count() == std::int64_t{cols_} * rows_; }
 
-  /// Lowest and highest sample, in sample units; means nothing when all_nodata().
+  /// Minimum and maximum sample, in sample units. Undefined if all_nodata().
   double min_sample() const { return static_cast<double>(state_->extents.whole().min); }
   double max_sample() const { return static_cast<double>(state_->extents.whole().max); }
-  /// The same in metres of world z, exaggerated.
+  /// Minimum and maximum in metres of world z, with exaggeration.
   double min_height() const { return height_from_sample(min_sample()); }
   double max_height() const { return height_from_sample(max_sample()); }
-  /// Extent of the cells in metres: x in [0, width()], y in [0, depth()]. The period of a field that wraps round.
+  /// Extent of the cells in metres: x in [0, width()], y in [0, depth()]. The period of a wrapped field.
   double width() const { return cell_cols() * settings_.cell_x; }
   double depth() const { return cell_rows() * settings_.cell_y; }
 
@@ -130,7 +130,7 @@ class HeightField {
     return (s * settings_.scale + settings_.offset) * settings_.exaggeration;
   }
 
-  /// What grid_from_world() subtracts and multiplies by: for those who turn many rays at once, by its operations.
+  /// Coefficients of grid_from_world(), for vectorised callers that must reproduce it exactly.
   struct GridScales {
     double per_cell_x, per_cell_y, z_offset, per_scale;
   };
@@ -139,54 +139,54 @@ class HeightField {
     return {{col_from_x(ray.origin.x), row_from_y(ray.origin.y), (ray.origin.z - z_offset_) * per_scale_},
             {ray.direction.x * per_cell_x_, -ray.direction.y * per_cell_y_, ray.direction.z * per_scale_}};
   }
-  /// World position of a point in grid units.
+  /// Returns the world position of a point in grid units.
   dvec3 world_from_grid(double col, double row, double sample) const {
     return {col * settings_.cell_x, (rows_ - 1 - row) * settings_.cell_y, height_from_sample(sample)};
   }
 
-  /// The cell that holds a world position: [col, col+1) x [row, row+1), the last column and row closed; u and v are the
-  /// place in it. Nothing outside a field that does not wrap round; holes are not looked at.
+  /// Returns the cell that contains a world position, [col, col+1) x [row, row+1) with the last column and row closed,
+  /// and the position (u, v) in it. Returns nullopt outside a field without wrap. Does not check for holes.
   struct Place {
     Cell cell;
     double u, v;
   };
   std::optional<Place> place(double x, double y) const;
 
-  /// Corner heights of a cell, or nothing when it is a hole. The cell must exist.
+  /// Returns the corner heights of a cell, or nullopt for a hole. The cell must exist.
   std::optional<CellHeights> cell_heights(Cell cell) const;
-  /// Surface height in metres at a world position; nothing outside and over holes.
+  /// Returns the surface height in metres at a world position, or nullopt outside the field and over holes.
   std::optional<double> height(double x, double y) const;
-  /// Slope (dz/dx, dz/dy) in metres per metre in world space, x east, y north, at a place in a cell. The cell must
-  /// exist and be no hole.
+  /// Returns the slope (dz/dx, dz/dy) in metres per metre of world space, x east, y north. The cell must exist and must
+  /// not be a hole.
   dvec2 gradient(Cell cell, double u, double v) const;
   std::optional<dvec2> gradient(double x, double y) const;
-  /// Unit normal of the surface (upwards) from the gradient; steps from cell to cell.
+  /// Returns the upward unit normal of the surface; discontinuous between cells.
   dvec3 normal(Cell cell, double u, double v) const;
-  /// Unit normal that is continuous from cell to cell, for shading: central differences at the four nodes (one-sided at
+  /// Returns a unit normal for shading, continuous between cells: central differences at the four nodes (one-sided at
   /// borders and holes), interpolated bilinearly.
   dvec3 shading_normal(Cell cell, double u, double v) const;
 
-  /// Overwrites a rectangle of samples with `samples`, `stride` samples from one row to the next, and returns the cells
-  /// that changed: what an accelerator has to be updated for. T must be the C++ type of sample_type(). Throws Error and
-  /// changes nothing: a rectangle that is empty or not inside, another sample type, an infinite sample, a border that
-  /// would no longer be shared, samples that are the caller's (view).
+  /// Overwrites a rectangle of samples and returns the cells that changed, for updates of accelerators. `stride` counts
+  /// samples per row of `samples`. T must match sample_type(). Throws Error, changing nothing, for a rectangle that is
+  /// empty or not inside the field, another sample type, an infinite sample, a border that would no longer be shared,
+  /// or a field over caller-owned memory (view).
   template <class T>
   CellBox set_samples(const SampleRect& rect, const T* samples, std::ptrdiff_t stride);
-  /// The same after the caller has written to memory that the field views. Throws Error when the rectangle is empty or
-  /// not inside; for an infinite sample or a border no longer shared, after which the field must not be used until a
-  /// further call has found it mended.
+  /// Reports samples that the caller changed in memory of view(). Throws Error for a rectangle that is empty or not
+  /// inside the field, an infinite sample or a border that is no longer shared; in the last two cases the field must
+  /// not be used until another call succeeds.
   CellBox samples_changed(const SampleRect& rect);
 
-  /// Calls f with the SampleGrid<T> of the stored type and returns what it returns.
+  /// Calls f with the SampleGrid<T> of the stored type and returns its result.
   template <class F>
   decltype(auto) visit(F&& f) const {
     return visit_as(nodata_count() > 0, std::forward<F>(f));
   }
 
  private:
-  // What copies share.
+  // State shared by copies.
   struct State {
-    std::shared_ptr<void> owner;  // null: the samples are the caller's
+    std::shared_ptr<void> owner;  // null: caller-owned samples
     TileExtents extents;
   };
 
@@ -207,7 +207,7 @@ class HeightField {
     }
     return f(grid<float>(has_holes));
   }
-  // For a look at samples of which it is not yet known whether they are nodata.
+  // Reads samples that may be nodata.
   template <class F>
   decltype(auto) visit_unknown(F&& f) const {
     return visit_as(may_have_holes_, std::forward<F>(f));
@@ -219,7 +219,7 @@ class HeightField {
   void require_shared_border(const SampleGrid<T>& grid, const Sample& sample) const;
   CellBox cells_of(const SampleRect& rect) const;
 
-  // A position on the border stays there: rounding must not carry it out of the field.
+  // A position on the border stays there: rounding must not move it out of the field.
   double col_from_x(double x) const {
     const double col = x * per_cell_x_;
     return !wraps() && x <= width() ? std::min(col, static_cast<double>(cell_cols())) : col;
@@ -236,7 +236,7 @@ class HeightField {
   std::ptrdiff_t row_stride_ = 0;
   HeightFieldSettings settings_;
   double nodata_ = 0;
-  bool may_have_holes_ = false;  // whether a sample can be nodata at all
+  bool may_have_holes_ = false;  // whether samples can be nodata at all
   double per_cell_x_ = 1;
   double per_cell_y_ = 1;
   double z_offset_ = 0;   // world z of sample value 0

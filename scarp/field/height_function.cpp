@@ -14,7 +14,7 @@ using function::Jet;
 using function::kSlack;
 using function::Taylor;
 
-// A coordinate along a segment: origin + t * direction, as its rounded positions are.
+// A coordinate along a segment, origin + t * direction, including the rounding of positions.
 Taylor<1> coordinate(double origin, double direction, double t0, double t1) {
   Taylor<1> t;
   const double middle = 0.5 * (t0 + t1), half = 0.5 * (t1 - t0);
@@ -28,7 +28,7 @@ Taylor<1> coordinate(double origin, double direction, double t0, double t1) {
   return t;
 }
 
-// A side of a rectangle as the i-th of two directions; positions in it are given as they are.
+// A side of a rectangle as direction i of two; positions in it are exact.
 Taylor<2> side(double low, double high, std::size_t i) {
   Taylor<2> t;
   t.mid = 0.5 * (low + high);

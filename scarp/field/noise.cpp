@@ -6,7 +6,7 @@
 namespace scarp {
 namespace {
 
-// Twelve directions around the circle: those of the 3-4-5 triangle and of the axes.
+// Twelve directions on the circle: those of the 3-4-5 triangle and of the axes.
 constexpr double kDirections[12][2] = {{1, 0},  {0.8, 0.6},   {0.6, 0.8},   {0, 1},  {-0.6, 0.8}, {-0.8, 0.6},
                                        {-1, 0}, {-0.8, -0.6}, {-0.6, -0.8}, {0, -1}, {0.6, -0.8}, {0.8, -0.6}};
 
@@ -19,7 +19,7 @@ constexpr std::uint32_t mix(std::uint32_t x) {
   return x ^ (x >> 16);
 }
 
-// NaN goes to the border, too: what becomes an integer must be one.
+// NaN goes to the border: the result must convert to an integer.
 double within_reach(double p) { return p > -kLatticeReach ? (p < kLatticeReach ? p : kLatticeReach) : -kLatticeReach; }
 
 std::int64_t floor_of(double p) {

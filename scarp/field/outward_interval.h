@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Intervals of doubles that hold what is computed, rounding included: for those who prove. Not for those who are fast.
+// Intervals of doubles that include rounding errors. For proofs, not for speed.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace scarp {
 
-// Rounds outwards by widening each result, without touching the processor's rounding mode: 2^-52 of it is at least one
-// unit of its last place, and 2^-1000 more than any that is not normal.
+// Rounds outwards by widening each result, without changing the processor's rounding mode: 2^-52 of it is at least one
+// unit in the last place, and 2^-1000 exceeds any subnormal.
 struct Outwards : boost::numeric::interval_lib::rounded_arith_exact<double> {
   using unprotected_rounding = Outwards;
   static double down(double x) { return x - (std::abs(x) * 0x1p-52 + 0x1p-1000); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Grids turned by quarter turns.
+// Rotates voxel grids by quarter turns.
 #pragma once
 
 #include "scarp/base/lattice_rotation.h"
@@ -7,8 +7,8 @@
 
 namespace scarp {
 
-/// The grid turned about its own middle and moved so that its box begins at 0 again: voxel v comes to stand at
-/// rotated_voxel(v, grid.size(), turn).
+/// Returns the grid rotated about its centre and moved so that its box starts at 0: voxel v moves to rotated_voxel(v,
+/// grid.size(), turn).
 VoxelGrid rotated(const VoxelGrid& grid, const LatticeRotation& turn);
 
 ivec3 rotated_voxel(const ivec3& voxel, const ivec3& size, const LatticeRotation& turn);

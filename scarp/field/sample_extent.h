@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lowest and highest sample and the number of nodata, kept per tile, so that after an edit only its tiles are looked
-// at.
+// Minimum, maximum and nodata count of samples, kept per tile, so that edits rescan only their tiles.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +10,7 @@
 
 namespace scarp {
 
-/// In sample units. Samples are int16, uint16 or float32, which a float holds all.
+/// In sample units. Samples are int16, uint16 or float32; a float holds each exactly.
 struct SampleExtent {
   float min = std::numeric_limits<float>::infinity();
   float max = -std::numeric_limits<float>::infinity();
@@ -20,27 +19,28 @@ struct SampleExtent {
   void merge(const SampleExtent& other);
 };
 
+/// Extents of all tiles of a field, and of the whole.
 class TileExtents {
  public:
-  /// Looks at all samples, on all threads. Throws Error naming the first infinite one.
+  /// Scans all samples, on all threads. Throws Error naming the first infinite one.
   template <class T>
   explicit TileExtents(const SampleGrid<T>& grid);
 
-  /// Looks at the tiles of a rectangle again. Samples must be finite or nodata.
+  /// Rescans the tiles of a rectangle. Samples must be finite or nodata.
   template <class T>
   void update(const SampleGrid<T>& grid, const SampleRect& changed);
 
   const SampleExtent& whole() const { return whole_; }
 
  private:
-  static constexpr int kSide = 64;  // samples along a tile
+  static constexpr int kSide = 64;  // samples per tile side
   template <class T>
   void scan_tile_row(const SampleGrid<T>& grid, int tile_row, int first, int last);
   void gather();
 
   int tile_cols_ = 0, tile_rows_ = 0;
-  std::vector<SampleExtent> tiles_;  // rows of tiles
-  std::vector<SampleExtent> rows_;   // each row of tiles as one
+  std::vector<SampleExtent> tiles_;  // row-major
+  std::vector<SampleExtent> rows_;   // combined extents of each row of tiles
   SampleExtent whole_;
 };
 

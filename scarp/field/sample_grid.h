@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Samples as they lie in memory, for code that works on one sample type.
+// Typed view of samples in memory, for code that works on one sample type.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace scarp {
 
-/// The heights of one cell at its corners, in sample units: h10 is at (col+1, row), h01 at (col, row+1).
+/// Corner heights of a cell, in sample units: h10 is at (col+1, row), h01 at (col, row+1).
 struct CellHeights {
   double h00, h10, h01, h11;
 };
@@ -20,21 +20,21 @@ struct SampleRect {
   int rows = 0;
 };
 
-/// Rows from north to south. Plain data, no ownership.
+/// A non-owning view of samples; rows from north to south.
 template <class T>
 struct SampleGrid {
   const T* data = nullptr;
   std::ptrdiff_t row_stride = 0;  ///< in samples, from one row to the next one south; may be negative
   int cols = 0;
   int rows = 0;
-  int cell_cols = 0;       ///< cols - 1, or cols where the last column is followed by the first
+  int cell_cols = 0;       ///< cols - 1, or cols if the last column is followed by the first
   int cell_rows = 0;       ///< as cell_cols
   bool has_holes = false;  ///< whether any sample is nodata
-  T nodata{};              ///< the value that marks a hole (in float32 NaN does, too); means nothing without holes
+  T nodata{};              ///< value that marks a hole (besides NaN in float32); undefined without holes
 
   const T* row(int r) const { return data + r * row_stride; }
   T at(int col, int r) const { return row(r)[col]; }
-  /// The column east and the row south of one; beyond the last only where the field wraps round.
+  /// Column to the east and row to the south; wrap around after the last one.
   int east(int col) const { return col + 1 < cols ? col + 1 : 0; }
   int south(int r) const { return r + 1 < rows ? r + 1 : 0; }
 
@@ -42,7 +42,7 @@ struct SampleGrid {
     if constexpr (std::is_floating_point_v<T>) return has_holes && (sample == nodata || sample != sample);
     return has_holes && sample == nodata;
   }
-  /// Whether a cell has a nodata sample at one of its corners.
+  /// Returns whether a cell has a nodata sample at one of its corners.
   bool is_hole(int col, int r) const {
     return has_holes && (is_nodata(at(col, r)) || is_nodata(at(east(col), r)) || is_nodata(at(col, south(r))) ||
                          is_nodata(at(east(col), south(r))));

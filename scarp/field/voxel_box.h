@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A box of voxels.
+// Boxes of voxels.
 #pragma once
 
 #include <glm/common.hpp>
@@ -8,7 +8,7 @@
 
 namespace scarp {
 
-/// The voxels low <= v < high. Voxel v is the cube from v to v + 1 in every axis.
+/// The voxels low <= v < high. Voxel v is the cube from v to v + 1 along each axis.
 struct VoxelBox {
   ivec3 low{0};
   ivec3 high{0};
@@ -17,7 +17,7 @@ struct VoxelBox {
   bool contains(const ivec3& v) const {
     return v.x >= low.x && v.y >= low.y && v.z >= low.z && v.x < high.x && v.y < high.y && v.z < high.z;
   }
-  /// Larger by `voxels` on all sides.
+  /// Returns the box enlarged by `voxels` on all sides.
   VoxelBox grown(int voxels) const { return {low - voxels, high + voxels}; }
   friend bool operator==(const VoxelBox&, const VoxelBox&) = default;
 };
@@ -26,7 +26,7 @@ inline VoxelBox intersection(const VoxelBox& a, const VoxelBox& b) {
   return {glm::max(a.low, b.low), glm::min(a.high, b.high)};
 }
 
-/// The least box around both; empty boxes add nothing.
+/// Returns the smallest box around both; ignores empty boxes.
 inline VoxelBox around(const VoxelBox& a, const VoxelBox& b) {
   if (a.empty()) return b;
   if (b.empty()) return a;

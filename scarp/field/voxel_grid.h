@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// A dense grid of voxels: which are solid, and the colour entry of each.
+// A dense voxel grid: solidity, and a colour entry for each solid voxel.
 //
 //   shape   one bit per voxel, in bricks of 4 x 4 x 4: a 64-bit mask, bit x + 4 y + 16 z
-//   bricks  x fastest, then y, then z; the last ones of a size that is no multiple of 4 are padded with empty voxels
-//   colour  an entry per SOLID voxel, packed in entry_bits each; its place is its rank, the number of solid voxels
-//           before it. Entries are what the owner makes of them: indices into a palette, or RGB in 24 bits
+//   bricks  x fastest, then y, then z; if a side is not a multiple of 4, the last ones are padded with empty voxels
+//   colour  an entry per SOLID voxel, packed in entry_bits each; its index is the voxel's rank, the number of solid
+//   voxels
+//           before it. The owner defines the meaning of entries: palette indices, or RGB in 24 bits
 //
-// Voxel (x, y, z) is the cube from (x, y, z) to (x + 1, y + 1, z + 1); right-handed, z up, as the world is. Outside of
-// the grid all is empty.
+// Voxel (x, y, z) is the cube from (x, y, z) to (x + 1, y + 1, z + 1); right-handed, z up, like the world. Space
+// outside the grid is empty.
 //
-// Bricks are stored in pages of 64, each with the entries of its own voxels: an edit packs the pages that it touches
-// again and no others. Cost: 1.6 bits per voxel, and entry_bits per solid one.
+// Bricks are stored in pages of 64, each with the entries of its own voxels: an edit repacks only the pages that it
+// touches. Cost: 1.6 bits per voxel, and entry_bits per solid one.
 #pragma once
 
 #include <array>
@@ -25,22 +26,23 @@
 
 namespace scarp {
 
+/// A dense voxel grid.
 class VoxelGrid {
  public:
   static constexpr int kMaxSide = 2048;
   static constexpr int kBrick = 4;
   static constexpr int kMaxEntryBits = 24;
 
-  /// All empty. Each side 1 to kMaxSide, entry_bits 1 to kMaxEntryBits. Throws Error otherwise.
+  /// An empty grid. Each side 1 to kMaxSide, entry_bits 1 to kMaxEntryBits; throws Error otherwise.
   explicit VoxelGrid(const ivec3& size, int entry_bits = 8);
 
   const ivec3& size() const { return size_; }
   VoxelBox box() const { return {ivec3(0), size_}; }
   int entry_bits() const { return entry_bits_; }
   std::int64_t solid_count() const { return solid_count_; }
-  /// The least box around all solid voxels; empty when there is none.
+  /// Smallest box around all solid voxels; empty if there are none.
   const VoxelBox& bounds() const { return bounds_; }
-  /// Memory that it takes, in bytes.
+  /// Memory use in bytes.
   std::size_t bytes() const;
 
   /// Bricks per axis.
@@ -54,63 +56,63 @@ class VoxelGrid {
   std::uint64_t mask(const ivec3& brick) const { return masks_[brick_index(brick)]; }
   /// All bricks, by brick_index().
   std::span<const std::uint64_t> masks() const { return masks_; }
-  /// The bit of a voxel in the mask of its brick.
+  /// Bit of a voxel in the mask of its brick.
   static int bit_of(const ivec3& voxel) { return (voxel.x & 3) | (voxel.y & 3) << 2 | (voxel.z & 3) << 4; }
 
-  /// Whether a voxel of the grid is solid; the voxel must be inside.
+  /// Returns whether a voxel is solid; it must be inside the grid.
   bool solid(const ivec3& voxel) const { return mask(voxel >> 2) >> bit_of(voxel) & 1; }
-  /// The entry of a solid voxel; 0 where drop_hidden_entries() has dropped it.
+  /// Returns the entry of a solid voxel; 0 if drop_hidden_entries() dropped it.
   std::uint32_t entry(const ivec3& voxel) const;
 
-  // Edits. Parts outside of the grid are left out; what they return is a box around all voxels that may have changed,
-  // which accelerators and scenes need to be told. Entries must fit into entry_bits(); Error otherwise,
-  // and nothing is changed (but by edit()).
+  // Edits ignore parts outside the grid, and return a box around all voxels that may have changed, for updates of
+  // accelerators and scenes. Entries must fit in entry_bits(); otherwise they throw Error and, except for edit(),
+  // change nothing.
 
   VoxelBox set(const ivec3& voxel, std::uint32_t entry);
   VoxelBox clear(const ivec3& voxel);
   VoxelBox fill(const VoxelBox& box, std::uint32_t entry);
   VoxelBox clear(const VoxelBox& box);
-  /// Voxels whose centres are no farther than `radius` from `centre`, both in voxels.
+  /// Fills voxels whose centres are within `radius` of `centre`, both in voxels.
   VoxelBox fill_sphere(const dvec3& centre, double radius, std::uint32_t entry);
   VoxelBox clear_sphere(const dvec3& centre, double radius);
-  /// Gives solid voxels another entry; empty ones stay so.
+  /// Changes the entries of solid voxels; empty ones stay empty.
   VoxelBox paint(const VoxelBox& box, std::uint32_t entry);
   VoxelBox paint_sphere(const dvec3& centre, double radius, std::uint32_t entry);
 
-  /// What a voxel is to be: its entry, or nothing for empty. `before` is what it was.
+  /// New state of a voxel: its entry, or nullopt for empty. `before` is the old state.
   using Voxel = std::optional<std::uint32_t>;
+  /// A voxel and its new state.
   struct Placed {
     ivec3 voxel;
     Voxel value;
   };
-  /// Many voxels, wherever they are; of several in one place the last one counts.
+  /// Sets many voxels at any positions; of several for one position the last one counts.
   VoxelBox set(std::span<const Placed> voxels);
   using Change = std::function<Voxel(const ivec3& voxel, const Voxel& before)>;
-  /// Asks `change` about each voxel of the box, once, in no particular order. Where it throws, or its entry does not
-  /// fit, some of the voxels that it was asked about are changed and others are not; counts and bounds are true to
-  /// those that there are then.
+  /// Calls `change` once for each voxel of the box, in no particular order. If it throws, or returns an entry that does
+  /// not fit, only some of the voxels visited so far are changed; counts and bounds stay consistent.
   VoxelBox edit(const VoxelBox& box, const Change& change);
 
-  // Booleans with another grid of the same size and entry_bits, on the masks; Error when they differ.
+  // Boolean operations with a grid of the same size and entry_bits; throw Error if these differ.
 
-  /// Solid where one of them is. Its own entries stay.
+  /// Union. Keeps its own entries.
   VoxelBox unite(const VoxelGrid& other);
-  /// Solid where both are.
+  /// Intersection.
   VoxelBox intersect(const VoxelGrid& other);
-  /// Solid where the other is not.
+  /// Difference.
   VoxelBox subtract(const VoxelGrid& other);
 
-  /// Keeps the entries only of voxels with an empty neighbour behind one of their six faces: those that can be seen
-  /// from outside. Inside it is lossy: what a later edit lays bare has the entry 0.
+  /// Drops the entries of voxels without an empty neighbour across a face: those invisible from outside. Lossy: hidden
+  /// voxels that a later edit exposes have the entry 0.
   void drop_hidden_entries();
 
  private:
   static constexpr int kPageBricks = 64, kRankBricks = 4;
   static constexpr int kRanks = kPageBricks / kRankBricks;
 
-  // The entries of the voxels of 64 bricks, in the order of the bricks and of their bits.
+  // Entries of the voxels of 64 bricks, in the order of bricks and bits.
   struct Page {
-    std::vector<std::uint64_t> words;               // entries, entry_bits each, from the lowest bit on
+    std::vector<std::uint64_t> words;               // entry_bits each, from the lowest bit on
     std::array<std::uint16_t, kRanks> rank_from{};  // entries before each group of kRankBricks bricks
   };
   struct PageVoxels;
@@ -127,7 +129,7 @@ class VoxelGrid {
   ivec3 size_, bricks_;
   int entry_bits_;
   std::vector<std::uint64_t> masks_;
-  std::vector<std::uint64_t> coloured_;  // which voxels have an entry; empty: all solid ones
+  std::vector<std::uint64_t> coloured_;  // voxels with an entry; empty: all solid ones
   std::vector<Page> pages_;
   std::int64_t solid_count_ = 0;
   VoxelBox bounds_;

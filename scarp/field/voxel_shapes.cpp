@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Balls of voxels: the edits whose shape is not a box.
+// Edits of voxel grids with balls.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace scarp {
 namespace {
 
-// The voxels that a ball may reach, inside a grid: no number is too large for an int then.
+// Voxels within reach of a ball, clipped to a grid so that coordinates fit in int.
 VoxelBox box_of_ball(const dvec3& centre, double radius, const VoxelBox& inside) {
   VoxelBox box;
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What makes a picture a figure: a legend of its colours, a bar of known length.
+// Draws a legend and a scale bar over an image.
 //
 //     +---------------------------+                    +-----------------------------+
 //     |  [####]----[####]----     |                    |  height, m                  |
@@ -8,8 +8,7 @@
 //      lower left: the scale bar                       +-----------------------------+
 //                                                       lower right: the legend
 //
-// Sizes follow the picture's: text is a fortieth of its shorter side, 10 pixels at least. Drawn with Cairo, in the
-// font "sans" of the system.
+// Text height is 1/40 of the image's shorter side, at least 10 pixels. Drawn with Cairo in the system's "sans" font.
 #pragma once
 
 #include <array>
@@ -20,22 +19,22 @@
 
 namespace scarp {
 
-/// A place along a bar and what is written there.
+/// A labelled position along a bar.
 struct FigureTick {
-  double share = 0;  ///< of the bar's length, 0..1
+  double share = 0;  ///< position as a fraction of the bar's length, 0..1
   std::string text;
 };
 
-/// What the colours of a ramp mean.
+/// Legend of a colour ramp.
 struct FigureLegend {
   std::string title;
-  std::vector<std::array<std::uint8_t, 3>>
-      colours;  ///< sRGB, evenly spaced from the bar's left to its right; not empty
+  std::vector<std::array<std::uint8_t, 3>> colours;  ///< sRGB, evenly spaced from left to right; not empty
   std::vector<FigureTick> ticks;
 };
 
-/// What the colours of classes mean.
+/// Legend of colour classes.
 struct FigureKey {
+  /// A colour and its label.
   struct Entry {
     std::array<std::uint8_t, 3> colour;  ///< sRGB
     std::string text;
@@ -44,25 +43,25 @@ struct FigureKey {
   std::vector<Entry> entries;
 };
 
-/// A bar of `pixels` pixels, black and white in turn between its ticks.
+/// A scale bar, black and white in turn between its ticks.
 struct FigureScale {
-  double pixels = 0;    ///< > 0
+  double pixels = 0;    ///< length in pixels, > 0
   std::string title{};  ///< may be empty
   std::vector<FigureTick> ticks;
 };
 
+/// A legend or key, and a scale bar.
 struct Figure {
   std::optional<FigureLegend> legend{};
-  std::optional<FigureKey> key{};  ///< in the place of the legend
+  std::optional<FigureKey> key{};  ///< replaces the legend
   std::optional<FigureScale> scale{};
 };
 
-/// Numbers from low to high that end in 1, 2 or 5 times a power of ten, `most` at most and at least two wherever there
-/// are two. low < high, most >= 2.
+/// Returns tick values in [low, high]: multiples of 1, 2 or 5 times a power of ten, at most `most`, and at least two
+/// wherever two exist. low < high, most >= 2.
 std::vector<double> round_numbers(double low, double high, int most);
 
-/// Draws over a picture of 3 bytes a pixel, rows from the top. Throws Error when the picture is too small: what is
-/// drawn must fit into it.
+/// Draws over an image of 3 bytes per pixel, rows from the top. Throws Error if the image is too small for the figure.
 void draw_figure(std::uint8_t* rgb, int width, int height, const Figure& figure);
 
 }  // namespace scarp

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
-// What rays met, as a table: CSV or .npy, written whole or not at all.
+// Writes tables of ray query results as CSV or .npy.
 //
 //   hits      [carried...], ray, status, t, x, y, z, col, row, u, v, nx, ny, nz, wall
 //   blocked   [carried...], ray, blocked
 //
-// CSV: a header and a line per row; numbers have as many digits as bring back the same double; what a row has not (the
-// place of a miss) is empty; status is hit, miss, below or exhausted. `carried` are text columns that pass through.
+// CSV: a header line, then one line per row. Numbers round-trip to the same double. Values that a row lacks (the
+// position of a miss) are empty. status is hit, miss, below or exhausted. `carried` are text columns that pass through.
 //
-// .npy (version 1.0 of the format, NEP 1): a one-dimensional array of structures whose fields are all float64 and named
-// as above, without the carried ones; what a row has not is NaN; status is the value of HitStatus: 0 miss, 1 hit, 2
-// below, 3 exhausted.
+// .npy (format version 1.0, NEP 1): a one-dimensional structured array of float64 fields with the names above, without
+// the carried columns. Missing values are NaN. status is the value of HitStatus: 0 miss, 1 hit, 2 below, 3 exhausted.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +25,12 @@
 
 namespace scarp {
 
-/// "miss", "hit", "below" or "exhausted".
+/// Returns "miss", "hit", "below" or "exhausted".
 std::string_view name_of(HitStatus status);
 
-/// A row of the table of hits. Of a row that is no hit only ray and status are written, and t, if finite, when it is
-/// exhausted.
+/// A row of a table of hits. Rows that are not hits write only ray and status, and a finite t if exhausted.
 struct HitRow {
-  std::int64_t ray = 0;  ///< from 0
+  std::int64_t ray = 0;  ///< index of the ray, from 0
   Hit hit;
   dvec3 position{0.0};  ///< in the coordinates of the table
   dvec3 normal{0.0};    ///< unit length
@@ -43,17 +41,17 @@ enum class TableKind : std::uint8_t { hits, blocked };
 /// A table that grows row by row and becomes a file with commit().
 class HitTable {
  public:
-  /// `path` ends in .csv or .npy; empty: CSV to standard output. Reserves the place at once. `carried` has a row per
-  /// ray and must outlive the table. Throws Error: another ending, a place that cannot be written, a carried column
-  /// with the name of one of the table's.
+  /// `path` ends in .csv or .npy; an empty path writes CSV to standard output. Opens the file at once. `carried` has
+  /// one row per ray and must outlive the table. Throws Error for another extension, a path that is not writable, or a
+  /// carried column whose name the table uses.
   HitTable(const std::string& path, TableKind kind, const TextColumns& carried);
   ~HitTable();
 
-  /// Throws Error when it cannot be written (disk full), like all below.
+  /// Throws Error if writing fails (disk full), as do the calls below.
   void add(std::span<const HitRow> rows);
-  /// blocked[i] is that of ray first_ray + i.
+  /// blocked[i] belongs to ray first_ray + i.
   void add(std::int64_t first_ray, std::span<const std::uint8_t> blocked);
-  /// Moves the whole table into its place.
+  /// Writes the rest of the table and renames the file.
   void commit();
 
  private:
@@ -72,7 +70,7 @@ class HitTable {
   bool npy_;
   std::unique_ptr<ReplaceFile> place_;  // null: standard output
   std::unique_ptr<std::FILE, FileCloser> file_;
-  std::string text_;  // not yet written
+  std::string text_;  // not written yet
   std::int64_t rows_ = 0;
 };
 

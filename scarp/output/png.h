@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PNG pictures, written whole or not at all.
+// Writes PNG images.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +9,18 @@
 
 namespace scarp {
 
-/// Pixels of the caller's: rows from the top, 3 bytes (red, green, blue; sRGB) a pixel, no padding.
+/// Caller-owned pixels: rows from the top, 3 bytes (red, green, blue; sRGB) per pixel, no padding.
 struct RgbView {
   const std::uint8_t* data = nullptr;
   int width = 0;   ///< >= 1
   int height = 0;  ///< >= 1
 };
 
-/// Writes an 8-bit RGB PNG into the place that `file` has reserved, and commits it. `path` is for messages only. Throws
-/// Error when it cannot be written (disk full); then nothing is left once `file` is gone.
+/// Writes an 8-bit RGB PNG to the temporary file of `file`, and commits it. `path` is for messages only. Throws Error
+/// if writing fails (disk full); then no file remains once `file` is destroyed.
 void write_png(ReplaceFile& file, const std::string& path, const RgbView& picture);
 
-/// The same for a picture that was made already.
+/// Opens `path` and writes to it as above.
 void write_png(const std::string& path, const RgbView& picture);
 
 }  // namespace scarp

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// From a band of GDAL's to samples in memory: types, holes, sick values, sizes that memory cannot hold.
+// Reads samples of a GDAL band into memory: converts types, marks holes, rejects invalid values and sizes beyond
+// memory.
 //
 //   in the file                        in memory
 //   Int16, UInt16, Float32             the same
 //   Int8                               int16
 //   Byte                               uint16
-//   Int32, UInt32, Int64, UInt64,      float32, with a note that names the largest rounding
+//   Int32, UInt32, Int64, UInt64,      float32, with a note that states the largest rounding
 //   Float64, Float16
-//   complex                            refused
-//   any, with a mask or alpha band     float32 with NaN where the mask says so
+//   complex                            rejected
+//   any, with a mask or alpha band     float32 with NaN for masked samples
 //   that hides samples
 #pragma once
 
@@ -26,32 +27,32 @@
 
 namespace scarp {
 
-/// What read_band() makes of a band.
+/// Result of read_band().
 struct BandSamples {
   std::variant<std::vector<std::int16_t>, std::vector<std::uint16_t>, std::vector<float>> samples;
   std::optional<double> nodata;
   std::vector<std::string> notes;
 };
 
-/// Reads a window (which must lie inside the band), rows as stored. `nodata` wins over the band's own. Throws Error
-/// whose text has no file name: unreadable, complex, infinite or all nodata, too large for the memory that is free.
+/// Reads a window, which must lie inside the band; rows as stored. `nodata` overrides the band's own. Throws Error
+/// without the file's name: unreadable, complex, infinite or all nodata, too large for the free memory.
 BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
                       GdalSession& session, const Progress& progress);
 
-/// Reads whole rows of a window as `type` into `out`. Throws Error when the file does not have them.
+/// Reads whole rows of a window as `type` into `out`. Throws Error if the file lacks them.
 void read_rows(GDALRasterBand& band, const RasterWindow& window, int row, int rows, GDALDataType type, void* out,
                GdalSession& session);
 
-/// Whether the samples are signed bytes, which GDAL before 3.7 knows only as a remark on Byte.
+/// Returns whether the samples are signed bytes, which GDAL before 3.7 reports only as metadata of Byte.
 bool is_signed_byte(GDALRasterBand& band);
 
-/// The band's own nodata value, in the sign of its samples.
+/// Returns the band's own nodata value, with the sign of its samples.
 std::optional<double> nodata_of(GDALRasterBand& band);
 
-/// Whether the band has a mask that says more than its nodata value.
+/// Returns whether the band has a mask besides its nodata value.
 bool has_own_mask(GDALRasterBand& band);
 
-/// Throws Error when the window's samples need more memory than is free.
+/// Throws Error if the window's samples need more memory than is free.
 void refuse_beyond_memory(const RasterWindow& window, int bytes_per_sample);
 
 }  // namespace scarp

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// binvox files: which voxels of a box are solid, in runs.
+// binvox files: run-length encoded solid voxels of a box.
 //
 //   #binvox 1
 //   dim DEPTH HEIGHT WIDTH       along x, z and y
-//   translate X Y Z              place = translate + scale * (voxel + 1/2) / dim in the mesh that it was made of
+//   translate X Y Z              place = translate + scale * (voxel + 1/2) / dim in the source mesh
 //   scale S
-//   data                         then pairs of bytes: 0 or 1, and how often, 1 to 255; y fastest, then z, then x
+//   data                         then pairs of bytes: 0 or 1, and a count of 1 to 255; y fastest, then z, then x
 //
-// Source: P. Min, "binvox", www.patrickmin.com/binvox. Nothing is allocated before the runs have been counted.
+// Source: P. Min, "binvox", www.patrickmin.com/binvox. Allocates nothing before it has counted the runs.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,14 @@
 
 namespace scarp {
 
+/// The contents of a binvox file.
 struct Binvox {
   static constexpr int kMaxSide = 2048;
 
   ivec3 size{1};  ///< each 1..kMaxSide
   dvec3 translate{0.0};
   double scale = 1;
-  std::vector<std::uint64_t> bits;  ///< of voxels in the file's order, from the lowest bit on
+  std::vector<std::uint64_t> bits;  ///< voxels in file order, from the lowest bit on
 
   std::size_t place(const ivec3& v) const {
     return static_cast<std::size_t>(v.y) +
@@ -33,21 +34,21 @@ struct Binvox {
                (static_cast<std::size_t>(v.z) + static_cast<std::size_t>(size.z) * static_cast<std::size_t>(v.x));
   }
   bool solid(const ivec3& v) const { return bits[place(v) / 64] >> place(v) % 64 & 1; }
-  /// Makes `bits` fit `size`, all empty.
+  /// Resizes `bits` to fit `size`, all empty.
   void clear();
   void set(const ivec3& v) { bits[place(v) / 64] |= std::uint64_t{1} << place(v) % 64; }
   friend bool operator==(const Binvox&, const Binvox&) = default;
 };
 
-/// Throws Error, in one line: no binvox, a side beyond kMaxSide, runs that are none or are not as many voxels as the
-/// header says.
+/// Throws Error, in one line: not a binvox file, a side beyond kMaxSide, invalid runs, or a voxel count that differs
+/// from the header.
 Binvox parse_binvox(std::string_view bytes);
-/// The same from a file; names it in messages.
+/// Parses a file; errors name it.
 Binvox read_binvox(const std::string& path);
 
-/// The bytes of a file of which parse_binvox() makes the same.
+/// Returns the bytes of a file that parse_binvox() maps to the same value.
 std::string binvox_bytes(const Binvox& binvox);
-/// Throws Error when it cannot be written; then nothing is left or changed.
+/// Throws Error if writing fails; then no file is created or changed.
 void write_binvox(const std::string& path, const Binvox& binvox);
 
 }  // namespace scarp

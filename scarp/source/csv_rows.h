@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The rows of a CSV text, one after the other (RFC 4180, with the freedom that files take; see ray_table.h).
+// Iterates over the rows of a CSV text (RFC 4180 with common deviations; see ray_table.h).
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,16 @@ namespace scarp {
 
 class CsvRows {
  public:
-  /// `text` must outlive the object. The separator is the first of , ; and tab in the first row outside of quotes.
+  /// `text` must outlive the object. The separator is the first comma, semicolon or tab outside quotes in the first
+  /// row.
   explicit CsvRows(std::string_view text);
 
-  /// Goes to the next row that is not blank; false at the end. Throws Error, which names the line: quotes that do not
-  /// close, or are followed by more text.
+  /// Moves to the next row that is not blank; returns false at the end. Throws Error naming the line for unclosed
+  /// quotes, or quotes followed by text.
   bool next();
-  /// Of the row, valid until next().
+  /// Fields of the row, valid until next().
   const std::vector<std::string_view>& fields() const { return fields_; }
-  /// Where the row begins, from 1.
+  /// First line of the row, from 1.
   std::int64_t line() const { return row_line_; }
 
  private:
@@ -35,10 +36,10 @@ class CsvRows {
   std::int64_t line_ = 1;
   std::int64_t row_line_ = 0;
   std::vector<std::string_view> fields_;
-  std::deque<std::string> unescaped_;  // fields of the row that had doubled quotes
+  std::deque<std::string> unescaped_;  // fields of the row that contained doubled quotes
 };
 
-/// `text` without blanks and tabs at its ends.
+/// Returns `text` without leading and trailing blanks and tabs.
 std::string_view trimmed(std::string_view text);
 
 }  // namespace scarp

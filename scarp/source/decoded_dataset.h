@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Heights in colours, seen by GDAL as a dataset of one float band that lies where the colours lie. Decoded block by
-// block, as it is read.
+// Heights encoded in colours as a GDAL dataset with one float band, at the same position. Decodes block by block on
+// reading.
 #pragma once
 
 #include <gdal_priv.h>
@@ -11,8 +11,8 @@ namespace scarp {
 
 class DecodedDataset final : public GDALDataset {
  public:
-  /// Over `colours`, which must outlive it: three bands of bytes, red, green, blue, and perhaps alpha (0: a hole).
-  /// Throws Error whose text has no file name: other bands, a palette.
+  /// Wraps `colours`, which must outlive it: three byte bands, red, green, blue, and optionally alpha (0: a hole).
+  /// Throws Error without the file's name for other bands or a palette.
   DecodedDataset(GDALDataset& colours, HeightEncoding encoding);
 
   CPLErr GetGeoTransform(double* map) override { return colours_.GetGeoTransform(map); }

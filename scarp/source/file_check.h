@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What GDAL would answer with a riddle, or with zeros, is asked here first.
+// Checks of input files for which GDAL reports misleading errors, or reads zeros.
 #pragma once
 
 #include <gdal_priv.h>
@@ -9,19 +9,19 @@
 
 namespace scarp {
 
-/// Throws Error (without the file's name) when `path` is an empty file, a Git LFS pointer or not readable. A name that
-/// is no file passes: it may be one of GDAL's own.
+/// Throws Error (without the file's name) if `path` is an empty file, a Git LFS pointer or not readable. Accepts names
+/// that are not files, which may be GDAL's own.
 void check_file(const std::string& path);
 
-/// Throws Error (without the file's name) when the last bytes of a file are missing, as far as its first ones tell:
-/// HDF5 (netCDF-4), classic netCDF, .zip. For what GDAL cannot open.
+/// Throws Error (without the file's name) if the end of a file is missing, as far as its start tells: HDF5 (netCDF-4),
+/// classic netCDF, .zip. For files that GDAL cannot open.
 void check_end(const std::string& path);
 
-/// Up to `count` bytes from `begin`. Throws Error (without the file's name) when it cannot be opened.
+/// Returns up to `count` bytes from `begin`. Throws Error (without the file's name) if the file cannot be opened.
 std::string bytes_from(const std::string& path, std::uint64_t begin, std::size_t count);
 
-/// Throws Error when the file of an open dataset is shorter than its header says, for the formats whose drivers fill up
-/// with zeros then (classic netCDF, ENVI).
+/// Throws Error if the file of an open dataset is shorter than its header requires, for formats whose drivers then read
+/// zeros (classic netCDF, ENVI).
 void check_length(GDALDataset& dataset);
 
 }  // namespace scarp

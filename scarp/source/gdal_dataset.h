@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The two halves of reading: from a name to an open dataset, from there to a Raster. Shared by the readers.
+// The two halves of reading, shared by the readers: from a name to an open dataset, and from there to a Raster.
 #pragma once
 
 #include <gdal_priv.h>
@@ -14,34 +14,34 @@
 
 namespace scarp {
 
-/// While it lives, GDAL calls what is cut off or damaged an error. Formats without compression and with a header of
-/// their own would be filled up with zeros where the file ends early.
+/// Makes GDAL report truncated and damaged files as errors during its lifetime. Otherwise it reads zeros where
+/// uncompressed files with a header of their own end early.
 struct StrictReading {
   GdalOption sizes{"RAW_CHECK_FILE_SIZE", "YES"};
   GdalOption jpeg{"GDAL_ERROR_ON_LIBJPEG_WARNING", "YES"};
 };
 
-/// Opens any raster of GDAL's; on the stack there must be a StrictReading. Throws Error whose text has no file name.
+/// Opens any raster that GDAL reads. Requires a StrictReading on the stack. Throws Error without the file's name.
 GDALDatasetUniquePtr open_gdal_raster(const std::string& path, const GdalSession& session);
 
-/// The files that it is made of, with those that a virtual raster names.
+/// Returns the files of the dataset, including those that a virtual raster names.
 std::vector<std::string> files_of(GDALDataset& dataset);
 
-/// The band of heights: `wanted`, or with 0 the only one. Throws Error whose text has no file name.
+/// Returns the band of heights: `wanted`, or the only one if 0. Throws Error without the file's name.
 int height_band(GDALDataset& dataset, int wanted);
 
-/// Turns the height range, if there is one, into the scale and offset that it means for samples of this type. Throws
-/// Error whose text has no file name: an empty range, signed samples, another scale beside it.
+/// Converts the height range, if any, to a scale and offset for samples of this type. Throws Error without the file's
+/// name: an empty range, signed samples, or a scale in addition.
 void settle_height_range(RasterOptions& options, GDALDataType type, bool signed_byte);
 
-/// Whether it has colours for people to look at: bands of red, green and blue, or a palette.
+/// Returns whether the dataset is a picture: bands of red, green and blue, or a palette.
 bool is_picture(GDALDataset& dataset);
 
-/// Whether it says where it lies on a map.
+/// Returns whether the dataset is georeferenced.
 bool has_place(GDALDataset& dataset);
 
-/// Reads the band that the options name, or the colours that they call an encoding. `path` of the result stays empty.
-/// Throws Error whose text has no file name.
+/// Reads the band that the options name, or the colours that they declare an encoding. Leaves `path` of the result
+/// empty. Throws Error without the file's name.
 Raster read_dataset(GDALDataset& dataset, const RasterOptions& options, GdalSession& session, const Progress& progress);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// GDAL talks to stderr; Scarp says one line. While a GdalSession lives, GDAL's messages of this thread are collected.
+// Collects GDAL's messages, which would otherwise go to stderr.
 #pragma once
 
 #include <cpl_error.h>
@@ -10,7 +10,8 @@
 
 namespace scarp {
 
-/// Registers GDAL's drivers (once per process) and collects its messages; put on the stack around calls of GDAL.
+/// Registers GDAL's drivers (once per process) and collects GDAL's messages of this thread during its lifetime. Place
+/// one on the stack around calls of GDAL.
 class GdalSession {
  public:
   GdalSession();
@@ -18,12 +19,12 @@ class GdalSession {
   GdalSession(const GdalSession&) = delete;
   GdalSession& operator=(const GdalSession&) = delete;
 
-  /// Whether an error (not a warning) came since the last clear().
+  /// Returns whether an error (not a warning) occurred since the last clear().
   bool failed() const { return !errors_.empty(); }
-  /// The first error in one line (the later ones only repeat it from farther away), or `otherwise` when GDAL gave none
-  /// that says something to people.
+  /// Returns the first error in one line (later ones are consequences), or `otherwise` if GDAL reported none that users
+  /// understand.
   std::string reason(const std::string& otherwise) const;
-  /// The different warnings, in one line each.
+  /// Returns the distinct warnings, one line each.
   const std::vector<std::string>& warnings() const { return warnings_; }
   void clear() { errors_.clear(); }
 
@@ -33,7 +34,7 @@ class GdalSession {
   std::vector<std::string> warnings_;
 };
 
-/// Sets one of GDAL's configuration options for this thread while it lives.
+/// Sets a GDAL configuration option for this thread during its lifetime.
 class GdalOption {
  public:
   GdalOption(const char* name, const char* value);

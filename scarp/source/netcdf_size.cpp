@@ -7,10 +7,10 @@
 namespace scarp {
 namespace {
 
-constexpr std::uint64_t kStreaming = 0xffffffff;  // a number of records that is not known
+constexpr std::uint64_t kStreaming = 0xffffffff;  // unknown number of records
 constexpr int kTypeBytes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
-// Takes big-endian numbers from the header; `good` stays false once it ran out of bytes.
+// Takes big-endian numbers from the header; `good` stays false once the bytes run out.
 struct Header {
   std::string_view bytes;
   std::size_t at = 0;
@@ -32,7 +32,7 @@ struct Header {
     good = good && type >= 1 && type < std::size(kTypeBytes);
     return good ? static_cast<std::uint64_t>(kTypeBytes[type]) : 0;
   }
-  // Bytes that fill up words of 4.
+  // Padding to words of 4 bytes.
   void skip(std::uint64_t length) {
     if (!good || length > bytes.size() - at) {
       good = false;
@@ -69,7 +69,7 @@ std::optional<double> netcdf_classic_bytes(std::string_view start) {
   }
   header.skip_attributes();
 
-  // In double: no header, however wrong, makes these overflow.
+  // In double: no header, however wrong, overflows these.
   double least = 0, record_bytes = 0, last_record_end = 0;
   header.number(4);
   for (std::uint64_t n = header.count(); header.good && n > 0; --n) {
@@ -80,7 +80,7 @@ std::optional<double> netcdf_classic_bytes(std::string_view start) {
     for (std::uint64_t d = 0; header.good && d < dimensions; ++d) {
       const std::uint64_t id = header.count();
       if (id >= extents.size()) return {};
-      // The dimension of records has no extent of its own and comes first.
+      // The record dimension has no extent of its own and comes first.
       if (d == 0 && extents[id] == 0) {
         is_record = true;
       } else {
@@ -100,7 +100,7 @@ std::optional<double> netcdf_classic_bytes(std::string_view start) {
     }
   }
   if (!header.good) return {};
-  // A single variable of records is not padded: its records may lie closer by up to 3 bytes each, which is let pass.
+  // A single record variable is not padded: its records may be closer by up to 3 bytes each, which is tolerated.
   if (records != kStreaming && records > 0 && last_record_end > 0) {
     const double between = std::max(0.0, record_bytes - 3) * (static_cast<double>(records) - 1);
     least = std::max(least, last_record_end + between);
@@ -109,15 +109,15 @@ std::optional<double> netcdf_classic_bytes(std::string_view start) {
 }
 
 std::optional<double> hdf5_bytes(std::string_view start) {
-  // Behind the signature and the version of the superblock, that of a kind: where it tells how many bytes addresses
-  // have, and the address of the end, which are little-endian.
+  // After the signature and the superblock's version: each version states the size of addresses and the address of the
+  // end, both little-endian.
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
   constexpr struct { std::size_t address_bytes, end; } kSuperblocks[] = {{13, 40}, {13, 44}, {9, 28}, {9, 28}};
   if (start.substr(0, kSignature.size()) != kSignature || start.size() <= kSignature.size()) return {};
   const auto version = static_cast<unsigned char>(start[kSignature.size()]);
   if (version >= std::size(kSuperblocks)) return {};
   const auto [address_bytes, end] = kSuperblocks[version];
-  constexpr std::size_t kAddressBytes = 8;  // as every file has it that is written on a machine of today
+  constexpr std::size_t kAddressBytes = 8;  // as in every file written on current machines
   if (start.size() < end + kAddressBytes || start[address_bytes] != kAddressBytes) return {};
   double bytes = 0;
   for (std::size_t i = kAddressBytes; i-- > 0;) bytes = bytes * 256 + static_cast<unsigned char>(start[end + i]);

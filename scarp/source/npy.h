@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// NumPy's arrays: .npy files and the members of .npz archives, compressed or not, read through GDAL (/vsizip, raw
-// bands).
+// NumPy arrays: .npy files and members of .npz archives, compressed or not, read through GDAL (/vsizip, raw bands).
 //
-// The first row of the array is the northern one, the first column the western one; C and Fortran order, both byte
-// orders, i1 u1 i2 u2 i4 u4 f4 f8.
+// The first row of the array is the northernmost, the first column the westernmost; C and Fortran order, both byte
+// orders, i1 u1 i2 u2 i4 u4 i8 u8 f2 f4 f8.
 #pragma once
 
 #include <string>
@@ -14,12 +13,12 @@
 
 namespace scarp {
 
-/// Whether the name ends in .npy or .npz, in any case.
+/// Returns whether the name ends in .npy or .npz, ignoring case.
 bool is_npy_path(const std::string& path);
 
-/// Reads a two-dimensional array (three with a leading or trailing 1 will do); in a .npz the one named by options.key,
-/// or the only one. Such files have no georeference: options.bounds and options.crs give it. Throws as
-/// read_gdal_raster() does, and for arrays of other kinds and shapes, and files shorter than their header says.
+/// Reads a two-dimensional array (or three with a leading or trailing 1); from a .npz the one named by options.key, or
+/// the only one. Arrays have no georeference: options.bounds and options.crs provide it. Throws as read_gdal_raster()
+/// does, and for other kinds and shapes, and for files shorter than their header requires.
 Raster read_npy(const std::string& path, const RasterOptions& options, const Progress& progress = {});
 
 }  // namespace scarp

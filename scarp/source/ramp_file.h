@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Colours for values, from files: .cpt of the Generic Mapping Tools, and pictures one row high.
+// Colour ramps from files: .cpt of the Generic Mapping Tools, and images one row high.
 //
 //   .cpt    lines "low colour high colour", ascending and without gaps; a colour is R G B (0..255), R/G/B, or a grey.
-//           Between low and high it goes over from one to the other. Lines of B, F and N (below, above, no data) and
-//           what follows a ';' are skipped. "# HINGE = 0" in a file from -1 to 1: both halves are stretched, the hinge
+//           Colours between low and high are interpolated. Lines starting with B, F and N (below, above, no data) and
+//           text after a ';' are ignored. "# HINGE = 0" in a file from -1 to 1: both halves are stretched, the hinge
 //           stays.
 //   row     a PNG of N x 1 pixels (of higher ones the first row counts): N colours evenly spaced from the lowest value
 //   to
 //           the highest
 //
-// A file whose values go from 0 to 1, or with a hinge from -1 to 1, is laid over whatever range it is used for; others
-// have values of their own, metres for heights.
+// A file whose values go from 0 to 1, or from -1 to 1 with a hinge, is stretched over the range it is used for; others
+// have absolute values, metres for heights.
 #pragma once
 
 #include <cstdint>
@@ -22,22 +22,24 @@
 
 namespace scarp {
 
+/// A range of values and the colours at its ends.
 struct RampSlice {
   double low, high;          ///< low < high
   vec3 srgb_low, srgb_high;  ///< 0..1
 };
 
+/// The slices of a colour ramp.
 struct RampStops {
-  std::vector<RampSlice> slices;  ///< ascending, each beginning where the one before ends; not empty
-  bool stretched = false;         ///< values 0..1, or -1..1 about a hinge, instead of those that are coloured
+  std::vector<RampSlice> slices;  ///< ascending and contiguous; not empty
+  bool stretched = false;         ///< values 0..1, or -1..1 about a hinge, instead of absolute ones
   bool hinged = false;
 };
 
-/// Throws Error naming file and line: unreadable, no colours, values that are not ascending, a colour that is none (of
-/// the models HSV and CMYK there are none).
+/// Throws Error naming file and line: unreadable, no colours, values that do not ascend, an invalid colour (the models
+/// HSV and CMYK are not supported).
 RampStops read_cpt(const std::string& path);
 
-/// Of colours from low to high, 3 bytes each; one or more.
+/// Returns a ramp of one or more colours from low to high, 3 bytes each.
 RampStops ramp_of_row(std::span<const std::uint8_t> rgb);
 
 }  // namespace scarp

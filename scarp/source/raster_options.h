@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the caller knows about a raster file that the file does not say, or says wrongly. One struct for all readers.
+// Reading options: what a raster file does not state, or states wrongly. One struct for all readers.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace scarp {
 
-/// A rectangle of samples, in columns and rows of the file as it is stored.
+/// A rectangle of samples, in columns and rows of the file as stored.
 struct RasterWindow {
   int col = 0;   ///< >= 0
   int row = 0;   ///< >= 0
@@ -18,7 +18,7 @@ struct RasterWindow {
   int rows = 0;  ///< >= 1
 };
 
-/// The outer edges of a raster (of its pixels, not of its samples), in units of its CRS.
+/// Outer edges of a raster (of its pixels, not its samples), in units of its CRS.
 struct MapBounds {
   double west = 0;
   double south = 0;
@@ -26,29 +26,29 @@ struct MapBounds {
   double north = 0;  ///< > south
 };
 
-/// The heights that the least and the greatest sample stand for.
+/// Heights of the smallest and the largest sample value.
 struct HeightRange {
   double low = 0;
   double high = 1;  ///< > low
 };
 
-/// How to read a raster. Every member may stay as it is; those that are set win over the file.
+/// How to read a raster. Members that are set override the file.
 struct RasterOptions {
   int band = 0;                        ///< counts from 1; 0: the only one
-  std::optional<RasterWindow> window;  ///< default: all; must lie inside the raster
-  std::optional<double> nodata;        ///< sample value that marks a hole, any double; NaN: only NaN is one
+  std::optional<RasterWindow> window;  ///< must lie inside the raster; default: everything
+  std::optional<double> nodata;        ///< sample value of a hole, any double; NaN: only NaN is a hole
   std::optional<double> scale;   ///< height = sample * scale + offset, in `unit`; finite, not 0; default: the file's
   std::optional<double> offset;  ///< in `unit`; finite; default: the file's
-  /// Instead of scale and offset, in `unit`: the heights of 0 and of the greatest value of an unsigned sample type
-  /// (65535 of UInt16), or of 0 and 1 in float samples. Signed samples have no such range.
+  /// Replaces scale and offset, in `unit`: heights of 0 and of the largest value of an unsigned sample type (65535 for
+  /// UInt16), or of 0 and 1 for float samples. Not for signed samples.
   std::optional<HeightRange> height_range;
   std::string unit;                 ///< vertical unit: "m", "ft", "us-ft", ...; default: the file's, else metres
-  std::string crs;                  ///< anything GDAL takes: "EPSG:4326", WKT, PROJ text; default: the file's
+  std::string crs;                  ///< any text that GDAL accepts: "EPSG:4326", WKT, PROJ; default: the file's
   std::optional<MapBounds> bounds;  ///< of the whole file, before `window`; default: the file's geotransform
   HeightEncoding encoding = HeightEncoding::none;  ///< of heights in the colours of 3 or 4 Byte bands
-  std::optional<RawFormat> raw;  ///< the file is bare samples, whatever its name; default: by name and content
-  std::string channel;           ///< name of the channel of an EXR; default: the only one, else Y, else R
-  std::string key;               ///< name of the array in a .npz; default: the only one of heights
+  std::optional<RawFormat> raw;  ///< the file contains raw samples, whatever its name; default: by name and content
+  std::string channel;           ///< channel of an EXR; default: the only one, else Y, else R
+  std::string key;               ///< array in a .npz; default: the only one with heights
 };
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bare samples in a file, seen by GDAL as a dataset of one band. Shared by the readers of raw files and of NumPy's.
+// Raw samples in a file as a GDAL dataset with one band. Shared by the readers of raw files and of NumPy arrays.
 #pragma once
 
 #include <gdal_priv.h>
@@ -12,22 +12,22 @@
 
 namespace scarp {
 
-/// GDAL's name for a kind of sample.
+/// GDAL's name for a sample type.
 struct RawSampleType {
   GDALDataType type;
-  bool signed_bytes;  ///< GDAL before 3.7: Byte, and a remark that it has a sign
+  bool signed_bytes;  ///< GDAL before 3.7: Byte with metadata for the sign
 };
 
-/// `kind` is 'i' signed, 'u' unsigned, 'f' float. Nothing for what GDAL cannot read raw (half floats).
+/// `kind` is 'i' signed, 'u' unsigned, 'f' float. Returns nullopt for types that GDAL cannot read raw (half floats).
 std::optional<RawSampleType> raw_sample_type(char kind, int bytes);
 
-/// The name by which GDAL finds the file from anywhere: absolute, unless it is one of GDAL's own (/vsi...).
+/// Returns a name by which GDAL finds the file from anywhere: absolute, unless it is one of GDAL's own (/vsi...).
 std::string full_path(const std::string& path);
 
-/// Length of the file. Throws Error: it does not exist, it is a directory.
+/// Returns the length of the file. Throws Error if it does not exist or is a directory.
 std::int64_t file_bytes(const std::string& path);
 
-/// Where the samples lie.
+/// Position and layout of the samples.
 struct RawBand {
   std::string file;  ///< full_path()
   int cols = 0;
@@ -38,7 +38,7 @@ struct RawBand {
   std::int64_t offset = 0;  ///< of the first sample
 };
 
-/// Opens it; rows lie one behind the other. The file must be long enough. Throws Error whose text has no file name.
+/// Opens the samples; rows are contiguous. The file must be long enough. Throws Error without the file's name.
 GDALDatasetUniquePtr open_raw_band(const RawBand& band, const GdalSession& session);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of bare samples without a header: the .raw and .r16 of game engines, the .bil and .flt whose .hdr is lost.
+// Raw files of samples without a header: .raw and .r16 of game engines, .bil and .flt whose .hdr is lost.
 #pragma once
 
 #include <string>
@@ -10,9 +10,9 @@
 
 namespace scarp {
 
-/// Reads the file as options.raw (which must be there) says. Such files have no georeference: options.bounds and
-/// options.crs give it. Throws as read_gdal_raster() does, and for files whose length is not that of the samples; with
-/// an offset given, bytes behind the samples are left out with a note.
+/// Reads the file as options.raw (which must be set) specifies. Raw files have no georeference: options.bounds and
+/// options.crs provide it. Throws as read_gdal_raster() does, and if the file's length does not match the samples; with
+/// an offset given, it ignores bytes after the samples, with a note.
 Raster read_raw(const std::string& path, const RasterOptions& options, const Progress& progress = {});
 
 }  // namespace scarp

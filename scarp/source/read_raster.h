@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one entry for files with heights: picks the reader.
+// Reads heights from files in any supported format.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@
 
 namespace scarp {
 
-/// With options.raw by read_raw(); else .npy and .npz by read_npy(), .exr by read_exr(), a folder by read_tiles(), all
-/// else by read_gdal_raster(). Throws as they do, and for options that the reader has no use for.
+/// Selects the reader: read_raw() with options.raw; read_npy() for .npy and .npz, read_exr() for .exr, read_tiles() for
+/// a folder, otherwise read_gdal_raster(). Throws as they do, and for options that do not apply to the file.
 Raster read_raster(const std::string& path, const RasterOptions& options, const Progress& progress = {});
 
-/// Several files and folders of them as one raster, put together by their georeference. A folder stands for all rasters
-/// in it, by name. Where tiles overlap the later one wins; gaps become holes, which a note tells. A single file is read
-/// as read_raster() does. Throws Error naming the file: no georeference, or another CRS, cell size, sample type, nodata
-/// value, scale or vertical unit than the first; samples of it beside those of the first; a folder without rasters.
+/// Reads several files and folders as one mosaic, placed by their georeference. A folder stands for all rasters in it,
+/// by name. Where tiles overlap the later one wins; gaps become holes, with a note. A single file is read as by
+/// read_raster(). Throws Error naming the file: no georeference; a CRS, cell size, sample type, nodata value, scale or
+/// vertical unit that differs from the first file's; samples off the first file's grid; a folder without rasters.
 Raster read_tiles(const std::vector<std::string>& inputs, const RasterOptions& options, const Progress& progress = {});
 
 }  // namespace scarp

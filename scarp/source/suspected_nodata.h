@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Samples that may mark holes although their file does not say so.
+// Detects samples that probably mark holes although the file does not declare them.
 //
 //   lowest sample            -32768, -32767, -9999, -99999, -999999, below -1e30
-//   highest sample           above 1e30; the greatest of its type, if it lies apart
-//   either                   if it lies apart by more than all the relief of the Earth
+//   highest sample           above 1e30; the largest value of its type, if isolated
+//   either                   if isolated by more than the relief of the Earth
 //
-// A value lies apart when it is farther from the next one than all others are from each other; of two values the one
+// A value is isolated if it is farther from the next value than all others are from each other; of two values, the one
 // farther from 0.
 #pragma once
 
@@ -17,11 +17,11 @@
 
 namespace scarp {
 
-/// Marks such as -3.4e38, 1e38 and 9.96e36 (netCDF's) are beyond it, and nothing that is measured is.
+/// Marks such as -3.4e38, 1e38 and 9.96e36 (netCDF's) exceed it; measured values do not.
 inline constexpr double kBeyondHeights = 1e30;
 
-/// A note for the lowest and for the highest sample, where it may mark holes: it names the option that says so.
-/// `greatest` is the greatest value that samples of the file's type can have; nothing for floats.
+/// Returns a note for the lowest and for the highest sample if it may mark holes; the note names the option that
+/// declares it. `greatest` is the largest value of the file's sample type; nullopt for floats.
 std::vector<std::string> suspected_nodata(const Raster& raster, std::optional<double> greatest);
 
 }  // namespace scarp

@@ -30,7 +30,7 @@ double covered_samples(const std::vector<TileRect>& tiles) {
   std::vector<TileRect> by_row = tiles;
   std::sort(by_row.begin(), by_row.end(), [](const TileRect& a, const TileRect& b) { return a.row < b.row; });
 
-  // Between two neighbouring edges every column has the same tiles: their rows are merged from north to south.
+  // Between adjacent edges every column has the same tiles: merge their rows from north to south.
   double covered = 0;
   for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
     std::int64_t rows = 0, south = std::numeric_limits<std::int64_t>::min();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tiles as rectangles of whole samples: how much of the raster that they make together is under none of them?
+// Coverage of a mosaic by its tiles, as rectangles of whole samples.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace scarp {
 
-/// Samples [col, col + cols) x [row, row + rows) of the whole.
+/// Samples [col, col + cols) x [row, row + rows) of the mosaic.
 struct TileRect {
   std::int64_t col = 0;
   std::int64_t row = 0;
@@ -15,10 +15,10 @@ struct TileRect {
   std::int64_t rows = 0;  ///< >= 1
 };
 
-/// The least rectangle that holds all tiles, of which there must be one.
+/// Returns the smallest rectangle around all tiles; there must be at least one.
 TileRect bounding_rect(const std::vector<TileRect>& tiles);
 
-/// Samples under at least one tile; those under several count once. Time: tiles times their different edges.
+/// Returns the number of samples covered by at least one tile. Time: tiles times their distinct edges.
 double covered_samples(const std::vector<TileRect>& tiles);
 
 }  // namespace scarp

@@ -9,7 +9,7 @@ namespace {
 
 struct Unit {
   double metres;
-  std::string_view names;  // lower case, letters only, each between blanks
+  std::string_view names;  // lower case, letters only, separated by blanks
 };
 
 constexpr double kFoot = 0.3048;                   // international foot, 1959
@@ -27,14 +27,14 @@ constexpr Unit kUnits[] = {
     {6 * kFoot, " fathom fathoms "},
 };
 
-// Feet of other countries (Clarke's, the Indian, the Gold Coast's) differ from the international one by 5e-5 at most,
-// the two of the US by 2e-6; units of the same length by the rounding of their texts, 1e-9 or so.
+// Feet of other countries (Clarke's, Indian, Gold Coast) differ from the international one by at most 5e-5, the two US
+// feet by 2e-6; texts of the same unit by their rounding, about 1e-9.
 constexpr double kFeetDiffer = 1e-4, kSameLength = 1e-7;
 
 }  // namespace
 
 std::optional<double> metres_per_vertical_unit(std::string_view name) {
-  // "1/3 ft", "10 m" and "m^2" are other units than the word in them.
+  // "1/3 ft", "10 m" and "m^2" are not the unit that they contain.
   if (name.find_first_of("0123456789/*^%") != std::string_view::npos) return {};
   // "U.S. survey foot", "us-ft" and "Foot_US" differ by case and punctuation only.
   std::string plain = " ";

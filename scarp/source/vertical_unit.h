@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Units of height by the many names that files give them.
+// Vertical units by the many names in use.
 #pragma once
 
 #include <optional>
@@ -7,12 +7,11 @@
 
 namespace scarp {
 
-/// Metres per unit: "m", "Metres", "ft", "US survey foot", "us-ft", "km", ...; nothing for a name that is no length
-/// known here.
+/// Returns metres per unit: "m", "Metres", "ft", "US survey foot", "us-ft", "km", ...; nullopt for an unknown name.
 std::optional<double> metres_per_vertical_unit(std::string_view name);
 
-/// "ft" or "us-ft" when a unit of so many metres is a foot, the international one, that of the US or another country's;
-/// else empty.
+/// Returns "ft" or "us-ft" if a unit of this many metres is a foot (international, US or another country's), otherwise
+/// an empty text.
 std::string_view foot_of(double metres);
 
 }  // namespace scarp

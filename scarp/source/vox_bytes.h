@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers, texts and dictionaries in the bytes of a .vox file, in and out.
+// Reads and writes numbers, strings and dictionaries in .vox files.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace scarp {
 
-/// Reads from the beginning of some bytes; every call throws Error where they end too early.
+/// Reads from the start of `bytes`; every call throws Error if they end too early.
 class VoxBytes {
  public:
   explicit VoxBytes(std::string_view bytes) : rest_(bytes) {}
@@ -20,7 +20,7 @@ class VoxBytes {
   std::string_view rest() const { return rest_; }
   std::string_view take(std::size_t count);
   std::int32_t number();
-  /// A number of things of which each needs at least so many bytes.
+  /// Reads a count of items that take at least `least_bytes` each.
   std::size_t count(std::size_t least_bytes);
   std::string text();
   VoxAttributes attributes();
@@ -29,7 +29,7 @@ class VoxBytes {
   std::string_view rest_;
 };
 
-/// Bytes of a file for a message: in quotes, at most 24, others than printable ones as dots.
+/// Formats bytes of a file for a message: in quotes, at most 24, with dots for unprintable ones.
 std::string printable(std::string_view bytes);
 
 }  // namespace scarp

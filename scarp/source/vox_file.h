@@ -8,14 +8,14 @@
 //     nTRN nGRP nSHP  ...        the scene: transforms, groups, shapes (uses of models); see vox_scene.h
 //     LAYR  ...                  layers, which may be hidden
 //     RGBA                       the palette: entry i is the colour of index i + 1; without it, vox_default_palette()
-//     IMAP                       in which order the palette is shown by the editor; colours do not depend on it
+//     IMAP                       display order of the palette in the editor; does not affect colours
 //     MATL  ...                  materials
-//     others                     kept as they are
+//     others                     kept unchanged
 //
-// Numbers are little-endian, 4 bytes. Texts and dictionaries of texts have their lengths before them.
+// Numbers are little-endian, 4 bytes. Strings and dictionaries are preceded by their lengths.
 //
-// Source: ephtracy/voxel-model, "MagicaVoxel .vox file format" and its extension. Hostile files are refused before
-// anything is allocated that they ask for: every count is checked against the bytes that are there.
+// Source: ephtracy/voxel-model, "MagicaVoxel .vox file format" and its extension. Malformed files are rejected before
+// any allocation: every count is checked against the available bytes.
 #pragma once
 
 #include <array>
@@ -31,21 +31,24 @@
 
 namespace scarp {
 
+/// A solid voxel of a model.
 struct VoxVoxel {
   std::uint8_t x = 0, y = 0, z = 0;
-  std::uint8_t index = 1;  ///< of the palette, 1..255
+  std::uint8_t index = 1;  ///< palette index, 1..255
   friend bool operator==(const VoxVoxel&, const VoxVoxel&) = default;
 };
 
+/// A model.
 struct VoxModel {
   ivec3 size{1};                 ///< each 1..256
-  std::vector<VoxVoxel> voxels;  ///< inside of the size; of several in one place the last counts
+  std::vector<VoxVoxel> voxels;  ///< inside the size; of several at one position the last counts
   friend bool operator==(const VoxModel&, const VoxModel&) = default;
 };
 
-/// Names and values in the file's order; see vox_scene.h for what some mean.
+/// Names and values in file order; see vox_scene.h for the meaning of some.
 using VoxAttributes = std::vector<std::pair<std::string, std::string>>;
 
+/// A node that places its child.
 struct VoxTransform {
   int child = 0;      ///< node
   int reserved = -1;  ///< always -1
@@ -54,22 +57,26 @@ struct VoxTransform {
   friend bool operator==(const VoxTransform&, const VoxTransform&) = default;
 };
 
+/// A node with children.
 struct VoxGroup {
   std::vector<int> children;  ///< nodes
   friend bool operator==(const VoxGroup&, const VoxGroup&) = default;
 };
 
+/// Use of a model in a shape, with attributes.
 struct VoxModelUse {
   int model = 0;
   VoxAttributes attributes;
   friend bool operator==(const VoxModelUse&, const VoxModelUse&) = default;
 };
 
+/// A node that shows models.
 struct VoxShape {
   std::vector<VoxModelUse> models{1};  ///< one per frame
   friend bool operator==(const VoxShape&, const VoxShape&) = default;
 };
 
+/// A node of the scene.
 struct VoxNode {
   int id = 0;
   VoxAttributes attributes;
@@ -77,6 +84,7 @@ struct VoxNode {
   friend bool operator==(const VoxNode&, const VoxNode&) = default;
 };
 
+/// A layer.
 struct VoxLayer {
   int id = 0;
   VoxAttributes attributes;
@@ -84,13 +92,14 @@ struct VoxLayer {
   friend bool operator==(const VoxLayer&, const VoxLayer&) = default;
 };
 
+/// A material.
 struct VoxMaterial {
   int id = 1;                ///< palette index
   VoxAttributes attributes;  ///< _type: _diffuse, _metal, _glass, _emit, ...; _rough, _ior, _emit, ...
   friend bool operator==(const VoxMaterial&, const VoxMaterial&) = default;
 };
 
-/// A chunk that is not looked into: rOBJ, rCAM, NOTE, ...
+/// An uninterpreted chunk: rOBJ, rCAM, NOTE, ...
 struct VoxChunk {
   std::string name;  ///< 4 bytes
   std::string content;
@@ -100,14 +109,15 @@ struct VoxChunk {
 
 /// Red, green, blue, alpha.
 using VoxColour = std::array<std::uint8_t, 4>;
-/// As in the file: entry i is the colour of palette index i + 1; the last one belongs to none.
+/// As in the file: entry i is the colour of palette index i + 1; the last entry is unused.
 using VoxPalette = std::array<VoxColour, 256>;
 
+/// The document of a .vox file.
 struct VoxFile {
   int version = 150;
-  bool pack = false;  ///< whether there is a chunk PACK
+  bool pack = false;  ///< whether there is a PACK chunk
   std::vector<VoxModel> models;
-  std::vector<VoxNode> nodes;  ///< the first one is the root; none: models stand by themselves
+  std::vector<VoxNode> nodes;  ///< the first one is the root; empty: no scene
   std::vector<VoxLayer> layers;
   std::optional<VoxPalette> palette;
   std::optional<std::array<std::uint8_t, 256>> index_map;
@@ -115,27 +125,27 @@ struct VoxFile {
   std::vector<VoxChunk> others;
   friend bool operator==(const VoxFile&, const VoxFile&) = default;
 
-  /// The palette that applies.
+  /// Returns the effective palette.
   const VoxPalette& colours() const;
 };
 
-/// What files without RGBA mean: the levels ff cc 99 66 33 00 of red, green and blue in all combinations, blue fastest,
-/// without black, then ten more shades of red, green, blue and grey each.
+/// Returns the palette of files without RGBA: the levels ff cc 99 66 33 00 of red, green and blue in all combinations,
+/// blue fastest, without black, then ten more shades each of red, green, blue and grey.
 const VoxPalette& vox_default_palette();
 
-/// The value of the last attribute with this name.
+/// Returns the value of the last attribute with this name.
 std::optional<std::string_view> find_attribute(const VoxAttributes& attributes, std::string_view name);
 
-/// Throws Error, in one line: no .vox, another version, cut off, sizes that do not fit, voxels out of place or of index
-/// 0, nodes that do not exist, are not unique or contain themselves, models that do not exist, rotations that are none.
+/// Throws Error, in one line: not .vox, another version, truncated, inconsistent sizes, voxels outside the model or
+/// with index 0, nodes that are missing, duplicate or contain themselves, missing models, invalid rotations.
 VoxFile parse_vox(std::string_view bytes);
-/// The same from a file; names it in messages.
+/// Parses a file; errors name it.
 VoxFile read_vox(const std::string& path);
 
-/// The bytes of a file from which parse_vox() makes the same document. Throws Error where the document is none that
-/// parse_vox() takes.
+/// Returns the bytes of a file that parse_vox() maps to the same document. Throws Error for a document that parse_vox()
+/// would reject.
 std::string vox_bytes(const VoxFile& file);
-/// Throws Error when it cannot be written; then nothing is left or changed.
+/// Throws Error if writing fails; then no file is created or changed.
 void write_vox(const std::string& path, const VoxFile& file);
 
 }  // namespace scarp

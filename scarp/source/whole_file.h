@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files that are read and written whole.
+// Reads and writes whole files.
 #pragma once
 
 #include <cstdint>
@@ -9,15 +9,15 @@
 
 namespace scarp {
 
-/// The bytes of a file. No memory is taken for what is no such file: first `believe` is shown its first bytes, up to
-/// 64, and its size; where that is false, they are all that is returned. What it throws goes through. Throws Error: not
-/// there, no file, not to be read to its end.
+/// Returns the bytes of a file. First calls `believe` with its first bytes, up to 64, and its size; if that returns
+/// false, returns only those bytes, so that no memory is allocated for a file of another kind. Exceptions of `believe`
+/// propagate. Throws Error: missing, not a file, not readable to its end.
 std::string whole_file(const std::string& path,
                        const std::function<bool(std::string_view first, std::uint64_t size)>& believe);
-/// The same; believed is what begins with `magic`.
+/// Returns the bytes of a file that begins with `magic`; as above for others.
 std::string whole_file(const std::string& path, std::string_view magic);
 
-/// A file of these bytes, there whole or not at all. Throws Error naming the path.
+/// Writes a file atomically. Throws Error naming the path.
 void write_whole_file(const std::string& path, std::string_view bytes);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Text inside the XML of virtual datasets.
+// Text in the XML of virtual datasets.
 #pragma once
 
 #include <cpl_conv.h>
@@ -9,7 +9,7 @@
 
 namespace scarp {
 
-/// The text with its <, > and & (and quotes) escaped.
+/// Escapes <, >, & and quotes.
 inline std::string xml_text(const std::string& text) {
   char* escaped = CPLEscapeString(text.c_str(), static_cast<int>(text.size()), CPLES_XML);
   std::string result = escaped;

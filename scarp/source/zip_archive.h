@@ -9,16 +9,16 @@
 
 namespace scarp {
 
-/// Whether the file begins as archives do.
+/// Returns whether the file begins like an archive.
 bool is_zip(const std::string& path);
 
-/// Whether the record is there that archives end with, without which nothing in them is found.
+/// Returns whether the file has the end record, without which its members cannot be found.
 bool has_zip_end(const std::string& path);
 
-/// GDAL's name of the archive as a folder. /vsizip wants the full name, in braces when it does not end in .zip.
+/// Returns GDAL's folder name of the archive. /vsizip needs the full name, in braces unless it ends in .zip.
 std::string zip_folder(const std::string& path);
 
-/// All files in it, with their folders.
+/// Returns all files in the archive, with their folders.
 std::vector<std::string> zip_members(const std::string& path);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Work for the device: recorded in order, run as one, each pass between two timestamps.
+// Command recording: dispatches and draws that run in order, each between two timestamps.
 #pragma once
 
 #include <array>
@@ -19,46 +19,45 @@
 
 namespace scarp {
 
-/// One dispatch or drawing that has run.
+/// Timing of one dispatch or draw.
 struct PassTime {
-  std::string name;                   ///< of its pipeline, of several the first
-  std::optional<double> nanoseconds;  ///< nothing where the device has no timestamps
+  std::string name;                   ///< name of its pipeline (of the first, if several)
+  std::optional<double> nanoseconds;  ///< empty if the device has no timestamps
 };
 
-/// May be used again and again: record, run(), record, run(). Buffers and pipelines must live until run() returns.
+/// A reusable command list: record, run(), record, run(). Buffers and pipelines must live until run() returns.
 class Commands {
  public:
   explicit Commands(const Device& device);
   Commands(Commands&&) noexcept;
   Commands& operator=(Commands&&) noexcept;
-  /// Waits for what still runs.
+  /// Waits for a run that has not finished.
   ~Commands();
 
   using Groups = std::array<std::uint32_t, 3>;
-  /// `push` is the pipeline's push-constant block. `groups` counts workgroups, each at most 65535 (what every device
-  /// allows). A pass sees what earlier ones of the same run have written only after a barrier().
+  /// `push` is the pipeline's push-constant block. `groups` counts workgroups, each at most 65535 (the limit that every
+  /// device supports). A pass sees the writes of earlier passes of the same run only after a barrier().
   template <class Push>
   void dispatch(const ComputePipeline& pipeline, const Push& push, const Groups& groups) {
     static_assert(std::is_trivially_copyable_v<Push> && sizeof(Push) <= kMaxPushBytes);
     record_dispatch(pipeline, &push, sizeof push, groups);
   }
-  /// One pass that draws into a target, which is cleared first: colours to 0, depths to `clear_depth` (0 is farthest).
-  /// Calls are drawn in their order; there is at least one. Seen by later passes after a barrier().
+  /// Draws into a target in one pass. Clears colours to 0 and depths to `clear_depth` (0 is farthest) first. Executes
+  /// `calls` (at least one) in order. Later passes see the result after a barrier().
   void draw(const RasterTarget& target, std::initializer_list<DrawCall> calls, float clear_depth = 0) {
     record_draw(target, {calls.begin(), calls.size()}, clear_depth);
   }
-  /// Copies an image of a target that was drawn into in this run: colour 0, 1, ..., or, as the one after, depth. Rows
-  /// from the top, 16 bytes (four floats) a pixel of colours, 4 of depths.
+  /// Copies an image of a target drawn in this run: colours 0, 1, ..., then depth. Rows from the top; 16 bytes (four
+  /// floats) per colour pixel, 4 per depth pixel.
   void copy(const RasterTarget& from, std::uint32_t image, const DeviceBuffer& to);
-  /// Writes one 32-bit word all over a part of a buffer; offset and size as for upload().
+  /// Fills part of a buffer with a 32-bit word; offset and size as for upload().
   void fill(const DeviceBuffer& buffer, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
-  /// What was recorded before is done, and its writes are seen, before what comes after begins.
+  /// Full barrier: earlier commands finish, and their writes are visible, before later ones begin.
   void barrier();
 
-  /// Runs what was recorded and waits. Throws Error when the device is lost or has not finished within
-  /// DeviceSettings::timeout_s.
+  /// Runs the recorded commands and waits. Throws Error if the device is lost or exceeds DeviceSettings::timeout_s.
   void run();
-  /// The dispatches and drawings of the last run(), in order.
+  /// Dispatches and draws of the last run(), in order.
   const std::vector<PassTime>& passes() const;
 
  private:

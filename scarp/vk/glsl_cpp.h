@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The one piece of glue by which a `*.glsl.h` is C++ and GLSL at once: everything else in such a file is plain text of
-// both languages.
+// Lets a `*.glsl.h` file compile as both C++ and GLSL. The rest of such a file is the common subset of both languages.
 //
 //   #include "scarp/vk/glsl_cpp.h"
 //   SCARP_GLSL_BEGIN
@@ -9,9 +8,9 @@
 //   SCARP_FN uint entry_of(Level level, uint col, uint row) { return level.begin + row * level.cols + col; }
 //   SCARP_GLSL_END
 //
-// Structs hold float, int, uint, their vectors and Address; no bool, no matrix, no 64-bit number. In C++ all of it is
-// in namespace scarp::glsl. Functions that must run in C++, too, do without swizzles. A shader that includes such a
-// file enables GL_GOOGLE_include_directive, and GL_EXT_scalar_block_layout for its blocks.
+// Structs contain float, int, uint, vectors of these and Address; no bool, no matrices, no 64-bit types. In C++
+// everything is in namespace scarp::glsl. Functions that also run in C++ use no swizzles. Shaders that include such a
+// file enable GL_GOOGLE_include_directive, and GL_EXT_scalar_block_layout for their blocks.
 #ifndef SCARP_VK_GLSL_CPP_H
 #define SCARP_VK_GLSL_CPP_H
 
@@ -36,12 +35,11 @@ using std::abs, std::ceil, std::clamp, std::floor, std::max, std::min, std::sqrt
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
 inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 
-/// Where a buffer lies in the device's memory (DeviceBuffer::address()); low word first, so that GLSL needs no 64-bit
-/// integers.
+/// Device address of a buffer (DeviceBuffer::address()). Low word first, so that GLSL needs no 64-bit integers.
 struct Address {
   uint low = 0, high = 0;
   Address() = default;
-  Address(std::uint64_t address)  // NOLINT: meant to be implicit
+  Address(std::uint64_t address)  // NOLINT: implicit by design
       : low(static_cast<uint>(address)), high(static_cast<uint>(address >> 32)) {}
 };
 
@@ -52,7 +50,7 @@ struct Address {
 #define SCARP_FN inline
 #define SCARP_OUT(type) type&
 #define SCARP_INOUT(type) type&
-// No fusing and no reordering: the flags of the build see to it in C++, and GLSL ES 3.0 has no word for it.
+// No contraction and no reordering: build flags ensure it in C++; GLSL ES 3.0 has no keyword for it.
 #define SCARP_PRECISE
 
 #else
@@ -67,7 +65,7 @@ struct Address {
 #else
 #define SCARP_PRECISE precise
 #endif
-// A reference is made of it: SomeBuffer(address), with GL_EXT_buffer_reference_uvec2.
+// Converted to a reference by SomeBuffer(address), with GL_EXT_buffer_reference_uvec2.
 #define Address uvec2
 
 #endif

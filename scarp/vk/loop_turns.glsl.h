@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// How long loops of a shader may be. C++ and GLSL.
+// Iteration limit for shader loops. C++ and GLSL.
 //
-// Mesa's lavapipe leaves all loops of an invocation, without a word, after 65,535 turns in all
-// (LP_MAX_TGSI_LOOP_ITERATIONS of llvmpipe); invocations share a vector, so that a turn counts when any of them takes
-// it. And other drivers stop what takes seconds. So loops are interrupted before, and go on in the next run.
+// Mesa's lavapipe silently leaves all loops of an invocation after 65,535 iterations in total
+// (LP_MAX_TGSI_LOOP_ITERATIONS of llvmpipe). Invocations share a vector, so an iteration counts if any of them executes
+// it. Other drivers stop shaders that run for seconds. Loops therefore stop earlier and continue in the next run.
 #ifndef SCARP_VK_LOOP_TURNS_GLSL_H
 #define SCARP_VK_LOOP_TURNS_GLSL_H
 
@@ -11,7 +11,8 @@
 
 SCARP_GLSL_BEGIN
 
-/// Turns of loops in one run of an invocation, at most: a tenth is left for short loops that nobody counts.
+/// Maximum loop iterations per invocation and run. A tenth of lavapipe's limit is left for short loops that are not
+/// counted.
 const int kScarpLoopTurns = 60000;
 
 SCARP_GLSL_END

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Memory of the device: few buffers that live long, each with an allocation of its own, and one staging ring through
-// which everything comes and goes.
+// Device memory: a few long-lived buffers, each with its own allocation, and one staging ring for all transfers.
 #pragma once
 
 #include <cstddef>
@@ -14,18 +13,18 @@
 
 namespace scarp {
 
-/// A buffer in the device's own memory, for shaders (by its address) and transfers.
+/// A buffer in device-local memory, for shaders (by address) and transfers.
 class DeviceBuffer {
  public:
-  /// `bytes` > 0, a multiple of 4. `name` is for messages. Contents are undefined. Throws Error when the device does
-  /// not have the memory: how much was asked, and how much there is.
+  /// `bytes` > 0, a multiple of 4. `name` is for messages. Contents are undefined. Throws Error if the device lacks the
+  /// memory, stating the requested and the available size.
   DeviceBuffer(const Device& device, std::uint64_t bytes, const std::string& name);
   DeviceBuffer(DeviceBuffer&&) noexcept;
   DeviceBuffer& operator=(DeviceBuffer&&) noexcept;
   ~DeviceBuffer();
 
   std::uint64_t bytes() const;
-  /// For buffer references of shaders; a multiple of 16.
+  /// Address for buffer references in shaders; a multiple of 16.
   std::uint64_t address() const;
 
   struct Impl;  // raii.h
@@ -35,20 +34,20 @@ class DeviceBuffer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Copies to and from a buffer; they return when the copy is done. Offsets and sizes are multiples of 4 and inside
-/// the buffer. Throws Error when the device is lost.
+/// Copy to and from a buffer, and return when the copy is done. Offsets and sizes are multiples of 4 and within the
+/// buffer. Throw Error if the device is lost.
 void upload(const DeviceBuffer& to, std::uint64_t offset, const void* from, std::uint64_t bytes);
 void download(const DeviceBuffer& from, std::uint64_t offset, void* to, std::uint64_t bytes);
 
-/// Part of a buffer: `rows` rows of `row_bytes`, from the begin of one to the next `stride` bytes (all multiples of 4).
+/// Part of a buffer: `rows` rows of `row_bytes` bytes, `stride` bytes apart (all multiples of 4).
 struct BufferRows {
   std::uint64_t offset = 0;
   std::uint64_t row_bytes = 0;
   std::uint64_t rows = 1;
-  std::uint64_t stride = 0;  ///< >= row_bytes; means nothing for one row
+  std::uint64_t stride = 0;  ///< >= row_bytes; ignored if rows == 1
 };
-/// Uploads what `fill(piece, first)` writes: bytes [first, first + piece.size()) of the rows set one after another, in
-/// pieces of some megabytes that begin and end at multiples of 4. One piece is filled while another is copied.
+/// Uploads rows in pieces of some megabytes. fill(piece, first) writes bytes [first, first + piece.size()) of the
+/// concatenated rows; pieces begin and end at multiples of 4. One piece is filled while another is copied.
 void upload_rows(const DeviceBuffer& to, const BufferRows& rows,
                  const std::function<void(std::span<std::byte> piece, std::uint64_t first)>& fill);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A compute shader, ready to run.
+// Compute pipelines.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,15 @@
 
 namespace scarp {
 
-/// What every device allows.
+/// Push-constant size that every device supports.
 constexpr std::uint32_t kMaxPushBytes = 128;
 
+/// A compute shader with its layout.
 class ComputePipeline {
  public:
   /// `spirv` has the entry point main, no bindings and a push-constant block of `push_bytes` (a multiple of 4, at most
-  /// kMaxPushBytes). `constants` are the specialisation constants 0, 1, 2, ..., each a 32-bit word (bit_cast a float).
-  /// Throws Error when the driver refuses the shader.
+  /// kMaxPushBytes). `constants` are the specialisation constants 0, 1, 2, ..., each a 32-bit word (bit_cast floats).
+  /// Throws Error if the driver rejects the shader.
   ComputePipeline(const Device& device, std::span<const std::uint32_t> spirv, const std::string& name,
                   std::uint32_t push_bytes, std::span<const std::uint32_t> constants = {});
   ComputePipeline(ComputePipeline&&) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: what the public headers hide, in terms of Vulkan-Hpp. Nothing of vk:: leaves the station, its
-// exceptions least of all.
+// Private to the station: implementation types in terms of Vulkan-Hpp. Neither vk:: types nor vk:: exceptions leave the
+// station.
 #pragma once
 
 #include <algorithm>
@@ -21,13 +21,13 @@
 
 namespace scarp {
 
-/// That there is no driver, and where one was looked for.
+/// Message that no driver was found, and where drivers were searched.
 std::string no_driver();
 
-/// What a failure of Vulkan means for who asked for `what`; `device` names the device.
+/// Message for a Vulkan failure during `what`; `device` names the device.
 std::string vulkan_failure(vk::Result result, const std::string& device, const std::string& what);
 
-/// Calls `f`, and turns what Vulkan-Hpp throws into Error.
+/// Calls `f` and converts exceptions of Vulkan-Hpp to Error.
 template <class F>
 decltype(auto) guarded(const std::string& device, const std::string& what, F&& f) {
   try {
@@ -37,10 +37,10 @@ decltype(auto) guarded(const std::string& device, const std::string& what, F&& f
   }
 }
 
-/// The loader and an instance of it, with the validation layer where that was asked for.
+/// The loader and an instance, with the validation layer if requested.
 class VulkanInstance {
  public:
-  /// Throws Error: no loader; no validation layer.
+  /// Throws Error if there is no loader or no validation layer.
   explicit VulkanInstance(bool validation);
 
   std::vector<vk::raii::PhysicalDevice> physical_devices() const;
@@ -55,14 +55,14 @@ class VulkanInstance {
                                     VkDebugUtilsMessageTypeFlagsEXT types,
                                     const VkDebugUtilsMessengerCallbackDataEXT* data, void* messages);
 
-  std::unique_ptr<Messages> messages_;  // the messenger writes to it until it is gone
+  std::unique_ptr<Messages> messages_;  // the messenger writes to it until destroyed
   std::optional<vk::raii::Context> context_;
   std::optional<vk::raii::Instance> instance_;
   std::optional<vk::raii::DebugUtilsMessengerEXT> messenger_;
 };
 
-/// Of a device's queue families, the one that work is given to: the first that computes; where there is a choice, one
-/// that also draws, and then one with timestamps.
+/// Returns the queue family for all work: the first that supports compute; prefers families with graphics, then with
+/// timestamps.
 std::optional<std::uint32_t> compute_family(std::span<const vk::QueueFamilyProperties> families);
 
 DeviceDescription describe(const vk::raii::PhysicalDevice& device);
@@ -74,10 +74,10 @@ struct Device::Impl {
   ~Impl();
 
   void submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence);
-  /// Waits, and makes the fence ready for the next time. Throws Error when it takes longer than the settings allow.
+  /// Waits for the fence and resets it. Throws Error after the time limit of the settings.
   void wait(const vk::raii::Fence& fence, const std::string& what);
   const std::string& name() const { return description.name; }
-  /// The memory type for a buffer; the first that has all `flags`.
+  /// Returns the first memory type for a buffer that has all `flags`.
   std::optional<std::uint32_t> memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const;
 
   DeviceSettings settings;
@@ -91,14 +91,14 @@ struct Device::Impl {
   vk::raii::Device device;
   vk::raii::Queue queue;
   vk::raii::CommandPool pool;
-  std::unique_ptr<StagingRing> staging;  // made when first used
+  std::unique_ptr<StagingRing> staging;  // made on first use
 };
 
 struct DeviceBuffer::Impl {
   std::shared_ptr<Device::Impl> device;
   std::string name;
   std::uint64_t bytes;
-  vk::raii::DeviceMemory memory;  // goes after the buffer
+  vk::raii::DeviceMemory memory;  // destroyed after the buffer
   vk::raii::Buffer buffer;
   std::uint64_t address;
 };
@@ -120,7 +120,7 @@ struct DeviceImage {
 struct RasterTarget::Impl {
   std::shared_ptr<Device::Impl> device;
   std::uint32_t width, height;
-  std::vector<DeviceImage> images;  // the colours, then the depths
+  std::vector<DeviceImage> images;  // colours, then depth
   vk::raii::RenderPass pass;
   vk::raii::Framebuffer framebuffer;
 
@@ -135,11 +135,11 @@ struct RasterPipeline::Impl {
   vk::raii::Pipeline pipeline;
 };
 
-/// The specialisation constants 0, 1, 2, ..., for as long as both arguments live.
+/// Specialisation constants 0, 1, 2, ...; valid while both arguments live.
 vk::SpecializationInfo specialisation(std::span<const std::uint32_t> constants,
                                       std::vector<vk::SpecializationMapEntry>& entries);
 
-/// All that was recorded before is done, and its writes are seen, before what comes after begins.
+/// Earlier commands finish, and their writes are visible, before later ones begin.
 void full_barrier(const vk::raii::CommandBuffer& commands);
 
 }  // namespace scarp

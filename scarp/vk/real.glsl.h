@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Formulas of pictures that the CPU computes in double and devices in single precision, from one text:
+// Scalar types for formulas that run in double on the CPU and in single precision on devices.
 //
-//   real, real2, real3   double, dvec2, dvec3 in C++; float, vec2, vec3 in GLSL. A number is written real(0.1)
-//   vec3                 colours, floats on both sides
+//   real, real2, real3   double, dvec2, dvec3 in C++; float, vec2, vec3 in GLSL; literals are real(0.1)
+//   vec3                 colours, single precision on both sides
 #ifndef SCARP_RENDER_REAL_GLSL_H
 #define SCARP_RENDER_REAL_GLSL_H
 

@@ -11,7 +11,7 @@ constexpr std::uint64_t kHalves = 2;
 vk::raii::DeviceMemory host_memory(const Device::Impl& device, const vk::raii::Buffer& buffer) {
   using Flag = vk::MemoryPropertyFlagBits;
   const vk::MemoryRequirements needs = buffer.getMemoryRequirements();
-  // Cached memory is far faster to read; memory that is coherent exists on every device.
+  // Cached memory is far faster to read; every device has coherent memory.
   auto type = device.memory_type(needs.memoryTypeBits, Flag::eHostVisible | Flag::eHostCoherent | Flag::eHostCached);
   if (!type) type = device.memory_type(needs.memoryTypeBits, Flag::eHostVisible | Flag::eHostCoherent);
   vk::raii::DeviceMemory memory(device.device, vk::MemoryAllocateInfo(needs.size, type.value()));
@@ -19,7 +19,7 @@ vk::raii::DeviceMemory host_memory(const Device::Impl& device, const vk::raii::B
   return memory;
 }
 
-// The copies that put bytes [first, first + size) of the rows, set one after another, to their places.
+// Copies that scatter bytes [first, first + size) of the concatenated rows to their rows.
 std::vector<vk::BufferCopy> copies_of(const BufferRows& rows, std::uint64_t half_begin, std::uint64_t first,
                                       std::uint64_t size) {
   if (rows.rows == 1 || rows.stride == rows.row_bytes) return {{half_begin, rows.offset + first, size}};
@@ -54,7 +54,7 @@ StagingRing::~StagingRing() {
     for (const Half& half : halves_) {
       if (half.running) device_.device.waitIdle();
     }
-  } catch (const vk::SystemError&) {  // lost: nothing runs any more
+  } catch (const vk::SystemError&) {  // device lost: nothing is running
   }
 }
 
@@ -90,7 +90,7 @@ void StagingRing::upload(const DeviceBuffer::Impl& to, const BufferRows& rows, c
 }
 
 void StagingRing::download(const DeviceBuffer::Impl& from, std::uint64_t offset, std::byte* to, std::uint64_t bytes) {
-  // One half is copied by the device while the other is emptied.
+  // The device copies one half while the other is emptied.
   const auto begin = [&](std::uint64_t first) {
     const std::size_t turn = first / kPieceBytes % kHalves;
     start(halves_[turn], [&](const vk::raii::CommandBuffer& commands) {

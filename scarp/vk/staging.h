@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: memory that both sides see, in two halves, one of which is filled while the other is copied.
+// Private to the station: host-visible memory in two halves; one is filled while the other is copied.
 #pragma once
 
 #include <array>

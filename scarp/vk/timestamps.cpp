@@ -32,7 +32,7 @@ std::vector<std::optional<double>> Timestamps::read(std::size_t passes) const {
   const auto [result, ticks] =
       pool_->getResults<std::uint64_t>(0, 2 * used_, 2 * used_ * sizeof(std::uint64_t), sizeof(std::uint64_t),
                                        vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
-  // Counters of fewer bits than 64 come round.
+  // Counters narrower than 64 bits wrap around.
   const std::uint64_t mask = device_->timestamp_bits >= 64 ? ~0ull : (1ull << device_->timestamp_bits) - 1;
   for (std::size_t i = 0; i < std::min<std::size_t>(passes, used_); ++i) {
     times[i] = static_cast<double>((ticks[2 * i + 1] - ticks[2 * i]) & mask) * device_->timestamp_period_ns;

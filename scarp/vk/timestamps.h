@@ -13,16 +13,16 @@ class Timestamps {
  public:
   explicit Timestamps(std::shared_ptr<Device::Impl> device);
 
-  /// To be recorded outside of passes, before the first begin() of a run.
+  /// Records a reset. Call outside passes, before the first begin() of a run.
   void reset(const vk::raii::CommandBuffer& commands);
-  /// When what was recorded before has passed the stage: the one in which the pass works, or the last of several.
+  /// Record a timestamp when earlier commands have passed `stage`: the pass's stage, or the last of several.
   void begin(const vk::raii::CommandBuffer& commands, vk::PipelineStageFlagBits stage);
   void end(const vk::raii::CommandBuffer& commands, vk::PipelineStageFlagBits stage);
-  /// How long each pass took, in nanoseconds; after the run. Nothing where the device has no timestamps, and for passes
+  /// Durations of the passes in nanoseconds, after the run. Empty if the device has no timestamps, and for passes
   /// beyond kMaxPasses.
   std::vector<std::optional<double>> read(std::size_t passes) const;
 
-  static constexpr std::uint32_t kMaxPasses = 512;  ///< of one run that are timed
+  static constexpr std::uint32_t kMaxPasses = 512;  ///< timed passes per run
 
  private:
   std::shared_ptr<Device::Impl> device_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A batch of rays over a terrain function on a device: what the compute shaders and the C++ that calls them
-// (function_queries_vk.h) agree upon.
+// A batch of rays over a terrain function on a device: shared by the compute shaders and the C++ code that dispatches
+// them (function_queries_vk.h).
 //
 //   FunctionBatch ──code──▶ ScarpInstruction ...      the function's program
 //        │  └─────rays──▶ ScarpFunctionRay ...      one invocation each
@@ -15,19 +15,19 @@
 
 SCARP_GLSL_BEGIN
 
-// A march is interrupted after run_steps steps and goes on in the next run: loop_turns.glsl.h says why. The
-// interpreter's turns count, which kScarpMostInstructions limits.
+// A march is interrupted after run_steps steps and continues in the next run; see loop_turns.glsl.h. The interpreter's
+// iterations count, which kScarpMostInstructions limits.
 //
-// Specialisation constants: threads of a workgroup; which march (function_marches.comp), or whether any hit will do
-// (lipschitz_local.comp); what the program has (scarp_uses), so that a shader is made of what it needs: some drivers go
-// through all branches of an instruction.
+// Specialisation constants: threads per workgroup; the march (function_marches.comp), or any hit
+// (lipschitz_local.comp); contents of the program (scarp_uses), so that a shader contains only what it needs: some
+// drivers execute all branches of an instruction.
 
-/// Evaluations that may follow the last step of a run: halvings, secants, and what a ray begins and ends with.
+/// Evaluations that may follow the last step of a run: bisections, secants, and those at a ray's start and end.
 const int kScarpLastEvaluations = 70;
-/// Of a program: so that a run has some steps.
+/// Maximum instructions of a program, so that a run has some steps.
 const int kScarpMostInstructions = 600;
 
-/// The push constants. Settings that a march has none of mean nothing; see ScarpFunctionMarch.
+/// Push constants. Settings that a march does not have are ignored; see ScarpFunctionMarch.
 struct FunctionBatch {
   Address code;
   Address rays;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Bounds of a terrain function along a segment, for shaders: field/function_taylor.h in single precision, outward
-// errors included.
+// Bounds of a terrain function along a segment, for shaders: field/function_taylor.h in single precision, including
+// rounding errors.
 //
-// A place's middle is two floats, because noise needs to know where in its cell it is; the rest are floats. Every
-// operation widens its result by kScarpSlack (16 units) of the floats that went into it and by kScarpTwoSlack of the
-// pairs, more than twice what its fewer than 8 roundings, and a division or root right to 2.5 units, can do. Noise adds
-// what its own numbers may be off by (noise.glsl.h). A bound holds for the true function.
+// The middle of a position is two floats, because noise depends on the position within its cell; the rest are floats.
+// Every operation widens its result by kScarpSlack (16 units) of its float operands and by kScarpTwoSlack of the pairs,
+// more than twice the effect of its fewer than 8 roundings and of a division or root accurate to 2.5 units. Noise adds
+// its own error (noise.glsl.h). A bound holds for the true function.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included, where `precise` is missing: then places are as good as floats are.
-// Who includes it has defined scarp_instruction(), see function_heights.glsl.h.
+// Compiles as C++ and GLSL, including GLSL ES 3.0, which lacks `precise`: positions then have float accuracy. The
+// including file must define scarp_instruction(), see function_heights.glsl.h.
 #ifndef SCARP_MARCH_FUNCTION_BOUNDS_GLSL_H
 #define SCARP_MARCH_FUNCTION_BOUNDS_GLSL_H
 
@@ -29,12 +29,12 @@ struct ScarpBound {
   float low, high;
 };
 
-/// How far a bound gets from its middle, by its line.
+/// Maximum distance of the linear model from its middle.
 SCARP_FN float scarp_reach(ScarpBound t) { return (abs(t.slope) + t.rest) * (1.0f + kScarpSlack); }
-/// The largest magnitude in its range.
+/// Maximum magnitude in its range.
 SCARP_FN float scarp_most(ScarpBound t) { return max(abs(t.low), abs(t.high)); }
 
-/// low and high also from the line, and the line from low and high where it says less.
+/// Intersects low and high with the range of the linear model, and flattens the model if the range is tighter.
 SCARP_FN ScarpBound scarp_settled(ScarpBound t) {
   float reach = scarp_reach(t);
   float slack = kScarpSlack * (abs(t.mid.high) + reach);
@@ -49,7 +49,7 @@ SCARP_FN ScarpBound scarp_settled(ScarpBound t) {
   }
   return out_;
 }
-/// All that is known is that it lies between low and high.
+/// A bound that knows only a range.
 SCARP_FN ScarpBound scarp_range(float low, float high) {
   ScarpBound t;
   t.low = low;
@@ -59,7 +59,7 @@ SCARP_FN ScarpBound scarp_range(float low, float high) {
   t.rest = 0.5f * (high - low) * (1.0f + kScarpSlack) + kScarpSlack * abs(t.mid.high);
   return t;
 }
-/// A number that is the same all along the segment.
+/// A number that is constant along the segment.
 SCARP_FN ScarpBound scarp_exactly(ScarpTwoFloat k) {
   ScarpBound t;
   t.mid = k;
@@ -70,7 +70,7 @@ SCARP_FN ScarpBound scarp_exactly(ScarpTwoFloat k) {
   return t;
 }
 
-/// Of k0 a + k1 b + k2, as scarp_two_combine() computes it.
+/// Bound of k0 a + k1 b + k2, as computed by scarp_two_combine().
 SCARP_FN ScarpBound scarp_bound_combine(ScarpTwoFloat k0, ScarpBound a, ScarpTwoFloat k1, ScarpBound b,
                                         ScarpTwoFloat k2) {
   float ka = abs(k0.high);
@@ -85,11 +85,11 @@ SCARP_FN ScarpBound scarp_bound_combine(ScarpTwoFloat k0, ScarpBound a, ScarpTwo
   t.high = k0.high * (k0.high < 0.0f ? a.low : a.high) + k1.high * (k1.high < 0.0f ? b.low : b.high) + k2.high + slack;
   return scarp_settled(t);
 }
-/// Of k0 a + k1 b.
+/// Bound of k0 a + k1 b.
 SCARP_FN ScarpBound scarp_bound_sum(float k0, ScarpBound a, float k1, ScarpBound b) {
   return scarp_bound_combine(scarp_two(k0), a, scarp_two(k1), b, scarp_two(0.0f));
 }
-/// Of -a.
+/// Bound of -a.
 SCARP_FN ScarpBound scarp_bound_negate(ScarpBound a) {
   ScarpBound t;
   t.mid = scarp_two_negate(a.mid);
@@ -99,7 +99,7 @@ SCARP_FN ScarpBound scarp_bound_negate(ScarpBound a) {
   t.high = -a.low;
   return t;
 }
-/// Of places, whose line says nearly all.
+/// Bound of k0 a + k1 b of positions, whose linear model is nearly exact.
 SCARP_FN ScarpBound scarp_bound_turn(ScarpTwoFloat k0, ScarpBound a, ScarpTwoFloat k1, ScarpBound b) {
   float ka = abs(k0.high);
   float kb = abs(k1.high);
@@ -114,7 +114,7 @@ SCARP_FN ScarpBound scarp_bound_turn(ScarpTwoFloat k0, ScarpBound a, ScarpTwoFlo
   return t;
 }
 
-/// Of a b.
+/// Bound of a b.
 SCARP_FN ScarpBound scarp_bound_multiply(ScarpBound a, ScarpBound b) {
   float ra = scarp_reach(a);
   float rb = scarp_reach(b);
@@ -134,7 +134,7 @@ SCARP_FN ScarpBound scarp_bound_multiply(ScarpBound a, ScarpBound b) {
   return scarp_settled(t);
 }
 
-/// f(a) from f, right to `off`, and f' at a.mid, the most that |f''| is over the range, and the range of f.
+/// Bound of f(a) from f, accurate to `off`, and f' at a.mid, the maximum of |f''| over the range, and the range of f.
 SCARP_FN ScarpBound scarp_bound_composed(ScarpBound a, ScarpTwoFloat f, float off, float f1, float f2, float low,
                                          float high) {
   float reach = scarp_reach(a);
@@ -147,7 +147,7 @@ SCARP_FN ScarpBound scarp_bound_composed(ScarpBound a, ScarpTwoFloat f, float of
   t.high = high;
   return scarp_settled(t);
 }
-/// Of a^2, never below 0.
+/// Bound of a^2, never below 0.
 SCARP_FN ScarpBound scarp_bound_square(ScarpBound a) {
   float p = a.low * a.low;
   float q = a.high * a.high;
@@ -157,18 +157,18 @@ SCARP_FN ScarpBound scarp_bound_square(ScarpBound a) {
                               2.0f * a.mid.high, 2.0f, max(0.0f, least - kScarpSlack * most),
                               most + kScarpSlack * most);
 }
-/// Of |a|.
+/// Bound of |a|.
 SCARP_FN ScarpBound scarp_bound_absolute(ScarpBound a) {
   if (a.low >= 0.0f) return a;
   if (a.high <= 0.0f) return scarp_bound_negate(a);
   return scarp_range(0.0f, max(-a.low, a.high));
 }
-/// Of a, not below `low` and not above `high`.
+/// Bound of a clamped to [low, high].
 SCARP_FN ScarpBound scarp_bound_clamp(ScarpBound a, float low, float high) {
   if (a.low >= low && a.high <= high) return a;
   return scarp_range(clamp(a.low, low, high), clamp(a.high, low, high));
 }
-/// Of the sine of an angle in radians.
+/// Bound of the sine of an angle in radians.
 SCARP_FN ScarpBound scarp_bound_sine(ScarpBound a) {
   float sine;
   float cosine;
@@ -176,7 +176,7 @@ SCARP_FN ScarpBound scarp_bound_sine(ScarpBound a) {
   float off = 2.384185791015625e-7f + kScarpTwoSlack * abs(a.mid.high);  // 2^-22
   return scarp_bound_composed(a, scarp_two(sine), off, cosine, 1.0f, -1.0f, 1.0f);
 }
-/// By (a + b - |a - b|) / 2, which keeps the line.
+/// Bound of the minimum as (a + b - |a - b|) / 2, which keeps the linear model.
 SCARP_FN ScarpBound scarp_bound_minimum(ScarpBound a, ScarpBound b) {
   if (a.high <= b.low) return a;
   if (b.high <= a.low) return b;
@@ -186,7 +186,7 @@ SCARP_FN ScarpBound scarp_bound_minimum(ScarpBound a, ScarpBound b) {
   t.high = min(t.high, min(a.high, b.high));
   return scarp_settled(t);
 }
-/// The true a is at least 1.
+/// Bound of 1 / a; the true a is at least 1.
 SCARP_FN ScarpBound scarp_bound_reciprocal(ScarpBound a) {
   float low = (1.0f - kScarpSlack) / max(a.high, 1.0f);
   float high = min(1.0f, (1.0f + kScarpSlack) / max(a.low, 1.0f));
@@ -194,7 +194,7 @@ SCARP_FN ScarpBound scarp_bound_reciprocal(ScarpBound a) {
   float f = 1.0f / a.mid.high;
   return scarp_bound_composed(a, scarp_two(f), kScarpSlack * f, -f * f, 2.0f * high * high * high, low, high);
 }
-/// b + phi(b - a) with phi' = -share and |phi''| <= 1 / (2 radius).
+/// b + phi(b - a) with phi' = -weight and |phi''| <= 1 / (2 radius).
 SCARP_FN ScarpBound scarp_bound_smooth_minimum(ScarpBound a, ScarpBound b, float radius) {
   float share = scarp_smooth_share(scarp_two_add(a.mid, scarp_two_negate(b.mid)).high, radius);
   float other = 1.0f - share;
@@ -210,13 +210,13 @@ SCARP_FN ScarpBound scarp_bound_smooth_minimum(ScarpBound a, ScarpBound b, float
   t.high = scarp_smooth_minimum(scarp_two(a.high), scarp_two(b.high), radius).high + kScarpSlack * size;
   return scarp_settled(t);
 }
-/// Of scarp_terrace(), which never falls: by its values at both ends.
+/// Bound of scarp_terrace(), which is monotone: by its values at both ends.
 SCARP_FN ScarpBound scarp_bound_terrace(ScarpBound a, ScarpInstruction at) {
   float slack = kScarpSlack * (scarp_most(a) + at.k0) * (1.0f + kScarpSteepestFade / at.k1);
   return scarp_range(scarp_terrace(scarp_two(a.low), scarp_k0(at), scarp_k2(at), at.k1).high - slack,
                      scarp_terrace(scarp_two(a.high), scarp_k0(at), scarp_k2(at), at.k1).high + slack);
 }
-/// Of scarp_radial(), by the nearest and the farthest place.
+/// Bound of scarp_radial(), by the nearest and the farthest position.
 SCARP_FN ScarpBound scarp_bound_radial(ScarpBound x, ScarpBound y, ScarpInstruction at) {
   float near_x = max(0.0f, max(x.low - at.k0, at.k0 - x.high));
   float near_y = max(0.0f, max(y.low - at.k1, at.k1 - y.high));
@@ -228,12 +228,12 @@ SCARP_FN ScarpBound scarp_bound_radial(ScarpBound x, ScarpBound y, ScarpInstruct
                      min(1.0f, scarp_radial(near_x, near_y, at.k2, at.k3) + slack));
 }
 
-/// Noise over a segment, with its gradient where that is asked for.
+/// Noise over a segment, with its gradient if requested.
 struct ScarpNoiseOver {
   ScarpBound n, x, y;
 };
-/// A derivative d of noise, its own derivatives dx and dy at the middle, and bounds of it (most), of its first and its
-/// second derivatives, over a segment that gets r away from the middle; d is right to d_off, dx and dy to first_off.
+/// A derivative d of noise, its own derivatives dx and dy at the middle, and bounds of it (most) and of its first and
+/// second derivatives, over a segment within distance r of the middle; d is accurate to d_off, dx and dy to first_off.
 SCARP_FN ScarpBound scarp_derivative_over(ScarpBound a, ScarpBound b, float r, float d, float dx, float dy, float most,
                                           float first, float second, float d_off, float first_off) {
   ScarpBound t;
@@ -246,7 +246,7 @@ SCARP_FN ScarpBound scarp_derivative_over(ScarpBound a, ScarpBound b, float r, f
   t.high = min(most, d + away);
   return scarp_settled(t);
 }
-/// How the place (a, b) is off by rounding of pairs is in their rests; what floor and fraction lose, in n_off.
+/// The rounding of pairs in the position (a, b) is in their rests; the error of floor and fraction is in n_off.
 SCARP_FN ScarpNoiseOver scarp_noise_over(ScarpInstruction at, ScarpBound a, ScarpBound b, bool slopes) {
   ScarpNoiseBound bound = scarp_noise_bound(at.kind);
   float half_ = sqrt(a.slope * a.slope + b.slope * b.slope) * (1.0f + kScarpSlack);
@@ -261,17 +261,17 @@ SCARP_FN ScarpNoiseOver scarp_noise_over(ScarpInstruction at, ScarpBound a, Scar
     return over;
   }
   ScarpNoise jet = scarp_program_noise(at, a.mid, b.mid);
-  // The turn of simplex noise into its own axes, in pairs.
+  // The rotation of simplex noise to its own axes, in pairs.
   float moved = kScarpTwoSlack * (abs(a.mid.high) + abs(b.mid.high));
   float n_off = bound.n_off + bound.slope * moved;
   float slope_off = bound.slope_off + bound.curvature * moved;
   float curvature_off = bound.curvature_off + bound.third * moved;
-  // The second derivative in any direction, anywhere on the segment: that at the middle, or the bound.
+  // Bound of the second derivative in any direction anywhere on the segment: that at the middle, or the global bound.
   float hessian =
       sqrt(jet.xx * jet.xx + 2.0f * jet.xy * jet.xy + jet.yy * jet.yy) * (1.0f + kScarpSlack) + 2.0f * curvature_off;
   float curvature = min(bound.curvature, hessian + bound.third * r * (1.0f + kScarpSlack));
-  // Along the segment the second derivative is q at the middle, and the parabola q s^2 / 2 stays within |q| / 4 of
-  // q / 4 (value_over() of function_taylor.h); q is off by less than 2 curvature_off r^2.
+  // Along the segment the second derivative is q at the middle, and the parabola q s^2 / 2 stays within |q| / 4 of q /
+  // 4 (value_over() of function_taylor.h); the error of q is below 2 curvature_off r^2.
   float q = a.slope * a.slope * jet.xx + 2.0f * a.slope * b.slope * jet.xy + b.slope * b.slope * jet.yy;
   float bent = 0.25f * abs(q) + hessian * off * (half_ + 0.5f * off) + bound.third / 6.0f * r * r * r;
   float plain = 0.5f * curvature * r * r;
@@ -296,7 +296,7 @@ SCARP_FN ScarpNoiseOver scarp_noise_over(ScarpInstruction at, ScarpBound a, Scar
   return over;
 }
 
-/// Bounds of the function over the segment on which its place is (x, y), metres.
+/// Bounds of the function over the segment where its position is (x, y), metres.
 SCARP_FN ScarpBound scarp_bound(ScarpProgram program, ScarpBound x, ScarpBound y) {
   ScarpBound r[kScarpRegisters];
   r[0] = x;
@@ -324,7 +324,7 @@ SCARP_FN ScarpBound scarp_bound(ScarpProgram program, ScarpBound x, ScarpBound y
     } else if (scarp_is(at, kScarpSine)) {
       to = scarp_bound_sine(a);
     } else if (scarp_is(at, kScarpMinimum) || scarp_is(at, kScarpMaximum)) {
-      // The larger of a and b is less the smaller of -a and -b.
+      // The maximum of a and b is minus the minimum of -a and -b.
       bool larger = at.op == kScarpMaximum;
       if (larger) a = scarp_bound_negate(a);
       if (larger) b = scarp_bound_negate(b);

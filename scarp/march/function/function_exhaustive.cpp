@@ -13,13 +13,13 @@ namespace {
 using namespace judge;
 
 double fade(double t) { return t * t * t * (10 + t * (-15 + 6 * t)); }
-// The fade grows: its range is that of its ends, which are computed by fewer than 8 roundings of numbers below 32.
+// The fade is monotone: its range is that of its ends, computed with fewer than 8 roundings of numbers below 32.
 Interval fade(const Interval& t) {
   constexpr double kSlack = 0x1p-45;
   return {std::max(0.0, fade(std::clamp(t.lower(), 0.0, 1.0)) - kSlack),
           std::min(1.0, fade(std::clamp(t.upper(), 0.0, 1.0)) + kSlack)};
 }
-// a at t = 0, b at t = 1: for each of a and b monotonous while t is in [0, 1].
+// a at t = 0, b at t = 1: monotone in each of a and b while t is in [0, 1].
 Interval blend(const Interval& a, const Interval& b, const Interval& t) {
   const Interval from(t.lower()), to(t.upper()), one(1.0);
   return hull((one - from) * a + from * b, (one - to) * a + to * b);
@@ -53,7 +53,7 @@ Interval square_noise(NoiseKind kind, std::uint32_t seed, const Interval& x, con
   return intersect(range, anything);
 }
 
-// Every corner whose disc the box may touch adds its part; two triangles of a side share their corners.
+// Every corner whose disc the box may touch adds its part; the two triangles of a square share corners.
 Interval simplex_noise(std::uint32_t seed, const Interval& x, const Interval& y) {
   const Interval root = sqrt(Interval(3.0)), skew = (root - 1.0) / 2.0, unskew = (3.0 - root) / 6.0;
   const Interval s = (x + y) * skew;
@@ -79,7 +79,7 @@ Interval noise_over(NoiseKind kind, std::uint32_t seed, const Interval& x, const
   return kind == NoiseKind::simplex ? simplex_noise(seed, x, y) : square_noise(kind, seed, x, y);
 }
 
-// Damping alone asks for the gradient: that of the field at the middle, and as far from it as the curvature allows.
+// Only damping needs the gradient: that at the middle, widened by the curvature bound.
 struct NoiseSlope {
   Interval x, y;
 };
@@ -98,7 +98,7 @@ Interval sine_of(const Interval& a) {
   const double low = std::sin(a.lower()), high = std::sin(a.upper());
   constexpr double kSlack = 0x1p-50;
   Interval range(std::min(low, high) - kSlack, std::max(low, high) + kSlack);
-  // An extreme at (4 n + 1) or (4 n + 3) quarter turns, looked for a little beyond both ends.
+  // An extreme at (4 n + 1) or (4 n + 3) quarter turns, searched slightly beyond both ends.
   const double margin = 0x1p-40 * (1 + std::abs(a.lower()) + std::abs(a.upper()));
   const auto within = [&](double quarter) {
     const double turns = (a.lower() - margin) / (4 * half) - quarter / 4;
@@ -190,7 +190,7 @@ class Evaluation {
     return max(of(m.a, x, y), of(m.b, x, y));
   }
   Interval value(const SmoothMinimum& m, const Position& x, const Position& y) const {
-    // Grows with both operands.
+    // Monotone in both operands.
     const Interval a = of(m.a, x, y), b = of(m.b, x, y);
     return hull(smooth(a.lower(), b.lower(), m.radius), smooth(a.upper(), b.upper(), m.radius));
   }

@@ -2,15 +2,15 @@
 // Heights of a terrain function for shaders: an interpreter of its program (field/function_program.h), whose
 // instructions are data. One shader runs every function.
 //
-// Registers hold two floats, because places do: far from the origin a float does not tell where in a cell of the noise
-// a point is. Noise itself is computed in floats. What the height is off by is bounded by function_single.h.
+// Registers hold two floats because positions do: far from the origin a single float does not resolve the position
+// within a noise cell. Noise itself is computed in floats. function_single.h bounds the error of heights.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. Who includes it has defined
+// Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define
 //
 //   ScarpInstruction scarp_instruction(uint i);      the i-th of the program
 //   bool scarp_uses(uint part);                      whether an instruction, or kScarpNoiseBit + kind, is in it; true
 //   is
-//                                                    always right, constants let the compiler leave out the rest
+//                                                    always valid, constants let the compiler drop the rest
 #ifndef SCARP_MARCH_FUNCTION_HEIGHTS_GLSL_H
 #define SCARP_MARCH_FUNCTION_HEIGHTS_GLSL_H
 
@@ -21,34 +21,34 @@
 
 SCARP_GLSL_BEGIN
 
-/// The host's.
+/// Defined by the including file.
 ScarpInstruction scarp_instruction(uint i);
 bool scarp_uses(uint part);
 
-/// Whether an instruction is this one, which is not asked where no program has it.
+/// Returns whether an instruction is this one; constant false if no program contains it.
 SCARP_FN bool scarp_is(ScarpInstruction at, uint op) { return scarp_uses(op) && at.op == op; }
 
-/// Which program, and where its answer is.
+/// A program and its result register.
 struct ScarpProgram {
-  uint count;   ///< of instructions
+  uint count;   ///< number of instructions
   uint result;  ///< register
 };
 
-/// The first number of an instruction as two floats.
+/// Returns the first constant of an instruction as two floats.
 SCARP_FN ScarpTwoFloat scarp_k0(ScarpInstruction at) {
   ScarpTwoFloat k;
   k.high = at.k0;
   k.low = at.k0_low;
   return k;
 }
-/// The second one.
+/// Returns the second constant.
 SCARP_FN ScarpTwoFloat scarp_k1(ScarpInstruction at) {
   ScarpTwoFloat k;
   k.high = at.k1;
   k.low = at.k1_low;
   return k;
 }
-/// The third one.
+/// Returns the third constant.
 SCARP_FN ScarpTwoFloat scarp_k2(ScarpInstruction at) {
   ScarpTwoFloat k;
   k.high = at.k2;
@@ -56,9 +56,10 @@ SCARP_FN ScarpTwoFloat scarp_k2(ScarpInstruction at) {
   return k;
 }
 
-/// Sine and cosine, to 2^-22 and 2^-43 of the angle: the angle less quarter turns, then a polynomial. Below 2^40.
+/// Sine and cosine, accurate to 2^-22 and 2^-43 of the angle: removes quarter turns, then evaluates a polynomial. For
+/// angles below 2^40.
 SCARP_FN void scarp_sine(ScarpTwoFloat angle, SCARP_OUT(float) sine, SCARP_OUT(float) cosine) {
-  // Twice: of large angles the first leaves what the float of turns is off by.
+  // Twice: for large angles the first pass leaves the error of the float number of turns.
   ScarpTwoFloat turn;  // -2 pi
   turn.high = -6.283185482025146484375f;
   turn.low = 1.74845553e-7f;
@@ -71,7 +72,7 @@ SCARP_FN void scarp_sine(ScarpTwoFloat angle, SCARP_OUT(float) sine, SCARP_OUT(f
   quarter.high = -1.57079637050628662109375f;
   quarter.low = 4.37113883e-8f;
   float x = scarp_two_add(left, scarp_two_multiply(scarp_two(quarters), quarter)).high;
-  // The series up to x^9 and x^8: what follows is below 2^-23 for |x| <= pi / 4.
+  // The series up to x^9 and x^8: the remainder is below 2^-23 for |x| <= pi / 4.
   float x2 = x * x;
   float s = x + x * x2 * (-0.16666667f + x2 * (0.0083333333f + x2 * (-0.00019841270f + x2 * 2.7557319e-6f)));
   float c = 1.0f + x2 * (-0.5f + x2 * (0.041666667f + x2 * (-0.0013888889f + x2 * 2.4801587e-5f)));
@@ -80,28 +81,28 @@ SCARP_FN void scarp_sine(ScarpTwoFloat angle, SCARP_OUT(float) sine, SCARP_OUT(f
   cosine = swaps ? -quarters * s : abs(quarters) == 2.0f ? -c : c;
 }
 
-/// The share of a in the smooth minimum of a and b = a - apart.
+/// Weight of a in the smooth minimum of a and b = a - apart.
 SCARP_FN float scarp_smooth_share(float apart, float radius) { return clamp(0.5f - 0.5f * apart / radius, 0.0f, 1.0f); }
-/// The lower of a and b; where they are less than `radius` apart, lower than both by up to radius / 4.
+/// Returns the minimum of a and b; if they are within `radius` of each other, lower than both by up to radius / 4.
 SCARP_FN ScarpTwoFloat scarp_smooth_minimum(ScarpTwoFloat a, ScarpTwoFloat b, float radius) {
   float apart = scarp_two_add(a, scarp_two_negate(b)).high;
   float t = scarp_smooth_share(apart, radius);
   return scarp_two_add(b, scarp_two(t * apart - radius * t * (1.0f - t)));
 }
 
-/// a in steps of `step`, climbing in the last `rise` of each.
+/// Returns a in steps of `step`, rising in the last `rise` of each.
 SCARP_FN ScarpTwoFloat scarp_terrace(ScarpTwoFloat a, ScarpTwoFloat step, ScarpTwoFloat per_step, float rise) {
   ScarpLattice at = scarp_lattice(scarp_two_multiply(a, per_step));
   float phase = clamp((at.place - (1.0f - rise)) / rise, 0.0f, 1.0f);
   return scarp_two_multiply(step, scarp_two_add(at.whole, scarp_two(scarp_fade(phase))));
 }
 
-/// The mask at distance sqrt(dx^2 + dy^2) from its centre.
+/// Returns the mask at distance sqrt(dx^2 + dy^2) from its centre.
 SCARP_FN float scarp_radial(float dx, float dy, float inner, float outer) {
   return scarp_fade(clamp((outer - sqrt(dx * dx + dy * dy)) / (outer - inner), 0.0f, 1.0f));
 }
 
-/// Noise of an instruction.
+/// Returns the noise of an instruction.
 SCARP_FN ScarpNoise scarp_program_noise(ScarpInstruction at, ScarpTwoFloat x, ScarpTwoFloat y) {
   if (at.kind == kScarpSimplexNoise && scarp_uses(kScarpNoiseBit + kScarpSimplexNoise))
     return scarp_simplex_noise(at.seed, x, y);
@@ -110,7 +111,7 @@ SCARP_FN ScarpNoise scarp_program_noise(ScarpInstruction at, ScarpTwoFloat x, Sc
   return scarp_value_noise(at.seed, scarp_lattice(x), scarp_lattice(y));
 }
 
-/// The height at (x, y), metres.
+/// Returns the height at (x, y), metres.
 SCARP_FN ScarpTwoFloat scarp_height(ScarpProgram program, ScarpTwoFloat x, ScarpTwoFloat y) {
   ScarpTwoFloat r[kScarpRegisters];
   r[0] = x;

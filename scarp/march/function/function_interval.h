@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Positions along a ray in sound intervals, and the bisection: what the judges of functions and shapes compute with.
+// Positions along a ray in sound intervals, and bisection: shared by the references for functions and shapes.
 #pragma once
 
 #include <vector>
@@ -12,7 +12,7 @@ namespace scarp::judge {
 using boost::numeric::square;
 using scarp::Interval;
 
-// A position along the ray: base + rate * t + more. Turning and scaling it loses nothing; a warp goes into `more`.
+// A position along the ray: base + rate * t + more. Rotating and scaling it loses nothing; a warp goes into `more`.
 struct Position {
   Interval base, rate, more;
   Interval over(const Interval& t) const { return base + rate * t + more; }
@@ -22,15 +22,15 @@ inline Position operator+(const Position& a, const Position& b) {
 }
 inline Position operator*(const Interval& k, const Position& a) { return {k * a.base, k * a.rate, k * a.more}; }
 
-/// The first place between t_enter and t_exit where `clearance`, which answers for an interval of t, is not positive:
-/// halves intervals down to 1e-9 of the whole, the leftmost first.
+/// Finds the first place between t_enter and t_exit where `clearance`, evaluated over intervals of t, is not positive:
+/// halves intervals down to 1e-9 of the whole, leftmost first.
 template <class Clearance>
 FunctionJudgement first_crossing(double t_enter, double t_exit, double t_max, int most_evaluations,
                                  const Clearance& clearance) {
   FunctionJudgement judgement{FunctionVerdict::clear, t_max, t_max};
   if (!(t_enter <= t_exit)) return judgement;
   const double shortest = 1e-9 * (t_exit - t_enter);
-  // Intervals yet to be judged, the leftmost last.
+  // Intervals yet to be judged, leftmost last.
   std::vector<Interval> open{Interval(t_enter, t_exit)};
   while (!open.empty()) {
     const Interval t = open.back();

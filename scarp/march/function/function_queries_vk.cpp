@@ -30,8 +30,8 @@ struct DeviceMarch {
   std::string_view name;
   std::span<const std::uint32_t> words;
   std::uint32_t choice;  // the shader's
-  bool has_any;          // whether it can be asked for any hit, by the next choice
-  int evaluations;       // of the program in a step, at most
+  bool has_any;          // whether it supports any hit, as the next choice
+  int evaluations;       // maximum evaluations of the program per step
 };
 constexpr std::array kDeviceMarches = {
     DeviceMarch{"naive", kFunctionMarchesWords, glsl::kScarpFunctionNaive, false, 1},
@@ -78,7 +78,7 @@ glsl::FunctionBatch batch_settings(std::string_view march, const MarchSettings& 
     batch.tolerance = static_cast<float>(settings.relaxed.tolerance);
     batch.max_steps = settings.relaxed.max_steps;
   } else if (march == "lipschitz") {
-    // Less by more than its roundings, here and in the step.
+    // Reduced by more than its roundings, here and in the step.
     const double shrink =
         settings.lipschitz.shrink > 0 ? settings.lipschitz.shrink : (1 - 0x1p-20) / std::hypot(1.0, slope);
     batch.factor = static_cast<float>(shrink);
@@ -91,7 +91,7 @@ glsl::FunctionBatch batch_settings(std::string_view march, const MarchSettings& 
   return batch;
 }
 
-// Steps until a march is interrupted: the interpreter's loop turns once per instruction and step.
+// Steps per run: the interpreter iterates once per instruction and step.
 int run_steps(std::size_t instructions, int evaluations) {
   if (instructions > static_cast<std::size_t>(glsl::kScarpMostInstructions)) {
     throw Error(
@@ -113,7 +113,7 @@ struct DeviceFunctionQueries::Impl {
         device(device_),
         runs(device_, settings.rays_at_once) {}
 
-  // Made of what the program has, when it is first asked for.
+  // Specialised for the contents of the program, on first use.
   const ComputePipeline& pipeline(const FunctionProgram& program, bool any) {
     const std::uint32_t choice = march.choice + (any && march.has_any ? 1 : 0), parts = function_parts(program);
     const auto made = pipelines.find({choice, parts});
@@ -148,7 +148,7 @@ struct DeviceFunctionQueries::Impl {
   MarchSettings march_settings;
   Device device;
   RayRuns runs;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, ComputePipeline> pipelines;  // by choice and parts
+  std::map<std::pair<std::uint32_t, std::uint32_t>, ComputePipeline> pipelines;  // by choice and contents
 };
 
 DeviceFunctionQueries::DeviceFunctionQueries(const Device& device, const FunctionMarchEntry& march,

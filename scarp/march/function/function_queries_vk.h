@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Rays by the batch over terrain functions on a Vulkan device: queries_vk.h for functions, all marches of
+// Batches of rays over terrain functions on a Vulkan device: queries_vk.h for functions, all marches of
 // function_marches().
 //
 //   rays, double ──▶ clipped, two floats per number ──▶ device, a slice at a time ──▶ answers ──▶ hits, double
 //
-// Answers are those of single precision (doc/dev/numerics.md, "Functions in single precision"): `lipschitz-local` tells
-// what the CPU tells wherever the ray passes or meets the ground by more than the bound that is derived there; it never
-// passes a crossing, and neither does `lipschitz`. Closest and any always agree.
+// Answers are in single precision (doc/dev/numerics.md, "Functions in single precision"): `lipschitz-local` agrees with
+// the CPU wherever the ray misses or hits the ground by more than the bound derived there. It misses no crossing, and
+// neither does `lipschitz`. Closest hit and any hit always agree.
 #pragma once
 
 #include <cstdint>
@@ -22,18 +22,18 @@
 
 namespace scarp {
 
-/// What is marched on a device.
+/// A function on a device.
 struct DeviceFunctionTarget {
   const HeightFunction* function = nullptr;
-  const DeviceFunction* device = nullptr;  ///< made of the function
+  const DeviceFunction* device = nullptr;  ///< made from the function
   FunctionUse use = FunctionUse::march;
 };
 
-/// One march, ready to run over any function of a device. Used by one thread at a time.
+/// One march, ready to run over any function of a device. Not thread-safe.
 class DeviceFunctionQueries {
  public:
-  /// `march` is a row of function_marches(); of the settings `rays_at_once` counts. Throws Error: the march does not
-  /// run on devices, a setting out of its range, no memory on the device.
+  /// `march` is a row of function_marches(); of the settings only `rays_at_once` applies. Throws Error if the march
+  /// does not run on devices, a setting is out of range, or the device lacks memory.
   explicit DeviceFunctionQueries(const Device& device,
                                  const FunctionMarchEntry& march = find_function_march("lipschitz-local"),
                                  const MarchSettings& march_settings = {}, const DeviceQuerySettings& settings = {});
@@ -41,14 +41,14 @@ class DeviceFunctionQueries {
   DeviceFunctionQueries& operator=(DeviceFunctionQueries&&) noexcept;
   ~DeviceFunctionQueries();
 
-  /// For the calls that follow. Throws Error: a setting out of its range.
+  /// Applies to later calls. Throws Error for a setting out of range.
   void set_march_settings(const MarchSettings& march_settings);
 
-  /// hits[i] answers rays[i], which must be valid (queries.h); steps[i], when not empty, is what that cost: bounds and
-  /// heights. Throws Error when spans differ in length, or the device is lost.
+  /// hits[i] answers rays[i], which must be valid (queries.h); steps[i], unless empty, is its cost: bounds and heights.
+  /// Throws Error if spans differ in length, or the device is lost.
   void closest_hits(const DeviceFunctionTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                     std::span<std::uint32_t> steps = {});
-  /// blocked[i] is 1 where closest_hits would tell a hit, else 0.
+  /// blocked[i] is 1 if closest_hits would report a hit, otherwise 0.
   void occluded(const DeviceFunctionTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked);
 
   /// One for each slice of the last call.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the marches over terrain functions need of a ray: the part of it that can meet the ground, how high it is above
-// the ground, and what rounding can do to that number.
+// A ray over a terrain function: the part of it that can hit the ground, its height above the ground, and the rounding
+// error of that number.
 #pragma once
 
 #include <algorithm>
@@ -18,19 +18,19 @@ class FunctionRay {
   struct Unrounded {};
 
   FunctionRay() = default;
-  /// `reach` is how many metres the ray is followed at most.
+  /// `reach` is the maximum distance along the ray, metres.
   FunctionRay(const HeightFunction& function, const Ray& ray, FunctionUse use,
               double reach = std::numeric_limits<double>::infinity())
       : FunctionRay(function, ray, use, reach, Unrounded{}) {
     if (crosses()) set_rounding(bound(t_enter, t_exit));
   }
-  /// The same without rounding(), for those who ask for the bound along the whole ray themselves and set it.
+  /// Without rounding(), for callers that compute the bound along the whole ray themselves and set it.
   FunctionRay(const HeightFunction& function, const Ray& ray, FunctionUse use, double reach, Unrounded)
       : function_(&function), ray_(&ray), use_(use), speed_(length(ray.direction)) {
     t_enter = ray.t_min;
     t_exit = std::min(ray.t_max, ray.t_min + reach / speed_);
     const FunctionBound& all = function.bound_everywhere(use);
-    // The ground's range, wider by what the division below can lose.
+    // The ground's range, widened by the rounding of the division below.
     const double slack = kRounding * (std::abs(all.low) + std::abs(all.high) + std::abs(ray.origin.z));
     clip(-kFunctionReach, kFunctionReach, ray.origin.x, ray.direction.x);
     clip(-kFunctionReach, kFunctionReach, ray.origin.y, ray.direction.y);
@@ -40,13 +40,13 @@ class FunctionRay {
   void set_rounding(const SegmentBound& whole) { rounding_ = whole.rounding + rounding_of_height(t_enter, t_exit); }
 
   double t_enter = 0,
-         t_exit = 0;          ///< the part of the ray that is within the ground's range; empty when t_enter > t_exit
-  bool begins_under = false;  ///< whether the ray begins under all ground, and comes into its range from there
+         t_exit = 0;          ///< the part of the ray that is within the ground's range; empty if t_enter > t_exit
+  bool begins_under = false;  ///< whether the ray starts below all ground, and enters its range from there
 
   bool crosses() const { return t_enter <= t_exit && std::isfinite(t_exit) && speed_ > 0; }
   double metres_per_t() const { return speed_; }
   const Ray& ray() const { return *ray_; }
-  /// Metres above the ground, as computed, and how far from the truth that may be anywhere on the ray.
+  /// Computed height above the ground in metres, and its maximum error anywhere on the ray.
   double clearance(double t) const {
     const dvec3 p = ray_->at(t);
     return p.z - function_->value(p.x, p.y, use_);
@@ -56,7 +56,7 @@ class FunctionRay {
   SegmentBound bound(double t0, double t1) const {
     return function_->along(dvec2(ray_->origin), dvec2(ray_->direction), t0, t1, use_);
   }
-  /// What a few roundings can do to the ray's height between two times.
+  /// Rounding error of the ray's height between two times.
   double rounding_of_height(double t0, double t1) const {
     return kRounding * (std::abs(ray_->origin.z) + std::abs(ray_->direction.z) * std::max(std::abs(t0), std::abs(t1)));
   }

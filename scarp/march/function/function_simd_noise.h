@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// noise.cpp in vectors: the same operations in the same order, so the same bits, for a position per lane.
-// Read once for each instruction set.
+// noise.cpp in vectors: the same operations in the same order, so bit-identical, with one position per lane. Compiled
+// once per instruction set.
 #if defined(SCARP_MARCH_FUNCTION_SIMD_NOISE_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_FUNCTION_SIMD_NOISE_H
 #undef SCARP_MARCH_FUNCTION_SIMD_NOISE_H
@@ -75,7 +75,7 @@ HWY_INLINE V lerp(V a, V b, V t) { return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
 HWY_INLINE V value_at(VU hash) {
   return hn::Sub(hn::Mul(hn::ConvertTo(dd, hn::BitCast(di, hash)), set(0x1p-31)), set(1));
 }
-// Of the twelve directions of lattice_direction().
+// The twelve directions of lattice_direction().
 struct Directions {
   alignas(64) double x[12], y[12];
   Directions() {

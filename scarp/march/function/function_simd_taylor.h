@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The instructions of a terrain function in vectors, a segment per lane: on plain numbers, on the Taylor models of
+// Terrain function instructions in vectors, a segment per lane: on plain numbers, on the Taylor models of
 // function_taylor.h, and on these with their derivative along the segment (function_jet.h). The same operations in the
-// same order, so the same bits; where scalars branch, lanes are blended. Instructions that are rare and branch much go
-// through the scalar text, lane by lane.
-// Read once for each instruction set.
+// same order, so bit-identical; where scalar code branches, lanes are blended. Rare instructions with many branches run
+// as scalar code, lane by lane. Compiled once per instruction set.
 #if defined(SCARP_MARCH_FUNCTION_SIMD_TAYLOR_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_FUNCTION_SIMD_TAYLOR_H
 #undef SCARP_MARCH_FUNCTION_SIMD_TAYLOR_H
@@ -216,7 +215,7 @@ HWY_INLINE VT value_over(const VT& a, const VT& b, V r, const VNoise& jet, const
   return t;
 }
 
-// Noise over a segment, with its derivatives in x and y when they are asked for.
+// Noise over a segment, with its derivatives in x and y if requested.
 struct VNoiseOver {
   VT n, x, y;
 };
@@ -271,7 +270,7 @@ HWY_INLINE VJ chained(const VT& v, const VT& fa, const VT& da, const VT& fb, con
 }
 HWY_INLINE VJ multiply(const VJ& a, const VJ& b) { return chained(multiply(a.v, b.v), b.v, a.d, a.v, b.d); }
 HWY_INLINE VJ square(const VJ& a) { return {square(a.v), multiply(combine(2, a.v, 0, a.v, 0), a.d)}; }
-// `first` where the order is known to be that, `second` where it is the other, what holds both elsewhere.
+// `first` or `second` where the order is known, otherwise a bound of both.
 HWY_INLINE VT chosen(M is_first, M is_second, const VT& first, const VT& second) {
   const VT both =
       from_range(vmin(first.low, second.low), vmax(first.high, second.high), vmax(first.error, second.error));

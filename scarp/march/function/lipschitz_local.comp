@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `lipschitz-local` over a terrain function on a batch of rays, one invocation per ray.
+// `lipschitz-local` over a terrain function for a batch of rays, one invocation per ray.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "scarp/march/function/function_batch.glsl.h"
-// The march asks the batch for its instructions.
+// The march reads its instructions through the batch.
 #include "scarp/march/function/lipschitz_local.glsl.h"
 
 void main() {

@@ -2,13 +2,13 @@
 // `lipschitz-local` for shaders: lipschitz_local.h in single precision, the same steps by bounds in floats
 // (function_bounds.glsl.h).
 //
-// Guarantee: conservative, rounding counted: no crossing is passed. A hit is a crossing, or a touch: a place where the
-// ray cannot be told from the ground by bounds of a segment of 2^-22 of the time, or by 4 times the rounding of
-// clearances. A ray from the surface begins at
-// the height that is computed there, and may be under the ground by 4 times what the bounds of a point leave open,
-// until it is proven to be above: it needs no bound of the ground's slope, which the other realisations ask for.
+// Guarantee: conservative, including rounding: it misses no crossing. A hit is a crossing, or a touch: a point where
+// bounds of a segment of 2^-22 of the time, or 4 times the rounding of clearances, do not separate the ray from the
+// ground. A ray from the surface starts at the height computed there, and may be below the ground by 4 times the width
+// of the bounds of a point, until it is proven to be above: it needs no bound of the ground's slope, unlike the other
+// realisations.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included, where `precise` is missing. Who includes it has defined
+// Compiles as C++ and GLSL, including GLSL ES 3.0, which lacks `precise`. The including file must define
 // scarp_instruction(), see function_heights.glsl.h.
 #ifndef SCARP_MARCH_LIPSCHITZ_LOCAL_GLSL_H
 #define SCARP_MARCH_LIPSCHITZ_LOCAL_GLSL_H
@@ -23,24 +23,24 @@ SCARP_GLSL_BEGIN
 struct ScarpLipschitzLocal {
   float tolerance;  ///< length of the last interval, per unit of distance travelled, >= 0
   int max_steps;    ///< >= 1; more: kScarpFunctionExhausted
-  int run_steps;    ///< after so many more steps, a bound and perhaps a height each, the march is interrupted, >= 1
+  int run_steps;    ///< steps per run, a bound and possibly a height each, before the march is interrupted, >= 1
 };
 
-/// What is proven about a segment: the ray is above the ground until `until`, and under it at `sunk`.
+/// Proven facts about a segment: the ray is above the ground until `until`, and below it at `sunk`.
 struct ScarpProof {
   float until;
-  float sunk;    ///< kScarpNeverSunk: not known to be
-  float middle;  ///< the bounds are of times middle - half_ to middle + half_, a little longer than asked for
+  float sunk;    ///< kScarpNeverSunk: unknown
+  float middle;  ///< the bounds are over times middle - half_ to middle + half_, slightly longer than requested
   float half_;
-  float begin;  ///< metres above the ground at their begin, at least, and at most
+  float begin;  ///< minimum and maximum height above the ground at their start, metres
   float begin_most;
-  float end;  ///< at their end, likewise
+  float end;  ///< the same at their end
   float end_most;
-  float wide;  ///< half of what the bounds leave open
+  float wide;  ///< half the width of the bounds
 };
 const float kScarpNeverSunk = 1.0e30f;
 
-// As in lipschitz_local_walk.h, but for the shortest segment: floats end at 2^-24 of the time.
+// As in lipschitz_local_walk.h, except the shortest segment: floats resolve 2^-24 of the time.
 const float kScarpShortest = 2.384185791015625e-7f;  // 2^-22 of the time
 const float kScarpShort = 0.99999904632568359375f;   // 1 - 2^-20
 const float kScarpBeyond = 1.0009765625f;            // 1 + 2^-10
@@ -62,10 +62,10 @@ SCARP_FN ScarpBound scarp_coordinate(ScarpTwoFloat mid, float origin, float dire
   return t;
 }
 
-/// About the ray, or one that is `lift` metres higher.
+/// For the ray, or one that is `lift` metres higher.
 SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, float lift, float s0, float s1) {
   float middle = 0.5f * (s0 + s1);
-  // Longer by what the middle and the half round.
+  // Longer by the rounding of the middle and the half.
   float half_ = 0.5f * (s1 - s0) * (1.0f + kScarpSlack) + 1.1920928955078125e-7f * s1;
   ScarpBound ground =
       scarp_bound(program, scarp_coordinate(scarp_ray_x(ray, middle), ray.origin.x, ray.direction.x, half_, s1),
@@ -96,7 +96,7 @@ SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, floa
     proof.end = max(end, over);
     return proof;
   }
-  // Where a line from s0 to s1, as long as 2 half_, is 0, less what the time rounds.
+  // Where a line from s0 to s1, as long as 2 half_, is 0, minus the rounding of the time.
   float times = 2.0f * half_;
   float rounded = 2.384185791015625e-7f * s1;
   if (begin <= 0.0f)
@@ -111,9 +111,9 @@ SCARP_FN ScarpProof scarp_proof(ScarpProgram program, ScarpFunctionRay ray, floa
   return proof;
 }
 
-/// The crossing between s0, above the ground, and s1, where the clearance is h1 <= 0, by secants of which the end that
-/// stays is weighed less and less ("Illinois"), until floats end; s0 where that is not above as computed. What
-/// clearances round by they mostly share with their neighbours: they are of use below ray.rounding, too.
+/// The crossing between s0, above the ground, and s1, where the clearance is h1 <= 0, by secants that weigh the
+/// retained end less and less ("Illinois"), until floats end; s0 if the computed clearance there is not positive.
+/// Neighbouring clearances share most of their rounding error, so they are useful even below ray.rounding.
 SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float s0, float s1, float h1,
                               SCARP_INOUT(ScarpFunctionHit) hit) {
   float from = s0;
@@ -121,7 +121,7 @@ SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float 
   float above = 0.0f;
   float below = h1;
   int kept = 0;
-  // The first of them looks at s0.
+  // The first iteration evaluates s0.
   for (int i = 0; i < kScarpMostSecants; ++i) {
     float s = i == 0 ? s0 : from + (to - from) * (above / (above - below));
     if (i > 0 && !(s > from && s < to)) return to;
@@ -147,13 +147,13 @@ SCARP_FN float scarp_crossing(ScarpProgram program, ScarpFunctionRay ray, float 
   return to;
 }
 
-// What the bounds that the march asks for are of.
-const int kScarpAskOpen = 0;     ///< the begin: what bounds of a point leave open
+// Which bounds the march requests.
+const int kScarpAskOpen = 0;     ///< at the start: width of the bounds of a point
 const int kScarpAskSegment = 1;  ///< the next segment
-const int kScarpAskPoint = 2;    ///< its begin, where the segment tells nothing
+const int kScarpAskPoint = 2;    ///< its start, if the segment proves nothing
 
-/// What a ray meets first over the ground of a program, within the tolerance of it; with `any` a hit's time means
-/// nothing. No crossing is passed, rounding counted (ray.rounding).
+/// Closest hit over the ground of a program, within its tolerance; with `any`, the hit's time is undefined. Misses no
+/// crossing, including rounding (ray.rounding).
 SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunctionRay ray_,
                                                 ScarpLipschitzLocal settings, bool any) {
   ScarpFunctionHit hit = scarp_function_miss();
@@ -167,7 +167,7 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
     hit.heights += 1u;
     float h = scarp_clearance(program, ray, 0.0f);
     if (from_surface) {
-      // It begins at the height that floats find there.
+      // The ray starts at the height that floats compute there.
       ScarpTwoFloat z = scarp_two_add(scarp_ray_z(ray, 0.0f), scarp_two(-h));
       ray.origin.z = z.high;
       ray.origin_low.z = z.low;
@@ -180,10 +180,10 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
     }
   }
   int ask = begins && from_surface ? kScarpAskOpen : kScarpAskSegment;
-  int first = max(1, ray.state.steps);  // 0 is for rays that have not begun
+  int first = max(1, ray.state.steps);  // 0 marks rays that have not started
   int steps = first;
   float end = s;
-  float below = 0.0f;  // the clearance at `end`
+  float below = 0.0f;  // clearance at `end`
   bool crosses = false;
   while (s < ray.exit) {
     if (steps > settings.max_steps) {
@@ -216,7 +216,7 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
       continue;
     }
     if (ask == kScarpAskPoint) {
-      // Where bounds of the point itself do not tell it from the ground, shorter segments tell no more.
+      // If bounds of the point itself do not separate it from the ground, shorter segments do not either.
       if (!(proof.begin > 0.0f)) {
         scarp_function_tell(kScarpFunctionHit, s, hit);
         return hit;
@@ -233,7 +233,7 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
         crosses = true;
         break;
       }
-      // No crossing is known, the bounds are only too wide for so little clearance. Shorter segments tell.
+      // No known crossing; the bounds are only too wide for so little clearance. Try shorter segments.
       least = shortest;
     }
     if (proof.until == s && proof.wide <= 4.0f * ray.rounding) ask = kScarpAskPoint;
@@ -244,7 +244,7 @@ SCARP_FN ScarpFunctionHit scarp_lipschitz_local(ScarpProgram program, ScarpFunct
     s = proof.until;
   }
   if (!crosses) return hit;
-  // Beyond the loop: there neighbours in a vector, which come to it at other steps, do it together.
+  // Outside the loop: neighbours in a vector, which get here at different steps, execute it together.
   if (below <= 0.0f && !any) s = scarp_crossing(program, ray, s, end, below, hit);
   scarp_function_tell(kScarpFunctionHit, s, hit);
   return hit;

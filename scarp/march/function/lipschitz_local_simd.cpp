@@ -7,13 +7,12 @@
 
 #include "scarp/march/function/lipschitz_local_walk.h"
 
-// This file is compiled once for each instruction set.
-// Vectors of a length that the compiler does not know cannot be members.
+// Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/march/function/lipschitz_local_simd.cpp"
 #include "hwy/foreach_target.h"
-// foreach_target.h comes first.
+// foreach_target.h must come first.
 #include "hwy/highway.h"
 #include "scarp/march/function/function_simd_taylor.h"
 
@@ -22,9 +21,9 @@ namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
-constexpr std::size_t kWalks = 6 * N;  // under way at once
+constexpr std::size_t kWalks = 6 * N;  // in progress at once
 
-// What a vector is asked: N walks, the last ones perhaps repeated.
+// Queries of a vector: N walks; the last ones may be repeated.
 struct Asked {
   alignas(64) double ox[N], oy[N], dx[N], dy[N], t0[N], t1[N];
 
@@ -94,7 +93,7 @@ class Walks {
 
   void run() {
     while (take() > 0) {
-      // Questions that fill a vector; when there are none, those that there are.
+      // Queries that fill a vector; if there are none, all that there are.
       bool full = false;
       for (auto& asking : asking_) asking.clear();
       for (std::size_t w = 0; w < count_; ++w) {
@@ -116,7 +115,7 @@ class Walks {
  private:
   static constexpr std::size_t kQuestions = static_cast<std::size_t>(LocalWalk::Question::done);
 
-  // Puts away walks that are done, and begins new ones in their place; how many are under way.
+  // Stores finished walks and starts new ones in their place; returns how many are in progress.
   std::size_t take() {
     for (std::size_t w = 0; w < count_ || (w < kWalks && next_ < rays_.size());) {
       if (w == count_) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// `lipschitz-local` for many rays in vectors: some dozens of walks (lipschitz_local_walk.h) are under way at once, and
-// what as many of them ask as a vector has lanes is answered together (function_simd_taylor.h).
+// `lipschitz-local` for many rays in vectors: dozens of walks (lipschitz_local_walk.h) are in progress at once, and
+// queries of as many of them as a vector has lanes are answered together (function_simd_taylor.h).
 //
-//   walks    w0 w1 w2 w3 w4 w5 ...       bounds   [ w0 w2 w3 w5 | w8 ... ]     a walk that is done makes room
-//            each asks one question       heights  [ w1 w4 ... ]              for the next ray
+//   walks    w0 w1 w2 w3 w4 w5 ...       bounds   [ w0 w2 w3 w5 | w8 ... ]     a finished walk makes room
+//            each has one query          heights  [ w1 w4 ... ]              for the next ray
 //
-// Answers and counts are bit for bit those of single rays.
+// Answers and counts equal those of single rays bit for bit.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@
 
 namespace scarp {
 
-/// hits[i] is march_lipschitz_local() of rays[i], bit for bit; steps[i], unless the span is empty, the steps and cell
-/// tests of its stats. On the calling thread; the spans have the same length.
+/// hits[i] is march_lipschitz_local() of rays[i], bit for bit; steps[i], unless the span is empty, is the sum of steps
+/// and cell tests of its stats. Runs on the calling thread; the spans have equal lengths.
 void closest_hits_lipschitz_local_simd(const HeightFunction& function, std::span<const Ray> rays, std::span<Hit> hits,
                                        const MarchSettings& settings, std::span<std::uint32_t> steps, FunctionUse use);
 

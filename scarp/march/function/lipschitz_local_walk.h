@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The march of lipschitz_local.h as a walk that asks: for bounds along a segment, for the rate at which it gains
-// height, for a height. Who answers is not its matter: lipschitz_local.cpp does one ray after the other,
-// lipschitz_local_simd.cpp many walks at once, in vectors.
+// The march of lipschitz_local.h as a walk that issues queries: for bounds along a segment, for its rate of height
+// gain, for a height. The caller answers them: lipschitz_local.cpp one ray after the other, lipschitz_local_simd.cpp
+// many walks at once, in vectors.
 //
 //   LocalWalk walk(ray, settings);
 //   while (walk.question() != done) answer it
@@ -19,7 +19,7 @@ class LocalWalk {
  public:
   enum class Question : std::uint8_t {
     bound,   ///< SegmentBound over t0()..t1()
-    gain,    ///< least and greatest slope of the ground there, dh/dt
+    gain,    ///< minimum and maximum slope of the ground there, dh/dt
     height,  ///< of the ground at t0()
     done,
   };
@@ -43,7 +43,7 @@ class LocalWalk {
   double t0() const { return t0_; }
   double t1() const { return t1_; }
   const Ray& ray() const { return r_.ray(); }
-  /// Once it is done.
+  /// Result, once the walk is done.
   const Hit& hit() const { return hit_; }
   const MarchStats& stats() const { return stats_; }
 
@@ -80,12 +80,12 @@ class LocalWalk {
     next_segment();
   }
 
-  // From the surface: until when the ray provably gains height; a hit when it loses height at once.
+  // From the surface: until when the ray provably gains height; a hit if it loses height at once.
   void answer_gain(dvec2 slope) {
     ++stats_.steps;
     const double least = ray().direction.z - slope.y, most = ray().direction.z - slope.x;
     if (!(least > 0) && most < 0) return end(r_.hit(t_));
-    // Neither gains nor loses: along the ground, as far as can be told.
+    // Neither gains nor loses: along the ground, as far as the bounds show.
     if (least > 0 || length_ <= shortest_) {
       t_ += length_;
       length_ *= kLeft;
@@ -105,8 +105,8 @@ class LocalWalk {
         return next_segment();
       case State::last:
         if (h > 0) {
-          // No crossing is known, the bounds are only too wide for so little clearance: over a crease, or along steep
-          // ground. Shorter segments tell.
+          // No known crossing; the bounds are only too wide for so little clearance: over a crease, or along steep
+          // ground. Try shorter segments.
           if (length_ <= shortest_) return end(r_.hit(t_));
           length_ = std::max(shortest_, kShrink * length_);
           return next_segment();
@@ -136,26 +136,25 @@ class LocalWalk {
  private:
   enum class State : std::uint8_t { rounding, leaving, beginning, walking, last, above_end, secants };
 
-  // The shortest segment looked at, as a share of the ray's part over the ground, whatever the tolerance: a ray that
-  // bounds do not tell from the ground there touches it.
+  // Shortest segment, as a fraction of the ray's part over the ground, whatever the tolerance: a ray whose bounds do
+  // not separate it from the ground there touches it.
   static constexpr double kShortest = 0x1p-40;
-  // Lines are followed a little less far than to where they meet the ray: more than their rounding.
+  // Lines are followed slightly less far than to where they meet the ray: more than their rounding.
   static constexpr double kShort = 1 - 0x1p-20;
-  // Of segments: how much longer the next one is after a free one, and shorter after one that is not. Rays that rise
-  // get away from the ground: theirs are at least so many times as long as they are known to be above it. Of what was
-  // tried (1.1 to 4, 0.15 to 0.6, 0 to 5 times) what takes the fewest bounds over fBm; doubling takes a fifth more.
+  // Length factor of the next segment after a free one, and after one that is not. Rising rays leave the ground: their
+  // segments are at least this factor times the distance known to be free. Among the values tried (1.1 to 4, 0.15 to
+  // 0.6, 0 to 5 times) these take the fewest bounds over fBm; doubling takes a fifth more.
   static constexpr double kGrowth = 1.3, kShrink = 0.5;
   static constexpr double kRisingGrowth = 1.5, kRisingClear = 3;
   // The same for segments that leave the surface, and for the first one after them.
   static constexpr double kLeaving = 0.1, kLeft = 4;
-  static constexpr double kBeyond = 1 + 0x1p-10;  // a little beyond where the ray is known to be under the ground
+  static constexpr double kBeyond = 1 + 0x1p-10;  // slightly beyond where the ray is known to be below the ground
   static constexpr int kMostSecants = 100;        // far more than the 10 or so that smooth ground takes
 
-  // What is proven about a segment: the ray is above the ground until `free`, and under it at `sunk`, if that is
-  // finite.
+  // Proven facts about a segment: the ray is above the ground until `free`, and below it at `sunk`, if finite.
   struct Proof {
     double free, sunk;
-    double clear = 0;  // metres above the ground at t1, at least
+    double clear = 0;  // minimum height above the ground at t1, metres
   };
 
   Proof proof_of(const SegmentBound& b, double t0, double t1) const {
@@ -195,8 +194,8 @@ class LocalWalk {
     end_ = std::min(t_ + length_, r_.t_exit);
     ask(Question::bound, State::walking, t_, end_);
   }
-  // The crossing between t_, above the ground, and end_, on or under it: by secants of which the end that stays is
-  // weighed less and less ("Illinois"), until the clearance is rounding or doubles end.
+  // The crossing between t_, above the ground, and end_, on or below it: by secants that weigh the retained end less
+  // and less ("Illinois"), until the clearance is rounding error or doubles end.
   void next_secant() {
     const double t = t_ + (end_ - t_) * (h0_ / (h0_ - h1_));
     if (secants_ == kMostSecants || !(t > t_ && t < end_)) return end(r_.hit(end_));
@@ -207,7 +206,7 @@ class LocalWalk {
 
   FunctionRay r_;
   double tolerance_ = 0, shortest_ = 0;
-  double t0_ = 0, t1_ = 0;               // what is asked about
+  double t0_ = 0, t1_ = 0;               // range of the query
   double t_ = 0, end_ = 0, length_ = 0;  // the segment
   double h0_ = 0, h1_ = 0;               // clearances at its ends
   std::uint32_t most_ = 0;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Noise in the plane for shaders: field/noise.h in single precision, on the same lattice to the bit.
 //
-//   place, two floats ──▶ lattice point, an integer modulo 2^32, exact ──▶ hash, the same on every machine
-//                    └──▶ place in the cell, 0 to 1, a float ──▶ noise and its derivatives
+//   position, two floats ──▶ lattice point, an integer modulo 2^32, exact ──▶ hash, identical on all machines
+//                       └──▶ position in the cell, 0 to 1, a float ──▶ noise and its derivatives
 //
-// What a float loses of a place far from the origin is kept in the low half, so noise is as good there as at the
-// origin. How far from the true noise the numbers are is counted in doc/dev/numerics.md ("Functions in single
-// precision"): kScarpNoiseUnits. Sources: those of field/noise.h.
+// The low half keeps what a single float loses far from the origin, so noise is as accurate there as at the origin. Its
+// error bounds are derived in doc/dev/numerics.md ("Functions in single precision"), see scarp_noise_bound(). Sources:
+// those of field/noise.h.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. Needs nothing.
+// Compiles as C++ and GLSL, including GLSL ES 3.0. Has no dependencies.
 #ifndef SCARP_MARCH_NOISE_GLSL_H
 #define SCARP_MARCH_NOISE_GLSL_H
 
@@ -17,7 +17,7 @@
 
 SCARP_GLSL_BEGIN
 
-// The values of NoiseKind.
+// Values of NoiseKind.
 const uint kScarpValueNoise = 0u;
 const uint kScarpPerlinNoise = 1u;
 const uint kScarpSimplexNoise = 2u;
@@ -29,12 +29,12 @@ struct ScarpNoise {
   float xx, xy, yy;
 };
 
-/// What holds everywhere (NoiseBound), and how far numbers as computed are from the true ones.
+/// Bounds that hold everywhere (NoiseBound), and error bounds of computed values.
 struct ScarpNoiseBound {
   float height, slope, curvature, third;
   float n_off, slope_off, curvature_off;
 };
-/// Those of a kind of noise; numerics.md derives them.
+/// Returns the bounds of a kind of noise; numerics.md derives them.
 SCARP_FN ScarpNoiseBound scarp_noise_bound(uint kind) {
   ScarpNoiseBound bound;
   bound.height = 1.0f;
@@ -71,9 +71,9 @@ SCARP_FN uint scarp_mix(uint x) {
 }
 /// Hash of a lattice point, lattice_hash() of field/noise.h.
 SCARP_FN uint scarp_lattice_hash(uint seed, uint i, uint j) { return scarp_mix(scarp_mix(seed + i) + j); }
-/// A number in [-1, 1): the first 24 bits of lattice_value().
+/// Returns a number in [-1, 1): the first 24 bits of lattice_value().
 SCARP_FN float scarp_lattice_value(uint hash) { return float(hash >> 8) * 1.1920928955078125e-7f - 1.0f; }
-/// One of 12 directions of length 1, lattice_direction().
+/// Returns one of 12 directions of length 1, lattice_direction().
 SCARP_FN vec2 scarp_lattice_direction(uint hash) {
   // hash * 12 / 2^32 in 32 bits: a quarter turn, and one of three directions in it.
   uint k = ((hash >> 16) * 12u + (((hash & 0xffffu) * 12u) >> 16)) >> 16;
@@ -84,20 +84,20 @@ SCARP_FN vec2 scarp_lattice_direction(uint hash) {
   return quarter == 0u ? vec2(x, y) : quarter == 1u ? vec2(-y, x) : quarter == 2u ? vec2(-x, -y) : vec2(y, -x);
 }
 
-/// A place along one axis of the lattice.
+/// A position along one axis of the lattice.
 struct ScarpLattice {
   uint cell;            ///< modulo 2^32
-  ScarpTwoFloat whole;  ///< the same, as far as two floats count
-  float place;          ///< in it, 0..1, both ends included
+  ScarpTwoFloat whole;  ///< the cell's integer, as far as two floats represent it
+  float place;          ///< position in it, 0..1, both ends included
 };
-/// A whole number modulo 2^32; below 2^48.
+/// Returns an integer below 2^48 modulo 2^32.
 SCARP_FN uint scarp_wrapped(float whole) {
   float high = floor(whole * 1.52587890625e-5f);  // 2^-16
   float low = whole - high * 65536.0f;
   float rest = high - floor(high * 1.52587890625e-5f) * 65536.0f;
   return (uint(rest) << 16) + uint(low);
 }
-/// Where a coordinate is, counted in cells of the lattice.
+/// Splits a coordinate in lattice cells.
 SCARP_FN ScarpLattice scarp_lattice(ScarpTwoFloat p) {
   float whole = floor(p.high);
   SCARP_PRECISE float rest = (p.high - whole) + p.low;
@@ -109,20 +109,20 @@ SCARP_FN ScarpLattice scarp_lattice(ScarpTwoFloat p) {
   return at;
 }
 
-/// The quintic fade from 0 to 1; from its nearer end, which keeps its error below 7 units.
+/// Quintic fade from 0 to 1; evaluated from its nearer end, which keeps its error below 7 units.
 SCARP_FN float scarp_fade(float t) {
   float r = min(t, 1.0f - t);
   SCARP_PRECISE float f = r * r * r * (r * (r * 6.0f - 15.0f) + 10.0f);
   return t < 0.5f ? f : 1.0f - f;
 }
-/// The first derivative of the fade.
+/// First derivative of the fade.
 SCARP_FN float scarp_fade_slope(float t) { return 30.0f * (t * t) * ((t - 1.0f) * (t - 1.0f)); }
-/// The second one.
+/// Second derivative of the fade.
 SCARP_FN float scarp_fade_curvature(float t) { return 60.0f * t * (t * 2.0f - 1.0f) * (t - 1.0f); }
-/// a at t = 0, b at t = 1.
+/// Linear interpolation: a at t = 0, b at t = 1.
 SCARP_FN float scarp_lerp(float a, float b, float t) { return a + t * (b - a); }
 
-/// Numbers at the corners, faded: with derivatives per cell of the lattice; errors within scarp_noise_bound().
+/// Faded numbers at the corners, with derivatives per lattice cell; errors within scarp_noise_bound().
 SCARP_FN ScarpNoise scarp_value_noise(uint seed, ScarpLattice x, ScarpLattice y) {
   uint west = scarp_mix(seed + x.cell);
   uint east_side = scarp_mix(seed + (x.cell + 1u));
@@ -146,7 +146,7 @@ SCARP_FN ScarpNoise scarp_value_noise(uint seed, ScarpLattice x, ScarpLattice y)
   return noise;
 }
 
-/// Slopes at the corners, faded; likewise.
+/// Faded slopes at the corners, with derivatives per lattice cell; errors within scarp_noise_bound().
 SCARP_FN ScarpNoise scarp_perlin_noise(uint seed, ScarpLattice x, ScarpLattice y) {
   const float kScale = 1.41421356f;
   uint west = scarp_mix(seed + x.cell);
@@ -180,7 +180,7 @@ SCARP_FN ScarpNoise scarp_perlin_noise(uint seed, ScarpLattice x, ScarpLattice y
   return noise;
 }
 
-/// What a corner of the triangle adds at (dx, dy) from it.
+/// Adds the contribution of a triangle corner at (dx, dy) from it.
 SCARP_FN void scarp_simplex_corner(uint hash, float dx, float dy, SCARP_INOUT(ScarpNoise) noise) {
   float m = 0.5f - dx * dx - dy * dy;
   if (m <= 0.0f) return;
@@ -198,7 +198,8 @@ SCARP_FN void scarp_simplex_corner(uint hash, float dx, float dy, SCARP_INOUT(Sc
   noise.xy += 48.0f * m2 * dx * dy * plane - k * (dx * gy + dy * gx);
 }
 
-/// Slopes at the corners of triangles; x and y in units of the noise, as field/noise.h has them. Likewise.
+/// Slopes at the corners of triangles; x and y in units of the noise, as in field/noise.h. Errors within
+/// scarp_noise_bound().
 SCARP_FN ScarpNoise scarp_simplex_noise(uint seed, ScarpTwoFloat x, ScarpTwoFloat y) {
   ScarpTwoFloat skew;  // (sqrt(3) - 1) / 2
   skew.high = 0.3660254180431365966796875f;
@@ -221,7 +222,7 @@ SCARP_FN ScarpNoise scarp_simplex_noise(uint seed, ScarpTwoFloat x, ScarpTwoFloa
   noise.xx = 0.0f;
   noise.xy = 0.0f;
   noise.yy = 0.0f;
-  // No loop: who runs programs of noise counts loops (function_batch.glsl.h).
+  // No loop: callers that run noise programs count loop iterations (function_batch.glsl.h).
   scarp_simplex_corner(scarp_lattice_hash(seed, i.cell, j.cell), x0, y0, noise);
   scarp_simplex_corner(scarp_lattice_hash(seed, i.cell + east, j.cell + (1u - east)), x0 - (float(east) - unskew.high),
                        y0 - (float(1u - east) - unskew.high), noise);
@@ -230,7 +231,7 @@ SCARP_FN ScarpNoise scarp_simplex_noise(uint seed, ScarpTwoFloat x, ScarpTwoFloa
   return noise;
 }
 
-/// Noise of a kind at a place, with its derivatives. |x| and |y| below 2^47.
+/// Returns noise of a kind at a position, with its derivatives. |x| and |y| must be below 2^47.
 SCARP_FN ScarpNoise scarp_noise(uint kind, uint seed, ScarpTwoFloat x, ScarpTwoFloat y) {
   if (kind == kScarpSimplexNoise) return scarp_simplex_noise(seed, x, y);
   if (kind == kScarpPerlinNoise) return scarp_perlin_noise(seed, scarp_lattice(x), scarp_lattice(y));

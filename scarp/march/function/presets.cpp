@@ -11,7 +11,7 @@
 namespace scarp {
 namespace {
 
-// No least step: `naive` wants one above 0.
+// No minimum step: `naive` requires one above 0.
 constexpr double kNoLeastStep = 0x1p-40;
 
 MarchPreset elevated() {

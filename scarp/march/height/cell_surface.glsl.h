@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The clearance (ray height - surface height) of a ray in one cell, in single precision: cell_surface.h for shaders.
-// Heights count from the frame's base, so that floats hold what matters: the relief round the ray.
+// Clearance (ray height - surface height) of a ray in one cell, in single precision: cell_surface.h for shaders.
+// Heights are relative to the frame's base, so that floats resolve the relief around the ray.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. Who includes it has defined, before,
+// Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define
 //   float scarp_sample(int col, int row)       the sample at a node of the grid
-//   bool scarp_is_nodata(float value)         whether that is the value of a hole; not asked without kScarpHoles
+//   bool scarp_is_nodata(float value)         whether the value marks a hole; not called without kScarpHoles
 #ifndef SCARP_MARCH_CELL_SURFACE_GLSL_H
 #define SCARP_MARCH_CELL_SURFACE_GLSL_H
 
@@ -13,13 +13,13 @@
 
 SCARP_GLSL_BEGIN
 
-/// Heights at the corners of a cell, counted from a base: h10 is at (col+1, row), h01 at (col, row+1).
+/// Corner heights of a cell, relative to a base: h10 is at (col+1, row), h01 at (col, row+1).
 struct ScarpCell {
   float h00, h10, h01, h11;
-  bool hole;  ///< one of them is nodata, and the heights mean nothing
+  bool hole;  ///< a corner is nodata, and the heights are undefined
 };
 
-/// Four samples, less `base`.
+/// Four samples, minus `base`.
 SCARP_FN ScarpCell scarp_cell(ScarpField field, int col, int row, float base) {
   int next_col = col + 1 < field.samples.x ? col + 1 : 0;
   int next_row = row + 1 < field.samples.y ? row + 1 : 0;
@@ -37,42 +37,42 @@ SCARP_FN ScarpCell scarp_cell(ScarpField field, int col, int row, float base) {
   return cell;
 }
 
-/// The lowest corner of a cell that is no hole.
+/// Lowest corner of a cell that is not a hole.
 SCARP_FN float scarp_lowest(ScarpCell cell) { return min(min(cell.h00, cell.h10), min(cell.h01, cell.h11)); }
-/// The highest one.
+/// Highest corner of a cell that is not a hole.
 SCARP_FN float scarp_highest(ScarpCell cell) { return max(max(cell.h00, cell.h10), max(cell.h01, cell.h11)); }
 
-/// Height of the surface at a place in the cell.
+/// Height of the bilinear surface at a position in the cell.
 SCARP_FN float scarp_bilinear(ScarpCell cell, float u, float v) {
   SCARP_PRECISE float height = cell.h00 + ((cell.h10 - cell.h00) * u + (cell.h01 - cell.h00) * v +
                                            ((cell.h11 - cell.h01) - (cell.h10 - cell.h00)) * (u * v));
   return height;
 }
-/// Of one of its two triangles: the one with (col+1, row+1), or the one with (col, row).
+/// Height of one of its two triangles: that with (col+1, row+1), or that with (col, row).
 SCARP_FN float scarp_triangle(ScarpCell cell, bool south_east, float u, float v) {
   SCARP_PRECISE float north_west_height = cell.h00 + ((cell.h10 - cell.h00) * u + (cell.h01 - cell.h00) * v);
   SCARP_PRECISE float south_east_height =
       cell.h11 - ((cell.h11 - cell.h01) * (1.0f - u) + (cell.h11 - cell.h10) * (1.0f - v));
   return south_east ? south_east_height : north_west_height;
 }
-/// Of the surface that the field has: bilinear, or the triangle that the place is in.
+/// Height of the field's surface: bilinear, or the triangle at the position.
 SCARP_FN float scarp_surface(ScarpField field, ScarpCell cell, float u, float v) {
   return (field.flags & kScarpTriangles) != 0u ? scarp_triangle(cell, u + v > 1.0f, u, v) : scarp_bilinear(cell, u, v);
 }
 
-/// The height of a crossing between two nodes. Rounding must not carry it beyond either: the pyramid bounds the nodes.
+/// Height of a crossing between two nodes. Rounding must not move it beyond either: the pyramid bounds the nodes.
 SCARP_FN float scarp_edge_height(float a, float b, float place) {
   SCARP_PRECISE float height = a + place * (b - a);
   return clamp(height, min(a, b), max(a, b));
 }
 
-// How a ray comes into or leaves a cell: not through a line, through one of constant column, or of constant row.
+// How a ray enters or leaves a cell: not through a line, through one of constant column, or of constant row.
 const int kScarpPoint = 0;
 const int kScarpLineX = 1;
 const int kScarpLineY = 2;
 
-/// How far the ray is above the surface at local time t, where it comes into or leaves the cell. On a line from the two
-/// nodes of the side alone.
+/// Clearance of the ray at local time t, where it enters or leaves the cell. At a line, computed from the two nodes of
+/// that side alone.
 SCARP_FN float scarp_clearance(ScarpField field, ScarpFrame frame, ScarpRay ray, ScarpCell cell, int col, int row,
                                int through, bool leaving, float t) {
   float u = scarp_place_x(frame, ray, t, col);
@@ -96,7 +96,7 @@ struct ScarpQuadratic {
   float a, b, c;
 };
 
-/// The clearance of a ray over a cell, s counting from local time t.
+/// Returns the clearance of a ray over a cell, with s counting from local time t.
 SCARP_FN ScarpQuadratic scarp_quadratic(ScarpFrame frame, ScarpRay ray, ScarpCell cell, int col, int row, float t) {
   float u = scarp_place_x(frame, ray, t, col);
   float v = scarp_place_y(frame, ray, t, row);
@@ -111,16 +111,16 @@ SCARP_FN ScarpQuadratic scarp_quadratic(ScarpFrame frame, ScarpRay ray, ScarpCel
   return f;
 }
 
-/// The root where f falls, without cancellation, as in Ramsey et al. 2004; or one at infinity.
+/// The root where f falls, without cancellation, as in Ramsey et al. 2004; may be at infinity.
 SCARP_FN float scarp_falling_root(ScarpQuadratic f) {
   float root = sqrt(max(0.0f, f.b * f.b - 4.0f * f.a * f.c));
   return f.b < 0.0f ? 2.0f * f.c / (root - f.b) : (f.a < 0.0f ? -(f.b + root) / (2.0f * f.a) : kScarpNever);
 }
-/// Above zero at 0 and `length`: whether f comes down to `level` <= 0 in between.
+/// Returns whether f, positive at 0 and `length`, reaches `level` <= 0 in between.
 SCARP_FN bool scarp_dips(ScarpQuadratic f, float length, float level) {
   return f.a > 0.0f && f.b < 0.0f && -f.b < 2.0f * f.a * length && f.b * f.b >= 4.0f * f.a * (f.c - level);
 }
-/// Whether f has its highest point in between, above `level`.
+/// Returns whether f has its maximum in between, above `level`.
 SCARP_FN bool scarp_peaks(ScarpQuadratic f, float length, float level) {
   return f.a < 0.0f && f.b > 0.0f && f.b < -2.0f * f.a * length && f.c - f.b * f.b / (4.0f * f.a) > level;
 }

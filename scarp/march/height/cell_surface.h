@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The clearance (ray height - surface height) of a ray in one cell, in closed form.
+// Clearance (ray height - surface height) of a ray in one cell, in closed form.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace scarp {
 
-/// The height of a crossing between two nodes. Rounding must not carry it beyond either: the pyramid bounds the nodes.
+/// Height of a crossing between two nodes. Rounding must not move it beyond either: the pyramid bounds the nodes.
 inline double edge_height(double a, double b, double f) {
   return std::clamp(a + std::clamp(f, 0.0, 1.0) * (b - a), std::min(a, b), std::max(a, b));
 }
@@ -19,7 +19,7 @@ struct CellQuadratic {
   double a, b, c;
   double surface;  // height at s = 0
 
-  /// u, v: place in the cell at s = 0; du, dv, dz: the ray's direction; z its height at s = 0.
+  /// u, v: position in the cell at s = 0; du, dv, dz: the ray's direction; z its height at s = 0.
   CellQuadratic(const CellHeights& h, double u, double v, double du, double dv, double z, double dz) {
     const double hu = h.h10 - h.h00, hv = h.h01 - h.h00, twist = (h.h11 - h.h01) - hu;
     a = curvature(h, du, dv);
@@ -34,20 +34,19 @@ struct CellQuadratic {
 
   double at(double s) const { return (a * s + b) * s + c; }
 
-  // The root that a ray going downwards through zero meets: where f falls. Without cancellation, as in Ramsey et al.
-  // 2004.
+  // The root where f falls, hit by a descending ray. Without cancellation, as in Ramsey et al. 2004.
   double falling_root() const {
     const double root = std::sqrt(std::max(0.0, b * b - 4 * a * c));
     return b < 0 ? 2 * c / (root - b) : -(b + root) / (2 * a);
   }
-  // Starting and ending above zero in [0, length]: whether it comes down to zero in between.
+  // Whether f, positive at both ends of [0, length], reaches zero in between.
   bool dips(double length) const { return a > 0 && b < 0 && -b < 2 * a * length && b * b >= 4 * a * c; }
   double vertex_value() const { return c - b * b / (4 * a); }
-  // Whether it has its highest point in between.
+  // Whether f has its maximum in between.
   bool peaks(double length) const { return a < 0 && b > 0 && b < -2 * a * length; }
 };
 
-/// Clearance along the ray over one triangle of a cell: f(s) = c + b s. `south_east` tells the triangle.
+/// Clearance along the ray over one triangle of a cell: f(s) = c + b s. `south_east` selects the triangle.
 struct CellPlane {
   double b, c;
   double surface;  // height at s = 0

@@ -19,8 +19,8 @@ struct Span {
 
 Span common(Span a, Span b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
 
-// When o + d t lies in [low, low + size]. Neighbouring strips compute their common border alike, so their spans meet
-// exactly. A ray that does not move along the axis belongs to [low, low + size), the last strip of all being closed.
+// When o + d t is in [low, low + size]. Adjacent strips compute their common border alike, so their spans meet exactly.
+// A ray that does not move along the axis belongs to [low, low + size); the last strip is closed.
 Span strip(double o, double d, double low, double size, bool last) {
   if (d == 0) return o >= low && (o < low + size || (last && o == low + size)) ? Span{} : Span{1, 0};
   const double a = (low - o) / d, b = (low + size - o) / d;
@@ -32,11 +32,11 @@ Span strip(double o, double d, double low, double size, bool last) {
 struct Piece {
   Span span;
   Cell cell;
-  double col, row;       // of the cell, in a field that wraps round of the copy that the ray is over
+  double col, row;       // of the cell; in a wrapped field, of the copy below the ray
   double a, b, c, last;  // last: f at the span's end
 
   double length() const { return span.end - span.begin; }
-  // The two places where f = 0, the lower first; nothing when there are none.
+  // The two roots of f, the lower first; nullopt if there are none.
   std::optional<Span> roots() const {
     if (a == 0) {
       if (b == 0) return {};
@@ -48,7 +48,7 @@ struct Piece {
     if (q == 0) return Span{0, 0};
     return Span{std::min(q / a, c / q), std::max(q / a, c / q)};
   }
-  // Where a parabola has its lowest or highest point, if inside the piece.
+  // The vertex of the parabola, if inside the piece.
   std::optional<double> vertex() const {
     if (a == 0) return {};
     const double s = -b / (2 * a);
@@ -71,8 +71,8 @@ class Ground {
 
   void move_height(double by) { oz_ += by; }
 
-  // The pieces over the cell at (col, row), which in a field that wraps round may be in any copy: one, or one for each
-  // triangle, or none over a hole.
+  // Adds the pieces over the cell at (col, row), which in a wrapped field may be in any copy: one, one per triangle, or
+  // none over a hole.
   void add_pieces(double col, double row, Span span, std::vector<Piece>& to) const {
     const Cell cell{within(col, field_.cell_cols()), within(row, field_.cell_rows())};
     const auto h = field_.cell_heights(cell);
@@ -81,7 +81,7 @@ class Ground {
       to.push_back(bilinear_piece(*h, cell, col, row, span));
       return;
     }
-    // Where x + y is that of the diagonal the ray goes from one triangle to the other.
+    // Where x + y equals that of the diagonal, the ray passes from one triangle to the other.
     const double across = dx_ + dy_, parting = (col + row + 1 - ox_ - oy_) / across;
     if (across != 0 && parting > span.begin && parting < span.end) {
       to.push_back(triangle_piece(*h, cell, col, row, {span.begin, parting}));
@@ -99,7 +99,7 @@ class Ground {
     p.a = -(h.h00 - h.h10 - h.h01 + h.h11) * dx_ * dy_;
     p.b = dz_ - gu * dx_ - gv * dy_;
     p.c = oz_ + dz_ * span.begin - bilinear(h, u, v);
-    // An upright ray may have no end: then the sign of its movement tells on which side it ends.
+    // A vertical ray may be infinite: the sign of its movement then tells on which side it ends.
     p.last = std::isinf(span.end)
                  ? std::copysign(kInfinity, dz_)
                  : oz_ + dz_ * span.end -
@@ -124,7 +124,7 @@ class Ground {
     return p;
   }
 
-  // The surface right under a point of the cell; nothing over a hole.
+  // The clearance above a point of the cell; nullopt over a hole.
   std::optional<double> clearance_at(Cell cell, double t) const {
     const auto h = field_.cell_heights(cell);
     if (!h) return {};
@@ -138,7 +138,7 @@ class Ground {
                                                           : triangle_piece(*h, cell, col, row, here).c;
   }
 
-  // What rounding can add to f around t: 16 units in the last place of all that goes into it.
+  // Maximum rounding error of f around t: 16 units in the last place of all operands.
   double rounding(double t) const {
     const HeightFieldSettings& to = field_.settings();
     const double heights = std::max(std::abs(field_.min_sample()), std::abs(field_.max_sample())) + std::abs(oz_) +
@@ -154,7 +154,7 @@ class Ground {
     return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
-  // All pieces of the ray, in the order of t. The range is finite in a field that wraps round.
+  // All pieces of the ray, in order of t. The range must be finite in a wrapped field.
   std::vector<Piece> pieces(Span range) const {
     std::vector<Piece> found;
     const int cols = field_.cell_cols(), rows = field_.cell_rows();
@@ -181,7 +181,7 @@ class Ground {
     return found;
   }
 
-  // When the ray's line comes over the field; long ago where the field has no border.
+  // When the ray's line enters the field; -infinity if the field has no border.
   double border() const {
     if (field_.wraps()) return -kInfinity;
     return std::max(strip(ox_, dx_, 0, field_.cell_cols(), true).begin,
@@ -210,8 +210,8 @@ class Ground {
   double ox_, oy_, oz_, dx_, dy_, dz_;  // the ray in cells and sample units
 };
 
-// First s in the piece at which a ray that comes from above is on or below the surface. A ray that began on the surface
-// has to be below by more than `depth`, what rounding can pretend; a touch is no hit for it.
+// First s in the piece at which a ray from above is on or below the surface. A ray that started on the surface must be
+// below by more than `depth`, the rounding error; a touch is not a hit for it.
 std::optional<double> descent(const Piece& p, std::optional<double> depth) {
   const auto below = [&](double f) { return depth ? f < -*depth : f <= 0; };
   const bool ends_below = below(p.last);
@@ -220,23 +220,23 @@ std::optional<double> descent(const Piece& p, std::optional<double> depth) {
   if (!ends_below && !(p.a > 0 && below(lowest))) return {};
   const auto roots = p.roots();
   if (!roots) return ends_below ? p.length() : *vertex;
-  // f falls through zero at the lower root of a cup and at the upper root of a cap.
+  // f falls through zero at the lower root if it opens upwards, at the upper root otherwise.
   return p.a < 0 ? roots->end : roots->begin;
 }
 
-// Whether a ray that is below at the piece's begin comes out in between.
+// Whether a ray that is below at the start of the piece emerges in between.
 bool rises_inside(const Piece& p) {
   const auto vertex = p.vertex();
   return vertex && p.a < 0 && (p.a * *vertex + p.b) * *vertex + p.c > 0;
 }
 
-// The first s at which such a ray is back on or below the surface, as descent().
+// The first s at which such a ray is on or below the surface again, as descent().
 std::optional<double> descent_after_rise(const Piece& p, std::optional<double> depth) {
   if (!(depth ? p.last < -*depth : p.last <= 0)) return {};
   return p.roots() ? p.roots()->end : p.length();
 }
 
-// Goes along the ray; found(hit) says whether to go on. Returns below when the ray began so, else miss.
+// Follows the ray; found(hit) returns whether to continue. Returns below if the ray started so, otherwise miss.
 template <class Found>
 HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, const Found& found) {
   HitStatus without = HitStatus::miss;
@@ -253,13 +253,13 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
   const auto pieces = ground.pieces({ray.t_min, ray.t_max});
   if (stats) stats->steps = stats->cell_tests = static_cast<std::uint32_t>(pieces.size());
   const double entry = std::max(ray.t_min, ground.border());
-  // A ray from the surface may come over its cell a rounding later.
+  // A ray from the surface may enter its cell a rounding later.
   const double start = on_surface ? ray.t_min + ground.rounding_of_time(ray.t_min) : -kInfinity;
   double reached = start;
   bool first = on_surface;
   for (const Piece& p : pieces) {
     if (first && p.cell == ray.start_cell && p.span.begin <= start) {
-      // f = s (a s + b): the root at the start is no hit.
+      // f = s (a s + b): the root at the start is not a hit.
       reached = std::max(reached, p.span.end);
       if (p.length() == 0) continue;
       first = false;
@@ -270,14 +270,14 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
       if (last <= 0) side = Side::below;
       continue;
     }
-    if (p.span.begin > reached) side = Side::unknown;  // a hole lies in between, or nothing at all yet
+    if (p.span.begin > reached) side = Side::unknown;  // a hole in between, or the first piece
     reached = std::max(reached, p.span.end);
     if (side == Side::unknown) {
       side = p.c < 0 ? Side::below : Side::above;
       if (side == Side::below && !on_surface && &p == &pieces.front() && p.span.begin <= entry) {
         without = HitStatus::below;
       }
-      // Through the border or out of a hole, unless it began in this cell.
+      // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || ground.border() >= ray.t_min;
       if (side == Side::below && field.settings().solid && came_in) {
         Hit hit = ground.hit(p, 0);
@@ -287,7 +287,7 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
     }
     if (side == Side::below && p.c > 0) side = Side::above;
     const auto depth = on_surface ? std::optional(ground.rounding(p.span.begin)) : std::nullopt;
-    // Who comes to be on the surface has met it, and may rise from there and meet it again in the same piece.
+    // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece.
     if (side == Side::above && !depth && p.c <= 0) {
       if (!found(ground.hit(p, 0))) return without;
       side = Side::below;
@@ -304,8 +304,8 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
   return without;
 }
 
-// The products of a very long or very short direction's components do not fit a double: it is followed as one of a
-// length near 1, and t given back in its own. By powers of two, so that nothing is rounded.
+// Products of the components of a very long or very short direction do not fit a double: such a ray is scaled to a
+// length near 1, and t is scaled back. Powers of two avoid rounding.
 class OfUsualLength {
  public:
   explicit OfUsualLength(const Ray& ray) : ray_(ray) {

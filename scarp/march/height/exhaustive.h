@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// `exhaustive`: the judge of all other marches. Every cell that the ray's shadow on the ground touches is intersected
-// on its own, in double, row by row of the raster, with no accelerator; the pieces are then read in the order of t.
+// `exhaustive`: the reference for all other marches. Intersects every cell below the ray independently, in double, row
+// by row of the raster, without an accelerator; then reads the pieces in order of t.
 //
-// Guarantee: exact (to rounding). Shares no code with the other marches, on purpose: a mistake must not be made twice.
-// Cost: O(columns + rows) cells per ray and a sort; hundreds of times slower than max-mip. For tests and error
-// pictures.
+// Guarantee: exact (to rounding). Deliberately shares no code with the other marches, so that no mistake is made twice.
+// Cost: O(columns + rows) cells per ray and a sort; hundreds of times slower than max-mip. For tests and error images.
 #pragma once
 
 #include <vector>
@@ -14,11 +13,11 @@
 
 namespace scarp {
 
-/// Closest hit; conventions as in ray.h. The pyramid is not used. In a field that wraps round t_max must be finite.
+/// Closest hit; conventions as in ray.h. Does not use the pyramid. In a wrapped field t_max must be finite.
 Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                      MarchStats* stats = nullptr);
 
-/// All hits in the ray's range, in the order of t, as all_hits_max_mip gives them. Returns hit, or why there is none.
+/// All hits in the ray's range, in order of t, as by all_hits_max_mip. Returns hit, or the reason for none.
 HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits);
 
 }  // namespace scarp

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// One axis of a ray over a grid: when it crosses the grid's lines, and which cell it is in.
+// One axis of a ray over a grid: crossing times of grid lines, and the current cell.
 //
-// Every line k has ONE time, (k - origin) * (1 / direction), whatever cell or level asks. Rounding keeps these times in
-// the order of k, so cells found through them follow one another without gap or overlap.
+// Every line k has ONE time, (k - origin) * (1 / direction), whatever cell or level uses it. Rounding keeps these times
+// in the order of k, so cells found through them follow one another without gap or overlap.
 //
-// A grid that wraps round has a line for every integer. Cells and lines are then counted within one copy of the grid,
-// from its first line on, and the copy is part of the state; what is computed from a line is computed from its integer,
-// so neighbours on the two sides of a seam agree as all others do.
+// A wrapped grid has a line for every integer. Cells and lines are counted within one copy of the grid, from its first
+// line on, and the copy is part of the state. Values at a line are computed from its integer, so neighbours on both
+// sides of a seam agree like all others.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace scarp {
 
-/// Compiled apart for grids that wrap round: what this costs, rays over others need not pay.
+/// Compiled separately for wrapped grids, so that rays over other grids do not pay for it.
 template <bool Wraps>
 class GridAxis {
  public:
@@ -24,7 +24,7 @@ class GridAxis {
   double direction;  // cells per t
   double per_direction;
   int step;   // +1 or -1
-  int ahead;  // 1 if the line left through has a higher number than the cell, else 0
+  int ahead;  // 1 if the line ahead has a higher number than the cell, otherwise 0
   int cells;
 
   GridAxis(double o, double d, int cell_count)
@@ -33,8 +33,8 @@ class GridAxis {
     ahead = d < 0 ? 0 : 1;
     if (std::isinf(per_direction)) {
       // No movement along this axis (or less than 2^-1022 cells per t): the lines on the near side are crossed at -inf,
-      // those on the far side at +inf. A ray along a line belongs to the cell after it, on the last line of a grid that
-      // does not wrap to the last cell.
+      // those on the far side at +inf. A ray along a line belongs to the cell after it; on the last line of a grid
+      // without wrap, to the last cell.
       direction = 0;
       step = ahead = 1;
       per_direction = std::numeric_limits<double>::infinity();
@@ -45,43 +45,43 @@ class GridAxis {
 
   bool moves() const { return direction != 0; }
   double at(double t) const { return origin + direction * t; }
-  /// Place in a cell at time t, 0..1.
+  /// Position in a cell at time t, 0..1.
   double place(double t, int cell) const { return std::clamp(at(t) - static_cast<double>(first() + cell), 0.0, 1.0); }
   double line_time(int line) const { return global_line_time(first() + line); }
-  /// When the ray comes into and leaves this copy of the grid.
+  /// Times at which the ray enters and leaves this copy of the grid.
   double enter_time() const { return line_time(ahead ? 0 : cells); }
   double exit_time() const { return line_time(ahead ? cells : 0); }
   bool inside(int cell) const { return static_cast<unsigned>(cell) < static_cast<unsigned>(cells); }
-  /// The number of a line among all lines of the plane.
+  /// Number of a line among all lines of the plane.
   std::int64_t global_line(int line) const { return first() + line; }
 
-  // The cell at time t by the order of line times alone; the position is only where to look first. Lines crossed
-  // exactly at t are behind the cell (after) or still ahead of it (before). In a grid that wraps round, the copy
-  // becomes that of the cell.
+  // The cell at time t by the order of line times alone; the position is only the initial guess. Lines crossed exactly
+  // at t are behind the cell (after) or still ahead of it (before). In a wrapped grid, the copy becomes that of the
+  // cell.
   int cell_after(double t) {
     return ordered_cell(t, [&](std::int64_t line) { return global_line_time(line) <= t; });
   }
   int cell_before(double t) {
     return ordered_cell(t, [&](std::int64_t line) { return global_line_time(line) < t; });
   }
-  // Puts the ray into `cell` at time t; in a grid that wraps round into the copy that it is over then. A ray along a
-  // line belongs to the cell that it is said to begin in.
+  // Places the ray in `cell` at time t; in a wrapped grid, in the copy below it. A ray along a line belongs to the cell
+  // that it is given.
   void begin_in(int cell, double t) {
     if constexpr (Wraps) first_ = static_cast<std::int64_t>(std::round((at(t) - cell - 0.5) / cells)) * cells;
     if (!moves()) time_origin_ = static_cast<double>(first() + cell) + 0.5;
   }
-  // The cell of this copy that is nearest to a position; NaN goes to 0.
+  // The cell of this copy nearest to a position; NaN becomes 0.
   int near(double position) const {
     return static_cast<int>(std::min(std::max(0.0, position - static_cast<double>(first())), cells - 1.0));
   }
-  // Goes on to the next copy; returns the first cell there.
+  // Moves to the next copy; returns its first cell.
   int enter_next_copy() {
     first_ += step * std::int64_t{cells};
     return ahead ? 0 : cells - 1;
   }
 
  private:
-  // An int where it is always 0: counting lines then is in int, too.
+  // An int if always 0, so that counting lines uses int, too.
   auto first() const {
     if constexpr (Wraps) {
       return first_;
@@ -115,8 +115,8 @@ class GridAxis {
     return static_cast<int>(cell - first_);
   }
 
-  double time_origin_;      // origin, as the times of lines take it
-  std::int64_t first_ = 0;  // the first line of this copy of the grid
+  double time_origin_;      // origin, as used for line times
+  std::int64_t first_ = 0;  // first line of this copy of the grid
 };
 
 }  // namespace scarp

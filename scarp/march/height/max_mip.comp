@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `max-mip` on a batch of rays, one invocation per ray.
+// `max-mip` for a batch of rays, one invocation per ray.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "scarp/march/height/ray_batch.glsl.h"
-// The march asks the batch for its ground.
+// The march reads its ground through the batch.
 #include "scarp/march/height/batch_states.glsl.h"
 
 void main() {

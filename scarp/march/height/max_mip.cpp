@@ -14,7 +14,7 @@ namespace {
 using max_mip::Ask;
 using max_mip::kNotClear;
 
-// Beyond this many cells doubles no longer tell one cell from the next.
+// Beyond this many cells doubles cannot distinguish neighbouring cells.
 constexpr double kFarthestCell = 0x1p51;
 
 template <Ask ask>

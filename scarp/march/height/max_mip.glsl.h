@@ -1,23 +1,23 @@
 // SPDX-License-Identifier: MIT
-// `max-mip` for shaders: the hierarchical walk of max_mip.h in single precision, closest hit and any hit.
+// `max-mip` for shaders: the hierarchical traversal of max_mip.h in single precision, closest hit and any hit.
 //
 //   for each tile of the grid under the ray:     ray_frame.glsl.h: floats count from the tile's corner
-//     level 2:  [        ]   lowest ray height over the block > its maximum: leave the block at once
-//     level 1:  [   ][   ]   otherwise: go one level down
+//     level 2:  [        ]   lowest ray height over the block > its maximum: leave the block
+//     level 1:  [   ][   ]   otherwise: descend one level
 //     level 0:  [ ][ ][ ][ ] in a cell: intersect its surface
 //
-// The integer cell is the state, also from one tile to the next: a tile is entered through the line that the one before
-// was left through. A hit is a change of sign between two crossings, each computed once; the next cell takes the sign
-// over. So a ray cannot slip through a node, an edge or a diagonal.
+// The integer cell is the state, also between tiles: a tile is entered through the line by which the previous one was
+// left. A hit is a sign change between two crossings, each computed once; the next cell inherits the sign. Thus a ray
+// cannot slip through a node, an edge or a diagonal.
 //
-// Guarantee: exact, but for rounding: decisions are those of the surface and a ray that are moved by no more than the
-// bound delta of doc/dev/numerics.md ("Single precision"), some 2^-10 of a cell at a tile's far side. any-hit and
-// closest-hit always agree. Source: see max_mip.h.
+// Guarantee: exact up to rounding: decisions are those of a surface and a ray displaced by at most the bound delta of
+// doc/dev/numerics.md ("Single precision"), about 2^-10 of a cell at a tile's far side. Any hit and closest hit always
+// agree. Source: see max_mip.h.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. Who includes it has defined, before, scarp_sample and scarp_is_nodata
+// Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define scarp_sample and scarp_is_nodata
 // (cell_surface.glsl.h), and
 //   float scarp_maximum(int level, int col, int row)   the pyramid's code of a block, level 1 and up; and its minimum,
-//   float scarp_minimum(int level, int col, int row)   0 where it has none. As accel/max_pyramid.h builds them.
+//   float scarp_minimum(int level, int col, int row)   0 if it has none. As built by accel/max_pyramid.h.
 #ifndef SCARP_MARCH_MAX_MIP_GLSL_H
 #define SCARP_MARCH_MAX_MIP_GLSL_H
 
@@ -27,25 +27,25 @@
 
 SCARP_GLSL_BEGIN
 
-// Where the ray is at the entry of the current cell, as far as known.
+// Side of the ray at the entry of the current cell, as far as known.
 const int kScarpUnknown = 0;
 const int kScarpAboveGround = 1;
 const int kScarpBelowGround = 2;
 
-/// Where the walk stands.
+/// State of the traversal.
 struct ScarpWalk {
   ScarpFrame frame;
   int level;
   int col, row;  // of the block on this level
-  float t_in;    // when the ray came into it, local
+  float t_in;    // time at which the ray entered it, local
   int side;      // kScarpUnknown and so on, at t_in
-  int through;   // how it came into it
-  int begun;     // 1: something has been left behind; only the first cell can say that the ray began below
+  int through;   // how the ray entered it
+  int begun;     // 1: some cell has been left; only in the first cell can the ray start below
   int start;     // 1: in the cell of a ray from the surface
-  float relief;  // of the cell that a ray from the surface began in: its height is as exact as that allows
+  float relief;  // relief of the start cell of a ray from the surface; limits the accuracy of its height
 };
 
-/// A hit in the cell where the walk stands, at local time t, or at its wall.
+/// Records a hit in the current cell, at local time t, or at its wall.
 SCARP_FN void scarp_tell(ScarpRay ray, ScarpWalk walk, float t, int status, SCARP_INOUT(ScarpHit) hit) {
   hit.status = status;
   hit.cell = ivec2(walk.col, walk.row);
@@ -54,20 +54,20 @@ SCARP_FN void scarp_tell(ScarpRay ray, ScarpWalk walk, float t, int status, SCAR
   hit.time_low = t;
 }
 
-/// Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly
-/// below.
+/// Returns whether a clearance <= 0 is a hit: always, except for rays from the surface, which must be strictly below.
 SCARP_FN bool scarp_is_hit(ScarpRay ray, float clearance, float rounding) {
   return clearance <= 0.0f && ((ray.flags & kScarpOnSurface) == 0u || clearance < -rounding);
 }
 
-/// Whether a ray that is not above can never hit again: falling, under the lowest ground, with no walls ahead.
+/// Returns whether a ray that is not above can never hit again: falling, below the lowest ground, with no walls ahead.
 SCARP_FN bool scarp_lost(ScarpField field, ScarpFrame frame, ScarpRay ray, float t) {
   return ray.direction.z < 0.0f && scarp_ray_height(frame, ray, t) < field.lowest - frame.base &&
          (field.flags & (kScarpHoles | kScarpSolid)) != (kScarpHoles | kScarpSolid);
 }
 
-/// The question that a cell begins with where the side is not known: after the ray's begin, a border or a hole, where
-/// there is no crossing before to agree with. Within rounding of the rim a free ray touches it. True: answered.
+/// Determines the side at the start of a cell where it is unknown: after the start of the ray, a border or a hole,
+/// where no previous crossing has to agree. Within rounding of the rim a free ray touches it. Returns true if the
+/// answer is known.
 SCARP_FN bool scarp_find_side(ScarpField field, ScarpRay ray, ScarpCell cell, float rounding,
                               SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
   float in_above = scarp_clearance(field, walk.frame, ray, cell, walk.col, walk.row, walk.through, false, walk.t_in);
@@ -86,8 +86,8 @@ SCARP_FN bool scarp_find_side(ScarpField field, ScarpRay ray, ScarpCell cell, fl
   return false;
 }
 
-/// The bilinear surface of the current cell, with clearance `out_above` at t_out; true: answered, else walk.side is
-/// that of the way out.
+/// Tests the bilinear surface of the current cell, with clearance `out_above` at t_out. Returns true if the answer is
+/// known; otherwise walk.side is that of the exit.
 SCARP_FN bool scarp_test_bilinear(ScarpRay ray, ScarpCell cell, float out_above, float t_out, float rounding,
                                   SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
   float length = t_out - walk.t_in;
@@ -99,19 +99,19 @@ SCARP_FN bool scarp_test_bilinear(ScarpRay ray, ScarpCell cell, float out_above,
   } else if (out_above > rounding) {
     walk.side = kScarpAboveGround;
   } else if (scarp_peaks(f, length, rounding)) {
-    // It has come out in between, and goes on as any ray from above.
+    // The ray has emerged in between and continues like any ray from above.
     walk.side = kScarpAboveGround;
     falls = scarp_is_hit(ray, out_above, rounding);
   }
   if (!falls) return false;
-  // The signs have decided that there is a hit in the cell; the quadratic only says where.
+  // The signs imply a hit in the cell; the quadratic only locates it.
   float s = scarp_falling_root(f);
   scarp_tell(ray, walk, walk.t_in + (s >= 0.0f ? min(s, length) : 0.0f), kScarpHit, hit);
   return true;
 }
 
-/// One triangle, from t_begin with clearance `above` (as far as walk.side tells its sign) to t_end with clearance
-/// `end_above`; in between it is linear. True: answered.
+/// Tests one triangle, from t_begin with clearance `above` (unless walk.side gives its sign) to t_end with clearance
+/// `end_above`; it is linear in between. Returns true if the answer is known.
 SCARP_FN bool scarp_test_triangle(ScarpRay ray, float t_begin, float above, float end_above, float t_end,
                                   float rounding, SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
   if (walk.side == kScarpBelowGround) {
@@ -124,7 +124,7 @@ SCARP_FN bool scarp_test_triangle(ScarpRay ray, float t_begin, float above, floa
   return true;
 }
 
-/// The two triangles of the current cell: signs at the way in, at the diagonal, if it is crossed, and at the way out.
+/// Tests the two triangles of the current cell: signs at the entry, at the diagonal if crossed, and at the exit.
 SCARP_FN bool scarp_test_triangles(ScarpRay ray, ScarpCell cell, float out_above, float t_out, float rounding,
                                    SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
   float u = scarp_place_x(walk.frame, ray, walk.t_in, walk.col);
@@ -145,7 +145,7 @@ SCARP_FN bool scarp_test_triangles(ScarpRay ray, ScarpCell cell, float out_above
   return scarp_test_triangle(ray, t_begin, above, out_above, t_out, rounding, walk, hit);
 }
 
-/// The current cell; true: answered.
+/// Tests the current cell. Returns true if the answer is known.
 SCARP_FN bool scarp_test_cell(ScarpField field, ScarpRay ray, ScarpCell cell, int exit, float t_out,
                               SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
   float low = scarp_lowest(cell);
@@ -161,7 +161,7 @@ SCARP_FN bool scarp_test_cell(ScarpField field, ScarpRay ray, ScarpCell cell, in
   return walk.side == kScarpBelowGround && scarp_lost(field, walk.frame, ray, t_out);
 }
 
-/// Straight up or down, not from the surface: one cell, one height.
+/// Vertical rays that do not start on the surface: one cell, one height.
 SCARP_FN void scarp_upright(ScarpField field, ScarpRay ray, ScarpWalk walk, SCARP_INOUT(ScarpHit) hit) {
   ScarpCell cell = scarp_cell(field, walk.col, walk.row, walk.frame.base);
   hit.fetches += 4u;
@@ -179,8 +179,8 @@ SCARP_FN void scarp_upright(ScarpField field, ScarpRay ray, ScarpWalk walk, SCAR
   }
 }
 
-/// The cell in which a ray begins on the surface: above by definition, the root at the start is divided out of the
-/// clearance, and what is left decides. True: answered.
+/// Tests the cell in which a ray starts on the surface: above by definition; the root at the start is divided out of
+/// the clearance, and the rest decides. Returns true if the answer is known.
 SCARP_FN bool scarp_test_start(ScarpField field, ScarpRay ray, ScarpCell cell, int exit, float t_out,
                                SCARP_INOUT(ScarpWalk) walk, SCARP_INOUT(ScarpHit) hit) {
   float high = max(abs(scarp_lowest(cell)), abs(scarp_highest(cell)));
@@ -207,8 +207,8 @@ SCARP_FN bool scarp_test_start(ScarpField field, ScarpRay ray, ScarpCell cell, i
   return true;
 }
 
-/// From the block where the walk stands over its next line, which is that of a column (through_x) or of a row; into the
-/// next tile, with a frame of its own, where that line ends this one. False: out of the field, or too far
+/// Moves from the current block across its next line, that of a column (through_x) or of a row; into the next tile,
+/// with its own frame, if the line ends this one. Returns false if the ray leaves the field, or is too far
 /// (kScarpExhausted).
 SCARP_FN bool scarp_step(ScarpField field, ScarpRay ray, bool through_x, int top, SCARP_INOUT(ScarpWalk) walk,
                          SCARP_INOUT(ScarpHit) hit) {
@@ -224,16 +224,17 @@ SCARP_FN bool scarp_step(ScarpField field, ScarpRay ray, bool through_x, int top
     else
       walk.row = next;
     if (walk.level < top && (next & 1) != ahead) {
-      // Into another parent.
+      // Into another parent block.
       walk.level += 1;
       walk.col >>= 1;
       walk.row >>= 1;
     }
     return true;
   }
-  // The next tile or, over the seam, the next copy of the field: from the finest level that stands for the other axis.
+  // The next tile or, across the seam, the next copy of the field: at the finest level that is aligned on the other
+  // axis.
   int cells = through_x ? field.cells.x : field.cells.y;
-  int line = forwards ? end : begin;  // that is crossed, and then as the next tile counts
+  int line = forwards ? end : begin;  // the line crossed, then its number in the next tile
   ivec2 lap = walk.frame.lap;
   if (line == (forwards ? cells : 0)) {
     if ((field.flags & kScarpWraps) == 0u) return false;
@@ -260,8 +261,8 @@ SCARP_FN bool scarp_step(ScarpField field, ScarpRay ray, bool through_x, int top
   return true;
 }
 
-/// The begin of a walk. A ray from the surface is told its height. False: there is nothing to walk, `hit` is the
-/// answer. `field.top_level` must be 1 or more.
+/// Starts a traversal. For a ray from the surface, computes its height. Returns false if there is nothing to traverse;
+/// `hit` is then the answer. `field.top_level` must be at least 1.
 SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCARP_INOUT(ScarpWalk) walk,
                                SCARP_INOUT(ScarpHit) hit) {
   bool strict = (ray.flags & kScarpOnSurface) != 0u;
@@ -288,7 +289,7 @@ SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCAR
     scarp_upright(field, ray, walk, hit);
     return false;
   }
-  // Rays from afar cross open air first, though blocks that span the field are seldom free.
+  // Rays from a distance cross open air first, though blocks that span the field are rarely free.
   if ((ray.flags & (kScarpFromOutside | kScarpAbove)) != 0u) {
     walk.level = max(top - 3, 0);
     walk.col >>= walk.level;
@@ -297,17 +298,17 @@ SCARP_FN bool scarp_begin_walk(ScarpField field, SCARP_INOUT(ScarpRay) ray, SCAR
   return true;
 }
 
-// When and where any-hit looks ahead; from a search over the rays of scarp-bench gpu (doc/dev/decisions.md).
-const uint kScarpPatience = 3u;       // steps of the walk before
-const float kScarpShortWay = 512.0f;  // cells of way below all ground's top up to which looking costs what it saves
+// Look-ahead parameters of any hit, from a search over the rays of scarp-bench gpu (doc/dev/decisions.md).
+const uint kScarpPatience = 3u;       // traversal steps before the first look-ahead
+const float kScarpShortWay = 512.0f;  // cells below the field's top; shorter rests of the ray do not repay a look-ahead
 const int kScarpProbeLevel = 3;       // blocks of 8 x 8 cells
 const int kScarpProbes = 12;
 const float kScarpFirstProbe = 8.0f;  // steps in cells
 const float kScarpProbeGrowth = 1.5f;
 
-/// Whether a ray that is above at local time t is, at some point further on, under all of a block: without holes it has
-/// been through the surface before, wherever. A look at the minima of one level at ever longer steps; not over a field
-/// that wraps round.
+/// Returns whether a ray that is above at local time t is, at some later point, below a whole block: if that has no
+/// holes, the ray has crossed the surface before. Samples the minima of one level at growing steps; not for wrapped
+/// fields.
 SCARP_FN bool scarp_goes_under(ScarpField field, ScarpRay ray, ScarpFrame frame, float t, SCARP_INOUT(ScarpHit) hit) {
   float relief = field.highest - field.lowest;
   float last = frame.t_end;
@@ -323,11 +324,11 @@ SCARP_FN bool scarp_goes_under(ScarpField field, ScarpRay ray, ScarpFrame frame,
     if (!(t < last)) return false;
     int col = frame.begin.x + int(floor(frame.o.x + ray.direction.x * t));
     int row = frame.begin.y + int(floor(frame.o.y + ray.direction.y * t));
-    // Rounding could have a ray over the field that has left it: by 2^-5 of a cell, as far as probes go (numerics.md).
+    // Rounding could place a ray over the field that has left it: by 2^-5 of a cell, as far as probes go (numerics.md).
     if (col < 1 || row < 1 || col > field.cells.x - 2 || row > field.cells.y - 2) return false;
     float code = scarp_minimum(kScarpProbeLevel, col >> kScarpProbeLevel, row >> kScarpProbeLevel);
     hit.fetches += 1u;
-    // Or beside this block, where heights differ by as much as they do anywhere.
+    // Or next to this block, where heights may differ by the maximum anywhere.
     float rounding = scarp_rounding(frame, ray, t, all_heights, relief);
     float above = scarp_ray_height(frame, ray, t) - (base + field.code_step * code);
     if (code > 0.0f && above < -2.0f * rounding) return true;
@@ -335,8 +336,8 @@ SCARP_FN bool scarp_goes_under(ScarpField field, ScarpRay ray, ScarpFrame frame,
   return false;
 }
 
-/// On from where a walk stands, for some turns; with `any`, to the first certainty that anything is met. False: it is
-/// not done. Hosts whose drivers limit the turns of loops interrupt it so and go on with the same walk and hit.
+/// Continues a traversal for some iterations; with `any`, until any hit is certain. Returns false if it is not
+/// finished. Hosts whose drivers limit loop iterations interrupt the traversal and continue with the same walk and hit.
 SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, SCARP_INOUT(ScarpWalk) walk,
                           SCARP_INOUT(ScarpHit) hit) {
   bool holes = (field.flags & kScarpHoles) != 0u;
@@ -345,10 +346,10 @@ SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, S
   int ahead_y = ray.direction.y >= 0.0f ? 1 : 0;
   int top = min(field.top_level, kScarpTileLevel);
   for (int turn = 0; turn < turns; ++turn) {
-    // The lines that the ray leaves the block through; the last block of a row or column is narrower.
+    // The lines through which the ray leaves the block; the last block of a row or column is narrower.
     float tx = scarp_line_x(walk.frame, ray, min((walk.col + ahead_x) << walk.level, field.cells.x));
     float ty = scarp_line_y(walk.frame, ray, min((walk.row + ahead_y) << walk.level, field.cells.y));
-    bool through_x = tx <= ty;  // a tie: first through the line of constant column
+    bool through_x = tx <= ty;  // a tie: the line of constant column first
     float t_line = through_x ? tx : ty;
     float t_out = max(walk.t_in, min(t_line, walk.frame.t_end));
     // The ray's height is linear: lowest at one end of the block.
@@ -363,8 +364,8 @@ SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, S
       bool skips = ray_lowest - maximum > rounding;
       hit.fetches += 1u;
       if (skips && walk.side != kScarpBelowGround) {
-        // Where there are holes, the last cell may be one: the next begins with a question. Passing a block's corner is
-        // not leaving the ground.
+        // With holes, the last cell may be one: the side is unknown at the next. Passing a block's corner does not
+        // leave the ground.
         if (!holes)
           walk.side = kScarpAboveGround;
         else if (t_out > walk.t_in)
@@ -379,7 +380,7 @@ SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, S
           minimum = base + field.code_step * code;
           bounded = code > 0.0f;
         }
-        // All of the surface in the block is between its bounds.
+        // The whole surface in the block is between its bounds.
         float exact = rounding + 16.0f * kScarpUnit * max(maximum - minimum, walk.relief) *
                                      (abs(ray.direction.x * t_out) + abs(ray.direction.y * t_out) + 1.0f);
         float ray_highest = scarp_ray_height(walk.frame, ray, falling ? walk.t_in : t_out);
@@ -388,12 +389,12 @@ SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, S
         } else if (bounded && walk.side == kScarpBelowGround && skips && ray_lowest - maximum > exact) {
           walk.side = holes ? kScarpUnknown : kScarpAboveGround;
         } else if (bounded && walk.side == kScarpAboveGround && minimum - ray_lowest > 2.0f * exact) {
-          // It was above before, and has come under all of the block: it has been through the surface, wherever.
+          // The ray was above before and is now below the whole block, so it has crossed the surface.
           hit.status = kScarpHit;
           return true;
         } else {
           walk.level -= 1;
-          // After a line of constant column, rows' lines of the same time are still ahead: the order of ties. A middle
+          // After a line of constant column, row lines with the same time are still ahead: the order of ties. A middle
           // line beyond the field was crossed with its border.
           int middle_col = (2 * walk.col + 1) << walk.level;
           int middle_row = (2 * walk.row + 1) << walk.level;
@@ -413,7 +414,7 @@ SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, S
       hit.fetches += 4u;
       int exit = t_line > walk.frame.t_end ? kScarpPoint : through_x ? kScarpLineX : kScarpLineY;
       if (cell.hole) {
-        // Passing the corner of a hole is not leaving the ground.
+        // Passing the corner of a hole does not leave the ground.
         if (t_line > walk.t_in) walk.side = kScarpUnknown;
         if (scarp_lost(field, walk.frame, ray, walk.t_in)) return true;
       } else if (walk.start != 0) {
@@ -439,8 +440,8 @@ SCARP_FN bool scarp_go_on(ScarpField field, ScarpRay ray, bool any, int turns, S
   return false;
 }
 
-/// What a ray meets first; with `any`, whether it meets anything: then only the status means something (kScarpHit also
-/// for walls, perhaps). `field.top_level` must be 1 or more.
+/// Closest hit; with `any`, any hit: only the status is then defined (kScarpHit possibly also for walls).
+/// `field.top_level` must be at least 1.
 SCARP_FN ScarpHit scarp_max_mip(ScarpField field, ScarpRay ray, bool any) {
   ScarpHit hit = scarp_no_hit();
   ScarpWalk walk;

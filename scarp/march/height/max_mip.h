@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
-// `max-mip`: hierarchical walk through a maximum mipmap, down to the cell and up again.
+// `max-mip`: hierarchical traversal of a maximum mipmap, down to cells and up again.
 //
-//   ray ---___          level 2:  [        ]   lowest ray height over the block > its maximum: leave the block at once
-//             ---___    level 1:  [   ][   ]   otherwise: go one level down
+//   ray ---___          level 2:  [        ]   lowest ray height over the block > its maximum: leave the block
+//             ---___    level 1:  [   ][   ]   otherwise: descend one level
 //        /\       ---   level 0:  [ ][ ][ ][ ] in a cell: intersect its bilinear surface
 //   ____/  \__/\____
 //
-// The integer cell is the state. Every crossing of a grid line has one time, t = (line - origin) / direction, whoever
-// asks for it; the order of these times alone decides which cells are visited, on every level. A hit is a change of
-// sign of (ray height - surface height) between two crossings, and each crossing is computed once: a ray that is above
-// at one crossing and below at a later one cannot slip through a node, an edge or a diagonal. A cell with + at both
-// ends is also tested at the vertex of its quadratic; one of two triangles at its diagonal.
+// The integer cell is the state. Every crossing of a grid line has one time, t = (line - origin) / direction, in every
+// context; the order of these times alone determines the visited cells, on every level. A hit is a sign change of (ray
+// height - surface height) between two crossings, and each crossing is computed once: a ray that is above at one
+// crossing and below at a later one cannot slip through a node, an edge or a diagonal. A bilinear cell with + at both
+// ends is also tested at the vertex of its quadratic; a pair of triangles at its diagonal.
 //
-// Guarantee: exact. Never loses a hit; vertical error as derived in doc/dev/numerics.md.
-// Source: A. Tevs, I. Ihrke, H.-P. Seidel, I3D 2008 (see accel/max_pyramid.h); the closed form of the bilinear cell as
-// in S. D. Ramsey, K. Potter, C. Hansen, "Ray bilinear patch intersections", JGT 9(3), 2004. Cost: some 5 to 25 blocks
-// per ray on mountains, 1 or 2 cells.
+// Guarantee: exact. Never loses a hit; vertical error as derived in doc/dev/numerics.md. Source: A. Tevs, I. Ihrke,
+// H.-P. Seidel, I3D 2008 (see accel/max_pyramid.h); the closed form of the bilinear cell as in S. D. Ramsey, K. Potter,
+// C. Hansen, "Ray bilinear patch intersections", JGT 9(3), 2004. Cost: about 5 to 25 blocks per ray on mountains, 1 or
+// 2 cells.
 #pragma once
 
 #include <vector>
@@ -25,23 +25,23 @@
 
 namespace scarp {
 
-/// Closest hit; conventions as in ray.h. Needs the field's pyramid.
+/// Closest hit; conventions as in ray.h. Requires the field's pyramid.
 Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                   MarchStats* stats = nullptr);
 
-/// The same walk with the refinement of the paper instead of the closed form: where the signs at the ends of a cell
-/// differ, settings.bisect.halvings halvings of the interval. Guarantee: approximate — a ray that dips into a cell and
-/// leaves it again is not seen, and t is off by up to the interval / 2^halvings.
+/// Closest hit with the refinement of the paper instead of the closed form: where the signs at the ends of a cell
+/// differ, settings.bisect.halvings bisections of the interval. Guarantee: approximate. Misses rays that dip into a
+/// cell and leave it again; t has an error of up to the interval / 2^halvings.
 Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                          MarchStats* stats = nullptr);
 
-/// Whether anything is hit in the ray's range: march_max_mip(...).status == hit, without computing where. A ray that
-/// was above at the entry of a block without holes, and comes under the block's minimum, is answered there.
+/// Any hit: march_max_mip(...).status == hit, without computing t. A ray that was above at the entry of a block without
+/// holes, and falls below the block's minimum, is occluded without further traversal.
 bool occluded_max_mip(const HeightTarget& target, const Ray& ray);
 
-/// All hits in the ray's range, in the order of t: each time that the ray goes from above to on or below the surface
-/// (at most once per cell), and through walls into solid ground. `hits` is overwritten; the first is that of
-/// march_max_mip. Returns hit, or why there is none.
+/// All hits in the ray's range, in order of t: each time the ray goes from above to on or below the surface (at most
+/// once per cell), and through walls into solid ground. Overwrites `hits`; the first is that of march_max_mip. Returns
+/// hit, or the reason for none.
 HitStatus all_hits_max_mip(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits);
 
 }  // namespace scarp

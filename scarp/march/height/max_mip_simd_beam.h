@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
-// One deep start for all rays of a vector that come from above: the rays together are a beam, and as long as the beam
-// is above the ground under it no ray needs to look.
+// A common deep start for all rays of a vector that come from above: the rays form a beam, and while the beam is above
+// the ground below it no single ray needs a test.
 //
-//   \\\\ the beam, T to T + step       free if its lowest place is above the highest
-//    \\\\                              ground under the rectangle that it passes: four
-//     +--------+                       blocks of the pyramid at most. Then on from T + step,
-//     | _/\__  |                       else with half the step; the rays go on one by one
-//     +--------+                       when the step is not much longer than the beam is wide
+//   \\\\ the beam, T to T + step       free if its lowest point is above the highest
+//    \\\\                              ground in the rectangle that it passes: at most
+//     +--------+                       four blocks of the pyramid. Continue from T + step,
+//     | _/\__  |                       otherwise with half the step; the rays continue one by
+//     +--------+                       one when the step is not much longer than the beam is wide
 //
-// All rays go forth along both axes of their frames, so the near corner of the rectangle is that of the beam's begin,
-// the far one that of its end.
-// Source: A. Reshetov, A. Soupikov, J. Hurley, "Multi-level ray tracing algorithm", ACM Transactions on Graphics 24(3),
-// 2005 (one entry point for a beam of rays). The margins are those of block_step().
-// Read once for each instruction set.
+// All rays advance along both axes of their frames, so the near corner of the rectangle is that of the beam's start,
+// the far one that of its end. Source: A. Reshetov, A. Soupikov, J. Hurley, "Multi-level ray tracing algorithm", ACM
+// Transactions on Graphics 24(3), 2005 (one entry point for a beam of rays). The margins are those of block_step().
+// Compiled once per instruction set.
 #if defined(SCARP_MARCH_MAX_MIP_SIMD_BEAM_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_MAX_MIP_SIMD_BEAM_H
 #undef SCARP_MARCH_MAX_MIP_SIMD_BEAM_H
@@ -32,13 +31,13 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr std::int32_t kMostCells = std::numeric_limits<std::int32_t>::max();
-// Found with scarp-bench (decisions.md). A beam is at least so many times as long as wide; it is followed in steps down
-// to so many cells; the first one is this share of what the beam before came to, those after it are so much shorter.
+// Found with scarp-bench (decisions.md): minimum ratio of length to width of a beam; shortest step in cells; first step
+// as a fraction of the previous beam's length; factor of steps after it.
 constexpr float kSlender = 8, kShortestStep = 4, kShareOfBefore = 0.9f, kShorter = 0.25f;
-// Where its rays go on.
+// Level at which its rays continue.
 constexpr std::int32_t kLevelAfterBeam = 2;
 
-// The highest code over the cells [x0, x1] x [y0, y1], of up to four blocks.
+// Highest code over the cells [x0, x1] x [y0, y1], of up to four blocks.
 template <class T>
 HWY_INLINE std::int32_t highest_over(const VectorGround<T>& g, std::int32_t x0, std::int32_t x1, std::int32_t y0,
                                      std::int32_t y1) {
@@ -50,15 +49,15 @@ HWY_INLINE std::int32_t highest_over(const VectorGround<T>& g, std::int32_t x0, 
   return std::max(std::max(codes[r0 + c0], codes[r0 + c1]), std::max(codes[r1 + c0], codes[r1 + c1]));
 }
 
-// What rays have in common at a time.
+// Common bounds of the rays at a time.
 struct BeamPlace {
   std::int32_t x0, x1, y0, y1;  // cells of their frames, inclusive
-  float low;                    // the lowest of their heights
+  float low;                    // lowest height of the rays
 };
 
 class Beam {
  public:
-  /// The rays of `lanes` that walk.
+  /// The active rays of `lanes`.
   HWY_INLINE Beam(Lanes* lanes, std::size_t count) : lanes_(lanes), count_(count) {
     VI mirror_x0 = hn::Set(di, kMostCells), mirror_y0 = mirror_x0, mirror_x1 = hn::Set(di, -1), mirror_y1 = mirror_x1;
     VF end = hn::Set(df, kNever);
@@ -99,7 +98,7 @@ class Beam {
             hn::GetLane(hn::MinOfLanes(df, low))};
   }
 
-  /// Whether the rays are above all ground from one place to the other.
+  /// Returns whether the rays are above all ground from one place to the other.
   template <class T>
   HWY_INLINE bool is_free(const VectorGround<T>& g, const BeamPlace& from, const BeamPlace& to) const {
     // Mirrored, the far corner comes first.
@@ -108,7 +107,7 @@ class Beam {
     return std::min(from.low, to.low) > static_cast<float>(highest_over(g, c0, c1, r0, r1));
   }
 
-  /// The rays go on from there, each by itself; how many they are.
+  /// Continues the rays from there one by one; returns their number.
   HWY_INLINE std::size_t start(float time, std::int32_t level) {
     const VF t = hn::Set(df, time);
     std::size_t rays = 0;
@@ -139,8 +138,8 @@ class Beam {
   bool goes_one_way_;
 };
 
-// Takes the rays of `lanes` on to where they are no longer above the ground together, and tells how many they are, or
-// none. `expected` is how far the rays before them came.
+// Advances the rays of `lanes` to where they are no longer jointly above the ground, and returns their number, or 0.
+// `expected` is the distance of the previous rays.
 template <class T>
 HWY_NOINLINE std::size_t follow_beam(const VectorGround<T>& g, Lanes* lanes, std::size_t count, float& expected) {
   Beam beam(lanes, count);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cells in vectors of double, for max_mip_simd.cpp: hits as the scalar walk computes them, and the first cells of rays,
-// which may begin closer to the ground than floats can tell.
-// Read once for each instruction set.
+// Cells in vectors of double, for max_mip_simd.cpp: hits as the scalar traversal computes them, and the first cells of
+// rays, which may start closer to the ground than floats can resolve. Compiled once per instruction set.
 #if defined(SCARP_MARCH_MAX_MIP_SIMD_CELLS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
 #undef SCARP_MARCH_MAX_MIP_SIMD_CELLS_H
@@ -21,8 +20,8 @@ namespace {
 
 using MD = hn::Mask<decltype(dd)>;
 
-// One cell for each lane, and its corners in sample units. `first`: the first lines of its copy of the ground; 0 where
-// the ground does not wrap round, or rays are in the frame of the copy.
+// One cell per lane, and its corners in sample units. `first`: the first lines of its copy of the ground; 0 if the
+// ground is not wrapped, or rays are in the frame of the copy.
 struct Cells {
   alignas(64) double col[N], row[N], h00[N], h10[N], h01[N], h11[N], first_x[N], first_y[N];
 
@@ -38,7 +37,7 @@ struct Cells {
   }
 };
 
-// Rays in their cells, with the operations of the scalar walk in its order, so that results have its bits.
+// Rays in their cells, with the operations of the scalar traversal in its order, so that results are bit-identical.
 struct CellRays {
   VD ox, oy, oz, dx, dy, dz, per_x, per_y, col, row, next_col, next_row, h00, h10, h01, h11;
   MD back_x, back_y;
@@ -53,7 +52,7 @@ struct CellRays {
     back_x = hn::Lt(dx, zero), back_y = hn::Lt(dy, zero);
   }
 
-  // Not along an axis, where times of lines are none, nor almost.
+  // Not parallel to an axis, where line times are undefined, nor almost.
   static HWY_INLINE MD moves(VD d) { return hn::Gt(hn::Abs(d), hn::Set(dd, 0x1p-1000)); }
   HWY_INLINE MD moves_x() const { return moves(dx); }
   HWY_INLINE MD moves_y() const { return moves(dy); }
@@ -66,7 +65,7 @@ struct CellRays {
   HWY_INLINE VD height(VD t) const { return hn::Add(oz, hn::Mul(dz, t)); }
 
   static HWY_INLINE VD place(VD o, VD d, VD t, VD cell) {
-    // Which of the two zeros it is stays as it is.
+    // Preserves the sign of zero.
     const VD at = hn::Sub(hn::Add(o, hn::Mul(d, t)), cell), zero = hn::Zero(dd), one = hn::Set(dd, 1);
     return hn::IfThenElse(hn::Lt(at, zero), zero, hn::IfThenElse(hn::Gt(at, one), one, at));
   }
@@ -100,11 +99,11 @@ struct CellRays {
   }
 };
 
-// Rays in the cell that they begin in, set off next to the ground as shadow rays are: within the margin of floats,
-// which would leave each of them to the scalar walk. Those that are above the ground on all of their way through it go
-// on behind it; any-hit is answered by those that are certain to fall under it. Closest: where floats were unsure.
-// Any-hit: at once, but for rays that the scalar walk knows to be above, which may be in doubt where they begin: floats
-// put that off.
+// Rays in the cell that they start in, offset slightly from the ground like shadow rays: within the margin of floats,
+// which would leave each of them to the scalar traversal. Rays that are above the ground all the way through the cell
+// continue behind it; any hit is decided for those that certainly fall below it. Closest hit: called where floats were
+// unsure. Any hit: called at once, except for rays that the scalar traversal knows to be above and that may be in doubt
+// where they start: floats postpone that.
 template <bool any, class T>
 HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a) {
   constexpr Status kConcerned = any ? kWalking : kUnsure;
@@ -125,7 +124,7 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
     const MD at_begin = hn::Eq(any ? hn::Add(level, seen) : level, zero);
     const MD looked_at = hn::And(hn::Eq(status, hn::Set(dd, kConcerned)), at_begin);
     const CellRays c(r, cells, part);
-    // A ray along an axis comes to no line of that axis.
+    // A ray parallel to an axis reaches no line of that axis.
     const MD still_x = hn::Eq(c.dx, zero), still_y = hn::Eq(c.dy, zero);
     const VD never = hn::Set(dd, std::numeric_limits<double>::infinity());
     const VD t_in = hn::Load(dd, a.t_begin + part);
@@ -136,18 +135,18 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
     const CellRays::Quadratic q = c.clearance_from(t_in);
     const VD out = c.clearance_out(t_out, over_column);
     const VD doubt = rounding(f, c.ox, c.oy, c.oz, c.dx, c.dy, c.dz, hn::Max(hn::Abs(t_in), hn::Abs(t_out)));
-    // The least of a parabola is at its ends or, where it opens upwards, between them. (Its chord less the most that it
-    // can lie below that would hide from rays that begin this low that they rise from the ground.)
+    // The minimum of a parabola is at its ends or, if it opens upwards, between them. (A bound from its chord would
+    // hide that rays which start this low rise from the ground.)
     const VD bottom = hn::Sub(q.c, hn::Div(hn::Mul(hn::Mul(q.b, q.b), hn::Set(dd, 0.25)), q.a));
     const MD between = hn::And(hn::And(hn::Gt(q.a, zero), hn::Lt(q.b, zero)),
                                hn::Lt(hn::Neg(q.b), hn::Mul(hn::Add(q.a, q.a), length)));
     const VD ends = hn::Min(q.c, out), least = hn::IfThenElse(between, hn::Min(ends, bottom), ends);
     const MD falls = hn::And(hn::Gt(q.c, doubt), hn::Lt(least, hn::Neg(doubt)));
-    // Rounded down: what follows looks at the ground from where it is known to be clear.
+    // Rounded down: the next test continues where the ray is known to be clear.
     const VD way = hn::Mul(hn::Div(length, hn::Load(dd, a.t_per_cell + part)), hn::Set(dd, 1 - 0x1p-22));
     const VD x = hn::Add(whole(a.x), hn::IfThenElseZero(over_column, one));
     const VD y = hn::Add(whole(a.y), hn::IfThenElseZero(over_row, one));
-    // Its end may be in this cell, see Packet::before_end(): floats tell whether it is above up to there.
+    // The ray may end in this cell, see Packet::before_end(): floats decide whether it is above up to there.
     const VD least_end = hn::Sub(hn::Mul(place(a.end), hn::Set(dd, 1 - 0x1p-20)), hn::Set(dd, 4 * kSideways));
     const MD leaves = hn::And(hn::And(hn::And(looked_at, moves), hn::Lt(way, least_end)),
                               hn::And(hn::Le(x, whole(a.last_x)), hn::Le(y, whole(a.last_y))));
@@ -162,7 +161,7 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
     const auto to_x = hn::DemoteTo(di_part, hn::IfThenElse(clear, x, whole(a.x)));
     const auto to_y = hn::DemoteTo(di_part, hn::IfThenElse(clear, y, whole(a.y)));
     hn::Store(to_x, di_part, a.x + part), hn::Store(to_y, di_part, a.y + part);
-    // One level up where the line is the border of a block, as Packet::leave() has it.
+    // One level up if the line is the border of a block, as in Packet::leave().
     const auto crossed = hn::ShiftRight<1>(hn::Or(hn::Xor(from_x, to_x), hn::Xor(from_y, to_y)));
     const auto up = hn::Min(crossed, hn::Set(di_part, 1));
     hn::Store(hn::Max(hn::Load(di_part, a.level + part), up), di_part, a.level + part);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The steps of max_mip_simd.cpp: rays side by side in the lanes of vectors, through blocks and cells.
-// Read once for each instruction set.
+// Steps of max_mip_simd.cpp: rays in vector lanes, through blocks and cells. Compiled once per instruction set.
 #if defined(SCARP_MARCH_MAX_MIP_SIMD_LANES_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_MAX_MIP_SIMD_LANES_H
 #undef SCARP_MARCH_MAX_MIP_SIMD_LANES_H
@@ -34,11 +33,11 @@ using MI = hn::Mask<decltype(di)>;
 using VD = hn::Vec<decltype(dd)>;
 
 constexpr float kNever = 0x1p100f;
-// Rounding of positions and line times, per cell of the ray's way, and of heights, in codes: numerics.md.
+// Rounding of positions and line times, per cell of the ray's path, and of heights, in codes: numerics.md.
 constexpr double kSideways = 0x1p-21, kUpright = 0.25;
 constexpr double kUnit = 0x1p-53, kRoundings = 64;  // four times rounding_of_clearance()
 
-// kAlone: not for the vectors.
+// kAlone: not for vector code.
 enum Status : std::int32_t { kWalking, kMiss, kHit, kUnsure, kAlone };
 
 HWY_INLINE std::uint64_t bits_of(MI mask) {
@@ -49,19 +48,19 @@ HWY_INLINE std::uint64_t bits_of(MI mask) {
   return bits;
 }
 
-// The rays of one vector in memory. Each is in a frame of its own: x and y run along the ray, mirrored where it goes
-// backwards; time T is in cells along the longer axis, from the ray's begin over the field; positions are relative to
-// the cell there; heights are codes, less the margin.
+// Rays of one vector in memory. Each has its own frame: x and y run along the ray, mirrored where it goes backwards;
+// time T is in cells along the longer axis, from the ray's start over the field; positions are relative to the cell
+// there; heights are codes, minus the margin.
 struct Lanes {
   alignas(64) float ox[N], oy[N], dx[N], dy[N], per_x[N], per_y[N], z[N], dz[N], margin[N], end[N], T[N], doubt[N];
   alignas(64) std::int32_t x[N], y[N], level[N], mirror_x[N], mirror_y[N], begin_x[N], begin_y[N], last_x[N], last_y[N],
       seen[N], status[N];
   double t_begin[N], t_per_cell[N];
   std::int32_t ray[N];                // -1: none
-  std::int32_t copy_x[N], copy_y[N];  // of a ground that wraps round
+  std::int32_t copy_x[N], copy_y[N];  // copy of a wrapped ground
 };
 
-// The ground as the vectors need it.
+// The ground in the form that vectors need.
 template <class T>
 struct VectorGround {
   const std::uint16_t* maxima;
@@ -72,9 +71,9 @@ struct VectorGround {
   float base, per_step, offset;  // a sample's code is (sample - base) * per_step + offset
   float margin_per_cell;         // twice that of the heights
   bool triangles;
-  std::int32_t seam_col, seam_row;  // after which the first ones follow; -1 where the ground does not wrap round
+  std::int32_t seam_col, seam_row;  // the first column and row follow after these; -1 if the ground is not wrapped
 
-  // From a sample to the next one east, and south.
+  // Offset from a sample to the next one east, and south.
   HWY_INLINE std::ptrdiff_t east(std::int32_t col) const { return col == seam_col ? -col : 1; }
   HWY_INLINE std::ptrdiff_t south(std::int32_t row) const { return row == seam_row ? -row * stride : stride; }
 };
@@ -93,7 +92,7 @@ struct Packet {
     last_x = hn::Load(di, a.last_x), last_y = hn::Load(di, a.last_y);
     seen = hn::Load(di, a.seen), status = hn::Load(di, a.status);
   }
-  // Lanes that are taken: from lane from[j] of others.
+  // Copies lanes: lane j from lane from[j] of `a`.
   HWY_INLINE void take(const Lanes& a, const std::int32_t* from, const std::int32_t* taken) {
     const auto at = hn::SetTableIndices(di, from);
     const auto at_places = hn::SetTableIndices(df, from);
@@ -120,8 +119,8 @@ struct Packet {
 
   // Where the ray leaves its block.
   struct Exit {
-    VI x, y;       // the lines ahead
-    VF tx, ty, T;  // when it crosses them; the first of them, or its end
+    VI x, y;       // lines ahead
+    VF tx, ty, T;  // times of their crossings; the first of them, or the ray's end
   };
   HWY_INLINE Exit exit() const {
     const VI one = hn::Set(di, 1), inside = hn::Sub(hn::Shl(one, level), one);
@@ -130,23 +129,23 @@ struct Packet {
     e.x = hn::Add(hn::Or(x, inside), one), e.y = hn::Add(hn::Or(y, inside), one);
     e.tx = hn::Mul(hn::Sub(hn::ConvertTo(df, hn::Sub(e.x, begin_x)), ox), per_x);
     e.ty = hn::Mul(hn::Sub(hn::ConvertTo(df, hn::Sub(e.y, begin_y)), oy), per_y);
-    // It leaves the field at its end, not through a line.
+    // At its end it leaves the field, not through a line.
     e.tx = hn::IfThenElse(hn::RebindMask(df, hn::Gt(e.x, last_x)), never, e.tx);
     e.ty = hn::IfThenElse(hn::RebindMask(df, hn::Gt(e.y, last_y)), never, e.ty);
-    // A line next to the begin may have been crossed before it as floats have it, which are within rounding of it then.
+    // In floats, a line next to the start may have been crossed before it; both are then equal within rounding.
     e.T = hn::Max(T, hn::Min(hn::Min(e.tx, e.ty), end));
     return e;
   }
   HWY_INLINE VF height(VF t) const { return hn::MulAdd(dz, t, z); }
 
-  // Whether the way out is before the ray's end for certain, which is rounded up.
+  // Whether the exit is certainly before the ray's end, which is rounded up.
   HWY_INLINE MI before_end(const Exit& e) const {
     const VF least = hn::MulSub(end, hn::Set(df, 1 - 0x1p-20f), hn::Set(df, static_cast<float>(4 * kSideways)));
     return hn::RebindMask(di, hn::Lt(e.T, least));
   }
 
-  // Lanes of `clear` are done at their end, or go on to the next block: over the line ahead, and along the other axis
-  // to where they are, never back. One level up where the line is the border of a coarser block.
+  // Lanes of `clear` finish at their end, or continue to the next block: across the line ahead, and along the other
+  // axis to their position, never back. One level up if the line is the border of a coarser block.
   HWY_INLINE void leave(MI clear, const Exit& e, std::int32_t top) {
     const VI one = hn::Set(di, 1);
     const MI ends = hn::And(clear, hn::RebindMask(di, hn::Ge(e.T, end))), on = hn::AndNot(ends, clear);
@@ -165,7 +164,7 @@ struct Packet {
   }
 };
 
-// Where the levels begin, a table that stays in registers where they are wide enough and the levels not too many.
+// Offsets of the levels: a table that stays in registers if these are wide enough and the levels few enough.
 HWY_INLINE VI level_begin(const std::int32_t* table, VI level, bool many) {
   if (many) return hn::GatherIndex(di, table, level);
   if constexpr (N == 16) {
@@ -191,7 +190,7 @@ HWY_INLINE void block_step(const VectorGround<T>& g, Packet& p) {
   const MI walking = hn::And(hn::Eq(p.status, zero), hn::Gt(p.level, zero));
   const Packet::Exit e = p.exit();
   const VF low = hn::Min(p.height(p.T), p.height(e.T));
-  // Lanes that are elsewhere look at level 1.
+  // Other lanes read level 1.
   const VI level = hn::Max(p.level, one);
   const VI col = hn::Shr(hn::Xor(p.x, p.mirror_x), level), row = hn::Shr(hn::Xor(p.y, p.mirror_y), level);
   const VI cols = hn::Add(hn::Shr(hn::Set(di, g.last_col), level), one);
@@ -205,7 +204,7 @@ HWY_INLINE void block_step(const VectorGround<T>& g, Packet& p) {
   p.leave(clear, e, g.top);
 }
 
-// The heights of each lane's cell as codes.
+// Heights of each lane's cell as codes.
 struct CellCodes {
   VF h00, h10, h01, h11;
 };
@@ -242,15 +241,15 @@ HWY_INLINE VF bilinear(const CellCodes& h, VF u, VF v) {
   return hn::MulAdd(u, hn::MulAdd(v, c, a), hn::MulAdd(v, b, h.h00));
 }
 
-// A lower bound of the clearance on the way through a cell, and the clearance at its end.
+// A lower bound of the clearance on the path through a cell, and the clearance at its end.
 struct Clearance {
   VF least, in, out;
 };
 
 HWY_INLINE Clearance bilinear_clearance(const CellCodes& h, VF u0, VF v0, VF u1, VF v1, VF z0, VF z1) {
   const VF in = hn::Sub(z0, bilinear(h, u0, v0)), out = hn::Sub(z1, bilinear(h, u1, v1));
-  // Along the ray the clearance is a parabola, below its chord by at most -twist (u1 - u0) (v1 - v0) / 4; where its
-  // ends differ by four times that, and by more than rounding, none of it is below both.
+  // Along the ray the clearance is a parabola, below its chord by at most -twist (u1 - u0) (v1 - v0) / 4; if its ends
+  // differ by four times that, and by more than rounding, it is nowhere below both.
   const VF twist = hn::Sub(hn::Sub(h.h11, h.h01), hn::Sub(h.h10, h.h00));
   const VF bend = hn::Mul(hn::Mul(hn::Sub(u1, u0), hn::Sub(v1, v0)), hn::Mul(twist, hn::Set(df, -0.25f)));
   const VF steep = hn::MulAdd(bend, hn::Set(df, 4), hn::Set(df, static_cast<float>(kUpright)));
@@ -277,8 +276,8 @@ HWY_INLINE Clearance triangle_clearance(const CellCodes& h, VF u0, VF v0, VF u1,
   return {hn::Min(hn::Min(in, out), hn::IfThenElse(crosses, middle, in)), in, out};
 }
 
-// The cells of the lanes that have come down to one. `may_put_off`: lanes that may go on where they are unsure, if they
-// have been above the ground, to be looked at again should they miss.
+// Cells of the lanes that have reached one. `may_put_off`: lanes that may continue although they are unsure, if they
+// have been above the ground; they are tested again if they miss.
 template <bool any, class T>
 HWY_INLINE void cell_step(const VectorGround<T>& g, MI may_put_off, Packet& p) {
   const VI zero = hn::Zero(di), one = hn::Set(di, 1);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The way of rays into the lanes of max_mip_simd.cpp, in double.
-// Read once for each instruction set.
+// Prepares rays for the lanes of max_mip_simd.cpp, in double. Compiled once per instruction set.
 #if defined(SCARP_MARCH_MAX_MIP_SIMD_RAYS_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_MAX_MIP_SIMD_RAYS_H
 #undef SCARP_MARCH_MAX_MIP_SIMD_RAYS_H
@@ -19,19 +18,19 @@ namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
-// The field as the way into the vectors needs it; heights in sample units.
+// The field as needed for the preparation; heights in sample units.
 struct FieldFrame {
   double cols, rows, sample_rows, highest, base, per_step;
   double relief, cell_relief;  // of all samples, of a cell
   double upright;              // see rounding_of_clearance()
   double mask;                 // of mirrored cells: column c is column mask - c
-  double from_outside;         // the level of rays from above or outside
+  double from_outside;         // start level of rays from above or outside
   HeightField::GridScales scales;
   double last_row;      // of samples
-  double width, depth;  // metres up to which positions are taken as within; none where the ground wraps round
+  double width, depth;  // metres up to which positions count as inside; unlimited if the ground is wrapped
 };
 
-// Rays in grid units, one for each lane.
+// Rays in grid units, one per lane.
 struct GridRays {
   alignas(64) double ox[N], oy[N], oz[N], dx[N], dy[N], dz[N], t_min[N], t_max[N];
   std::int32_t seen[N];
@@ -70,10 +69,10 @@ HWY_INLINE VD rounding(const FieldFrame& f, VD ox, VD oy, VD oz, VD dx, VD dy, V
   return hn::Mul(hn::Set(dd, kRoundings * kUnit), hn::Add(upright, wide));
 }
 
-// One axis of rays: mirrored so that they go forth, and when they are in the field.
+// One axis of rays: mirrored so that they advance, and the times within the field.
 struct AxisSpan {
   VD origin, direction, per, enter, exit;
-  VD slack;  // what rounding may do to the times of the borders: the more, the more slowly they are crossed
+  VD slack;  // rounding error of the border times: larger for slower crossings
   hn::Mask<decltype(dd)> back;
 };
 HWY_INLINE AxisSpan axis_span(VD o, VD d, VD cells) {
@@ -92,8 +91,8 @@ HWY_INLINE AxisSpan axis_span(VD o, VD d, VD cells) {
   return s;
 }
 
-// Rays into lanes: clipped to the field and to its highest sample, the first cell found. Lanes that the vectors cannot
-// follow are kAlone.
+// Fills lanes with rays: clips them to the field and to its highest sample, and finds the first cell. Rays that vector
+// code cannot follow become kAlone.
 HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
   for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
     const VD zero = hn::Zero(dd), one = hn::Set(dd, 1), cols = hn::Set(dd, f.cols), rows = hn::Set(dd, f.rows);
@@ -104,7 +103,7 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     const VD longest = hn::Max(x.direction, y.direction), per_longest = hn::Min(x.per, y.per);
     const VD t_border = hn::Max(t_min, hn::Max(x.enter, y.enter));
     const VD t_exit = hn::Min(hn::Load(dd, r.t_max + part), hn::Min(x.exit, y.exit));
-    // Down to where it is not surely above the highest sample; up to where nothing is as high.
+    // Down to where the ray may be below the highest sample; up to where nothing is as high.
     const VD highest = hn::Set(dd, f.highest);
     const auto height = [&](VD t) HWY_ATTR { return hn::Add(oz, hn::Mul(dz, t)); };
     const auto falls = hn::Lt(dz, zero), from_above = hn::Gt(height(t_border), highest);
@@ -115,18 +114,18 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     const VD t_begin = hn::IfThenElse(hn::And(from_above, falls), hn::Max(t_border, t_top), t_border);
     const VD t_over = hn::Div(hn::Sub(over, oz), dz);
     const VD t_end = hn::IfThenElse(hn::Gt(dz, zero), hn::Min(t_exit, t_over), t_exit);
-    // Of usual lengths, and not so steep that a cell is more than 2^30 codes high: far from where floats end.
+    // Usual lengths, and slopes of less than 2^30 codes per cell: far from float overflow.
     const VD per_step = hn::Set(dd, f.per_step), slope = hn::Mul(hn::Mul(dz, per_step), per_longest);
     const auto usual =
         hn::And(hn::And(hn::Gt(longest, hn::Set(dd, 0x1p-300)), hn::Lt(longest, hn::Set(dd, 0x1p300))),
                 hn::And(hn::Lt(hn::Abs(slope), hn::Set(dd, 0x1p30)), hn::Lt(t_far, hn::Set(dd, 0x1p300))));
-    // The borders are where they are to less than a position's rounding, and a sixteenth of a code.
+    // The borders are accurate to less than a position's rounding, and a sixteenth of a code.
     const VD slack = hn::Max(x.slack, y.slack), slack_cells = hn::Mul(slack, longest);
     const auto sound = hn::And(usual, hn::And(hn::Lt(slack_cells, hn::Set(dd, kSideways)),
                                               hn::Lt(hn::Mul(slack_cells, hn::Abs(slope)), hn::Set(dd, 0x1p-4))));
     const auto climbs_from_above = hn::AndNot(falls, from_above);
     const auto followed = hn::And(sound, hn::AndNot(climbs_from_above, hn::Lt(t_begin, t_end)));
-    // Beside the field, or above all ground from begin to end.
+    // Beside the field, or above all ground from start to end.
     const VD tie = hn::Mul(hn::Set(dd, 0x1p-40), hn::Add(hn::Abs(t_border), hn::Abs(t_exit)));
     const auto beside = hn::Gt(hn::Sub(t_border, t_exit), hn::Add(tie, hn::Add(slack, slack)));
     const auto stays_above = hn::And(hn::And(hn::Gt(height(t_border), over), hn::Lt(t_border, t_exit)),
@@ -144,7 +143,7 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     put(hn::Mul(x.direction, per_longest), a.dx), put(hn::Mul(y.direction, per_longest), a.dy);
     const VD most = hn::Set(dd, 0x1p60);
     put(hn::Min(hn::Mul(longest, x.per), most), a.per_x), put(hn::Min(hn::Mul(longest, y.per), most), a.per_y);
-    // Positions are known to kSideways (T + 2) along either axis.
+    // Positions are accurate to kSideways (T + 2) along either axis.
     const double sideways = 2 * kSideways * f.cell_relief * f.per_step;
     const VD margin = hn::Add(hn::Set(dd, kUpright + 2 * sideways), hn::Mul(doubt, per_step));
     put(hn::Sub(hn::Mul(hn::Sub(height(t_begin), hn::Set(dd, f.base)), per_step), margin), a.z);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The walk of `max-mip`, for all questions asked of it: see max_mip.h.
+// The traversal of `max-mip`, for all queries: see max_mip.h.
 #pragma once
 
 #include <algorithm>
@@ -13,27 +13,27 @@
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/rounding.h"
 
-// Internal linkage, though in a header: included by one file, which lets the compiler put functions that are called
-// once into their caller. With them outside, the walk keeps its state in memory, and a ray takes a tenth longer; for
-// the same reason the usual way through a cell is inlined, and the rare ones are not.
+// Internal linkage, although in a header (included by one file), lets the compiler inline single-use functions. Without
+// it the traversal's state spills to memory and rays take 10 % longer. For the same reason the common path through a
+// cell is inlined, and the rare ones are not.
 namespace scarp::max_mip {
 namespace {
 
-/// What is asked: the closest hit in closed form or by halving, whether there is one, or all of them.
+/// The query: closest hit in closed form or by bisection, any hit, or all hits.
 enum class Ask { closest, bisected, any, all };
 
-// Where the ray is, as far as known, at the entry of the current cell. Without holes it is unknown in the first cell
+// Side of the ray at the entry of the current cell, as far as known. Without holes it is unknown in the first cell
 // only.
 enum class Side { unknown, above, below };
 
-// How the ray came to where it is: through a line of constant column (x) or row (y), or not through a line.
+// How the ray got to its position: through a line of constant column (x) or row (y), or not through a line.
 enum class Through { point, x_line, y_line };
 
 template <class T, bool Holes, bool Wraps, Ask ask>
 class Walk {
  public:
-  /// `all` is where the hits go when all are asked for. Up to `t_clear` the ray is known to be above the ground by more
-  /// than rounding: the walk begins in the cell that holds it.
+  /// `all` receives the hits if all are requested. Up to `t_clear` the ray is known to be above the ground by more than
+  /// rounding: the traversal starts in the cell that contains it.
   Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray,
        const GridRay& local, int halvings, double t_clear, Hit& answer, std::vector<Hit>* all)
       : field_(field),
@@ -69,7 +69,7 @@ class Walk {
     while (walk()) enter_next_copy();
   }
 
-  /// Of a ray from the surface only the first cell.
+  /// For a ray from the surface: processes the first cell only.
   SurfaceStart start() {
     SurfaceStart start;
     start.decided = !leave_start_cell();
@@ -99,8 +99,8 @@ class Walk {
     return triangles_ ? plane(h, south_east(t), t).surface : quadratic(h, t).surface;
   }
 
-  // How far the ray is above the surface where it comes into or leaves the current cell. At a line, both neighbours
-  // compute the same value from the same two nodes.
+  // Clearance of the ray where it enters or leaves the current cell. At a line, both neighbours compute the same value
+  // from the same two nodes.
   double clearance(const CellHeights& h, Through through, bool leaving, double t) const {
     switch (through) {
       case Through::x_line: {
@@ -123,25 +123,24 @@ class Walk {
       const double border = std::max(x_.enter_time(), y_.enter_time());
       from_outside_ = border >= t_in_;
       t_in_ = std::max(t_in_, border);
-      // A coarse block may reach beyond the last row or column; the ray's end does not.
+      // A coarse block may extend beyond the last row or column; the ray's end does not.
       t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
-      // A ray along an axis is inside the strip or it is not; written so that NaN is a miss.
+      // A ray parallel to an axis is inside the strip or not; written so that NaN is a miss.
       if ((!x_.moves() && !(x_.origin >= 0 && x_.origin <= x_.cells)) ||
           (!y_.moves() && !(y_.origin >= 0 && y_.origin <= y_.cells))) {
         return false;
       }
     }
     if (!(t_in_ <= t_end_)) return false;
-    // A ray that begins between the lowest and the highest ground is likely to begin near the ground, where wide skips
-    // are not to be had; one that comes from outside crosses open air first, though blocks that span the field are
-    // seldom free.
+    // A ray that starts between the lowest and the highest ground is likely to start near the ground, where long skips
+    // are not possible. A ray from outside crosses open air first, though blocks that span the field are rarely free.
     const int from_outside = std::max(top_ - 3, 0);
     level_ = t_in_ == ray_.t_min ? 0 : from_outside;
     const double highest = field_.max_sample();
     double t_begin = t_clear_;
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
-      // Down to the highest sample, less the two roundings of the quotient.
+      // Down to the highest sample, minus the two roundings of the quotient.
       const double quotient = (highest - z_) / dz_, t_top = quotient - 2 * kUnit * std::abs(quotient);
       if (t_top > t_end_) return false;
       side_ = Side::above;
@@ -157,8 +156,8 @@ class Walk {
     return true;
   }
 
-  // On to the cell that holds a time up to which the ray is above the ground, and back to where that cell begins, so
-  // that a peak which the ray just touches is still ahead. False: the ray ends before.
+  // Advances to the cell that contains a time up to which the ray is above the ground, and back to where that cell
+  // starts, so that a peak which the ray just touches is still ahead. Returns false if the ray ends before.
   bool skip_to(double t) {
     if (t > t_end_) return false;
     side_ = Side::above;
@@ -168,8 +167,8 @@ class Walk {
     return true;
   }
 
-  // The same from within a cell, never to one behind it: next to a start on a line, which is in the cell that it is
-  // said to be in, not all lines behind are crossed before.
+  // The same from within a cell, never to a previous one: next to a start on a line, which belongs to the given start
+  // cell, not all lines behind are crossed before.
   bool skip_on(double t) {
     const int col = col_, row = row_;
     const double t_in = t_in_;
@@ -182,8 +181,8 @@ class Walk {
     return true;
   }
 
-  // A ray that begins on the surface: its height is that of the surface, the root at the start is divided out of the
-  // clearance in the first cell, and what is left decides. False: answered.
+  // Rays that start on the surface: their height is that of the surface; the root at the start is divided out of the
+  // clearance in the first cell, and the rest decides. Returns false if the answer is known.
   bool leave_start_cell() {
     col_ = ray_.start_cell.col;
     row_ = ray_.start_cell.row;
@@ -198,7 +197,7 @@ class Walk {
     ++stats.cell_tests;
     side_ = Side::above;
     if (!x_.moves() && !y_.moves()) {
-      // Straight down is below at once; the range may have no end.
+      // Straight down is below at once; the range may be infinite.
       if (dz_ < 0 && t_end_ > t_in_ && is_hit(dz_ * (t_end_ - t_in_), t_in_)) answer(0.0);
       return false;
     }
@@ -225,8 +224,8 @@ class Walk {
     return true;
   }
 
-  // The bilinear cell in which a ray begins on the surface: f(s) = s (a s + b) is below right after the start, or after
-  // the second root, if anywhere by more than rounding. True: answered.
+  // The bilinear cell in which a ray starts on the surface: f(s) = s (a s + b) is below right after the start, or after
+  // the second root, if anywhere by more than rounding. Returns true if the answer is known.
   bool falls_from_start(const CellQuadratic& f, double length) {
     const bool dips = f.a > 0 && f.b < 0 && -f.b < 2 * f.a * length;
     const double last = length * (f.a * length + f.b), lowest = dips ? -f.b * f.b / (4 * f.a) : last;
@@ -236,9 +235,9 @@ class Walk {
     return false;
   }
 
-  // Whether a ray that is above at t is, at some point further on, under all of a block: without holes it has been
-  // through the surface before, wherever. A look at the minima of one level at ever longer steps, which a cache holds;
-  // rays along the ground are mostly stopped by hills that are wider than a block. True: answered.
+  // Returns whether a ray that is above at t is, at some later point, below a whole block: without holes it has crossed
+  // the surface before. Samples the minima of one level, which fits in a cache, at growing steps; rays along the ground
+  // are mostly stopped by hills that are wider than a block.
   bool goes_under(double t) {
     if (Wraps || top_ < kProbeLevel) return false;
     const Level& at = levels_[kProbeLevel - 1];
@@ -253,7 +252,7 @@ class Walk {
       if (!(t < t_last)) return false;
       const std::ptrdiff_t row = y_.near(y_.at(t)) >> kProbeLevel, col = x_.near(x_.at(t)) >> kProbeLevel;
       const std::uint16_t minimum = minima_[at.begin + row * at.cols + col];
-      // The position is rounded, too, and that of the next block then as good: the bound covers it.
+      // The position is rounded, too, and that of the next block equally valid: the bound covers it.
       if (code_z + code_dz * t < minimum && falls_under(minimum, t)) {
         answer_.status = HitStatus::hit;
         return true;
@@ -277,26 +276,26 @@ class Walk {
     }
   }
 
-  // The walk through one copy of the grid; true: it has left for the next one. It keeps, in locals, the block at the
-  // current level and the times at which the ray leaves it through its two far lines. One level down is a question to
-  // the line in the middle: is it behind? No cell is ever found from a position.
+  // Traverses one copy of the grid; returns true if the ray has left for the next one. Keeps, in locals, the block at
+  // the current level and the times at which the ray leaves it through its two far lines. Descending one level only
+  // compares the time of the middle line. No cell is ever computed from a position.
   bool walk() {
     const bool falling = dz_ < 0;
     const Axis x = x_, y = y_;
-    // The ray's height as a code, less what rounding can add to it: the pyramid is compared without decoding it.
+    // The ray's height as a code, minus the maximum rounding error: compared with the pyramid without decoding it.
     const double per_step = code_.per_step, highest = field_.max_sample();
     const double farthest = std::max(std::abs(t_in_), std::abs(t_end_));
     const double upright = std::abs(z_) + std::abs(dz_) * farthest + std::abs(code_.base) + std::abs(highest);
     const double code_z = (z_ - code_.base - kCodeRoundings * kUnit * upright) * per_step, code_dz = dz_ * per_step;
     const double highest_code = (highest - code_.base) * per_step;
-    // A coarse block may reach beyond the last row or column; the walk does not.
+    // A coarse block may extend beyond the last row or column; the traversal does not.
     const double t_end = Wraps ? std::min({t_end_, x.exit_time(), y.exit_time()}) : t_end_;
     int level = level_, col = col_ >> level, row = row_ >> level;
     double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
     std::uint32_t steps = 0, level_changes = 0;
     bool left = false;
     for (;;) {
-      const bool through_x = tx <= ty;  // a tie: first through the line of constant column
+      const bool through_x = tx <= ty;  // a tie: the line of constant column first
       const double t_line = through_x ? tx : ty;
       const double t_out = std::min(t_line, t_end);
       // The ray's height is linear: lowest at one end of the block.
@@ -307,8 +306,8 @@ class Walk {
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
         const double maximum = maxima_[entry];
         if (lowest_code > maximum && (side_ != Side::below || risen_above(maxima_[entry], t_lowest))) {
-          // Where there are holes, the last cell may be one: the next begins with a question. Passing a block's corner
-          // is not leaving the ground.
+          // With holes, the last cell may be one: the side is unknown at the next. Passing a block's corner does not
+          // leave the ground.
           if (!Holes) {
             side_ = Side::above;
           } else if (t_out > t_in) {
@@ -323,8 +322,8 @@ class Walk {
           }
           --level;
           ++level_changes;
-          // After a line of constant column, rows' lines of the same time are still ahead: the order of ties. The near
-          // side of a narrow last block is the seam, which was crossed to come here.
+          // After a line of constant column, row lines with the same time are still ahead: the order of ties. The near
+          // side of a narrow last block is the seam, which has been crossed already.
           const double middle_x = x.line_time((2 * col + 1) << level), middle_y = y.line_time((2 * row + 1) << level);
           const bool entered = Wraps && !y.ahead && ((2 * row + 1) << level) >= y.cells;
           const bool behind_x = middle_x <= t_in, behind_y = after_x_ && !entered ? middle_y < t_in : middle_y <= t_in;
@@ -335,7 +334,7 @@ class Walk {
           continue;
         }
       } else if (Holes && grid_.is_hole(col, row)) {
-        // Passing the corner of a hole is not leaving the ground.
+        // Passing the corner of a hole does not leave the ground.
         if (t_line > t_in) side_ = Side::unknown;
         if (lost(t_in)) break;
       } else {
@@ -353,7 +352,7 @@ class Walk {
       if (!falling && lowest_code > highest_code) break;
       if (!(t_line < t_end)) {
         left = t_end < t_end_;
-        // A line of constant column that is crossed together with the seam of the rows comes first, too.
+        // A line of constant column crossed together with the seam of the rows comes first, too.
         const bool another_column =
             static_cast<unsigned>(col + x.step) <= static_cast<unsigned>((x.cells - 1) >> level);
         if (!(left && through_x && t_line == t_end && another_column)) break;
@@ -397,8 +396,8 @@ class Walk {
     return left;
   }
 
-  // Over the seam: as over any line, the column before the row when both are crossed at once. A seam parts blocks of
-  // all levels, so the walk goes one level up.
+  // Across the seam: like any line, the column before the row when both are crossed at once. A seam separates blocks of
+  // all levels, so the traversal goes one level up.
   void enter_next_copy() {
     after_x_ = x_.exit_time() <= y_.exit_time();
     (after_x_ ? col_ : row_) = (after_x_ ? x_ : y_).enter_next_copy();
@@ -406,29 +405,29 @@ class Walk {
     level_ = std::min(level_ + 1, top_);
   }
 
-  // Whether a ray that was below is above all of a block by more than rounding: see test_cell().
+  // Whether a ray that was below is above a whole block by more than rounding: see test_cell().
   bool risen_above(std::uint16_t maximum, double t_lowest) const {
     return ray_height(t_lowest) - code_.height(maximum) > rounding_of_clearance(t_lowest);
   }
 
-  // Whether a ray that is below stays so over all of a block, which then has no holes.
+  // Whether a ray that is below stays below over a whole block, which then has no holes.
   bool under(double highest, std::uint16_t minimum) const {
     return minimum != MaxPyramid::kNoMinimum && highest < code_.height(minimum);
   }
 
-  // Whether a ray that was above before has at t, over a block without holes, come under all of the block: it has been
-  // through the surface, wherever. By more than rounding, so that closest() finds the hit, too.
+  // Whether a ray that was above is at t, over a block without holes, below the whole block: it has crossed the
+  // surface. By more than rounding, so that closest() finds the hit, too.
   bool falls_under(std::uint16_t minimum, double t) const {
     const double height = ray_height(t);
     return under(height, minimum) && code_.height(minimum) - height > 2 * rounding_of_clearance(t);
   }
 
-  // The surface of the current cell; true: answered. Otherwise side_ is that of the way out.
+  // Tests the surface of the current cell. Returns true if the answer is known; otherwise side_ is that of the exit.
   [[gnu::always_inline]] bool test_cell(const CellHeights& h, bool through_x, double t_line, double t_out) {
     ++stats.cell_tests;
     if (strict_) {
-      // It is in the cell that it is said to begin in; by rounding, lines around that may be crossed before it begins,
-      // when its place is clamped and its height must not run ahead.
+      // The ray is in the given start cell; by rounding, surrounding lines may be crossed before it starts, since its
+      // place is clamped and its height must not run ahead.
       t_in_ = std::max(t_in_, ray_.t_min);
       t_out = std::max(t_out, ray_.t_min);
     }
@@ -438,9 +437,9 @@ class Walk {
     return triangles_ ? test_triangles(h, out, t_out) : test_bilinear(h, out, t_out);
   }
 
-  // Begins with the question where the ray is; true: that is the answer. There is no crossing before this one to agree
-  // with. A ray that comes over a rim within rounding of it touches it, whatever the sign: else one through the corner
-  // of a hole, above on the one side, could be below on the other.
+  // Determines the side of the ray; returns true if that is the answer. No previous crossing has to agree. A ray that
+  // crosses a rim within rounding of it touches it, whatever the sign: otherwise a ray through the corner of a hole,
+  // above on one side, could be below on the other.
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);
     const double relief = std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
@@ -465,12 +464,12 @@ class Walk {
         return lost(t_out);
       }
       if constexpr (ask == Ask::bisected) return false;
-      // Only where the clearance along the ray is a cup can the ray come down and go up again.
+      // Only if the clearance along the ray is convex can the ray come down and go up again.
       if (!(CellQuadratic::curvature(h, x_.direction, y_.direction) > 0)) return false;
       const CellQuadratic f = quadratic(h, t_in_);
       if (!f.dips(length) || !is_hit(f.vertex_value(), t_in_)) return false;
       if (hit_in_cell(f, length)) return true;
-      // All hits: after this one it has risen only beyond rounding, as any ray from below.
+      // All hits: after this one it has risen only beyond rounding, like any ray from below.
       if (out <= rounding_of_clearance(t_out)) side_ = Side::below;
       return false;
     }
@@ -481,7 +480,7 @@ class Walk {
     if constexpr (ask == Ask::bisected) return false;
     const CellQuadratic f = quadratic(h, t_in_);
     if (f.peaks(length) && f.vertex_value() > rounding_of_clearance(t_in_)) {
-      // It has come out in between, and goes on as any ray from above.
+      // The ray has emerged in between and continues like any ray from above.
       side_ = Side::above;
       if (!(out <= 0 && is_hit(out, t_out))) return false;
       if (hit_in_cell(f, length)) return true;
@@ -490,13 +489,13 @@ class Walk {
     return lost(t_out);
   }
 
-  // Two triangles: the signs at the way in, at the diagonal, if it is crossed, and at the way out; in between the
-  // clearance is linear.
+  // Two triangles: the signs at the entry, at the diagonal if crossed, and at the exit; the clearance is linear in
+  // between.
   [[gnu::noinline]] bool test_triangles(const CellHeights& h, double out, double t_out) {
     const double sum = static_cast<double>(x_.global_line(col_) + y_.global_line(row_) + 1);
     const double t_diagonal = (sum - (x_.origin + y_.origin)) / (x_.direction + y_.direction);
     double t_begin = t_in_;
-    // A ray along diagonals crosses none: the quotient is infinite or NaN.
+    // A ray parallel to the diagonal never crosses it: the quotient is infinite or NaN.
     if (t_diagonal > t_in_ && t_diagonal < t_out) {
       const double crossing = ray_height(t_diagonal) - edge_height(h.h10, h.h01, y_.place(t_diagonal, row_));
       if (test_triangle(h, t_begin, crossing, t_diagonal)) return true;
@@ -505,7 +504,7 @@ class Walk {
     return test_triangle(h, t_begin, out, t_out) || (side_ == Side::below && lost(t_out));
   }
 
-  // One triangle, from t_begin, where side_ tells the sign, to t_out. True: answered.
+  // One triangle, from t_begin, where side_ gives the sign, to t_out. Returns true if the answer is known.
   bool test_triangle(const CellHeights& h, double t_begin, double out, double t_out) {
     if (side_ == Side::below) {
       if (out > rounding_of_clearance(t_out)) side_ = Side::above;
@@ -519,21 +518,20 @@ class Walk {
     return answer(t_begin - t_in_ + (s >= 0 ? std::min(s, t_out - t_begin) : t_out - t_begin));
   }
 
-  // Whether a ray that is not above can never hit again: falling, and under the lowest ground, with no holes' walls
+  // Whether a ray that is not above can never hit again: falling, below the lowest ground, with no walls of holes
   // ahead.
   bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample() && !(Holes && solid_); }
 
-  // For the places where a sign alone is not enough: a ray from below has risen only beyond it (else one that rises
-  // through a node could be seen above at one line and, by rounding, not above at the next: a hit from below), a ray
-  // from the surface is strictly below only beyond it, and so is a ray under a block.
+  // Where a sign alone is not enough: a ray from below has risen only beyond it (otherwise one that rises through a
+  // node could be above at one line and, by rounding, not above at the next: a hit from below), a ray from the surface
+  // is strictly below only beyond it, and so is a ray under a block.
   double rounding_of_clearance(double t) const { return scarp::rounding_of_clearance(field_, grid_ray(), t); }
   GridRay grid_ray() const { return {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}; }
 
-  // Whether a clearance of zero or less is a hit: always, but for a ray from the surface, which has to be strictly
-  // below.
+  // A clearance <= 0 is a hit; rays that start on the surface require < -rounding.
   bool is_hit(double clearance, double t) const { return !strict_ || clearance < -rounding_of_clearance(t); }
 
-  // The signs have decided that there is a hit in the cell; the quadratic only says where.
+  // The signs imply a hit in the cell; the quadratic only locates it.
   bool hit_in_cell(const CellQuadratic& f, double length) {
     if constexpr (ask == Ask::any) return answer(0.0);
     if constexpr (ask == Ask::bisected) {
@@ -548,7 +546,7 @@ class Walk {
     return answer(s >= 0 ? std::min(s, length) : 0.0);
   }
 
-  // A hit at t_in + s in the current cell; true: nothing more is asked.
+  // Records a hit at t_in + s in the current cell; returns true if the query is answered.
   bool answer(double s, bool wall = false) {
     answer_.status = HitStatus::hit;
     if constexpr (ask == Ask::any) return true;
@@ -565,12 +563,13 @@ class Walk {
 
   using Level = MaxPyramid::Level;
 
-  // When and where any-hit looks ahead; from a search over the rays of scarp-bench (decisions.md).
-  static constexpr std::uint32_t kPatience = 3;  // steps of the walk before: half of the rays need no more
-  static constexpr int kProbeLevel = 3;          // blocks of 8 x 8 cells
+  // Look-ahead parameters of any hit, from a search over the rays of scarp-bench (decisions.md).
+  static constexpr std::uint32_t kPatience =
+      3;                                 // traversal steps before the first look-ahead: half of the rays need no more
+  static constexpr int kProbeLevel = 3;  // blocks of 8 x 8 cells
   static constexpr int kProbes = 24;
   static constexpr double kFirstProbe = 8, kProbeGrowth = 1.2;  // steps in cells
-  static constexpr double kShortWay = 128;                      // cells up to which the walk is as fast
+  static constexpr double kShortWay = 128;                      // cells up to which the traversal is as fast
   static constexpr double kUnit = 0x1p-53;                      // unit roundoff of double
   static constexpr double kCodeRoundings = 8;                   // 6 on the way to a code, see numerics.md
 
@@ -588,13 +587,13 @@ class Walk {
   double t_clear_;
   const Ray& ray_;
 
-  int col_ = 0, row_ = 0;  // the cell that the ray is in: this is the state, times are derived from it
+  int col_ = 0, row_ = 0;  // the current cell: this is the state, times are derived from it
   int level_ = 0;
   Side side_ = Side::unknown;
   Through through_ = Through::point;
-  bool after_x_ = false;       // whether the last line crossed was one of constant column
-  bool from_outside_ = false;  // whether the ray came in through the border
-  // With holes: whether anything has been left behind; only the first cell can say that the ray began below.
+  bool after_x_ = false;       // whether the last line crossed was of constant column
+  bool from_outside_ = false;  // whether the ray entered through the border
+  // With holes: whether some cell has been left; only in the first cell can the ray start below.
   bool begun_ = false;
   Hit& answer_;
   std::vector<Hit>* all_;

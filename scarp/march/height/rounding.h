@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What rounding can do to the clearance of a ray, derived in doc/dev/numerics.md.
+// Rounding error bounds of a ray's clearance, derived in doc/dev/numerics.md.
 #pragma once
 
 #include <algorithm>
@@ -9,10 +9,9 @@
 
 namespace scarp {
 
-/// The most that rounding adds to ray height - surface height at time t, in sample units, on the way from world
-/// coordinates to a march's clearance: 16 u times the quantities that go into it, those that the ray was shifted by on
-/// its way into the grid included.
-/// `relief` is how far heights differ where the ray is: in its cell, or in the whole field.
+/// Returns the maximum rounding error of ray height - surface height at time t, in sample units, from world coordinates
+/// to a march's clearance: 16 u times the magnitude of the operands, including the offset of the ray into the grid.
+/// `relief` is the height difference around the ray: of its cell, or of the whole field.
 inline double rounding_of_clearance(const HeightField& field, const GridRay& ray, double t, double relief) {
   constexpr double kUnit = 0x1p-53;  // unit roundoff of double
   constexpr double kRoundings = 16;  // numerics.md counts 11

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A batch of rays over a distance field on a device: what sphere_trace.comp and the C++ that calls it
-// (shape_queries_vk.h) agree upon. Marches are interrupted as told in function_batch.glsl.h.
+// A batch of rays over a distance field on a device: shared by sphere_trace.comp and the C++ code that dispatches it
+// (shape_queries_vk.h). Marches are interrupted as described in function_batch.glsl.h.
 //
 //   ShapeBatch ──code, numbers──▶ the shape's program, ──grounds──▶ its functions and height fields
 //       │  └───────rays──▶ ScarpFunctionRay ...      one invocation each
@@ -16,10 +16,10 @@
 
 SCARP_GLSL_BEGIN
 
-// Specialisation constants: threads of a workgroup; whether any hit will do; what the program has (scarp_shape_uses);
-// what its functions have (scarp_uses).
+// Specialisation constants: threads per workgroup; any hit or closest hit; contents of the program (scarp_shape_uses);
+// contents of its functions (scarp_uses).
 
-/// The push constants; see ScarpSphereTrace.
+/// Push constants; see ScarpSphereTrace.
 struct ShapeBatch {
   Address code;
   Address numbers;
@@ -59,7 +59,7 @@ ScarpShapeInstruction scarp_shape_instruction(uint i) { return ShapeCode(batch.c
 float scarp_shape_number(uint i) { return ShapeNumbers(batch.numbers).numbers[i]; }
 bool scarp_shape_uses(uint op) { return (batch_parts & (1u << op)) != 0u; }
 
-// The ground that is being asked.
+// The ground being evaluated.
 ScarpShapeGround shape_ground;
 
 ScarpInstruction scarp_instruction(uint i) { return ShapeFunction(shape_ground.data).instructions[i]; }

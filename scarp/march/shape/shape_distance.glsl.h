@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Distances of shapes for shaders: an interpreter of the program of a distance field (field/distance_program.h), in
-// floats; the formulas are those of field/distance_solids.h. What a value is off by: doc/dev/numerics.md, "Distance
-// fields in single precision".
+// floats; the formulas are those of field/distance_solids.h. Error bounds: doc/dev/numerics.md, "Distance fields in
+// single precision".
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. Who includes it has defined
+// Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define
 //
 //   ScarpShapeInstruction scarp_shape_instruction(uint i);      the i-th of the program
-//   float scarp_shape_number(uint i);                           the i-th of its numbers
-//   bool scarp_shape_uses(uint op);                             whether an instruction is in it; true is always right
+//   float scarp_shape_number(uint i);                           the i-th of its constants
+//   bool scarp_shape_uses(uint op);                             whether an instruction is in it; true is always valid
 //   float scarp_shape_function(uint index, float x, float y);   height of the index-th ground, a function's
 //   float scarp_shape_field(uint index, vec3 q, float shrink);  scarp_field_ground() of shape_grounds.glsl.h
 #ifndef SCARP_MARCH_SHAPE_DISTANCE_GLSL_H
@@ -18,39 +18,39 @@
 
 SCARP_GLSL_BEGIN
 
-/// The host's.
+/// Defined by the including file.
 ScarpShapeInstruction scarp_shape_instruction(uint i);
 float scarp_shape_number(uint i);
 bool scarp_shape_uses(uint op);
 float scarp_shape_function(uint index, float x, float y);
 float scarp_shape_field(uint index, vec3 q, float shrink);
 
-/// Terrain functions end here, metres from their origin in x and y; beyond, the ground goes on as it is there.
+/// Maximum coordinate of terrain functions, metres from their origin in x and y; the ground continues constant beyond.
 const float kScarpFunctionReach = 1073741824.0f;
 
-/// Length of a vector of two.
+/// Returns the length of a 2D vector.
 SCARP_FN float scarp_length2(float x, float y) { return sqrt(x * x + y * y); }
-/// And of three.
+/// Returns the length of a 3D vector.
 SCARP_FN float scarp_length3(float x, float y, float z) { return sqrt(x * x + y * y + z * z); }
-/// Three of the program's numbers, from the k-th on.
+/// Returns three of the program's constants, from the k-th on.
 SCARP_FN vec3 scarp_numbers3(uint k) {
   return vec3(scarp_shape_number(k), scarp_shape_number(k + 1u), scarp_shape_number(k + 2u));
 }
 
-/// Of a position to the part of space where all coordinates are negative.
+/// Returns the distance to the quadrant where all coordinates are negative.
 SCARP_FN float scarp_corner2(float x, float y) {
   return scarp_length2(max(x, 0.0f), max(y, 0.0f)) + min(max(x, y), 0.0f);
 }
-/// The same in three dimensions.
+/// Returns the distance to the octant where all coordinates are negative.
 SCARP_FN float scarp_corner3(float x, float y, float z) {
   return scarp_length3(max(x, 0.0f), max(y, 0.0f), max(z, 0.0f)) + min(max(max(x, y), z), 0.0f);
 }
 
-/// To a cone, upright about the origin: its radii at the lower and the upper end, half its height.
+/// Returns the distance to a cone, upright about the origin: its radii at the lower and the upper end, half its height.
 SCARP_FN float scarp_cone(vec3 q, float below, float above, float half_) {
   float r = scarp_length2(q.x, q.y);
   float beyond = abs(q.z) - half_;
-  // To the nearer disc, and to the side: from its upper end `along` of the way down.
+  // To the nearer disc, and to the side, `along` of the way down from its upper end.
   float disc = scarp_length2(max(r - (q.z < 0.0f ? below : above), 0.0f), beyond);
   float dr = below - above;
   float dz = -2.0f * half_;
@@ -61,7 +61,7 @@ SCARP_FN float scarp_cone(vec3 q, float below, float above, float half_) {
   return side_r < 0.0f && beyond < 0.0f ? -away : away;
 }
 
-/// A solid's value at a position; its numbers begin at k.
+/// Returns a solid's value at a position; its constants start at k.
 SCARP_FN float scarp_solid(uint op, uint k, vec3 p) {
   vec3 first = scarp_numbers3(k);
   vec3 n = scarp_numbers3(k + 3u);
@@ -81,13 +81,13 @@ SCARP_FN float scarp_solid(uint op, uint k, vec3 p) {
   return (scarp_length3(q.x / n.x, q.y / n.y, q.z / n.z) - 1.0f) * scarp_shape_number(k + 6u);
 }
 
-/// The nearer of two distances; where they are less than `radius` apart, less than both by up to radius / 4.
+/// Returns the smaller of two distances; if they are within `radius` of each other, less than both by up to radius / 4.
 SCARP_FN float scarp_smooth_union(float a, float b, float radius) {
   float t = clamp(0.5f + 0.5f * (b - a) / radius, 0.0f, 1.0f);
   return b + t * (a - b) - radius * t * (1.0f - t);
 }
 
-/// Of a position to a box, 0 within it; k: low, high.
+/// Returns the distance to a box, 0 inside; k: low, high.
 SCARP_FN float scarp_outside(vec3 p, uint k) {
   vec3 low = scarp_numbers3(k);
   vec3 high = scarp_numbers3(k + 3u);
@@ -95,7 +95,7 @@ SCARP_FN float scarp_outside(vec3 p, uint k) {
                        max(max(low.z - p.z, p.z - high.z), 0.0f));
 }
 
-/// Along an axis the number of the nearest copy, and how far off its middle a position is.
+/// Index of the nearest copy along an axis, and the offset from its centre.
 struct ScarpCopy {
   float number;
   float off;
@@ -103,7 +103,7 @@ struct ScarpCopy {
   float count;
   float half_;
 };
-/// Of a coordinate; k: where the numbers of the repetition begin, axis: 0 to 2.
+/// Returns the copy nearest to a coordinate; k: the first constant of the repetition, axis: 0 to 2.
 SCARP_FN ScarpCopy scarp_nearest_copy(float p, uint k, uint axis) {
   ScarpCopy copy;
   copy.period = scarp_shape_number(k + 3u + axis);
@@ -120,19 +120,19 @@ SCARP_FN ScarpCopy scarp_nearest_copy(float p, uint k, uint axis) {
   }
   return copy;
 }
-/// A coordinate in the frame of the nearest copy, or of the one next to it.
+/// Returns a coordinate in the frame of the nearest copy, or of the adjacent one.
 SCARP_FN float scarp_folded(float p, uint k, uint axis, bool next) {
   ScarpCopy copy = scarp_nearest_copy(p, k, axis);
   float number = copy.number + (next ? (copy.off < 0.0f ? -1.0f : 1.0f) : 0.0f);
   return p - number * copy.period;
 }
-/// All three; a bit of the mask for each axis says that the next copy is meant.
+/// Returns a position in the frame of a copy; a bit of the mask per axis selects the adjacent copy.
 SCARP_FN vec3 scarp_folded3(vec3 p, uint k, uint mask) {
   return vec3(scarp_folded(p.x, k, 0u, (mask & 1u) != 0u), scarp_folded(p.y, k, 1u, (mask & 2u) != 0u),
               scarp_folded(p.z, k, 2u, (mask & 4u) != 0u));
 }
-/// How far from a copy a position is at least along an axis: the neighbour when it is asked for; kScarpEndless where
-/// there is none.
+/// Returns a lower bound of the distance to a copy along an axis: the nearest, or its neighbour on the position's side;
+/// kScarpEndless if there is none.
 SCARP_FN float scarp_copy_away(float p, uint k, uint axis, bool next) {
   ScarpCopy copy = scarp_nearest_copy(p, k, axis);
   float away = abs(copy.off);
@@ -143,7 +143,7 @@ SCARP_FN float scarp_copy_away(float p, uint k, uint axis, bool next) {
   }
   return max(away - copy.half_, 0.0f);
 }
-/// Least distance to the copy that a mask means; kScarpEndless where there is none.
+/// Returns a lower bound of the distance to the copy selected by a mask; kScarpEndless if there is none.
 SCARP_FN float scarp_neighbour_bound(vec3 p, uint k, uint mask) {
   float x = scarp_copy_away(p.x, k, 0u, (mask & 1u) != 0u);
   float y = scarp_copy_away(p.y, k, 1u, (mask & 2u) != 0u);
@@ -151,7 +151,7 @@ SCARP_FN float scarp_neighbour_bound(vec3 p, uint k, uint mask) {
   if (max(max(x, y), z) >= kScarpEndless) return kScarpEndless;
   return scarp_length3(x, y, z);
 }
-/// Least distance to all copies but the nearest and its neighbours.
+/// Returns a lower bound of the distance to all copies except the nearest and its neighbours.
 SCARP_FN float scarp_rest_bound(vec3 p, uint k) {
   ScarpCopy x = scarp_nearest_copy(p.x, k, 0u);
   ScarpCopy y = scarp_nearest_copy(p.y, k, 1u);
@@ -166,7 +166,7 @@ SCARP_FN float scarp_rest_bound(vec3 p, uint k) {
   return least;
 }
 
-/// The value of a ground at a position.
+/// Returns the value of a ground at a position.
 SCARP_FN float scarp_ground(ScarpShapeInstruction at, uint k, vec3 p) {
   vec3 c = scarp_numbers3(k);
   float scale = scarp_shape_number(k + 3u);
@@ -183,7 +183,7 @@ SCARP_FN float scarp_ground(ScarpShapeInstruction at, uint k, vec3 p) {
   return value * scale;
 }
 
-/// The value at a position: no more than the distance to the surface, negative inside.
+/// Returns the value at a position: at most the distance to the surface, negative inside.
 SCARP_FN float scarp_shape_distance(uint count, vec3 position) {
   vec3 p[kScarpShapeRegisters];
   float v[kScarpShapeRegisters];
@@ -212,7 +212,7 @@ SCARP_FN float scarp_shape_distance(uint count, vec3 position) {
     } else if (at.op <= kScarpShapeFieldGround) {
       v[at.to] = scarp_ground(at, k, p[at.a]);
     } else if (at.op <= kScarpShapeSmoothSubtract) {
-      // max(a, b) = -min(-a, -b); to subtract is to intersect with all but b.
+      // max(a, b) = -min(-a, -b); subtraction intersects with the complement of b.
       bool unites = at.op == kScarpShapeUnite || at.op == kScarpShapeSmoothUnite;
       bool cuts = at.op == kScarpShapeSubtract || at.op == kScarpShapeSmoothSubtract;
       float a = unites ? v[at.a] : -v[at.a];

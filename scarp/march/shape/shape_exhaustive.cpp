@@ -15,7 +15,7 @@ using namespace shape;
 
 using Place = std::array<Position, 3>;
 
-// Cosines and sines are the C library's, right within 2 units of the last place.
+// Cosines and sines are the C library's, accurate to 2 units in the last place.
 Interval about(double x) { return {x - 0x1p-50, x + 0x1p-50}; }
 
 Interval root(const Interval& square) { return sqrt(max(Interval(0.0), square)); }
@@ -116,7 +116,7 @@ class Evaluation {
     if (g.holes) value = max(value, over_hole(*g.holes, x, y));
     return clamped(value, node, p);
   }
-  // To the rim of the nearest hole, positive over holes, as far as a cell is long.
+  // To the rim of the nearest hole, positive over holes, capped at the length of a cell.
   static Interval over_hole(const HeightField& field, const Interval& x, const Interval& y) {
     const HeightFieldSettings& s = field.settings();
     const double far = std::min(s.cell_x, s.cell_y);
@@ -130,7 +130,7 @@ class Evaluation {
       const auto wrapped = [](double at, int count) { return static_cast<int>(at - std::floor(at / count) * count); };
       return !field.cell_heights({wrapped(c, cols), wrapped(r, rows)});
     };
-    // Between a place along an axis and a cell on its side `d` of the cell `c`, in cells.
+    // Between a position along an axis and a cell on side `d` of cell `c`, in cells.
     const auto away = [](const Interval& place, double c, int d) {
       return d == 0 ? Interval(0.0) : d > 0 ? positive(c + 1.0 - place) : positive(place - c);
     };
@@ -156,7 +156,7 @@ class Evaluation {
     }
     return empty(range) ? anything : range;
   }
-  // A bilinear cell is highest and lowest at corners of what is looked at of it, and so are planes.
+  // Extremes of a bilinear cell, and of planes, are at corners of the region.
   static Interval height_of(const HeightField& field, const Interval& x, const Interval& y) {
     const HeightFieldSettings& s = field.settings();
     const Interval all(field.min_height(), field.max_height());
@@ -188,7 +188,7 @@ class Evaluation {
                   hull(range, (one - a) * ((one - b) * h->h00 + b * h->h01) + a * ((one - b) * h->h10 + b * h->h11));
               continue;
             }
-            // Each of the two planes where the box reaches into its triangle.
+            // Each of the two planes where the box overlaps its triangle.
             if (u.lower() + v.lower() <= 1)
               range = hull(range, h->h00 + a * (Interval(h->h10) - h->h00) + b * (Interval(h->h01) - h->h00));
             if (u.upper() + v.upper() >= 1)
@@ -207,7 +207,7 @@ class Evaluation {
     return of(m.shape, p);
   }
   Interval value(const Turned& turned, const ShapeNode&, const Place& p) const {
-    // Back: by the angle the other way. p cos + (n x p) sin + n (n . p) (1 - cos).
+    // Back: by the negative angle. p cos + (n x p) sin + n (n . p) (1 - cos).
     const Interval c = about(std::cos(turned.angle)), s = -about(std::sin(turned.angle));
     const Interval size = length_of(Interval(turned.axis.x), Interval(turned.axis.y), Interval(turned.axis.z));
     const Interval n[3] = {turned.axis.x / size, turned.axis.y / size, turned.axis.z / size};
@@ -226,7 +226,7 @@ class Evaluation {
   Interval value(const Repeated& r, const ShapeNode&, const Place& p) const {
     const ShapeBox& box = r.shape->box;
     if (box.empty() || r.period == dvec3(0.0)) return of(r.shape, p);
-    // Of shapes that do not overlap the value is that of the nearest; of bounds something smaller, but of one sign.
+    // For shapes that do not overlap the value is that of the nearest; for bounds it is smaller, but of the same sign.
     std::array<double, 3> from{}, to{};
     for (int axis = 0; axis < 3; ++axis) {
       const auto i = static_cast<std::size_t>(axis);
@@ -255,7 +255,7 @@ class Evaluation {
     return nearest;
   }
 
-  // Parts without a box are known to be empty and leave no trace.
+  // Parts without a box are empty and are dropped.
   Interval value(const Union& u, const ShapeNode&, const Place& p) const {
     Interval all(std::numeric_limits<double>::infinity());
     bool first = true;
@@ -278,19 +278,20 @@ class Evaluation {
   }
   Interval value(const Painted& painted, const ShapeNode&, const Place& p) const { return of(painted.shape, p); }
 
-  // It grows with both operands.
+  // Monotone in both operands.
   static Interval minimum(const Interval& a, const Interval& b, double radius) {
     if (radius == 0 || !std::isfinite(a.upper()) || !std::isfinite(b.upper()))
       return min(a, b) - Interval(0, 0.25 * radius);
     return hull(smooth(a.lower(), b.lower(), radius), smooth(a.upper(), b.upper(), radius));
   }
-  // b - radius f((b - a) / radius): a parabola between the two lines, which meets them `radius` from where they cross.
+  // b - radius f((b - a) / radius): a parabola between the two lines, which meets them `radius` from their
+  // intersection.
   static Interval smooth(double a, double b, double radius) {
     const Interval apart = abs(Interval(b) - a), short_of = positive(radius - apart);
     return std::min(a, b) - square(short_of) / (4.0 * Interval(radius));
   }
 
-  // Outside of its box a value is at least the distance to it.
+  // Outside its box a value is at least the distance to it.
   Interval clamped(const Interval& value, const ShapeNode& node, const Place& p) const {
     if (node.box.empty()) return value;
     std::array<Interval, 3> away;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The judge of the marches over distance fields: the first crossing of a ray by bisection in interval arithmetic, as
-// function_exhaustive.h has it for functions.
+// The reference for marches over distance fields: the first crossing of a ray by bisection in interval arithmetic, like
+// function_exhaustive.h for functions.
 //
-// The tree of the shape is evaluated in intervals by code of its own, which shares with the marches the settings and
-// boxes of nodes (distance_node.h) and the samples of height fields; nothing else.
+// The tree of the shape is evaluated in intervals by separate code, which shares with the marches only the settings and
+// boxes of nodes (distance_node.h) and the samples of height fields.
 //
-// Guarantee: a proof, rounding included. Cost: some thousand evaluations per ray. Source: as there.
+// Guarantee: a proof, including rounding. Cost: some thousand evaluations per ray. Source: see function_exhaustive.h.
 #pragma once
 
 #include "scarp/base/ray.h"
@@ -14,8 +14,8 @@
 
 namespace scarp {
 
-/// `above the ground` reads `outside of the solid`. The ray must be `free`, its part within +-kMostLength is judged,
-/// and t_max must be finite.
+/// Judges a ray; `above the ground` means `outside the solid`. The ray must be `free` and t_max finite; only its part
+/// within +-kMostLength is judged.
 FunctionJudgement judge_shape(const Shape& shape, const Ray& ray, int most_evaluations = 1 << 20);
 
 }  // namespace scarp

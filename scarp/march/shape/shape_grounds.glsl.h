@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The ground of a height field as a solid among shapes, for shaders: field_ground_value() and over_hole() of the field
+// The ground of a height field as a solid in a shape, for shaders: field_ground_value() and over_hole() of the field
 // station (distance_local.cpp, ground_holes.cpp) in floats.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included. Who includes it has defined
+// Compiles as C++ and GLSL, including GLSL ES 3.0. The including file must define
 //
 //   float scarp_field_sample(int col, int row);      a sample of the field, in sample units; there are no holes
 //   bool scarp_field_hole(int col, int row);         whether a cell is a hole
@@ -14,14 +14,14 @@
 
 SCARP_GLSL_BEGIN
 
-/// The host's.
+/// Defined by the including file.
 float scarp_field_sample(int col, int row);
 bool scarp_field_hole(int col, int row);
 
-/// What is to be known of the field besides its samples.
+/// Properties of the field besides its samples.
 struct ScarpSolidField {
   ivec2 cells;    ///< columns and rows
-  ivec2 samples;  ///< as many as cells where the last is followed by the first
+  ivec2 samples;  ///< as many as cells if the last is followed by the first
   float cell_x;   ///< metres
   float cell_y;
   float metres_per_sample;
@@ -31,7 +31,7 @@ struct ScarpSolidField {
   bool has_holes;
 };
 
-/// Along an axis the cell that holds a place, in cells from the first line, and where in it.
+/// Along an axis: the cell that contains a position, in cells from the first line, and the position in it.
 SCARP_FN void scarp_field_place(float place, int cells, bool wraps, SCARP_OUT(int) cell, SCARP_OUT(float) in_cell) {
   float at = place;
   float count = float(cells);
@@ -41,7 +41,8 @@ SCARP_FN void scarp_field_place(float place, int cells, bool wraps, SCARP_OUT(in
   in_cell = at - float(cell);
 }
 
-/// Metres to the rim of the nearest hole, positive over holes, as far as the shorter side of a cell.
+/// Returns the distance to the rim of the nearest hole in metres, positive over holes, capped at the shorter side of a
+/// cell.
 SCARP_FN float scarp_field_rim(ScarpSolidField field, int col, int row, float u, float v) {
   bool hole = scarp_field_hole(col, row);
   float nearest = min(field.cell_x, field.cell_y);
@@ -63,7 +64,7 @@ SCARP_FN float scarp_field_rim(ScarpSolidField field, int col, int row, float u,
   return hole ? nearest : -nearest;
 }
 
-/// The value at q, in the field's own frame: the height over the ground, by `shrink`, its walls and its holes.
+/// Returns the value at q, in the field's own frame: the height above the ground times `shrink`, with walls and holes.
 SCARP_FN float scarp_field_ground(ScarpSolidField field, vec3 q, float shrink) {
   int col;
   int row;

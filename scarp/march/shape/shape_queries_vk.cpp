@@ -21,14 +21,14 @@ constexpr std::uint32_t kSphereTraceWords[] = {
 #include "scarp/march/shape/sphere_trace.comp.inc"
 };
 
-// Values that may follow the last step of a run, and the one that it begins with.
+// Values that may follow the last step of a run, and the one that it starts with.
 constexpr int kLastValues = 8;
 
 int run_steps(std::size_t turns) {
   return std::max(1, glsl::kScarpLoopTurns / (static_cast<int>(turns) + 2) - kLastValues);
 }
 
-// The interpreter's loop turns once per instruction, and in the loops of grounds.
+// Iterations of the interpreter: one per instruction, plus those of grounds.
 std::size_t turns_of(const DistanceProgram& program) {
   constexpr std::size_t kRim = 9;
   std::size_t turns = program.code.size();
@@ -96,7 +96,7 @@ struct DeviceShapeQueries::Impl {
   Impl(const Device& device_, const MarchSettings& march_settings_, const DeviceQuerySettings& settings)
       : march_settings(march_settings_), device(device_), runs(device_, settings.rays_at_once) {}
 
-  // Made of what the program has, when it is first asked for.
+  // Specialised for the contents of the program, on first use.
   const ComputePipeline& pipeline(const DistanceProgram& program, bool any) {
     const std::uint32_t choice = any, parts = shape_parts(program), functions = shape_function_parts(program);
     const auto made = pipelines.find({choice, parts, functions});
@@ -128,7 +128,8 @@ struct DeviceShapeQueries::Impl {
   MarchSettings march_settings;
   Device device;
   RayRuns runs;
-  std::map<std::array<std::uint32_t, 3>, ComputePipeline> pipelines;  // by choice, parts, and those of functions
+  std::map<std::array<std::uint32_t, 3>, ComputePipeline>
+      pipelines;  // by choice, contents, and contents of its functions
 };
 
 DeviceShapeQueries::DeviceShapeQueries(const Device& device, const ShapeMarchEntry& march,

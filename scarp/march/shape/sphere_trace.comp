@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `sphere-trace` on a batch of rays, one invocation per ray.
+// `sphere-trace` for a batch of rays, one invocation per ray.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -7,7 +7,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "scarp/march/shape/shape_batch.glsl.h"
-// The march asks the batch for its instructions and grounds.
+// The march reads its instructions and grounds through the batch.
 #include "scarp/march/function/function_heights.glsl.h"
 #include "scarp/march/shape/shape_grounds.glsl.h"
 #include "scarp/march/shape/sphere_trace.glsl.h"

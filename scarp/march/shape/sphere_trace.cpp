@@ -10,22 +10,22 @@
 namespace scarp {
 namespace {
 
-// The shortest segment looked at, as a share of the ray's part in the field's box, whatever the tolerance.
+// Shortest segment, as a fraction of the ray's part in the field's box, whatever the tolerance.
 constexpr double kShortest = 0x1p-40;
-// Lines are followed a little less far than to where they meet the surface: more than their rounding.
+// Linear models are followed slightly less far than to where they meet the surface: more than their rounding.
 constexpr double kShort = 1 - 0x1p-20;
-// A little beyond where the ray is known to be inside.
+// Slightly beyond where the ray is known to be inside.
 constexpr double kBeyond = 1 + 0x1p-10;
-// Of segments: how much longer the next one is after a free one, and shorter after one that is not.
+// Length factor of the next segment after a free one, and after one that is not.
 constexpr double kGrowth = 2, kShrink = 0.4;
-// A segment is this many times as long as the ball before it.
+// Length of a segment relative to the previous ball.
 constexpr double kAhead = 4;
-// Balls that grow by less, along a face say, are no way to go on.
+// Balls that grow by less, along a face for example, do not advance quickly enough.
 constexpr double kGrowing = 1.125;
-// So many of those are taken before a segment, whose bound costs as much as some 8 values.
+// Number of those before a segment, whose bound costs as much as about 8 values.
 constexpr int kPatience = 6;
 
-// The first segment of a ray from the surface, as a share of all: near enough for most of a shape to be left out.
+// First segment of a ray from the surface, as a fraction of all: short enough to skip most of a shape.
 constexpr double kFirst = 0x1p-8;
 
 // Which side of the surface the ray is on.
@@ -34,8 +34,8 @@ enum class Side { outside, inside };
 enum class Ended { crossing, exit, exhausted };
 struct Walk {
   Ended ended;
-  double t;       // where it ended; of a crossing the last time known to be before it
-  double beyond;  // of a crossing: a time after it, or t where the ray cannot be told from a crossing
+  double t;       // end; for a crossing, the last time known to be before it
+  double beyond;  // for a crossing: a time after it, or t if the ray is indistinguishable from a crossing
 };
 
 class Trace {
@@ -52,7 +52,7 @@ class Trace {
       clip(std::max(box.low[axis], -kDistanceReach), std::min(box.high[axis], kDistanceReach), ray.origin[axis],
            ray.direction[axis]);
     }
-    // That it begins in the box is known; by how much rounding may have it outside is not.
+    // The ray certainly starts in the box; rounding may place it slightly outside.
     if (ray.start == RayStart::on_surface) t_enter_ = ray.t_min;
     if (!crosses()) return;
     from_ = length(ray.origin);
@@ -90,8 +90,7 @@ class Trace {
     ++stats_.cell_tests;
     return field_.along(ray_.origin, ray_.direction, t0, t1, rates);
   }
-  // How far from the truth a value at t may be: it is that of a rounded position, which it follows by a metre per
-  // metre.
+  // Error bound of a value at t: the position is rounded, and the value is 1-Lipschitz in it.
   double rounding(double t) const {
     const double reach = from_ + std::abs(t) * speed_;
     return field_.rounding(reach) + kRounding * reach;
@@ -113,7 +112,7 @@ class Trace {
     return hit;
   }
 
-  // Moves t to where the ray is outside for the first time. False where it is decided before, in `hit`.
+  // Moves t to where the ray is outside for the first time. Returns false if it is decided before, in `hit`.
   bool first_outside(double& t, Hit& hit) {
     if (!crosses()) return false;
     if (ray_.start == RayStart::on_surface) return leave(t, hit);
@@ -132,18 +131,18 @@ class Trace {
       if (walk.ended != Ended::crossing) return false;
       t = std::max(walk.beyond, walk.t + least_at(walk.t));
       if (t >= t_exit_) return false;
-      // Out of the surface as from one: where the ray turns back into it at once, as at the seam of two solids that
-      // touch, it never was outside, and goes on inside.
+      // Emerging is like starting on the surface: if the ray turns back into it at once, as at the seam of two touching
+      // solids, it never was outside, and continues inside.
       if (leave(t, hit)) return true;
       if (!hit) return false;
     }
   }
 
-  // From the surface: on, as long as the ray provably does not lose more distance than rounding, until it is clear of
-  // the surface. False when it loses distance at once (a hit here), or at the end.
+  // From the surface: advances while the ray provably loses no more distance than rounding, until it is clear of the
+  // surface. Returns false if it loses distance at once (a hit here), or at the end.
   bool leave(double& t, Hit& hit) {
     const double start = t;
-    // It may be told to begin a little inside: by what the ray that found the place rounded.
+    // The given start may be slightly inside: by the rounding of the ray that found the point.
     const double begin = std::min(0.0, value(t));
     double length = kFirst * (t_exit_ - t);
     while (t < t_exit_) {
@@ -173,7 +172,7 @@ class Trace {
     return false;
   }
 
-  // Along one side of the surface to where it is crossed: by balls while they grow, by segments where they do not.
+  // Along one side of the surface to its crossing: by balls while they grow, otherwise by segments.
   Walk follow(double t, Side side) {
     const double sign = side == Side::outside ? 1 : -1;
     double length = 0;  // of the next segment
@@ -189,7 +188,7 @@ class Trace {
         continue;
       }
       if (length == 0) length = t_exit_ - t;
-      // Segments, as long as they are free, or further than a ball would be.
+      // Segments, while they are free, or longer than a ball would be.
       while (true) {
         const double end = std::min(t + length, t_exit_);
         const auto [until, sunk] = proof(segment(t, end, false), t, end, sign);
@@ -210,7 +209,7 @@ class Trace {
     return {Ended::exit, t, t};
   }
 
-  // A time at which the surface is crossed, within a few of the last intervals; t where there is none.
+  // Returns a time at which the surface is crossed, within a few of the last intervals; t if there is none.
   double crossed_by(double t, double least, double sign) {
     for (const double ahead : {1, 2, 4}) {
       const double end = std::min(t + ahead * least, t_exit_);
@@ -219,7 +218,7 @@ class Trace {
     return t;
   }
 
-  // Until when a segment is proven to be on this side, and from when on not to be, if that is finite.
+  // Until when a segment is proven to be on this side, and from when on not to be, if finite.
   struct Proof {
     double until, sunk;
   };
@@ -237,8 +236,8 @@ class Trace {
     return proof;
   }
 
-  // The crossing between t0, outside, and t1, by secants of which the end that stays is weighed less and less
-  // ("Illinois"), until the value is rounding or doubles end.
+  // The crossing between t0, outside, and t1, by secants that weigh the retained end less and less ("Illinois"), until
+  // the value is rounding error or doubles end.
   double crossing(double t0, double t1) {
     double f0 = value(t0), f1 = value(t1);
     if (f0 <= rounding(t0)) return t0;

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// `sphere-trace` for shaders: balls alone, in floats, where sphere_trace.h has bounds of segments, too. r: what values
-// as computed are off by there: ScarpFunctionRay::rounding where the ray begins, and more with the way.
+// `sphere-trace` for shaders: balls alone, in floats, whereas sphere_trace.h also uses bounds of segments. r is the
+// error of values: ScarpFunctionRay::rounding at the ray's start, growing with the distance.
 //
-//   outside   the next step is the value less r; a hit where that is no more than r or the tolerance, and then a few
-//             steps by the whole value, to the surface as floats have it
-//   inside    likewise with the sign turned, and over the surface by a step of 2 r
+//   outside   the next step is the value minus r; a hit if that is at most r or the tolerance, followed by a few steps
+//   by
+//             the whole value, to the surface as floats resolve it
+//   inside    the same with opposite sign, and across the surface by a step of 2 r
 //   from the surface: a step of r; then the solid counts as 4 r thinner, until the ray is 4 r away from it
 //
-// Guarantee: conservative, rounding counted: no crossing by more than 4 r is passed; a hit is a crossing or a place
-// within 4 r or the tolerance of one. Rays that graze faces or balls take many steps, and may use them up: exhausted,
-// never a hit.
+// Guarantee: conservative, including rounding: it misses no crossing deeper than 4 r; a hit is a crossing or a point
+// within 4 r or the tolerance of one. Rays that graze faces or balls take many steps, and may exceed the limit:
+// exhausted, never a hit.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included; who includes it has defined what shape_distance.glsl.h asks for.
+// Compiles as C++ and GLSL, including GLSL ES 3.0; the including file must define what shape_distance.glsl.h requires.
 #ifndef SCARP_MARCH_SPHERE_TRACE_GLSL_H
 #define SCARP_MARCH_SPHERE_TRACE_GLSL_H
 
@@ -26,22 +27,22 @@ SCARP_GLSL_BEGIN
 struct ScarpSphereTrace {
   float tolerance;  ///< length of the last interval, per unit of distance travelled, >= 0
   int max_steps;    ///< >= 1; more: kScarpFunctionExhausted
-  int run_steps;    ///< after so many more steps the march is interrupted (kScarpFunctionUnderWay), at least 1
-  float growth;     ///< of what values are off by, per metre of the ray
+  int run_steps;    ///< steps per run before the march is interrupted (kScarpFunctionUnderWay), >= 1
+  float growth;     ///< of the error of values, per metre of the ray
 };
 
-// Where a ray is: ScarpFunctionState::phase.
+// State of a ray: ScarpFunctionState::phase.
 const uint kScarpTraceBegins = 0u;
 const uint kScarpTraceInside = 1u;
-const uint kScarpTraceLeaves = 2u;  ///< the surface that it begins on, or that it came out through
+const uint kScarpTraceLeaves = 2u;  ///< leaving the surface that it starts on, or through which it emerged
 const uint kScarpTraceOutside = 3u;
-const uint kScarpTraceCloses = 4u;  ///< has hit, and goes on to the surface as floats have it
-const uint kScarpTraceBegan = 8u;   ///< a bit: it began inside
+const uint kScarpTraceCloses = 4u;  ///< has hit, and closes in on the surface as floats resolve it
+const uint kScarpTraceBegan = 8u;   ///< a bit: it started inside
 
 const int kScarpClosingSteps = 6;
 
-/// What a ray meets first of the shape of `count` instructions, within the tolerance or what values are off by; with
-/// `any` a hit's time means nothing. No crossing deeper than 4 times that is passed.
+/// Closest hit with the shape of `count` instructions, within the tolerance or the error of values; with `any`, the
+/// hit's time is undefined. Misses no crossing deeper than 4 times the error.
 SCARP_FN ScarpFunctionHit scarp_sphere_trace(uint count, ScarpFunctionRay ray, ScarpSphereTrace settings, bool any) {
   ScarpFunctionHit hit = scarp_function_miss();
   float r = ray.rounding + settings.growth * (ray.speed * ray.state.s);
@@ -80,7 +81,7 @@ SCARP_FN ScarpFunctionHit scarp_sphere_trace(uint count, ScarpFunctionRay ray, S
              scarp_two_line(0.0f, ray.origin.y, ray.origin_low.y, ray.direction.y, ray.direction_low.y, s).high,
              scarp_two_line(0.0f, ray.origin.z, ray.origin_low.z, ray.direction.z, ray.direction_low.z, s).high));
     if (phase == kScarpTraceCloses) {
-      // Past where it is the closest it would go away again.
+      // Past the nearest point the ray would recede again.
       if (f >= nearest) break;
       closest = s;
       nearest = f;
@@ -124,7 +125,7 @@ SCARP_FN ScarpFunctionHit scarp_sphere_trace(uint count, ScarpFunctionRay ray, S
       s += max(f, 0.0f) / ray.speed;
       continue;
     }
-    // What the sum may round up.
+    // Minus what the sum may round up.
     s += max(free - 1.1920928955078125e-7f * (s + free), 0.5f * free);
   }
   if (hit.status == kScarpFunctionHit) hit.time = closest;

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
-// `sphere-trace`: from where the ray is nothing of the surface is nearer than the field's value; so it goes on by that.
+// `sphere-trace`: advances by the field's value, the radius of a ball without surface.
 //
-//        o-----------o--------o----o--o-o--.        each step is the radius of a ball that is free of the surface;
-//      (           )(       )(   )              ___ where they get short, because the surface is ahead or beside
-//       `---------'  `-----'  `-'         __---     the ray, segments of the ray are bounded now and then (along() of
-//                                  ___---           the field): free if the field's line less its remainder is positive
+//        o-----------o--------o----o--o-o--.        each step is the radius of a ball without surface; where balls get
+//      (           )(       )(   )              ___ small, because the surface is ahead or beside the ray, segments of
+//       `---------'  `-----'  `-'         __---     the ray are bounded instead (along() of the field): free if the
+//                                  ___---           field's linear model minus its remainder is positive
 //
-// A segment is free, or free up to a point, or known to be under the surface from a point on: a Newton iteration that
+// A segment is free, or free up to a point, or known to be below the surface from a point on: a Newton iteration that
 // cannot overshoot. Where the surface is smooth its remainder is of second order, so that rays which graze a face or a
-// ball take a few bounds instead of a thousand balls. The last interval, no longer than the tolerance, is halved (by
-// secants) until the value is rounding.
+// ball take a few bounds instead of a thousand balls. The last interval, no longer than the tolerance, is refined (by
+// secants) until the value is rounding error.
 //
-// Guarantee: conservative, with rounding counted: no crossing is passed. A hit is a crossing, or a place where the ray
-// cannot be told from one within the tolerance. Used-up steps are exhausted, never a hit. A ray that begins inside is
-// followed out of the solid; unless it hits a surface from outside later it is below. A ray that begins on the surface
-// is outside by definition: it is free as long as it provably does not lose distance, and hits where it begins if it
-// provably loses some; nothing is pushed off by an epsilon. Sources: J. C. Hart, "Sphere tracing", The Visual Computer
-// 12, 1996; for the segments E. Galin et al., "Segment tracing using local Lipschitz bounds", Computer Graphics Forum
+// Guarantee: conservative, including rounding: it misses no crossing. A hit is a crossing, or a point where the ray is
+// indistinguishable from one within the tolerance. Exceeded step limits are exhausted, never a hit. A ray that starts
+// inside is followed out of the solid; it is `below` unless it hits a surface from outside later. A ray that starts on
+// the surface is outside by definition: it is free while it provably does not lose distance, and hits at its start if
+// it provably loses some; there is no epsilon offset. Sources: J. C. Hart, "Sphere tracing", The Visual Computer 12,
+// 1996; for the segments E. Galin et al., "Segment tracing using local Lipschitz bounds", Computer Graphics Forum
 // 39(2), 2020.
 #pragma once
 
@@ -26,11 +26,11 @@
 
 namespace scarp {
 
-/// Closest hit; Hit::cell stays empty. Uses settings.sphere_trace. `stats`, when given, is overwritten: steps are
-/// values looked at, cell_tests bounds of segments; both count as steps for the limit.
+/// Closest hit; Hit::cell stays empty. Uses settings.sphere_trace. Overwrites `stats` unless null: steps are values,
+/// cell_tests bounds of segments; both count towards the step limit.
 Hit march_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSettings& settings = {},
                        MarchStats* stats = nullptr);
-/// Whether that is a hit, without closing in on it.
+/// Any hit; does not refine the crossing.
 bool occluded_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSettings& settings = {});
 
 }  // namespace scarp

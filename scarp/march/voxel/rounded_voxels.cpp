@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// How far a quantised ray may be from itself, in voxels (voxel_ray.h): what is told to be on the surface is that close.
+// Maximum distance of a quantised ray from the original, in voxels (voxel_ray.h): reported surface points are that
+// close.
 const double kOffRay = std::ldexp(1, -17);
 
 bool solid(const VoxelGrid& grid, const ivec3& voxel) { return grid.box().contains(voxel) && grid.solid(voxel); }
@@ -23,8 +24,8 @@ struct InnerBox {
   dvec3 low, high;
 };
 
-// Which parts of a voxel's surface are taken off. An eighth of the voxel, on the high side of the axes whose bits are
-// set, has an inner box of its own.
+// Parts of a voxel's surface that are rounded off. Each eighth of the voxel, on the high side of the axes whose bits
+// are set, has its own inner box.
 class Shape {
  public:
   Shape(const VoxelGrid& grid, const ivec3& voxel, const VoxelRounding& rounding)
@@ -37,7 +38,7 @@ class Shape {
       const auto side = [&](int axis) { return eighth >> axis & 1; };
       std::array<bool, 3> taken_off;
       for (int axis = 0; axis < 3; ++axis) taken_off[axis] = open[axis][side(axis)];
-      // Across an edge that touches another voxel's nothing is taken off, lest rays pass there.
+      // An edge that touches another voxel's stays sharp; otherwise rays would pass there.
       for (int axis = 0; axis < 3 && !rounding.each; ++axis) {
         const int next = (axis + 1) % 3;
         if (!open[axis][side(axis)] || !open[next][side(next)]) continue;
@@ -80,10 +81,10 @@ class Shape {
 
 dvec3 from_inner_box(const InnerBox& box, const dvec3& p) { return p - glm::clamp(p, box.low, box.high); }
 
-// The first t of [begin, end], in the voxel's cube, at which the ray is no farther from the inner box than the radius.
+// The first t of [begin, end], in the voxel's cube, at which the ray is within the radius of the inner box.
 std::optional<double> enter(const Shape& shape, const VoxelRay& ray, double begin, double end) {
   const double square = shape.radius() * shape.radius();
-  // Between the planes of the inner boxes and of the middle the ray is in one eighth, and outside in the same axes.
+  // Between the planes of the inner boxes and of the middle the ray is in one eighth, and outside along the same axes.
   std::array<double, 11> cuts{begin};
   std::size_t count = 1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -117,7 +118,7 @@ std::optional<double> enter(const Shape& shape, const VoxelRay& ray, double begi
   return {};
 }
 
-// Where a ray leaves a voxel, and into which neighbour.
+// Where a ray leaves a voxel, and the neighbour that it enters.
 struct Leaving {
   double t = kInfinity;
   int axis = 0;
@@ -154,7 +155,7 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
                              MarchStats* stats) {
   if (stats) *stats = {};
   VoxelRay rest = ray;
-  std::optional<VoxelFace> came_by;  // into rest.start_voxel
+  std::optional<VoxelFace> came_by;  // face into rest.start_voxel
   const auto go_on_from = [&](const ivec3& voxel) {
     const Leaving out = leaving(voxel, ray);
     const int step = ray.direction[out.axis] > 0 ? 1 : -1;
@@ -191,7 +192,7 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
 dvec3 rounded_normal(const VoxelGrid& grid, const VoxelHit& hit, const dvec3& point, const VoxelRounding& rounding) {
   if (hit.face == VoxelFace::inside) return dvec3(0.0);
   const dvec3 away = from_inner_box(Shape(grid, hit.voxel, rounding).box_at(point), point);
-  // On the part of a face that a neighbour, rounded itself, leaves open.
+  // On the part of a face that a rounded neighbour leaves open.
   if (length(away) < rounding.radius - kOffRay) return dvec3(normal_of(hit.face));
   return normalize(away);
 }

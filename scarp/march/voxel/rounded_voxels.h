@@ -1,41 +1,43 @@
 // SPDX-License-Identifier: MIT
-// Voxels with rounded edges: which point of a solid voxel a ray meets first, when only part of its cube is there.
+// Voxels with rounded edges: the first point where a ray hits a solid voxel whose cube is rounded.
 //
-//   +-----------+      the cube of a voxel, moved in by the radius on each face that has no solid voxel behind it,
-//   |  .-----.  |      and then grown by the radius again, as far as the cube reaches: a ball's way round its edges.
-//   | |       | |      Faces between two solid voxels stay: walls are flat, steps meet, nothing opens between
-//   +-----------+      neighbours, and edges that touch another voxel's stay sharp, so that rays that cubes stop are
-//                      stopped. `each`: every voxel is rounded on all sides, as a heap of dice
+//   +-----------+      the cube of a voxel, inset by the radius on each face that has no solid voxel behind it, then
+//   |  .-----.  |      dilated by the radius, clipped to the cube: a ball rolled along its edges.
+//   | |       | |      Faces between two solid voxels stay: walls are flat, steps meet, no gaps open between
+//   neighbours,
+//   +-----------+      and edges that touch another voxel's stay sharp, so that rays blocked by cubes are blocked.
+//                      `each`: every voxel is rounded on all sides, like a heap of dice
 //
-// Guarantee: the walk from voxel to voxel is that of the march, exact; in a voxel the distance to the inner box is a
-// parabola between the planes of that box, of which the first root is taken: t to some roundings of double, and a ray
-// that grazes an edge by less may pass or hit. A ray that passes a voxel's edge goes on from the neighbour by whose
-// face it leaves (told in double, of equals x before y before z), quantised anew from itself: nothing accumulates.
-// Source: rounded boxes as in I. Quilez, "Distance functions".
+// Guarantee: the traversal from voxel to voxel is that of the march, exact. In a voxel the squared distance to the
+// inner box is a parabola between the planes of that box, and its first root is taken: t is accurate to some roundings
+// of double, and a ray that grazes an edge by less may pass or hit. A ray that passes a voxel's edge continues in the
+// neighbour behind the face by which it leaves (decided in double; ties in the order x, y, z), quantised anew from the
+// original ray: nothing accumulates. Source: rounded boxes as in I. Quilez, "Distance functions".
 #pragma once
 
 #include "scarp/march/voxel/voxel_target.h"
 
 namespace scarp {
 
+/// Settings of rounded voxels.
 struct VoxelRounding {
-  double radius = 0;  ///< of edges and corners, in sides of a voxel: 0 (cubes) to 0.5 (a lone voxel is a ball)
-  bool each = false;  ///< every voxel on its own
+  double radius = 0;  ///< of edges and corners, in voxel sides: 0 (cubes) to 0.5 (a single voxel is a ball)
+  bool each = false;  ///< rounds every voxel on its own
 
   explicit operator bool() const { return radius > 0; }
 };
 
-/// Throws Error naming the setting out of its range.
+/// Throws Error naming the setting out of range.
 void validate(const VoxelRounding& rounding);
 
-/// The first rounded voxel, by a march that finds the first solid one. `from`: the voxel on whose surface the ray
-/// begins and which it leaves, or null. The face is the one that the surface there looks most along; `inside` for a ray
-/// that begins in the rounded voxel. `stats`, when given, is overwritten.
+/// Returns the first rounded voxel, using a march that finds the first solid one. `from`: the voxel on whose surface
+/// the ray starts and which it leaves, or null. The face is the one nearest to the surface normal; `inside` for a ray
+/// that starts in the rounded voxel. Overwrites `stats` unless null.
 VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const VoxelRay& ray,
                              const VoxelDirection& direction, const VoxelRounding& rounding, const ivec3* from,
                              MarchStats* stats);
 
-/// Outward unit normal at a point of the surface, in the grid's space; zero for `inside`.
+/// Returns the outward unit normal at a surface point, in the grid's space; zero for `inside`.
 dvec3 rounded_normal(const VoxelGrid& grid, const VoxelHit& hit, const dvec3& point, const VoxelRounding& rounding);
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// 4 x 4 x 4 bits of a brick, or of a sector, as `voxel-bricks` asks for them. bit = x + 4 y + 16 z.
+// 4 x 4 x 4 bits of a brick or a sector, for `voxel-bricks`. bit = x + 4 y + 16 z.
 #pragma once
 
 #include <array>
@@ -7,12 +7,12 @@
 
 namespace scarp {
 
-// A block of 2 x 2 x 2 begins at a bit with x, y and z even.
+// A block of 2 x 2 x 2 starts at a bit with x, y and z even.
 constexpr int kEven = 0b101010;
 constexpr std::uint64_t kPair = 0x00330033;
 
-// kAhead[octant][bit]: the voxels of a brick that a ray can still reach from one of them; bit i of an octant is set
-// where the ray goes down axis i.
+// kAhead[octant][bit]: the voxels of a brick that a ray can still reach from one of them; bit i of an octant is set if
+// the ray travels in the negative direction of axis i.
 using Ahead = std::array<std::array<std::uint64_t, 64>, 8>;
 constexpr Ahead make_ahead() {
   Ahead ahead{};

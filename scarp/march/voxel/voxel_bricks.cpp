@@ -13,7 +13,7 @@ namespace {
 
 bool pair_empty(std::uint64_t mask, int bit) { return (mask >> (bit & kEven) & kPair) == 0; }
 
-// The aligned block of 2^level voxels a side around a voxel.
+// The aligned block with sides of 2^level voxels around a voxel.
 VoxelBox block(const ivec3& voxel, int level) {
   const ivec3 low = (voxel >> level) << level;
   return {low, low + (1 << level)};
@@ -34,7 +34,7 @@ auto brick_by_brick(const VoxelTarget& target, const QuantisedRay& ray) {
     }
     const int brick_bit = VoxelGrid::bit_of(brick);
     const std::uint64_t sector = bricks.sector(brick >> 2) & ahead[brick_bit];
-    // The brick's own bit may be set, by what lies behind the ray.
+    // The brick's own bit may be set by voxels behind the ray.
     if ((sector & ~(std::uint64_t{1} << brick_bit)) == 0) return walk.leave(block(voxel, 4));
     return walk.leave(block(voxel, pair_empty(sector, brick_bit) ? 3 : 2));
   };

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// `voxel-bricks`: out of the largest empty block of a hierarchy of bit masks.
+// `voxel-bricks`: skips the largest empty block in a hierarchy of bit masks.
 //
 //   sector  16 x 16 x 16 voxels   a bit per brick
 //   brick    4 x  4 x  4 voxels   a bit per voxel, those of the grid itself
-//   and in each of both, 2 x 2 x 2 bits that are all 0 make one block of twice the size
+//   and in both, 2 x 2 x 2 bits that are all 0 form one block of twice the size
 //
-// In a brick only what lies ahead counts: a brick whose solid voxels are all behind the ray's octant is left at once.
+// In a brick only voxels ahead count: a brick whose solid voxels are all behind the ray's octant is left at once.
 //
-// Guarantee: exact. Needs BrickMasks, 1/64 of the grid's own. Sources: the 64-trees of dubiousconst282, "A guide to
+// Guarantee: exact. Requires BrickMasks, 1/64 of the grid's own. Sources: the 64-trees of dubiousconst282, "A guide to
 // fast voxel ray tracing using sparse 64-trees"; brick maps after J. van Wingerden, 2015. Cost: a step per block.
 #pragma once
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// `voxel-cubes`: out of the largest empty cube around each voxel.
+// `voxel-cubes`: skips the largest empty cube around each voxel.
 //
 //   +---+---+---+---+---+
-//   |   |   |   |   |###|     D = 2: the nearest solid voxel is two away in the axis where it is farthest;
-//   +---+---+---+---+---+     the cube of radius D - 1 is empty, and the ray goes to where it leaves it
+//   |   |   |   |   |###|     D = 2: the nearest solid voxel is at Chebyshev distance 2; the cube of radius D - 1
+//   +---+---+---+---+---+     is empty, and the ray goes to where it leaves it
 //   |   | v | ,-|-x-|---|->
 //   +---+---+---+---+---+
 //
-// Guarantee: exact. Needs EmptyCubes. Source: cube-assisted raymarching of C. Leak, "Raymarching voxel rendering".
-// Other than there, the ray goes to the very border of the cube, not D - 1 along its length. Cost: a step per cube.
+// Guarantee: exact. Requires EmptyCubes. Source: cube-assisted raymarching of C. Leak, "Raymarching voxel rendering".
+// Unlike there, the ray goes to the border of the cube, not D - 1 along its length. Cost: a step per cube.
 #pragma once
 
 #include "scarp/march/voxel/voxel_target.h"

@@ -20,13 +20,12 @@ struct Event {
   }
 };
 
-// What keeps the ray in and out of the voxels that some axes have left. No event: it is there from the beginning, or
-// for good.
+// Entry into and exit from the voxels left by some axes. No event: inside from the start, or forever.
 struct Visit {
   std::optional<Event> in, out;
 };
 
-// Cuts the visit to where the ray is in the voxels at that place along the axis; false when nothing is left.
+// Restricts the visit to the voxels at that position along the axis; returns false if nothing is left.
 bool cut(Visit& visit, const QuantisedRay& ray, int axis, int place) {
   const std::int64_t planes = std::int64_t{place - ray.voxel[axis]} * ray.direction.step[axis];
   const std::int64_t speed = ray.direction.speed[axis], first = ray.to_plane[axis], side = 1 << 20;

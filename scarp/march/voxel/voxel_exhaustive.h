@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// `voxel-exhaustive`: solid voxels one by one, in rationals. The judge of the voxel marches; it shares no code with
-// them, only the quantised ray, which is the question itself.
+// `voxel-exhaustive`: tests solid voxels one by one, in rationals. The reference for the voxel marches; it shares no
+// code with them, only the quantised ray, which is the query itself.
 //
-// A voxel is visited when the ray has come into it in all three axes before it leaves it in one:
+// A voxel is visited if the ray enters it along all three axes before it leaves it along one:
 //
-//   max over axes of (s, axis) of the plane into it  <  min over axes of (s, axis) of the plane out of it
+//   max over axes of (s, axis) of the entry plane  <  min over axes of (s, axis) of the exit plane
 //
-// compared as pairs: first s = distance / speed, then the axis. The maximum only grows and the minimum only falls with
-// each axis, so a layer that z rules out is left as a whole, and so is a row that z and y rule out. Guarantee: exact.
-// Cost: the rows of the box, and the voxels of those that are left.
+// compared as pairs: first s = distance / speed, then the axis. Each axis only raises the maximum and lowers the
+// minimum, so a layer excluded by z is skipped as a whole, and so is a row excluded by z and y. Guarantee: exact. Cost:
+// the rows of the box, and the voxels of those that remain.
 #pragma once
 
 #include "scarp/march/voxel/voxel_target.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The loop of all voxel marches; they differ in how far they go at once.
+// The loop of all voxel marches, which differ in how far they advance at once.
 #pragma once
 
 #include "scarp/march/voxel/voxel_walk.h"
 
 namespace scarp {
 
-/// `advance(walk, voxel, solid)` sets `solid`, or goes on and tells whether it stayed in the box. `found(walk)` makes
-/// the answer for the solid voxel that the walk stands in.
+/// `advance(walk, voxel, solid)` sets `solid`, or advances and returns whether the ray is still in the box.
+/// `found(walk)` returns the answer for the solid voxel at the current position.
 template <class Advance, class Found, class Answer>
 Answer walk_voxels(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, const Advance& advance,
                    const Found& found, Answer missed) {

@@ -10,7 +10,7 @@ namespace {
 auto octant_by_octant(const VoxelTarget& target, const QuantisedRay& ray) {
   const std::array<int, 3>& step = ray.direction.step;
   const ivec3 back(step[0] < 0, step[1] < 0, step[2] < 0);
-  // A cube of side f is v .. v + f where the ray goes up, and v - f + 1 .. v + 1 where it goes down.
+  // A cube of side f is v .. v + f if the ray travels in the positive direction, otherwise v - f + 1 .. v + 1.
   return [&octants = *target.octants, back, octant = back.x | back.y << 1 | back.z << 2](
              VoxelWalk& walk, const ivec3& voxel, bool& solid) {
     const int side = octants.side(voxel, octant);

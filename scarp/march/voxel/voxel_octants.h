@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// `voxel-octants`: out of the largest empty cube that lies ahead of each voxel.
+// `voxel-octants`: skips the largest empty cube ahead of each voxel.
 //
 //   +---+---+---+---+
-//   |   |   |   |###|     eight cubes per voxel, one for each octant that a direction can point into, each with the
-//   +---+---+---+---+     voxel in the corner that rays come from: what lies behind the ray does not count
+//   |   |   |   |###|     eight cubes per voxel, one per octant of directions, each with the voxel in the corner where
+//   +---+---+---+---+     rays enter: voxels behind the ray do not count
 //   | v | ,-|---|-x-|->
 //   +---+---+---+---+
 //
-// Guarantee: exact. Needs OctantCubes. Source: L. Deakin, M. Knackstedt, "Accelerated volume rendering with Chebyshev
-// distance maps", SIGGRAPH Asia 2019, which keeps them for blocks. Cost: a step per cube, a fifth fewer than
+// Guarantee: exact. Requires OctantCubes. Source: L. Deakin, M. Knackstedt, "Accelerated volume rendering with
+// Chebyshev distance maps", SIGGRAPH Asia 2019, which stores them for blocks. Cost: a step per cube, a fifth fewer than
 // voxel-cubes.
 #pragma once
 

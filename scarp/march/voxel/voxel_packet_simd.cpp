@@ -11,13 +11,12 @@
 #include "scarp/march/voxel/voxel_ahead.h"
 #include "scarp/march/voxel/voxel_packet.h"
 
-// This file is compiled once for each instruction set.
-// Vectors of a length that the compiler does not know cannot be members.
+// Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/march/voxel/voxel_packet_simd.cpp"
 #include "hwy/foreach_target.h"
-// foreach_target.h comes first.
+// foreach_target.h must come first.
 #include "hwy/highway.h"
 #include "scarp/march/ray_numbers_simd.h"
 
@@ -40,11 +39,11 @@ using MD = hn::Mask<decltype(dd)>;
 using MI = hn::Mask<decltype(di)>;
 
 constexpr std::size_t kVectors = VoxelPacket::kRays / N;
-constexpr std::size_t kSaved = 4;  // vectors: below that moving rays costs more than it saves
+constexpr std::size_t kSaved = 4;  // vectors: below that, compaction costs more than it saves
 // 2^52 as a double: its last bits count ones.
 constexpr double kOnes = 0x1p52;
 
-// Whole numbers in 64 bits whose upper halves are 0.
+// Integers in 64 bits whose upper halves are 0.
 #if HWY_TARGET == HWY_SCALAR
 HWY_INLINE VI product(VI a, VI b) { return hn::Set(di, hn::GetLane(a) * hn::GetLane(b)); }
 HWY_INLINE VI lesser(VI a, VI b) { return hn::Min(a, b); }
@@ -59,7 +58,7 @@ HWY_INLINE VD as_double(VI a) {
   const VI ones = hn::BitCast(di, hn::Set(dd, kOnes));
   return hn::Sub(hn::BitCast(dd, hn::Or(a, ones)), hn::Set(dd, kOnes));
 }
-// The nearest whole number, 0 <= a < 2^51.
+// The nearest integer, 0 <= a < 2^51.
 HWY_INLINE VI nearest(VD a) {
   return hn::Xor(hn::BitCast(di, hn::Add(a, hn::Set(dd, kOnes))), hn::BitCast(di, hn::Set(dd, kOnes)));
 }
@@ -76,7 +75,7 @@ HWY_INLINE std::uint64_t bits_of(MI mask) {
   return bits[0];
 }
 
-// grid_from_world * v, as glm has it.
+// grid_from_world * v, in GLM's order of operations.
 HWY_INLINE void transform(const glm::dmat3& m, const VD (&v)[3], VD (&to)[3]) {
   for (int i = 0; i < 3; ++i) {
     to[i] = hn::Add(hn::Add(hn::Mul(hn::Set(dd, m[0][i]), v[0]), hn::Mul(hn::Set(dd, m[1][i]), v[1])),
@@ -84,8 +83,8 @@ HWY_INLINE void transform(const glm::dmat3& m, const VD (&v)[3], VD (&to)[3]) {
   }
 }
 
-// What the marches look at: whether voxels are solid, and else how many planes may be crossed along each axis. `at` are
-// the voxels, mirrored where rays go down.
+// Result of a lookup: whether voxels are solid, and otherwise how many planes may be crossed along each axis. `at` are
+// the voxels, mirrored along negative directions.
 struct Seen {
   MI solid;
   VI planes[3];
@@ -107,7 +106,7 @@ HWY_INLINE VI gather_bytes(const std::uint8_t* bytes, VI offset) {
   return hn::And(hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(bytes), offset), hn::Set(di, 255));
 }
 
-// One plane after the other.
+// One plane at a time.
 struct PlanesLook {
   static constexpr bool kSingle = true;
   const VoxelGrid& grid;
@@ -184,7 +183,7 @@ struct BricksLook {
       const MI all = hn::Eq(hn::AndNot(own, bricks_of), zero);
       last = hn::IfThenElse(clear, hn::IfThenElse(all, hn::Set(di, 15), small), last);
     }
-    // From a voxel, counted in the ray's way, to the end of its block.
+    // From a voxel, counted along the ray, to the end of its block.
     const VI side = hn::Add(last, one);
     return {solid,
             {hn::Sub(side, hn::And(at[0], last)), hn::Sub(side, hn::And(at[1], last)),
@@ -192,23 +191,22 @@ struct BricksLook {
   }
 };
 
-// Rays on their way through one box, in lanes; after each compaction those that are done are gone.
+// Rays in one box, in lanes; each compaction removes finished ones.
 struct Walk {
   using Numbers = VoxelPacket::Lanes<std::int64_t>;
-  // at: the voxel, mirrored where the ray goes down; end: the first one beyond the box.
+  // at: the voxel, mirrored along negative directions; end: the first one beyond the box.
   alignas(64) Numbers next[3], at[3], end[3], speed[3], down[3];
-  // crossed: the axis whose plane was crossed last; before the first step kEntered and that by which it came in.
+  // crossed: the axis of the last plane crossed; before the first step, kEntered and the axis of entry.
   alignas(64) Numbers crossed, ray;
   alignas(64) VoxelPacket::Lanes<double> slowness[3];
   std::size_t lanes = 0;               // in use
   std::uint64_t alive[kVectors] = {};  // lanes of each vector
-  std::uint64_t solid[kVectors] = {};  // that have come to a solid voxel and wait to be told: many cost as much as one
+  std::uint64_t solid[kVectors] = {};  // at a solid voxel, waiting to be reported: many cost as much as one
 
   static constexpr std::int64_t kEntered = 8, kInside = 7;
 };
 
-// Lanes of a vector whose bits are set, in order; hn::Compress() of Highway 1.0.3 copies its table to the stack each
-// time.
+// Set lanes of a vector, in order; hn::Compress() of Highway 1.0.3 copies its table to the stack each time.
 constexpr auto make_orders() {
   std::array<std::array<std::int64_t, N>, std::size_t{1} << N> orders{};
   for (std::size_t bits = 0; bits < orders.size(); ++bits) {
@@ -221,7 +219,7 @@ constexpr auto make_orders() {
 }
 alignas(64) constexpr auto kOrders = make_orders();
 
-// Writes chosen lanes of one vector after another.
+// Writes selected lanes of one vector after another.
 class Chosen {
  public:
   explicit HWY_INLINE Chosen(std::uint64_t bits) : order_(hn::SetTableIndices(di, kOrders[bits].data())) {}
@@ -234,15 +232,14 @@ class Chosen {
   decltype(hn::SetTableIndices(di, kOrders[0].data())) order_;
 };
 
-// 1 / speed, to 2^-23 of itself: enough to tell quotients of up to 2,048 to less than a half, and sooner done than in
+// 1 / speed, to a relative 2^-23: enough to separate quotients of up to 2,048 by less than a half, and faster than in
 // double.
 HWY_INLINE VD slowness_of(VI speed) {
   const auto single = hn::DemoteTo(df_part, as_double(speed));
   return hn::PromoteTo(dd, hn::Div(hn::Set(df_part, 1.0f), single));
 }
 
-// quantise() of voxel_ray.cpp, the same operations in the same order. Rays that come into the box are put on their way;
-// which they are.
+// quantise() of voxel_ray.cpp, the same operations in the same order. Starts rays that enter the box, and returns them.
 HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& packet, std::size_t o, MI rays,
                     Walk& walk) {
   const VD zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
@@ -349,8 +346,8 @@ HWY_NOINLINE void finish_all(VoxelPacket& packet, Walk& walk) {
   }
 }
 
-// VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; those that are still on their way. The
-// others stay as they are.
+// VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; returns those still in the box. The others
+// do not change.
 template <class Look>
 HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::size_t o, MI alive) {
   const VI one = hn::Set(di, 1), zero = hn::Zero(di);
@@ -394,7 +391,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::si
     slowness = hn::IfThenElse(hn::RebindMask(dd, z_first), hn::Load(dd, walk.slowness[2] + o), slowness);
     for (int i = 0; i < 3; ++i) {
       VI ahead = hn::Sub(product(distance, speed[i]), product(next[i], pace));
-      // Of what is crossed at once with the last plane a higher axis comes after it.
+      // At the same s as the last plane, a higher axis comes after it.
       if (i > 0) ahead = hn::IfThenElse(hn::Lt(axis, hn::Set(di, i)), hn::Sub(ahead, one), ahead);
       const VI a = hn::BitCast(di, hn::ShiftRight<kPlaceBits>(hn::BitCast(du, ahead)));
       // The nearest quotient is the one rounded down, or one more.
@@ -415,7 +412,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::si
   return inside;
 }
 
-// Rays that are still on their way, close together.
+// Moves the rays that are still in the box together.
 HWY_NOINLINE void compact(Walk& walk) {
   std::size_t to = 0;
   for (std::size_t o = 0; o < walk.lanes; o += N) {
@@ -437,7 +434,7 @@ HWY_NOINLINE void compact(Walk& walk) {
   walk.lanes = to;
 }
 
-// Sets which lanes are in use: all of the first ones.
+// Marks the first lanes as in use.
 HWY_INLINE void wake(Walk& walk) {
   for (std::size_t o = 0; o < walk.lanes; o += N) {
     const std::size_t here = walk.lanes - o < N ? walk.lanes - o : N;
@@ -464,7 +461,7 @@ std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPac
       alive = bits_of(advance(look, packet, walk, o, lanes_of(alive)));
       live += static_cast<std::size_t>(hn::CountTrue(di, lanes_of(alive)));
     }
-    // Where that saves vectors.
+    // Only if that saves vectors.
     if (live > 0 && live + kSaved * N <= walk.lanes) {
       finish_all(packet, walk);
       compact(walk);

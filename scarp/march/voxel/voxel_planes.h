@@ -2,14 +2,14 @@
 // `voxel-planes`: from plane to plane, voxel by voxel.
 //
 //   +---+---+---+---+
-//   |   |   | ,-x---|---   x: a plane is crossed, the voxel behind it is looked at
+//   |   |   | ,-x---|---   x: the ray crosses a plane, and the voxel behind it is tested
 //   +---+-,-x---+---+
 //   | ,-x   |   |   |
 //   x---+---+---+---+
 //
-// Guarantee: exact. Needs nothing built. Source: J. Amanatides, A. Woo, "A fast voxel traversal algorithm for ray
-// tracing", Eurographics 1987; the plane marching of C. Leak, "Raymarching voxel rendering". Other than there, t
-// decides only which plane is next, by a comparison of whole numbers: there is no epsilon. Cost: a step per plane.
+// Guarantee: exact. Requires no accelerator. Source: J. Amanatides, A. Woo, "A fast voxel traversal algorithm for ray
+// tracing", Eurographics 1987; the plane marching of C. Leak, "Raymarching voxel rendering". Unlike there, t only
+// orders the planes, by an integer comparison: there is no epsilon. Cost: a step per plane.
 #pragma once
 
 #include "scarp/march/voxel/voxel_target.h"

@@ -9,7 +9,7 @@ namespace {
 
 VoxelFace face_of(int axis, int step) { return static_cast<VoxelFace>(2 * axis + (step < 0 ? 1 : 0)); }
 
-// The voxel of a place along one axis, 0 <= place. Places are not negative, so conversions round down.
+// The voxel of a position along one axis. Positions are not negative, so conversion rounds down.
 int voxel_at(double place, int step) {
   const int voxel = static_cast<int>(place);
   return step < 0 && voxel == place ? voxel - 1 : voxel;
@@ -26,11 +26,11 @@ ivec3 normal_of(VoxelFace face) {
 }
 
 VoxelDirection::VoxelDirection(const dvec3& direction) : given(direction), inverse(1.0 / direction) {
-  // Divisions are what this takes its time for: that by the longest component has been done.
+  // Divisions dominate the cost here: that by the longest component has been done.
   const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
   auto& [speed, slowness, step, t_per_s] = quantised;
   for (int axis = 0; axis < 3; ++axis) {
-    // Of too short a direction it is no number.
+    // For a direction that is too short it is not finite.
     const double share = std::abs(direction[axis]) * per_longest;
     speed[axis] = share <= 1 ? static_cast<std::int64_t>(share * (1 << kDirectionBits) + 0.5) : 0;
     slowness[axis] = 1 / static_cast<double>(speed[axis]);
@@ -42,7 +42,7 @@ VoxelDirection::VoxelDirection(const dvec3& direction) : given(direction), inver
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& ray_direction, const VoxelBox& box) {
   const QuantisedDirection& direction = ray_direction.quantised;
   if (!std::isfinite(direction.t_per_s)) return {};
-  // Clip to the box. Of planes that are crossed at once the last one, z, is that by which the ray comes in.
+  // Clip to the box. Among planes crossed at the same s the last one, z, is the entry face.
   double t = ray.t_min, t_out = ray.t_max;
   int entered = -1;
   for (int axis = 0; axis < 3; ++axis) {
@@ -86,7 +86,7 @@ std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& 
       voxel = (*ray.start_voxel)[axis];
     } else {
       voxel = voxel_at(place, step);
-      // On the border and on the way out.
+      // On the border and leaving.
       if (voxel < low || voxel >= high) return {};
     }
     const double distance = step > 0 ? voxel + 1 - place : place - voxel;

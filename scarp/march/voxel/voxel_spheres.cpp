@@ -9,8 +9,8 @@
 namespace scarp {
 namespace {
 
-// How far a ray goes along its longest axis, in 2^-20 voxel, while it travels one voxel: rounded down, so that it never
-// travels more than it may.
+// Travel along the ray's longest axis, in 2^-20 voxel, per voxel of distance: rounded down, so that it never travels
+// too far.
 std::int64_t travel_per_voxel(const QuantisedDirection& direction) {
   double square = 0;
   for (const std::int64_t speed : direction.speed) square += static_cast<double>(speed) * static_cast<double>(speed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What voxel marches take, and their signatures.
+// Targets and signatures of voxel marches.
 #pragma once
 
 #include "scarp/field/voxel_grid.h"
@@ -12,10 +12,10 @@ class EmptyCubes;
 class OctantCubes;
 class BrickMasks;
 
-/// What is marched. Accelerators may be null for marches that do not need them.
+/// A grid with its accelerators. Accelerators may be null for marches that do not need them.
 struct VoxelTarget {
   const VoxelGrid* grid = nullptr;
-  /// The part of the grid that rays are followed in: grid->box(), or, with nothing lost, grid->bounds().
+  /// Part of the grid in which rays are followed: grid->box(), or, equivalently, grid->bounds().
   VoxelBox box;
   const EmptySpheres* spheres = nullptr;
   const EmptyCubes* cubes = nullptr;
@@ -23,10 +23,10 @@ struct VoxelTarget {
   const BrickMasks* bricks = nullptr;
 };
 
-/// The first solid voxel of the box on a ray that was quantised for it. `stats`, when given, is overwritten.
+/// Returns the first solid voxel of the box on a ray quantised for it. Overwrites `stats` unless null.
 using VoxelMarch = VoxelHit (*)(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats);
 
-/// Whether there is one within the ray's range.
+/// Returns whether there is one within the ray's range.
 using VoxelOcclusion = bool (*)(const VoxelTarget& target, const QuantisedRay& ray);
 
 }  // namespace scarp

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The way of a quantised ray from voxel to voxel, or over many at once, in whole numbers: what the voxel marches share.
+// The path of a quantised ray from voxel to voxel, or over many at once, in integers: shared by the voxel marches.
 //
 //   along each axis the ray crosses planes at the distances  next, next + 2^20, next + 2 * 2^20, ...
-//   which stand for                                          s = distance / speed
+//   which correspond to                                      s = distance / speed
 //
-// All planes of all axes, in the order of s and then of the axis, are the ray's events. A position is a number of
-// events that have happened; a voxel is what follows from it. A skip finds the first event that leaves a box, and
-// counts for the other axes how many come before it. So the position after a skip is the one that single steps would
-// have reached.
+// All planes of all axes, in the order of s and then of the axis, are the ray's events. A position is a number of past
+// events, and determines the voxel. A skip finds the first event that leaves a box, and counts the events of the other
+// axes before it. The position after a skip thus equals that of single steps.
 #pragma once
 
 #include <algorithm>
@@ -30,14 +29,14 @@ class VoxelWalk {
 
   const ivec3& voxel() const { return voxel_; }
 
-  /// Crosses the next plane. False when that leaves the box.
+  /// Crosses the next plane. Returns false if that leaves the box.
   bool step() {
     cross(first(next_));
     return in_box();
   }
 
-  /// Crosses planes until one of them leaves `part`, a box around the voxel. False when that leaves the box of the
-  /// walk, beyond which `part` may reach.
+  /// Crosses planes until one of them leaves `part`, a box around the voxel. Returns false if that leaves the box of
+  /// the walk; `part` may extend beyond it.
   bool leave(const VoxelBox& part) {
     std::array<std::int64_t, 3> out;
     for (int i = 0; i < 3; ++i) {
@@ -48,8 +47,8 @@ class VoxelWalk {
     const int axis = first(out);
     const std::int64_t distance = out[axis], speed = speed_[axis];
     const double slowness = ray_.direction.slowness[axis];
-    // Along each axis all planes with next + k 2^20 over its speed no later than distance over speed; those of a higher
-    // axis that would be crossed at once with the last one are crossed after it.
+    // For each axis, all planes with next + k 2^20 over its speed no later than distance over speed; planes of a higher
+    // axis at the same s as the last one are crossed after it.
     for (int i = 0; i < 3; ++i) {
       const std::int64_t ahead = distance * speed_[i] - next_[i] * speed - (i > axis ? 1 : 0);
       const std::int64_t planes = quotient(ahead >> kPlaceBits, speed, slowness) + 1;
@@ -59,8 +58,7 @@ class VoxelWalk {
     return in_box();
   }
 
-  /// Crosses the next plane, and then all that the ray reaches before it has gone `voxels` further. False when that
-  /// leaves the box.
+  /// Crosses the next plane, then all planes within `voxels` further travel. Returns false if that leaves the box.
   bool step_and_travel(std::int64_t voxels, std::int64_t travel_per_voxel) {
     const int axis = first(next_);
     const std::int64_t distance = next_[axis];
@@ -81,7 +79,7 @@ class VoxelWalk {
     return inside;
   }
 
-  /// The hit in the voxel it stands in.
+  /// Returns the hit in the current voxel.
   VoxelHit hit(const VoxelGrid& grid) const {
     VoxelHit hit;
     hit.t = t();
@@ -95,7 +93,7 @@ class VoxelWalk {
   bool in_range() const { return t() <= ray_.t_max; }
 
  private:
-  // The axis whose distance comes first. Where speed is 0 the distance is no less than 2^32, and comes last.
+  // Axis of the smallest distance. If speed is 0 the distance is at least 2^32, and comes last.
   int first(const std::array<std::int64_t, 3>& distance) const {
     const bool y_first = distance[1] * speed_[0] < distance[0] * speed_[1];
     const int axis = y_first ? 1 : 0;
