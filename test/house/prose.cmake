@@ -5,7 +5,8 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(documents README.md CHANGELOG.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md)
-set(header_folders)  # folders whose *.h are checked, subfolders included, for example scarp/vk
+# folders whose *.h are checked, subfolders included, for example scarp/vk
+set(header_folders scarp/accel scarp/base scarp/field scarp/march/shape scarp/march/voxel scarp/output scarp/vk)
 set(help_calls)      # calls of the program whose output is checked, for example "render --help"
 
 # PATTERN => remedy. < is the start of a sentence, > the end of a paragraph or a table cell, @ a word boundary.

@@ -11,7 +11,7 @@
 
 namespace scarp {
 
-/// What a voxel march needs of VoxelTarget besides the grid.
+/// The member of VoxelTarget that a voxel march requires besides the grid.
 enum class VoxelAccelerator { none, spheres, cubes, octants, bricks };
 
 /// A row. `cpu` and `occluded` are not null: a technique without an any-hit query of its own has one made of `cpu`.
