@@ -18,7 +18,7 @@
 #include "scarp/source/procedural_dem.h"
 #ifdef SCARP_BENCH_VULKAN
 #include "scarp/render/frame/terrain_frame_vk.h"
-#include "scarp/scene/terrain_scene_vk.h"
+#include "scarp/scene/scene_vk.h"
 #endif
 
 namespace scarp::bench {
@@ -80,7 +80,7 @@ struct Sighting {
   double t;
 };
 
-Sighting exact(const TerrainScene& scene, const Water* water, Ray ray) {
+Sighting exact(const Scene& scene, const Water* water, Ray ray) {
   std::optional<Water::Meeting> meeting;
   if (water) meeting = water->meets(ray);
   if (meeting) ray.t_max = meeting->t;
@@ -106,7 +106,7 @@ PictureSettings settings_of(const HeightField& field, const FramesOptions& optio
   settings.width = options.width;
   settings.height = options.height;
   settings.aa = 1;
-  settings.shadows = settings.plinth = false;
+  settings.shadows = false;
   settings.comanche.scale = 1;
   settings.comanche.steps = options.steps * way.steps;
   settings.comanche.interpolate = way.interpolate;
@@ -124,21 +124,20 @@ PictureSettings settings_of(const HeightField& field, const FramesOptions& optio
 // Who makes the frames: the CPU, or a device.
 struct Maker {
   std::string name;
-  TerrainScene max_mip, fixed;
+  Scene max_mip, fixed;
   bool on_device = false;
 
-  const TerrainScene& scene(const Way& way) const { return way.march == std::string("max-mip") ? max_mip : fixed; }
+  const Scene& scene(const Way& way) const { return way.march == std::string("max-mip") ? max_mip : fixed; }
 };
 
 std::vector<Maker> makers(const HeightField& field, const FramesOptions& options) {
-  const HeightMarchEntry &max_mip = find_height_march("max-mip"), &fixed = find_height_march("fixed-step");
+  const Scene max_mip(scene_heights(field)), fixed(scene_heights(field, find_height_march("fixed-step")));
   std::vector<Maker> all;
-  all.push_back({"cpu", TerrainScene(field, max_mip), TerrainScene(field, fixed)});
+  all.push_back({"cpu", max_mip, fixed});
   if (options.device.empty()) return all;
 #ifdef SCARP_BENCH_VULKAN
   const Device device({.choice = options.device});
-  all.push_back({device.description().name, terrain_scene_on(device, field, max_mip),
-                 terrain_scene_on(device, field, fixed), true});
+  all.push_back({device.description().name, scene_on(device, max_mip), scene_on(device, fixed), true});
   return all;
 #else
   throw Error("--device: this program was built without Vulkan");
@@ -152,7 +151,7 @@ std::optional<double> device_ms(const Maker& maker, [[maybe_unused]] const Way& 
   if (!maker.on_device) return {};
 #ifdef SCARP_BENCH_VULKAN
   FrameReport report;
-  render_whole_frame(maker.scene(way), camera, 0, settings, {}, &report);
+  render_whole_frame(maker.scene(way), camera, settings, {}, &report);
   if (report.device_s) return 1000 * *report.device_s;
 #endif
   return {};
@@ -166,7 +165,7 @@ std::vector<Sighting> sightings_of(const Maker& maker, const Way& way, const Cam
 #ifdef SCARP_BENCH_VULKAN
   if (maker.on_device) {
     FrameReport report{.tells_sightings = true};
-    render_whole_frame(maker.scene(way), camera, 0, settings, {}, &report);
+    render_whole_frame(maker.scene(way), camera, settings, {}, &report);
     for (std::size_t i = 0; i < found.size(); ++i) {
       const FrameSighting& sighting = report.sightings[i];
       if (sighting.kind == FrameSighting::Kind::nothing) continue;
@@ -175,7 +174,7 @@ std::vector<Sighting> sightings_of(const Maker& maker, const Way& way, const Cam
     return found;
   }
 #endif
-  const StepMarch march(maker.fixed.field(), settings.comanche, camera.reach(), camera.forward());
+  const StepMarch march(*maker.fixed.only_heights(), settings.comanche, camera.reach(), camera.forward());
   parallel_for(pixels, 256, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < end; ++i) {
       if (i % judge_every != 0) continue;
@@ -189,7 +188,7 @@ std::vector<Sighting> sightings_of(const Maker& maker, const Way& way, const Cam
 }
 
 // What is there, of the pixels that are judged.
-std::vector<Sighting> truth_of(const TerrainScene& oracle, const Camera& camera, const FramesOptions& options,
+std::vector<Sighting> truth_of(const Scene& oracle, const Camera& camera, const FramesOptions& options,
                                const Water* water) {
   const std::int64_t pixels = std::int64_t{options.width} * options.height;
   std::vector<Sighting> found(static_cast<std::size_t>(pixels));
@@ -217,7 +216,7 @@ void run_frames(const FramesOptions& options, const ReportOptions& report) {
   const double level = field.min_height() + 0.25 * (field.max_height() - field.min_height());
   const std::vector<Camera> cameras = flight(field, options);
   const std::vector<Maker> all = makers(field, options);
-  const TerrainScene oracle(field, find_height_march("exhaustive"));
+  const Scene oracle(scene_heights(field, find_height_march("exhaustive")));
   constexpr std::size_t kAirCount = std::size(kAirs), kOfMaker = std::size(kWays) * kAirCount;
 
   std::vector<FrameTimes> timings(all.size() * kOfMaker);
@@ -227,7 +226,7 @@ void run_frames(const FramesOptions& options, const ReportOptions& report) {
       const Way& way = kWays[i % kOfMaker / kAirCount];
       const PictureSettings settings = settings_of(field, options, way, kAirs[i % kAirCount], level);
       const Stopwatch watch;
-      for (const Camera& camera : cameras) render_picture(maker.scene(way), camera, 0, settings);
+      for (const Camera& camera : cameras) render_picture(maker.scene(way), camera, settings);
       const double frames = static_cast<double>(cameras.size());
       const double wall_ms = 1000 * watch.wall_s() / frames, cpu_ms = 1000 * watch.cpu_s() / frames;
       if (pass == 0) continue;

@@ -37,7 +37,7 @@ VoxelEngine NanovdbPeer::engine(const char* mode, float push) const {
   VoxelEngine engine;
   engine.name = "nanovdb-hdda", engine.mode = mode, engine.box = "bounds";
   engine.mib = static_cast<double>(tree_->handle.size()) / (1 << 20);
-  engine.trace = [&handle = tree_->handle, push](std::span<const Ray> rays, std::span<VoxelSceneHit> hits) {
+  engine.trace = [&handle = tree_->handle, push](std::span<const Ray> rays, std::span<Hit> hits) {
     const nanovdb::NanoGrid<float>* grid = handle.grid<float>();
     const auto box = grid->tree().root().bbox();
     auto accessor = grid->getAccessor();
@@ -45,7 +45,7 @@ VoxelEngine NanovdbPeer::engine(const char* mode, float push) const {
       const dvec3 &o = rays[i].origin, &d = rays[i].direction;
       const auto f = [](double x) { return static_cast<float>(x); };
       NanoRay ray(nanovdb::Vec3<float>(f(o.x), f(o.y), f(o.z)), nanovdb::Vec3<float>(f(d.x), f(d.y), f(d.z)), 0.0f);
-      VoxelSceneHit& to = hits[i];
+      Hit& to = hits[i];
       to = {};
       if (!ray.clip(box)) continue;
       // From active node to active voxel, as its ZeroCrossing() goes to the first active voxel.
@@ -59,8 +59,7 @@ VoxelEngine NanovdbPeer::engine(const char* mode, float push) const {
         walk.update(ray, accessor.getDim(at, ray));
       }
       if (!inside) continue;
-      to.hit.status = HitStatus::hit, to.hit.t = static_cast<double>(t), to.hit.voxel = {at[0], at[1], at[2]};
-      to.hit.entry = static_cast<std::uint32_t>(accessor.getValue(at));
+      to.status = HitStatus::hit, to.t = static_cast<double>(t), to.voxel = {at[0], at[1], at[2]};
     }
   };
   return engine;

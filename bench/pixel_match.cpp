@@ -44,15 +44,15 @@ class Rows {
  private:
   void compare(int col, int row, const SeenFace& seen, std::span<const NearEdge> near) {
     const Ray ray = frame_.ray(col, row);
-    const VoxelSceneHit hit = scene_.closest_hit(ray);
-    const FaceOf face{hit.object, hit.hit.voxel, hit.hit.face};
+    const Hit hit = scene_.closest_hit(ray);
+    const FaceOf face{hit.part, hit.voxel, hit.face};
     const bool covered = std::isfinite(seen.t);
     ++found_.pixels;
     found_.hits += hit ? 1 : 0;
     bool same = static_cast<bool>(hit) == covered && (!hit || face == seen.face);
     if (same && hit) {
       const int axis = static_cast<int>(face.face) / 2;
-      const double error = std::abs((hit.hit.t - seen.t) * ray.direction[axis]) / off_;
+      const double error = std::abs((hit.t - seen.t) * ray.direction[axis]) / off_;
       found_.t_error = std::max(found_.t_error, error);
       same = error <= 1;
     }

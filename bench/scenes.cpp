@@ -39,17 +39,17 @@ Json measure_objects(const ScenesOptions& options, int count) {
   const std::vector<SceneObject> objects = objects_at_random(count, side);
   std::vector<double> build_s, trace_s;
   Random random(2, 0);
-  std::vector<SceneRay> rays(static_cast<std::size_t>(options.rays));
-  for (SceneRay& ray : rays) {
+  std::vector<Ray> rays(static_cast<std::size_t>(options.rays));
+  for (Ray& ray : rays) {
     const auto inside = [&] {
       return dvec3(random.uniform(0, side), random.uniform(0, side), random.uniform(0, side));
     };
-    ray.ray.origin = inside() - dvec3(0, 2 * side, 0);
-    ray.ray.direction = normalize(inside() - ray.ray.origin);
+    ray.origin = inside() - dvec3(0, 2 * side, 0);
+    ray.direction = normalize(inside() - ray.origin);
   }
-  std::vector<SceneHit> hits(rays.size());
+  std::vector<Hit> hits(rays.size());
   std::size_t bytes = 0, found = 0;
-  SceneStats all;
+  MarchStats all;
   for (int pass = 0; pass < options.repeats; ++pass) {
     const Stopwatch build;
     const Scene scene(fields, objects);
@@ -59,9 +59,9 @@ Json measure_objects(const ScenesOptions& options, int count) {
     trace_s.push_back(trace.cpu_s());
     bytes = scene.bytes();
     if (pass > 0) continue;
-    for (const SceneRay& ray : rays) {
-      SceneStats stats;
-      found += scene.closest_hit(ray, &stats) ? 1 : 0;
+    for (const Ray& ray : rays) {
+      MarchStats stats;
+      found += scene.closest_hit(ray, nullptr, &stats) ? 1 : 0;
       all.steps += stats.steps, all.boxes += stats.boxes;
     }
   }

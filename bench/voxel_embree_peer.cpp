@@ -26,7 +26,7 @@ struct Question {
   std::array<VoxelDirection, 8> directions{VoxelDirection(dvec3(1)), VoxelDirection(dvec3(1)), VoxelDirection(dvec3(1)),
                                            VoxelDirection(dvec3(1)), VoxelDirection(dvec3(1)), VoxelDirection(dvec3(1)),
                                            VoxelDirection(dvec3(1)), VoxelDirection(dvec3(1))};
-  std::array<VoxelSceneHit, 8> best;
+  std::array<Hit, 8> best;
 };
 
 // A face that can be seen: of which voxel, and which.
@@ -97,17 +97,18 @@ struct VoxelEmbreePeer::Scene {
       if (!args->valid[i]) continue;
       const unsigned id = RTCRayN_id(rays, args->N, i);
       const Ray& ray = question.rays[id];
-      VoxelSceneHit& best = question.best[id];
+      Hit& best = question.best[id];
       const VoxelRay in_grid{s.grid_from_world * (ray.origin - s.places[args->primID].origin),
                              question.directions[id].given,
                              ray.t_min,
-                             best ? best.hit.t : ray.t_max,
+                             best ? best.t : ray.t_max,
                              {}};
       const auto quantised = quantise(in_grid, question.directions[id], s.target.box);
       if (!quantised) continue;
-      const VoxelHit hit = s.model->march().cpu(s.target, *quantised, nullptr);
-      if (!hit || (best && hit.t == best.hit.t && args->primID > best.object)) continue;
-      best = {hit, args->primID};
+      const VoxelHit hit = s.model->march().voxel_cpu(s.target, *quantised, nullptr);
+      if (!hit || (best && hit.t == best.t && args->primID > best.part)) continue;
+      best.status = HitStatus::hit, best.face = hit.face, best.t = hit.t;
+      best.voxel = hit.voxel, best.part = args->primID;
       RTCRayN_tfar(rays, args->N, i) = above(hit.t);
       RTCHitN_geomID(hits, args->N, i) = args->geomID;
       RTCHitN_primID(hits, args->N, i) = args->primID;
@@ -122,15 +123,15 @@ struct VoxelEmbreePeer::Scene {
       question.best[i] = {};
     }
   }
-  void take_triangle(unsigned geom, unsigned prim, unsigned instance, float t, VoxelSceneHit& to) const {
+  void take_triangle(unsigned geom, unsigned prim, unsigned instance, float t, Hit& to) const {
     to = {};
     if (geom == RTC_INVALID_GEOMETRY_ID) return;
     const Quad& quad = quads[prim / 2];
-    to.hit.status = HitStatus::hit, to.hit.t = t, to.hit.voxel = quad.voxel, to.hit.face = quad.face;
-    to.object = instance;
+    to.status = HitStatus::hit, to.t = t, to.voxel = quad.voxel, to.face = quad.face;
+    to.part = instance;
   }
 
-  void trace_single(std::span<const Ray> rays, std::span<VoxelSceneHit> answers) const {
+  void trace_single(std::span<const Ray> rays, std::span<Hit> answers) const {
     const DenormalsOff denormals_off;
     Question question;
     rtcInitIntersectContext(&question.embree);
@@ -160,7 +161,7 @@ struct VoxelEmbreePeer::Scene {
     }
   }
 
-  void trace_eight(std::span<const Ray> rays, std::span<VoxelSceneHit> answers) const {
+  void trace_eight(std::span<const Ray> rays, std::span<Hit> answers) const {
     const DenormalsOff denormals_off;
     Question question;
     rtcInitIntersectContext(&question.embree);
@@ -290,9 +291,9 @@ std::vector<VoxelEngine> VoxelEmbreePeer::engines() const {
   engine.name = s.name, engine.mode = "x1", engine.box = "bounds";
   engine.mib = (static_cast<double>(s.bytes) + own) / (1 << 20);
   std::vector<VoxelEngine> engines(2, engine);
-  engines[0].trace = [&s](std::span<const Ray> rays, std::span<VoxelSceneHit> hits) { s.trace_single(rays, hits); };
+  engines[0].trace = [&s](std::span<const Ray> rays, std::span<Hit> hits) { s.trace_single(rays, hits); };
   engines[1].mode = "x8";
-  engines[1].trace = [&s](std::span<const Ray> rays, std::span<VoxelSceneHit> hits) { s.trace_eight(rays, hits); };
+  engines[1].trace = [&s](std::span<const Ray> rays, std::span<Hit> hits) { s.trace_eight(rays, hits); };
   return engines;
 }
 

@@ -15,8 +15,8 @@ struct VoxelEngine {
   std::string mode;  ///< x1: one ray at a time; x64, x8: so many neighbours at once
   std::string box;   ///< which part of objects is followed: grid or bounds
   double mib = 0;    ///< with one model for all objects
-  /// hits[i] answers rays[i]: status, t, voxel and object. On the calling thread.
-  std::function<void(std::span<const Ray> rays, std::span<VoxelSceneHit> hits)> trace;
+  /// hits[i] answers rays[i]: status, t, voxel and part. On the calling thread.
+  std::function<void(std::span<const Ray> rays, std::span<Hit> hits)> trace;
 };
 
 }  // namespace scarp::bench

@@ -76,7 +76,7 @@ void measure_colours(Json& rows, std::vector<std::vector<std::string>>& lines) {
     const VoxelScene scene({std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-planes"))},
                            std::vector{VoxelPlace{}});
     for (const Ray& ray : octant_rays(dvec3(grid.size()), 64)) {
-      if (const VoxelSceneHit hit = scene.closest_hit(ray)) asked.push_back(hit.hit.voxel);
+      if (const Hit hit = scene.closest_hit(ray)) asked.push_back(hit.voxel);
     }
     std::uint64_t sum_rank = 0, sum_hash = 0;
     const double count = static_cast<double>(asked.size());
@@ -109,7 +109,7 @@ std::vector<Measured> measure_engines(const std::vector<VoxelEngine>& engines, c
                                       const VoxelsOptions& options) {
   std::vector<Measured> measured(engines.size());
   std::vector<std::vector<Ray>> own(engines.size());
-  std::vector<VoxelSceneHit> expected(rays.size()), answers;
+  std::vector<Hit> expected(rays.size()), answers;
   engines[0].trace(rays, expected);
   for (std::size_t e = 0; e < engines.size(); ++e) {
     const auto part = [&](std::size_t every) {
@@ -128,10 +128,10 @@ std::vector<Measured> measure_engines(const std::vector<VoxelEngine>& engines, c
     Measured& m = measured[e];
     m.rays = own[e].size();
     for (std::size_t i = 0; i < own[e].size(); ++i) {
-      const VoxelSceneHit& right = expected[i / kTileRays * every * kTileRays + i % kTileRays];
+      const Hit& right = expected[i / kTileRays * every * kTileRays + i % kTileRays];
       m.hits += answers[i] ? 1 : 0;
       const bool same = static_cast<bool>(right) == static_cast<bool>(answers[i]) &&
-                        (!right || (right.object == answers[i].object && right.hit.voxel == answers[i].hit.voxel));
+                        (!right || (right.part == answers[i].part && right.voxel == answers[i].voxel));
       if (!same) ++(right && !answers[i] ? m.lost : m.other);
     }
   }
@@ -155,12 +155,12 @@ void add_engines(const VoxelScene& scene, std::string_view march, const char* bo
   VoxelEngine engine;
   engine.name = march, engine.mode = "x1", engine.box = box;
   engine.mib = (model_bytes + static_cast<double>(scene.bytes())) / kMiB;
-  engine.trace = [&scene](std::span<const Ray> rays, std::span<VoxelSceneHit> hits) {
+  engine.trace = [&scene](std::span<const Ray> rays, std::span<Hit> hits) {
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = scene.closest_hit(rays[i]);
   };
   engines.push_back(engine);
   engine.mode = "x64";
-  engine.trace = [&scene](std::span<const Ray> rays, std::span<VoxelSceneHit> hits) { scene.closest_hits(rays, hits); };
+  engine.trace = [&scene](std::span<const Ray> rays, std::span<Hit> hits) { scene.closest_hits(rays, hits); };
   engines.push_back(engine);
 }
 
@@ -216,10 +216,14 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
                 {"main_mib", engine.mib}};
     if (e / 2 < techniques.size()) {
       const Technique& t = techniques[e / 2];
-      VoxelSceneStats stats;
+      MarchStats stats;
       std::size_t asked = 0;
       // Steps are the same in batches.
-      for (std::size_t i = 0; i < rays.size(); i += 7, ++asked) t.scene->closest_hit(rays[i], &stats);
+      for (std::size_t i = 0; i < rays.size(); i += 7, ++asked) {
+        MarchStats of_ray;
+        t.scene->closest_hit(rays[i], &of_ray);
+        stats.steps += of_ray.steps, stats.boxes += of_ray.boxes;
+      }
       row["steps_per_ray"] = static_cast<double>(stats.steps) / static_cast<double>(asked);
       row["boxes_per_ray"] = static_cast<double>(stats.boxes) / static_cast<double>(asked);
       row["bytes_per_object"] = t.bytes;

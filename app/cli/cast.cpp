@@ -7,7 +7,6 @@
 #include <array>
 #include <chrono>
 #include <csignal>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -25,16 +24,15 @@
 #include "app/cli/raster_options.h"
 #include "app/cli/scene_input.h"
 #include "app/cli/vox_input.h"
-#include "scarp/accel/slope_bound.h"
+#include "scarp/accel/max_pyramid.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/queries.h"
-#include "scarp/march/height/wall.h"
 #include "scarp/output/hit_table.h"
 #include "scarp/scene/file/from_raster.h"
-#include "scarp/scene/terrain_scene.h"
+#include "scarp/scene/scene.h"
 #include "scarp/source/coordinates.h"
 #include "scarp/source/ray_table.h"
 #include "scarp/source/read_raster.h"
@@ -156,33 +154,16 @@ std::string place_of_raster(std::span<const Ray> rays, const HeightField& field,
 // Answers rays and writes what they met, piece by piece.
 class Caster {
  public:
-  Caster(const CastOptions& options, const HeightField& field, const HeightMarchEntry& march, const SceneMaker& scenes,
-         const CoordinateFrame& frame, const RayTable& table, HitTable& out)
-      : field_(field),
-        march_(march),
-        settings_(options.march_settings),
-        frame_(frame),
-        table_(table),
-        out_(out),
-        all_(all_hits_of(options, march)) {
-    if (!options.device.empty()) {
-      on_device_.emplace(scenes.make(field, march, settings_));
-      return;
-    }
-    if (march.needs_pyramid) pyramid_.emplace(field);
-    target_ = {&field_, pyramid_ ? &*pyramid_ : nullptr,
-               march.needs_slope ? slope_bound(field) : std::numeric_limits<double>::quiet_NaN()};
+  // A scene of one height field.
+  Caster(const CastOptions& options, const Scene& scene, const HeightMarchEntry& march, const CoordinateFrame& frame,
+         const RayTable& table, HitTable& out)
+      : scene_(scene), frame_(frame), table_(table), out_(out), all_(all_hits_of(options, march)) {
+    if (all_ && march.needs_pyramid) pyramid_.emplace(*scene.only_heights());
   }
 
   void blocked(std::size_t first, std::span<const Ray> rays) {
     std::vector<std::uint8_t> answers(rays.size());
-    timed([&] {
-      if (on_device_) {
-        on_device_->occluded(rays, answers);
-      } else {
-        occluded(target_, rays, answers, march_, settings_);
-      }
-    });
+    timed([&] { scene_.occluded(rays, answers); });
     hits_ += static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1));
     count_below(rays, answers);
     out_.add(static_cast<std::int64_t>(first), answers);
@@ -192,23 +173,18 @@ class Caster {
     std::vector<std::vector<Hit>> found(rays.size());
     if (all_) {
       constexpr std::int64_t kGrain = 256;
+      const HeightTarget target{scene_.only_heights(), pyramid_ ? &*pyramid_ : nullptr};
       timed([&] {
         parallel_for(static_cast<std::int64_t>(rays.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
           for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
-            const HitStatus status = all_(target_, rays[i], found[i]);
+            const HitStatus status = all_(target, rays[i], found[i]);
             if (found[i].empty()) found[i].emplace_back().status = status;
           }
         });
       });
     } else {
       std::vector<Hit> closest(rays.size());
-      timed([&] {
-        if (on_device_) {
-          on_device_->closest_hits(rays, closest);
-        } else {
-          closest_hits(target_, rays, closest, march_, settings_);
-        }
-      });
+      timed([&] { scene_.closest_hits(rays, closest); });
       for (std::size_t i = 0; i < rays.size(); ++i) found[i] = {closest[i]};
     }
     write(first, rays, found);
@@ -233,16 +209,12 @@ class Caster {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (blocked[i]) continue;
       const dvec3 begin = rays[i].at(rays[i].t_min);
-      const auto ground = field_.height(begin.x, begin.y);
+      const auto ground = scene_.height(begin.x, begin.y);
       if (ground && begin.z < *ground) low.push_back(rays[i]);
     }
     if (low.empty()) return;
     std::vector<Hit> closest(low.size());
-    if (on_device_) {
-      on_device_->closest_hits(low, closest);
-    } else {
-      closest_hits(target_, low, closest, march_, settings_);
-    }
+    scene_.closest_hits(low, closest);
     below_ += static_cast<std::size_t>(
         std::count_if(closest.begin(), closest.end(), [](const Hit& hit) { return hit.status == HitStatus::below; }));
   }
@@ -259,8 +231,7 @@ class Caster {
         ++hits_;
         const dvec3 at = rays[i].at(hit.t);
         positions.push_back({at.x, at.y, hit.height});
-        row.normal =
-            frame_.normal_from_local(hit.wall ? wall_normal(rays[i], hit) : field_.normal(hit.cell, hit.u, hit.v));
+        row.normal = frame_.normal_from_local(scene_.surface(rays[i], hit).normal);
       }
     }
     const auto failed = frame_.from_local(positions);
@@ -276,16 +247,12 @@ class Caster {
     out_.add(rows);
   }
 
-  const HeightField& field_;
-  const HeightMarchEntry& march_;
-  MarchSettings settings_;
+  const Scene& scene_;
   const CoordinateFrame& frame_;
   const RayTable& table_;
   HitTable& out_;
   AllHits all_;
-  std::optional<TerrainScene> on_device_;  // in the place of the target
-  std::optional<MaxPyramid> pyramid_;
-  HeightTarget target_;
+  std::optional<MaxPyramid> pyramid_;  // for all hits
   std::size_t hits_ = 0, below_ = 0;
   double seconds_ = 0;
 };
@@ -311,7 +278,7 @@ void run(CastOptions options) {
     }
   }
   keep_inputs(options.output, options.typed);
-  const SceneMaker scenes = scene_maker(options.device, march);
+  require_device_march(options.device, march);
   const ThreadLimit limit(options.threads);
   // Who reads the table may go away, as `head` does: then the program ends as others do, without a word.
   if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);
@@ -330,7 +297,10 @@ void run(CastOptions options) {
   if (field.all_nodata()) notes.push_back("all samples are nodata: every ray misses; is the nodata value right?");
   stop_if_interrupted();
 
-  Caster caster(options, field, march, scenes, frame, table, out);
+  const auto [scene, device] = scene_on_device(
+      options.device, Scene(scene_heights(field, march, options.march_settings,
+                                          options.device.empty() ? AnsweredBy::cpu : AnsweredBy::back_end)));
+  Caster caster(options, scene, march, frame, table, out);
   const Progress progress = terminal_progress("cast");
   for (std::size_t first = 0; first < rays.size(); first += kPiece) {
     const std::size_t count = std::min(kPiece, rays.size() - first);
@@ -361,7 +331,7 @@ void run(CastOptions options) {
     fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s{}\n", rays.size(), caster.hits(),
                options.any ? "blocked" : "hits", caster.seconds(),
                static_cast<double>(rays.size()) / std::max(caster.seconds(), kTick_s) * 1e-6,
-               scenes.device.empty() ? "" : ", on " + scenes.device);
+               device.empty() ? "" : ", on " + device);
   }
 }
 

@@ -3,24 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "scarp/base/error.h"
 #ifdef SCARP_VULKAN
 #include "scarp/march/height/queries_vk.h"
 #include "scarp/scene/scene_vk.h"
-#include "scarp/scene/terrain_scene_vk.h"
 #endif
 
 namespace scarp::cli {
-namespace {
-
-TerrainScene scene_on_cpu(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings) {
-  return {std::move(field), march, settings};
-}
-
-}  // namespace
-
 void add_device_option(CLI::App& command, std::string& device) {
   command
       .add_option("--device", device,
@@ -31,18 +20,12 @@ void add_device_option(CLI::App& command, std::string& device) {
       });
 }
 
-SceneMaker scene_maker(const std::string& device, const HeightMarchEntry& march) {
-  if (device.empty()) return {scene_on_cpu, {}};
+void require_device_march(const std::string& device, const HeightMarchEntry& march) {
+  if (device.empty()) return;
 #ifdef SCARP_VULKAN
-  if (!march.gpu) {
-    throw Error(fmt::format("--device {}: march '{}' does not run on Vulkan devices; there run: {}", device, march.name,
-                            device_march_names()));
-  }
-  const Device opened({.choice = device});
-  return {[opened](HeightField field, const HeightMarchEntry& of, const MarchSettings& settings) {
-            return terrain_scene_on(opened, std::move(field), of, settings);
-          },
-          opened.description().name};
+  if (march.gpu) return;
+  throw Error(fmt::format("--device {}: march '{}' does not run on Vulkan devices (available: {})", device, march.name,
+                          device_march_names()));
 #else
   throw Error(
       fmt::format("--device {}: this scarp was built without Vulkan (SCARP_VULKAN=OFF); leave it out, and march "

@@ -7,6 +7,7 @@
 
 #ifdef SCARP_CAIRO
 #include <cmath>
+#include <variant>
 
 #include "scarp/output/figure.h"
 #include "scarp/render/surface/ramp.h"
@@ -49,10 +50,17 @@ FigureLegend legend_of(std::string title, double low, double high, const Ramp& r
   return legend;
 }
 
-void add_meaning(const PictureSettings& settings, const HeightField& field, const Picture& picture, Figure& figure) {
+// Whether a ramp over heights colours the scene.
+bool has_ramp(const PictureSettings& settings, const Scene& scene) {
+  if (scene.terrain()) return settings.materials.empty();
+  return !settings.materials.empty() && std::holds_alternative<HeightRamp>(settings.materials.back());
+}
+
+void add_meaning(const PictureSettings& settings, const Scene& scene, const Picture& picture, Figure& figure) {
+  const PaintExtent extent = paint_extent(scene, settings);
+  const ReliefRange grey = picture.heights.value_or(ReliefRange{extent.low, extent.high});
   // Numbers are those of the ground, colours of what is drawn.
-  const double exaggeration = field.settings().exaggeration;
-  const double low = field.min_height() / exaggeration, high = field.max_height() / exaggeration;
+  const double exaggeration = extent.exaggeration, low = extent.low / exaggeration, high = extent.high / exaggeration;
   switch (settings.look) {
     case Look::steps:
       figure.legend = legend_of("steps per ray", picture.steps->least, picture.steps->most,
@@ -71,28 +79,31 @@ void add_meaning(const PictureSettings& settings, const HeightField& field, cons
       break;
     }
     case Look::height: {
-      FigureLegend grey{"height, m", {}, ticks_of(low, high)};
+      FigureLegend scale{"height, m", {}, ticks_of(grey.low / exaggeration, grey.high / exaggeration)};
       for (int i = 0; i < 255; ++i) {
         const auto byte = static_cast<std::uint8_t>(1 + i);
-        grey.colours.push_back({byte, byte, byte});
+        scale.colours.push_back({byte, byte, byte});
       }
-      figure.legend = std::move(grey);
+      figure.legend = std::move(scale);
       break;
     }
     case Look::shaded:
     case Look::comanche:
-      figure.legend =
-          legend_of("height, m", low, high, ramp_over(settings, field.min_height(), field.max_height(), exaggeration),
-                    exaggeration);
+      if (!has_ramp(settings, scene)) {
+        throw Error(
+            "--legend: the colours of this picture are no scale of heights (leave it out, or choose --look height, "
+            "steps or error)");
+      }
+      figure.legend = legend_of("height, m", low, high, ground_ramp(scene, settings), exaggeration);
       break;
   }
 }
 
-// What the picture's middle shows, else the middle of the field.
-double depth_in_the_middle(const PictureSettings& settings, const TerrainScene& scene, const Camera& camera) {
+// What the picture's middle shows, else the middle of the scene.
+double depth_in_the_middle(const PictureSettings& settings, const Scene& scene, const Camera& camera) {
   const Ray ray = camera.ray(0.5 * settings.width, 0.5 * settings.height);
   const Hit hit = scene.closest_hit(ray);
-  const dvec3 there = hit ? ray.at(hit.t) : picture_box(scene.field(), false).middle();
+  const dvec3 there = hit ? ray.at(hit.t) : picture_box(scene).middle();
   return dot(there - camera.eye(), camera.forward());
 }
 
@@ -121,11 +132,11 @@ void settle_figure(const FigureOptions& options, const PictureSettings& settings
   }
 }
 
-void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const TerrainScene& scene,
+void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const Scene& scene,
                     const Camera& camera, bool map, Picture& picture) {
   if (!options.any()) return;
   Figure figure;
-  if (options.legend) add_meaning(settings, scene.field(), picture, figure);
+  if (options.legend) add_meaning(settings, scene, picture, figure);
   if (options.scale_bar) {
     const double depth = depth_in_the_middle(settings, scene, camera);
     if (!(depth > 0)) throw Error("--scale-bar: the picture's middle shows no ground; leave it out");
@@ -142,7 +153,7 @@ void settle_figure(const FigureOptions& options, const PictureSettings&, bool) {
   }
 }
 
-void draw_figure_of(const FigureOptions&, const PictureSettings&, const TerrainScene&, const Camera&, bool, Picture&) {}
+void draw_figure_of(const FigureOptions&, const PictureSettings&, const Scene&, const Camera&, bool, Picture&) {}
 
 #endif
 

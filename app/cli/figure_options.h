@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A legend and a scale bar over pictures of terrain.
+// A legend and a scale bar over pictures.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,9 +21,9 @@ void add_figure_options(CLI::App& command, FigureOptions& options);
 /// What can be judged without the field. Throws Error.
 void settle_figure(const FigureOptions& options, const PictureSettings& settings, bool exr);
 
-/// Draws over a picture of a terrain what was asked for. `map`: seen without perspective. Throws Error where there is
-/// no room.
-void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const TerrainScene& scene,
+/// Draws what was asked for over a picture. `map`: seen without perspective. Throws Error where there is no room, or
+/// colours have no scale.
+void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const Scene& scene,
                     const Camera& camera, bool map, Picture& picture);
 
 }  // namespace scarp::cli

@@ -13,12 +13,18 @@ void print_findings(const Picture& picture) {
   if (picture.heights) {
     fmt::print("heights: {:.6g} m (grey 1) to {:.6g} m (grey 255)\n", picture.heights->low, picture.heights->high);
   }
-  if (picture.errors) {
-    fmt::print("judged by exhaustive; tolerance {:.3g} m along the ray; pixels:\n", picture.errors->tolerance_m);
-    for (int i = 0; i < kVerdicts; ++i) {
-      const auto verdict = static_cast<Verdict>(i);
-      fmt::print("  {:10}  {:9}  {}\n", name_of(verdict), colour_name_of(verdict), (*picture.errors)[verdict]);
-    }
+  if (!picture.errors) return;
+  const ErrorCounts& errors = *picture.errors;
+  fmt::print("judged by {}; tolerance {} along the ray; pixels:\n", errors.judges,
+             errors.tolerance_m > 0 ? fmt::format("{:.3g} m", errors.tolerance_m)
+                                    : fmt::format("{:.3g} % of the distance", 100 * errors.share));
+  for (int i = 0; i < kVerdicts; ++i) {
+    const auto verdict = static_cast<Verdict>(i);
+    fmt::print("  {:10}  {:9}  {}\n", name_of(verdict), colour_name_of(verdict), errors[verdict]);
+  }
+  if (errors.proven > 0) {
+    fmt::print("of these {} proven by interval bisection, which contradicts the judge {} times\n", errors.proven,
+               errors.contradictions);
   }
 }
 

@@ -23,14 +23,20 @@ struct OptionRow {
 // The same name means the same in every subcommand.
 constexpr OptionRow kTable[] = {
     {kAll,
-     "IN --output --json --threads --size --look --ramp --sun --no-shadows --samples --sun-size --aa "
-     "--view --eye --target --fov --depth-range --depth-reversed --voxel --count --within"},
+     "IN --output --json --threads --size --look --ramp --sun --no-shadows --samples --sun-size --aa --ao-distance "
+     "--seed --haze --error-tolerance --view --eye --target --fov --depth-range --depth-reversed --voxel --count "
+     "--within --legend --scale-bar --ground --snow-line --detail --detail-size --contours --water --water-colour "
+     "--turbidity --waves --wavelength --no-reflection --no-refraction --fog --visibility --fog-base --fog-falloff "
+     "--sun-tint --path --frames --turntable --overwrite --lowres --pixel-size --steps --shells --step-by-view "
+     "--iterations --reach --mesh --mesh-at --mesh-scale --mesh-rotate --mesh-up"},
+    // A function goes on forever: there is no map of it.
     {kTerrain | kVoxels | kScene, "--top"},
+    // Voxels do not run on devices.
     {kTerrain | kScene | kFunction, "--device"},
-    // A scene has these in its file.
-    {kTerrain | kVoxels | kFunction, "--ao-distance --seed --march"},
+    // A scene has one for each field in its file.
+    {kTerrain | kVoxels | kFunction, "--march"},
     {kTerrain | kFunction,
-     "--haze --error-tolerance --naive-step-factor --naive-min-step --naive-tolerance --naive-max-steps "
+     "--naive-step-factor --naive-min-step --naive-tolerance --naive-max-steps "
      "--fixed-step --fixed-step-interpolate --fixed-step-max-steps --relaxed-step-factor "
      "--relaxed-tolerance --relaxed-max-steps --shrink --lipschitz-tolerance --lipschitz-max-steps "
      "--local-tolerance --local-max-steps"},
@@ -41,22 +47,14 @@ constexpr OptionRow kTable[] = {
     {kVoxels,
      "--frame --hidden --surface-colours --volume --solid-from --up --normals --normal-radius "
      "--rounded --each --corner-ao"},
-    {kTerrain, "--bisect-halvings --no-plinth --legend --scale-bar"},
+    {kTerrain, "--bisect-halvings --no-plinth"},
     // Rays of tables.
     {kTerrain, "--rays --any --all --raster-crs"},
-    // What the file does not say.
+    // How a raster is read, and where an overlay lies on it.
     {kTerrain,
      "--band --key --window --nodata --unit --scale --offset --height-range --encoding --raw --channel "
-     "--crs --bounds"},
-    // Surface, ground, water, fog.
-    {kTerrain,
-     "--exaggeration --surface --wrap --solid --ground --snow-line --detail --detail-size --contours "
-     "--overlay --water --water-colour --turbidity --waves --wavelength --no-reflection --no-refraction "
-     "--fog --visibility --fog-base --fog-falloff --sun-tint"},
-    // Flights, large pixels, meshes.
-    {kTerrain,
-     "--path --frames --turntable --overwrite --lowres --pixel-size --steps --shells --step-by-view "
-     "--iterations --reach --mesh --mesh-at --mesh-scale --mesh-rotate --mesh-up"},
+     "--crs --bounds --overlay"},
+    {kTerrain, "--exaggeration --surface --wrap --solid"},
 };
 
 struct LookRow {
@@ -68,7 +66,7 @@ struct LookRow {
 constexpr LookRow kLookTable[] = {
     {kAll, "shaded", "--no-shadows --sun-size --aa --normals --normal-radius --corner-ao"},
     // Of functions it also says where rays end.
-    {kTerrain, "shaded", "--haze"},
+    {kTerrain | kVoxels | kScene, "shaded", "--haze"},
     {kAll, "shaded comanche",
      "--sun --samples --ao-distance --seed --ground --snow-line --detail --detail-size --contours --overlay --water "
      "--water-colour --turbidity --waves --wavelength --no-reflection --no-refraction --fog --visibility --fog-base "

@@ -215,25 +215,23 @@ void see_from_afar(const LookOptions& o, const Box& box, const Camera& camera, P
   picture.fog.visibility += kWays * way_to(box, camera);
 }
 
-void finish_look(const LookOptions& o, const HeightField& field, PictureSettings& picture) {
-  if (!o.visibility) picture.fog.visibility = o.reach.value_or(default_reach(field));
-  const double exaggeration = field.settings().exaggeration;
-  const double relief = field.max_height() - field.min_height();
-  if (o.snow_line && relief > 0) {
-    picture.ground.snow_share = (*o.snow_line * exaggeration - field.min_height()) / relief;
-  }
+void finish_look(const LookOptions& o, double across, const ReliefRange& heights, double exaggeration,
+                 PictureSettings& picture) {
+  if (!o.visibility) picture.fog.visibility = o.reach.value_or(across > 0 ? across : FogSettings{}.visibility);
+  const double relief = heights.high - heights.low;
+  if (o.snow_line && relief > 0) picture.ground.snow_share = (*o.snow_line * exaggeration - heights.low) / relief;
   if (o.fog_base) {
     picture.fog.base = *o.fog_base * exaggeration;
   } else {
-    picture.fog.base = picture.water ? picture.water->level * exaggeration : field.min_height();
+    picture.fog.base = picture.water ? picture.water->level * exaggeration : heights.low;
   }
-  if (!o.fog_falloff) picture.fog.falloff = std::max(1.0, (field.max_height() - field.min_height()) / 4);
+  if (!o.fog_falloff) picture.fog.falloff = std::max(1.0, relief / 4);
 }
 
-double reach_of(const LookOptions& o, const HeightField& field, const Box& box, const Camera& camera) {
+double reach_of(const LookOptions& o, double across, const Scene& scene, const Box& box, const Camera& camera) {
   if (o.reach) return *o.reach;
-  if (!field.wraps()) return std::numeric_limits<double>::infinity();
-  return default_reach(field) + kFarthestCorner * way_to(box, camera);
+  if (!scene.wraps()) return std::numeric_limits<double>::infinity();
+  return across + kFarthestCorner * way_to(box, camera);
 }
 
 }  // namespace scarp::cli

@@ -38,15 +38,16 @@ void settle_look(const LookOptions& options, const std::string& size, std::strin
 std::vector<std::string> read_look_files(const LookOptions& options, const Raster& raster, const FieldOptions& field,
                                          PictureSettings& picture);
 
-/// What follows from the field where nothing was said: visibility, base and falloff of the fog.
-void finish_look(const LookOptions& options, const HeightField& field, PictureSettings& picture);
-/// A camera that stands back from the field, whose box this is, still has to see it: where no visibility was given it
-/// grows by ten times the way there, on which less than a third of a contrast is lost then.
+/// What follows from the scene where nothing was given: visibility, base and falloff of the fog. `across` and `heights`
+/// are metres that the picture is about; `heights` are exaggerated.
+void finish_look(const LookOptions& options, double across, const ReliefRange& heights, double exaggeration,
+                 PictureSettings& picture);
+/// A camera that stands back from the scene still has to see it: without --visibility that grows by ten times the way
+/// to the box, on which less than a third of a contrast is lost.
 void see_from_afar(const LookOptions& options, const Box& box, const Camera& camera, PictureSettings& picture);
 
-/// How far the camera's rays go: infinitely far, but for fields that wrap round. There, where nothing was said, the
-/// field's longer side, and from outside of its box twice the way to it more, so that who sees all of it sees its
-/// corners.
-double reach_of(const LookOptions& options, const HeightField& field, const Box& box, const Camera& camera);
+/// How far the camera's rays go: infinitely far, except over ground that wraps round. There, without --reach, `across`,
+/// and from outside of the box twice the way to it more, so that an eye that sees all of the ground sees its corners.
+double reach_of(const LookOptions& options, double across, const Scene& scene, const Box& box, const Camera& camera);
 
 }  // namespace scarp::cli

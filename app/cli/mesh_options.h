@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// --mesh: a triangle mesh in a picture of terrain.
+// --mesh: a triangle mesh in a scene.
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
-#include "scarp/render/frame/layers.h"
-#include "scarp/render/frame/picture.h"
+#include "scarp/scene/scene.h"
+#include "scarp/source/mesh_file.h"
 
 namespace scarp::cli {
 
@@ -20,28 +21,22 @@ struct MeshOptions {
 /// Adds --mesh and what goes with it. `options` must live until the subcommand has run.
 void add_mesh_options(CLI::App& command, MeshOptions& options);
 
-/// Throws Error: --mesh without `device` or with a picture that has none.
-void settle_mesh(const MeshOptions& options, const std::string& device, const PictureSettings& picture);
+/// What can be judged without files. Throws Error.
+void settle_mesh(const MeshOptions& options);
 
-/// The mesh that was asked for, and terrain with it; without one all is as ever.
+/// The mesh that was typed, if any.
 class MeshInput {
  public:
-  /// Reads the file. Throws Error naming it.
+  /// Reads the file. `options` must live as long. Throws Error naming the file.
   explicit MeshInput(const MeshOptions& options);
-  ~MeshInput();
 
-  /// Before pictures are made: where the mesh stands, which depends on the ground. Throws Error when it is to stand on
-  /// the ground, and there is none.
-  void stand_on(const TerrainScene& scene);
-  Picture picture(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                  const PictureSettings& settings, const Progress& progress);
-  PictureLayers layers(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                       const PictureSettings& settings, const Progress& progress);
-  const std::vector<std::string>& notes() const;
+  /// The scene with the mesh in it. Throws Error when the mesh is to stand on the ground, and there is none.
+  Scene with_mesh(Scene scene) const;
+  const std::vector<std::string>& notes() const { return mesh_.notes; }
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;  // null: no mesh
+  const MeshOptions& options_;
+  TriangleMesh mesh_;
 };
 
 }  // namespace scarp::cli

@@ -42,16 +42,22 @@ bool is_scene_input(const std::vector<std::string>& inputs) {
 
 PictureSettings picture_of(const SceneFile& file, PictureSettings settings, const std::vector<std::string>& given) {
   const Taking take(given);
-  take(file.picture.width, "--size", settings.width);
-  take(file.picture.height, "--size", settings.height);
-  take(file.picture.aa, "--aa", settings.aa);
+  settings.materials = file.materials;
+  if (std::find(given.begin(), given.end(), "--haze") == given.end())
+    settings.haze_distance = file.haze_distance.value_or(kUnlimited);
+  // Few large pixels have a size of their own.
+  if (settings.look != Look::comanche) {
+    take(file.picture.width, "--size", settings.width);
+    take(file.picture.height, "--size", settings.height);
+    take(file.picture.aa, "--aa", settings.aa);
+    take(file.sun.shadows, "--no-shadows", settings.shadows);
+  }
   take(file.picture.samples, "--samples", settings.samples);
   take(file.picture.ao_distance, "--ao-distance", settings.ao_distance);
   take(file.picture.seed, "--seed", settings.seed);
   take(file.sun.azimuth_deg, "--sun", settings.sun.azimuth_deg);
   take(file.sun.altitude_deg, "--sun", settings.sun.altitude_deg);
   take(file.sun.size_deg, "--sun-size", settings.sun.size_deg);
-  take(file.sun.shadows, "--no-shadows", settings.shadows);
   validate(settings);
   return settings;
 }
@@ -63,13 +69,6 @@ ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector
   take(file.camera.distance, "--view", view.distance);
   take(file.camera.fov_deg, "--fov", view.fov_deg);
   return view;
-}
-
-SceneLook look_of(const SceneFile& file) {
-  SceneLook look;
-  look.materials = file.materials;
-  if (file.haze_distance) look.haze_distance = *file.haze_distance;
-  return look;
 }
 
 Json describe_scene(const std::string& path) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scarp/render/camera/camera.h"
-#include "scarp/render/frame/scene_picture.h"
+#include "scarp/render/frame/picture.h"
 #include "scarp/scene/file/scene_file.h"
 
 namespace scarp::cli {
@@ -15,12 +15,10 @@ namespace scarp::cli {
 /// Whether the input is a scene. Throws Error when other inputs stand beside one.
 bool is_scene_input(const std::vector<std::string>& inputs);
 
-/// How the file wants its picture, over what stands in the settings; nothing is taken of what is in `given`, names of
-/// options ("--size").
+/// The settings with those of the file, its materials and its haze. Options in `given` ("--size") count more.
 PictureSettings picture_of(const SceneFile& file, PictureSettings settings, const std::vector<std::string>& given);
 /// The same for a view, when the file has no eye.
 ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector<std::string>& given);
-SceneLook look_of(const SceneFile& file);
 
 /// What is in a scene: for --json, and the same as lines of text.
 nlohmann::ordered_json describe_scene(const std::string& path);

@@ -45,7 +45,7 @@ constexpr int kUsualCount = 256;
 
 struct Input {
   Scene scene;
-  SceneLook look;
+  std::vector<Material> materials;
   std::vector<std::string> notes;
   std::vector<std::string> files;  // that were read, beside those that were typed
 };
@@ -59,12 +59,12 @@ Input terrain(const VoxeliseOptions& options) {
   if (!field.has_cells() || field.all_nodata())
     throw Error(fmt::format("raster '{}': there is no ground between its samples", path));
   const HeightRamp ramp{options.ramp, field.min_height(), field.max_height()};
-  return {Scene({scene_heights(std::move(field))}, {SceneObject{}}), {{ramp}}, std::move(notes), std::move(files)};
+  return {Scene(scene_heights(std::move(field))), {ramp}, std::move(notes), std::move(files)};
 }
 
 Input voxels(const VoxeliseOptions& options) {
   VoxInput input = read_voxels(options.inputs.front(), options.vox, {}, {});
-  return {Scene({scene_voxels(std::move(input.scene), VoxelSceneOptions{}.march)}, {SceneObject{}}), {}, {}, {}};
+  return {Scene(scene_voxels(std::move(input.scene), VoxelSceneOptions{}.march)), {}, {}, {}};
 }
 
 Input input_of(const VoxeliseOptions& options) {
@@ -74,8 +74,8 @@ Input input_of(const VoxeliseOptions& options) {
   if (vox) return voxels(options);
   if (!scene) return terrain(options);
   SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
-  SceneLook look = look_of(document);
-  return {std::move(document.scene), std::move(look), std::move(document.notes), std::move(document.files)};
+  return {std::move(document.scene), std::move(document.materials), std::move(document.notes),
+          std::move(document.files)};
 }
 
 std::optional<WorldBox> box_of(const VoxeliseOptions& options) {
@@ -112,7 +112,7 @@ void run(const VoxeliseOptions& options) {
   stop_if_interrupted();
   const double side = side_of(options, input.scene, within);
   const VoxelLattice lattice = lattice_around(input.scene, side, within);
-  const VoxelGrid grid = voxelised(input.scene, lattice, voxel_colours(input.look), terminal_progress("voxelise"));
+  const VoxelGrid grid = voxelised(input.scene, lattice, voxel_colours(input.materials), terminal_progress("voxelise"));
   if (grid.solid_count() == 0)
     throw Error(fmt::format("'{}': no voxel of {:.6g} m has its middle inside; take smaller ones",
                             options.inputs.front(), side));

@@ -12,6 +12,9 @@
 
 namespace scarp {
 
+/// An index beyond all lists of materials: the colours that a field has of its own.
+constexpr std::uint32_t kOwnMaterial = ~std::uint32_t{0};
+
 /// What the field itself says: a voxel's palette entry; else a neutral earth.
 struct OwnColour {};
 

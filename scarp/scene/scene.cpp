@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <set>
+#include <string_view>
 #include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/height/queries.h"
 #include "scarp/scene/scene_answers.h"
 
 namespace scarp {
@@ -74,15 +78,16 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
   std::vector<WorldBox> boxes;
   std::vector<std::pair<double, std::uint32_t>> batched;  // by how much there is of them
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+    const std::optional<WorldBox> extent = field_of(i).extent();
+    endless_ = endless_ || !extent;
+    if (extent && !empty(*extent)) box_ = around(box_, world_box(objects_[i].placement, *extent));
     const std::optional<WorldBox>& box = field_boxes[objects_[i].field];
     if (!box) {
-      endless_ = true;
       beside_tree_.push_back(i);
       continue;
     }
     if (empty(*box)) continue;
     const WorldBox here = world_box(objects_[i].placement, *box);
-    box_ = around(box_, here);
     boxes.push_back(here);
     in_tree_.push_back(i);
     const dvec3 size = here.high - here.low;
@@ -97,102 +102,142 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
     boxes.erase(boxes.begin() + place);
   }
   tree_ = BoxTree(boxes);
+  for (const SceneFieldPtr& field : fields_) {
+    const HeightField* heights = height_field_of(*field);
+    wraps_ = wraps_ || (heights && heights->wraps());
+  }
+  alone_ = objects_.size() == 1 && objects_[0].placement.identity();
+  find_sole();
+  find_terrain();
 }
 
-void Scene::ask_tree(const SceneRay& ray, SceneHit& best, SceneStats* stats) const {
+void Scene::find_sole() {
+  int others = 0;
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+    if (field_of(i).is_backdrop()) continue;
+    sole_object_ = i;
+    ++others;
+  }
+  sole_ = others == 1 && objects_[sole_object_].placement.identity();
+}
+
+void Scene::find_terrain() {
+  int found = 0;
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+    const HeightField* field = height_field_of(field_of(i));
+    if (!field || !objects_[i].placement.identity()) continue;
+    terrain_ = field;
+    terrain_object_ = i;
+    ++found;
+  }
+  if (found != 1) terrain_ = nullptr;
+}
+
+Scene::Scene(SceneFieldPtr field) : Scene(std::vector{std::move(field)}, {SceneObject{}}) {}
+
+void Scene::ask(const Asking& ray, std::uint32_t object, Hit& best, MarchStats* stats) const {
+  MarchStats march;
+  take(field_of(object).closest_hit(local(ray, object, best), ray.from_on(object), stats ? &march : nullptr), object,
+       best);
+  if (!stats) return;
+  stats->steps += march.steps, stats->level_changes += march.level_changes;
+  stats->cell_tests += march.cell_tests, stats->boxes += march.boxes;
+}
+
+void Scene::ask_tree(const Asking& ray, Hit& best, MarchStats* stats) const {
   Ray reach = ray.ray;
-  if (best) reach.t_max = best.field.t;
+  if (best) reach.t_max = best.t;
   tree_.traverse(reach, [&](std::uint32_t in_tree) {
-    const std::uint32_t object = in_tree_[in_tree];
-    MarchStats march;
-    take(field_of(object).closest_hit(shortened(objects_[object].placement, ray.ray, best), start_on(object, ray),
-                                      stats ? &march : nullptr),
-         object, best);
-    if (stats) {
-      stats->steps += march.steps;
-      ++stats->boxes;
-    }
-    return best ? best.field.t : ray.ray.t_max;
+    ask(ray, in_tree_[in_tree], best, stats);
+    if (stats) ++stats->boxes;
+    return best ? best.t : ray.ray.t_max;
   });
 }
 
-SceneHit Scene::closest_hit(const SceneRay& ray, SceneStats* stats) const {
-  SceneHit best;
-  if (queries_) {
-    std::uint32_t steps = 0;
-    closest_elsewhere({&ray, 1}, {&best, 1}, {&steps, 1});
-    if (stats) *stats = {.steps = steps};
-    return best;
-  }
+Hit Scene::closest(const Asking& ray, MarchStats* stats) const {
+  Hit best;
   if (stats) *stats = {};
-  for (const std::uint32_t object : beside_tree_) {
-    MarchStats march;
-    take(field_of(object).closest_hit(shortened(objects_[object].placement, ray.ray, best), start_on(object, ray),
-                                      stats ? &march : nullptr),
-         object, best);
-    if (stats) stats->steps += march.steps;
-  }
+  for (const std::uint32_t object : beside_tree_) ask(ray, object, best, stats);
   ask_tree(ray, best, stats);
   return best;
 }
 
-bool Scene::tree_blocks(const SceneRay& ray) const {
+Hit Scene::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
+  if (back_end_) {
+    Hit hit;
+    std::uint32_t steps = 0;
+    closest_by_back_end({&ray, 1}, {&hit, 1}, stats ? std::span(&steps, 1) : std::span<std::uint32_t>(),
+                        from ? From(&from, 1) : From());
+    if (stats) *stats = {.steps = steps};
+    return hit;
+  }
+  if (alone_) return field_of(0).closest_hit(ray, from, stats);
+  return closest({ray, from}, stats);
+}
+
+bool Scene::blocks(const Asking& ray, std::uint32_t object) const {
+  return !field_of(object).is_backdrop() && field_of(object).occluded(local(ray, object, {}), ray.from_on(object));
+}
+
+bool Scene::tree_blocks(const Asking& ray) const {
   bool blocked = false;
   tree_.traverse(ray.ray, [&](std::uint32_t in_tree) {
-    const std::uint32_t object = in_tree_[in_tree];
-    blocked = field_of(object).occluded(shortened(objects_[object].placement, ray.ray, {}), start_on(object, ray));
+    blocked = blocks(ray, in_tree_[in_tree]);
     return blocked ? -std::numeric_limits<double>::infinity() : ray.ray.t_max;
   });
   return blocked;
 }
 
-bool Scene::occluded(const SceneRay& ray) const {
-  if (queries_) {
+bool Scene::occluded(const Ray& ray, const Hit* from) const {
+  if (back_end_) {
     std::uint8_t blocked = 0;
-    occluded_elsewhere({&ray, 1}, {&blocked, 1});
+    occluded_by_back_end({&ray, 1}, {&blocked, 1}, from ? From(&from, 1) : From());
     return blocked != 0;
   }
-  for (const std::uint32_t object : beside_tree_) {
-    if (field_of(object).occluded(shortened(objects_[object].placement, ray.ray, {}), start_on(object, ray)))
-      return true;
-  }
-  return tree_blocks(ray);
+  if (sole_) return field_of(sole_object_).occluded(ray, from);
+  const Asking asking(ray, from);
+  return std::any_of(beside_tree_.begin(), beside_tree_.end(),
+                     [&](std::uint32_t object) { return blocks(asking, object); }) ||
+         tree_blocks(asking);
 }
 
-void Scene::closest_of_piece(std::span<const SceneRay> rays, std::span<SceneHit> hits) const {
-  std::vector<Ray> local(rays.size());
-  std::vector<const FieldHit*> from(rays.size());
-  std::vector<FieldHit> answers(rays.size());
-  for (SceneHit& hit : hits) hit = {};
+void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits) const {
+  std::vector<Ray> locals(rays.size());
+  std::vector<const Hit*> on_object(from.size());
+  std::vector<Hit> answers(rays.size());
+  std::fill(hits.begin(), hits.end(), Hit{});
   for (const std::uint32_t object : beside_tree_) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      local[i] = shortened(objects_[object].placement, rays[i].ray, hits[i]);
-      from[i] = start_on(object, rays[i]);
+      const Asking ray(rays, from, i);
+      locals[i] = local(ray, object, hits[i]);
+      if (!from.empty()) on_object[i] = ray.from_on(object);
     }
-    field_of(object).closest_hits(local, from, answers);
+    field_of(object).closest_hits(locals, answers, on_object);
     for (std::size_t i = 0; i < rays.size(); ++i) take(answers[i], object, hits[i]);
   }
-  for (std::size_t i = 0; i < rays.size(); ++i) ask_tree(rays[i], hits[i], nullptr);
+  for (std::size_t i = 0; i < rays.size(); ++i) ask_tree({rays, from, i}, hits[i], nullptr);
 }
 
-void Scene::occluded_of_piece(std::span<const SceneRay> rays, std::span<std::uint8_t> blocked) const {
+void Scene::occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked) const {
   // The tree first: what it blocks need not be followed over the ground.
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    blocked[i] = tree_blocks(rays[i]);
+    blocked[i] = tree_blocks({rays, from, i});
     if (!blocked[i]) open.push_back(i);
   }
-  std::vector<Ray> local;
-  std::vector<const FieldHit*> from;
+  std::vector<Ray> locals;
+  std::vector<const Hit*> on_object;
   std::vector<std::uint8_t> answers;
   for (const std::uint32_t object : beside_tree_) {
-    local.clear(), from.clear();
+    if (field_of(object).is_backdrop()) continue;
+    locals.clear(), on_object.clear();
     for (const std::size_t i : open) {
-      local.push_back(shortened(objects_[object].placement, rays[i].ray, {}));
-      from.push_back(start_on(object, rays[i]));
+      const Asking ray(rays, from, i);
+      locals.push_back(local(ray, object, {}));
+      if (!from.empty()) on_object.push_back(ray.from_on(object));
     }
     answers.resize(open.size());
-    field_of(object).occluded(local, from, answers);
+    field_of(object).occluded(locals, answers, on_object);
     std::size_t left = 0;
     for (std::size_t j = 0; j < open.size(); ++j) {
       blocked[open[j]] = answers[j];
@@ -202,28 +247,36 @@ void Scene::occluded_of_piece(std::span<const SceneRay> rays, std::span<std::uin
   }
 }
 
-void Scene::closest_hits(std::span<const SceneRay> rays, std::span<SceneHit> hits,
-                         std::span<std::uint32_t> steps) const {
+void Scene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                         From from) const {
   require_same_length(rays.size(), hits.size());
   if (!steps.empty()) require_same_length(rays.size(), steps.size());
-  if (queries_) return closest_elsewhere(rays, hits, steps);
+  if (!from.empty()) require_same_length(rays.size(), from.size());
+  if (back_end_) return closest_by_back_end(rays, hits, steps, from);
+  if (alone_) return field_of(0).closest_hits_on_all_threads(rays, hits, steps, from);
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    if (steps.empty()) return closest_of_piece(rays.subspan(first, count), hits.subspan(first, count));
+    if (steps.empty()) {
+      return closest_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
+                              hits.subspan(first, count));
+    }
     for (std::size_t i = first; i < first + count; ++i) {
-      SceneStats stats;
-      hits[i] = closest_hit(rays[i], &stats);
+      MarchStats stats;
+      hits[i] = closest({rays, from, i}, &stats);
       steps[i] = stats.steps;
     }
   });
 }
 
-void Scene::occluded(std::span<const SceneRay> rays, std::span<std::uint8_t> blocked) const {
+void Scene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, From from) const {
   require_same_length(rays.size(), blocked.size());
-  if (queries_) return occluded_elsewhere(rays, blocked);
+  if (!from.empty()) require_same_length(rays.size(), from.size());
+  if (back_end_) return occluded_by_back_end(rays, blocked, from);
+  if (sole_) return field_of(sole_object_).occluded_on_all_threads(rays, blocked, from);
   parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    occluded_of_piece(rays.subspan(first, count), blocked.subspan(first, count));
+    occluded_of_piece(rays.subspan(first, count), from.empty() ? from : from.subspan(first, count),
+                      blocked.subspan(first, count));
   });
 }
 
@@ -240,12 +293,15 @@ SceneSurface Scene::placed_surface(std::uint32_t index, const FieldSurface& own,
   surface.place = in_field;
   surface.colour = own.colour;
   surface.openness = own.openness;
+  surface.wall = own.wall;
+  if (own.height && object.placement.upright())
+    surface.height = object.placement.world_from_field({in_field.x, in_field.y, *own.height}).z;
   return surface;
 }
 
-SceneSurface Scene::surface(const Ray& ray, const SceneHit& hit) const {
+SceneSurface Scene::surface(const Ray& ray, const Hit& hit) const {
   const Ray local = objects_[hit.object].placement.field_from_world(ray);
-  return placed_surface(hit.object, field_of(hit.object).surface(local, hit.field), ray.at(hit.t()), local.at(hit.t()));
+  return placed_surface(hit.object, field_of(hit.object).surface(local, hit), ray.at(hit.t), local.at(hit.t));
 }
 
 std::optional<SceneSurface> Scene::within(const dvec3& p) const {
@@ -256,6 +312,45 @@ std::optional<SceneSurface> Scene::within(const dvec3& p) const {
   return {};
 }
 
+std::optional<double> Scene::height(double x, double y) const {
+  std::optional<double> highest;
+  for (const SceneObject& object : objects_) {
+    if (!object.placement.upright()) continue;
+    const dvec3 in_field = object.placement.field_from_world(dvec3(x, y, object.placement.origin.z));
+    const std::optional<double> own = fields_[object.field]->height(in_field.x, in_field.y);
+    if (!own) continue;
+    const double z = object.placement.world_from_field({in_field.x, in_field.y, *own}).z;
+    highest = highest ? std::max(*highest, z) : z;
+  }
+  return highest;
+}
+
+double Scene::cell_side() const {
+  double least = 0;
+  for (const SceneObject& object : objects_) {
+    const double side = fields_[object.field]->cell_side() * object.placement.scale;
+    if (side > 0) least = least > 0 ? std::min(least, side) : side;
+  }
+  return least;
+}
+
+Scene Scene::judge() const {
+  std::vector<SceneFieldPtr> fields;
+  for (const SceneFieldPtr& field : fields_) {
+    SceneFieldPtr judge = field->judge();
+    fields.push_back(judge ? std::move(judge) : field);
+  }
+  return Scene(std::move(fields), objects_);
+}
+
+std::string Scene::marches() const {
+  std::set<std::string_view> names;
+  for (const SceneObject& object : objects_) {
+    if (!fields_[object.field]->is_backdrop()) names.insert(fields_[object.field]->march());
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
 Scene Scene::coarser(const SceneDetail& detail) const {
   std::vector<SceneFieldPtr> fields = fields_;
   std::vector<SceneObject> objects = objects_;
@@ -263,7 +358,7 @@ Scene Scene::coarser(const SceneDetail& detail) const {
   for (SceneObject& object : objects) {
     const SceneField& field = *fields_[object.field];
     const std::optional<WorldBox> box = field.box();
-    const double side = field.detail() * object.placement.scale;
+    const double side = field.cell_side() * object.placement.scale;
     if (!(side > 0) || !box || empty(*box)) continue;
     const WorldBox in_world = world_box(object.placement, *box);
     double depth = std::numeric_limits<double>::infinity();
@@ -292,6 +387,18 @@ Scene Scene::coarser(const SceneDetail& detail) const {
 std::size_t Scene::bytes() const {
   return sizeof(*this) - sizeof(tree_) + objects_.size() * sizeof(SceneObject) + tree_.bytes() +
          (beside_tree_.size() + in_tree_.size()) * sizeof(std::uint32_t) + fields_.size() * sizeof(SceneFieldPtr);
+}
+
+void validate(const Ray& ray, const Scene& scene) {
+  validate(ray);
+  if (scene.wraps() && std::isinf(ray.t_max))
+    throw Error("ray: its range has no end; over a field that wraps round t_max must be finite");
+  if (ray.start != RayStart::on_surface) return;
+  if (ray.start_object >= scene.objects().size()) {
+    throw Error(fmt::format("ray: it starts on the surface of object {}, which does not exist; there are {}",
+                            ray.start_object, scene.objects().size()));
+  }
+  if (const HeightField* heights = height_field_of(scene.field_of(ray.start_object))) validate(ray, *heights);
 }
 
 }  // namespace scarp

@@ -1,24 +1,76 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/scene_field.h"
 
+#include "scarp/base/parallel.h"
+
 namespace scarp {
+namespace {
+
+constexpr std::int64_t kRaysPerPiece = 512;
+
+const Hit* at(std::span<const Hit* const> from, std::size_t i) { return from.empty() ? nullptr : from[i]; }
+std::span<const Hit* const> part(std::span<const Hit* const> from, std::size_t first, std::size_t count) {
+  return from.empty() ? from : from.subspan(first, count);
+}
+
+// piece(first, count) on all threads.
+template <class Piece>
+void for_each_piece(std::size_t rays, const Piece& piece) {
+  parallel_for(static_cast<std::int64_t>(rays), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
+    piece(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+  });
+}
+
+}  // namespace
+
+const HeightField* height_field_of(const SceneField& field) {
+  const SceneFieldParts parts = field.parts();
+  const auto* heights = std::get_if<SceneFieldParts::Heights>(&parts.of);
+  return heights ? heights->field : nullptr;
+}
 
 std::optional<double> SceneField::height(double, double) const { return {}; }
 
-Ray SceneField::started(const Ray& ray, const FieldHit* from, bool) const {
+Ray SceneField::started(const Ray& ray, const Hit* from) const {
   Ray r = ray;
   r.start = from ? RayStart::on_surface : RayStart::free;
   return r;
 }
 
-void SceneField::closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                              std::span<FieldHit> hits) const {
-  for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = closest_hit(rays[i], from[i], nullptr);
+void SceneField::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Hit* hit = at(from, i);
+    hits[i] = closest_hit(from.empty() || hit ? rays[i] : started(rays[i], nullptr), hit, nullptr);
+  }
 }
 
-void SceneField::occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                          std::span<std::uint8_t> blocked) const {
-  for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = occluded(rays[i], from[i]);
+void SceneField::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                          std::span<const Hit* const> from) const {
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Hit* hit = at(from, i);
+    blocked[i] = occluded(from.empty() || hit ? rays[i] : started(rays[i], nullptr), hit);
+  }
+}
+
+void SceneField::closest_hits_on_all_threads(std::span<const Ray> rays, std::span<Hit> hits,
+                                             std::span<std::uint32_t> steps, std::span<const Hit* const> from) const {
+  for_each_piece(rays.size(), [&](std::size_t first, std::size_t count) {
+    if (steps.empty())
+      return closest_hits(rays.subspan(first, count), hits.subspan(first, count), part(from, first, count));
+    for (std::size_t i = first; i < first + count; ++i) {
+      const Hit* hit = at(from, i);
+      MarchStats stats;
+      hits[i] = closest_hit(from.empty() || hit ? rays[i] : started(rays[i], nullptr), hit, &stats);
+      steps[i] = stats.steps;
+    }
+  });
+}
+
+void SceneField::occluded_on_all_threads(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                                         std::span<const Hit* const> from) const {
+  for_each_piece(rays.size(), [&](std::size_t first, std::size_t count) {
+    occluded(rays.subspan(first, count), blocked.subspan(first, count), part(from, first, count));
+  });
 }
 
 }  // namespace scarp

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A field with the march that follows rays over it, as an object of a scene: the same questions for heights, functions,
-// shapes and voxels, in the field's own space.
+// A field with its march, as an object of a scene: the same queries for heights, functions, shapes, voxels and meshes
+// (mesh/scene_mesh.h), in the field's own space.
 //
-// A ray that begins on the surface of a hit does so by the field's own rule (cell, place, voxel): nothing is pushed
-// off, but for the shadow rays of voxels with smooth normals.
+// A ray from a surface begins there by the rule of the field's kind (cell, place, voxel, triangle). No ray is pushed
+// off, except the shadow rays of voxels with smooth normals.
 #pragma once
 
 #include <cstdint>
@@ -24,26 +24,19 @@
 
 namespace scarp {
 
-/// An answer in the field's own terms.
-struct FieldHit {
-  HitStatus status = HitStatus::miss;
-  double t = std::numeric_limits<double>::infinity();
-  /// Hit: of heights (with cell), functions and shapes (without); VoxelSceneHit: of voxels. Set for hits.
-  std::variant<std::monostate, Hit, VoxelSceneHit> own;
-
-  explicit operator bool() const { return status == HitStatus::hit; }
-};
-
 /// What is at a hit, in the field's space.
 struct FieldSurface {
   dvec3 normal{0.0};                    ///< unit, outward; zero for a ray that began inside
   dvec3 shading_normal{0.0};            ///< unit
   std::optional<VoxelColour> colour{};  ///< where the field has colours of its own
   int material = 0;                     ///< of the part of a shape, as in distance_node.h; 0: that of the object
-  double openness = 1;                  ///< share of the sky that is there, as far as the field tells by itself
+  double openness = 1;                  ///< share of the sky that is open, as far as the field knows by itself
+  bool wall = false;                    ///< whether a wall of solid ground or of a plinth was hit
+  /// z of the surface, where it is known to more digits than by the ray's point: a sea at 0 is at 0.
+  std::optional<double> height{};
 };
 
-/// What a field is made of, for those who answer its rays elsewhere (field_queries.h).
+/// What a field is made of, for back ends (scene_back_end.h). Fields that no back end knows have no parts.
 struct SceneFieldParts {
   template <class Field, class Entry>
   struct Marched {
@@ -55,58 +48,80 @@ struct SceneFieldParts {
   using Function = Marched<HeightFunction, FunctionMarchEntry>;
   using Shape = Marched<DistanceField, ShapeMarchEntry>;
 
-  std::variant<Heights, Function, Shape, const VoxelScene*> of;
+  /// monostate: none of these.
+  std::variant<std::monostate, Heights, Function, Shape, const VoxelScene*> of{};
 };
 
-/// Immutable; asked from many threads at once.
+/// Immutable; may be queried from many threads at once.
+///
+/// Rays begin by Ray::start unless `from` is given: then they begin on the surface of that hit of this field. In
+/// batches `from` is empty or as long as `rays`, and rays whose entry is null begin free.
 class SceneField {
  public:
   virtual ~SceneField() = default;
 
-  virtual std::string_view kind() const = 0;   ///< "heights", "function", "shape", "voxels"
+  virtual std::string_view kind() const = 0;   ///< "heights", "function", "shape", "voxels", "mesh"
   virtual std::string_view march() const = 0;  ///< its name
-  /// Around everything that rays can meet: empty when that is nothing; no box for a field without an end.
+  /// Around everything that rays can meet: empty when that is nothing, nullopt for a field without an end.
   virtual std::optional<WorldBox> box() const = 0;
-  /// Of the ground at (x, y); nothing beside it, and for fields that are no ground.
+  /// Around what a picture should show: nullopt for a field that goes on forever. Walls of solid ground end nowhere,
+  /// but the ground does.
+  virtual std::optional<WorldBox> extent() const { return box(); }
+  /// Whether the field is only seen: it throws no shadow and is no ground.
+  virtual bool is_backdrop() const { return false; }
+  /// Of the ground at (x, y). Returns nullopt beside the ground, in its holes, and for fields that are not ground.
   virtual std::optional<double> height(double x, double y) const;
 
-  /// `ray` counts as free, but for `from`: a hit of this field on whose surface it begins, or null. `stats`, when
-  /// given, is overwritten.
-  virtual FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const = 0;
-  /// Whether closest_hit() would tell a hit; of a function with fewer octaves for shadows, of that surface; `from`
-  /// voxels with smooth normals, of the ray from above their steps.
-  virtual bool occluded(const Ray& ray, const FieldHit* from) const = 0;
-  virtual FieldSurface surface(const Ray& ray, const FieldHit& hit) const = 0;
+  /// `stats`, when given, is overwritten.
+  virtual Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const = 0;
+  /// Whether closest_hit() would return a hit. Exceptions: functions with other octaves for shadows answer for that
+  /// surface, and `from` voxels with smooth normals the ray begins above their steps.
+  virtual bool occluded(const Ray& ray, const Hit* from) const = 0;
+  virtual FieldSurface surface(const Ray& ray, const Hit& hit) const = 0;
 
-  /// What the field is like at a point below the ground, in the shape or in a solid voxel, surface included: normals of
-  /// the surface above or nearest. Nothing outside, beside the ground and in its holes.
+  /// The field at a point below the ground, in the shape or in a solid voxel, surface included: normals of the surface
+  /// above or nearest. Returns nullopt outside, beside the ground and in its holes.
   virtual std::optional<FieldSurface> within(const dvec3& p) const = 0;
 
-  /// The least thing that there is to see, in metres: a voxel. 0: nothing that is made coarser.
-  virtual double detail() const { return 0; }
-  /// What stands for the field where 2^level times its detail is small; null: the field itself.
+  /// The side of the smallest cell or voxel, in metres; 0 for fields without.
+  virtual double cell_side() const { return 0; }
+  /// What stands for the field where 2^level times its voxels are small; null: the field itself.
   virtual std::shared_ptr<const SceneField> coarser(int) const { return nullptr; }
+  /// The same field with the march that judges others: one that passes nothing. Null: there is none beside its own.
+  virtual std::shared_ptr<const SceneField> judge() const { return nullptr; }
 
-  virtual SceneFieldParts parts() const = 0;
-  /// The ray as the field's march wants it: on the surface that `from` hit, or free when that is null. `shadow`: of
-  /// occluded(), for fields whose shadows are thrown by another surface than what is seen.
-  virtual Ray started(const Ray& ray, const FieldHit* from, bool shadow) const;
+  virtual SceneFieldParts parts() const { return {}; }
+  /// The ray as the march takes it: on the surface of `from`, or free when that is null.
+  virtual Ray started(const Ray& ray, const Hit* from) const;
 
-  /// Whether rays are answered faster by the hundred.
+  /// Whether batches are faster than single rays.
   virtual bool likes_batches() const { return false; }
-  /// The same answers for many rays, on the calling thread; `from` has the length of `rays`.
-  virtual void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                            std::span<FieldHit> hits) const;
-  virtual void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                        std::span<std::uint8_t> blocked) const;
+  /// The same answers for many rays, on the calling thread.
+  virtual void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const;
+  virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                        std::span<const Hit* const> from) const;
+  /// The same on all threads. `steps`, when not empty, is what each ray cost.
+  virtual void closest_hits_on_all_threads(std::span<const Ray> rays, std::span<Hit> hits,
+                                           std::span<std::uint32_t> steps, std::span<const Hit* const> from) const;
+  virtual void occluded_on_all_threads(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                                       std::span<const Hit* const> from) const;
 };
 
 using SceneFieldPtr = std::shared_ptr<const SceneField>;
 
-/// `march` is a row of height_marches(); the field must not wrap round. Builds what the march needs. Throws Error for
-/// a setting out of its range, a field that wraps round.
+/// The field's height field; null for all other kinds.
+const HeightField* height_field_of(const SceneField& field);
+
+/// What answers the rays of a field.
+enum class AnsweredBy : std::uint8_t {
+  cpu,
+  back_end,  ///< nothing is built for the CPU, and rays asked of the field itself throw Error
+};
+
+/// `march` is a row of height_marches(). Builds what the march needs. Rays over a field that wraps round need a finite
+/// t_max. Throws Error for a setting out of its range.
 SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march = find_height_march("max-mip"),
-                            const MarchSettings& settings = {});
+                            const MarchSettings& settings = {}, AnsweredBy answered_by = AnsweredBy::cpu);
 
 /// `march` is a row of function_marches(). Throws Error for a setting out of its range.
 SceneFieldPtr scene_function(HeightFunction function,

@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: MIT
 // Height fields in scenes.
 #include <algorithm>
+#include <limits>
 #include <utility>
 #include <vector>
 
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/march/height/queries.h"
 #include "scarp/march/height/wall.h"
 #include "scarp/scene/scene_field.h"
 
 namespace scarp {
 namespace {
 
-FieldHit field_hit(const Hit& hit) { return {hit.status, hit.t, hit}; }
+constexpr std::int64_t kRaysPerCopy = 4096;
 
 class Heights final : public SceneField {
  public:
-  Heights(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings)
-      : field_(std::move(field)), march_(march), settings_(settings) {
-    if (field_.wraps()) throw Error("heights in a scene: the field must not wrap round");
+  Heights(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings, AnsweredBy answered_by)
+      : field_(std::move(field)), march_(march), settings_(settings), answered_by_(answered_by) {
     validate(settings_);
+    if (answered_by == AnsweredBy::back_end) return;
     if (march.needs_pyramid) pyramid_.emplace(field_);
     if (march.needs_slope) slope_ = slope_bound(field_);
   }
@@ -27,27 +30,34 @@ class Heights final : public SceneField {
   std::string_view kind() const override { return "heights"; }
   std::string_view march() const override { return march_.name; }
   std::optional<WorldBox> box() const override {
-    if (!field_.has_cells() || field_.all_nodata()) return WorldBox{};
-    // Solid ground has walls as deep as anybody asks.
-    if (field_.settings().solid) return {};
-    return WorldBox{{0, 0, field_.min_height()}, {field_.width(), field_.depth(), field_.max_height()}};
+    if (nothing()) return WorldBox{};
+    // Walls of solid ground reach as deep as any ray.
+    if (field_.settings().solid || field_.wraps()) return {};
+    return ground_box();
+  }
+  std::optional<WorldBox> extent() const override {
+    if (field_.wraps()) return {};
+    return nothing() ? WorldBox{} : ground_box();
   }
   std::optional<double> height(double x, double y) const override { return field_.height(x, y); }
+  double cell_side() const override { return std::min(field_.settings().cell_x, field_.settings().cell_y); }
+  SceneFieldPtr judge() const override { return scene_heights(field_, find_height_march("exhaustive")); }
 
-  FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
-    return field_hit(march_.cpu(target(), started(ray, from, false), settings_, stats));
+  Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
+    return march_.cpu(target(), from ? started(ray, from) : ray, settings_, stats);
   }
-  bool occluded(const Ray& ray, const FieldHit* from) const override {
-    const Ray r = started(ray, from, true);
+  bool occluded(const Ray& ray, const Hit* from) const override {
+    const Ray r = from ? started(ray, from) : ray;
     return march_.occluded(target(), r, settings_);
   }
-  FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
-    const Hit& own = std::get<Hit>(hit.own);
-    if (own.wall) {
-      const dvec3 normal = wall_normal(ray, own);
-      return {normal, normal, {}};
+  FieldSurface surface(const Ray& ray, const Hit& hit) const override {
+    if (hit.wall) {
+      const dvec3 normal = wall_normal(ray, hit);
+      return {.normal = normal, .shading_normal = normal, .wall = true};
     }
-    return {field_.normal(own.cell, own.u, own.v), field_.shading_normal(own.cell, own.u, own.v), {}};
+    return {.normal = field_.normal(hit.cell, hit.u, hit.v),
+            .shading_normal = field_.shading_normal(hit.cell, hit.u, hit.v),
+            .height = height_at(hit)};
   }
 
   std::optional<FieldSurface> within(const dvec3& p) const override {
@@ -55,51 +65,87 @@ class Heights final : public SceneField {
     const auto height = field_.height(p.x, p.y);
     if (!place || !height || p.z > *height) return {};
     const auto& [cell, u, v] = *place;
-    return FieldSurface{field_.normal(cell, u, v), field_.shading_normal(cell, u, v), {}};
+    return FieldSurface{field_.normal(cell, u, v), field_.shading_normal(cell, u, v)};
   }
 
   bool likes_batches() const override { return march_.simd; }
-  void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                    std::span<FieldHit> hits) const override {
-    std::vector<Hit> own(rays.size());
-    march_.batch(target(), begun(rays, from), own, settings_);
-    std::transform(own.begin(), own.end(), hits.begin(), field_hit);
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const override {
+    if (!march_.simd) return SceneField::closest_hits(rays, hits, from);
+    if (from.empty()) return march_.batch(target(), rays, hits, settings_);
+    march_.batch(target(), begun(rays, from), hits, settings_);
   }
-  void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                std::span<std::uint8_t> blocked) const override {
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                std::span<const Hit* const> from) const override {
+    if (!march_.simd) return SceneField::occluded(rays, blocked, from);
+    if (from.empty()) return march_.occluded_batch(target(), rays, blocked, settings_);
     march_.occluded_batch(target(), begun(rays, from), blocked, settings_);
   }
+  // In the order of the ground that the rays begin over, where that is faster (march/height/queries.h).
+  void closest_hits_on_all_threads(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                                   std::span<const Hit* const> from) const override {
+    if (!steps.empty()) return SceneField::closest_hits_on_all_threads(rays, hits, steps, from);
+    if (from.empty()) return scarp::closest_hits(target(), rays, hits, march_, settings_);
+    scarp::closest_hits(target(), begun_on_all_threads(rays, from), hits, march_, settings_);
+  }
+  void occluded_on_all_threads(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                               std::span<const Hit* const> from) const override {
+    if (from.empty()) return scarp::occluded(target(), rays, blocked, march_, settings_);
+    scarp::occluded(target(), begun_on_all_threads(rays, from), blocked, march_, settings_);
+  }
   SceneFieldParts parts() const override { return {SceneFieldParts::Heights{&field_, &march_, &settings_}}; }
-  // In which cell it begins the march knows from the ray. On a wall it begins free: the wall is behind it.
-  Ray started(const Ray& ray, const FieldHit* from, bool) const override {
+  // A ray from a wall begins free: the wall is behind it.
+  Ray started(const Ray& ray, const Hit* from) const override {
     Ray r = ray;
     r.start = RayStart::free;
-    if (const Hit* hit = from ? std::get_if<Hit>(&from->own) : nullptr; hit && !hit->wall) {
+    if (from && !from->wall) {
       r.start = RayStart::on_surface;
-      r.start_cell = hit->cell;
+      r.start_cell = from->cell;
     }
     return r;
   }
 
  private:
-  std::vector<Ray> begun(std::span<const Ray> rays, std::span<const FieldHit* const> from) const {
+  bool nothing() const { return !field_.has_cells() || field_.all_nodata(); }
+  WorldBox ground_box() const {
+    return {{0, 0, field_.min_height()}, {field_.width(), field_.depth(), field_.max_height()}};
+  }
+  double height_at(const Hit& hit) const {
+    const CellHeights h = field_.cell_heights(hit.cell).value();
+    const double north = h.h00 + hit.u * (h.h10 - h.h00), south = h.h01 + hit.u * (h.h11 - h.h01);
+    return field_.height_from_sample(north + hit.v * (south - north));
+  }
+  std::vector<Ray> begun(std::span<const Ray> rays, std::span<const Hit* const> from) const {
     std::vector<Ray> r(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) r[i] = started(rays[i], from[i], false);
+    for (std::size_t i = 0; i < rays.size(); ++i) r[i] = started(rays[i], from[i]);
     return r;
   }
-  HeightTarget target() const { return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_}; }
+  std::vector<Ray> begun_on_all_threads(std::span<const Ray> rays, std::span<const Hit* const> from) const {
+    std::vector<Ray> r(rays.size());
+    parallel_for(static_cast<std::int64_t>(rays.size()), kRaysPerCopy, [&](std::int64_t begin, std::int64_t end) {
+      for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+        r[i] = started(rays[i], from[i]);
+    });
+    return r;
+  }
+  HeightTarget target() const {
+    if (answered_by_ == AnsweredBy::back_end)
+      throw Error("scene: these heights were made for a back end, and nothing was built for rays on the CPU");
+    return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_};
+  }
 
   HeightField field_;
   const HeightMarchEntry& march_;
   MarchSettings settings_;
+  AnsweredBy answered_by_;
   std::optional<MaxPyramid> pyramid_;
   double slope_ = std::numeric_limits<double>::quiet_NaN();
 };
 
 }  // namespace
 
-SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings) {
-  return std::make_shared<Heights>(std::move(field), march, settings);
+SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings,
+                            AnsweredBy answered_by) {
+  return std::make_shared<Heights>(std::move(field), march, settings, answered_by);
 }
 
 }  // namespace scarp

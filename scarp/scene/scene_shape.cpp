@@ -7,6 +7,9 @@
 namespace scarp {
 namespace {
 
+constexpr double kToleranceOfJudge = 1e-9;
+constexpr int kStepsOfJudge = 1 << 20;
+
 class ShapeField final : public SceneField {
  public:
   ShapeField(DistanceField shape, const ShapeMarchEntry& march, const MarchSettings& settings)
@@ -23,14 +26,13 @@ class ShapeField final : public SceneField {
     return WorldBox{box.low, box.high};
   }
 
-  FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
-    const Hit hit = march_.cpu(shape_, started(ray, from, false), settings_, stats);
-    return {hit.status, hit.t, hit};
+  Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
+    return march_.cpu(shape_, from ? started(ray, from) : ray, settings_, stats);
   }
-  bool occluded(const Ray& ray, const FieldHit* from) const override {
-    return march_.occluded(shape_, started(ray, from, true), settings_);
+  bool occluded(const Ray& ray, const Hit* from) const override {
+    return march_.occluded(shape_, from ? started(ray, from) : ray, settings_);
   }
-  FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
+  FieldSurface surface(const Ray& ray, const Hit& hit) const override {
     const dvec3 p = ray.at(hit.t), normal = shape_.normal(p);
     return {normal, normal, {}, shape_.material(p)};
   }
@@ -38,6 +40,11 @@ class ShapeField final : public SceneField {
     if (shape_.value(p) > 0) return {};
     const dvec3 normal = shape_.normal(p);
     return FieldSurface{normal, normal, {}, shape_.material(p)};
+  }
+  SceneFieldPtr judge() const override {
+    MarchSettings settings;
+    settings.sphere_trace = {.tolerance = kToleranceOfJudge, .max_steps = kStepsOfJudge};
+    return scene_shape(shape_, find_shape_march("sphere-trace"), settings);
   }
   SceneFieldParts parts() const override { return {SceneFieldParts::Shape{&shape_, &march_, &settings_}}; }
 

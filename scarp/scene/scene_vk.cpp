@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <memory>
@@ -16,16 +17,18 @@
 #include "scarp/march/function/function_queries_vk.h"
 #include "scarp/march/height/queries_vk.h"
 #include "scarp/march/shape/shape_queries_vk.h"
+#include "scarp/scene/function_shadow.h"
 
 namespace scarp {
 namespace {
 
-// One field: rays that know how they begin, answered by its march.
+// One field.
 class FieldOnDevice {
  public:
   virtual ~FieldOnDevice() = default;
   virtual void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) = 0;
   virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) = 0;
+  virtual const DeviceTerrain* terrain() const { return nullptr; }
 };
 
 // Marches ready to run, one for all fields that have it: making one takes longer than most of its calls.
@@ -64,7 +67,10 @@ class Marches {
 class HeightsOnDevice final : public FieldOnDevice {
  public:
   HeightsOnDevice(Marches& marches, const SceneFieldParts::Heights& parts)
-      : marches_(marches), parts_(parts), ground_(marches.device(), *parts.field) {
+      : marches_(marches),
+        parts_(parts),
+        ground_(marches.device(), *parts.field),
+        terrain_{marches.device(), ground_, *parts.settings} {
     if (parts.march->needs_slope) slope_ = slope_bound(*parts.field);
     queries(false);
   }
@@ -77,6 +83,7 @@ class HeightsOnDevice final : public FieldOnDevice {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
     queries(false).occluded(target(), rays, blocked);
   }
+  const DeviceTerrain* terrain() const override { return &terrain_; }
 
  private:
   DeviceQueries& queries(bool count) { return marches_.heights(*parts_.march, *parts_.settings, count); }
@@ -85,6 +92,7 @@ class HeightsOnDevice final : public FieldOnDevice {
   Marches& marches_;
   SceneFieldParts::Heights parts_;
   DeviceGround ground_;
+  DeviceTerrain terrain_;
   double slope_ = std::numeric_limits<double>::quiet_NaN();
 };
 
@@ -99,7 +107,9 @@ class FunctionOnDevice final : public FieldOnDevice {
     queries().closest_hits({parts_.field, &device_, FunctionUse::march}, rays, hits, steps);
   }
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
-    queries().occluded({parts_.field, &device_, FunctionUse::shadow}, rays, blocked);
+    std::vector<Ray> begun(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) begun[i] = on_shadow_surface(*parts_.field, rays[i]);
+    queries().occluded({parts_.field, &device_, FunctionUse::shadow}, begun, blocked);
   }
 
  private:
@@ -132,7 +142,7 @@ class ShapeOnDevice final : public FieldOnDevice {
   DeviceShape device_;
 };
 
-class OnDevice final : public FieldQueries {
+class OnDevice final : public SceneBackEnd {
  public:
   OnDevice(const Device& device, const std::vector<SceneFieldPtr>& fields) : marches_(device), fields_(fields) {
     for (std::size_t i = 0; i < fields_.size(); ++i) {
@@ -142,20 +152,32 @@ class OnDevice final : public FieldQueries {
         throw Error(fmt::format("scene: field {} ({}): {}", i, fields_[i]->kind(), error.what()));
       }
     }
+    if (!fields_.empty() && std::all_of(on_device_.begin(), on_device_.end(), [](const auto& made) { return !made; })) {
+      throw Error(
+          fmt::format("scene: field 0 ({}): does not run on Vulkan devices; heights, functions and shapes do: "
+                      "use the CPU",
+                      fields_[0]->kind()));
+    }
   }
 
-  void closest_hits(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                    std::span<FieldHit> hits, std::span<std::uint32_t> steps) override {
-    std::vector<Hit> own(rays.size());
-    on_device_[field]->closest_hits(started(field, rays, from, false), own, steps);
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = {own[i].status, own[i].t, own[i]};
+  void closest_hits(std::uint32_t field, std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                    std::span<const Hit* const> from) override {
+    if (!on_device_[field]) return fields_[field]->closest_hits_on_all_threads(rays, hits, steps, from);
+    if (from.empty()) return on_device_[field]->closest_hits(rays, hits, steps);
+    on_device_[field]->closest_hits(started(field, rays, from), hits, steps);
   }
-  void occluded(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                std::span<std::uint8_t> blocked) override {
-    on_device_[field]->occluded(started(field, rays, from, true), blocked);
+  void occluded(std::uint32_t field, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                std::span<const Hit* const> from) override {
+    if (!on_device_[field]) return fields_[field]->occluded_on_all_threads(rays, blocked, from);
+    if (from.empty()) return on_device_[field]->occluded(rays, blocked);
+    on_device_[field]->occluded(started(field, rays, from), blocked);
+  }
+  const DeviceTerrain* terrain(std::uint32_t field) const override {
+    return on_device_[field] ? on_device_[field]->terrain() : nullptr;
   }
 
  private:
+  // Null for a field that does not run there.
   std::unique_ptr<FieldOnDevice> made(const SceneField& field) {
     const SceneFieldParts parts = field.parts();
     if (const auto* heights = std::get_if<SceneFieldParts::Heights>(&parts.of))
@@ -164,18 +186,17 @@ class OnDevice final : public FieldQueries {
       return std::make_unique<FunctionOnDevice>(marches_, *function);
     if (const auto* shape = std::get_if<SceneFieldParts::Shape>(&parts.of))
       return std::make_unique<ShapeOnDevice>(marches_, *shape);
-    throw Error("does not run on Vulkan devices; heights, functions and shapes do: ask the CPU");
+    return nullptr;
   }
-  std::vector<Ray> started(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                           bool shadow) const {
+  std::vector<Ray> started(std::uint32_t field, std::span<const Ray> rays, std::span<const Hit* const> from) const {
     std::vector<Ray> started(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) started[i] = fields_[field]->started(rays[i], from[i], shadow);
+    for (std::size_t i = 0; i < rays.size(); ++i) started[i] = fields_[field]->started(rays[i], from[i]);
     return started;
   }
 
   Marches marches_;
   std::vector<SceneFieldPtr> fields_;
-  std::vector<std::unique_ptr<FieldOnDevice>> on_device_;
+  std::vector<std::unique_ptr<FieldOnDevice>> on_device_;  // null: the CPU answers
 };
 
 }  // namespace

@@ -10,6 +10,9 @@
 namespace scarp {
 namespace {
 
+// It visits every voxel in turn, in whole numbers.
+constexpr std::string_view kJudge = "voxel-planes";
+
 class Voxels final : public SceneField {
  public:
   Voxels(VoxelScene scene, std::string_view march, const VoxelShading& shading)
@@ -21,39 +24,32 @@ class Voxels final : public SceneField {
   std::string_view march() const override { return march_; }
   std::optional<WorldBox> box() const override { return scene_.box(); }
 
-  FieldHit closest_hit(const Ray& ray, const FieldHit* from, MarchStats* stats) const override {
-    VoxelSceneStats counted;
-    const VoxelSceneHit hit = scene_.closest_hit(ray, from_of(from), stats ? &counted : nullptr);
-    if (stats) *stats = {.steps = counted.steps};
-    return {hit.hit.status, hit.hit.t, hit};
+  // A ray alone does not say on which voxel it begins: without `from` all rays are free.
+  Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
+    return scene_.closest_hit(ray, from, stats);
   }
-  bool occluded(const Ray& ray, const FieldHit* from) const override {
-    const VoxelSceneHit* voxel = from_of(from);
-    if (!voxel) return scene_.occluded(ray);
-    return shading_.normals == VoxelNormals::smooth ? occluded_above_steps(ray, *voxel)
-                                                    : scene_.occluded_from(*voxel, ray);
+  bool occluded(const Ray& ray, const Hit* from) const override {
+    if (!from) return scene_.occluded(ray);
+    return shading_.normals == VoxelNormals::smooth ? occluded_above_steps(ray, *from)
+                                                    : scene_.occluded_from(*from, ray);
   }
   bool likes_batches() const override { return true; }
-  void closest_hits(std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                    std::span<FieldHit> hits) const override {
-    std::vector<VoxelSceneHit> own(rays.size());
-    scene_.closest_hits(rays, own, all_from(from));
-    for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = {own[i].hit.status, own[i].hit.t, own[i]};
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const override {
+    scene_.closest_hits(rays, hits, from);
   }
-  void occluded(std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                std::span<std::uint8_t> blocked) const override {
-    if (shading_.normals == VoxelNormals::smooth) return SceneField::occluded(rays, from, blocked);
-    scene_.occluded(rays, blocked, all_from(from));
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                std::span<const Hit* const> from) const override {
+    if (shading_.normals == VoxelNormals::smooth && !from.empty()) return SceneField::occluded(rays, blocked, from);
+    scene_.occluded(rays, blocked, from);
   }
-  FieldSurface surface(const Ray& ray, const FieldHit& hit) const override {
-    const VoxelSceneHit& own = std::get<VoxelSceneHit>(hit.own);
+  FieldSurface surface(const Ray& ray, const Hit& hit) const override {
+    const dvec3 p = ray.at(hit.t);
     FieldSurface surface;
-    surface.normal = scene_.normal(ray, own);
-    surface.shading_normal = shading_normal(own, ray.at(own.hit.t), surface.normal);
-    surface.colour = scene_.colour(own);
+    surface.normal = scene_.normal(p, hit);
+    surface.shading_normal = shading_normal(hit, p, surface.normal);
+    surface.colour = scene_.colour(hit);
     if (shading_.corner_ao)
-      surface.openness =
-          corner_openness(scene_.grid(own), own.hit.voxel, own.hit.face, scene_.place_in_grid(own, ray.at(own.hit.t)));
+      surface.openness = corner_openness(scene_.grid(hit), hit.voxel, hit.face, scene_.place_in_grid(hit, p));
     return surface;
   }
   SceneFieldParts parts() const override { return {&scene_}; }
@@ -63,25 +59,26 @@ class Voxels final : public SceneField {
     if (!colour) return {};
     return FieldSurface{{0, 0, 1}, {0, 0, 1}, colour};
   }
-  double detail() const override { return scene_.voxel_side(); }
+  double cell_side() const override { return scene_.voxel_side(); }
+  SceneFieldPtr judge() const override { return scene_voxels(scene_.marched_by(kJudge), kJudge, shading_); }
   SceneFieldPtr coarser(int level) const override { return scene_voxels(scene_.coarser(level), march_, shading_); }
 
  private:
   // A surface that is shaded as a smooth one is not shaded by its own steps. Voxels with their middles below a plane
   // have corners up to sqrt(3) / 2 voxel above it, and faces as far below: above all of them the ray begins free.
-  bool occluded_above_steps(const Ray& ray, const VoxelSceneHit& from) const {
+  bool occluded_above_steps(const Ray& ray, const Hit& from) const {
     const dvec3 p = ray.at(ray.t_min), normal = scene_.normal(p, from);
     Ray above = ray;
     above.origin += std::sqrt(3.0) * scene_.voxel_side(from) * shading_normal(from, p, normal);
     return scene_.occluded(above);
   }
 
-  dvec3 shading_normal(const VoxelSceneHit& hit, const dvec3& p, const dvec3& normal) const {
-    if (shading_.normals == VoxelNormals::flat || hit.hit.face == VoxelFace::inside) return normal;
+  dvec3 shading_normal(const Hit& hit, const dvec3& p, const dvec3& normal) const {
+    if (shading_.normals == VoxelNormals::flat || hit.face == VoxelFace::inside) return normal;
     const dvec3 point = shading_.normals == VoxelNormals::smooth
                             ? scene_.place_in_grid(hit, p)
-                            : dvec3(hit.hit.voxel) + 0.5 + 0.5 * dvec3(normal_of(hit.hit.face));
-    const dvec3 smooth = smooth_normal(scene_.grid(hit), point, shading_.normal_radius, dvec3(normal_of(hit.hit.face)));
+                            : dvec3(hit.voxel) + 0.5 + 0.5 * dvec3(normal_of(hit.face));
+    const dvec3 smooth = smooth_normal(scene_.grid(hit), point, shading_.normal_radius, dvec3(normal_of(hit.face)));
     if (smooth == dvec3(0.0)) return normal;
     const dvec3 in_world = scene_.world_from_grid(hit, smooth);
     const double towards = dot(in_world, normal);
@@ -90,15 +87,6 @@ class Voxels final : public SceneField {
     // side may weigh more, the face itself comes in.
     const dvec3 along = in_world - towards * normal;
     return normalize(along + std::max(0.0, 1 - 2 * length(along)) * normal);
-  }
-
-  static const VoxelSceneHit* from_of(const FieldHit* from) {
-    return from ? std::get_if<VoxelSceneHit>(&from->own) : nullptr;
-  }
-  static std::vector<const VoxelSceneHit*> all_from(std::span<const FieldHit* const> from) {
-    std::vector<const VoxelSceneHit*> own;
-    for (const FieldHit* hit : from) own.push_back(from_of(hit));
-    return own;
   }
 
   VoxelScene scene_;

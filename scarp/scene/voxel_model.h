@@ -33,6 +33,9 @@ class VoxelModel {
   VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette = {},
              Extent extent = Extent::bounds);
 
+  /// The same grid and colours with another march.
+  VoxelModel marched_by(const VoxelMarchEntry& march) const { return {grid_, march, palette_, extent_}; }
+
   const VoxelGrid& grid() const { return grid_; }
   const VoxelMarchEntry& march() const { return *march_; }
   /// The voxels that rays are followed in; empty when none is solid.

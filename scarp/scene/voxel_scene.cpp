@@ -100,40 +100,42 @@ struct VoxelScene::Query {
     }
     return {to.grid_from_world * (ray.origin - object.origin), direction.given, ray.t_min, t_max, {}};
   }
-  std::optional<QuantisedRay> quantised(std::uint32_t index, double t_max, const VoxelSceneHit* from) {
+  std::optional<QuantisedRay> quantised(std::uint32_t index, double t_max, const Hit* from) {
     VoxelRay local = in_grid(index, t_max);
-    if (from && from->object == index) local.start_voxel = from->hit.voxel + normal_of(from->hit.face);
+    if (from && from->part == index) local.start_voxel = from->voxel + normal_of(from->face);
     return quantise(local, direction, scene.targets_[scene.objects_[index].model].box);
   }
-  VoxelHit rounded(std::uint32_t index, double t_max, const VoxelSceneHit* from, MarchStats* stats) {
+  VoxelHit rounded(std::uint32_t index, double t_max, const Hit* from, MarchStats* stats) {
     const std::uint32_t model = scene.objects_[index].model;
     const VoxelRay local = in_grid(index, t_max);
     return first_rounded_voxel(scene.targets_[model], scene.models_[model]->march().cpu, local, direction,
-                               scene.rounding_, from && from->object == index ? &from->hit.voxel : nullptr, stats);
+                               scene.rounding_, from && from->part == index ? &from->voxel : nullptr, stats);
   }
 };
 
 // A ray into the rounded voxel that it begins on hits there, at once, as one into a cube does: of that no neighbour,
 // where the walk begins, would tell.
-bool VoxelScene::begins_into(const Ray& ray, const VoxelSceneHit* from) const {
+bool VoxelScene::begins_into(const Ray& ray, const Hit* from) const {
   return rounding_ && from && ray.t_min <= ray.t_max && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0;
 }
 
-VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from, VoxelSceneStats* stats) const {
-  VoxelSceneHit best;
+Hit VoxelScene::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
+  if (stats) *stats = {};
+  Hit best;
   if (in_tree_.empty()) return best;
   if (const double longest = longest_of(ray.direction); !is_usual(longest)) {
     if (!is_direction(longest)) return best;
     const int exponent = std::ilogb(longest);
     best = closest_hit(scaled_down(ray, exponent), from, stats);
-    if (best) best.hit.t = std::ldexp(best.hit.t, -exponent);
+    if (best) best.t = std::ldexp(best.t, -exponent);
     return best;
   }
   Query query(*this, ray);
   double t_max = ray.t_max;
   if (begins_into(ray, from)) {
     best = *from;
-    best.hit.t = t_max = ray.t_min;
+    best.object = 0;
+    best.t = t_max = ray.t_min;
   }
   // Asked even when that is known: of hits at the same t the first object's counts.
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
@@ -152,8 +154,10 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from,
       ++stats->boxes;
       stats->steps += steps.steps;
     }
-    if (hit && (!best || hit.t < best.hit.t || index < best.object)) {
-      best = {hit, index};
+    if (hit && (!best || hit.t < best.t || index < best.part)) {
+      best = {};
+      best.status = HitStatus::hit, best.face = hit.face, best.t = hit.t;
+      best.voxel = hit.voxel, best.part = index;
       t_max = hit.t;
     }
     return t_max;
@@ -161,7 +165,7 @@ VoxelSceneHit VoxelScene::closest_hit(const Ray& ray, const VoxelSceneHit* from,
   return best;
 }
 
-bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
+bool VoxelScene::occluded(const Ray& ray, const Hit* from) const {
   if (in_tree_.empty()) return false;
   if (const double longest = longest_of(ray.direction); !is_usual(longest))
     return is_direction(longest) && occluded(scaled_down(ray, std::ilogb(longest)), from);
@@ -181,23 +185,23 @@ bool VoxelScene::occluded(const Ray& ray, const VoxelSceneHit* from) const {
   return blocked;
 }
 
-dvec3 VoxelScene::normal(const dvec3& p, const VoxelSceneHit& hit) const {
-  if (hit.hit.face == VoxelFace::inside) return dvec3(0.0);
-  if (!rounding_) return world_from_grid(hit, dvec3(normal_of(hit.hit.face)));
-  return world_from_grid(hit, rounded_normal(grid(hit), hit.hit, place_in_grid(hit, p), rounding_));
+dvec3 VoxelScene::normal(const dvec3& p, const Hit& hit) const {
+  if (hit.face == VoxelFace::inside) return dvec3(0.0);
+  if (!rounding_) return world_from_grid(hit, dvec3(normal_of(hit.face)));
+  return world_from_grid(hit, rounded_normal(grid(hit), hit.voxel, hit.face, place_in_grid(hit, p), rounding_));
 }
 
-dvec3 VoxelScene::place_in_grid(const VoxelSceneHit& hit, const dvec3& p) const {
-  const Object& object = objects_[hit.object];
+dvec3 VoxelScene::place_in_grid(const Hit& hit, const dvec3& p) const {
+  const Object& object = objects_[hit.part];
   return turns_[object.turn].grid_from_world * (p - object.origin);
 }
 
-double VoxelScene::voxel_side(const VoxelSceneHit& hit) const {
-  return length(turns_[objects_[hit.object].turn].world_from_grid[0]);
+double VoxelScene::voxel_side(const Hit& hit) const {
+  return length(turns_[objects_[hit.part].turn].world_from_grid[0]);
 }
 
-dvec3 VoxelScene::world_from_grid(const VoxelSceneHit& hit, const dvec3& direction) const {
-  return normalize(turns_[objects_[hit.object].turn].world_from_grid * direction);
+dvec3 VoxelScene::world_from_grid(const Hit& hit, const dvec3& direction) const {
+  return normalize(turns_[objects_[hit.part].turn].world_from_grid * direction);
 }
 
 std::optional<VoxelColour> VoxelScene::colour_at(const dvec3& p) const {
@@ -230,8 +234,19 @@ VoxelScene VoxelScene::coarser(int level) const {
   return VoxelScene(std::move(models), places, rounding_);
 }
 
-VoxelColour VoxelScene::colour(const VoxelSceneHit& hit) const {
-  return models_[objects_[hit.object].model]->colour(hit.hit.entry);
+VoxelScene VoxelScene::marched_by(std::string_view march) const {
+  const VoxelMarchEntry& entry = find_voxel_march(march);
+  std::vector<std::shared_ptr<const VoxelModel>> models;
+  for (const auto& model : models_) models.push_back(std::make_shared<const VoxelModel>(model->marched_by(entry)));
+  std::vector<VoxelPlace> places;
+  for (const Object& object : objects_)
+    places.push_back({object.model, turns_[object.turn].world_from_grid, object.origin});
+  return VoxelScene(std::move(models), places, rounding_);
+}
+
+VoxelColour VoxelScene::colour(const Hit& hit) const {
+  const VoxelModel& model = *models_[objects_[hit.part].model];
+  return model.colour(model.grid().entry(hit.voxel));
 }
 
 std::size_t VoxelScene::bytes() const {

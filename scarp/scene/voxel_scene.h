@@ -37,19 +37,6 @@ struct VoxelSceneOptions {
   VoxelRounding rounding{};
 };
 
-struct VoxelSceneHit {
-  VoxelHit hit;
-  std::uint32_t object = 0;  ///< index of the places
-
-  explicit operator bool() const { return static_cast<bool>(hit); }
-};
-
-/// What a ray cost besides its steps.
-struct VoxelSceneStats {
-  std::uint32_t steps = 0;
-  std::uint32_t boxes = 0;  ///< of objects that the ray came into
-};
-
 /// Immutable. Questions may be asked from many threads at once.
 class VoxelScene {
  public:
@@ -60,42 +47,42 @@ class VoxelScene {
 
   /// The same with `level` times 2 x 2 x 2 voxels made one, see coarse_voxels.h.
   VoxelScene coarser(int level) const;
+  /// The same with another march, a row of voxel_marches().
+  VoxelScene marched_by(std::string_view march) const;
 
-  /// The ray counts as one that starts free. `stats`, when given, is added to.
-  VoxelSceneHit closest_hit(const Ray& ray, VoxelSceneStats* stats = nullptr) const {
-    return closest_hit(ray, nullptr, stats);
-  }
+  /// The ray counts as one that starts free. `stats`, when given, is overwritten. `part` of hits is an index of the
+  /// places.
+  Hit closest_hit(const Ray& ray, MarchStats* stats = nullptr) const { return closest_hit(ray, nullptr, stats); }
   /// The same for a ray that starts on the face that another one hit, when `from` is not null: one that goes into the
   /// solid hits that voxel at t_min, one that leaves it does not hit it again.
-  VoxelSceneHit closest_hit(const Ray& ray, const VoxelSceneHit* from, VoxelSceneStats* stats) const;
+  Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const;
   /// Whether anything is in the way.
   bool occluded(const Ray& ray) const { return occluded(ray, nullptr); }
   /// The same for a ray that starts on the face that another one hit, as closest_hit() with `from`.
-  bool occluded_from(const VoxelSceneHit& hit, const Ray& ray) const { return occluded(ray, &hit); }
+  bool occluded_from(const Hit& hit, const Ray& ray) const { return occluded(ray, &hit); }
 
   /// hits[i] is closest_hit(rays[i], from[i], nullptr), bit for bit, on the calling thread; without `from` all rays are
   /// free. Fast where neighbouring rays go about the same way, as those of 8 x 8 pixels do. Throws Error when spans
   /// differ in length.
-  void closest_hits(std::span<const Ray> rays, std::span<VoxelSceneHit> hits,
-                    std::span<const VoxelSceneHit* const> from = {}, VoxelSceneStats* stats = nullptr) const;
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from = {}) const;
   /// blocked[i] is 1 where closest_hits() would tell a hit, else 0.
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-                std::span<const VoxelSceneHit* const> from = {}) const;
+                std::span<const Hit* const> from = {}) const;
 
   /// Outward unit normal in world space of what was hit, a face or a rounded edge; zero for a ray that began in the
   /// voxel.
-  dvec3 normal(const Ray& ray, const VoxelSceneHit& hit) const { return normal(ray.at(hit.hit.t), hit); }
+  dvec3 normal(const Ray& ray, const Hit& hit) const { return normal(ray.at(hit.t), hit); }
   /// The same by the point that was hit.
-  dvec3 normal(const dvec3& p, const VoxelSceneHit& hit) const;
-  VoxelColour colour(const VoxelSceneHit& hit) const;
+  dvec3 normal(const dvec3& p, const Hit& hit) const;
+  VoxelColour colour(const Hit& hit) const;
 
-  const VoxelGrid& grid(const VoxelSceneHit& hit) const { return models_[objects_[hit.object].model]->grid(); }
+  const VoxelGrid& grid(const Hit& hit) const { return models_[objects_[hit.object].model]->grid(); }
   /// A point of the world in the space of the object's grid.
-  dvec3 place_in_grid(const VoxelSceneHit& hit, const dvec3& p) const;
+  dvec3 place_in_grid(const Hit& hit, const dvec3& p) const;
   /// Metres of a voxel's side of the object.
-  double voxel_side(const VoxelSceneHit& hit) const;
+  double voxel_side(const Hit& hit) const;
   /// A unit vector of the grid's space in the world.
-  dvec3 world_from_grid(const VoxelSceneHit& hit, const dvec3& direction) const;
+  dvec3 world_from_grid(const Hit& hit, const dvec3& direction) const;
   /// Of the solid voxel that a point is in; nothing for a point in none.
   std::optional<VoxelColour> colour_at(const dvec3& p) const;
   /// The least side of a voxel of all objects, in metres; 0 when there is none.
@@ -120,11 +107,11 @@ class VoxelScene {
   struct Query;
   class PacketQuery;
 
-  bool begins_into(const Ray& ray, const VoxelSceneHit* from) const;
-  bool occluded(const Ray& ray, const VoxelSceneHit* from) const;
+  bool begins_into(const Ray& ray, const Hit* from) const;
+  bool occluded(const Ray& ray, const Hit* from) const;
   template <class Together, class Alone>
-  void by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from, VoxelSceneHit* hits,
-                  const Together& together, const Alone& alone) const;
+  void by_packets(std::span<const Ray> rays, std::span<const Hit* const> from, Hit* hits, const Together& together,
+                  const Alone& alone) const;
 
   std::vector<std::shared_ptr<const VoxelModel>> models_;
   std::vector<VoxelTarget> targets_;

@@ -38,29 +38,27 @@ void require_same_length(std::size_t rays, std::size_t answers) {
 // Up to 64 world rays on their way through the objects together.
 class VoxelScene::PacketQuery {
  public:
-  using From = std::span<const VoxelSceneHit* const>;
+  using From = std::span<const Hit* const>;
 
   explicit PacketQuery(const VoxelScene& scene) : scene_(scene) {}
 
   // hits[i] answers rays[i]; without them whether there is one is asked. False: they go too far apart, or their
   // directions are of no usual length, and nothing is known.
-  bool ask(std::span<const Ray> rays, From from, VoxelSceneHit* hits) {
+  bool ask(std::span<const Ray> rays, From from, Hit* hits) {
     rays_ = rays, from_ = from, hits_ = hits;
-    found_ = 0, boxes_ = 0;
+    if (hits) std::fill(hits, hits + rays.size(), Hit{});
+    found_ = 0;
     if (!load()) return false;
     if (scene_.in_tree_.size() <= kAskedAtOnce) {
       const std::uint64_t all = ~std::uint64_t{0} >> (kRays - rays.size());
-      for (const std::uint32_t index : scene_.in_tree_)
-        boxes_ += static_cast<std::uint32_t>(std::popcount(meet(index, all).met));
+      for (const std::uint32_t index : scene_.in_tree_) meet(index, all);
     } else if (!ask_tree()) {
       return false;
     }
-    if (hits_) finish();
     return true;
   }
 
   bool found(std::size_t i) const { return found_ >> i & 1; }
-  VoxelSceneStats stats() const { return {static_cast<std::uint32_t>(packet_.steps), boxes_}; }
 
  private:
   std::span<const double> t_max() const { return {packet_.t_max, rays_.size()}; }
@@ -82,25 +80,11 @@ class VoxelScene::PacketQuery {
     int wasted = 0;
     scene_.tree_.traverse(*beam, [&](std::uint32_t in_tree) {
       const Meeting meeting = meet(scene_.in_tree_[in_tree], hits_ ? beam->inside : beam->inside & ~found_);
-      boxes_ += static_cast<std::uint32_t>(std::popcount(meeting.met));
       wasted += std::popcount(meeting.met) < kFewRays ? 1 : 0;
       if (wasted > kWasted) return -1.0f;
       return meeting.hit == 0 ? std::numeric_limits<float>::infinity() : beam->end_of(t_max());
     });
     return wasted <= kWasted;
-  }
-
-  // What is left to be told.
-  void finish() {
-    for (std::size_t i = 0; i < rays_.size(); ++i) {
-      VoxelSceneHit& hit = hits_[i];
-      if (found(i)) {
-        hit.hit.status = HitStatus::hit;
-        hit.hit.entry = scene_.targets_[scene_.objects_[hit.object].model].grid->entry(hit.hit.voxel);
-      } else {
-        hit = {};
-      }
-    }
   }
 
   struct Meeting {
@@ -116,7 +100,7 @@ class VoxelScene::PacketQuery {
     std::uint64_t alone = march.simd ? 0 : open;
     if (!from_.empty()) {
       for_each_bit(open, [&](std::size_t i) {
-        if (from_[i] && from_[i]->object == index) alone |= std::uint64_t{1} << i;
+        if (from_[i] && from_[i]->part == index) alone |= std::uint64_t{1} << i;
       });
     }
     Meeting meeting;
@@ -127,9 +111,9 @@ class VoxelScene::PacketQuery {
       for (std::size_t k = 0; k < packet_.hits; ++k) {
         const auto i = static_cast<std::size_t>(packet_.ray[k]);
         meeting.hit |= std::uint64_t{1} << i;
-        if (VoxelSceneHit* to = keep(i, packet_.t[k], index)) {
-          to->hit.face = static_cast<VoxelFace>(packet_.face[k]);
-          for (int axis = 0; axis < 3; ++axis) to->hit.voxel[axis] = static_cast<int>(packet_.voxel[axis][k]);
+        if (Hit* to = keep(i, packet_.t[k], index)) {
+          to->face = static_cast<VoxelFace>(packet_.face[k]);
+          for (int axis = 0; axis < 3; ++axis) to->voxel[axis] = static_cast<int>(packet_.voxel[axis][k]);
         }
       }
     }
@@ -142,8 +126,8 @@ class VoxelScene::PacketQuery {
     }
     for_each_bit(alone, [&](std::size_t i) {
       std::optional<ivec3> start_voxel;
-      const VoxelSceneHit* from = from_.empty() ? nullptr : from_[i];
-      if (from && from->object == index) start_voxel = from->hit.voxel + normal_of(from->hit.face);
+      const Hit* from = from_.empty() ? nullptr : from_[i];
+      if (from && from->part == index) start_voxel = from->voxel + normal_of(from->face);
       const VoxelRay ray{turn.grid_from_world * (rays_[i].origin - object.origin), directions_[i].given, rays_[i].t_min,
                          packet_.t_max[i], start_voxel};
       const auto quantised = quantise(ray, directions_[i], target.box);
@@ -154,23 +138,24 @@ class VoxelScene::PacketQuery {
       meeting.met |= std::uint64_t{1} << i;
       if (!hit) return;
       meeting.hit |= std::uint64_t{1} << i;
-      if (VoxelSceneHit* to = keep(i, hit.t, index)) to->hit = hit;
+      if (Hit* to = keep(i, hit.t, index)) to->face = hit.face, to->voxel = hit.voxel;
     });
     return meeting;
   }
 
   // Where the hit is to be told, if it is the nearest so far.
-  VoxelSceneHit* keep(std::size_t i, double t, std::uint32_t index) {
+  Hit* keep(std::size_t i, double t, std::uint32_t index) {
     const bool again = found(i);
     found_ |= std::uint64_t{1} << i;
     if (!hits_) {
       packet_.t_max[i] = -std::numeric_limits<double>::infinity();
       return nullptr;
     }
-    VoxelSceneHit& to = hits_[i];
-    if (again && t == to.hit.t && index > to.object) return nullptr;
-    to.hit.t = packet_.t_max[i] = t;
-    to.object = index;
+    Hit& to = hits_[i];
+    if (again && t == to.t && index > to.part) return nullptr;
+    to.status = HitStatus::hit;
+    to.t = packet_.t_max[i] = t;
+    to.part = index;
     return &to;
   }
 
@@ -179,16 +164,15 @@ class VoxelScene::PacketQuery {
   const VoxelScene& scene_;
   std::span<const Ray> rays_;
   From from_;
-  VoxelSceneHit* hits_ = nullptr;
+  Hit* hits_ = nullptr;
   VoxelPacket packet_;
   std::uint32_t aimed_ = kNoTurn, alone_aimed_ = kNoTurn;  // turns of the directions in packet_ and directions_
   std::vector<VoxelDirection> directions_;
   std::uint64_t found_ = 0;
-  std::uint32_t boxes_ = 0;
 };
 
 template <class Together, class Alone>
-void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const VoxelSceneHit* const> from, VoxelSceneHit* hits,
+void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const Hit* const> from, Hit* hits,
                             const Together& together, const Alone& alone) const {
   if (!from.empty()) require_same_length(rays.size(), from.size());
   // Rounded voxels are met by rays alone.
@@ -215,28 +199,22 @@ void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const VoxelScen
   }
 }
 
-void VoxelScene::closest_hits(std::span<const Ray> rays, std::span<VoxelSceneHit> hits,
-                              std::span<const VoxelSceneHit* const> from, VoxelSceneStats* stats) const {
+void VoxelScene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const {
   require_same_length(rays.size(), hits.size());
   by_packets(
-      rays, from, hits.data(),
-      [&](const PacketQuery& query, std::size_t, std::size_t) {
-        if (!stats) return;
-        const VoxelSceneStats of_all = query.stats();
-        stats->steps += of_all.steps, stats->boxes += of_all.boxes;
-      },
-      [&](std::size_t i, const VoxelSceneHit* start) { hits[i] = closest_hit(rays[i], start, stats); });
+      rays, from, hits.data(), [](const PacketQuery&, std::size_t, std::size_t) {},
+      [&](std::size_t i, const Hit* start) { hits[i] = closest_hit(rays[i], start, nullptr); });
 }
 
 void VoxelScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-                          std::span<const VoxelSceneHit* const> from) const {
+                          std::span<const Hit* const> from) const {
   require_same_length(rays.size(), blocked.size());
   by_packets(
       rays, from, nullptr,
       [&](const PacketQuery& query, std::size_t begin, std::size_t count) {
         for (std::size_t i = 0; i < count; ++i) blocked[begin + i] = query.found(i);
       },
-      [&](std::size_t i, const VoxelSceneHit* start) { blocked[i] = occluded(rays[i], start); });
+      [&](std::size_t i, const Hit* start) { blocked[i] = occluded(rays[i], start); });
 }
 
 }  // namespace scarp

@@ -13,6 +13,7 @@ set(package_of_OpenEXR libopenexr-dev)
 set(package_of_PkgConfig pkg-config)
 set(package_of_tinyobjloader libtinyobjloader-dev)
 set(package_of_TinyGLTF libtinygltf-dev)
+set(package_of_embree libembree-dev)
 
 file(READ ${ROOT}/cmake/scarp-config.cmake.in config)
 file(READ ${ROOT}/doc/library/using.md using)

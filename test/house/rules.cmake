@@ -1,10 +1,10 @@
 # The rules of the house, checked on the sources' text:
 #   cmake -D ROOT=<checkout> -D PUBLIC_HEADERS=<file with one header per line> -P rules.cmake
 # 1. Includes go one way along the stations.        2. scarp::core includes neither GDAL, PROJ, libpng nor OpenEXR.
-# 3. app/, examples/ and bench/ include only public headers; so do the public headers themselves.
-# 4. No file above 700 lines.                        5. Each C++ file names its licence in its first line.
-# 6. The oracles share no code with the marches that they judge.
-# 7. In march/, only the tables and the queries include the tables: a technique does not depend on the others.
+# 3. Of the library, scene/mesh alone includes Embree.
+# 4. app/, examples/ and bench/ include only public headers; so do the public headers themselves.
+# 5. No file above 700 lines.                        6. Each C++ file names its licence in its first line.
+# 7. The oracles share no code with the marches that they judge.
 # Before it judges the checkout, the check proves itself on a tree with one breach of each rule.
 cmake_minimum_required(VERSION 3.25)
 
@@ -15,10 +15,11 @@ set(sees_field base field)
 set(sees_accel base vk field accel)
 set(sees_march base vk field accel march)
 set(sees_scene base vk field accel march scene)
-set(sees_scene_file base vk source field accel march scene scene_file)
-set(sees_render base vk source field accel march scene scene_file render)
+set(sees_scene_mesh base vk source field accel march scene scene_mesh)
+set(sees_scene_file base vk source field accel march scene scene_mesh scene_file)
+set(sees_render base vk source field accel march scene scene_mesh scene_file render)
 set(sees_output base output)
-set(stations base vk source field accel march scene scene_file render output)
+set(stations base vk source field accel march scene scene_mesh scene_file render output)
 set(core_stations base vk field accel march scene)
 set(oracles scarp/march/height/exhaustive.cpp scarp/march/voxel/voxel_exhaustive.cpp)
 set(max_lines 700)
@@ -43,16 +44,16 @@ function(check root public_headers result)
     string(REGEX MATCHALL "#include [<\"][^>\"]+[>\"]" includes "${text}")
     string(REGEX MATCH "^scarp/([a-z]+)/" in_station "${file}")
     set(station "${CMAKE_MATCH_1}")
-    if(file MATCHES "^scarp/scene/file/")
-      set(station scene_file)
+    if(file MATCHES "^scarp/scene/(file|mesh)/")
+      set(station scene_${CMAKE_MATCH_1})
     endif()
     foreach(include IN LISTS includes)
       string(REGEX MATCH "[<\"]([^>\"]+)[>\"]" ignored "${include}")
       set(header "${CMAKE_MATCH_1}")
       string(REGEX MATCH "^scarp/([a-z]+)/" of_station "${header}")
       set(target "${CMAKE_MATCH_1}")
-      if(header MATCHES "^scarp/scene/file/")
-        set(target scene_file)
+      if(header MATCHES "^scarp/scene/(file|mesh)/")
+        set(target scene_${CMAKE_MATCH_1})
       endif()
       if(in_station)
         if(NOT station IN_LIST stations)
@@ -65,6 +66,9 @@ function(check root public_headers result)
         if(station IN_LIST core_stations AND header MATCHES "^(gdal|ogr|cpl_|proj|png|OpenEXR|Imath)")
           list(APPEND breaches "${file}: scarp::core must not include ${header}")
         endif()
+      endif()
+      if(file MATCHES "^(scarp|app|examples)/" AND NOT station STREQUAL "scene_mesh" AND header MATCHES "^embree")
+        list(APPEND breaches "${file}: only scarp/scene/mesh, bench and tests may include ${header}")
       endif()
       string(REPLACE ".cpp" ".h" own_header "${file}")
       if(file IN_LIST oracles AND header MATCHES "^scarp/(accel|march)/" AND NOT header STREQUAL own_header)
@@ -94,6 +98,8 @@ function(prove_the_check)
   file(WRITE ${tree}/scarp/scene/reading.cpp "${licence}#include \"scarp/scene/file/scene_file.h\"\n")
   file(WRITE ${tree}/scarp/vk/knowing.cpp "${licence}#include \"scarp/field/good.h\"\n")
   file(WRITE ${tree}/scarp/march/raster.cpp "${licence}#include <gdal_priv.h>\n")
+  file(WRITE ${tree}/scarp/scene/file/tracing.cpp "${licence}#include <embree3/rtcore.h>\n")
+  file(WRITE ${tree}/scarp/scene/mesh/good.h "${licence}#include <embree3/rtcore.h>\n")
   file(WRITE ${tree}/scarp/field/leaky.h "${licence}#include \"scarp/base/secret.h\"\n")
   file(WRITE ${tree}/app/cli/deep.cpp "${licence}#include \"scarp/base/secret.h\"\n")
   file(WRITE ${tree}/scarp/util/new.cpp "${licence}#include <vector>\n")
@@ -105,7 +111,7 @@ function(prove_the_check)
   check(${tree} "scarp/base/ray.h;scarp/field/good.h;scarp/field/leaky.h;scarp/march/height/height_table.h" breaches)
   file(REMOVE_RECURSE ${tree})
   list(LENGTH breaches count)
-  foreach(expected "upwards.cpp: field must not" "reading.cpp: scene must not" "knowing.cpp: vk must not" "raster.cpp: scarp::core must not" "leaky.h: includes"
+  foreach(expected "upwards.cpp: field must not" "reading.cpp: scene must not" "knowing.cpp: vk must not" "raster.cpp: scarp::core must not" "tracing.cpp: only scarp/scene/mesh" "leaky.h: includes"
           "deep.cpp: includes"
           "new.cpp: the station 'util'" "anonymous.cpp: the first line" "long.cpp: 701 lines" "the oracle must not include .*ground.h"
           "naive.h: a technique must not include the table")

@@ -12,7 +12,6 @@
 
 #include "base/refusal.h"
 #include "scarp/base/error.h"
-#include "scarp/scene/field_queries.h"
 
 namespace scarp {
 namespace {
@@ -85,15 +84,15 @@ Scene crowd(unsigned seed) {
   return Scene(std::move(fields), std::move(objects));
 }
 
-std::vector<SceneRay> rays_through(unsigned seed, int count) {
+std::vector<Ray> rays_through(unsigned seed, int count) {
   Random random(seed);
-  std::vector<SceneRay> rays;
+  std::vector<Ray> rays;
   for (int i = 0; i < count; ++i) {
     Ray ray;
     ray.origin = {random.in(-80, 80), random.in(-80, 80), random.in(-80, 80)};
     ray.direction = random.direction() * random.in(0.1, 10);
     if (i % 3 == 0) ray.t_max = random.in(1, 60);
-    rays.push_back({ray});
+    rays.push_back(ray);
   }
   return rays;
 }
@@ -101,21 +100,22 @@ std::vector<SceneRay> rays_through(unsigned seed, int count) {
 // What sphere-trace and lipschitz-local may stop early by, per unit of distance: their tolerance; each of two answers.
 constexpr double kTolerance = 2e-6;
 
-// Who answers a scene's fields in the place of their marches: they themselves, ray by ray.
-class Themselves final : public FieldQueries {
+// A back end that asks the fields' own marches, ray by ray.
+class Themselves final : public SceneBackEnd {
  public:
   explicit Themselves(std::vector<SceneFieldPtr> fields) : fields_(std::move(fields)) {}
-  void closest_hits(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                    std::span<FieldHit> hits, std::span<std::uint32_t> steps) override {
+  void closest_hits(std::uint32_t field, std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                    std::span<const Hit* const> from) override {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       MarchStats stats;
-      hits[i] = fields_[field]->closest_hit(rays[i], from[i], &stats);
+      hits[i] = fields_[field]->closest_hit(rays[i], from.empty() ? nullptr : from[i], &stats);
       if (!steps.empty()) steps[i] = stats.steps;
     }
   }
-  void occluded(std::uint32_t field, std::span<const Ray> rays, std::span<const FieldHit* const> from,
-                std::span<std::uint8_t> blocked) override {
-    for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = fields_[field]->occluded(rays[i], from[i]);
+  void occluded(std::uint32_t field, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                std::span<const Hit* const> from) override {
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      blocked[i] = fields_[field]->occluded(rays[i], from.empty() ? nullptr : from[i]);
   }
 
  private:
@@ -127,59 +127,61 @@ TEST(SceneOfManyFields, MayBeAnsweredFieldByField) {
   const Scene elsewhere = scene.answered_by(std::make_shared<Themselves>(scene.fields()));
   EXPECT_TRUE(elsewhere.on_device());
   EXPECT_FALSE(scene.on_device());
-  const std::vector<SceneRay> rays = rays_through(7, 700);
-  std::vector<SceneHit> hits(rays.size());
+  const std::vector<Ray> rays = rays_through(7, 700);
+  std::vector<Hit> hits(rays.size());
   std::vector<std::uint32_t> steps(rays.size());
   std::vector<std::uint8_t> blocked(rays.size());
   elsewhere.closest_hits(rays, hits, steps);
   elsewhere.occluded(rays, blocked);
-  std::vector<SceneRay> onwards;
+  std::vector<Ray> onwards;
+  std::vector<const Hit*> from;
   std::uint64_t cost = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const SceneHit one = scene.closest_hit(rays[i]);
-    EXPECT_EQ(hits[i].field.status, one.field.status);
-    EXPECT_EQ(hits[i].t(), one.t());
+    const Hit one = scene.closest_hit(rays[i]);
+    EXPECT_EQ(hits[i].status, one.status);
+    EXPECT_EQ(hits[i].t, one.t);
     EXPECT_EQ(hits[i].object, one.object);
     EXPECT_EQ(blocked[i], scene.occluded(rays[i]));
     cost += steps[i];
     if (!one) continue;
-    Ray ray = rays[i].ray;
-    ray.origin = ray.at(one.t());
+    Ray ray = rays[i];
+    ray.origin = ray.at(one.t);
     ray.direction = dvec3(0.3, 0.4, 0.5);
     ray.t_min = 0;
-    onwards.push_back({ray, &hits[i]});
+    onwards.push_back(ray);
+    from.push_back(&hits[i]);
   }
   EXPECT_GT(cost, rays.size());
   std::vector<std::uint8_t> shaded(onwards.size());
-  elsewhere.occluded(onwards, shaded);
-  for (std::size_t i = 0; i < onwards.size(); ++i) EXPECT_EQ(shaded[i], scene.occluded(onwards[i]));
-  EXPECT_EQ(elsewhere.closest_hit(onwards[0]).t(), scene.closest_hit(onwards[0]).t());
+  elsewhere.occluded(onwards, shaded, from);
+  for (std::size_t i = 0; i < onwards.size(); ++i) EXPECT_EQ(shaded[i], scene.occluded(onwards[i], from[i]));
+  EXPECT_EQ(elsewhere.closest_hit(onwards[0], from[0]).t, scene.closest_hit(onwards[0], from[0]).t);
 }
 
 TEST(SceneOfManyFields, TellsTheNearestOfAllObjects) {
   const Scene scene = crowd(5);
   int hits = 0;
-  for (const SceneRay& ray : rays_through(6, 3000)) {
-    const SceneHit hit = scene.closest_hit(ray);
-    SceneHit nearest;
+  for (const Ray& ray : rays_through(6, 3000)) {
+    const Hit hit = scene.closest_hit(ray);
+    Hit nearest;
     for (std::uint32_t i = 0; i < scene.objects().size(); ++i) {
       const SceneObject& object = scene.objects()[i];
-      const FieldHit alone =
-          scene.fields()[object.field]->closest_hit(object.placement.field_from_world(ray.ray), nullptr, nullptr);
+      const Hit alone =
+          scene.fields()[object.field]->closest_hit(object.placement.field_from_world(ray), nullptr, nullptr);
       ASSERT_NE(alone.status, HitStatus::exhausted) << "object " << i;
-      if (alone && (!nearest || alone.t < nearest.t())) nearest = {alone, i};
+      if (alone && (!nearest || alone.t < nearest.t)) nearest = alone, nearest.object = i;
     }
     ASSERT_EQ(bool(hit), bool(nearest));
     if (!hit) continue;
     ++hits;
-    const double close = kTolerance * nearest.t();
-    EXPECT_NEAR(hit.t(), nearest.t(), close);
+    const double close = kTolerance * nearest.t;
+    EXPECT_NEAR(hit.t, nearest.t, close);
     if (hit.object != nearest.object) {
-      const FieldHit other = scene.fields()[scene.objects()[hit.object].field]->closest_hit(
-          scene.objects()[hit.object].placement.field_from_world(ray.ray), nullptr, nullptr);
-      EXPECT_NEAR(other.t, nearest.t(), 2 * close);
+      const Hit other = scene.fields()[scene.objects()[hit.object].field]->closest_hit(
+          scene.objects()[hit.object].placement.field_from_world(ray), nullptr, nullptr);
+      EXPECT_NEAR(other.t, nearest.t, 2 * close);
     }
-    EXPECT_EQ(scene.surface(ray.ray, hit).material, hit.object);
+    EXPECT_EQ(scene.surface(ray, hit).material, hit.object);
   }
   EXPECT_GT(hits, 1000);
 }
@@ -197,19 +199,19 @@ Scene layers() {
 TEST(SceneOfManyFields, BatchesAndOcclusionAgreeWithSingleRays) {
   for (const unsigned seed : {7u, 8u}) {
     const Scene scene = seed == 7 ? crowd(seed) : layers();
-    const std::vector<SceneRay> rays = rays_through(seed, 2000);
-    std::vector<SceneHit> hits(rays.size());
+    const std::vector<Ray> rays = rays_through(seed, 2000);
+    std::vector<Hit> hits(rays.size());
     std::vector<std::uint8_t> blocked(rays.size());
     scene.closest_hits(rays, hits);
     scene.occluded(rays, blocked);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      SceneStats stats;
-      const SceneHit one = scene.closest_hit(rays[i], &stats);
-      ASSERT_EQ(hits[i].field.status, one.field.status);
+      MarchStats stats;
+      const Hit one = scene.closest_hit(rays[i], nullptr, &stats);
+      ASSERT_EQ(hits[i].status, one.status);
       ASSERT_EQ(blocked[i] != 0, bool(one));
       ASSERT_EQ(scene.occluded(rays[i]), bool(one));
       if (one) {
-        ASSERT_EQ(hits[i].t(), one.t());
+        ASSERT_EQ(hits[i].t, one.t);
         ASSERT_EQ(hits[i].object, one.object);
       }
     }
@@ -239,7 +241,7 @@ TEST(SceneOfManyFields, RaysFromASurfaceAreNotBlockedByIt) {
       seen.origin = placement.world_from_field({0.6, 0.6, 9});
       const dvec3 towards = placement.world_from_field({random.in(0.05, 1.15), random.in(0.05, 1.15), 0.2});
       seen.direction = towards - seen.origin;
-      const SceneHit hit = scene.closest_hit({seen});
+      const Hit hit = scene.closest_hit(seen);
       if (!hit) continue;
       const SceneSurface surface = scene.surface(seen, hit);
       Ray away;
@@ -247,9 +249,9 @@ TEST(SceneOfManyFields, RaysFromASurfaceAreNotBlockedByIt) {
       away.direction = random.direction();
       if (dot(away.direction, surface.normal) < 0) away.direction = -away.direction;
       ++tried;
-      EXPECT_FALSE(scene.occluded({away, &hit})) << "field " << field;
-      EXPECT_FALSE(scene.closest_hit({away, &hit})) << "field " << field;
-      blocked_when_free += scene.occluded({away});
+      EXPECT_FALSE(scene.occluded(away, &hit)) << "field " << field;
+      EXPECT_FALSE(scene.closest_hit(away, &hit)) << "field " << field;
+      blocked_when_free += scene.occluded(away);
     }
   }
   EXPECT_GT(tried, 1000);
@@ -262,9 +264,9 @@ TEST(SceneOfManyFields, PlacesAndScalesWithoutTouchingT) {
   const Scene scene({ball(2)}, {{0, 42, {turned({1, 2, 3}, 1), 1.5, {10, 0, 0}}}});
   Ray ray;
   ray.direction = {2, 0, 0};
-  const SceneHit hit = scene.closest_hit({ray});
+  const Hit hit = scene.closest_hit(ray);
   ASSERT_TRUE(hit);
-  EXPECT_NEAR(hit.t(), 3.5, kTolerance * 3.5);
+  EXPECT_NEAR(hit.t, 3.5, kTolerance * 3.5);
   const SceneSurface surface = scene.surface(ray, hit);
   EXPECT_NEAR(length(surface.normal - dvec3(-1, 0, 0)), 0, 1e-5);
   EXPECT_NEAR(length(surface.position - dvec3(7, 0, 0)), 0, 1e-5);
@@ -282,8 +284,8 @@ TEST(SceneOfManyFields, FindsOneOfThousands) {
   for (std::uint32_t i = 0; i < objects.size(); i += 37) {
     Ray down;
     down.origin = objects[i].placement.origin + dvec3(0.2, -0.1, 50);
-    SceneStats stats;
-    const SceneHit hit = scene.closest_hit({down}, &stats);
+    MarchStats stats;
+    const Hit hit = scene.closest_hit(down, nullptr, &stats);
     ASSERT_TRUE(hit);
     EXPECT_EQ(hit.object, i);
     EXPECT_LE(stats.boxes, 4u);

@@ -43,49 +43,51 @@ TEST_F(ScenesOnDevice, TellTheNearestHit) {
   constexpr double kDelta = 0.01;
   const Scene cpu = terrain_and_hills(), on_device = scene_on(device(), cpu);
   std::mt19937_64 random(4);
-  std::vector<SceneRay> rays, higher, lower;
+  std::vector<Ray> rays, higher, lower;
   for (int i = 0; i < 2000; ++i) {
     Ray ray;
     ray.origin = {between(random, -100, 100), between(random, -100, 100), between(random, 40, 90)};
     ray.direction = {between(random, -1, 1), between(random, -1, 1), between(random, -1, 0.1)};
     ray.t_max = 300;
-    rays.push_back({ray});
+    rays.push_back(ray);
     ray.origin.z += kDelta;
-    higher.push_back({ray});
+    higher.push_back(ray);
     ray.origin.z -= 2 * kDelta;
-    lower.push_back({ray});
+    lower.push_back(ray);
   }
-  const auto closest = [](const Scene& scene, const std::vector<SceneRay>& of) {
-    std::vector<SceneHit> hits(of.size());
+  const auto closest = [](const Scene& scene, const std::vector<Ray>& of) {
+    std::vector<Hit> hits(of.size());
     scene.closest_hits(of, hits);
     return hits;
   };
-  const std::vector<SceneHit> above = closest(cpu, higher), below = closest(cpu, lower);
-  std::vector<SceneHit> hits(rays.size());
+  const std::vector<Hit> above = closest(cpu, higher), below = closest(cpu, lower);
+  std::vector<Hit> hits(rays.size());
   std::vector<std::uint32_t> steps(rays.size());
   std::vector<std::uint8_t> blocked(rays.size());
   on_device.closest_hits(rays, hits, steps);
   on_device.occluded(rays, blocked);
-  EXPECT_EQ(on_device.closest_hit(rays[0]).t(), hits[0].t());
+  EXPECT_EQ(on_device.closest_hit(rays[0]).t, hits[0].t);
   std::size_t agreed = 0, met[3] = {};
-  std::vector<SceneRay> suns;
+  std::vector<Ray> suns;
+  std::vector<const Hit*> from;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    if (above[i].field.status != below[i].field.status || above[i].object != below[i].object) continue;
-    if (above[i] && std::abs(above[i].t() - below[i].t()) > 1) continue;
+    if (above[i].status != below[i].status || above[i].object != below[i].object) continue;
+    if (above[i] && std::abs(above[i].t - below[i].t) > 1) continue;
     ++agreed;
-    ASSERT_EQ(hits[i].field.status, above[i].field.status) << i;
+    ASSERT_EQ(hits[i].status, above[i].status) << i;
     if (!hits[i]) continue;
     ++met[hits[i].object];
     EXPECT_EQ(hits[i].object, above[i].object) << i;
     EXPECT_GT(steps[i], 0u);
-    const double slack = 1e-5 * above[i].t();  // of lipschitz-local, on either side, and more
-    EXPECT_GE(hits[i].t(), std::min(above[i].t(), below[i].t()) - slack) << i;
-    EXPECT_LE(hits[i].t(), std::max(above[i].t(), below[i].t()) + slack) << i;
-    Ray sun = rays[i].ray;
-    sun.origin = sun.at(hits[i].t());
+    const double slack = 1e-5 * above[i].t;  // of lipschitz-local, on either side, and more
+    EXPECT_GE(hits[i].t, std::min(above[i].t, below[i].t) - slack) << i;
+    EXPECT_LE(hits[i].t, std::max(above[i].t, below[i].t) + slack) << i;
+    Ray sun = rays[i];
+    sun.origin = sun.at(hits[i].t);
     sun.direction = {0.3, 0.2, 0.9};
     sun.t_max = 1e6;
-    suns.push_back({sun, &hits[i]});
+    suns.push_back(sun);
+    from.push_back(&hits[i]);
   }
   EXPECT_GT(agreed, rays.size() * 9 / 10);
   EXPECT_GT(met[0], 100u);
@@ -93,8 +95,8 @@ TEST_F(ScenesOnDevice, TellTheNearestHit) {
   EXPECT_GT(met[2], 20u);
   // To the sun, from the surface: the function's shadow has another octave less, and begins on its own surface.
   std::vector<std::uint8_t> shaded(suns.size()), on_cpu(suns.size());
-  on_device.occluded(suns, shaded);
-  cpu.occluded(suns, on_cpu);
+  on_device.occluded(suns, shaded, from);
+  cpu.occluded(suns, on_cpu, from);
   std::size_t unlike = 0, dark = 0;
   for (std::size_t i = 0; i < suns.size(); ++i) unlike += shaded[i] != on_cpu[i], dark += on_cpu[i];
   EXPECT_LE(unlike, suns.size() / 200);
@@ -104,17 +106,55 @@ TEST_F(ScenesOnDevice, TellTheNearestHit) {
 TEST_F(ScenesOnDevice, RefuseWhatDoesNotRunThere) {
   const auto model = std::make_shared<const VoxelModel>(VoxelGrid(ivec3(2), 8), find_voxel_march("voxel-bricks"));
   const VoxelPlace place{};
-  const Scene scene({scene_shape(DistanceField(make_shape(shape::Sphere{}))),
-                     scene_voxels(VoxelScene({model}, std::span(&place, 1)), "voxel-bricks")},
-                    {{0, 0, {}}, {1, 0, {}}});
+  const Scene scene(scene_voxels(VoxelScene({model}, std::span(&place, 1)), "voxel-bricks"));
   try {
     scene_on(device(), scene);
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(
         error.what(),
-        "scene: field 1 (voxels): does not run on Vulkan devices; heights, functions and shapes do: ask the CPU");
+        "scene: field 0 (voxels): does not run on Vulkan devices; heights, functions and shapes do: use the CPU");
   }
+}
+
+// Voxels between a ball and a floor that the device answers.
+TEST_F(ScenesOnDevice, TheCpuAnswersOtherFields) {
+  VoxelGrid grid(ivec3(4), 8);
+  grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
+    return (v.x + v.y + v.z) % 2 == 0 ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
+  });
+  const auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
+  const VoxelPlace place{};
+  const Scene cpu({scene_shape(DistanceField(make_shape(shape::Sphere{2}))),
+                   scene_voxels(VoxelScene({model}, std::span(&place, 1)), "voxel-bricks"),
+                   scene_function(HeightFunction(make_function(Plane{})))},
+                  {{0, 0, {.origin = {0, 0, 20}}}, {1, 0, {.scale = 2, .origin = {-4, -4, 4}}}, {2, 0, {}}});
+  const Scene on_device = scene_on(device(), cpu);
+  std::mt19937_64 random(5);
+  std::vector<Ray> rays(2000);
+  for (Ray& ray : rays) {
+    ray.origin = {between(random, -6, 6), between(random, -6, 6), between(random, 14, 18)};
+    ray.direction = {between(random, -0.3, 0.3), between(random, -0.3, 0.3), -1};
+  }
+  std::vector<Hit> hits(rays.size()), there(rays.size());
+  cpu.closest_hits(rays, hits);
+  on_device.closest_hits(rays, there);
+  std::vector<Ray> on;
+  std::vector<const Hit*> from;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(hits[i].object, there[i].object) << i;
+    if (hits[i].object != 1) continue;
+    EXPECT_EQ(hits[i], there[i]) << i;
+    on.push_back(rays[i]);
+    on.back().origin = rays[i].at(hits[i].t);
+    on.back().direction = {0.3, 0.2, 0.9};
+    from.push_back(&hits[i]);
+  }
+  EXPECT_GT(on.size(), 500u);
+  std::vector<std::uint8_t> blocked(on.size()), blocked_there(on.size());
+  cpu.occluded(on, blocked, from);
+  on_device.occluded(on, blocked_there, from);
+  EXPECT_EQ(blocked, blocked_there);
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ TEST(CoarseVoxels, AreTakenWherePixelsAreLarger) {
   const Scene scene({field}, {SceneObject{0, 0, {glm::dmat3(1.0), 0.5, {0, 0, 0}}}, SceneObject{0, 0, {}}});
   // The eye is 100 m above; voxels are 0.5 and 1 m, a pixel 2.2 m: levels 2 and 1.
   const Scene coarse = scene.coarser({{0, 0, 101}, {0, 0, -1}, [](double depth) { return 0.022 * depth; }});
-  const auto detail = [&](std::size_t object) { return coarse.fields()[coarse.objects()[object].field]->detail(); };
+  const auto detail = [&](std::size_t object) { return coarse.fields()[coarse.objects()[object].field]->cell_side(); };
   EXPECT_EQ(detail(0), 4);
   EXPECT_EQ(detail(1), 2);
   EXPECT_EQ(coarse.box().high, dvec3(64, 64, 2));
@@ -149,11 +149,11 @@ TEST(SmoothVoxels, AreNotShadedByTheirOwnSteps) {
     for (int i = 0; i < 100; ++i) {
       Ray down;
       down.origin = {15 + 0.1 * i, 4.05, 30};
-      const SceneHit hit = scene.closest_hit({down});
+      const Hit hit = scene.closest_hit(down);
       Ray sun;
-      sun.origin = down.at(hit.t());
+      sun.origin = down.at(hit.t);
       sun.direction = {towards, 0, towards > 0 ? 0.6 : -3};
-      count += scene.occluded({sun, &hit}) ? 1 : 0;
+      count += scene.occluded(sun, &hit) ? 1 : 0;
     }
     return count;
   };

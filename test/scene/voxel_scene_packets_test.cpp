@@ -59,9 +59,8 @@ std::vector<Ray> rays_from(const dvec3& eye, const dvec3& towards, double spread
   return rays;
 }
 
-bool same(const VoxelSceneHit& a, const VoxelSceneHit& b) {
-  return a.hit == b.hit && a.object == b.object &&
-         std::bit_cast<std::uint64_t>(a.hit.t) == std::bit_cast<std::uint64_t>(b.hit.t);
+bool same(const Hit& a, const Hit& b) {
+  return a == b && std::bit_cast<std::uint64_t>(a.t) == std::bit_cast<std::uint64_t>(b.t);
 }
 
 TEST(VoxelScenePackets, AnswerAsSingleRaysDo) {
@@ -76,30 +75,28 @@ TEST(VoxelScenePackets, AnswerAsSingleRaysDo) {
     if (round % 8 == 2) towards = dvec3(0), towards[round % 3] = 50;
     const double spread = round % 5 == 4 ? 1 : std::ldexp(1.0, -3 - round % 7);
     const std::vector<Ray> rays = rays_from(eye, towards, spread, 64 * 3 + static_cast<std::size_t>(round), random);
-    std::vector<VoxelSceneHit> answers(rays.size());
+    std::vector<Hit> answers(rays.size());
     std::vector<std::uint8_t> blocked(rays.size(), 7);
-    VoxelSceneStats stats;
-    scene.closest_hits(rays, answers, {}, &stats);
+    scene.closest_hits(rays, answers);
     scene.occluded(rays, blocked);
     std::vector<Ray> onwards(rays.size());
-    std::vector<const VoxelSceneHit*> from(rays.size());
+    std::vector<const Hit*> from(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const VoxelSceneHit expected = scene.closest_hit(rays[i]);
+      MarchStats stats;
+      const Hit expected = scene.closest_hit(rays[i], &stats);
+      EXPECT_GE(stats.boxes, expected ? 1u : 0u);
       ASSERT_TRUE(same(answers[i], expected)) << "round " << round << ", ray " << i;
       ASSERT_EQ(blocked[i], expected ? 1 : 0) << "round " << round << ", ray " << i;
       hits += expected ? 1 : 0;
-      onwards[i] = {rays[i].at(expected ? expected.hit.t : 0), dvec3(1, 2, 3) + point(random, 0.2)};
+      onwards[i] = {rays[i].at(expected ? expected.t : 0), dvec3(1, 2, 3) + point(random, 0.2)};
       if (expected) from[i] = &answers[i];
     }
-    int here = 0;
-    for (const VoxelSceneHit& hit : answers) here += hit ? 1 : 0;
-    EXPECT_GE(stats.boxes, static_cast<std::uint32_t>(here));
     // From the faces that were hit, to a light.
-    std::vector<VoxelSceneHit> second(rays.size());
+    std::vector<Hit> second(rays.size());
     scene.closest_hits(onwards, second, from);
     scene.occluded(onwards, blocked, from);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const VoxelSceneHit expected = scene.closest_hit(onwards[i], from[i], nullptr);
+      const Hit expected = scene.closest_hit(onwards[i], from[i], nullptr);
       ASSERT_TRUE(same(second[i], expected)) << "round " << round << ", ray " << i;
       ASSERT_EQ(blocked[i], expected ? 1 : 0) << "round " << round << ", ray " << i;
       again += expected ? 1 : 0;
@@ -113,10 +110,10 @@ TEST(VoxelScenePackets, RefuseSpansThatDiffer) {
   Random random(2);
   const VoxelScene scene = crowd(random, 3);
   const std::vector<Ray> rays(5);
-  std::vector<VoxelSceneHit> answers(4);
+  std::vector<Hit> answers(4);
   EXPECT_THROW(scene.closest_hits(rays, answers), Error);
   answers.resize(5);
-  const std::vector<const VoxelSceneHit*> from(6);
+  const std::vector<const Hit*> from(6);
   EXPECT_THROW(scene.closest_hits(rays, answers, from), Error);
   VoxelScene({}, {}).closest_hits(rays, answers);
   EXPECT_FALSE(answers[0]);

@@ -41,15 +41,15 @@ glm::dmat3 turned(Random& random, double scale) {
 }
 
 // Each object on its own, by the march that looks at every voxel on the way.
-VoxelSceneHit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, const std::vector<VoxelPlace>& places,
-                         const Ray& ray) {
+Hit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, const std::vector<VoxelPlace>& places,
+               const Ray& ray) {
   for (auto& model : models)
     model = std::make_shared<const VoxelModel>(model->grid(), find_voxel_march("voxel-exhaustive"));
-  VoxelSceneHit best;
+  Hit best;
   for (std::uint32_t i = 0; i < places.size(); ++i) {
     const VoxelScene alone(models, std::vector{places[i]});
-    const VoxelSceneHit hit = alone.closest_hit(ray);
-    if (hit && (!best || hit.hit.t < best.hit.t)) best = {hit.hit, i};
+    const Hit hit = alone.closest_hit(ray);
+    if (hit && (!best || hit.t < best.t)) best = hit, best.part = i;
   }
   return best;
 }
@@ -77,7 +77,7 @@ TEST(VoxelScene, FindsTheNearestOfAHundredThousand) {
     ray.origin = {uniform(random, 0, kSide), uniform(random, 0, kSide), uniform(random, 0, kSide)};
     ray.direction = direction(random);
   }
-  std::vector<VoxelSceneHit> found(kRays);
+  std::vector<Hit> found(kRays);
   scene.closest_hits(rays, found);
   int hits = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -93,14 +93,14 @@ TEST(VoxelScene, FindsTheNearestOfAHundredThousand) {
       of_near.push_back(models[places[k].model]);
       index.push_back(k);
     }
-    const VoxelSceneHit expected = one_by_one(of_near, near, ray);
+    const Hit expected = one_by_one(of_near, near, ray);
     ASSERT_EQ(static_cast<bool>(found[i]), static_cast<bool>(expected));
     ASSERT_EQ(scene.occluded(ray), static_cast<bool>(expected));
     if (!expected) continue;
     ++hits;
-    EXPECT_EQ(found[i].object, index[expected.object]);
-    EXPECT_EQ(found[i].hit.voxel, expected.hit.voxel);
-    EXPECT_EQ(scene.closest_hit(ray).hit, found[i].hit);
+    EXPECT_EQ(found[i].part, index[expected.part]);
+    EXPECT_EQ(found[i].voxel, expected.voxel);
+    EXPECT_EQ(scene.closest_hit(ray), found[i]);
   }
   EXPECT_GT(hits, kRays / 2);
 }
@@ -122,16 +122,15 @@ TEST(VoxelScene, TakesDirectionsOfAnyLength) {
       extreme.push_back(ray);
       for (int axis = 0; axis < 3; ++axis) extreme.back().direction[axis] = std::ldexp(ray.direction[axis], exponent);
     }
-    std::vector<VoxelSceneHit> found(usual.size());
+    std::vector<Hit> found(usual.size());
     std::vector<std::uint8_t> blocked(usual.size());
     scene.closest_hits(extreme, found);
     scene.occluded(extreme, blocked);
     for (std::size_t i = 0; i < usual.size(); ++i) {
-      VoxelSceneHit expected = scene.closest_hit(usual[i]);
-      if (expected) expected.hit.t = std::ldexp(expected.hit.t, -exponent);
-      for (const VoxelSceneHit& hit : {scene.closest_hit(extreme[i]), found[i]}) {
-        EXPECT_EQ(hit.hit, expected.hit) << exponent;
-        EXPECT_EQ(hit.object, expected.object) << exponent;
+      Hit expected = scene.closest_hit(usual[i]);
+      if (expected) expected.t = std::ldexp(expected.t, -exponent);
+      for (const Hit& hit : {scene.closest_hit(extreme[i]), found[i]}) {
+        EXPECT_EQ(hit, expected) << exponent;
       }
       EXPECT_EQ(blocked[i], static_cast<bool>(expected));
       EXPECT_EQ(scene.occluded(extreme[i]), static_cast<bool>(expected));
@@ -162,16 +161,15 @@ TEST(VoxelScene, FindsTheNearestOfTurnedAndOverlappingObjects) {
       Ray ray;
       ray.direction = direction(random) * uniform(random, 0.1, 10);
       ray.origin = dvec3(uniform(random, -30, 30), uniform(random, -30, 30), uniform(random, -30, 30));
-      const VoxelSceneHit expected = one_by_one(models, places, ray), hit = scene.closest_hit(ray);
+      const Hit expected = one_by_one(models, places, ray), hit = scene.closest_hit(ray);
       ASSERT_EQ(static_cast<bool>(hit), static_cast<bool>(expected));
       ASSERT_EQ(scene.occluded(ray), static_cast<bool>(expected));
       if (!hit) continue;
       ++hits;
       // The object is the same; t up to that of a ray quantised where it comes in, whatever else is in the scene.
-      ASSERT_EQ(hit.object, expected.object);
-      ASSERT_EQ(hit.hit, expected.hit);
-      EXPECT_NEAR(length(scene.normal(ray, hit)), hit.hit.face == VoxelFace::inside ? 0 : 1, 1e-12);
-      EXPECT_LE(dot(scene.normal(ray, hit), ray.direction), hit.hit.face == VoxelFace::inside ? 0.0 : 1e-12);
+      ASSERT_EQ(hit, expected);
+      EXPECT_NEAR(length(scene.normal(ray, hit)), hit.face == VoxelFace::inside ? 0 : 1, 1e-12);
+      EXPECT_LE(dot(scene.normal(ray, hit), ray.direction), hit.face == VoxelFace::inside ? 0.0 : 1e-12);
     }
   }
   EXPECT_GT(hits, 100);
@@ -186,9 +184,9 @@ TEST(VoxelScene, HitsWhatStandsAMillionMetresAway) {
                          std::vector{place});
   Ray ray;
   ray.direction = place.world_from_grid * dvec3(4.5) + place.origin;
-  const VoxelSceneHit hit = scene.closest_hit(ray);
+  const Hit hit = scene.closest_hit(ray);
   ASSERT_TRUE(hit);
-  EXPECT_NEAR(hit.hit.t, 1, 1e-5);
+  EXPECT_NEAR(hit.t, 1, 1e-5);
 }
 
 // A shadow ray starts in the empty voxel before the face, by number, and is not stopped by the voxel that it leaves.
@@ -204,11 +202,11 @@ TEST(VoxelScene, ShadowRaysDoNotHitWhatTheyLeave) {
     Ray ray;
     ray.direction = direction(random);
     ray.origin = middle - 10.0 * ray.direction;
-    const VoxelSceneHit hit = scene.closest_hit(ray);
+    const Hit hit = scene.closest_hit(ray);
     ASSERT_TRUE(hit);
     // Straight out of the ball: nothing is in the way.
     Ray out;
-    out.origin = ray.at(hit.hit.t);
+    out.origin = ray.at(hit.t);
     out.direction = scene.normal(ray, hit);
     free += scene.occluded_from(hit, out) ? 0 : 1;
   }
@@ -230,40 +228,39 @@ TEST(VoxelScene, RaysFromASurfaceIntoItHitItAtOnce) {
   for (const VoxelRounding& rounding : std::vector<VoxelRounding>{{}, {0.1, false}, {0.5, false}, {0.3, true}}) {
     const VoxelScene scene(models, places, rounding);
     const dvec3 middle = 0.5 * (scene.box().low + scene.box().high);
-    std::vector<VoxelSceneHit> first;
+    std::vector<Hit> first;
     std::vector<Ray> rays;
     std::vector<dvec3> normals;
     for (int i = 0; i < 2000; ++i) {
       Ray ray;
       ray.direction = direction(random);
       ray.origin = middle + direction(random) - 10.0 * ray.direction;
-      const VoxelSceneHit hit = scene.closest_hit(ray);
+      const Hit hit = scene.closest_hit(ray);
       if (!hit) continue;
       Ray on;
-      on.origin = ray.at(hit.hit.t);
+      on.origin = ray.at(hit.t);
       on.direction = direction(random);
       first.push_back(hit), rays.push_back(on), normals.push_back(scene.normal(on.origin, hit));
     }
-    std::vector<const VoxelSceneHit*> from;
-    for (const VoxelSceneHit& hit : first) from.push_back(&hit);
-    std::vector<VoxelSceneHit> hits(rays.size());
+    std::vector<const Hit*> from;
+    for (const Hit& hit : first) from.push_back(&hit);
+    std::vector<Hit> hits(rays.size());
     std::vector<std::uint8_t> blocked(rays.size());
     scene.closest_hits(rays, hits, from);
     scene.occluded(rays, blocked, from);
     int into = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const VoxelSceneHit hit = scene.closest_hit(rays[i], from[i], nullptr);
-      EXPECT_EQ(hit.hit, hits[i].hit);
+      const Hit hit = scene.closest_hit(rays[i], from[i], nullptr);
+      EXPECT_EQ(hit, hits[i]);
       EXPECT_EQ(static_cast<bool>(hit), scene.occluded_from(first[i], rays[i])) << rounding.radius << ' ' << i;
       EXPECT_EQ(static_cast<bool>(hit), blocked[i] != 0);
       if (!(dot(normals[i], rays[i].direction) < -kSteep)) continue;
       ++into;
       ASSERT_TRUE(hit) << rounding.radius << ' ' << i;
-      EXPECT_LE(hit.hit.t, kOffRay);
+      EXPECT_LE(hit.t, kOffRay);
       if (!rounding) continue;
-      EXPECT_EQ(hit.hit.t, 0);
-      EXPECT_EQ(hit.hit.voxel, first[i].hit.voxel);
-      EXPECT_EQ(hit.hit.entry, first[i].hit.entry);
+      EXPECT_EQ(hit.t, 0);
+      EXPECT_EQ(hit.voxel, first[i].voxel);
     }
     EXPECT_GT(into, 500);
     // A ray that ends before it begins meets nothing.
@@ -352,9 +349,9 @@ TEST(FromVox, ShowsOneVoxelWhereTwoOverlap) {
     const auto colour_at = [&](double x) {
       Ray ray;
       ray.origin = {x, 0.5, 10};
-      const VoxelSceneHit hit = scene.closest_hit(ray);
+      const Hit hit = scene.closest_hit(ray);
       EXPECT_TRUE(hit);
-      EXPECT_EQ(hit.hit.t, 8);
+      EXPECT_EQ(hit.t, 8);
       return scene.colour(hit);
     };
     EXPECT_EQ(colour_at(-1.5), (VoxelColour{255, 0, 0}));
@@ -381,10 +378,10 @@ TEST(FromVox, PutsTurnedVoxelsWhereTheFileSays) {
     const dvec3 middle = instances[0].turn(dvec3(2.5, 0.5, 1.5) - dvec3(1, 2, 1)) + dvec3(10, 20, 30);
     Ray ray;
     ray.origin = middle + dvec3(0, 0, 5);
-    const VoxelSceneHit hit = scene.closest_hit(ray);
+    const Hit hit = scene.closest_hit(ray);
     ASSERT_TRUE(hit) << bits;
-    EXPECT_EQ(hit.hit.t, 4.5);
-    EXPECT_EQ(hit.hit.voxel, ivec3(0));  // of the one voxel that there is
+    EXPECT_EQ(hit.t, 4.5);
+    EXPECT_EQ(hit.voxel, ivec3(0));  // of the one voxel that there is
     EXPECT_EQ(scene.normal(ray, hit), dvec3(0, 0, 1));
   }
 }
@@ -411,10 +408,10 @@ TEST(FromVox, TakesMemoryForVoxelsAndNotForCanvases) {
   EXPECT_LT(scene.bytes(), std::size_t{1} << 21);
   Ray down;
   down.origin = {300 * 499 + 200.5 - 128, 100.5 - 128, 500};
-  const VoxelSceneHit hit = scene.closest_hit(down);
+  const Hit hit = scene.closest_hit(down);
   ASSERT_TRUE(hit);
-  EXPECT_EQ(hit.object, 499u);
-  EXPECT_EQ(down.at(hit.hit.t).z, 128);
+  EXPECT_EQ(hit.part, 499u);
+  EXPECT_EQ(down.at(hit.t).z, 128);
 }
 
 // Small files that ask for much are refused before it is spent.

@@ -488,8 +488,12 @@ class VectorWalk {
       const Ray& ray = rays_[static_cast<std::size_t>(c.ray[i])];
       Hit& to = answers_[c.ray[i]];
       if (usual && found[i] != 0 && ray.start == RayStart::free) {
-        to.status = HitStatus::hit, to.t = t[i], to.cell = {c.col[i], c.row[i]}, to.u = u[i], to.v = v[i];
-        to.height = field_.height_from_sample(height[i]), to.wall = false;
+        to = {.status = HitStatus::hit,
+              .t = t[i],
+              .cell = {c.col[i], c.row[i]},
+              .u = u[i],
+              .v = v[i],
+              .height = field_.height_from_sample(height[i])};
       } else {
         ++stats_.handed_over;
         to = resume_max_mip(target_, ray, c.seen[i] ? c.t_clear[i] : max_mip::kNotClear);

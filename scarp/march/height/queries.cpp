@@ -106,7 +106,7 @@ void occluded(const HeightTarget& target, std::span<const Ray> rays, std::span<s
   for_each_ray(*target.field, rays, [&](std::size_t i) { blocked[i] = march.occluded(target, rays[i], settings); });
 }
 
-void validate(const Ray& ray, const HeightField& field) {
+void validate(const Ray& ray) {
   if (!finite(ray.origin)) throw Error("ray: its origin is not finite");
   if (!finite(ray.direction)) throw Error("ray: its direction is not finite");
   if (ray.direction == dvec3(0.0)) throw Error("ray: its direction is zero");
@@ -114,6 +114,10 @@ void validate(const Ray& ray, const HeightField& field) {
     throw Error(
         fmt::format("ray: its range is {} to {}; t_min must be finite and t_max no less", ray.t_min, ray.t_max));
   }
+}
+
+void validate(const Ray& ray, const HeightField& field) {
+  validate(ray);
   if (field.wraps() && std::isinf(ray.t_max)) {
     throw Error("ray: its range has no end; over a field that wraps round t_max must be finite");
   }

@@ -24,9 +24,11 @@ void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::sp
 void occluded(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
               const HeightMarchEntry& march = find_height_march("max-mip"), const MarchSettings& settings = {});
 
-/// Throws Error, in one line, when a ray cannot be followed over the field: an origin or direction that is not finite,
-/// a direction of zero, a range that is not one, an infinite t_max in a field that wraps round, a start cell that does
-/// not exist or is a hole.
+/// Throws Error, in one line, when a ray cannot be followed over any field: an origin or direction that is not finite,
+/// a direction of zero, a range that is not one.
+void validate(const Ray& ray);
+/// Likewise over this field: also for an infinite t_max in a field that wraps round, a start cell that does not exist
+/// or is a hole.
 void validate(const Ray& ray, const HeightField& field);
 
 }  // namespace scarp

@@ -189,11 +189,12 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
   return {};
 }
 
-dvec3 rounded_normal(const VoxelGrid& grid, const VoxelHit& hit, const dvec3& point, const VoxelRounding& rounding) {
-  if (hit.face == VoxelFace::inside) return dvec3(0.0);
-  const dvec3 away = from_inner_box(Shape(grid, hit.voxel, rounding).box_at(point), point);
+dvec3 rounded_normal(const VoxelGrid& grid, const ivec3& voxel, VoxelFace face, const dvec3& point,
+                     const VoxelRounding& rounding) {
+  if (face == VoxelFace::inside) return dvec3(0.0);
+  const dvec3 away = from_inner_box(Shape(grid, voxel, rounding).box_at(point), point);
   // On the part of a face that a rounded neighbour leaves open.
-  if (length(away) < rounding.radius - kOffRay) return dvec3(normal_of(hit.face));
+  if (length(away) < rounding.radius - kOffRay) return dvec3(normal_of(face));
   return normalize(away);
 }
 

@@ -38,6 +38,7 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
                              MarchStats* stats);
 
 /// Returns the outward unit normal at a surface point, in the grid's space; zero for `inside`.
-dvec3 rounded_normal(const VoxelGrid& grid, const VoxelHit& hit, const dvec3& point, const VoxelRounding& rounding);
+dvec3 rounded_normal(const VoxelGrid& grid, const ivec3& voxel, VoxelFace face, const dvec3& point,
+                     const VoxelRounding& rounding);
 
 }  // namespace scarp

@@ -41,13 +41,11 @@ struct VoxelRay {
   std::optional<ivec3> start_voxel{};
 };
 
-/// The face by which a ray enters a voxel: 2 * axis + (1 if the ray travels towards lower coordinates).
-enum class VoxelFace : std::uint8_t { low_x, high_x, low_y, high_y, low_z, high_z, inside };
-
 /// Returns the outward unit normal; zero for `inside`.
 ivec3 normal_of(VoxelFace face);
 
-/// Result of a closest-hit query. Members other than `status` are set for hits only.
+/// Result of a closest-hit query of a quantised ray in one grid, in that grid's space; all other queries return `Hit`.
+/// Members other than `status` are set for hits only.
 struct VoxelHit {
   HitStatus status = HitStatus::miss;
   VoxelFace face = VoxelFace::inside;  ///< inside: the ray started in this solid voxel

@@ -9,7 +9,7 @@
 
 namespace scarp {
 
-/// Rows from the top, no padding. `colour` is the mean of the pixel's aa x aa samples; all others tell what the ray
+/// Rows from the top, no padding. `colour` is the mean of the pixel's aa x aa samples; all others hold what the ray
 /// through the middle of the pixel met, never a mean: a depth between two ridges belongs to neither.
 struct PictureLayers {
   int width = 0;
@@ -18,16 +18,16 @@ struct PictureLayers {
   std::vector<float> depth;    ///< metres along the camera's view axis, infinity where nothing was met
   std::vector<vec3> normal;    ///< unit, world, of the surface itself (not the shading normal); 0 where nothing was
   std::vector<vec3> position;  ///< metres, world; 0 where nothing was met
-  std::vector<std::uint32_t> steps;  ///< of the march; 0 for rays that met a wall of the block first, or passed it by
+  std::vector<std::uint32_t> steps;  ///< of all marches
 };
 
 /// Layers of a picture in which nothing was met. Throws Error when the settings are out of range or name another look
 /// than `shaded`.
 PictureLayers empty_layers(const PictureSettings& settings);
 
-/// The look `shaded` with all layers; walls of the block count as met. Throws Error when the settings are out of range
-/// or name another look, or there is nothing to see; Interrupted when progress asks for it.
-PictureLayers render_layers(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                            const PictureSettings& settings, const Progress& progress = {});
+/// The look `shaded` with all layers; water and walls count as met. Throws Error when the settings are out of range or
+/// name another look, or there is nothing to see; Interrupted when progress asks for it.
+PictureLayers render_layers(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                            const Progress& progress = {});
 
 }  // namespace scarp

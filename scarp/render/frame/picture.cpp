@@ -2,6 +2,7 @@
 #include "scarp/render/frame/picture.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -10,13 +11,11 @@
 #include <vector>
 
 #include "scarp/base/error.h"
-#include "scarp/render/frame/shaded_tile.h"
-#include "scarp/render/frame/shader.h"
-#include "scarp/render/frame/sight.h"
+#include "scarp/render/frame/frame_tile.h"
+#include "scarp/render/frame/middles.h"
 #include "scarp/render/frame/tile_work.h"
 #include "scarp/render/look/height_look.h"
 #include "scarp/render/look/step_look.h"
-#include "scarp/render/surface/ramp.h"
 #ifdef SCARP_VULKAN
 #include "scarp/render/frame/terrain_frame_vk.h"
 #endif
@@ -34,75 +33,14 @@ void require(bool good, std::string_view what, double value, std::string_view ra
   if (!good) throw Error(fmt::format("picture: {} is {}; it must be {}", what, value, range));
 }
 
-// Calls take(x, y, ray's sight) for each pixel of a tile.
-template <class Take>
-class LookingTile final : public TileWork {
- public:
-  LookingTile(const Camera& camera, const std::optional<Plinth>& plinth, const PixelTile& tile, bool steps,
-              const Take& take)
-      : camera_(camera), tile_(tile), looking_(plinth), steps_(steps), take_(take) {}
-
-  bool next(RayRound& round) override {
-    if (!asked_) {
-      asked_ = true;
-      looking_.ask(rays_through_middles(camera_, tile_), steps_, round);
-      return true;
-    }
-    const std::vector<Sight> sights = looking_.answers(round);
-    std::size_t i = 0;
-    for (int y = tile_.y0; y < tile_.y1; ++y) {
-      for (int x = tile_.x0; x < tile_.x1; ++x) take_(x, y, sights[i++]);
-    }
-    return false;
-  }
-
- private:
-  const Camera& camera_;
-  PixelTile tile_;
-  SightRound looking_;
-  bool steps_, asked_ = false;
-  const Take& take_;
-};
-
-template <class Take>
-void look_through_middles(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings, bool steps,
-                          const Progress& progress, const Take& take) {
-  const std::optional<Plinth> plinth = plinth_of(scene.field(), settings);
-  const PixelTiles tiles(settings.width, settings.height, 1);
-  const auto make = [&](const PixelTile& tile) {
-    return std::make_unique<LookingTile<Take>>(camera, plinth, tile, steps, take);
-  };
-  work_on_tiles(scene, tiles, tiles[0].pixels(), make, progress);
-}
-
-Image render_height(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings,
-                    const Progress& progress) {
-  Image image(settings.width, settings.height);
-  const double low = scene.field().min_height(), high = scene.field().max_height();
-  look_through_middles(scene, camera, settings, false, progress, [&](int x, int y, const Sight& sight) {
-    if (sight.hit) std::fill_n(image.pixel(x, y), 3, grey_of_height(sight.hit.height, low, high));
-  });
-  return image;
-}
-
-Picture render_steps(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings,
-                     const Progress& progress) {
-  const auto width = static_cast<std::size_t>(settings.width);
-  std::vector<std::uint32_t> steps(width * static_cast<std::size_t>(settings.height));
-  look_through_middles(scene, camera, settings, true, progress, [&](int x, int y, const Sight& sight) {
-    steps[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = sight.steps;
-  });
-  return picture_of_steps(settings, steps);
-}
-
 class ImageTile final : public TileWork {
  public:
-  ImageTile(const ShadedView& view, const PixelTile& tile, Image& image)
-      : tile_(tile), shaded_(view, tile), image_(image) {}
+  ImageTile(const FrameView& view, const PixelTile& tile, Image& image)
+      : tile_(tile), frame_(view, tile, view.settings().aa), image_(image) {}
 
   bool next(RayRound& round) override {
-    if (shaded_.next(round)) return true;
-    const std::vector<vec3> colours = shaded_.pixels();
+    if (frame_.next(round)) return true;
+    const std::vector<vec3> colours = frame_.pixels();
     std::size_t i = 0;
     for (int y = tile_.y0; y < tile_.y1; ++y) {
       for (int x = tile_.x0; x < tile_.x1; ++x) set_pixel(image_, x, y, colours[i++]);
@@ -112,26 +50,53 @@ class ImageTile final : public TileWork {
 
  private:
   PixelTile tile_;
-  ShadedTile shaded_;
+  FrameTile frame_;
   Image& image_;
 };
 
-Image render_shaded(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                    const PictureSettings& settings, const Progress& progress) {
+Image render_shaded(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                    const Progress& progress) {
 #ifdef SCARP_VULKAN
-  if (makes_whole_frames(scene, camera, settings)) {
-    return render_whole_frame(scene, camera, grid_north_azimuth, settings, progress);
-  }
+  if (makes_whole_frames(scene, camera, settings)) return render_whole_frame(scene, camera, settings, progress);
 #endif
-  const Shader shader(scene.field(), camera, grid_north_azimuth, settings);
-  const std::optional<Plinth> plinth = plinth_of(scene.field(), settings);
-  const ShadedView view{camera, plinth, shader, settings.aa};
+  if (scene.on_device() && settings.look == Look::comanche && scene.marches() == "fixed-step") {
+    throw Error(
+        "comanche: on a device the eye must be within 2^22 cells of the field for fixed-step (use max-mip, or the "
+        "CPU)");
+  }
+  const FrameView view(scene, camera, settings);
   Image image(settings.width, settings.height);
   work_on_tiles(
-      scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(shader),
+      scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(view),
       [&](const PixelTile& tile) { return std::make_unique<ImageTile>(view, tile, image); }, progress);
   return image;
 }
+
+Picture render_height(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                      const Progress& progress) {
+  std::vector<double> heights(static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height),
+                              std::numeric_limits<double>::quiet_NaN());
+  look_through_middles(scene, camera, settings, false, progress,
+                       [&](std::size_t i, const Ray& ray, const Hit& hit, std::uint32_t) {
+                         if (hit && !scene.field_of(hit.object).is_backdrop()) heights[i] = ray.at(hit.t).z;
+                       });
+  // Pictures of one terrain can be compared: they share its range.
+  std::optional<ReliefRange> range = settings.ground_range;
+  if (const HeightField* field = scene.terrain(); field && !range)
+    range = ReliefRange{field->min_height(), field->max_height()};
+  return picture_of_heights(settings, heights, range);
+}
+
+Picture render_steps(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                     const Progress& progress) {
+  std::vector<std::uint32_t> steps(static_cast<std::size_t>(settings.width) *
+                                   static_cast<std::size_t>(settings.height));
+  look_through_middles(scene, camera, settings, true, progress,
+                       [&](std::size_t i, const Ray&, const Hit&, std::uint32_t cost) { steps[i] = cost; });
+  return picture_of_steps(settings, steps);
+}
+
+bool has_end(const WorldBox& box) { return box.low.x <= box.high.x; }
 
 }  // namespace
 
@@ -141,7 +106,7 @@ Look find_look(std::string_view name) {
   for (std::size_t i = 0; i < kLookNames.size(); ++i) {
     if (kLookNames[i] == name) return static_cast<Look>(i);
   }
-  throw Error(fmt::format("look '{}': unknown; there are: {}", name, fmt::join(kLookNames, ", ")));
+  throw Error(fmt::format("unknown look '{}' (available: {})", name, fmt::join(kLookNames, ", ")));
 }
 
 std::string_view ramp_of(const PictureSettings& settings) {
@@ -152,6 +117,28 @@ std::string_view ramp_of(const PictureSettings& settings) {
 Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale) {
   if (settings.ramp_stops) return {*settings.ramp_stops, low, high, scale};
   return {ramp_of(settings), low, high};
+}
+
+PaintExtent paint_extent(const Scene& scene, const PictureSettings& settings) {
+  PaintExtent extent;
+  if (const double side = scene.cell_side(); side > 0) extent.cell = side;
+  if (const HeightField* field = scene.terrain()) {
+    extent.low = field->min_height(), extent.high = field->max_height();
+    extent.exaggeration = field->settings().exaggeration;
+    extent.size = {field->width(), field->depth()};
+    extent.repeats = field->wraps();
+  } else if (has_end(scene.box())) {
+    extent.low = scene.box().low.z, extent.high = scene.box().high.z;
+    extent.origin = dvec2(scene.box().low);
+    extent.size = dvec2(scene.box().high - scene.box().low);
+  }
+  if (settings.ground_range) extent.low = settings.ground_range->low, extent.high = settings.ground_range->high;
+  return extent;
+}
+
+Ramp ground_ramp(const Scene& scene, const PictureSettings& settings) {
+  const PaintExtent extent = paint_extent(scene, settings);
+  return ramp_over(settings, extent.low, extent.high, extent.exaggeration);
 }
 
 void validate(const PictureSettings& settings) {
@@ -167,8 +154,8 @@ void validate(const PictureSettings& settings) {
           "0 to 4096");
   require(settings.ao_distance >= 0, "the distance of ambient occlusion", settings.ao_distance, "0 or more metres");
   require(settings.haze >= 0 && settings.haze <= 0.95, "the haze", settings.haze, "0 to 0.95");
-  require(std::isfinite(settings.error_tolerance) && settings.error_tolerance >= 0, "the error tolerance",
-          settings.error_tolerance, "0 or more sides of a cell");
+  require(settings.haze_distance > 0, "the haze distance", settings.haze_distance, "above 0 metres");
+  validate(settings.error);
   validate(settings.sun);
   if (settings.water) validate(*settings.water);
   validate(settings.ground);
@@ -177,31 +164,49 @@ void validate(const PictureSettings& settings) {
   Ramp(ramp_of(settings), 0, 1);
 }
 
-Box picture_box(const HeightField& field, bool plinth) {
-  return {{0, 0, plinth ? plinth_base(field) : field.min_height()}, {field.width(), field.depth(), field.max_height()}};
+void require_visible(const Scene& scene) {
+  if (const HeightField* field = scene.only_heights()) {
+    if (!field->has_cells()) {
+      throw Error(fmt::format("picture: the field has {} x {} samples and so no cells (at least 2 x 2 are needed)",
+                              field->cols(), field->rows()));
+    }
+    if (field->all_nodata()) throw Error("picture: all samples of the field are nodata; there is nothing to see");
+  }
+  if (!scene.endless() && !has_end(scene.box())) throw Error("picture: nothing in the scene can be seen");
 }
 
-Picture render_picture(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                       const PictureSettings& settings, const Progress& progress) {
+Box picture_box(const Scene& scene) {
+  WorldBox box = scene.box();
+  // One copy of ground that wraps round.
+  if (const HeightField* field = scene.terrain(); field && field->wraps())
+    box = around(box, {{0, 0, field->min_height()}, {field->width(), field->depth(), field->max_height()}});
+  if (!has_end(box)) {
+    throw Error(scene.endless() ? "picture: nothing in the scene has an end that a camera could be framed by; give the "
+                                  "camera an eye and a target"
+                                : "picture: nothing in the scene can be seen");
+  }
+  return {box.low, box.high};
+}
+
+Picture render_picture(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                       const Progress& progress) {
   validate(settings);
-  require_ground(scene.field());
+  require_visible(scene);
   switch (settings.look) {
     case Look::height:
-      return {render_height(scene, camera, settings, progress), {}, {}};
+      return render_height(scene, camera, settings, progress);
     case Look::steps:
       return render_steps(scene, camera, settings, progress);
     case Look::error: {
-      ErrorPicture error =
-          render_error(scene, camera, settings.width, settings.height, settings.error_tolerance, progress);
-      return {std::move(error.image), {}, error.counts};
+      ErrorPicture error = render_error(scene, camera, settings.width, settings.height, settings.error, progress);
+      return {std::move(error.image), {}, error.counts, {}};
     }
     case Look::comanche:
-      return render_comanche(scene, camera, grid_north_azimuth, settings, progress);
+      return {scaled_up(render_shaded(scene, camera, settings, progress), settings.comanche.scale)};
     case Look::shaded:
       break;
   }
-  if (settings.water) return render_lake(scene, camera, grid_north_azimuth, settings, progress);
-  return {render_shaded(scene, camera, grid_north_azimuth, settings, progress), {}, {}};
+  return {render_shaded(scene, camera, settings, progress)};
 }
 
 }  // namespace scarp

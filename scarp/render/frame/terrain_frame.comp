@@ -50,10 +50,8 @@ vec3 direction_of(FrameSeen seen) { return normalize(world_direction(seen.line.d
 
 vec3 in_air(vec3 colour, FrameSeen seen, vec3 direction, float metres) {
   Settings s = settings();
-  if (!has_fog || s.is.fog == kScarpNoFog) {
-    float clear = exp(-s.is.haze_per_metre * max(0.0, metres - s.is.clear_distance));
-    return colour * clear + kScarpHorizon * (1.0 - clear);
-  }
+  if (!has_fog || s.is.fog == kScarpNoFog)
+    return scarp_in_haze(colour, direction.z, s.is.haze_per_metre, metres - s.is.clear_distance);
   if (s.is.fog == kScarpFogByIterations) return colour;
   float left = scarp_fog_transmittance(s.is.fog, s.is.fog_per_metre, s.is.fog_base, s.is.fog_falloff, eye_height(seen),
                                        direction.z, metres);

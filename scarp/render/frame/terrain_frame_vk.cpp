@@ -12,10 +12,11 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/height/device_ray.h"
-#include "scarp/render/frame/lake_tile.h"
+#include "scarp/render/frame/frame_view.h"
 #include "scarp/render/frame/terrain_frame.glsl.h"
 #include "scarp/render/light/sample_directions.h"
-#include "scarp/scene/terrain_scene_vk.h"
+#include "scarp/scene/plinth.h"
+#include "scarp/scene/scene_vk.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/memory.h"
 #include "scarp/vk/pipeline.h"
@@ -82,7 +83,7 @@ double zero_of_heights(const HeightField& field, const GroundPaint& paint) {
   return apart > 0 ? std::floor(low / apart) * apart : low;
 }
 
-void set_field(glsl::FrameSettings& s, const HeightField& field, const std::optional<Plinth>& block,
+void set_field(glsl::FrameSettings& s, const HeightField& field, const std::optional<Plinth>& plinth,
                double zero_of_heights) {
   const HeightFieldSettings& settings = field.settings();
   const dvec2 cell(settings.cell_x, settings.cell_y);
@@ -94,16 +95,15 @@ void set_field(glsl::FrameSettings& s, const HeightField& field, const std::opti
   s.metres_at_base =
       static_cast<float>(field.height_from_sample(static_cast<double>(s.base_of_heights)) - zero_of_heights);
   s.last_row = static_cast<float>(field.rows() - 1);
-  s.block = block.has_value();
-  if (block) split(block->base_sample(), s.base_sample, s.base_sample_low);
+  s.block = plinth.has_value();
+  if (plinth) split(plinth->base_sample(), s.base_sample, s.base_sample_low);
 }
 
-void set_steps(glsl::FrameSettings& s, const TerrainScene& scene, const Camera& camera,
-               const PictureSettings& settings) {
-  const HeightField& field = scene.field();
+void set_steps(glsl::FrameSettings& s, const Scene& scene, const Camera& camera, const PictureSettings& settings) {
+  const HeightField& field = *scene.only_heights();
   const ComancheSettings& comanche = settings.comanche;
   const double reach = std::isfinite(camera.reach()) ? camera.reach() : default_reach(field);
-  const bool stepped = scene.march().name == "fixed-step";
+  const bool stepped = scene.marches() == "fixed-step";
   s.step = static_cast<float>(reach / comanche.steps);
   s.steps = comanche.steps;
   s.interpolate = comanche.interpolate;
@@ -153,26 +153,26 @@ void set_water(glsl::FrameSettings& s, const HeightField& field, const Water* wa
   }
 }
 
-void set_air(glsl::FrameSettings& s, const HeightField& field, const Shader& shader, double zero_of_heights) {
-  const FogSettings& fog = shader.fog().settings();
+void set_air(glsl::FrameSettings& s, const HeightField& field, const FrameView& view, double zero_of_heights) {
+  const FogSettings& fog = view.fog().settings();
   s.fog = static_cast<int>(fog.kind);
-  s.fog_per_metre = static_cast<float>(shader.fog().per_metre());
+  s.fog_per_metre = static_cast<float>(view.fog().per_metre());
   s.fog_base = static_cast<float>(fog.base - zero_of_heights);
   s.fog_falloff = static_cast<float>(fog.falloff);
   s.sun_tint = static_cast<float>(fog.sun_tint);
-  s.haze_per_metre = static_cast<float>(shader.haze_per_metre());
-  s.clear_distance = static_cast<float>(shader.clear_distance());
-  s.no_descent = shader.horizon_below();
-  const Light& light = shader.lighting().light();
-  s.shadows = shader.settings().shadows;
+  s.haze_per_metre = static_cast<float>(view.haze().per_metre);
+  s.clear_distance = static_cast<float>(view.haze().clear_distance);
+  s.no_descent = view.horizon_below();
+  const Light& light = view.lighting().light();
+  s.shadows = view.settings().shadows;
   s.to_sun = vec3(light.to_sun());
   const glsl::ScarpLine line = line_of(field, {}, false, light.to_sun());
   s.sun_line = line.direction;
   s.sun_line_low = line.direction_low;
   s.sky_side = vec3(light.sky_side());
   s.sun = light.sun();
-  s.earth = shader.earth();
-  s.unlit_wall = Shader::unlit_wall();
+  s.earth = view.earth();
+  s.unlit_wall = FrameView::unlit_wall();
 }
 
 void set_samples(glsl::FrameSettings& s, const Lighting& lighting, int samples) {
@@ -237,14 +237,14 @@ class KeptBuffer {
 class FrameMaker {
  public:
   // Of one scene: its march and its field.
-  explicit FrameMaker(const TerrainScene& scene)
+  explicit FrameMaker(const Scene& scene)
       : device_(scene.device_terrain()->device),
-        stepped_(scene.march().name == "fixed-step"),
-        flags_(device_field(scene.field(), nullptr).flags),
+        stepped_(scene.marches() == "fixed-step"),
+        flags_(device_field((*scene.only_heights()), nullptr).flags),
         commands_(device_) {}
 
-  Image make(const TerrainScene& scene, const glsl::FrameSettings& numbers, const GroundPaint& paint,
-             double zero_of_heights, const Progress& progress, FrameReport& report) {
+  Image make(const Scene& scene, const glsl::FrameSettings& numbers, const GroundPaint& paint, double zero_of_heights,
+             const Progress& progress, FrameReport& report) {
     glsl::FrameSettings s = numbers;
     set_ramp(s, paint.ramp(), zero_of_heights);
     if (const Drape* drape = paint.settings().drape.get()) set_drape(s, *drape);
@@ -353,38 +353,41 @@ class FrameMaker {
 
 }  // namespace
 
-bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings) {
+bool makes_whole_frames(const Scene& scene, const Camera& camera, const PictureSettings& settings) {
   const DeviceTerrain* terrain = scene.device_terrain();
-  if (!terrain) return false;
-  const std::string_view march = scene.march().name;
+  // The shader paints the ground's own colours.
+  if (!terrain || scene.objects()[0].material < settings.materials.size()) return false;
+  const std::string march = scene.marches();
   const bool stepped = march == "fixed-step" && settings.look == Look::comanche;
   if (!stepped && march != "max-mip") return false;
   Ray eye;
   eye.origin = camera.eye();
-  const dvec3 place = scene.field().grid_from_world(eye).origin;
+  const dvec3 place = (*scene.only_heights()).grid_from_world(eye).origin;
   return std::abs(place.x) < kFarthestCell && std::abs(place.y) < kFarthestCell;
 }
 
-Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                         const PictureSettings& settings, const Progress& progress, FrameReport* report) {
+Image render_whole_frame(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                         const Progress& progress, FrameReport* report) {
   const DeviceTerrain& terrain = *scene.device_terrain();
   if (!terrain.kept) terrain.kept = std::make_shared<FrameMaker>(scene);
-  const HeightField& field = scene.field();
-  const Lake lake(scene, camera, grid_north_azimuth, settings);
-  const LakeView& view = lake.view();
+  const HeightField& field = *scene.only_heights();
+  const FrameView view(scene, camera, settings);
   glsl::FrameSettings numbers{};
   set_camera(numbers, field, camera, settings);
-  const double zero = zero_of_heights(field, view.shader.paint());
-  set_field(numbers, field, view.plinth, zero);
+  const double zero = zero_of_heights(field, view.paint());
+  // What is beside the terrain in a scene of only_heights() is its plinth.
+  std::optional<Plinth> plinth;
+  if (scene.objects().size() > 1) plinth.emplace(field, plinth_base(field));
+  set_field(numbers, field, plinth, zero);
   set_steps(numbers, scene, camera, settings);
-  set_water(numbers, field, view.water, zero);
-  set_air(numbers, field, view.shader, zero);
-  set_samples(numbers, view.shader.lighting(), settings.samples);
-  set_ground(numbers, field, view.shader.paint(), zero);
+  set_water(numbers, field, view.water(), zero);
+  set_air(numbers, field, view, zero);
+  set_samples(numbers, view.lighting(), settings.samples);
+  set_ground(numbers, field, view.paint(), zero);
   FrameReport unasked;
-  FrameReport& told = report ? *report : unasked;
-  told.device_s.reset();
-  return static_cast<FrameMaker*>(terrain.kept.get())->make(scene, numbers, view.shader.paint(), zero, progress, told);
+  FrameReport& found = report ? *report : unasked;
+  found.device_s.reset();
+  return static_cast<FrameMaker*>(terrain.kept.get())->make(scene, numbers, view.paint(), zero, progress, found);
 }
 
 }  // namespace scarp

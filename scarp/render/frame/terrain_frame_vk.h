@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures of a terrain scene on a Vulkan device, made there as a whole: a dispatch makes all rays, follows them and
+// Pictures of one terrain on a Vulkan device, made there as a whole: a dispatch makes all rays, follows them and
 // paints what they meet, and only the pixels come back.
 //
 //   camera, settings ──▶ some hundred numbers ──▶ terrain_frame.comp, a pixel per invocation ──▶ Image
@@ -15,12 +15,12 @@
 
 #include "scarp/base/progress.h"
 #include "scarp/render/frame/picture.h"
-#include "scarp/scene/terrain_scene.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp {
 
 /// Whether such a picture is made there as a whole: max-mip or fixed-step, and an eye less than 2^22 cells off.
-bool makes_whole_frames(const TerrainScene& scene, const Camera& camera, const PictureSettings& settings);
+bool makes_whole_frames(const Scene& scene, const Camera& camera, const PictureSettings& settings);
 
 /// What the ray of the camera through a pixel's first point met.
 struct FrameSighting {
@@ -40,7 +40,7 @@ struct FrameReport {
 
 /// The looks `comanche` (not scaled up) and `shaded`. `settings` are valid and makes_whole_frames(). Throws Error: no
 /// memory on the device, the device is lost, the eye is under the water; Interrupted when progress asks for it.
-Image render_whole_frame(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                         const PictureSettings& settings, const Progress& progress = {}, FrameReport* report = nullptr);
+Image render_whole_frame(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                         const Progress& progress = {}, FrameReport* report = nullptr);
 
 }  // namespace scarp

@@ -14,14 +14,14 @@ using Question = RayRound::Question;
 
 constexpr std::size_t kRaysAtOnce = 1 << 18;  // on a device
 
-void answer(const TerrainScene& scene, RayRound& round) {
+void answer(const Scene& scene, RayRound& round) {
   if (round.question == Question::any) {
     round.blocked.resize(round.rays.size());
-    return scene.occluded(round.rays, round.blocked);
+    return scene.occluded(round.rays, round.blocked, round.from);
   }
   round.hits.resize(round.rays.size());
   round.steps.resize(round.question == Question::closest_cost ? round.rays.size() : 0);
-  scene.closest_hits(round.rays, round.hits, round.steps);
+  scene.closest_hits(round.rays, round.hits, round.steps, round.from);
 }
 
 struct OpenTile {
@@ -34,18 +34,22 @@ struct OpenTile {
 // One batch for all tiles that ask the same.
 class Together {
  public:
-  void answer(const TerrainScene& scene, std::vector<OpenTile>& tiles, Question question) {
+  void answer(const Scene& scene, std::vector<OpenTile>& tiles, Question question) {
     std::size_t rays = 0;
+    bool from = false;
     for (OpenTile& tile : tiles) {
       if (!asks(tile, question)) continue;
       tile.first = rays;
       rays += tile.round.rays.size();
+      from = from || !tile.round.from.empty();
     }
     if (rays == 0) return;
     batch_.question = question;
     batch_.rays.resize(rays);
+    batch_.from.assign(from ? rays : 0, nullptr);
     for_each(tiles, question, [&](OpenTile& tile) {
       std::copy(tile.round.rays.begin(), tile.round.rays.end(), batch_.rays.begin() + at(tile.first));
+      std::copy(tile.round.from.begin(), tile.round.from.end(), batch_.from.begin() + (from ? at(tile.first) : 0));
     });
     scarp::answer(scene, batch_);
     for_each(tiles, question, [&](OpenTile& tile) {
@@ -78,8 +82,8 @@ class Together {
   RayRound batch_;
 };
 
-void work_together(const TerrainScene& scene, const PixelTiles& tiles, std::size_t tiles_at_once,
-                   const MakeTileWork& make, const Progress& progress) {
+void work_together(const Scene& scene, const PixelTiles& tiles, std::size_t tiles_at_once, const MakeTileWork& make,
+                   const Progress& progress) {
   Together together;
   for (std::int64_t first = 0; first < tiles.count(); first += static_cast<std::int64_t>(tiles_at_once)) {
     // Nothing is known of the share within a round; what counts is to hear that somebody wants to stop.
@@ -110,7 +114,7 @@ void work_together(const TerrainScene& scene, const PixelTiles& tiles, std::size
 
 }  // namespace
 
-void work_on_tiles(const TerrainScene& scene, const PixelTiles& tiles, std::size_t most_rays, const MakeTileWork& make,
+void work_on_tiles(const Scene& scene, const PixelTiles& tiles, std::size_t most_rays, const MakeTileWork& make,
                    const Progress& progress) {
   if (scene.on_device()) return work_together(scene, tiles, kRaysAtOnce / most_rays, make, progress);
   parallel_for(

@@ -13,7 +13,7 @@
 
 #include "scarp/base/progress.h"
 #include "scarp/render/frame/film.h"
-#include "scarp/scene/terrain_scene.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp {
 
@@ -26,6 +26,8 @@ struct RayRound {
   };
   Question question = Question::closest;
   std::vector<Ray> rays;
+  /// Hits on whose surfaces the rays begin, as in Scene::closest_hits(); empty: none, or Ray::start says so.
+  std::vector<const Hit*> from;
   std::vector<Hit> hits;
   std::vector<std::uint32_t> steps;
   std::vector<std::uint8_t> blocked;
@@ -47,7 +49,7 @@ using MakeTileWork = std::function<std::unique_ptr<TileWork>(const PixelTile&)>;
 
 /// Does the work on all tiles, on all threads. `most_rays` is what a tile asks at most in a round, 1 to
 /// kMostRaysOfRound. Throws Interrupted when progress asks for it.
-void work_on_tiles(const TerrainScene& scene, const PixelTiles& tiles, std::size_t most_rays, const MakeTileWork& make,
+void work_on_tiles(const Scene& scene, const PixelTiles& tiles, std::size_t most_rays, const MakeTileWork& make,
                    const Progress& progress);
 
 }  // namespace scarp

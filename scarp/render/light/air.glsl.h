@@ -20,6 +20,13 @@ SCARP_FN vec3 scarp_sky_colour(real z) {
   return scarp_between(kScarpHorizon, kScarpNadir, real(1.0) - far * sqrt(far));
 }
 
+/// A colour seen through `metres` of haze along a ray whose unit direction has this z. Haze has the colour of the sky
+/// behind it, and that of the horizon below.
+SCARP_FN vec3 scarp_in_haze(vec3 colour, real z, real per_metre, real metres) {
+  real clear = exp(-per_metre * max(real(0.0), metres));
+  return scarp_between(scarp_sky_colour(max(real(0.0), z)), colour, clear);
+}
+
 /// FogKind.
 const int kScarpNoFog = 0;
 const int kScarpFogByDistance = 1;

@@ -5,7 +5,6 @@
 
 #include "scarp/render/light/air.glsl.h"
 #include "scarp/render/light/sample_pattern.glsl.h"
-#include "scarp/render/light/sun_shadow.h"
 
 namespace scarp {
 namespace {
@@ -20,10 +19,9 @@ void end_above_ground(std::span<Ray> rays, double highest) {
 
 }  // namespace
 
-Lighting::Lighting(const PictureSettings& settings, double grid_north_azimuth, double ao_distance,
-                   std::optional<double> highest)
+Lighting::Lighting(const PictureSettings& settings, double ao_distance, std::optional<double> highest)
     : settings_(settings),
-      light_(settings.sun, grid_north_azimuth),
+      light_(settings.sun, settings.grid_north_azimuth),
       pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
       ao_distance_(ao_distance),
       highest_(highest) {}
@@ -33,7 +31,7 @@ int Lighting::sky_rays() const { return ao_distance_ > 0 ? settings_.samples : 0
 
 std::size_t Lighting::most_rays() const { return static_cast<std::size_t>(std::max(1, 2 * settings_.samples)); }
 
-LightRays Lighting::ask(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const {
+LightRays Lighting::ask(const LightPoint& at, const PicturePoint& point, std::vector<Ray>& rays) const {
   const auto samples = [&](std::uint32_t purpose) {
     const auto count = static_cast<std::uint32_t>(settings_.samples);
     if (count == 0) return PatternRange{};  // a point of a sun needs none
@@ -42,25 +40,24 @@ LightRays Lighting::ask(const GroundPoint& ground, const PicturePoint& point, st
   };
   LightRays asked;
   asked.sun = rays.size();
-  if (settings_.shadows) ask_sun(ground, light_.to_sun(), sun_radius(), samples(glsl::kScarpPointsOfSun), rays);
+  if (settings_.shadows) ask_sun(at, light_.to_sun(), sun_radius(), samples(glsl::kScarpPointsOfSun), rays);
   if (highest_) end_above_ground(std::span(rays).subspan(asked.sun), *highest_);
   asked.sky = rays.size();
-  if (sky_rays() > 0) ask_sky(ground, ao_distance_, samples(glsl::kScarpPointsOfSky), rays);
+  if (sky_rays() > 0) ask_sky(at, ao_distance_, samples(glsl::kScarpPointsOfSky), rays);
   asked.end = rays.size();
   return asked;
 }
 
-vec3 Lighting::on(const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
+vec3 Lighting::on(const LightPoint& at, const LightRays& asked, std::span<const Ray> rays,
                   std::span<const std::uint8_t> blocked) const {
-  double sun = std::max(0.0, dot(ground.shading_normal, light_.to_sun())), sky = ground.openness;
+  double sun = std::max(0.0, dot(at.shading_normal, light_.to_sun())), sky = at.openness;
   if (settings_.shadows) {
     const std::size_t count = asked.sky - asked.sun;
-    sun = sun_cosine(ground, sun_radius(), static_cast<std::uint32_t>(settings_.samples),
-                     rays.subspan(asked.sun, count), blocked.subspan(asked.sun, count));
+    sun = sun_cosine(at, sun_radius(), static_cast<std::uint32_t>(settings_.samples), rays.subspan(asked.sun, count),
+                     blocked.subspan(asked.sun, count));
   }
-  if (settings_.shadows && settings_.sun_shadow && settings_.sun_shadow->hides(ground.position)) sun = 0;
   if (asked.end > asked.sky) sky = 1 - sky_occlusion(blocked.subspan(asked.sky, asked.end - asked.sky));
-  return light_.on(ground.shading_normal, sun, sky);
+  return light_.on(at.shading_normal, sun, sky);
 }
 
 }  // namespace scarp

@@ -26,17 +26,16 @@ struct LightRays {
 /// Refers to the settings.
 class Lighting {
  public:
-  /// `ao_distance` takes the place of that in the settings. `highest` is given where ground has no end: above it
-  /// nothing is met, and rays to the sun end there.
-  Lighting(const PictureSettings& settings, double grid_north_azimuth, double ao_distance,
-           std::optional<double> highest = {});
+  /// `ao_distance` in metres replaces that of the settings. `highest`, for ground that wraps round: nothing is met
+  /// above it, and rays to the sun end there.
+  Lighting(const PictureSettings& settings, double ao_distance, std::optional<double> highest = {});
 
   /// How many rays ask() appends at most.
   std::size_t most_rays() const;
   /// Appends what has to be known of the light on a point.
-  LightRays ask(const GroundPoint& ground, const PicturePoint& point, std::vector<Ray>& rays) const;
+  LightRays ask(const LightPoint& at, const PicturePoint& point, std::vector<Ray>& rays) const;
   /// Linear light; `rays` and their answers are those that `asked` refers to.
-  vec3 on(const GroundPoint& ground, const LightRays& asked, std::span<const Ray> rays,
+  vec3 on(const LightPoint& at, const LightRays& asked, std::span<const Ray> rays,
           std::span<const std::uint8_t> blocked) const;
   /// Of a point: to the sun at most, and to the sky.
   int sun_rays() const;

@@ -9,17 +9,18 @@
 namespace scarp {
 namespace {
 
-Ray ray_from(const GroundPoint& point, const dvec3& direction, double distance) {
+Ray ray_from(const LightPoint& point, const dvec3& direction, double distance) {
   Ray ray;
   ray.origin = point.position;
   ray.direction = direction;
   ray.t_max = distance;
   ray.start = RayStart::on_surface;
   ray.start_cell = point.cell;
+  ray.start_object = point.object;
   return ray;
 }
 
-void ask_far(const GroundPoint& point, const dvec3& direction, std::vector<Ray>& rays) {
+void ask_far(const LightPoint& point, const dvec3& direction, std::vector<Ray>& rays) {
   if (dot(point.shading_normal, direction) > 0) {
     rays.push_back(ray_from(point, direction, std::numeric_limits<double>::infinity()));
   }
@@ -27,11 +28,11 @@ void ask_far(const GroundPoint& point, const dvec3& direction, std::vector<Ray>&
 
 }  // namespace
 
-GroundPoint ground_point(const HeightField& field, const Ray& ray, const Hit& hit) {
-  return {ray.at(hit.t), hit.cell, field.normal(hit.cell, hit.u, hit.v), field.shading_normal(hit.cell, hit.u, hit.v)};
+LightPoint light_point(const SceneSurface& surface, const Hit& hit) {
+  return {surface.position, surface.normal, surface.shading_normal, surface.openness, hit.object, hit.cell};
 }
 
-void ask_sky(const GroundPoint& point, double distance, const PatternRange& samples, std::vector<Ray>& rays) {
+void ask_sky(const LightPoint& point, double distance, const PatternRange& samples, std::vector<Ray>& rays) {
   const Frame frame(point.normal);
   for (std::uint32_t i = samples.first; i < samples.first + samples.count; ++i) {
     rays.push_back(ray_from(point, frame.to_world(cosine_weighted(samples.points[i])), distance));
@@ -43,7 +44,7 @@ double sky_occlusion(std::span<const std::uint8_t> blocked) {
   return static_cast<double>(hidden) / static_cast<double>(blocked.size());
 }
 
-void ask_sun(const GroundPoint& point, const dvec3& to_sun, double radius, const PatternRange& samples,
+void ask_sun(const LightPoint& point, const dvec3& to_sun, double radius, const PatternRange& samples,
              std::vector<Ray>& rays) {
   if (radius == 0) return ask_far(point, to_sun, rays);
   const Frame frame(to_sun);
@@ -52,7 +53,7 @@ void ask_sun(const GroundPoint& point, const dvec3& to_sun, double radius, const
   }
 }
 
-double sun_cosine(const GroundPoint& point, double radius, std::uint32_t count, std::span<const Ray> rays,
+double sun_cosine(const LightPoint& point, double radius, std::uint32_t count, std::span<const Ray> rays,
                   std::span<const std::uint8_t> blocked) {
   double sum = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// How much of the sky and of the sun's disc a point of the ground sees, by sampling with any-hit rays. The rays start
-// on the surface of their cell: no offset, so nothing is lit through a ridge and a plane does not shade itself.
+// How much of the sky and of the sun's disc a point of a surface sees, by sampling with any-hit rays. The rays start on
+// the surface without an offset, so nothing is lit through a ridge and a plane does not shade itself.
 //
-//   ask_...(point, ..., rays)  appends rays    ──▶  TerrainScene::occluded  ──▶    sky_occlusion, sun_cosine of those
+//   ask_...(point, ..., rays)  appends rays    ──▶  Scene::occluded  ──▶    sky_occlusion, sun_cosine of those
 //
 // Two normals meet here. What is visible is a matter of the surface alone: the sky is that over its own tangent plane,
 // and whatever ray goes below it is blocked. How bright visible light makes the ground is a matter of the shading
@@ -16,22 +16,23 @@
 #include <vector>
 
 #include "scarp/base/ray.h"
-#include "scarp/field/height_field.h"
 #include "scarp/render/light/sample_pattern.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp {
 
-/// A point on the ground, in world space.
-struct GroundPoint {
+/// A point on a surface, in world space.
+struct LightPoint {
   dvec3 position;
-  Cell cell;
-  dvec3 normal;          ///< unit, of the surface
-  dvec3 shading_normal;  ///< unit
-  double openness = 1;   ///< share of the sky that is there, where it is not sampled
+  dvec3 normal;              ///< unit, of the surface
+  dvec3 shading_normal;      ///< unit
+  double openness = 1;       ///< share of the sky that is there, where it is not sampled
+  std::uint32_t object = 0;  ///< where rays from the point begin: Ray::start_object and start_cell
+  Cell cell{};
 };
 
-/// Of what is visible from a hit of a ray.
-GroundPoint ground_point(const HeightField& field, const Ray& ray, const Hit& hit);
+/// The point that was hit.
+LightPoint light_point(const SceneSurface& surface, const Hit& hit);
 
 /// Samples of one picture sample: points [first, first + count) of a pixel. count >= 1.
 struct PatternRange {
@@ -42,7 +43,7 @@ struct PatternRange {
 
 /// Rays to the sky over the tangent plane, most of them where its cosine is large, that end at `distance` metres; as
 /// many as there are samples.
-void ask_sky(const GroundPoint& point, double distance, const PatternRange& samples, std::vector<Ray>& rays);
+void ask_sky(const LightPoint& point, double distance, const PatternRange& samples, std::vector<Ray>& rays);
 /// Ambient occlusion: the share of the sky over the tangent plane, weighted with the cosine to its normal, that ground
 /// closer than `distance` hides; 0..1. `blocked` answers the rays of ask_sky, at least one. The standard error is at
 /// most 1 / (2 sqrt(count)), that of unstratified samples.
@@ -50,11 +51,11 @@ double sky_occlusion(std::span<const std::uint8_t> blocked);
 
 /// Rays to the sun's disc, of angular radius `radius` in radians round the unit vector `to_sun`; one to the middle when
 /// the radius is 0. There are none to where it shines onto the back of the shading normal.
-void ask_sun(const GroundPoint& point, const dvec3& to_sun, double radius, const PatternRange& samples,
+void ask_sun(const LightPoint& point, const dvec3& to_sun, double radius, const PatternRange& samples,
              std::vector<Ray>& rays);
 /// The mean over the sun's disc of the cosine between shading normal and ray, hidden parts and parts behind the normal
 /// counting nothing; 0..1. `rays` are those of ask_sun for `radius` and `count` samples, answered by `blocked`.
-double sun_cosine(const GroundPoint& point, double radius, std::uint32_t count, std::span<const Ray> rays,
+double sun_cosine(const LightPoint& point, double radius, std::uint32_t count, std::span<const Ray> rays,
                   std::span<const std::uint8_t> blocked);
 
 }  // namespace scarp

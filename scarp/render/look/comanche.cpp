@@ -6,17 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "scarp/base/error.h"
 #include "scarp/march/fixed_step.h"
+#include "scarp/render/camera/camera.h"
 #include "scarp/render/camera/compass.h"
-#include "scarp/render/frame/lake_tile.h"
-#include "scarp/render/frame/picture.h"
-#include "scarp/render/frame/tile_work.h"
-#ifdef SCARP_VULKAN
-#include "scarp/render/frame/terrain_frame_vk.h"
-#endif
+#include "scarp/render/frame/film.h"
 
 namespace scarp {
 namespace {
@@ -36,35 +31,6 @@ double entry(const HeightField& field, const Ray& ray) {
   return std::max({ray.t_min, from(ray.origin.x, ray.direction.x, field.width()),
                    from(ray.origin.y, ray.direction.y, field.depth())});
 }
-
-Image scaled_up(const Image& image, int factor) {
-  Image large(image.width * factor, image.height * factor);
-  for (int y = 0; y < large.height; ++y) {
-    for (int x = 0; x < large.width; ++x) std::copy_n(image.pixel(x / factor, y / factor), 3, large.pixel(x, y));
-  }
-  return large;
-}
-
-class ComancheTile final : public TileWork {
- public:
-  ComancheTile(const LakeView& view, const PixelTile& tile, Image& image)
-      : tile_(tile), lake_(view, tile), image_(image) {}
-
-  bool next(RayRound& round) override {
-    if (lake_.next(round)) return true;
-    std::size_t i = 0;
-    const std::vector<vec3> colours = lake_.pixels();
-    for (int y = tile_.y0; y < tile_.y1; ++y) {
-      for (int x = tile_.x0; x < tile_.x1; ++x) set_pixel(image_, x, y, colours[i++]);
-    }
-    return false;
-  }
-
- private:
-  PixelTile tile_;
-  LakeTile lake_;
-  Image& image_;
-};
 
 }  // namespace
 
@@ -136,32 +102,12 @@ StepMarch::Answer StepMarch::march(const Ray& ray, const Water* water, double st
   return answer;
 }
 
-Picture render_lake(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                    const PictureSettings& settings, const Progress& progress) {
-#ifdef SCARP_VULKAN
-  if (makes_whole_frames(scene, camera, settings)) {
-    return {render_whole_frame(scene, camera, grid_north_azimuth, settings, progress), {}, {}};
+Image scaled_up(const Image& image, int factor) {
+  Image large(image.width * factor, image.height * factor);
+  for (int y = 0; y < large.height; ++y) {
+    for (int x = 0; x < large.width; ++x) std::copy_n(image.pixel(x / factor, y / factor), 3, large.pixel(x, y));
   }
-#endif
-  if (scene.on_device() && settings.look == Look::comanche && scene.march().name == "fixed-step") {
-    throw Error(
-        "comanche: on a device the eye must be within 2^22 cells of the field for fixed-step; let max-mip march, or "
-        "the "
-        "CPU");
-  }
-  const Lake lake(scene, camera, grid_north_azimuth, settings);
-  Image image(settings.width, settings.height);
-  work_on_tiles(
-      scene, PixelTiles(settings.width, settings.height, settings.aa), lake.most_rays(),
-      [&](const PixelTile& tile) { return std::make_unique<ComancheTile>(lake.view(), tile, image); }, progress);
-  return {std::move(image), {}, {}};
-}
-
-Picture render_comanche(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                        const PictureSettings& settings, const Progress& progress) {
-  return {scaled_up(render_lake(scene, camera, grid_north_azimuth, settings, progress).image, settings.comanche.scale),
-          {},
-          {}};
+  return large;
 }
 
 }  // namespace scarp

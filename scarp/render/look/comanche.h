@@ -17,15 +17,13 @@
 
 #include <cstdint>
 
-#include "scarp/base/progress.h"
+#include "scarp/field/height_field.h"
 #include "scarp/render/surface/water.h"
-#include "scarp/scene/terrain_scene.h"
 
 namespace scarp {
 
 class Camera;
-struct Picture;
-struct PictureSettings;
+struct Image;
 
 struct ComancheSettings {
   int scale = 3;              ///< sides of the picture's large pixels in pixels of the image, 1..64
@@ -76,12 +74,7 @@ class StepMarch {
   dvec3 forward_;
 };
 
-/// A picture with water in the look `shaded`. `settings` are valid.
-Picture render_lake(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                    const PictureSettings& settings, const Progress& progress);
-
-/// The picture, settings.comanche.scale times as wide and high as the settings say. `settings` are valid.
-Picture render_comanche(const TerrainScene& scene, const Camera& camera, double grid_north_azimuth,
-                        const PictureSettings& settings, const Progress& progress);
+/// Each pixel as `factor` x `factor` pixels.
+Image scaled_up(const Image& image, int factor);
 
 }  // namespace scarp

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/render/look/error_look.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <vector>
 
-#include "scarp/march/height/wall.h"
-#include "scarp/render/frame/sight.h"
+#include "scarp/base/error.h"
+#include "scarp/march/function/function_exhaustive.h"
+#include "scarp/render/frame/middles.h"
 #include "scarp/render/frame/tile_work.h"
 #include "scarp/render/light/light.h"
 #include "scarp/render/surface/ramp.h"
@@ -54,17 +58,50 @@ Verdict judge(const Hit& answer, const Hit& truth, double tolerance) {
 
 namespace {
 
+constexpr int kProvenEvery = 8;  // in both directions
+
+// Whether intervals say otherwise than the judge's answer.
+bool contradicts(const Hit& hit, const FunctionJudgement& judgement, const Ray& ray, double tolerance) {
+  if (judgement.verdict == FunctionVerdict::clear) return static_cast<bool>(hit);
+  if (judgement.verdict != FunctionVerdict::crossing) return false;
+  // Of several crossings within the tolerance any may be the answer, and a place that cannot be told from one.
+  const double slack = tolerance * (judgement.crossed_by - ray.t_min);
+  return !hit || hit.t > judgement.crossed_by + slack;
+}
+
+// The function of a scene of one function at the origin, else null.
+const HeightFunction* only_function(const Scene& scene) {
+  if (!scene.only_field()) return nullptr;
+  const SceneFieldParts parts = scene.only_field()->parts();
+  const auto* function = std::get_if<SceneFieldParts::Function>(&parts.of);
+  return function ? function->field : nullptr;
+}
+
+// Counts of all tiles.
+struct Tally {
+  std::array<std::atomic<std::int64_t>, kVerdicts> pixels{};
+  std::atomic<std::int64_t> proven = 0, contradictions = 0;
+};
+
 class ErrorTile final : public TileWork {
  public:
-  ErrorTile(const TerrainScene& oracle, const Camera& camera, const PixelTile& tile, const Light& light,
-            std::vector<Verdict>& verdicts, ErrorPicture& picture)
-      : oracle_(oracle), camera_(camera), tile_(tile), light_(light), verdicts_(verdicts), picture_(picture) {}
+  ErrorTile(const Scene& judges, const Camera& camera, const PixelTile& tile, const ErrorSettings& settings,
+            const Light& light, Tally& tally, Image& image)
+      : judges_(judges),
+        function_(only_function(judges)),
+        camera_(camera),
+        tile_(tile),
+        settings_(settings),
+        light_(light),
+        tally_(tally),
+        image_(image) {}
 
   bool next(RayRound& round) override {
     if (!asked_) {
       asked_ = true;
       round.question = RayRound::Question::closest;
       round.rays = rays_through_middles(camera_, tile_);
+      round.from.clear();
       return true;
     }
     std::size_t i = 0;
@@ -76,46 +113,75 @@ class ErrorTile final : public TileWork {
 
  private:
   void judge_pixel(int x, int y, const Ray& ray, const Hit& answer) const {
-    const Hit truth = oracle_.closest_hit(ray);
-    const Verdict verdict = judge(answer, truth, picture_.counts.tolerance_m);
+    const Hit truth = judges_.closest_hit(ray);
+    const Verdict verdict = judge(answer, truth, tolerance(truth));
+    ++tally_.pixels[static_cast<std::size_t>(verdict)];
     vec3 colour = linear_from_srgb(style_of(verdict).srgb);
-    // Unshadowed relief behind all colours of ground, so that one sees where the errors are.
+    // Relief without shadows behind the colours of surfaces shows where the errors are.
     if (truth) {
-      const dvec3 normal =
-          truth.wall ? wall_normal(ray, truth) : oracle_.field().shading_normal(truth.cell, truth.u, truth.v);
-      colour *= light_.on(normal, true);
+      const SceneSurface surface = judges_.surface(ray, truth);
+      if (surface.normal != dvec3(0.0)) colour *= light_.on(surface.shading_normal, true);
     }
-    set_pixel(picture_.image, x, y, colour);
-    verdicts_[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture_.image.width) +
-              static_cast<std::size_t>(x)] = verdict;
+    set_pixel(image_, x, y, colour);
+    const bool chosen = x % kProvenEvery == kProvenEvery / 2 && y % kProvenEvery == kProvenEvery / 2;
+    if (function_ && chosen && truth.status != HitStatus::below && std::isfinite(ray.t_max)) prove(ray, truth);
   }
 
-  const TerrainScene& oracle_;
+  double tolerance(const Hit& truth) const {
+    if (!truth) return 0;
+    const double cell = judges_.field_of(truth.object).cell_side() * judges_.objects()[truth.object].placement.scale;
+    return cell > 0 ? settings_.tolerance * cell : settings_.share * truth.t;
+  }
+
+  void prove(const Ray& ray, const Hit& truth) const {
+    const FunctionJudgement judgement = judge_function(function_->function(), ray);
+    tally_.proven += judgement.verdict != FunctionVerdict::undecided;
+    tally_.contradictions += contradicts(truth, judgement, ray, LipschitzLocalSettings{}.tolerance);
+  }
+
+  const Scene& judges_;
+  const HeightFunction* function_;
   const Camera& camera_;
   PixelTile tile_;
+  const ErrorSettings& settings_;
   const Light& light_;
-  std::vector<Verdict>& verdicts_;
-  ErrorPicture& picture_;
+  Tally& tally_;
+  Image& image_;
   bool asked_ = false;
 };
 
 }  // namespace
 
-ErrorPicture render_error(const TerrainScene& scene, const Camera& camera, int width, int height, double tolerance,
-                          const Progress& progress) {
-  const HeightField& field = scene.field();
-  const TerrainScene oracle(field, find_height_march("exhaustive"));
+void validate(const ErrorSettings& settings) {
+  const auto good = [](double x) { return std::isfinite(x) && x >= 0; };
+  if (!good(settings.tolerance)) {
+    throw Error(
+        fmt::format("picture: the error tolerance is {}; it must be 0 or more sides of a cell", settings.tolerance));
+  }
+  if (!good(settings.share)) {
+    throw Error(
+        fmt::format("picture: the error tolerance is {} of the distance; it must be 0 or more", settings.share));
+  }
+}
+
+ErrorPicture render_error(const Scene& scene, const Camera& camera, int width, int height,
+                          const ErrorSettings& settings, const Progress& progress) {
+  const Scene judges = scene.judge();
   const Light light(SunSettings{}, 0);
   ErrorPicture picture{Image(width, height), {}};
-  picture.counts.tolerance_m = tolerance * std::min(field.settings().cell_x, field.settings().cell_y);
-  std::vector<Verdict> verdicts(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+  picture.counts.judges = judges.marches();
+  picture.counts.tolerance_m = settings.tolerance * judges.cell_side();
+  picture.counts.share = settings.share;
+  Tally tally;
   work_on_tiles(
       scene, PixelTiles(width, height, 1), kMostRays,
       [&](const PixelTile& tile) {
-        return std::make_unique<ErrorTile>(oracle, camera, tile, light, verdicts, picture);
+        return std::make_unique<ErrorTile>(judges, camera, tile, settings, light, tally, picture.image);
       },
       progress);
-  for (const Verdict verdict : verdicts) ++picture.counts.pixels[static_cast<std::size_t>(verdict)];
+  std::copy(tally.pixels.begin(), tally.pixels.end(), picture.counts.pixels.begin());
+  picture.counts.proven = tally.proven;
+  picture.counts.contradictions = tally.contradictions;
   return picture;
 }
 

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Where a march is wrong: every pixel's ray is judged by `exhaustive`.
+// The look `error`: where a march is wrong. Every pixel's ray is judged by the march that judges the field
+// (SceneField::judge()): `exhaustive` for height fields, `voxel-planes` for voxels, `lipschitz-local` for functions,
+// `sphere-trace` with the finest tolerance for shapes.
+//
+// `lipschitz-local` passes no crossing. In pictures of one function that is not left to trust: one pixel in 64 is
+// judged by interval bisection as well (function_exhaustive.h), and contradictions are counted.
 //
 //   grey       both hit the same place, within the tolerance (hill-shaded)
 //   dark grey  both miss
@@ -13,12 +18,13 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "scarp/base/progress.h"
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/film.h"
-#include "scarp/scene/terrain_scene.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp {
 
@@ -34,9 +40,21 @@ vec3 srgb_of(Verdict verdict);
 /// Judges a march's answer by the true one. Hits agree when their t differ by at most `tolerance`.
 Verdict judge(const Hit& answer, const Hit& truth, double tolerance);
 
+struct ErrorSettings {
+  double tolerance = 0.1;  ///< hits agree within this many sides of a cell or voxel along the ray; >= 0
+  double share = 0.01;     ///< of functions and shapes: within this share of the distance; >= 0
+};
+
+/// Throws Error naming the first setting out of its range.
+void validate(const ErrorSettings& settings);
+
 struct ErrorCounts {
   std::array<std::int64_t, kVerdicts> pixels{};  ///< by Verdict
-  double tolerance_m = 0;                        ///< along the ray
+  std::string judges{};                          ///< names of their marches
+  double tolerance_m = 0;           ///< along the ray, of the field with the smallest cells; 0: fields have no cells
+  double share = 0;                 ///< of the distance, the tolerance of fields without cells
+  std::int64_t proven = 0;          ///< pixels of a function that interval bisection decided
+  std::int64_t contradictions = 0;  ///< of those, where the judge says otherwise: none, or there is a bug
 
   std::int64_t operator[](Verdict verdict) const { return pixels[static_cast<std::size_t>(verdict)]; }
 };
@@ -46,8 +64,8 @@ struct ErrorPicture {
   ErrorCounts counts;
 };
 
-/// One ray through the middle of each pixel. `tolerance` along the ray, in shorter sides of a cell.
-ErrorPicture render_error(const TerrainScene& scene, const Camera& camera, int width, int height, double tolerance,
-                          const Progress& progress);
+/// One ray through the middle of each pixel. Throws Interrupted when progress asks for it.
+ErrorPicture render_error(const Scene& scene, const Camera& camera, int width, int height,
+                          const ErrorSettings& settings, const Progress& progress);
 
 }  // namespace scarp

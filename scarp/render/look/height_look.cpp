@@ -12,19 +12,23 @@ std::uint8_t grey_of_height(double height, double low, double high) {
   return static_cast<std::uint8_t>(std::lround(1 + 254 * share));
 }
 
-Picture picture_of_heights(const PictureSettings& settings, std::span<const double> heights) {
-  Picture picture{Image(settings.width, settings.height), {}, {}};
-  SeenHeights seen{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
-  for (const double h : heights) {
-    if (!std::isnan(h)) seen = {std::min(seen.low, h), std::max(seen.high, h)};
+Picture picture_of_heights(const PictureSettings& settings, std::span<const double> heights,
+                           const std::optional<ReliefRange>& range) {
+  Picture picture{Image(settings.width, settings.height)};
+  ReliefRange grey =
+      range.value_or(ReliefRange{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
+  if (!range) {
+    for (const double h : heights) {
+      if (!std::isnan(h)) grey = {std::min(grey.low, h), std::max(grey.high, h)};
+    }
+    if (!(grey.low <= grey.high)) return picture;
+    picture.heights = grey;
   }
-  if (!(seen.low <= seen.high)) return picture;
-  picture.heights = seen;
   const auto width = static_cast<std::size_t>(settings.width);
   for (std::size_t i = 0; i < heights.size(); ++i) {
     if (std::isnan(heights[i])) continue;
     std::fill_n(picture.image.pixel(static_cast<int>(i % width), static_cast<int>(i / width)), 3,
-                grey_of_height(heights[i], seen.low, seen.high));
+                grey_of_height(heights[i], grey.low, grey.high));
   }
   return picture;
 }

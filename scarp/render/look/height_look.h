@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The look `height` of scenes and functions, which have no heights of their own that all pictures could share: grey,
-// linear in height from the lowest (1) to the highest (255) point that the picture shows; misses are black (0).
+// The look `height`: grey, linear in height from the lowest (1) to the highest (255) point; misses are black (0). The
+// range is that of a terrain, so that its pictures can be compared, else that of the picture.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,12 @@
 
 namespace scarp {
 
-/// 1 at `low` to 255 at `high`, those of what is beyond likewise.
+/// 1 at `low` to 255 at `high`, clamped beyond.
 std::uint8_t grey_of_height(double height, double low, double high);
 
-/// `heights`: width * height of them, metres, rows from the top; NaN: a miss.
-Picture picture_of_heights(const PictureSettings& settings, std::span<const double> heights);
+/// `heights`: width * height of them, metres, rows from the top; NaN: a miss. Without a range, it is that of `heights`,
+/// which the picture then reports.
+Picture picture_of_heights(const PictureSettings& settings, std::span<const double> heights,
+                           const std::optional<ReliefRange>& range = {});
 
 }  // namespace scarp

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <numeric>
 
-#include "scarp/render/frame/shader.h"
 #include "scarp/render/surface/ramp.h"
 
 namespace scarp {
@@ -13,8 +12,8 @@ Picture picture_of_steps(const PictureSettings& settings, std::span<const std::u
   const auto width = static_cast<std::size_t>(settings.width);
   const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
   const double sum = std::accumulate(steps.begin(), steps.end(), 0.0);
-  Picture picture{
-      Image(settings.width, settings.height), StepRange{*least, *most, sum / static_cast<double>(steps.size())}, {}};
+  Picture picture{Image(settings.width, settings.height),
+                  StepRange{*least, *most, sum / static_cast<double>(steps.size())}};
   const Ramp ramp = ramp_over(settings, *least, *most);
   for (std::size_t i = 0; i < steps.size(); ++i) {
     set_pixel(picture.image, static_cast<int>(i % width), static_cast<int>(i / width), ramp(steps[i]));

@@ -54,20 +54,18 @@ void validate(const GroundPaintSettings& settings) {
           settings.contours, "0 or more metres");
 }
 
-GroundPaint::GroundPaint(const GroundPaintSettings& settings, const HeightField& field, Ramp ramp, const dvec3& to_sun)
+GroundPaint::GroundPaint(const GroundPaintSettings& settings, const PaintExtent& extent, Ramp ramp, const dvec3& to_sun)
     : settings_(settings),
-      field_(field),
+      extent_(extent),
       ramp_(std::move(ramp)),
       away_from_sun_(-to_sun.x, -to_sun.y),
-      low_(field.min_height()),
-      relief_(std::max(field.max_height() - low_, 1e-300)),
-      detail_size_(settings.detail_size > 0 ? settings.detail_size
-                                            : 16 * std::min(field.settings().cell_x, field.settings().cell_y)) {}
+      relief_(std::max(extent.high - extent.low, 1e-300)),
+      detail_size_(settings.detail_size > 0 ? settings.detail_size : 16 * extent.cell) {}
 
 vec3 GroundPaint::draped(const dvec3& position, vec3 below) const {
   const Drape& image = *settings_.drape;
-  double x = position.x / field_.width(), y = 1 - position.y / field_.depth();
-  if (field_.wraps()) {
+  double x = (position.x - extent_.origin.x) / extent_.size.x, y = 1 - (position.y - extent_.origin.y) / extent_.size.y;
+  if (extent_.repeats) {
     x -= std::floor(x);
     y -= std::floor(y);
   }
@@ -87,15 +85,22 @@ vec3 GroundPaint::draped(const dvec3& position, vec3 below) const {
   return sum + (1 - opacity) * below;
 }
 
-vec3 GroundPaint::operator()(const dvec3& position, double height, const dvec3& normal, double footprint) const {
-  const auto patches = [&](int set) { return glsl::scarp_patches(dvec2(position), set, detail_size_, footprint); };
-  vec3 colour = settings_.natural
-                    ? glsl::scarp_natural((height - low_) / relief_, normal, away_from_sun_, settings_.snow_share,
-                                          patches(glsl::kScarpBlur), patches(glsl::kScarpRough))
-                    : ramp_(height);
+double GroundPaint::patches(const dvec3& position, int set, double footprint) const {
+  return glsl::scarp_patches(dvec2(position), set, detail_size_, footprint);
+}
+
+vec3 GroundPaint::ground(const dvec3& position, double height, const dvec3& normal, double footprint) const {
+  if (!settings_.natural) return ramp_(height);
+  return glsl::scarp_natural((height - extent_.low) / relief_, normal, away_from_sun_, settings_.snow_share,
+                             patches(position, glsl::kScarpBlur, footprint),
+                             patches(position, glsl::kScarpRough, footprint));
+}
+
+vec3 GroundPaint::over(vec3 colour, const dvec3& position, double height, const dvec3& normal, double footprint) const {
   if (settings_.drape) colour = draped(position, colour);
   if (settings_.detail > 0) {
-    colour *= static_cast<float>(std::max(0.0, 1 + settings_.detail * patches(glsl::kScarpDetail)));
+    const double patch = patches(position, glsl::kScarpDetail, footprint);
+    colour *= static_cast<float>(std::max(0.0, 1 + settings_.detail * patch));
   }
   if (settings_.contours > 0) colour = glsl::scarp_with_contours(colour, height, normal, footprint, contour_interval());
   return colour;
@@ -108,7 +113,7 @@ GroundPaint::Patch GroundPaint::patch(int set, int octave) const {
   return {grain / (2 * size), dvec2(-grain.y, grain.x) / size};
 }
 
-double GroundPaint::contour_interval() const { return settings_.contours * field_.settings().exaggeration; }
+double GroundPaint::contour_interval() const { return settings_.contours * extent_.exaggeration; }
 double GroundPaint::heavy_contour_interval() const { return glsl::kScarpHeavyContour * contour_interval(); }
 
 }  // namespace scarp

@@ -1,27 +1,25 @@
 // SPDX-License-Identifier: MIT
-// The colour of ground before any light: a ramp by height, rock and grass and snow by slope and aspect, a picture
-// draped over it; then patches of noise and contour lines on top.
+// Colours of surfaces before any light, in two layers. The ground's own colour is a ramp by height, or `natural`. On
+// top of any colour, the ground's or a material's, lie an overlay, noise and contour lines.
 //
-//   natural   rock where it is steep, snow above a line that is lower on the shadowed side and where slopes do not hold
-//             it, else grass, darker below and drier above; the borders are blurred by noise
-//   detail    noise of several sizes, each twice as long along the slope's horizontal as across: patterns smaller than
-//   a
+//   natural   rock on steep slopes; snow above a line that is lower on the shadowed side, where slopes hold it; else
+//             grass, darker below and drier above; noise blurs the borders
+//   detail    noise of several sizes, twice as long along the slope's horizontal as across; patterns smaller than a
 //             pixel are left out
-//   contours  lines of a width in pixels: the distance to a line is the difference in height by the slope; every fifth
-//   is
-//             heavier; where lines would touch one another they fade
+//   contours  lines of constant width in pixels: the distance to a line is the difference in height divided by the
+//             slope; every fifth is heavier; lines fade where they would touch
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "scarp/field/height_field.h"
+#include "scarp/base/vec.h"
 #include "scarp/render/surface/ramp.h"
 
 namespace scarp {
 
-/// A picture over the whole of a field: its first pixel is the north-west corner.
+/// A picture over the whole extent: its first pixel is the north-west corner.
 struct Drape {
   int width = 0;                   ///< pixels, >= 1
   int height = 0;                  ///< pixels, >= 1
@@ -30,9 +28,9 @@ struct Drape {
 
 struct GroundPaintSettings {
   bool natural = false;                  ///< rock, grass and snow instead of the ramp
-  double snow_share = 0.7;               ///< of the field's relief at which snow begins, `natural`; finite
+  double snow_share = 0.7;               ///< share of the relief at which snow begins, `natural`; finite
   double detail = 0;                     ///< strength of the patches, 0..1
-  double detail_size = 0;                ///< metres of the largest, >= 0; 0: sixteen cells
+  double detail_size = 0;                ///< metres of the largest patches, >= 0; 0: sixteen cells
   double contours = 0;                   ///< metres from line to line, not exaggerated, >= 0; 0: none
   std::shared_ptr<const Drape> drape{};  ///< null: none
 };
@@ -40,14 +38,24 @@ struct GroundPaintSettings {
 /// Throws Error naming the first setting out of its range.
 void validate(const GroundPaintSettings& settings);
 
+/// What paint measures by, in world space.
+struct PaintExtent {
+  double low = 0, high = 1;      ///< heights in metres
+  double exaggeration = 1;       ///< that heights contain
+  double cell = 1;               ///< metres of a cell or voxel
+  dvec2 origin{0.0}, size{1.0};  ///< of the overlay, in metres: its south-west corner, and east and north from there
+  bool repeats = false;          ///< whether the overlay does
+};
+
 class GroundPaint {
  public:
-  /// Refers to the field. `to_sun` is a unit vector: the shadowed side is away from it.
-  GroundPaint(const GroundPaintSettings& settings, const HeightField& field, Ramp ramp, const dvec3& to_sun);
+  /// `to_sun` is a unit vector: the shadowed side is away from it. `ramp` takes heights of the extent.
+  GroundPaint(const GroundPaintSettings& settings, const PaintExtent& extent, Ramp ramp, const dvec3& to_sun);
 
-  /// In linear light; `height` of the surface at `position` in metres, `normal` unit, `footprint` the metres that a
-  /// pixel is wide there.
-  vec3 operator()(const dvec3& position, double height, const dvec3& normal, double footprint) const;
+  /// The ground's own colour and what lies over any colour, in linear light. `height` of the surface at `position` in
+  /// metres, `normal` unit, `footprint` the width of a pixel there in metres.
+  vec3 ground(const dvec3& position, double height, const dvec3& normal, double footprint) const;
+  vec3 over(vec3 colour, const dvec3& position, double height, const dvec3& normal, double footprint) const;
 
   const GroundPaintSettings& settings() const { return settings_; }
   const Ramp& ramp() const { return ramp_; }
@@ -66,12 +74,13 @@ class GroundPaint {
 
  private:
   vec3 draped(const dvec3& position, vec3 below) const;
+  double patches(const dvec3& position, int set, double footprint) const;
 
   GroundPaintSettings settings_;
-  const HeightField& field_;
+  PaintExtent extent_;
   Ramp ramp_;
   dvec2 away_from_sun_;
-  double low_, relief_, detail_size_;
+  double relief_, detail_size_;
 };
 
 }  // namespace scarp

@@ -7,8 +7,8 @@
 
 namespace scarp {
 
-std::function<std::uint32_t(const SceneSurface&)> voxel_colours(const SceneLook& look) {
-  return [colours = std::make_shared<const SurfaceColours>(look.materials)](const SceneSurface& surface) {
+std::function<std::uint32_t(const SceneSurface&)> voxel_colours(std::span<const Material> materials) {
+  return [colours = std::make_shared<const SurfaceColours>(materials)](const SceneSurface& surface) {
     const vec3 c = (*colours)(surface);
     return std::uint32_t{srgb_byte(c.x)} | std::uint32_t{srgb_byte(c.y)} << 8 | std::uint32_t{srgb_byte(c.z)} << 16;
   };

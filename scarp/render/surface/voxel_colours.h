@@ -4,13 +4,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 
-#include "scarp/render/frame/scene_picture.h"
+#include "scarp/scene/material.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp {
 
 /// RGB of a surface's material, sRGB, red in the lowest 8 bits: what voxelised() and VoxelModel take. Throws Error for
 /// materials that are none.
-std::function<std::uint32_t(const SceneSurface&)> voxel_colours(const SceneLook& look);
+std::function<std::uint32_t(const SceneSurface&)> voxel_colours(std::span<const Material> materials);
 
 }  // namespace scarp

@@ -66,36 +66,43 @@ void validate(const WaterSettings& settings) {
 
 double schlick(double cosine, double index) { return glsl::scarp_schlick(cosine, index); }
 
-Water::Water(const WaterSettings& settings, const HeightField& field)
+Water::Water(const WaterSettings& settings, const Scene& scene)
     : settings_(settings),
-      field_(field),
-      level_(settings.level * field.settings().exaggeration),
-      wavelength_(settings.wavelength > 0 ? settings.wavelength
-                                          : 2 * std::min(field.settings().cell_x, field.settings().cell_y)),
+      scene_(scene),
+      field_(scene.terrain()),
+      basin_(scene.box()),
+      level_(settings.level * (field_ ? field_->settings().exaggeration : 1)),
+      wavelength_(settings.wavelength > 0 ? settings.wavelength : 2 * (scene.cell_side() > 0 ? scene.cell_side() : 1)),
       deep_(linear_from_srgb(settings.srgb)),
       per_metre_(kPureWater + static_cast<float>(settings.turbidity)) {}
 
+std::optional<Water::Meeting> Water::from_above(const Ray& ray, double t) const {
+  const dvec3 p = ray.at(t);
+  Meeting meeting{t, {0, 0, 1}};
+  const auto ground = scene_.height(p.x, p.y);
+  // An eye that sees the level where the ground is higher is under the ground.
+  if (ground && *ground > level_) return {};
+  if (!field_) return meeting;
+  const auto place = field_->place(p.x, p.y);
+  if (place && !ground) return {};
+  if (place && is_sea(place->cell)) {
+    meeting.sea.emplace();
+    meeting.sea->object = scene_.terrain_object();
+    meeting.sea->cell = place->cell;
+  }
+  return meeting;
+}
+
 std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
   const dvec3 &o = ray.origin, &d = ray.direction;
-  const auto from_above = [&](double t) -> std::optional<Meeting> {
-    const dvec3 p = ray.at(t);
-    const auto place = field_.place(p.x, p.y);
-    if (place) {
-      // Who sees the level where the ground is higher, looks from under the ground.
-      const auto ground = field_.height(p.x, p.y);
-      if (!ground || *ground > level_) return {};
-    }
-    Meeting meeting{t, {0, 0, 1}};
-    if (place && is_sea(place->cell)) meeting.sea = place->cell;
-    return meeting;
-  };
-  if (field_.wraps()) {
+  if (scene_.endless()) {
     const double t = (level_ - o.z) / d.z;
     if (!(d.z < 0) || !(t >= ray.t_min && t <= ray.t_max)) return {};
-    return from_above(t);
+    return from_above(ray, t);
   }
-  // The basin is a box without a floor: the last of its three borders to be crossed is where the ray comes in.
-  const Span x = span_in(o.x, d.x, field_.width()), y = span_in(o.y, d.y, field_.depth());
+  // The last of the basin's three borders to be crossed is where the ray comes in.
+  const Span x = span_in(o.x - basin_.low.x, d.x, basin_.high.x - basin_.low.x),
+             y = span_in(o.y - basin_.low.y, d.y, basin_.high.y - basin_.low.y);
   Span z;
   if (d.z == 0) {
     if (o.z > level_) return {};
@@ -104,30 +111,40 @@ std::optional<Water::Meeting> Water::meets(const Ray& ray) const {
   }
   const double t = std::max({x.from, y.from, z.from}), end = std::min({x.to, y.to, z.to});
   if (!(t < end) || !(t >= ray.t_min && t <= ray.t_max)) return {};
-  if (t == z.from) return from_above(t);
-  // A side: only over the ground that stands there.
+  if (t == z.from) return from_above(ray, t);
+  // A side, above what is there: the ground of a terrain, else the floor of the box.
   const bool through_x = t == x.from;
   dvec3 p = ray.at(t);
-  p.x = std::clamp(p.x, 0.0, field_.width());
-  p.y = std::clamp(p.y, 0.0, field_.depth());
-  const auto ground = field_.height(p.x, p.y);
-  if (!ground || p.z <= *ground) return {};
+  p.x = std::clamp(p.x, basin_.low.x, basin_.high.x);
+  p.y = std::clamp(p.y, basin_.low.y, basin_.high.y);
+  const auto ground = scene_.height(p.x, p.y);
+  if (ground ? p.z <= *ground : field_ != nullptr || p.z <= basin_.low.z) return {};
   return Meeting{t, through_x ? dvec3(d.x > 0 ? -1 : 1, 0, 0) : dvec3(0, d.y > 0 ? -1 : 1, 0)};
 }
 
+bool Water::is_sea(const Hit& hit) const {
+  if (!field_ || !hit || hit.wall || hit.object != scene_.terrain_object()) return false;
+  // Most ground is far above the water. Heights of hits are good to a thousandth of a cell.
+  const HeightFieldSettings& settings = field_->settings();
+  return hit.height <= level_ + std::min(settings.cell_x, settings.cell_y) && is_sea(hit.cell);
+}
+
 bool Water::is_sea(Cell cell) const {
-  const auto heights = field_.cell_heights(cell);
+  const auto heights = field_->cell_heights(cell);
   if (!heights) return false;
   for (const double sample : {heights->h00, heights->h01, heights->h10, heights->h11}) {
-    if (field_.height_from_sample(sample) != level_) return false;
+    if (field_->height_from_sample(sample) != level_) return false;
   }
   return true;
 }
 
 double Water::leaves(const Ray& ray) const {
-  if (field_.wraps()) return kInfinity;
-  return std::min(span_in(ray.origin.x, ray.direction.x, field_.width()).to,
-                  span_in(ray.origin.y, ray.direction.y, field_.depth()).to);
+  if (scene_.endless()) return kInfinity;
+  const dvec3 &o = ray.origin, &d = ray.direction;
+  // A terrain is its own floor.
+  const double floor = field_ || !(d.z < 0) ? kInfinity : (basin_.low.z - o.z) / d.z;
+  return std::min({span_in(o.x - basin_.low.x, d.x, basin_.high.x - basin_.low.x).to,
+                   span_in(o.y - basin_.low.y, d.y, basin_.high.y - basin_.low.y).to, floor});
 }
 
 dvec3 Water::normal_at(const dvec3& position, double footprint) const {

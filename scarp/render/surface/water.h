@@ -11,13 +11,14 @@
 // Waves tilt the normal alone: some sines along different directions whose slopes are known in closed form; those
 // shorter than a pixel is wide are left out.
 //
-// A field that does not wrap round holds water over its own ground, like a basin: its sides are met, too.
+// A scene that has an end holds water in its box, like a basin whose sides are met, too; over ground that goes on
+// forever so does the water.
 #pragma once
 
 #include <optional>
 
 #include "scarp/base/ray.h"
-#include "scarp/field/height_field.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp {
 
@@ -26,9 +27,9 @@ struct WaterSettings {
   double turbidity = 0.04;         ///< per metre, taken from all colours alike; >= 0
   vec3 srgb{0.10f, 0.25f, 0.33f};  ///< what deep water gives back, sRGB 0..1
   double waves = 0.02;             ///< mean slope of the surface (root mean square), 0..0.5; 0: a mirror
-  double wavelength = 0;           ///< of the longest wave in metres, >= 0; 0: twice the shorter side of a cell
+  double wavelength = 0;           ///< of the longest wave in metres, >= 0; 0: two cells or voxels
   bool refraction = true;          ///< whether rays go on to the bottom; false: water of the one colour
-  bool reflection = true;          ///< whether reflected rays are traced in the terrain; false: they see the sky alone
+  bool reflection = true;          ///< whether reflected rays are traced; false: they see the sky alone
 };
 
 /// Throws Error naming the first setting out of its range.
@@ -42,25 +43,25 @@ double schlick(double cosine, double index = kWaterIndex);
 
 class Water {
  public:
-  /// The settings must be valid. Refers to the field.
-  Water(const WaterSettings& settings, const HeightField& field);
+  /// The settings must be valid. Refers to the scene.
+  Water(const WaterSettings& settings, const Scene& scene);
 
   const WaterSettings& settings() const { return settings_; }
-  /// Metres of world z: exaggerated as the field is.
+  /// Metres of world z: exaggerated as the terrain of the scene.
   double level() const { return level_; }
 
   struct Meeting {
-    double t;                   ///< in lengths of the ray's direction
-    dvec3 normal;               ///< unit, of the still water: up, or level at the sides of a field that ends
-    std::optional<Cell> sea{};  ///< the cell of is_sea() there, if it is one
+    double t;                  ///< in lengths of the ray's direction
+    dvec3 normal;              ///< unit, of the still water: up, or level at the sides of the basin
+    std::optional<Hit> sea{};  ///< where is_sea() holds: object and cell
   };
-  /// Where a ray comes into the water from outside, within its range; ground may be met before. Nothing where the ray
-  /// begins in the water, over holes, and where the ground is above the level.
+  /// Where a ray enters the water from outside, within its range; something may be met before. Nothing where the ray
+  /// begins in the water, over holes of a terrain, and where the ground is above the level.
   std::optional<Meeting> meets(const Ray& ray) const;
-  /// Whether all corners of a cell are exactly at the level: a sea that the elevation model has as flat ground. Nobody
-  /// knows how deep it is.
-  bool is_sea(Cell cell) const;
-  /// Where a ray that runs in the water comes out at a side of a field that ends; infinite in one that does not.
+  /// Whether a hit is on a cell all of whose corners are exactly at the level: a sea that the elevation model has as
+  /// flat ground, of unknown depth. Of the one terrain of a scene.
+  bool is_sea(const Hit& hit) const;
+  /// Where a ray in the water leaves the basin; infinite without an end.
   double leaves(const Ray& ray) const;
 
   /// Unit normal of the surface with its waves; `footprint` is the width of a pixel there in metres.
@@ -79,8 +80,13 @@ class Water {
   double wavelength(int i) const;
 
  private:
+  std::optional<Meeting> from_above(const Ray& ray, double t) const;
+  bool is_sea(Cell cell) const;
+
   WaterSettings settings_;
-  const HeightField& field_;
+  const Scene& scene_;
+  const HeightField* field_;  // null: the scene has no terrain
+  WorldBox basin_;
   double level_, wavelength_;
   vec3 deep_, per_metre_;
 };

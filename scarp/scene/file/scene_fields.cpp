@@ -17,8 +17,12 @@
 #include "scarp/scene/file/json_object.h"
 #include "scarp/scene/file/scene_parts.h"
 #include "scarp/scene/file/shape_json.h"
+#include "scarp/source/mesh_file.h"
 #include "scarp/source/procedural_dem.h"
 #include "scarp/source/read_raster.h"
+#ifdef SCARP_EMBREE
+#include "scarp/scene/mesh/scene_mesh.h"
+#endif
 
 namespace scarp {
 namespace {
@@ -194,6 +198,28 @@ FieldWithPlace voxels_from(const Json& json, const std::string& path, const Fiel
   }
 }
 
+#ifdef SCARP_EMBREE
+
+FieldWithPlace mesh_from(const Json& json, const std::string& path, const FieldSurroundings& around) {
+  try {
+    const std::string file = resolved(around, json["file"]);
+    const TriangleMesh mesh = read_mesh(file, json.value("up", "y") == "z" ? MeshUp::z : MeshUp::y);
+    around.files->push_back(file);
+    around.notes->insert(around.notes->end(), mesh.notes.begin(), mesh.notes.end());
+    return {scene_mesh(mesh), json.value("centred", false) ? mesh_placement(mesh, {}).origin : dvec3(0.0)};
+  } catch (const Error&) {
+    rethrow_at(path + "/file");
+  }
+}
+
+#else
+
+FieldWithPlace mesh_from(const Json&, const std::string& path, const FieldSurroundings&) {
+  throw Error(fmt::format("{}: this scarp was built without Embree, which traces meshes (SCARP_EMBREE=OFF)", path));
+}
+
+#endif
+
 }  // namespace
 
 void rethrow_at(const std::string& path) {
@@ -253,7 +279,7 @@ MarchSettings march_settings_from_json(const Json& json, const std::string& path
 }
 
 FieldWithPlace field_from_json(const Json& json, const std::string& path, const FieldSurroundings& around) {
-  constexpr std::array<const char*, 4> kKinds = {"heights", "function", "shape", "voxels"};
+  constexpr std::array<const char*, 5> kKinds = {"heights", "function", "shape", "voxels", "mesh"};
   const char* kind = nullptr;
   for (const char* name : kKinds) {
     if (!json.contains(name)) continue;
@@ -294,7 +320,11 @@ FieldWithPlace field_from_json(const Json& json, const std::string& path, const 
                            }};
     return {scene_shape(distance_field_from_json(field, inner, names), by, settings)};
   }
-  return voxels_from(field, inner, around, march(find_voxel_march, "voxel-bricks"));
+  if (kind == kKinds[3]) return voxels_from(field, inner, around, march(find_voxel_march, "voxel-bricks"));
+  for (const char* key : {"march", "settings"}) {
+    if (json.contains(key)) throw Error(fmt::format("{}/{}: does not go with mesh, which Embree traces", path, key));
+  }
+  return mesh_from(field, inner, around);
 }
 
 }  // namespace scarp

@@ -94,7 +94,7 @@ class Reader {
   // The index of a field that is placed by name, or stands in the object itself.
   std::pair<std::uint32_t, dvec3> field_of(const Json& object, const std::string& path) {
     if (!object.contains("field")) return add_field(object, path);
-    for (const char* key : {"march", "settings", "heights", "function", "shape", "voxels", "scene"}) {
+    for (const char* key : {"march", "settings", "heights", "function", "shape", "voxels", "mesh", "scene"}) {
       if (object.contains(key))
         throw Error(fmt::format("{}/{}: does not go with field; give it in /fields", path, key));
     }
@@ -138,7 +138,8 @@ class Reader {
   void read_object(const Json& json, const std::string& path) {
     std::vector<SceneObject> parts;
     if (json.contains("scene")) {
-      for (const char* key : {"march", "settings", "heights", "function", "shape", "voxels", "field", "material"}) {
+      for (const char* key :
+           {"march", "settings", "heights", "function", "shape", "voxels", "mesh", "field", "material"}) {
         if (json.contains(key)) throw Error(fmt::format("{}/{}: does not go with scene, which has its own", path, key));
       }
       parts = objects_of(json["scene"], path);

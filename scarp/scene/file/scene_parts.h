@@ -35,7 +35,7 @@ struct FieldWithPlace {
   dvec3 shift{0.0};  ///< of the field in its own space: centred ones are moved
 };
 
-/// One of heights, function, shape, voxels, with march and settings.
+/// One of heights, function, shape, voxels, mesh, with march and settings.
 FieldWithPlace field_from_json(const nlohmann::json& json, const std::string& path, const FieldSurroundings& around);
 
 /// Materials by name, appended to `all` in an order in which they refer to earlier ones alone; the index of each.

@@ -13,9 +13,6 @@
 namespace scarp {
 namespace {
 
-// By rounding, ground turned about z alone may miss the vertical: some 2^-50 in the cosine; a tilt of 2^-20 counts.
-constexpr double kUpright = 0x1p-41;
-
 using Json = nlohmann::json;
 
 constexpr double kRadians = std::numbers::pi / 180;
@@ -126,7 +123,7 @@ ScenePlaces places_from_json(const Json& object, const std::string& path, const 
   std::optional<SceneGround> ground;
   if (object.contains("on")) {
     ground = grounds(object["on"], path + "/on");
-    if (ground->placement.turn[2].z < 1 - kUpright)
+    if (!ground->placement.upright())
       throw Error(
           fmt::format("{}/on: '{}' is tilted; expected ground that is turned about z alone", path, ground->name));
   }

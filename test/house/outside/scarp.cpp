@@ -5,16 +5,15 @@
 
 #include "scarp/output/png.h"
 #include "scarp/render/frame/picture.h"
-#include "scarp/scene/terrain_scene.h"
+#include "scarp/scene/scene.h"
 
 int main() {
   const std::vector<std::int16_t> samples{0, 1, 2, 1, 5, 1, 2, 1, 0};
-  const scarp::TerrainScene scene(scarp::HeightField::own(samples, 3, 3), scarp::find_height_march("max-mip"));
+  const scarp::Scene scene(scarp::scene_heights(scarp::HeightField::own(samples, 3, 3)));
   scarp::PictureSettings settings;
   settings.width = 32;
   settings.height = 32;
-  const auto camera =
-      scarp::Camera::top(scarp::picture_box(scene.field(), settings.plinth), settings.width, settings.height);
-  const scarp::Picture picture = scarp::render_picture(scene, camera, 0.0, settings);
+  const auto camera = scarp::Camera::top(scarp::picture_box(scene), settings.width, settings.height);
+  const scarp::Picture picture = scarp::render_picture(scene, camera, settings);
   scarp::write_png("outside.png", {picture.image.rgb.data(), picture.image.width, picture.image.height});
 }

@@ -51,7 +51,7 @@ TEST(RoundedVoxels, ALoneVoxelIsABall) {
     const dvec3 p = ray.origin + hit.t * ray.direction;
     EXPECT_NEAR(length(p - middle), 0.5, 1e-12);
     EXPECT_EQ(hit.entry, 7U);
-    EXPECT_LT(length(rounded_normal(grid, hit, p, {0.5, false}) - 2.0 * (p - middle)), 1e-11);
+    EXPECT_LT(length(rounded_normal(grid, hit.voxel, hit.face, p, {0.5, false}) - 2.0 * (p - middle)), 1e-11);
   }
   EXPECT_GT(hits, 1000);
 }
@@ -148,7 +148,7 @@ TEST(RoundedVoxels, AgreeWithEachVoxelOnItsOwn) {
       (hit ? hits : misses) += 1;
       if (!hit) continue;
       // On a face t is that of the quantised ray, off by 2^-17 voxel along the face's axis.
-      const dvec3 normal = rounded_normal(grid, hit, ray.origin + hit.t * ray.direction, rounding);
+      const dvec3 normal = rounded_normal(grid, hit.voxel, hit.face, ray.origin + hit.t * ray.direction, rounding);
       const double along = normal == dvec3(0.0) ? 1 : std::abs(dot(normal, ray.direction));
       EXPECT_NEAR(hit.t, expected.t, 0x1p-17 / along) << round << ' ' << i;
     }
@@ -166,7 +166,7 @@ TEST(RoundedVoxels, WallsStayFlat) {
   ray.direction = {0, 0, -1};
   const VoxelHit flat = first(grid, ray, {0.25, false});
   EXPECT_EQ(flat.t, 4);
-  EXPECT_EQ(rounded_normal(grid, flat, {2, 1.75, 1}, {0.25, false}), dvec3(0, 0, 1));
+  EXPECT_EQ(rounded_normal(grid, flat.voxel, flat.face, {2, 1.75, 1}, {0.25, false}), dvec3(0, 0, 1));
   // Each on its own there is a groove as deep as the radius.
   EXPECT_EQ(first(grid, ray, {0.25, true}).t, 4.25);
   // And where four meet nothing.

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "scarp/render/frame/picture.h"
+#include "render/terrain.h"
 
 namespace scarp {
 namespace {
@@ -24,8 +24,12 @@ HeightField field_of(Edit&& edit, Wrap wrap = Wrap::none) {
 }
 const auto kLevel = [](const auto&) {};
 
+Box box_of(const HeightField& field, bool plinth) {
+  return picture_box(plinth ? test::terrain_on_plinth(field) : test::terrain(field));
+}
+
 FieldView view_of(const HeightField& field, const ViewSettings& settings, bool plinth = true) {
-  return view_of_field(field, picture_box(field, plinth), settings, 0.2, 640, 360);
+  return view_of_field(field, box_of(field, plinth), settings, 0.2, 640, 360);
 }
 
 TEST(FieldView, IsAboveLevelGroundFromAnywhere) {
@@ -70,7 +74,7 @@ TEST(FieldView, IsRaisedOutOfHills) {
   // field_view.h: a hundredth of its way; some dozen roundings of coordinates below 2^13 m.
   constexpr double kClear = 0.01, kRounding = 0x1p-34;
   EXPECT_NEAR(eye.z - *field.height(eye.x, eye.y), kClear * length(before - focus), kRounding);
-  EXPECT_EQ(view.camera.forward(), Camera::framed(picture_box(field, true), south, 0.2, 640, 360).forward());
+  EXPECT_EQ(view.camera.forward(), Camera::framed(box_of(field, true), south, 0.2, 640, 360).forward());
 }
 
 // Level views of ground that goes on beyond its border begin in the middle of the block's height.

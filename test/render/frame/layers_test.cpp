@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "render/terrain.h"
 #include "scarp/base/error.h"
 
 namespace scarp {
@@ -29,16 +30,15 @@ PictureSettings small() {
   PictureSettings settings;
   settings.width = kWidth;
   settings.height = kHeight;
-  settings.plinth = false;
   return settings;
 }
 
 TEST(Layers, TellWhereTheMiddleOfThePixelIsOnAPlane) {
-  const TerrainScene scene(plane(), find_height_march("max-mip"));
+  const Scene scene = test::terrain(plane(), "max-mip");
   const dvec3 normal = normalize(dvec3(-0.25, 0.5, 1));
   for (const Camera& camera : {Camera::look_at({10, 60, 40}, {16, 16, 3}, 40, kWidth, kHeight),
-                               Camera::top(picture_box(scene.field(), false), kWidth, kHeight)}) {
-    const PictureLayers layers = render_layers(scene, camera, 0, small());
+                               Camera::top(picture_box(scene), kWidth, kHeight)}) {
+    const PictureLayers layers = render_layers(scene, camera, small());
     int hits = 0;
     for (int y = 0; y < kHeight; ++y) {
       for (int x = 0; x < kWidth; ++x) {
@@ -47,7 +47,7 @@ TEST(Layers, TellWhereTheMiddleOfThePixelIsOnAPlane) {
         const double t = dot(dvec3(0, 0, 7) - ray.origin, normal) / dot(ray.direction, normal);
         const dvec3 p = ray.at(t);
         MarchStats stats;
-        scene.closest_hit(ray, &stats);
+        scene.closest_hit(ray, nullptr, &stats);
         EXPECT_EQ(layers.steps[i], stats.steps);
         if (p.x < 0 || p.x > 32 || p.y < 0 || p.y > 32) {
           EXPECT_EQ(layers.depth[i], std::numeric_limits<float>::infinity());
@@ -73,13 +73,12 @@ TEST(Layers, TellWhereTheMiddleOfThePixelIsOnAPlane) {
 }
 
 TEST(Layers, TheColourIsThePicturesBeforeItsTransfer) {
-  const TerrainScene scene(plane(), find_height_march("max-mip"));
+  const Scene scene = test::terrain_on_plinth(plane());
   PictureSettings settings = small();
-  settings.plinth = true;
   settings.samples = 4;
-  const Camera camera = Camera::framed(picture_box(scene.field(), true), {}, 0, kWidth, kHeight);
-  const PictureLayers layers = render_layers(scene, camera, 0, settings);
-  const Image image = render_picture(scene, camera, 0, settings).image;
+  const Camera camera = Camera::framed(picture_box(scene), {}, 0, kWidth, kHeight);
+  const PictureLayers layers = render_layers(scene, camera, settings);
+  const Image image = render_picture(scene, camera, settings).image;
   Image developed(kWidth, kHeight);
   for (int i = 0; i < kWidth * kHeight; ++i) {
     set_pixel(developed, i % kWidth, i / kWidth, layers.colour[static_cast<std::size_t>(i)]);
@@ -87,18 +86,16 @@ TEST(Layers, TheColourIsThePicturesBeforeItsTransfer) {
   EXPECT_EQ(developed.rgb, image.rgb);
 }
 
-TEST(Layers, WallsOfTheBlockCountAsMet) {
-  const TerrainScene scene(plane(), find_height_march("max-mip"));
+TEST(Layers, WallsOfThePlinthCountAsMet) {
+  const Scene scene = test::terrain_on_plinth(plane());
   PictureSettings settings = small();
-  settings.plinth = true;
   // Level, from the south, below the ground's border: the wall at y = 0.
   const Camera camera = Camera::look_at({16, -20, 2}, {16, 0, 2}, 2, kWidth, kHeight);
-  const PictureLayers layers = render_layers(scene, camera, 0, settings);
+  const PictureLayers layers = render_layers(scene, camera, settings);
   for (std::size_t i = 0; i < layers.depth.size(); ++i) {
     EXPECT_FLOAT_EQ(layers.depth[i], 20);
     EXPECT_EQ(layers.normal[i], vec3(0, -1, 0));
     EXPECT_NEAR(layers.position[i].y, 0, 1e-6);
-    EXPECT_EQ(layers.steps[i], 0u);
   }
 }
 
@@ -107,33 +104,32 @@ TEST(Layers, WallsOfSolidGroundAreNoSurface) {
   solid.solid = true;
   std::vector<float> samples(33 * 33);
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] = 7 + static_cast<float>(i % 33 % 3);
-  const TerrainScene scene(HeightField::own(std::move(samples), 33, 33, solid), find_height_march("max-mip"));
+  const HeightField field = HeightField::own(std::move(samples), 33, 33, solid);
   // Level, from the south, below the ground's border: the wall at y = 0.
   const Camera camera = Camera::look_at({16, -20, 6.6}, {16, 0, 6.6}, 2, kWidth, kHeight);
   PictureSettings settings = small();
-  settings.haze = 0;  // it depends on the size of the block
-  const PictureLayers layers = render_layers(scene, camera, 0, settings);
-  settings.plinth = true;
-  const PictureLayers block = render_layers(scene, camera, 0, settings);
+  settings.haze = 0;  // it depends on the size of the plinth
+  const PictureLayers layers = render_layers(test::terrain(field), camera, settings);
+  const PictureLayers block = render_layers(test::terrain_on_plinth(field), camera, settings);
   for (std::size_t i = 0; i < layers.depth.size(); ++i) {
     EXPECT_FLOAT_EQ(layers.depth[i], 20);
     EXPECT_EQ(layers.normal[i], vec3(0, -1, 0));
-    EXPECT_EQ(layers.colour[i], block.colour[i]) << "that of the block's wall";
+    EXPECT_EQ(layers.colour[i], block.colour[i]) << "that of the plinth's wall";
   }
 }
 
 TEST(Layers, GoWithTheLookShadedAlone) {
-  const TerrainScene scene(plane(), find_height_march("max-mip"));
-  const Camera camera = Camera::top(picture_box(scene.field(), false), kWidth, kHeight);
+  const Scene scene = test::terrain(plane(), "max-mip");
+  const Camera camera = Camera::top(picture_box(scene), kWidth, kHeight);
   for (const Look look : {Look::height, Look::steps, Look::error}) {
     PictureSettings settings = small();
     settings.look = look;
-    EXPECT_THROW(render_layers(scene, camera, 0, settings), Error);
+    EXPECT_THROW(render_layers(scene, camera, settings), Error);
   }
   PictureSettings settings = small();
   settings.samples = -1;
-  EXPECT_THROW(render_layers(scene, camera, 0, settings), Error);
-  EXPECT_THROW(render_layers(scene, camera, 0, small(), [](double) { return false; }), Interrupted);
+  EXPECT_THROW(render_layers(scene, camera, settings), Error);
+  EXPECT_THROW(render_layers(scene, camera, small(), [](double) { return false; }), Interrupted);
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <glm/trigonometric.hpp>
 #include <limits>
 #include <numeric>
 #include <vector>
 
+#include "render/terrain.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 
@@ -36,21 +38,23 @@ PictureSettings map_settings(const HeightField& field) {
   return settings;
 }
 
-Picture map_of(const HeightField& field, const PictureSettings& settings, double grid_north = 0,
+Picture map_of(const HeightField& field, PictureSettings settings, double grid_north = 0,
                std::string_view march = "max-mip") {
-  const Camera camera = Camera::top(picture_box(field, false), settings.width, settings.height);
-  return render_picture(TerrainScene(field, find_height_march(march)), camera, grid_north, settings);
+  const Scene scene = test::terrain(field, march);
+  settings.grid_north_azimuth = grid_north;
+  return render_picture(scene, Camera::top(picture_box(scene), settings.width, settings.height), settings);
 }
 
 // Of that map the two rows of pixels next to its middle. Row 1 lies where row 100 of 200 does, the lower of the two.
 Image middle_of(const HeightField& field, PictureSettings settings, double grid_north = 0) {
   constexpr int kRows = 2;
-  Box box = picture_box(field, false);
+  const Scene scene = test::terrain(field);
+  Box box = picture_box(scene);
   const double middle = box.middle().y, half = (box.high.y - middle) * kRows / settings.height;
   box.low.y = middle - half, box.high.y = middle + half;
   settings.height = kRows;
-  const Camera camera = Camera::top(box, settings.width, settings.height);
-  return render_picture(TerrainScene(field, find_height_march("max-mip")), camera, grid_north, settings).image;
+  settings.grid_north_azimuth = grid_north;
+  return render_picture(scene, Camera::top(box, settings.width, settings.height), settings).image;
 }
 
 int red(const Image& image, int x, int y) { return image.pixel(x, y)[0]; }
@@ -196,22 +200,21 @@ TEST(Picture, HeightIsLinearFromOneAndMissesAreBlack) {
 }
 
 TEST(Picture, StepsCountWhatTheMarchReports) {
-  const TerrainScene scene(wall(), find_height_march("max-mip"));
+  const Scene scene = test::terrain(wall(), "max-mip");
   PictureSettings settings;
   settings.width = 40;
   settings.height = 30;
   settings.look = Look::steps;
   settings.ramp = "grey";
-  settings.plinth = false;
-  const Camera camera = Camera::framed(picture_box(scene.field(), false), {.azimuth_deg = 160}, 0, 40, 30);
-  const Picture picture = render_picture(scene, camera, 0, settings);
+  const Camera camera = Camera::framed(picture_box(scene), {.azimuth_deg = 160}, 0, 40, 30);
+  const Picture picture = render_picture(scene, camera, settings);
   ASSERT_TRUE(picture.steps);
   double sum = 0;
   std::uint32_t most = 0;
   for (int y = 0; y < 30; ++y) {
     for (int x = 0; x < 40; ++x) {
       MarchStats stats;
-      scene.closest_hit(camera.ray(x + 0.5, y + 0.5), &stats);
+      scene.closest_hit(camera.ray(x + 0.5, y + 0.5), nullptr, &stats);
       sum += stats.steps;
       if (stats.steps >= most) {
         most = stats.steps;
@@ -232,7 +235,7 @@ Picture errors_at_a_spike(std::string_view march, const MarchSettings& march_set
   settings.width = settings.height = 64;
   settings.look = Look::error;
   const Camera camera = Camera::look_at({32, -20, 12}, {32, 32, 8}, 25, settings.width, settings.height);
-  return render_picture(TerrainScene(field, find_height_march(march), march_settings), camera, 0, settings);
+  return render_picture(test::terrain(field, march, march_settings), camera, settings);
 }
 
 TEST(ErrorLook, ANaiveMarchLosesASpike) {
@@ -291,17 +294,15 @@ TEST(ErrorLook, TheVerdictIsByStatusThenByDistance) {
 
 TEST(Picture, ThePlinthStandsBelowTheBorder) {
   const HeightField field = field_of(21, 100, nothing);
-  const TerrainScene scene(field, find_height_march("max-mip"));
+  const Scene scene = test::terrain_on_plinth(field);
   PictureSettings settings;
   settings.width = 200;
   settings.height = 100;
-  const Camera camera =
-      Camera::framed(picture_box(field, true), {.azimuth_deg = 180, .elevation_deg = 20}, 0, 200, 100);
+  const Camera camera = Camera::framed(picture_box(scene), {.azimuth_deg = 180, .elevation_deg = 20}, 0, 200, 100);
   const auto p = camera.pixel({10, 0, 100 - 0.3}).value();
   const int x = static_cast<int>(p.x), y = static_cast<int>(p.y);
-  const Image with = render_picture(scene, camera, 0, settings).image;
-  settings.plinth = false;
-  const Image without = render_picture(scene, camera, 0, settings).image;
+  const Image with = render_picture(scene, camera, settings).image;
+  const Image without = render_picture(test::terrain(field), camera, settings).image;
   EXPECT_LT(red(with, x, y), 160) << "earth";
   EXPECT_GT(red(without, x, y), 200) << "sky";
 }
@@ -314,27 +315,40 @@ TEST(Picture, ANameOfALookIsFoundAndAnUnknownOneListsThem) {
 
 TEST(Picture, SettingsOutOfRangeAreRefused) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const PictureSettings& bad : {PictureSettings{.width = 0},
-                                     {.width = -5},
-                                     {.height = 0},
-                                     {.width = 1000000, .height = 1000000},
-                                     {.width = 65536, .height = 65536},
-                                     {.aa = 0},
-                                     {.aa = 17},
-                                     {.ramp = "jet"},
-                                     {.haze = nan},
-                                     {.haze = 1},
-                                     {.error_tolerance = -1},
-                                     {.error_tolerance = nan},
-                                     {.samples = -1},
-                                     {.samples = 4097},
-                                     {.ao_distance = -1},
-                                     {.ao_distance = nan},
-                                     {.sun = {315, -1}},
-                                     {.sun = {315, 45, -1}},
-                                     {.sun = {315, 45, nan}},
-                                     {.sun = {315, 45, 91}}}) {
-    EXPECT_THROW(validate(bad), Error);
+  using Settings = PictureSettings;
+  const std::vector<std::function<void(Settings&)>> spoil = {[](Settings& s) { s.width = 0; },
+                                                             [](Settings& s) { s.width = -5; },
+                                                             [](Settings& s) { s.height = 0; },
+                                                             [](Settings& s) { s.width = s.height = 1000000; },
+                                                             [](Settings& s) { s.width = s.height = 65536; },
+                                                             [](Settings& s) { s.aa = 0; },
+                                                             [](Settings& s) { s.aa = 17; },
+                                                             [](Settings& s) { s.ramp = "jet"; },
+                                                             [=](Settings& s) { s.haze = nan; },
+                                                             [](Settings& s) { s.haze = 1; },
+                                                             [](Settings& s) { s.haze_distance = 0; },
+                                                             [](Settings& s) { s.error.tolerance = -1; },
+                                                             [=](Settings& s) { s.error.share = nan; },
+                                                             [](Settings& s) { s.samples = -1; },
+                                                             [](Settings& s) { s.samples = 4097; },
+                                                             [](Settings& s) { s.ao_distance = -1; },
+                                                             [=](Settings& s) { s.ao_distance = nan; },
+                                                             [](Settings& s) {
+                                                               s.sun = {315, -1};
+                                                             },
+                                                             [](Settings& s) {
+                                                               s.sun = {315, 45, -1};
+                                                             },
+                                                             [=](Settings& s) {
+                                                               s.sun = {315, 45, nan};
+                                                             },
+                                                             [](Settings& s) {
+                                                               s.sun = {315, 45, 91};
+                                                             }};
+  for (std::size_t i = 0; i < spoil.size(); ++i) {
+    PictureSettings bad;
+    spoil[i](bad);
+    EXPECT_THROW(validate(bad), Error) << i;
   }
   EXPECT_NO_THROW(validate(PictureSettings{}));
 }
@@ -343,9 +357,9 @@ TEST(Picture, AFieldWithNothingToSeeIsAnError) {
   const Camera camera = Camera::look_at({0, -5, 5}, {0, 0, 0}, 30, 8, 8);
   PictureSettings settings;
   settings.width = settings.height = 8;
-  const HeightMarchEntry& march = find_height_march("max-mip");
-  EXPECT_THROW(render_picture(TerrainScene(field_of(1, 5, nothing), march), camera, 0, settings), Error);
-  EXPECT_THROW(render_picture(TerrainScene(field_of(3, kNaN, nothing), march), camera, 0, settings), Error);
+  EXPECT_THROW(render_picture(test::terrain(field_of(1, 5, nothing)), camera, settings), Error);
+  EXPECT_THROW(render_picture(test::terrain(field_of(3, kNaN, nothing)), camera, settings), Error);
+  EXPECT_THROW(render_picture(Scene({}, {}), camera, settings), Error);
 }
 
 TEST(Picture, StopsWhenItIsAskedTo) {
@@ -353,10 +367,9 @@ TEST(Picture, StopsWhenItIsAskedTo) {
   for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error}) {
     PictureSettings settings = map_settings(field);
     settings.look = look;
-    const Camera camera = Camera::top(picture_box(field, false), settings.width, settings.height);
-    EXPECT_THROW(render_picture(TerrainScene(field, find_height_march("max-mip")), camera, 0, settings,
-                                [](double) { return false; }),
-                 Interrupted);
+    const Scene scene = test::terrain(field);
+    const Camera camera = Camera::top(picture_box(scene), settings.width, settings.height);
+    EXPECT_THROW(render_picture(scene, camera, settings, [](double) { return false; }), Interrupted);
   }
 }
 

@@ -21,9 +21,10 @@
 #include "march/height/rounding_judge.h"
 #include "march/height/spiteful_text.h"
 #include "march/sampling_rules.h"
+#include "render/terrain.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/render/frame/layers.h"
-#include "scarp/scene/terrain_scene_vk.h"
+#include "scarp/scene/scene_vk.h"
 #include "vk/device_under_test.h"
 
 namespace scarp::test {
@@ -52,13 +53,21 @@ double delta_of(const HeightField& field) {
   return 2 * kRoundings * kUnit * (3 * relief + sideways * cell_relief);
 }
 
-class Judged final : public BatchQueries {
+class Judged final : public SceneBackEnd {
  public:
-  // `repairs`: whether the CPU's hits are told where the device's are the same.
-  Judged(const TerrainScene& device, const TerrainScene& cpu, bool repairs)
-      : device_(device), cpu_(cpu), repairs_(repairs), slope_(slope_bound(cpu.field())) {}
+  // Scenes of one height field. `repairs`: whether the CPU's hits are returned where the device's are the same.
+  // `plinth` answers the rays of field 1; null: there is none.
+  Judged(const Scene& device, const Scene& cpu, SceneFieldPtr plinth, bool repairs)
+      : device_(device),
+        cpu_(cpu),
+        plinth_(std::move(plinth)),
+        march_(find_height_march(cpu.marches())),
+        repairs_(repairs),
+        slope_(slope_bound(*cpu.only_heights())) {}
 
-  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+  void closest_hits(std::uint32_t field, std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                    std::span<const Hit* const>) override {
+    if (field == 1) return plinth_->closest_hits_on_all_threads(rays, hits, steps, {});
     device_.closest_hits(rays, hits, steps);
     std::vector<Hit> cpu(rays.size());
     std::vector<std::uint32_t> cpu_steps(steps.size());
@@ -79,7 +88,8 @@ class Judged final : public BatchQueries {
     asked += rays.size();
   }
 
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+  void occluded(std::uint32_t, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                std::span<const Hit* const>) override {
     device_.occluded(rays, blocked);
     std::vector<Hit> hits(rays.size());
     device_.closest_hits(rays, hits);
@@ -88,7 +98,7 @@ class Judged final : public BatchQueries {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       EXPECT_EQ(blocked[i] != 0, static_cast<bool>(hits[i])) << text(rays[i]);
       // A march that takes samples stops near the surface, not on it, and then such a ray does not begin on it.
-      if (cpu_.march().guarantee == Guarantee::exact) judge(rays[i], hits[i]);
+      if (march_.guarantee == Guarantee::exact) judge(rays[i], hits[i]);
       otherwise += (blocked[i] != 0) != (cpu[i] != 0);
     }
     asked += rays.size();
@@ -100,8 +110,8 @@ class Judged final : public BatchQueries {
   // Whether the CPU looks at more or less for a ray within delta: a count is a sum of decisions.
   bool counts_vary(const Ray& ray) const {
     std::vector<Ray> around(7, ray);
-    const double cell = std::min(cpu_.field().settings().cell_x, cpu_.field().settings().cell_y);
-    const dvec3 moves(kSideways * cell, kSideways * cell, delta_of(cpu_.field()));
+    const double cell = std::min((*cpu_.only_heights()).settings().cell_x, (*cpu_.only_heights()).settings().cell_y);
+    const dvec3 moves(kSideways * cell, kSideways * cell, delta_of((*cpu_.only_heights())));
     for (std::size_t i = 1; i < around.size(); ++i) {
       const int axis = static_cast<int>((i - 1) / 2);
       around[i].origin[axis] += i % 2 == 0 ? moves[axis] : -moves[axis];
@@ -113,17 +123,17 @@ class Judged final : public BatchQueries {
   }
   void judge(const Ray& ray, const Hit& hit) const {
     if (testing::Test::HasFailure()) return;
-    const HeightField& field = cpu_.field();
-    const HeightMarchEntry& march = cpu_.march();
+    const HeightField& field = (*cpu_.only_heights());
     const RoundingJudge truth(field, ray);
-    const std::string objection = march.guarantee == Guarantee::exact
+    const std::string objection = march_.guarantee == Guarantee::exact
                                       ? truth.objection(hit)
-                                      : sampling_objection(march.name, {}, field, slope_, ray, truth, hit);
+                                      : sampling_objection(march_.name, {}, field, slope_, ray, truth, hit);
     EXPECT_EQ(objection, "") << text(ray) << "\n  " << text(hit);
   }
 
-  const TerrainScene& device_;
-  const TerrainScene& cpu_;
+  Scene device_, cpu_;
+  SceneFieldPtr plinth_;
+  const HeightMarchEntry& march_;
   bool repairs_;
   double slope_;
 };
@@ -155,23 +165,24 @@ int pixels_unlike(const Image& a, const Image& b) {
 class PicturesOnDevice : public OnDevice {
  protected:
   struct Scenes {
-    TerrainScene cpu, device;
+    Scene cpu, device;
     Camera camera;
+    Scene cpu_alone, device_alone;  // without the plinth
   };
   Scenes scenes(bool solid, bool plinth, std::string_view march = "max-mip") const {
-    const HeightField field = ridges(solid);
-    return {TerrainScene(field, find_height_march(march)), terrain_scene_on(device(), field, find_height_march(march)),
-            camera_of(field, plinth)};
+    const Scene alone = test::terrain(ridges(solid), march), cpu = plinth ? with_plinth(alone) : alone;
+    return {cpu, scene_on(device(), cpu), camera_of(cpu), alone, scene_on(device(), alone)};
   }
-  static Camera camera_of(const HeightField& field, bool plinth, double raised = 0) {
-    Box box = picture_box(field, plinth);
+  static Camera camera_of(const Scene& scene, double raised = 0) {
+    Box box = picture_box(scene);
     box.low.z += raised;
     box.high.z += raised;
     return Camera::framed(box, {.elevation_deg = 20}, 0, kWidth, kHeight);
   }
-  static TerrainScene judged(const Scenes& of, std::shared_ptr<Judged>& judge, bool repairs) {
-    judge = std::make_shared<Judged>(of.device, of.cpu, repairs);
-    return {of.cpu.field(), of.cpu.march(), judge};
+  static Scene judged(const Scenes& of, std::shared_ptr<Judged>& judge, bool repairs) {
+    judge = std::make_shared<Judged>(of.device_alone, of.cpu_alone,
+                                     of.cpu.fields().size() > 1 ? of.cpu.fields()[1] : nullptr, repairs);
+    return of.cpu.answered_by(judge);
   }
   static PictureSettings settings(Look look) {
     PictureSettings settings;
@@ -185,15 +196,15 @@ class PicturesOnDevice : public OnDevice {
 
   // All of the above for one picture.
   static void expect_the_cpus(const Scenes& of, const PictureSettings& settings, bool device_alone_too = true) {
-    const Picture cpu = render_picture(of.cpu, of.camera, 0, settings);
+    const Picture cpu = render_picture(of.cpu, of.camera, settings);
     std::shared_ptr<Judged> judge;
-    const Picture repaired = render_picture(judged(of, judge, true), of.camera, 0, settings);
+    const Picture repaired = render_picture(judged(of, judge, true), of.camera, settings);
     EXPECT_GT(judge->asked, 1000u);
     EXPECT_LE(pixels_unlike(cpu.image, repaired.image), static_cast<int>(judge->otherwise));
     EXPECT_LT(judge->otherwise, judge->asked / 2);
     if (!device_alone_too) return;
-    const Picture alone = render_picture(of.device, of.camera, 0, settings);
-    const Picture watched = render_picture(judged(of, judge, false), of.camera, 0, settings);
+    const Picture alone = render_picture(of.device, of.camera, settings);
+    const Picture watched = render_picture(judged(of, judge, false), of.camera, settings);
     EXPECT_EQ(alone.image.rgb, watched.image.rgb);
   }
 };
@@ -210,7 +221,6 @@ TEST_F(PicturesOnDevice, ShadedWithSoftSunAndOcclusion) {
 
 TEST_F(PicturesOnDevice, ShadedSolidGround) {
   PictureSettings bare = settings(Look::shaded);
-  bare.plinth = false;
   bare.aa = 2;
   expect_the_cpus(scenes(true, false), bare, false);
 }
@@ -221,8 +231,8 @@ TEST_F(PicturesOnDevice, Height) { expect_the_cpus(scenes(false, true), settings
 TEST_F(PicturesOnDevice, Error) {
   const Scenes of = scenes(false, true);
   expect_the_cpus(of, settings(Look::error));
-  const ErrorCounts counts = render_picture(of.device, of.camera, 0, settings(Look::error)).errors.value();
-  const ErrorCounts cpu = render_picture(of.cpu, of.camera, 0, settings(Look::error)).errors.value();
+  const ErrorCounts counts = render_picture(of.device, of.camera, settings(Look::error)).errors.value();
+  const ErrorCounts cpu = render_picture(of.cpu, of.camera, settings(Look::error)).errors.value();
   EXPECT_GT(counts[Verdict::right_hit], 1000);
   EXPECT_EQ(counts.pixels, cpu.pixels);
 }
@@ -234,8 +244,8 @@ TEST_F(PicturesOnDevice, StepsAreTheCpus) {
     SCOPED_TRACE(march.name);
     const Scenes of = scenes(false, true, march.name);
     std::shared_ptr<Judged> judge;
-    const Picture device = render_picture(of.device, of.camera, 0, settings(Look::steps));
-    const Picture watched = render_picture(judged(of, judge, false), of.camera, 0, settings(Look::steps));
+    const Picture device = render_picture(of.device, of.camera, settings(Look::steps));
+    const Picture watched = render_picture(judged(of, judge, false), of.camera, settings(Look::steps));
     EXPECT_EQ(device.image.rgb, watched.image.rgb);
     EXPECT_GT(device.steps->most, 10u);
     EXPECT_EQ(device.steps->least, 0u) << "rays that miss the block";
@@ -246,13 +256,11 @@ TEST_F(PicturesOnDevice, StepsAreTheCpus) {
 TEST_F(PicturesOnDevice, Layers) {
   const Scenes of = scenes(false, true);
   std::shared_ptr<Judged> judge;
-  const PictureLayers cpu = render_layers(of.cpu, of.camera, 0, settings(Look::shaded));
-  const PictureLayers device = render_layers(of.device, of.camera, 0, settings(Look::shaded));
-  const PictureLayers repaired = render_layers(judged(of, judge, true), of.camera, 0, settings(Look::shaded));
-  const double delta = delta_of(of.cpu.field());
-  const auto raised = [&](double by) {
-    return render_layers(of.cpu, camera_of(of.cpu.field(), true, by), 0, settings(Look::shaded));
-  };
+  const PictureLayers cpu = render_layers(of.cpu, of.camera, settings(Look::shaded));
+  const PictureLayers device = render_layers(of.device, of.camera, settings(Look::shaded));
+  const PictureLayers repaired = render_layers(judged(of, judge, true), of.camera, settings(Look::shaded));
+  const double delta = delta_of(*of.cpu.only_heights());
+  const auto raised = [&](double by) { return render_layers(of.cpu, camera_of(of.cpu, by), settings(Look::shaded)); };
   const PictureLayers lower = raised(-delta), higher = raised(delta);
   std::size_t unlike = 0, moved = 0, counted = 0;
   for (std::size_t i = 0; i < cpu.depth.size(); ++i) {
@@ -276,8 +284,8 @@ TEST_F(PicturesOnDevice, EveryMarchMakesThem) {
     if (!march.gpu || march.guarantee == Guarantee::exact) continue;
     const Scenes of = scenes(false, true, march.name);
     std::shared_ptr<Judged> judge;
-    const Image device = render_picture(of.device, of.camera, 0, settings(Look::shaded)).image;
-    EXPECT_EQ(render_picture(judged(of, judge, false), of.camera, 0, settings(Look::shaded)).image.rgb, device.rgb);
+    const Image device = render_picture(of.device, of.camera, settings(Look::shaded)).image;
+    EXPECT_EQ(render_picture(judged(of, judge, false), of.camera, settings(Look::shaded)).image.rgb, device.rgb);
     EXPECT_GT(judge->asked, 1000u) << march.name;
   }
 }

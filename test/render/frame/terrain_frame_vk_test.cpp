@@ -21,7 +21,7 @@
 
 #include "scarp/render/frame/picture.h"
 #include "scarp/render/frame/terrain_frame.glsl.h"
-#include "scarp/scene/terrain_scene_vk.h"
+#include "scarp/scene/scene_vk.h"
 #include "scarp/source/ramp_file.h"
 #include "test/vk/spirv_layout.h"
 #include "vk/device_under_test.h"
@@ -35,6 +35,7 @@ constexpr int kWidth = 64, kHeight = 48;
 constexpr double kFov = 60;
 
 constexpr std::uint32_t kShader[] = {
+#include "render/terrain.h"
 #include "scarp/render/frame/terrain_frame.comp.inc"
 };
 
@@ -299,7 +300,6 @@ PictureSettings settings_of(const Row& row) {
   settings.height = kHeight;
   settings.aa = 1;
   settings.shadows = false;
-  settings.plinth = row.block;
   settings.sun.altitude_deg = 25;
   settings.comanche.scale = 1;
   settings.comanche.steps = 128;
@@ -327,27 +327,31 @@ Camera camera_of(const Row& row, const HeightField& field, const dvec2& turn) {
 
 double pixel_angle() { return 2 * std::tan(kFov * std::numbers::pi / 360) / kHeight; }
 
+Scene scene_of(const Row& row, const HeightField& field) {
+  return row.block ? test::terrain_on_plinth(field, row.march) : test::terrain(field, row.march);
+}
+
 class TerrainFrames : public OnDevice, public testing::WithParamInterface<Row> {};
 
 TEST_P(TerrainFrames, AreTheCpusPictures) {
   const Row& row = GetParam();
   const HeightField field = hills(row.field, row.holes);
   const PictureSettings settings = settings_of(row);
-  const TerrainScene cpu(field, find_height_march(row.march));
-  const TerrainScene on_device = terrain_scene_on(device(), field, find_height_march(row.march));
+  const Scene cpu = scene_of(row, field);
+  const Scene on_device = scene_on(device(), cpu);
   const Camera straight = camera_of(row, field, {0, 0});
   ASSERT_TRUE(makes_whole_frames(on_device, straight, settings));
   std::vector<std::uint8_t> low, high;
   const double turn = kTurn * pixel_angle();
   for (const dvec2& way : {dvec2(0), dvec2(turn, 0), dvec2(-turn, 0), dvec2(0, turn), dvec2(0, -turn)}) {
-    const Image image = render_picture(cpu, camera_of(row, field, way), 0, settings).image;
+    const Image image = render_picture(cpu, camera_of(row, field, way), settings).image;
     if (low.empty()) low = high = image.rgb;
     for (std::size_t i = 0; i < low.size(); ++i) {
       low[i] = std::min(low[i], image.rgb[i]);
       high[i] = std::max(high[i], image.rgb[i]);
     }
   }
-  const Image made = render_picture(on_device, straight, 0, settings).image;
+  const Image made = render_picture(on_device, straight, settings).image;
   int outside = 0, uniform = 0;
   for (int i = 0; i < kWidth * kHeight; ++i) {
     int off = 0;
@@ -392,12 +396,11 @@ TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
     settings.aa = stepped ? 1 : 3;
     settings.shadows = !stepped;
     settings.comanche.steps = 65536;
-    const TerrainScene cpu(field, find_height_march(row.march));
-    const TerrainScene on_device = terrain_scene_on(device(), field, find_height_march(row.march));
+    const Scene cpu = scene_of(row, field);
+    const Scene on_device = scene_on(device(), cpu);
     Camera camera = Camera::look_at({10, 7, 12.9}, {20, 40, 4}, kFov, 12, 12);
     camera.set_reach(100);
-    const Image a = render_picture(cpu, camera, 0, settings).image,
-                b = render_picture(on_device, camera, 0, settings).image;
+    const Image a = render_picture(cpu, camera, settings).image, b = render_picture(on_device, camera, settings).image;
     int unlike = 0;
     for (std::size_t i = 0; i < a.rgb.size(); ++i) unlike += std::abs(a.rgb[i] - b.rgb[i]) > kRounding;
     EXPECT_EQ(unlike, 0) << row.march;
@@ -408,17 +411,17 @@ TEST_F(TerrainFrame, TellsWhatItsRaysHaveMet) {
   const Row row = rows()[6];
   const HeightField field = hills(row.field);
   const PictureSettings settings = settings_of(row);
-  const TerrainScene cpu(field, find_height_march("max-mip"));
-  const TerrainScene on_device = terrain_scene_on(device(), field, find_height_march("max-mip"));
+  const Scene cpu = scene_of(row, field);
+  const Scene on_device = scene_on(device(), cpu);
   const Camera camera = camera_of(row, field, {0, 0});
   FrameReport report{.tells_sightings = true};
-  render_whole_frame(on_device, camera, 0, settings, {}, &report);
+  render_whole_frame(on_device, camera, settings, {}, &report);
   const std::vector<FrameSighting>& sightings = report.sightings;
   if (device().description().abilities.timestamps) {
     EXPECT_GT(report.device_s.value_or(0), 0);
   }
   ASSERT_EQ(sightings.size(), std::size_t{kWidth * kHeight});
-  const Water water(*settings.water, field);
+  const Water water(*settings.water, cpu);
   std::array<int, 4> kinds{};
   int other = 0;
   for (int i = 0; i < kWidth * kHeight; ++i) {
@@ -449,18 +452,16 @@ TEST_F(TerrainFrame, LeavesTheRestToTheRounds) {
   const Row row = rows()[6];
   const HeightField endless = hills(row.field), ends = hills({});
   const auto on_device = [&](const HeightField& field, const char* march) {
-    return terrain_scene_on(device(), field, find_height_march(march));
+    return scene_on(device(), test::terrain_on_plinth(field, march));
   };
   PictureSettings settings = settings_of(row);
   const Camera camera = camera_of(row, endless, {0, 0});
-  EXPECT_FALSE(makes_whole_frames(TerrainScene(endless, find_height_march("max-mip")), camera, settings));
+  EXPECT_FALSE(makes_whole_frames(test::terrain(endless, "max-mip"), camera, settings));
   EXPECT_FALSE(makes_whole_frames(on_device(endless, "relaxed"), camera, settings));
-  settings.plinth = true;
   EXPECT_TRUE(makes_whole_frames(on_device(endless, "max-mip"), camera, settings)) << "endless ground has none";
-  settings.plinth = false;
   const Camera far_away = Camera::look_at({1e7, 0, 100}, {0, 0, 0}, kFov, kWidth, kHeight);
   EXPECT_FALSE(makes_whole_frames(on_device(ends, "max-mip"), far_away, settings));
-  EXPECT_THROW(render_picture(on_device(ends, "fixed-step"), far_away, 0, settings), Error);
+  EXPECT_THROW(render_picture(on_device(ends, "fixed-step"), far_away, settings), Error);
 }
 
 TEST(TerrainFrameLayout, IsThatOfTheShader) {

@@ -9,15 +9,17 @@
 #include <cmath>
 #include <vector>
 
+#include "render/terrain.h"
 #include "scarp/base/error.h"
 
 namespace scarp {
 namespace {
 
 // t of a hit is the ray's own t_max, its steps twice that; every ray with an odd one is blocked.
-class Echo final : public BatchQueries {
+class Echo final : public SceneBackEnd {
  public:
-  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+  void closest_hits(std::uint32_t, std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                    std::span<const Hit* const>) override {
     most = std::max(most, rays.size());
     ++batches;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -25,7 +27,8 @@ class Echo final : public BatchQueries {
       if (!steps.empty()) steps[i] = static_cast<std::uint32_t>(2 * rays[i].t_max);
     }
   }
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+  void occluded(std::uint32_t, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                std::span<const Hit* const>) override {
     most = std::max(most, rays.size());
     ++batches;
     for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = std::fmod(rays[i].t_max, 2) == 1;
@@ -72,8 +75,8 @@ class Curious final : public TileWork {
   bool asked_ = false;
 };
 
-TerrainScene echo_scene(const std::shared_ptr<Echo>& echo) {
-  return {HeightField::own(std::vector<float>(4), 2, 2), find_height_march("max-mip"), echo};
+Scene echo_scene(const std::shared_ptr<Echo>& echo) {
+  return test::terrain(HeightField::own(std::vector<float>(4), 2, 2)).answered_by(echo);
 }
 
 TEST(TileWork, OnADeviceTilesAskTogetherAndGetTheirOwnAnswers) {
@@ -97,9 +100,9 @@ TEST(TileWork, OnADeviceTilesAskTogetherAndGetTheirOwnAnswers) {
 }
 
 TEST(TileWork, StopsWhenItIsAskedTo) {
-  const TerrainScene on_cpu(HeightField::own(std::vector<float>(4), 2, 2), find_height_march("max-mip"));
+  const Scene on_cpu = test::terrain(HeightField::own(std::vector<float>(4), 2, 2), "max-mip");
   const auto echo = std::make_shared<Echo>();
-  for (const TerrainScene& scene : {on_cpu, echo_scene(echo)}) {
+  for (const Scene& scene : {on_cpu, echo_scene(echo)}) {
     std::atomic<int> made{0};
     std::atomic<std::int64_t> right{0};
     const PixelTiles tiles(1600, 1600, 1);

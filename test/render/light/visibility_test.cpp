@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "scarp/scene/terrain_scene.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp {
 namespace {
@@ -18,36 +18,36 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // cols x rows nodes 1 m apart; height(col, row).
 template <class F>
-TerrainScene scene_of(int cols, int rows, F&& height) {
+Scene scene_of(int cols, int rows, F&& height) {
   std::vector<float> samples;
   for (int row = 0; row < rows; ++row) {
     for (int col = 0; col < cols; ++col) samples.push_back(static_cast<float>(height(col, row)));
   }
-  return TerrainScene(HeightField::own(std::move(samples), cols, rows), find_height_march("max-mip"));
+  return Scene(scene_heights(HeightField::own(std::move(samples), cols, rows)));
 }
 
 // Straight below (x, y).
-GroundPoint point_at(const TerrainScene& scene, double x, double y) {
+LightPoint point_at(const Scene& scene, double x, double y) {
   Ray down;
-  down.origin = {x, y, scene.field().max_height() + 1};
+  down.origin = {x, y, scene.box().high.z + 1};
   const Hit hit = scene.closest_hit(down);
   EXPECT_TRUE(hit) << x << ", " << y;
-  return ground_point(scene.field(), down, hit);
+  return light_point(scene.surface(down, hit), hit);
 }
 
-std::vector<std::uint8_t> blocked(const TerrainScene& scene, const std::vector<Ray>& rays) {
+std::vector<std::uint8_t> blocked(const Scene& scene, const std::vector<Ray>& rays) {
   std::vector<std::uint8_t> answers(rays.size());
   scene.occluded(rays, answers);
   return answers;
 }
 
-double sky_occlusion(const TerrainScene& scene, const GroundPoint& point, double distance, const PatternRange& range) {
+double sky_occlusion(const Scene& scene, const LightPoint& point, double distance, const PatternRange& range) {
   std::vector<Ray> rays;
   ask_sky(point, distance, range, rays);
   return scarp::sky_occlusion(blocked(scene, rays));
 }
 
-double sun_cosine(const TerrainScene& scene, const GroundPoint& point, const dvec3& to_sun, double radius,
+double sun_cosine(const Scene& scene, const LightPoint& point, const dvec3& to_sun, double radius,
                   const PatternRange& range) {
   std::vector<Ray> rays;
   ask_sun(point, to_sun, radius, range, rays);
@@ -68,10 +68,10 @@ double four_sigma(int pixels, int count) { return 4 * 0.5 / std::sqrt(double{1} 
 
 TEST(SkyOcclusion, OfAPlaneIsNothingAtAll) {
   for (const auto& [east, south] : {std::pair(0.0, 0.0), {0.5, -0.25}, {-3.0, 2.0}, {40.0, 0.0}}) {
-    const TerrainScene scene = scene_of(33, 33, [&, e = east, s = south](int c, int r) { return e * c + s * r; });
+    const Scene scene = scene_of(33, 33, [&, e = east, s = south](int c, int r) { return e * c + s * r; });
     for (const double x : {0.0, 3.3, 16.0, 31.99}) {
       for (const double y : {0.1, 16.5, 32.0}) {
-        const GroundPoint point = point_at(scene, x, y);
+        const LightPoint point = point_at(scene, x, y);
         EXPECT_EQ(mean_of_pixels(
                       4, 64, [&](const PatternRange& range) { return sky_occlusion(scene, point, kInfinity, range); }),
                   0.0)
@@ -86,9 +86,9 @@ TEST(SkyOcclusion, AtTheFootOfAWallIsThatOfItsHorizon) {
   // ground, cosine-weighted, a horizon at the angle a on one side hides (1 - cos a) / 2: half of it for a = 90 degrees.
   constexpr int kLength = 4000, kPixels = 64, kCount = 256;
   for (const auto& [height, d] : {std::pair(2000.0, 1.25), {2.0, 1.5}, {8.0, 5.0}, {8.0, 20.0}}) {
-    const TerrainScene scene = scene_of(35, kLength + 1, [h = height](int col, int) { return col >= 33 ? h : 0; });
+    const Scene scene = scene_of(35, kLength + 1, [h = height](int col, int) { return col >= 33 ? h : 0; });
     // The wall's base begins one cell before its crest.
-    const GroundPoint point = point_at(scene, 33 - d, kLength / 2);
+    const LightPoint point = point_at(scene, 33 - d, kLength / 2);
     const double hidden = mean_of_pixels(
         kPixels, kCount, [&](const PatternRange& range) { return sky_occlusion(scene, point, kInfinity, range); });
     // Past the ends of the wall look the azimuths within atan(d / half its length) of its line.
@@ -99,8 +99,8 @@ TEST(SkyOcclusion, AtTheFootOfAWallIsThatOfItsHorizon) {
 }
 
 TEST(SkyOcclusion, LooksAsFarAsItIsTold) {
-  const TerrainScene scene = scene_of(40, 41, [](int col, int) { return col >= 33 ? 50 : 0; });
-  const GroundPoint point = point_at(scene, 22, 20);
+  const Scene scene = scene_of(40, 41, [](int col, int) { return col >= 33 ? 50 : 0; });
+  const LightPoint point = point_at(scene, 22, 20);
   const auto within = [&](double distance) {
     return mean_of_pixels(16, 64,
                           [&](const PatternRange& range) { return sky_occlusion(scene, point, distance, range); });
@@ -112,8 +112,8 @@ TEST(SkyOcclusion, LooksAsFarAsItIsTold) {
 
 TEST(SkyOcclusion, ARoofHidesNothingFromItsRidge) {
   // The shading normal at the ridge is upright, the slope's is not: the sky is that over the slope.
-  const TerrainScene scene = scene_of(33, 33, [](int col, int) { return -2 * std::abs(col - 16); });
-  const GroundPoint point = point_at(scene, 16.125, 16.5);
+  const Scene scene = scene_of(33, 33, [](int col, int) { return -2 * std::abs(col - 16); });
+  const LightPoint point = point_at(scene, 16.125, 16.5);
   ASSERT_GT(length(point.normal - point.shading_normal), 0.5);
   EXPECT_EQ(
       mean_of_pixels(4, 256, [&](const PatternRange& range) { return sky_occlusion(scene, point, kInfinity, range); }),
@@ -124,7 +124,7 @@ TEST(SkyOcclusion, ARoofHidesNothingFromItsRidge) {
 class Cliff : public testing::Test {
  protected:
   double sun_at(double beyond_edge, double radius) const {
-    const GroundPoint point = point_at(scene_, kEdge + beyond_edge, 8);
+    const LightPoint point = point_at(scene_, kEdge + beyond_edge, 8);
     return mean_of_pixels(kPixels, kCount,
                           [&](const PatternRange& range) { return sun_cosine(scene_, point, to_sun_, radius, range); });
   }
@@ -132,7 +132,7 @@ class Cliff : public testing::Test {
   static constexpr int kEdge = 16, kPixels = 16, kCount = 64;
   const double height_ = 64, altitude_ = glm::radians(30.0);
   const dvec3 to_sun_{-std::cos(altitude_), 0, std::sin(altitude_)};
-  const TerrainScene scene_ = scene_of(200, 17, [h = height_](int col, int) { return col <= kEdge ? h : 0; });
+  const Scene scene_ = scene_of(200, 17, [h = height_](int col, int) { return col <= kEdge ? h : 0; });
 };
 
 TEST_F(Cliff, ThePenumbraIsThatOfTheDisc) {
@@ -159,7 +159,7 @@ TEST_F(Cliff, APointOfASunHasAHardShadow) {
 }
 
 TEST_F(Cliff, WhatTurnsAwayFromTheSunGetsNone) {
-  const GroundPoint flank = point_at(scene_, kEdge + 0.5, 8);
+  const LightPoint flank = point_at(scene_, kEdge + 0.5, 8);
   EXPECT_EQ(sun_cosine(scene_, flank, to_sun_, 0.005, {SamplePattern(0, 8).pixel(0, 0, 0), 0, 8}), 0.0);
 }
 

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "render/terrain.h"
 #include "scarp/base/error.h"
 #include "scarp/render/frame/picture.h"
 
@@ -49,7 +50,7 @@ PictureSettings comanche(int width, int height) {
   settings.width = width;
   settings.height = height;
   settings.aa = 1;
-  settings.plinth = settings.shadows = false;
+  settings.shadows = false;
   settings.comanche.scale = 1;
   settings.comanche.steps = 64;
   return settings;
@@ -64,7 +65,7 @@ TEST(Comanche, EndlessGroundLooksLikeTheTiledField) {
       settings.water = WaterSettings{.level = 1.1, .waves = 0};
       settings.fog.kind = FogKind::distance;
       settings.fog.visibility = 60;
-      const TerrainScene wrapped(endless(), find_height_march(march)), laid_out(tiled(), find_height_march(march));
+      const Scene wrapped = test::terrain(endless(), march), laid_out = test::terrain(tiled(), march);
       // Six periods from the border of the tiled field, 40 cells of sight and 40 of mirrored sight: no ray comes to it.
       constexpr double kOffset = 6 * kPeriod;
       const dvec3 eye(7.25, 4.5, 6), ahead(0.5, 0.75, -0.25), offset(kOffset, kOffset, 0);
@@ -72,8 +73,7 @@ TEST(Comanche, EndlessGroundLooksLikeTheTiledField) {
       Camera far = Camera::look_at(eye + offset, eye + offset + ahead, 60, 96, 72);
       near.set_reach(40);
       far.set_reach(40);
-      const Image a = render_picture(wrapped, near, 0, settings).image,
-                  b = render_picture(laid_out, far, 0, settings).image;
+      const Image a = render_picture(wrapped, near, settings).image, b = render_picture(laid_out, far, settings).image;
       int different = 0, ground = 0;
       for (int y = 0; y < 72; ++y) {
         for (int x = 0; x < 96; ++x) {
@@ -125,7 +125,8 @@ TEST(Comanche, PlainWaterIsSeenAtTheFirstSampleBelow) {
   HeightFieldSettings field_settings;
   field_settings.wrap = Wrap::periodic;
   const HeightField flat = HeightField::own(std::vector<float>(16, -50.0f), 4, 4, field_settings);
-  const Water water({.level = -1}, flat);
+  const Scene scene = test::terrain(flat);
+  const Water water({.level = -1}, scene);
   const StepMarch plain(flat, {.steps = 100, .shells = true, .interpolate = false}, 100, {0, 1, 0});
   const StepMarch exact(flat, {.steps = 100, .shells = true, .interpolate = true}, 100, {0, 1, 0});
   Ray ray;
@@ -150,14 +151,14 @@ TEST(Comanche, RaysThatLookUpLeave) {
 }
 
 TEST(Comanche, ThePictureOfStepsIsBlackToWhite) {
-  const TerrainScene scene(endless(), find_height_march("fixed-step"));
+  const Scene scene = test::terrain(endless(), "fixed-step");
   PictureSettings settings = comanche(48, 36);
   settings.comanche.iterations = true;
   settings.comanche.scale = 3;
   settings.comanche.steps = 30;
   Camera camera = Camera::look_at({3, 3, 8}, {3, 9, 7}, 60, 48, 36);
   camera.set_reach(30);
-  const Image image = render_picture(scene, camera, 0, settings).image;
+  const Image image = render_picture(scene, camera, settings).image;
   ASSERT_EQ(image.width, 144);
   ASSERT_EQ(image.height, 108);
   EXPECT_LT(image.pixel(72, 0)[0], 60) << "sky: one step";

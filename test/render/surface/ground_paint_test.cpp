@@ -12,26 +12,26 @@
 namespace scarp {
 namespace {
 
-// 0 to 100 m over 100 m.
-HeightField slope() {
-  std::vector<float> samples;
-  for (int row = 0; row < 11; ++row) {
-    for (int col = 0; col < 11; ++col) samples.push_back(10.0f * static_cast<float>(col));
-  }
-  HeightFieldSettings settings;
-  settings.cell_x = settings.cell_y = 10;
-  return HeightField::own(std::move(samples), 11, 11, settings);
-}
-
 const dvec3 kSun = normalize(dvec3(-1, 0, 1));
 
-GroundPaint paint(const GroundPaintSettings& settings, const HeightField& field) {
-  return {settings, field, Ramp("grey", 0, 100), kSun};
-}
+// Of ground of 10 x 10 cells of 10 m, from 0 to 100 m.
+class Paint {
+ public:
+  explicit Paint(const GroundPaintSettings& settings)
+      : paint_(settings, {.low = 0, .high = 100, .cell = 10, .size = {100, 100}}, Ramp("grey", 0, 100), kSun) {}
+
+  vec3 operator()(const dvec3& position, double height, const dvec3& normal, double footprint) const {
+    return paint_.over(paint_.ground(position, height, normal, footprint), position, height, normal, footprint);
+  }
+
+ private:
+  GroundPaint paint_;
+};
+
+Paint paint(const GroundPaintSettings& settings) { return Paint(settings); }
 
 TEST(GroundPaint, ContoursAreAtTheirHeightsAndSoWideInPixels) {
-  const HeightField field = slope();
-  const GroundPaint with = paint({.contours = 20}, field), without = paint({}, field);
+  const Paint with = paint({.contours = 20}), without = paint({});
   const dvec3 normal = normalize(dvec3(-1, 0, 1));
   constexpr double kPixel = 0.25;
   for (double height = 1; height < 99; height += 0.05) {
@@ -49,8 +49,7 @@ TEST(GroundPaint, ContoursAreAtTheirHeightsAndSoWideInPixels) {
 }
 
 TEST(GroundPaint, RockIsSteepAndSnowIsHigh) {
-  const HeightField field = slope();
-  const GroundPaint natural = paint({.natural = true, .snow_share = 0.7}, field);
+  const Paint natural = paint({.natural = true, .snow_share = 0.7});
   const auto at = [&](double height, const dvec3& normal) {
     return natural({50, 50, height}, height, normalize(normal), 1e9);
   };
@@ -65,9 +64,8 @@ TEST(GroundPaint, RockIsSteepAndSnowIsHigh) {
 }
 
 TEST(GroundPaint, DrapesAPictureOverTheField) {
-  const HeightField field = slope();
   auto drape = std::make_shared<Drape>(Drape{2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 9, 9, 9, 0}});
-  const GroundPaint paper = paint({.drape = drape}, field);
+  const Paint paper = paint({.drape = drape});
   const auto at = [&](double x, double y) { return paper({x, y, 0}, 100, {0, 0, 1}, 1); };
   EXPECT_EQ(at(0, 100), vec3(1, 0, 0)) << "the north-west";
   EXPECT_EQ(at(100, 100), vec3(0, 1, 0));
@@ -79,8 +77,7 @@ TEST(GroundPaint, DrapesAPictureOverTheField) {
 }
 
 TEST(GroundPaint, DetailIsGoneFarAway) {
-  const HeightField field = slope();
-  const GroundPaint rough = paint({.detail = 0.5, .detail_size = 10}, field), smooth = paint({}, field);
+  const Paint rough = paint({.detail = 0.5, .detail_size = 10}), smooth = paint({});
   int different = 0;
   for (int i = 0; i < 100; ++i) {
     const dvec3 p(7.3 * i, 3.9 * i, 0);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "render/terrain.h"
 #include "scarp/base/error.h"
 #include "scarp/render/frame/layers.h"
 #include "scarp/render/light/sky.h"
@@ -26,7 +27,6 @@ PictureSettings plain(int width, int height) {
   settings.height = height;
   settings.aa = 1;
   settings.haze = 0;
-  settings.plinth = false;
   settings.water.emplace();
   settings.water->waves = 0;
   return settings;
@@ -65,17 +65,17 @@ HeightField cone() {
 
 TEST(Water, TheCoastOfAConeIsACircle) {
   constexpr int kSide = 192;
-  const TerrainScene scene(cone(), find_height_march("max-mip"));
+  const Scene scene = test::terrain(cone(), "max-mip");
   PictureSettings settings = plain(kSide, kSide);
   settings.water->level = kLevel;
   settings.shadows = false;
   const Camera camera = Camera::look_at({kMiddle, kMiddle, 200}, {kMiddle, kMiddle, 0}, 16, kSide, kSide);
-  const PictureLayers layers = render_layers(scene, camera, 0, settings);
+  const PictureLayers layers = render_layers(scene, camera, settings);
   // A pixel on the water, in cells: the coast is known to half of it.
   const double half_pixel = camera.pixel_width(200 - kLevel) / 2;
   EXPECT_GT(half_pixel, 0.006 * 10) << "a cone of patches is a cone here";
-  const Water water(*settings.water, scene.field());
-  const StepMarch steps(scene.field(), {.steps = 64, .interpolate = false}, 250, camera.forward());
+  const Water water(*settings.water, scene);
+  const StepMarch steps((*scene.only_heights()), {.steps = 64, .interpolate = false}, 250, camera.forward());
   int sea = 0, land = 0, ragged = 0;
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) {
@@ -99,13 +99,13 @@ TEST(Water, TheCoastOfAConeIsACircle) {
 }
 
 TEST(Water, ReflectsTheSkyThatIsThere) {
-  const TerrainScene scene(flat(0), find_height_march("max-mip"));
+  const Scene scene = test::terrain(flat(0), "max-mip");
   PictureSettings settings = plain(64, 48);
   settings.water->level = 50;
   settings.water->turbidity = 1e6;  // no bottom to be seen
   const Camera camera = Camera::look_at({4000, 100, 300}, {4000, 3000, 0}, 50, 64, 48);
-  const PictureLayers layers = render_layers(scene, camera, 0, settings);
-  const vec3 deep = Water(*settings.water, scene.field()).deep();
+  const PictureLayers layers = render_layers(scene, camera, settings);
+  const vec3 deep = Water(*settings.water, scene).deep();
   int seen = 0;
   for (int y = 0; y < 48; ++y) {
     for (int x = 0; x < 64; ++x) {
@@ -125,17 +125,17 @@ TEST(Water, ReflectsTheSkyThatIsThere) {
 
 TEST(Water, AbsorbsByTheDepthAsTraced) {
   const double depth = 3;
-  const TerrainScene scene(flat(10), find_height_march("max-mip"));
+  const Scene scene = test::terrain(flat(10), "max-mip");
   PictureSettings settings = plain(32, 32);
   settings.sun.altitude_deg = 90;
   const Camera camera = Camera::look_at({4000, 4000, 400}, {4000, 4200, 0}, 40, 32, 32);
   PictureSettings dry_settings = settings;
   dry_settings.water.reset();
-  const PictureLayers dry = render_layers(scene, camera, 0, dry_settings);
+  const PictureLayers dry = render_layers(scene, camera, dry_settings);
   settings.water->level = 10 + depth;
   settings.water->turbidity = 0.1;
-  const PictureLayers wet = render_layers(scene, camera, 0, settings);
-  const vec3 deep = Water(*settings.water, scene.field()).deep();
+  const PictureLayers wet = render_layers(scene, camera, settings);
+  const vec3 deep = Water(*settings.water, scene).deep();
   const double absorbed[] = {0.340 + 0.1, 0.0565 + 0.1, 0.00922 + 0.1};
   for (int y = 0; y < 32; y += 3) {
     for (int x = 0; x < 32; x += 3) {
@@ -157,10 +157,10 @@ TEST(Water, AbsorbsByTheDepthAsTraced) {
 }
 
 TEST(Water, StandsInItsBasin) {
-  const HeightField field = flat(0, 11, 1);
+  const Scene scene = test::terrain(flat(0, 11, 1));
   WaterSettings settings;
   settings.level = 4;
-  const Water water(settings, field);
+  const Water water(settings, scene);
   const auto meets = [&](const dvec3& from, const dvec3& direction) {
     Ray ray;
     ray.origin = from;
@@ -189,7 +189,7 @@ TEST(Water, StandsInItsBasin) {
 
   std::vector<float> torn(121, 0);
   torn[60] = NAN;
-  const HeightField holed = HeightField::own(std::move(torn), 11, 11);
+  const Scene holed = test::terrain(HeightField::own(std::move(torn), 11, 11));
   const Water lake(settings, holed);
   Ray down;
   down.origin = {4.8, 5.2, 9};
@@ -199,27 +199,27 @@ TEST(Water, StandsInItsBasin) {
 }
 
 TEST(Water, UnderHigherGroundThereIsNone) {
-  const HeightField field = flat(7, 11, 1);
+  const Scene scene = test::terrain(flat(7, 11, 1));
   WaterSettings settings;
   settings.level = 4;
-  const Water below(settings, field);
+  const Water below(settings, scene);
   Ray ray;
   ray.origin = {-3, 5, 6};
   ray.direction = normalize(dvec3(2, 0, -1));
   EXPECT_FALSE(below.meets(ray)) << "in under the edge of the ground, down to the level";
   settings.level = 7;
-  const Water sea(settings, field);
+  const Water sea(settings, scene);
   ray.origin.z = 9;
   EXPECT_TRUE(sea.meets(ray)) << "ground just at the level";
 }
 
 TEST(Water, AFlatSeaAtTheLevelIsWater) {
-  const TerrainScene scene(flat(0), find_height_march("max-mip"));
+  const Scene scene = test::terrain(flat(0), "max-mip");
   PictureSettings settings = plain(32, 24);
   settings.water->level = 0;
   const Camera camera = Camera::look_at({4000, 3000, 900}, {4100, 4200, 0}, 40, 32, 24);
-  const PictureLayers layers = render_layers(scene, camera, 0, settings);
-  const vec3 deep = Water(*settings.water, scene.field()).deep();
+  const PictureLayers layers = render_layers(scene, camera, settings);
+  const vec3 deep = Water(*settings.water, scene).deep();
   for (int i = 0; i < 32 * 24; ++i) {
     const Ray ray = camera.ray(i % 32 + 0.5, i / 32 + 0.5);
     const double mirror = schlick(-ray.direction.z);
@@ -229,11 +229,11 @@ TEST(Water, AFlatSeaAtTheLevelIsWater) {
 }
 
 TEST(Water, WavesHaveTheSlopeThatWasAsked) {
-  const HeightField field = flat(0);
+  const Scene scene = test::terrain(flat(0));
   WaterSettings settings;
   settings.waves = 0.05;
   settings.wavelength = 40;
-  const Water water(settings, field);
+  const Water water(settings, scene);
   double squares = 0;
   constexpr int kSide = 300;
   for (int i = 0; i < kSide * kSide; ++i) {
@@ -254,11 +254,11 @@ TEST(Water, RefusesWhatIsOutOfRange) {
     spoil(settings);
     EXPECT_THROW(validate(settings), Error);
   }
-  const TerrainScene scene(flat(0), find_height_march("max-mip"));
+  const Scene scene = test::terrain(flat(0), "max-mip");
   PictureSettings settings = plain(8, 8);
   settings.water->level = 500;
   const Camera camera = Camera::look_at({4000, 100, 300}, {4000, 3000, 0}, 50, 8, 8);
-  EXPECT_THROW(render_layers(scene, camera, 0, settings), Error) << "the eye is under water";
+  EXPECT_THROW(render_layers(scene, camera, settings), Error) << "the eye is under water";
 }
 
 }  // namespace

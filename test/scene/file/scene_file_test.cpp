@@ -115,9 +115,9 @@ TEST_F(SceneFiles, SayHowVoxelsLook) {
   EXPECT_TRUE(file.picture.coarse_voxels);
   Ray ray;
   ray.origin = {1.95, 1.95, 5};
-  EXPECT_FALSE(file.scene.closest_hit({ray}));
+  EXPECT_FALSE(file.scene.closest_hit(ray));
   ray.origin = {1.6, 1.6, 5};
-  const SceneHit hit = file.scene.closest_hit({ray});
+  const Hit hit = file.scene.closest_hit(ray);
   ASSERT_TRUE(hit);
   const SceneSurface surface = file.scene.surface(ray, hit);
   EXPECT_EQ(surface.colour, (VoxelColour{255, 128, 0}));
@@ -136,6 +136,36 @@ TEST_F(SceneFiles, TakeOtherScenesAsOneObject) {
   EXPECT_EQ(std::get<PlainColour>(file.materials[objects[1].material]).colour, vec3(1, 0, 0));
   EXPECT_NEAR(length(objects[4].placement.origin - dvec3(20, 8, 0)), 0, 1e-12);
 }
+
+#if defined(SCARP_EMBREE) && defined(SCARP_MESH)
+TEST_F(SceneFiles, PlaceMeshes) {
+  // A wedge, y up: 4 wide, 2 high, 6 deep.
+  write("wedge.obj", "v 1 5 0\nv 5 5 0\nv 1 7 0\nv 1 5 6\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n");
+  const SceneFile file = read(R"({
+    "functions": {"hill": {"type": "plane", "height": 10}},
+    "fields": {"wedge": {"mesh": {"file": "wedge.obj", "centred": true}}},
+    "objects": [
+      {"name": "hill", "function": "hill"},
+      {"name": "wedges", "field": "wedge", "on": "hill", "places": [{"at": [100, 0, 0], "scale": 2}, {"at": [200, 0, 5]}]},
+      {"mesh": {"file": "wedge.obj", "up": "z"}, "at": [300, 0, 100]}
+    ]
+  })");
+  ASSERT_EQ(file.scene.objects().size(), 4u);
+  EXPECT_EQ(file.scene.marches(), "embree, lipschitz-local");
+  EXPECT_EQ(file.files.back(), (folder_ / "wedge.obj").string());
+  const auto height = [&](double x, double y) {
+    Ray ray;
+    ray.origin = {x, y, 1000};
+    return 1000 - file.scene.closest_hit(ray).t;
+  };
+  // The ridge at the low x, where z of the file is 0: y of the world is -z.
+  EXPECT_NEAR(height(96.001, 5.999), 14, 0.01);
+  EXPECT_NEAR(height(95.9, 5.9), 10, 1e-3);
+  EXPECT_NEAR(height(198.001, 2.999), 17, 0.01);
+  // As the file has it: corners at z 0 and, at (1, 5), 6.
+  EXPECT_NEAR(height(301.001, 5.001), 106, 0.02);
+}
+#endif
 
 TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
   write("itself.json", R"({"objects": [{"scene": "scene.json"}]})");
@@ -168,7 +198,7 @@ TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
            R"(], "materials": {"m": {"stops": [{"z": 1, "colour": "#000000"}, {"z": 1, "colour": "#000000"}]}}})",
        "/materials/m/stops/1/z:", "expected more"},
       {with_object("3"), "/objects/0:", "is 3; expected an object"},
-      {with_object("{}"), "/objects/0:", "one of heights, function, shape, voxels"},
+      {with_object("{}"), "/objects/0:", "one of heights, function, shape, voxels, mesh"},
       {with_object(R"({"shape": {"sphere": {"radius": 1}}, "function": 3})"), "/objects/0:", "has function and shape"},
       {with_object(R"({"shape": {"sphere": {"radius": -1}}})"), "/objects/0/shape/sphere/radius:", "-1"},
       {with_object(R"({"function": {"type": "fbm", "wavelength": 0}})"), "/objects/0/function", "wavelength"},
@@ -196,6 +226,15 @@ TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
       {with_object(R"({"voxels": {"file": "none.raw", "volume": "2x2:u8"}})"), "/objects/0/voxels/file:", "NXxNYxNZ"},
       {with_object(R"({"heights": {"file": "none.tif"}})"), "/objects/0/heights/file:", "none.tif"},
       {with_object(R"({"heights": {}})"), "/objects/0/heights:", "one of file"},
+      {with_object(R"({"mesh": {"up": "y"}})"), "/objects/0/mesh/file:", "is missing; expected the path of a triangle"},
+      {with_object(R"({"mesh": {"file": "none.obj", "up": "x"}})"), "/objects/0/mesh/up:", "y or z"},
+#ifdef SCARP_EMBREE
+      {with_object(R"({"mesh": {"file": "none.obj"}})"), "/objects/0/mesh/file:", "none.obj"},
+      {with_object(R"({"mesh": {"file": "none.obj"}, "march": "embree"})"),
+       "/objects/0/march:", "does not go with mesh"},
+#else
+      {with_object(R"({"mesh": {"file": "none.obj"}})"), "/objects/0/mesh:", "SCARP_EMBREE=OFF"},
+#endif
       {with_object(R"({"scene": "none.json"})"), "/objects/0/scene:", "none.json"},
       {with_object(R"({"scene": "scene.json"})"), "/objects/0/scene:", "a scene cannot"},
       {with_object(R"({"scene": "itself.json"})"), "/objects/0/scene:", "a scene cannot"},

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/render_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "app/cli/device_option.h"
+#include "app/cli/kept_inputs.h"
+#include "app/cli/progress.h"
+#include "app/cli/scene_input.h"
+#include "scarp/base/error.h"
+#include "scarp/render/camera/compass.h"
+#include "scarp/scene/file/example_functions.h"
+#include "scarp/scene/scene_plinth.h"
+#include "scarp/source/read_raster.h"
+
+namespace scarp::cli {
+namespace {
+
+constexpr double kVoxelSun = 235;      // degrees: from over the default camera's shoulder
+constexpr double kFunctionHaze = 0.2;  // share over the extent, without --haze
+constexpr double kFaintest = 64;       // rays end where haze hides all but 1 / 64 of a colour
+constexpr double kLongReach = 64;      // extents, where there is less haze
+const ViewSettings kFunctionView{.azimuth_deg = 190, .elevation_deg = 14, .distance = 0.5, .fov_deg = 45};
+
+bool has_end(const Scene& scene) { return scene.box().low.x <= scene.box().high.x; }
+
+// Framed by its box.
+void frame_by_box(RenderInput& input, const RenderOptions& options) {
+  input.framed = [&picture = options.picture](const Scene& scene, const ViewSettings& view) {
+    return FieldView{
+        Camera::framed(picture_box(scene), view, picture.grid_north_azimuth, picture.width, picture.height)};
+  };
+}
+
+void measure(RenderInput& input) {
+  if (!has_end(input.scene)) return;
+  const dvec3 size = input.scene.box().high - input.scene.box().low;
+  input.across = std::max(size.x, size.y);
+  input.heights = {input.scene.box().low.z, input.scene.box().high.z};
+}
+
+void require_ground(const HeightField& field, const std::string& path) {
+  if (!field.has_cells()) {
+    throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed", path,
+                            field.cols(), field.rows()));
+  }
+  if (field.all_nodata())
+    throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", path));
+}
+
+RenderInput terrain(RenderOptions& options, const ViewSettings& view) {
+  const HeightMarchEntry& march = find_height_march(options.march.empty() ? kTerrainMarch : options.march);
+  require_device_march(options.device, march);
+  Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
+  stop_if_interrupted();
+  const std::string path = raster.path;
+  std::vector<std::string> notes = raster.notes, files = raster.files;
+  options.picture.grid_north_azimuth = raster.georeference.grid_north_azimuth;
+  const std::vector<std::string> look_files =
+      read_look_files(options.look_options, raster, options.field, options.picture);
+  files.insert(files.end(), look_files.begin(), look_files.end());
+  keep_inputs(options.output, files);
+  HeightField field = height_field_from(std::move(raster), options.field);
+  require_ground(field, path);
+  const double across = default_reach(field), exaggeration = field.settings().exaggeration;
+  const ReliefRange heights{field.min_height(), field.max_height()};
+  Scene scene(scene_heights(std::move(field), march, options.march_settings,
+                            options.device.empty() ? AnsweredBy::cpu : AnsweredBy::back_end));
+  if (!options.no_plinth) scene = with_plinth(scene);
+  RenderInput input{std::move(scene), std::move(notes), std::move(files)};
+  input.view = view;
+  input.across = across, input.heights = heights, input.exaggeration = exaggeration;
+  input.framed = [&picture = options.picture](const Scene& seen, const ViewSettings& of) {
+    return view_of_field(*seen.terrain(), picture_box(seen), of, picture.grid_north_azimuth, picture.width,
+                         picture.height);
+  };
+  return input;
+}
+
+RenderInput voxels(RenderOptions& options, const ViewSettings& view) {
+  VoxelSceneOptions voxels;
+  if (!options.march.empty()) voxels.march = options.march;
+  find_voxel_march(voxels.march);
+  voxels.surface_colours = options.vox.surface_colours;
+  voxels.rounding = options.vox_look.rounding;
+  const VoxelShading shading = shading_of(options.vox_look);
+  if (!options.is_given("--sun")) options.picture.sun.azimuth_deg = kVoxelSun;
+  if (!options.is_given("--haze")) options.picture.haze = 0;
+  VoxInput read = read_voxels(options.inputs.front(), options.vox, voxels, options.picture.ramp);
+  stop_if_interrupted();
+  RenderInput input{Scene(scene_voxels(std::move(read.scene), voxels.march, shading))};
+  input.view = view;
+  input.coarse_voxels = options.vox_look.coarse;
+  frame_by_box(input, options);
+  measure(input);
+  return input;
+}
+
+// The file's own settings count where no option was given.
+RenderInput scene_file(RenderOptions& options, const ViewSettings& view) {
+  SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
+  keep_inputs(options.output, document.files);
+  stop_if_interrupted();
+  if (!options.is_given("--haze")) options.picture.haze = 0;
+  options.picture = picture_of(document, options.picture, options.given);
+  RenderInput input{document.scene, document.notes, document.files};
+  input.view = view_of(document, view, options.given);
+  input.coarse_voxels = document.picture.coarse_voxels || options.vox_look.coarse;
+  input.eye = document.camera.eye, input.target = document.camera.target;
+  frame_by_box(input, options);
+  measure(input);
+  return input;
+}
+
+// Of the square that is looked at, on a lattice.
+ReliefRange heights_around(const HeightFunction& function, double extent) {
+  constexpr int kSide = 129;
+  ReliefRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) {
+      const double h = function.value(extent * (col / (kSide - 1.0) - 0.5), extent * (row / (kSide - 1.0) - 0.5));
+      range = {std::min(range.low, h), std::max(range.high, h)};
+    }
+  }
+  return range;
+}
+
+// Meadows, dry grass and snow by height, rock where it is steep; or one of the ramps. The last one is the function's.
+std::vector<Material> materials_of(const ReliefRange& range, const std::string& ramp) {
+  if (!ramp.empty()) return {HeightRamp{ramp, range.low, range.high}};
+  const auto at = [&](double share) { return range.low + share * (range.high - range.low); };
+  return {HeightStops{{{at(0.0), {0.40f, 0.47f, 0.30f}},
+                       {at(0.35), {0.50f, 0.53f, 0.33f}},
+                       {at(0.6), {0.62f, 0.57f, 0.42f}},
+                       {at(0.8), {0.66f, 0.62f, 0.57f}},
+                       {at(0.88), {0.93f, 0.94f, 0.96f}}}},
+          PlainColour{{0.47f, 0.43f, 0.40f}}, Blend{Blend::By::slope, 30, 45, 0, 1}};
+}
+
+RenderInput function(RenderOptions& options, const ViewSettings& view) {
+  const FunctionMarchEntry& march = find_function_march(options.march.empty() ? kFunctionMarch : options.march);
+  const double extent = options.function.extent;
+  PictureSettings& picture = options.picture;
+  const HeightFunction function(read_function(options.function.function));
+  picture.haze_distance = -extent / std::log(1 - (options.is_given("--haze") ? picture.haze : kFunctionHaze));
+  double& reach = options.march_settings.function.reach;
+  if (std::isinf(reach)) reach = std::min(picture.haze_distance * std::log(kFaintest), kLongReach * extent);
+  if (std::isinf(picture.ao_distance)) picture.ao_distance = extent / 8;
+  const ReliefRange heights = heights_around(function, extent);
+  picture.ground_range = heights;
+  // A ramp from a file and natural ground are painted by the renderer.
+  if (!picture.ground.natural && !picture.ramp_stops) picture.materials = materials_of(heights, picture.ramp);
+  const auto material = static_cast<std::uint32_t>(std::max<std::size_t>(picture.materials.size(), 1) - 1);
+  RenderInput input{Scene({scene_function(function, march, options.march_settings)}, {{.material = material}})};
+  input.march = std::string(march.name) +
+                (options.function.preset.empty() ? "" : fmt::format(" as in {}", options.function.preset));
+  input.view = kFunctionView;
+  if (options.is_given("--view")) input.view = view;
+  if (options.is_given("--fov")) input.view.fov_deg = view.fov_deg;
+  input.across = extent, input.heights = heights;
+  input.target = dvec3(0, 0, function.value(0, 0));
+  input.framed = [function, extent, target = *input.target, &picture](const Scene&, const ViewSettings& of) {
+    constexpr double kDegree = 3.14159265358979323846 / 180;
+    validate(of);
+    dvec3 eye = target + of.distance * extent * towards(of.azimuth_deg * kDegree, of.elevation_deg * kDegree, 0);
+    const double least = function.value(eye.x, eye.y) + 0.01 * extent, raised = std::max(0.0, least - eye.z);
+    eye.z = std::max(eye.z, least);
+    return FieldView{Camera::look_at(eye, target, of.fov_deg, picture.width, picture.height), raised};
+  };
+  return input;
+}
+
+}  // namespace
+
+bool RenderOptions::is_given(std::string_view option) const { return cli::is_given(given, option); }
+
+RenderInput open_render_input(InputKind kind, RenderOptions& options, const ViewSettings& view) {
+  switch (kind) {
+    case InputKind::terrain:
+      return terrain(options, view);
+    case InputKind::voxels:
+      return voxels(options, view);
+    case InputKind::scene:
+      return scene_file(options, view);
+    case InputKind::function:
+      break;
+  }
+  return function(options, view);
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// The inputs of `scarp render` as scenes: terrain, voxels, scene files, functions.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/input_kind.h"
+#include "app/cli/render_options.h"
+#include "scarp/render/camera/field_view.h"
+#include "scarp/scene/scene.h"
+
+namespace scarp::cli {
+
+/// Of terrain, without --march.
+constexpr const char* kTerrainMarch = "max-mip";
+
+/// A scene, and what pictures of this kind of input do by default. What follows from the input alone has been put into
+/// the options' picture settings.
+struct RenderInput {
+  Scene scene;
+  std::vector<std::string> notes{};  ///< one line each, for people
+  std::vector<std::string> files{};  ///< that were read, beside those that were typed
+  std::string march{};               ///< what times are printed with; empty: nothing
+  ViewSettings view{};
+  bool coarse_voxels = false;
+  double across = 0;      ///< metres that a picture is about: visibility, reach
+  ReliefRange heights{};  ///< of the ground, exaggerated
+  double exaggeration = 1;
+  std::optional<dvec3> eye{}, target{};  ///< of the input's own camera
+  /// Frames a scene that contains this one; FieldView::raised is set where the eye was lifted out of the ground.
+  std::function<FieldView(const Scene&, const ViewSettings&)> framed{};
+};
+
+/// Reads the inputs and builds what rays need. `view` is what was typed. Throws Error naming the file.
+RenderInput open_render_input(InputKind kind, RenderOptions& options, const ViewSettings& view);
+
+}  // namespace scarp::cli

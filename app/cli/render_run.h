@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// From the options of `scarp render` to files: scene, cameras, pictures.
+#pragma once
+
+#include "app/cli/input_kind.h"
+#include "app/cli/render_options.h"
+
+namespace scarp::cli {
+
+/// `view` is what was typed. The options are consistent with each other. Throws Error.
+void render_input(InputKind kind, RenderOptions options, const ViewSettings& view);
+
+/// X,Y,Z of an option. Throws Error.
+dvec3 point_from(const std::string& text, std::string_view option);
+
+}  // namespace scarp::cli

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/frame/frame_tile.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scarp/render/surface/water.glsl.h"
+
+namespace scarp {
+namespace {
+
+// Steps that fog by iterations and pictures of iterations take for the most, where the march has no such number.
+constexpr double kMostSteps = 256;
+
+}  // namespace
+
+std::size_t most_rays_of(const FrameView& view) {
+  const std::size_t per_point = std::max<std::size_t>(view.water() ? 2 : 1, view.lighting().most_rays());
+  return std::min(kMostRaysOfRound, kMostPointsOfTile * per_point);
+}
+
+FrameTile::FrameTile(const FrameView& view, const PixelTile& tile, int aa)
+    : view_(view), aa_(aa), points_(points_of(tile, aa)) {
+  seen_.reserve(points_.size());
+  for (const PicturePoint& point : points_) seen_.push_back({seen_.size(), view.camera().ray(point.x, point.y), {}});
+  if (view.water()) meetings_.resize(points_.size());
+}
+
+bool FrameTile::next(RayRound& round) {
+  if (stage_ == Stage::look) {
+    if (!asked_ && look(round)) return true;
+    take_look(round);
+    stage_ = Stage::water;
+    if (ask_water(round)) return true;
+  }
+  if (stage_ == Stage::water) {
+    take_water(round);
+    stage_ = Stage::light;
+    return ask_light(round);
+  }
+  take_light(round);
+  return ask_light(round);
+}
+
+// False: answered here, without the scene.
+bool FrameTile::look(RayRound& round) {
+  asked_ = true;
+  const bool comanche = view_.settings().look == Look::comanche;
+  if (const StepMarch* march = view_.step_march()) {
+    for (Seen& seen : seen_) {
+      const StepMarch::Answer answer = march->march(seen.ray, view_.water());
+      seen.hit = answer.hit;
+      seen.steps = answer.steps;
+      if (answer.water) meetings_[seen.point] = Water::Meeting{answer.t, {0, 0, 1}};
+    }
+    return false;
+  }
+  const bool count = (comanche && view_.settings().comanche.iterations) || view_.fog().kind() == FogKind::iterations;
+  round.question = count ? RayRound::Question::closest_cost : RayRound::Question::closest;
+  round.rays.clear();
+  round.from.clear();
+  round.rays.reserve(seen_.size());
+  for (const Seen& seen : seen_) {
+    round.rays.push_back(seen.ray);
+    Ray& ray = round.rays.back();
+    if (view_.ceiling() && ray.direction.z > 0) {
+      const double leaves = (*view_.ceiling() - ray.origin.z) / ray.direction.z;
+      ray.t_max = std::max(ray.t_min, std::min(ray.t_max, leaves));
+    }
+    if (!view_.water()) continue;
+    meetings_[seen.point] = view_.water()->meets(ray);
+    if (meetings_[seen.point]) ray.t_max = meetings_[seen.point]->t;
+  }
+  return true;
+}
+
+void FrameTile::take_look(const RayRound& round) {
+  if (!view_.step_march()) {
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      seen_[i].hit = round.hits[i];
+      if (round.question == RayRound::Question::closest_cost) seen_[i].steps = round.steps[i];
+    }
+  }
+  if (view_.settings().look == Look::comanche && view_.settings().comanche.iterations) return;
+  for (Seen& seen : seen_) meet(seen);
+  if (view_.water()) find_water();
+}
+
+void FrameTile::meet(Seen& seen) const {
+  if (seen.hit) seen.surface = view_.scene().surface(seen.ray, seen.hit);
+}
+
+std::optional<Water::Meeting> FrameTile::water_of(const Ray& ray, const Hit& hit) const {
+  const Water* water = view_.water();
+  if (!water) return {};
+  if (water->is_sea(hit)) return Water::Meeting{hit.t, {0, 0, 1}, hit};
+  const auto meeting = water->meets(ray);
+  if (!meeting) return {};
+  return meeting->t < (hit ? hit.t : std::numeric_limits<double>::infinity()) ? meeting : std::nullopt;
+}
+
+void FrameTile::find_water() {
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const Hit& hit = seen_[i].hit;
+    if (view_.water()->is_sea(hit)) {
+      add_water(i, {hit.t, {0, 0, 1}, hit});
+    } else if (meetings_[i] && !hit) {
+      add_water(i, *meetings_[i]);
+    }
+  }
+}
+
+std::size_t FrameTile::send(std::size_t point, const Water::Meeting& meeting, const dvec3& direction, double t_max) {
+  Ray ray;
+  ray.origin = seen_[point].ray.at(meeting.t);
+  ray.direction = direction;
+  ray.t_max = t_max;
+  if (meeting.sea) {
+    ray.start = RayStart::on_surface;
+    ray.start_cell = meeting.sea->cell;
+    ray.start_object = meeting.sea->object;
+  }
+  water_rays_.push_back({point, ray, {}});
+  return water_rays_.size() - 1;
+}
+
+void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting) {
+  const Water& water = *view_.water();
+  const Ray& ray = seen_[point].ray;
+  dvec3 normal = meeting.normal;
+  if (normal.z > 0) {
+    // A pixel is longer on the water than it is wide, seen at a grazing angle.
+    const double cosine = -ray.direction.z, wide = view_.camera().pixel_width(meeting.t);
+    normal = water.normal_at(ray.at(meeting.t), wide / std::sqrt(std::max(cosine, 0.01)));
+    if (dot(normal, ray.direction) >= 0) normal = {0, 0, 1};
+  }
+  dvec3 mirrored = reflected(ray.direction, normal);
+  if (meeting.normal.z > 0) mirrored = glsl::scarp_kept_above(mirrored);
+  const double reach = view_.camera().reach();
+  WaterPoint found{point, meeting.t, schlick(-dot(normal, ray.direction)), 0, {}};
+  found.mirror = send(point, meeting, mirrored, water.settings().reflection ? reach : 0);
+  if (water.settings().refraction && !meeting.sea) {
+    found.bottom = send(point, meeting, refracted(ray.direction, normal), reach);
+    Ray& sent = water_rays_.back().ray;
+    sent.t_max = std::min(sent.t_max, water.leaves(sent));
+  }
+  water_.push_back(found);
+}
+
+bool FrameTile::ask_water(RayRound& round) {
+  if (water_rays_.empty()) return false;
+  if (const StepMarch* march = view_.step_march()) {
+    for (Seen& seen : water_rays_) {
+      if (seen.ray.t_max > 0) seen.hit = march->march(seen.ray);
+    }
+    return false;
+  }
+  round.question = RayRound::Question::closest;
+  round.rays.clear();
+  round.from.clear();
+  for (const Seen& seen : water_rays_) round.rays.push_back(seen.ray);
+  return true;
+}
+
+void FrameTile::take_water(const RayRound& round) {
+  for (std::size_t i = 0; i < water_rays_.size(); ++i) {
+    if (!view_.step_march()) water_rays_[i].hit = round.hits[i];
+    meet(water_rays_[i]);
+  }
+}
+
+// Null: no rays of light are asked for it.
+FrameTile::Seen* FrameTile::lit(std::size_t i) {
+  Seen& seen = i < seen_.size() ? seen_[i] : water_rays_[i - seen_.size()];
+  return seen.hit && FrameView::is_lit(seen.surface) ? &seen : nullptr;
+}
+
+bool FrameTile::ask_light(RayRound& round) {
+  const Lighting& lighting = view_.lighting();
+  // Ray::start says where a ray begins on a height field; for other fields their hits have to.
+  const bool by_hit = !view_.scene().only_heights();
+  round.question = RayRound::Question::any;
+  round.rays.clear();
+  round.from.clear();
+  for (; asked_points_ < seen_.size() + water_rays_.size(); ++asked_points_) {
+    if (round.rays.size() + lighting.most_rays() > kMostRaysOfRound) return true;
+    Seen* seen = lit(asked_points_);
+    if (!seen) continue;
+    open_.push_back({seen, lighting.ask(light_point(seen->surface, seen->hit), points_[seen->point], round.rays)});
+    if (by_hit) round.from.resize(round.rays.size(), &seen->hit);
+  }
+  if (!round.rays.empty()) return true;
+  take_light(round);
+  return false;
+}
+
+void FrameTile::take_light(const RayRound& round) {
+  for (const Open& open : open_) {
+    open.seen->light =
+        view_.lit(open.seen->ray, open.seen->hit, open.seen->surface, open.asked, round.rays, round.blocked);
+  }
+  open_.clear();
+}
+
+vec3 FrameTile::colour_of(const Seen& seen) const {
+  if (seen.hit && FrameView::is_lit(seen.surface)) return view_.in_air(seen.light, seen.ray, seen.hit.t);
+  return view_.unlit(seen.ray, seen.hit, seen.surface);
+}
+
+vec3 FrameTile::water_colour(const WaterPoint& found) const {
+  const Water& water = *view_.water();
+  vec3 body = water.deep();
+  if (found.bottom) {
+    const Seen& bottom = water_rays_[*found.bottom];
+    if (bottom.hit) {
+      const double depth = water.level() - bottom.ray.at(bottom.hit.t).z;
+      body = water.through(bottom.light * water.sunlight(depth, view_.lighting().to_sun()), bottom.hit.t);
+    } else if (std::isfinite(bottom.ray.t_max)) {
+      body = water.through(view_.unlit(bottom.ray, bottom.hit, bottom.surface), bottom.ray.t_max);
+    }
+  }
+  const auto mirror = static_cast<float>(found.reflectance);
+  return colour_of(water_rays_[found.mirror]) * mirror + body * (1 - mirror);
+}
+
+std::vector<vec3> FrameTile::colours() const {
+  const StepMarch* march = view_.step_march();
+  const double most = march ? static_cast<double>(march->most_steps()) : kMostSteps;
+  const PictureSettings& settings = view_.settings();
+  std::vector<vec3> colours(seen_.size());
+  if (settings.look == Look::comanche && settings.comanche.iterations) {
+    for (std::size_t i = 0; i < seen_.size(); ++i)
+      colours[i] = vec3(static_cast<float>(std::min(1.0, seen_[i].steps / most)));
+    return colours;
+  }
+  for (std::size_t i = 0; i < seen_.size(); ++i) colours[i] = colour_of(seen_[i]);
+  for (const WaterPoint& found : water_)
+    colours[found.point] = view_.in_air(water_colour(found), seen_[found.point].ray, found.t);
+  if (view_.fog().kind() == FogKind::iterations) {
+    for (std::size_t i = 0; i < seen_.size(); ++i)
+      colours[i] = view_.fog().by_share(seen_[i].ray, seen_[i].steps / most, colours[i]);
+  }
+  return colours;
+}
+
+std::vector<vec3> FrameTile::pixels() const {
+  const std::vector<vec3> of_points = colours();
+  const auto per_pixel = static_cast<std::size_t>(aa_ * aa_);
+  std::vector<vec3> means(of_points.size() / per_pixel);
+  for (std::size_t i = 0; i < means.size(); ++i)
+    means[i] = mean_colour(std::span(of_points).subspan(i * per_pixel, per_pixel));
+  return means;
+}
+
+}  // namespace scarp

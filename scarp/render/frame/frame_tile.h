@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// The colours of a tile's points, in rounds of rays:
+//
+//   camera rays ──▶ rays that water reflects and refracts ──▶ rays from all surfaces met to sun and sky, in as many
+//   rounds as these need
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "scarp/render/frame/frame_view.h"
+#include "scarp/render/frame/tile_work.h"
+
+namespace scarp {
+
+/// Maximum number of rays that a tile asks in one round.
+std::size_t most_rays_of(const FrameView& view);
+
+class FrameTile {
+ public:
+  /// aa x aa points per pixel. `view` must outlive the tile.
+  FrameTile(const FrameView& view, const PixelTile& tile, int aa);
+
+  /// What a ray of the camera, or one that water sent on, has met.
+  struct Seen {
+    std::size_t point;
+    Ray ray;
+    Hit hit;
+    std::uint32_t steps = 0;    ///< of the march, if it was counted
+    SceneSurface surface{};     ///< set for hits
+    vec3 light{0.0f};           ///< the surface's colour in its light, before any air
+    const Hit* from = nullptr;  ///< on whose surface the ray begins
+  };
+
+  /// As TileWork::next.
+  bool next(RayRound& round);
+  /// Colours of points and mean colours of pixels, row by row, in linear light. Valid after the last round.
+  std::vector<vec3> colours() const;
+  std::vector<vec3> pixels() const;
+  const std::vector<PicturePoint>& points() const { return points_; }
+  /// By point.
+  const std::vector<Seen>& seen() const { return seen_; }
+  /// The water that a ray of the camera meets before anything else.
+  std::optional<Water::Meeting> water_of(const Ray& ray, const Hit& hit) const;
+
+ private:
+  struct WaterPoint {
+    std::size_t point;
+    double t;
+    double reflectance;
+    std::size_t mirror;                 // in water_rays_
+    std::optional<std::size_t> bottom;  // likewise
+  };
+  // A surface whose light has been asked for.
+  struct Open {
+    Seen* seen;
+    LightRays asked;
+  };
+  enum class Stage { look, water, light };
+
+  bool look(RayRound& round);
+  void take_look(const RayRound& round);
+  bool ask_water(RayRound& round);
+  void take_water(const RayRound& round);
+  bool ask_light(RayRound& round);
+  void take_light(const RayRound& round);
+  void find_water();
+  void add_water(std::size_t point, const Water::Meeting& meeting);
+  std::size_t send(std::size_t point, const Water::Meeting& meeting, const dvec3& direction, double t_max);
+  void meet(Seen& seen) const;
+  Seen* lit(std::size_t i);
+  vec3 water_colour(const WaterPoint& water) const;
+  vec3 colour_of(const Seen& seen) const;
+
+  const FrameView& view_;
+  int aa_;
+  std::vector<PicturePoint> points_;
+  std::vector<Seen> seen_, water_rays_;
+  std::vector<WaterPoint> water_;
+  std::vector<std::optional<Water::Meeting>> meetings_;  // by point; empty without water
+  Stage stage_ = Stage::look;
+  bool asked_ = false;
+  std::size_t asked_points_ = 0;
+  std::vector<Open> open_;
+};
+
+}  // namespace scarp

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/frame/frame_view.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
+
+#include "scarp/base/error.h"
+#include "scarp/render/light/air.glsl.h"
+#include "scarp/render/light/sky.h"
+
+namespace scarp {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Cut earth, sRGB: flat, and darker on walls that face away from the sun.
+constexpr vec3 kEarth(0.64f, 0.58f, 0.53f);
+constexpr float kUnlitWall = 0.55f;
+
+bool has_end(const WorldBox& box) { return box.low.x <= box.high.x; }
+
+// Rays over ground that wraps round need an end: the top of everything.
+std::optional<double> ceiling_of(const Scene& scene) {
+  if (const HeightField* field = scene.only_heights()) return field->max_height();
+  double top = has_end(scene.box()) ? scene.box().high.z : -kInfinity;
+  for (const SceneObject& object : scene.objects()) {
+    const HeightField* field = height_field_of(*scene.fields()[object.field]);
+    if (!field || !field->wraps()) continue;
+    top = std::max(top, object.placement.world_from_field({0, 0, field->max_height()}).z);
+  }
+  return scene.wraps() || !scene.endless() ? std::optional(top) : std::nullopt;
+}
+
+// No ray from a surface has a longer way to the end of the scene.
+double ao_distance_of(const Scene& scene, const PictureSettings& settings) {
+  const WorldBox& box = scene.box();
+  return scene.endless() || !has_end(box) ? settings.ao_distance
+                                          : std::min(settings.ao_distance, length(box.high - box.low));
+}
+
+// Haze of the settings' share lies over the scene, not between it and a camera that stands back.
+Haze haze_of(const Scene& scene, const Camera& camera, const PictureSettings& settings) {
+  if (settings.look == Look::comanche || settings.fog.kind != FogKind::none) return {};
+  if (std::isfinite(settings.haze_distance)) return {1 / settings.haze_distance, 0};
+  const WorldBox& box = scene.box();
+  if (!has_end(box)) return {};
+  const dvec3 nearest = glm::clamp(camera.eye(), box.low, box.high);
+  return {-std::log(1 - settings.haze) / length(box.high - box.low), length(nearest - camera.eye())};
+}
+
+}  // namespace
+
+FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSettings& settings)
+    : scene_(scene),
+      camera_(camera),
+      settings_(settings),
+      ceiling_(ceiling_of(scene)),
+      lighting_(settings, ao_distance_of(scene, settings), scene.wraps() ? ceiling_ : std::nullopt),
+      colours_(settings.materials),
+      paint_(settings.ground, paint_extent(scene, settings), ground_ramp(scene, settings), lighting_.to_sun()),
+      fog_(settings.fog, lighting_.to_sun()),
+      haze_(haze_of(scene, camera, settings)) {
+  for (const SceneObject& object : scene.objects())
+    ground_.push_back(height_field_of(*scene.fields()[object.field]) != nullptr);
+  if (settings.water) {
+    water_.emplace(*settings.water, scene);
+    if (camera.eye().z <= water_->level()) {
+      throw Error(fmt::format("water: its level, {} m, is not below the eye, at {} m; pictures are made from above it",
+                              water_->level(), camera.eye().z));
+    }
+  }
+  const HeightField* field = scene.only_heights();
+  if (settings.look == Look::comanche && field && scene.marches() == "fixed-step") {
+    const double reach = std::isfinite(camera.reach()) ? camera.reach() : default_reach(*field);
+    step_march_.emplace(*field, settings.comanche, reach, camera.forward());
+  }
+}
+
+vec3 FrameView::surface_colour(const Ray& ray, const Hit& hit, const SceneSurface& surface) const {
+  // A pixel covers more of a surface that is seen from the side: the mean of length and width.
+  const double cosine = std::max(0.05, -dot(ray.direction, surface.normal));
+  const double footprint = camera_.pixel_width(hit.t) / std::sqrt(cosine);
+  const double height = surface.height.value_or(surface.position.z);
+  const bool has_material = surface.material < settings_.materials.size();
+  const bool painted = !has_material && (settings_.ground.natural || (!surface.colour && ground_[surface.object]));
+  const vec3 own =
+      painted ? paint_.ground(surface.position, height, surface.shading_normal, footprint) : colours_(surface);
+  return paint_.over(own, surface.position, height, surface.shading_normal, footprint);
+}
+
+vec3 FrameView::lit(const Ray& ray, const Hit& hit, const SceneSurface& surface, const LightRays& asked,
+                    std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const {
+  return surface_colour(ray, hit, surface) * lighting_.on(light_point(surface, hit), asked, rays, blocked);
+}
+
+vec3 FrameView::unlit(const Ray& ray, const Hit& hit, const SceneSurface& surface) const {
+  if (!hit) {
+    // Ground that lies farther away than the picture reaches is at the horizon.
+    const double z = horizon_below() ? std::max(0.0, ray.direction.z) : ray.direction.z;
+    return fog_(ray, kInfinity, sky_colour(z));
+  }
+  if (surface.wall) return in_air(wall_colour(surface.normal), ray, hit.t);
+  // The camera is inside: the voxel's colour is all there is to see.
+  return surface_colour(ray, hit, surface);
+}
+
+vec3 FrameView::in_air(vec3 colour, const Ray& ray, double t) const {
+  if (fog_.kind() != FogKind::none) return fog_(ray, t, colour);
+  return glsl::scarp_in_haze(colour, ray.direction.z, haze_.per_metre, t - haze_.clear_distance);
+}
+
+vec3 FrameView::earth() const { return linear_from_srgb(kEarth); }
+float FrameView::unlit_wall() { return kUnlitWall; }
+
+vec3 FrameView::wall_colour(const dvec3& normal) const {
+  const auto lit = static_cast<float>(std::max(0.0, dot(normal, lighting_.to_sun())));
+  return earth() * (kUnlitWall + (1 - kUnlitWall) * lit);
+}
+
+}  // namespace scarp

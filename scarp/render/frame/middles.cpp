@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/frame/middles.h"
+
+#include <memory>
+
+#include "scarp/render/frame/tile_work.h"
+
+namespace scarp {
+namespace {
+
+class MiddlesTile final : public TileWork {
+ public:
+  MiddlesTile(const Camera& camera, const PixelTile& tile, int width, bool count, const TakeMiddle& take)
+      : camera_(camera), tile_(tile), width_(width), count_(count), take_(take) {}
+
+  bool next(RayRound& round) override {
+    if (!asked_) {
+      asked_ = true;
+      round.question = count_ ? RayRound::Question::closest_cost : RayRound::Question::closest;
+      round.rays = rays_through_middles(camera_, tile_);
+      round.from.clear();
+      return true;
+    }
+    std::size_t i = 0;
+    for (int y = tile_.y0; y < tile_.y1; ++y) {
+      for (int x = tile_.x0; x < tile_.x1; ++x, ++i) {
+        const auto pixel = static_cast<std::size_t>(std::int64_t{y} * width_ + x);
+        take_(pixel, round.rays[i], round.hits[i], count_ ? round.steps[i] : 0);
+      }
+    }
+    return false;
+  }
+
+ private:
+  const Camera& camera_;
+  PixelTile tile_;
+  int width_;
+  bool count_, asked_ = false;
+  const TakeMiddle& take_;
+};
+
+}  // namespace
+
+std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& tile) {
+  std::vector<Ray> rays;
+  rays.reserve(tile.pixels());
+  for (int y = tile.y0; y < tile.y1; ++y) {
+    for (int x = tile.x0; x < tile.x1; ++x) rays.push_back(camera.ray(x + 0.5, y + 0.5));
+  }
+  return rays;
+}
+
+void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings, bool count,
+                          const Progress& progress, const TakeMiddle& take) {
+  const PixelTiles tiles(settings.width, settings.height, 1);
+  work_on_tiles(
+      scene, tiles, tiles[0].pixels(),
+      [&](const PixelTile& tile) { return std::make_unique<MiddlesTile>(camera, tile, settings.width, count, take); },
+      progress);
+}
+
+}  // namespace scarp

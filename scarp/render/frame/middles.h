@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// What the rays through the middles of a picture's pixels hit.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "scarp/base/progress.h"
+#include "scarp/render/camera/camera.h"
+#include "scarp/render/frame/film.h"
+#include "scarp/render/frame/picture.h"
+#include "scarp/scene/scene.h"
+
+namespace scarp {
+
+/// The rays through the middles of a tile's pixels, row by row.
+std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& tile);
+
+/// Receives a pixel's index (rows from the top), its ray, what that hit, and its steps (0 without `count`).
+using TakeMiddle = std::function<void(std::size_t, const Ray&, const Hit&, std::uint32_t)>;
+
+/// Calls `take` for each pixel, on any thread. `count`: whether steps are counted.
+void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings, bool count,
+                          const Progress& progress, const TakeMiddle& take);
+
+}  // namespace scarp

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Private to the station: which points are inside a closed mesh, by the parity of the triangles above them.
+//
+// Seen from above, a triangle contains a point if an odd number of its edges pass it in the east. Each edge is decided
+// by one expression of its two corners, so both its triangles decide alike, and of a closed mesh an even number of
+// triangles is above and below any point: none is lost or counted twice at an edge or a corner.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "scarp/scene/box_tree.h"
+
+namespace scarp {
+
+class MeshInside {
+ public:
+  /// `corners`, three per triangle, must outlive it.
+  explicit MeshInside(std::span<const vec3> corners);
+
+  /// Whether every edge belongs to an even number of triangles. Corners are the same where their coordinates are.
+  bool closed() const { return closed_; }
+  /// The nearest triangle above a point inside the mesh; nullopt outside, and everywhere if the mesh is not closed.
+  std::optional<std::uint32_t> above(const dvec3& p) const;
+
+ private:
+  std::span<const vec3> corners_;
+  bool closed_;
+  BoxTree tree_;  // over the triangles; empty unless closed
+};
+
+}  // namespace scarp

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/scene/scene_plinth.h"
+
+#include <utility>
+
+#include "scarp/scene/plinth.h"
+
+namespace scarp {
+namespace {
+
+class PlinthField final : public SceneField {
+ public:
+  explicit PlinthField(const HeightField& field) : field_(field), plinth_(field, plinth_base(field)) {}
+
+  std::string_view kind() const override { return "plinth"; }
+  std::string_view march() const override { return "plinth"; }
+  std::optional<WorldBox> box() const override {
+    return WorldBox{{0, 0, plinth_base(field_)}, {field_.width(), field_.depth(), field_.max_height()}};
+  }
+  bool is_backdrop() const override { return true; }
+
+  Hit closest_hit(const Ray& ray, const Hit*, MarchStats* stats) const override {
+    if (stats) *stats = {};
+    const std::optional<Plinth::Wall> wall = plinth_.intersect(ray);
+    if (!wall) return {};
+    Hit hit;
+    hit.status = HitStatus::hit;
+    hit.wall = true;
+    hit.t = wall->t;
+    hit.height = ray.at(wall->t).z;
+    return hit;
+  }
+  bool occluded(const Ray&, const Hit*) const override { return false; }
+  // Walked anew: hits hold no normals.
+  FieldSurface surface(const Ray& ray, const Hit&) const override {
+    const std::optional<Plinth::Wall> wall = plinth_.intersect(ray);
+    const dvec3 normal = wall ? wall->normal : dvec3(0.0);
+    return {.normal = normal, .shading_normal = normal, .wall = true};
+  }
+  std::optional<FieldSurface> within(const dvec3&) const override { return {}; }
+  // Before the terrain in batches: the ground behind a wall need not be marched.
+  bool likes_batches() const override { return true; }
+
+ private:
+  HeightField field_;
+  Plinth plinth_;
+};
+
+}  // namespace
+
+SceneFieldPtr scene_plinth(const HeightField& field) { return std::make_shared<PlinthField>(field); }
+
+Scene with_plinth(const Scene& terrain) {
+  const HeightField* field = terrain.only_heights();
+  if (!field || field->wraps() || !field->has_cells() || field->all_nodata()) return terrain;
+  std::vector<SceneFieldPtr> fields = terrain.fields();
+  std::vector<SceneObject> objects = terrain.objects();
+  objects.push_back({.field = static_cast<std::uint32_t>(fields.size()), .material = objects[0].material});
+  fields.push_back(scene_plinth(*field));
+  return {std::move(fields), std::move(objects)};
+}
+
+}  // namespace scarp
