@@ -5,6 +5,7 @@
 # 4. app/, examples/ and bench/ include only public headers; so do the public headers themselves.
 # 5. No file above 700 lines.                        6. Each C++ file names its licence in its first line.
 # 7. The oracles share no code with the marches that they judge.
+# 8. In march/, only the tables and the queries include the tables: a technique does not depend on the others.
 # Before it judges the checkout, the check proves itself on a tree with one breach of each rule.
 cmake_minimum_required(VERSION 3.25)
 
@@ -119,8 +120,8 @@ function(prove_the_check)
       message(FATAL_ERROR "the check is broken: it did not find '${expected}' in its proof, only\n  ${breaches}")
     endif()
   endforeach()
-  if(NOT count EQUAL 11 OR breaches MATCHES "/good.h:")
-    message(FATAL_ERROR "the check is broken: 11 breaches planted, found\n  ${breaches}")
+  if(NOT count EQUAL 12 OR breaches MATCHES "/good.h:")
+    message(FATAL_ERROR "the check is broken: 12 breaches planted, found\n  ${breaches}")
   endif()
 endfunction()
 
