@@ -46,7 +46,7 @@ set(function_marches_as_text function/function_marches function/lipschitz_local 
 set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/ground_buffers.glsl.h scarp/accel/function_buffers.glsl.h
     scarp/accel/shape_buffers.glsl.h)
 foreach(name ${marches_as_text} ${function_marches_as_text} two_float ray_states height/ray_frame height/float_ray height/two_float_ray
-        height/cell_surface height/surface_normal height/ground height/textures function/noise function/function_heights
+        height/cell_surface height/surface_normal height/height_probe height/textures function/noise function/function_heights
         function/function_bounds function/function_frame shape/shape_distance shape/shape_grounds)
   list(APPEND shader_texts scarp/march/${name}.glsl.h)
 endforeach()

@@ -59,15 +59,15 @@ void add_march_options(CLI::App& command, MarchSettings& march) {
   add_function("--function-step-share", march.function.step_share,
                "its least step as a share of the distance travelled; 0 or more")
       ->check(number_in(kZeroOrMore));
-  add_function("--function-tolerance", march.function.tolerance,
+  add_function("--function-tolerance", march.sampling.tolerance,
                "metres off the ground that naive and relaxed take for a hit at any distance; 0 or more")
       ->check(number_in(kZeroOrMore));
   command
       .add_option_function<std::string>(
-          "--refine", [&march](const std::string& name) { march.function.refinement = find_refinement(name); },
+          "--refine", [&march](const std::string& name) { march.sampling.refinement = find_refinement(name); },
           "how naive, fixed-step and relaxed narrow down their last interval: none, secant, bisect (none)")
       ->group(functions);
-  add_function("--refine-halvings", march.function.halvings, "halvings of bisect; 1 to 60");
+  add_function("--refine-halvings", march.sampling.halvings, "halvings of bisect; 1 to 60");
 }
 
 void require_settings_of(std::string_view march, const std::vector<std::string>& given, const MarchSettings& settings) {
@@ -98,7 +98,7 @@ void require_settings_of(std::string_view march, const std::vector<std::string>&
     throw Error(fmt::format("{}: goes with --march {}, and the march is {}; leave it out", option,
                             fmt::join(theirs, ", "), march));
   }
-  require_company({{{"--refine-halvings"}, settings.function.refinement == Refinement::bisect, "--refine bisect"}},
+  require_company({{{"--refine-halvings"}, settings.sampling.refinement == Refinement::bisect, "--refine bisect"}},
                   given);
 }
 

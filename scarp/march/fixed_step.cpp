@@ -4,71 +4,63 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/march/height/ground.h"
+#include "scarp/march/function/function_probe.h"
+#include "scarp/march/height/height_probe.h"
 
 namespace scarp {
 namespace {
 
-template <class T>
-Hit march(const Ground<T>& ground, const HeightTarget& target, const Ray& ray, const FixedStepSettings& settings,
-          MarchStats& stats) {
+template <class Probe>
+Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
+  const FixedStepSettings& settings = all.fixed_step;
+  const Ray& ray = probe.ray();
+  const bool on_surface = ray.start == RayStart::on_surface;
+  const double stride = probe.stride(all), share = probe.stride_share(all);
+  const auto stops = [](double, double clearance) { return clearance <= 0; };
   Hit hit;
-  if (!ground.crosses()) return hit;
-  const bool on_surface = ray.start == RayStart::on_surface, solid = target.field->settings().solid;
-  const double step = settings.step * ground.cell_time();
-  bool above = on_surface, known = on_surface;  // known: the sample before was over ground
-  double t_before = ground.t_enter, clearance_before = 0;
+  bool above = on_surface;
+  Look before{probe.t_enter, 0, on_surface};
   for (int i = on_surface ? 1 : 0;; ++i) {
-    if (i == settings.max_steps) {
-      hit.status = HitStatus::exhausted;
-      hit.t = t_before;
-      return hit;
-    }
-    const double t = std::min(ground.t_enter + i * step, ground.t_exit);
+    if (i == settings.max_steps) return exhausted_at(before.t);
+    // Counted, not summed up, while steps are equal.
+    double t = probe.t_enter + i * stride;
+    if (share > 0 && i > 0) t = before.t + std::max(stride, share * (before.t - ray.t_min));
+    t = std::min(t, probe.t_exit);
     ++stats.steps;
-    const auto sample = ground.at(t);
-    if (!sample.valid) {
-      known = false;
-    } else if (sample.clearance > 0 || (on_surface && sample.clearance == 0)) {
-      above = known = true;
-    } else if (known && above) {
-      if (settings.interpolate && clearance_before != 0) {
-        const double between = t_before + (t - t_before) * (clearance_before / (clearance_before - sample.clearance));
-        const auto nearer = ground.at(between);
-        if (nearer.valid) return ground.hit(between, nearer);
+    const auto sample = probe.at(t);
+    const Look look{t, sample.clearance, sample.valid};
+    if (look.known) {
+      if (look.h > 0 || (on_surface && look.h == 0)) {
+        above = true;
+      } else if (before.known && above) {
+        // From a point on the surface there is no interval to refine.
+        if (!(before.h > 0)) return probe.hit(t, sample);
+        return refined_hit(probe, all.sampling, refinement_of_fixed_step(all), before, look, sample, 0, stops, stats);
+      } else if (!before.known && look.h == 0) {
+        return probe.hit(t, sample);
+      } else {
+        const bool first = stats.steps == 1;
+        if (!before.known && probe.solid() && (!first || probe.t_enter > ray.t_min)) return wall(probe.hit(t, sample));
+        if (first) hit = below();
+        above = false;
       }
-      return ground.hit(t, sample);
-    } else if (!known && sample.clearance == 0) {
-      return ground.hit(t, sample);
-    } else {
-      const bool first = stats.steps == 1;
-      if (!known && solid && (!first || ground.t_enter > ray.t_min)) {
-        hit = ground.hit(t, sample);
-        hit.wall = true;
-        return hit;
-      }
-      if (first) hit.status = HitStatus::below;
-      above = false;
-      known = true;
     }
-    t_before = t;
-    clearance_before = sample.clearance;
-    if (!(t < ground.t_exit)) return hit;
+    before = look;
+    if (!(t < probe.t_exit)) return hit;
   }
 }
 
 }  // namespace
 
 Hit march_fixed_step(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  MarchStats counted;
-  Hit hit;
-  if (target.field->has_cells() && !target.field->all_nodata()) {
-    hit = target.field->visit([&](const auto& grid) {
-      return march(Ground(*target.field, grid, ray), target, ray, settings.fixed_step, counted);
-    });
-  }
-  if (stats) *stats = counted;
-  return hit;
+  return march_over(target, ray, stats,
+                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
+}
+
+Hit march_fixed_step(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                     FunctionUse use) {
+  return march_over(function, ray, use, settings.function.reach, stats,
+                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
 }
 
 }  // namespace scarp

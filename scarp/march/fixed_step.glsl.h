@@ -4,7 +4,7 @@
 #ifndef SCARP_MARCH_FIXED_STEP_GLSL_H
 #define SCARP_MARCH_FIXED_STEP_GLSL_H
 
-#include "scarp/march/height/ground.glsl.h"
+#include "scarp/march/height/height_probe.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN

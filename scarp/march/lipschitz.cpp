@@ -5,83 +5,62 @@
 #include <cmath>
 
 #include "scarp/base/error.h"
-#include "scarp/march/height/ground.h"
+#include "scarp/march/function/function_probe.h"
+#include "scarp/march/height/height_probe.h"
 
 namespace scarp {
 namespace {
 
-// The largest block of the pyramid round a cell that has no hole; level 0 is the cell.
-int hole_free_level(const MaxPyramid& pyramid, Cell cell) {
-  int level = 0;
-  while (level < pyramid.top_level()) {
-    const MaxPyramid::Level& next = pyramid.levels()[static_cast<std::size_t>(level)];
-    const std::ptrdiff_t row = cell.row >> (level + 1), col = cell.col >> (level + 1);
-    if (pyramid.minima()[next.begin + row * next.cols + col] == MaxPyramid::kNoMinimum) break;
-    ++level;
-  }
-  return level;
-}
-
-template <class T>
-Hit march(const Ground<T>& ground, const HeightTarget& target, const Ray& ray, const LipschitzSettings& settings,
-          double shrink, MarchStats& stats) {
-  Hit hit;
-  if (!ground.crosses()) return hit;
-  const bool has_holes = target.field->nodata_count() > 0;
-  const double per_metre = 1 / ground.metres_per_t();
+// `shrink` is the factor that steps are shorter by than the vertical distance.
+template <class Probe>
+Hit march(const Probe& probe, const LipschitzSettings& settings, double shrink, MarchStats& stats) {
+  const Ray& ray = probe.ray();
   const bool on_surface = ray.start == RayStart::on_surface;
-  double t = ground.t_enter + (on_surface ? ground.cell_time() : 0.0);
-  for (int step = 0; t <= ground.t_exit; ++step) {
-    if (step == settings.max_steps) {
-      hit.status = HitStatus::exhausted;
-      hit.t = t;
-      return hit;
-    }
+  double t = probe.t_enter + (on_surface ? probe.blind_step() : 0.0);
+  for (int step = 0; t <= probe.t_exit; ++step) {
+    if (step == settings.max_steps) return exhausted_at(t);
     ++stats.steps;
-    const auto sample = ground.at(t);
+    const auto sample = probe.at(t);
     if (!sample.valid) {
-      t = ground.leave_time(sample.cell, 0, t);
+      t = probe.bounded_until(sample, t);
       continue;
     }
-    const double free = sample.clearance * shrink * per_metre;
-    if (sample.clearance < 0) {
-      // Under the ground: there from the start, or out of a hole.
-      if (on_surface && step == 0) return ground.hit(t, sample);
-      if (target.field->settings().solid && t > ray.t_min) {
-        hit = ground.hit(t, sample);
-        hit.wall = true;
-        return hit;
-      }
-      hit.status = step == 0 ? HitStatus::below : HitStatus::exhausted;
-      if (hit.status == HitStatus::exhausted) hit.t = t;
-      return hit;
+    if (probe.under_ground(sample)) {
+      // There from the start, or out of a hole.
+      if (on_surface && step == 0) return probe.hit(t, sample);
+      if (probe.solid() && t > ray.t_min) return wall(probe.hit(t, sample));
+      return step == 0 ? below() : exhausted_at(t);
     }
-    if (free <= settings.tolerance * (t - ray.t_min)) return ground.hit(t, sample);
-    const double next = t + free;
-    t = has_holes ? std::min(next, ground.leave_time(sample.cell, hole_free_level(*target.pyramid, sample.cell), t))
-                  : next;
+    const double free = probe.free_time(sample, shrink);
+    // A step that is too short to be one is no way on.
+    if (free <= settings.tolerance * (t - ray.t_min) || t + free <= t) return probe.hit(t, sample);
+    t = std::min(t + free, probe.bounded_until(sample, t));
   }
-  return hit;
+  return {};
 }
 
 }  // namespace
 
 Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  MarchStats counted;
-  Hit hit;
   double shrink = settings.lipschitz.shrink;
   if (shrink == 0) {
     if (std::isnan(target.slope))
       throw Error("lipschitz: neither the field's slope bound (HeightTarget::slope) nor a shrink factor is given");
     shrink = 1 / std::hypot(1.0, target.slope);
   }
-  if (target.field->has_cells() && !target.field->all_nodata()) {
-    hit = target.field->visit([&](const auto& grid) {
-      return march(Ground(*target.field, grid, ray), target, ray, settings.lipschitz, shrink, counted);
-    });
-  }
-  if (stats) *stats = counted;
-  return hit;
+  return march_over(target, ray, stats, [&](const auto& probe, MarchStats& counted) {
+    return march(probe, settings.lipschitz, shrink, counted);
+  });
+}
+
+Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                    FunctionUse use) {
+  // A step of the factor 1 / sqrt(1 + c^2), rounded towards 0 by more than its three roundings.
+  const double certified = (1 - 0x1p-50) / std::hypot(1.0, function.bound_everywhere(use).slope);
+  const double shrink = settings.lipschitz.shrink > 0 ? settings.lipschitz.shrink : certified;
+  return march_over(function, ray, use, settings.function.reach, stats, [&](const auto& probe, MarchStats& counted) {
+    return march(probe, settings.lipschitz, shrink, counted);
+  });
 }
 
 }  // namespace scarp

@@ -7,9 +7,9 @@
 //          / | \      shrink = 1 / sqrt(1 + c^2)
 //    _____/__|__\____
 //
-// c is slope_bound() of the field, or given (settings.lipschitz.shrink). Across a hole there is no such bound: the
-// ground may stand at any height on its far side. So no step leaves the largest block of the pyramid round the point
-// that has no hole, and over a hole a step goes to the edge of its cell.
+// c is slope_bound() of the field, the certified slope of the function, or given (settings.lipschitz.shrink). Across a
+// hole there is no such bound: the ground may stand at any height on its far side. So no step leaves the largest block
+// of the pyramid round the point that has no hole, and over a hole a step goes to the edge of its cell.
 //
 // Guarantee: conservative. A hit is reported above the ground, within the tolerance; where the ray comes too close to
 // go on, or out of a hole under the ground, it is given up (exhausted). A ray that begins on the surface steps off it
@@ -18,6 +18,7 @@
 // fields, where c is that of the steepest cell.
 #pragma once
 
+#include "scarp/field/height_function.h"
 #include "scarp/march/height/height_target.h"
 #include "scarp/march/march_settings.h"
 
@@ -27,5 +28,9 @@ namespace scarp {
 /// Throws Error when both are missing.
 Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                     MarchStats* stats = nullptr);
+/// The same over a terrain function, within settings.function.reach; rounding counts, and off the surface it steps by
+/// 2^-10 of the way out. With a shrink factor of the settings, above the certified one, nothing is certain.
+Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchSettings& settings = {},
+                    MarchStats* stats = nullptr, FunctionUse use = FunctionUse::march);
 
 }  // namespace scarp

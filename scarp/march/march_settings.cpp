@@ -44,8 +44,8 @@ void validate(const MarchSettings& settings) {
   require(fixed_step.max_steps >= 1, "fixed-step step limit", fixed_step.max_steps, "1 or more");
   const auto& relaxed = settings.relaxed;
   require(positive(relaxed.step_factor), "relaxed step factor", relaxed.step_factor, "above 0");
-  require(positive(relaxed.tolerance) || (relaxed.tolerance == 0 && settings.function.tolerance > 0),
-          "relaxed tolerance", relaxed.tolerance, "above 0, or 0 with a function tolerance above 0");
+  require(positive(relaxed.tolerance) || (relaxed.tolerance == 0 && settings.sampling.tolerance > 0),
+          "relaxed tolerance", relaxed.tolerance, "above 0, or 0 with a sampling tolerance above 0");
   require(relaxed.max_steps >= 1, "relaxed step limit", relaxed.max_steps, "1 or more");
   const auto& lipschitz = settings.lipschitz;
   require(lipschitz.shrink >= 0 && lipschitz.shrink <= 1, "lipschitz shrink factor", lipschitz.shrink,
@@ -62,9 +62,10 @@ void validate(const MarchSettings& settings) {
   require(positive(function.step), "function step", function.step, "above 0 metres");
   require(std::isfinite(function.step_share) && function.step_share >= 0, "function step share", function.step_share,
           "0 or more");
-  require(std::isfinite(function.tolerance) && function.tolerance >= 0, "function tolerance", function.tolerance,
+  const auto& sampling = settings.sampling;
+  require(std::isfinite(sampling.tolerance) && sampling.tolerance >= 0, "sampling tolerance", sampling.tolerance,
           "0 or more metres");
-  require(function.halvings >= 1 && function.halvings <= 60, "function halvings", function.halvings, "1 to 60");
+  require(sampling.halvings >= 1 && sampling.halvings <= 60, "refinement halvings", sampling.halvings, "1 to 60");
   const auto& sphere_trace = settings.sphere_trace;
   require(std::isfinite(sphere_trace.tolerance) && sphere_trace.tolerance >= 0, "sphere-trace tolerance",
           sphere_trace.tolerance, "0 or more");

@@ -20,7 +20,7 @@ struct NaiveSettings {
 /// `fixed-step`: a sample every `step`, a hit where one is no longer above the ground.
 struct FixedStepSettings {
   double step = 0.5;        ///< cells, their shorter side, > 0
-  bool interpolate = true;  ///< whether the hit is put between the last two samples, or on the last
+  bool interpolate = true;  ///< whether Refinement::none means `secant` here
   int max_steps = 16384;    ///< >= 1
 };
 
@@ -55,8 +55,8 @@ struct SphereTraceSettings {
   int max_steps = 1024;     ///< >= 1
 };
 
-/// What an approximate march over a terrain function does with its last interval: from the sample before, where its
-/// test for a hit failed, to the one where it holds.
+/// What naive, fixed-step and relaxed do with their last interval: from the sample before, where the test for a hit
+/// failed, to the one where it holds.
 enum class Refinement : std::uint8_t {
   none,    ///< the hit is the last sample
   secant,  ///< where the straight line through the two clearances meets the test's limit
@@ -68,14 +68,18 @@ std::string_view name_of(Refinement refinement);
 /// Throws Error listing the names when there is no such refinement.
 Refinement find_refinement(std::string_view name);
 
-/// Of marches over terrain functions alone, which have no cells to measure by and no end.
+/// Settings that naive, fixed-step and relaxed share.
+struct SamplingSettings {
+  Refinement refinement = Refinement::none;
+  int halvings = 24;     ///< of `bisect`, 1..60
+  double tolerance = 0;  ///< of naive and relaxed: metres off the ground that count as a hit at any distance, >= 0
+};
+
+/// Settings of marches over terrain functions alone, which have no cells to measure by and no end.
 struct FunctionMarchSettings {
   double reach = std::numeric_limits<double>::infinity();  ///< of all: metres that a ray is followed, > 0
   double step = 5;                                         ///< of fixed-step, in the place of its cells: metres, > 0
   double step_share = 0;  ///< of fixed-step: steps are at least this share of the distance travelled, >= 0
-  double tolerance = 0;   ///< of naive and relaxed: metres off the ground that are a hit at any distance, >= 0
-  Refinement refinement = Refinement::none;
-  int halvings = 24;  ///< of `bisect`, 1..60
 };
 
 struct MarchSettings {
@@ -85,9 +89,16 @@ struct MarchSettings {
   LipschitzSettings lipschitz;
   BisectSettings bisect;
   LipschitzLocalSettings lipschitz_local;
+  SamplingSettings sampling;
   FunctionMarchSettings function;
   SphereTraceSettings sphere_trace;
 };
+
+/// The refinement of fixed-step: its own `interpolate` is a secant.
+inline Refinement refinement_of_fixed_step(const MarchSettings& settings) {
+  if (settings.sampling.refinement != Refinement::none) return settings.sampling.refinement;
+  return settings.fixed_step.interpolate ? Refinement::secant : Refinement::none;
+}
 
 /// Throws Error naming the first setting out of its range.
 void validate(const MarchSettings& settings);

@@ -4,47 +4,47 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/march/height/ground.h"
+#include "scarp/march/function/function_probe.h"
+#include "scarp/march/height/height_probe.h"
 
 namespace scarp {
 namespace {
 
-template <class T>
-Hit march(const Ground<T>& ground, const Ray& ray, const NaiveSettings& settings, MarchStats& stats) {
-  Hit hit;
-  if (!ground.crosses()) return hit;
+template <class Probe>
+Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
+  const NaiveSettings& settings = all.naive;
   // Distances count from the ray's start, in t: an unnormalised direction changes the unit of t and nothing else.
-  const double least = settings.min_step * (ground.t_exit - ray.t_min);
-  const double per_metre = 1 / ground.metres_per_t();
-  double t = ground.t_enter;
-  if (ray.start == RayStart::on_surface) t += least;
-  for (int step = 0; t <= ground.t_exit; ++step) {
-    if (step == settings.max_steps) {
-      hit.status = HitStatus::exhausted;
-      hit.t = t;
-      return hit;
-    }
+  const double start = probe.ray().t_min, per_clearance = probe.per_clearance();
+  const double least = settings.min_step * (probe.t_exit - start), near = all.sampling.tolerance * probe.per_metre();
+  const auto limit = [&](double t) { return std::max(near, settings.tolerance * (t - start)); };
+  const auto stops = [&](double t, double clearance) { return clearance * per_clearance < limit(t); };
+  Look before;
+  double t = probe.t_enter + (probe.ray().start == RayStart::on_surface ? least : 0.0);
+  for (int step = 0; t <= probe.t_exit; ++step) {
+    if (step == settings.max_steps) return exhausted_at(t);
     ++stats.steps;
-    const auto sample = ground.at(t);
-    const double h = sample.clearance * per_metre;
-    if (sample.valid && h < settings.tolerance * (t - ray.t_min)) return ground.hit(t, sample);
+    const auto sample = probe.at(t);
+    const Look look{t, sample.clearance * per_clearance, sample.valid};
+    if (look.known && stops(t, sample.clearance))
+      return refined_hit(probe, all.sampling, all.sampling.refinement, before, look, sample, limit(t), stops, stats);
+    before = look;
     // Over a hole there is no height to go by.
-    t += std::max(sample.valid ? settings.step_factor * std::abs(h) : 0.0, least);
+    t += std::max(look.known ? settings.step_factor * std::abs(look.h) : 0.0, least);
   }
-  return hit;
+  return {};
 }
 
 }  // namespace
 
 Hit march_naive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  MarchStats counted;
-  Hit hit;
-  if (target.field->has_cells() && !target.field->all_nodata()) {
-    hit = target.field->visit(
-        [&](const auto& grid) { return march(Ground(*target.field, grid, ray), ray, settings.naive, counted); });
-  }
-  if (stats) *stats = counted;
-  return hit;
+  return march_over(target, ray, stats,
+                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
+}
+
+Hit march_naive(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                FunctionUse use) {
+  return march_over(function, ray, use, settings.function.reach, stats,
+                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
 }
 
 }  // namespace scarp

@@ -4,56 +4,55 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/march/height/ground.h"
+#include "scarp/march/function/function_probe.h"
+#include "scarp/march/height/height_probe.h"
 
 namespace scarp {
 namespace {
 
-template <class T>
-Hit march(const Ground<T>& ground, const Ray& ray, const RelaxedSettings& settings, MarchStats& stats) {
-  Hit hit;
-  if (!ground.crosses()) return hit;
-  const double per_metre = 1 / ground.metres_per_t();
-  // The stride over a hole, where there is no height to go by, and the first step off the surface.
-  const double cell = ground.cell_time();
-  const bool on_surface = ray.start == RayStart::on_surface;
-  double t = ground.t_enter + (on_surface ? cell : 0.0);
-  for (int step = 0; t <= ground.t_exit; ++step) {
-    if (step == settings.max_steps) {
-      hit.status = HitStatus::exhausted;
-      hit.t = t;
-      return hit;
-    }
+template <class Probe>
+Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
+  const RelaxedSettings& settings = all.relaxed;
+  const double start = probe.ray().t_min, per_clearance = probe.per_clearance();
+  const double near = all.sampling.tolerance * probe.per_metre(), blind = probe.blind_step();
+  const auto limit = [&](double t) { return std::max(near, settings.tolerance * (t - start)); };
+  const auto stops = [&](double t, double clearance) { return std::abs(clearance * per_clearance) < limit(t); };
+  const bool on_surface = probe.ray().start == RayStart::on_surface;
+  Look before;
+  double t = probe.t_enter + (on_surface ? blind : 0.0);
+  for (int step = 0; t <= probe.t_exit; ++step) {
+    if (step == settings.max_steps) return exhausted_at(t);
     ++stats.steps;
-    const auto sample = ground.at(t);
-    if (!sample.valid) {
-      t += cell;
-      continue;
-    }
-    const double h = sample.clearance * per_metre;
-    if (std::abs(h) < settings.tolerance * (t - ray.t_min)) return ground.hit(t, sample);
-    if (h < 0 && step == 0) {
+    const auto sample = probe.at(t);
+    const Look look{t, sample.clearance * per_clearance, sample.valid};
+    if (!look.known) {
+      t += blind;
+    } else if (stops(t, sample.clearance)) {
+      // It may come from above or, having overshot, from below.
+      const double met = std::copysign(limit(t), before.h);
+      return refined_hit(probe, all.sampling, all.sampling.refinement, before, look, sample, met, stops, stats);
+    } else if (look.h < 0 && step == 0) {
       // Below at the first look: the way back would leave the ray's range.
-      if (on_surface) return ground.hit(t, sample);
-      hit.status = HitStatus::below;
-      return hit;
+      return on_surface ? probe.hit(t, sample) : below();
+    } else {
+      t = std::max(t + settings.step_factor * look.h, probe.t_enter);
     }
-    t = std::max(t + settings.step_factor * h, ground.t_enter);
+    before = look;
   }
-  return hit;
+  return {};
 }
 
 }  // namespace
 
 Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  MarchStats counted;
-  Hit hit;
-  if (target.field->has_cells() && !target.field->all_nodata()) {
-    hit = target.field->visit(
-        [&](const auto& grid) { return march(Ground(*target.field, grid, ray), ray, settings.relaxed, counted); });
-  }
-  if (stats) *stats = counted;
-  return hit;
+  return march_over(target, ray, stats,
+                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
+}
+
+Hit march_relaxed(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
+                  FunctionUse use) {
+  return march_over(function, ray, use, settings.function.reach, stats,
+                    [&](const auto& probe, MarchStats& counted) { return march(probe, settings, counted); });
 }
 
 }  // namespace scarp

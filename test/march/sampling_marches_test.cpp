@@ -2,6 +2,7 @@
 // naive, fixed-step and relaxed: they do what their texts say, including what they are known to get wrong.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -142,7 +143,7 @@ TEST(Relaxed, SaysBelowWhenItStartsBelow) {
 
 TEST(SamplingMarches, DoNotDependOnTheLengthOfTheDirection) {
   const HeightField field = wall();
-  for (const auto march : {march_naive, march_relaxed}) {
+  for (const HeightMarch march : std::array<HeightMarch, 2>{march_naive, march_relaxed}) {
     const Hit one = march({&field, nullptr}, {{0, 20, 40}, {1, 0.3, -0.5}}, {}, nullptr);
     const Hit four = march({&field, nullptr}, {{0, 20, 40}, {4, 1.2, -2}}, {}, nullptr);
     ASSERT_EQ(one.status, four.status);

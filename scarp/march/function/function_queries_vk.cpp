@@ -60,8 +60,8 @@ void set_refinement(glsl::FunctionBatch& batch, Refinement refinement, int halvi
 
 glsl::FunctionBatch batch_settings(std::string_view march, const MarchSettings& settings, double slope) {
   glsl::FunctionBatch batch{};
-  set_refinement(batch, settings.function.refinement, settings.function.halvings);
-  batch.metres = static_cast<float>(settings.function.tolerance);
+  set_refinement(batch, settings.sampling.refinement, settings.sampling.halvings);
+  batch.metres = static_cast<float>(settings.sampling.tolerance);
   if (march == "naive") {
     batch.factor = static_cast<float>(settings.naive.step_factor);
     batch.least = static_cast<float>(settings.naive.min_step);
@@ -71,8 +71,7 @@ glsl::FunctionBatch batch_settings(std::string_view march, const MarchSettings& 
     batch.factor = static_cast<float>(settings.function.step);
     batch.least = static_cast<float>(settings.function.step_share);
     batch.max_steps = settings.fixed_step.max_steps;
-    if (settings.function.refinement == Refinement::none && settings.fixed_step.interpolate)
-      batch.refinement = glsl::kScarpRefineSecant;
+    set_refinement(batch, refinement_of_fixed_step(settings), settings.sampling.halvings);
   } else if (march == "relaxed") {
     batch.factor = static_cast<float>(settings.relaxed.step_factor);
     batch.tolerance = static_cast<float>(settings.relaxed.tolerance);

@@ -4,9 +4,12 @@
 #include <array>
 
 #include "scarp/march/find_entry.h"
-#include "scarp/march/function/function_marches.h"
+#include "scarp/march/fixed_step.h"
 #include "scarp/march/function/lipschitz_local.h"
 #include "scarp/march/function/lipschitz_local_simd.h"
+#include "scarp/march/lipschitz.h"
+#include "scarp/march/naive.h"
+#include "scarp/march/relaxed.h"
 #include "scarp/march/sampling_entries.h"
 
 namespace scarp {

@@ -33,7 +33,7 @@ MarchPreset rainforest() {
                 "steps of 0.2 h at cliffs, which its own terrain tells",
                 "I. Quilez, \"Rainforest\", 2016"};
   p.settings.naive = {.step_factor = 0.8, .min_step = kNoLeastStep, .tolerance = 0.001, .max_steps = 400};
-  p.settings.function.refinement = Refinement::secant;
+  p.settings.sampling.refinement = Refinement::secant;
   return p;
 }
 
@@ -65,7 +65,7 @@ MarchPreset castle() {
   MarchPreset p{
       "castle", "naive", {}, "t += h, stops at h < 0.001 units (1 unit: 1 m), 1000 steps", "", "the shader \"Castle\""};
   p.settings.naive = {.step_factor = 1, .min_step = kNoLeastStep, .tolerance = 0, .max_steps = 1000};
-  p.settings.function.tolerance = 0.001;
+  p.settings.sampling.tolerance = 0.001;
   return p;
 }
 

@@ -58,7 +58,7 @@ struct ScarpRay {
   float end;           ///< the last time, included; at most kScarpNever
   float end_low;       ///< likewise
   uint flags;          ///< kScarpOnSurface and so on
-  // For the marches that take samples along the ray (ground.glsl.h).
+  // For the marches that take samples along the ray (height_probe.glsl.h).
   float travelled;   ///< time from the begin of the ray's range to this ray's
   float exit;        ///< when it leaves the field or its range ends
   float per_height;  ///< time in which the ray goes as far as one sample unit is high

@@ -266,9 +266,9 @@ MarchSettings march_settings_from_json(const Json& json, const std::string& path
   number("function_reach", s.function.reach);
   number("function_step", s.function.step);
   number("function_step_share", s.function.step_share);
-  number("function_tolerance", s.function.tolerance);
-  if (object.find("refine")) s.function.refinement = find_refinement(object.text("refine"));
-  count("refine_halvings", s.function.halvings);
+  number("function_tolerance", s.sampling.tolerance);
+  if (object.find("refine")) s.sampling.refinement = find_refinement(object.text("refine"));
+  count("refine_halvings", s.sampling.halvings);
   object.finish();
   try {
     validate(s);

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Marches over terrain functions against proofs by interval arithmetic: the conservative ones lose nothing.
-#include "scarp/march/function/function_marches.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,12 +9,15 @@
 #include "field/terrain_functions.h"
 #include "march/function/function_rays.h"
 #include "scarp/base/error.h"
+#include "scarp/march/fixed_step.h"
 #include "scarp/march/function/function_exhaustive.h"
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/function/lipschitz_local.h"
 #include "scarp/march/function/lipschitz_local_simd.h"
 #include "scarp/march/function/presets.h"
 #include "scarp/march/height/height_table.h"
+#include "scarp/march/lipschitz.h"
+#include "scarp/march/relaxed.h"
 
 namespace scarp::test {
 namespace {
@@ -220,8 +221,8 @@ TEST(FunctionMarches, ValidateTheirSettings) {
   bad([](MarchSettings& s) { s.function.step = 0; });
   bad([](MarchSettings& s) { s.function.reach = 0; });
   bad([](MarchSettings& s) { s.function.step_share = -1; });
-  bad([](MarchSettings& s) { s.function.tolerance = NAN; });
-  bad([](MarchSettings& s) { s.function.halvings = 0; });
+  bad([](MarchSettings& s) { s.sampling.tolerance = NAN; });
+  bad([](MarchSettings& s) { s.sampling.halvings = 0; });
   bad([](MarchSettings& s) { s.relaxed.tolerance = 0; });
   EXPECT_EQ(find_refinement("secant"), Refinement::secant);
   EXPECT_THROW(find_refinement("newton"), Error);
@@ -275,10 +276,10 @@ TEST(FunctionMarches, FixedStepCountsItsSamples) {
   EXPECT_NEAR(march_fixed_step(ramp, ray, settings).t, 51, 1e-12);
   settings.fixed_step.interpolate = false;
   EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 52);
-  settings.function.refinement = Refinement::bisect;
-  settings.function.halvings = 10;
+  settings.sampling.refinement = Refinement::bisect;
+  settings.sampling.halvings = 10;
   EXPECT_EQ(march_fixed_step(ramp, ray, settings).t, 51);  // a dyadic share of the step
-  settings.function.refinement = Refinement::none;
+  settings.sampling.refinement = Refinement::none;
   settings.function.step_share = 0.5;  // 0, 2, 4, 6, 9, 13.5, 20.25, 30.375, 45.5625, 60 (68.3, the end)
   hit = march_fixed_step(ramp, ray, settings, &stats);
   EXPECT_EQ(hit.t, 60);
@@ -296,11 +297,11 @@ TEST(FunctionMarches, RefineTheLastInterval) {
   settings.relaxed.tolerance = settings.naive.tolerance = 0.01;
   for (const std::string_view name : {"naive", "relaxed"}) {
     const FunctionMarch march = find_function_march(name).cpu;
-    settings.function.refinement = Refinement::none;
+    settings.sampling.refinement = Refinement::none;
     const Hit plain = march(ramp, ray, settings, nullptr, FunctionUse::march);
-    settings.function.refinement = Refinement::bisect;
+    settings.sampling.refinement = Refinement::bisect;
     const Hit halved = march(ramp, ray, settings, nullptr, FunctionUse::march);
-    settings.function.refinement = Refinement::secant;
+    settings.sampling.refinement = Refinement::secant;
     const Hit secant = march(ramp, ray, settings, nullptr, FunctionUse::march);
     EXPECT_GT(plain.t - halved.t, 0.01);
     // 24 halvings of an interval shorter than 2; the secant meets the limit of the last sample, 0.01 of its t.
@@ -308,7 +309,7 @@ TEST(FunctionMarches, RefineTheLastInterval) {
     EXPECT_NEAR(secant.t, 102 - 0.01 * plain.t, 1e-12);
   }
   // Metres that count as a hit at any distance.
-  settings.function = {.tolerance = 3, .refinement = Refinement::bisect};
+  settings.sampling = {.refinement = Refinement::bisect, .tolerance = 3};
   settings.relaxed.tolerance = 0;
   EXPECT_NEAR(march_relaxed(ramp, ray, settings).t, 99, 4 * 0x1p-24);
 }

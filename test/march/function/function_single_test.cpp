@@ -16,7 +16,6 @@
 #include "scarp/field/function_single.h"
 #include "scarp/march/device_function_ray.h"
 #include "scarp/march/function/function_marches.glsl.h"
-#include "scarp/march/function/function_marches.h"
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/function/lipschitz_local.glsl.h"
 #include "scarp/march/function/noise.glsl.h"

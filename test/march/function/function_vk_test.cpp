@@ -91,8 +91,8 @@ TEST_F(FunctionsOnDevice, NeighboursDoNotShow) {
   std::vector<Ray> rays;
   for (int i = 0; i < kTogether; ++i) rays.push_back(random_ray(function, random));
   MarchSettings settings;
-  settings.function.refinement = Refinement::bisect;
-  settings.function.halvings = 60;
+  settings.sampling.refinement = Refinement::bisect;
+  settings.sampling.halvings = 60;
   for (const FunctionMarchEntry& march : function_marches()) {
     DeviceFunctionQueries together(device(), march, settings), alone(device(), march, settings, {.rays_at_once = 1});
     std::vector<Hit> hits(rays.size()), other(rays.size());

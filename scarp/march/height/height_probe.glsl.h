@@ -6,8 +6,8 @@
 // rounded on the way from one point to the next.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included; who includes it has defined what cell_surface.glsl.h asks for.
-#ifndef SCARP_MARCH_GROUND_GLSL_H
-#define SCARP_MARCH_GROUND_GLSL_H
+#ifndef SCARP_MARCH_HEIGHT_PROBE_GLSL_H
+#define SCARP_MARCH_HEIGHT_PROBE_GLSL_H
 
 #include "scarp/march/height/cell_surface.glsl.h"
 #include "scarp/march/height/ray_frame.glsl.h"

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// The probe of terrain functions: what naive, fixed-step, relaxed and lipschitz need to know of a ray over one. The
+// other probe is height/height_probe.h. A function has no cells and no holes: Hit::cell stays empty.
+//
+// A ray is followed where it is within the range of the ground's heights, and within kFunctionReach.
+#pragma once
+
+#include <limits>
+
+#include "scarp/march/function/function_ray.h"
+#include "scarp/march/sampling.h"
+
+namespace scarp {
+
+class FunctionProbe {
+ public:
+  explicit FunctionProbe(const FunctionRay& r)
+      : t_enter(r.t_enter), t_exit(r.t_exit), ray_(r), per_metre_(1 / r.metres_per_t()) {}
+
+  double t_enter, t_exit;  ///< the part of the ray that is within the ground's range
+
+  const Ray& ray() const { return ray_.ray(); }
+  double per_metre() const { return per_metre_; }
+
+  struct Sample {
+    static constexpr bool valid = true;
+    double clearance;  ///< that the ray is above the ground, vertically, in the unit of t
+    double metres;     ///< the same
+  };
+  /// t per unit of Sample::clearance.
+  static constexpr double per_clearance() { return 1; }
+  Sample at(double t) const {
+    const double metres = ray_.clearance(t);
+    return {metres * per_metre_, metres};
+  }
+
+  Hit hit(double t, const Sample&) const { return ray_.hit(t); }
+  Hit hit_before(double t, double, const Sample&) const { return ray_.hit(t); }
+
+  /// The first step off the surface, for want of cells a share of the way out. lipschitz_local.h decides about such
+  /// rays without one.
+  double blind_step() const { return 0x1p-10 * (t_exit - t_enter); }
+  /// fixed-step's step, and its least share of the distance travelled.
+  double stride(const MarchSettings& settings) const { return settings.function.step * per_metre_; }
+  double stride_share(const MarchSettings& settings) const { return settings.function.step_share; }
+  static constexpr bool solid() { return false; }
+
+  // Rounding counts.
+  bool under_ground(const Sample& sample) const { return sample.metres < -ray_.rounding(); }
+  /// How far the ray can go when the ground rises by no more than `shrink` allows.
+  double free_time(const Sample& sample, double shrink) const {
+    return (sample.metres - ray_.rounding()) * shrink / ray_.metres_per_t();
+  }
+  static constexpr double bounded_until(const Sample&, double) { return std::numeric_limits<double>::infinity(); }
+
+ private:
+  const FunctionRay& ray_;
+  double per_metre_;
+};
+
+/// Calls march(probe, counted) where the ray can meet the ground; follows it for `reach` metres at most.
+template <class March>
+Hit march_over(const HeightFunction& function, const Ray& ray, FunctionUse use, double reach, MarchStats* stats,
+               const March& march) {
+  MarchStats counted;
+  Hit hit;
+  const FunctionRay r(function, ray, use, reach);
+  if (r.begins_under) {
+    hit.status = HitStatus::below;
+  } else if (r.crosses()) {
+    hit = march(FunctionProbe(r), counted);
+  }
+  if (stats) *stats = counted;
+  return hit;
+}
+
+}  // namespace scarp

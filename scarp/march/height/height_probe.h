@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+// The probe of height fields: what naive, fixed-step, relaxed and lipschitz need to know of a ray over one. The other
+// probe is function/function_probe.h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scarp/march/height/height_target.h"
+#include "scarp/march/ray_clip.h"
+#include "scarp/march/sampling.h"
+
+namespace scarp {
+
+template <class T>
+class HeightProbe {
+ public:
+  HeightProbe(const HeightTarget& target, const SampleGrid<T>& grid, const Ray& ray)
+      : field_(*target.field),
+        pyramid_(target.pyramid),
+        grid_(grid),
+        ray_(ray),
+        local_(field_.grid_from_world(ray)),
+        metres_(field_.settings().scale * field_.settings().exaggeration),
+        speed_(length(ray.direction)),
+        per_metre_(1 / speed_),
+        has_holes_(field_.nodata_count() > 0) {
+    t_enter = ray.t_min;
+    t_exit = ray.t_max;
+    if (!field_.wraps()) {
+      clip(0, grid.cell_cols, local_.origin.x, local_.direction.x);
+      clip(0, grid.cell_rows, local_.origin.y, local_.direction.y);
+    }
+    // Upright rays never leave sideways: they are followed as far as there is ground.
+    if (std::isinf(t_exit)) clip(field_.min_sample(), field_.max_sample(), local_.origin.z, local_.direction.z);
+  }
+
+  double t_enter, t_exit;  ///< the ray inside the field's bounds; empty when t_enter > t_exit
+
+  bool crosses() const { return t_enter <= t_exit && std::isfinite(t_exit) && speed_ > 0; }
+  const Ray& ray() const { return ray_; }
+  double per_metre() const { return per_metre_; }
+
+  struct Sample {
+    bool valid = false;    ///< false over holes
+    double clearance = 0;  ///< metres that the ray is above the ground, vertically
+    Cell cell;
+    double u = 0, v = 0;
+  };
+  /// t per unit of Sample::clearance.
+  double per_clearance() const { return per_metre_; }
+  Sample at(double t) const {
+    const double col = over_field(local_.origin.x + local_.direction.x * t, grid_.cell_cols);
+    const double row = over_field(local_.origin.y + local_.direction.y * t, grid_.cell_rows);
+    Sample sample;
+    sample.cell = {std::min(static_cast<int>(col), grid_.cell_cols - 1),
+                   std::min(static_cast<int>(row), grid_.cell_rows - 1)};
+    sample.u = col - sample.cell.col;
+    sample.v = row - sample.cell.row;
+    if (grid_.is_hole(sample.cell.col, sample.cell.row)) return sample;
+    const double ground =
+        height_in_cell(field_.settings().surface, grid_.cell(sample.cell.col, sample.cell.row), sample.u, sample.v);
+    sample.valid = true;
+    sample.clearance = (local_.origin.z + local_.direction.z * t - ground) * metres_;
+    return sample;
+  }
+
+  Hit hit(double t, const Sample& sample) const {
+    Hit hit;
+    hit.status = HitStatus::hit;
+    hit.t = t;
+    hit.cell = sample.cell;
+    hit.u = sample.u;
+    hit.v = sample.v;
+    hit.height = ray_.at(t).z;
+    return hit;
+  }
+  /// A hit at t, or at the later t of a sample where t is over a hole.
+  Hit hit_before(double t, double t_sample, const Sample& sample) const {
+    const Sample there = at(t);
+    return there.valid ? hit(t, there) : hit(t_sample, sample);
+  }
+
+  /// The t in which the ray goes as far as a cell is long, its shorter side: the stride over a hole, where there is no
+  /// height to go by, and the first step off the surface.
+  double blind_step() const { return std::min(field_.settings().cell_x, field_.settings().cell_y) / speed_; }
+  /// fixed-step's step, and its least share of the distance travelled.
+  double stride(const MarchSettings& settings) const { return settings.fixed_step.step * blind_step(); }
+  double stride_share(const MarchSettings&) const { return 0; }
+  /// Whether there is rock under the sheet: walls at its rims.
+  bool solid() const { return field_.settings().solid; }
+
+  bool under_ground(const Sample& sample) const { return sample.clearance < 0; }
+  /// How far the ray can go when the ground rises by no more than `shrink` allows.
+  double free_time(const Sample& sample, double shrink) const { return sample.clearance * shrink * per_metre_; }
+  /// Up to where that holds: across a hole there is no such bound, so no further than the largest block of the pyramid
+  /// round the point that has none. Of a point over a hole, its cell.
+  double bounded_until(const Sample& sample, double t) const {
+    if (!sample.valid) return leave_time(sample.cell, 0, t);
+    if (!has_holes_) return std::numeric_limits<double>::infinity();
+    return leave_time(sample.cell, hole_free_level(sample.cell), t);
+  }
+
+ private:
+  // When the ray, over `cell` at t, leaves the block of 2^level x 2^level cells that holds it: a little later, so that
+  // it has, but by no more than 2^-20 of a cell, which is far beyond rounding and far below any tolerance.
+  double leave_time(Cell cell, int level, double t) const {
+    const double x = time_to_border(local_.origin.x, local_.direction.x, cell.col, grid_.cell_cols, level, t);
+    const double y = time_to_border(local_.origin.y, local_.direction.y, cell.row, grid_.cell_rows, level, t);
+    return t + std::max(0.0, std::min(x, y)) + 0x1p-20 * blind_step();
+  }
+  double time_to_border(double o, double d, int cell, int cells, int level, double t) const {
+    if (d == 0) return std::numeric_limits<double>::infinity();
+    const int near = (cell >> level) << level, far = std::min(near + (1 << level), cells);
+    return ((d > 0 ? far : near) - over_field(o + d * t, cells)) / d;
+  }
+  // Level 0 is the cell.
+  int hole_free_level(Cell cell) const {
+    int level = 0;
+    while (level < pyramid_->top_level()) {
+      const MaxPyramid::Level& next = pyramid_->levels()[static_cast<std::size_t>(level)];
+      const std::ptrdiff_t row = cell.row >> (level + 1), col = cell.col >> (level + 1);
+      if (pyramid_->minima()[next.begin + row * next.cols + col] == MaxPyramid::kNoMinimum) break;
+      ++level;
+    }
+    return level;
+  }
+  double over_field(double position, int cells) const {
+    if (field_.wraps()) position -= std::floor(position / cells) * cells;
+    return std::clamp(position, 0.0, static_cast<double>(cells));
+  }
+  void clip(double low, double high, double o, double d) { clip_to_range(low, high, o, d, t_enter, t_exit); }
+
+  const HeightField& field_;
+  const MaxPyramid* pyramid_;
+  const SampleGrid<T>& grid_;
+  const Ray& ray_;
+  GridRay local_;
+  double metres_;  // per sample unit
+  double speed_;   // metres per t
+  double per_metre_;
+  bool has_holes_;
+};
+
+/// Calls march(probe, counted) where the ray can meet the ground.
+template <class March>
+Hit march_over(const HeightTarget& target, const Ray& ray, MarchStats* stats, const March& march) {
+  MarchStats counted;
+  Hit hit;
+  if (target.field->has_cells() && !target.field->all_nodata()) {
+    hit = target.field->visit([&](const auto& grid) {
+      const HeightProbe probe(target, grid, ray);
+      return probe.crosses() ? march(probe, counted) : Hit{};
+    });
+  }
+  if (stats) *stats = counted;
+  return hit;
+}
+
+}  // namespace scarp
