@@ -41,11 +41,12 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake ${CMAKE_CURRENT_BIN
 # The shader texts: as they are, for hosts with #include, under the paths that they include one another by; and each
 # march, and the ground in textures, with all that it needs in one file, for pasting.
 set(shader_folder ${CMAKE_INSTALL_DATADIR}/scarp/glsl)
-set(marches_as_text height/max_mip naive fixed_step relaxed lipschitz)
+set(marches_as_text height/max_mip height/height_marches)
 set(function_marches_as_text function/function_marches function/lipschitz_local shape/sphere_trace)
 set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/ground_buffers.glsl.h scarp/accel/function_buffers.glsl.h
     scarp/accel/shape_buffers.glsl.h)
-foreach(name ${marches_as_text} ${function_marches_as_text} two_float ray_states height/ray_frame height/float_ray height/two_float_ray
+foreach(name ${marches_as_text} ${function_marches_as_text} naive fixed_step relaxed lipschitz
+        march_state sampling sampling_marches two_float ray_states height/ray_frame height/float_ray height/two_float_ray
         height/cell_surface height/surface_normal height/height_probe height/textures function/noise function/function_heights
         function/function_bounds function/function_frame shape/shape_distance shape/shape_grounds)
   list(APPEND shader_texts scarp/march/${name}.glsl.h)

@@ -39,10 +39,9 @@ constexpr OptionRow kTable[] = {
      "--naive-step-factor --naive-min-step --naive-tolerance --naive-max-steps "
      "--fixed-step --fixed-step-interpolate --fixed-step-max-steps --relaxed-step-factor "
      "--relaxed-tolerance --relaxed-max-steps --shrink --lipschitz-tolerance --lipschitz-max-steps "
-     "--local-tolerance --local-max-steps"},
+     "--local-tolerance --local-max-steps --refine --refine-halvings"},
     {kFunction,
-     "--function --extent --preset --function-reach --function-step --function-step-share --function-tolerance "
-     "--refine --refine-halvings"},
+     "--function --extent --preset --function-reach --function-step --function-step-share --function-tolerance"},
     {kVoxels | kScene, "--coarse-voxels"},
     {kVoxels,
      "--frame --hidden --surface-colours --volume --solid-from --up --normals --normal-radius "

@@ -187,6 +187,9 @@ void settle_look(const LookOptions& o, const std::string& size, std::string_view
   if ((o.comanche.shells || o.comanche.step_by_view) && !stepped) {
     throw Error("--shells, --step-by-view: each goes with --march fixed-step in the look comanche; leave them out");
   }
+  if (stepped && march_settings.sampling.refinement != Refinement::none) {
+    throw Error("--refine: the look comanche has --fixed-step-interpolate instead");
+  }
   if (picture.fog.kind == FogKind::iterations && !stepped) {
     throw Error("--fog iterations: goes with --look comanche --march fixed-step; let it be distance or height");
   }

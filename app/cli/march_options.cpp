@@ -47,6 +47,12 @@ void add_march_options(CLI::App& command, MarchSettings& march) {
       ->check(number_in(kZeroOrMore));
   add("--local-max-steps", march.lipschitz_local.max_steps, "its limit of steps; 1 or more");
   add("--bisect-halvings", march.bisect.halvings, "halvings of max-mip-bisect; 1 to 60");
+  command
+      .add_option_function<std::string>(
+          "--refine", [&march](const std::string& name) { march.sampling.refinement = find_refinement(name); },
+          "how naive, fixed-step and relaxed refine a hit within the last step: none, secant, bisect (none)")
+      ->group(group);
+  add("--refine-halvings", march.sampling.halvings, "halvings of --refine bisect; 1 to 60");
   const std::string functions = "Settings of marches over terrain functions";
   const auto add_function = [&](const char* name, auto& value, const char* help) {
     return command.add_option(name, value, help)->group(functions)->capture_default_str();
@@ -62,12 +68,6 @@ void add_march_options(CLI::App& command, MarchSettings& march) {
   add_function("--function-tolerance", march.sampling.tolerance,
                "metres off the ground that naive and relaxed take for a hit at any distance; 0 or more")
       ->check(number_in(kZeroOrMore));
-  command
-      .add_option_function<std::string>(
-          "--refine", [&march](const std::string& name) { march.sampling.refinement = find_refinement(name); },
-          "how naive, fixed-step and relaxed narrow down their last interval: none, secant, bisect (none)")
-      ->group(functions);
-  add_function("--refine-halvings", march.sampling.halvings, "halvings of bisect; 1 to 60");
 }
 
 void require_settings_of(std::string_view march, const std::vector<std::string>& given, const MarchSettings& settings) {

@@ -7,20 +7,12 @@
 #ifndef SCARP_MARCH_RAY_STATES_GLSL_H
 #define SCARP_MARCH_RAY_STATES_GLSL_H
 
+#include "scarp/march/march_state.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN
 
 const uint kScarpFromSurface = 1u;  ///< ScarpFunctionRay::flags: begins on the surface, above it by definition
-
-/// Where a march is that has been interrupted, see ScarpFunctionHit; of a ray that has not begun steps and phase are 0.
-struct ScarpFunctionState {
-  float s;       ///< time
-  float before;  ///< what else the march has to know
-  float h_before;
-  int steps;  ///< that it has taken
-  uint phase;
-};
 
 /// A ray, metres.
 struct ScarpFunctionRay {
@@ -33,13 +25,13 @@ struct ScarpFunctionRay {
   float speed;      ///< length of the direction
   float rounding;   ///< metres by which clearances as computed may be off
   uint flags;       ///< kScarpFromSurface and so on
-  ScarpFunctionState state;
+  ScarpMarchState state;
 };
 
-const int kScarpFunctionMiss = 0;
-const int kScarpFunctionHit = 1;
-const int kScarpFunctionBelow = 2;
-const int kScarpFunctionExhausted = 3;
+const int kScarpFunctionMiss = kScarpMiss;
+const int kScarpFunctionHit = kScarpHit;
+const int kScarpFunctionBelow = kScarpBelow;
+const int kScarpFunctionExhausted = kScarpExhausted;
 const int kScarpFunctionUnderWay = 4;  ///< not done: march the same ray again, from `state`
 
 /// The answer; time means something for hits and exhausted.
@@ -48,7 +40,7 @@ struct ScarpFunctionHit {
   float time;
   uint bounds;   ///< of segments that were asked for
   uint heights;  ///< that were looked at
-  ScarpFunctionState state;
+  ScarpMarchState state;
 };
 
 /// A miss at no cost: what marches begin with.

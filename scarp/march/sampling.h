@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: what naive, fixed-step, relaxed and lipschitz share. Each is one loop over a probe, which
-// knows the ray and what is under it: HeightProbe (height/height_probe.h) or FunctionProbe (function/function_probe.h).
+// Private to the station: shared by naive, fixed-step, relaxed and lipschitz. Each is one loop over a probe, which is a
+// ray over a field: HeightProbe (height/height_probe.h) or FunctionProbe (function/function_probe.h).
 //
 //   march: t ──▶ probe.at(t): clearance, or nothing over a hole ──▶ hit, or the next t
 #pragma once
@@ -12,14 +12,14 @@
 
 namespace scarp {
 
-/// A point where a march has looked.
+/// A point of the ray that a march has sampled.
 struct Look {
   double t = 0;
-  double h = 0;        ///< clearance, in the unit of the march's test
+  double h = 0;        ///< clearance, in the unit of the test for a hit
   bool known = false;  ///< whether it is over ground
 };
 
-/// A ray that begins under the ground.
+/// The answer for a ray that begins under the ground.
 inline Hit below() {
   Hit hit;
   hit.status = HitStatus::below;
@@ -30,7 +30,7 @@ inline Hit wall(Hit hit) {
   hit.wall = true;
   return hit;
 }
-/// Used-up steps.
+/// The answer of a march that has reached its step limit.
 inline Hit exhausted_at(double t) {
   Hit hit;
   hit.status = HitStatus::exhausted;
@@ -38,9 +38,9 @@ inline Hit exhausted_at(double t) {
   return hit;
 }
 
-/// The hit between `before`, where the march went on, and `last`, where its test stops(t, clearance) holds: nearer to
-/// where it begins to hold, which a straight line takes for clearances of `limit`. Stays at `last` where there is no
-/// clearance before, or a hole in between.
+/// Returns the hit between `before`, where the test stops(t, clearance) fails, and `last`, where it holds: nearer to
+/// where it begins to hold. The secant takes that for a clearance of `limit`. The hit stays at `last` if `before` is
+/// over a hole, or the result is.
 template <class Probe, class Stops>
 Hit refined_hit(const Probe& probe, const SamplingSettings& settings, Refinement how, const Look& before,
                 const Look& last, const typename Probe::Sample& sample, double limit, const Stops& stops,

@@ -67,6 +67,7 @@ TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
       {{"--fog", "iterations"}, "goes with --look comanche --march fixed-step"},
       {{"--look", "comanche", "--fog", "iterations"}, "goes with --look comanche --march fixed-step"},
       {{"--look", "comanche", "--shells"}, "each goes with --march fixed-step"},
+      {{"--look", "comanche", "--march", "fixed-step", "--refine", "bisect"}, "--fixed-step-interpolate instead"},
       {{"--fog", "distance", "--visibility", "0"}, "--visibility '0': expected a finite number above 0"},
       {{"--ground", "lava"}, "--ground 'lava': expected ramp or natural"},
       {{"--ramp", scratch.path("gap.cpt")}, "line 2: begins at 20, where the line before ends at 10"},

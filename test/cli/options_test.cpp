@@ -188,6 +188,7 @@ TEST_F(WithoutEffect, IsRefusedOfTerrain) {
   expect_refused(cast, {"--function-reach", "5"}, "goes with functions");
   expect_refused(cast, {"--naive-tolerance", "0.1"}, "--march naive");
   expect_refused(render, {"--shrink", "0.5"}, "--march lipschitz");
+  expect_refused(render, {"--refine", "secant"}, "--march naive");
   expect_refused(render, {"--bisect-halvings", "5", "--march", "naive"}, "--march max-mip-bisect");
   expect_refused(render, {"--turbidity", "1"}, "--water M");
   expect_refused(render, {"--visibility", "1"}, "--fog KIND");

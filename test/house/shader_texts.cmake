@@ -4,8 +4,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 # What hosts fill in, and read.
-set(spoken_structs ScarpField ScarpRay ScarpHit ScarpNaive ScarpFixedStep ScarpRelaxed ScarpLipschitz ScarpFunctionMarch
-    ScarpLipschitzLocal ScarpSphereTrace)
+set(spoken_structs ScarpField ScarpRay ScarpHit ScarpSampling ScarpLipschitzLocal ScarpSphereTrace)
 
 # check(FILE NAME out SILENT out FUNCTIONS): what has no comment, and how many functions there are.
 function(check file name silent count)
@@ -42,12 +41,12 @@ endfunction()
 
 set(proof ${CMAKE_CURRENT_BINARY_DIR}/shader-texts-proof.glsl.h)
 file(WRITE ${proof} "/// Told.\nSCARP_FN float told(int i) { return a[i]; }\nSCARP_FN ScarpHit silent(int i) {\n}\nfloat asked(int i);\n
-struct ScarpNaive {\n  float good;  ///< unit\n  float bad;\n};\nstruct ScarpInner {\n  float silent;\n};\n")
+struct ScarpRay {\n  float good;  ///< unit\n  float bad;\n};\nstruct ScarpInner {\n  float silent;\n};\n")
 set(breaches "")
 set(functions 0)
 check(${proof} proof breaches functions)
 file(REMOVE ${proof})
-if(NOT functions EQUAL 2 OR NOT breaches STREQUAL "proof: silent() has no comment above it;proof: ScarpNaive::bad does not say what it is")
+if(NOT functions EQUAL 2 OR NOT breaches STREQUAL "proof: silent() has no comment above it;proof: ScarpRay::bad does not say what it is")
   message(FATAL_ERROR "the check is broken: it found ${functions} functions and\n  ${breaches}")
 endif()
 

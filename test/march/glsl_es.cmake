@@ -41,7 +41,7 @@ check(${WORK}/pasted.frag TRUE)
 file(READ ${ROOT}/test/march/textures_es.frag shader)
 string(REGEX REPLACE "\n#include [^\n]*" "" without "${shader}")
 string(REPLACE "// The marches ask the textures for their ground.\n" "MARCHES" shader "${without}")
-paste("${shader}" "MARCHES" "textures.glsl;max_mip.glsl;naive.glsl;fixed_step.glsl;relaxed.glsl;lipschitz.glsl" ${WORK}/pasted.frag)
+paste("${shader}" "MARCHES" "textures.glsl;max_mip.glsl;height_marches.glsl" ${WORK}/pasted.frag)
 check(${WORK}/pasted.frag TRUE)
 
 # The march over a function, here of one instruction.
@@ -58,6 +58,31 @@ bool scarp_uses(uint part) { return part == kScarpNoiseOp || part == kScarpNoise
 uniform ScarpFunctionRay ray;
 void main() {
   colour = vec4(scarp_lipschitz_local(ScarpProgram(1u, 2u), ray, ScarpLipschitzLocal(1.0e-6, 1024, 1024), true).time);
+}
+")
+check(${WORK}/pasted.frag TRUE)
+# The sampling marches over both kinds of field in one shader.
+file(READ ${FLAT}/height_marches.glsl over_heights)
+file(READ ${FLAT}/function_marches.glsl over_functions)
+file(WRITE ${WORK}/pasted.frag "#version 300 es
+precision highp float;
+precision highp int;
+out vec4 colour;
+float scarp_sample(int col, int row) { return float(col + row); }
+bool scarp_is_nodata(float height) { return height < 0.0; }
+float scarp_minimum(int level, int col, int row) { return 0.0; }
+${over_heights}${over_functions}
+ScarpInstruction scarp_instruction(uint i) {
+  return ScarpInstruction(kScarpNoiseOp, kScarpPerlinNoise, 2u, 2u, 2u, 0u, 1u, 7u, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+}
+bool scarp_uses(uint part) { return true; }
+uniform ScarpField field;
+uniform ScarpRay ray;
+uniform ScarpFunctionRay function_ray;
+void main() {
+  ScarpSampling settings = scarp_naive(0.7, 0.002, 0.001, 1024);
+  colour = vec4(scarp_sampled(field, ray, settings).time,
+                scarp_function_march(ScarpProgram(1u, 2u), function_ray, settings, 1024).time, 0.0, 0.0);
 }
 ")
 check(${WORK}/pasted.frag TRUE)

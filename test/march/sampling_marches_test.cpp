@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "march/refinement_judge.h"
 #include "scarp/base/error.h"
 #include "scarp/march/fixed_step.h"
 #include "scarp/march/height/height_table.h"
@@ -139,6 +140,65 @@ TEST(Relaxed, ReportsUsedUpStepsAsExhaustedAndNotAsAHit) {
 TEST(Relaxed, SaysBelowWhenItStartsBelow) {
   const HeightField field = flat();
   EXPECT_EQ(march_relaxed({&field, nullptr}, {{50, 50, -5}, {1, 0, 0}}).status, HitStatus::below);
+}
+
+TEST(SamplingMarches, RefineTheirHits) {
+  for (const std::string_view march : {"naive", "fixed-step", "relaxed"}) {
+    const test::CastAll cast = [&](const HeightField& field, std::span<const Ray> rays, const MarchSettings& settings) {
+      std::vector<Hit> hits;
+      for (const Ray& ray : rays) hits.push_back(find_height_march(march).cpu({&field, nullptr}, ray, settings, nullptr));
+      return hits;
+    };
+    const test::RefinementErrors bisect = test::refinement_errors(march, Refinement::bisect, cast);
+    const test::RefinementErrors secant = test::refinement_errors(march, Refinement::secant, cast);
+    SCOPED_TRACE(march);
+    EXPECT_GT(bisect.hits, 100);
+    EXPECT_EQ(bisect.refined, bisect.hits);
+    EXPECT_LT(bisect.plain, bisect.hits / 2);
+    EXPECT_LT(bisect.along_refined, bisect.along_plain / 100);
+    EXPECT_LT(secant.along_refined, secant.along_plain / 2);
+  }
+}
+
+// From over a hole there is no clearance to refine from, and a line that ends over one leaves the hit where it was.
+TEST(SamplingMarches, RefineNothingAcrossHoles) {
+  constexpr float kNodata = -99;
+  std::vector<float> samples(101 * 101, 0.f);
+  for (std::size_t row = 0; row < 101; ++row) samples[101 * row + 50] = kNodata;
+  HeightFieldSettings holes;
+  holes.nodata = kNodata;
+  const HeightField field = HeightField::own(samples, 101, 101, holes);
+  const Ray ray{{45, 50, 5}, {1, 0, -1}};  // over the hole, x = 49 to 51, it goes under the ground
+  MarchSettings settings;
+  settings.fixed_step.step = 7 * std::sqrt(2.0);
+  settings.fixed_step.interpolate = false;
+  for (const Refinement refinement : {Refinement::none, Refinement::secant}) {
+    settings.sampling.refinement = refinement;
+    const Hit hit = march_fixed_step({&field, nullptr}, ray, settings);
+    ASSERT_TRUE(hit);
+    EXPECT_DOUBLE_EQ(hit.t, 7);
+  }
+  settings.sampling.refinement = Refinement::bisect;
+  const Hit behind = march_fixed_step({&field, nullptr}, ray, settings);
+  ASSERT_TRUE(behind);
+  EXPECT_NEAR(behind.t, 6, 1e-5);
+  settings.naive.step_factor = 1e-9;
+  settings.naive.min_step = 0.1;  // of 55: t = 0, 5.5, 11
+  const Hit across = march_naive({&field, nullptr}, ray, settings);
+  ASSERT_TRUE(across);
+  EXPECT_DOUBLE_EQ(across.t, 11);
+}
+
+TEST(SamplingMarches, TakeMetresOffTheGroundAtAnyDistance) {
+  const HeightField field = flat();
+  MarchSettings settings;
+  settings.naive.tolerance = settings.relaxed.tolerance = 0;
+  settings.sampling = {.refinement = Refinement::bisect, .tolerance = 3};
+  for (const std::string_view march : {"naive", "relaxed"}) {
+    const Hit hit = find_height_march(march).cpu({&field, nullptr}, {{10, 50, 30}, {0.8, 0, -0.6}}, settings, nullptr);
+    ASSERT_TRUE(hit) << march;
+    EXPECT_NEAR(hit.t, 45, 1e-4) << march;
+  }
 }
 
 TEST(SamplingMarches, DoNotDependOnTheLengthOfTheDirection) {

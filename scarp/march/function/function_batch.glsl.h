@@ -10,6 +10,7 @@
 
 #include "scarp/accel/function_buffers.glsl.h"
 #include "scarp/march/function/function_frame.glsl.h"
+#include "scarp/march/sampling.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 #include "scarp/vk/loop_turns.glsl.h"
 
@@ -27,7 +28,7 @@ const int kScarpLastEvaluations = 70;
 /// Maximum instructions of a program, so that a run has some steps.
 const int kScarpMostInstructions = 600;
 
-/// Push constants. Settings that a march does not have are ignored; see ScarpFunctionMarch.
+/// Push constants. lipschitz-local reads only `tolerance` and `max_steps` of the settings.
 struct FunctionBatch {
   Address code;
   Address rays;
@@ -35,13 +36,7 @@ struct FunctionBatch {
   uint count;
   uint instructions;
   uint result;  ///< register
-  float factor;
-  float least;
-  float tolerance;
-  float metres;
-  int max_steps;
-  uint refinement;
-  int halvings;
+  ScarpSampling settings;
   int run_steps;
 };
 

@@ -14,8 +14,8 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
   ScarpFunctionRay ray = FunctionRays(batch.rays).rays[i];
+  ScarpSampling settings = batch.settings;
+  settings.march = batch_choice;
   FunctionHits(batch.hits).hits[i] =
-      scarp_function_march(ScarpProgram(batch.instructions, batch.result), ray, batch_choice,
-                           ScarpFunctionMarch(batch.factor, batch.least, batch.tolerance, batch.metres, batch.max_steps,
-                                              batch.refinement, batch.halvings, batch.run_steps));
+      scarp_function_march(ScarpProgram(batch.instructions, batch.result), ray, settings, batch.run_steps);
 }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The probe of terrain functions: what naive, fixed-step, relaxed and lipschitz need to know of a ray over one. The
-// other probe is height/height_probe.h. A function has no cells and no holes: Hit::cell stays empty.
-//
-// A ray is followed where it is within the range of the ground's heights, and within kFunctionReach.
+// The probe of terrain functions: a ray over one as naive, fixed-step, relaxed and lipschitz see it. The probe of
+// height fields is height/height_probe.h. A function has no cells and no holes: Hit::cell stays empty. The ray is
+// followed within the height range of the ground and within kFunctionReach.
 #pragma once
 
 #include <limits>
@@ -37,17 +36,16 @@ class FunctionProbe {
   Hit hit(double t, const Sample&) const { return ray_.hit(t); }
   Hit hit_before(double t, double, const Sample&) const { return ray_.hit(t); }
 
-  /// The first step off the surface, for want of cells a share of the way out. lipschitz_local.h decides about such
-  /// rays without one.
+  /// The first step off the surface: a share of the way out, as there are no cells. lipschitz_local.h needs none.
   double blind_step() const { return 0x1p-10 * (t_exit - t_enter); }
   /// fixed-step's step, and its least share of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.function.step * per_metre_; }
   double stride_share(const MarchSettings& settings) const { return settings.function.step_share; }
   static constexpr bool solid() { return false; }
 
-  // Rounding counts.
+  // Rounding is counted.
   bool under_ground(const Sample& sample) const { return sample.metres < -ray_.rounding(); }
-  /// How far the ray can go when the ground rises by no more than `shrink` allows.
+  /// The step that is free if the ground rises no more than `shrink` allows.
   double free_time(const Sample& sample, double shrink) const {
     return (sample.metres - ray_.rounding()) * shrink / ray_.metres_per_t();
   }

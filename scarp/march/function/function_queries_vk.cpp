@@ -12,8 +12,8 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/device_function_ray.h"
+#include "scarp/march/device_sampling.h"
 #include "scarp/march/function/function_batch.glsl.h"
-#include "scarp/march/function/function_marches.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
 
 namespace scarp {
@@ -34,10 +34,10 @@ struct DeviceMarch {
   int evaluations;       // maximum evaluations of the program per step
 };
 constexpr std::array kDeviceMarches = {
-    DeviceMarch{"naive", kFunctionMarchesWords, glsl::kScarpFunctionNaive, false, 1},
-    DeviceMarch{"fixed-step", kFunctionMarchesWords, glsl::kScarpFunctionFixedStep, false, 1},
-    DeviceMarch{"relaxed", kFunctionMarchesWords, glsl::kScarpFunctionRelaxed, false, 1},
-    DeviceMarch{"lipschitz", kFunctionMarchesWords, glsl::kScarpFunctionLipschitz, false, 1},
+    DeviceMarch{"naive", kFunctionMarchesWords, glsl::kScarpNaive, false, 1},
+    DeviceMarch{"fixed-step", kFunctionMarchesWords, glsl::kScarpFixedStep, false, 1},
+    DeviceMarch{"relaxed", kFunctionMarchesWords, glsl::kScarpRelaxed, false, 1},
+    DeviceMarch{"lipschitz", kFunctionMarchesWords, glsl::kScarpLipschitz, false, 1},
     DeviceMarch{"lipschitz-local", kLipschitzLocalWords, 0, true, 2},
 };
 
@@ -51,43 +51,21 @@ const DeviceMarch& device_march(const FunctionMarchEntry& march) {
       fmt::format("march '{}': does not run over functions on Vulkan devices; there run: {}", march.name, names));
 }
 
-void set_refinement(glsl::FunctionBatch& batch, Refinement refinement, int halvings) {
-  batch.refinement = refinement == Refinement::secant   ? glsl::kScarpRefineSecant
-                     : refinement == Refinement::bisect ? glsl::kScarpRefineBisect
-                                                        : glsl::kScarpRefineNone;
-  batch.halvings = halvings;
-}
-
-glsl::FunctionBatch batch_settings(std::string_view march, const MarchSettings& settings, double slope) {
-  glsl::FunctionBatch batch{};
-  set_refinement(batch, settings.sampling.refinement, settings.sampling.halvings);
-  batch.metres = static_cast<float>(settings.sampling.tolerance);
-  if (march == "naive") {
-    batch.factor = static_cast<float>(settings.naive.step_factor);
-    batch.least = static_cast<float>(settings.naive.min_step);
-    batch.tolerance = static_cast<float>(settings.naive.tolerance);
-    batch.max_steps = settings.naive.max_steps;
-  } else if (march == "fixed-step") {
-    batch.factor = static_cast<float>(settings.function.step);
-    batch.least = static_cast<float>(settings.function.step_share);
-    batch.max_steps = settings.fixed_step.max_steps;
-    set_refinement(batch, refinement_of_fixed_step(settings), settings.sampling.halvings);
-  } else if (march == "relaxed") {
-    batch.factor = static_cast<float>(settings.relaxed.step_factor);
-    batch.tolerance = static_cast<float>(settings.relaxed.tolerance);
-    batch.max_steps = settings.relaxed.max_steps;
-  } else if (march == "lipschitz") {
-    // Reduced by more than its roundings, here and in the step.
-    const double shrink =
-        settings.lipschitz.shrink > 0 ? settings.lipschitz.shrink : (1 - 0x1p-20) / std::hypot(1.0, slope);
-    batch.factor = static_cast<float>(shrink);
-    batch.tolerance = static_cast<float>(settings.lipschitz.tolerance);
-    batch.max_steps = settings.lipschitz.max_steps;
-  } else {
-    batch.tolerance = static_cast<float>(settings.lipschitz_local.tolerance);
-    batch.max_steps = settings.lipschitz_local.max_steps;
+glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, double slope) {
+  glsl::ScarpSampling result{};
+  if (march == "lipschitz-local") {
+    result.tolerance = static_cast<float>(settings.lipschitz_local.tolerance);
+    result.max_steps = settings.lipschitz_local.max_steps;
+    return result;
   }
-  return batch;
+  // Reduced by more than its roundings, here and in the step.
+  const double certified = (1 - 0x1p-20) / std::hypot(1.0, slope);
+  result = device_sampling(march, settings, settings.lipschitz.shrink > 0 ? settings.lipschitz.shrink : certified, 1);
+  if (march == "fixed-step") {
+    result.factor = static_cast<float>(settings.function.step);
+    result.least = static_cast<float>(settings.function.step_share);
+  }
+  return result;
 }
 
 // Steps per run: the interpreter iterates once per instruction and step.
@@ -128,8 +106,8 @@ struct DeviceFunctionQueries::Impl {
   template <class Answer>
   void ask(const DeviceFunctionTarget& target, bool any, std::span<const Ray> asked, const Answer& answer) {
     const FunctionProgram& program = target.function->program(target.use);
-    glsl::FunctionBatch batch =
-        batch_settings(march.name, march_settings, target.function->bound_everywhere(target.use).slope);
+    glsl::FunctionBatch batch{};
+    batch.settings = sampling_of(march.name, march_settings, target.function->bound_everywhere(target.use).slope);
     batch.code = target.device->address(target.use);
     batch.instructions = static_cast<std::uint32_t>(program.code.size());
     batch.result = program.result;

@@ -14,7 +14,7 @@ void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
   ScarpFunctionRay ray = FunctionRays(batch.rays).rays[i];
-  FunctionHits(batch.hits).hits[i] =
-      scarp_lipschitz_local(ScarpProgram(batch.instructions, batch.result), ray,
-                            ScarpLipschitzLocal(batch.tolerance, batch.max_steps, batch.run_steps), batch_choice != 0u);
+  FunctionHits(batch.hits).hits[i] = scarp_lipschitz_local(
+      ScarpProgram(batch.instructions, batch.result), ray,
+      ScarpLipschitzLocal(batch.settings.tolerance, batch.settings.max_steps, batch.run_steps), batch_choice != 0u);
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What the marches that take samples along the ray (naive, fixed-step, relaxed, lipschitz) need of a height field, in
-// single precision: how far above the ground a point of the ray is.
+// The probe of height fields, in single precision: how far above the ground a point of a ray is, and how far around it
+// there is no hole.
 //
 // A point at time s is computed from the ray's own numbers in twice a float's precision: s is the only thing that is
 // rounded on the way from one point to the next.
 //
-// Text of C++ and of GLSL, GLSL ES 3.0 included; who includes it has defined what cell_surface.glsl.h asks for.
+// Text of C++ and of GLSL, GLSL ES 3.0 included. The includer has defined what cell_surface.glsl.h asks for, and
+// scarp_minimum of max_mip.glsl.h.
 #ifndef SCARP_MARCH_HEIGHT_PROBE_GLSL_H
 #define SCARP_MARCH_HEIGHT_PROBE_GLSL_H
 
@@ -67,20 +68,38 @@ SCARP_FN ScarpPoint scarp_point(ScarpField field, ScarpRay ray, float s) {
   return point;
 }
 
-/// A hit at a point.
-SCARP_FN void scarp_tell_point(ScarpPoint point, float s, int status, SCARP_INOUT(ScarpHit) hit) {
-  hit.status = status;
-  hit.cell = point.cell;
-  hit.place = point.place;
-  hit.time = s;
-  hit.time_low = 0.0f;
+/// Time until the ray leaves cell numbers [begin, end) of an axis, from a place in cell number `cell`; places are
+/// rounded, here and there, by half a unit.
+SCARP_FN float scarp_time_to_border(int begin, int end, int cell, float place, float direction, float per_direction) {
+  if (direction == 0.0f) return kScarpNever;
+  return (float((direction > 0.0f ? end : begin) - cell) - place) * per_direction + kScarpUnit * abs(per_direction);
 }
 
-/// Used up a limit of steps at time s.
-SCARP_FN void scarp_give_up(float s, SCARP_INOUT(ScarpHit) hit) {
-  hit.status = kScarpExhausted;
-  hit.time = s;
-  hit.time_low = 0.0f;
+/// When the ray, over a point at s, leaves the block of 2^level x 2^level cells that holds it: a little later, so that
+/// it has, by 2^-20 of a cell and what times round by: 3 units of the way ahead, 2.5 more where the device divides, and
+/// 2 of the sum.
+SCARP_FN float scarp_leave_time(ScarpField field, ScarpRay ray, ScarpPoint point, int level, float s) {
+  int col = (point.cell.x >> level) << level;
+  int row = (point.cell.y >> level) << level;
+  float x = scarp_time_to_border(col, min(col + (1 << level), field.cells.x), point.cell.x, point.place.x,
+                                 ray.direction.x, ray.per_direction.x);
+  float y = scarp_time_to_border(row, min(row + (1 << level), field.cells.y), point.cell.y, point.place.y,
+                                 ray.direction.y, ray.per_direction.y);
+  float ahead = max(0.0f, min(x, y));
+  return s + (ahead + 9.5367431640625e-7f * ray.cell_time + 8.0f * kScarpUnit * (s + ahead));
+}
+
+/// The time until which the field's slope bound holds from a point: to the edge of the largest block around it without
+/// holes; over a hole, to the edge of its cell.
+SCARP_FN float scarp_bounded_until(ScarpField field, ScarpRay ray, ScarpPoint point, float s,
+                                   SCARP_INOUT(uint) fetches) {
+  int level = 0;
+  while (point.valid && level < field.top_level) {
+    fetches += 1u;
+    if (scarp_minimum(level + 1, point.cell.x >> (level + 1), point.cell.y >> (level + 1)) == 0.0f) break;
+    ++level;
+  }
+  return scarp_leave_time(field, ray, point, level, s);
 }
 
 SCARP_GLSL_END

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The probe of height fields: what naive, fixed-step, relaxed and lipschitz need to know of a ray over one. The other
-// probe is function/function_probe.h.
+// The probe of height fields: a ray over one as naive, fixed-step, relaxed and lipschitz see it. The probe of functions
+// is function/function_probe.h.
 #pragma once
 
 #include <algorithm>
@@ -76,14 +76,14 @@ class HeightProbe {
     hit.height = ray_.at(t).z;
     return hit;
   }
-  /// A hit at t, or at the later t of a sample where t is over a hole.
+  /// A hit at t; if that is over a hole, at the later t_sample.
   Hit hit_before(double t, double t_sample, const Sample& sample) const {
     const Sample there = at(t);
     return there.valid ? hit(t, there) : hit(t_sample, sample);
   }
 
-  /// The t in which the ray goes as far as a cell is long, its shorter side: the stride over a hole, where there is no
-  /// height to go by, and the first step off the surface.
+  /// The t in which the ray goes as far as the shorter side of a cell: the first step off the surface, and a step over
+  /// a hole.
   double blind_step() const { return std::min(field_.settings().cell_x, field_.settings().cell_y) / speed_; }
   /// fixed-step's step, and its least share of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.fixed_step.step * blind_step(); }
@@ -92,10 +92,10 @@ class HeightProbe {
   bool solid() const { return field_.settings().solid; }
 
   bool under_ground(const Sample& sample) const { return sample.clearance < 0; }
-  /// How far the ray can go when the ground rises by no more than `shrink` allows.
+  /// The step that is free if the ground rises no more than `shrink` allows.
   double free_time(const Sample& sample, double shrink) const { return sample.clearance * shrink * per_metre_; }
-  /// Up to where that holds: across a hole there is no such bound, so no further than the largest block of the pyramid
-  /// round the point that has none. Of a point over a hole, its cell.
+  /// Until when that bound holds, which is not across holes: the exit from the largest block of the pyramid around the
+  /// point without holes; over a hole, from its cell.
   double bounded_until(const Sample& sample, double t) const {
     if (!sample.valid) return leave_time(sample.cell, 0, t);
     if (!has_holes_) return std::numeric_limits<double>::infinity();

@@ -10,6 +10,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/device_sampling.h"
 #include "scarp/march/height/batch_states.glsl.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/march/height/ray_batch.glsl.h"
@@ -25,17 +26,8 @@ constexpr std::int64_t kRaysPerPiece = 1024;
 constexpr std::uint32_t kMaxMipWords[] = {
 #include "scarp/march/height/max_mip.comp.inc"
 };
-constexpr std::uint32_t kNaiveWords[] = {
-#include "scarp/march/naive.comp.inc"
-};
-constexpr std::uint32_t kFixedStepWords[] = {
-#include "scarp/march/fixed_step.comp.inc"
-};
-constexpr std::uint32_t kRelaxedWords[] = {
-#include "scarp/march/relaxed.comp.inc"
-};
-constexpr std::uint32_t kLipschitzWords[] = {
-#include "scarp/march/lipschitz.comp.inc"
+constexpr std::uint32_t kHeightMarchesWords[] = {
+#include "scarp/march/height/height_marches.comp.inc"
 };
 
 struct DeviceMarch {
@@ -43,15 +35,20 @@ struct DeviceMarch {
   std::span<const std::uint32_t> words;
   DeviceRay (*ray)(const HeightField& field, const Ray& ray);
   bool has_any;             // whether it can be asked for any hit
+  std::uint32_t choice;     // ScarpSampling::march
   std::size_t state_bytes;  // of a march that has been interrupted
 };
 
+constexpr DeviceMarch sampling_march(std::string_view name, std::uint32_t choice) {
+  return {name, kHeightMarchesWords, sampled_device_ray, false, choice, sizeof(glsl::BatchLook)};
+}
+
 constexpr std::array kDeviceMarches = {
-    DeviceMarch{"max-mip", kMaxMipWords, device_ray, true, sizeof(glsl::BatchWalk)},
-    DeviceMarch{"naive", kNaiveWords, sampled_device_ray, false, sizeof(glsl::BatchTime)},
-    DeviceMarch{"fixed-step", kFixedStepWords, sampled_device_ray, false, sizeof(glsl::BatchSteps)},
-    DeviceMarch{"relaxed", kRelaxedWords, sampled_device_ray, false, sizeof(glsl::BatchTime)},
-    DeviceMarch{"lipschitz", kLipschitzWords, sampled_device_ray, false, sizeof(glsl::BatchTime)},
+    DeviceMarch{"max-mip", kMaxMipWords, device_ray, true, 0, sizeof(glsl::BatchWalk)},
+    sampling_march("naive", glsl::kScarpNaive),
+    sampling_march("fixed-step", glsl::kScarpFixedStep),
+    sampling_march("relaxed", glsl::kScarpRelaxed),
+    sampling_march("lipschitz", glsl::kScarpLipschitz),
 };
 
 const DeviceMarch& device_march(const HeightMarchEntry& march) {
@@ -62,33 +59,15 @@ const DeviceMarch& device_march(const HeightMarchEntry& march) {
       fmt::format("march '{}': does not run on Vulkan devices; there run: {}", march.name, device_march_names()));
 }
 
-glsl::RayBatch batch_settings(std::string_view march, const MarchSettings& settings, double slope) {
-  glsl::RayBatch batch{};
-  if (march == "naive") {
-    batch.step = static_cast<float>(settings.naive.step_factor);
-    batch.min_step = static_cast<float>(settings.naive.min_step);
-    batch.tolerance = static_cast<float>(settings.naive.tolerance);
-    batch.max_steps = settings.naive.max_steps;
-  } else if (march == "fixed-step") {
-    batch.step = static_cast<float>(settings.fixed_step.step);
-    batch.interpolate = settings.fixed_step.interpolate;
-    batch.max_steps = settings.fixed_step.max_steps;
-  } else if (march == "relaxed") {
-    batch.step = static_cast<float>(settings.relaxed.step_factor);
-    batch.tolerance = static_cast<float>(settings.relaxed.tolerance);
-    batch.max_steps = settings.relaxed.max_steps;
-  } else if (march == "lipschitz") {
-    double shrink = settings.lipschitz.shrink;
-    if (shrink == 0) {
-      if (std::isnan(slope))
-        throw Error("lipschitz: neither the field's slope bound (slope) nor a shrink factor is given");
-      shrink = 1 / std::hypot(1.0, slope);
-    }
-    batch.step = static_cast<float>(shrink);
-    batch.tolerance = static_cast<float>(settings.lipschitz.tolerance);
-    batch.max_steps = settings.lipschitz.max_steps;
+glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, const DeviceTarget& target) {
+  double shrink = settings.lipschitz.shrink;
+  if (march == "lipschitz" && shrink == 0) {
+    if (std::isnan(target.slope))
+      throw Error("lipschitz: neither the field's slope bound (slope) nor a shrink factor is given");
+    shrink = 1 / std::hypot(1.0, target.slope);
   }
-  return batch;
+  const HeightFieldSettings& field = target.field->settings();
+  return device_sampling(march, settings, shrink, field.scale * field.exaggeration);
 }
 
 std::uint32_t checked_slice(std::uint32_t rays) {
@@ -125,7 +104,7 @@ struct DeviceQueries::Impl {
         commands(device) {}
 
   ComputePipeline pipeline(const Device& device, bool asks_any) const {
-    const std::uint32_t constants[] = {kThreads, asks_any, statistics};
+    const std::uint32_t constants[] = {kThreads, asks_any, statistics, march.choice};
     return {device, march.words, std::string(march.name) + (asks_any ? ", any" : ""), sizeof(glsl::RayBatch),
             constants};
   }
@@ -135,7 +114,8 @@ struct DeviceQueries::Impl {
   void ask(const DeviceTarget& target, const ComputePipeline& pipeline, std::span<const Ray> asked,
            std::span<DeviceRayCost> costs, const Answer& answer) {
     const HeightField& field = *target.field;
-    glsl::RayBatch batch = batch_settings(march.name, march_settings, target.slope);
+    glsl::RayBatch batch{};
+    if (march.name != "max-mip") batch.settings = sampling_of(march.name, march_settings, target);
     batch.ground = target.ground->address();
     batch.rays = rays.address();
     batch.hits = answers.address();

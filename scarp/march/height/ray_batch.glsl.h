@@ -15,6 +15,7 @@
 
 #include "scarp/accel/ground_buffers.glsl.h"
 #include "scarp/march/height/ray_frame.glsl.h"
+#include "scarp/march/sampling.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN
@@ -23,20 +24,17 @@ SCARP_GLSL_BEGIN
 const uint kBatchThreads = 0u;     // of a workgroup
 const uint kBatchAny = 1u;         // whether anything is hit, instead of what first: max-mip only
 const uint kBatchStatistics = 2u;  // whether steps and fetches are told, or zeros
+const uint kBatchMarch = 3u;       // ScarpSampling::march
 
-/// The push constants of all marches. Settings that a march has none of mean nothing.
+/// The push constants of all marches.
 struct RayBatch {
   Address ground;
   Address rays;
   Address hits;
   uint count;
-  float step;       ///< naive, relaxed: step factor; fixed-step: the step, in cells; lipschitz: shrink factor
-  float min_step;   ///< naive
-  float tolerance;  ///< naive, relaxed, lipschitz
-  int max_steps;    ///< all but max-mip
-  int interpolate;  ///< fixed-step: 0 or 1
-  int turns;        ///< of a march's loop in one run
-  uint resume;      ///< 1: marches that have been interrupted go on; the others are answered
+  ScarpSampling settings;  ///< of all but max-mip
+  int turns;               ///< of a march's loop in one run
+  uint resume;             ///< 1: marches that have been interrupted go on; the others are answered
   Address states;
 };
 
@@ -48,6 +46,7 @@ const int kBatchUnderWay = -1;
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool batch_any = false;
 layout(constant_id = 2) const bool batch_statistics = false;
+layout(constant_id = 3) const uint batch_march = kScarpNaive;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRays { ScarpRay rays[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHits { ScarpHit hits[]; };

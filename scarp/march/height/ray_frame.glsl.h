@@ -16,6 +16,7 @@
 #ifndef SCARP_MARCH_RAY_FRAME_GLSL_H
 #define SCARP_MARCH_RAY_FRAME_GLSL_H
 
+#include "scarp/march/march_state.glsl.h"
 #include "scarp/march/two_float.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
@@ -65,12 +66,6 @@ struct ScarpRay {
   float cell_time;   ///< time in which it goes as far as a cell is long, its shorter side
 };
 
-const int kScarpMiss = 0;
-const int kScarpHit = 1;
-const int kScarpBelow = 2;      ///< began below the surface and never came from above to it
-const int kScarpExhausted = 3;  ///< a limit was reached: nothing is known beyond the time
-const int kScarpWall = 4;       ///< a hit, of the wall under a border or a hole's rim
-
 /// The answer. Cell, place and time mean something for hits (the time for exhausted, too).
 struct ScarpHit {
   int status;      ///< kScarpMiss and so on
@@ -82,8 +77,6 @@ struct ScarpHit {
   uint fetches;    ///< samples and entries of the pyramid read
 };
 
-/// Later than any time.
-const float kScarpNever = 1.0e30f;
 /// More turns of a loop than any march takes; half of the whole numbers, so that counting past it is no overflow.
 const int kScarpAllTurns = 1073741824;
 /// Unit roundoff of a float, 2^-24.

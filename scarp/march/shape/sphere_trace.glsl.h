@@ -31,7 +31,7 @@ struct ScarpSphereTrace {
   float growth;     ///< of the error of values, per metre of the ray
 };
 
-// State of a ray: ScarpFunctionState::phase.
+// State of a ray: ScarpMarchState::phase.
 const uint kScarpTraceBegins = 0u;
 const uint kScarpTraceInside = 1u;
 const uint kScarpTraceLeaves = 2u;  ///< leaving the surface that it starts on, or through which it emerged

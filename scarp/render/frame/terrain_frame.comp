@@ -16,6 +16,7 @@ bool scarp_is_nodata(float value);
 float scarp_maximum(int level, int col, int row);
 float scarp_minimum(int level, int col, int row);
 
+#include "scarp/march/height/height_marches.glsl.h"
 #include "scarp/march/height/surface_normal.glsl.h"
 #include "scarp/render/frame/terrain_frame.glsl.h"
 
@@ -149,8 +150,8 @@ struct Sent {
   ScarpSent ray;
   ScarpHit hit;
   ScarpWalk walk;
-  ScarpSteps steps;
-  ScarpFixedStep step;
+  ScarpMarchState looks;
+  ScarpSampling step;
 };
 
 FrameSeen no_sight() {
@@ -204,6 +205,10 @@ ScarpField seen_by(ScarpField field, bool walls) {
   return field;
 }
 
+ScarpSampling fixed_step(float step, int interpolate, int max_steps) {
+  return scarp_fixed_step(step, interpolate != 0 ? kScarpRefineSecant : kScarpRefineNone, max_steps);
+}
+
 // Sends the ray of a task; false: there is none, or nothing is on its way.
 bool send(ScarpField field, int task, inout Sent sent) {
   Settings s = settings();
@@ -230,13 +235,13 @@ bool send(ScarpField field, int task, inout Sent sent) {
     line = ray.line;
     end = scarp_two(ray.end);
     how |= kScarpSendFromSurface;
-    sent.step = ScarpFixedStep(s.is.sun_step, s.is.sun_interpolate, s.is.sun_steps);
+    sent.step = fixed_step(s.is.sun_step, s.is.sun_interpolate, s.is.sun_steps);
   } else {
     FrameWater water = water_met;
     if (task == kFrameCamera) water = water_on(field, line, end);
     if (stepped) {
       float step = step_of(seen, task == kFrameCamera);
-      sent.step = ScarpFixedStep(step, s.is.interpolate, s.is.steps + 1);
+      sent.step = fixed_step(step, s.is.interpolate, s.is.steps + 1);
       float last = stepped_end(field, seen, step);
       if (last < 0.0) {
         sent.hit.steps = 1u;
@@ -281,7 +286,7 @@ bool send(ScarpField field, int task, inout Sent sent) {
   if (sent.ray.marches == 0) return false;
   if (sent.walls) sent.walls = meets_rims(field, sent.ray.ray);
   if (stepped) {
-    sent.steps = scarp_first_step(sent.ray.ray);
+    sent.looks = scarp_sampled_begin(field, sent.ray.ray, sent.step);
     return true;
   }
   return scarp_begin_walk(field, sent.ray.ray, sent.walk, sent.hit);
@@ -468,7 +473,7 @@ void main() {
     sent.hit = all.states[slot].hit;
     sent.step = all.states[slot].step;
     if (stepped)
-      sent.steps = all.states[slot].steps;
+      sent.looks = all.states[slot].looks;
     else
       sent.walk = all.states[slot].walk;
   }
@@ -479,7 +484,8 @@ void main() {
     }
     if (!under_way) under_way = send(field, task, sent);
     if (under_way) {
-      bool done = stepped ? scarp_step_on(field, sent.ray.ray, sent.step, kFrameTurns, sent.steps, sent.hit)
+      sent.step.march = kScarpFixedStep;  // a constant to the compiler
+      bool done = stepped ? scarp_sampled_on(field, sent.ray.ray, sent.step, kFrameTurns, sent.looks, sent.hit)
                           : scarp_go_on(seen_by(field, sent.walls), sent.ray.ray, task >= kFrameSeens, kFrameTurns,
                                         sent.walk, sent.hit);
       if (!done) break;
@@ -515,7 +521,7 @@ void main() {
     all.states[slot].hit = sent.hit;
     all.states[slot].step = sent.step;
     if (stepped)
-      all.states[slot].steps = sent.steps;
+      all.states[slot].looks = sent.looks;
     else
       all.states[slot].walk = sent.walk;
     Pixels(push.pixels).words[slot] = 0u;

@@ -19,9 +19,9 @@
 #ifdef __cplusplus
 #include "scarp/march/height/march_host.h"
 #endif
-#include "scarp/march/fixed_step.glsl.h"
 #include "scarp/march/height/max_mip.glsl.h"
 #include "scarp/march/height/two_float_ray.glsl.h"
+#include "scarp/march/sampling.glsl.h"
 #include "scarp/render/light/air.glsl.h"
 #include "scarp/render/surface/water.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
@@ -235,8 +235,8 @@ struct FrameState {
   ScarpSent sent;
   ScarpHit hit;
   ScarpWalk walk;
-  ScarpSteps steps;
-  ScarpFixedStep step;
+  ScarpMarchState looks;
+  ScarpSampling step;
 };
 
 SCARP_GLSL_END

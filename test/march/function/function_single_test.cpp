@@ -15,6 +15,7 @@
 #include "scarp/base/error.h"
 #include "scarp/field/function_single.h"
 #include "scarp/march/device_function_ray.h"
+#include "scarp/march/device_sampling.h"
 #include "scarp/march/function/function_marches.glsl.h"
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/function/lipschitz_local.glsl.h"
@@ -178,18 +179,9 @@ TEST(FunctionsInShaders, MarchesTellWhatSinglePrecisionAllows) {
     if (name == "lipschitz-local")
       return glsl::scarp_lipschitz_local(*program, ray.ray,
                                          {static_cast<float>(settings.lipschitz_local.tolerance), 1024, kAll}, false);
-    if (name == "lipschitz")
-      return glsl::scarp_function_lipschitz(
-          *program, ray.ray,
-          {static_cast<float>((1 - 0x1p-20) / std::hypot(1.0, slope)), 0, 0.0005f, 0, 1024, 0, 24, kAll});
-    if (name == "fixed-step")
-      return glsl::scarp_function_fixed_step(*program, ray.ray,
-                                             {5, 0, 0, 0, 16384, glsl::kScarpRefineSecant, 24, kAll});
-    const bool naive = name == "naive";
-    return glsl::scarp_function_by_height(
-        *program, ray.ray, naive ? glsl::kScarpFunctionNaive : glsl::kScarpFunctionRelaxed,
-        naive ? glsl::ScarpFunctionMarch{0.7f, 1.0f / 512, 0.001f, 0, 1024, 0, 24, kAll}
-              : glsl::ScarpFunctionMarch{0.4f, 0, 0.0015f, 0, 300, 0, 24, kAll});
+    glsl::ScarpSampling sampling = device_sampling(name, settings, (1 - 0x1p-20) / std::hypot(1.0, slope), 1);
+    if (name == "fixed-step") sampling.factor = static_cast<float>(settings.function.step);
+    return glsl::scarp_function_march(*program, ray.ray, sampling, kAll);
   };
   for (const NamedFunction& named : terrain_functions()) {
     const HeightFunction function(named.function);

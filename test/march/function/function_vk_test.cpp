@@ -126,7 +126,7 @@ constexpr std::uint32_t kShader[] = {
 };
 
 TEST(FunctionBatchLayout, IsThatOfTheShaders) {
-  using glsl::ScarpFunctionState, glsl::ScarpFunctionRay, glsl::ScarpFunctionHit, glsl::FunctionBatch,
+  using glsl::ScarpMarchState, glsl::ScarpFunctionRay, glsl::ScarpFunctionHit, glsl::FunctionBatch,
       glsl::ScarpInstruction;
   EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpFunctionRay, origin), offsetof(ScarpFunctionRay, origin_low),
                                    offsetof(ScarpFunctionRay, direction), offsetof(ScarpFunctionRay, direction_low),
@@ -137,17 +137,19 @@ TEST(FunctionBatchLayout, IsThatOfTheShaders) {
   EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpFunctionHit, status), offsetof(ScarpFunctionHit, time),
                                    offsetof(ScarpFunctionHit, bounds), offsetof(ScarpFunctionHit, heights),
                                    offsetof(ScarpFunctionHit, state)}));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpFunctionState, s), offsetof(ScarpFunctionState, before),
-                                   offsetof(ScarpFunctionState, h_before), offsetof(ScarpFunctionState, steps),
-                                   offsetof(ScarpFunctionState, phase)}));
+  EXPECT_TRUE(has_struct(
+      kShader, {offsetof(ScarpMarchState, s), offsetof(ScarpMarchState, before), offsetof(ScarpMarchState, h_before),
+                offsetof(ScarpMarchState, steps), offsetof(ScarpMarchState, phase)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpFunctionHit)));
   EXPECT_TRUE(has_struct(
-      kShader,
-      {offsetof(FunctionBatch, code), offsetof(FunctionBatch, rays), offsetof(FunctionBatch, hits),
-       offsetof(FunctionBatch, count), offsetof(FunctionBatch, instructions), offsetof(FunctionBatch, result),
-       offsetof(FunctionBatch, factor), offsetof(FunctionBatch, least), offsetof(FunctionBatch, tolerance),
-       offsetof(FunctionBatch, metres), offsetof(FunctionBatch, max_steps), offsetof(FunctionBatch, refinement),
-       offsetof(FunctionBatch, halvings), offsetof(FunctionBatch, run_steps)}));
+      kShader, {offsetof(FunctionBatch, code), offsetof(FunctionBatch, rays), offsetof(FunctionBatch, hits),
+                offsetof(FunctionBatch, count), offsetof(FunctionBatch, instructions), offsetof(FunctionBatch, result),
+                offsetof(FunctionBatch, settings), offsetof(FunctionBatch, run_steps)}));
+  using glsl::ScarpSampling;
+  EXPECT_TRUE(has_struct(
+      kShader, {offsetof(ScarpSampling, march), offsetof(ScarpSampling, factor), offsetof(ScarpSampling, least),
+                offsetof(ScarpSampling, tolerance), offsetof(ScarpSampling, height), offsetof(ScarpSampling, max_steps),
+                offsetof(ScarpSampling, refinement), offsetof(ScarpSampling, halvings)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpInstruction)));
   EXPECT_EQ(sizeof(ScarpInstruction), 64u);
 }

@@ -13,6 +13,7 @@
 #include "march/height/rounding_judge.h"
 #include "march/height/spiteful.h"
 #include "march/height/spiteful_text.h"
+#include "march/refinement_judge.h"
 #include "march/sampling_rules.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/march/height/batch_states.glsl.h"
@@ -111,6 +112,27 @@ INSTANTIATE_TEST_SUITE_P(Spiteful, ParityOnDevice, testing::ValuesIn(all_fields(
 
 class QueriesOnDevice : public OnDevice {};
 
+TEST_F(QueriesOnDevice, RefineTheirHits) {
+  for (const std::string_view march : {"naive", "fixed-step", "relaxed"}) {
+    const CastAll cast = [&](const HeightField& field, std::span<const Ray> rays, const MarchSettings& settings) {
+      const DeviceGround ground(device(), field);
+      std::vector<Hit> hits(rays.size());
+      queries(march).set_march_settings(settings);
+      queries(march).closest_hits({&field, &ground}, rays, hits);
+      queries(march).set_march_settings({});
+      return hits;
+    };
+    const RefinementErrors bisect = refinement_errors(march, Refinement::bisect, cast);
+    const RefinementErrors secant = refinement_errors(march, Refinement::secant, cast);
+    SCOPED_TRACE(march);
+    EXPECT_GT(bisect.hits, 100);
+    EXPECT_EQ(bisect.refined, bisect.hits);
+    EXPECT_LT(bisect.plain, bisect.hits / 2);
+    EXPECT_LT(bisect.along_refined, bisect.along_plain / 100);
+    EXPECT_LT(secant.along_refined, secant.along_plain / 2);
+  }
+}
+
 TEST_F(QueriesOnDevice, SlicesDoNotShow) {
   Random random(3);
   const HeightField field = spiteful_fields()[4].make(random);
@@ -144,6 +166,7 @@ TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
   MarchSettings settings;
   settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = kFewSteps;
   settings.lipschitz.max_steps = kFewSteps;
+  settings.sampling = {.refinement = Refinement::bisect, .halvings = 7};
   std::map<std::string_view, DeviceQueries> at_once, interrupted;
   for (const HeightMarchEntry& march : height_marches()) {
     if (!march.gpu) continue;
@@ -264,11 +287,8 @@ TEST(Marches, ThoseOfTheTableRunOnDevices) {
 constexpr std::uint32_t kShader[] = {
 #include "scarp/march/height/max_mip.comp.inc"
 };
-constexpr std::uint32_t kFixedStepShader[] = {
-#include "scarp/march/fixed_step.comp.inc"
-};
-constexpr std::uint32_t kNaiveShader[] = {
-#include "scarp/march/naive.comp.inc"
+constexpr std::uint32_t kSamplingShader[] = {
+#include "scarp/march/height/height_marches.comp.inc"
 };
 
 TEST(BatchLayout, IsThatOfTheShaders) {
@@ -284,12 +304,10 @@ TEST(BatchLayout, IsThatOfTheShaders) {
                                    offsetof(ScarpHit, time), offsetof(ScarpHit, time_low), offsetof(ScarpHit, steps),
                                    offsetof(ScarpHit, fetches)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpHit)));
-  EXPECT_TRUE(has_struct(kShader,
-                         {offsetof(RayBatch, ground), offsetof(RayBatch, rays), offsetof(RayBatch, hits),
-                          offsetof(RayBatch, count), offsetof(RayBatch, step), offsetof(RayBatch, min_step),
-                          offsetof(RayBatch, tolerance), offsetof(RayBatch, max_steps), offsetof(RayBatch, interpolate),
-                          offsetof(RayBatch, turns), offsetof(RayBatch, resume), offsetof(RayBatch, states)}));
-  using glsl::BatchWalk, glsl::BatchSteps, glsl::BatchTime, glsl::ScarpWalk;
+  EXPECT_TRUE(has_struct(kShader, {offsetof(RayBatch, ground), offsetof(RayBatch, rays), offsetof(RayBatch, hits),
+                                   offsetof(RayBatch, count), offsetof(RayBatch, settings), offsetof(RayBatch, turns),
+                                   offsetof(RayBatch, resume), offsetof(RayBatch, states)}));
+  using glsl::BatchLook, glsl::BatchWalk, glsl::ScarpWalk;
   EXPECT_TRUE(has_struct(kShader, {offsetof(BatchWalk, hit), offsetof(BatchWalk, walk), offsetof(BatchWalk, z),
                                    offsetof(BatchWalk, z_low)}));
   EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpWalk, frame), offsetof(ScarpWalk, level), offsetof(ScarpWalk, col),
@@ -297,8 +315,7 @@ TEST(BatchLayout, IsThatOfTheShaders) {
                                    offsetof(ScarpWalk, through), offsetof(ScarpWalk, begun), offsetof(ScarpWalk, start),
                                    offsetof(ScarpWalk, relief)}));
   EXPECT_TRUE(is_laid_out_like<BatchWalk>(kShader));
-  EXPECT_TRUE(is_laid_out_like<BatchSteps>(kFixedStepShader));
-  EXPECT_TRUE(is_laid_out_like<BatchTime>(kNaiveShader));
+  EXPECT_TRUE(is_laid_out_like<BatchLook>(kSamplingShader));
 }
 
 }  // namespace

@@ -12,11 +12,9 @@
 #include "march/height/spiteful_text.h"
 #include "march/sampling_rules.h"
 #include "scarp/accel/slope_bound.h"
-#include "scarp/march/fixed_step.glsl.h"
+#include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
-#include "scarp/march/lipschitz.glsl.h"
-#include "scarp/march/naive.glsl.h"
-#include "scarp/march/relaxed.glsl.h"
+#include "scarp/march/height/height_marches.glsl.h"
 
 namespace scarp::test {
 namespace {
@@ -27,20 +25,6 @@ constexpr int kRaysPerField = 40;
 #else
 constexpr int kRaysPerField = 10;
 #endif
-
-glsl::ScarpHit march_as_shader(std::string_view march, const MarchSettings& s, double slope,
-                               const glsl::ScarpField& field, const glsl::ScarpRay& ray) {
-  const auto f = [](double x) { return static_cast<float>(x); };
-  if (march == "naive")
-    return glsl::scarp_naive(field, ray,
-                             {f(s.naive.step_factor), f(s.naive.min_step), f(s.naive.tolerance), s.naive.max_steps});
-  if (march == "relaxed")
-    return glsl::scarp_relaxed(field, ray, {f(s.relaxed.step_factor), f(s.relaxed.tolerance), s.relaxed.max_steps});
-  if (march == "lipschitz")
-    return glsl::scarp_lipschitz(field, ray,
-                                 {f(1 / std::hypot(1.0, slope)), f(s.lipschitz.tolerance), s.lipschitz.max_steps});
-  return glsl::scarp_fixed_step(field, ray, {f(s.fixed_step.step), s.fixed_step.interpolate, s.fixed_step.max_steps});
-}
 
 struct Marched {
   std::string_view march;
@@ -71,7 +55,8 @@ TEST_P(SinglePrecisionSampling, KeepsItsRule) {
         const DeviceRay prepared = sampled_device_ray(field, ray);
         glsl::ScarpHit answer{};
         if (prepared.marches)
-          answer = march_as_shader(marched.march, marched.settings, slope, device_field(field, &pyramid), prepared.ray);
+          answer = glsl::scarp_sampled(device_field(field, &pyramid), prepared.ray,
+                                       device_sampling(marched.march, marched.settings, 1 / std::hypot(1.0, slope), 1));
         const Hit hit = hit_from_device(ray, prepared, answer);
         hits += static_cast<bool>(hit);
         const std::string objection =

@@ -12,14 +12,11 @@ out vec4 colour;
 
 #include "scarp/march/height/textures.glsl.h"
 // The marches ask the textures for their ground.
-#include "scarp/march/fixed_step.glsl.h"
 #include "scarp/march/height/float_ray.glsl.h"
+#include "scarp/march/height/height_marches.glsl.h"
 #include "scarp/march/height/max_mip.glsl.h"
 #include "scarp/march/height/surface_normal.glsl.h"
 #include "scarp/march/height/two_float_ray.glsl.h"
-#include "scarp/march/lipschitz.glsl.h"
-#include "scarp/march/naive.glsl.h"
-#include "scarp/march/relaxed.glsl.h"
 
 void main() {
   ScarpField field;
@@ -38,12 +35,12 @@ void main() {
   if (march == 0)
     hit = scarp_max_mip(field, ray, false);
   else if (march == 1)
-    hit = scarp_naive(field, ray, ScarpNaive(0.7, 0.01, 0.001, 100));
+    hit = scarp_sampled(field, ray, scarp_naive(0.7, 0.01, 0.001, 100));
   else if (march == 2)
-    hit = scarp_fixed_step(field, ray, ScarpFixedStep(0.5, 1, 100));
+    hit = scarp_sampled(field, ray, scarp_fixed_step(0.5, kScarpRefineSecant, 100));
   else if (march == 3)
-    hit = scarp_relaxed(field, ray, ScarpRelaxed(0.4, 0.001, 100));
+    hit = scarp_sampled(field, ray, scarp_relaxed(0.4, 0.001, 100));
   else
-    hit = scarp_lipschitz(field, ray, ScarpLipschitz(0.5, 0.001, 100));
+    hit = scarp_sampled(field, ray, scarp_lipschitz(0.5, 0.001, 100));
   colour = vec4(hit.place, hit.time, float(hit.status));
 }

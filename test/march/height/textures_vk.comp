@@ -11,6 +11,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = 0) const int march = kTexturesMaxMip;
 layout(constant_id = 1) const bool any = false;
+layout(constant_id = 2) const uint sampled = kScarpNaive;
 layout(binding = 0) uniform sampler2D scarp_heights;
 layout(binding = 1) uniform sampler2D scarp_bounds;
 layout(push_constant, scalar) uniform Push { TexturesPush push; };
@@ -20,22 +21,13 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Hi
 
 #include "scarp/march/height/textures.glsl.h"
 // The marches ask the textures.
-#include "scarp/march/fixed_step.glsl.h"
+#include "scarp/march/height/height_marches.glsl.h"
 #include "scarp/march/height/max_mip.glsl.h"
-#include "scarp/march/lipschitz.glsl.h"
-#include "scarp/march/naive.glsl.h"
-#include "scarp/march/relaxed.glsl.h"
 
 ScarpHit answer(ScarpRay ray) {
-  if (march == kTexturesNaive)
-    return scarp_naive(push.field, ray, ScarpNaive(push.step, push.min_step, push.tolerance, push.max_steps));
-  if (march == kTexturesFixedStep)
-    return scarp_fixed_step(push.field, ray, ScarpFixedStep(push.step, push.interpolate, push.max_steps));
-  if (march == kTexturesRelaxed)
-    return scarp_relaxed(push.field, ray, ScarpRelaxed(push.step, push.tolerance, push.max_steps));
-  if (march == kTexturesLipschitz)
-    return scarp_lipschitz(push.field, ray, ScarpLipschitz(push.step, push.tolerance, push.max_steps));
-  return scarp_max_mip(push.field, ray, any);
+  ScarpSampling settings = push.settings;
+  settings.march = sampled;
+  return march == kTexturesMaxMip ? scarp_max_mip(push.field, ray, any) : scarp_sampled(push.field, ray, settings);
 }
 
 void main() {

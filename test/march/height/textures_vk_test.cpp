@@ -17,6 +17,7 @@
 #include "march/height/textures_vk.glsl.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/accel/slope_bound.h"
+#include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/march/height/queries_vk.h"
 #include "scarp/vk/memory.h"
@@ -108,7 +109,7 @@ class Texture {
 // The pipeline with its two textures.
 class TextureMarch {
  public:
-  TextureMarch(const Device& open, std::int32_t march, bool any)
+  TextureMarch(const Device& open, std::int32_t march, bool any, std::uint32_t sampled)
       : device_(*open.impl()),
         sampler_(device_.device,
                  vk::SamplerCreateInfo({}, vk::Filter::eNearest, vk::Filter::eNearest, vk::SamplerMipmapMode::eNearest,
@@ -124,10 +125,10 @@ class TextureMarch {
     const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, sizeof(glsl::TexturesPush));
     layout_ = vk::raii::PipelineLayout(device_.device, vk::PipelineLayoutCreateInfo({}, *set_layout_, push));
     const vk::raii::ShaderModule module(device_.device, vk::ShaderModuleCreateInfo({}, sizeof kWords, kWords));
-    const vk::Bool32 constants[] = {static_cast<vk::Bool32>(march), any};
-    const vk::SpecializationMapEntry entries[] = {{0, 0, sizeof constants[0]},
-                                                  {1, sizeof constants[0], sizeof constants[1]}};
-    const vk::SpecializationInfo specialised(2, entries, sizeof constants, constants);
+    const vk::Bool32 constants[] = {static_cast<vk::Bool32>(march), any, sampled};
+    const vk::SpecializationMapEntry entries[] = {
+        {0, 0, sizeof constants[0]}, {1, 4, sizeof constants[1]}, {2, 8, sizeof constants[2]}};
+    const vk::SpecializationInfo specialised(3, entries, sizeof constants, constants);
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &specialised);
     pipeline_ = vk::raii::Pipeline(device_.device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
     const vk::DescriptorPoolSize size(vk::DescriptorType::eCombinedImageSampler, 2);
@@ -165,7 +166,7 @@ struct Realisation {
   std::string_view name;
   std::int32_t constant;
   DeviceRay (*prepare)(const HeightField& field, const Ray& ray);
-  glsl::TexturesPush settings;  // nothing else of it
+  glsl::ScarpSampling settings;
 };
 
 constexpr int kMostSteps = 300;
@@ -174,29 +175,17 @@ MarchSettings march_settings() {
   MarchSettings settings;
   settings.naive.max_steps = settings.fixed_step.max_steps = settings.relaxed.max_steps = kMostSteps;
   settings.lipschitz.max_steps = kMostSteps;
+  settings.sampling = {.refinement = Refinement::bisect, .halvings = 5};
   return settings;
 }
 
 std::vector<Realisation> realisations(double slope) {
-  const MarchSettings s = march_settings();
-  const auto push = [](double step, double min_step, double tolerance, int interpolate) {
-    glsl::TexturesPush settings{};
-    settings.step = static_cast<float>(step);
-    settings.min_step = static_cast<float>(min_step);
-    settings.tolerance = static_cast<float>(tolerance);
-    settings.max_steps = kMostSteps;
-    settings.interpolate = interpolate;
-    return settings;
-  };
-  return {
-      {"max-mip", glsl::kTexturesMaxMip, device_ray, {}},
-      {"naive", glsl::kTexturesNaive, sampled_device_ray,
-       push(s.naive.step_factor, s.naive.min_step, s.naive.tolerance, 0)},
-      {"fixed-step", glsl::kTexturesFixedStep, sampled_device_ray,
-       push(s.fixed_step.step, 0, 0, s.fixed_step.interpolate)},
-      {"relaxed", glsl::kTexturesRelaxed, sampled_device_ray, push(s.relaxed.step_factor, 0, s.relaxed.tolerance, 0)},
-      {"lipschitz", glsl::kTexturesLipschitz, sampled_device_ray,
-       push(1 / std::hypot(1.0, slope), 0, s.lipschitz.tolerance, 0)}};
+  std::vector<Realisation> all = {{"max-mip", glsl::kTexturesMaxMip, device_ray, {}}};
+  for (const std::string_view name : {"naive", "fixed-step", "relaxed", "lipschitz"}) {
+    all.push_back({name, glsl::kTexturesSampled, sampled_device_ray,
+                   device_sampling(name, march_settings(), 1 / std::hypot(1.0, slope), 1)});
+  }
+  return all;
 }
 
 TEST(TexturesLayout, IsThatOfTheShader) { EXPECT_TRUE(is_laid_out_like<glsl::TexturesPush>(kWords)); }
@@ -206,12 +195,12 @@ class TexturesOnDevice : public OnDevice {};
 TEST_F(TexturesOnDevice, EveryMarchAnswersAsOverBuffers) {
   constexpr int kRaysPerKind = 8;
   std::map<std::string_view, DeviceQueries> over_buffers;
-  std::map<std::pair<int, bool>, TextureMarch> over_textures;
+  std::map<std::pair<std::string_view, bool>, TextureMarch> over_textures;
   for (const Realisation& of : realisations(0)) {
     over_buffers.try_emplace(of.name, device(), find_height_march(of.name), march_settings());
-    over_textures.try_emplace({of.constant, false}, device(), of.constant, false);
+    over_textures.try_emplace({of.name, false}, device(), of.constant, false, of.settings.march);
   }
-  over_textures.try_emplace({glsl::kTexturesMaxMip, true}, device(), glsl::kTexturesMaxMip, true);
+  over_textures.try_emplace({"max-mip", true}, device(), glsl::kTexturesMaxMip, true, 0);
   EXPECT_EQ(over_buffers.size(),
             static_cast<std::size_t>(std::count_if(height_marches().begin(), height_marches().end(),
                                                    [](const auto& march) { return march.gpu; })));
@@ -242,14 +231,15 @@ TEST_F(TexturesOnDevice, EveryMarchAnswersAsOverBuffers) {
       const DeviceBuffer on_device(device(), packed.size() * sizeof packed[0], "rays");
       upload(on_device, 0, packed.data(), packed.size() * sizeof packed[0]);
       const DeviceBuffer found(device(), rays.size() * sizeof(glsl::ScarpHit), "hits");
-      glsl::TexturesPush push = of.settings;
+      glsl::TexturesPush push{};
+      push.settings = of.settings;
       push.rays = on_device.address();
       push.hits = found.address();
       push.field = device_field(field, &pyramid);
       push.nodata = static_cast<float>(field.settings().nodata.value_or(NAN));
       push.count = static_cast<std::uint32_t>(rays.size());
       const auto ask = [&](bool any) {
-        over_textures.at({of.constant, any}).dispatch(heights, bounds, push);
+        over_textures.at({of.name, any}).dispatch(heights, bounds, push);
         std::vector<glsl::ScarpHit> answers(rays.size());
         download(found, 0, answers.data(), answers.size() * sizeof answers[0]);
         std::vector<Hit> hits;

@@ -12,8 +12,8 @@
 #include "march/height/rounding_judge.h"
 #include "march/height/spiteful.h"
 #include "march/height/spiteful_text.h"
-#include "scarp/march/fixed_step.glsl.h"
 #include "scarp/march/height/device_ray.h"
+#include "scarp/march/height/height_marches.glsl.h"
 #include "scarp/march/height/max_mip.glsl.h"
 #include "scarp/march/height/surface_normal.glsl.h"
 
@@ -118,11 +118,12 @@ TEST(TwoFloatRay, StepsGoOnWhereTheyWereInterrupted) {
     for (int i = 0; i < 100; ++i) {
       const DeviceRay prepared = sampled_device_ray(field, spiteful_rays()[0].make(field, random));
       if (!prepared.marches) continue;
-      const glsl::ScarpFixedStep settings{0.3f, i % 2, 200};
-      const glsl::ScarpHit whole = glsl::scarp_fixed_step(ground, prepared.ray, settings);
+      const glsl::ScarpSampling settings =
+          glsl::scarp_fixed_step(0.3f, i % 2 ? glsl::kScarpRefineSecant : glsl::kScarpRefineNone, 200);
+      const glsl::ScarpHit whole = glsl::scarp_sampled(ground, prepared.ray, settings);
       glsl::ScarpHit pieces = glsl::scarp_no_hit();
-      glsl::ScarpSteps steps = glsl::scarp_first_step(prepared.ray);
-      while (!glsl::scarp_step_on(ground, prepared.ray, settings, 3, steps, pieces)) {
+      glsl::ScarpMarchState state = glsl::scarp_sampled_begin(ground, prepared.ray, settings);
+      while (!glsl::scarp_sampled_on(ground, prepared.ray, settings, 3, state, pieces)) {
       }
       ASSERT_EQ(pieces.status, whole.status) << fields.name;
       ASSERT_EQ(pieces.time, whole.time) << fields.name;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `fixed-step` on a batch of rays, one invocation per ray.
+// `naive`, `fixed-step`, `relaxed` or `lipschitz` on a batch of rays, one invocation per ray.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -9,23 +9,25 @@
 #include "scarp/march/height/ray_batch.glsl.h"
 // The march asks the batch for its ground.
 #include "scarp/march/height/batch_states.glsl.h"
+#include "scarp/march/height/height_marches.glsl.h"
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (!batch_asks(i)) return;
   ScarpField field = open_ground(batch.ground);
   ScarpRay ray = BatchRays(batch.rays).rays[i];
-  ScarpFixedStep settings = ScarpFixedStep(batch.step, batch.interpolate, batch.max_steps);
+  ScarpSampling settings = batch.settings;
+  settings.march = batch_march;
   ScarpHit hit = scarp_no_hit();
-  ScarpSteps steps = scarp_first_step(ray);
+  ScarpMarchState state = scarp_sampled_begin(field, ray, settings);
   if (batch.resume != 0u) {
-    hit = BatchAllSteps(batch.states).of[i].hit;
-    steps = BatchAllSteps(batch.states).of[i].steps;
+    hit = BatchLooks(batch.states).of[i].hit;
+    state = BatchLooks(batch.states).of[i].state;
   }
-  if (scarp_step_on(field, ray, settings, batch.turns, steps, hit)) {
+  if (scarp_sampled_on(field, ray, settings, batch.turns, state, hit)) {
     batch_answer(i, hit);
     return;
   }
-  BatchAllSteps(batch.states).of[i] = BatchSteps(hit, steps);
+  BatchLooks(batch.states).of[i] = BatchLook(hit, state);
   batch_interrupt(i);
 }

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Private to the station: the settings of naive, fixed-step, relaxed and lipschitz as shaders have them.
+#pragma once
+
+#include <string_view>
+
+#include "scarp/march/march_settings.h"
+#include "scarp/march/sampling_marches.glsl.h"
+
+namespace scarp {
+
+// Cast below.
+static_assert(glsl::kScarpRefineNone == static_cast<glsl::uint>(Refinement::none) &&
+              glsl::kScarpRefineSecant == static_cast<glsl::uint>(Refinement::secant) &&
+              glsl::kScarpRefineBisect == static_cast<glsl::uint>(Refinement::bisect));
+
+/// Settings of the march of that name. fixed-step gets its step in cells, lipschitz the factor `shrink`. A unit of
+/// clearance is `unit` metres.
+inline glsl::ScarpSampling device_sampling(std::string_view march, const MarchSettings& all, double shrink,
+                                           double unit) {
+  const auto f = [](double value) { return static_cast<float>(value); };
+  if (march == "lipschitz")
+    return glsl::scarp_lipschitz(f(shrink), f(all.lipschitz.tolerance), all.lipschitz.max_steps);
+  glsl::ScarpSampling settings =
+      march == "naive" ? glsl::scarp_naive(f(all.naive.step_factor), f(all.naive.min_step), f(all.naive.tolerance),
+                                           all.naive.max_steps)
+      : march == "relaxed"
+          ? glsl::scarp_relaxed(f(all.relaxed.step_factor), f(all.relaxed.tolerance), all.relaxed.max_steps)
+          : glsl::scarp_fixed_step(f(all.fixed_step.step), 0, all.fixed_step.max_steps);
+  settings.height = f(all.sampling.tolerance / unit);
+  settings.refinement =
+      static_cast<glsl::uint>(march == "fixed-step" ? refinement_of_fixed_step(all) : all.sampling.refinement);
+  settings.halvings = all.sampling.halvings;
+  return settings;
+}
+
+}  // namespace scarp

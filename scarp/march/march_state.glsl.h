@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Statuses of answers and state of interrupted marches in single precision, for all kinds of field.
+//
+// Text of C++ and of GLSL, GLSL ES 3.0 included.
+#ifndef SCARP_MARCH_MARCH_STATE_GLSL_H
+#define SCARP_MARCH_MARCH_STATE_GLSL_H
+
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+const int kScarpMiss = 0;
+const int kScarpHit = 1;
+const int kScarpBelow = 2;      ///< began below the surface and never came from above to it
+const int kScarpExhausted = 3;  ///< a limit was reached: nothing is known beyond the time
+const int kScarpWall = 4;       ///< a hit, of the wall under a border or a hole's rim
+
+/// Later than any time.
+const float kScarpNever = 1.0e30f;
+
+/// Where an interrupted march is. For a ray that has not begun, steps and phase are 0.
+struct ScarpMarchState {
+  float s;       ///< time
+  float before;  ///< this and h_before depend on the march
+  float h_before;
+  int steps;  ///< taken so far
+  uint phase;
+};
+
+SCARP_GLSL_END
+
+#endif

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Settings and ray of naive, fixed-step, relaxed and lipschitz in shaders.
+//
+// Each march is a *turn* (naive.glsl.h and so on): given the clearance at time state.s, it returns a hit or sets
+// state.s to the next time. The loops are in height/height_marches.glsl.h and function/function_marches.glsl.h.
+//
+//   state.s ──▶ probe: clearance, or nothing over a hole ──▶ turn ──▶ hit, or the next state.s
+//
+// What is called at each turn returns at its end only: an early return becomes a loop of one turn, and some drivers
+// limit the turns of all loops (vk/loop_turns.glsl.h).
+//
+// Text of C++ and of GLSL, GLSL ES 3.0 included.
+#ifndef SCARP_MARCH_SAMPLING_GLSL_H
+#define SCARP_MARCH_SAMPLING_GLSL_H
+
+#include "scarp/march/march_state.glsl.h"
+#include "scarp/vk/glsl_cpp.h"
+
+SCARP_GLSL_BEGIN
+
+// Which march.
+const uint kScarpNaive = 0u;
+const uint kScarpFixedStep = 1u;
+const uint kScarpRelaxed = 2u;
+const uint kScarpLipschitz = 3u;
+
+// The values of Refinement.
+const uint kScarpRefineNone = 0u;
+const uint kScarpRefineSecant = 1u;
+const uint kScarpRefineBisect = 2u;
+
+/// Settings of one march, as in MarchSettings.
+struct ScarpSampling {
+  uint march;       ///< kScarpNaive and so on
+  float factor;     ///< naive, relaxed: of the vertical distance; lipschitz: shrink factor; fixed-step: cells or metres
+  float least;      ///< naive: least step, a share of the ray's length; fixed-step: share of the distance travelled
+  float tolerance;  ///< distance off the ground that counts as a hit, per unit of distance; fixed-step ignores it
+  float height;     ///< naive, relaxed: sample units or metres off the ground that count as a hit at any distance
+  int max_steps;    ///< most points, >= 1; then kScarpExhausted
+  uint refinement;  ///< of the last interval, kScarpRefineNone and so on; lipschitz ignores it
+  int halvings;     ///< for kScarpRefineBisect
+};
+
+/// Makes settings with `height` and `halvings` 0.
+SCARP_FN ScarpSampling scarp_sampling(uint march, float factor, float least, float tolerance, int max_steps,
+                                      uint refinement) {
+  ScarpSampling settings;
+  settings.march = march;
+  settings.factor = factor;
+  settings.least = least;
+  settings.tolerance = tolerance;
+  settings.height = 0.0f;
+  settings.max_steps = max_steps;
+  settings.refinement = refinement;
+  settings.halvings = 0;
+  return settings;
+}
+
+/// A ray as the marches see it; all members are times, except as noted. Clearances are in the field's own unit.
+struct ScarpWay {
+  float exit;           ///< the last time, included
+  float travelled;      ///< from the start of the ray's range to time 0
+  float per_clearance;  ///< time in which the ray goes as far as a unit of clearance is high
+  float rounding;       ///< error bound of clearances, in their unit
+  float blind;          ///< the first step off the surface, and a step over a hole
+  float stride;         ///< of fixed-step
+  bool from_surface;
+  bool from_outside;  ///< comes in through the border
+  bool solid;         ///< there is rock under the sheet
+};
+
+// Bits of ScarpMarchState::phase. `before` and `h_before` are the time and clearance of the previous point.
+const uint kScarpKnown = 1u;       ///< the previous point was over ground
+const uint kScarpWasAbove = 2u;    ///< the last point over ground was above it
+const uint kScarpBeganBelow = 4u;  ///< the first one was under it
+
+/// The distance off the ground below which a point at time s is a hit of naive and relaxed, as a time.
+SCARP_FN float scarp_hit_limit(ScarpWay way, ScarpSampling settings, float s) {
+  return max(settings.height * way.per_clearance, settings.tolerance * (s + way.travelled));
+}
+
+/// Moves from state.s, a point over ground if `known`, to time s.
+SCARP_FN void scarp_step_to(float s, bool known, float clearance, SCARP_INOUT(ScarpMarchState) state) {
+  state.before = state.s;
+  state.h_before = clearance;
+  state.phase = (state.phase & ~kScarpKnown) | (known ? kScarpKnown : 0u);
+  state.s = s;
+  state.steps += 1;
+}
+
+SCARP_GLSL_END
+
+#endif
