@@ -8,9 +8,9 @@
 #include <thread>
 
 #include "app/cli/numbers.h"
-#include "app/cli/wrong_usage.h"
 #include "bench/commands.h"
 #include "bench/rays.h"
+#include "bench/wrong_usage.h"
 #include "scarp/base/error.h"
 
 namespace {
@@ -419,8 +419,8 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help
-    std::fprintf(stderr, "scarp-bench: %s\n", scarp::cli::wrong_usage(error, app).c_str());
-    return scarp::cli::kWrongUsage;
+    std::fprintf(stderr, "scarp-bench: %s\n", scarp::bench::wrong_usage(error, app).c_str());
+    return scarp::bench::kWrongUsage;
   }
   voxel_leaks.rays = static_cast<std::int64_t>(voxel_leak_rays);
   leaks.rays = static_cast<std::int64_t>(leak_rays);

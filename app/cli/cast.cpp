@@ -17,12 +17,12 @@
 #include "app/cli/commands.h"
 #include "app/cli/device_option.h"
 #include "app/cli/field_options.h"
-#include "app/cli/input_kind.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/march_options.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/scene_input.h"
+#include "app/cli/shared_options.h"
 #include "app/cli/vox_input.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/error.h"
@@ -45,24 +45,24 @@ constexpr std::size_t kPiece = 1 << 16;
 
 constexpr std::string_view kRasterCrs = "--raster-crs";
 
-// What the help says below the options.
+// Below the options in the help.
 constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order:
-  x,y,z                 the origin
-  dx,dy,dz              its direction; t counts in its length
-  or tx,ty,tz           a target instead: there t is 1, and there the ray ends
-  t_min,t_max           if you like: the range of t (0 to infinity; 0 to 1 with a target)
-  start_col,start_row   if you like: the ray starts on the surface of this cell
-  others                are copied to the hits
-Rays, .npy: float32 or float64 of N x 6 or N x 8: x,y,z,dx,dy,dz[,t_min,t_max]; or structures with fields of these names.
+  x,y,z                 origin
+  dx,dy,dz              direction; t counts in its length
+  or tx,ty,tz           target instead of a direction: t is 1 there, and the ray ends there
+  t_min,t_max           optional range of t (0 to infinity; 0 to 1 with a target)
+  start_col,start_row   optional cell on whose surface the ray starts
+  others                copied to the hits
+Rays, .npy: float32 or float64 of N x 6 or N x 8: x,y,z,dx,dy,dz[,t_min,t_max]; or structures with
+fields of these names.
 
-Coordinates (--crs); z is always metres, as scarp has the heights of the raster:
+Coordinates (--crs); z is always in metres:
   local    metres east and north of the south-west sample
-  map      units of the raster's CRS; dx,dy are in these units, too, dz in metres
+  map      units of the raster's CRS, for dx,dy as well; dz in metres
   lonlat   longitude and latitude in degrees, WGS 84; dx,dy,dz are metres east, north and up
 
-Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, the cell col,row and the place u,v in it, the unit
-normal nx,ny,nz (east, north, up), wall (0 or 1). With --any: ray, blocked.
-Example: printf 'x,y,z,dx,dy,dz\n500,500,9000,0,0,-1\n' | scarp cast dem.tif --rays - --crs local)";
+Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, cell col,row, position u,v in
+the cell, unit normal nx,ny,nz (east, north, up), wall (0 or 1). With --any: ray, blocked.)";
 
 struct CastOptions {
   std::vector<std::string> inputs;
@@ -74,8 +74,7 @@ struct CastOptions {
   MarchSettings march_settings;
   bool any = false, all = false;
   int threads = 0;
-  std::vector<std::string> given;  // the names of the options that were typed
-  std::vector<std::string> typed;  // and their values
+  std::vector<std::string> typed;  // the values of the options
 };
 
 using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&);
@@ -84,12 +83,12 @@ using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&
 AllHits all_hits_of(const CastOptions& options, const HeightMarchEntry& march) {
   if (!options.all) return nullptr;
   if (!options.device.empty()) {
-    throw Error(fmt::format("--all --device {}: devices tell the first hit of a ray alone; leave one of both out",
+    throw Error(fmt::format("--all --device {}: devices return only the first hit of a ray (leave one of the two out)",
                             options.device));
   }
   if (march.name == "max-mip") return all_hits_max_mip;
   if (march.name == "exhaustive") return all_hits_exhaustive;
-  throw Error(fmt::format("--all --march {}: all hits are found by max-mip and exhaustive only", march.name));
+  throw Error(fmt::format("--all --march {}: only max-mip and exhaustive find all hits", march.name));
 }
 
 // Readers of rasters speak of --crs, which says here what the coordinates of the rays are.
@@ -257,15 +256,14 @@ class Caster {
   double seconds_ = 0;
 };
 
-void run(CastOptions options) {
+void run(CastOptions options, const Command& command) {
   if (options.output == "-") options.output.clear();
   const HeightMarchEntry& march = find_height_march(options.march);
   all_hits_of(options, march);  // refuses before files are read
-  require_options_of(InputKind::terrain, options.given);
-  require_settings_of(options.march, options.given, options.march_settings);
+  command.require_effect({.kind = InputKind::terrain, .march = options.march});
   validate(options.march_settings);
   if (is_vox_input(options.inputs, {}) || is_scene_input(options.inputs)) {
-    throw Error(fmt::format("'{}': cast asks elevation models, not voxels and scenes", options.inputs.front()));
+    throw Error(fmt::format("'{}': cast takes elevation models, not voxels or scenes", options.inputs.front()));
   }
   if (!options.coordinates.empty()) {
     try {
@@ -337,29 +335,51 @@ void run(CastOptions options) {
 
 }  // namespace
 
-void add_cast(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("cast", "Say what rays of a table meet on an elevation model");
+void add_cast(Program& program) {
+  Command& command = program.add("cast", "Intersect rays of a table with an elevation model");
   const auto options = std::make_shared<CastOptions>();
   CastOptions& o = *options;
-  add_raster_inputs(*command, o.inputs);
-  command->add_option("--rays", o.rays, "table of rays, .csv or .npy; -: CSV from standard input")->required();
-  command->add_option("-o,--output", o.output, "the table of hits, .csv or .npy; -: CSV to standard output (-)");
-  command->add_option("--crs", o.coordinates,
-                      "coordinates of rays and hits: local, map or lonlat (map; local where the raster has no place)");
-  CLI::Option* any = command->add_flag(
-      "--any", o.any, "only whether a ray hits anything: ray,blocked (1; 0 also from below the ground)");
-  command->add_flag("--all", o.all, "all hits of each ray in the order of t, not the first only")->excludes(any);
-  command->add_option("--march", o.march, "technique, see 'scarp marches'")->capture_default_str();
-  add_device_option(*command, o.device);
-  command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
-  add_field_options(*command, o.field, BeyondBorders::wraps);
-  add_march_options(*command, o.march_settings);
-  add_raster_options(*command, o.raster, std::string(kRasterCrs));
-  command->footer(kTables);
-  command->callback([options, command] {
-    options->given = given_options(*command);
-    options->typed = typed_values(*command);
-    run(*options);
+  add_raster_inputs(command, o.inputs, "elevation raster: anything GDAL reads, .npy, .npz, .exr");
+  command.add(&o.rays, {.names = "--rays",
+                        .value = "FILE",
+                        .help = "table of rays: .csv or .npy",
+                        .files = "csv npy",
+                        .note = "-: CSV from standard input",
+                        .required = true});
+  add_output_option(command, o.output, "table of hits: .csv or .npy; -: CSV to standard output", "csv npy", false);
+  command.add(&o.coordinates,
+              {.names = "--crs",
+               .value = "KIND",
+               .help = "coordinates of rays and hits",
+               .choices = {std::string(name_of(Coordinates::local)), std::string(name_of(Coordinates::map)),
+                           std::string(name_of(Coordinates::lonlat))},
+               .fallback = "map; local for rasters without a place",
+               .common = true});
+  command.add(&o.any, {.names = "--any",
+                       .help = "occlusion only: columns ray,blocked (1, or 0; 0 also for rays that start below ground)",
+                       .common = true});
+  command.add(&o.all,
+              {.names = "--all", .help = "all hits of each ray in order of t", .common = true, .excludes = {"--any"}});
+  std::vector<std::string> marches;
+  for (const MarchEntry& march : height_marches()) marches.emplace_back(march.name);
+  command.add(&o.march, {.names = "--march",
+                         .value = "NAME",
+                         .help = "marching technique",
+                         .choices = std::move(marches),
+                         .unlisted = true,
+                         .note = "see 'scarp marches'",
+                         .common = true});
+  add_device_option(command, o.device);
+  add_threads_option(command, o.threads);
+  add_field_options(command, o.field, BeyondBorders::wraps);
+  add_march_options(command, o.march_settings);
+  add_raster_options(command, o.raster, std::string(kRasterCrs));
+  command.footer(kTables);
+  command.example("scarp cast dem.tif --rays rays.csv -o hits.csv");
+  command.example("scarp cast dem.tif --rays rays.npy --crs local --any -o blocked.npy");
+  command.runs([options, &command] {
+    options->typed = command.typed_values();
+    run(*options, command);
   });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The command line: finds the subcommand, and turns whatever went wrong into one line and an exit status.
+// The command line: runs the subcommand, and turns any failure into one line and an exit status.
 //
 //   0 done   1 failed (files, data, values)   2 wrong usage   128 + n ended by signal n
 #pragma once

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: MIT
-// The subcommands of `scarp`. Each adds itself, its options and its help to the program; it runs when it was called,
-// and throws scarp::Error when it fails.
+// The subcommands of `scarp`. Each declares itself and its options; it throws scarp::Error when it fails.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "app/cli/command.h"
 
 namespace scarp::cli {
 
-void add_render(CLI::App& program);
-void add_cast(CLI::App& program);
-void add_composite(CLI::App& program);
-void add_info(CLI::App& program);
-void add_generate(CLI::App& program);
-void add_marches(CLI::App& program);
-void add_replay(CLI::App& program);
-void add_section(CLI::App& program);
-void add_voxelise(CLI::App& program);
-void add_devices(CLI::App& program);  // with SCARP_VULKAN
+void add_render(Program& program);
+void add_cast(Program& program);
+void add_composite(Program& program);
+void add_info(Program& program);
+void add_generate(Program& program);
+void add_marches(Program& program);
+void add_replay(Program& program);
+void add_section(Program& program);
+void add_voxelise(Program& program);
+void add_devices(Program& program);  // with SCARP_VULKAN
+
+void add_options(Program& program);  // hidden: the documents that are made of the declarations
+
+/// All of these.
+void add_commands(Program& program);
 
 }  // namespace scarp::cli

@@ -14,6 +14,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/depth_options.h"
 #include "app/cli/kept_inputs.h"
+#include "app/cli/shared_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/output/png.h"
@@ -77,15 +78,14 @@ void write(const std::string& path, int width, int height, const std::vector<vec
                    {"Z", depth.data()}};
   write_exr(file, path, view);
 #else
-  throw Error(fmt::format("output '{}': this scarp was built without OpenEXR; let the name end in .png", path));
+  throw Error(fmt::format("output '{}': this scarp was built without OpenEXR (name it *.png)", path));
 #endif
 }
 
 void run(const CompositeOptions& options) {
   const std::string extension = extension_of(options.output);
   if (extension != ".png" && extension != ".exr") {
-    throw Error(fmt::format("output '{}': pictures are written as PNG or EXR; let the name end in .png or .exr",
-                            options.output));
+    throw Error(fmt::format("output '{}': pictures are PNG or EXR (name it *.png or *.exr)", options.output));
   }
   const auto range = depth_range_of(options.depth);
   ExrChannels ours(options.ours), theirs(options.theirs);
@@ -126,22 +126,31 @@ void run(const CompositeOptions& options) {
 
 }  // namespace
 
-void add_composite(CLI::App& program) {
-  CLI::App* command =
-      program.add_subcommand("composite", "Put another renderer's picture over one of ours: the nearer pixel is seen");
+void add_composite(Program& program) {
+  Command& command = program.add("composite", "Combine a picture of another renderer with one of scarp by depth");
   const auto options = std::make_shared<CompositeOptions>();
   CompositeOptions& o = *options;
-  command->add_option("ours", o.ours, "an EXR of scarp render: R, G, B and Z")->required();
-  command->add_option("theirs", o.theirs, "an EXR of the same camera and size: R, G, B and a depth")->required();
-  command->add_option("-o,--output", o.output, "the picture: .png, or .exr with Z")->required();
-  command
-      ->add_option("--depth-channel", o.depth_channel,
-                   "their depth: metres along the view axis, or with --depth-range what their depth buffer held")
-      ->capture_default_str();
-  command->add_option("--alpha", o.alpha, "their channel of opacity, with which their colours are multiplied");
-  add_depth_options(*command, o.depth);
-  command->callback([options, command] {
-    keep_inputs(options->output, typed_values(*command));
+  command.add(
+      &o.ours,
+      {.names = "OURS", .help = "EXR picture of 'scarp render': R, G, B and Z", .files = "exr", .required = true});
+  command.add(&o.theirs, {.names = "THEIRS",
+                          .help = "EXR picture of the same camera and size: R, G, B and a depth",
+                          .files = "exr",
+                          .required = true});
+  add_output_option(command, o.output, "picture: .png, or .exr with Z", "png exr");
+  command.add(&o.depth_channel,
+              {.names = "--depth-channel",
+               .value = "NAME",
+               .help = "their depth: metres along the view axis, or device depth with --depth-range"});
+  command.add(&o.alpha, {.names = "--alpha",
+                         .value = "NAME",
+                         .help = "their opacity channel, which their colours are multiplied by",
+                         .fallback = "none"});
+  add_depth_options(command, o.depth);
+  command.example("scarp composite terrain.exr ship.exr -o both.png");
+  command.runs([options, &command] {
+    command.require_effect({});
+    keep_inputs(options->output, command.typed_values());
     run(*options);
   });
 }

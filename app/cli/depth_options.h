@@ -2,10 +2,10 @@
 // The planes between which a depth buffer counts.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 
+#include "app/cli/command.h"
 #include "scarp/render/camera/depth.h"
 
 namespace scarp::cli {
@@ -16,8 +16,8 @@ struct DepthOptions {
   bool reversed = false;
 };
 
-/// Adds --depth-range and --depth-reversed. `options` must live until the subcommand has run.
-void add_depth_options(CLI::App& command, DepthOptions& options);
+/// Declares --depth-range and --depth-reversed.
+void add_depth_options(Command& command, DepthOptions& options);
 
 /// Nothing when none was given. Throws Error.
 std::optional<DepthRange> depth_range_of(const DepthOptions& options);

@@ -10,14 +10,20 @@
 #endif
 
 namespace scarp::cli {
-void add_device_option(CLI::App& command, std::string& device) {
-  command
-      .add_option("--device", device,
-                  "cpu, gpu, auto or part of a name: a Vulkan device answers the rays, in single precision, see "
-                  "'scarp devices'; without this the marches of the CPU do, in double")
-      ->check([](const std::string& text) {
-        return text.empty() ? std::string("expected cpu, gpu, auto or part of a name") : std::string();
-      });
+
+void add_device_option(Command& command, std::string& device) {
+  command.add(
+      [&device](const std::string& text) {
+        if (text.empty()) throw WrongUsage("--device '': expected cpu, gpu, auto or part of a name");
+        device = text;
+      },
+      {.names = "--device",
+       .value = "NAME",
+       .help = "Vulkan device that traces the rays: cpu, gpu, auto or part of a name",
+       .note = "see 'scarp devices'",
+       .fallback = "none: the CPU",
+       .common = true,
+       .inputs = {kTerrain | kScene | kFunction, "voxel models are traced on the CPU"}});
 }
 
 void require_device_march(const std::string& device, const HeightMarchEntry& march) {
@@ -28,7 +34,7 @@ void require_device_march(const std::string& device, const HeightMarchEntry& mar
                           device_march_names()));
 #else
   throw Error(
-      fmt::format("--device {}: this scarp was built without Vulkan (SCARP_VULKAN=OFF); leave it out, and march "
+      fmt::format("--device {}: this scarp was built without Vulkan (SCARP_VULKAN=OFF); without the option, march "
                   "'{}' runs on the CPU",
                   device, march.name));
 #endif
@@ -40,7 +46,7 @@ SceneOnDevice scene_on_device(const std::string& device, const Scene& scene) {
   const Device opened({.choice = device});
   return {scene_on(opened, scene), opened.description().name};
 #else
-  throw Error(fmt::format("--device {}: this scarp was built without Vulkan (SCARP_VULKAN=OFF); leave it out", device));
+  throw Error(fmt::format("--device {}: this scarp was built without Vulkan (SCARP_VULKAN=OFF)", device));
 #endif
 }
 

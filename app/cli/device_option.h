@@ -2,14 +2,14 @@
 // --device: where the rays of a scene are answered.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "app/cli/command.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp::cli {
 
-void add_device_option(CLI::App& command, std::string& device);
+void add_device_option(Command& command, std::string& device);
 
 /// Checks before any file is read that rays of the march can be answered there; does nothing when `device` is empty.
 /// Throws Error: the march does not run on devices, this program was built without Vulkan.

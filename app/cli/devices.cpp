@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/cli/commands.h"
+#include "app/cli/shared_options.h"
 #include "scarp/vk/device.h"
 
 namespace scarp::cli {
@@ -56,12 +57,11 @@ std::string text_of(const DeviceDescription& device) {
 
 }  // namespace
 
-void add_devices(CLI::App& program) {
-  CLI::App* command =
-      program.add_subcommand("devices", "List the Vulkan devices, and whether scarp can compute on them");
+void add_devices(Program& program) {
+  Command& command = program.add("devices", "List the Vulkan devices and whether scarp can compute on them");
   const auto json = std::make_shared<bool>(false);
-  command->add_flag("--json", *json, "one JSON object instead of text");
-  command->callback([json] {
+  add_json_option(command, *json);
+  command.runs([json] {
     const DeviceList list = list_devices();
     if (*json) {
       Json all;

@@ -1,77 +1,53 @@
 // SPDX-License-Identifier: MIT
 #include "app/cli/field_options.h"
 
-#include <fmt/format.h>
-
-#include <cmath>
 #include <string>
-
-#include "app/cli/numbers.h"
-#include "scarp/base/error.h"
+#include <utility>
+#include <vector>
 
 namespace scarp::cli {
-namespace {
 
-double exaggeration_from(const std::string& text) {
-  constexpr std::string_view kForm = "a number above 0";
-  const double number = ground_numbers_from(text, 1, 1, "--exaggeration", kForm).front();
-  if (!(number > 0)) throw Error(fmt::format("--exaggeration '{}': expected {}", text, kForm));
-  return number;
-}
-
-Surface surface_from(const std::string& text) {
-  if (text == "bilinear") return Surface::bilinear;
-  if (text == "triangles") return Surface::triangles;
-  throw Error(fmt::format("--surface '{}': expected bilinear or triangles", text));
-}
-
-struct Beyond {
-  Wrap wrap = Wrap::none;
-  bool mirror = false;
-};
-
-Beyond wrap_from(const std::string& text, bool mirrors) {
-  if (text == "none") return {};
-  if (text == "periodic") return {Wrap::periodic};
-  if (text == "shared") return {Wrap::shared_border};
-  if (text == "mirror" && mirrors) return {Wrap::periodic, true};
-  throw Error(
-      fmt::format("--wrap '{}': expected none, periodic{}", text, mirrors ? ", shared or mirror" : " or shared"));
-}
-
-}  // namespace
-
-void add_field_options(CLI::App& command, FieldOptions& options, BeyondBorders borders) {
-  const std::string group = "Surface";
-  const auto add = [&](const char* name, auto& value, auto from, const char* help, const char* otherwise) {
-    command
-        .add_option_function<std::string>(
-            name, [&value, from](const std::string& text) { value = from(text); }, help)
-        ->default_str(otherwise)
-        ->group(group);
+void add_field_options(Command& command, FieldOptions& options, BeyondBorders borders) {
+  constexpr Inputs kSurfaces{kTerrain, "it shapes the surface between the samples of rasters"};
+  const auto add = [&](Binding to, Option option) {
+    option.topic = Topic::surface;
+    option.inputs = kSurfaces;
+    command.add(std::move(to), std::move(option));
   };
-  add("--exaggeration", options.exaggeration, exaggeration_from, "heights times this; above 0", "1");
-  add("--surface", options.surface, surface_from, "between the samples: bilinear, or triangles (two per cell)",
-      "bilinear");
+  add(&options.exaggeration, {.names = "--exaggeration",
+                              .help = "factor of all heights",
+                              .range = {.least = 0, .most = kMostOfGround, .above_least = true},
+                              .common = true});
+  add([&options](
+          const std::string& text) { options.surface = text == "triangles" ? Surface::triangles : Surface::bilinear; },
+      {.names = "--surface",
+       .value = "KIND",
+       .help = "surface between samples",
+       .choices = {"bilinear", "triangles"},
+       .closed = true,
+       .note = "triangles: two per cell",
+       .fallback = "bilinear"});
   if (borders != BeyondBorders::none) {
     const bool mirrors = borders == BeyondBorders::mirrors;
-    std::string help =
-        "beyond the border: none, periodic (the first column follows the last), shared (the last repeats the first)";
-    if (mirrors) help += ", or mirror (the field and its mirror images, without a seam)";
-    command
-        .add_option_function<std::string>(
-            "--wrap",
-            [&options, mirrors](const std::string& text) {
-              const Beyond beyond = wrap_from(text, mirrors);
-              options.wrap = beyond.wrap;
-              options.mirror = beyond.mirror;
-            },
-            help)
-        ->default_str("none")
-        ->group(group);
+    std::vector<std::string> choices{"none", "periodic", "shared"};
+    if (mirrors) choices.emplace_back("mirror");
+    add(
+        [&options](const std::string& text) {
+          options.mirror = text == "mirror";
+          options.wrap = text == "shared"                       ? Wrap::shared_border
+                         : text == "periodic" || options.mirror ? Wrap::periodic
+                                                                : Wrap::none;
+        },
+        {.names = "--wrap",
+         .value = "KIND",
+         .help = "continuation beyond the border",
+         .choices = std::move(choices),
+         .closed = true,
+         .note = std::string("periodic: the first column follows the last; shared: the last column repeats the first") +
+                 (mirrors ? "; mirror: mirror images, without a seam" : ""),
+         .fallback = "none"});
   }
-  command.add_flag("--solid", options.solid, "rock under the surface: rays hit the walls at borders and holes")
-      ->group(group);
+  add(&options.solid, {.names = "--solid", .help = "rock under the surface: rays hit the walls at borders and holes"});
 }
 
 }  // namespace scarp::cli

@@ -15,10 +15,16 @@
 
 namespace scarp::cli {
 
-void add_figure_options(CLI::App& command, FigureOptions& options) {
-  command.add_flag("--legend", options.legend, "what the colours mean, drawn into the lower right corner");
-  command.add_flag("--scale-bar", options.scale_bar,
-                   "a bar of known length in the lower left corner; in perspective it holds in the picture's middle");
+void add_figure_options(Command& command, FigureOptions& options) {
+  command.add(&options.legend, {.names = "--legend",
+                                .help = "legend of the colours in the lower right corner",
+                                .topic = Topic::figure,
+                                .common = true});
+  command.add(&options.scale_bar, {.names = "--scale-bar",
+                                   .help = "scale bar in the lower left corner",
+                                   .note = "in perspective it holds in the middle",
+                                   .topic = Topic::figure,
+                                   .common = true});
 }
 
 #ifdef SCARP_CAIRO
@@ -125,10 +131,10 @@ FigureScale scale_of(double pixels_wide, double metres_per_pixel, bool map) {
 void settle_figure(const FigureOptions& options, const PictureSettings& settings, bool exr) {
   if (!options.any()) return;
   const std::string_view option = options.legend ? "--legend" : "--scale-bar";
-  if (exr) throw Error(fmt::format("{}: is drawn into PNG pictures; EXR keeps what was measured", option));
+  if (exr) throw Error(fmt::format("{} is drawn into PNG pictures only (name the output *.png)", option));
   const bool ramp = settings.look == Look::shaded || settings.look == Look::comanche;
   if (options.legend && ramp && settings.ground.natural) {
-    throw Error("--legend: rock, grass and snow are no scale of heights; leave it out, or --ground natural");
+    throw Error("--legend has no colour scale to show with --ground natural (leave one of them out)");
   }
 }
 
@@ -139,7 +145,7 @@ void draw_figure_of(const FigureOptions& options, const PictureSettings& setting
   if (options.legend) add_meaning(settings, scene, picture, figure);
   if (options.scale_bar) {
     const double depth = depth_in_the_middle(settings, scene, camera);
-    if (!(depth > 0)) throw Error("--scale-bar: the picture's middle shows no ground; leave it out");
+    if (!(depth > 0)) throw Error("--scale-bar: the middle of the picture shows no ground to measure");
     figure.scale = scale_of(picture.image.width, camera.pixel_width(depth) * settings.width / picture.image.width, map);
   }
   draw_figure(picture.image.rgb.data(), picture.image.width, picture.image.height, figure);
@@ -149,7 +155,7 @@ void draw_figure_of(const FigureOptions& options, const PictureSettings& setting
 
 void settle_figure(const FigureOptions& options, const PictureSettings&, bool) {
   if (options.any()) {
-    throw Error("--legend, --scale-bar: this scarp was built without Cairo (SCARP_CAIRO=OFF); leave them out");
+    throw Error("--legend, --scale-bar: this scarp was built without Cairo (SCARP_CAIRO=OFF)");
   }
 }
 

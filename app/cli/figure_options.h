@@ -2,8 +2,7 @@
 // A legend and a scale bar over pictures.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "app/cli/command.h"
 #include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {
@@ -15,8 +14,8 @@ struct FigureOptions {
   bool any() const { return legend || scale_bar; }
 };
 
-/// Adds --legend and --scale-bar. `options` must live until the subcommand has run.
-void add_figure_options(CLI::App& command, FigureOptions& options);
+/// Declares --legend and --scale-bar.
+void add_figure_options(Command& command, FigureOptions& options);
 
 /// What can be judged without the field. Throws Error.
 void settle_figure(const FigureOptions& options, const PictureSettings& settings, bool exr);

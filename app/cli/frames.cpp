@@ -32,35 +32,36 @@ Place place_of_number(const std::string& output) {
 
 }  // namespace
 
-void add_frame_options(CLI::App& command, FrameOptions& o) {
-  const std::string group = "Flights";
-  command
-      .add_option(
-          "--path", o.path,
-          "a table of cameras: columns x,y,z of the eye and tx,ty,tz of the target, or dx,dy,dz of the direction, "
-          "in metres as --eye has them; the output is frame-####.png")
-      ->group(group);
-  // Before --frames, which goes with it: of options that are refused together the first one is named.
-  command.add_flag("--turntable", o.turntable, "once round, clockwise seen from above, beginning at --view")
-      ->group(group);
-  command
-      .add_option("--frames", o.frames,
-                  "pictures along the path, which goes smoothly through its rows (one per row); of a turntable 120")
-      ->check(CLI::Range(1, kMostFrames))
-      ->group(group);
-  command.add_flag("--overwrite", o.overwrite, "makes frames that are there anew; else only those that are missing")
-      ->group(group);
+void add_frame_options(Command& command, FrameOptions& o) {
+  const auto several = [&o] { return o.several(); };
+  command.add(&o.path, {.names = "--path",
+                        .value = "FILE",
+                        .help = "table of cameras: columns x,y,z of the eye and tx,ty,tz of the target, or dx,dy,dz of "
+                                "the direction, in metres as for --eye",
+                        .files = "csv npy",
+                        .note = "the output is frame-####.png",
+                        .topic = Topic::flight});
+  command.add(&o.turntable, {.names = "--turntable",
+                             .help = "frames once round the scene, clockwise from --view, as frame-####.png",
+                             .topic = Topic::flight,
+                             .common = true,
+                             .excludes = {"--path"}});
+  command.add(&o.frames, {.names = "--frames",
+                          .help = "number of frames",
+                          .range = {1, kMostFrames},
+                          .fallback = fmt::format("one per row of --path; {} with --turntable", kTurntableFrames),
+                          .topic = Topic::flight,
+                          .common = true,
+                          .rules = {needs("--path FILE or --turntable", several)}});
+  command.add(&o.overwrite, {.names = "--overwrite",
+                             .help = "existing frames are rendered again instead of kept",
+                             .topic = Topic::flight,
+                             .rules = {needs("--path FILE or --turntable", several)}});
 }
 
 void settle_frames(const FrameOptions& o, const std::string& output) {
-  if (!o.several()) {
-    if (o.frames > 0) throw Error("--frames: goes with --path FILE or --turntable");
-    if (o.overwrite) throw Error("--overwrite: goes with --path FILE or --turntable; one picture is always made anew");
-    return;
-  }
-  if (o.turntable && !o.path.empty()) throw Error("--turntable: goes not with --path; leave one of them out");
-  if (place_of_number(output).count == 0) {
-    throw Error(fmt::format("output '{}': frames need a place for their number; let it be frame-####.png", output));
+  if (o.several() && place_of_number(output).count == 0) {
+    throw Error(fmt::format("output '{}': frames need a place for their number (name it frame-####.png)", output));
   }
 }
 

@@ -2,11 +2,11 @@
 // Many pictures of one terrain: a flight along a path, or once round on a turntable.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "app/cli/command.h"
 #include "scarp/render/camera/camera.h"
 
 namespace scarp::cli {
@@ -20,11 +20,9 @@ struct FrameOptions {
   bool several() const { return turntable || !path.empty(); }
 };
 
-/// `options` must live until the subcommand has run.
-void add_frame_options(CLI::App& command, FrameOptions& options);
+void add_frame_options(Command& command, FrameOptions& options);
 
-/// Throws Error: an output without a place for the number, a number of frames without a path or turntable, both at
-/// once.
+/// Throws Error where several frames have an output without a place for their number.
 void settle_frames(const FrameOptions& options, const std::string& output);
 
 /// Where the frames are seen from; `framed` makes those of a turntable, which begins at `view`. Throws Error naming

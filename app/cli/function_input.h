@@ -2,15 +2,20 @@
 // Terrain functions where `scarp render` takes files: --function and --preset.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 
+#include "app/cli/command.h"
 #include "scarp/march/march_settings.h"
+#include "scarp/render/camera/camera.h"
 
 namespace scarp::cli {
 
 /// Without --march.
 constexpr const char* kFunctionMarch = "lipschitz-local";
+/// Without --haze: share over the extent.
+constexpr double kFunctionHaze = 0.2;
+/// Without --view and --fov.
+constexpr ViewSettings kFunctionView{.azimuth_deg = 190, .elevation_deg = 14, .distance = 0.5, .fov_deg = 45};
 
 struct FunctionInput {
   std::string function;  // a name or a file; empty: none
@@ -18,10 +23,9 @@ struct FunctionInput {
   double extent = 6000;
 };
 
-/// Adds --function and --extent. `input` must live until the subcommand has run.
-void add_function_option(CLI::App& command, FunctionInput& input, const std::string& extent);
-/// These and --preset. `march` and `settings` are where --march and its settings go, and those of a preset with them:
-/// add this before them, so that what is typed counts more. All must live until the subcommand has run.
-void add_function_options(CLI::App& command, FunctionInput& input, std::string& march, MarchSettings& settings);
+/// Declares --function and --extent, whose help is `extent`.
+void add_function_option(Command& command, FunctionInput& input, const std::string& extent);
+/// These and --preset. `march` and `settings` are where --march and its settings go; a preset sets them first.
+void add_function_options(Command& command, FunctionInput& input, std::string& march, MarchSettings& settings);
 
 }  // namespace scarp::cli

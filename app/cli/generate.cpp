@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 
@@ -13,6 +12,7 @@
 #include "app/cli/kept_inputs.h"
 #include "app/cli/numbers.h"
 #include "app/cli/progress.h"
+#include "app/cli/shared_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
@@ -57,14 +57,11 @@ void run(GenerateOptions options) {
   }
   terrain.cols = static_cast<int>(size.front());
   terrain.rows = static_cast<int>(size.back());
-  const auto kind = terrain_kind(options.kind);
-  if (!kind) throw Error(fmt::format("--kind '{}': expected fbm or ridged", options.kind));
-  terrain.kind = *kind;
+  terrain.kind = *terrain_kind(options.kind);
   // A name that ends in .png is a slip: what is there is a picture, and no program would open the new file as one.
   const std::string extension = extension_of(options.output);
   if (!options.output.empty() && extension != ".tif" && extension != ".tiff") {
-    throw Error(
-        fmt::format("output '{}': terrain is written as GeoTIFF; let the name end in .tif or .tiff", options.output));
+    throw Error(fmt::format("output '{}': terrain is written as GeoTIFF (name it *.tif or *.tiff)", options.output));
   }
   const ThreadLimit limit(options.threads);
 
@@ -83,37 +80,45 @@ void run(GenerateOptions options) {
 
 }  // namespace
 
-void add_generate(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("generate", "Write procedural terrain of any size as a GeoTIFF");
+void add_generate(Program& program) {
+  Command& command = program.add("generate", "Write procedural terrain of any size as a GeoTIFF");
   const auto options = std::make_shared<GenerateOptions>();
   GenerateOptions& o = *options;
-  command
-      ->add_option("--size", o.size,
-                   fmt::format("N or NxM samples, columns first, up to {0} x {0}", kLargestProceduralSide))
-      ->required();
-  command->add_option("-o,--output", o.output, "the GeoTIFF to write")->required();
-  CLI::Option* function = command->add_option(
-      "--function", o.function, "samples of a terrain function about (0, 0): its name, or a JSON file with one");
-  command->add_option("--seed", o.terrain.seed, "which terrain; any whole number from 0")
-      ->check([](const std::string& text) {
-        return check_whole_number(text, std::numeric_limits<decltype(o.terrain.seed)>::max());
-      })
-      ->capture_default_str();
-  command->add_option("--kind", o.kind, "fbm (rolling mountains) or ridged (sharp crests)")->capture_default_str();
-  for (const char* option : {"--seed", "--kind"}) command->get_option(option)->excludes(function);
-  command
-      ->add_option("--cell", o.terrain.cell_m,
-                   fmt::format("metres from sample to sample; above 0, at most {}", kLargestProceduralCell))
-      ->check(number_in({.least = 0, .most = kLargestProceduralCell, .above_least = true}))
-      ->capture_default_str();
-  command
-      ->add_option("--wavelength", o.terrain.wavelength,
-                   "of the largest features, in samples, from 2 (the lesser of 1024 and half the longer side)")
-      ->check(number_in({.least = 2}))
-      ->excludes(function);
-  command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
-  command->callback([options, command] {
-    keep_inputs(options->output, typed_values(*command));
+  command.add(&o.size, {.names = "--size",
+                        .value = "N[xM]",
+                        .help = "samples, columns first",
+                        .note = fmt::format("up to {0} x {0}", kLargestProceduralSide),
+                        .required = true});
+  add_output_option(command, o.output, "GeoTIFF to write", "tif tiff");
+  std::vector<std::string> functions;
+  for (const ExampleFunction& example : example_functions()) functions.emplace_back(example.name);
+  command.add(&o.function, {.names = "--function",
+                            .value = "NAME",
+                            .help = "terrain function to sample about (0, 0)",
+                            .choices = std::move(functions),
+                            .files = "json",
+                            .note = "or a JSON file (doc/user/functions.md)"});
+  command.add(&o.terrain.seed, {.names = "--seed", .help = "seed of the terrain", .excludes = {"--function"}});
+  command.add(&o.kind, {.names = "--kind",
+                        .value = "KIND",
+                        .help = "terrain",
+                        .choices = {std::string(name_of(TerrainKind::fbm)), std::string(name_of(TerrainKind::ridged))},
+                        .closed = true,
+                        .note = "rolling mountains or sharp crests",
+                        .excludes = {"--function"}});
+  command.add(&o.terrain.cell_m, {.names = "--cell",
+                                  .help = "distance between samples",
+                                  .unit = "metres",
+                                  .range = {.least = 0, .most = kLargestProceduralCell, .above_least = true}});
+  command.add(&o.terrain.wavelength, {.names = "--wavelength",
+                                      .help = "size of the largest features in samples",
+                                      .range = {.least = 2},
+                                      .fallback = "1024, or half the longer side if that is less",
+                                      .excludes = {"--function"}});
+  add_threads_option(command, o.threads);
+  command.example("scarp generate --size 4097 --seed 7 -o dem.tif");
+  command.runs([options, &command] {
+    keep_inputs(options->output, command.typed_values());
     run(*options);
   });
 }

@@ -17,6 +17,7 @@
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/scene_input.h"
+#include "app/cli/shared_options.h"
 #include "app/cli/vox_input.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/accel/slope_bound.h"
@@ -114,44 +115,40 @@ std::string text_of(const Json& info) {
   return out;
 }
 
+void run(const InfoOptions& options, const Command& command) {
+  const InputKind kind = kind_of_input(command, options.inputs, options.vox, options.function);
+  command.require_effect({kind});
+  const auto print = [&](const Json& info, auto text) {
+    // File names may hold any bytes; JSON may not.
+    fmt::print("{}", options.json ? info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n" : text(info));
+  };
+  switch (kind) {
+    case InputKind::function:
+      return print(describe_function(options.function.function, options.function.extent), function_text_of);
+    case InputKind::scene:
+      return print(describe_scene(options.inputs.front()), scene_text_of);
+    case InputKind::voxels:
+      return print(describe_vox(options.inputs.front(), options.vox), vox_text_of);
+    case InputKind::terrain:
+      return print(describe(options), text_of);
+  }
+}
+
 }  // namespace
 
-void add_info(CLI::App& program) {
-  CLI::App* command = program.add_subcommand(
-      "info", "Say what is in a raster of heights, a voxel model, a scene or a terrain function, as scarp will use it");
+void add_info(Program& program) {
+  Command& command = program.add("info", "Describe an elevation model, voxels, a scene or a terrain function");
   const auto options = std::make_shared<InfoOptions>();
-  add_raster_inputs(*command, options->inputs)->required(false);
-  command->add_flag("--json", options->json, "one JSON object instead of text");
-  add_function_option(*command, options->function, "square of ground about (0, 0) that is looked at, metres; above 0");
-  add_raster_options(*command, options->raster);
-  add_vox_options(*command, options->vox);
-  command->callback([options, command] {
-    // File names may hold any bytes; JSON may not.
-    const auto json_of = [](const Json& info) {
-      return info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-    };
-    const std::vector<std::string> given = given_options(*command);
-    if (!options->function.function.empty()) {
-      if (!options->inputs.empty()) {
-        throw Error(
-            fmt::format("'{}': --function stands in the place of files; give one of both", options->inputs.front()));
-      }
-      require_options_of(InputKind::function, given);
-      const Json info = describe_function(options->function.function, options->function.extent);
-      fmt::print("{}", options->json ? json_of(info) : function_text_of(info));
-      return;
-    }
-    if (options->inputs.empty()) throw CLI::RequiredError("IN (or --function NAME)");
-    const bool scene = is_scene_input(options->inputs), vox = !scene && is_vox_input(options->inputs, options->vox);
-    require_options_of(scene ? InputKind::scene : vox ? InputKind::voxels : InputKind::terrain, given);
-    const Json info = scene ? describe_scene(options->inputs.front())
-                      : vox ? describe_vox(options->inputs.front(), options->vox)
-                            : describe(*options);
-    fmt::print("{}", options->json ? json_of(info)
-                     : scene       ? scene_text_of(info)
-                     : vox         ? vox_text_of(info)
-                                   : text_of(info));
-  });
+  add_raster_inputs(command, options->inputs,
+                    "elevation raster (anything GDAL reads, .npy, .npz, .exr), voxel file (.vox, .binvox) or scene "
+                    "(.json)",
+                    false);
+  add_json_option(command, options->json);
+  add_function_option(command, options->function, "side of the ground about (0, 0) to examine");
+  add_raster_options(command, options->raster);
+  add_vox_options(command, options->vox);
+  command.example("scarp info dem.tif");
+  command.runs([options, &command] { run(*options, command); });
 }
 
 }  // namespace scarp::cli

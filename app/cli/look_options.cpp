@@ -2,7 +2,6 @@
 #include "app/cli/look_options.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -25,6 +24,8 @@ namespace {
 // and the way to it by less than half of that side, and who sees all of a field is farther away.
 constexpr double kFarthestCorner = 2;
 
+constexpr int kLowresWidth = 320, kLowresHeight = 240;
+
 // Metres from the camera to the nearest point of a box.
 double way_to(const Box& box, const Camera& camera) {
   return length(glm::clamp(camera.eye(), box.low, box.high) - camera.eye());
@@ -40,6 +41,12 @@ vec3 colour_from(const std::string& text, std::string_view option) {
   return vec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.0f;
 }
 
+// "1a4054".
+std::string colour_text(vec3 srgb) {
+  const auto byte = [](float v) { return std::lround(255 * v); };
+  return fmt::format("{:02x}{:02x}{:02x}", byte(srgb.x), byte(srgb.y), byte(srgb.z));
+}
+
 int pixels(double number, const std::string& text) {
   if (number != std::floor(number) || !(std::abs(number) <= 1e9)) {
     throw Error(fmt::format("--lowres '{}': expected WIDTHxHEIGHT in pixels, for example 320x240", text));
@@ -49,109 +56,183 @@ int pixels(double number, const std::string& text) {
 
 }  // namespace
 
-void add_look_options(CLI::App& command, LookOptions& o) {
-  std::string group = "Ground";
-  command
-      .add_option("--ramp", o.ramp,
-                  fmt::format("colours by height: {}, a .cpt file, or a .png of 1 x N colours (hypsometric; viridis "
-                              "for steps)",
-                              fmt::join(ramp_names(), ", ")))
-      ->group(group);
-  command.add_option("--ground", o.ground_colours, "ramp, or natural: rock, grass and snow by slope and aspect (ramp)")
-      ->group(group);
-  command.add_option("--snow-line", o.snow_line, "metres above which natural ground has snow (0.7 of the relief)")
-      ->check(number_in(kAnyNumber))
-      ->group(group);
-  command.add_option("--detail", o.ground.detail, "strength of patches of noise on the ground, 0 to 1")
-      ->check(number_in({0, 1}))
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--detail-size", o.ground.detail_size, "of the largest patches in metres (16 cells)")
-      ->check(number_in(kZeroOrMore))
-      ->group(group);
-  command.add_option("--contours", o.ground.contours, "metres from contour line to contour line; 0: none")
-      ->check(number_in(kZeroOrMore))
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--overlay", o.overlay, "a picture that lies on the ground, georeferenced where the terrain is")
-      ->group(group);
+void add_look_options(Command& command, LookOptions& o) {
+  static constexpr Looks kLit{"shaded comanche", "the others show numbers"};
+  constexpr Looks kLarge{"comanche"};
+  const auto names_of_fog = [] {
+    std::vector<std::string> names;
+    for (const FogKind kind : {FogKind::none, FogKind::distance, FogKind::height, FogKind::iterations})
+      names.emplace_back(name_of(kind));
+    return names;
+  };
+  const auto lit = [&command](Topic topic) {
+    return [&command, topic](Binding to, Option option) {
+      option.topic = topic;
+      option.looks = kLit;
+      command.add(std::move(to), std::move(option));
+    };
+  };
+  const auto ground = lit(Topic::ground), water = lit(Topic::water), fog = lit(Topic::fog);
+  command.add(&o.ramp,
+              {.names = "--ramp",
+               .value = "RAMP",
+               .help = "colours by height",
+               .choices = {ramp_names().begin(), ramp_names().end()},
+               .files = "cpt png",
+               .note = "or a .cpt file, or a .png of 1 x N colours",
+               .fallback = "hypsometric; viridis for the look steps",
+               .topic = Topic::ground,
+               .common = true,
+               .looks = {"shaded steps comanche", "the others have colours of their own"},
+               .rules = {needs(
+                   "--volume or --look steps",
+                   [&command] { return command.given("--volume") || command.value("--look") == "steps"; }, kVoxels)}});
+  ground(&o.ground_colours, {.names = "--ground",
+                             .value = "KIND",
+                             .help = "ground colours",
+                             .choices = {"ramp", "natural"},
+                             .closed = true,
+                             .note = "natural: rock, grass and snow",
+                             .fallback = "ramp",
+                             .common = true});
+  ground(&o.snow_line, {.names = "--snow-line",
+                        .help = "snow line of natural ground",
+                        .unit = "metres",
+                        .fallback = fmt::format("{} of the relief", o.ground.snow_share),
+                        .rules = {needs("--ground natural", [&o] { return o.ground_colours == "natural"; })}});
+  ground(&o.ground.detail, {.names = "--detail", .help = "strength of noise patches on the ground", .range = {0, 1}});
+  ground(&o.ground.detail_size, {.names = "--detail-size",
+                                 .help = "size of the largest patches",
+                                 .unit = "metres",
+                                 .range = kZeroOrMore,
+                                 .fallback = "16 cells",
+                                 .rules = {needs("--detail F", [&o] { return o.ground.detail > 0; })}});
+  ground(&o.ground.contours, {.names = "--contours",
+                              .help = "contour interval",
+                              .unit = "metres",
+                              .range = kZeroOrMore,
+                              .fallback = "none",
+                              .common = true});
+  ground(&o.overlay, {.names = "--overlay",
+                      .value = "FILE",
+                      .help = "image draped over the ground, georeferenced where the terrain is",
+                      .files = "*",
+                      .common = true,
+                      .inputs = {kTerrain, "it lies where the raster does"}});
 
-  group = "Water";
-  command.add_option("--water", o.water, "level in metres: water over all ground below it (looks shaded and comanche)")
-      ->check(number_in(kAnyNumber))
-      ->group(group);
-  command.add_option("--water-colour", o.water_colour, "RRGGBB: what deep water gives back (1a4055)")->group(group);
-  command
-      .add_option("--turbidity", o.water_settings.turbidity, "light that water loses besides pure water's, per metre")
-      ->check(number_in(kZeroOrMore))
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--waves", o.water_settings.waves, "mean slope of the waves, 0 to 0.5; 0: a mirror")
-      ->check(number_in({0, 0.5}))
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--wavelength", o.water_settings.wavelength, "of the longest wave in metres (two cells)")
-      ->check(number_in(kZeroOrMore))
-      ->group(group);
-  command.add_flag("--no-reflection", o.no_reflection, "water mirrors the sky alone")->group(group);
-  command.add_flag("--no-refraction", o.no_refraction, "water has one colour, whatever its depth")->group(group);
+  const Rule wet = needs("--water M", [&o] { return o.water.has_value(); });
+  water(&o.water, {.names = "--water",
+                   .help = "water level",
+                   .unit = "metres",
+                   .note = "water covers all ground below it",
+                   .common = true});
+  water(&o.water_colour, {.names = "--water-colour",
+                          .value = "RRGGBB",
+                          .help = "colour of deep water",
+                          .fallback = colour_text(o.water_settings.srgb),
+                          .rules = {wet}});
+  water(&o.water_settings.turbidity, {.names = "--turbidity",
+                                      .help = "light lost beyond that of pure water, per metre",
+                                      .range = kZeroOrMore,
+                                      .rules = {wet}});
+  water(&o.water_settings.waves, {.names = "--waves",
+                                  .help = "mean slope of the waves",
+                                  .range = {0, 0.5},
+                                  .note = "0: a mirror",
+                                  .rules = {wet}});
+  water(&o.water_settings.wavelength, {.names = "--wavelength",
+                                       .help = "length of the longest wave",
+                                       .unit = "metres",
+                                       .range = kZeroOrMore,
+                                       .fallback = "two cells",
+                                       .rules = {wet}});
+  water(&o.no_reflection,
+        {.names = "--no-reflection", .help = "reflection of the sky only, not of the terrain", .rules = {wet}});
+  water(&o.no_refraction,
+        {.names = "--no-refraction", .help = "opaque water of one colour, whatever its depth", .rules = {wet}});
 
-  group = "Fog";
-  command
-      .add_option("--fog", o.fog,
-                  "none, distance, height, or iterations (of fixed-step, as the first ray casters had it)")
-      ->group(group);
-  command
-      .add_option("--visibility", o.visibility,
-                  "metres at which 2 of 100 parts of a contrast are left (the reach, or the field's longer side; more "
-                  "from afar)")
-      ->check(number_in(kAboveZero))
-      ->group(group);
-  command.add_option("--fog-base", o.fog_base, "height in metres where that holds (the water, or the lowest ground)")
-      ->check(number_in(kAnyNumber))
-      ->group(group);
-  command.add_option("--fog-falloff", o.fog_falloff, "metres of height by which it thins out e times (relief / 4)")
-      ->check(number_in(kAboveZero))
-      ->group(group);
-  command.add_option("--sun-tint", o.fog_settings.sun_tint, "how warm fog is towards the sun, 0 to 1")
-      ->check(number_in({0, 1}))
-      ->group(group)
-      ->capture_default_str();
+  const Rule foggy = needs("--fog KIND", [&o] { return !o.fog.empty() && o.fog != "none"; });
+  const Rule high = needs("--fog height", [&o] { return o.fog == "height"; });
+  fog(&o.fog,
+      {.names = "--fog",
+       .value = "KIND",
+       .help = "fog",
+       .choices = names_of_fog(),
+       .closed = true,
+       .note = "iterations: by marching steps",
+       .fallback = "none",
+       .common = true,
+       .rules = {{"iterations needs --look comanche --march fixed-step (use distance or height)", [&command, &o] {
+                    return o.fog != name_of(FogKind::iterations) ||
+                           (command.value("--look") == "comanche" && command.value("--march") == "fixed-step");
+                  }}}});
+  fog(&o.visibility, {.names = "--visibility",
+                      .help = "visibility in fog",
+                      .unit = "metres",
+                      .range = kAboveZero,
+                      .note = "2 % of the contrast remain at that distance",
+                      .fallback = "--reach, else the longer side of the field; more from outside",
+                      .common = true,
+                      .rules = {foggy}});
+  fog(&o.fog_base, {.names = "--fog-base",
+                    .help = "reference height of --visibility",
+                    .unit = "metres",
+                    .fallback = "the water, or the lowest ground",
+                    .rules = {high}});
+  fog(&o.fog_falloff, {.names = "--fog-falloff",
+                       .help = "scale height of the fog",
+                       .unit = "metres",
+                       .range = kAboveZero,
+                       .note = "the fog thins by the factor e over it",
+                       .fallback = "a quarter of the relief",
+                       .rules = {high}});
+  fog(&o.fog_settings.sun_tint,
+      {.names = "--sun-tint", .help = "warmth of the fog towards the sun", .range = {0, 1}, .rules = {foggy}});
 
-  group = "Look comanche";
-  command.add_option("--lowres", o.lowres, "WIDTHxHEIGHT of the large pixels (320x240)")->group(group);
-  command.add_option("--pixel-size", o.comanche.scale, "pixels of the image along the side of a large one, 1 to 64")
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--steps", o.comanche.steps, "of fixed-step over the reach, 1 to 65536")
-      ->group(group)
-      ->capture_default_str();
-  command.add_flag("--shells", o.comanche.shells, "fixed-step on spheres round the eye instead of planes")
-      ->group(group);
-  command.add_flag("--step-by-view", o.comanche.step_by_view, "fixed-step with longer steps looking down")
-      ->group(group);
-  command.add_flag("--iterations", o.comanche.iterations, "a picture of the steps, black (none) to white (all)")
-      ->group(group);
-  command
-      .add_option(
-          "--reach", o.reach,
-          "metres that the camera sees: needed by fields that wrap round (their longer side; more from outside)")
-      ->check(number_in(kAboveZero))
-      ->group(group);
+  const Rule stepped = needs("--march fixed-step", [&command] { return command.value("--march") == "fixed-step"; });
+  const auto large = [&](Binding to, Option option) {
+    option.topic = Topic::comanche;
+    command.add(std::move(to), std::move(option));
+  };
+  large(&o.lowres, {.names = "--lowres",
+                    .value = "WIDTHxHEIGHT",
+                    .help = "size of the picture in large pixels",
+                    .fallback = fmt::format("{}x{}", kLowresWidth, kLowresHeight),
+                    .looks = {"comanche", "other looks have --size"}});
+  large(&o.comanche.scale, {.names = "--pixel-size",
+                            .value = "PX",
+                            .help = "side of a large pixel in pixels of the image",
+                            .range = {1, 64},
+                            .looks = kLarge});
+  large(&o.comanche.steps, {.names = "--steps",
+                            .help = "number of steps of fixed-step over the reach",
+                            .range = {1, 65536},
+                            .looks = kLarge});
+  large(&o.comanche.shells, {.names = "--shells",
+                             .help = "fixed-step samples on spheres round the eye instead of planes",
+                             .looks = kLarge,
+                             .rules = {stepped}});
+  large(&o.comanche.step_by_view, {.names = "--step-by-view",
+                                   .help = "longer steps of fixed-step for rays that look down",
+                                   .looks = kLarge,
+                                   .rules = {stepped}});
+  large(&o.comanche.iterations, {.names = "--iterations",
+                                 .help = "picture of the number of steps, from black (none) to white (all)",
+                                 .looks = kLarge});
+  large(&o.reach, {.names = "--reach",
+                   .help = "maximum length of camera rays",
+                   .unit = "metres",
+                   .range = kAboveZero,
+                   .fallback = "unlimited; fields that wrap: the longer side, more from outside"});
 }
 
-void settle_look(const LookOptions& o, const std::string& size, std::string_view march,
-                 const MarchSettings& march_settings, PictureSettings& picture) {
+void settle_look(const LookOptions& o, const MarchSettings& march_settings, PictureSettings& picture) {
   const bool comanche = picture.look == Look::comanche;
   picture.comanche = o.comanche;
   picture.comanche.interpolate = march_settings.fixed_step.interpolate;
   picture.fog = o.fog_settings;
   picture.ground = o.ground;
-  if (o.ground_colours == "natural") {
-    picture.ground.natural = true;
-  } else if (!o.ground_colours.empty() && o.ground_colours != "ramp") {
-    throw Error(fmt::format("--ground '{}': expected ramp or natural", o.ground_colours));
-  }
+  picture.ground.natural = o.ground_colours == "natural";
   const std::string extension = extension_of(o.ramp);
   if (extension == ".cpt") {
     picture.ramp_stops = std::make_shared<RampStops>(read_cpt(o.ramp));
@@ -166,16 +247,10 @@ void settle_look(const LookOptions& o, const std::string& size, std::string_view
     picture.ramp = o.ramp;
   }
   if (comanche) {
-    if (!size.empty()) {
-      throw Error(
-          fmt::format("--size '{}': the look comanche has --lowres WIDTHxHEIGHT and --pixel-size N instead", size));
-    }
-    picture.width = 320;
-    picture.height = 240;
+    picture.width = kLowresWidth;
+    picture.height = kLowresHeight;
     picture.aa = 1;
     picture.shadows = false;
-  } else if (!o.lowres.empty()) {
-    throw Error(fmt::format("--lowres '{}': goes with --look comanche; other looks have --size", o.lowres));
   }
   if (!o.lowres.empty()) {
     const auto numbers = numbers_from(o.lowres, 'x', 2, 2, "--lowres", "WIDTHxHEIGHT in pixels, for example 320x240");
@@ -183,16 +258,6 @@ void settle_look(const LookOptions& o, const std::string& size, std::string_view
     picture.height = pixels(numbers[1], o.lowres);
   }
   if (!o.fog.empty()) picture.fog.kind = find_fog(o.fog);
-  const bool stepped = comanche && march == "fixed-step";
-  if ((o.comanche.shells || o.comanche.step_by_view) && !stepped) {
-    throw Error("--shells, --step-by-view: each goes with --march fixed-step in the look comanche; leave them out");
-  }
-  if (stepped && march_settings.sampling.refinement != Refinement::none) {
-    throw Error("--refine: the look comanche has --fixed-step-interpolate instead");
-  }
-  if (picture.fog.kind == FogKind::iterations && !stepped) {
-    throw Error("--fog iterations: goes with --look comanche --march fixed-step; let it be distance or height");
-  }
   if (o.visibility) picture.fog.visibility = *o.visibility;
   if (o.fog_falloff) picture.fog.falloff = *o.fog_falloff;
   if (!o.water) return;
@@ -206,7 +271,7 @@ void settle_look(const LookOptions& o, const std::string& size, std::string_view
 std::vector<std::string> read_look_files(const LookOptions& o, const Raster& raster, const FieldOptions& field,
                                          PictureSettings& picture) {
   if (o.overlay.empty()) return {};
-  if (field.mirror) throw Error("--overlay: goes with a terrain as it is; leave --wrap mirror out");
+  if (field.mirror) throw Error("--overlay cannot be combined with --wrap mirror");
   ColourImage image = read_overlay(o.overlay, raster.georeference, raster.cols, raster.rows);
   picture.ground.drape = std::make_shared<Drape>(Drape{image.width, image.height, std::move(image.rgba)});
   return std::move(image.files);

@@ -2,12 +2,11 @@
 // The options of pictures with water, fog and few large pixels.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "app/cli/command.h"
 #include "scarp/march/march_settings.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/scene/file/from_raster.h"
@@ -27,12 +26,10 @@ struct LookOptions {
   bool no_refraction = false, no_reflection = false;
 };
 
-/// `options` must live until the subcommand has run.
-void add_look_options(CLI::App& command, LookOptions& options);
+void add_look_options(Command& command, LookOptions& options);
 
-/// What can be judged without the field. `size` is the text of --size. Throws Error.
-void settle_look(const LookOptions& options, const std::string& size, std::string_view march,
-                 const MarchSettings& march_settings, PictureSettings& picture);
+/// The settings that do not depend on the field. Throws Error.
+void settle_look(const LookOptions& options, const MarchSettings& march_settings, PictureSettings& picture);
 
 /// Reads the files that the options name, for a raster that is about to become a field. Returns all that were opened.
 std::vector<std::string> read_look_files(const LookOptions& options, const Raster& raster, const FieldOptions& field,

@@ -1,105 +1,96 @@
 // SPDX-License-Identifier: MIT
 #include "app/cli/march_options.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
-
-#include "app/cli/input_kind.h"
-#include "app/cli/numbers.h"
-#include "scarp/base/error.h"
+#include <string>
+#include <string_view>
 
 namespace scarp::cli {
+namespace {
 
-void add_march_options(CLI::App& command, MarchSettings& march) {
-  const std::string group = "Settings of marches";
-  const auto add = [&](const char* name, auto& value, const char* help) {
-    return command.add_option(name, value, help)->group(group)->capture_default_str();
-  };
-  add("--naive-step-factor", march.naive.step_factor, "share of the vertical distance that naive steps; above 0")
-      ->check(number_in(kAboveZero));
-  add("--naive-min-step", march.naive.min_step, "its least step, a share of the ray's way out; above 0, at most 1")
-      ->check(number_in({.least = 0, .most = 1, .above_least = true}));
-  add("--naive-tolerance", march.naive.tolerance,
-      "height above ground that it takes for a hit, per distance; 0 or more")
-      ->check(number_in(kZeroOrMore));
-  add("--naive-max-steps", march.naive.max_steps, "its limit of steps; 1 or more");
-  add("--fixed-step", march.fixed_step.step, "the step of fixed-step, in cells; above 0")->check(number_in(kAboveZero));
-  add("--fixed-step-interpolate", march.fixed_step.interpolate,
-      "whether it puts the hit between the last two samples, or on the last; true or false");
-  add("--fixed-step-max-steps", march.fixed_step.max_steps, "its limit of steps; 1 or more");
-  add("--relaxed-step-factor", march.relaxed.step_factor, "share of the vertical distance that relaxed steps; above 0")
-      ->check(number_in(kAboveZero));
-  add("--relaxed-tolerance", march.relaxed.tolerance,
-      "height off the ground that it takes for a hit, per distance; above 0")
-      ->check(number_in(kZeroOrMore));
-  add("--relaxed-max-steps", march.relaxed.max_steps, "its limit of steps; 1 or more");
-  add("--shrink", march.lipschitz.shrink,
-      "share of the vertical distance that lipschitz steps; above 0, at most 1; 0: what the steepest slope allows")
-      ->check(number_in({0, 1}));
-  add("--lipschitz-tolerance", march.lipschitz.tolerance,
-      "distance to the ground that it takes for a hit, per distance travelled; 0 or more")
-      ->check(number_in(kZeroOrMore));
-  add("--lipschitz-max-steps", march.lipschitz.max_steps, "its limit of steps; 1 or more");
-  add("--local-tolerance", march.lipschitz_local.tolerance,
-      "length of the last interval of lipschitz-local, per distance travelled; 0 or more")
-      ->check(number_in(kZeroOrMore));
-  add("--local-max-steps", march.lipschitz_local.max_steps, "its limit of steps; 1 or more");
-  add("--bisect-halvings", march.bisect.halvings, "halvings of max-mip-bisect; 1 to 60");
-  command
-      .add_option_function<std::string>(
-          "--refine", [&march](const std::string& name) { march.sampling.refinement = find_refinement(name); },
-          "how naive, fixed-step and relaxed refine a hit within the last step: none, secant, bisect (none)")
-      ->group(group);
-  add("--refine-halvings", march.sampling.halvings, "halvings of --refine bisect; 1 to 60");
-  const std::string functions = "Settings of marches over terrain functions";
-  const auto add_function = [&](const char* name, auto& value, const char* help) {
-    return command.add_option(name, value, help)->group(functions)->capture_default_str();
-  };
-  command.add_option("--function-reach", march.function.reach, "metres that a ray is followed; above 0 (any)")
-      ->group(functions)
-      ->check(number_in(kAboveZero));
-  add_function("--function-step", march.function.step, "the step of fixed-step, metres; above 0")
-      ->check(number_in(kAboveZero));
-  add_function("--function-step-share", march.function.step_share,
-               "its least step as a share of the distance travelled; 0 or more")
-      ->check(number_in(kZeroOrMore));
-  add_function("--function-tolerance", march.sampling.tolerance,
-               "metres off the ground that naive and relaxed take for a hit at any distance; 0 or more")
-      ->check(number_in(kZeroOrMore));
-}
+constexpr Inputs kMarched{kTerrain | kFunction, "voxel marches are exact and have no settings"};
+constexpr Inputs kFunctionsOnly{kFunction, "rasters have cells to measure steps in, and end"};
 
-void require_settings_of(std::string_view march, const std::vector<std::string>& given, const MarchSettings& settings) {
-  // By how their names begin; --function-reach is of all.
-  static constexpr struct {
-    std::string_view beginning, march;
-  } kOf[] = {
-      {"--naive-", "naive"},
-      {"--fixed-step", "fixed-step"},
-      {"--relaxed-", "relaxed"},
-      {"--shrink", "lipschitz"},
-      {"--lipschitz-", "lipschitz"},
-      {"--local-", "lipschitz-local"},
-      {"--bisect-", "max-mip-bisect"},
-      {"--function-step", "fixed-step"},
-      {"--function-tolerance", "naive"},
-      {"--function-tolerance", "relaxed"},
-      {"--refine", "naive"},
-      {"--refine", "fixed-step"},
-      {"--refine", "relaxed"},
+}  // namespace
+
+void add_march_options(Command& command, MarchSettings& march) {
+  constexpr NumberRange kSteps{.least = 1}, kHalvings{1, 60};
+  const auto add = [&](const char* name, Binding to, const char* help, const NumberRange& range,
+                       std::string_view marches, const char* note = "", const Inputs& inputs = kMarched) {
+    command.add(to, {.names = name,
+                     .help = help,
+                     .range = range,
+                     .note = note,
+                     .topic = Topic::march,
+                     .inputs = inputs,
+                     .marches = marches});
   };
-  for (const std::string& option : given) {
-    std::vector<std::string_view> theirs;
-    for (const auto& of : kOf) {
-      if (option.starts_with(of.beginning)) theirs.push_back(of.march);
-    }
-    if (theirs.empty() || std::find(theirs.begin(), theirs.end(), march) != theirs.end()) continue;
-    throw Error(fmt::format("{}: goes with --march {}, and the march is {}; leave it out", option,
-                            fmt::join(theirs, ", "), march));
-  }
-  require_company({{{"--refine-halvings"}, settings.sampling.refinement == Refinement::bisect, "--refine bisect"}},
-                  given);
+  constexpr NumberRange kShare{.least = 0, .most = 1, .above_least = true};
+  NaiveSettings& naive = march.naive;
+  add("--naive-step-factor", &naive.step_factor, "step as a fraction of the vertical distance", kAboveZero, "naive");
+  add("--naive-min-step", &naive.min_step, "minimum step as a fraction of the exit distance", kShare, "naive");
+  add("--naive-tolerance", &naive.tolerance, "height above ground that counts as a hit, per unit of distance",
+      kZeroOrMore, "naive");
+  add("--naive-max-steps", &naive.max_steps, "maximum number of steps", kSteps, "naive");
+  add("--fixed-step", &march.fixed_step.step, "step length in cells", kAboveZero, "fixed-step");
+  command.add(&march.fixed_step.interpolate, {.names = "--fixed-step-interpolate",
+                                              .value = "BOOL",
+                                              .help = "hit between the last two samples instead of on the last one",
+                                              .choices = {"true", "false"},
+                                              .closed = true,
+                                              .topic = Topic::march,
+                                              .inputs = kMarched,
+                                              .marches = "fixed-step"});
+  add("--fixed-step-max-steps", &march.fixed_step.max_steps, "maximum number of steps", kSteps, "fixed-step");
+  RelaxedSettings& relaxed = march.relaxed;
+  add("--relaxed-step-factor", &relaxed.step_factor, "step as a fraction of the vertical distance", kAboveZero,
+      "relaxed");
+  add("--relaxed-tolerance", &relaxed.tolerance, "height off the ground that counts as a hit, per unit of distance",
+      kAboveZero, "relaxed");
+  add("--relaxed-max-steps", &relaxed.max_steps, "maximum number of steps", kSteps, "relaxed");
+  LipschitzSettings& lipschitz = march.lipschitz;
+  add("--shrink", &lipschitz.shrink, "step as a fraction of the vertical distance", {0, 1}, "lipschitz",
+      "0: as large as the steepest slope allows");
+  add("--lipschitz-tolerance", &lipschitz.tolerance,
+      "distance to the ground that counts as a hit, per unit of distance travelled", kZeroOrMore, "lipschitz");
+  add("--lipschitz-max-steps", &lipschitz.max_steps, "maximum number of steps", kSteps, "lipschitz");
+  add("--local-tolerance", &march.lipschitz_local.tolerance, "length of the last interval per unit of distance",
+      kZeroOrMore, "lipschitz-local");
+  add("--local-max-steps", &march.lipschitz_local.max_steps, "maximum number of steps", kSteps, "lipschitz-local");
+  add("--bisect-halvings", &march.bisect.halvings, "halvings of the last interval", kHalvings, "max-mip-bisect");
+  SamplingSettings& sampling = march.sampling;
+  command.add([&sampling](const std::string& name) { sampling.refinement = find_refinement(name); },
+              {.names = "--refine",
+               .value = "KIND",
+               .help = "refinement of a hit within the last step",
+               .choices = {std::string(name_of(Refinement::none)), std::string(name_of(Refinement::secant)),
+                           std::string(name_of(Refinement::bisect))},
+               .closed = true,
+               .fallback = std::string(name_of(sampling.refinement)),
+               .topic = Topic::march,
+               .inputs = kMarched,
+               .looks = {"shaded height steps error", "it has --fixed-step-interpolate instead"},
+               .marches = "naive fixed-step relaxed"});
+  command.add(&sampling.halvings,
+              {.names = "--refine-halvings",
+               .help = "halvings of the last step",
+               .range = kHalvings,
+               .topic = Topic::march,
+               .inputs = kMarched,
+               .marches = "naive fixed-step relaxed",
+               .rules = {needs("--refine bisect", [&] { return sampling.refinement == Refinement::bisect; })}});
+  FunctionMarchSettings& function = march.function;
+  command.add(&function.reach, {.names = "--function-reach",
+                                .help = "maximum length of a ray",
+                                .unit = "metres",
+                                .range = kAboveZero,
+                                .fallback = "unlimited",
+                                .topic = Topic::march,
+                                .inputs = kFunctionsOnly});
+  add("--function-step", &function.step, "step length in metres", kAboveZero, "fixed-step", "", kFunctionsOnly);
+  add("--function-step-share", &function.step_share, "minimum step as a fraction of the distance travelled",
+      kZeroOrMore, "fixed-step", "", kFunctionsOnly);
+  add("--function-tolerance", &march.sampling.tolerance, "metres off the ground that count as a hit at any distance",
+      kZeroOrMore, "naive relaxed", "", kFunctionsOnly);
 }
 
 }  // namespace scarp::cli

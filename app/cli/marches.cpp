@@ -102,12 +102,13 @@ void print_plain(const std::vector<Row>& rows) {
 
 }  // namespace
 
-void add_marches(CLI::App& program) {
-  CLI::App* command = program.add_subcommand("marches", "List the marching techniques and what each guarantees");
+void add_marches(Program& program) {
+  Command& command = program.add("marches", "List the marching techniques and what each guarantees");
   const auto markdown = std::make_shared<bool>(false), presets = std::make_shared<bool>(false);
-  command->add_flag("--markdown", *markdown, "as a table in Markdown");
-  command->add_flag("--presets", *presets, "instead: the numbers of known shaders for 'render --function --preset'");
-  command->callback([markdown, presets] {
+  command.add(markdown.get(), {.names = "--markdown", .help = "table in Markdown"});
+  command.add(presets.get(),
+              {.names = "--presets", .help = "settings of known shaders, for 'render --function --preset', instead"});
+  command.runs([markdown, presets] {
     std::vector<Row> rows;
     if (*presets) {
       for (const MarchPreset& preset : march_presets()) rows.push_back(row_of(preset));

@@ -15,34 +15,44 @@
 
 namespace scarp::cli {
 
-void add_mesh_options(CLI::App& command, MeshOptions& options) {
-  const std::string group = "Mesh";
-  command.add_option("--mesh", options.file, "a triangle mesh, .obj, .gltf or .glb, in the scene")->group(group);
-  command
-      .add_option(
-          "--mesh-at", options.at,
-          "X,Y[,Z] in metres, as --eye: where its middle, seen from above, and its lowest point are (the middle "
-          "of the field; on the ground)")
-      ->group(group);
-  command.add_option("--mesh-scale", options.scale, "metres per unit of the file, above 0")
-      ->check(number_in(kAboveZero))
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--mesh-rotate", options.turn_deg, "degrees clockwise, seen from above")
-      ->check(number_in(kAnyNumber))
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--mesh-up", options.up, "the axis that points up in the file, y or z")
-      ->group(group)
-      ->capture_default_str();
-}
-
-void settle_mesh(const MeshOptions& options) {
-  if (options.file.empty()) return;
+void add_mesh_options(Command& command, MeshOptions& options) {
+  const Rule of_mesh = needs("--mesh FILE", [&command] { return command.given("--mesh"); });
+  command.add(
+      &options.file,
+      {
+          .names = "--mesh",
+          .value = "FILE",
+          .help = "triangle mesh in the scene: .obj, .gltf or .glb",
+          .files = "obj gltf glb",
+          .topic = Topic::mesh,
 #ifndef SCARP_EMBREE
-  throw Error("--mesh: this scarp was built without Embree (SCARP_EMBREE=OFF); leave it out");
+          .rules = {{"is not available: this scarp was built without Embree (SCARP_EMBREE=OFF)", [] { return false; }}},
 #endif
-  if (options.up != "y" && options.up != "z") throw Error(fmt::format("--mesh-up '{}': expected y or z", options.up));
+      });
+  command.add(&options.at, {.names = "--mesh-at",
+                            .value = "X,Y[,Z]",
+                            .help = "position of the mesh in metres, as for --eye: its middle, and its lowest point",
+                            .fallback = "middle of the scene, on the ground",
+                            .topic = Topic::mesh,
+                            .rules = {of_mesh}});
+  command.add(&options.scale, {.names = "--mesh-scale",
+                               .help = "length of the file's unit",
+                               .unit = "metres",
+                               .range = kAboveZero,
+                               .topic = Topic::mesh,
+                               .rules = {of_mesh}});
+  command.add(&options.turn_deg, {.names = "--mesh-rotate",
+                                  .help = "clockwise rotation seen from above",
+                                  .unit = "degrees",
+                                  .topic = Topic::mesh,
+                                  .rules = {of_mesh}});
+  command.add(&options.up, {.names = "--mesh-up",
+                            .value = "AXIS",
+                            .help = "axis of the file that points up",
+                            .choices = {"y", "z"},
+                            .closed = true,
+                            .topic = Topic::mesh,
+                            .rules = {of_mesh}});
 }
 
 MeshInput::MeshInput(const MeshOptions& options) : options_(options) {
@@ -82,7 +92,7 @@ Scene MeshInput::with_mesh(Scene scene) const {
 
 #else
 
-// settle_mesh() has refused all meshes.
+// The rule of --mesh has refused all meshes.
 Scene MeshInput::with_mesh(Scene scene) const { return scene; }
 
 #endif

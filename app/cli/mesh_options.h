@@ -2,11 +2,11 @@
 // --mesh: a triangle mesh in a scene.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/cli/command.h"
 #include "scarp/scene/scene.h"
 #include "scarp/source/mesh_file.h"
 
@@ -18,11 +18,8 @@ struct MeshOptions {
   double scale = 1, turn_deg = 0;
 };
 
-/// Adds --mesh and what goes with it. `options` must live until the subcommand has run.
-void add_mesh_options(CLI::App& command, MeshOptions& options);
-
-/// What can be judged without files. Throws Error.
-void settle_mesh(const MeshOptions& options);
+/// Declares --mesh and its settings.
+void add_mesh_options(Command& command, MeshOptions& options);
 
 /// The mesh that was typed, if any.
 class MeshInput {

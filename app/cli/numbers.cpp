@@ -70,12 +70,4 @@ std::string metres_text(double metres) {
   return metres < 100 ? fmt::format("{:.3g}", metres) : fmt::format("{:.0f}", metres);
 }
 
-std::string check_whole_number(const std::string& text, std::uint64_t most) {
-  std::uint64_t number = 0;
-  const char* const end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, number);
-  if (error == std::errc() && rest == end && number <= most) return {};
-  return fmt::format("'{}': expected a whole number from 0 to {}", text, most);
-}
-
 }  // namespace scarp::cli

@@ -29,17 +29,13 @@ struct NumberRange {
 constexpr double kMostOfGround = 0x1p30;
 constexpr NumberRange kAnyNumber{}, kZeroOrMore{.least = 0}, kAboveZero{.least = 0, .above_least = true};
 
-/// For CLI::Option::check(), of every option that is a floating point number: empty when the text is one of the range,
-/// else what is wrong. CLI11's own checks let NaN through, and tell of the largest double by its 309 digits.
+/// Returns a check of a text: empty when it is a number of the range, else what is wrong. Suits CLI::Option::check(),
+/// whose own checks let NaN through and print the largest double with all its 309 digits.
 std::function<std::string(const std::string& text)> number_in(const NumberRange& range);
 
 /// numbers_from(), none of which has a larger magnitude than kMostOfGround.
 std::vector<double> ground_numbers_from(std::string_view text, std::size_t least, std::size_t most,
                                         std::string_view option, std::string_view form);
-
-/// For CLI::Option::check(): empty when the text is a whole number from 0 to `most`, else what is wrong. CLI11 itself
-/// takes a number that is too large for the largest there is.
-std::string check_whole_number(const std::string& text, std::uint64_t most);
 
 /// A length above 0 for messages, three digits of it at least and no power of ten: "0.25", "17.3", "3660".
 std::string metres_text(double metres);

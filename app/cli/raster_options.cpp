@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <string>
+#include <utility>
 
 #include "app/cli/numbers.h"
 #include "scarp/base/error.h"
@@ -35,75 +37,99 @@ HeightRange height_range_from(const std::string& text) {
   return {n[0], n[1]};
 }
 
-HeightEncoding encoding_from(const std::string& text) {
-  const auto encoding = height_encoding(text);
-  if (!encoding) throw Error(fmt::format("--encoding '{}': expected none, terrain-rgb or terrarium", text));
-  return *encoding;
+double nodata_from(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0') throw WrongUsage(fmt::format("--nodata '{}': expected a number", text));
+  return value;
 }
 
 }  // namespace
 
-CLI::Option* add_raster_inputs(CLI::App& command, std::vector<std::string>& inputs) {
-  return command
-      .add_option("IN", inputs,
-                  "raster of heights: anything GDAL reads, .npy, .npz, .exr; several files, or a folder of them, are "
-                  "tiles of one field. render and info take a MagicaVoxel file (.vox) or a scene (.json), too")
-      ->required();
+void add_raster_inputs(Command& command, std::vector<std::string>& inputs, const std::string& kinds, bool required) {
+  command.add(&inputs, {.names = "IN",
+                        .help = kinds,
+                        .files = "*",
+                        .note = "several rasters, or a folder of them, are tiles of one field",
+                        .common = true,
+                        .required = required});
 }
 
-void add_raster_options(CLI::App& command, RasterOptions& options, const std::string& crs_option) {
-  const std::string group = "What the file does not say";
-  command.add_option("--band", options.band, "band to read, from 1 (the only one)")
-      ->check(CLI::Range(1, 65536))
-      ->group(group);
-  command.add_option("--key", options.key, "array of a .npz file (the only one of heights)")->group(group);
-  command
-      .add_option_function<std::string>(
-          "--window", [&options](const std::string& text) { options.window = window_from(text); },
-          "COL,ROW,COLS,ROWS: read this part only")
-      ->group(group);
-  command.add_option("--nodata", options.nodata, "sample value that marks a hole; nan: none but NaN does")
-      ->group(group);
-  command.add_option("--unit", options.unit, "vertical unit: m, ft, us-ft, km, dm, cm, mm, yd, fathom")->group(group);
-  command
-      .add_option_function<std::string>(
-          "--scale",
-          [&command, &options](const std::string& text) {
-            const auto n = ground_numbers_from(text, 1, 2, "--scale", "S[,OFFSET], for example 0.1 or 0.1,-10000");
-            if (n.size() == 2 && command.count("--offset") > 0)
-              throw Error(fmt::format("--scale '{}' has an offset already; leave out --offset", text));
-            options.scale = n[0];
-            if (n.size() == 2) options.offset = n[1];
-          },
-          "S[,OFFSET]: height = sample * S + OFFSET, in the vertical unit; not 0")
-      ->group(group);
-  command.add_option("--offset", options.offset, "see --scale")
-      ->check(number_in({-kMostOfGround, kMostOfGround}))
-      ->group(group);
-  command
-      .add_option_function<std::string>(
-          "--height-range", [&options](const std::string& text) { options.height_range = height_range_from(text); },
-          "LOW,HIGH: heights of the least and the greatest value of unsigned samples (0 and 65535 of UInt16), or of 0 "
-          "and 1 in float samples")
-      ->group(group);
-  command
-      .add_option_function<std::string>(
-          "--encoding", [&options](const std::string& text) { options.encoding = encoding_from(text); },
-          "terrain-rgb or terrarium: the colours of the image are heights")
-      ->group(group);
-  command
-      .add_option_function<std::string>(
-          "--raw", [&options](const std::string& text) { options.raw = parse_raw_format(text); },
-          "COLSxROWS:TYPE[+OFFSET]: the file is bare samples, for example 4097x4097:u16le")
-      ->group(group);
-  command.add_option("--channel", options.channel, "channel of an .exr file (the only one, else Y, else R)")
-      ->group(group);
-  command.add_option(crs_option, options.crs, "coordinate reference system, for example EPSG:4326")->group(group);
-  command
-      .add_option_function<std::string>(
-          "--bounds", [&options](const std::string& text) { options.bounds = bounds_from(text); },
-          "W,S,E,N: outer edges of the file, in units of its CRS")
-      ->group(group);
+void add_raster_options(Command& command, RasterOptions& options, const std::string& crs_option) {
+  // "S,OFFSET" leaves no room for --offset.
+  const auto one_offset = [&command] { return command.value("--scale").find(',') == std::string::npos; };
+  constexpr Inputs kRasters{kTerrain, "it interprets raster files"};
+  const auto add = [&](Binding to, Option option) {
+    option.topic = Topic::input;
+    option.inputs = kRasters;
+    command.add(std::move(to), std::move(option));
+  };
+  add(&options.band, {.names = "--band", .help = "band to read", .range = {1, 65536}, .fallback = "the only one"});
+  add(&options.key,
+      {.names = "--key", .value = "NAME", .help = "array of a .npz file", .fallback = "the only array of heights"});
+  add([&options](const std::string& text) { options.window = window_from(text); },
+      {.names = "--window",
+       .value = "COL,ROW,COLS,ROWS",
+       .help = "part of the raster to read, in samples counted from 0",
+       .fallback = "all"});
+  add([&options](const std::string& text) { options.nodata = nodata_from(text); },
+      {.names = "--nodata",
+       .value = "V",
+       .help = "sample value treated as a hole",
+       .note = "nan: only NaN",
+       .fallback = "the file's",
+       .common = true});
+  add(&options.unit, {.names = "--unit",
+                      .value = "UNIT",
+                      .help = "vertical unit",
+                      .choices = {"m", "ft", "us-ft", "km", "dm", "cm", "mm", "yd", "fathom"},
+                      .fallback = "the file's, else m"});
+  add(
+      [&options](const std::string& text) {
+        const auto n = ground_numbers_from(text, 1, 2, "--scale", "S[,OFFSET], for example 0.1 or 0.1,-10000");
+        options.scale = n[0];
+        if (n.size() == 2) options.offset = n[1];
+      },
+      {.names = "--scale",
+       .value = "S[,OFFSET]",
+       .help = "height = sample * S + OFFSET in the vertical unit",
+       .note = "S is not 0",
+       .fallback = "the file's"});
+  add(&options.offset, {.names = "--offset",
+                        .help = "offset added to scaled samples, in the vertical unit",
+                        .range = {-kMostOfGround, kMostOfGround},
+                        .fallback = "the file's",
+                        .rules = {{"repeats the offset of --scale S,OFFSET (leave one of the two out)", one_offset}}});
+  add([&options](const std::string& text) { options.height_range = height_range_from(text); },
+      {.names = "--height-range",
+       .value = "LOW,HIGH",
+       .help = "heights of the smallest and largest value of unsigned samples, or of 0 and 1 in float samples"});
+  add([&options](const std::string& text) { options.encoding = *height_encoding(text); },
+      {.names = "--encoding",
+       .value = "KIND",
+       .help = "heights encoded in image colours",
+       .choices = {std::string(name_of(HeightEncoding::none)), std::string(name_of(HeightEncoding::terrain_rgb)),
+                   std::string(name_of(HeightEncoding::terrarium))},
+       .closed = true,
+       .fallback = std::string(name_of(HeightEncoding::none))});
+  add([&options](const std::string& text) { options.raw = parse_raw_format(text); },
+      {.names = "--raw",
+       .value = "COLSxROWS:TYPE[+OFFSET]",
+       .help = "layout of a headerless file of samples, for example 4097x4097:u16le"});
+  add(&options.channel, {.names = "--channel",
+                         .value = "NAME",
+                         .help = "channel of an .exr file",
+                         .fallback = "the only one, else Y, else R"});
+  add(&options.crs, {.names = crs_option,
+                     .value = "CRS",
+                     .help = "coordinate reference system, for example EPSG:4326",
+                     .fallback = "the file's",
+                     .common = true});
+  add([&options](const std::string& text) { options.bounds = bounds_from(text); },
+      {.names = "--bounds",
+       .value = "W,S,E,N",
+       .help = "outer edges of the file in units of its CRS",
+       .fallback = "the file's"});
 }
 
 }  // namespace scarp::cli

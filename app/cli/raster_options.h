@@ -2,20 +2,20 @@
 // The options of every subcommand that reads a raster.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "app/cli/command.h"
 #include "scarp/source/raster_options.h"
 
 namespace scarp::cli {
 
-/// Adds IN, one or several files or folders: what read_tiles() takes. `inputs` must live until the subcommand has run.
-CLI::Option* add_raster_inputs(CLI::App& command, std::vector<std::string>& inputs);
+/// Declares IN, one or several files or folders: what read_tiles() takes. `kinds` is its help.
+void add_raster_inputs(Command& command, std::vector<std::string>& inputs, const std::string& kinds,
+                       bool required = true);
 
-/// Adds --band, --window, --nodata, --scale, --offset, --height-range, --unit, --crs, --bounds, --encoding, --raw,
-/// --channel and --key. `options` must live until the subcommand has run. `crs_option` replaces --crs where that means
-/// something else.
-void add_raster_options(CLI::App& command, RasterOptions& options, const std::string& crs_option = "--crs");
+/// Declares --band, --window, --nodata, --scale and the other options that interpret a raster. `crs_option` replaces
+/// --crs where that means something else.
+void add_raster_options(Command& command, RasterOptions& options, const std::string& crs_option = "--crs");
 
 }  // namespace scarp::cli

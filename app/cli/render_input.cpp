@@ -21,11 +21,8 @@
 namespace scarp::cli {
 namespace {
 
-constexpr double kVoxelSun = 235;      // degrees: from over the default camera's shoulder
-constexpr double kFunctionHaze = 0.2;  // share over the extent, without --haze
-constexpr double kFaintest = 64;       // rays end where haze hides all but 1 / 64 of a colour
-constexpr double kLongReach = 64;      // extents, where there is less haze
-const ViewSettings kFunctionView{.azimuth_deg = 190, .elevation_deg = 14, .distance = 0.5, .fov_deg = 45};
+constexpr double kFaintest = 64;   // rays end where haze hides all but 1 / 64 of a colour
+constexpr double kLongReach = 64;  // extents, where there is less haze
 
 bool has_end(const Scene& scene) { return scene.box().low.x <= scene.box().high.x; }
 
@@ -89,7 +86,7 @@ RenderInput voxels(RenderOptions& options, const ViewSettings& view) {
   voxels.surface_colours = options.vox.surface_colours;
   voxels.rounding = options.vox_look.rounding;
   const VoxelShading shading = shading_of(options.vox_look);
-  if (!options.is_given("--sun")) options.picture.sun.azimuth_deg = kVoxelSun;
+  if (!options.is_given("--sun")) options.picture.sun.azimuth_deg = kVoxelSunAzimuth;
   if (!options.is_given("--haze")) options.picture.haze = 0;
   VoxInput read = read_voxels(options.inputs.front(), options.vox, voxels, options.picture.ramp);
   stop_if_interrupted();

@@ -14,9 +14,6 @@
 
 namespace scarp::cli {
 
-/// Of terrain, without --march.
-constexpr const char* kTerrainMarch = "max-mip";
-
 /// A scene, and what pictures of this kind of input do by default. What follows from the input alone has been put into
 /// the options' picture settings.
 struct RenderInput {

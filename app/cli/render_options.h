@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What was typed for `scarp render`.
+// The options of `scarp render`.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "app/cli/command.h"
 #include "app/cli/depth_options.h"
 #include "app/cli/figure_options.h"
 #include "app/cli/frames.h"
@@ -17,6 +18,11 @@
 #include "scarp/scene/file/from_raster.h"
 
 namespace scarp::cli {
+
+/// Of terrain, without --march.
+constexpr const char* kTerrainMarch = "max-mip";
+constexpr double kComancheFov = 60;       // degrees, without --fov
+constexpr double kVoxelSunAzimuth = 235;  // degrees, without --sun: from over the default camera's shoulder
 
 /// Texts stay texts until there is a message for them.
 struct RenderOptions {
@@ -46,5 +52,8 @@ struct RenderOptions {
 
   bool is_given(std::string_view option) const;
 };
+
+/// Adds the subcommand and declares its options.
+Command& declare_render(Program& program, RenderOptions& options);
 
 }  // namespace scarp::cli

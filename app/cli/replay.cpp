@@ -134,13 +134,14 @@ void replay(const std::string& path) {
 
 }  // namespace
 
-void add_replay(CLI::App& program) {
-  CLI::App* command = program.add_subcommand(
-      "replay", "Send rays out of a text file through all marches; fails when exact ones differ");
+void add_replay(Program& program) {
+  Command& command = program.add("replay", "Trace the rays of a dump by all marches; fails when exact marches differ");
   const auto path = std::make_shared<std::string>();
-  command->add_option("FILE", *path, "rays as scarp-bench leaks and the tests write them (scarp/scene/file/ray_dump.h)")
-      ->required();
-  command->callback([path] { replay(*path); });
+  command.add(path.get(), {.names = "FILE",
+                           .help = "ray dump as scarp-bench leaks and the tests write it (scarp/scene/file/ray_dump.h)",
+                           .files = "*",
+                           .required = true});
+  command.runs([path] { replay(*path); });
 }
 
 }  // namespace scarp::cli

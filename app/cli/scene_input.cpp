@@ -36,7 +36,7 @@ class Taking {
 bool is_scene_input(const std::vector<std::string>& inputs) {
   const auto scene = std::find_if(inputs.begin(), inputs.end(), is_scene_path);
   if (scene == inputs.end()) return false;
-  if (inputs.size() > 1) throw Error(fmt::format("'{}': a scene stands alone; give it without others", *scene));
+  if (inputs.size() > 1) throw Error(fmt::format("'{}': a scene file stands alone (give no other inputs)", *scene));
   return true;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "app/cli/numbers.h"
 #include "scarp/base/error.h"
@@ -45,8 +46,8 @@ auto naming(const std::string& path, const Work& work) {
   }
 }
 
-void refuse(bool given, const char* option, const char* goes_with) {
-  if (given) throw Error(fmt::format("{}: goes with {}; leave it out", option, goes_with));
+void refuse(bool given, const char* option, const char* files) {
+  if (given) throw Error(fmt::format("{} applies to {} only", option, files));
 }
 
 }  // namespace
@@ -55,73 +56,83 @@ bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& opti
   const auto vox = std::find_if(inputs.begin(), inputs.end(), is_voxel_path);
   if (vox == inputs.end() && options.volume.empty()) return false;
   if (inputs.size() > 1) {
-    throw Error(fmt::format("'{}': a file of voxels stands alone; give it without others",
-                            vox == inputs.end() ? inputs[1] : *vox));
+    throw Error(
+        fmt::format("'{}': a voxel file stands alone (give no other inputs)", vox == inputs.end() ? inputs[1] : *vox));
   }
   return true;
 }
 
-void add_vox_options(CLI::App& command, VoxOptions& options) {
-  const std::string group = "Files of voxels";
-  command.add_option("--frame", options.scene.frame, "frame of an animation (MagicaVoxel)")
-      ->check(CLI::Range(0, 1 << 30))
-      ->group(group)
-      ->capture_default_str();
-  command.add_flag("--hidden", options.scene.hidden, "with hidden objects and layers (MagicaVoxel)")->group(group);
-  command
-      .add_flag("--surface-colours", options.surface_colours,
-                "drop colours that cannot be seen from outside: less memory, lossy inside")
-      ->group(group);
-  command
-      .add_option("--volume", options.volume,
-                  "IN is numbers, one per voxel: npy (an array [z][y][x]), or NXxNYxNZ:TYPE[+OFFSET]: "
-                  "256x256x128:u16le, x fastest")
-      ->group(group);
-  command.add_option("--solid-from", options.solid_from, "the least number of a solid voxel of a volume (all above 0)")
-      ->check(number_in(kAnyNumber))
-      ->group(group);
-  command.add_option("--up", options.up, "y or z: the axis of a binvox file or volume that points up")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->group(group)
-      ->capture_default_str();
+void add_vox_options(Command& command, VoxOptions& options) {
+  constexpr Inputs kModels{kVoxels, "it interprets voxel files"};
+  const auto add = [&](Binding to, Option option) {
+    option.topic = Topic::voxels;
+    option.inputs = kModels;
+    command.add(std::move(to), std::move(option));
+  };
+  add(&options.scene.frame, {.names = "--frame", .help = "frame of a MagicaVoxel animation", .range = {.least = 0}});
+  add(&options.scene.hidden, {.names = "--hidden", .help = "hidden MagicaVoxel objects and layers as well"});
+  add(&options.surface_colours,
+      {.names = "--surface-colours", .help = "colours of visible voxels only: less memory, lossy inside"});
+  add(&options.volume, {.names = "--volume",
+                        .value = "FORMAT",
+                        .help = "layout of IN, one number per voxel: npy (an array [z][y][x]), or "
+                                "NXxNYxNZ:TYPE[+OFFSET], x fastest, for example 256x256x128:u16le"});
+  add(&options.solid_from, {.names = "--solid-from",
+                            .help = "smallest number of a solid voxel of a volume",
+                            .fallback = "all above 0",
+                            .rules = {needs("--volume FORMAT", [&options] { return !options.volume.empty(); })}});
+  add(&options.up, {.names = "--up",
+                    .value = "AXIS",
+                    .help = "axis of a binvox file or volume that points up",
+                    .choices = {"y", "z"},
+                    .closed = true});
 }
 
-void add_vox_look_options(CLI::App& command, VoxLookOptions& options) {
-  const std::string group = "Looks of voxels";
-  command
-      .add_option("--normals", options.normals,
-                  "flat: of the face; voxel: one per face, of the shape it is part of; smooth: of the shape")
-      ->check(CLI::IsMember({"flat", "voxel", "smooth"}))
-      ->group(group)
-      ->capture_default_str();
-  command.add_option("--normal-radius", options.normal_radius, "voxels that those of the shape look at, 1 to 8")
-      ->check(number_in({1, 8}))
-      ->group(group)
-      ->capture_default_str();
-  command
-      .add_option("--rounded", options.rounding.radius,
-                  "radius of the edges that are open, in sides of a voxel, 0 to 0.5")
-      ->check(number_in({0, 0.5}))
-      ->group(group)
-      ->capture_default_str();
-  command.add_flag("--each", options.rounding.each, "with --rounded: every voxel on its own, as a heap of dice")
-      ->group(group);
-  command
-      .add_flag("--corner-ao", options.corner_ao,
-                "darker corners, by the voxels next to them; not where --samples asks the sky")
-      ->group(group);
-  command.add_flag("--coarse-voxels", options.coarse, "voxels that are smaller than pixels are made one of 2 x 2 x 2")
-      ->group(group);
+void add_vox_look_options(Command& command, VoxLookOptions& options) {
+  constexpr Inputs kModels{kVoxels, "only voxels have faces to shade and edges to round"};
+  constexpr Looks kShaded{"shaded", "the others show numbers"};
+  const auto add = [&](Binding to, Option option) {
+    option.topic = Topic::voxels;
+    command.add(std::move(to), std::move(option));
+  };
+  add(&options.normals, {.names = "--normals",
+                         .value = "KIND",
+                         .help = "normals",
+                         .choices = {"flat", "voxel", "smooth"},
+                         .closed = true,
+                         .note = "flat: of the face; voxel: one per face, of the shape around it; smooth: of the shape",
+                         .inputs = kModels,
+                         .looks = kShaded});
+  add(&options.normal_radius,
+      {.names = "--normal-radius",
+       .help = "radius of smooth normals in voxels",
+       .range = {1, 8},
+       .inputs = kModels,
+       .looks = kShaded,
+       .rules = {needs("--normals voxel or smooth", [&options] { return options.normals != "flat"; })}});
+  add(&options.rounding.radius,
+      {.names = "--rounded", .help = "radius of open edges in sides of a voxel", .range = {0, 0.5}, .inputs = kModels});
+  add(&options.rounding.each,
+      {.names = "--each",
+       .help = "every voxel rounded on its own, like a heap of dice",
+       .inputs = kModels,
+       .rules = {needs("--rounded F", [&options] { return static_cast<bool>(options.rounding); })}});
+  add(&options.corner_ao, {.names = "--corner-ao",
+                           .help = "darker corners, from neighbouring voxels; not where --samples measures the sky",
+                           .inputs = kModels,
+                           .looks = kShaded});
+  add(&options.coarse, {.names = "--coarse-voxels",
+                        .help = "voxels smaller than pixels merged 2 x 2 x 2",
+                        .inputs = {kVoxels | kScene, "only voxels can be merged"}});
 }
 
 VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelSceneOptions& voxels,
                      const std::string& ramp) {
   const bool volume = !options.volume.empty(), binvox = !volume && extension_of(path) == ".binvox";
   const FromVolumeOptions from{voxels, options.up == "y" ? UpAxis::y : UpAxis::z, options.solid_from};
-  refuse(!volume && options.solid_from.has_value(), "--solid-from", "--volume");
   refuse((volume || binvox) && options.scene.frame > 0, "--frame", "MagicaVoxel files");
   refuse((volume || binvox) && options.scene.hidden, "--hidden", "MagicaVoxel files");
-  refuse(!volume && !binvox && options.up != "z", "--up", "binvox files and volumes: MagicaVoxel's z is up");
+  refuse(!volume && !binvox && options.up != "z", "--up", "binvox files and volumes");
   if (volume) return {{}, voxel_scene_from(read_volume(path, options.volume), colours_of(ramp), from)};
   if (binvox) return {{}, voxel_scene_from(read_binvox(path), kPlainVoxels, from)};
   VoxFile document = read_vox(path);
@@ -138,7 +149,6 @@ VoxelShading shading_of(const VoxLookOptions& options) {
   shading.corner_ao = options.corner_ao;
   validate(shading);
   validate(options.rounding);
-  if (options.rounding.each && !options.rounding) throw Error("--each: goes with --rounded; give a radius");
   return shading;
 }
 

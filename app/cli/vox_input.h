@@ -2,12 +2,12 @@
 // Voxel files where a subcommand takes rasters, too: MagicaVoxel, binvox, volumes of numbers.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/cli/command.h"
 #include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/voxel_shading.h"
 
@@ -35,10 +35,10 @@ struct VoxLookOptions {
 /// file is among others.
 bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& options);
 
-/// Adds --frame, --hidden, --volume, ... `options` must live until the subcommand has run.
-void add_vox_options(CLI::App& command, VoxOptions& options);
-/// Adds --normals, --rounded, ...
-void add_vox_look_options(CLI::App& command, VoxLookOptions& options);
+/// Declares --frame, --hidden, --volume, ...
+void add_vox_options(Command& command, VoxOptions& options);
+/// Declares --normals, --rounded, ...
+void add_vox_look_options(Command& command, VoxLookOptions& options);
 
 /// A voxel file read.
 struct VoxInput {

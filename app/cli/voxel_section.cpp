@@ -10,6 +10,7 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/kept_inputs.h"
+#include "app/cli/shared_options.h"
 #include "app/cli/vox_input.h"
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
@@ -21,8 +22,7 @@ namespace scarp::cli {
 namespace {
 
 struct SectionOptions {
-  std::vector<std::string> inputs;
-  std::string output, radii = "spheres", axis = "z";
+  std::string input, output, radii = "spheres", axis = "z";
   int at = -1, model = 0, margin = 4;
   VoxOptions vox;
 };
@@ -99,11 +99,10 @@ void write_text(const std::string& path, const std::string& text) {
 
 void run(const SectionOptions& options) {
   if (extension_of(options.output) != ".svg")
-    throw Error(fmt::format("output '{}': sections are written as SVG; let the name end in .svg", options.output));
-  if (!is_vox_input(options.inputs, options.vox))
-    throw Error(fmt::format("'{}': a section is of voxels; expected a .vox or .binvox file, or --volume",
-                            options.inputs.front()));
-  const VoxInput input = read_voxels(options.inputs.front(), options.vox, {}, {});
+    throw Error(fmt::format("output '{}': sections are written as SVG (name it *.svg)", options.output));
+  if (!is_vox_input({options.input}, options.vox))
+    throw Error(fmt::format("'{}': not a voxel file (expected .vox or .binvox, or --volume)", options.input));
+  const VoxInput input = read_voxels(options.input, options.vox, {}, {});
   const auto& models = input.scene.models();
   if (options.model >= static_cast<int>(models.size()))
     throw Error(fmt::format("--model {}: there are {}, counted from 0", options.model, models.size()));
@@ -130,28 +129,35 @@ void run(const SectionOptions& options) {
 
 }  // namespace
 
-void add_section(CLI::App& program) {
-  CLI::App* command =
-      program.add_subcommand("section", "A layer of a voxel model with the radii of empty spheres or cubes, as SVG");
+void add_section(Program& program) {
+  Command& command = program.add("section", "Draw one layer of a voxel model with its empty spheres or cubes as SVG");
   const auto options = std::make_shared<SectionOptions>();
   SectionOptions& o = *options;
-  command->add_option("IN", o.inputs, "a .vox or .binvox file, or a volume")->required();
-  command->add_option("-o,--output", o.output, "the SVG to write")->required();
-  command->add_option("--radii", o.radii, "of spheres or cubes around empty voxels that meet no solid one")
-      ->check(CLI::IsMember({"spheres", "cubes"}))
-      ->capture_default_str();
-  command->add_option("--axis", o.axis, "x, y or z: the layer is across it")
-      ->check(CLI::IsMember({"x", "y", "z"}))
-      ->capture_default_str();
-  command->add_option("--at", o.at, "which layer of the box round the voxels, from 0 (the middle)")
-      ->check(CLI::Range(0, 2047));
-  command->add_option("--model", o.model, "which model of a file, from 0")->check(CLI::Range(0, 1 << 20));
-  command->add_option("--margin", o.margin, "empty voxels round the model")
-      ->check(CLI::Range(0, 100))
-      ->capture_default_str();
-  add_vox_options(*command, o.vox);
-  command->callback([options, command] {
-    keep_inputs(options->output, typed_values(*command));
+  command.add(
+      &o.input,
+      {.names = "IN", .help = "voxel file (.vox, .binvox) or volume", .files = "vox binvox npy raw", .required = true});
+  add_output_option(command, o.output, "SVG to write", "svg");
+  command.add(&o.radii, {.names = "--radii",
+                         .value = "KIND",
+                         .help = "largest empty bodies around each empty voxel",
+                         .choices = {"spheres", "cubes"},
+                         .closed = true});
+  command.add(&o.axis, {.names = "--axis",
+                        .value = "AXIS",
+                        .help = "axis across the layer",
+                        .choices = {"x", "y", "z"},
+                        .closed = true});
+  command.add(&o.at, {.names = "--at",
+                      .help = "layer of the box round the voxels",
+                      .range = {0, VoxelGrid::kMaxSide - 1},
+                      .fallback = "the middle"});
+  command.add(&o.model, {.names = "--model", .help = "model of the file", .range = {0, 1 << 20}});
+  command.add(&o.margin, {.names = "--margin", .help = "empty voxels round the model", .range = {0, 100}});
+  add_vox_options(command, o.vox);
+  command.example("scarp section model.vox -o section.svg --axis y");
+  command.runs([options, &command] {
+    command.require_effect({.kind = InputKind::voxels});
+    keep_inputs(options->output, command.typed_values());
     run(*options);
   });
 }

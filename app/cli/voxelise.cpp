@@ -15,10 +15,12 @@
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/scene_input.h"
+#include "app/cli/shared_options.h"
 #include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
+#include "scarp/render/surface/ramp.h"
 #include "scarp/render/surface/voxel_colours.h"
 #include "scarp/scene/file/from_raster.h"
 #include "scarp/scene/file/to_vox.h"
@@ -38,7 +40,6 @@ struct VoxeliseOptions {
   double voxel = 0;  // 0: not given
   int count = 0;     // 0: not given
   int threads = 0;
-  std::vector<std::string> given;  // the names of the options that were typed
 };
 
 constexpr int kUsualCount = 256;
@@ -67,12 +68,11 @@ Input voxels(const VoxeliseOptions& options) {
   return {Scene(scene_voxels(std::move(input.scene), VoxelSceneOptions{}.march)), {}, {}, {}};
 }
 
-Input input_of(const VoxeliseOptions& options) {
-  const bool vox = is_vox_input(options.inputs, options.vox), scene = !vox && is_scene_input(options.inputs);
-  require_options_of(vox ? InputKind::voxels : scene ? InputKind::scene : InputKind::terrain, options.given);
-  require_company({{{"--ramp"}, !vox && !scene, "terrain, whose heights it colours"}}, options.given);
-  if (vox) return voxels(options);
-  if (!scene) return terrain(options);
+Input input_of(const VoxeliseOptions& options, const Command& command) {
+  const InputKind kind = kind_of_input(command, options.inputs, options.vox);
+  command.require_effect({kind});
+  if (kind == InputKind::voxels) return voxels(options);
+  if (kind == InputKind::terrain) return terrain(options);
   SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
   return {std::move(document.scene), std::move(document.materials), std::move(document.notes),
           std::move(document.files)};
@@ -87,7 +87,7 @@ std::optional<WorldBox> box_of(const VoxeliseOptions& options) {
 
 double side_of(const VoxeliseOptions& options, const Scene& scene, const std::optional<WorldBox>& within) {
   if (!within && scene.endless())
-    throw Error("--within: the scene has no end; say of which box voxels are made, XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH");
+    throw Error("--within is required: the scene is endless (give XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH)");
   if (options.voxel > 0) return options.voxel;
   // Voxels stay what they are.
   if (options.count == 0 && is_vox_input(options.inputs, options.vox)) return 1;
@@ -97,17 +97,15 @@ double side_of(const VoxeliseOptions& options, const Scene& scene, const std::op
   return std::max({size.x, size.y, size.z}) / std::max(1, (options.count > 0 ? options.count : kUsualCount) - 1);
 }
 
-void run(const VoxeliseOptions& options) {
+void run(const VoxeliseOptions& options, const Command& command) {
   const std::string extension = extension_of(options.output);
   if (extension != ".vox" && extension != ".binvox") {
     throw Error(
-        fmt::format("output '{}': voxels are written as MagicaVoxel or binvox; let the name end in .vox or "
-                    ".binvox",
-                    options.output));
+        fmt::format("output '{}': voxels are MagicaVoxel or binvox files (name it *.vox or *.binvox)", options.output));
   }
   const std::optional<WorldBox> within = box_of(options);
   const ThreadLimit limit(options.threads);
-  const Input input = input_of(options);
+  const Input input = input_of(options, command);
   keep_inputs(options.output, input.files);
   stop_if_interrupted();
   const double side = side_of(options, input.scene, within);
@@ -139,28 +137,39 @@ void run(const VoxeliseOptions& options) {
 
 }  // namespace
 
-void add_voxelise(CLI::App& program) {
-  CLI::App* command =
-      program.add_subcommand("voxelise", "Make voxels of terrain, a scene or other voxels: .vox or .binvox");
+void add_voxelise(Program& program) {
+  Command& command = program.add("voxelise", "Convert terrain, a scene or voxels to voxels: .vox or .binvox");
   const auto options = std::make_shared<VoxeliseOptions>();
   VoxeliseOptions& o = *options;
-  add_raster_inputs(*command, o.inputs);
-  command->add_option("-o,--output", o.output, "the .vox or .binvox file to write")->required();
-  CLI::Option* voxel =
-      command->add_option("--voxel", o.voxel, "metres of a voxel's side")->check(number_in(kAboveZero));
-  command->add_option("--count", o.count, "voxels along the longest side, 2 to 2048 (256)")
-      ->check(CLI::Range(2, VoxelGrid::kMaxSide))
-      ->excludes(voxel);
-  command->add_option("--within", o.within, "XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH: a box in metres (all)");
-  command->add_option("--ramp", o.ramp, "colours by height, of terrain")->capture_default_str();
-  command->add_option("--threads", o.threads, "threads, 0 for all")->check(CLI::Range(0, 1024))->capture_default_str();
-  add_raster_options(*command, o.raster);
-  add_field_options(*command, o.field, BeyondBorders::none);
-  add_vox_options(*command, o.vox);
-  command->callback([options, command] {
-    options->given = given_options(*command);
-    keep_inputs(options->output, typed_values(*command));
-    run(*options);
+  add_raster_inputs(command, o.inputs, "elevation raster, scene (.json) or voxel file (.vox, .binvox)");
+  add_output_option(command, o.output, "voxels: .vox or .binvox", "vox binvox");
+  command.add(&o.voxel, {.names = "--voxel",
+                         .help = "side of a voxel",
+                         .unit = "metres",
+                         .range = kAboveZero,
+                         .fallback = "of --count; 1 for voxels"});
+  command.add(&o.count, {.names = "--count",
+                         .help = "voxels along the longest side",
+                         .range = {2, VoxelGrid::kMaxSide},
+                         .fallback = fmt::format("{}", kUsualCount),
+                         .excludes = {"--voxel"}});
+  command.add(&o.within, {.names = "--within",
+                          .value = "BOX",
+                          .help = "box in metres, XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH",
+                          .fallback = "all"});
+  command.add(&o.ramp, {.names = "--ramp",
+                        .value = "RAMP",
+                        .help = "colours by height",
+                        .choices = {ramp_names().begin(), ramp_names().end()},
+                        .inputs = {kTerrain, "only terrain is coloured by height"}});
+  add_threads_option(command, o.threads);
+  add_raster_options(command, o.raster);
+  add_field_options(command, o.field, BeyondBorders::none);
+  add_vox_options(command, o.vox);
+  command.example("scarp voxelise dem.tif -o dem.vox --count 200");
+  command.runs([options, &command] {
+    keep_inputs(options->output, command.typed_values());
+    run(*options, command);
   });
 }
 

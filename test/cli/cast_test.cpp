@@ -79,7 +79,7 @@ class Cast : public testing::Test {
     EXPECT_TRUE(result.status == 1 || result.status == 2) << result.status;
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_EQ(result.err.find("scarp: "), 0u) << result.err;
+    EXPECT_EQ(result.err.find("scarp: error: "), 0u) << result.err;
     EXPECT_NE(result.err.find(fragment), std::string::npos) << "'" << fragment << "' is not in: " << result.err;
     EXPECT_EQ(scratch_.files(), before);
   }
@@ -239,7 +239,8 @@ TEST_F(Cast, AllHitsStandInTheOrderOfT) {
     EXPECT_EQ(rows[2].at("ray"), "1");
     EXPECT_EQ(rows[2].at("status"), "miss");
   }
-  expect_rays_refused("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n", "max-mip and exhaustive only", {"--all", "--march", "naive"});
+  expect_rays_refused("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n", "only max-mip and exhaustive find all hits",
+                      {"--all", "--march", "naive"});
   expect_rays_refused("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n", "--any", {"--all", "--any"});
 }
 
@@ -264,7 +265,7 @@ TEST_F(Cast, AsksElevationModelsAlone) {
   for (const std::string name : {"model.vox", "scene.json"}) {
     const auto refused = run({"cast", write(name, "VOX "), "--rays", path("rays.csv")});
     EXPECT_NE(refused.status, 0);
-    EXPECT_NE(refused.err.find("cast asks elevation models"), std::string::npos) << refused.err;
+    EXPECT_NE(refused.err.find("cast takes elevation models, not voxels or scenes"), std::string::npos) << refused.err;
   }
 }
 
@@ -486,7 +487,7 @@ TEST_F(Cast, ADeviceAnswersLikeTheCpu) {
     EXPECT_GT(compared["miss"], 5) << wrap;
     EXPECT_GT(compared["below"], 2) << wrap;
   }
-  expect_rays_refused("x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n", "--all --device auto: devices tell the first hit",
+  expect_rays_refused("x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n", "--all --device auto: devices return only the first hit",
                       {"--all", "--device", "auto"});
   expect_rays_refused("x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n", "march 'exhaustive' does not run on Vulkan devices",
                       {"--march", "exhaustive", "--device", "auto"});

@@ -45,7 +45,7 @@ class Cli : public testing::Test {
     EXPECT_EQ(result.status, 1) << result.err;
     EXPECT_EQ(result.out, "");
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_EQ(result.err.find("scarp: "), 0u) << result.err;
+    EXPECT_EQ(result.err.find("scarp: error: "), 0u) << result.err;
     EXPECT_NE(result.err.find(fragment), std::string::npos) << "'" << fragment << "' is not in: " << result.err;
     EXPECT_EQ(scratch_.files(), before);
   }
@@ -330,7 +330,7 @@ TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
       {{"--ao-distance", "nan"}, "0 or more"},
       {{"--seed", "-3"}, "0 to 4294967295"},
       {{"--seed", "4294967296"}, "0 to 4294967295"},
-      {{"--naive-max-steps", "1e9"}, "--naive-max-steps '1e9': expected a whole number"},
+      {{"--naive-max-steps", "1e9"}, "--naive-max-steps '1e9': expected a whole number, 1 or more"},
       {{"--nodata", "x"}, "--nodata 'x': expected a number"},
       {{"--march", "lipschitz", "--lipschitz-max-steps", "0"}, "1 or more"},
       {{"--shrink", "1.5"}, "0 to 1"},
@@ -345,11 +345,11 @@ TEST_F(Cli, WrongOptionsAreOneLineThatSaysWhatIsRight) {
       {{"--scale", "0"}, "not 0"},
       {{"--scale", "1e300"}, "--scale '1e300': expected numbers from -1073741824 to 1073741824"},
       {{"--offset", "1e20"}, "--offset '1e20': expected a number from -1073741824 to 1073741824"},
-      {{"--exaggeration", "1e30"}, "--exaggeration '1e30': expected numbers from"},
+      {{"--exaggeration", "1e30"}, "--exaggeration '1e30': expected a number above 0 and at most 1073741824"},
       {{"--bounds", "0,0,1e300,1e300"}, "--bounds '0,0,1e300,1e300': expected numbers from"},
       {{"--height-range", "0,1e30"}, "--height-range '0,1e30': expected numbers from"},
       {{"--crs", "EPSG:4326", "--bounds", "500000,4000000,501000,4001000"}, "longitudes go from"},
-      {{"--scale", "2,5", "--offset", "7"}, "leave out --offset"},
+      {{"--scale", "2,5", "--offset", "7"}, "--offset repeats the offset of --scale S,OFFSET"},
       {{"--scale", "2", "--height-range", "0,1"}, "twice"},
       {{"--height-range", "5"}, "LOW,HIGH"},
       {{"--height-range", "5,nan"}, "LOW,HIGH"},
@@ -392,12 +392,15 @@ TEST_F(Cli, AWordThatIsNoSubcommandIsToldWhichThereAre) {
     const auto result = run(arguments);
     EXPECT_EQ(result.status, 2);
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_EQ(result.err.find("scarp: 'rendr': is no subcommand; expected render, cast, "), 0u) << result.err;
+    EXPECT_EQ(
+        result.err.find("scarp: error: unknown subcommand 'rendr' (did you mean 'render'? available: render, cast, "),
+        0u)
+        << result.err;
   }
   const auto file = run({good()});
   EXPECT_EQ(file.status, 2);
-  EXPECT_EQ(file.err, fmt::format("scarp: '{0}': is a file and no subcommand; did you mean 'scarp render {0} -o "
-                                  "out.png'?\n",
+  EXPECT_EQ(file.err, fmt::format("scarp: error: '{0}' is a file, not a subcommand (did you mean 'scarp render {0} -o "
+                                  "out.png'?)\n",
                                   good()));
 }
 

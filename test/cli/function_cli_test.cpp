@@ -124,8 +124,8 @@ TEST_F(Functions, AreSampledIntoAnElevationModel) {
 TEST_F(Functions, SayInOneLineWhatIsWrong) {
   expect_refusal({"info", "--function", "moon"}, "neither a file that can be read nor one of hills");
   expect_refusal({"info", "--function", "hills", "--extent", "-1"}, "--extent '-1': expected a number above 0");
-  expect_refusal({"info", "--function", "hills", "--band", "2"}, "--band: goes with terrain; leave it out");
-  expect_refusal({"info", "--function", "hills", "a.tif"}, "'a.tif': --function stands in the place of files");
+  expect_refusal({"info", "--function", "hills", "--band", "2"}, "--band applies to terrain only");
+  expect_refusal({"info", "--function", "hills", "a.tif"}, "'a.tif': --function replaces files");
   expect_refusal({"info"}, "IN (or --function NAME)");
   expect_refusal({"generate", "--function", "hills", "--seed", "3", "--size", "9", "-o", out("a.tif")}, "--seed");
   expect_refusal({"generate", "--function", "moon", "--size", "9", "-o", out("a.tif")}, "moon");

@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Options of the command line as such: numbers are finite and in their range, and what would have no effect is refused.
+// Options of the command line as such: numbers are finite and in their range, help is complete, and options without
+// effect are refused.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <map>
-#include <regex>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
-#include "app/cli/input_kind.h"
+#include "app/cli/commands.h"
+#include "app/cli/help.h"
 #include "base/refusal.h"
 #include "cli/program.h"
 #include "scarp/base/error.h"
+#include "scarp/march/function/function_table.h"
+#include "scarp/march/height/height_table.h"
+#include "scarp/render/frame/picture.h"
 #include "scarp/source/vox_file.h"
 
 namespace scarp {
@@ -22,32 +28,96 @@ namespace {
 using test::run;
 using Names = std::vector<std::string>;
 
-const Names kCommands = {"render", "cast", "info", "generate", "voxelise", "section", "composite"};
-
-// What the help lists: the long names of options that match.
-Names options_of(const std::string& command, const std::string& type) {
-  const std::string help = run({command, "--help"}).out;
-  const std::regex form("\n  (?:-[a-z],)?(--[a-z-]+)" + type);
-  Names names;
-  for (std::sregex_iterator at(help.begin(), help.end(), form), end; at != end; ++at) names.push_back((*at)[1]);
-  return names;
+// What the program declares.
+const cli::Program& declared() {
+  static cli::Program program;
+  if (program.commands().empty()) cli::add_commands(program);
+  return program;
 }
 
 TEST(Options, AllFloatingPointNumbersAreFinite) {
   std::size_t found = 0;
-  for (const std::string& command : kCommands) {
-    for (const std::string& option : options_of(command, " FLOAT")) {
+  for (const cli::Command* command : declared().commands()) {
+    for (const cli::Declared& option : command->options()) {
+      if (!std::holds_alternative<double*>(option.to) && !std::holds_alternative<std::optional<double>*>(option.to))
+        continue;
       ++found;
-      if (option == "--nodata") continue;  // holes may be marked by NaN
-      // All have the same check or none: what else it refuses is tested below.
-      const auto result = run({command, option, "nan"});
-      EXPECT_EQ(result.status, 2) << command << ' ' << option;
-      EXPECT_EQ(test::lines(result.err), 1) << result.err;
-      EXPECT_NE(result.err.find(option + " 'nan': expected a "), std::string::npos) << result.err;
-      EXPECT_LT(result.err.size(), 200u) << result.err;
+      for (const char* text : {"nan", "inf", "1e999", "x", ""}) {
+        const std::string what = test::refusal([&] { cli::set_value(option, text); });
+        EXPECT_EQ(what.find(fmt::format("{} '{}': expected a ", option.name, text)), 0u)
+            << command->name() << ": " << what;
+        EXPECT_LT(what.size(), 120u) << what;
+      }
     }
   }
-  EXPECT_GT(found, 50u) << "the help has another form";
+  EXPECT_GT(found, 50u);
+}
+
+// Topics, looks, marches and other options that a declaration names exist.
+TEST(Options, NameWhatExists) {
+  for (const cli::Command* command : declared().commands()) {
+    for (const cli::Declared& option : command->options()) {
+      const std::string what = command->name() + " " + option.name;
+      EXPECT_FALSE(option.option.help.empty()) << what;
+      EXPECT_FALSE(option.option.help.ends_with('.') || option.meaning().find(",,") != std::string::npos) << what;
+      for (const std::string_view look : cli::words_of(option.option.looks.names))
+        EXPECT_NO_THROW(find_look(look)) << what;
+      for (const std::string_view march : cli::words_of(option.option.marches)) {
+        const auto is = [&](const MarchEntry& entry) { return entry.name == march; };
+        EXPECT_TRUE(std::any_of(height_marches().begin(), height_marches().end(), is) ||
+                    std::any_of(function_marches().begin(), function_marches().end(), is))
+            << what << ": " << march;
+      }
+      Names others = option.option.excludes;
+      for (const cli::Rule& rule : option.option.rules) {
+        for (const std::string_view word : cli::words_of(rule.text)) {
+          if (word.starts_with("--")) others.emplace_back(word.substr(0, word.find(',')));
+        }
+      }
+      for (const std::string& other : others) {
+        if (command->name() == "voxelise" && other == "--look") continue;
+        EXPECT_NE(command->find(other), nullptr) << what << ": " << other;
+      }
+    }
+  }
+}
+
+TEST(Help, FitsAScreen) {
+  for (const cli::Command* command : declared().commands()) {
+    for (const std::string topic : {"", "all"}) {
+      const std::string text = cli::help_text(*command, topic);
+      for (std::size_t begin = 0, end = 0; begin < text.size(); begin = end + 1) {
+        end = text.find('\n', begin);
+        EXPECT_LE(end - begin, 100u) << text.substr(begin, end - begin);
+      }
+    }
+    EXPECT_LE(test::lines(cli::help_text(*command, "")), 60) << command->name();
+  }
+}
+
+TEST(Help, HasEveryOptionAndEveryTopic) {
+  const cli::Command& render = *declared().find("render");
+  const std::string common = run({"render", "--help"}).out, all = run({"render", "--help", "all"}).out;
+  EXPECT_NE(common.find("\nExamples:\n  scarp render "), std::string::npos) << common;
+  EXPECT_EQ(common.find("--turbidity"), std::string::npos) << common;
+  for (const cli::Declared& option : render.options())
+    EXPECT_NE(all.find("\n  " + option.synopsis()), std::string::npos);
+  for (const auto& [topic, options] : cli::options_by_topic(render)) {
+    const auto result = run({"render", "--help", std::string(name_of(topic))});
+    EXPECT_EQ(result.status, 0) << result.err;
+    for (const cli::Declared* option : options)
+      EXPECT_NE(result.out.find("\n  " + option->synopsis()), std::string::npos) << result.out;
+  }
+  EXPECT_NE(run({"render", "--help", "water"}).out.find("F >= 0 (0.04)"), std::string::npos);
+  const auto unknown = run({"render", "--help", "wather"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_EQ(test::lines(unknown.err), 1);
+  EXPECT_EQ(unknown.err.find("scarp: error: --help 'wather': unknown topic of 'scarp render' (topics: all, general, "),
+            0u)
+      << unknown.err;
+  // Whatever else was typed.
+  EXPECT_EQ(run({"render", "--watr", "3", "--fov", "x", "--help", "fog"}).status, 0);
+  EXPECT_EQ(run({"--help", "cast"}).out, run({"cast", "--help"}).out);
 }
 
 TEST(Options, NumbersAreInTheirRange) {
@@ -74,27 +144,39 @@ TEST(Options, NumbersAreInTheirRange) {
   }
 }
 
-TEST(Options, EachGoesWithAnInput) {
-  // These have one kind of input, or none.
-  const Names elsewhere = {"--help"};
-  std::size_t found = 0;
-  for (const std::string command : {"render", "cast", "info", "voxelise"}) {
-    for (const std::string& option : options_of(command, "")) {
-      if (std::find(elsewhere.begin(), elsewhere.end(), option) != elsewhere.end()) continue;
-      ++found;
-      int kinds = 0;
-      using cli::InputKind;
-      for (const auto kind : {InputKind::terrain, InputKind::voxels, InputKind::scene, InputKind::function}) {
-        try {
-          cli::require_options_of(kind, {option});
-          ++kinds;
-        } catch (const Error&) {
-        }
-      }
-      EXPECT_GT(kinds, 0) << command << ' ' << option << ": in no row of app/cli/input_kind.cpp";
-    }
+// Whatever the order of the options, the message is the same.
+TEST(Options, AreRefusedInTheOrderTyped) {
+  const Names first{"--fov", "0"}, second{"--waves", "2"};
+  const auto message = [](const Names& a, const Names& b) {
+    Names arguments{"render", "dem.tif", "-o", "out.png"};
+    arguments.insert(arguments.end(), a.begin(), a.end());
+    arguments.insert(arguments.end(), b.begin(), b.end());
+    return run(arguments).err;
+  };
+  EXPECT_NE(message(first, second).find("--fov '0'"), std::string::npos);
+  EXPECT_NE(message(second, first).find("--waves '2'"), std::string::npos);
+  // --frames needs --turntable, which is named first.
+  for (const Names& arguments : {Names{"--frames", "3", "--turntable"}, {"--turntable", "--frames", "3"}}) {
+    Names all{"render", "--function", "hills", "-o", "out-##.png"};
+    all.insert(all.end(), arguments.begin(), arguments.end());
+    EXPECT_EQ(run(all).err.find("scarp: error: --turntable applies to terrain only"), 0u);
   }
-  EXPECT_GT(found, 150u) << "the help has another form";
+}
+
+// A preset is applied before the settings that were typed, wherever it stands.
+TEST(Options, OfAMarchOverrideAPreset) {
+  test::Scratch scratch;
+  const std::string out = scratch.path("out.png");
+  const Names render{"render", "--function", "hills", "-o", out, "--size", "16x12", "--look", "steps"};
+  const auto picture = [&](const Names& options) {
+    Names arguments = render;
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return test::text_of(out);
+  };
+  const Names step{"--relaxed-step-factor", "0.1"}, preset{"--preset", "elevated"};
+  EXPECT_EQ(picture({step[0], step[1], preset[0], preset[1]}), picture({preset[0], preset[1], step[0], step[1]}));
 }
 
 class WithoutEffect : public testing::Test {
@@ -115,7 +197,7 @@ class WithoutEffect : public testing::Test {
     const std::string what = fmt::format("{}: {}", fmt::join(arguments, " "), result.err);
     EXPECT_EQ(result.status, 1) << what;
     EXPECT_EQ(test::lines(result.err), 1) << what;
-    EXPECT_EQ(result.err.find("scarp: " + options.front() + ": "), 0u) << what;
+    EXPECT_EQ(result.err.find("scarp: error: " + options.front() + " "), 0u) << what;
     EXPECT_NE(result.err.find(fragment), std::string::npos) << what;
     EXPECT_EQ(scratch_.files(), before) << what;
   }
@@ -139,12 +221,12 @@ TEST_F(WithoutEffect, IsRefusedOfVoxels) {
                                {"--band", "1"},
                                {"--crs", "EPSG:4326"},
                                {"--scale", "2"}}) {
-    expect_refused(render, options, "goes with terrain; leave it out");
-    expect_refused(make, options, "goes with terrain; leave it out");
+    expect_refused(render, options, "applies to terrain only");
+    expect_refused(make, options, "applies to terrain only");
   }
-  expect_refused(render, {"--wrap", "none"}, "goes with terrain; leave it out");
-  expect_refused(info, {"--nodata", "5"}, "goes with terrain; leave it out");
-  expect_refused(info, {"--extent", "5"}, "goes with functions; leave it out");
+  expect_refused(render, {"--wrap", "none"}, "applies to terrain only");
+  expect_refused(info, {"--nodata", "5"}, "applies to terrain only");
+  expect_refused(info, {"--extent", "5"}, "applies to functions only");
   expect_refused(make, {"--ramp", "grey"}, "terrain");
   for (const Names& options : {Names{"--contours", "3"},
                                {"--ground", "natural"},
@@ -156,11 +238,11 @@ TEST_F(WithoutEffect, IsRefusedOfVoxels) {
                                {"--mesh-scale", "1"},
                                {"--no-plinth"},
                                {"--reach", "5"}}) {
-    expect_refused(render, options, "goes with terrain; leave it out");
+    expect_refused(render, options, "applies to terrain only");
   }
-  expect_refused(render, {"--haze", "0"}, "goes with terrain and functions");
-  expect_refused(render, {"--device", "cpu"}, "goes with terrain, scenes and functions");
-  expect_refused(render, {"--function-step", "5"}, "goes with functions");
+  expect_refused(render, {"--haze", "0"}, "applies to terrain and functions only");
+  expect_refused(render, {"--device", "cpu"}, "applies to terrain, scenes and functions only");
+  expect_refused(render, {"--function-step", "5"}, "applies to functions only");
   expect_refused(render, {"--ramp", "viridis"}, "--volume or --look steps");
   expect_refused(render, {"--normal-radius", "4"}, "--normals voxel or smooth");
   expect_refused(render, {"--seed", "4"}, "--samples N");
@@ -179,13 +261,13 @@ TEST_F(WithoutEffect, IsRefusedOfVoxels) {
 TEST_F(WithoutEffect, IsRefusedOfTerrain) {
   const Names render{"render", dem_, "-o", out_}, cast{"cast", dem_, "--rays", scratch_.path("rays.csv")};
   for (const Names& options : {Names{"--frame", "0"}, {"--hidden"}, {"--up", "z"}, {"--normals", "flat"}}) {
-    expect_refused(render, options, "goes with files of voxels; leave it out");
+    expect_refused(render, options, "applies to voxels only");
   }
-  expect_refused({"info", dem_}, {"--surface-colours"}, "goes with files of voxels; leave it out");
-  expect_refused(render, {"--coarse-voxels"}, "goes with files of voxels and scenes");
-  expect_refused(render, {"--extent", "5"}, "goes with functions");
-  expect_refused({"info", dem_}, {"--extent", "5"}, "goes with functions");
-  expect_refused(cast, {"--function-reach", "5"}, "goes with functions");
+  expect_refused({"info", dem_}, {"--surface-colours"}, "applies to voxels only");
+  expect_refused(render, {"--coarse-voxels"}, "applies to voxels and scenes only");
+  expect_refused(render, {"--extent", "5"}, "applies to functions only");
+  expect_refused({"info", dem_}, {"--extent", "5"}, "applies to functions only");
+  expect_refused(cast, {"--function-reach", "5"}, "applies to functions only");
   expect_refused(cast, {"--naive-tolerance", "0.1"}, "--march naive");
   expect_refused(render, {"--shrink", "0.5"}, "--march lipschitz");
   expect_refused(render, {"--refine", "secant"}, "--march naive");
@@ -194,9 +276,9 @@ TEST_F(WithoutEffect, IsRefusedOfTerrain) {
   expect_refused(render, {"--visibility", "1"}, "--fog KIND");
   expect_refused(render, {"--fog-falloff", "1", "--fog", "distance"}, "--fog height");
   expect_refused(render, {"--snow-line", "1"}, "--ground natural");
-  expect_refused(render, {"--detail-size", "1"}, "--detail S");
-  expect_refused(render, {"--steps", "9"}, "goes with the look comanche");
-  expect_refused(render, {"--error-tolerance", "1"}, "goes with the look error");
+  expect_refused(render, {"--detail-size", "1"}, "--detail F");
+  expect_refused(render, {"--steps", "9"}, "applies to the look comanche");
+  expect_refused(render, {"--error-tolerance", "1"}, "applies to the look error");
   expect_refused(render, {"--sun-size", "1"}, "--samples N");
   expect_refused(render, {"--mesh-up", "y"}, "--mesh FILE");
   const Names flight{"render", dem_, "-o", scratch_.path("out-##.png"), "--turntable"};
@@ -208,20 +290,20 @@ TEST_F(WithoutEffect, IsRefusedOfTerrain) {
 TEST_F(WithoutEffect, IsRefusedOfScenesAndFunctions) {
   const Names render{"render", scene_, "-o", out_}, info{"info", scene_}, make{"voxelise", scene_, "-o", out_ + ".vox"};
   for (const Names& options : {Names{"--nodata", "5"}, {"--hidden"}}) {
-    expect_refused(render, options, "what a scene is made of stands in its file; leave it out");
-    expect_refused(info, options, "what a scene is made of stands in its file; leave it out");
-    expect_refused(make, options, "what a scene is made of stands in its file; leave it out");
+    expect_refused(render, options, "a scene file describes its own content");
+    expect_refused(info, options, "a scene file describes its own content");
+    expect_refused(make, options, "a scene file describes its own content");
   }
   expect_refused(make, {"--ramp", "grey"}, "terrain");
   expect_refused(render, {"--ramp", "grey"}, "--look steps");
-  expect_refused(render, {"--contours", "5"}, "goes with terrain");
+  expect_refused(render, {"--contours", "5"}, "applies to terrain only");
   const Names function{"render", "--function", "hills", "-o", out_};
   for (const Names& options : {Names{"--exaggeration", "2"}, {"--water", "3"}, {"--no-plinth"}}) {
-    expect_refused(function, options, "goes with terrain; leave it out");
+    expect_refused(function, options, "applies to terrain only");
   }
-  expect_refused(function, {"--turntable", "--frames", "2"}, "goes with terrain; leave it out");
-  expect_refused(function, {"--top"}, "goes with terrain, files of voxels and scenes");
-  expect_refused(function, {"--rounded", "0.1"}, "goes with files of voxels");
+  expect_refused(function, {"--turntable", "--frames", "2"}, "applies to terrain only");
+  expect_refused(function, {"--top"}, "applies to terrain, voxels and scenes only");
+  expect_refused(function, {"--rounded", "0.1"}, "applies to voxels only");
   expect_refused(function, {"--refine", "secant"}, "--march naive");
   expect_refused(function, {"--refine-halvings", "3", "--march", "naive"}, "--refine bisect");
 }
@@ -285,15 +367,17 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
     EXPECT_EQ(result.status, 0) << fmt::format("{}: {}", fmt::join(arguments, " "), result.err);
     return test::text_of(out_);
   };
+  const cli::Command& render = *declared().find("render");
   std::map<Names, std::string> without;
   for (const Case& c : cases) {
     for (const std::string look : {"shaded", "height", "steps", "error", "comanche"}) {
       const std::string what = fmt::format("{} with {}", fmt::join(c.options, " "), look);
       if (std::find(c.looks.begin(), c.looks.end(), look) == c.looks.end()) {
-        const std::string form = c.looks.size() == 1 ? "goes with the look " : "goes with the looks ";
-        const std::string text =
-            test::refusal([&] { cli::require_options_of_look(look, cli::InputKind::terrain, {c.options.front()}); });
-        EXPECT_EQ(text.find(c.options.front() + ": " + form + c.looks.front()), 0u) << what << ": " << text;
+        const std::string form = c.looks.size() == 1 ? "applies to the look " : "applies to the looks ";
+        const std::string text = test::refusal([&] {
+          cli::require_effect(*render.find(c.options.front()), {cli::InputKind::terrain, look});
+        });
+        EXPECT_EQ(text.find(c.options.front() + " " + form + c.looks.front()), 0u) << what << ": " << text;
         continue;
       }
       if (!c.seen) continue;
@@ -304,29 +388,24 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
     }
   }
   // Whoever adds an option says here which looks read it.
-  const Names of_all = {"--help",   "--output", "--size",  "--look",   "--no-plinth", "--threads",
-                        "--device", "--lowres", "--reach", "--legend", "--scale-bar"},
-              of_voxels = {"--normals", "--normal-radius", "--rounded", "--each", "--corner-ao", "--coarse-voxels"};
-  const std::string help = run({"render", "--help"}).out;
-  for (const char* group : {"Options", "Ground", "Water", "Fog", "Look comanche", "Looks of voxels"}) {
-    const auto begin = help.find(fmt::format("\n{}:\n", group));
-    ASSERT_NE(begin, std::string::npos) << group;
-    const std::string text = help.substr(begin, help.find("\n\n", begin + 1) - begin);
-    const std::regex form("\n  (?:-[a-z],)?(--[a-z-]+)");
-    for (std::sregex_iterator at(text.begin(), text.end(), form), end; at != end; ++at) {
-      const std::string option = (*at)[1];
-      const auto is = [&](const std::string& name) { return name == option; };
-      EXPECT_TRUE(std::any_of(of_all.begin(), of_all.end(), is) ||
-                  std::any_of(of_voxels.begin(), of_voxels.end(), is) ||
-                  std::any_of(cases.begin(), cases.end(), [&](const Case& c) { return c.options.front() == option; }))
-          << option;
+  const Names of_all = {"--size", "--look", "--no-plinth", "--lowres", "--reach"};
+  using cli::Topic;
+  for (const auto& [topic, options] : cli::options_by_topic(render)) {
+    const Topic all[] = {Topic::picture, Topic::light, Topic::ground, Topic::water, Topic::fog, Topic::comanche};
+    if (std::find(std::begin(all), std::end(all), topic) == std::end(all)) continue;
+    for (const cli::Declared* one : options) {
+      const auto is = [&](const std::string& name) { return name == one->name; };
+      EXPECT_TRUE(
+          std::any_of(of_all.begin(), of_all.end(), is) ||
+          std::any_of(cases.begin(), cases.end(), [&](const Case& c) { return c.options.front() == one->name; }))
+          << one->name;
     }
   }
   expect_refused({"render", rough, "-o", out_ + ".png"}, {"--sun", "1,30", "--look", "height"},
-                 "goes with the looks shaded and comanche, not with 'height'; leave it out");
+                 "applies to the looks shaded and comanche, not to 'height'");
   for (const std::string look : {"height", "steps"}) {
-    expect_refused({"render", vox_, "-o", out_}, {"--normals", "smooth", "--look", look}, "goes with the look shaded");
-    expect_refused({"render", vox_, "-o", out_}, {"--corner-ao", "--look", look}, "goes with the look shaded");
+    expect_refused({"render", vox_, "-o", out_}, {"--normals", "smooth", "--look", look}, "applies to the look shaded");
+    expect_refused({"render", vox_, "-o", out_}, {"--corner-ao", "--look", look}, "applies to the look shaded");
   }
 }
 

@@ -102,7 +102,7 @@ TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
 
 TEST_F(RenderOnDevice, RefusesMarchesThatDoNotRunThere) {
   expect_refusal(render({"--device", "auto", "--march", "exhaustive"}),
-                 "--device auto: march 'exhaustive' does not run on Vulkan devices; there run: max-mip, ");
+                 "--device auto: march 'exhaustive' does not run on Vulkan devices (available: max-mip, ");
 }
 
 TEST_F(RenderOnDevice, StepsOfComancheHaveSoftLightThere) {

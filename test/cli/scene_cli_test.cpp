@@ -55,10 +55,9 @@ TEST_F(Scenes, GiveWayToOptions) {
   EXPECT_EQ(test::read_png(picture_).width, 16);
   const auto refused = test::run({"render", path_, "-o", picture_, "--march", "naive"});
   EXPECT_NE(refused.status, 0);
-  EXPECT_NE(
-      refused.err.find(
-          "--march: goes with terrain, files of voxels and functions; what a scene is made of stands in its file"),
-      std::string::npos)
+  EXPECT_NE(refused.err.find(
+                "--march applies to terrain, voxels and functions only (a scene file describes its own content)"),
+            std::string::npos)
       << refused.err;
   EXPECT_NE(test::run({"render", path_, path_, "-o", picture_}).err.find("stands alone"), std::string::npos);
 }

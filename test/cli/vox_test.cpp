@@ -214,10 +214,10 @@ TEST_F(CliVox, SaysInOneLineWhatDoesNotGo) {
   expect_refused({"render", model_, "-o", out, "--solid-from", "3"}, "--volume");
   expect_refused({"render", model_, "-o", out, "--volume", "3x3:u8"}, "NXxNYxNZ");
   expect_refused({"render", model_, "-o", out, "--volume", "3x3x3:u8"}, "need 27");
-  expect_refused({"render", path("dem.tif"), "-o", out, "--rounded", "0.2"}, "goes with files of voxels");
-  expect_refused({"render", "--function", "elevated", "-o", out, "--normals", "smooth"}, "goes with files of voxels");
-  expect_refused({"info", path("dem.tif"), "--hidden"}, "goes with files of voxels");
-  expect_refused({"voxelise", path("dem.tif"), "-o", path("out.vox"), "--up", "y"}, "goes with files of voxels");
+  expect_refused({"render", path("dem.tif"), "-o", out, "--rounded", "0.2"}, "applies to voxels only");
+  expect_refused({"render", "--function", "elevated", "-o", out, "--normals", "smooth"}, "applies to voxels only");
+  expect_refused({"info", path("dem.tif"), "--hidden"}, "applies to voxels only");
+  expect_refused({"voxelise", path("dem.tif"), "-o", path("out.vox"), "--up", "y"}, "applies to voxels only");
   expect_refused({"voxelise", model_, "-o", path("out.obj")}, ".binvox");
   expect_refused({"voxelise", model_, "-o", path("out.vox"), "--within", "50,50,50,60,60,60"}, "nothing to make");
   expect_refused({"section", model_, "-o", path("out.png")}, ".svg");

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What a program says in one line where its options are wrong: of scarp and scarp-bench alike.
+// The one line that scarp-bench prints when its options are wrong.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <string>
 
-namespace scarp::cli {
+namespace scarp::bench {
 
 /// The exit status that goes with it.
 constexpr int kWrongUsage = 2;
@@ -16,4 +16,4 @@ std::string wrong_usage(const CLI::ParseError& error, const CLI::App& program);
 /// The word that stands where a subcommand should; empty where one does, or nothing.
 std::string unknown_subcommand(const CLI::App& program);
 
-}  // namespace scarp::cli
+}  // namespace scarp::bench

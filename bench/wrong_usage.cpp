@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "app/cli/wrong_usage.h"
+#include "bench/wrong_usage.h"
 
 #include <cstddef>
 #include <vector>
 
-namespace scarp::cli {
+namespace scarp::bench {
 namespace {
 
 // "--fov 'x': expected a number" for a value that CLI11 could not convert.
@@ -67,4 +67,4 @@ std::string wrong_usage(const CLI::ParseError& error, const CLI::App& program) {
   return what + "; '" + help + " --help' tells what there is";
 }
 
-}  // namespace scarp::cli
+}  // namespace scarp::bench

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/command.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <numeric>
+#include <system_error>
+#include <utility>
+
+#include "app/cli/help.h"
+
+namespace scarp::cli {
+namespace {
+
+constexpr const char* kHelp = "-h,--help";
+
+std::string long_name(const std::string& names) { return names.substr(names.find(',') + 1); }
+
+// The value of the variable before anything is parsed.
+std::string default_of(const Option& option, const Binding& to) {
+  if (!option.fallback.empty() || option.required) return option.fallback;
+  if (const auto* flag = std::get_if<bool*>(&to)) return option.value.empty() ? "" : fmt::format("{}", **flag);
+  if (const auto* whole = std::get_if<int*>(&to)) return fmt::format("{}", **whole);
+  if (const auto* small = std::get_if<std::uint32_t*>(&to)) return fmt::format("{}", **small);
+  if (const auto* large = std::get_if<std::uint64_t*>(&to)) return fmt::format("{}", **large);
+  if (const auto* number = std::get_if<double*>(&to)) return fmt::format("{}", **number);
+  if (const auto* text = std::get_if<std::string*>(&to)) return **text;
+  return {};
+}
+
+// Insertions, deletions and replacements of letters between two words.
+std::size_t edits_between(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+// "did you mean '--water'? " for a slip of up to a third of the letters.
+std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
+  std::size_t least = word.size() / 3 + 1;
+  std::string nearest;
+  for (const std::string& name : names) {
+    if (const std::size_t edits = edits_between(word, name); edits < least) {
+      least = edits;
+      nearest = name;
+    }
+  }
+  return nearest.empty() ? "" : fmt::format("did you mean '{}'? ", nearest);
+}
+
+std::string see_help(const CLI::App& app, const CLI::App* called) {
+  return fmt::format("see '{}{} --help'", app.get_name(), called == nullptr ? "" : " " + called->get_name());
+}
+
+std::string unknown_word(const CLI::App& app, const CLI::App* called, const std::vector<std::string>& words) {
+  const auto is_option = [](const std::string& word) { return word.starts_with('-'); };
+  // Behind a word that is no subcommand every option is unknown.
+  const auto option =
+      called != nullptr || is_option(words.front()) ? std::find_if(words.begin(), words.end(), is_option) : words.end();
+  if (option != words.end()) {
+    std::vector<std::string> names;
+    for (const CLI::Option* one : (called == nullptr ? app : *called).get_options()) names.push_back(one->get_name());
+    const std::string name = option->substr(0, option->find('='));
+    return fmt::format("unknown option '{}' ({}{})", name, suggestion(name, names), see_help(app, called));
+  }
+  const std::string& word = words.front();
+  if (called != nullptr) return fmt::format("'{}': unexpected argument ({})", word, see_help(app, called));
+  std::error_code no_file;
+  if (std::filesystem::exists(word, no_file))
+    return fmt::format("'{0}' is a file, not a subcommand (did you mean 'scarp render {0} -o out.png'?)", word);
+  std::vector<std::string> names;
+  for (const CLI::App* one : app.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); }))
+    names.push_back(one->get_name());
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return fmt::format("unknown subcommand '{}' ({}available: {}; {})", word, suggestion(word, names), listed(views),
+                     see_help(app, nullptr));
+}
+
+std::string what_is_wrong(const CLI::ParseError& error, const CLI::App& app, const CLI::App* called) {
+  if (const std::vector<std::string> words = app.remaining(true); !words.empty())
+    return unknown_word(app, called, words);
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr && called != nullptr) {
+    for (const CLI::Option* option : called->get_options()) {
+      const std::string name = option->get_name(), text = error.what();
+      if (!text.starts_with(name + ":")) continue;
+      if (option->count() > 1) return fmt::format("{} was given {} times; expected once", name, option->count());
+      return option->get_items_expected_max() == 0 ? name + " takes no value"
+                                                   : fmt::format("{} needs a value ({})", name, see_help(app, called));
+    }
+  }
+  return fmt::format("{} ({})", error.what(), see_help(app, called));
+}
+
+}  // namespace
+
+Command::Command(std::string name, std::string summary, bool hidden)
+    : name_(std::move(name)), summary_(std::move(summary)), hidden_(hidden) {}
+
+void Command::add(Binding to, Option option) {
+  Declared declared{std::move(option), std::move(to), {}, {}};
+  declared.name = long_name(declared.option.names);
+  declared.default_text = default_of(declared.option, declared.to);
+  options_.push_back(std::move(declared));
+}
+
+const Declared* Command::find(std::string_view name) const {
+  const auto found = std::find_if(options_.begin(), options_.end(), [&](const Declared& d) { return d.name == name; });
+  return found == options_.end() ? nullptr : &*found;
+}
+
+const Command::Typed* Command::typed(std::string_view name) const {
+  const auto found = std::find_if(typed_.begin(), typed_.end(), [&](const Typed& t) { return t.option->name == name; });
+  return found == typed_.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> Command::given() const {
+  std::vector<std::string> names;
+  for (const Typed& one : typed_) names.push_back(one.option->name);
+  return names;
+}
+
+std::string Command::value(std::string_view name) const {
+  const Typed* one = typed(name);
+  return one == nullptr || one->values.empty() ? std::string() : one->values.back();
+}
+
+std::vector<std::string> Command::typed_values() const {
+  std::vector<std::string> values;
+  for (const Typed& one : typed_) {
+    if (one.option->name == "--output") continue;
+    // "-" of --rays is what stands before the program in a shell: scarp cast --rays - < FILE.
+    for (const std::string& value : one.values) values.push_back(value == "-" ? "/dev/stdin" : value);
+  }
+  return values;
+}
+
+void Command::require_effect(const Use& use) const {
+  std::vector<const Declared*> seen;
+  const std::function<void(const Declared&)> check = [&](const Declared& one) {
+    if (std::find(seen.begin(), seen.end(), &one) != seen.end()) return;
+    seen.push_back(&one);
+    for (const Rule& rule : one.option.rules) {
+      for (const std::string_view word : words_of(rule.text)) {
+        if (const Typed* other = typed(word.substr(0, word.find(',')))) check(*other->option);
+      }
+    }
+    cli::require_effect(one, use);
+  };
+  for (const Typed& one : typed_) check(*one.option);
+}
+
+void Command::set_values() {
+  for (const bool first : {true, false}) {
+    for (const Typed& one : typed_) {
+      if (one.option->option.first != first) continue;
+      for (const std::string& value : one.values) set_value(*one.option, value);
+    }
+  }
+  for (const Declared& one : options_) {
+    if (one.option.required && !given(one.name))
+      throw WrongUsage(fmt::format("{} is required (see 'scarp {} --help')", one.synopsis(), name_));
+  }
+  for (const Typed& one : typed_) {
+    for (const std::string& other : one.option->option.excludes) {
+      if (given(other)) throw WrongUsage(fmt::format("{} cannot be combined with {}", one.option->name, other));
+    }
+  }
+}
+
+void Command::run(std::vector<Typed> typed) {
+  typed_ = std::move(typed);
+  set_values();
+  work_();
+}
+
+bool is_given(const std::vector<std::string>& given, std::string_view option) {
+  return std::find(given.begin(), given.end(), option) != given.end();
+}
+
+Command& Program::add(const std::string& name, const std::string& summary, bool hidden) {
+  return commands_.emplace_back(name, summary, hidden);
+}
+
+std::vector<const Command*> Program::commands() const {
+  std::vector<const Command*> shown;
+  for (const Command& command : commands_) {
+    if (!command.hidden()) shown.push_back(&command);
+  }
+  return shown;
+}
+
+const Command* Program::find(std::string_view name) const {
+  const auto found =
+      std::find_if(commands_.begin(), commands_.end(), [&](const Command& c) { return c.name() == name; });
+  return found == commands_.end() ? nullptr : &*found;
+}
+
+void Program::run(int argc, char** argv) {
+  static const std::string kNoText;
+  CLI::App app({}, "scarp");
+  app.set_help_flag();
+  const auto add_help = [](CLI::App& to) { return to.add_option(kHelp, CLI::callback_t())->expected(0, 1); };
+  const CLI::Option* help = add_help(app);
+  const CLI::Option* version = app.add_flag("--version", kNoText);
+  app.require_subcommand(0, 1);
+  struct Parsed {
+    Command* command;
+    CLI::App* app;
+    const CLI::Option* help;
+    std::vector<std::pair<CLI::Option*, const Declared*>> options;
+  };
+  std::vector<Parsed> all;
+  for (Command& command : commands_) {
+    CLI::App* sub = app.add_subcommand(command.name())->group(command.hidden() ? "" : "Subcommands");
+    sub->set_help_flag();
+    Parsed& parsed = all.emplace_back(Parsed{&command, sub, add_help(*sub), {}});
+    for (const Declared& one : command.options()) {
+      const std::string& names = one.option.names;
+      CLI::Option* option = one.flag() ? sub->add_flag(names, kNoText) : sub->add_option(names, CLI::callback_t());
+      if (std::holds_alternative<std::vector<std::string>*>(one.to))
+        option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
+      parsed.options.emplace_back(option, &one);
+    }
+  }
+  std::string wrong;
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const auto subs = app.get_subcommands();
+    wrong = what_is_wrong(error, app, subs.empty() ? nullptr : subs.front());
+  }
+  // Help is printed whatever else was typed.
+  const auto topic_of = [](const CLI::Option& option) {
+    return option.results().empty() ? std::string() : option.results().front();
+  };
+  const auto called = std::find_if(all.begin(), all.end(), [](const Parsed& p) { return p.app->parsed(); });
+  if (help->count() > 0) {
+    const Command* command = called == all.end() ? find(topic_of(*help)) : called->command;
+    fmt::print("{}", command != nullptr ? help_text(*command, {}) : help_text(*this));
+    return;
+  }
+  if (called != all.end() && called->help->count() > 0) {
+    fmt::print("{}", help_text(*called->command, topic_of(*called->help)));
+    return;
+  }
+  if (!wrong.empty()) throw WrongUsage(wrong);
+  if (version->count() > 0) {
+    fmt::print("scarp {}\n", SCARP_VERSION);
+    return;
+  }
+  if (called == all.end()) throw WrongUsage("no subcommand (see 'scarp --help')");
+  std::vector<Command::Typed> typed;
+  for (const CLI::Option* option : called->app->parse_order()) {
+    const auto one = std::find_if(called->options.begin(), called->options.end(),
+                                  [&](const auto& pair) { return pair.first == option; });
+    if (one == called->options.end()) continue;
+    if (std::any_of(typed.begin(), typed.end(), [&](const auto& t) { return t.option == one->second; })) continue;
+    typed.push_back({one->second, option->results()});
+  }
+  called->command->run(std::move(typed));
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+// The program and its subcommands: what they declare, and what was typed.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/cli/option.h"
+
+namespace scarp::cli {
+
+/// A subcommand. Variables that options are bound to must live until it has run.
+class Command {
+ public:
+  Command(std::string name, std::string summary, bool hidden);
+
+  /// Declares an option or a positional argument.
+  void add(Binding to, Option option);
+  /// A command line for the help, "scarp render dem.tif -o dem.png".
+  void example(std::string line) { examples_.push_back(std::move(line)); }
+  /// Text below the options in the help.
+  void footer(std::string text) { footer_ = std::move(text); }
+  /// What the subcommand does.
+  void runs(std::function<void()> work) { work_ = std::move(work); }
+
+  const std::string& name() const { return name_; }
+  const std::string& summary() const { return summary_; }
+  bool hidden() const { return hidden_; }
+  const std::deque<Declared>& options() const { return options_; }
+  const std::vector<std::string>& examples() const { return examples_; }
+  const std::string& footer() const { return footer_; }
+  /// Null when there is no such option.
+  const Declared* find(std::string_view name) const;
+
+  /// The names of the options that were typed, in the order typed.
+  std::vector<std::string> given() const;
+  bool given(std::string_view name) const { return typed(name) != nullptr; }
+  /// What was typed for an option, the last word of it; empty: nothing.
+  std::string value(std::string_view name) const;
+  /// Every value except that of --output. Values that name files count as inputs, so new options are covered.
+  std::vector<std::string> typed_values() const;
+  /// Throws Error for the first option in the order typed that has no effect; an option that another one needs comes
+  /// before it.
+  void require_effect(const Use& use) const;
+
+  /// What was typed for one option.
+  struct Typed {
+    const Declared* option;
+    std::vector<std::string> values;
+  };
+  /// Sets the variables and runs. Throws WrongUsage, and whatever the work throws.
+  void run(std::vector<Typed> typed);
+
+ private:
+  const Typed* typed(std::string_view name) const;
+  void set_values();
+
+  std::string name_, summary_, footer_;
+  bool hidden_;
+  std::deque<Declared> options_;  // stays in place: Typed points into it
+  std::vector<std::string> examples_;
+  std::function<void()> work_;
+  std::vector<Typed> typed_;
+};
+
+/// Whether `option` is among the names of given().
+bool is_given(const std::vector<std::string>& given, std::string_view option);
+
+class Program {
+ public:
+  /// A hidden subcommand is not listed in the help.
+  Command& add(const std::string& name, const std::string& summary, bool hidden = false);
+  /// Those that are not hidden.
+  std::vector<const Command*> commands() const;
+  const Command* find(std::string_view name) const;
+
+  /// Parses and runs. Throws WrongUsage, and whatever the subcommand throws.
+  void run(int argc, char** argv);
+
+ private:
+  std::deque<Command> commands_;
+};
+
+}  // namespace scarp::cli

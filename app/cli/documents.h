@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Documents that are generated from the declarations of the options.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "app/cli/command.h"
+
+namespace scarp::cli {
+
+/// `text` with every `from` replaced by `to`.
+std::string replaced(std::string text, std::string_view from, std::string_view to);
+
+/// doc/user/options.md.
+std::string options_markdown(const Program& program);
+/// scarp(1), and scarp-COMMAND(1) of a subcommand.
+std::string man_page(const Program& program);
+std::string man_page(const Command& command);
+
+/// Completion scripts of subcommands, options, words that are choices, and files by extension.
+std::string bash_completion(const Program& program);
+std::string zsh_completion(const Program& program);
+std::string fish_completion(const Program& program);
+
+}  // namespace scarp::cli

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/option.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+namespace scarp::cli {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, kTopics> kTopicNames = {{
+    {"general", "General"},
+    {"picture", "Picture"},
+    {"camera", "Camera"},
+    {"light", "Light and air"},
+    {"surface", "Surface"},
+    {"ground", "Ground colours"},
+    {"water", "Water"},
+    {"fog", "Fog"},
+    {"comanche", "Look comanche"},
+    {"figure", "Legend and scale"},
+    {"flight", "Flights"},
+    {"depth", "Depth buffer"},
+    {"mesh", "Mesh"},
+    {"voxels", "Voxels"},
+    {"functions", "Terrain functions"},
+    {"input", "Input interpretation"},
+    {"march", "March settings"},
+}};
+
+std::string kinds_text(unsigned kinds) {
+  constexpr std::pair<unsigned, std::string_view> kNames[] = {
+      {kTerrain, "terrain"}, {kVoxels, "voxels"}, {kScene, "scenes"}, {kFunction, "functions"}};
+  std::vector<std::string_view> names;
+  for (const auto& [kind, name] : kNames) {
+    if ((kinds & kind) != 0) names.push_back(name);
+  }
+  return listed(names);
+}
+
+std::string looks_text(std::string_view looks) {
+  const auto words = words_of(looks);
+  return (words.size() == 1 ? "the look " : "the looks ") + listed(words);
+}
+
+std::string in_brackets(std::string_view why) { return why.empty() ? "" : fmt::format(" ({})", why); }
+
+bool has_word(std::string_view text, std::string_view word) {
+  const auto words = words_of(text);
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+// "1 to 150", "F > 0"; empty: any number.
+std::string range_text(const NumberRange& range, const std::string& value) {
+  // kMostOfGround only stops slips.
+  const bool least = range.least > -kMostOfGround, most = range.most < kMostOfGround;
+  if (least && most && range.above_least) return fmt::format("{} < {} <= {}", range.least, value, range.most);
+  if (least && most) return fmt::format("{} to {}", range.least, range.most);
+  if (least) return fmt::format("{} {} {}", value, range.above_least ? ">" : ">=", range.least);
+  return {};
+}
+
+std::string placeholder(const Option& option, const Binding& to) {
+  if (!option.value.empty()) return option.value;
+  if (std::holds_alternative<bool*>(to)) return {};
+  if (option.unit == "metres") return "M";
+  if (option.unit == "degrees") return "DEG";
+  return std::holds_alternative<double*>(to) || std::holds_alternative<std::optional<double>*>(to) ? "F" : "N";
+}
+
+// Returns what is wrong with the text; empty: nothing.
+template <class Whole>
+std::string set_whole(Whole& value, const NumberRange& range, const std::string& text) {
+  Whole number = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool good = error == std::errc() && rest == text.data() + text.size();
+  if (good && static_cast<double>(number) >= range.least && static_cast<double>(number) <= range.most) {
+    value = number;
+    return {};
+  }
+  constexpr auto kLeast = std::numeric_limits<Whole>::min(), kMost = std::numeric_limits<Whole>::max();
+  const std::string least = std::isfinite(range.least) ? fmt::format("{}", range.least) : fmt::format("{}", kLeast);
+  if (!std::isfinite(range.most) && std::is_signed_v<Whole>)
+    return fmt::format("'{}': expected a whole number, {} or more", text, least);
+  const std::string most = std::isfinite(range.most) ? fmt::format("{}", range.most) : fmt::format("{}", kMost);
+  return fmt::format("'{}': expected a whole number from {} to {}", text, least, most);
+}
+
+std::string set_bool(bool& value, const std::string& text, bool flag) {
+  if (text != "true" && text != "false") {
+    return flag ? fmt::format("'{}': takes no value", text) : fmt::format("'{}': expected true or false", text);
+  }
+  value = text == "true";
+  return {};
+}
+
+template <class Number>
+std::string set_number(Number& value, const NumberRange& range, const std::string& text) {
+  const std::string wrong = number_in(range)(text);
+  if (wrong.empty()) value = std::strtod(text.c_str(), nullptr);
+  return wrong;
+}
+
+}  // namespace
+
+std::string_view name_of(Topic topic) { return kTopicNames[static_cast<std::size_t>(topic)].first; }
+std::string_view heading_of(Topic topic) { return kTopicNames[static_cast<std::size_t>(topic)].second; }
+
+Rule needs(const std::string& what, std::function<bool()> met, unsigned of) {
+  return {"has no effect without " + what, std::move(met), of};
+}
+
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find(' ', begin), text.size());
+    words.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return words;
+}
+
+std::string listed(std::span<const std::string_view> words, std::string_view last) {
+  std::string text;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (i > 0) text += i + 1 == words.size() ? fmt::format(" {} ", last) : ", ";
+    text += words[i];
+  }
+  return text;
+}
+
+bool Declared::flag() const { return std::holds_alternative<bool*>(to) && option.value.empty(); }
+
+std::string Declared::synopsis() const {
+  std::string text = option.names;
+  if (const auto comma = text.find(','); comma != std::string::npos) text.insert(comma + 1, " ");
+  if (positional() || flag()) return text;
+  return text + " " + placeholder(option, to);
+}
+
+std::string Declared::meaning() const {
+  std::string text = option.help;
+  if (!option.choices.empty() && !option.unlisted) {
+    const std::vector<std::string_view> words(option.choices.begin(), option.choices.end());
+    text += ": " + listed(words, "or");
+  }
+  if (!option.unit.empty()) text += " in " + option.unit;
+  if (const std::string range = range_text(option.range, placeholder(option, to)); !range.empty()) text += ", " + range;
+  if (!option.note.empty()) text += "; " + option.note;
+  return text;
+}
+
+std::string Declared::description() const {
+  return default_text.empty() ? meaning() : fmt::format("{} ({})", meaning(), default_text);
+}
+
+std::string Declared::restrictions() const {
+  std::vector<std::string> parts;
+  if (option.inputs.kinds != kEveryInput) parts.push_back(kinds_text(option.inputs.kinds));
+  if (!option.looks.names.empty()) parts.push_back(looks_text(option.looks.names));
+  if (!option.marches.empty()) parts.push_back("--march " + listed(words_of(option.marches), "or"));
+  for (const Rule& rule : option.rules) parts.push_back(rule.text);
+  for (const std::string& other : option.excludes) parts.push_back("not with " + other);
+  return fmt::format("{}", fmt::join(parts, "; "));
+}
+
+void set_value(const Declared& declared, const std::string& text) {
+  const NumberRange& range = declared.option.range;
+  const auto& choices = declared.option.choices;
+  std::string wrong;
+  if (declared.option.closed && std::find(choices.begin(), choices.end(), text) == choices.end()) {
+    const std::vector<std::string_view> words(choices.begin(), choices.end());
+    wrong = fmt::format("'{}': expected {}", text, listed(words, "or"));
+  } else if (const auto* flag = std::get_if<bool*>(&declared.to)) {
+    wrong = set_bool(**flag, text, declared.flag());
+  } else if (const auto* whole = std::get_if<int*>(&declared.to)) {
+    wrong = set_whole(**whole, range, text);
+  } else if (const auto* small = std::get_if<std::uint32_t*>(&declared.to)) {
+    wrong = set_whole(**small, range, text);
+  } else if (const auto* large = std::get_if<std::uint64_t*>(&declared.to)) {
+    wrong = set_whole(**large, range, text);
+  } else if (const auto* number = std::get_if<double*>(&declared.to)) {
+    wrong = set_number(**number, range, text);
+  } else if (const auto* perhaps = std::get_if<std::optional<double>*>(&declared.to)) {
+    wrong = set_number(**perhaps, range, text);
+  } else if (const auto* word = std::get_if<std::string*>(&declared.to)) {
+    **word = text;
+  } else if (const auto* words = std::get_if<std::vector<std::string>*>(&declared.to)) {
+    (*words)->push_back(text);
+  } else {
+    std::get<Setter>(declared.to)(text);
+  }
+  if (!wrong.empty()) throw WrongUsage(declared.name + " " + wrong);
+}
+
+void require_effect(const Declared& declared, const Use& use) {
+  const Option& option = declared.option;
+  const auto kind = static_cast<unsigned>(use.kind);
+  if ((option.inputs.kinds & kind) == 0) {
+    const std::string_view why =
+        use.kind == InputKind::scene ? "a scene file describes its own content" : option.inputs.why;
+    throw Error(
+        fmt::format("{} applies to {} only{}", declared.name, kinds_text(option.inputs.kinds), in_brackets(why)));
+  }
+  const Looks& looks = option.looks;
+  if (!use.look.empty() && !looks.names.empty() && (looks.of & kind) != 0 && !has_word(looks.names, use.look)) {
+    throw Error(fmt::format("{} applies to {}, not to '{}'{}", declared.name, looks_text(looks.names), use.look,
+                            in_brackets(looks.why)));
+  }
+  if (!use.march.empty() && !option.marches.empty() && !has_word(option.marches, use.march)) {
+    throw Error(fmt::format("{} needs --march {} (the march is {})", declared.name,
+                            listed(words_of(option.marches), "or"), use.march));
+  }
+  for (const Rule& rule : option.rules) {
+    if ((rule.of & kind) != 0 && !rule.holds()) throw Error(declared.name + " " + rule.text);
+  }
+}
+
+}  // namespace scarp::cli

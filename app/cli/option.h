@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// An option, declared once. Parsing, range checks, compatibility checks, `--help`, doc/user/options.md, man pages and
+// shell completion all read this declaration; see Command::add().
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "app/cli/numbers.h"
+#include "scarp/base/error.h"
+
+namespace scarp::cli {
+
+/// The command line itself is wrong, not the files or data that it names. The text is one line.
+class WrongUsage : public Error {
+ public:
+  using Error::Error;
+};
+
+/// What a subcommand works on. The values are bits of Inputs::kinds.
+enum class InputKind : std::uint8_t { terrain = 1, voxels = 2, scene = 4, function = 8 };
+constexpr unsigned kTerrain = 1, kVoxels = 2, kScene = 4, kFunction = 8, kEveryInput = 15;
+
+/// Groups of options, in the order in which `--help all` lists them. `--help NAME` lists one.
+enum class Topic : std::uint8_t {
+  general,
+  picture,
+  camera,
+  light,
+  surface,
+  ground,
+  water,
+  fog,
+  comanche,
+  figure,
+  flight,
+  depth,
+  mesh,
+  voxels,
+  functions,
+  input,
+  march,
+};
+constexpr int kTopics = 17;
+std::string_view name_of(Topic topic);
+std::string_view heading_of(Topic topic);
+
+/// The inputs that an option has an effect on, and why not on the others.
+struct Inputs {
+  unsigned kinds = kEveryInput;
+  std::string_view why{};
+};
+
+/// The looks that read an option ("shaded comanche"; empty: all), and why the others do not. Of inputs of `of` only.
+struct Looks {
+  std::string_view names{};
+  std::string_view why{};
+  unsigned of = kEveryInput;
+};
+
+/// What else must hold where an option is given. `text` continues the sentence that the option's name begins. Of inputs
+/// of `of` only.
+struct Rule {
+  std::string text;
+  std::function<bool()> holds;
+  unsigned of = kEveryInput;
+};
+/// "has no effect without --water M".
+Rule needs(const std::string& what, std::function<bool()> met, unsigned of = kEveryInput);
+
+/// Where the value goes. A Setter parses the text itself and throws Error or WrongUsage. bool* without a value name is
+/// a flag.
+using Setter = std::function<void(const std::string& text)>;
+using Binding = std::variant<bool*, int*, std::uint32_t*, std::uint64_t*, double*, std::optional<double>*, std::string*,
+                             std::vector<std::string>*, Setter>;
+
+struct Option {
+  std::string names;                    ///< "-o,--output", "--fov"; "IN" for positional arguments
+  std::string value{};                  ///< placeholder of the value: "FILE"; empty: of the unit, or a flag
+  std::string help{};                   ///< noun phrase without unit, range and default
+  std::string unit{};                   ///< "metres"
+  NumberRange range{};                  ///< of numbers; checked
+  std::vector<std::string> choices{};   ///< words that the value may be; checked if `closed`
+  bool closed = false;                  ///< no other words than `choices`
+  bool unlisted = false;                ///< `choices` are too many for the help; completion has them
+  std::string files{};                  ///< extensions of files for completion, "png exr"; "*": any file
+  std::string note{};                   ///< what else to know: "0: none"
+  std::string fallback{};               ///< the default in words; empty: the value of the variable
+  Topic topic = Topic::general;         //
+  bool common = false;                  ///< shown by a plain `--help`
+  bool required = false;                //
+  bool first = false;                   ///< applied before the other options, which override what it sets
+  Inputs inputs{};                      ///< checked by require_effect()
+  Looks looks{};                        ///< likewise
+  std::string_view marches{};           ///< marches that read it, "naive relaxed"; empty: all; likewise
+  std::vector<Rule> rules{};            ///< likewise; checked after the options that were given and that they name
+  std::vector<std::string> excludes{};  ///< options that cannot be given beside it
+};
+
+/// An option with what the program found out about it.
+struct Declared {
+  Option option;
+  Binding to;
+  std::string name;          ///< the long name, or that of a positional argument
+  std::string default_text;  ///< as text; empty: none
+
+  bool flag() const;
+  bool positional() const { return !name.starts_with('-'); }
+  /// "-o, --output FILE".
+  std::string synopsis() const;
+  /// "vertical field of view in degrees, 1 to 150".
+  std::string meaning() const;
+  /// With the default in parentheses.
+  std::string description() const;
+  /// "terrain; looks shaded and comanche; --march naive; has no effect without --water M"; empty: no restriction.
+  std::string restrictions() const;
+};
+
+/// Sets the variable. Throws WrongUsage "--fov '0': expected a number from 1 to 150".
+void set_value(const Declared& option, const std::string& text);
+
+/// What the option is used with. Throws Error where it has no effect; empty look or march: not checked.
+struct Use {
+  InputKind kind = InputKind::terrain;
+  std::string_view look{};
+  std::string_view march{};
+};
+void require_effect(const Declared& option, const Use& use);
+
+/// The words of a text with single spaces.
+std::vector<std::string_view> words_of(std::string_view text);
+/// "a, b and c".
+std::string listed(std::span<const std::string_view> words, std::string_view last = "and");
+
+}  // namespace scarp::cli

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/render_options.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <utility>
+
+#include "app/cli/device_option.h"
+#include "app/cli/field_options.h"
+#include "app/cli/march_options.h"
+#include "app/cli/raster_options.h"
+#include "app/cli/shared_options.h"
+#include "scarp/march/function/function_table.h"
+#include "scarp/march/height/height_table.h"
+#include "scarp/march/voxel/voxel_table.h"
+
+namespace scarp::cli {
+namespace {
+
+// Names for completion; a wrong one is refused with the techniques of its kind of input.
+std::vector<std::string> march_names() {
+  std::vector<std::string> names;
+  const auto add = [&](const auto& table) {
+    for (const MarchEntry& march : table) {
+      if (!is_given(names, march.name)) names.emplace_back(march.name);
+    }
+  };
+  add(height_marches());
+  add(function_marches());
+  add(voxel_marches());
+  return names;
+}
+
+constexpr Looks kLit{"shaded comanche", "the others show numbers"};
+
+void add_picture_options(Command& command, RenderOptions& o) {
+  const auto add = [&](Binding to, Option option) {
+    option.topic = Topic::picture;
+    command.add(std::move(to), std::move(option));
+  };
+  add(&o.size, {.names = "--size",
+                .value = "WIDTHxHEIGHT",
+                .help = "size of the picture in pixels",
+                .fallback = fmt::format("{}x{}; with --top the shape of the ground", o.picture.width, o.picture.height),
+                .common = true,
+                .looks = {"shaded height steps error", "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
+  std::vector<std::string> looks;
+  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error, Look::comanche})
+    looks.emplace_back(name_of(look));
+  add(&o.look, {.names = "--look",
+                .value = "LOOK",
+                .help = "what the picture shows",
+                .choices = std::move(looks),
+                .closed = true,
+                .common = true});
+  add(&o.picture.aa, {.names = "--aa",
+                      .help = "anti-aliasing: N x N samples per pixel",
+                      .range = {1, 16},
+                      .looks = {"shaded", "the others show one ray per pixel"}});
+  add(&o.no_plinth, {.names = "--no-plinth",
+                     .help = "no walls below the border of the terrain",
+                     .inputs = {kTerrain, "only rasters have a border to build walls on"}});
+  add(&o.error_tolerance,
+      {.names = "--error-tolerance",
+       .help = "tolerance of the look error along the ray: cells, or percent of the distance for functions and shapes",
+       .range = kZeroOrMore,
+       .fallback = fmt::format("{}; functions and shapes {}", o.error_tolerance, 100 * ErrorSettings{}.share),
+       .looks = {"error"}});
+}
+
+void add_light_options(Command& command, RenderOptions& o) {
+  const auto add = [&](Binding to, Option option) {
+    option.topic = Topic::light;
+    command.add(std::move(to), std::move(option));
+  };
+  PictureSettings& picture = o.picture;
+  // The number of samples may stand in the scene's file.
+  const Rule sampled = needs(
+      "--samples N", [&picture] { return picture.samples > 0; }, kEveryInput & ~kScene);
+  add(&o.sun, {.names = "--sun",
+               .value = "AZ,ALT",
+               .help = "compass azimuth and altitude of the sun in degrees",
+               .fallback = fmt::format("{},{}; voxels {},{}", picture.sun.azimuth_deg, picture.sun.altitude_deg,
+                                       kVoxelSunAzimuth, picture.sun.altitude_deg),
+               .common = true,
+               .looks = kLit});
+  add(&o.no_shadows, {.names = "--no-shadows", .help = "no cast shadows", .common = true, .looks = {"shaded"}});
+  add(&picture.samples, {.names = "--samples",
+                         .help = "rays to sun and sky per sample, for soft shadows and ambient occlusion",
+                         .range = {0, 4096},
+                         .note = "best a power of 2; 0: hard shadows",
+                         .common = true,
+                         .looks = kLit});
+  add(&picture.sun.size_deg, {.names = "--sun-size",
+                              .help = "apparent diameter of the sun",
+                              .unit = "degrees",
+                              .range = {0, 90},
+                              .note = "0: hard shadows",
+                              .looks = {"shaded"},
+                              .rules = {sampled}});
+  add(&picture.ao_distance, {.names = "--ao-distance",
+                             .help = "maximum ambient-occlusion distance",
+                             .unit = "metres",
+                             .range = kZeroOrMore,
+                             .note = "0: no ambient occlusion",
+                             .fallback = "unlimited",
+                             .looks = kLit,
+                             .rules = {sampled}});
+  add(&picture.seed, {.names = "--seed",
+                      .help = "seed of the pattern of --samples",
+                      .range = {0, static_cast<double>(std::numeric_limits<decltype(picture.seed)>::max())},
+                      .looks = kLit,
+                      .rules = {sampled}});
+  add(&picture.haze, {.names = "--haze",
+                      .help = "fraction of haze over the diagonal of the scene (of functions over --extent)",
+                      .range = {0, 0.95},
+                      .fallback = fmt::format("{}; functions {}, voxels and scenes 0", picture.haze, kFunctionHaze),
+                      .looks = {"shaded", "the others have no haze", kEveryInput & ~kFunction}});
+}
+
+void add_camera_options(Command& command, RenderOptions& o) {
+  const auto add = [&](Binding to, Option option) {
+    option.topic = Topic::camera;
+    command.add(std::move(to), std::move(option));
+  };
+  const Rule no_frames{"has no effect with --path or --turntable, which have cameras of their own",
+                       [&o] { return !o.frames.several(); }};
+  const ViewSettings view;
+  add(&o.view,
+      {.names = "--view",
+       .value = "AZ,EL[,DIST]",
+       .help = "camera position: compass azimuth and elevation in degrees, distance as a multiple of the one "
+               "that fits everything",
+       .fallback = fmt::format("{},{},{}", view.azimuth_deg, view.elevation_deg, view.distance),
+       .common = true,
+       .rules = {{"has no effect with --path, whose table holds the cameras", [&o] { return o.frames.path.empty(); }}},
+       .excludes = {"--eye"}});
+  add(&o.eye, {.names = "--eye",
+               .value = "X,Y,Z",
+               .help = "eye in metres: x east and y north of the south-west sample, z up, exaggerated",
+               .common = true,
+               .rules = {no_frames}});
+  add(&o.target, {.names = "--target",
+                  .value = "X,Y,Z",
+                  .help = "point that the eye looks at, in metres",
+                  .fallback = "the middle",
+                  .common = true,
+                  .rules = {no_frames, needs("--eye X,Y,Z", [&o] { return !o.eye.empty(); })}});
+  add(&o.fov_deg,
+      {.names = "--fov",
+       .help = "vertical field of view",
+       .unit = "degrees",
+       .range = {1, 150},
+       .fallback = fmt::format("{}; comanche {}, functions {}", view.fov_deg, kComancheFov, kFunctionView.fov_deg),
+       .common = true});
+  add(&o.top, {.names = "--top",
+               .help = "map: straight down, without perspective, grid north up",
+               .common = true,
+               .inputs = {kTerrain | kVoxels | kScene, "functions have no border to fit a map to"},
+               .rules = {no_frames},
+               .excludes = {"--view", "--eye", "--fov"}});
+}
+
+}  // namespace
+
+Command& declare_render(Program& program, RenderOptions& o) {
+  Command& command =
+      program.add("render", "Render an elevation model, voxels, a scene or a terrain function as a picture");
+  add_raster_inputs(command, o.inputs,
+                    "raster (anything GDAL reads, .npy, .npz, .exr), voxels (.vox, .binvox) or scene (.json)", false);
+  add_output_option(command, o.output, "picture: .png, or .exr with depth, normals, positions and steps", "png exr");
+  add_device_option(command, o.device);
+  add_threads_option(command, o.threads);
+  add_picture_options(command, o);
+  add_light_options(command, o);
+  add_camera_options(command, o);
+  add_field_options(command, o.field, BeyondBorders::mirrors);
+  add_look_options(command, o.look_options);
+  add_figure_options(command, o.figure);
+  add_frame_options(command, o.frames);
+  add_depth_options(command, o.depth);
+  add_mesh_options(command, o.mesh);
+  add_vox_options(command, o.vox);
+  add_vox_look_options(command, o.vox_look);
+  add_function_options(command, o.function, o.march, o.march_settings);
+  add_raster_options(command, o.raster);
+  command.add(&o.march, {.names = "--march",
+                         .value = "NAME",
+                         .help = "marching technique",
+                         .choices = march_names(),
+                         .unlisted = true,
+                         .note = "see 'scarp marches'",
+                         .fallback = fmt::format("{}; voxels {}, functions {}", kTerrainMarch,
+                                                 VoxelSceneOptions{}.march, kFunctionMarch),
+                         .topic = Topic::march,
+                         .common = true,
+                         .inputs = {kTerrain | kVoxels | kFunction}});
+  add_march_options(command, o.march_settings);
+  command.example("scarp render dem.tif -o dem.png --sun 300,30");
+  command.example("scarp render dem.tif -o map.png --top --contours 20 --legend --scale-bar");
+  command.example("scarp render city.vox -o city.png --samples 16 --view 220,30");
+  return command;
+}
+
+}  // namespace scarp::cli

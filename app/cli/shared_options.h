@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Options of several subcommands that belong to no other file.
+#pragma once
+
+#include <string>
+
+#include "app/cli/command.h"
+
+namespace scarp::cli {
+
+/// Declares -o, --output. `files` are its extensions.
+void add_output_option(Command& command, std::string& output, const std::string& help, const std::string& files,
+                       bool required = true);
+/// Declares --threads.
+void add_threads_option(Command& command, int& threads);
+/// Declares --json.
+void add_json_option(Command& command, bool& json);
+
+}  // namespace scarp::cli
