@@ -76,7 +76,7 @@ class VoxelScene {
   dvec3 normal(const dvec3& p, const Hit& hit) const;
   VoxelColour colour(const Hit& hit) const;
 
-  const VoxelGrid& grid(const Hit& hit) const { return models_[objects_[hit.object].model]->grid(); }
+  const VoxelGrid& grid(const Hit& hit) const { return models_[objects_[hit.part].model]->grid(); }
   /// A point of the world in the space of the object's grid.
   dvec3 place_in_grid(const Hit& hit, const dvec3& p) const;
   /// Metres of a voxel's side of the object.

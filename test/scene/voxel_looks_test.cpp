@@ -185,6 +185,26 @@ TEST(SmoothVoxels, LightFacesThatLookTheOtherWay) {
   EXPECT_LT(length(sheet.shading_normal - dvec3(1, 0, 0)), kRounding);
 }
 
+TEST(SmoothVoxels, AreOfTheModelThatWasHit) {
+  const auto slab = model_of(grid_where(ivec3(8), [](const ivec3& v) { return v.z < 1; }));
+  const auto stairs = model_of(grid_where(ivec3(16), [](const ivec3& v) { return v.x + v.y + v.z < 24; }));
+  const VoxelShading shading{.normals = VoxelNormals::smooth, .corner_ao = true};
+  const std::vector<VoxelPlace> places{VoxelPlace{.origin = {40, 0, 0}}, VoxelPlace{.model = 1}};
+  const SceneFieldPtr alone = scene_voxels(VoxelScene({stairs}, std::vector{VoxelPlace{}}), "voxel-bricks", shading),
+                      second = scene_voxels(VoxelScene({slab, stairs}, places), "voxel-bricks", shading);
+  Ray down;
+  down.origin = {8.3, 7.6, 30};
+  const Hit hit = second->closest_hit(down, nullptr, nullptr);
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit.part, 1u);
+  const FieldSurface is = second->surface(down, hit),
+                     expected = alone->surface(down, alone->closest_hit(down, nullptr, nullptr));
+  EXPECT_EQ(is.shading_normal, expected.shading_normal);
+  EXPECT_EQ(is.openness, expected.openness);
+  EXPECT_LT(expected.openness, 1);
+  EXPECT_LT(expected.shading_normal.z, 0.9);
+}
+
 SceneFieldPtr ball(double radius) {
   Shape shape = make_shape(shape::Sphere{radius});
   return scene_shape(DistanceField(std::move(shape)));
