@@ -146,7 +146,8 @@ TEST(SamplingMarches, RefineTheirHits) {
   for (const std::string_view march : {"naive", "fixed-step", "relaxed"}) {
     const test::CastAll cast = [&](const HeightField& field, std::span<const Ray> rays, const MarchSettings& settings) {
       std::vector<Hit> hits;
-      for (const Ray& ray : rays) hits.push_back(find_height_march(march).cpu({&field, nullptr}, ray, settings, nullptr));
+      for (const Ray& ray : rays)
+        hits.push_back(find_height_march(march).cpu({&field, nullptr}, ray, settings, nullptr));
       return hits;
     };
     const test::RefinementErrors bisect = test::refinement_errors(march, Refinement::bisect, cast);

@@ -70,13 +70,14 @@ SCARP_FN void scarp_tell_refined(ScarpField field, ScarpRay ray, ScarpWay way, S
 }
 
 /// Continues a march for at most `turns` turns of its loop, at least one step. Returns whether it is done; otherwise
-/// call again with the same state and hit. For drivers that limit loops. Over holes a step of lipschitz counts as all
-/// the levels that it may climb: invocations in a vector wait for one another, whichever climbs.
+/// call again with the same state and hit. For drivers that limit loops. A step counts twice: compilers make a loop of
+/// one turn of an inlined function that returns early, and drivers count it. Over holes a step of lipschitz counts as
+/// all the levels that it may climb: invocations in a vector wait for one another, whichever climbs.
 SCARP_FN bool scarp_sampled_on(ScarpField field, ScarpRay ray, ScarpSampling settings, int turns,
                                SCARP_INOUT(ScarpMarchState) state, SCARP_INOUT(ScarpHit) hit) {
   ScarpWay way = scarp_way(field, ray, settings);
   bool climbs = settings.march == kScarpLipschitz && (field.flags & kScarpHoles) != 0u;
-  int turns_of_step = climbs ? 1 + field.top_level : 1;
+  int turns_of_step = climbs ? 2 + 2 * field.top_level : 2;
   for (int turn = 0; turn < turns; turn += turns_of_step) {
     if (!(state.s <= ray.exit)) {
       hit.status = scarp_sampling_missed(state);
