@@ -251,7 +251,7 @@ void run_frames(const FramesOptions& options, const ReportOptions& report) {
     };
     const PictureSettings settings = settings_of(field, options, way, kAirs[air], level);
     std::optional<Water> water;
-    if (settings.water) water.emplace(*settings.water, field);
+    if (settings.water) water.emplace(*settings.water, oracle);
     const Water* sea = water ? &*water : nullptr;
     std::int64_t judged = 0, mistakes = 0, seas = 0;
     for (const Camera& camera : cameras) {

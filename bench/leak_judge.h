@@ -89,7 +89,7 @@ class LeakJudge {
 
   const LeakField& ground_;
   const HeightField& field_;
-  const Ray& ray_;
+  Ray ray_;
   bool triangles_, wraps_, exact_plan_, on_surface_;
   Real ox_, oy_, oz_, dx_, dy_, dz_;  // in cells and sample units
   Real low_, high_, offset_;          // of the samples, in sample units

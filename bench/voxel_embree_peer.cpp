@@ -105,7 +105,7 @@ struct VoxelEmbreePeer::Scene {
                              {}};
       const auto quantised = quantise(in_grid, question.directions[id], s.target.box);
       if (!quantised) continue;
-      const VoxelHit hit = s.model->march().voxel_cpu(s.target, *quantised, nullptr);
+      const VoxelHit hit = s.model->march().cpu(s.target, *quantised, nullptr);
       if (!hit || (best && hit.t == best.t && args->primID > best.part)) continue;
       best.status = HitStatus::hit, best.face = hit.face, best.t = hit.t;
       best.voxel = hit.voxel, best.part = args->primID;

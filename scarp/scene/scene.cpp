@@ -82,6 +82,7 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
     endless_ = endless_ || !extent;
     if (extent && !empty(*extent)) box_ = around(box_, world_box(objects_[i].placement, *extent));
     const std::optional<WorldBox>& box = field_boxes[objects_[i].field];
+    if (field_of(i).is_backdrop() && box) walls_end_ = world_box(objects_[i].placement, *box).low.z;
     if (!box) {
       beside_tree_.push_back(i);
       continue;
@@ -135,10 +136,15 @@ void Scene::find_terrain() {
 
 Scene::Scene(SceneFieldPtr field) : Scene(std::vector{std::move(field)}, {SceneObject{}}) {}
 
+void Scene::take_hit(const Hit& hit, std::uint32_t object, Hit& best) const {
+  if (hit && hit.wall && hit.height < walls_end_) return;
+  take(hit, object, best);
+}
+
 void Scene::ask(const Asking& ray, std::uint32_t object, Hit& best, MarchStats* stats) const {
   MarchStats march;
-  take(field_of(object).closest_hit(local(ray, object, best), ray.from_on(object), stats ? &march : nullptr), object,
-       best);
+  take_hit(field_of(object).closest_hit(local(ray, object, best), ray.from_on(object), stats ? &march : nullptr),
+           object, best);
   if (!stats) return;
   stats->steps += march.steps, stats->level_changes += march.level_changes;
   stats->cell_tests += march.cell_tests, stats->boxes += march.boxes;
@@ -213,7 +219,7 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
       if (!from.empty()) on_object[i] = ray.from_on(object);
     }
     field_of(object).closest_hits(locals, answers, on_object);
-    for (std::size_t i = 0; i < rays.size(); ++i) take(answers[i], object, hits[i]);
+    for (std::size_t i = 0; i < rays.size(); ++i) take_hit(answers[i], object, hits[i]);
   }
   for (std::size_t i = 0; i < rays.size(); ++i) ask_tree({rays, from, i}, hits[i], nullptr);
 }

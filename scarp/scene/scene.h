@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -146,6 +147,7 @@ class Scene {
   struct Asking;
   Ray local(const Asking& asking, std::uint32_t object, const Hit& best) const;
   void ask(const Asking& ray, std::uint32_t object, Hit& best, MarchStats* stats) const;
+  void take_hit(const Hit& hit, std::uint32_t object, Hit& best) const;
   void ask_tree(const Asking& ray, Hit& best, MarchStats* stats) const;
   bool blocks(const Asking& ray, std::uint32_t object) const;
   bool tree_blocks(const Asking& ray) const;
@@ -177,6 +179,8 @@ class Scene {
   BoxTree tree_;
   WorldBox box_;
   bool endless_ = false, wraps_ = false;
+  // The height at which walls of solid ground end: the base of the plinth.
+  double walls_end_ = -std::numeric_limits<double>::infinity();
   bool alone_ = false;  // one object, where its field stands: nothing is transformed, nothing compared
   bool sole_ = false;   // the same, but for backdrops: they are seen, but rays are not blocked by them
   std::uint32_t sole_object_ = 0, terrain_object_ = 0;

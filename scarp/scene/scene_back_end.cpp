@@ -58,7 +58,7 @@ void Scene::ask_closest(std::span<const Ray> rays, From from, std::span<const Pa
   });
   back_end_->closest_hits(objects_[pairs.front().object].field, locals, answers, cost, on_object);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    take(answers[i], pairs[i].object, hits[pairs[i].ray]);
+    take_hit(answers[i], pairs[i].object, hits[pairs[i].ray]);
     if (!steps.empty()) steps[pairs[i].ray] += cost[i];
   }
 }

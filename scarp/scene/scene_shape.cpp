@@ -8,7 +8,7 @@ namespace scarp {
 namespace {
 
 constexpr double kToleranceOfJudge = 1e-9;
-constexpr int kStepsOfJudge = 1 << 20;
+constexpr int kStepsOfShapeJudge = 1 << 20;
 
 class ShapeField final : public SceneField {
  public:
@@ -43,7 +43,7 @@ class ShapeField final : public SceneField {
   }
   SceneFieldPtr judge() const override {
     MarchSettings settings;
-    settings.sphere_trace = {.tolerance = kToleranceOfJudge, .max_steps = kStepsOfJudge};
+    settings.sphere_trace = {.tolerance = kToleranceOfJudge, .max_steps = kStepsOfShapeJudge};
     return scene_shape(shape_, find_shape_march("sphere-trace"), settings);
   }
   SceneFieldParts parts() const override { return {SceneFieldParts::Shape{&shape_, &march_, &settings_}}; }

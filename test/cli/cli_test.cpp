@@ -83,7 +83,7 @@ TEST_F(Cli, FiguresAreRefusedWhereTheyMeanNothing) {
     EXPECT_NE(result.err.find(fragment), std::string::npos) << result.err;
     EXPECT_EQ(scratch_.files(), (Names{"good.asc"}));
   };
-  refused({"--legend", "--ground", "natural"}, "320x240", "no scale of heights");
+  refused({"--legend", "--ground", "natural"}, "320x240", "no colour scale to show with --ground natural");
   refused({"--legend"}, "40x20", "make it larger");
 }
 #endif

@@ -67,7 +67,7 @@ TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
       {{"--fog", "iterations"}, "--fog iterations needs --look comanche --march fixed-step"},
       {{"--look", "comanche", "--fog", "iterations"}, "--fog iterations needs --look comanche --march fixed-step"},
       {{"--look", "comanche", "--march", "fixed-step", "--refine", "bisect"}, "--fixed-step-interpolate instead"},
-      {{"--look", "comanche", "--shells"}, "--shells needs --march fixed-step (the march is max-mip)"},
+      {{"--look", "comanche", "--shells"}, "--shells has no effect without --march fixed-step"},
       {{"--fog", "distance", "--visibility", "0"}, "--visibility '0': expected a finite number above 0"},
       {{"--ground", "lava"}, "--ground 'lava': expected ramp or natural"},
       {{"--ramp", scratch.path("gap.cpt")}, "line 2: begins at 20, where the line before ends at 10"},

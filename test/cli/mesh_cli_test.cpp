@@ -88,10 +88,7 @@ TEST_F(MeshOption, StandsWhereItIsToldTo) {
 }
 
 TEST_F(MeshOption, WhatIsWrongIsSaidInOneLine) {
-  expect_refusal({"--mesh", roof_}, "--mesh needs --device, which draws it (add --device auto", false);
   expect_refusal({"--mesh-at", "1,2"}, "--mesh-at has no effect without --mesh FILE");
-  expect_refusal({"--mesh", roof_, "--look", "height"}, "--mesh applies to the look shaded, not to 'height'");
-  expect_refusal({"--mesh", roof_, "--water", "0"}, "--mesh is not reflected by --water");
   expect_refusal({"--mesh", roof_, "--mesh-up", "x"}, "--mesh-up 'x': expected y or z");
   expect_refusal({"--mesh", roof_, "--mesh-scale", "0"}, "--mesh-scale '0': expected a finite number above 0");
   expect_refusal({"--mesh", roof_, "--mesh-rotate", "nan"}, "--mesh-rotate 'nan': expected a finite number");

@@ -75,7 +75,6 @@ TEST(Options, NameWhatExists) {
         }
       }
       for (const std::string& other : others) {
-        if (command->name() == "voxelise" && other == "--look") continue;
         EXPECT_NE(command->find(other), nullptr) << what << ": " << other;
       }
     }
@@ -155,11 +154,11 @@ TEST(Options, AreRefusedInTheOrderTyped) {
   };
   EXPECT_NE(message(first, second).find("--fov '0'"), std::string::npos);
   EXPECT_NE(message(second, first).find("--waves '2'"), std::string::npos);
-  // --frames needs --turntable, which is named first.
-  for (const Names& arguments : {Names{"--frames", "3", "--turntable"}, {"--turntable", "--frames", "3"}}) {
-    Names all{"render", "--function", "hills", "-o", "out-##.png"};
+  // --each needs --rounded, which is named first.
+  for (const Names& arguments : {Names{"--each", "--rounded", "0.2"}, {"--rounded", "0.2", "--each"}}) {
+    Names all{"render", "--function", "hills", "-o", "out.png"};
     all.insert(all.end(), arguments.begin(), arguments.end());
-    EXPECT_EQ(run(all).err.find("scarp: error: --turntable applies to terrain only"), 0u);
+    EXPECT_EQ(run(all).err.find("scarp: error: --rounded applies to voxels only"), 0u);
   }
 }
 
@@ -228,19 +227,8 @@ TEST_F(WithoutEffect, IsRefusedOfVoxels) {
   expect_refused(info, {"--nodata", "5"}, "applies to terrain only");
   expect_refused(info, {"--extent", "5"}, "applies to functions only");
   expect_refused(make, {"--ramp", "grey"}, "terrain");
-  for (const Names& options : {Names{"--contours", "3"},
-                               {"--ground", "natural"},
-                               {"--detail", "1"},
-                               {"--fog", "none"},
-                               {"--water", "3"},
-                               {"--legend"},
-                               {"--turntable"},
-                               {"--mesh-scale", "1"},
-                               {"--no-plinth"},
-                               {"--reach", "5"}}) {
-    expect_refused(render, options, "applies to terrain only");
-  }
-  expect_refused(render, {"--haze", "0"}, "applies to terrain and functions only");
+  expect_refused(render, {"--no-plinth"}, "applies to terrain only");
+  expect_refused(render, {"--overlay", "map.png"}, "applies to terrain only");
   expect_refused(render, {"--device", "cpu"}, "applies to terrain, scenes and functions only");
   expect_refused(render, {"--function-step", "5"}, "applies to functions only");
   expect_refused(render, {"--ramp", "viridis"}, "--volume or --look steps");
@@ -295,13 +283,11 @@ TEST_F(WithoutEffect, IsRefusedOfScenesAndFunctions) {
     expect_refused(make, options, "a scene file describes its own content");
   }
   expect_refused(make, {"--ramp", "grey"}, "terrain");
-  expect_refused(render, {"--ramp", "grey"}, "--look steps");
-  expect_refused(render, {"--contours", "5"}, "applies to terrain only");
+  expect_refused(render, {"--overlay", "map.png"}, "applies to terrain only");
   const Names function{"render", "--function", "hills", "-o", out_};
-  for (const Names& options : {Names{"--exaggeration", "2"}, {"--water", "3"}, {"--no-plinth"}}) {
+  for (const Names& options : {Names{"--exaggeration", "2"}, {"--no-plinth"}}) {
     expect_refused(function, options, "applies to terrain only");
   }
-  expect_refused(function, {"--turntable", "--frames", "2"}, "applies to terrain only");
   expect_refused(function, {"--top"}, "applies to terrain, voxels and scenes only");
   expect_refused(function, {"--rounded", "0.1"}, "applies to voxels only");
   expect_refused(function, {"--refine", "secant"}, "--march naive");

@@ -80,7 +80,7 @@ TEST_F(CliVox, AllMarchesRenderTheSamePicture) {
 TEST_F(CliVox, SaysInOneLineWhatIsWrong) {
   const std::string out = path("out.png");
   expect_refused({"render", model_, "-o", out, "--march", "max-mip"}, "voxel-exhaustive, voxel-planes");
-  expect_refused({"render", model_, "-o", out, "--look", "error"}, "there are: shaded, height, steps");
+  expect_refused({"render", model_, "-o", out, "--look", "pretty"}, "expected shaded, height, steps, error");
   expect_refused({"render", model_, model_, "-o", out}, "stands alone");
   expect_refused({"info", path("missing.vox")}, "cannot be opened");
   expect_refused({"cast", model_, "--rays", "x.csv", "-o", out}, "");

@@ -14,7 +14,7 @@ function(check file good)
   endif()
 endfunction()
 
-check(${ROOT}/test/march/textures_es.frag TRUE)
+check(${ROOT}/test/march/height/textures_es.frag TRUE)
 
 # paste(TEXT MARK NAMES OUT): TEXT with the installed texts of those names, one after the other, in the place of MARK.
 function(paste text mark names out)
@@ -38,7 +38,7 @@ endif()
 paste("${shader}" "${mark}" "${CMAKE_MATCH_1};${CMAKE_MATCH_2}" ${WORK}/pasted.frag)
 check(${WORK}/pasted.frag TRUE)
 # All marches pasted after one another, over the same textures.
-file(READ ${ROOT}/test/march/textures_es.frag shader)
+file(READ ${ROOT}/test/march/height/textures_es.frag shader)
 string(REGEX REPLACE "\n#include [^\n]*" "" without "${shader}")
 string(REPLACE "// The marches ask the textures for their ground.\n" "MARCHES" shader "${without}")
 paste("${shader}" "MARCHES" "textures.glsl;max_mip.glsl;height_marches.glsl" ${WORK}/pasted.frag)

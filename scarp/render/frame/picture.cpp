@@ -81,9 +81,8 @@ Picture render_height(const Scene& scene, const Camera& camera, const PictureSet
                          if (hit && !scene.field_of(hit.object).is_backdrop()) heights[i] = ray.at(hit.t).z;
                        });
   // Pictures of one terrain can be compared: they share its range.
-  std::optional<ReliefRange> range = settings.ground_range;
-  if (const HeightField* field = scene.terrain(); field && !range)
-    range = ReliefRange{field->min_height(), field->max_height()};
+  std::optional<ReliefRange> range;
+  if (const HeightField* field = scene.terrain()) range = ReliefRange{field->min_height(), field->max_height()};
   return picture_of_heights(settings, heights, range);
 }
 

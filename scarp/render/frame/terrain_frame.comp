@@ -275,13 +275,14 @@ bool send(ScarpField field, int task, inout Sent sent) {
         return false;
       }
     }
+    if (task != kFrameCamera && has_rims) end_at_base(line, end);
     if (task != kFrameCamera && water.sea != 0) {
       how |= kScarpSendFromSurface;
       cell = water.cell;
       place = water.place;
     }
   }
-  sent.walls = has_rims && task == kFrameCamera;
+  sent.walls = has_rims && !light;
   sent.ray = scarp_send(seen_by(field, sent.walls), line, begin, end, how, cell, place);
   if (sent.ray.marches == 0) return false;
   if (sent.walls) sent.walls = meets_rims(field, sent.ray.ray);

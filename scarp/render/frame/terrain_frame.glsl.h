@@ -39,7 +39,7 @@ const uint kFrameHasContours = 16u;
 const uint kFrameHasFog = 32u;
 const uint kFrameHasSamples = 64u;  ///< of sun and sky
 const uint kFrameHasBlock = 128u;   ///< below the terrain
-/// Walls at the rims of holes that are the block's: those of solid ground the march knows, and they have no base.
+/// Walls at the rims of holes that are the block's: the march knows those of solid ground.
 const uint kFrameHasRims = 256u;
 
 const int kFrameRounds = 16;

@@ -11,6 +11,18 @@ float above_base(ScarpLine line, ScarpTwoFloat t) {
   return scarp_two_add(scarp_line_height(line, t), scarp_two_negate(base)).high;
 }
 
+// When a ray that is not level passes the base.
+ScarpTwoFloat time_at_base(ScarpLine line) {
+  Settings s = settings();
+  ScarpTwoFloat base = two(s.is.base_sample, s.is.base_sample_low);
+  return scarp_time_at(base, line.origin.z, line.origin_low.z, line.direction.z, line.direction_low.z);
+}
+
+// A ray that falls meets no wall below the base.
+void end_at_base(ScarpLine line, inout ScarpTwoFloat end) {
+  if (line.direction.z < 0.0) end = scarp_two_earlier(end, time_at_base(line));
+}
+
 // What the block leaves of the way of a ray of the camera, from `begin` to `end`; a wall at the border is put into what
 // the ray has seen. True: the block hides the field, by a wall or because the ray falls past it; there is no ground to
 // be looked for.
@@ -22,16 +34,11 @@ bool hidden_by_block(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTwo
   ScarpTwoFloat over = scarp_two_later(scarp_two(0.0), scarp_two_later(x.begin, y.begin));
   if (over.high >= kScarpNever) return true;  // along a side, beside the field
   bool from_below = above_base(line, over) < 0.0;
-  if (from_below && line.direction.z < 0.0) return true;
-  if (has_rims) {
-    if (line.direction.z == 0.0) return from_below;
-    ScarpTwoFloat base = two(s.is.base_sample, s.is.base_sample_low);
-    ScarpTwoFloat at_base =
-        scarp_time_at(base, line.origin.z, line.origin_low.z, line.direction.z, line.direction_low.z);
-    if (from_below) begin = at_base;
-    if (line.direction.z < 0.0) end = scarp_two_earlier(end, at_base);
-    return false;
-  }
+  if (from_below && line.direction.z <= 0.0) return true;
+  // Walls of solid ground end at the base as well.
+  if (from_below) begin = time_at_base(line);
+  end_at_base(line, end);
+  if (has_rims) return false;
   // One that rises comes in through the base, and sees nothing of the ground from below: the march says so.
   if (from_below) return false;
   // Through a side of constant column, then one of constant row where that is crossed later: the order of ties.

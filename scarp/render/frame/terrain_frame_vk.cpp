@@ -121,9 +121,9 @@ void set_steps(glsl::FrameSettings& s, const Scene& scene, const Camera& camera,
 std::optional<float> sea_sample(const HeightField& field, double level) {
   const HeightFieldSettings& settings = field.settings();
   const auto near = static_cast<float>((level / settings.exaggeration - settings.offset) / settings.scale);
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kEndless = std::numeric_limits<float>::infinity();
   for (const float candidate :
-       {near, std::round(near), std::nextafter(near, kInfinity), std::nextafter(near, -kInfinity)}) {
+       {near, std::round(near), std::nextafter(near, kEndless), std::nextafter(near, -kEndless)}) {
     if (field.height_from_sample(static_cast<double>(candidate)) == level) return candidate;
   }
   return {};

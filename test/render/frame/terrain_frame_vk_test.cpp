@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "render/terrain.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/render/frame/terrain_frame.glsl.h"
 #include "scarp/scene/scene_vk.h"
@@ -35,7 +36,6 @@ constexpr int kWidth = 64, kHeight = 48;
 constexpr double kFov = 60;
 
 constexpr std::uint32_t kShader[] = {
-#include "render/terrain.h"
 #include "scarp/render/frame/terrain_frame.comp.inc"
 };
 
