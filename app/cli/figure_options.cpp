@@ -97,7 +97,7 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const Pict
     case Look::comanche:
       if (!has_ramp(settings, scene)) {
         throw Error(
-            "--legend: the colours of this picture are no scale of heights (leave it out, or choose --look height, "
+            "--legend: the colours of this picture do not depend on height (leave it out, or choose --look height, "
             "steps or error)");
       }
       figure.legend = legend_of("height, m", low, high, ground_ramp(scene, settings), exaggeration);

@@ -114,7 +114,7 @@ RenderInput scene_file(RenderOptions& options, const ViewSettings& view) {
   return input;
 }
 
-// Of the square that is looked at, on a lattice.
+// The range of heights at the points of a lattice over the square of interest.
 ReliefRange heights_around(const HeightFunction& function, double extent) {
   constexpr int kSide = 129;
   ReliefRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};

@@ -19,7 +19,7 @@
 
 namespace scarp::cli {
 
-/// Of terrain, without --march.
+/// The march for terrain without --march.
 constexpr const char* kTerrainMarch = "max-mip";
 constexpr double kComancheFov = 60;       // degrees, without --fov
 constexpr double kVoxelSunAzimuth = 235;  // degrees, without --sun: from over the default camera's shoulder

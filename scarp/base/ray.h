@@ -54,7 +54,8 @@ enum class HitStatus : std::uint8_t {
 struct Hit {
   HitStatus status = HitStatus::miss;
   bool wall = false;                   ///< height fields: a wall below a border or a hole's rim was hit (solid fields)
-  VoxelFace face = VoxelFace::inside;  ///< voxels: the face that was hit; inside: the ray began in this solid voxel
+  VoxelFace face = VoxelFace::inside;  ///< voxels: the face that was hit; inside: the ray began in this solid voxel;
+                                       ///< plinths: the side of the wall that was hit
   std::uint32_t object = 0;            ///< scenes: index of the object
   double t = std::numeric_limits<double>::infinity();  ///< in units of the direction's length
   Cell cell;                                           ///< height fields; meshes: col is the index of the triangle

@@ -90,7 +90,7 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
   const bool has_holes = field_.nodata_count() > 0;
   double t = t_in;
   std::size_t crossed = side == 1 ? 1 : 0;
-  bool from_outside = side == 0 || side == 1, outermost = from_outside;
+  bool from_outside = side == 0 || side == 1;
   const bool from_top = side == 2 && local.direction.z < 0;
   if (!from_outside && !from_top) {
     const auto heights = field_.cell_heights({cell[0], cell[1]});
@@ -101,10 +101,10 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
     if (heights && from_outside) {
       const bool far_side = step[crossed] < 0;
       if (under_edge(*heights, cell, local, crossed, far_side, t)) {
-        dvec3 normal(0.0);
         // Rows count southwards, y northwards.
-        normal[static_cast<int>(crossed)] = crossed == 0 ? -step[crossed] : step[crossed];
-        return Wall{t, normal, outermost};
+        const bool at_low_side = (step[crossed] > 0) == (crossed == 0);
+        if (crossed == 0) return Wall{t, at_low_side ? VoxelFace::low_x : VoxelFace::high_x};
+        return Wall{t, at_low_side ? VoxelFace::low_y : VoxelFace::high_y};
       }
     }
     if (!has_holes) return {};
@@ -113,24 +113,11 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
     // Under the surface without a wall before: the ray came through the surface, and has met it there.
     if (heights && under_edge(*heights, cell, local, crossed, step[crossed] > 0, t)) return {};
     from_outside = !heights;
-    outermost = false;
     cell[crossed] += step[crossed];
     if (cell[crossed] < 0 || cell[crossed] >= cells[crossed]) return {};
     next[crossed] = crossing_ahead(crossed);
   }
   return {};
-}
-
-bool Plinth::passes_below(const Ray& ray) const {
-  const GridRay local = field_.grid_from_world(ray);
-  if (!(local.direction.z < 0)) return false;
-  double t_in = ray.t_min;
-  for (int axis = 0; axis < 2; ++axis) {
-    const double o = local.origin[axis], d = local.direction[axis];
-    const double far_side = axis == 0 ? field_.cols() - 1.0 : field_.rows() - 1.0;
-    if (d != 0) t_in = std::max(t_in, std::min(-o / d, (far_side - o) / d));
-  }
-  return local.origin.z + t_in * local.direction.z < base_sample_;
 }
 
 }  // namespace scarp

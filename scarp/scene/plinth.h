@@ -25,16 +25,12 @@ class Plinth {
 
   struct Wall {
     double t;        ///< in lengths of the ray's direction
-    dvec3 normal;    ///< unit, level, towards the ray's side
-    bool outermost;  ///< at the field's border: nothing can be met before it
+    VoxelFace face;  ///< the side of the wall that the ray comes from
   };
   /// The first wall that the ray meets from outside within its range. The surface may be met before it; a ray that
   /// meets the surface between two walls is followed no further, nor is one that begins in the rock or comes into it
   /// through the base.
   std::optional<Wall> intersect(const Ray& ray) const;
-
-  /// Whether a ray falls past the block: it comes over or under the field's ground below the base, and never rises.
-  bool passes_below(const Ray& ray) const;
 
   /// Of the base, in sample units.
   double base_sample() const { return base_sample_; }

@@ -107,7 +107,8 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
     const HeightField* heights = height_field_of(*field);
     wraps_ = wraps_ || (heights && heights->wraps());
   }
-  alone_ = objects_.size() == 1 && objects_[0].placement.identity();
+  for (const SceneObject& object : objects_) in_place_.push_back(object.placement.identity());
+  alone_ = objects_.size() == 1 && in_place_[0];
   find_sole();
   find_terrain();
 }
@@ -119,7 +120,7 @@ void Scene::find_sole() {
     sole_object_ = i;
     ++others;
   }
-  sole_ = others == 1 && objects_[sole_object_].placement.identity();
+  sole_ = others == 1 && in_place_[sole_object_];
 }
 
 void Scene::find_terrain() {
@@ -215,12 +216,13 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
   for (const std::uint32_t object : beside_tree_) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const Asking ray(rays, from, i);
-      locals[i] = local(ray, object, hits[i]);
+      make_local(ray, object, hits[i], locals[i]);
       if (!from.empty()) on_object[i] = ray.from_on(object);
     }
     field_of(object).closest_hits(locals, answers, on_object);
     for (std::size_t i = 0; i < rays.size(); ++i) take_hit(answers[i], object, hits[i]);
   }
+  if (in_tree_.empty()) return;
   for (std::size_t i = 0; i < rays.size(); ++i) ask_tree({rays, from, i}, hits[i], nullptr);
 }
 

@@ -145,6 +145,7 @@ class Scene {
 
   // Queries of rays that know how they begin; see scene_answers.h.
   struct Asking;
+  void make_local(const Asking& asking, std::uint32_t object, const Hit& best, Ray& local) const;
   Ray local(const Asking& asking, std::uint32_t object, const Hit& best) const;
   void ask(const Asking& ray, std::uint32_t object, Hit& best, MarchStats* stats) const;
   void take_hit(const Hit& hit, std::uint32_t object, Hit& best) const;
@@ -174,6 +175,7 @@ class Scene {
   std::vector<SceneFieldPtr> fields_;
   std::shared_ptr<SceneBackEnd> back_end_;  // null: the fields' own marches
   std::vector<SceneObject> objects_;
+  std::vector<std::uint8_t> in_place_;      // by object: 1 where its placement is the identity
   std::vector<std::uint32_t> beside_tree_;  // objects that every ray is asked against, before the tree
   std::vector<std::uint32_t> in_tree_;      // the others that can be met, in the order of the tree's numbers
   BoxTree tree_;

@@ -21,11 +21,21 @@ struct Scene::Asking {
 };
 
 /// The ray in the object's space, no further than to the best hit so far. Its start counts where from_on() is null.
-inline Ray Scene::local(const Asking& asking, std::uint32_t object, const Hit& best) const {
-  Ray local = objects_[object].placement.field_from_world(asking.ray);
-  if (!asking.own || local.start_object != object) local.start = RayStart::free;
+/// Written in place: batches turn many rays, and a copy of each costs as much as the rest.
+inline void Scene::make_local(const Asking& asking, std::uint32_t object, const Hit& best, Ray& local) const {
+  if (in_place_[object]) {
+    local = asking.ray;
+  } else {
+    local = objects_[object].placement.field_from_world(asking.ray);
+  }
+  if (!asking.own || asking.ray.start_object != object) local.start = RayStart::free;
   if (best) local.t_max = best.t;
-  return local;
+}
+
+inline Ray Scene::local(const Asking& asking, std::uint32_t object, const Hit& best) const {
+  Ray ray;
+  make_local(asking, object, best, ray);
+  return ray;
 }
 
 /// Keeps the better of two answers about one ray. Answers without a hit are ranked by how much they leave open.

@@ -69,7 +69,8 @@ class SceneField {
   virtual std::optional<WorldBox> extent() const { return box(); }
   /// Whether the field is only seen: it throws no shadow and is no ground.
   virtual bool is_backdrop() const { return false; }
-  /// Of the ground at (x, y). Returns nullopt beside the ground, in its holes, and for fields that are not ground.
+  /// Returns the height of the ground at (x, y); nullopt beside the ground, in its holes, and for fields that are not
+  /// ground.
   virtual std::optional<double> height(double x, double y) const;
 
   /// `stats`, when given, is overwritten.

@@ -26,15 +26,16 @@ class PlinthField final : public SceneField {
     Hit hit;
     hit.status = HitStatus::hit;
     hit.wall = true;
+    hit.face = wall->face;
     hit.t = wall->t;
     hit.height = ray.at(wall->t).z;
     return hit;
   }
   bool occluded(const Ray&, const Hit*) const override { return false; }
-  // Walked anew: hits hold no normals.
-  FieldSurface surface(const Ray& ray, const Hit&) const override {
-    const std::optional<Plinth::Wall> wall = plinth_.intersect(ray);
-    const dvec3 normal = wall ? wall->normal : dvec3(0.0);
+  FieldSurface surface(const Ray&, const Hit& hit) const override {
+    const int face = static_cast<int>(hit.face);
+    dvec3 normal(0.0);
+    normal[face / 2] = face % 2 ? 1 : -1;
     return {.normal = normal, .shading_normal = normal, .wall = true};
   }
   std::optional<FieldSurface> within(const dvec3&) const override { return {}; }

@@ -26,17 +26,18 @@ HeightField block() {
 TEST(Plinth, ItsWallsStandAtTheBorder) {
   const Plinth plinth(block(), 0);
   const struct {
-    dvec3 origin, direction, normal;
+    dvec3 origin, direction;
+    VoxelFace face;
     double t;
-  } cases[] = {{{12, -40, 2}, {0, 1, 0}, {0, -1, 0}, 40},
-               {{12, 60, 2}, {0, -2, 0}, {0, 1, 0}, 20},
-               {{-3, 7, 2}, {1, 0, 0}, {-1, 0, 0}, 3},
-               {{50, 7, 2}, {-1, 0, 0}, {1, 0, 0}, 20}};
+  } cases[] = {{{12, -40, 2}, {0, 1, 0}, VoxelFace::low_y, 40},
+               {{12, 60, 2}, {0, -2, 0}, VoxelFace::high_y, 20},
+               {{-3, 7, 2}, {1, 0, 0}, VoxelFace::low_x, 3},
+               {{50, 7, 2}, {-1, 0, 0}, VoxelFace::high_x, 20}};
   for (const auto& c : cases) {
     const auto wall = plinth.intersect(ray_of(c.origin, c.direction));
     ASSERT_TRUE(wall);
     EXPECT_DOUBLE_EQ(wall->t, c.t);
-    EXPECT_EQ(wall->normal, c.normal);
+    EXPECT_EQ(wall->face, c.face);
   }
 }
 
@@ -94,12 +95,12 @@ TEST(Plinth, HolesHaveWallsToo) {
   const auto wall = plinth.intersect(ray_of({2.5, 1.3, 6}, {1, 0, -2}));
   ASSERT_TRUE(wall);
   EXPECT_DOUBLE_EQ(wall->t, 1.5);
-  EXPECT_EQ(wall->normal, dvec3(-1, 0, 0));
+  EXPECT_EQ(wall->face, VoxelFace::low_x);
   // Westwards: to the wall at x = 2.
   const auto west = plinth.intersect(ray_of({3.5, 1.3, 6}, {-1, 0, -2}));
   ASSERT_TRUE(west);
   EXPECT_DOUBLE_EQ(west->t, 1.5);
-  EXPECT_EQ(west->normal, dvec3(1, 0, 0));
+  EXPECT_EQ(west->face, VoxelFace::high_x);
   // Steeply: through the hole and out of the bottom.
   EXPECT_FALSE(plinth.intersect(ray_of({3, 1.3, 6}, {0.1, 0, -2})));
   // A ray through the surface has met that and not the hole's wall behind.
@@ -119,25 +120,6 @@ TEST(Plinth, RaysFromTheRockMeetNoWalls) {
   // Up through the base: in the rock, or in the shaft of the hole.
   EXPECT_FALSE(plinth.intersect(ray_of({1.5, 0.3, -0.1}, {1, 0, 0.2})));
   EXPECT_TRUE(plinth.intersect(ray_of({3.2, 0.3, -0.1}, {1, 0, 0.2})));
-}
-
-TEST(Plinth, OnlyWallsOfTheBorderAreOutermost) {
-  std::vector<float> samples(21, 5.0f);
-  samples[3] = samples[10] = samples[17] = kNaN;
-  const Plinth plinth(HeightField::own(samples, 7, 3), 0);
-  EXPECT_TRUE(plinth.intersect(ray_of({-2, 1.3, 3}, {1, 0, 0}))->outermost);
-  EXPECT_FALSE(plinth.intersect(ray_of({2.5, 1.3, 6}, {1, 0, -2}))->outermost);
-  // In through the border over a hole: the wall is inside.
-  EXPECT_FALSE(plinth.intersect(ray_of({2.5, -1, 4}, {0.5, 1, 0}))->outermost);
-}
-
-TEST(Plinth, RaysThatFallPastItAreKnown) {
-  const Plinth plinth(block(), 1);
-  EXPECT_TRUE(plinth.passes_below(ray_of({12, -40, 2}, {0, 1, -0.03})));
-  EXPECT_FALSE(plinth.passes_below(ray_of({12, -40, 2}, {0, 1, -0.02}))) << "meets the wall";
-  EXPECT_FALSE(plinth.passes_below(ray_of({12, -40, 0}, {0, 1, 0.1}))) << "rises";
-  EXPECT_FALSE(plinth.passes_below(ray_of({12, 7, 50}, {0, 0, -1}))) << "comes from above";
-  EXPECT_TRUE(plinth.passes_below(ray_of({12, 7, 0.5}, {0, 0, -1})));
 }
 
 TEST(Plinth, ItsBaseLiesBelowTheField) {

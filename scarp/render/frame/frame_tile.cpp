@@ -23,8 +23,14 @@ std::size_t most_rays_of(const FrameView& view) {
 FrameTile::FrameTile(const FrameView& view, const PixelTile& tile, int aa)
     : view_(view), aa_(aa), points_(points_of(tile, aa)) {
   seen_.reserve(points_.size());
-  for (const PicturePoint& point : points_) seen_.push_back({seen_.size(), view.camera().ray(point.x, point.y), {}});
+  for (const PicturePoint& point : points_) add(seen_, seen_.size(), view.camera().ray(point.x, point.y));
   if (view.water()) meetings_.resize(points_.size());
+}
+
+void FrameTile::add(std::vector<Seen>& all, std::size_t point, const Ray& ray) {
+  Seen& seen = all.emplace_back();
+  seen.ray = ray;
+  seen.point = static_cast<std::uint32_t>(point);
 }
 
 bool FrameTile::next(RayRound& round) {
@@ -43,10 +49,13 @@ bool FrameTile::next(RayRound& round) {
   return ask_light(round);
 }
 
+bool FrameTile::shows_steps() const {
+  return view_.settings().look == Look::comanche && view_.settings().comanche.iterations;
+}
+
 // False: answered here, without the scene.
 bool FrameTile::look(RayRound& round) {
   asked_ = true;
-  const bool comanche = view_.settings().look == Look::comanche;
   if (const StepMarch* march = view_.step_march()) {
     for (Seen& seen : seen_) {
       const StepMarch::Answer answer = march->march(seen.ray, view_.water());
@@ -56,7 +65,7 @@ bool FrameTile::look(RayRound& round) {
     }
     return false;
   }
-  const bool count = (comanche && view_.settings().comanche.iterations) || view_.fog().kind() == FogKind::iterations;
+  const bool count = shows_steps() || view_.fog().kind() == FogKind::iterations;
   round.question = count ? RayRound::Question::closest_cost : RayRound::Question::closest;
   round.rays.clear();
   round.from.clear();
@@ -82,13 +91,7 @@ void FrameTile::take_look(const RayRound& round) {
       if (round.question == RayRound::Question::closest_cost) seen_[i].steps = round.steps[i];
     }
   }
-  if (view_.settings().look == Look::comanche && view_.settings().comanche.iterations) return;
-  for (Seen& seen : seen_) meet(seen);
-  if (view_.water()) find_water();
-}
-
-void FrameTile::meet(Seen& seen) const {
-  if (seen.hit) seen.surface = view_.scene().surface(seen.ray, seen.hit);
+  if (view_.water() && !shows_steps()) find_water();
 }
 
 std::optional<Water::Meeting> FrameTile::water_of(const Ray& ray, const Hit& hit) const {
@@ -121,7 +124,7 @@ std::size_t FrameTile::send(std::size_t point, const Water::Meeting& meeting, co
     ray.start_cell = meeting.sea->cell;
     ray.start_object = meeting.sea->object;
   }
-  water_rays_.push_back({point, ray, {}});
+  add(water_rays_, point, ray);
   return water_rays_.size() - 1;
 }
 
@@ -166,17 +169,11 @@ bool FrameTile::ask_water(RayRound& round) {
 void FrameTile::take_water(const RayRound& round) {
   for (std::size_t i = 0; i < water_rays_.size(); ++i) {
     if (!view_.step_march()) water_rays_[i].hit = round.hits[i];
-    meet(water_rays_[i]);
   }
 }
 
-// Null: no rays of light are asked for it.
-FrameTile::Seen* FrameTile::lit(std::size_t i) {
-  Seen& seen = i < seen_.size() ? seen_[i] : water_rays_[i - seen_.size()];
-  return seen.hit && FrameView::is_lit(seen.surface) ? &seen : nullptr;
-}
-
 bool FrameTile::ask_light(RayRound& round) {
+  if (shows_steps()) return false;
   const Lighting& lighting = view_.lighting();
   // Ray::start says where a ray begins on a height field; for other fields their hits have to.
   const bool by_hit = !view_.scene().only_heights();
@@ -185,27 +182,37 @@ bool FrameTile::ask_light(RayRound& round) {
   round.from.clear();
   for (; asked_points_ < seen_.size() + water_rays_.size(); ++asked_points_) {
     if (round.rays.size() + lighting.most_rays() > kMostRaysOfRound) return true;
-    Seen* seen = lit(asked_points_);
-    if (!seen) continue;
-    open_.push_back({seen, lighting.ask(light_point(seen->surface, seen->hit), points_[seen->point], round.rays)});
-    if (by_hit) round.from.resize(round.rays.size(), &seen->hit);
+    Seen& seen = asked_points_ < seen_.size() ? seen_[asked_points_] : water_rays_[asked_points_ - seen_.size()];
+    const SceneSurface surface = seen.hit ? view_.scene().surface(seen.ray, seen.hit) : SceneSurface{};
+    seen.lit = seen.hit && FrameView::is_lit(surface);
+    if (!seen.lit) {
+      seen.colour = view_.unlit(seen.ray, seen.hit, surface);
+      continue;
+    }
+    const Open open{&seen, surface, lighting.ask(light_point(surface, seen.hit), points_[seen.point], round.rays)};
+    if (open.asked.sun == open.asked.end) {
+      light(open, round);
+      continue;
+    }
+    open_.push_back(open);
+    if (by_hit) round.from.resize(round.rays.size(), &seen.hit);
   }
   if (!round.rays.empty()) return true;
   take_light(round);
   return false;
 }
 
+void FrameTile::light(const Open& open, const RayRound& round) const {
+  open.seen->colour = view_.lit(open.seen->ray, open.seen->hit, open.surface, open.asked, round.rays, round.blocked);
+}
+
 void FrameTile::take_light(const RayRound& round) {
-  for (const Open& open : open_) {
-    open.seen->light =
-        view_.lit(open.seen->ray, open.seen->hit, open.seen->surface, open.asked, round.rays, round.blocked);
-  }
+  for (const Open& open : open_) light(open, round);
   open_.clear();
 }
 
 vec3 FrameTile::colour_of(const Seen& seen) const {
-  if (seen.hit && FrameView::is_lit(seen.surface)) return view_.in_air(seen.light, seen.ray, seen.hit.t);
-  return view_.unlit(seen.ray, seen.hit, seen.surface);
+  return seen.lit ? view_.in_air(seen.colour, seen.ray, seen.hit.t) : seen.colour;
 }
 
 vec3 FrameTile::water_colour(const WaterPoint& found) const {
@@ -214,10 +221,12 @@ vec3 FrameTile::water_colour(const WaterPoint& found) const {
   if (found.bottom) {
     const Seen& bottom = water_rays_[*found.bottom];
     if (bottom.hit) {
+      // Walls below the surface are dark.
+      const vec3 ground = bottom.lit ? bottom.colour : vec3(0.0f);
       const double depth = water.level() - bottom.ray.at(bottom.hit.t).z;
-      body = water.through(bottom.light * water.sunlight(depth, view_.lighting().to_sun()), bottom.hit.t);
+      body = water.through(ground * water.sunlight(depth, view_.lighting().to_sun()), bottom.hit.t);
     } else if (std::isfinite(bottom.ray.t_max)) {
-      body = water.through(view_.unlit(bottom.ray, bottom.hit, bottom.surface), bottom.ray.t_max);
+      body = water.through(bottom.colour, bottom.ray.t_max);
     }
   }
   const auto mirror = static_cast<float>(found.reflectance);
@@ -227,9 +236,8 @@ vec3 FrameTile::water_colour(const WaterPoint& found) const {
 std::vector<vec3> FrameTile::colours() const {
   const StepMarch* march = view_.step_march();
   const double most = march ? static_cast<double>(march->most_steps()) : kMostSteps;
-  const PictureSettings& settings = view_.settings();
   std::vector<vec3> colours(seen_.size());
-  if (settings.look == Look::comanche && settings.comanche.iterations) {
+  if (shows_steps()) {
     for (std::size_t i = 0; i < seen_.size(); ++i)
       colours[i] = vec3(static_cast<float>(std::min(1.0, seen_[i].steps / most)));
     return colours;

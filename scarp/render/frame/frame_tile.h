@@ -21,25 +21,11 @@ class FrameTile {
   /// aa x aa points per pixel. `view` must outlive the tile.
   FrameTile(const FrameView& view, const PixelTile& tile, int aa);
 
-  /// What a ray of the camera, or one that water sent on, has met.
-  struct Seen {
-    std::size_t point;
-    Ray ray;
-    Hit hit;
-    std::uint32_t steps = 0;    ///< of the march, if it was counted
-    SceneSurface surface{};     ///< set for hits
-    vec3 light{0.0f};           ///< the surface's colour in its light, before any air
-    const Hit* from = nullptr;  ///< on whose surface the ray begins
-  };
-
   /// As TileWork::next.
   bool next(RayRound& round);
   /// Colours of points and mean colours of pixels, row by row, in linear light. Valid after the last round.
   std::vector<vec3> colours() const;
   std::vector<vec3> pixels() const;
-  const std::vector<PicturePoint>& points() const { return points_; }
-  /// By point.
-  const std::vector<Seen>& seen() const { return seen_; }
   /// The water that a ray of the camera meets before anything else.
   std::optional<Water::Meeting> water_of(const Ray& ray, const Hit& hit) const;
 
@@ -51,13 +37,25 @@ class FrameTile {
     std::size_t mirror;                 // in water_rays_
     std::optional<std::size_t> bottom;  // likewise
   };
+  // What a ray of the camera, or one that water sent on, has met. There are many: they hold no surfaces.
+  struct Seen {
+    Ray ray;
+    Hit hit;
+    std::uint32_t point = 0;
+    std::uint32_t steps = 0;  // of the march, if it was counted
+    vec3 colour{0.0f};        // of a surface in its light, before any air; of all else with the air
+    bool lit = false;         // whether it is such a surface
+  };
   // A surface whose light has been asked for.
   struct Open {
     Seen* seen;
+    SceneSurface surface;
     LightRays asked;
   };
   enum class Stage { look, water, light };
 
+  // Pictures of iterations: there are no colours.
+  bool shows_steps() const;
   bool look(RayRound& round);
   void take_look(const RayRound& round);
   bool ask_water(RayRound& round);
@@ -66,9 +64,9 @@ class FrameTile {
   void take_light(const RayRound& round);
   void find_water();
   void add_water(std::size_t point, const Water::Meeting& meeting);
+  static void add(std::vector<Seen>& all, std::size_t point, const Ray& ray);
   std::size_t send(std::size_t point, const Water::Meeting& meeting, const dvec3& direction, double t_max);
-  void meet(Seen& seen) const;
-  Seen* lit(std::size_t i);
+  void light(const Open& open, const RayRound& round) const;
   vec3 water_colour(const WaterPoint& water) const;
   vec3 colour_of(const Seen& seen) const;
 

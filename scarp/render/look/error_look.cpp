@@ -64,7 +64,7 @@ constexpr int kProvenEvery = 8;  // in both directions
 bool contradicts(const Hit& hit, const FunctionJudgement& judgement, const Ray& ray, double tolerance) {
   if (judgement.verdict == FunctionVerdict::clear) return static_cast<bool>(hit);
   if (judgement.verdict != FunctionVerdict::crossing) return false;
-  // Of several crossings within the tolerance any may be the answer, and a place that cannot be told from one.
+  // Any crossing within the tolerance is correct, and so is a point that the tolerance does not separate from one.
   const double slack = tolerance * (judgement.crossed_by - ray.t_min);
   return !hit || hit.t > judgement.crossed_by + slack;
 }

@@ -43,7 +43,7 @@ bool is_east(const vec3& a, const vec3& b, const dvec3& p) {
   return p.x < f.x + (p.y - f.y) / (t.y - f.y) * (t.x - f.x);
 }
 
-// Of the triangle's plane, within its corners.
+// The height of the triangle's plane above (p.x, p.y), limited to the heights of its corners.
 double height(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& p) {
   const dvec3 n = cross(b - a, c - a);
   const double low = std::min({a.z, b.z, c.z}), high = std::max({a.z, b.z, c.z});

@@ -174,7 +174,7 @@ class MeshField final : public SceneField {
   dvec3 position(std::uint32_t triangle, int corner) const {
     return dvec3(positions_[3 * std::size_t{triangle} + static_cast<std::size_t>(corner)]);
   }
-  // Of the triangle's plane; as long as twice its area.
+  // The normal of the triangle's plane; its length is twice the triangle's area.
   dvec3 normal(std::uint32_t triangle) const {
     const dvec3 a = position(triangle, 0);
     return cross(position(triangle, 1) - a, position(triangle, 2) - a);
