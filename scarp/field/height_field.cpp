@@ -71,6 +71,16 @@ constexpr SampleType type_of() {
 
 double lerp(double a, double b, double f) { return a + f * (b - a); }
 
+// Rows in memory: `stride` samples apart, negative from the last one up.
+void require_rows(const void* samples, int cols, int rows, std::ptrdiff_t stride) {
+  if (!samples) throw Error("height field: the pointer to the samples is null");
+  if (rows > 1 && std::abs(stride) < cols) {
+    throw Error(fmt::format(
+        "height field: rows of {} samples are {} samples apart and overlap (the stride counts samples, not bytes)",
+        cols, stride));
+  }
+}
+
 }  // namespace
 
 std::string_view name_of(SampleType type) {
@@ -90,6 +100,7 @@ HeightField::HeightField(SampleType type, const void* data, int cols, int rows, 
     : type_(type), data_(data), cols_(cols), rows_(rows), row_stride_(row_stride), settings_(settings) {
   if (cols < 1 || rows < 1)
     throw Error(fmt::format("height field: {} x {} samples; at least 1 x 1 are needed", cols, rows));
+  require_rows(data, cols, rows, row_stride);
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   require(positive(settings.cell_x), "cell_x", settings.cell_x, "finite and above 0");
   require(positive(settings.cell_y), "cell_y", settings.cell_y, "finite and above 0");
@@ -185,6 +196,7 @@ CellBox HeightField::set_samples(const SampleRect& rect, const T* samples, std::
     throw Error("height field: its samples are the caller's: write them there, then call samples_changed()");
   }
   // All that can be wrong is found before anything is overwritten.
+  require_rows(samples, rect.cols, rect.rows, stride);
   const SampleGrid<T> grid = this->grid<T>(may_have_holes_);
   SampleGrid<T> edit = grid;
   edit.data = samples;

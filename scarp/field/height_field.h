@@ -95,8 +95,9 @@ struct GridRay {
 class HeightField {
  public:
   /// Wraps caller-owned memory without copying; it must outlive every copy of the field. `row_stride` counts samples.
-  /// Throws Error for fewer than 1 column or row, a setting out of range, an infinite sample (with its position), or a
-  /// shared border whose sides differ (with the position).
+  /// Throws Error for a null pointer, fewer than 1 column or row, rows that overlap (a stride shorter than a row), a
+  /// setting out of range, an infinite sample (with its position), or a shared border whose sides differ (with the
+  /// position).
   template <class T>
   static HeightField view(const T* samples, int cols, int rows, std::ptrdiff_t row_stride,
                           const HeightFieldSettings& settings = {});
@@ -168,8 +169,8 @@ class HeightField {
 
   /// Overwrites a rectangle of samples and returns the cells that changed, for updates of accelerators. `stride` counts
   /// samples per row of `samples`. T must match sample_type(). Throws Error, changing nothing, for a rectangle that is
-  /// empty or not inside the field, another sample type, an infinite sample, a border that would no longer be shared,
-  /// or a field over caller-owned memory (view).
+  /// empty or not inside the field, a null pointer, rows that overlap, another sample type, an infinite sample, a
+  /// border that would no longer be shared, or a field over caller-owned memory (view).
   template <class T>
   CellBox set_samples(const SampleRect& rect, const T* samples, std::ptrdiff_t stride);
   /// Reports samples that the caller changed in memory of view(). Throws Error for a rectangle that is empty or not
