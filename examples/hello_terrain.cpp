@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Heights in memory of one's own, a pyramid over them, and a ray.
+// Heights in caller-owned memory, and a ray.
 #include <cmath>
 #include <cstdio>
 #include <vector>
 
-#include "scarp/accel/max_pyramid.h"
-#include "scarp/field/height_field.h"
-#include "scarp/march/height/max_mip.h"
+#include "scarp/scarp.h"
 
 int main() {
   // 513 x 513 heights in metres, 10 m apart, rows from north to south: waves 160 m from trough to crest.
@@ -18,17 +16,14 @@ int main() {
     }
   }
 
-  // The field looks at the samples and copies nothing. The pyramid is built once per field.
-  const auto field = scarp::HeightField::view(heights.data(), side, side, side, {.cell_x = 10.0, .cell_y = 10.0});
-  const scarp::MaxPyramid pyramid(field);
+  // The terrain reads the samples where they are and copies nothing.
+  const auto terrain = scarp::Terrain::view(heights.data(), side, side, {.cell_x = 10.0, .cell_y = 10.0});
 
   // From 500 m above the south-west corner to the north-east, 1 m down on 9.9 m. x east, y north, z up.
-  scarp::Ray ray;
-  ray.origin = {0, 0, 500};
-  ray.direction = {7, 7, -1};
-  const scarp::Hit hit = scarp::march_max_mip({&field, &pyramid}, ray);
+  const scarp::Ray ray{.origin = {0, 0, 500}, .direction = {7, 7, -1}};
+  const scarp::Hit hit = scarp::cast(terrain, ray);
   if (!hit) {
-    std::puts("the ray meets no ground");
+    std::puts("the ray misses the ground");
     return 1;
   }
   const scarp::dvec3 point = ray.at(hit.t);

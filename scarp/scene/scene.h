@@ -66,8 +66,8 @@ class Scene {
   /// Throws Error naming the object: a field that does not exist, a placement that is not a rotation with a scale above
   /// 0; or a field that is null.
   Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects);
-  /// The field alone, at the origin.
-  explicit Scene(SceneFieldPtr field);
+  /// The field alone, at the origin. Implicit: one field is a scene.
+  Scene(SceneFieldPtr field);
 
   /// The same scene, whose rays a back end answers: a device, see scene_vk.h. Used by one thread at a time; single rays
   /// take as long as thousands.

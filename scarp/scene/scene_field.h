@@ -123,6 +123,8 @@ enum class AnsweredBy : std::uint8_t {
 /// t_max. Throws Error for a setting out of its range.
 SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march = find_height_march("max-mip"),
                             const MarchSettings& settings = {}, AnsweredBy answered_by = AnsweredBy::cpu);
+/// The same with the march `max-mip` and the field's pyramid, which exists already; both are shared.
+SceneFieldPtr scene_heights(HeightField field, MaxPyramid pyramid);
 
 /// `march` is a row of function_marches(). Throws Error for a setting out of its range.
 SceneFieldPtr scene_function(HeightFunction function,

@@ -26,6 +26,11 @@ class Heights final : public SceneField {
     if (march.needs_pyramid) pyramid_.emplace(field_);
     if (march.needs_slope) slope_ = slope_bound(field_);
   }
+  Heights(HeightField field, MaxPyramid pyramid)
+      : field_(std::move(field)),
+        march_(find_height_march("max-mip")),
+        answered_by_(AnsweredBy::cpu),
+        pyramid_(std::move(pyramid)) {}
 
   std::string_view kind() const override { return "heights"; }
   std::string_view march() const override { return march_.name; }
@@ -146,6 +151,10 @@ class Heights final : public SceneField {
 SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings,
                             AnsweredBy answered_by) {
   return std::make_shared<Heights>(std::move(field), march, settings, answered_by);
+}
+
+SceneFieldPtr scene_heights(HeightField field, MaxPyramid pyramid) {
+  return std::make_shared<Heights>(std::move(field), std::move(pyramid));
 }
 
 }  // namespace scarp

@@ -18,6 +18,8 @@ namespace scarp {
 
 /// Red, green, blue; sRGB.
 using VoxelColour = std::array<std::uint8_t, 3>;
+/// Of voxels without a colour of their own.
+inline constexpr VoxelColour kPlainVoxels{196, 188, 170};
 
 /// Immutable once it is in a scene.
 class VoxelModel {

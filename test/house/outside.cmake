@@ -26,6 +26,13 @@ outside(core -D CMAKE_DISABLE_FIND_PACKAGE_GDAL=ON -D CMAKE_DISABLE_FIND_PACKAGE
         -D CMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON -D CMAKE_DISABLE_FIND_PACKAGE_Vulkan=ON)
 outside(scarp)
 
+# What scarp.h declares and scarp::core lacks is named by the linker.
+execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/core --target outside_door OUTPUT_VARIABLE output ERROR_VARIABLE output
+                RESULT_VARIABLE status)
+if(status EQUAL 0 OR NOT output MATCHES "undefined (reference|symbol).*scarp::render\\(")
+  message(FATAL_ERROR "linking render() with scarp::core alone should fail and name it: ${status}\n${output}")
+endif()
+
 # The core program is linked with nothing of GDAL's; the installed command line runs from where it is.
 file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${WORK}/core/outside_core RESOLVED_DEPENDENCIES_VAR libraries
      UNRESOLVED_DEPENDENCIES_VAR unresolved CONFLICTING_DEPENDENCIES_PREFIX conflicting)

@@ -11,9 +11,6 @@
 
 namespace scarp {
 
-/// Of voxels without a colour of their own.
-constexpr VoxelColour kPlainVoxels{196, 188, 170};
-
 /// Which axis of the file points up; the others follow so that nothing is mirrored.
 enum class UpAxis : std::uint8_t { y, z };
 

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Links scarp::scarp: a small terrain becomes a picture in a file, through scene, render and output.
+// Links scarp::scarp: a small terrain becomes a picture in a file.
 #include <cstdint>
 #include <vector>
 
-#include "scarp/output/png.h"
+#include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/picture.h"
-#include "scarp/scene/scene.h"
+#include "scarp/scarp.h"
 
 int main() {
   const std::vector<std::int16_t> samples{0, 1, 2, 1, 5, 1, 2, 1, 0};
-  const scarp::Scene scene(scarp::scene_heights(scarp::HeightField::own(samples, 3, 3)));
-  scarp::PictureSettings settings;
-  settings.width = 32;
-  settings.height = 32;
-  const auto camera = scarp::Camera::top(scarp::picture_box(scene), settings.width, settings.height);
-  const scarp::Picture picture = scarp::render_picture(scene, camera, settings);
-  scarp::write_png("outside.png", {picture.image.rgb.data(), picture.image.width, picture.image.height});
+  scarp::render(scarp::Terrain::view(samples.data(), 3, 3), "outside.png", {.width = 32, .height = 32}, {});
 }

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+// Terrain::open() of scarp.h.
+#include <utility>
+
+#include "scarp/scarp.h"
+#include "scarp/scene/file/from_raster.h"
+#include "scarp/source/read_raster.h"
+
+namespace scarp {
+
+Terrain Terrain::open(const std::string& path) {
+  Raster raster = read_raster(path, {});
+  Georeference georeference = raster.georeference;
+  return Terrain(height_field_from(std::move(raster)), std::move(georeference));
+}
+
+}  // namespace scarp

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// cast() and occluded() of scarp.h: what the scene answers, rays from surfaces, and the rays that they refuse.
+#include "scarp/scene/cast.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "base/refusal.h"
+#include "scarp/scarp.h"
+
+namespace scarp {
+namespace {
+
+using test::refusal;
+
+// A roof: 10 m high along the middle column.
+Terrain roof(Wrap wrap = Wrap::none) {
+  std::vector<float> samples;
+  for (int i = 0; i < 25; ++i) samples.push_back(static_cast<float>(10 - 5 * std::abs(i % 5 - 2)));
+  return Terrain::own(std::move(samples), 5, 5, {.cell_x = 10, .cell_y = 10, .wrap = wrap});
+}
+
+Ray down(double x) { return {.origin = {x, 20, 30}, .direction = {0, 0, -1}}; }
+
+TEST(Cast, AnswersAsTheScene) {
+  const Terrain terrain = roof();
+  const Scene scene = combine({{terrain}, {terrain, {.origin = {100, 0, 0}}}});
+  std::vector<Ray> rays;
+  for (int i = 0; i < 3000; ++i) rays.push_back({.origin = {0.05 * i, 1 + 0.01 * i, 20}, .direction = {0.1, 0, -0.4}});
+  for (const Scene* of : {&terrain.scene(), &scene}) {
+    std::vector<Hit> hits(rays.size()), expected(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size());
+    cast(*of, rays, hits);
+    occluded(*of, rays, blocked);
+    of->closest_hits(rays, expected);
+    EXPECT_EQ(hits, expected);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(cast(*of, rays[i]), hits[i]);
+      EXPECT_EQ(occluded(*of, rays[i]), blocked[i] != 0);
+      EXPECT_EQ(static_cast<bool>(hits[i]), blocked[i] != 0);
+    }
+  }
+}
+
+TEST(Cast, StartsOnTheSurfaceOfAHit) {
+  const Terrain terrain = roof();
+  const Ray ray = down(15);
+  const Hit hit = cast(terrain, ray);
+  ASSERT_TRUE(hit);
+  // Along the slope and up; through the roof; the same in a batch.
+  const std::vector<Ray> from_there{{.origin = ray.at(hit.t), .direction = {2, 0, 1}},
+                                    {.origin = ray.at(hit.t), .direction = {1, 0, 0}}};
+  EXPECT_FALSE(occluded(terrain, from_there[0], &hit));
+  EXPECT_TRUE(occluded(terrain, {.origin = ray.at(hit.t), .direction = {1, 0, -1}}, &hit));
+  std::vector<Hit> hits(2);
+  const std::vector<const Hit*> from{&hit, nullptr};
+  cast(terrain, from_there, hits, from);
+  EXPECT_EQ(hits[0], cast(terrain, from_there[0], &hit));
+  EXPECT_EQ(hits[1], cast(terrain, from_there[1]));
+}
+
+TEST(Cast, RefusesRaysThatCannotBeFollowed) {
+  const Terrain terrain = roof();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(refusal([&] { cast(terrain, {.origin = {NAN, 0, 0}}); }), "ray: its origin is not finite");
+  EXPECT_EQ(refusal([&] { cast(terrain, {.direction = {0, kInfinity, 0}}); }), "ray: its direction is not finite");
+  EXPECT_EQ(refusal([&] { cast(terrain, {.direction = {0, 0, 0}}); }), "ray: its direction is zero");
+  EXPECT_EQ(refusal([&] { occluded(terrain, {.t_min = 2, .t_max = 1}); }),
+            "ray: its range is 2 to 1; t_min must be finite and t_max no less");
+  EXPECT_NE(refusal([&] { cast(terrain, {.start = RayStart::on_surface, .start_cell = {9, 0}}); }), "");
+  EXPECT_NE(refusal([&] { cast(roof(Wrap::periodic), down(1)); }), "");
+  const Hit miss;
+  EXPECT_NE(refusal([&] { cast(terrain, down(1), &miss); }), "");
+  Hit of_another = cast(terrain, down(15));
+  of_another.object = 1;
+  EXPECT_NE(refusal([&] { occluded(terrain, down(1), &of_another); }), "");
+}
+
+TEST(Cast, NamesTheFirstBadRayOfABatch) {
+  const Terrain terrain = roof();
+  std::vector<Ray> rays(20000, down(15));
+  rays[17].origin.x = NAN;
+  rays[19000].direction = dvec3(0.0);
+  std::vector<Hit> hits(rays.size());
+  std::vector<std::uint8_t> blocked(rays.size());
+  EXPECT_EQ(refusal([&] { cast(terrain, rays, hits); }), "ray 17 of 20000: its origin is not finite");
+  rays[17] = rays[0];
+  EXPECT_EQ(refusal([&] { occluded(terrain, rays, blocked); }), "ray 19000 of 20000: its direction is zero");
+}
+
+TEST(Cast, RefusesSpansThatDifferInLength) {
+  const Terrain terrain = roof();
+  const std::vector<Ray> rays(3, down(15));
+  std::vector<Hit> hits(2);
+  std::vector<std::uint8_t> blocked(4);
+  const std::vector<const Hit*> from(1);
+  EXPECT_EQ(refusal([&] { cast(terrain, rays, hits); }), "batch: 3 rays, room for 2 answers");
+  EXPECT_EQ(refusal([&] { occluded(terrain, rays, blocked); }), "batch: 3 rays, room for 4 answers");
+  hits.resize(3);
+  EXPECT_EQ(refusal([&] { cast(terrain, rays, hits, from); }), "batch: 3 rays, 1 hits to start from");
+}
+
+TEST(Cast, TakesEmptyBatches) {
+  const Terrain terrain = roof();
+  cast(terrain, std::span<const Ray>(), std::span<Hit>());
+  occluded(terrain, std::span<const Ray>(), std::span<std::uint8_t>());
+}
+
+}  // namespace
+}  // namespace scarp
