@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: MIT
 # Doxygen's input filter for headers. Does not change the number of lines.
 #
-# Turns the comment below the licence into the documentation of the file, adds everything in the file to the group of its
-# folder (scarp/march/height/x.h: scarp_march_height), and keeps indented lines of comments, such as figures, verbatim.
+# Turns the comment below the licence into the documentation of the file, adds everything in the file to the group
+# `scarp` if common_headers.txt lists it, or else to that of its folder (scarp/march/height/x.h: scarp_march_height), and
+# keeps indented lines of comments, such as figures, verbatim.
+
+BEGIN {
+  while ((getline header < "doc/api/common_headers.txt") > 0) common[header] = 1
+}
 
 function flush_line(suffix) {
   if (have) print held suffix
@@ -39,6 +44,7 @@ function end_comment() {
 FNR == 1 {
   path = FILENAME
   sub(/^(.*\/)?scarp\//, "scarp/", path)
+  if (path in common) path = "scarp/"
   sub(/\/[^\/]*$/, "", path)
   gsub(/\//, "_", path)
   emit("/// @file")
