@@ -12,12 +12,13 @@ namespace {
 
 template <class Probe>
 Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
-  const NaiveSettings& settings = all.naive;
+  const NaiveSettings settings = all.naive;
   // Distances count from the ray's start, in t: an unnormalised direction changes the unit of t and nothing else.
   const double start = probe.ray().t_min, per_clearance = probe.per_clearance();
   const double least = settings.min_step * (probe.t_exit - start), near = all.sampling.tolerance * probe.per_metre();
   const auto limit = [&](double t) { return std::max(near, settings.tolerance * (t - start)); };
   const auto stops = [&](double t, double clearance) { return clearance * per_clearance < limit(t); };
+  const bool refines = all.sampling.refinement != Refinement::none;
   Look before;
   double t = probe.t_enter + (probe.ray().start == RayStart::on_surface ? least : 0.0);
   for (int step = 0; t <= probe.t_exit; ++step) {
@@ -27,7 +28,7 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
     const Look look{t, sample.clearance * per_clearance, sample.valid};
     if (look.known && stops(t, sample.clearance))
       return refined_hit(probe, all.sampling, all.sampling.refinement, before, look, sample, limit(t), stops, stats);
-    before = look;
+    if (refines) before = look;
     // Over a hole there is no height to go by.
     t += std::max(look.known ? settings.step_factor * std::abs(look.h) : 0.0, least);
   }
