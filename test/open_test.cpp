@@ -2,6 +2,7 @@
 // Terrain::open() of scarp.h.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -40,7 +41,9 @@ TEST(TerrainOpen, ReadsAnElevationModel) {
 TEST(TerrainOpen, RefusesWithOneLineThatNamesTheFile) {
   const std::string text = path_of("open_test.txt");
   std::ofstream(text) << "no raster\n";
-  for (const std::string& path : {path_of("missing.tif"), text, std::string()}) {
+  const std::string folder = path_of("open_test_folder");
+  std::filesystem::create_directory(folder);
+  for (const std::string& path : {path_of("missing.tif"), text, folder, std::string()}) {
     const std::string message = refusal([&] { Terrain::open(path); });
     EXPECT_NE(message, "") << path;
     EXPECT_NE(message.find(path), std::string::npos) << message;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Where an object stands: turned, scaled alike in all directions, moved.
+// Placements of objects: rotation, uniform scale, translation.
 //
 //   p_world = scale * turn * p_field + origin
 //
-// t is the same in both spaces: a ray's direction is turned and scaled, and never made a unit vector.
+// t is the same in both spaces: directions are rotated and scaled, and never normalised.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -13,6 +13,8 @@
 
 namespace scarp {
 
+/// A rotation, a uniform scale and a translation, in this order. For a rotation by an angle about an axis:
+/// `glm::dmat3(glm::rotate(glm::dmat4(1), radians, axis))`, from <glm/gtc/matrix_transform.hpp>.
 struct Placement {
   glm::dmat3 turn{1.0};  ///< a rotation
   double scale = 1;      ///< > 0

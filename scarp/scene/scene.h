@@ -2,15 +2,14 @@
 // A scene combines terrain, functions, shapes, voxels and meshes, each in any number of places, and answers closest-hit
 // and any-hit queries over all of them.
 //
-//   ray ──▶ ground without an end, and the largest batch-friendly fields    each by its own march;
-//       ──▶ hierarchy of boxes over all other objects (box_tree.h)          the nearest hit wins
+//   ray ──▶ unbounded ground, and the largest batch-friendly fields    each by its own march;
+//       ──▶ hierarchy of boxes over all other objects (box_tree.h)     the nearest hit wins
 //
-// Rays are answered in the space of each object; t counts in the length of the world's direction throughout. Of hits at
-// the same t that of the first object counts. A ray from a surface begins there by the rule of its object, and free for
-// all others: no ray is pushed off, except the shadow rays of voxels with smooth normals.
+// Each object is traced in its own space; t always counts in lengths of the world-space direction. If several objects
+// are hit at the same t, the first one counts. A ray that starts on a surface does so by the rule of that object, and
+// is free for all others. Origins are not offset, except those of shadow rays of voxels with smooth normals.
 //
-// A scene of one field at the origin is that field: it takes the rays that the field takes, and batches go straight to
-// the field's own.
+// A scene of one field at the origin is that field: rays and batches go straight to it.
 #pragma once
 
 #include <cstddef>
@@ -29,110 +28,113 @@
 
 namespace scarp {
 
+/// A field in one place.
 struct SceneObject {
-  std::uint32_t field = 0;     ///< index of the scene's fields
-  std::uint32_t material = 0;  ///< whatever the caller counts by it
+  std::uint32_t field = 0;     ///< index into Scene::fields()
+  std::uint32_t material = 0;  ///< returned in SceneSurface; pictures use it as an index into their materials
   Placement placement{};
 };
 
-/// What is at a hit, in world space.
+/// The surface at a hit, in world space.
 struct SceneSurface {
   dvec3 position{0.0};
-  dvec3 normal{0.0};          ///< unit, outward; zero for a ray that began inside a voxel
-  dvec3 shading_normal{0.0};  ///< unit, likewise
+  dvec3 normal{0.0};          ///< unit, outward; zero for a ray that started inside a voxel
+  dvec3 shading_normal{0.0};  ///< unit, outward, smooth; zero as `normal`
   std::uint32_t object = 0;
-  std::uint32_t material = 0;         ///< the object's, or that of a shape's part less 1
-  dvec3 place{0.0};                   ///< the position in the object's own space
-  std::optional<VoxelColour> colour;  ///< where the field has colours of its own
-  double openness = 1;                ///< share of the sky that is open, as far as the object knows by itself
+  std::uint32_t material = 0;         ///< of the object, or of the part of a shape, less 1
+  dvec3 place{0.0};                   ///< position in the object's own space
+  std::optional<VoxelColour> colour;  ///< of fields with their own colours
+  double openness = 1;                ///< fraction of the sky that the object itself leaves open, 0..1
   bool wall = false;                  ///< whether a wall of solid ground or of a plinth was hit
-  std::optional<double> height;       ///< z of the surface, where known to more digits than by `position`
+  std::optional<double> height;       ///< z of the surface, if known more precisely than by `position`
 };
 
-/// How fine details must be to be seen, for Scene::coarser().
+/// Resolution of a picture, for Scene::coarser().
 struct SceneDetail {
   dvec3 eye{0.0}, forward{0, 0, -1};
-  std::function<double(double)> sample;  ///< metres from one of a picture's samples to the next, at a depth along
-                                         ///< `forward` in metres
+  std::function<double(double)> sample;  ///< metres between two samples of the picture, at a depth along `forward` in
+                                         ///< metres
 };
 
-/// Immutable. May be queried from many threads at once, except with a back end.
+/// Objects with closest-hit and any-hit queries over all of them. Immutable. May be queried from many threads at once,
+/// except with a back end.
 ///
-/// Rays begin by Ray::start, on the surface of Ray::start_object where that says so, unless `from` is given: then they
-/// begin on the surface of that hit of this scene, and Ray::start does not count. In batches `from` is empty or as long
-/// as `rays`, and rays whose entry is null begin free. Rays from voxels need `from`.
+/// Rays start as Ray::start states, on the surface of Ray::start_object if it is `on_surface`. `from` overrides it: the
+/// ray starts on the surface of that hit of this scene. In batches `from` is empty or as long as `rays`; rays whose
+/// entry is null start free. Rays that start on voxels need `from`.
 class Scene {
  public:
-  /// Throws Error naming the object: a field that does not exist, a placement that is not a rotation with a scale above
-  /// 0; or a field that is null.
+  /// Throws Error for a field that is null, and, naming the object, for a field that does not exist or a placement that
+  /// is not a rotation with a scale above 0.
   Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects);
   /// The field alone, at the origin. Implicit: one field is a scene.
   Scene(SceneFieldPtr field);
 
-  /// The same scene, whose rays a back end answers: a device, see scene_vk.h. Used by one thread at a time; single rays
-  /// take as long as thousands.
+  /// Returns the same scene with a back end that answers the rays, such as a device (scene_vk.h). For one thread at a
+  /// time; a single ray takes as long as thousands.
   Scene answered_by(std::shared_ptr<SceneBackEnd> back_end) const;
   bool on_device() const { return back_end_ != nullptr; }
-  /// What a device holds of the one height field of this scene; null for all other scenes.
+  /// Returns the one height field of this scene on its device; null for all other scenes.
   const DeviceTerrain* device_terrain() const;
 
-  /// The nearest hit. Without one: exhausted when a march gave up, else below when an object that was asked says so:
-  /// the ray began below its ground and met nothing. Objects whose boxes the ray does not meet need not be asked, so a
-  /// ray below ground that has an end may also be a miss; within() finds where a point is. A march that gives up hides
-  /// no hit behind. `stats`, when given, is overwritten; a back end sets its steps alone.
+  /// Returns the nearest hit. Without one, the status is `exhausted` if a march reached its limit, or `below` if the
+  /// ray started below the ground of an object and never emerged, or else `miss`. Objects whose boxes the ray misses
+  /// are not queried, so a ray that starts below bounded ground may also return `miss`; within() finds where a point
+  /// is. A march that reaches its limit does not hide hits on other objects. Overwrites `stats` if given; back ends set
+  /// only its steps.
   Hit closest_hit(const Ray& ray, const Hit* from = nullptr, MarchStats* stats = nullptr) const;
-  /// Whether closest_hit() would return a hit on the surfaces that throw shadows. These are those that are seen, with
-  /// two exceptions, where the two answers may differ: terrain functions whose octaves for shadows differ from those of
-  /// the march (Octaves of field/function_node.h), and voxels with smooth normals (VoxelNormals::smooth) where `from`
-  /// is one of theirs: the ray begins above their steps then (scene_voxels()).
+  /// Returns whether anything blocks the ray: true where closest_hit() returns a hit, with three exceptions. Plinths
+  /// block nothing, terrain functions may have other octaves for shadows (Octaves of field/function_node.h), and rays
+  /// from a hit on voxels with smooth normals (VoxelNormals::smooth) start above the steps of these voxels
+  /// (scene_voxels()).
   bool occluded(const Ray& ray, const Hit* from = nullptr) const;
 
-  /// hits[i] is closest_hit(rays[i], from[i]), bit for bit (on a device as it finds it); steps[i], when asked for, is
-  /// what that cost. On all threads. Throws Error when spans differ in length.
+  /// Sets hits[i] to closest_hit(rays[i], from[i]), bit for bit except on devices, and steps[i] to its steps unless
+  /// `steps` is empty. On all threads. Throws Error if spans differ in length.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps = {},
                     std::span<const Hit* const> from = {}) const;
-  /// blocked[i] is 1 where occluded(rays[i], from[i]) is true, else 0.
+  /// Sets blocked[i] to 1 if occluded(rays[i], from[i]), else to 0. As closest_hits().
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;
 
-  /// Position and normals of a hit of this ray.
+  /// Returns the surface at a hit of this ray: position, normals, material, colour.
   SceneSurface surface(const Ray& ray, const Hit& hit) const;
 
-  /// The surface at a point inside an object, of the first object that contains it; see SceneField::within().
+  /// Returns the surface of the first object that contains a point; see SceneField::within().
   std::optional<SceneSurface> within(const dvec3& p) const;
-  /// World z of the highest ground at (x, y): of heights and functions that are not tilted.
+  /// Returns z of the highest ground at (x, y), of height fields and functions that are not tilted; nullopt without
+  /// any.
   std::optional<double> height(double x, double y) const;
 
-  /// The same objects; voxels that are closer together than the picture's samples, wherever their object is seen, are
-  /// merged 2 x 2 x 2, as often as they stay no larger than that. On the CPU.
+  /// Returns the same objects with voxels merged 2 x 2 x 2, repeatedly, as long as they stay no larger than the
+  /// distance between two samples of the picture wherever their object is visible. On the CPU.
   Scene coarser(const SceneDetail& detail) const;
 
   const std::vector<SceneFieldPtr>& fields() const { return fields_; }
   const std::vector<SceneObject>& objects() const { return objects_; }
-  /// The field of a scene of one field at the origin; null for all other scenes.
+  /// Returns the field of a scene of one field at the origin; null for all other scenes.
   const SceneField* only_field() const { return alone_ ? fields_[objects_[0].field].get() : nullptr; }
   const SceneField& field_of(std::uint32_t object) const { return *fields_[objects_[object].field]; }
-  /// The height field of a scene of one at the origin, with or without its plinth; null for all other scenes. For what
-  /// only works on a height field alone.
+  /// Returns the height field of a scene of one at the origin, with or without its plinth; null for all other scenes.
   const HeightField* only_heights() const { return sole_ && terrain_ ? terrain_ : nullptr; }
-  /// The one height field at the origin, whatever else is in the scene; null if there is none, or several.
+  /// Returns the one height field at the origin, whatever else is in the scene; null if there is none, or several.
   const HeightField* terrain() const { return terrain_; }
-  /// The object that it is, if it is not null.
+  /// Index of the object of terrain(), if that is not null.
   std::uint32_t terrain_object() const { return terrain_object_; }
-  /// The side of the smallest cell or voxel of all objects, in metres; 0 if none has any.
+  /// Side of the smallest cell or voxel of all objects, in metres; 0 if there is none.
   double cell_side() const;
-  /// The same objects, with the marches that judge others. On the CPU.
+  /// Returns the same objects with reference marches. On the CPU.
   Scene judge() const;
-  /// Names of the marches of all objects, each once, with ", " between.
+  /// Returns the names of all marches, each once, separated by ", ".
   std::string marches() const;
 
-  /// Around all objects that do not go on forever (SceneField::extent()); empty when there is none.
+  /// Box around all bounded objects (SceneField::extent()); empty if there is none.
   const WorldBox& box() const { return box_; }
-  /// Whether an object goes on forever.
+  /// Whether an object is unbounded.
   bool endless() const { return endless_; }
   /// Whether a height field wraps round: rays need a finite t_max.
   bool wraps() const { return wraps_; }
-  /// Of the objects and the hierarchy over them, without the fields.
+  /// Memory use in bytes of the objects and the hierarchy over them, without the fields.
   std::size_t bytes() const;
 
  private:
@@ -143,7 +145,7 @@ class Scene {
   SceneSurface placed_surface(std::uint32_t object, const FieldSurface& own, const dvec3& p,
                               const dvec3& in_field) const;
 
-  // Queries of rays that know how they begin; see scene_answers.h.
+  // Queries of rays that know how they start; see scene_answers.h.
   struct Asking;
   void make_local(const Asking& asking, std::uint32_t object, const Hit& best, Ray& local) const;
   Ray local(const Asking& asking, std::uint32_t object, const Hit& best) const;
@@ -176,7 +178,7 @@ class Scene {
   std::shared_ptr<SceneBackEnd> back_end_;  // null: the fields' own marches
   std::vector<SceneObject> objects_;
   std::vector<std::uint8_t> in_place_;      // by object: 1 where its placement is the identity
-  std::vector<std::uint32_t> beside_tree_;  // objects that every ray is asked against, before the tree
+  std::vector<std::uint32_t> beside_tree_;  // objects that every ray is traced against, before the tree
   std::vector<std::uint32_t> in_tree_;      // the others that can be met, in the order of the tree's numbers
   BoxTree tree_;
   WorldBox box_;
@@ -189,9 +191,8 @@ class Scene {
   const HeightField* terrain_ = nullptr;
 };
 
-/// Throws Error, in one line, when a ray cannot be followed through the scene, as validate() of march/height/queries.h
-/// does for a height field: also for an infinite t_max where a field wraps round, a start on an object that does not
-/// exist, or in a cell that does not.
+/// Throws Error if a ray cannot be traced through the scene: as validate() of march/height/queries.h, and for an
+/// infinite t_max if a field wraps round, or a start on an object or cell that does not exist.
 void validate(const Ray& ray, const Scene& scene);
 
 }  // namespace scarp

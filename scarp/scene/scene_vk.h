@@ -2,11 +2,11 @@
 // Scenes on a Vulkan device:
 //
 //   const Device device({.choice = "gpu"});
-//   const Scene scene = scene_on(device, Scene(scene_heights(std::move(field), march, settings,
-//   AnsweredBy::back_end)));
+//   const Scene on_device = scene_on(device, terrain);
+//   cast(on_device, rays, hits);
 //
-// The device answers each field's rays in single precision; placements and the hierarchy stay on the CPU. Heights,
-// functions and shapes run there; the CPU answers rays over other fields.
+// The device traces the rays of each field in single precision; placements and the hierarchy stay on the CPU. Height
+// fields, functions and shapes run on the device, other fields on the CPU.
 #pragma once
 
 #include <memory>
@@ -17,17 +17,20 @@
 
 namespace scarp {
 
-/// Copies the fields that run there into the device's memory. Throws Error naming the field: none runs there, a march
-/// that does not, no memory for it. Queries throw Error when the device is lost. Answers are those of march/height/
-/// queries_vk.h, march/function/function_queries_vk.h and march/shape/shape_queries_vk.h.
+/// Copies the fields that run on the device into its memory; later edits do not reach it. Throws Error naming the
+/// field: none that runs there, a march that does not, too little memory. Queries throw Error if the device is lost.
+/// Results are those of march/height/queries_vk.h, march/function/function_queries_vk.h and
+/// march/shape/shape_queries_vk.h.
+///
+/// A field made by scene_heights() with AnsweredBy::back_end builds nothing for the CPU.
 Scene scene_on(const Device& device, const Scene& scene);
 
-/// What a device holds of a scene of one height field at the origin: Scene::device_terrain().
+/// The height field of a scene of one at the origin, on its device: Scene::device_terrain().
 struct DeviceTerrain {
   Device device;
   const DeviceGround& ground;
   const MarchSettings& settings;
-  mutable std::shared_ptr<void> kept{};  ///< what was made for pictures of it, by the station that makes them
+  mutable std::shared_ptr<void> kept{};  ///< cache of the station that renders pictures
 };
 
 }  // namespace scarp
