@@ -8,10 +8,12 @@
 
 namespace scarp {
 
-Terrain Terrain::open(const std::string& path) {
-  Raster raster = read_raster(path, {});
+Terrain Terrain::open(const std::string& path) { return open(path, {}, {}); }
+
+Terrain Terrain::open(const std::string& path, const RasterOptions& raster_options, const FieldOptions& field) {
+  Raster raster = read_raster(path, raster_options);
   Georeference georeference = raster.georeference;
-  return Terrain(height_field_from(std::move(raster)), std::move(georeference));
+  return Terrain(height_field_from(std::move(raster), field), std::move(georeference));
 }
 
 }  // namespace scarp

@@ -9,6 +9,8 @@
 
 #include "base/refusal.h"
 #include "scarp/scarp.h"
+#include "scarp/scene/file/from_raster.h"
+#include "scarp/source/raster_options.h"
 
 namespace scarp {
 namespace {
@@ -36,6 +38,14 @@ TEST(TerrainOpen, ReadsAnElevationModel) {
   EXPECT_EQ(hit.t, 97);
   EXPECT_TRUE(terrain.georeference().present);
   EXPECT_EQ(terrain.georeference().map_from_node[0], 1012.5);
+}
+
+TEST(TerrainOpen, TakesOptions) {
+  RasterOptions raster;
+  raster.nodata = 4;
+  const Terrain terrain = Terrain::open(small_grid(), raster, {.exaggeration = 2});
+  EXPECT_EQ(terrain.height(50, 25), 6);
+  EXPECT_FALSE(terrain.height(10, 12));
 }
 
 TEST(TerrainOpen, RefusesWithOneLineThatNamesTheFile) {

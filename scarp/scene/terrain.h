@@ -22,6 +22,9 @@
 
 namespace scarp {
 
+struct FieldOptions;   // scarp/scene/file/from_raster.h
+struct RasterOptions;  // scarp/source/raster_options.h
+
 /// A height field with its pyramid. Copies are cheap and are the same terrain. May be queried from many threads at
 /// once, but not during set_samples() and samples_changed() (accel/live_field.h edits a field between the queries of
 /// others).
@@ -42,9 +45,11 @@ class Terrain {
   template <class T>
   static Terrain own(std::vector<T> samples, int cols, int rows, const HeightFieldSettings& settings = {});
   /// Reads an elevation model in any supported format (GeoTIFF, .hgt, .asc, .npy, ...; doc/user/inputs.md); a folder
-  /// stands for the tiles in it. In scarp::scarp, built with GDAL. Throws Error naming the file: missing, not a raster,
-  /// damaged, rotated. For other settings: Terrain(height_field_from(read_raster(path, ...), ...)).
+  /// stands for the tiles in it. Cells have their size on the ground; without a georeference they are 1 m. In
+  /// scarp::scarp, built with GDAL. Throws Error naming the file: missing, not a raster, damaged, rotated.
   static Terrain open(const std::string& path);
+  /// The same with options: band, window, nodata, ...; exaggeration, surface, wrap.
+  static Terrain open(const std::string& path, const RasterOptions& raster, const FieldOptions& field);
   /// Builds the pyramid of a field. `georeference`: its place on Earth, for georeference().
   explicit Terrain(HeightField field, Georeference georeference = {});
 
@@ -64,6 +69,7 @@ class Terrain {
   const MaxPyramid& pyramid() const;
   /// The terrain for functions of march/height. Refers to this terrain.
   HeightTarget target() const { return {&field(), &pyramid()}; }
+  /// Place on Earth and cell size; `present` is false if there is none.
   const Georeference& georeference() const;
 
   /// The scene of this field alone. Scenes that were combined from it before an edit must be combined again.
