@@ -7,7 +7,7 @@
 //   detail    noise of several sizes, twice as long along the slope's horizontal as across; patterns smaller than a
 //             pixel are left out
 //   contours  lines of constant width in pixels: the distance to a line is the difference in height divided by the
-//             slope; every fifth is heavier; lines fade where they would touch
+//             slope; every fifth is heavier; lines fade where they would touch. Level surfaces have none
 #pragma once
 
 #include <cstdint>
