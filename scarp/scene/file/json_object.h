@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,12 @@ namespace scarp {
 
 /// "PATH: is TEXT; expected WHAT" as an Error.
 [[noreturn]] void refuse_json(std::string_view path, const nlohmann::json& value, std::string_view expected);
+
+/// Sets `to` where the object has the key. Its value must be of the type: the schema has been checked.
+template <class T>
+void take_json(std::optional<T>& to, const nlohmann::json& object, const char* key) {
+  if (object.contains(key)) to = object[key].get<T>();
+}
 
 /// Refers to the JSON that it was made of.
 class JsonObject {

@@ -13,6 +13,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/scene/file/example_functions.h"
+#include "scarp/scene/file/json_object.h"
 #include "scarp/scene/file/scene_parts.h"
 #include "scarp/scene/file/scene_places.h"
 #include "scarp/scene/file/scene_schema.h"
@@ -198,11 +199,6 @@ class Reader {
   std::vector<SceneObjectName> names_;
 };
 
-template <class T>
-void set(std::optional<T>& to, const Json& json, const char* key) {
-  if (json.contains(key)) to = json[key].get<T>();
-}
-
 dvec3 point(const Json& json) { return {json[0], json[1], json[2]}; }
 
 SceneCamera Reader::camera() const {
@@ -223,22 +219,11 @@ SceneCamera Reader::camera() const {
     }
     if (*camera.eye == *camera.target) throw Error("/camera/target: is where the eye is; expected another point");
   }
-  set(camera.azimuth_deg, json, "azimuth");
-  set(camera.elevation_deg, json, "elevation");
-  set(camera.distance, json, "distance");
-  set(camera.fov_deg, json, "fov");
+  take_json(camera.azimuth_deg, json, "azimuth");
+  take_json(camera.elevation_deg, json, "elevation");
+  take_json(camera.distance, json, "distance");
+  take_json(camera.fov_deg, json, "fov");
   return camera;
-}
-
-SceneSun sun_from(const Json& scene) {
-  SceneSun sun;
-  if (!scene.contains("sun")) return sun;
-  const Json& json = scene["sun"];
-  set(sun.azimuth_deg, json, "azimuth");
-  set(sun.altitude_deg, json, "altitude");
-  set(sun.size_deg, json, "size");
-  set(sun.shadows, json, "shadows");
-  return sun;
 }
 
 ScenePicture picture_from(const Json& scene) {
@@ -249,10 +234,10 @@ ScenePicture picture_from(const Json& scene) {
     picture.width = json["size"][0].get<int>();
     picture.height = json["size"][1].get<int>();
   }
-  set(picture.aa, json, "aa");
-  set(picture.samples, json, "samples");
-  set(picture.ao_distance, json, "ao_distance");
-  set(picture.seed, json, "seed");
+  take_json(picture.aa, json, "aa");
+  take_json(picture.samples, json, "samples");
+  take_json(picture.ao_distance, json, "ao_distance");
+  take_json(picture.seed, json, "seed");
   picture.coarse_voxels = json.value("coarse_voxels", false);
   return picture;
 }
@@ -270,9 +255,11 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
                  {},
                  std::move(reader.names()),
                  camera,
-                 sun_from(json),
+                 sun_from_json(json),
                  picture_from(json),
                  {},
+                 water_from_json(json),
+                 fog_from_json(json),
                  std::move(whole.notes),
                  std::move(whole.files)};
   if (!file.scene.endless() && !(file.scene.box().low.x <= file.scene.box().high.x))

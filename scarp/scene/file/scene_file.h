@@ -42,6 +42,18 @@ struct ScenePicture {
   bool coarse_voxels = false;  ///< Scene::coarser()
 };
 
+struct SceneWater {
+  double level = 0;            ///< metres, not exaggerated
+  std::optional<vec3> srgb{};  ///< 0..1
+  std::optional<double> turbidity{}, waves{}, wavelength{};
+  std::optional<bool> reflection{}, refraction{};
+};
+
+struct SceneFog {
+  std::string kind;  ///< "distance" or "height"
+  std::optional<double> visibility{}, base{}, falloff{}, sun_tint{};
+};
+
 /// An object of a file; one with places, scattered or of another scene is several of a Scene.
 struct SceneObjectName {
   std::string name;         ///< as the file says, or its place in the file
@@ -56,9 +68,11 @@ struct SceneFile {
   SceneCamera camera;
   SceneSun sun;
   ScenePicture picture;
-  std::optional<double> haze_distance;  ///< metres
-  std::vector<std::string> notes;       ///< of readers, one line each, for people
-  std::vector<std::string> files;       ///< all that were read: this one, other scenes, heights, voxels
+  std::optional<double> haze_distance;  ///< metres; not beside fog
+  std::optional<SceneWater> water;
+  std::optional<SceneFog> fog;
+  std::vector<std::string> notes;  ///< of readers, one line each, for people
+  std::vector<std::string> files;  ///< all that were read: this one, other scenes, heights, voxels
 };
 
 /// Reads the file and everything that it names. Throws Error in one line with the file and the place in it, as a JSON

@@ -12,11 +12,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-vec3 colour_from(const Json& json) {
-  const auto rgb = std::stoul(json.get<std::string>().substr(1), nullptr, 16);
-  return vec3(rgb >> 16 & 255, rgb >> 8 & 255, rgb & 255) / 255.0f;
-}
-
 class Reader {
  public:
   Reader(const Json& json, std::string path, std::vector<Material>& all)
@@ -40,7 +35,7 @@ class Reader {
   }
 
   Material material_from(const Json& json, const std::string& path) {
-    if (json.contains("colour")) return PlainColour{colour_from(json["colour"])};
+    if (json.contains("colour")) return PlainColour{colour_from_json(json["colour"])};
     if (json.contains("ramp")) {
       const Json& ramp = json["ramp"];
       const HeightRamp made{ramp["name"], ramp["heights"][0], ramp["heights"][1]};
@@ -55,13 +50,13 @@ class Reader {
           throw Error(fmt::format("{}/stops/{}/z: is {}; expected more than that before it", path, stops.stops.size(),
                                   stop["z"].get<double>()));
         }
-        stops.stops.emplace_back(stop["z"].get<double>(), colour_from(stop["colour"]));
+        stops.stops.emplace_back(stop["z"].get<double>(), colour_from_json(stop["colour"]));
       }
       return stops;
     }
     if (json.contains("checker")) {
       const Json& checker = json["checker"];
-      return Checker{colour_from(checker["colours"][0]), colour_from(checker["colours"][1]),
+      return Checker{colour_from_json(checker["colours"][0]), colour_from_json(checker["colours"][1]),
                      checker.value("size", 1.0)};
     }
     const Json& blend = json["blend"];
@@ -81,6 +76,11 @@ class Reader {
 };
 
 }  // namespace
+
+vec3 colour_from_json(const Json& json) {
+  const auto rgb = std::stoul(json.get<std::string>().substr(1), nullptr, 16);
+  return vec3(rgb >> 16 & 255, rgb >> 8 & 255, rgb & 255) / 255.0f;
+}
 
 std::map<std::string, std::uint32_t> materials_from_json(const Json& json, const std::string& path,
                                                          std::vector<Material>& all) {

@@ -6,12 +6,14 @@
 #include <functional>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scarp/base/progress.h"
 #include "scarp/scene/file/function_json.h"
+#include "scarp/scene/file/scene_file.h"
 #include "scarp/scene/material.h"
 #include "scarp/scene/scene_field.h"
 
@@ -41,6 +43,14 @@ FieldWithPlace field_from_json(const nlohmann::json& json, const std::string& pa
 /// Materials by name, appended to `all` in an order in which they refer to earlier ones alone; the index of each.
 std::map<std::string, std::uint32_t> materials_from_json(const nlohmann::json& json, const std::string& path,
                                                          std::vector<Material>& all);
+
+/// "#rrggbb" as sRGB, 0..1.
+vec3 colour_from_json(const nlohmann::json& json);
+
+/// The sun, the water and the fog of a scene.
+SceneSun sun_from_json(const nlohmann::json& scene);
+std::optional<SceneWater> water_from_json(const nlohmann::json& scene);
+std::optional<SceneFog> fog_from_json(const nlohmann::json& scene);
 
 /// Settings of all marches, by the names that the command line has, with underscores.
 MarchSettings march_settings_from_json(const nlohmann::json& json, const std::string& path);

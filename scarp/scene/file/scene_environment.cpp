@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// The sun, the water and the fog of a scene file. Ranges are in the schema.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scarp/base/error.h"
+#include "scarp/scene/file/json_object.h"
+#include "scarp/scene/file/scene_parts.h"
+
+namespace scarp {
+namespace {
+
+using Json = nlohmann::json;
+
+}  // namespace
+
+SceneSun sun_from_json(const Json& scene) {
+  SceneSun sun;
+  if (!scene.contains("sun")) return sun;
+  const Json& json = scene["sun"];
+  take_json(sun.azimuth_deg, json, "azimuth");
+  take_json(sun.altitude_deg, json, "altitude");
+  take_json(sun.size_deg, json, "size");
+  take_json(sun.shadows, json, "shadows");
+  return sun;
+}
+
+std::optional<SceneWater> water_from_json(const Json& scene) {
+  if (!scene.contains("water")) return {};
+  const Json& json = scene["water"];
+  SceneWater water{.level = json["level"].get<double>()};
+  if (json.contains("colour")) water.srgb = colour_from_json(json["colour"]);
+  take_json(water.turbidity, json, "turbidity");
+  take_json(water.waves, json, "waves");
+  take_json(water.wavelength, json, "wavelength");
+  take_json(water.reflection, json, "reflection");
+  take_json(water.refraction, json, "refraction");
+  return water;
+}
+
+std::optional<SceneFog> fog_from_json(const Json& scene) {
+  if (!scene.contains("fog")) return {};
+  if (scene.contains("haze")) throw Error("/haze: does not go with fog, which replaces it; leave one of them out");
+  const Json& json = scene["fog"];
+  SceneFog fog{.kind = json["kind"].get<std::string>()};
+  for (const char* key : {"base", "falloff"}) {
+    if (fog.kind != "height" && json.contains(key))
+      throw Error(fmt::format("/fog/{}: belongs to fog of the kind height; leave it out", key));
+  }
+  take_json(fog.visibility, json, "visibility");
+  take_json(fog.base, json, "base");
+  take_json(fog.falloff, json, "falloff");
+  take_json(fog.sun_tint, json, "sun_tint");
+  return fog;
+}
+
+}  // namespace scarp
