@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp cast`: rays of a table against an elevation model, hits out.
+// `scarp cast`: rays of a table against whatever can be rendered, hits out.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -19,11 +19,10 @@
 #include "app/cli/field_options.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/march_options.h"
+#include "app/cli/open_input.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
-#include "app/cli/scene_input.h"
 #include "app/cli/shared_options.h"
-#include "app/cli/vox_input.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -31,11 +30,9 @@
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/output/hit_table.h"
-#include "scarp/scene/file/from_raster.h"
 #include "scarp/scene/scene.h"
 #include "scarp/source/coordinates.h"
 #include "scarp/source/ray_table.h"
-#include "scarp/source/read_raster.h"
 
 namespace scarp::cli {
 namespace {
@@ -44,6 +41,7 @@ namespace {
 constexpr std::size_t kPiece = 1 << 16;
 
 constexpr std::string_view kRasterCrs = "--raster-crs";
+constexpr std::string_view kFirstHit = "marches of other fields return the first hit only";
 
 // Below the options in the help.
 constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order:
@@ -51,27 +49,22 @@ constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order
   dx,dy,dz              direction; t counts in its length
   or tx,ty,tz           target instead of a direction: t is 1 there, and the ray ends there
   t_min,t_max           optional range of t (0 to infinity; 0 to 1 with a target)
-  start_col,start_row   optional cell on whose surface the ray starts
+  start_col,start_row   optional cell of the terrain on whose surface the ray starts
   others                copied to the hits
 Rays, .npy: float32 or float64 of N x 6 or N x 8: x,y,z,dx,dy,dz[,t_min,t_max]; or structures with
 fields of these names.
 
 Coordinates (--crs); z is always in metres:
-  local    metres east and north of the south-west sample
+  local    metres east and north of the south-west sample, or of the origin of the scene
   map      units of the raster's CRS, for dx,dy as well; dz in metres
   lonlat   longitude and latitude in degrees, WGS 84; dx,dy,dz are metres east, north and up
 
 Hits: ray (from 0), status (hit, miss, below, exhausted), t, x,y,z, cell col,row, position u,v in
-the cell, unit normal nx,ny,nz (east, north, up), wall (0 or 1). With --any: ray, blocked.)";
+the cell, unit normal nx,ny,nz (east, north, up), wall (0 or 1). For other inputs than terrain also
+object, kind, material, triangle, part, voxel_x,voxel_y,voxel_z, face. With --any: ray, blocked.)";
 
-struct CastOptions {
-  std::vector<std::string> inputs;
+struct CastOptions : InputOptions {
   std::string rays, output, coordinates;
-  RasterOptions raster;
-  FieldOptions field;
-  std::string march = "max-mip";
-  std::string device;
-  MarchSettings march_settings;
   bool any = false, all = false;
   int threads = 0;
   std::vector<std::string> typed;  // the values of the options
@@ -80,15 +73,16 @@ struct CastOptions {
 using AllHits = HitStatus (*)(const HeightTarget&, const Ray&, std::vector<Hit>&);
 
 // The march's function for all hits, null when those are not asked for.
-AllHits all_hits_of(const CastOptions& options, const HeightMarchEntry& march) {
+AllHits all_hits_of(const CastOptions& options) {
   if (!options.all) return nullptr;
   if (!options.device.empty()) {
     throw Error(fmt::format("--all --device {}: devices return only the first hit of a ray (leave one of the two out)",
                             options.device));
   }
-  if (march.name == "max-mip") return all_hits_max_mip;
-  if (march.name == "exhaustive") return all_hits_exhaustive;
-  throw Error(fmt::format("--all --march {}: only max-mip and exhaustive find all hits", march.name));
+  const std::string_view march = march_of(options, InputKind::terrain);
+  if (march == "max-mip") return all_hits_max_mip;
+  if (march == "exhaustive") return all_hits_exhaustive;
+  throw Error(fmt::format("--all --march {}: only max-mip and exhaustive find all hits", march));
 }
 
 // Readers of rasters speak of --crs, which says here what the coordinates of the rays are.
@@ -100,33 +94,40 @@ std::string in_words_of_cast(std::string text) {
   return text;
 }
 
-Raster read(const CastOptions& options) {
+OpenedInput open(const CastOptions& options, InputKind kind) {
   try {
-    return read_tiles(options.inputs, options.raster, terminal_progress("read"));
+    return open_input(kind, options);
   } catch (const Interrupted&) {
     throw;
   } catch (const Error& error) {
-    throw Error(in_words_of_cast(error.what()));
+    throw Error(kind == InputKind::terrain ? in_words_of_cast(error.what()) : error.what());
   }
 }
 
-CoordinateFrame frame_of(const CastOptions& options, const Raster& raster) {
-  const bool georeferenced = raster.georeference.present;
+// Inputs other than rasters have no georeference.
+CoordinateFrame frame_of(const CastOptions& options, const OpenedInput& input) {
   const Coordinates coordinates = !options.coordinates.empty() ? find_coordinates(options.coordinates)
-                                  : georeferenced              ? Coordinates::map
+                                  : input.georeference.present ? Coordinates::map
                                                                : Coordinates::local;
   try {
-    return {raster.georeference, raster.cols, raster.rows, coordinates};
+    return {input.georeference, input.cols, input.rows, coordinates};
   } catch (const Error& error) {
-    throw Error(fmt::format("raster '{}': {}", raster.path, error.what()));
+    throw Error(fmt::format("raster '{}': {}", input.path, error.what()));
   }
 }
 
-void check(const RayTable& table, std::span<const Ray> rays, const HeightField& field) {
+// Rays that start on a surface start on the one terrain of the scene.
+void check(const RayTable& table, std::span<Ray> rays, const Scene& scene) {
   constexpr std::string_view kPrefix = "ray: ";
   for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (rays[i].start == RayStart::on_surface && !scene.terrain()) {
+      throw Error(
+          fmt::format("{}: start_col and start_row name a cell, and the scene is not one terrain (leave them empty)",
+                      table.where(i)));
+    }
+    rays[i].start_object = scene.terrain_object();
     try {
-      validate(rays[i], field);
+      validate(rays[i], scene);
     } catch (const Error& error) {
       // Here the ray has a name.
       std::string_view text = error.what();
@@ -136,28 +137,33 @@ void check(const RayTable& table, std::span<const Ray> rays, const HeightField& 
   }
 }
 
-// A word for tables in other coordinates than said, of which nothing is hit: where the raster lies. Empty when a ray
-// begins over it, as all do where it goes on for ever.
-std::string place_of_raster(std::span<const Ray> rays, const HeightField& field, const CoordinateFrame& frame) {
+// Where the scene lies, for tables in other coordinates: of rays that hit nothing. Empty when a ray begins over it, as
+// all do where it goes on forever.
+std::string place_of(const Scene& scene, std::span<const Ray> rays, const CoordinateFrame& frame) {
+  const WorldBox& box = scene.box();
+  const HeightField* field = scene.only_heights();
+  std::array corners = {field ? dvec3(0.0) : box.low, field ? dvec3(field->width(), field->depth(), 0.0) : box.high};
   const auto over = [&](const Ray& ray) {
-    return ray.origin.x >= 0 && ray.origin.x <= field.width() && ray.origin.y >= 0 && ray.origin.y <= field.depth();
+    return ray.origin.x >= corners[0].x && ray.origin.x <= corners[1].x && ray.origin.y >= corners[0].y &&
+           ray.origin.y <= corners[1].y;
   };
-  std::array corners = {dvec3(0.0), dvec3(field.width(), field.depth(), 0.0)};
-  if (field.wraps() || std::any_of(rays.begin(), rays.end(), over) || frame.from_local(corners)) return {};
-  return fmt::format(
-      "nothing was hit, and no ray begins over the raster: in {} coordinates x {:.8g} to {:.8g}, "
-      "y {:.8g} to {:.8g}; are the rays in these (--crs)?",
-      name_of(frame.coordinates()), corners[0].x, corners[1].x, corners[0].y, corners[1].y);
+  if (scene.endless() || std::any_of(rays.begin(), rays.end(), over) || frame.from_local(corners)) return {};
+  const std::string place =
+      fmt::format("in {} coordinates x {:.8g} to {:.8g}, y {:.8g} to {:.8g}", name_of(frame.coordinates()),
+                  corners[0].x, corners[1].x, corners[0].y, corners[1].y);
+  return field ? fmt::format("nothing was hit, and no ray begins over the raster: {}; are the rays in these (--crs)?",
+                             place)
+               : fmt::format("nothing was hit, and no ray begins over the scene: {}", place);
 }
 
 // Answers rays and writes what they met, piece by piece.
 class Caster {
  public:
-  // A scene of one height field.
-  Caster(const CastOptions& options, const Scene& scene, const HeightMarchEntry& march, const CoordinateFrame& frame,
-         const RayTable& table, HitTable& out)
-      : scene_(scene), frame_(frame), table_(table), out_(out), all_(all_hits_of(options, march)) {
-    if (all_ && march.needs_pyramid) pyramid_.emplace(*scene.only_heights());
+  // `all`, of a scene of one height field; null: the nearest hits. `materials`: how many the scene's file has.
+  Caster(AllHits all, const Scene& scene, std::size_t materials, const CoordinateFrame& frame, const RayTable& table,
+         HitTable& out)
+      : scene_(scene), frame_(frame), table_(table), out_(out), all_(all), materials_(materials) {
+    if (all_ == all_hits_max_mip) pyramid_.emplace(*scene.only_heights());
   }
 
   void blocked(std::size_t first, std::span<const Ray> rays) {
@@ -228,9 +234,12 @@ class Caster {
         row.hit = hit;
         if (!hit) continue;
         ++hits_;
-        const dvec3 at = rays[i].at(hit.t);
-        positions.push_back({at.x, at.y, hit.height});
-        row.normal = frame_.normal_from_local(scene_.surface(rays[i], hit).normal);
+        const SceneSurface surface = scene_.surface(rays[i], hit);
+        row.normal = frame_.normal_from_local(surface.normal);
+        row.kind = *find_hit_kind(scene_.field_of(hit.object).kind());
+        if (surface.material < materials_) row.material = surface.material;
+        dvec3& at = positions.emplace_back(rays[i].at(hit.t));
+        if (scene_.only_field() && row.kind != HitKind::voxels) at.z = hit.height;
       }
     }
     const auto failed = frame_.from_local(positions);
@@ -251,20 +260,24 @@ class Caster {
   const RayTable& table_;
   HitTable& out_;
   AllHits all_;
+  std::size_t materials_;
   std::optional<MaxPyramid> pyramid_;  // for all hits
   std::size_t hits_ = 0, below_ = 0;
   double seconds_ = 0;
 };
 
+// What people should know about terrain that rays cannot hit.
+void add_notes(const HeightField& field, std::vector<std::string>& notes) {
+  if (!field.has_cells()) notes.emplace_back("a single row or column has no cells: every ray misses");
+  if (field.all_nodata()) notes.emplace_back("all samples are nodata: every ray misses; is the nodata value right?");
+}
+
 void run(CastOptions options, const Command& command) {
   if (options.output == "-") options.output.clear();
-  const HeightMarchEntry& march = find_height_march(options.march);
-  all_hits_of(options, march);  // refuses before files are read
-  command.require_effect({.kind = InputKind::terrain, .march = options.march});
+  const InputKind kind = kind_of_input(command, options);
+  command.require_effect({kind, {}, march_of(options, kind)});
+  const AllHits all = all_hits_of(options);  // refuses before files are read
   validate(options.march_settings);
-  if (is_vox_input(options.inputs, {}) || is_scene_input(options.inputs)) {
-    throw Error(fmt::format("'{}': cast takes elevation models, not voxels or scenes", options.inputs.front()));
-  }
   if (!options.coordinates.empty()) {
     try {
       find_coordinates(options.coordinates);
@@ -276,29 +289,32 @@ void run(CastOptions options, const Command& command) {
     }
   }
   keep_inputs(options.output, options.typed);
-  require_device_march(options.device, march);
   const ThreadLimit limit(options.threads);
   // Who reads the table may go away, as `head` does: then the program ends as others do, without a word.
   if (options.output.empty()) std::signal(SIGPIPE, SIG_DFL);
 
   const RayTable table = read_rays(options.rays);
-  HitTable out(options.output, options.any ? TableKind::blocked : TableKind::hits, table.carried);
-  Raster raster = read(options);
-  keep_inputs(options.output, raster.files);
+  const bool terrain = kind == InputKind::terrain && options.mesh.file.empty();
+  HitTable out(options.output,
+               options.any ? TableKind::blocked
+               : terrain   ? TableKind::hits
+                           : TableKind::scene_hits,
+               table.carried);
+  const MeshInput mesh(options.mesh);
+  OpenedInput input = open(options, kind);
+  keep_inputs(options.output, input.files);
+  std::vector<std::string> notes = input.notes;
+  const CoordinateFrame frame = frame_of(options, input);
+  std::vector<Ray> rays = rays_in_local(table, frame);
+  if (kind == InputKind::terrain) add_notes(*input.scene.only_heights(), notes);
   stop_if_interrupted();
-  std::vector<std::string> notes = raster.notes;
-  const CoordinateFrame frame = frame_of(options, raster);
-  const std::vector<Ray> rays = rays_in_local(table, frame);
-  const HeightField field = height_field_from(std::move(raster), options.field);
-  check(table, rays, field);
-  if (!field.has_cells()) notes.push_back("a single row or column has no cells: every ray misses");
-  if (field.all_nodata()) notes.push_back("all samples are nodata: every ray misses; is the nodata value right?");
+  const Scene whole = mesh.with_mesh(std::move(input.scene));
+  notes.insert(notes.end(), mesh.notes().begin(), mesh.notes().end());
+  check(table, rays, whole);
   stop_if_interrupted();
 
-  const auto [scene, device] = scene_on_device(
-      options.device, Scene(scene_heights(field, march, options.march_settings,
-                                          options.device.empty() ? AnsweredBy::cpu : AnsweredBy::back_end)));
-  Caster caster(options, scene, march, frame, table, out);
+  const auto [scene, device] = scene_on_device(options.device, whole);
+  Caster caster(all, scene, input.document ? input.document->materials.size() : 0, frame, table, out);
   const Progress progress = terminal_progress("cast");
   for (std::size_t first = 0; first < rays.size(); first += kPiece) {
     const std::size_t count = std::min(kPiece, rays.size() - first);
@@ -321,7 +337,7 @@ void run(CastOptions options, const Command& command) {
         caster.below(), rays.size());
   }
   if (caster.hits() == 0 && !rays.empty()) {
-    const std::string note = place_of_raster(rays, field, frame);
+    const std::string note = place_of(scene, rays, frame);
     if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
   }
   if (::isatty(STDERR_FILENO) != 0) {
@@ -336,10 +352,11 @@ void run(CastOptions options, const Command& command) {
 }  // namespace
 
 void add_cast(Program& program) {
-  Command& command = program.add("cast", "Intersect rays of a table with an elevation model");
+  Command& command =
+      program.add("cast", "Intersect rays of a table with terrain, voxels, a mesh, a scene or a function");
   const auto options = std::make_shared<CastOptions>();
   CastOptions& o = *options;
-  add_raster_inputs(command, o.inputs, "elevation raster: anything GDAL reads, .npy, .npz, .exr");
+  add_raster_inputs(command, o.inputs, kEveryFile, false);
   command.add(&o.rays, {.names = "--rays",
                         .value = "FILE",
                         .help = "table of rays: .csv or .npy",
@@ -353,30 +370,32 @@ void add_cast(Program& program) {
                .help = "coordinates of rays and hits",
                .choices = {std::string(name_of(Coordinates::local)), std::string(name_of(Coordinates::map)),
                            std::string(name_of(Coordinates::lonlat))},
-               .fallback = "map; local for rasters without a place",
-               .common = true});
+               .fallback = "map; local for inputs without a place",
+               .common = true,
+               .rules = {{"map or lonlat applies to terrain only (other inputs have no georeference)",
+                          [&o] { return o.coordinates == name_of(Coordinates::local); }, kEveryInput & ~kTerrain}}});
   command.add(&o.any, {.names = "--any",
                        .help = "occlusion only: columns ray,blocked (1, or 0; 0 also for rays that start below ground)",
                        .common = true});
-  command.add(&o.all,
-              {.names = "--all", .help = "all hits of each ray in order of t", .common = true, .excludes = {"--any"}});
-  std::vector<std::string> marches;
-  for (const MarchEntry& march : height_marches()) marches.emplace_back(march.name);
-  command.add(&o.march, {.names = "--march",
-                         .value = "NAME",
-                         .help = "marching technique",
-                         .choices = std::move(marches),
-                         .unlisted = true,
-                         .note = "see 'scarp marches'",
-                         .common = true});
+  command.add(&o.all, {.names = "--all",
+                       .help = "all hits of each ray in order of t",
+                       .common = true,
+                       .inputs = {kTerrain, kFirstHit, kFirstHit},
+                       .excludes = {"--any", "--mesh"}});
+  add_march_option(command, o.march);
   add_device_option(command, o.device);
   add_threads_option(command, o.threads);
   add_field_options(command, o.field, BeyondBorders::wraps);
   add_march_options(command, o.march_settings);
+  add_mesh_options(command, o.mesh);
+  add_vox_options(command, o.vox);
+  add_vox_rounding_options(command, o.vox_look);
+  add_function_options(command, o.function, {}, o.march, o.march_settings);
   add_raster_options(command, o.raster, std::string(kRasterCrs));
   command.footer(kTables);
   command.example("scarp cast dem.tif --rays rays.csv -o hits.csv");
   command.example("scarp cast dem.tif --rays rays.npy --crs local --any -o blocked.npy");
+  command.example("scarp cast city.vox --rays rays.csv");
   command.runs([options, &command] {
     options->typed = command.typed_values();
     run(*options, command);

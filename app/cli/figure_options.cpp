@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
 
 #ifdef SCARP_CAIRO
+#include <algorithm>
 #include <cmath>
 #include <variant>
 
@@ -56,17 +58,44 @@ FigureLegend legend_of(std::string title, double low, double high, const Ramp& r
   return legend;
 }
 
-// Whether a ramp over heights colours the scene.
-bool has_ramp(const PictureSettings& settings, const Scene& scene) {
-  if (scene.terrain()) return settings.materials.empty();
-  return !settings.materials.empty() && std::holds_alternative<HeightRamp>(settings.materials.back());
+// The legend of the one ramp over heights that colours the scene: that of its materials, or that of ground without one.
+FigureLegend legend_of_heights(const PictureSettings& settings, const Scene& scene, const PaintExtent& extent) {
+  const HeightRamp* ramp = nullptr;
+  int ramps = 0;
+  for (const Material& material : settings.materials) {
+    const auto* other = std::get_if<HeightRamp>(&material);
+    if (!other) continue;
+    ramp = other;
+    ++ramps;
+  }
+  const bool painted = std::any_of(scene.objects().begin(), scene.objects().end(), [&](const SceneObject& object) {
+    return object.material >= settings.materials.size() && height_field_of(*scene.fields()[object.field]);
+  });
+  if (painted) ++ramps;
+  if (ramps != 1) {
+    throw Error(fmt::format("--legend: {} (leave it out, or choose --look height, steps or error)",
+                            ramps == 0 ? "the colours of this picture do not depend on height"
+                                       : "several scales of heights colour this picture"));
+  }
+  const double exaggeration = extent.exaggeration;
+  return ramp ? legend_of("height, m", ramp->low, ramp->high, Ramp(ramp->ramp, ramp->low, ramp->high))
+              : legend_of("height, m", extent.low / exaggeration, extent.high / exaggeration,
+                          ground_ramp(scene, settings), exaggeration);
 }
 
-void add_meaning(const PictureSettings& settings, const Scene& scene, const Picture& picture, Figure& figure) {
+// Colours of voxels that show numbers, which are spread over the ramp whatever they are.
+FigureLegend legend_of_numbers(const SolidRange& numbers, const std::string& ramp) {
+  FigureLegend legend{"number", {}, ticks_of(numbers.low, numbers.high)};
+  for (const VoxelColour& colour : colours_of(ramp)) legend.colours.push_back({colour[0], colour[1], colour[2]});
+  return legend;
+}
+
+void add_meaning(const PictureSettings& settings, const Scene& scene, const std::optional<SolidRange>& numbers,
+                 const Picture& picture, Figure& figure) {
   const PaintExtent extent = paint_extent(scene, settings);
   const ReliefRange grey = picture.heights.value_or(ReliefRange{extent.low, extent.high});
-  // Numbers are those of the ground, colours of what is drawn.
-  const double exaggeration = extent.exaggeration, low = extent.low / exaggeration, high = extent.high / exaggeration;
+  // Numbers are those of the ground.
+  const double exaggeration = extent.exaggeration;
   switch (settings.look) {
     case Look::steps:
       figure.legend = legend_of("steps per ray", picture.steps->least, picture.steps->most,
@@ -95,12 +124,7 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const Pict
     }
     case Look::shaded:
     case Look::comanche:
-      if (!has_ramp(settings, scene)) {
-        throw Error(
-            "--legend: the colours of this picture do not depend on height (leave it out, or choose --look height, "
-            "steps or error)");
-      }
-      figure.legend = legend_of("height, m", low, high, ground_ramp(scene, settings), exaggeration);
+      figure.legend = numbers ? legend_of_numbers(*numbers, settings.ramp) : legend_of_heights(settings, scene, extent);
       break;
   }
 }
@@ -139,10 +163,10 @@ void settle_figure(const FigureOptions& options, const PictureSettings& settings
 }
 
 void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const Scene& scene,
-                    const Camera& camera, bool map, Picture& picture) {
+                    const Camera& camera, bool map, const std::optional<SolidRange>& numbers, Picture& picture) {
   if (!options.any()) return;
   Figure figure;
-  if (options.legend) add_meaning(settings, scene, picture, figure);
+  if (options.legend) add_meaning(settings, scene, numbers, picture, figure);
   if (options.scale_bar) {
     const double depth = depth_in_the_middle(settings, scene, camera);
     if (!(depth > 0)) throw Error("--scale-bar: the middle of the picture shows no ground to measure");
@@ -159,7 +183,8 @@ void settle_figure(const FigureOptions& options, const PictureSettings&, bool) {
   }
 }
 
-void draw_figure_of(const FigureOptions&, const PictureSettings&, const Scene&, const Camera&, bool, Picture&) {}
+void draw_figure_of(const FigureOptions&, const PictureSettings&, const Scene&, const Camera&, bool,
+                    const std::optional<SolidRange>&, Picture&) {}
 
 #endif
 

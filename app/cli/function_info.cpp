@@ -91,6 +91,7 @@ Json describe_function(const std::string& name_or_path, double extent) {
   find_octaves(function.function(), octaves);
   Json info;
   info["function"] = name_or_path;
+  info["kind"] = name_of(InputKind::function);
   info["octaves"] = {{"march", octaves.march}, {"shadow", octaves.shadow}, {"normal", octaves.normal}};
   info["instructions"] = {{"march", function.program(FunctionUse::march).code.size()},
                           {"shadow", function.program(FunctionUse::shadow).code.size()},

@@ -23,6 +23,7 @@ void add_function_option(Command& command, FunctionInput& input, const std::stri
                                 .topic = Topic::functions,
                                 .common = true,
                                 .inputs = {kFunction}});
+  if (extent.empty()) return;
   command.add(&input.extent, {.names = "--extent",
                               .help = extent,
                               .unit = "metres",
@@ -31,8 +32,9 @@ void add_function_option(Command& command, FunctionInput& input, const std::stri
                               .inputs = {kFunction, "files have an extent"}});
 }
 
-void add_function_options(Command& command, FunctionInput& input, std::string& march, MarchSettings& settings) {
-  add_function_option(command, input, "side of the ground in the picture");
+void add_function_options(Command& command, FunctionInput& input, const std::string& extent, std::string& march,
+                          MarchSettings& settings) {
+  add_function_option(command, input, extent);
   std::vector<std::string> presets;
   for (const MarchPreset& preset : march_presets()) presets.emplace_back(preset.name);
   command.add(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain functions where `scarp render` takes files: --function and --preset.
+// Terrain functions where subcommands take files: --function and --preset.
 #pragma once
 
 #include <string>
@@ -23,9 +23,10 @@ struct FunctionInput {
   double extent = 6000;
 };
 
-/// Declares --function and --extent, whose help is `extent`.
+/// Declares --function and, unless its help is empty, --extent.
 void add_function_option(Command& command, FunctionInput& input, const std::string& extent);
 /// These and --preset. `march` and `settings` are where --march and its settings go; a preset sets them first.
-void add_function_options(Command& command, FunctionInput& input, std::string& march, MarchSettings& settings);
+void add_function_options(Command& command, FunctionInput& input, const std::string& extent, std::string& march,
+                          MarchSettings& settings);
 
 }  // namespace scarp::cli

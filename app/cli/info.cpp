@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp info`: what is in a raster, a voxel model, a scene or a terrain function, as Scarp will use it.
+// `scarp info`: what is in a raster, a voxel model, a mesh, a scene or a terrain function, as Scarp will use it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,13 +12,11 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/function_info.h"
-#include "app/cli/function_input.h"
-#include "app/cli/input_kind.h"
+#include "app/cli/open_input.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/scene_input.h"
 #include "app/cli/shared_options.h"
-#include "app/cli/vox_input.h"
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
@@ -30,11 +28,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct InfoOptions {
-  std::vector<std::string> inputs;
-  RasterOptions raster;
-  VoxOptions vox;
-  FunctionInput function;
+struct InfoOptions : InputOptions {
   bool json = false;
 };
 
@@ -47,6 +41,7 @@ Json describe(const InfoOptions& options) {
   const Georeference geo = raster.georeference;
   Json info;
   info["path"] = raster.path;
+  info["kind"] = name_of(InputKind::terrain);
   info["cols"] = raster.cols;
   info["rows"] = raster.rows;
   info["file_type"] = raster.file_type;
@@ -116,7 +111,7 @@ std::string text_of(const Json& info) {
 }
 
 void run(const InfoOptions& options, const Command& command) {
-  const InputKind kind = kind_of_input(command, options.inputs, options.vox, options.function);
+  const InputKind kind = kind_of_input(command, options);
   command.require_effect({kind});
   const auto print = [&](const Json& info, auto text) {
     // File names may hold any bytes; JSON may not.
@@ -129,6 +124,8 @@ void run(const InfoOptions& options, const Command& command) {
       return print(describe_scene(options.inputs.front()), scene_text_of);
     case InputKind::voxels:
       return print(describe_vox(options.inputs.front(), options.vox), vox_text_of);
+    case InputKind::mesh:
+      return print(describe_mesh(options.inputs.front(), options.mesh), mesh_text_of);
     case InputKind::terrain:
       return print(describe(options), text_of);
   }
@@ -137,16 +134,14 @@ void run(const InfoOptions& options, const Command& command) {
 }  // namespace
 
 void add_info(Program& program) {
-  Command& command = program.add("info", "Describe an elevation model, voxels, a scene or a terrain function");
+  Command& command = program.add("info", "Describe an elevation model, voxels, a mesh, a scene or a terrain function");
   const auto options = std::make_shared<InfoOptions>();
-  add_raster_inputs(command, options->inputs,
-                    "elevation raster (anything GDAL reads, .npy, .npz, .exr), voxel file (.vox, .binvox) or scene "
-                    "(.json)",
-                    false);
+  add_raster_inputs(command, options->inputs, kEveryFile, false);
   add_json_option(command, options->json);
   add_function_option(command, options->function, "side of the ground about (0, 0) to examine");
   add_raster_options(command, options->raster);
   add_vox_options(command, options->vox);
+  add_mesh_up_option(command, options->mesh);
   command.example("scarp info dem.tif");
   command.runs([options, &command] { run(*options, command); });
 }

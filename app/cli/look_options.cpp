@@ -73,20 +73,20 @@ void add_look_options(Command& command, LookOptions& o) {
     };
   };
   const auto ground = lit(Topic::ground), water = lit(Topic::water), fog = lit(Topic::fog);
-  command.add(&o.ramp,
-              {.names = "--ramp",
-               .value = "RAMP",
-               .help = "colours by height",
-               .choices = {ramp_names().begin(), ramp_names().end()},
-               .files = "cpt png",
-               .note = "or a .cpt file, or a .png of 1 x N colours",
-               .fallback = "hypsometric; viridis for the look steps",
-               .topic = Topic::ground,
-               .common = true,
-               .looks = {"shaded steps comanche", "the others have colours of their own"},
-               .rules = {needs(
-                   "--volume or --look steps",
-                   [&command] { return command.given("--volume") || command.value("--look") == "steps"; }, kVoxels)}});
+  command.add(&o.ramp, {.names = "--ramp",
+                        .value = "RAMP",
+                        .help = "colours by height",
+                        .choices = {ramp_names().begin(), ramp_names().end()},
+                        .files = "cpt png",
+                        .note = "or a .cpt file, or a .png of 1 x N colours",
+                        .fallback = "hypsometric; viridis for the look steps",
+                        .topic = Topic::ground,
+                        .common = true,
+                        .looks = {"shaded steps comanche", "the others have colours of their own"},
+                        .rules = {needs(
+                            "--volume or --look steps",
+                            [&command] { return command.given("--volume") || command.value("--look") == "steps"; },
+                            kVoxels | kMesh)}});
   ground(&o.ground_colours, {.names = "--ground",
                              .value = "KIND",
                              .help = "ground colours",
@@ -113,14 +113,17 @@ void add_look_options(Command& command, LookOptions& o) {
                               .range = kZeroOrMore,
                               .fallback = "none",
                               .common = true});
-  ground(&o.overlay, {.names = "--overlay",
-                      .value = "FILE",
-                      .help = "image draped over the ground, georeferenced where the terrain is",
-                      .files = "*",
-                      .common = true,
-                      .inputs = {kTerrain, "it lies where the raster does"}});
+  ground(&o.overlay,
+         {.names = "--overlay",
+          .value = "FILE",
+          .help = "image draped over everything from above: where its georeference says, if the terrain has one too, "
+                  "else from border to border of the scene (of functions of --extent)",
+          .files = "*",
+          .common = true});
 
-  const Rule wet = needs("--water M", [&o] { return o.water.has_value(); });
+  // The water and the fog may stand in the scene's file.
+  const Rule wet = needs(
+      "--water M", [&o] { return o.water.has_value(); }, kEveryInput & ~kScene);
   water(&o.water, {.names = "--water",
                    .help = "water level",
                    .unit = "metres",
@@ -151,8 +154,10 @@ void add_look_options(Command& command, LookOptions& o) {
   water(&o.no_refraction,
         {.names = "--no-refraction", .help = "opaque water of one colour, whatever its depth", .rules = {wet}});
 
-  const Rule foggy = needs("--fog KIND", [&o] { return !o.fog.empty() && o.fog != "none"; });
-  const Rule high = needs("--fog height", [&o] { return o.fog == "height"; });
+  const Rule foggy = needs(
+      "--fog KIND", [&o] { return !o.fog.empty() && o.fog != "none"; }, kEveryInput & ~kScene);
+  const Rule high = needs(
+      "--fog height", [&o] { return o.fog == "height"; }, kEveryInput & ~kScene);
   fog(&o.fog,
       {.names = "--fog",
        .value = "KIND",
@@ -230,7 +235,6 @@ void settle_look(const LookOptions& o, const MarchSettings& march_settings, Pict
   const bool comanche = picture.look == Look::comanche;
   picture.comanche = o.comanche;
   picture.comanche.interpolate = march_settings.fixed_step.interpolate;
-  picture.fog = o.fog_settings;
   picture.ground = o.ground;
   picture.ground.natural = o.ground_colours == "natural";
   const std::string extension = extension_of(o.ramp);
@@ -257,22 +261,27 @@ void settle_look(const LookOptions& o, const MarchSettings& march_settings, Pict
     picture.width = pixels(numbers[0], o.lowres);
     picture.height = pixels(numbers[1], o.lowres);
   }
+  settle_environment(o, picture);
+}
+
+void settle_environment(const LookOptions& o, PictureSettings& picture) {
+  picture.fog = o.fog_settings;
   if (!o.fog.empty()) picture.fog.kind = find_fog(o.fog);
   if (o.visibility) picture.fog.visibility = *o.visibility;
   if (o.fog_falloff) picture.fog.falloff = *o.fog_falloff;
   if (!o.water) return;
   picture.water = o.water_settings;
   picture.water->level = *o.water;
-  picture.water->reflection = !o.no_reflection;
-  picture.water->refraction = !o.no_refraction;
+  if (o.no_reflection) picture.water->reflection = false;
+  if (o.no_refraction) picture.water->refraction = false;
   if (!o.water_colour.empty()) picture.water->srgb = colour_from(o.water_colour, "--water-colour");
 }
 
-std::vector<std::string> read_look_files(const LookOptions& o, const Raster& raster, const FieldOptions& field,
-                                         PictureSettings& picture) {
+std::vector<std::string> read_overlay_files(const LookOptions& o, const Georeference& georeference, int cols, int rows,
+                                            bool mirror, PictureSettings& picture) {
   if (o.overlay.empty()) return {};
-  if (field.mirror) throw Error("--overlay cannot be combined with --wrap mirror");
-  ColourImage image = read_overlay(o.overlay, raster.georeference, raster.cols, raster.rows);
+  if (mirror) throw Error("--overlay cannot be combined with --wrap mirror");
+  ColourImage image = read_overlay(o.overlay, georeference, cols, rows);
   picture.ground.drape = std::make_shared<Drape>(Drape{image.width, image.height, std::move(image.rgba)});
   return std::move(image.files);
 }

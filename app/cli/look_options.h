@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "scarp/base/georeference.h"
 #include "scarp/march/march_settings.h"
 #include "scarp/render/frame/picture.h"
-#include "scarp/scene/file/from_raster.h"
 
 namespace scarp::cli {
 
@@ -31,9 +31,13 @@ void add_look_options(Command& command, LookOptions& options);
 /// The settings that do not depend on the field. Throws Error.
 void settle_look(const LookOptions& options, const MarchSettings& march_settings, PictureSettings& picture);
 
-/// Reads the files that the options name, for a raster that is about to become a field. Returns all that were opened.
-std::vector<std::string> read_look_files(const LookOptions& options, const Raster& raster, const FieldOptions& field,
-                                         PictureSettings& picture);
+/// The water and the fog of these settings: again after a scene file has added its own.
+void settle_environment(const LookOptions& options, PictureSettings& picture);
+
+/// Reads the image of --overlay for a raster of `cols` x `rows` samples, or, without georeference, for any scene.
+/// Returns all files that were opened.
+std::vector<std::string> read_overlay_files(const LookOptions& options, const Georeference& georeference, int cols,
+                                            int rows, bool mirror, PictureSettings& picture);
 
 /// What follows from the scene where nothing was given: visibility, base and falloff of the fog. `across` and `heights`
 /// are metres that the picture is about; `heights` are exaggerated.

@@ -1,16 +1,52 @@
 // SPDX-License-Identifier: MIT
 #include "app/cli/march_options.h"
 
+#include <fmt/format.h>
+
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "app/cli/open_input.h"
+#include "scarp/march/function/function_table.h"
+#include "scarp/march/height/height_table.h"
+#include "scarp/march/voxel/voxel_table.h"
 
 namespace scarp::cli {
 namespace {
 
-constexpr Inputs kMarched{kTerrain | kFunction, "voxel marches are exact and have no settings"};
+constexpr Inputs kMarched{kTerrain | kFunction, "what traces voxels and meshes has no settings"};
 constexpr Inputs kFunctionsOnly{kFunction, "rasters have cells to measure steps in, and end"};
 
+// Names for completion. A wrong one is refused with the techniques of its kind of input.
+std::vector<std::string> march_names() {
+  std::vector<std::string> names;
+  const auto add = [&](const auto& table) {
+    for (const MarchEntry& march : table) {
+      if (!is_given(names, march.name)) names.emplace_back(march.name);
+    }
+  };
+  add(height_marches());
+  add(function_marches());
+  add(voxel_marches());
+  return names;
+}
+
 }  // namespace
+
+void add_march_option(Command& command, std::string& march) {
+  command.add(&march, {.names = "--march",
+                       .value = "NAME",
+                       .help = "marching technique",
+                       .choices = march_names(),
+                       .unlisted = true,
+                       .note = "see 'scarp marches'",
+                       .fallback = fmt::format("{}; voxels {}, functions {}", kTerrainMarch, VoxelSceneOptions{}.march,
+                                               kFunctionMarch),
+                       .topic = Topic::march,
+                       .common = true,
+                       .inputs = {kTerrain | kVoxels | kFunction, "meshes are traced by Embree"}});
+}
 
 void add_march_options(Command& command, MarchSettings& march) {
   constexpr NumberRange kSteps{.least = 1}, kHalvings{1, 60};

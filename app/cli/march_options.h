@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The settings of all marches as options.
+// --march, and the settings of all marches as options.
 #pragma once
+
+#include <string>
 
 #include "app/cli/command.h"
 #include "scarp/march/march_settings.h"
 
 namespace scarp::cli {
 
+/// Declares --march; empty: the default of the kind of input.
+void add_march_option(Command& command, std::string& march);
 /// Declares an option for each setting of each march.
 void add_march_options(Command& command, MarchSettings& march);
 

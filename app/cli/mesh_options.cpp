@@ -3,10 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <limits>
 #include <utility>
 
 #include "app/cli/numbers.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 #include "scarp/scene/material.h"
 #include "scarp/source/mesh_file.h"
 #ifdef SCARP_EMBREE
@@ -15,8 +20,21 @@
 
 namespace scarp::cli {
 
+bool is_mesh_input(const std::vector<std::string>& inputs) {
+  const auto is_mesh = [](const std::string& path) {
+    const std::string extension = extension_of(path);
+    return extension == ".obj" || extension == ".gltf" || extension == ".glb";
+  };
+  const auto mesh = std::find_if(inputs.begin(), inputs.end(), is_mesh);
+  if (mesh == inputs.end()) return false;
+  if (inputs.size() > 1) throw Error(fmt::format("'{}': a mesh stands alone (give no other inputs)", *mesh));
+  return true;
+}
+
 void add_mesh_options(Command& command, MeshOptions& options) {
-  const Rule of_mesh = needs("--mesh FILE", [&command] { return command.given("--mesh"); });
+  // An input that is a mesh is placed by the same options.
+  const Rule of_mesh = needs(
+      "--mesh FILE", [&command] { return command.given("--mesh"); }, kEveryInput & ~kMesh);
   command.add(
       &options.file,
       {
@@ -25,16 +43,18 @@ void add_mesh_options(Command& command, MeshOptions& options) {
           .help = "triangle mesh in the scene: .obj, .gltf or .glb",
           .files = "obj gltf glb",
           .topic = Topic::mesh,
+          .inputs = {kEveryInput & ~kMesh, "a scene file places several meshes"},
 #ifndef SCARP_EMBREE
           .rules = {{"is not available: this scarp was built without Embree (SCARP_EMBREE=OFF)", [] { return false; }}},
 #endif
       });
-  command.add(&options.at, {.names = "--mesh-at",
-                            .value = "X,Y[,Z]",
-                            .help = "position of the mesh in metres, as for --eye: its middle, and its lowest point",
-                            .fallback = "middle of the scene, on the ground",
-                            .topic = Topic::mesh,
-                            .rules = {of_mesh}});
+  command.add(&options.at,
+              {.names = "--mesh-at",
+               .value = "X,Y[,Z]",
+               .help = "position of the mesh in metres, as for --eye: its middle, and its lowest point",
+               .fallback = "middle of the scene, or nearest to it, on the ground; meshes as input: as in the file",
+               .topic = Topic::mesh,
+               .rules = {of_mesh}});
   command.add(&options.scale, {.names = "--mesh-scale",
                                .help = "length of the file's unit",
                                .unit = "metres",
@@ -46,41 +66,87 @@ void add_mesh_options(Command& command, MeshOptions& options) {
                                   .unit = "degrees",
                                   .topic = Topic::mesh,
                                   .rules = {of_mesh}});
+  add_mesh_up_option(command, options, {of_mesh});
+}
+
+void add_mesh_up_option(Command& command, MeshOptions& options, std::vector<Rule> rules) {
   command.add(&options.up, {.names = "--mesh-up",
                             .value = "AXIS",
                             .help = "axis of the file that points up",
                             .choices = {"y", "z"},
                             .closed = true,
                             .topic = Topic::mesh,
-                            .rules = {of_mesh}});
+                            .inputs = {rules.empty() ? kMesh : kEveryInput, "it interprets mesh files"},
+                            .rules = std::move(rules)});
 }
 
-MeshInput::MeshInput(const MeshOptions& options) : options_(options) {
-  if (!options.file.empty()) mesh_ = read_mesh(options.file, options.up == "z" ? MeshUp::z : MeshUp::y);
+MeshInput::MeshInput(const std::string& path, const MeshOptions& options) : options_(options) {
+  if (!path.empty()) mesh_ = read_mesh(path, options.up == "z" ? MeshUp::z : MeshUp::y);
 }
 
 #ifdef SCARP_EMBREE
 
+namespace {
+
+bool has_end(const WorldBox& box) { return box.low.x <= box.high.x; }
+
+// Of what is highest at (x, y): ground, or whatever a ray from above hits.
+std::optional<double> surface_at(const Scene& scene, double x, double y) {
+  if (const auto ground = scene.height(x, y)) return ground;
+  // Its holes are all there is to hit.
+  if (scene.only_heights() || !has_end(scene.box())) return {};
+  const Ray down{{x, y, scene.box().high.z + 1}, {0, 0, -1}};
+  const Hit hit = scene.closest_hit(down);
+  return hit ? std::optional(down.at(hit.t).z) : std::nullopt;
+}
+
+// Of the places of a lattice over the scene that have a surface, the one nearest to the middle; without one, the lowest
+// point of the scene.
+dvec3 place_near_middle(const Scene& scene) {
+  constexpr int kHalf = 32;  // places from the middle to the border
+  const WorldBox& box = scene.box();
+  if (!has_end(box)) return {0, 0, surface_at(scene, 0, 0).value_or(0.0)};
+  const dvec3 middle = 0.5 * (box.low + box.high), step = (box.high - middle) / static_cast<double>(kHalf);
+  dvec3 best(middle.x, middle.y, box.low.z);
+  if (const auto z = surface_at(scene, best.x, best.y)) return {best.x, best.y, *z};
+  double least = std::numeric_limits<double>::infinity();
+  for (int row = -kHalf; row <= kHalf; ++row) {
+    for (int col = -kHalf; col <= kHalf; ++col) {
+      const double x = middle.x + col * step.x, y = middle.y + row * step.y,
+                   away = std::hypot(x - middle.x, y - middle.y);
+      if (away >= least) continue;
+      const auto z = surface_at(scene, x, y);
+      if (z) best = {x, y, *z}, least = away;
+    }
+  }
+  return best;
+}
+
+// X,Y[,Z] of --mesh-at.
+std::vector<double> numbers_of_place(const std::string& text) {
+  return numbers_from(text, ',', 2, 3, "--mesh-at",
+                      "X,Y or X,Y,Z in metres from the south-west sample, for example 500,300 or 500,300,1200");
+}
+
+}  // namespace
+
 Scene MeshInput::with_mesh(Scene scene) const {
   if (options_.file.empty()) return scene;
-  const WorldBox& box = scene.box();
-  dvec3 at = box.low.x <= box.high.x ? 0.5 * (box.low + box.high) : dvec3(0.0);
-  std::optional<double> height;
-  if (!options_.at.empty()) {
-    const auto numbers =
-        numbers_from(options_.at, ',', 2, 3, "--mesh-at",
-                     "X,Y or X,Y,Z in metres from the south-west sample, for example 500,300 or 500,300,1200");
-    at.x = numbers[0], at.y = numbers[1];
-    if (numbers.size() > 2) height = numbers[2];
+  dvec3 at{0.0};
+  if (options_.at.empty()) {
+    at = place_near_middle(scene);
+  } else {
+    const auto numbers = numbers_of_place(options_.at);
+    const auto z = numbers.size() > 2 ? std::optional(numbers[2]) : surface_at(scene, numbers[0], numbers[1]);
+    if (!z) {
+      const WorldBox& box = scene.box();
+      throw Error(
+          fmt::format("--mesh-at: there is no ground at {:g},{:g} for the mesh to stand on (give X,Y,Z; the scene "
+                      "is {:g} x {:g} m)",
+                      numbers[0], numbers[1], box.high.x - box.low.x, box.high.y - box.low.y));
+    }
+    at = {numbers[0], numbers[1], *z};
   }
-  if (!height) height = scene.height(at.x, at.y);
-  if (!height) {
-    throw Error(
-        fmt::format("--mesh-at: there is no ground at {:g},{:g} for the mesh to stand on (give X,Y,Z; the scene "
-                    "is {:g} x {:g} m)",
-                    at.x, at.y, box.high.x - box.low.x, box.high.y - box.low.y));
-  }
-  at.z = *height;
   const Placement placement = mesh_placement(mesh_, {at, options_.scale, options_.turn_deg});
   std::vector<SceneFieldPtr> fields = scene.fields();
   std::vector<SceneObject> objects = scene.objects();
@@ -90,11 +156,53 @@ Scene MeshInput::with_mesh(Scene scene) const {
   return {std::move(fields), std::move(objects)};
 }
 
+Scene MeshInput::alone() const {
+  MeshPlacement place{.scale = options_.scale, .turn_deg = options_.turn_deg};
+  if (!options_.at.empty()) {
+    const auto numbers = numbers_of_place(options_.at);
+    place.at = {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0.0};
+  }
+  Placement placement = mesh_placement(mesh_, place);
+  if (options_.at.empty()) placement.origin = dvec3(0.0);
+  return {{scene_mesh(mesh_)}, {{.material = kOwnMaterial, .placement = placement}}};
+}
+
 #else
 
 // The rule of --mesh has refused all meshes.
 Scene MeshInput::with_mesh(Scene scene) const { return scene; }
 
+Scene MeshInput::alone() const {
+  throw Error("rays at a mesh are not available: this scarp was built without Embree (SCARP_EMBREE=OFF)");
+}
+
 #endif
+
+nlohmann::ordered_json describe_mesh(const std::string& path, const MeshOptions& options) {
+  const MeshInput input(path, options);
+  dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const MeshCorner& corner : input.mesh().corners)
+    low = glm::min(low, corner.position), high = glm::max(high, corner.position);
+  return {{"path", path},
+          {"kind", name_of(InputKind::mesh)},
+          {"format", extension_of(path) == ".obj" ? "Wavefront OBJ" : "glTF"},
+          {"triangles", input.mesh().corners.size() / 3},
+          {"low", {low.x, low.y, low.z}},
+          {"high", {high.x, high.y, high.z}},
+          {"notes", input.notes()}};
+}
+
+std::string mesh_text_of(const nlohmann::ordered_json& info) {
+  const auto corner = [&](const char* key) {
+    const auto& p = info[key];
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", p[0].get<double>(), p[1].get<double>(), p[2].get<double>());
+  };
+  std::string out =
+      fmt::format("{:<12} {}\n{:<12} {}\n{:<12} {}\n{:<12} {} to {}, z up, in units of the file\n", "file",
+                  info["path"].get<std::string>(), "format", info["format"].get<std::string>(), "triangles",
+                  info["triangles"].get<std::size_t>(), "box", corner("low"), corner("high"));
+  for (const auto& note : info["notes"]) out += fmt::format("{:<12} {}\n", "note", note.get<std::string>());
+  return out;
+}
 
 }  // namespace scarp::cli

@@ -38,7 +38,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, kTopics> kTo
 
 std::string kinds_text(unsigned kinds) {
   constexpr std::pair<unsigned, std::string_view> kNames[] = {
-      {kTerrain, "terrain"}, {kVoxels, "voxels"}, {kScene, "scenes"}, {kFunction, "functions"}};
+      {kTerrain, "terrain"}, {kVoxels, "voxels"}, {kScene, "scenes"}, {kFunction, "functions"}, {kMesh, "meshes"}};
   std::vector<std::string_view> names;
   for (const auto& [kind, name] : kNames) {
     if ((kinds & kind) != 0) names.push_back(name);
@@ -111,6 +111,21 @@ std::string set_number(Number& value, const NumberRange& range, const std::strin
 
 }  // namespace
 
+std::string_view name_of(InputKind kind) {
+  switch (kind) {
+    case InputKind::terrain:
+      return "terrain";
+    case InputKind::voxels:
+      return "voxels";
+    case InputKind::scene:
+      return "scene";
+    case InputKind::function:
+      return "function";
+    case InputKind::mesh:
+      break;
+  }
+  return "mesh";
+}
 std::string_view name_of(Topic topic) { return kTopicNames[static_cast<std::size_t>(topic)].first; }
 std::string_view heading_of(Topic topic) { return kTopicNames[static_cast<std::size_t>(topic)].second; }
 
@@ -205,8 +220,7 @@ void require_effect(const Declared& declared, const Use& use) {
   const Option& option = declared.option;
   const auto kind = static_cast<unsigned>(use.kind);
   if ((option.inputs.kinds & kind) == 0) {
-    const std::string_view why =
-        use.kind == InputKind::scene ? "a scene file describes its own content" : option.inputs.why;
+    const std::string_view why = use.kind == InputKind::scene ? option.inputs.why_not_scenes : option.inputs.why;
     throw Error(
         fmt::format("{} applies to {} only{}", declared.name, kinds_text(option.inputs.kinds), in_brackets(why)));
   }

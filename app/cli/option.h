@@ -24,8 +24,10 @@ class WrongUsage : public Error {
 };
 
 /// What a subcommand works on. The values are bits of Inputs::kinds.
-enum class InputKind : std::uint8_t { terrain = 1, voxels = 2, scene = 4, function = 8 };
-constexpr unsigned kTerrain = 1, kVoxels = 2, kScene = 4, kFunction = 8, kEveryInput = 15;
+enum class InputKind : std::uint8_t { terrain = 1, voxels = 2, scene = 4, function = 8, mesh = 16 };
+constexpr unsigned kTerrain = 1, kVoxels = 2, kScene = 4, kFunction = 8, kMesh = 16, kEveryInput = 31;
+/// "terrain", "voxels", "scene", "function", "mesh".
+std::string_view name_of(InputKind kind);
 
 /// Groups of options, in the order in which `--help all` lists them. `--help NAME` lists one.
 enum class Topic : std::uint8_t {
@@ -55,6 +57,7 @@ std::string_view heading_of(Topic topic);
 struct Inputs {
   unsigned kinds = kEveryInput;
   std::string_view why{};
+  std::string_view why_not_scenes = "a scene file describes its own content";
 };
 
 /// The looks that read an option ("shaded comanche"; empty: all), and why the others do not. Of inputs of `of` only.

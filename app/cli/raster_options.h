@@ -10,6 +10,10 @@
 
 namespace scarp::cli {
 
+/// What IN may be where every input is taken.
+constexpr const char* kEveryFile =
+    "raster (anything GDAL reads, .npy, .npz, .exr), voxels (.vox, .binvox), mesh (.obj, .gltf, .glb) or scene (.json)";
+
 /// Declares IN, one or several files or folders: what read_tiles() takes. `kinds` is its help.
 void add_raster_inputs(Command& command, std::vector<std::string>& inputs, const std::string& kinds,
                        bool required = true);

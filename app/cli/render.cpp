@@ -10,7 +10,6 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/exr_output.h"
-#include "app/cli/input_kind.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/numbers.h"
 #include "app/cli/render_input.h"
@@ -82,15 +81,8 @@ ViewSettings settle(RenderOptions& options) {
   return view;
 }
 
-// The march whose settings count; of voxels and scenes there are none.
-std::string_view march_of(const RenderOptions& options, InputKind kind) {
-  if (kind != InputKind::terrain && kind != InputKind::function) return {};
-  if (!options.march.empty()) return options.march;
-  return kind == InputKind::terrain ? kTerrainMarch : kFunctionMarch;
-}
-
 void run(RenderOptions options, const Command& command) {
-  const InputKind kind = kind_of_input(command, options.inputs, options.vox, options.function);
+  const InputKind kind = kind_of_input(command, options);
   command.require_effect({kind, options.look, march_of(options, kind)});
   const ViewSettings view = settle(options);
   keep_inputs(options.output, options.typed);

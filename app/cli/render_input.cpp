@@ -8,15 +8,12 @@
 #include <limits>
 #include <utility>
 
-#include "app/cli/device_option.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/progress.h"
 #include "app/cli/scene_input.h"
 #include "scarp/base/error.h"
 #include "scarp/render/camera/compass.h"
-#include "scarp/scene/file/example_functions.h"
 #include "scarp/scene/scene_plinth.h"
-#include "scarp/source/read_raster.h"
 
 namespace scarp::cli {
 namespace {
@@ -50,28 +47,14 @@ void require_ground(const HeightField& field, const std::string& path) {
     throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", path));
 }
 
-RenderInput terrain(RenderOptions& options, const ViewSettings& view) {
-  const HeightMarchEntry& march = find_height_march(options.march.empty() ? kTerrainMarch : options.march);
-  require_device_march(options.device, march);
-  Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
-  stop_if_interrupted();
-  const std::string path = raster.path;
-  std::vector<std::string> notes = raster.notes, files = raster.files;
-  options.picture.grid_north_azimuth = raster.georeference.grid_north_azimuth;
-  const std::vector<std::string> look_files =
-      read_look_files(options.look_options, raster, options.field, options.picture);
-  files.insert(files.end(), look_files.begin(), look_files.end());
-  keep_inputs(options.output, files);
-  HeightField field = height_field_from(std::move(raster), options.field);
-  require_ground(field, path);
-  const double across = default_reach(field), exaggeration = field.settings().exaggeration;
-  const ReliefRange heights{field.min_height(), field.max_height()};
-  Scene scene(scene_heights(std::move(field), march, options.march_settings,
-                            options.device.empty() ? AnsweredBy::cpu : AnsweredBy::back_end));
-  if (!options.no_plinth) scene = with_plinth(scene);
-  RenderInput input{std::move(scene), std::move(notes), std::move(files)};
+RenderInput terrain(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
+  options.picture.grid_north_azimuth = opened.georeference.grid_north_azimuth;
+  const HeightField& field = *opened.scene.only_heights();
+  require_ground(field, opened.path);
+  RenderInput input{options.no_plinth ? opened.scene : with_plinth(opened.scene)};
   input.view = view;
-  input.across = across, input.heights = heights, input.exaggeration = exaggeration;
+  input.across = default_reach(field), input.heights = {field.min_height(), field.max_height()};
+  input.exaggeration = field.settings().exaggeration;
   input.framed = [&picture = options.picture](const Scene& seen, const ViewSettings& of) {
     return view_of_field(*seen.terrain(), picture_box(seen), of, picture.grid_north_azimuth, picture.width,
                          picture.height);
@@ -79,18 +62,11 @@ RenderInput terrain(RenderOptions& options, const ViewSettings& view) {
   return input;
 }
 
-RenderInput voxels(RenderOptions& options, const ViewSettings& view) {
-  VoxelSceneOptions voxels;
-  if (!options.march.empty()) voxels.march = options.march;
-  find_voxel_march(voxels.march);
-  voxels.surface_colours = options.vox.surface_colours;
-  voxels.rounding = options.vox_look.rounding;
-  const VoxelShading shading = shading_of(options.vox_look);
-  if (!options.is_given("--sun")) options.picture.sun.azimuth_deg = kVoxelSunAzimuth;
+// Voxels and meshes.
+RenderInput model(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
+  if (!options.is_given("--sun")) options.picture.sun.azimuth_deg = kModelSunAzimuth;
   if (!options.is_given("--haze")) options.picture.haze = 0;
-  VoxInput read = read_voxels(options.inputs.front(), options.vox, voxels, options.picture.ramp);
-  stop_if_interrupted();
-  RenderInput input{Scene(scene_voxels(std::move(read.scene), voxels.march, shading))};
+  RenderInput input{std::move(opened.scene)};
   input.view = view;
   input.coarse_voxels = options.vox_look.coarse;
   frame_by_box(input, options);
@@ -99,13 +75,13 @@ RenderInput voxels(RenderOptions& options, const ViewSettings& view) {
 }
 
 // The file's own settings count where no option was given.
-RenderInput scene_file(RenderOptions& options, const ViewSettings& view) {
-  SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
-  keep_inputs(options.output, document.files);
-  stop_if_interrupted();
+RenderInput scene_file(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
+  const SceneFile& document = *opened.document;
   if (!options.is_given("--haze")) options.picture.haze = 0;
+  take_environment(document, options.given, options.look_options);
+  settle_environment(options.look_options, options.picture);
   options.picture = picture_of(document, options.picture, options.given);
-  RenderInput input{document.scene, document.notes, document.files};
+  RenderInput input{std::move(opened.scene)};
   input.view = view_of(document, view, options.given);
   input.coarse_voxels = document.picture.coarse_voxels || options.vox_look.coarse;
   input.eye = document.camera.eye, input.target = document.camera.target;
@@ -139,22 +115,17 @@ std::vector<Material> materials_of(const ReliefRange& range, const std::string& 
           PlainColour{{0.47f, 0.43f, 0.40f}}, Blend{Blend::By::slope, 30, 45, 0, 1}};
 }
 
-RenderInput function(RenderOptions& options, const ViewSettings& view) {
-  const FunctionMarchEntry& march = find_function_march(options.march.empty() ? kFunctionMarch : options.march);
+RenderInput function(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
   const double extent = options.function.extent;
   PictureSettings& picture = options.picture;
-  const HeightFunction function(read_function(options.function.function));
-  picture.haze_distance = -extent / std::log(1 - (options.is_given("--haze") ? picture.haze : kFunctionHaze));
-  double& reach = options.march_settings.function.reach;
-  if (std::isinf(reach)) reach = std::min(picture.haze_distance * std::log(kFaintest), kLongReach * extent);
-  if (std::isinf(picture.ao_distance)) picture.ao_distance = extent / 8;
+  const HeightFunction function = std::move(*opened.function);
   const ReliefRange heights = heights_around(function, extent);
-  picture.ground_range = heights;
+  picture.ground_box = Box{{-0.5 * extent, -0.5 * extent, heights.low}, {0.5 * extent, 0.5 * extent, heights.high}};
   // A ramp from a file and natural ground are painted by the renderer.
   if (!picture.ground.natural && !picture.ramp_stops) picture.materials = materials_of(heights, picture.ramp);
   const auto material = static_cast<std::uint32_t>(std::max<std::size_t>(picture.materials.size(), 1) - 1);
-  RenderInput input{Scene({scene_function(function, march, options.march_settings)}, {{.material = material}})};
-  input.march = std::string(march.name) +
+  RenderInput input{Scene(opened.scene.fields(), {{.material = material}})};
+  input.march = opened.scene.marches() +
                 (options.function.preset.empty() ? "" : fmt::format(" as in {}", options.function.preset));
   input.view = kFunctionView;
   if (options.is_given("--view")) input.view = view;
@@ -172,22 +143,49 @@ RenderInput function(RenderOptions& options, const ViewSettings& view) {
   return input;
 }
 
+// Rays over functions end where haze hides all; that is known before the function is read.
+void settle_function(RenderOptions& options) {
+  const double extent = options.function.extent;
+  PictureSettings& picture = options.picture;
+  picture.haze_distance = -extent / std::log(1 - (options.is_given("--haze") ? picture.haze : kFunctionHaze));
+  double& reach = options.march_settings.function.reach;
+  if (std::isinf(reach)) reach = std::min(picture.haze_distance * std::log(kFaintest), kLongReach * extent);
+  if (std::isinf(picture.ao_distance)) picture.ao_distance = extent / 8;
+}
+
+RenderInput with_defaults(InputKind kind, OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
+  switch (kind) {
+    case InputKind::terrain:
+      return terrain(std::move(opened), options, view);
+    case InputKind::scene:
+      return scene_file(std::move(opened), options, view);
+    case InputKind::function:
+      return function(std::move(opened), options, view);
+    case InputKind::voxels:
+    case InputKind::mesh:
+      break;
+  }
+  return model(std::move(opened), options, view);
+}
+
 }  // namespace
 
 bool RenderOptions::is_given(std::string_view option) const { return cli::is_given(given, option); }
 
 RenderInput open_render_input(InputKind kind, RenderOptions& options, const ViewSettings& view) {
-  switch (kind) {
-    case InputKind::terrain:
-      return terrain(options, view);
-    case InputKind::voxels:
-      return voxels(options, view);
-    case InputKind::scene:
-      return scene_file(options, view);
-    case InputKind::function:
-      break;
-  }
-  return function(options, view);
+  if (kind == InputKind::function) settle_function(options);
+  OpenedInput opened = open_input(kind, options, options.picture.ramp);
+  stop_if_interrupted();
+  std::vector<std::string> notes = opened.notes, files = opened.files;
+  const std::vector<std::string> overlay = read_overlay_files(options.look_options, opened.georeference, opened.cols,
+                                                              opened.rows, options.field.mirror, options.picture);
+  files.insert(files.end(), overlay.begin(), overlay.end());
+  keep_inputs(options.output, files);
+  const std::optional<SolidRange> numbers = opened.numbers;
+  RenderInput input = with_defaults(kind, std::move(opened), options, view);
+  input.numbers = numbers;
+  input.notes = std::move(notes), input.files = std::move(files);
+  return input;
 }
 
 }  // namespace scarp::cli

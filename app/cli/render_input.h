@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The inputs of `scarp render` as scenes: terrain, voxels, scene files, functions.
+// The inputs of `scarp render` with what pictures of them do by default.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "app/cli/input_kind.h"
+#include "app/cli/open_input.h"
 #include "app/cli/render_options.h"
 #include "scarp/render/camera/field_view.h"
 #include "scarp/scene/scene.h"
@@ -26,6 +26,7 @@ struct RenderInput {
   double across = 0;      ///< metres that a picture is about: visibility, reach
   ReliefRange heights{};  ///< of the ground, exaggerated
   double exaggeration = 1;
+  std::optional<SolidRange> numbers{};   ///< that the colours of a volume show
   std::optional<dvec3> eye{}, target{};  ///< of the input's own camera
   /// Frames a scene that contains this one; FieldView::raised is set where the eye was lifted out of the ground.
   std::function<FieldView(const Scene&, const ViewSettings&)> framed{};

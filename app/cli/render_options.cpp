@@ -11,27 +11,11 @@
 #include "app/cli/march_options.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/shared_options.h"
-#include "scarp/march/function/function_table.h"
-#include "scarp/march/height/height_table.h"
-#include "scarp/march/voxel/voxel_table.h"
 
 namespace scarp::cli {
 namespace {
 
-// Names for completion; a wrong one is refused with the techniques of its kind of input.
-std::vector<std::string> march_names() {
-  std::vector<std::string> names;
-  const auto add = [&](const auto& table) {
-    for (const MarchEntry& march : table) {
-      if (!is_given(names, march.name)) names.emplace_back(march.name);
-    }
-  };
-  add(height_marches());
-  add(function_marches());
-  add(voxel_marches());
-  return names;
-}
-
+constexpr std::string_view kNoPlinth = "only a raster alone is shown on a plinth";
 constexpr Looks kLit{"shaded comanche", "the others show numbers"};
 
 void add_picture_options(Command& command, RenderOptions& o) {
@@ -60,7 +44,7 @@ void add_picture_options(Command& command, RenderOptions& o) {
                       .looks = {"shaded", "the others show one ray per pixel"}});
   add(&o.no_plinth, {.names = "--no-plinth",
                      .help = "no walls below the border of the terrain",
-                     .inputs = {kTerrain, "only rasters have a border to build walls on"}});
+                     .inputs = {kTerrain, kNoPlinth, kNoPlinth}});
   add(&o.error_tolerance,
       {.names = "--error-tolerance",
        .help = "tolerance of the look error along the ray: cells, or percent of the distance for functions and shapes",
@@ -81,8 +65,8 @@ void add_light_options(Command& command, RenderOptions& o) {
   add(&o.sun, {.names = "--sun",
                .value = "AZ,ALT",
                .help = "compass azimuth and altitude of the sun in degrees",
-               .fallback = fmt::format("{},{}; voxels {},{}", picture.sun.azimuth_deg, picture.sun.altitude_deg,
-                                       kVoxelSunAzimuth, picture.sun.altitude_deg),
+               .fallback = fmt::format("{},{}; voxels and meshes {},{}", picture.sun.azimuth_deg,
+                                       picture.sun.altitude_deg, kModelSunAzimuth, picture.sun.altitude_deg),
                .common = true,
                .looks = kLit});
   add(&o.no_shadows, {.names = "--no-shadows", .help = "no cast shadows", .common = true, .looks = {"shaded"}});
@@ -115,7 +99,7 @@ void add_light_options(Command& command, RenderOptions& o) {
   add(&picture.haze, {.names = "--haze",
                       .help = "fraction of haze over the diagonal of the scene (of functions over --extent)",
                       .range = {0, 0.95},
-                      .fallback = fmt::format("{}; functions {}, voxels and scenes 0", picture.haze, kFunctionHaze),
+                      .fallback = fmt::format("{}; functions {}; other inputs 0", picture.haze, kFunctionHaze),
                       .looks = {"shaded", "the others have no haze", kEveryInput & ~kFunction}});
 }
 
@@ -157,7 +141,7 @@ void add_camera_options(Command& command, RenderOptions& o) {
   add(&o.top, {.names = "--top",
                .help = "map: straight down, without perspective, grid north up",
                .common = true,
-               .inputs = {kTerrain | kVoxels | kScene, "functions have no border to fit a map to"},
+               .inputs = {kEveryInput & ~kFunction, "functions have no border to fit a map to"},
                .rules = {no_frames},
                .excludes = {"--view", "--eye", "--fov"}});
 }
@@ -166,9 +150,8 @@ void add_camera_options(Command& command, RenderOptions& o) {
 
 Command& declare_render(Program& program, RenderOptions& o) {
   Command& command =
-      program.add("render", "Render an elevation model, voxels, a scene or a terrain function as a picture");
-  add_raster_inputs(command, o.inputs,
-                    "raster (anything GDAL reads, .npy, .npz, .exr), voxels (.vox, .binvox) or scene (.json)", false);
+      program.add("render", "Render an elevation model, voxels, a mesh, a scene or a terrain function as a picture");
+  add_raster_inputs(command, o.inputs, kEveryFile, false);
   add_output_option(command, o.output, "picture: .png, or .exr with depth, normals, positions and steps", "png exr");
   add_device_option(command, o.device);
   add_threads_option(command, o.threads);
@@ -182,20 +165,11 @@ Command& declare_render(Program& program, RenderOptions& o) {
   add_depth_options(command, o.depth);
   add_mesh_options(command, o.mesh);
   add_vox_options(command, o.vox);
+  add_vox_rounding_options(command, o.vox_look);
   add_vox_look_options(command, o.vox_look);
-  add_function_options(command, o.function, o.march, o.march_settings);
+  add_function_options(command, o.function, "side of the ground in the picture", o.march, o.march_settings);
   add_raster_options(command, o.raster);
-  command.add(&o.march, {.names = "--march",
-                         .value = "NAME",
-                         .help = "marching technique",
-                         .choices = march_names(),
-                         .unlisted = true,
-                         .note = "see 'scarp marches'",
-                         .fallback = fmt::format("{}; voxels {}, functions {}", kTerrainMarch,
-                                                 VoxelSceneOptions{}.march, kFunctionMarch),
-                         .topic = Topic::march,
-                         .common = true,
-                         .inputs = {kTerrain | kVoxels | kFunction}});
+  add_march_option(command, o.march);
   add_march_options(command, o.march_settings);
   command.example("scarp render dem.tif -o dem.png --sun 300,30");
   command.example("scarp render dem.tif -o map.png --top --contours 20 --legend --scale-bar");

@@ -9,39 +9,23 @@
 #include "app/cli/depth_options.h"
 #include "app/cli/figure_options.h"
 #include "app/cli/frames.h"
-#include "app/cli/function_input.h"
 #include "app/cli/look_options.h"
-#include "app/cli/mesh_options.h"
-#include "app/cli/raster_options.h"
-#include "app/cli/vox_input.h"
+#include "app/cli/open_input.h"
 #include "scarp/render/frame/picture.h"
-#include "scarp/scene/file/from_raster.h"
 
 namespace scarp::cli {
 
-/// The march for terrain without --march.
-constexpr const char* kTerrainMarch = "max-mip";
 constexpr double kComancheFov = 60;       // degrees, without --fov
-constexpr double kVoxelSunAzimuth = 235;  // degrees, without --sun: from over the default camera's shoulder
+constexpr double kModelSunAzimuth = 235;  // degrees, without --sun: from over the default camera's shoulder
 
 /// Texts stay texts until there is a message for them.
-struct RenderOptions {
-  std::vector<std::string> inputs;
+struct RenderOptions : InputOptions {
   std::string output;
-  RasterOptions raster;
-  FieldOptions field;
-  VoxOptions vox;
-  VoxLookOptions vox_look;
-  FunctionInput function;
-  std::string march;  ///< empty: the fastest exact one
-  std::string device;
-  MarchSettings march_settings;
   PictureSettings picture;
   LookOptions look_options;
   FrameOptions frames;
   DepthOptions depth;
   FigureOptions figure;
-  MeshOptions mesh;
   std::string size, look = "shaded", sun, view, eye, target;
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg, error_tolerance = ErrorSettings{}.tolerance;

@@ -166,7 +166,7 @@ class Render {
       return {};
     }
     Picture picture = render_picture(scene_, camera, options_.picture, progress);
-    draw_figure_of(options_.figure, options_.picture, scene_, camera, options_.top, picture);
+    draw_figure_of(options_.figure, options_.picture, scene_, camera, options_.top, input_.numbers, picture);
     write_png(file, name, {picture.image.rgb.data(), picture.image.width, picture.image.height});
     return picture;
   }

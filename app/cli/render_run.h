@@ -2,7 +2,6 @@
 // From the options of `scarp render` to files: scene, cameras, pictures.
 #pragma once
 
-#include "app/cli/input_kind.h"
 #include "app/cli/render_options.h"
 
 namespace scarp::cli {

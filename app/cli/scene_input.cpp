@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
 
 #include "app/cli/progress.h"
@@ -62,6 +63,40 @@ PictureSettings picture_of(const SceneFile& file, PictureSettings settings, cons
   return settings;
 }
 
+void take_environment(const SceneFile& file, const std::vector<std::string>& given, LookOptions& options) {
+  const Taking take(given);
+  const auto require = [&](bool there, std::initializer_list<const char*> names, const char* what) {
+    if (there) return;
+    for (const std::string& option : given) {
+      if (std::find(names.begin(), names.end(), option) != names.end())
+        throw Error(fmt::format("{} has no effect without {}", option, what));
+    }
+  };
+  if (const auto& water = file.water) {
+    take(std::optional(water->level), "--water", options.water);
+    take(water->srgb, "--water-colour", options.water_settings.srgb);
+    take(water->turbidity, "--turbidity", options.water_settings.turbidity);
+    take(water->waves, "--waves", options.water_settings.waves);
+    take(water->wavelength, "--wavelength", options.water_settings.wavelength);
+    take(water->reflection, "--no-reflection", options.water_settings.reflection);
+    take(water->refraction, "--no-refraction", options.water_settings.refraction);
+  }
+  // --fog replaces the fog of the file, whose numbers belong to its kind.
+  if (const auto& fog = file.fog; fog && options.fog.empty()) {
+    options.fog = fog->kind;
+    take(fog->visibility, "--visibility", options.visibility);
+    take(fog->base, "--fog-base", options.fog_base);
+    take(fog->falloff, "--fog-falloff", options.fog_falloff);
+    take(fog->sun_tint, "--sun-tint", options.fog_settings.sun_tint);
+  }
+  require(options.water.has_value(),
+          {"--water-colour", "--turbidity", "--waves", "--wavelength", "--no-reflection", "--no-refraction"},
+          "--water M, or water in the scene file");
+  const bool foggy = !options.fog.empty() && options.fog != "none";
+  require(foggy, {"--visibility", "--sun-tint"}, "--fog KIND, or fog in the scene file");
+  require(options.fog == "height", {"--fog-base", "--fog-falloff"}, "--fog height, or such fog in the scene file");
+}
+
 ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector<std::string>& given) {
   const Taking take(given);
   take(file.camera.azimuth_deg, "--view", view.azimuth_deg);
@@ -75,6 +110,7 @@ Json describe_scene(const std::string& path) {
   const SceneFile file = read_scene(path, terminal_progress("read"));
   Json info;
   info["path"] = path;
+  info["kind"] = name_of(InputKind::scene);
   info["format"] = "Scarp scene";
   info["objects"] = Json::array();
   for (const SceneObjectName& name : file.names) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/cli/look_options.h"
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/scene/file/scene_file.h"
@@ -17,6 +18,9 @@ bool is_scene_input(const std::vector<std::string>& inputs);
 
 /// The settings with those of the file, its materials and its haze. Options in `given` ("--size") count more.
 PictureSettings picture_of(const SceneFile& file, PictureSettings settings, const std::vector<std::string>& given);
+/// Adds the water and the fog of the file to the options, where they were not given. Throws Error naming the first
+/// given option that has no effect without water or fog.
+void take_environment(const SceneFile& file, const std::vector<std::string>& given, LookOptions& options);
 /// The same for a view, when the file has no eye.
 ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector<std::string>& given);
 

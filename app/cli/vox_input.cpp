@@ -12,27 +12,15 @@
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/render/surface/ramp.h"
-#include "scarp/scene/file/from_volume.h"
 
 namespace scarp::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-bool is_voxel_path(const std::string& path) { return extension_of(path) == ".vox" || extension_of(path) == ".binvox"; }
-
 constexpr int kRampColours = 255;
 
-std::vector<VoxelColour> colours_of(const std::string& ramp) {
-  if (ramp.empty()) return {kPlainVoxels};
-  const Ramp colours(ramp, 0, kRampColours - 1);
-  std::vector<VoxelColour> list;
-  for (int i = 0; i < kRampColours; ++i) {
-    const vec3 c = colours(i);
-    list.push_back({srgb_byte(c.x), srgb_byte(c.y), srgb_byte(c.z)});
-  }
-  return list;
-}
+bool is_voxel_path(const std::string& path) { return extension_of(path) == ".vox" || extension_of(path) == ".binvox"; }
 
 // What is wrong with a file that has been read names it, too.
 template <class Work>
@@ -51,6 +39,17 @@ void refuse(bool given, const char* option, const char* files) {
 }
 
 }  // namespace
+
+std::vector<VoxelColour> colours_of(const std::string& ramp) {
+  if (ramp.empty()) return {kPlainVoxels};
+  const Ramp colours(ramp, 0, kRampColours - 1);
+  std::vector<VoxelColour> list;
+  for (int i = 0; i < kRampColours; ++i) {
+    const vec3 c = colours(i);
+    list.push_back({srgb_byte(c.x), srgb_byte(c.y), srgb_byte(c.z)});
+  }
+  return list;
+}
 
 bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& options) {
   const auto vox = std::find_if(inputs.begin(), inputs.end(), is_voxel_path);
@@ -88,8 +87,23 @@ void add_vox_options(Command& command, VoxOptions& options) {
                     .closed = true});
 }
 
+void add_vox_rounding_options(Command& command, VoxLookOptions& options) {
+  constexpr Inputs kModels{kVoxels, "only voxels have edges to round"};
+  const auto add = [&](Binding to, Option option) {
+    option.topic = Topic::voxels;
+    command.add(std::move(to), std::move(option));
+  };
+  add(&options.rounding.radius,
+      {.names = "--rounded", .help = "radius of open edges in sides of a voxel", .range = {0, 0.5}, .inputs = kModels});
+  add(&options.rounding.each,
+      {.names = "--each",
+       .help = "every voxel rounded on its own, like a heap of dice",
+       .inputs = kModels,
+       .rules = {needs("--rounded F", [&options] { return static_cast<bool>(options.rounding); })}});
+}
+
 void add_vox_look_options(Command& command, VoxLookOptions& options) {
-  constexpr Inputs kModels{kVoxels, "only voxels have faces to shade and edges to round"};
+  constexpr Inputs kModels{kVoxels, "only voxels have faces to shade"};
   constexpr Looks kShaded{"shaded", "the others show numbers"};
   const auto add = [&](Binding to, Option option) {
     option.topic = Topic::voxels;
@@ -110,13 +124,6 @@ void add_vox_look_options(Command& command, VoxLookOptions& options) {
        .inputs = kModels,
        .looks = kShaded,
        .rules = {needs("--normals voxel or smooth", [&options] { return options.normals != "flat"; })}});
-  add(&options.rounding.radius,
-      {.names = "--rounded", .help = "radius of open edges in sides of a voxel", .range = {0, 0.5}, .inputs = kModels});
-  add(&options.rounding.each,
-      {.names = "--each",
-       .help = "every voxel rounded on its own, like a heap of dice",
-       .inputs = kModels,
-       .rules = {needs("--rounded F", [&options] { return static_cast<bool>(options.rounding); })}});
   add(&options.corner_ao, {.names = "--corner-ao",
                            .help = "darker corners, from neighbouring voxels; not where --samples measures the sky",
                            .inputs = kModels,
@@ -133,11 +140,17 @@ VoxInput read_voxels(const std::string& path, const VoxOptions& options, const V
   refuse((volume || binvox) && options.scene.frame > 0, "--frame", "MagicaVoxel files");
   refuse((volume || binvox) && options.scene.hidden, "--hidden", "MagicaVoxel files");
   refuse(!volume && !binvox && options.up != "z", "--up", "binvox files and volumes");
-  if (volume) return {{}, voxel_scene_from(read_volume(path, options.volume), colours_of(ramp), from)};
-  if (binvox) return {{}, voxel_scene_from(read_binvox(path), kPlainVoxels, from)};
+  if (volume) {
+    const DenseVolume numbers = read_volume(path, options.volume);
+    VoxInput input{{}, voxel_scene_from(numbers, colours_of(ramp), from)};
+    const SolidRange range = solid_range(numbers, options.solid_from);
+    if (!ramp.empty() && std::isfinite(range.high)) input.numbers = range;
+    return input;
+  }
+  if (binvox) return {{}, voxel_scene_from(read_binvox(path), kPlainVoxels, from), {}};
   VoxFile document = read_vox(path);
   VoxelScene scene = naming(path, [&] { return voxel_scene_from(document, {options.scene, voxels}); });
-  return {std::move(document), std::move(scene)};
+  return {std::move(document), std::move(scene), {}};
 }
 
 VoxelShading shading_of(const VoxLookOptions& options) {
@@ -182,6 +195,7 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   const VoxInput input = read_voxels(path, options, voxels, {});
   Json info;
   info["path"] = path;
+  info["kind"] = name_of(InputKind::voxels);
   if (input.document) {
     naming(path, [&] { describe_document(*input.document, options, info); });
   } else {

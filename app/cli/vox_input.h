@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "scarp/scene/file/from_volume.h"
 #include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/voxel_shading.h"
 
@@ -37,13 +38,19 @@ bool is_vox_input(const std::vector<std::string>& inputs, const VoxOptions& opti
 
 /// Declares --frame, --hidden, --volume, ...
 void add_vox_options(Command& command, VoxOptions& options);
-/// Declares --normals, --rounded, ...
+/// Declares --rounded and --each.
+void add_vox_rounding_options(Command& command, VoxLookOptions& options);
+/// Declares --normals, --corner-ao, ...
 void add_vox_look_options(Command& command, VoxLookOptions& options);
+
+/// Colours of numbers, from the least to the largest.
+std::vector<VoxelColour> colours_of(const std::string& ramp);
 
 /// A voxel file read.
 struct VoxInput {
   std::optional<VoxFile> document;  ///< of MagicaVoxel
   VoxelScene scene;
+  std::optional<SolidRange> numbers{};  ///< that the colours of a volume show
 };
 /// Numbers of volumes are shown by `ramp`, of ramp_names(); empty: not at all.
 VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelSceneOptions& voxels,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp voxelise`: terrain and scenes made voxels, as a MagicaVoxel or binvox file.
+// `scarp voxelise`: terrain, meshes and scenes made voxels, as a MagicaVoxel or binvox file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,34 +9,26 @@
 
 #include "app/cli/commands.h"
 #include "app/cli/field_options.h"
-#include "app/cli/input_kind.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/numbers.h"
+#include "app/cli/open_input.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
-#include "app/cli/scene_input.h"
 #include "app/cli/shared_options.h"
-#include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/render/surface/voxel_colours.h"
-#include "scarp/scene/file/from_raster.h"
 #include "scarp/scene/file/to_vox.h"
 #include "scarp/scene/voxelised.h"
 #include "scarp/source/binvox.h"
-#include "scarp/source/read_raster.h"
 
 namespace scarp::cli {
 namespace {
 
-struct VoxeliseOptions {
-  std::vector<std::string> inputs;
+struct VoxeliseOptions : InputOptions {
   std::string output, within, ramp = "hypsometric";
-  RasterOptions raster;
-  FieldOptions field;
-  VoxOptions vox;
   double voxel = 0;  // 0: not given
   int count = 0;     // 0: not given
   int threads = 0;
@@ -44,38 +36,14 @@ struct VoxeliseOptions {
 
 constexpr int kUsualCount = 256;
 
-struct Input {
-  Scene scene;
-  std::vector<Material> materials;
-  std::vector<std::string> notes;
-  std::vector<std::string> files;  // that were read, beside those that were typed
-};
-
-Input terrain(const VoxeliseOptions& options) {
-  Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
-  stop_if_interrupted();
-  const std::string path = raster.path;
-  std::vector<std::string> notes = raster.notes, files = raster.files;
-  HeightField field = height_field_from(std::move(raster), options.field);
-  if (!field.has_cells() || field.all_nodata())
-    throw Error(fmt::format("raster '{}': there is no ground between its samples", path));
-  const HeightRamp ramp{options.ramp, field.min_height(), field.max_height()};
-  return {Scene(scene_heights(std::move(field))), {ramp}, std::move(notes), std::move(files)};
-}
-
-Input voxels(const VoxeliseOptions& options) {
-  VoxInput input = read_voxels(options.inputs.front(), options.vox, {}, {});
-  return {Scene(scene_voxels(std::move(input.scene), VoxelSceneOptions{}.march)), {}, {}, {}};
-}
-
-Input input_of(const VoxeliseOptions& options, const Command& command) {
-  const InputKind kind = kind_of_input(command, options.inputs, options.vox);
-  command.require_effect({kind});
-  if (kind == InputKind::voxels) return voxels(options);
-  if (kind == InputKind::terrain) return terrain(options);
-  SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
-  return {std::move(document.scene), std::move(document.materials), std::move(document.notes),
-          std::move(document.files)};
+// What voxels are coloured by.
+std::vector<Material> materials_of(const OpenedInput& input, const std::string& ramp) {
+  if (input.document) return input.document->materials;
+  const HeightField* field = input.scene.only_heights();
+  if (!field) return {};
+  if (!field->has_cells() || field->all_nodata())
+    throw Error(fmt::format("raster '{}': there is no ground between its samples", input.path));
+  return {HeightRamp{ramp, field->min_height(), field->max_height()}};
 }
 
 std::optional<WorldBox> box_of(const VoxeliseOptions& options) {
@@ -85,12 +53,13 @@ std::optional<WorldBox> box_of(const VoxeliseOptions& options) {
   return WorldBox{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
 }
 
-double side_of(const VoxeliseOptions& options, const Scene& scene, const std::optional<WorldBox>& within) {
+double side_of(const VoxeliseOptions& options, InputKind kind, const Scene& scene,
+               const std::optional<WorldBox>& within) {
   if (!within && scene.endless())
     throw Error("--within is required: the scene is endless (give XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH)");
   if (options.voxel > 0) return options.voxel;
   // Voxels stay what they are.
-  if (options.count == 0 && is_vox_input(options.inputs, options.vox)) return 1;
+  if (options.count == 0 && kind == InputKind::voxels) return 1;
   const WorldBox& box = within ? *within : scene.box();
   const dvec3 size = box.high - box.low;
   // One less, for the lattice does not begin where the box does.
@@ -105,12 +74,15 @@ void run(const VoxeliseOptions& options, const Command& command) {
   }
   const std::optional<WorldBox> within = box_of(options);
   const ThreadLimit limit(options.threads);
-  const Input input = input_of(options, command);
+  const InputKind kind = kind_of_input(command, options);
+  command.require_effect({kind});
+  const OpenedInput input = open_input(kind, options);
+  const std::vector<Material> materials = materials_of(input, options.ramp);
   keep_inputs(options.output, input.files);
   stop_if_interrupted();
-  const double side = side_of(options, input.scene, within);
+  const double side = side_of(options, kind, input.scene, within);
   const VoxelLattice lattice = lattice_around(input.scene, side, within);
-  const VoxelGrid grid = voxelised(input.scene, lattice, voxel_colours(input.materials), terminal_progress("voxelise"));
+  const VoxelGrid grid = voxelised(input.scene, lattice, voxel_colours(materials), terminal_progress("voxelise"));
   if (grid.solid_count() == 0)
     throw Error(fmt::format("'{}': no voxel of {:.6g} m has its middle inside; take smaller ones",
                             options.inputs.front(), side));
@@ -138,10 +110,10 @@ void run(const VoxeliseOptions& options, const Command& command) {
 }  // namespace
 
 void add_voxelise(Program& program) {
-  Command& command = program.add("voxelise", "Convert terrain, a scene or voxels to voxels: .vox or .binvox");
+  Command& command = program.add("voxelise", "Convert terrain, voxels, a mesh or a scene to voxels: .vox or .binvox");
   const auto options = std::make_shared<VoxeliseOptions>();
   VoxeliseOptions& o = *options;
-  add_raster_inputs(command, o.inputs, "elevation raster, scene (.json) or voxel file (.vox, .binvox)");
+  add_raster_inputs(command, o.inputs, kEveryFile);
   add_output_option(command, o.output, "voxels: .vox or .binvox", "vox binvox");
   command.add(&o.voxel, {.names = "--voxel",
                          .help = "side of a voxel",
@@ -166,6 +138,7 @@ void add_voxelise(Program& program) {
   add_raster_options(command, o.raster);
   add_field_options(command, o.field, BeyondBorders::none);
   add_vox_options(command, o.vox);
+  add_mesh_up_option(command, o.mesh);
   command.example("scarp voxelise dem.tif -o dem.vox --count 200");
   command.runs([options, &command] {
     keep_inputs(options->output, command.typed_values());

@@ -19,14 +19,54 @@ namespace scarp {
 namespace {
 
 constexpr std::array<std::string_view, 4> kStatusNames = {"miss", "hit", "below", "exhausted"};
-constexpr std::array<std::string_view, 14> kHitColumns = {"ray", "status", "t", "x",  "y",  "z",  "col",
-                                                          "row", "u",      "v", "nx", "ny", "nz", "wall"};
+constexpr std::array<std::string_view, 5> kKindNames = {"heights", "function", "shape", "voxels", "mesh"};
+constexpr std::array<std::string_view, 7> kFaceNames = {"low_x", "high_x", "low_y", "high_y",
+                                                        "low_z", "high_z", "inside"};
+// Columns of hits, those of hits on height fields first.
+enum Column : std::uint8_t {
+  kRay,
+  kStatus,
+  kT,
+  kX,
+  kY,
+  kZ,
+  kCol,
+  kRow,
+  kU,
+  kV,
+  kNx,
+  kNy,
+  kNz,
+  kWall,
+  kObject,
+  kKind,
+  kMaterial,
+  kTriangle,
+  kPart,
+  kVoxelX,
+  kVoxelY,
+  kVoxelZ,
+  kFace,
+  kColumns
+};
+constexpr std::size_t kHeightColumns = kWall + 1;
+constexpr std::array<std::string_view, kColumns> kHitColumns = {
+    "ray", "status", "t",      "x",    "y",        "z",        "col",  "row",     "u",       "v",       "nx",  "ny",
+    "nz",  "wall",   "object", "kind", "material", "triangle", "part", "voxel_x", "voxel_y", "voxel_z", "face"};
 constexpr std::array<std::string_view, 2> kBlockedColumns = {"ray", "blocked"};
-constexpr std::size_t kStatusColumn = 1;
 
 std::span<const std::string_view> columns_of(TableKind kind) {
-  if (kind == TableKind::hits) return kHitColumns;
+  if (kind == TableKind::scene_hits) return kHitColumns;
+  if (kind == TableKind::hits) return std::span(kHitColumns).first(kHeightColumns);
   return kBlockedColumns;
+}
+
+// The words that numbers of a column of hits stand for; empty: numbers.
+std::span<const std::string_view> words_of(std::size_t column) {
+  if (column == kStatus) return kStatusNames;
+  if (column == kKind) return kKindNames;
+  if (column == kFace) return kFaceNames;
+  return {};
 }
 
 // Written to the file in pieces of this size.
@@ -83,6 +123,12 @@ bool is_npy(const std::string& path) {
 
 std::string_view name_of(HitStatus status) { return kStatusNames[static_cast<std::size_t>(status)]; }
 
+std::optional<HitKind> find_hit_kind(std::string_view name) {
+  const auto found = std::find(kKindNames.begin(), kKindNames.end(), name);
+  if (found == kKindNames.end()) return {};
+  return static_cast<HitKind>(found - kKindNames.begin());
+}
+
 void HitTable::FileCloser::operator()(std::FILE* file) const {
   if (file != stdout) std::fclose(file);
 }
@@ -135,10 +181,12 @@ void HitTable::put(std::int64_t ray, std::span<const double> numbers) {
     }
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (i > 0) text_ += ',';
-      if (kind_ == TableKind::hits && i == kStatusColumn) {
-        text_ += kStatusNames[static_cast<std::size_t>(numbers[i])];
-      } else if (!std::isnan(numbers[i])) {
+      if (std::isnan(numbers[i])) continue;
+      const auto words = kind_ == TableKind::blocked ? std::span<const std::string_view>() : words_of(i);
+      if (words.empty()) {
         fmt::format_to(std::back_inserter(text_), "{}", numbers[i]);
+      } else {
+        text_ += words[static_cast<std::size_t>(numbers[i])];
       }
     }
     text_ += '\n';
@@ -152,26 +200,40 @@ void HitTable::add(std::span<const HitRow> rows) {
     const Hit& hit = row.hit;
     std::array<double, kHitColumns.size()> numbers;
     numbers.fill(kNone);
-    numbers[0] = static_cast<double>(row.ray);
-    numbers[1] = static_cast<double>(hit.status);
-    if (hit.status == HitStatus::exhausted && std::isfinite(hit.t)) numbers[2] = hit.t;
+    numbers[kRay] = static_cast<double>(row.ray);
+    numbers[kStatus] = static_cast<double>(hit.status);
+    if (hit.status == HitStatus::exhausted && std::isfinite(hit.t)) numbers[kT] = hit.t;
     if (hit) {
-      numbers = {numbers[0],
-                 numbers[1],
-                 hit.t,
-                 row.position.x,
-                 row.position.y,
-                 row.position.z,
-                 static_cast<double>(hit.cell.col),
-                 static_cast<double>(hit.cell.row),
-                 hit.u,
-                 hit.v,
-                 row.normal.x,
-                 row.normal.y,
-                 row.normal.z,
-                 hit.wall ? 1.0 : 0.0};
+      const auto set = [&](Column first, const dvec3& p) {
+        for (int i = 0; i < 3; ++i) numbers[static_cast<std::size_t>(first + i)] = p[i];
+      };
+      numbers[kT] = hit.t;
+      set(kX, row.position);
+      set(kNx, row.normal);
+      numbers[kObject] = hit.object;
+      numbers[kKind] = static_cast<double>(row.kind);
+      if (row.material) numbers[kMaterial] = *row.material;
+      switch (row.kind) {
+        case HitKind::heights:
+          numbers[kCol] = hit.cell.col, numbers[kRow] = hit.cell.row;
+          numbers[kU] = hit.u, numbers[kV] = hit.v;
+          numbers[kWall] = hit.wall ? 1.0 : 0.0;
+          break;
+        case HitKind::mesh:
+          numbers[kTriangle] = hit.cell.col;
+          numbers[kU] = hit.u, numbers[kV] = hit.v;
+          break;
+        case HitKind::voxels:
+          numbers[kPart] = hit.part;
+          set(kVoxelX, dvec3(hit.voxel));
+          numbers[kFace] = static_cast<double>(hit.face);
+          break;
+        case HitKind::function:
+        case HitKind::shape:
+          break;
+      }
     }
-    put(row.ray, numbers);
+    put(row.ray, std::span<const double>(numbers).first(columns_of(kind_).size()));
   }
 }
 

@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Writes tables of ray query results as CSV or .npy.
 //
-//   hits      [carried...], ray, status, t, x, y, z, col, row, u, v, nx, ny, nz, wall
-//   blocked   [carried...], ray, blocked
+//   hits         [carried...], ray, status, t, x, y, z, col, row, u, v, nx, ny, nz, wall
+//   scene_hits   the same, then object, kind, material, triangle, part, voxel_x, voxel_y, voxel_z, face
+//   blocked      [carried...], ray, blocked
 //
 // CSV: a header line, then one line per row. Numbers round-trip to the same double. Values that a row lacks (the
-// position of a miss) are empty. status is hit, miss, below or exhausted. `carried` are text columns that pass through.
+// position of a miss, the cell of a voxel) are empty. status is hit, miss, below or exhausted; kind and face are words,
+// too (HitKind, VoxelFace). `carried` are text columns that pass through.
 //
 // .npy (format version 1.0, NEP 1): a one-dimensional structured array of float64 fields with the names above, without
-// the carried columns. Missing values are NaN. status is the value of HitStatus: 0 miss, 1 hit, 2 below, 3 exhausted.
+// the carried columns. Missing values are NaN. Words are the values of their enumerations: status is 0 miss, 1 hit, 2
+// below, 3 exhausted.
 #pragma once
 
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -28,15 +32,28 @@ namespace scarp {
 /// Returns "miss", "hit", "below" or "exhausted".
 std::string_view name_of(HitStatus status);
 
+/// What kind of field was hit.
+enum class HitKind : std::uint8_t { heights, function, shape, voxels, mesh };
+/// The kind whose name is that of a scene's field, "heights"; nothing if there is none.
+std::optional<HitKind> find_hit_kind(std::string_view name);
+
 /// A row of a table of hits. Rows that are not hits write only ray and status, and a finite t if exhausted.
 struct HitRow {
   std::int64_t ray = 0;  ///< index of the ray, from 0
   Hit hit;
   dvec3 position{0.0};  ///< in the coordinates of the table
   dvec3 normal{0.0};    ///< unit length
+
+  // Of scene_hits.
+  HitKind kind = HitKind::heights;
+  std::optional<std::uint32_t> material{};  ///< nothing: the field's own colours
 };
 
-enum class TableKind : std::uint8_t { hits, blocked };
+enum class TableKind : std::uint8_t {
+  hits,        ///< on one height field
+  scene_hits,  ///< on any field
+  blocked,
+};
 
 /// A table that grows row by row and becomes a file with commit().
 class HitTable {

@@ -115,7 +115,7 @@ ColourImage read_overlay(const std::string& path, const Georeference& georeferen
     GDALDatasetUniquePtr dataset = in_colours(std::move(stored), session);
     const bool placed = has_place(*dataset);
     if (placed != georeference.present) {
-      throw Error(placed ? "has a place on the earth, and the raster has none; give it one with --crs and --bounds"
+      throw Error(placed ? "has a place on the earth, and the input has none (--crs and --bounds give one to a raster)"
                          : "has no place on the earth, and the raster has one; gdal_translate -a_srs -a_ullr gives it");
     }
     if (!placed) {

@@ -260,13 +260,135 @@ TEST_F(Cast, RaysFromBelowAreNoted) {
   EXPECT_EQ(rows_of(run(arguments).out)[0].at("status"), "below");
 }
 
-TEST_F(Cast, AsksElevationModelsAlone) {
-  rays("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n");
-  for (const std::string name : {"model.vox", "scene.json"}) {
-    const auto refused = run({"cast", write(name, "VOX "), "--rays", path("rays.csv")});
-    EXPECT_NE(refused.status, 0);
-    EXPECT_NE(refused.err.find("cast takes elevation models, not voxels or scenes"), std::string::npos) << refused.err;
+// Each kind of input, from straight above.
+class CastInputs : public Cast {
+ protected:
+  // One row per ray; `options` begin with the input.
+  std::vector<Row> cast(const Names& options, const std::string& table) {
+    Names arguments = {"cast"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    arguments.insert(arguments.end(), {"--rays", rays(table)});
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return rows_of(result.out);
   }
+  void expect_error(Names arguments, const std::string& fragment) {
+    arguments.insert(arguments.begin(), "cast");
+    arguments.insert(arguments.end(), {"--rays", path("rays.csv")});
+    const auto result = run(arguments);
+    EXPECT_NE(result.status, 0) << fragment;
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(fragment), std::string::npos) << result.err;
+  }
+  static std::string down(double x, double y) { return fmt::format("x,y,z,dx,dy,dz\n{},{},100,0,0,-2\n", x, y); }
+
+  // A ball of radius 3 on a plane, and the plane with a colour of its own.
+  std::string scene() const {
+    return write("scene.json", R"({
+      "materials": {"grey": {"colour": "#808080"}, "red": {"colour": "#ff0000"}},
+      "objects": [{"function": 2, "material": "grey"},
+                  {"shape": {"union": [{"sphere": {"radius": 3, "at": [0, 0, 5]}, "material": "red"}]}}]})");
+  }
+  // Two columns of one voxel each, the place between them empty.
+  std::string columns() const { return write("columns.raw", std::string("\1\0\1", 3)); }
+  const Names volume_{"--volume", "3x1x1:u8"};
+};
+
+TEST_F(CastInputs, VoxelsTellPlaceAndFace) {
+  const auto rows = cast({columns(), volume_[0], volume_[1]}, down(2.25, 0.5));
+  ASSERT_EQ(rows.size(), 1u);
+  const Row& row = rows[0];
+  EXPECT_EQ(row.at("status") + row.at("kind") + row.at("face"), "hitvoxelshigh_z");
+  EXPECT_EQ(row.at("voxel_x") + row.at("voxel_y") + row.at("voxel_z") + row.at("part") + row.at("object"), "20000");
+  EXPECT_EQ(number(row, "t"), 49.5);
+  EXPECT_EQ(number(row, "z"), 1);
+  EXPECT_EQ(number(row, "nz"), 1);
+  for (const char* column : {"col", "row", "u", "v", "wall", "material", "triangle"})
+    EXPECT_EQ(row.at(column), "") << column;
+  EXPECT_EQ(cast({columns(), volume_[0], volume_[1]}, down(1.5, 0.5))[0].at("status"), "miss");
+  EXPECT_EQ(cast({columns(), volume_[0], volume_[1], "--any"}, down(0.5, 0.5))[0].at("blocked"), "1");
+  for (const char* march : {"voxel-exhaustive", "voxel-planes"})
+    EXPECT_EQ(cast({columns(), volume_[0], volume_[1], "--march", march}, down(2.25, 0.5)), rows) << march;
+}
+
+TEST_F(CastInputs, FunctionsTellHeightAndNormal) {
+  const auto rows = cast({"--function", write("plane.json", "7")}, down(1e6, -3));
+  ASSERT_EQ(rows.size(), 1u);
+  EXPECT_EQ(rows[0].at("status") + rows[0].at("kind"), "hitfunction");
+  EXPECT_NEAR(number(rows[0], "z"), 7, 1e-6);
+  EXPECT_EQ(number(rows[0], "nz"), 1);
+  EXPECT_EQ(rows[0].at("col") + rows[0].at("voxel_x") + rows[0].at("material"), "");
+}
+
+TEST_F(CastInputs, ScenesTellObjectAndMaterial) {
+  const auto rows =
+      cast({scene()}, "id,x,y,z,dx,dy,dz\nball,0,0,100,0,0,-1\nplane,50,0,100,0,0,-1\nsky,0,0,100,0,0,1\n");
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0].at("id") + rows[0].at("object") + rows[0].at("kind") + rows[0].at("material"), "ball1shape1");
+  EXPECT_NEAR(number(rows[0], "z"), 8, 1e-6);
+  EXPECT_EQ(rows[1].at("id") + rows[1].at("object") + rows[1].at("kind") + rows[1].at("material"), "plane0function0");
+  EXPECT_EQ(rows[2].at("status") + rows[2].at("object"), "miss");
+  ASSERT_EQ(run({"cast", path("scene.json"), "--rays", path("rays.csv"), "-o", path("hits.npy")}).status, 0);
+  EXPECT_EQ(test::text_of(path("hits.npy")).size() % 64, 3 * 23 * 8 % 64u);
+}
+
+// A terrain's own columns come first, as without the rest.
+TEST_F(CastInputs, TerrainInASceneTellsItsCell) {
+  const std::string dem = hills(), table = "x,y,z,dx,dy,dz\n15,15,900,0,0,-1\n";
+  const Row alone = cast({dem, "--crs", "local"}, table).at(0),
+            among = cast({write("terrain.json", R"({"objects": [{"heights": {"file": "hills.asc"}}]})")}, table).at(0);
+  for (const auto& [column, value] : alone) EXPECT_EQ(among.at(column), value) << column;
+  EXPECT_EQ(among.at("status") + among.at("kind") + among.at("object"), "hitheights0");
+}
+
+#ifdef SCARP_MESHES_IN_SCENES
+TEST_F(CastInputs, MeshesTellTheTriangle) {
+  const std::string mesh = write("roof.obj", "v 0 0 5\nv 8 0 5\nv 0 8 5\nv 8 8 5\nf 1 2 3\nf 2 4 3\n");
+  const Row row = cast({mesh, "--mesh-up", "z"}, down(6, 6)).at(0);
+  EXPECT_EQ(row.at("status") + row.at("kind") + row.at("triangle") + row.at("col"), "hitmesh1");
+  EXPECT_EQ(number(row, "z"), 5);
+  EXPECT_EQ(number(row, "t"), 47.5);
+  // The corners (8, 0), (8, 8), (0, 8).
+  EXPECT_NEAR(number(row, "u"), 0.5, 1e-6);
+  EXPECT_NEAR(number(row, "v"), 0.25, 1e-6);
+  // On terrain it is an object like the terrain.
+  const Names over{hills(), "--crs", "local", "--mesh", mesh, "--mesh-up", "z", "--mesh-at", "15,15,900"};
+  const auto rows = cast(over, "x,y,z,dx,dy,dz\n15,15,1000,0,0,-1\n35,25,1000,0,0,-1\n");
+  EXPECT_EQ(rows[0].at("kind") + rows[0].at("object") + rows[0].at("z"), "mesh1900");
+  EXPECT_EQ(rows[1].at("kind") + rows[1].at("object") + rows[1].at("col"), "heights03");
+}
+
+// The middle of the box is empty: the mesh stands on the nearest column.
+TEST_F(CastInputs, AMeshStandsOnTheNearestSurface) {
+  const std::string mesh = write("tile.obj", "v -0.01 -0.01 0\nv 0.01 -0.01 0\nv 0 0.01 0.5\nf 1 2 3\n");
+  const Names on{columns(), volume_[0], volume_[1], "--mesh", mesh, "--mesh-up", "z"};
+  int found = 0;
+  for (const double x : {0.984375, 2.015625}) {
+    const Row row = cast(on, down(x, 0.5)).at(0);
+    const bool mesh_hit = row.at("kind") == "mesh";
+    found += mesh_hit;
+    EXPECT_NEAR(number(row, "z"), mesh_hit ? 1.25 : 1, 1e-6) << x;
+  }
+  EXPECT_EQ(found, 1);
+}
+#endif
+
+TEST_F(CastInputs, WhatTerrainAloneHasIsRefusedOfOthers) {
+  rays("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n");
+  const std::string function = write("plane.json", "7");
+  expect_error({scene(), "--all"}, "--all applies to terrain only (marches of other fields return the first hit only)");
+  expect_error({scene(), "--crs", "map"},
+               "--crs map or lonlat applies to terrain only (other inputs have no georeference)");
+  expect_error({scene(), "--march", "naive"}, "--march applies to terrain, voxels and functions only");
+  expect_error({columns(), volume_[0], volume_[1], "--march", "max-mip"}, "voxel-exhaustive");
+  expect_error({columns(), volume_[0], volume_[1], "--wrap", "periodic"}, "--wrap applies to terrain only");
+  expect_error({"--function", function, "--march", "max-mip"}, "lipschitz-local");
+  expect_error({"--function", function, scene()}, "--function replaces files");
+  expect_error({}, "IN (or --function NAME) is required");
+  expect_error({hills(), "--all", "--mesh", "a.obj"}, "--mesh");
+  rays("x,y,z,dx,dy,dz,start_col,start_row\n0.5,0.5,1,1,0,0,0,0\n");
+  expect_error({columns(), volume_[0], volume_[1]}, "line 2 (ray 0): start_col and start_row name a cell");
+  expect_error({write("broken.vox", "VOX ")}, "broken.vox");
 }
 
 TEST_F(Cast, SurfaceOptionsReachTheRays) {

@@ -193,7 +193,7 @@ class GoldenScene : public testing::TestWithParam<const char*> {};
 TEST_P(GoldenScene, AsItWasLookedAt) {
   const std::string name = GetParam();
 #ifndef SCARP_MESHES_IN_SCENES
-  if (name == "balloons") GTEST_SKIP() << "built without SCARP_EMBREE or SCARP_MESH";
+  if (name == "balloons" || name == "lake") GTEST_SKIP() << "built without SCARP_EMBREE or SCARP_MESH";
 #endif
 #ifndef NDEBUG
   if (name != "torus-at-sea" && name != "village") GTEST_SKIP() << "too slow without optimisation";
@@ -210,8 +210,8 @@ TEST_P(GoldenScene, AsItWasLookedAt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, GoldenScene,
-                         testing::Values("balloons", "endless", "mix", "quarry", "standing-in-noise", "torus-at-sea",
-                                         "village"),
+                         testing::Values("balloons", "endless", "lake", "mix", "quarry", "standing-in-noise",
+                                         "torus-at-sea", "village"),
                          [](const auto& scene) {
                            std::string name = scene.param;
                            std::replace(name.begin(), name.end(), '-', '_');

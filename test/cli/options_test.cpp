@@ -228,7 +228,6 @@ TEST_F(WithoutEffect, IsRefusedOfVoxels) {
   expect_refused(info, {"--extent", "5"}, "applies to functions only");
   expect_refused(make, {"--ramp", "grey"}, "terrain");
   expect_refused(render, {"--no-plinth"}, "applies to terrain only");
-  expect_refused(render, {"--overlay", "map.png"}, "applies to terrain only");
   expect_refused(render, {"--device", "cpu"}, "applies to terrain, scenes and functions only");
   expect_refused(render, {"--function-step", "5"}, "applies to functions only");
   expect_refused(render, {"--ramp", "viridis"}, "--volume or --look steps");
@@ -283,12 +282,12 @@ TEST_F(WithoutEffect, IsRefusedOfScenesAndFunctions) {
     expect_refused(make, options, "a scene file describes its own content");
   }
   expect_refused(make, {"--ramp", "grey"}, "terrain");
-  expect_refused(render, {"--overlay", "map.png"}, "applies to terrain only");
+  expect_refused(render, {"--no-plinth"}, "applies to terrain only (only a raster alone is shown on a plinth)");
   const Names function{"render", "--function", "hills", "-o", out_};
   for (const Names& options : {Names{"--exaggeration", "2"}, {"--no-plinth"}}) {
     expect_refused(function, options, "applies to terrain only");
   }
-  expect_refused(function, {"--top"}, "applies to terrain, voxels and scenes only");
+  expect_refused(function, {"--top"}, "applies to terrain, voxels, scenes and meshes only");
   expect_refused(function, {"--rounded", "0.1"}, "applies to voxels only");
   expect_refused(function, {"--refine", "secant"}, "--march naive");
   expect_refused(function, {"--refine-halvings", "3", "--march", "naive"}, "--refine bisect");

@@ -62,6 +62,79 @@ TEST_F(Scenes, GiveWayToOptions) {
   EXPECT_NE(test::run({"render", path_, path_, "-o", picture_}).err.find("stands alone"), std::string::npos);
 }
 
+// Water and fog of the file, and what options make of them.
+TEST_F(Scenes, HaveWaterAndFog) {
+  const auto scene = [&](const std::string& environment) {
+    std::ofstream(path_)
+        << R"({"picture": {"size": [48, 32], "aa": 1}, "camera": {"eye": [0, -20, 5], "target": [0, 0, 0]},)"
+        << environment << R"("objects": [{"function": -2}, {"shape": {"sphere": {"radius": 3}}, "at": [0, 0, 1]}]})";
+  };
+  const auto picture = [&](std::vector<std::string> options = {}) {
+    options.insert(options.begin(), {"render", path_, "-o", picture_});
+    const auto result = test::run(options);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return test::text_of(picture_);
+  };
+  const auto refused = [&](std::vector<std::string> options, const std::string& fragment) {
+    fs::remove(picture_);
+    options.insert(options.begin(), {"render", path_, "-o", picture_});
+    const auto result = test::run(options);
+    EXPECT_NE(result.status, 0) << fragment;
+    EXPECT_EQ(test::lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(fragment), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(picture_));
+  };
+  scene("");
+  const std::string dry = picture(), wet = picture({"--water", "0", "--turbidity", "2"}),
+                    foggy = picture({"--fog", "height", "--visibility", "30", "--fog-base", "0", "--fog-falloff", "4"});
+  EXPECT_NE(dry, wet);
+  EXPECT_NE(dry, foggy);
+  refused({"--turbidity", "2"}, "--turbidity has no effect without --water M, or water in the scene file");
+  refused({"--sun-tint", "0"}, "--sun-tint has no effect without --fog KIND, or fog in the scene file");
+
+  scene(R"("water": {"level": 0, "turbidity": 2},)");
+  EXPECT_EQ(picture(), wet);
+  EXPECT_NE(picture({"--water-colour", "ff0000"}), wet);
+  EXPECT_NE(picture({"--water", "-1"}), wet);
+  scene(R"("water": {"level": 0, "turbidity": 2, "reflection": false, "refraction": false, "colour": "#ff0000"},)");
+  EXPECT_EQ(picture({"--turbidity", "2"}), picture());
+  EXPECT_NE(picture(), wet);
+
+  scene(R"("fog": {"kind": "height", "visibility": 30, "base": 0, "falloff": 4},)");
+  EXPECT_EQ(picture(), foggy);
+  EXPECT_EQ(picture({"--fog", "none"}), dry);
+  EXPECT_NE(picture({"--visibility", "9"}), foggy);
+  scene(R"("fog": {"kind": "distance"},)");
+  refused({"--fog-base", "1"}, "--fog-base has no effect without --fog height, or such fog in the scene file");
+
+  scene(R"("water": {"waves": 0.1},)");
+  refused({}, "/water");
+  scene(R"("water": {"level": 0, "waves": 0.9},)");
+  refused({}, "/water/waves");
+  scene(R"("fog": {"kind": "iterations"},)");
+  refused({}, "/fog/kind");
+  scene(R"("fog": {"kind": "distance", "falloff": 3},)");
+  refused({}, "/fog/falloff: belongs to fog of the kind height");
+  scene(R"("fog": {"kind": "distance"}, "haze": {"distance": 100},)");
+  refused({}, "/haze: does not go with fog");
+}
+
+#ifdef SCARP_CAIRO
+// Of one ramp over heights.
+TEST_F(Scenes, HaveALegendWhereARampColoursThem) {
+  const auto rendered = [&](const std::string& materials) {
+    std::ofstream(path_) << R"({"camera": {"eye": [0, -20, 5], "target": [0, 0, 0]}, "materials": {)" << materials
+                         << R"(}, "objects": [{"function": 0, "material": "low"}]})";
+    return test::run({"render", path_, "-o", picture_, "--size", "320x240", "--aa", "1", "--legend"});
+  };
+  const std::string ramp = R"({"ramp": {"name": "viridis", "heights": [0, 9]}})", plain = R"({"colour": "#ff0000"})";
+  const auto one = rendered("\"low\": " + ramp + ", \"other\": " + plain);
+  EXPECT_EQ(one.status, 0) << one.err;
+  EXPECT_NE(rendered("\"low\": " + plain).err.find("do not depend on height"), std::string::npos);
+  EXPECT_NE(rendered("\"low\": " + ramp + ", \"other\": " + ramp).err.find("several scales"), std::string::npos);
+}
+#endif
+
 TEST_F(Scenes, AreToldByInfo) {
   const auto result = test::run({"info", path_, "--json"});
   ASSERT_EQ(result.status, 0) << result.err;

@@ -83,7 +83,8 @@ TEST_F(CliVox, SaysInOneLineWhatIsWrong) {
   expect_refused({"render", model_, "-o", out, "--look", "pretty"}, "expected shaded, height, steps, error");
   expect_refused({"render", model_, model_, "-o", out}, "stands alone");
   expect_refused({"info", path("missing.vox")}, "cannot be opened");
-  expect_refused({"cast", model_, "--rays", "x.csv", "-o", out}, "");
+  expect_refused({"cast", model_, "--rays", "x.csv", "-o", path("hits.csv")}, "rays 'x.csv'");
+  expect_refused({"render", model_, "-o", out, "--size", "320x240", "--legend"}, "do not depend on height");
   std::string bytes = test::text_of(model_);
   bytes.resize(bytes.size() / 2);
   scratch_.write("model.vox", bytes);
@@ -145,11 +146,15 @@ TEST_F(CliVox, TerrainBecomesVoxels) {
 
 TEST_F(CliVox, EachLookIsAnother) {
   std::vector<std::string> pictures;
+  const std::string overlay = path("overlay.png");
+  ASSERT_EQ(run({"render", model_, "-o", overlay, "--top", "--size", "9x9", "--look", "height"}).status, 0);
   const std::vector<std::vector<std::string>> looks = {{},
                                                        {"--rounded", "0.3"},
                                                        {"--rounded", "0.3", "--each"},
                                                        {"--normals", "voxel"},
                                                        {"--normals", "smooth"},
+                                                       {"--contours", "0.4"},
+                                                       {"--overlay", overlay},
                                                        {"--coarse-voxels", "--view", "190,35,60"},
                                                        {"--view", "190,35,60"}};
   for (const auto& look : looks) {

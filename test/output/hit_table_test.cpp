@@ -79,6 +79,32 @@ TEST_F(HitTables, Csv) {
             ",,2,exhausted,12.5,,,,,,,,,,,\n");
 }
 
+// What a kind of field does not have is empty.
+TEST_F(HitTables, SceneCsv) {
+  std::vector<HitRow> rows(4, a_hit());
+  for (HitRow& row : rows) row.position = {1, 2, 3}, row.hit.object = 5;
+  rows[0].material = 2;
+  rows[1].kind = HitKind::function;
+  rows[2].kind = HitKind::voxels;
+  rows[2].hit.part = 9, rows[2].hit.voxel = {10, 0, 12}, rows[2].hit.face = VoxelFace::low_y;
+  rows[3].kind = HitKind::mesh;
+  rows.emplace_back().ray = 2;
+  const TextColumns carried;
+  HitTable table(path("s.csv"), TableKind::scene_hits, carried);
+  table.add(rows);
+  table.commit();
+  EXPECT_EQ(bytes_of(path("s.csv")),
+            "ray,status,t,x,y,z,col,row,u,v,nx,ny,nz,wall,object,kind,material,triangle,part,voxel_x,voxel_y,voxel_z,"
+            "face\n"
+            "1,hit,0.1,1,2,3,7,8,0.3333333333333333,1,0,0.6,0.8,1,5,heights,2,,,,,,\n"
+            "1,hit,0.1,1,2,3,,,,,0,0.6,0.8,,5,function,,,,,,,\n"
+            "1,hit,0.1,1,2,3,,,,,0,0.6,0.8,,5,voxels,,,9,10,0,12,low_y\n"
+            "1,hit,0.1,1,2,3,,,0.3333333333333333,1,0,0.6,0.8,,5,mesh,,7,,,,,\n"
+            "2,miss,,,,,,,,,,,,,,,,,,,,,\n");
+  EXPECT_EQ(find_hit_kind("shape"), HitKind::shape);
+  EXPECT_EQ(find_hit_kind("plinth"), std::nullopt);
+}
+
 TEST_F(HitTables, BlockedCsv) {
   const TextColumns carried;
   HitTable table(path("b.csv"), TableKind::blocked, carried);

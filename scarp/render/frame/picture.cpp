@@ -125,13 +125,16 @@ PaintExtent paint_extent(const Scene& scene, const PictureSettings& settings) {
     extent.low = field->min_height(), extent.high = field->max_height();
     extent.exaggeration = field->settings().exaggeration;
     extent.size = {field->width(), field->depth()};
-    extent.repeats = field->wraps();
   } else if (has_end(scene.box())) {
     extent.low = scene.box().low.z, extent.high = scene.box().high.z;
     extent.origin = dvec2(scene.box().low);
     extent.size = dvec2(scene.box().high - scene.box().low);
   }
-  if (settings.ground_range) extent.low = settings.ground_range->low, extent.high = settings.ground_range->high;
+  if (const auto& box = settings.ground_box) {
+    extent.low = box->low.z, extent.high = box->high.z;
+    extent.origin = dvec2(box->low), extent.size = dvec2(box->high - box->low);
+  }
+  extent.repeats = scene.endless();
   return extent;
 }
 

@@ -61,7 +61,7 @@ struct PictureSettings {
   GroundPaintSettings ground{};       ///< of height fields without a material, and on top of all surfaces
   std::string ramp{};                 ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
   std::shared_ptr<const RampStops> ramp_stops{};  ///< instead of `ramp`; null: none
-  std::optional<ReliefRange> ground_range{};      ///< of `ramp` and `ground`; nothing: the scene's own
+  std::optional<Box> ground_box{};  ///< heights of `ramp` and `ground`, place of the overlay; nothing: the scene's own
 
   // Environment.
   double grid_north_azimuth = 0;  ///< of the world's y axis, radians clockwise from true north

@@ -13,6 +13,8 @@ namespace {
 
 constexpr std::size_t kMostColours = 255;
 
+bool is_solid(double value, std::optional<double> from) { return from ? value >= *from : value > 0; }
+
 // `entry(v)` of a voxel of the file.
 template <class Entry>
 VoxelScene scene_of(const ivec3& size, const FromVolumeOptions& options, std::vector<VoxelColour> palette,
@@ -32,6 +34,15 @@ VoxelScene scene_of(const ivec3& size, const FromVolumeOptions& options, std::ve
 
 }  // namespace
 
+SolidRange solid_range(const DenseVolume& volume, std::optional<double> solid_from) {
+  SolidRange range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for_each_voxel({ivec3(0), volume.size()}, [&](const ivec3& v) {
+    const double value = volume[v];
+    if (is_solid(value, solid_from)) range = {std::min(range.low, value), std::max(range.high, value)};
+  });
+  return range;
+}
+
 VoxelScene voxel_scene_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options) {
   return scene_of(binvox.size, options, {colour, colour},
                   [&](const ivec3& v) { return binvox.solid(v) ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel(); });
@@ -40,22 +51,16 @@ VoxelScene voxel_scene_from(const Binvox& binvox, const VoxelColour& colour, con
 VoxelScene voxel_scene_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
                             const FromVolumeOptions& options) {
   if (colours.empty() || colours.size() > kMostColours) throw Error("volume: 1 to 255 colours are needed");
-  const auto solid = [&](double value) { return options.solid_from ? value >= *options.solid_from : value > 0; };
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for_each_voxel({ivec3(0), volume.size()}, [&](const ivec3& v) {
-    const double value = volume[v];
-    if (!solid(value)) return;
-    low = std::min(low, value), high = std::max(high, value);
-  });
+  const auto [low, high] = solid_range(volume, options.solid_from);
   // Infinite numbers have the last colour.
   const double range = std::min(high, std::numeric_limits<double>::max()) - low;
   std::vector<VoxelColour> palette{VoxelColour{}};
   palette.insert(palette.end(), colours.begin(), colours.end());
   const auto last = static_cast<double>(colours.size() - 1);
-  return scene_of(volume.size(), options, std::move(palette), [&](const ivec3& v) {
+  return scene_of(volume.size(), options, std::move(palette), [&, least = low](const ivec3& v) {
     const double value = volume[v];
-    if (!solid(value)) return VoxelGrid::Voxel();
-    const double share = range > 0 ? std::min(1.0, (value - low) / range) : 1;
+    if (!is_solid(value, options.solid_from)) return VoxelGrid::Voxel();
+    const double share = range > 0 ? std::min(1.0, (value - least) / range) : 1;
     return VoxelGrid::Voxel(1 + static_cast<std::uint32_t>(share * last + 0.5));
   });
 }

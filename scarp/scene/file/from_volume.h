@@ -20,10 +20,16 @@ struct FromVolumeOptions {
   std::optional<double> solid_from;  ///< the least number of a solid voxel; nothing: all above 0 are solid
 };
 
+/// Least and largest number of solid voxels; low > high: there is none.
+struct SolidRange {
+  double low, high;
+};
+SolidRange solid_range(const DenseVolume& volume, std::optional<double> solid_from);
+
 /// `colour`: of all voxels.
 VoxelScene voxel_scene_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options = {});
 
-/// The least number of a solid voxel has the first of the colours, the largest one the last; at most 255 colours, at
+/// The lowest number of solid_range() has the first of the colours, the highest the last; at most 255 colours, at
 /// least one. NaN is empty. Throws Error when there are more or none.
 VoxelScene voxel_scene_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
                             const FromVolumeOptions& options = {});

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/open_input.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "app/cli/device_option.h"
+#include "app/cli/progress.h"
+#include "app/cli/scene_input.h"
+#include "scarp/base/error.h"
+#include "scarp/scene/file/example_functions.h"
+#include "scarp/source/read_raster.h"
+
+namespace scarp::cli {
+namespace {
+
+OpenedInput terrain(const InputOptions& options) {
+  const HeightMarchEntry& march = find_height_march(options.march.empty() ? kTerrainMarch : options.march);
+  require_device_march(options.device, march);
+  Raster raster = read_tiles(options.inputs, options.raster, terminal_progress("read"));
+  stop_if_interrupted();
+  OpenedInput opened;
+  opened.notes = raster.notes, opened.files = raster.files, opened.path = raster.path;
+  opened.georeference = raster.georeference, opened.cols = raster.cols, opened.rows = raster.rows;
+  HeightField field = height_field_from(std::move(raster), options.field);
+  stop_if_interrupted();
+  opened.scene = Scene(scene_heights(std::move(field), march, options.march_settings,
+                                     options.device.empty() ? AnsweredBy::cpu : AnsweredBy::back_end));
+  return opened;
+}
+
+OpenedInput voxels(const InputOptions& options, const std::string& ramp) {
+  VoxelSceneOptions voxels;
+  if (!options.march.empty()) voxels.march = options.march;
+  find_voxel_march(voxels.march);
+  voxels.surface_colours = options.vox.surface_colours;
+  voxels.rounding = options.vox_look.rounding;
+  const VoxelShading shading = shading_of(options.vox_look);
+  VoxInput read = read_voxels(options.inputs.front(), options.vox, voxels, ramp);
+  OpenedInput opened{Scene(scene_voxels(std::move(read.scene), voxels.march, shading))};
+  opened.numbers = read.numbers;
+  return opened;
+}
+
+OpenedInput scene_file(const InputOptions& options) {
+  SceneFile document = read_scene(options.inputs.front(), terminal_progress("read"));
+  OpenedInput opened{document.scene, document.notes, document.files};
+  opened.document = std::move(document);
+  return opened;
+}
+
+OpenedInput function(const InputOptions& options) {
+  const FunctionMarchEntry& march = find_function_march(options.march.empty() ? kFunctionMarch : options.march);
+  HeightFunction function(read_function(options.function.function));
+  OpenedInput opened{Scene(scene_function(function, march, options.march_settings))};
+  opened.function = std::move(function);
+  return opened;
+}
+
+}  // namespace
+
+InputKind kind_of_input(const Command& command, const InputOptions& options) {
+  const std::vector<std::string>& inputs = options.inputs;
+  if (!options.function.function.empty()) {
+    if (inputs.empty()) return InputKind::function;
+    throw Error(fmt::format("'{}': --function replaces files (give one of the two)", inputs.front()));
+  }
+  if (inputs.empty()) {
+    throw WrongUsage(fmt::format("IN{} is required (see 'scarp {} --help')",
+                                 command.find("--function") ? " (or --function NAME)" : "", command.name()));
+  }
+  if (is_scene_input(inputs)) return InputKind::scene;
+  if (is_mesh_input(inputs)) return InputKind::mesh;
+  return is_vox_input(inputs, options.vox) ? InputKind::voxels : InputKind::terrain;
+}
+
+std::string_view march_of(const InputOptions& options, InputKind kind) {
+  if (kind != InputKind::terrain && kind != InputKind::function) return {};
+  if (!options.march.empty()) return options.march;
+  return kind == InputKind::terrain ? kTerrainMarch : kFunctionMarch;
+}
+
+OpenedInput open_input(InputKind kind, const InputOptions& options, const std::string& ramp) {
+  switch (kind) {
+    case InputKind::terrain:
+      return terrain(options);
+    case InputKind::voxels:
+      return voxels(options, ramp);
+    case InputKind::scene:
+      return scene_file(options);
+    case InputKind::function:
+      return function(options);
+    case InputKind::mesh:
+      break;
+  }
+  MeshInput mesh(options.inputs.front(), options.mesh);
+  return {mesh.alone(), mesh.notes()};
+}
+
+}  // namespace scarp::cli
