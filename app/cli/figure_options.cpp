@@ -69,7 +69,7 @@ FigureLegend legend_of_heights(const PictureSettings& settings, const Scene& sce
     ++ramps;
   }
   const bool painted = std::any_of(scene.objects().begin(), scene.objects().end(), [&](const SceneObject& object) {
-    return object.material >= settings.materials.size() && height_field_of(*scene.fields()[object.field]);
+    return object.material >= settings.materials.size() && is_ramped(*scene.fields()[object.field], settings);
   });
   if (painted) ++ramps;
   if (ramps != 1) {

@@ -65,7 +65,7 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
       fog_(settings.fog, lighting_.to_sun()),
       haze_(haze_of(scene, camera, settings)) {
   for (const SceneObject& object : scene.objects())
-    ground_.push_back(height_field_of(*scene.fields()[object.field]) != nullptr);
+    ramped_.push_back(is_ramped(*scene.fields()[object.field], settings));
   if (settings.water) {
     water_.emplace(*settings.water, scene);
     if (camera.eye().z <= water_->level()) {
@@ -86,7 +86,7 @@ vec3 FrameView::surface_colour(const Ray& ray, const Hit& hit, const SceneSurfac
   const double footprint = camera_.pixel_width(hit.t) / std::sqrt(cosine);
   const double height = surface.height.value_or(surface.position.z);
   const bool has_material = surface.material < settings_.materials.size();
-  const bool painted = !has_material && (settings_.ground.natural || (!surface.colour && ground_[surface.object]));
+  const bool painted = !has_material && (settings_.ground.natural || (!surface.colour && ramped_[surface.object]));
   const vec3 own =
       painted ? paint_.ground(surface.position, height, surface.shading_normal, footprint) : colours_(surface);
   return paint_.over(own, surface.position, height, surface.shading_normal, footprint);

@@ -80,7 +80,7 @@ class FrameView {
   Haze haze_;
   std::optional<Water> water_;
   std::optional<StepMarch> step_march_;
-  std::vector<bool> ground_;  // by object: whether it is a height field
+  std::vector<bool> ramped_;  // by object: whether it is_ramped()
 };
 
 }  // namespace scarp

@@ -143,6 +143,11 @@ Ramp ground_ramp(const Scene& scene, const PictureSettings& settings) {
   return ramp_over(settings, extent.low, extent.high, extent.exaggeration);
 }
 
+bool is_ramped(const SceneField& field, const PictureSettings& settings) {
+  const bool named = settings.ramp_stops || !settings.ramp.empty();
+  return height_field_of(field) || (named && field.kind() == "function");
+}
+
 void validate(const PictureSettings& settings) {
   require(settings.width >= 1 && settings.width <= kMaxSide, "the width", settings.width, "1 to 65536 pixels");
   require(settings.height >= 1 && settings.height <= kMaxSide, "the height", settings.height, "1 to 65536 pixels");
