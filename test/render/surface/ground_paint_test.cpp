@@ -48,6 +48,21 @@ TEST(GroundPaint, ContoursAreAtTheirHeightsAndSoWideInPixels) {
   EXPECT_EQ(with({20, 50, 20}, 20, normal, 8), without({20, 50, 20}, 20, normal, 8));
 }
 
+TEST(GroundPaint, UprightSurfacesHaveContoursAndLevelOnesHaveNone) {
+  const Paint with = paint({.contours = 20}), without = paint({});
+  const dvec3 upright(1, 0, 0), up(0, 0, 1);
+  constexpr double kPixel = 0.25;
+  const auto inked = [&](double height, const dvec3& normal) {
+    const dvec3 p(50, 50, height);
+    return with(p, height, normal, kPixel) != without(p, height, normal, kPixel);
+  };
+  // A pixel of an upright surface covers as much height as it is long.
+  EXPECT_TRUE(inked(40, upright));
+  EXPECT_TRUE(inked(40 + 1.0 * kPixel, upright));
+  EXPECT_FALSE(inked(40 + 1.1 * kPixel, upright));
+  EXPECT_FALSE(inked(40, up));
+}
+
 TEST(GroundPaint, RockIsSteepAndSnowIsHigh) {
   const Paint natural = paint({.natural = true, .snow_share = 0.7});
   const auto at = [&](double height, const dvec3& normal) {

@@ -102,6 +102,24 @@ TEST_F(SceneFiles, AreReadWhole) {
   }
 }
 
+TEST_F(SceneFiles, HaveWaterAndFog) {
+  const SceneFile dry = read(with_object(kBall));
+  EXPECT_FALSE(dry.water || dry.fog);
+  const SceneFile file = read(R"({"water": {"level": -2.5, "colour": "#00ff00", "turbidity": 0.5, "waves": 0.1,
+    "wavelength": 7, "reflection": false, "refraction": true},
+    "fog": {"kind": "height", "visibility": 800, "base": 3, "falloff": 20, "sun_tint": 0.25}, "objects": [)" + kBall + "]}");
+  ASSERT_TRUE(file.water && file.fog);
+  EXPECT_EQ(file.water->level, -2.5);
+  EXPECT_EQ(*file.water->srgb, vec3(0, 1, 0));
+  EXPECT_EQ(*file.water->turbidity + *file.water->waves + *file.water->wavelength, 0.5 + 0.1 + 7);
+  EXPECT_FALSE(*file.water->reflection);
+  EXPECT_TRUE(*file.water->refraction);
+  EXPECT_EQ(file.fog->kind, "height");
+  EXPECT_EQ(*file.fog->visibility + *file.fog->base + *file.fog->falloff + *file.fog->sun_tint, 823.25);
+  const SceneFile plain = read(R"({"water": {"level": 1}, "fog": {"kind": "distance"}, "objects": [)" + kBall + "]}");
+  EXPECT_FALSE(plain.water->srgb || plain.water->waves || plain.water->reflection || plain.fog->visibility);
+}
+
 // Voxels by name of their looks: the corner of a rounded cube is not there, what is left has a smooth normal.
 TEST_F(SceneFiles, SayHowVoxelsLook) {
   Binvox cube;
