@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp cast`: rays of a table against whatever can be rendered, hits out.
+// `scarp cast`: intersects the rays of a table with any input of `scarp render`.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -104,7 +104,7 @@ OpenedInput open(const CastOptions& options, InputKind kind) {
   }
 }
 
-// Inputs other than rasters have no georeference.
+// Only rasters have a georeference.
 CoordinateFrame frame_of(const CastOptions& options, const OpenedInput& input) {
   const Coordinates coordinates = !options.coordinates.empty() ? find_coordinates(options.coordinates)
                                   : input.georeference.present ? Coordinates::map
@@ -116,7 +116,7 @@ CoordinateFrame frame_of(const CastOptions& options, const OpenedInput& input) {
   }
 }
 
-// Rays that start on a surface start on the one terrain of the scene.
+// Checks all rays. Those that start on a surface start on the only terrain of the scene.
 void check(const RayTable& table, std::span<Ray> rays, const Scene& scene) {
   constexpr std::string_view kPrefix = "ray: ";
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -137,8 +137,8 @@ void check(const RayTable& table, std::span<Ray> rays, const Scene& scene) {
   }
 }
 
-// Where the scene lies, for tables in other coordinates: of rays that hit nothing. Empty when a ray begins over it, as
-// all do where it goes on forever.
+// A note with the bounds of the scene, for rays that hit nothing: the table may be in other coordinates. Empty if a ray
+// starts above the scene, or the scene is endless.
 std::string place_of(const Scene& scene, std::span<const Ray> rays, const CoordinateFrame& frame) {
   const WorldBox& box = scene.box();
   const HeightField* field = scene.only_heights();
@@ -159,7 +159,8 @@ std::string place_of(const Scene& scene, std::span<const Ray> rays, const Coordi
 // Answers rays and writes what they met, piece by piece.
 class Caster {
  public:
-  // `all`, of a scene of one height field; null: the nearest hits. `materials`: how many the scene's file has.
+  // `all` finds all hits and needs a scene of one height field; null: nearest hits only. `materials`: number of
+  // materials of the scene file.
   Caster(AllHits all, const Scene& scene, std::size_t materials, const CoordinateFrame& frame, const RayTable& table,
          HitTable& out)
       : scene_(scene), frame_(frame), table_(table), out_(out), all_(all), materials_(materials) {
@@ -266,7 +267,7 @@ class Caster {
   double seconds_ = 0;
 };
 
-// What people should know about terrain that rays cannot hit.
+// Explains why rays cannot hit the terrain.
 void add_notes(const HeightField& field, std::vector<std::string>& notes) {
   if (!field.has_cells()) notes.emplace_back("a single row or column has no cells: every ray misses");
   if (field.all_nodata()) notes.emplace_back("all samples are nodata: every ray misses; is the nodata value right?");

@@ -58,7 +58,7 @@ FigureLegend legend_of(std::string title, double low, double high, const Ramp& r
   return legend;
 }
 
-// The legend of the one ramp over heights that colours the scene: that of its materials, or that of ground without one.
+// The legend of the only height ramp in the scene: that of a material, or that of ground without a material.
 FigureLegend legend_of_heights(const PictureSettings& settings, const Scene& scene, const PaintExtent& extent) {
   const HeightRamp* ramp = nullptr;
   int ramps = 0;
@@ -83,7 +83,7 @@ FigureLegend legend_of_heights(const PictureSettings& settings, const Scene& sce
                           ground_ramp(scene, settings), exaggeration);
 }
 
-// Colours of voxels that show numbers, which are spread over the ramp whatever they are.
+// The legend of a volume: its numbers are spread evenly over the ramp.
 FigureLegend legend_of_numbers(const SolidRange& numbers, const std::string& ramp) {
   FigureLegend legend{"number", {}, ticks_of(numbers.low, numbers.high)};
   for (const VoxelColour& colour : colours_of(ramp)) legend.colours.push_back({colour[0], colour[1], colour[2]});
@@ -94,7 +94,7 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
                  const Picture& picture, Figure& figure) {
   const PaintExtent extent = paint_extent(scene, settings);
   const ReliefRange grey = picture.heights.value_or(ReliefRange{extent.low, extent.high});
-  // Numbers are those of the ground.
+  // The legend shows heights without exaggeration.
   const double exaggeration = extent.exaggeration;
   switch (settings.look) {
     case Look::steps:

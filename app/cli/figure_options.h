@@ -23,8 +23,8 @@ void add_figure_options(Command& command, FigureOptions& options);
 /// What can be judged without the field. Throws Error.
 void settle_figure(const FigureOptions& options, const PictureSettings& settings, bool exr);
 
-/// Draws what was asked for over a picture. `map`: seen without perspective; `numbers`: of a volume whose colours show
-/// them. Throws Error where there is no room, or colours have no scale.
+/// Draws what was asked for over a picture. `map`: seen without perspective; `numbers`: range of a volume that is
+/// coloured by its numbers. Throws Error where there is no room, or colours have no scale.
 void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const Scene& scene,
                     const Camera& camera, bool map, const std::optional<SolidRange>& numbers, Picture& picture);
 

@@ -121,7 +121,7 @@ void add_look_options(Command& command, LookOptions& o) {
           .files = "*",
           .common = true});
 
-  // The water and the fog may stand in the scene's file.
+  // A scene file may have water and fog of its own.
   const Rule wet = needs(
       "--water M", [&o] { return o.water.has_value(); }, kEveryInput & ~kScene);
   water(&o.water, {.names = "--water",

@@ -31,10 +31,10 @@ void add_look_options(Command& command, LookOptions& options);
 /// The settings that do not depend on the field. Throws Error.
 void settle_look(const LookOptions& options, const MarchSettings& march_settings, PictureSettings& picture);
 
-/// The water and the fog of these settings: again after a scene file has added its own.
+/// Sets water and fog. Called again after a scene file has added its own.
 void settle_environment(const LookOptions& options, PictureSettings& picture);
 
-/// Reads the image of --overlay for a raster of `cols` x `rows` samples, or, without georeference, for any scene.
+/// Reads the image of --overlay for a raster of `cols` x `rows` samples, or for any scene if there is no georeference.
 /// Returns all files that were opened.
 std::vector<std::string> read_overlay_files(const LookOptions& options, const Georeference& georeference, int cols,
                                             int rows, bool mirror, PictureSettings& picture);

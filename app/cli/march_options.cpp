@@ -18,7 +18,7 @@ namespace {
 constexpr Inputs kMarched{kTerrain | kFunction, "what traces voxels and meshes has no settings"};
 constexpr Inputs kFunctionsOnly{kFunction, "rasters have cells to measure steps in, and end"};
 
-// Names for completion. A wrong one is refused with the techniques of its kind of input.
+// Names for completion. The tables of each kind of field reject others.
 std::vector<std::string> march_names() {
   std::vector<std::string> names;
   const auto add = [&](const auto& table) {

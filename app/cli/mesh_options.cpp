@@ -32,7 +32,7 @@ bool is_mesh_input(const std::vector<std::string>& inputs) {
 }
 
 void add_mesh_options(Command& command, MeshOptions& options) {
-  // An input that is a mesh is placed by the same options.
+  // The same options place a mesh that is the input.
   const Rule of_mesh = needs(
       "--mesh FILE", [&command] { return command.given("--mesh"); }, kEveryInput & ~kMesh);
   command.add(
@@ -90,18 +90,17 @@ namespace {
 
 bool has_end(const WorldBox& box) { return box.low.x <= box.high.x; }
 
-// Of what is highest at (x, y): ground, or whatever a ray from above hits.
+// Height of the highest surface at (x, y): ground, or whatever a ray from above hits.
 std::optional<double> surface_at(const Scene& scene, double x, double y) {
   if (const auto ground = scene.height(x, y)) return ground;
-  // Its holes are all there is to hit.
+  // A height field has no surface in its holes.
   if (scene.only_heights() || !has_end(scene.box())) return {};
   const Ray down{{x, y, scene.box().high.z + 1}, {0, 0, -1}};
   const Hit hit = scene.closest_hit(down);
   return hit ? std::optional(down.at(hit.t).z) : std::nullopt;
 }
 
-// Of the places of a lattice over the scene that have a surface, the one nearest to the middle; without one, the lowest
-// point of the scene.
+// The point nearest to the middle of the scene, on a lattice, that has a surface; else the middle at the lowest height.
 dvec3 place_near_middle(const Scene& scene) {
   constexpr int kHalf = 32;  // places from the middle to the border
   const WorldBox& box = scene.box();
@@ -122,7 +121,7 @@ dvec3 place_near_middle(const Scene& scene) {
   return best;
 }
 
-// X,Y[,Z] of --mesh-at.
+// Parses X,Y[,Z] of --mesh-at.
 std::vector<double> numbers_of_place(const std::string& text) {
   return numbers_from(text, ',', 2, 3, "--mesh-at",
                       "X,Y or X,Y,Z in metres from the south-west sample, for example 500,300 or 500,300,1200");

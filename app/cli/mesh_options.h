@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangle meshes: --mesh in any scene, and alone as an input.
+// Triangle meshes: added to any scene by --mesh, or as an input of their own.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -21,13 +21,13 @@ struct MeshOptions {
 
 /// Declares --mesh and its settings.
 void add_mesh_options(Command& command, MeshOptions& options);
-/// Declares --mesh-up alone, for an input.
+/// Declares only --mesh-up, for inputs.
 void add_mesh_up_option(Command& command, MeshOptions& options, std::vector<Rule> rules = {});
 
-/// Whether the input is a mesh, by its ending. Throws Error when other inputs stand beside one.
+/// Whether the input is a mesh, by its extension. Throws Error if there are other inputs as well.
 bool is_mesh_input(const std::vector<std::string>& inputs);
 
-/// A mesh that was typed, or none.
+/// A mesh from the command line, or none.
 class MeshInput {
  public:
   /// Reads the file of --mesh, if there is one. `options` must live as long. Throws Error naming the file.
@@ -35,10 +35,11 @@ class MeshInput {
   /// Reads `path`, unless it is empty.
   MeshInput(const std::string& path, const MeshOptions& options);
 
-  /// The scene with the mesh in it: without --mesh-at in the middle, on what is highest there, else on the nearest
-  /// surface, else at the lowest point of the scene. Throws Error where --mesh-at has no Z and no surface below it.
+  /// Returns the scene with the mesh. Without --mesh-at it stands in the middle on the highest surface, else on the
+  /// surface nearest to the middle, else at the lowest height of the scene. Throws Error if --mesh-at has neither Z nor
+  /// a surface.
   Scene with_mesh(Scene scene) const;
-  /// The mesh alone: without --mesh-at where its file places it.
+  /// Returns the mesh alone, without --mesh-at in the coordinates of its file.
   Scene alone() const;
 
   const TriangleMesh& mesh() const { return mesh_; }
@@ -49,7 +50,7 @@ class MeshInput {
   TriangleMesh mesh_;
 };
 
-/// What is in a mesh file, for `scarp info`.
+/// The contents of a mesh file, for `scarp info`.
 nlohmann::ordered_json describe_mesh(const std::string& path, const MeshOptions& options);
 std::string mesh_text_of(const nlohmann::ordered_json& info);
 

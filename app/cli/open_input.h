@@ -24,7 +24,7 @@ namespace scarp::cli {
 /// The march for terrain without --march.
 constexpr const char* kTerrainMarch = "max-mip";
 
-/// What was typed.
+/// Options as typed.
 struct InputOptions {
   std::vector<std::string> inputs;
   RasterOptions raster;
@@ -38,11 +38,10 @@ struct InputOptions {
   std::string device;
 };
 
-/// The kind of the inputs, by their names and the options beside them. Throws Error or WrongUsage: none, or several
-/// kinds at once.
+/// Returns the kind of the inputs, by their names and options. Throws Error or WrongUsage if there is none or several.
 InputKind kind_of_input(const Command& command, const InputOptions& options);
 
-/// The march whose settings count; empty for inputs whose marches have none.
+/// Returns the march whose settings apply; empty for inputs whose marches have no settings.
 std::string_view march_of(const InputOptions& options, InputKind kind);
 
 struct OpenedInput {
@@ -50,18 +49,18 @@ struct OpenedInput {
   std::vector<std::string> notes{};  ///< one line each, for people
   std::vector<std::string> files{};  ///< that were read, beside those that were typed
 
-  // Of terrain alone.
-  std::string path{};  ///< of the first raster, for messages
+  // Terrain only.
+  std::string path{};  ///< first raster, for messages
   Georeference georeference{};
   int cols = 0, rows = 0;
 
-  std::optional<SolidRange> numbers{};       ///< of a volume, shown by the ramp
-  std::optional<SceneFile> document{};       ///< of a scene file
-  std::optional<HeightFunction> function{};  ///< of a function
+  std::optional<SolidRange> numbers{};       ///< volumes: range that the ramp shows
+  std::optional<SceneFile> document{};       ///< scene files
+  std::optional<HeightFunction> function{};  ///< functions
 };
 
-/// Reads the inputs and builds what rays need, without the mesh of --mesh. Numbers of volumes are shown by `ramp`, of
-/// ramp_names(); empty: not at all. Throws Error naming the file.
+/// Reads the inputs and builds a scene of them, without the mesh of --mesh. `ramp`, one of ramp_names(), colours the
+/// numbers of volumes; empty: one colour. Throws Error naming the file.
 OpenedInput open_input(InputKind kind, const InputOptions& options, const std::string& ramp = {});
 
 }  // namespace scarp::cli

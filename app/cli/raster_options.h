@@ -10,7 +10,7 @@
 
 namespace scarp::cli {
 
-/// What IN may be where every input is taken.
+/// Help of IN for subcommands that take every input.
 constexpr const char* kEveryFile =
     "raster (anything GDAL reads, .npy, .npz, .exr), voxels (.vox, .binvox), mesh (.obj, .gltf, .glb) or scene (.json)";
 

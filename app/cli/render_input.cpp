@@ -143,7 +143,7 @@ RenderInput function(OpenedInput opened, RenderOptions& options, const ViewSetti
   return input;
 }
 
-// Rays over functions end where haze hides all; that is known before the function is read.
+// Limits rays over functions to the distance at which haze hides everything.
 void settle_function(RenderOptions& options) {
   const double extent = options.function.extent;
   PictureSettings& picture = options.picture;

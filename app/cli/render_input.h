@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The inputs of `scarp render` with what pictures of them do by default.
+// The inputs of `scarp render` with the defaults of their pictures.
 #pragma once
 
 #include <functional>
@@ -26,7 +26,7 @@ struct RenderInput {
   double across = 0;      ///< metres that a picture is about: visibility, reach
   ReliefRange heights{};  ///< of the ground, exaggerated
   double exaggeration = 1;
-  std::optional<SolidRange> numbers{};   ///< that the colours of a volume show
+  std::optional<SolidRange> numbers{};   ///< range that a volume's colours show
   std::optional<dvec3> eye{}, target{};  ///< of the input's own camera
   /// Frames a scene that contains this one; FieldView::raised is set where the eye was lifted out of the ground.
   std::function<FieldView(const Scene&, const ViewSettings&)> framed{};

@@ -43,14 +43,14 @@ void add_vox_rounding_options(Command& command, VoxLookOptions& options);
 /// Declares --normals, --corner-ao, ...
 void add_vox_look_options(Command& command, VoxLookOptions& options);
 
-/// Colours of numbers, from the least to the largest.
+/// Colours for the numbers of a volume, from the smallest to the largest.
 std::vector<VoxelColour> colours_of(const std::string& ramp);
 
 /// A voxel file read.
 struct VoxInput {
   std::optional<VoxFile> document;  ///< of MagicaVoxel
   VoxelScene scene;
-  std::optional<SolidRange> numbers{};  ///< that the colours of a volume show
+  std::optional<SolidRange> numbers{};  ///< volumes: range that the colours show
 };
 /// Numbers of volumes are shown by `ramp`, of ramp_names(); empty: not at all.
 VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelSceneOptions& voxels,

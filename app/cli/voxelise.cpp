@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp voxelise`: terrain, meshes and scenes made voxels, as a MagicaVoxel or binvox file.
+// `scarp voxelise`: converts every input to voxels, as a MagicaVoxel or binvox file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ struct VoxeliseOptions : InputOptions {
 
 constexpr int kUsualCount = 256;
 
-// What voxels are coloured by.
+// Materials that colour the voxels.
 std::vector<Material> materials_of(const OpenedInput& input, const std::string& ramp) {
   if (input.document) return input.document->materials;
   const HeightField* field = input.scene.only_heights();

@@ -32,9 +32,9 @@ namespace scarp {
 /// Returns "miss", "hit", "below" or "exhausted".
 std::string_view name_of(HitStatus status);
 
-/// What kind of field was hit.
+/// The kind of field that was hit.
 enum class HitKind : std::uint8_t { heights, function, shape, voxels, mesh };
-/// The kind whose name is that of a scene's field, "heights"; nothing if there is none.
+/// Returns the kind with this name, as in SceneField::kind(); nullopt for other names.
 std::optional<HitKind> find_hit_kind(std::string_view name);
 
 /// A row of a table of hits. Rows that are not hits write only ray and status, and a finite t if exhausted.
@@ -44,9 +44,9 @@ struct HitRow {
   dvec3 position{0.0};  ///< in the coordinates of the table
   dvec3 normal{0.0};    ///< unit length
 
-  // Of scene_hits.
+  // Only scene_hits writes these.
   HitKind kind = HitKind::heights;
-  std::optional<std::uint32_t> material{};  ///< nothing: the field's own colours
+  std::optional<std::uint32_t> material{};  ///< nullopt: the field's own colours
 };
 
 enum class TableKind : std::uint8_t {

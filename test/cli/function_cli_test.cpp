@@ -86,7 +86,8 @@ TEST_F(Functions, HaveLayers) {
 TEST_F(Functions, HaveTheColoursOfARamp) {
   const std::string picture = out("ramped.png"), table = scratch_.write("table.cpt", "0 255 0 0 100 0 0 255\n");
   const auto rendered = [&](const std::vector<std::string>& options) {
-    std::vector<std::string> arguments{"render", "--function", ramp(), "--extent", "100", "-o", picture, "--size", "32x24"};
+    std::vector<std::string> arguments{"render", "--function", ramp(),   "--extent", "100",
+                                       "-o",     picture,      "--size", "32x24"};
     arguments.insert(arguments.end(), options.begin(), options.end());
     const auto result = test::run(arguments);
     EXPECT_EQ(result.status, 0) << result.err;

@@ -90,7 +90,7 @@ Ramp ramp_over(const PictureSettings& settings, double low, double high, double 
 /// The extent of the scene that ground is painted by, and the ramp of its heights.
 PaintExtent paint_extent(const Scene& scene, const PictureSettings& settings);
 Ramp ground_ramp(const Scene& scene, const PictureSettings& settings);
-/// Whether that ramp colours a field without a material: heights, and functions where the settings name a ramp.
+/// Returns whether that ramp colours a field without a material: heights, and functions if the settings name a ramp.
 bool is_ramped(const SceneField& field, const PictureSettings& settings);
 
 /// Throws Error naming the first setting out of its range.

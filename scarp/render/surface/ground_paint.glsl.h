@@ -85,8 +85,8 @@ const float kScarpLeastPerPixel = 1e-12f;
 /// Every so many contour lines one is heavy, from height 0 on.
 const int kScarpHeavyContour = 5;
 
-/// With contour lines over it, `interval` metres apart. Level surfaces have none: a lake or the top of a voxel would be
-/// all line. Upright ones have them as slopes of 45 degrees do, on which a pixel covers as much height as it can.
+/// With contour lines over it, `interval` metres apart. Level surfaces have none: a lake or the top of a voxel would
+/// be painted as a whole. The slope counts up to 1: a pixel covers no more height than its length on the surface.
 SCARP_FN vec3 scarp_with_contours(vec3 colour, real height, real3 normal, real footprint, real interval) {
   real slope = sqrt(max(real(0.0), real(1.0) - normal.z * normal.z)) / max(normal.z, real(kScarpLeastUpright));
   if (slope == real(0.0)) return colour;

@@ -20,7 +20,7 @@ struct FromVolumeOptions {
   std::optional<double> solid_from;  ///< the least number of a solid voxel; nothing: all above 0 are solid
 };
 
-/// Least and largest number of solid voxels; low > high: there is none.
+/// Smallest and largest number of the solid voxels; low > high if there are none.
 struct SolidRange {
   double low, high;
 };

@@ -15,7 +15,7 @@ namespace scarp {
 /// "PATH: is TEXT; expected WHAT" as an Error.
 [[noreturn]] void refuse_json(std::string_view path, const nlohmann::json& value, std::string_view expected);
 
-/// Sets `to` where the object has the key. Its value must be of the type: the schema has been checked.
+/// Sets `to` if the object has the key. The schema must have checked the type of the value.
 template <class T>
 void take_json(std::optional<T>& to, const nlohmann::json& object, const char* key) {
   if (object.contains(key)) to = object[key].get<T>();

@@ -107,7 +107,8 @@ TEST_F(SceneFiles, HaveWaterAndFog) {
   EXPECT_FALSE(dry.water || dry.fog);
   const SceneFile file = read(R"({"water": {"level": -2.5, "colour": "#00ff00", "turbidity": 0.5, "waves": 0.1,
     "wavelength": 7, "reflection": false, "refraction": true},
-    "fog": {"kind": "height", "visibility": 800, "base": 3, "falloff": 20, "sun_tint": 0.25}, "objects": [)" + kBall + "]}");
+    "fog": {"kind": "height", "visibility": 800, "base": 3, "falloff": 20, "sun_tint": 0.25}, "objects": [)" +
+                              kBall + "]}");
   ASSERT_TRUE(file.water && file.fog);
   EXPECT_EQ(file.water->level, -2.5);
   EXPECT_EQ(*file.water->srgb, vec3(0, 1, 0));
