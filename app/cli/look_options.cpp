@@ -47,6 +47,22 @@ std::string colour_text(vec3 srgb) {
   return fmt::format("{:02x}{:02x}{:02x}", byte(srgb.x), byte(srgb.y), byte(srgb.z));
 }
 
+// The image in the south-west corner and its mirror images, as --wrap mirror extends the raster (source/mirrored.h).
+ColourImage mirrored(const ColourImage& image) {
+  const int w = image.width, h = image.height;
+  ColourImage four{2 * w, 2 * h, {}, image.files};
+  four.rgba.reserve(4 * image.rgba.size());
+  for (int y = 0; y < 2 * h; ++y) {
+    const int row = y < h ? h - 1 - y : y - h;
+    for (int x = 0; x < 2 * w; ++x) {
+      const int col = x < w ? x : 2 * w - 1 - x;
+      const auto pixel = image.rgba.begin() + 4 * (std::int64_t{row} * w + col);
+      four.rgba.insert(four.rgba.end(), pixel, pixel + 4);
+    }
+  }
+  return four;
+}
+
 int pixels(double number, const std::string& text) {
   if (number != std::floor(number) || !(std::abs(number) <= 1e9)) {
     throw Error(fmt::format("--lowres '{}': expected WIDTHxHEIGHT in pixels, for example 320x240", text));
@@ -73,20 +89,21 @@ void add_look_options(Command& command, LookOptions& o) {
     };
   };
   const auto ground = lit(Topic::ground), water = lit(Topic::water), fog = lit(Topic::fog);
-  command.add(&o.ramp, {.names = "--ramp",
-                        .value = "RAMP",
-                        .help = "colours by height",
-                        .choices = {ramp_names().begin(), ramp_names().end()},
-                        .files = "cpt png",
-                        .note = "or a .cpt file, or a .png of 1 x N colours",
-                        .fallback = "hypsometric; viridis for the look steps",
-                        .topic = Topic::ground,
-                        .common = true,
-                        .looks = {"shaded steps comanche", "the others have colours of their own"},
-                        .rules = {needs(
-                            "--volume or --look steps",
-                            [&command] { return command.given("--volume") || command.value("--look") == "steps"; },
-                            kVoxels | kMesh)}});
+  command.add(
+      &o.ramp,
+      {.names = "--ramp",
+       .value = "RAMP",
+       .help = "colours by height",
+       .choices = {ramp_names().begin(), ramp_names().end()},
+       .files = "cpt png",
+       .note = "or a .cpt file, or a .png of 1 x N colours",
+       .fallback = "hypsometric; viridis for the look steps",
+       .topic = Topic::ground,
+       .common = true,
+       .looks = {"shaded steps comanche", "the others have colours of their own"},
+       .rules = {{"has no effect without --volume or --look steps (voxels and meshes have colours of their own)",
+                  [&command] { return command.given("--volume") || command.value("--look") == "steps"; },
+                  kVoxels | kMesh}}});
   ground(&o.ground_colours, {.names = "--ground",
                              .value = "KIND",
                              .help = "ground colours",
@@ -280,8 +297,8 @@ void settle_environment(const LookOptions& o, PictureSettings& picture) {
 std::vector<std::string> read_overlay_files(const LookOptions& o, const Georeference& georeference, int cols, int rows,
                                             bool mirror, PictureSettings& picture) {
   if (o.overlay.empty()) return {};
-  if (mirror) throw Error("--overlay cannot be combined with --wrap mirror");
   ColourImage image = read_overlay(o.overlay, georeference, cols, rows);
+  if (mirror) image = mirrored(image);
   picture.ground.drape = std::make_shared<Drape>(Drape{image.width, image.height, std::move(image.rgba)});
   return std::move(image.files);
 }

@@ -106,6 +106,15 @@ ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector
   return view;
 }
 
+namespace {
+
+// What SceneField::elements() counts.
+std::string_view elements_of(std::string_view kind) {
+  return kind == "voxels" ? "voxels" : kind == "mesh" ? "triangles" : "samples";
+}
+
+}  // namespace
+
 Json describe_scene(const std::string& path) {
   const SceneFile file = read_scene(path, terminal_progress("read"));
   Json info;
@@ -114,14 +123,22 @@ Json describe_scene(const std::string& path) {
   info["format"] = "Scarp scene";
   info["objects"] = Json::array();
   for (const SceneObjectName& name : file.names) {
-    std::map<std::pair<std::string, std::string>, std::size_t> kinds;
+    struct Counts {
+      std::size_t fields = 0;
+      std::int64_t elements = 0;
+    };
+    std::map<std::pair<std::string, std::string>, Counts> kinds;
     for (std::uint32_t i = name.first; i < name.first + name.count; ++i) {
       const SceneField& field = *file.scene.fields()[file.scene.objects()[i].field];
-      ++kinds[{std::string(field.kind()), std::string(field.march())}];
+      Counts& counts = kinds[{std::string(field.kind()), std::string(field.march())}];
+      ++counts.fields;
+      counts.elements += field.elements();
     }
-    Json object{{"name", name.name}, {"count", name.count}, {"fields", Json::array()}};
-    for (const auto& [kind, count] : kinds)
-      object["fields"].push_back({{"kind", kind.first}, {"march", kind.second}, {"count", count}});
+    Json object{{"name", name.name}, {"first", name.first}, {"count", name.count}, {"fields", Json::array()}};
+    for (const auto& [kind, counts] : kinds) {
+      object["fields"].push_back({{"kind", kind.first}, {"march", kind.second}, {"count", counts.fields}});
+      if (counts.elements > 0) object["fields"].back()[std::string(elements_of(kind.first))] = counts.elements;
+    }
     info["objects"].push_back(std::move(object));
   }
   info["placed"] = file.scene.objects().size();
@@ -150,10 +167,12 @@ std::string scene_text_of(const Json& info) {
   for (const Json& object : info["objects"]) {
     std::string what;
     for (const Json& field : object["fields"]) {
-      what += fmt::format("{}{} x {} by {}", what.empty() ? "" : ", ", field["count"].get<std::size_t>(),
-                          field["kind"].get<std::string>(), field["march"].get<std::string>());
+      const std::string kind = field["kind"].get<std::string>(), elements(elements_of(kind));
+      what += fmt::format("{}{} x {} by {}", what.empty() ? "" : ", ", field["count"].get<std::size_t>(), kind,
+                          field["march"].get<std::string>());
+      if (field.contains(elements)) what += fmt::format(", {} {}", field[elements].get<std::int64_t>(), elements);
     }
-    line("", fmt::format("{}: {}", object["name"].get<std::string>(), what));
+    line("", fmt::format("{} {}: {}", object["first"].get<std::uint32_t>(), object["name"].get<std::string>(), what));
   }
   const auto corner = [&](const char* key) {
     const Json& p = info[key];

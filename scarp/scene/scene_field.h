@@ -86,6 +86,8 @@ class SceneField {
 
   /// The side of the smallest cell or voxel, in metres; 0 for fields without.
   virtual double cell_side() const { return 0; }
+  /// Number of samples, solid voxels or triangles that the field stores; 0 for formulas.
+  virtual std::int64_t elements() const { return 0; }
   /// What stands for the field where 2^level times its voxels are small; null: the field itself.
   virtual std::shared_ptr<const SceneField> coarser(int) const { return nullptr; }
   /// The same field with the march that judges others: one that passes nothing. Null: there is none beside its own.

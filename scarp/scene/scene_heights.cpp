@@ -45,6 +45,7 @@ class Heights final : public SceneField {
     return nothing() ? WorldBox{} : ground_box();
   }
   std::optional<double> height(double x, double y) const override { return field_.height(x, y); }
+  std::int64_t elements() const override { return std::int64_t{field_.cols()} * field_.rows(); }
   double cell_side() const override { return std::min(field_.settings().cell_x, field_.settings().cell_y); }
   SceneFieldPtr judge() const override { return scene_heights(field_, find_height_march("exhaustive")); }
 

@@ -60,6 +60,11 @@ class Voxels final : public SceneField {
     return FieldSurface{{0, 0, 1}, {0, 0, 1}, colour};
   }
   double cell_side() const override { return scene_.voxel_side(); }
+  std::int64_t elements() const override {
+    std::int64_t solid = 0;
+    for (const auto& model : scene_.models()) solid += model->grid().solid_count();
+    return solid;
+  }
   SceneFieldPtr judge() const override { return scene_voxels(scene_.marched_by(kJudge), kJudge, shading_); }
   SceneFieldPtr coarser(int level) const override { return scene_voxels(scene_.coarser(level), march_, shading_); }
 

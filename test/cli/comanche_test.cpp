@@ -194,6 +194,26 @@ TEST(Overlay, LiesWhereItsPlaceIs) {
   }
 }
 
+// The mirror image of the red half is next to it, over the border.
+TEST(Overlay, IsMirroredWithTheGround) {
+  const test::Scratch scratch;
+  const std::string dem = hill(scratch), image = scratch.path("red.png");
+  std::vector<std::uint8_t> red(3 * 80 * 80);
+  for (std::size_t i = 0; i < red.size(); i += 3) red[i] = i / 3 % 80 < 40 ? 255 : 0;
+  write_png(image, {red.data(), 80, 80});
+  scratch.write("red.pgw", "1\n0\n0\n-1\n500000.5\n4000079.5\n");
+  const auto result = test::run({"render", dem, "-o", scratch.path("out.png"), "--wrap", "mirror", "--top", "--size",
+                                 "160x160", "--overlay", image, "--haze", "0", "--no-shadows"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const test::Rgb picture = test::read_png(scratch.path("out.png"));
+  for (int y = 5; y < 160; y += 10) {
+    for (int x = 5; x < 160; x += 10) {
+      if (std::abs(x - 40) < 4 || std::abs(x - 120) < 4) continue;
+      EXPECT_EQ(picture.pixel(x, y)[0] > 40, x < 40 || x > 120) << x << ", " << y;
+    }
+  }
+}
+
 #ifdef SCARP_OPENEXR
 TEST(Composite, TheNearerPixelIsSeen) {
   const test::Scratch scratch;

@@ -147,7 +147,10 @@ TEST_F(Scenes, AreToldByInfo) {
   // more roundings: fewer than 64 units of the 5 m that the ball reaches from the origin.
   EXPECT_NEAR(info["low_m"][2].get<double>(), -1, 64 * 5 * 0x1p-53);
   EXPECT_LE(info["low_m"][2].get<double>(), -1);
-  EXPECT_NE(test::run({"info", path_}).out.find("ball: 1 x shape by sphere-trace"), std::string::npos);
+  EXPECT_NE(test::run({"info", path_}).out.find("1 ball: 1 x shape by sphere-trace"), std::string::npos);
+  EXPECT_EQ(info["objects"][1]["first"], 1) << "as the object of scarp cast";
+  std::ofstream(path_) << R"({"objects": [{"heights": {"generate": {"size": [9, 8]}}}]})";
+  EXPECT_EQ(Json::parse(test::run({"info", path_, "--json"}).out)["objects"][0]["fields"][0]["samples"], 72);
 }
 
 // A million levels: one line with where that is, and no stack used up.

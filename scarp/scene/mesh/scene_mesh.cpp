@@ -82,6 +82,7 @@ class MeshField final : public SceneField {
 
   std::string_view kind() const override { return "mesh"; }
   std::string_view march() const override { return "embree"; }
+  std::int64_t elements() const override { return static_cast<std::int64_t>(triangles_); }
   std::optional<WorldBox> box() const override { return box_; }
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
