@@ -13,6 +13,7 @@
 #include <string>
 
 #include "base/refusal.h"
+#include "cases.h"
 #include "field/shape_zoo.h"
 #include "scarp/base/error.h"
 #include "scarp/field/distance_run.h"
@@ -22,11 +23,7 @@ namespace {
 
 using namespace shape;
 
-#ifdef NDEBUG
-constexpr int kPlaces = 10'000;
-#else
-constexpr int kPlaces = 400;
-#endif
+const int kPlaces = cases(10'000, 2000, 400);
 constexpr double kReach = 60;  // of the positions below, from the origin
 
 dvec3 anywhere(FunctionRandom& random, double reach = 20) {

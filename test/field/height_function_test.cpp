@@ -13,17 +13,14 @@
 #include <string>
 
 #include "base/refusal.h"
+#include "cases.h"
 #include "field/terrain_functions.h"
 #include "scarp/base/error.h"
 
 namespace scarp::test {
 namespace {
 
-#ifdef NDEBUG
-constexpr int kSamples = 1'000'000;
-#else
-constexpr int kSamples = 20'000;
-#endif
+const int kSamples = cases(1'000'000, 100'000, 20'000);
 constexpr double kSizes[] = {0.1, 1, 10, 100, 1000};
 
 TEST(HeightFunction, GradientsAreThoseOfDifferences) {

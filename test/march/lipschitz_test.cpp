@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cases.h"
 #include "march/height/spiteful.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
@@ -50,11 +51,7 @@ TEST(Lipschitz, TakesAShrinkFactorInsteadOfTheSlope) {
 }
 
 TEST(Lipschitz, NeverPassesTheSurface) {
-#ifdef NDEBUG
-  constexpr int kFields = 40;
-#else
-  constexpr int kFields = 4;
-#endif
+  const int kFields = cases(40, 10, 4);
   constexpr int kRays = 50;
   int hits = 0, exhausted = 0, judged_hits = 0;
   for (const FieldKind& fields : spiteful_fields()) {

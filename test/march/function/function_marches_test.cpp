@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "cases.h"
 #include "field/terrain_functions.h"
 #include "march/function/function_rays.h"
 #include "scarp/base/error.h"
@@ -22,11 +23,7 @@
 namespace scarp::test {
 namespace {
 
-#ifdef NDEBUG
-constexpr int kRays = 10'000;
-#else
-constexpr int kRays = 60;
-#endif
+const int kRays = cases(10'000, 2000, 60);
 
 // The last interval of lipschitz-local: of several crossings in it any may be told.
 constexpr double kTolerance = LipschitzLocalSettings{}.tolerance;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "cases.h"
 #include "field/terrain_functions.h"
 #include "march/function/function_judge.h"
 #include "march/function/function_rays.h"
@@ -32,11 +33,9 @@ bool scarp_uses(uint) { return true; }
 namespace scarp::test {
 namespace {
 
-#ifdef NDEBUG
-constexpr int kPlaces = 20'000, kSegments = 3'000, kRays = 2'000;
-#else
-constexpr int kPlaces = 500, kSegments = 60, kRays = 20;
-#endif
+const int kPlaces = cases(20'000, 4000, 500);
+const int kSegments = cases(3'000, 600, 60);
+const int kRays = cases(2'000, 400, 20);
 
 constexpr int kAll = 1 << 30;  // steps of a run
 

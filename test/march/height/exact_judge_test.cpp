@@ -12,6 +12,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cases.h"
 #include "march/height/spiteful.h"
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip.h"
@@ -19,11 +20,7 @@
 namespace scarp::test {
 namespace {
 
-#ifdef NDEBUG
-constexpr int kRays = 20'000;
-#else
-constexpr int kRays = 2'000;
-#endif
+const int kRays = cases(20'000, 4000, 2'000);
 constexpr int kRaysPerField = 20;
 
 struct Kind {

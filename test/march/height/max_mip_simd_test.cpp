@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "cases.h"
 #include "march/height/spiteful.h"
 #include "march/instruction_sets.h"
 #include "scarp/march/height/max_mip.h"
@@ -20,11 +21,14 @@
 namespace scarp::test {
 namespace {
 
+const int kRaysPerPair = cases(10'000, 2000, 16);
+const int kUsualRays = cases(3000, 1000, 100);
+const int kCameras = cases(60, 15, 2);
 #ifdef NDEBUG
-constexpr int kRaysPerPair = 10'000, kUsualRays = 3000, kCameras = 60, kNodesApart = 1;
+constexpr int kNodesApart = 1;
 constexpr bool kAllTypes = true;
 #else
-constexpr int kRaysPerPair = 40, kUsualRays = 100, kCameras = 2, kNodesApart = 6;
+constexpr int kNodesApart = 6;
 constexpr bool kAllTypes = false;  // of samples with each kind of ground and surface
 #endif
 constexpr int kRaysPerField = 500;

@@ -20,6 +20,7 @@
 #include <map>
 #include <string>
 
+#include "cases.h"
 #include "march/height/spiteful.h"
 #include "march/height/spiteful_text.h"
 #include "scarp/accel/slope_bound.h"
@@ -31,13 +32,8 @@
 namespace scarp::test {
 namespace {
 
-// 10^5 rays per pair where the build is optimised. The sanitizers are ten times slower and look for what marches do to
-// memory, which comes again with each ray and field: eight fields per pair.
-#ifdef NDEBUG
-constexpr int kRaysPerPair = 100'000;
-#else
-constexpr int kRaysPerPair = 2'000;
-#endif
+// Under the sanitizers eight fields per pair: they look for what marches do to memory, which repeats with each ray.
+const int kRaysPerPair = cases(100'000, 10'000, 2'000);
 constexpr int kRaysPerField = 250;
 // Marches that promise nothing are only asked to stay in the ray's range.
 constexpr int kRaysPerApproximation = 20;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/refusal.h"
+#include "cases.h"
 #include "march/height/rounding_judge.h"
 #include "march/height/spiteful.h"
 #include "march/height/spiteful_text.h"
@@ -28,11 +29,7 @@ namespace scarp::test {
 namespace {
 
 // Two fields of each kind, and as many rays of each kind over them; the judge takes most of the time.
-#ifdef NDEBUG
-constexpr int kRaysPerKind = 200;
-#else
-constexpr int kRaysPerKind = 25;
-#endif
+const int kRaysPerKind = cases(200, 50, 25);
 constexpr int kFieldsPerKind = 2;
 
 // Compiling a march for lavapipe takes longer than running it: once for all fields.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "cases.h"
 #include "march/glsl_host.h"
 #include "march/height/rounding_judge.h"
 #include "march/height/spiteful.h"
@@ -20,11 +21,7 @@ namespace scarp::test {
 namespace {
 
 constexpr int kFieldsPerPair = 2;
-#ifdef NDEBUG
-constexpr int kRaysPerField = 40;
-#else
-constexpr int kRaysPerField = 10;
-#endif
+const int kRaysPerField = cases(40, 10, 10);
 
 struct Marched {
   std::string_view march;

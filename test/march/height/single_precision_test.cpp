@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "cases.h"
 #include "march/glsl_host.h"
 #include "march/height/rounding_judge.h"
 #include "march/height/shader_ray.h"
@@ -21,11 +22,8 @@
 namespace scarp::test {
 namespace {
 
-#ifdef NDEBUG
-constexpr int kRaysPerPair = 2'500, kWideRays = 500;
-#else
-constexpr int kRaysPerPair = 100, kWideRays = 20;
-#endif
+const int kRaysPerPair = cases(2'500, 500, 100);
+const int kWideRays = cases(500, 100, 20);
 constexpr int kRaysPerField = 250;
 
 // Casts rays of a kind over fields of a kind; returns how many have another status than in double.
@@ -119,11 +117,7 @@ TEST(SinglePrecisionAcrossTiles, MaxMipDecidesAsTheSurfaceDoes) {
 // Any-hit looks ahead: it agrees with closest-hit all the same, and reads less. Levels and rising rays have no other
 // early answer.
 TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithTheClosestHit) {
-#ifdef NDEBUG
-  constexpr int kRays = 50'000;
-#else
-  constexpr int kRays = 2'000;
-#endif
+  const int kRays = cases(50'000, 10'000, 2'000);
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     const HeightField field = hills(2100, 900, surface);
     const MaxPyramid pyramid(field);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "cases.h"
 #include "march/glsl_host.h"
 #include "march/height/rounding_judge.h"
 #include "march/height/spiteful.h"
@@ -20,11 +21,7 @@
 namespace scarp::test {
 namespace {
 
-#ifdef NDEBUG
-constexpr int kRaysPerPair = 1000;
-#else
-constexpr int kRaysPerPair = 50;
-#endif
+const int kRaysPerPair = cases(1000, 250, 50);
 constexpr int kRaysPerField = 250;
 // Of times and places, see the header.
 constexpr double kUnit = 0x1p-44;

@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "cases.h"
 #include "field/shape_zoo.h"
 #include "scarp/base/error.h"
 #include "scarp/march/shape/shape_exhaustive.h"
@@ -22,11 +23,7 @@ namespace {
 
 using namespace shape;
 
-#ifdef NDEBUG
-constexpr int kRays = 2000;
-#else
-constexpr int kRays = 200;
-#endif
+const int kRays = cases(2000, 500, 200);
 constexpr double kTolerance = SphereTraceSettings{}.tolerance;
 
 dvec3 anywhere(FunctionRandom& random, double reach) {

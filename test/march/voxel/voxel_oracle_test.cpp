@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "cases.h"
 #include "march/voxel/spiteful_voxels.h"
 #include "scarp/accel/brick_masks.h"
 #include "scarp/accel/empty_cubes.h"
@@ -17,12 +18,8 @@
 namespace scarp::test {
 namespace {
 
-// 10^5 rays per pair where the build is optimised; fewer under the sanitizers.
-#ifdef NDEBUG
-constexpr int kRaysPerPair = 100'000;
-#else
-constexpr int kRaysPerPair = 500;
-#endif
+// Few under the sanitizers, which look for what marches do to memory.
+const int kRaysPerPair = cases(100'000, 10'000, 500);
 constexpr int kRaysPerGrid = 250;
 
 std::string text(const VoxelHit& hit) {
