@@ -31,13 +31,13 @@ function(scarp_compile_options target)
   endif()
 endfunction()
 
-# scarp_unity(target FILES [WITH_PROGRAMS] [ALONE FILE...]): compiles that many files of the target as one where SCARP_UNITY asks for it. For
-# targets whose files spend their time on the same headers. ALONE: files whose local names are those of others; and those with options of their
-# own are compiled alone, too. SCARP_UNITY=programs leaves stations, which include what they need, as they are, but those WITH_PROGRAMS.
+# scarp_unity(target FILES [ALWAYS] [ALONE FILE...]): compiles that many files of the target as one: headers take most of the time. Stations
+# are compiled so where SCARP_UNITY is on, or ALWAYS; programs are in every build. File by file a build finds what a file forgets to include.
+# ALONE: files whose local names clash with others'; those with options of their own are compiled alone, too.
 function(scarp_unity target files)
-  cmake_parse_arguments(arg "WITH_PROGRAMS" "" "ALONE" ${ARGN})
+  cmake_parse_arguments(arg "ALWAYS" "" "ALONE" ${ARGN})
   get_property(stations GLOBAL PROPERTY SCARP_STATIONS)
-  if(NOT SCARP_UNITY STREQUAL "all" AND NOT (SCARP_UNITY STREQUAL "programs" AND (arg_WITH_PROGRAMS OR NOT target IN_LIST stations)))
+  if(NOT SCARP_UNITY AND NOT arg_ALWAYS AND target IN_LIST stations)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})

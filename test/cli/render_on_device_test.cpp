@@ -2,6 +2,7 @@
 // `scarp render --device`: a picture on whatever device there is, and what is refused.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>

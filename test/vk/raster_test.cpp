@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/vec4.hpp>
 #include <string>
 #include <vector>
 
