@@ -8,7 +8,7 @@ set(documents README.md CHANGELOG.md bench/README.md doc/user/*.md doc/library/*
 # folders whose *.h are checked, subfolders included, for example scarp/vk
 set(header_folders scarp/accel scarp/base scarp/field scarp/march/shape scarp/march/voxel scarp/output scarp/vk)
 # single headers, beside those of the folders
-set(headers scarp/scarp.h scarp/scene/cast.h scarp/scene/combine.h scarp/scene/placement.h scarp/scene/scene.h
+set(headers scarp/scarp.h scarp/scene/cast.h scarp/scene/combine.h scarp/scene/file/scene_file.h scarp/scene/placement.h scarp/scene/scene.h
     scarp/scene/scene_vk.h scarp/scene/terrain.h scarp/scene/voxels.h)
 set(help_calls)      # calls of the program whose output is checked, for example "render --help"
 

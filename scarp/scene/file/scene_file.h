@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes from JSON files: fields, where they stand, what they look like, and how a picture is made of them.
+// Scenes from JSON files: fields, their placements and materials, and settings of a picture.
 //
 //   {
 //     "camera": {"eye": [0, -60, 20], "target": [0, 0, 5]},
@@ -10,7 +10,7 @@
 //     ]
 //   }
 //
-// Every key is in scene.schema.json and in doc/user/scenes.md. Paths count from the file's folder.
+// scene.schema.json and doc/user/scenes.md document every key. Paths are relative to the file's folder.
 #pragma once
 
 #include <cstdint>
@@ -24,24 +24,27 @@
 
 namespace scarp {
 
-/// What is not set is left to whoever makes the picture.
+/// Camera of a file. Members without a value, here and below, are left to the caller's settings.
 struct SceneCamera {
   std::optional<dvec3> eye, target;  ///< both or none, metres, world
   std::optional<double> azimuth_deg, elevation_deg, distance, fov_deg;
 };
 
+/// Sun of a file, as SunSettings of render/light/light.h.
 struct SceneSun {
   std::optional<double> azimuth_deg, altitude_deg, size_deg;
   std::optional<bool> shadows;
 };
 
+/// Picture settings of a file, as PictureSettings of render/frame/picture.h.
 struct ScenePicture {
   std::optional<int> width, height, aa, samples;
   std::optional<double> ao_distance;
   std::optional<std::uint32_t> seed;
-  bool coarse_voxels = false;  ///< Scene::coarser()
+  bool coarse_voxels = false;  ///< whether to call Scene::coarser()
 };
 
+/// Water of a file, as WaterSettings of render/surface/water.h.
 struct SceneWater {
   double level = 0;            ///< metres, not exaggerated
   std::optional<vec3> srgb{};  ///< 0..1
@@ -49,18 +52,20 @@ struct SceneWater {
   std::optional<bool> reflection{}, refraction{};
 };
 
+/// Fog of a file, as FogSettings of render/light/fog.h.
 struct SceneFog {
   std::string kind;  ///< "distance" or "height"
   std::optional<double> visibility{}, base{}, falloff{}, sun_tint{};
 };
 
-/// An object of a file; one with places, scattered or of another scene is several of a Scene.
+/// An object of a file. One with several places, a scattered one or another scene becomes several objects of a Scene.
 struct SceneObjectName {
-  std::string name;         ///< as the file says, or its place in the file
-  std::uint32_t first = 0;  ///< of its objects in the scene
-  std::uint32_t count = 0;
+  std::string name;         ///< as in the file, or its position there
+  std::uint32_t first = 0;  ///< index of its first object in the scene
+  std::uint32_t count = 0;  ///< number of its objects
 };
 
+/// The contents of a scene file.
 struct SceneFile {
   Scene scene;
   std::vector<Material> materials;
@@ -68,16 +73,17 @@ struct SceneFile {
   SceneCamera camera;
   SceneSun sun;
   ScenePicture picture;
-  std::optional<double> haze_distance;  ///< metres; not beside fog
+  std::optional<double> haze_distance;  ///< metres; never set if `fog` is
   std::optional<SceneWater> water;
   std::optional<SceneFog> fog;
-  std::vector<std::string> notes;  ///< of readers, one line each, for people
-  std::vector<std::string> files;  ///< all that were read: this one, other scenes, heights, voxels
+  std::vector<std::string> notes;  ///< conversions and assumptions of the readers, one line each, for display
+  std::vector<std::string> files;  ///< all files that were read: this one, other scenes, heights, voxels
 };
 
-/// Reads the file and everything that it names. Throws Error in one line with the file and the place in it, as a JSON
-/// pointer, and what would be right: no such file, not JSON, not to the schema, files that cannot be read, names that
-/// nobody has, scenes or materials that contain themselves, more than 2^20 objects. Interrupted when progress asks.
+/// Reads a file and everything that it names. Throws Error in one line that contains the file, the position in it as a
+/// JSON pointer, and the expected value: no such file, not JSON, not valid by the schema, files that cannot be read,
+/// unknown names, scenes or materials that contain themselves, more than 2^20 objects. Throws Interrupted if `progress`
+/// returns false.
 SceneFile read_scene(const std::string& path, const Progress& progress = {});
 
 }  // namespace scarp
