@@ -22,27 +22,27 @@
 namespace scarp {
 namespace {
 
-// Rows per call of the library, which compresses 16 at a time: bounds what the conversion to half takes.
+// Rows per write call; limits the memory for conversion to half. OpenEXR compresses 16 rows at a time.
 constexpr int kRows = 256;
 
 Error cannot_write(const std::string& path, std::string_view why) {
-  return Error(fmt::format("output '{}': cannot be written: {}; is the disk full?", path, why));
+  return Error(fmt::format("{}: cannot be written: {} (is the disk full?)", path, why));
 }
 
 void require_good(const std::string& path, const ExrView& picture) {
   const auto require = [&](bool good, std::string_view what) {
-    if (!good) throw Error(fmt::format("output '{}': {}", path, what));
+    if (!good) throw Error(fmt::format("{}: {}", path, what));
   };
   require(picture.width >= 1 && picture.height >= 1,
-          fmt::format("the picture has {} x {} pixels; at least 1 x 1 are needed", picture.width, picture.height));
-  require(!picture.channels.empty(), "the picture has no channels; at least one is needed");
+          fmt::format("image of {} x {} pixels (at least 1 x 1 required)", picture.width, picture.height));
+  require(!picture.channels.empty(), "image has no channels (at least one required)");
   std::set<std::string> names;
   for (const ExrChannel& channel : picture.channels) {
     require(!channel.name.empty() && names.insert(channel.name).second,
-            fmt::format("a channel is named '{}'; each needs a name of its own", channel.name));
+            fmt::format("channel name '{}' is empty or repeated (channels need unique names)", channel.name));
     require(
         std::visit([](const auto* data) { return data != nullptr; }, channel.data) && channel.stride >= 1,
-        fmt::format("channel '{}' has no data or a stride of {}; at least 1 is needed", channel.name, channel.stride));
+        fmt::format("channel '{}' has no data or a stride of {} (at least 1 required)", channel.name, channel.stride));
   }
 }
 
@@ -65,12 +65,12 @@ Imf::Header header_of(const ExrView& picture) {
   return header;
 }
 
-// A slice over rows from `row` on; the library counts rows of the whole picture from the slice's base.
+// A slice that starts at `row`; OpenEXR counts rows of the whole image from the slice's base.
 template <class T>
 Imf::Slice slice(Imf::PixelType type, const T* first_of_row, int row, int width, int stride) {
   const std::size_t across = sizeof(T) * static_cast<std::size_t>(stride);
   const std::size_t down = across * static_cast<std::size_t>(width);
-  // The library takes bases of memory that it only reads as char* too.
+  // OpenEXR takes char* even for memory that it only reads.
   char* base = reinterpret_cast<char*>(const_cast<T*>(first_of_row));
   return Imf::Slice(type, base - static_cast<std::ptrdiff_t>(down) * row, across, down);
 }
@@ -108,8 +108,8 @@ void write_rows(Imf::OutputFile& out, const ExrView& picture) {
 
 void write_exr(ReplaceFile& file, const std::string& path, const ExrView& picture) {
   require_good(path, picture);
-  // The stream is ours: the library writes the table of lines in a destructor, where it keeps failures to itself, and
-  // the last bytes reach the disk only when the stream is closed.
+  // An own stream: OpenEXR writes the line table in a destructor, which swallows errors, and the last bytes reach the
+  // disk only when the stream closes.
   std::ofstream stream(file.temporary_path(), std::ios::binary);
   try {
     Imf::StdOFStream whole(stream, file.temporary_path().c_str());

@@ -13,10 +13,10 @@
 namespace scarp {
 namespace {
 
-// Shares of the picture's shorter side, and of the text's size.
+// Fractions of the image's shorter side and of the text height.
 constexpr double kTextShare = 1.0 / 40, kLeastText = 10;
 constexpr double kMargin = 0.8, kBarHeight = 0.9, kLegendLength = 18, kGap = 0.45;
-constexpr double kPaper = 0.82;  // opacity of what the text stands on
+constexpr double kPaper = 0.82;  // opacity of the background behind text
 
 struct Free {
   void operator()(cairo_surface_t* surface) const { cairo_surface_destroy(surface); }
@@ -69,7 +69,7 @@ class Drawing {
     paper(left, top, panel_width, panel_height, "the legend");
     const double x = left + pad() + sides.left, y = top + pad() + font_.height + gap();
     write(left + pad(), top + pad() + font_.ascent, legend.title);
-    // One column of pixels after the other, each of the colour in its middle.
+    // Draws one pixel column at a time, in the colour at its centre.
     const int columns = static_cast<int>(length);
     for (int i = 0; i < columns; ++i) {
       const double share = (i + 0.5) / columns * static_cast<double>(legend.colours.size());
@@ -105,7 +105,7 @@ class Drawing {
     }
   }
 
-  // Back into the picture.
+  // Copies the drawing back into the image.
   void finish() {
     check();
     cairo_surface_flush(surface_.get());
@@ -116,7 +116,7 @@ class Drawing {
   }
 
  private:
-  // How far texts under a bar's ticks reach beyond its ends.
+  // How far labels extend beyond the ends of the bar.
   struct Sides {
     double left = 0, right = 0;
   };
@@ -160,9 +160,9 @@ class Drawing {
 
   void paper(double x, double y, double wide, double high, std::string_view what) {
     if (x < 0 || y < 0 || x + wide > width_) {
-      throw Error(fmt::format(
-          "figure: {} takes {:.0f} x {:.0f} pixels, which the picture of {} x {} has no room for; make it larger", what,
-          wide, high, width_, height_));
+      throw Error(
+          fmt::format("figure: {} needs {:.0f} x {:.0f} pixels, too large for the image of {} x {} (enlarge the image)",
+                      what, wide, high, width_, height_));
     }
     cairo_set_source_rgba(cr(), 1, 1, 1, kPaper);
     cairo_rectangle(cr(), x, y, wide, high);

@@ -69,10 +69,10 @@ std::span<const std::string_view> words_of(std::size_t column) {
   return {};
 }
 
-// Written to the file in pieces of this size.
+// Size of the pieces written to the file.
 constexpr std::size_t kPiece = 1 << 20;
 
-// As RFC 4180 wants it: in quotes where the text has a separator, a quote or the end of a line.
+// RFC 4180: quotes text that contains a separator, a quote or a line break.
 void append_quoted(std::string& out, std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
     out += text;
@@ -91,7 +91,7 @@ void append_little_endian(std::string& out, double number) {
   for (int i = 0; i < 8; ++i) out += static_cast<char>(bits >> (8 * i) & 0xff);
 }
 
-// The header of an array of `rows` structures. Its length does not depend on `rows`: it is written again at the end.
+// The header of an array of `rows` structures. Its length does not depend on `rows`, so it can be rewritten at the end.
 std::string npy_header(std::span<const std::string_view> columns, std::int64_t rows) {
   std::string fields;
   for (const std::string_view name : columns) fields += fmt::format("('{}', '<f8'), ", name);
@@ -116,7 +116,7 @@ bool is_npy(const std::string& path) {
   const std::string extension = extension_of(path);
   if (extension == ".npy") return true;
   if (extension == ".csv") return false;
-  throw Error(fmt::format("output '{}': tables are written as CSV or .npy; let the name end in .csv or .npy", path));
+  throw Error(fmt::format("{}: tables are CSV or NumPy files (end the name in .csv or .npy)", path));
 }
 
 }  // namespace
@@ -138,7 +138,7 @@ HitTable::HitTable(const std::string& path, TableKind kind, const TextColumns& c
   const auto columns = columns_of(kind);
   for (const std::string& name : carried.names) {
     if (!npy_ && std::find(columns.begin(), columns.end(), name) != columns.end()) {
-      refuse(fmt::format("the rays bring a column '{}', which is one of its own; give it another name", name));
+      refuse(fmt::format("column '{}' of the rays has the name of an output column (rename it)", name));
     }
   }
   if (path.empty()) {
@@ -154,7 +154,7 @@ HitTable::HitTable(const std::string& path, TableKind kind, const TextColumns& c
 HitTable::~HitTable() = default;
 
 void HitTable::refuse(std::string_view what) const {
-  throw Error(fmt::format("output '{}': {}", path_.empty() ? "-" : path_, what));
+  throw Error(fmt::format("{}: {}", path_.empty() ? "standard output" : path_, what));
 }
 
 void HitTable::put_header() {
@@ -246,7 +246,7 @@ void HitTable::add(std::int64_t first_ray, std::span<const std::uint8_t> blocked
 
 void HitTable::flush() {
   if (std::fwrite(text_.data(), 1, text_.size(), file_.get()) != text_.size()) {
-    refuse("cannot be written; is the disk full?");
+    refuse("cannot be written (is the disk full?)");
   }
   text_.clear();
 }
@@ -258,9 +258,9 @@ void HitTable::commit() {
     text_ = npy_header(columns_of(kind_), rows_);
     flush();
   }
-  if (std::fflush(file_.get()) != 0) refuse("cannot be written; is the disk full?");
+  if (std::fflush(file_.get()) != 0) refuse("cannot be written (is the disk full?)");
   if (!place_) return;
-  if (std::fclose(file_.release()) != 0) refuse("cannot be written; is the disk full?");
+  if (std::fclose(file_.release()) != 0) refuse("cannot be written (is the disk full?)");
   place_->commit();
 }
 

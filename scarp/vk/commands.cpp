@@ -21,15 +21,15 @@ constexpr auto kDrawStages = vk::ShaderStageFlagBits::eVertex | vk::ShaderStageF
 void require_fits(const RasterTarget::Impl& target, const DrawCall& call) {
   const RasterPipeline::Impl& shader = call.pipeline->impl();
   if (call.push_bytes != shader.push_bytes) {
-    throw Error(fmt::format("shader '{}': {} bytes of push constants, {} expected", shader.name, call.push_bytes,
+    throw Error(fmt::format("shader '{}': {} bytes of push constants instead of {}", shader.name, call.push_bytes,
                             shader.push_bytes));
   }
   if (shader.colours != target.colours()) {
-    throw Error(fmt::format("shader '{}': writes {} colours, its target has {}", shader.name, shader.colours,
+    throw Error(fmt::format("shader '{}': writes {} colours, but its target has {}", shader.name, shader.colours,
                             target.colours()));
   }
   if (call.indices && std::uint64_t{call.count} * 4 > call.indices->bytes()) {
-    throw Error(fmt::format("shader '{}': {} indices, the buffer '{}' holds {}", shader.name, call.count,
+    throw Error(fmt::format("shader '{}': {} indices, but the buffer '{}' holds {}", shader.name, call.count,
                             call.indices->impl().name, call.indices->bytes() / 4));
   }
 }
@@ -42,9 +42,9 @@ struct Commands::Impl {
 
   void begin() {
     if (recording) return;
-    finish();  // a run that nobody waited for to its end
+    finish();  // a run whose caller did not wait
     commands.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    // What earlier runs and copies have written is there; Vulkan wants it said.
+    // Vulkan requires a barrier before the results of earlier runs and copies are visible.
     full_barrier(commands);
     timestamps.reset(commands);
     recording = true;
@@ -75,7 +75,7 @@ Commands::~Commands() {
   if (!impl_ || !impl_->running) return;
   try {
     impl_->device->device.waitIdle();
-  } catch (const vk::SystemError&) {  // lost: nothing runs any more
+  } catch (const vk::SystemError&) {  // device lost: nothing is running
   }
 }
 
@@ -84,12 +84,12 @@ void Commands::record_dispatch(const ComputePipeline& pipeline, const void* push
   const ComputePipeline::Impl& shader = pipeline.impl();
   if (bytes != shader.push_bytes) {
     throw Error(
-        fmt::format("shader '{}': {} bytes of push constants, {} expected", shader.name, bytes, shader.push_bytes));
+        fmt::format("shader '{}': {} bytes of push constants instead of {}", shader.name, bytes, shader.push_bytes));
   }
   for (const std::uint32_t count : groups) {
     if (count == 0 || count > kMaxGroups) {
       throw Error(
-          fmt::format("shader '{}': {} workgroups along one side; 1 to {} expected", shader.name, count, kMaxGroups));
+          fmt::format("shader '{}': {} workgroups along one side (1 to {} allowed)", shader.name, count, kMaxGroups));
     }
   }
   guarded(impl_->device->name(), "recording '" + shader.name + "'", [&] {
@@ -111,7 +111,7 @@ void Commands::record_draw(const RasterTarget& target, std::span<const DrawCall>
   guarded(impl_->device->name(), "recording '" + calls.front().pipeline->name() + "'", [&] {
     impl_->begin();
     const vk::raii::CommandBuffer& commands = impl_->commands;
-    // The images of a pass before may still be read.
+    // Earlier passes may still read the images.
     full_barrier(commands);
     std::vector<vk::ClearValue> clear(to.images.size());
     clear.back().setDepthStencil({clear_depth, 0});
@@ -161,8 +161,8 @@ void Commands::copy(const RasterTarget& from, std::uint32_t image, const DeviceB
 void Commands::fill(const DeviceBuffer& buffer, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word) {
   const DeviceBuffer::Impl& to = buffer.impl();
   if (offset % 4 != 0 || bytes % 4 != 0 || bytes == 0 || offset > to.bytes || bytes > to.bytes - offset) {
-    throw Error(fmt::format("device buffer '{}': bytes {} to {} of {}; multiples of 4 inside it expected", to.name,
-                            offset, offset + bytes, to.bytes));
+    throw Error(fmt::format("device buffer '{}': bytes {} to {} of {} (must be multiples of 4 within the buffer)",
+                            to.name, offset, offset + bytes, to.bytes));
   }
   guarded(impl_->device->name(), "recording", [&] {
     impl_->begin();

@@ -43,14 +43,14 @@ std::string vulkan_failure(vk::Result result, const std::string& device, const s
   switch (result) {
     case vk::Result::eErrorDeviceLost:
       return fmt::format(
-          "{}: lost while {}: its driver has given up, as after a pass that ran too long; run it again, or on another "
-          "device ('scarp devices')",
+          "{}: lost while {}: the driver has reset it, as after a pass that ran too long (run again, or choose another "
+          "device, see 'scarp devices')",
           where, what);
     case vk::Result::eErrorOutOfDeviceMemory:
       return fmt::format("{}: out of device memory while {}", where, what);
     case vk::Result::eErrorOutOfHostMemory:
       return fmt::format("{}: out of memory while {}", where, what);
-    case vk::Result::eErrorIncompatibleDriver:  // what the loader says where there is none
+    case vk::Result::eErrorIncompatibleDriver:  // the loader's error if there is no driver
       return no_driver();
     default:
       return fmt::format("{}: {} while {}", where, vk::to_string(result), what);
@@ -80,7 +80,7 @@ void Device::Impl::submit(const vk::raii::CommandBuffer& commands, const vk::rai
 void Device::Impl::wait(const vk::raii::Fence& fence, const std::string& what) {
   const auto limit = static_cast<std::uint64_t>(settings.timeout_s * 1e9);
   if (device.waitForFences(*fence, true, limit) == vk::Result::eTimeout) {
-    throw Error(fmt::format("device '{}': {} has not finished within {:g} s", name(), what, settings.timeout_s));
+    throw Error(fmt::format("device '{}': {} did not finish within {:g} s", name(), what, settings.timeout_s));
   }
   device.resetFences(*fence);
 }
@@ -93,9 +93,9 @@ std::optional<std::uint32_t> Device::Impl::memory_type(std::uint32_t allowed, vk
 }
 
 Device::Device(const DeviceSettings& settings) {
-  // 10^9 s in nanoseconds is still far from the 64 bits of Vulkan's limits.
+  // 10^9 s in nanoseconds fits in the 64 bits of Vulkan's time limits.
   if (!(settings.timeout_s > 0 && settings.timeout_s <= 1e9)) {
-    throw Error(fmt::format("device: a timeout of {} s, above 0 and up to 1e9 expected", settings.timeout_s));
+    throw Error(fmt::format("device: timeout of {} s (must be above 0, at most 1e9)", settings.timeout_s));
   }
   VulkanInstance instance(settings.validation);
   guarded("", "opening device '" + settings.choice + "'",

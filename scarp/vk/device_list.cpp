@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which devices there are, what each can do, and which one is meant.
+// Enumerates devices, describes their features and selects one.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ std::string missing_ability(const DeviceAbilities& abilities) {
   if (abilities.api_major < 1 || (abilities.api_major == 1 && abilities.api_minor < 2)) {
     return fmt::format("Vulkan 1.2 (it has {}.{})", abilities.api_major, abilities.api_minor);
   }
-  if (!abilities.compute_queue) return "a queue that computes";
+  if (!abilities.compute_queue) return "a compute queue";
   if (!abilities.scalar_block_layout) return "the feature scalarBlockLayout";
   if (!abilities.buffer_device_address) return "the feature bufferDeviceAddress";
   return {};
@@ -104,7 +104,7 @@ DeviceDescription describe(const vk::raii::PhysicalDevice& device) {
     abilities.timestamps = families[*used].timestampValidBits > 0;
     abilities.draws = static_cast<bool>(families[*used].queueFlags & vk::QueueFlagBits::eGraphics);
   }
-  // What follows is asked in structs that an older device does not know.
+  // The structs below are unknown to devices before Vulkan 1.2.
   if (abilities.api_major > 1 || abilities.api_minor >= 2) {
     const auto more = device.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceVulkan11Properties,
                                             vk::PhysicalDeviceVulkan12Properties>();
@@ -153,7 +153,7 @@ std::size_t choose_device(const std::vector<DeviceDescription>& devices, const s
   }
   if (best) return *best;
   if (!refusals.empty()) throw Error(fmt::format("device '{}': {}", choice, refusals));
-  throw Error(fmt::format("device '{}': no Vulkan device fits; there are: {}", choice, names));
+  throw Error(fmt::format("device '{}': no Vulkan device matches (available: {})", choice, names));
 }
 
 }  // namespace scarp

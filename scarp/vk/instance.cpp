@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The Vulkan loader, an instance, and what the validation layer says.
+// The Vulkan loader, an instance, and messages of the validation layer.
 #include <array>
 #include <cstdlib>
 
@@ -18,10 +18,10 @@ bool has_validation_layer(const vk::raii::Context& context) {
                      [](const auto& layer) { return std::string_view(layer.layerName.data()) == kValidationLayer; });
 }
 
-// Variables of the loader that say where drivers are looked for, and nowhere else.
+// Environment variables that replace the loader's search path for drivers.
 std::string where_drivers_are_sought() {
   for (const char* name : {"VK_DRIVER_FILES", "VK_ICD_FILENAMES"}) {
-    if (const char* value = std::getenv(name)) return std::string("; drivers are looked for in ") + name + "=" + value;
+    if (const char* value = std::getenv(name)) return std::string(" (search path: ") + name + "=" + value + ")";
   }
   return {};
 }
@@ -30,8 +30,8 @@ std::string where_drivers_are_sought() {
 
 std::string no_driver() {
   const std::string sought = where_drivers_are_sought();
-  if (!sought.empty()) return "Vulkan: no driver is found" + sought;
-  return "Vulkan: no driver is installed (Debian, for any CPU: mesa-vulkan-drivers)";
+  if (!sought.empty()) return "Vulkan: no driver found" + sought;
+  return "Vulkan: no driver installed (install one; on Debian, mesa-vulkan-drivers runs on any CPU)";
 }
 
 VkBool32 VKAPI_PTR VulkanInstance::collect(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -46,7 +46,7 @@ VulkanInstance::VulkanInstance(bool validation) : messages_(std::make_unique<Mes
   try {
     context_.emplace();
   } catch (const std::runtime_error&) {
-    throw Error("Vulkan: no loader, libvulkan.so.1 cannot be opened (Debian: libvulkan1)");
+    throw Error("Vulkan: no loader, cannot open libvulkan.so.1 (on Debian, install libvulkan1)");
   }
   const auto open = [&] {
     const vk::ApplicationInfo application("scarp", 0, "scarp", 0, VK_API_VERSION_1_2);
@@ -56,8 +56,8 @@ VulkanInstance::VulkanInstance(bool validation) : messages_(std::make_unique<Mes
       return;
     }
     if (!has_validation_layer(*context_)) {
-      throw Error(std::string("Vulkan: the layer ") + kValidationLayer +
-                  " is not installed (Debian: vulkan-validationlayers)");
+      throw Error(std::string("Vulkan: layer ") + kValidationLayer +
+                  " is not installed (on Debian, install vulkan-validationlayers)");
     }
     const auto synchronisation = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
     const vk::ValidationFeaturesEXT features(synchronisation);
@@ -73,9 +73,8 @@ VulkanInstance::VulkanInstance(bool validation) : messages_(std::make_unique<Mes
     try {
       open();
     } catch (const vk::OutOfHostMemoryError&) {
-      throw Error(
-          "Vulkan: its loader is out of memory, as it also says of a driver's manifest (.json) that is damaged" +
-          where_drivers_are_sought());
+      throw Error("Vulkan: the loader is out of memory, or a driver manifest (.json) is damaged" +
+                  where_drivers_are_sought());
     }
   });
 }
@@ -85,7 +84,7 @@ std::vector<vk::raii::PhysicalDevice> VulkanInstance::physical_devices() const {
     try {
       return vk::raii::PhysicalDevices(*instance_);
     } catch (const vk::InitializationFailedError&) {
-      return {};  // what the loader says where there is no driver
+      return {};  // the loader's error if there is no driver
     }
   });
 }

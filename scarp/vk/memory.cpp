@@ -36,8 +36,8 @@ StagingRing& staging_of(Device::Impl& device) {
 
 void require_inside(const DeviceBuffer::Impl& buffer, std::uint64_t offset, std::uint64_t bytes) {
   if (offset % 4 == 0 && bytes % 4 == 0 && offset <= buffer.bytes && bytes <= buffer.bytes - offset) return;
-  throw Error(fmt::format("device buffer '{}': bytes {} to {} of {}; multiples of 4 inside it expected", buffer.name,
-                          offset, offset + bytes, buffer.bytes));
+  throw Error(fmt::format("device buffer '{}': bytes {} to {} of {} (must be multiples of 4 within the buffer)",
+                          buffer.name, offset, offset + bytes, buffer.bytes));
 }
 
 }  // namespace
@@ -46,15 +46,15 @@ DeviceBuffer::DeviceBuffer(const Device& device, std::uint64_t bytes, const std:
   const std::shared_ptr<Device::Impl>& open = device.impl();
   const DeviceDescription& description = open->description;
   if (bytes == 0 || bytes % 4 != 0) {
-    throw Error(fmt::format("device buffer '{}': {} bytes; a multiple of 4 above 0 expected", name, bytes));
+    throw Error(fmt::format("device buffer '{}': {} bytes (must be a positive multiple of 4)", name, bytes));
   }
   const auto refuse = [&](const std::string& limit) {
     throw Error(fmt::format("device '{}': no memory for {} ({}): {}", description.name, name, mebibytes(bytes), limit));
   };
   if (bytes > description.max_allocation_bytes) {
-    refuse("one buffer holds " + mebibytes(description.max_allocation_bytes) + " at most");
+    refuse("buffers are limited to " + mebibytes(description.max_allocation_bytes));
   }
-  if (bytes > description.memory_bytes) refuse("it has " + mebibytes(description.memory_bytes));
+  if (bytes > description.memory_bytes) refuse("the device has " + mebibytes(description.memory_bytes));
   guarded(description.name, "making " + name, [&] {
     try {
       vk::raii::Buffer buffer = make_buffer(*open, bytes);
@@ -63,10 +63,10 @@ DeviceBuffer::DeviceBuffer(const Device& device, std::uint64_t bytes, const std:
       const std::uint64_t address = open->device.getBufferAddress({*buffer});
       impl_.reset(new Impl{open, name, bytes, std::move(memory), std::move(buffer), address});
     } catch (const vk::OutOfDeviceMemoryError&) {
-      // What a CPU device tells of its memory is a number of the driver's, and no limit.
+      // The memory that a CPU device reports is an arbitrary number of the driver, not a limit.
       refuse(description.kind == DeviceKind::cpu
-                 ? "it uses the memory of the machine, which gives no more"
-                 : "it has " + mebibytes(description.memory_bytes) + ", part of which is in use");
+                 ? "it uses system memory, and none is left"
+                 : "the device has " + mebibytes(description.memory_bytes) + ", part of it in use");
     }
   });
 }
@@ -90,7 +90,7 @@ void upload_rows(const DeviceBuffer& to, const BufferRows& rows,
   require_inside(buffer, rows.offset, rows.row_bytes);
   if (rows.rows > 1) {
     if (rows.stride < rows.row_bytes || rows.rows - 1 > buffer.bytes / rows.stride) {
-      throw Error(fmt::format("device buffer '{}': {} rows of {} bytes every {} are not inside its {} bytes",
+      throw Error(fmt::format("device buffer '{}': {} rows of {} bytes with a stride of {} exceed its {} bytes",
                               buffer.name, rows.rows, rows.row_bytes, rows.stride, buffer.bytes));
     }
     require_inside(buffer, rows.offset + (rows.rows - 1) * rows.stride, rows.row_bytes);

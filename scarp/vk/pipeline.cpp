@@ -36,7 +36,7 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const std::uint
                                  std::uint32_t push_bytes, std::span<const std::uint32_t> constants) {
   const std::shared_ptr<Device::Impl>& open = device.impl();
   if (push_bytes % 4 != 0 || push_bytes > kMaxPushBytes) {
-    throw Error(fmt::format("shader '{}': {} bytes of push constants; a multiple of 4 up to {} expected", name,
+    throw Error(fmt::format("shader '{}': {} bytes of push constants (must be a multiple of 4, at most {})", name,
                             push_bytes, kMaxPushBytes));
   }
   guarded(open->name(), "making the shader '" + name + "'", [&] {

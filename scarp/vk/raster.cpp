@@ -12,7 +12,7 @@ namespace {
 
 constexpr vk::Format kColour = vk::Format::eR32G32B32A32Sfloat, kDepth = vk::Format::eD32Sfloat;
 
-// Colours are written in one stage, depths in two others.
+// Colours are written in one stage, depths in two.
 constexpr auto kDrawing = vk::PipelineStageFlagBits::eColorAttachmentOutput |
                           vk::PipelineStageFlagBits::eEarlyFragmentTests |
                           vk::PipelineStageFlagBits::eLateFragmentTests;
@@ -21,12 +21,12 @@ constexpr auto kDrawn = vk::AccessFlagBits::eColorAttachmentWrite | vk::AccessFl
 void require_draws(const Device& device) {
   const DeviceDescription& description = device.description();
   if (!description.abilities.draws) {
-    throw Error(fmt::format("device '{}': draws no triangles, none of its queues does; take another ('scarp devices')",
+    throw Error(fmt::format("device '{}': no queue draws triangles (choose another device, see 'scarp devices')",
                             description.name));
   }
   const auto depth = device.impl()->physical.getFormatProperties(kDepth).optimalTilingFeatures;
   if (!(depth & vk::FormatFeatureFlagBits::eDepthStencilAttachment)) {
-    throw Error(fmt::format("device '{}': has no depth buffers of 32-bit floats; take another ('scarp devices')",
+    throw Error(fmt::format("device '{}': no 32-bit float depth buffers (choose another device, see 'scarp devices')",
                             description.name));
   }
 }
@@ -52,7 +52,7 @@ DeviceImage make_image(const Device::Impl& device, std::uint32_t width, std::uin
   return {std::move(image), std::move(memory), std::move(view)};
 }
 
-// Clears, draws, and leaves the images to be copied. Pipelines are made for such passes of as many colours.
+// Clears, draws, then makes the images ready for copying. Pipelines fit passes with the same number of colours.
 vk::raii::RenderPass make_pass(const Device::Impl& device, std::uint32_t colours) {
   std::vector<vk::AttachmentDescription> attachments;
   std::vector<vk::AttachmentReference> references;
@@ -144,8 +144,8 @@ RasterTarget::RasterTarget(const Device& device, std::uint32_t width, std::uint3
   require_draws(device);
   const std::uint32_t most = raster_limits(device).most_pixels;
   if (width < 1 || height < 1 || width > most || height > most) {
-    throw Error(fmt::format("device '{}': draws into 1 to {} pixels a side, not {} x {}", device.description().name,
-                            most, width, height));
+    throw Error(fmt::format("device '{}': render target of {} x {} pixels (1 to {} per side supported)",
+                            device.description().name, width, height, most));
   }
   const std::shared_ptr<Device::Impl>& open = device.impl();
   guarded(open->name(), fmt::format("making images of {} x {} pixels", width, height), [&] {
@@ -168,7 +168,7 @@ RasterPipeline::RasterPipeline(const Device& device, std::span<const std::uint32
                                const RasterSettings& settings, std::span<const std::uint32_t> constants) {
   require_draws(device);
   if (settings.push_bytes % 4 != 0 || settings.push_bytes > kMaxPushBytes) {
-    throw Error(fmt::format("shader '{}': {} bytes of push constants; a multiple of 4 up to {} expected", name,
+    throw Error(fmt::format("shader '{}': {} bytes of push constants (must be a multiple of 4, at most {})", name,
                             settings.push_bytes, kMaxPushBytes));
   }
   const std::shared_ptr<Device::Impl>& open = device.impl();

@@ -460,7 +460,7 @@ TEST_F(Cast, FilesAndStreams) {
   EXPECT_EQ(to_file.out, "");
   EXPECT_EQ(test::text_of(path("hits.csv")), to_stdout.out);
   EXPECT_EQ(run(with({"-"}), path("rays.csv")).out, to_stdout.out);
-  EXPECT_NE(run(with({"-"})).err.find("rays '-': is empty"), std::string::npos);
+  EXPECT_NE(run(with({"-"})).err.find("-: empty file"), std::string::npos);
   EXPECT_EQ(run(with({path("rays.csv"), "-o", path("hits.npy")})).status, 0);
   EXPECT_EQ(test::text_of(path("hits.npy")).size() % 64, 14 * 8 % 64u);
   // What one cast wrote, the next one reads: a table whose fields it knows or passes over.
@@ -492,13 +492,13 @@ TEST_F(Cast, BadRaysAreOneLineWithFileAndRow) {
   const std::string header = "x,y,z,dx,dy,dz\n", good = "15,15,500,0,0,-1\n";
   std::string six = header;
   for (int i = 0; i < 6; ++i) six += good;
-  expect_rays_refused(six + "15,15,500,0,0\n", fmt::format("rays '{}': line 8 (ray 6): 5 fields", path("rays.csv")));
+  expect_rays_refused(six + "15,15,500,0,0\n", fmt::format("{}: line 8 (ray 6): 5 fields", path("rays.csv")));
   expect_rays_refused(six + "15,15,500,0,0,-1,3\n", "line 8 (ray 6): 7 fields");
-  expect_rays_refused(header + "15,15,500,0,0,0\n", "line 2 (ray 0): its direction is zero");
-  expect_rays_refused(header + "15,nan,500,0,0,-1\n", "line 2 (ray 0): its origin is not finite");
-  expect_rays_refused(header + "15,15,500,0,0,nan\n", "line 2 (ray 0): its direction is not finite");
+  expect_rays_refused(header + "15,15,500,0,0,0\n", "line 2 (ray 0): direction is zero");
+  expect_rays_refused(header + "15,nan,500,0,0,-1\n", "line 2 (ray 0): origin is not finite");
+  expect_rays_refused(header + "15,15,500,0,0,nan\n", "line 2 (ray 0): direction is not finite");
   expect_rays_refused(header + "15,15,high,0,0,-1\n", "'high' in column 'z'");
-  expect_rays_refused("", "is empty");
+  expect_rays_refused("", "empty file");
   expect_rays_refused("x,y,z\n1,2,3\n", "no column 'dx'");
   expect_rays_refused(header + good + good, "line 2 (ray 0): its range has no end", {"--wrap", "periodic"});
   const std::string on_surface = "x,y,z,dx,dy,dz,start_col,start_row\n15,15,0,0,0,1,";
@@ -521,14 +521,14 @@ TEST_F(Cast, WrongOptionsAreRefused) {
   expect_rays_refused(good, "not shared", {"--wrap", "shared"});
   expect_rays_refused(good, "above 0", {"--exaggeration", "0"});
   expect_rays_refused(good, "unknown", {"--march", "quick"});
-  expect_rays_refused(good, "give the right --raster-crs or --bounds", {"--raster-crs", "EPSG:4326"});
+  expect_rays_refused(good, "correct --raster-crs or --bounds", {"--raster-crs", "EPSG:4326"});
   hills();
   rays(good);
   for (const std::string output : {"hits.txt", "no/hits.csv"}) {
     const auto result = run({"cast", path("hills.asc"), "--rays", path("rays.csv"), "-o", path(output)});
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_NE(result.err.find("output '"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find(" " + path(output) + ": "), std::string::npos) << result.err;
   }
   EXPECT_NE(run({"cast", path("missing.tif"), "--rays", path("rays.csv")}).err.find("missing.tif"), std::string::npos);
 }

@@ -126,13 +126,13 @@ TEST_F(Compute, WhatDoesNotFitIsRefused) {
   EXPECT_EQ(refusal([&] {
               commands.dispatch(pipeline, std::uint32_t{3}, {1, 1, 1});
             }),
-            "shader 'twice': 4 bytes of push constants, 24 expected");
+            "shader 'twice': 4 bytes of push constants instead of 24");
   EXPECT_EQ(refusal([&] {
               commands.dispatch(pipeline, glsl::TwicePush{}, {70000, 1, 1});
             }),
-            "shader 'twice': 70000 workgroups along one side; 1 to 65535 expected");
+            "shader 'twice': 70000 workgroups along one side (1 to 65535 allowed)");
   EXPECT_EQ(refusal([&] { ComputePipeline(device(), kTwice, "twice", 132); }),
-            "shader 'twice': 132 bytes of push constants; a multiple of 4 up to 128 expected");
+            "shader 'twice': 132 bytes of push constants (must be a multiple of 4, at most 128)");
 }
 
 }  // namespace

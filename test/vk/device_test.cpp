@@ -53,15 +53,16 @@ TEST(DeviceChoice, TakesTheBestThatFits) {
   EXPECT_EQ(choose_device(devices, "uhd"), 2u);
   EXPECT_EQ(choose_device(devices, "h200 SEC"), 4u);
   EXPECT_EQ(refusal([&] { choose_device(devices, "old"); }), "device 'old': 'Old card' lacks Vulkan 1.2");
-  EXPECT_EQ(refusal([&] {
-              choose_device({devices.begin(), devices.begin() + 2}, "radeon");
-            }),
-            "device 'radeon': no Vulkan device fits; there are: 'llvmpipe (LLVM 15)' (CPU), 'Old card' (discrete GPU)");
+  EXPECT_EQ(
+      refusal([&] {
+        choose_device({devices.begin(), devices.begin() + 2}, "radeon");
+      }),
+      "device 'radeon': no Vulkan device matches (available: 'llvmpipe (LLVM 15)' (CPU), 'Old card' (discrete GPU))");
   EXPECT_EQ(choose_device({devices.begin(), devices.begin() + 1}, "auto"), 0u);
   EXPECT_EQ(refusal([&] {
               choose_device({devices.begin(), devices.begin() + 1}, "gpu");
             }),
-            "device 'gpu': no Vulkan device fits; there are: 'llvmpipe (LLVM 15)' (CPU)");
+            "device 'gpu': no Vulkan device matches (available: 'llvmpipe (LLVM 15)' (CPU))");
 }
 
 TEST(DeviceAbility, NamesTheFirstThatIsMissing) {
@@ -77,12 +78,12 @@ TEST(DeviceAbility, NamesTheFirstThatIsMissing) {
     abilities.*ability = false;
     return missing_ability(abilities);
   };
-  EXPECT_EQ(without(&DeviceAbilities::compute_queue), "a queue that computes");
+  EXPECT_EQ(without(&DeviceAbilities::compute_queue), "a compute queue");
   EXPECT_EQ(without(&DeviceAbilities::scalar_block_layout), "the feature scalarBlockLayout");
   EXPECT_EQ(without(&DeviceAbilities::buffer_device_address), "the feature bufferDeviceAddress");
 }
 
-// What is told of timestamps and drawing is told of the queue that is opened.
+// Timestamps and graphics are reported for the queue that is opened.
 TEST(DeviceQueues, OneThatDrawsIsPreferredThenOneWithTimestamps) {
   using Bits = vk::QueueFlagBits;
   const vk::QueueFamilyProperties transfers(Bits::eTransfer, 1, 64), computes(Bits::eCompute, 1, 0),
@@ -96,20 +97,20 @@ TEST(DeviceQueues, OneThatDrawsIsPreferredThenOneWithTimestamps) {
   EXPECT_EQ(chosen({draws, computes_timed, draws_timed, draws_timed}), 2u);
 }
 
-// What Vulkan throws becomes one line; here it is thrown in place of the driver.
+// Exceptions of Vulkan become one line; the test throws them in place of the driver.
 TEST(DeviceFailure, BecomesOneLine) {
   const auto failing = [](const auto& failure) {
     return refusal([&] { guarded("Card", "computing", [&] { throw failure; }); });
   };
   EXPECT_EQ(failing(vk::DeviceLostError("x")),
-            "device 'Card': lost while computing: its driver has given up, as after a pass that ran too long; run it "
-            "again, or on another device ('scarp devices')");
+            "device 'Card': lost while computing: the driver has reset it, as after a pass that ran too long (run "
+            "again, or choose another device, see 'scarp devices')");
   EXPECT_EQ(failing(vk::OutOfDeviceMemoryError("x")), "device 'Card': out of device memory while computing");
   EXPECT_EQ(failing(vk::OutOfHostMemoryError("x")), "device 'Card': out of memory while computing");
   EXPECT_EQ(failing(vk::TooManyObjectsError("x")), "device 'Card': ErrorTooManyObjects while computing");
 }
 
-// In a process of its own: the loader reads its environment once.
+// In a child process: the loader reads its environment once.
 std::string in_child(const char* drivers, const std::function<std::string()>& f) {
   int ends[2];
   if (::pipe(ends) != 0) return "no pipe";
@@ -136,8 +137,8 @@ TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
     const DeviceList devices = list_devices();
     return std::to_string(devices.devices.size()) + ": " + devices.why_none;
   };
-  const std::string none = "Vulkan: no driver is found; drivers are looked for in VK_DRIVER_FILES=/nonexistent";
-  const std::string no_loader = "Vulkan: no loader, libvulkan.so.1 cannot be opened (Debian: libvulkan1)";
+  const std::string none = "Vulkan: no driver found (search path: VK_DRIVER_FILES=/nonexistent)";
+  const std::string no_loader = "Vulkan: no loader, cannot open libvulkan.so.1 (on Debian, install libvulkan1)";
   const std::string listed = in_child("/nonexistent", list);
   EXPECT_TRUE(listed == "0: " + none || listed == "0: " + no_loader) << listed;
   const std::string opened = in_child("/nonexistent", [] { return refusal([] { Device device; }); });
@@ -147,10 +148,10 @@ TEST(DeviceList, IsEmptyWithoutADriverAndSaysWhy) {
   const std::string damaged = in_child(manifest.c_str(), list);
   // Other loaders may pass over it.
   EXPECT_TRUE(damaged ==
-                  "0: Vulkan: its loader is out of memory, as it also says of a driver's manifest (.json) that is "
-                  "damaged; drivers are looked for in VK_DRIVER_FILES=" +
-                      manifest ||
-              damaged == "0: Vulkan: no driver is found; drivers are looked for in VK_DRIVER_FILES=" + manifest ||
+                  "0: Vulkan: the loader is out of memory, or a driver manifest (.json) is damaged (search path: "
+                  "VK_DRIVER_FILES=" +
+                      manifest + ")" ||
+              damaged == "0: Vulkan: no driver found (search path: VK_DRIVER_FILES=" + manifest + ")" ||
               damaged == "0: " + no_loader)
       << damaged;
   std::filesystem::remove(manifest);
@@ -175,7 +176,7 @@ TEST_F(OpenDevice, IsTheOneThatIsListed) {
   EXPECT_EQ(Device({.choice = open.name}).description().name, open.name);
   EXPECT_EQ(refusal([] {
               Device device({.choice = "no such device"});
-            }).find("device 'no such device': no Vulkan device fits; there are: '"),
+            }).find("device 'no such device': no Vulkan device matches (available: '"),
             0u);
 }
 
@@ -215,10 +216,9 @@ TEST_F(OpenDevice, SaysThatMemoryIsUsedUpAndGoesOn) {
     std::fprintf(stderr, "%zu made; %s; then: %s.\n", made, said.c_str(), after.c_str());
     ::_exit(0);
   };
-  EXPECT_EXIT(
-      use_up(), testing::ExitedWithCode(0),
-      "[12] made; device '.*': no memory for a lake .256.0 MiB.: it uses the memory of the machine, which gives no "
-      "more; then: \\.");
+  EXPECT_EXIT(use_up(), testing::ExitedWithCode(0),
+              "[12] made; device '.*': no memory for a lake .256.0 MiB.: it uses system memory, and none is left; "
+              "then: \\.");
 }
 #endif
 
@@ -226,7 +226,7 @@ TEST_F(OpenDevice, ThatDrawsNoTrianglesIsNotAskedTo) {
   const Device other;
   other.impl()->description.abilities.draws = false;
   const std::string expected = "device '" + other.description().name +
-                               "': draws no triangles, none of its queues does; take another ('scarp devices')";
+                               "': no queue draws triangles (choose another device, see 'scarp devices')";
   EXPECT_EQ(refusal([&] { RasterTarget(other, 16, 16, 1); }), expected);
   EXPECT_EQ(refusal([&] { RasterPipeline(other, kTwice, {}, "triangles", {}); }), expected);
 }
@@ -258,9 +258,9 @@ TEST_F(OpenDevice, StopsWaitingAfterTheTimeout) {
   const ComputePipeline pipeline(hurried, kTwice, "slow", sizeof(glsl::TwicePush), constants);
   Commands commands(hurried);
   commands.dispatch(pipeline, glsl::TwicePush{words.address(), words.address(), 1 << 20, 200}, {1 << 14, 1, 1});
-  EXPECT_NE(refusal([&] { commands.run(); }).find("'slow' has not finished within 1e-06 s"), std::string::npos);
+  EXPECT_NE(refusal([&] { commands.run(); }).find("'slow' did not finish within 1e-06 s"), std::string::npos);
   // Another run waits for the first; whoever lets go of it waits for it, too.
-  EXPECT_NE(refusal([&] { commands.fill(words, 0, 4, 0); }).find("has not finished"), std::string::npos);
+  EXPECT_NE(refusal([&] { commands.fill(words, 0, 4, 0); }).find("did not finish"), std::string::npos);
 }
 
 }  // namespace

@@ -142,23 +142,23 @@ TEST_F(Drawing, BadRequestsAreRefused) {
   const std::string name = device().description().name;
   const std::uint32_t most = raster_limits(device()).most_pixels;
   EXPECT_EQ(refusal([&] { RasterTarget(device(), most + 1, 1, 1); }),
-            "device '" + name + "': draws into 1 to " + std::to_string(most) + " pixels a side, not " +
-                std::to_string(most + 1) + " x 1");
+            "device '" + name + "': render target of " + std::to_string(most + 1) + " x 1 pixels (1 to " +
+                std::to_string(most) + " per side supported)");
   EXPECT_GE(raster_limits(device()).subpixel_bits, 4u);
   EXPECT_EQ(refusal([&] { pipeline({.push_bytes = 130}); }),
-            "shader 'corners': 130 bytes of push constants; a multiple of 4 up to 128 expected");
+            "shader 'corners': 130 bytes of push constants (must be a multiple of 4, at most 128)");
   const RasterTarget target(device(), kWidth, kHeight, 0);
   const DeviceBuffer small(device(), 64, "small");
   const RasterPipeline red = pipeline();
   const glsl::CornersPush push{small.address(), kRed, 0};
   Commands commands(device());
   EXPECT_EQ(refusal([&] { commands.draw(target, {draw_call(red, push, 3)}); }),
-            "shader 'corners': writes 1 colours, its target has 0");
+            "shader 'corners': writes 1 colours, but its target has 0");
   const RasterTarget coloured(device(), kWidth, kHeight, 1);
   EXPECT_EQ(refusal([&] { commands.draw(coloured, {draw_call(red, 1.0f, 3)}); }),
-            "shader 'corners': 4 bytes of push constants, 28 expected");
+            "shader 'corners': 4 bytes of push constants instead of 28");
   EXPECT_EQ(refusal([&] { commands.draw(coloured, {draw_call(red, push, 30, 1, &small)}); }),
-            "shader 'corners': 30 indices, the buffer 'small' holds 16");
+            "shader 'corners': 30 indices, but the buffer 'small' holds 16");
   EXPECT_EQ(refusal([&] { commands.copy(target, 0, small); }),
             "device buffer 'small': image 0 of 1 (8192 bytes) does not fit into 64 bytes");
 }
