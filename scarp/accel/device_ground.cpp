@@ -15,9 +15,9 @@
 namespace scarp {
 namespace {
 
-// A NaN, and the only one that shaders meet.
+// The only NaN in device memory.
 constexpr std::uint32_t kHole = 0x7fc00000;
-constexpr std::int64_t kMaxWords = 0x7fffffff;  // shaders index with 32 bits, of which SPIR-V takes one for the sign
+constexpr std::int64_t kMaxWords = 0x7fffffff;  // shaders index with 32 bits, of which SPIR-V reserves one for the sign
 constexpr std::int64_t kWordsPerPiece = 1 << 18;
 
 bool is_float(const HeightField& field) { return field.sample_type() == SampleType::float32; }
@@ -29,15 +29,14 @@ std::int64_t words_per_row(const HeightField& field) {
 std::uint64_t sample_bytes(const HeightField& field) {
   const std::int64_t words = words_per_row(field) * field.rows();
   if (words > kMaxWords) {
-    throw Error(
-        fmt::format("device ground: {} x {} samples are more than a shader can count; a window of them has to do",
-                    field.cols(), field.rows()));
+    throw Error(fmt::format("height field: {} x {} samples are more than a shader can index (use a window of them)",
+                            field.cols(), field.rows()));
   }
   return 4 * static_cast<std::uint64_t>(words);
 }
 
 std::uint64_t entry_bytes(const std::vector<PyramidLevel>& levels) {
-  // A field without cells has an entry that nobody reads: buffers are never empty.
+  // A field without cells has one unused entry: buffers must not be empty.
   if (levels.empty()) return 4;
   return 4 * static_cast<std::uint64_t>(levels.back().begin + 1);
 }
@@ -47,7 +46,7 @@ std::uint32_t bits_of(const SampleGrid<float>& grid, int col, int row) {
   return grid.is_nodata(sample) ? kHole : std::bit_cast<std::uint32_t>(sample);
 }
 
-// Word `word` of a row of samples.
+// Returns word `word` of a row of samples.
 std::uint32_t word_of(const SampleGrid<float>& grid, int word, int row) { return bits_of(grid, word, row); }
 template <class T>
 std::uint32_t word_of(const SampleGrid<T>& grid, int word, int row) {
@@ -151,7 +150,7 @@ void DeviceGround::build(const HeightField& field, const CellBox& changed) {
 }
 
 void DeviceGround::update(const HeightField& field, const CellBox& changed) {
-  // The samples that changed are corners of these cells.
+  // The changed samples are corners of these cells.
   const SampleRect rect{std::max(changed.col_begin, 0), std::max(changed.row_begin, 0),
                         std::min(changed.col_end, field.cols() - 1) - std::max(changed.col_begin, 0) + 1,
                         std::min(changed.row_end, field.rows() - 1) - std::max(changed.row_begin, 0) + 1};

@@ -48,9 +48,7 @@ SingleRounding::SingleRounding(const FunctionProgram& program) {
   for (std::size_t i = 0; i < off_.size(); ++i) {
     const function::Single height = function::single_height(program, std::exp2(static_cast<double>(i)));
     if (!height.fits) {
-      throw Error(
-          "terrain function: its numbers go beyond 2^60, too near to where single precision ends; it runs on the "
-          "CPU alone");
+      throw Error("terrain function: numbers beyond 2^60 do not fit in single precision (use the CPU)");
     }
     off_[i] = height.error;
   }

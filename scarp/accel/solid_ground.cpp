@@ -10,7 +10,7 @@
 namespace scarp {
 
 shape::FieldGround solid_ground(std::shared_ptr<const HeightField> field) {
-  if (!field) throw Error("shape: field of a ground is missing; it must be a height field");
+  if (!field) throw Error("shape: field of a ground is missing (must be a height field)");
   const double slope = slope_bound(*field);
   if (field->nodata_count() == 0) return {std::move(field), slope, nullptr};
   auto filled = std::make_shared<const HeightField>(filled_holes(*field, slope));

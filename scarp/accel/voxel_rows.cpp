@@ -13,10 +13,8 @@ namespace scarp {
 void require_accelerable(const VoxelGrid& grid, std::string_view what) {
   const ivec3& size = grid.size();
   if (std::max({size.x, size.y, size.z}) <= kMaxAcceleratedSide) return;
-  throw Error(
-      fmt::format("{}: {} x {} x {} voxels; grids up to {} a side are accelerated so, voxel-bricks takes larger "
-                  "ones",
-                  what, size.x, size.y, size.z, kMaxAcceleratedSide));
+  throw Error(fmt::format("{}: {} x {} x {} voxels, limited to {} per side (use voxel-bricks for larger grids)", what,
+                          size.x, size.y, size.z, kMaxAcceleratedSide));
 }
 
 VoxelRows::VoxelRows(const VoxelGrid& grid)
@@ -48,7 +46,7 @@ void VoxelRows::dilate() {
     }
     words[begin + words_per_row - 1] &= last_word_mask();
   }
-  // Along y and then z: OR with the words of the row, or slab, before and after.
+  // Along y and then z: OR with the words of the previous and next row or slab.
   const auto spread = [&](std::size_t stride, std::size_t period) {
     scratch_ = words;
     for (std::size_t begin = 0; begin < all; begin += period) {

@@ -18,11 +18,11 @@ namespace {
 using namespace shape;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Boxes are widened by this share of their numbers: more than what fewer than 8 roundings can do.
+// Relative widening of boxes: more than the effect of 8 roundings.
 constexpr double kWider = 0x1p-49;
 
 [[noreturn]] void refuse(std::string_view what, double value, std::string_view range) {
-  throw Error(fmt::format("shape: {} is {}; it must be {}", what, value, range));
+  throw Error(fmt::format("shape: {} is {} (must be {})", what, value, range));
 }
 void require(bool good, std::string_view what, double value, std::string_view range) {
   if (!good) refuse(what, value, range);
@@ -38,14 +38,14 @@ void require_place(std::string_view what, const dvec3& value) {
 }
 void require_direction(std::string_view what, const dvec3& value) {
   require_place(what, value);
-  require(length(value) >= kLeastLength, fmt::format("length of the {}", what), length(value), "2^-20 or more");
+  require(length(value) >= kLeastLength, fmt::format("length of the {}", what), length(value), "at least 2^-20");
 }
 void require_smooth(std::string_view what, double radius) {
   require(radius == 0 || (radius >= kLeastLength && radius <= kMostLength), fmt::format("{} smooth radius", what),
           radius, "0, or between 2^-20 and 2^30");
 }
 void require_shape(std::string_view what, const Shape& shape) {
-  if (!shape) throw Error(fmt::format("shape: {} is missing; it must be a shape", what));
+  if (!shape) throw Error(fmt::format("shape: {} is missing (must be a shape)", what));
 }
 
 ShapeBox around_origin(const dvec3& half) { return {-half, half}; }
@@ -62,9 +62,9 @@ ShapeBox widened(ShapeBox box, double by = 0) {
   return box;
 }
 
-// What a node says of itself, once its settings are good.
+// Properties of a valid node.
 struct Known {
-  int under = 0;  // nodes
+  int under = 0;  // depth below this node
   ShapeBox box;
 };
 
@@ -121,36 +121,37 @@ struct Check {
     return {0, around_origin(e.radii)};
   }
   Known operator()(const FunctionGround& g) const {
-    if (!g.function) throw Error("shape: function of a ground is missing; it must be a height function");
+    if (!g.function) throw Error("shape: function of a ground is missing (must be a height function)");
     const FunctionBound& all = g.function->bound_everywhere();
     return {0, {dvec3(-kInfinity), {kInfinity, kInfinity, all.high + all.rounding}}};
   }
   Known operator()(const FieldGround& g) const {
-    if (!g.field) throw Error("shape: field of a ground is missing; it must be a height field");
-    if (!g.field->has_cells()) throw Error("shape: field of a ground has no cells; it must have 2 columns and rows");
+    if (!g.field) throw Error("shape: field of a ground is missing (must be a height field)");
+    if (!g.field->has_cells())
+      throw Error("shape: field of a ground has no cells (needs at least 2 columns and 2 rows)");
     if (g.field->nodata_count() > 0) {
-      throw Error(fmt::format("shape: field of a ground has {} nodata samples; make the ground by solid_ground()",
+      throw Error(fmt::format("shape: field of a ground has {} nodata samples (make the ground with solid_ground())",
                               g.field->nodata_count()));
     }
     if (g.holes && (g.holes->cols() != g.field->cols() || g.holes->rows() != g.field->rows() ||
                     g.holes->settings().wrap != g.field->settings().wrap ||
                     g.holes->settings().cell_x != g.field->settings().cell_x ||
                     g.holes->settings().cell_y != g.field->settings().cell_y)) {
-      throw Error("shape: holes of a ground are those of a field on another grid; both must be the same");
+      throw Error("shape: field and holes of a ground are on different grids (must be the same grid)");
     }
     require(g.slope >= 0 && g.slope <= kMostLength, "slope of a ground", g.slope,
-            "between 0 and 2^30, that of slope_bound()");
+            "between 0 and 2^30, from slope_bound()");
     ShapeBox box{dvec3(-kInfinity), {kInfinity, kInfinity, g.field->max_height()}};
     if (!g.field->wraps()) box = {{0, 0, -kInfinity}, {g.field->width(), g.field->depth(), g.field->max_height()}};
     return {0, box};
   }
   Known operator()(const Moved& m) const {
-    require_shape("what is moved", m.shape);
+    require_shape("operand of move", m.shape);
     require_place("move by", m.by);
     return {m.shape->depth, {m.shape->box.low + m.by, m.shape->box.high + m.by}};
   }
   Known operator()(const Turned& t) const {
-    require_shape("what is turned", t.shape);
+    require_shape("operand of turn", t.shape);
     require_direction("turn axis", t.axis);
     require(std::abs(t.angle) <= kMostLength, "turn angle", t.angle, "between -2^30 and 2^30");
     const ShapeBox& box = t.shape->box;
@@ -168,12 +169,12 @@ struct Check {
     return {t.shape->depth, turned};
   }
   Known operator()(const Scaled& s) const {
-    require_shape("what is scaled", s.shape);
+    require_shape("operand of scale", s.shape);
     require_length("scale factor", s.factor);
     return {s.shape->depth, {s.shape->box.low * s.factor, s.shape->box.high * s.factor}};
   }
   Known operator()(const Repeated& r) const {
-    require_shape("what is repeated", r.shape);
+    require_shape("operand of repeat", r.shape);
     ShapeBox box = r.shape->box;
     for (int axis = 0; axis < 3; ++axis) {
       const double period = r.period[axis];
@@ -184,9 +185,9 @@ struct Check {
               fmt::format("repeat count {}", name), r.count[static_cast<std::size_t>(axis)], "between 0 and 2^30");
       if (box.empty()) continue;
       const double extent = box.high[axis] - box.low[axis];
-      // Boxes are wider than what is in them by rounding: copies that touch are meant to.
+      // Boxes include rounding, so copies that touch pass the check.
       require(extent <= period * (1 + 0x1p-40), fmt::format("repeat period {}", name), period,
-              fmt::format("at least {:.6g}, the length of what is repeated", extent));
+              fmt::format("at least {:.6g}, the length of the repeated shape", extent));
       const int count = r.count[static_cast<std::size_t>(axis)];
       const double more = count == 0 ? kInfinity : count * period;
       box.low[axis] -= more, box.high[axis] += more;
@@ -200,7 +201,7 @@ struct Check {
       known.under = std::max(known.under, part->depth);
       known.box = hull(known.box, part->box);
     }
-    // Each smooth minimum is lower than its operands by up to a quarter of the radius.
+    // Each smooth minimum is lower than its operands by at most a quarter of the radius.
     known.box = widened(known.box, 0.25 * u.smooth * static_cast<double>(u.parts.size() - 1));
     return known;
   }
@@ -215,18 +216,18 @@ struct Check {
   }
   Known operator()(const Subtraction& s) const {
     require_smooth("subtraction", s.smooth);
-    require_shape("what is subtracted from", s.from);
-    require_shape("what is subtracted", s.what);
+    require_shape("first operand of subtraction", s.from);
+    require_shape("second operand of subtraction", s.what);
     return {std::max(s.from->depth, s.what->depth), s.from->box};
   }
   Known operator()(const Painted& p) const {
-    require_shape("what has a material", p.shape);
+    require_shape("operand of material", p.shape);
     require(p.material >= 0 && p.material <= kMostMaterial, "material", p.material, "between 0 and 65535");
     return {p.shape->depth, p.shape->box};
   }
 
   static Known first_of(std::string_view what, const std::vector<Shape>& parts) {
-    if (parts.empty()) throw Error(fmt::format("shape: {} of nothing; at least one part is needed", what));
+    if (parts.empty()) throw Error(fmt::format("shape: {} without parts (at least one required)", what));
     for (std::size_t i = 0; i < parts.size(); ++i) require_shape(fmt::format("{} part {}", what, i), parts[i]);
     return {parts.front()->depth, parts.front()->box};
   }
@@ -245,7 +246,7 @@ Shape make_shape(shape::Form form) {
   const Known known = std::visit(Check{}, form);
   const int depth = 1 + known.under;
   if (depth > kDeepestShape) {
-    throw Error(fmt::format("shape: {} nodes under one another; {} are possible", depth, kDeepestShape));
+    throw Error(fmt::format("shape: nested {} deep (limited to {})", depth, kDeepestShape));
   }
   return std::make_shared<const ShapeNode>(ShapeNode{std::move(form), depth, widened(known.box)});
 }

@@ -19,14 +19,14 @@ using namespace shape;
 
 constexpr std::size_t kMostInstructions = 16384;
 
-// Where a shape stands: its own position of a point p of the register is turn (p - at) / scale.
+// Frame of a shape: its own position of a point p of the register is turn (p - at) / scale.
 struct Place {
   Turn turn = kNoTurn;
   dvec3 at{0.0};
   double scale = 1;
   int position = 0;  // register
-  double chain = 0;  // metres that positions were moved by on the way into the register
-  int turns = 0;     // that the register is behind
+  double chain = 0;  // sum of the translations into the register, metres
+  int turns = 0;     // rotations into the register
   int material = 0;
 
   bool upright() const { return turn == kNoTurn; }
@@ -59,7 +59,7 @@ bool bounds_anything(const ShapeBox& box) {
   return false;
 }
 
-// Whether values outside of a shape are the distance itself.
+// Whether values outside a shape are the exact distance.
 bool is_exact_outside(const Shape& shape) {
   return std::visit(
       [](const auto& form) {
@@ -80,7 +80,7 @@ bool is_exact_outside(const Shape& shape) {
       shape->form);
 }
 
-// What it costs to look at a shape.
+// Cost of evaluating a shape.
 enum class Cost { single, several, ground };
 Cost cost_of(const Shape& shape) {
   return std::visit(
@@ -111,8 +111,8 @@ class Compiler {
   DistanceProgram program(const Shape& shape) {
     emit(shape, Place{}, 0);
     constexpr double kUnit = 0x1p-53;
-    // Roundings of a solid, of each turn that it is behind, of all smooth operations one after the other. The most that
-    // is counted is 20, 8 and 10.
+    // Roundings of a solid, of each rotation before it, and of all smooth operations in sequence. The maximum counted
+    // is 20, 8 and 10.
     const double roundings = 32 + 16.0 * turns_ + 16.0 * smooth_ + (program_.fields.empty() ? 0 : 48);
     program_.rounding_per_metre = kUnit * roundings;
     program_.rounding = kUnit * roundings * (size_ + radii_);
@@ -121,7 +121,7 @@ class Compiler {
 
  private:
   void emit(const Shape& shape, const Place& place, int out) {
-    // What a shape takes of position registers is free again after it.
+    // Position registers of a shape are free again after it.
     const int positions = positions_;
     std::visit([&](const auto& form) { put(form, *shape, place, out); }, shape->form);
     positions_ = positions;
@@ -149,7 +149,7 @@ class Compiler {
     Place local = place;
     local.at = place.out(0.5 * (c.from + c.to));
     if (half > 0) {
-      // The shortest turn of the axis onto z.
+      // The shortest rotation of the axis onto z.
       const dvec3 n = along / (2 * half), axis(n.y, -n.x, 0);
       if (length(axis) > 0) {
         local.turn = after(turn_about(axis, std::atan2(length(axis), n.z)), place.turn);
@@ -217,8 +217,7 @@ class Compiler {
   void put(const Scaled& s, const ShapeNode&, Place place, int out) {
     place.scale *= s.factor;
     if (!(place.scale >= kLeastLength && place.scale <= kMostLength)) {
-      throw Error(
-          fmt::format("shape: scale factors multiply to {}; they must stay between 2^-20 and 2^30", place.scale));
+      throw Error(fmt::format("shape: scale factors multiply to {} (must stay between 2^-20 and 2^30)", place.scale));
     }
     emit(s.shape, place, out);
   }
@@ -241,7 +240,7 @@ class Compiler {
     const std::uint32_t copies = numbers(k);
     Place copy = place;
     copy.position = next_position();
-    copy.turns += 1;  // a fold rounds no more than a turn
+    copy.turns += 1;  // a fold rounds no more than a rotation
     add({.op = DistanceOp::fold, .out = value(copy.position), .a = position(place), .number = copies}, place);
     emit(r.shape, copy, out);
     for (int mask = 1; mask < 8; ++mask) {
@@ -276,7 +275,7 @@ class Compiler {
 
   // Operations.
   void put(const Union& u, const ShapeNode&, Place place, int out) {
-    // What is known to be empty leaves no trace: its values say nothing.
+    // Empty parts are dropped: their values carry no information.
     std::vector<Shape> parts;
     for (const Shape& part : u.parts) {
       if (!part->box.empty()) parts.push_back(part);
@@ -292,7 +291,7 @@ class Compiler {
         end_skip(skip);
       }
     } else {
-      // Grounds last: where something else is near they need not be looked at.
+      // Grounds last: they can be skipped where something else is near.
       std::vector<Shape> bounded, rest;
       for (const Shape& part : parts) (part->box.finite() ? bounded : rest).push_back(part);
       std::stable_sort(rest.begin(), rest.end(),
@@ -341,7 +340,7 @@ class Compiler {
     add({.op = DistanceOp::unite, .out = value(out), .a = value(out), .b = value(out + 1)}, place);
     end_skip(skip);
   }
-  // Halves of the parts along the axis that they are spread along most, each behind the box around it.
+  // Splits the parts along the axis of their largest extent; each half is skipped if its box is far.
   void unite_group(std::span<Shape> parts, const Place& place, int out, bool& first) {
     constexpr std::size_t kFew = 2;
     if (parts.size() <= kFew) {
@@ -378,7 +377,7 @@ class Compiler {
   void add(DistanceInstruction in, const Place& place) {
     if (program_.code.size() == kMostInstructions) {
       throw Error(
-          fmt::format("shape: more than {} instructions; use fewer solids, or several objects", kMostInstructions));
+          fmt::format("shape: more than {} instructions (use fewer solids, or several objects)", kMostInstructions));
     }
     in.material = static_cast<std::uint16_t>(place.material);
     program_.code.push_back(in);
@@ -403,10 +402,10 @@ class Compiler {
   }
   [[noreturn]] static void too_many_registers() {
     throw Error(
-        fmt::format("shape: more than {} positions or values are needed at a time; nest less", kDistanceValues));
+        fmt::format("shape: needs more than {} positions or values at a time (nest less deeply)", kDistanceValues));
   }
 
-  // What goes into rounding: metres that numbers of a solid may reach besides the position's.
+  // Records for rounding: size of a solid's numbers besides the position, metres.
   void note(const Place& place, double size) {
     size_ = std::max(size_, place.chain + length(place.at) + size);
     turns_ = std::max(turns_, place.turns);
@@ -457,7 +456,7 @@ class Compiler {
         place);
     return program_.code.size() - 1;
   }
-  // A single solid costs no more than the question whether it is far.
+  // Testing whether a single solid is far costs as much as the solid.
   std::size_t skip_far(const Shape& part, const Place& place, int out, int mask, double radius) {
     return cost_of(part) == Cost::single ? kNoSkip : skip_box(part->box, place, out, mask, radius);
   }
@@ -466,7 +465,7 @@ class Compiler {
     program_.code[skip].index = static_cast<std::uint32_t>(program_.code.size() - skip - 1);
   }
 
-  // The place in a register of its own, where the shape is upright.
+  // The place in its own register, where the shape is upright.
   Place straightened(const Place& place) {
     if (place.upright()) return place;
     Place out;
@@ -492,7 +491,7 @@ class Compiler {
 }  // namespace
 
 DistanceProgram compile(const Shape& shape) {
-  if (!shape) throw Error("shape: it is missing; make one with make_shape()");
+  if (!shape) throw Error("shape is missing (make one with make_shape())");
   return Compiler().program(shape);
 }
 

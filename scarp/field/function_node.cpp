@@ -16,7 +16,7 @@ namespace {
 constexpr double kShortestWave = 0x1p-20;
 
 [[noreturn]] void refuse(std::string_view what, double value, std::string_view range) {
-  throw Error(fmt::format("terrain function: {} is {}; it must be {}", what, value, range));
+  throw Error(fmt::format("terrain function: {} is {} (must be {})", what, value, range));
 }
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
@@ -36,11 +36,11 @@ void require_octaves(std::string_view what, int octaves) {
 }
 
 int depth_of(std::string_view what, const Function& operand) {
-  if (!operand) throw Error(fmt::format("terrain function: {} is missing; it must be a function", what));
+  if (!operand) throw Error(fmt::format("terrain function: {} is missing (must be a function)", what));
   return operand->depth;
 }
 
-// Checks the settings of a node; answers how many nodes are under it.
+// Validates the settings of a node; returns the depth below it.
 struct Check {
   int operator()(const Plane& p) const {
     require_finite("plane height", p.height);
@@ -49,7 +49,7 @@ struct Check {
     return 0;
   }
   int operator()(const Sines& s) const {
-    if (s.waves.empty()) throw Error("terrain function: sines without waves; at least one is needed");
+    if (s.waves.empty()) throw Error("terrain function: sines without waves (at least one required)");
     for (const Sine& wave : s.waves) {
       require_finite("sine amplitude", wave.amplitude);
       require_length("sine wavelength", wave.wavelength);
@@ -115,7 +115,7 @@ struct Check {
 Function make_function(FunctionShape shape) {
   const int depth = 1 + std::visit(Check{}, shape);
   if (depth > kDeepestFunction) {
-    throw Error(fmt::format("terrain function: {} nodes under one another; {} are possible", depth, kDeepestFunction));
+    throw Error(fmt::format("terrain function: nested {} deep (limited to {})", depth, kDeepestFunction));
   }
   return std::make_shared<const FunctionNode>(FunctionNode{std::move(shape), depth});
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMostInstructions = 4096;
 
-// An instruction over as many values as there are, each written once.
+// An instruction over any number of values, each written once.
 struct Step {
   FunctionOp op = FunctionOp::constant;
   int a = 0, b = 0;
@@ -42,7 +42,7 @@ class Compiler {
     return value;
   }
 
-  // Gives each value a register from the step that writes it to the last that reads it.
+  // Assigns each value a register from the step that writes it to the last step that reads it.
   FunctionProgram with_registers(int result) const {
     std::vector<std::size_t> last(static_cast<std::size_t>(values_), 0);
     for (std::size_t i = 0; i < steps_.size(); ++i) {
@@ -77,11 +77,11 @@ class Compiler {
           ++free;
         }
         if (free == kFunctionRegisters) {
-          throw Error(fmt::format("terrain function: more than {} numbers are needed at a time; use fewer branches",
+          throw Error(fmt::format("terrain function: needs more than {} numbers at a time (use fewer branches)",
                                   kFunctionRegisters));
         }
         holds[static_cast<std::size_t>(free)] = step.out + n;
-        // What nobody reads is held over its own step, lest another output of that step take its place.
+        // Unread values live through their own step; otherwise another output of that step could take their register.
         auto& until = last[static_cast<std::size_t>(step.out + n)];
         until = std::max(until, i);
         place[static_cast<std::size_t>(step.out + n)] = static_cast<std::uint8_t>(free);
@@ -97,7 +97,7 @@ class Compiler {
   int add(Step step) {
     if (steps_.size() == static_cast<std::size_t>(kMostInstructions)) {
       throw Error(
-          fmt::format("terrain function: more than {} instructions; use fewer octaves or warps", kMostInstructions));
+          fmt::format("terrain function: more than {} instructions (use fewer octaves or warps)", kMostInstructions));
     }
     step.out = values_;
     values_ += outputs(step.op);
@@ -209,7 +209,7 @@ class Compiler {
 }  // namespace
 
 FunctionProgram compile(const Function& function, FunctionUse use) {
-  if (!function) throw Error("terrain function: it is missing; make one with make_function()");
+  if (!function) throw Error("terrain function is missing (make one with make_function())");
   Compiler compiler(use);
   const int result = compiler.value_of(function, 0, 1);
   return compiler.with_registers(result);

@@ -16,7 +16,7 @@ int wrapped(int i, int count) { return i < 0 ? i + count : i < count ? i : i - c
 
 }  // namespace
 
-// A cell that is not among the eight around this one is at least a whole cell away.
+// A cell that is not adjacent to this one is at least a whole cell away.
 OverHole over_hole(const HeightField& field, dvec2 place, double radius) {
   const HeightFieldSettings& s = field.settings();
   const double far = std::min(s.cell_x, s.cell_y);
@@ -24,10 +24,10 @@ OverHole over_hole(const HeightField& field, dvec2 place, double radius) {
   if (!at) return {far, dvec2(0.0), false};
   const auto [col, row] = at->cell;
   const bool hole = !field.cell_heights(at->cell);
-  // To the lines on each side, metres: west, none, east; north, none, south.
+  // Distances to the lines on each side, metres: west, none, east; north, none, south.
   const double to_x[] = {at->u * s.cell_x, 0, (1 - at->u) * s.cell_x};
   const double to_y[] = {at->v * s.cell_y, 0, (1 - at->v) * s.cell_y};
-  double nearest = far;  // of the cells of the other kind
+  double nearest = far;  // nearest cell of the other kind
   int side_x = 0, side_y = 0;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
@@ -39,7 +39,7 @@ OverHole over_hole(const HeightField& field, dvec2 place, double radius) {
       }
       if ((dx == 0 && dy == 0) || !field.cell_heights({c, r}) == hole) continue;
       const double away = std::hypot(to_x[dx + 1], to_y[dy + 1]);
-      // Sides before corners, which may be as near.
+      // Sides before corners at the same distance.
       if (away < nearest || (away == nearest && dx * dy == 0 && side_x * side_y != 0)) {
         nearest = away, side_x = dx, side_y = dy;
       }
@@ -47,12 +47,12 @@ OverHole over_hole(const HeightField& field, dvec2 place, double radius) {
   }
   OverHole out{hole ? nearest : -nearest, dvec2(0.0), false};
   if (side_x == 0 && side_y == 0) return out;
-  // Away from the nearest point of a hole's ground, or to that of the hole; rows run southwards.
+  // Away from the nearest point of the ground, or towards that of the hole; rows run southwards.
   dvec2 to(side_x * to_x[side_x + 1], -side_y * to_y[side_y + 1]);
   if (!(length(to) > 0)) to = dvec2(side_x, -side_y);
   out.gradient = (hole ? -1.0 : 1.0) * normalize(to);
   if (side_x * side_y != 0) return out;
-  // A rim along a line, all that is met within the radius: neither an end of the line nor another rim is as near.
+  // A straight rim is all there is within the radius: neither an end of the line nor another rim is as near.
   const bool across = side_x != 0;
   const double ends = across ? std::min(to_y[0], to_y[2]) : std::min(to_x[0], to_x[2]);
   const double behind = across ? to_x[1 - side_x] : to_y[1 - side_y];
@@ -61,7 +61,8 @@ OverHole over_hole(const HeightField& field, dvec2 place, double radius) {
 }
 
 HeightField filled_holes(const HeightField& field, double slope) {
-  if (field.all_nodata()) throw Error("height field: all samples are nodata; there is no ground that could be solid");
+  if (field.all_nodata())
+    throw Error("height field: all samples are nodata (a solid ground needs at least one height)");
   const HeightFieldSettings& s = field.settings();
   const int cols = field.cols(), rows = field.rows();
   const double per_metre = 1 / (s.scale * s.exaggeration), drop = slope * per_metre;
@@ -83,8 +84,8 @@ HeightField filled_holes(const HeightField& field, double slope) {
       }
     }
   });
-  // Down the rows and back, as distances are transformed: one way carries heights east and south, the other west and
-  // north. (A field that wraps round is not carried across its seam: slower there, as right.)
+  // Two passes, down the rows and back, as in distance transforms: one carries heights east and south, the other west
+  // and north. Wrapped fields are not carried across the seam, which is slower there but correct.
   const auto raise = [&](int col, int row, int dc, int dr, float fall) {
     const int c = col + dc, r = row + dr;
     if (c < 0 || r < 0 || c >= cols || r >= rows) return;

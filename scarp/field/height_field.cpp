@@ -12,15 +12,15 @@ namespace scarp {
 namespace {
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("height field: {} is {}; it must be {}", what, value, range));
+  if (!good) throw Error(fmt::format("height field: {} is {} (must be {})", what, value, range));
 }
 
-// No height or length of a field is larger, in metres, and none of its units smaller than one over it: products of
-// three such numbers, as normals and distances have them, stay within doubles (2^1023). By settings and the type of the
-// samples, not by the samples: edits cannot lead beyond.
+// Maximum height and length of a field in metres; its units are at least the inverse. Products of three such numbers,
+// as in normals and distances, stay within doubles (2^1023). Checked by settings and sample type, not by samples, so
+// that edits cannot exceed it.
 constexpr double kFarthest = 0x1p300;
 
-// The largest magnitude that a sample may have.
+// The largest possible magnitude of a sample.
 double largest_sample(SampleType type) {
   switch (type) {
     case SampleType::int16:
@@ -37,20 +37,20 @@ void require_reach(SampleType type, int cols, int rows, const HeightFieldSetting
   const auto within = [](double unit, double most) { return unit >= 1 / kFarthest && most <= kFarthest; };
   const double cell = std::min(s.cell_x, s.cell_y), longest = std::max(s.cell_x * cols, s.cell_y * rows);
   if (!within(cell, longest)) {
-    throw Error(
-        fmt::format("height field: {} x {} samples with cells of {:g} x {:g} m; cells above 2^-300 m and sides up to "
-                    "2^300 m are needed",
-                    cols, rows, s.cell_x, s.cell_y));
+    throw Error(fmt::format(
+        "height field: {} x {} samples with cells of {:g} x {:g} m (cells must be at least 2^-300 m, sides at "
+        "most 2^300 m)",
+        cols, rows, s.cell_x, s.cell_y));
   }
   if (!within(s.scale * s.exaggeration, (largest_sample(type) * s.scale + std::abs(s.offset)) * s.exaggeration)) {
     throw Error(fmt::format(
-        "height field: heights are (sample * {:g} + {:g}) * {:g}; of {} samples they must stay below 2^300 m, and "
-        "be more than 2^-300 m from one to the next",
+        "height field: heights are (sample * {:g} + {:g}) * {:g} (for {} samples they must stay below 2^300 m and "
+        "differ by at least 2^-300 m)",
         s.scale, s.offset, s.exaggeration, name_of(type)));
   }
 }
 
-// A nodata value that the sample type cannot hold marks nothing: no stored sample can be equal to it.
+// A nodata value that the sample type cannot represent marks nothing: no stored sample equals it.
 template <class T>
 bool representable(double value) {
   if constexpr (std::is_floating_point_v<T>) {
@@ -99,7 +99,7 @@ HeightField::HeightField(SampleType type, const void* data, int cols, int rows, 
                          const HeightFieldSettings& settings, std::shared_ptr<void> owner)
     : type_(type), data_(data), cols_(cols), rows_(rows), row_stride_(row_stride), settings_(settings) {
   if (cols < 1 || rows < 1)
-    throw Error(fmt::format("height field: {} x {} samples; at least 1 x 1 are needed", cols, rows));
+    throw Error(fmt::format("height field: {} x {} samples (at least 1 x 1 required)", cols, rows));
   require_rows(data, cols, rows, row_stride);
   const auto positive = [](double x) { return std::isfinite(x) && x > 0; };
   require(positive(settings.cell_x), "cell_x", settings.cell_x, "finite and above 0");
@@ -148,8 +148,9 @@ HeightField HeightField::own(std::vector<T> samples, int cols, int rows, const H
 void HeightField::require_inside(const SampleRect& rect) const {
   if (rect.cols < 1 || rect.rows < 1 || rect.col < 0 || rect.row < 0 || rect.cols > cols_ - rect.col ||
       rect.rows > rows_ - rect.row) {
-    throw Error(fmt::format("height field: rectangle of {} x {} samples at column {}, row {}: not inside the {} x {}",
-                            rect.cols, rect.rows, rect.col, rect.row, cols_, rows_));
+    throw Error(
+        fmt::format("height field: rectangle of {} x {} samples at column {}, row {} is not inside the {} x {} samples",
+                    rect.cols, rect.rows, rect.col, rect.row, cols_, rows_));
   }
 }
 
@@ -160,8 +161,8 @@ void HeightField::require_shared_border(const SampleGrid<T>& grid, const Sample&
     const T a = sample(col, row), b = sample(other_col, other_row);
     if (a == b || (grid.is_nodata(a) && grid.is_nodata(b))) return;
     throw Error(fmt::format(
-        "height field: the border is not shared: the sample at column {}, row {} is {}, at column {}, row {} {}; "
-        "they must be equal, or the field be periodic without a shared border",
+        "height field: the border is not shared: the sample at column {}, row {} is {}, at column {}, row {} {} "
+        "(both must be equal, or the field periodic without a shared border)",
         col, row, a, other_col, other_row, b));
   };
   for (int row = 0; row < rows_; ++row) require_same(0, row, cols_ - 1, row);
@@ -170,7 +171,7 @@ void HeightField::require_shared_border(const SampleGrid<T>& grid, const Sample&
 
 CellBox HeightField::cells_of(const SampleRect& rect) const {
   const int first = settings_.wrap == Wrap::none ? 0 : -1;
-  // In a shared border the first sample is the last one too; both are in the rectangle or the border is torn.
+  // With a shared border the first sample is also the last; the rectangle must contain both, or the border is torn.
   return {std::max(rect.col - 1, first), std::max(rect.row - 1, first), std::min(rect.col + rect.cols, cell_cols()),
           std::min(rect.row + rect.rows, cell_rows())};
 }
@@ -189,13 +190,13 @@ template <class T>
 CellBox HeightField::set_samples(const SampleRect& rect, const T* samples, std::ptrdiff_t stride) {
   require_inside(rect);
   if (type_of<T>() != type_) {
-    throw Error(
-        fmt::format("height field: samples of type {} given for a field of {}", name_of(type_of<T>()), name_of(type_)));
+    throw Error(fmt::format("height field: samples of type {} given for a field of type {}", name_of(type_of<T>()),
+                            name_of(type_)));
   }
   if (!state_->owner) {
-    throw Error("height field: its samples are the caller's: write them there, then call samples_changed()");
+    throw Error("height field: the samples are caller-owned (change them there, then call samples_changed())");
   }
-  // All that can be wrong is found before anything is overwritten.
+  // All checks precede the first write.
   require_rows(samples, rect.cols, rect.rows, stride);
   const SampleGrid<T> grid = this->grid<T>(may_have_holes_);
   SampleGrid<T> edit = grid;
@@ -231,7 +232,7 @@ std::optional<HeightField::Place> HeightField::place(double x, double y) const {
     col -= std::floor(col / cols) * cols;
     row -= std::floor(row / rows) * rows;
   }
-  // Written so that NaN is outside.
+  // NaN counts as outside.
   if (!(col >= 0 && col <= cols && row >= 0 && row <= rows)) return {};
   const Cell cell{std::min(static_cast<int>(col), cols - 1), std::min(static_cast<int>(row), rows - 1)};
   return Place{cell, col - cell.col, row - cell.row};
@@ -255,12 +256,12 @@ std::optional<double> HeightField::height(double x, double y) const {
 dvec2 HeightField::gradient(Cell cell, double u, double v) const {
   const CellHeights h = cell_heights(cell).value();
   const double metres = settings_.scale * settings_.exaggeration;
-  // In triangles the slope is that of one or the other side of the cell.
+  // With triangles the slope is that of one side of the cell.
   const bool south_east = u + v > 1;
   const bool flat = settings_.surface == Surface::triangles;
   const double along_row = lerp(h.h10 - h.h00, h.h11 - h.h01, flat ? south_east : v);
   const double along_col = lerp(h.h01 - h.h00, h.h11 - h.h10, flat ? south_east : u);
-  // Rows count southwards: the slope to the north is the negative of the one along rows.
+  // Rows run southwards: the slope to the north is the negative slope along rows.
   return {along_row * metres * per_cell_x_, -along_col * metres * per_cell_y_};
 }
 
@@ -280,7 +281,7 @@ dvec3 HeightField::shading_normal(Cell cell, double u, double v) const {
   return visit([&](const auto& grid) {
     // Difference over the widest span of valid samples around a node, along one axis.
     const auto slope = [&](int col, int row, int dcol, int drow) {
-      // A shared border is one node: the one beyond it is the second of the other side.
+      // Both sides of a shared border are one node: its outer neighbour is the second node of the other side.
       const auto wrapped = [&](int i, int samples, int cells) {
         return wraps() && (i < 0 || i >= samples) ? (i + cells) % cells : i;
       };

@@ -14,13 +14,13 @@
 namespace scarp {
 namespace {
 
-// SampleGrid::is_nodata in three kinds, so that each sample is asked no more than needed. kCompares: whether a nodata
-// sample takes part in comparisons, as NaN does not.
+// SampleGrid::is_nodata in three variants, so that each sample is tested no more than needed. kCompares: whether nodata
+// samples take part in comparisons, as NaN does not.
 struct NoHoles {
   static constexpr bool kCompares = false;
   bool operator()(auto) const { return false; }
 };
-// Of floats in integers: a comparison of floats may raise a flag, which keeps compilers from taking it out of a branch.
+// As an integer: a float comparison may raise a flag, which keeps compilers from hoisting it out of a branch.
 struct IsNaN {
   static constexpr bool kCompares = false;
   static constexpr std::int32_t kMagnitude = 0x7fffffff, kInfinite = 0x7f800000;
@@ -40,15 +40,15 @@ struct IsNodata<float> {
   explicit IsNodata(float value)
       : mask(value == 0 ? IsNaN::kMagnitude : -1), nodata(std::bit_cast<std::int32_t>(value) & mask) {}
   bool operator()(float sample) const {
-    // No branch: both are told.
+    // No branch: both are evaluated.
     const int is_nodata = (std::bit_cast<std::int32_t>(sample) & mask) == nodata, is_nan = IsNaN()(sample);
     return (is_nodata | is_nan) != 0;
   }
   std::int32_t mask, nodata;
 };
 
-// Lowest and highest sample and the number of nodata of each column of a tile. Columns lie side by side, so that
-// compilers make vector instructions of it: they may not reorder one chain of float comparisons.
+// Minimum, maximum and nodata count of each column of a tile. Columns are adjacent so that compilers vectorise: they
+// may not reorder a single chain of float comparisons.
 template <class T, int kSide>
 class ColumnExtents {
  public:
@@ -57,7 +57,7 @@ class ColumnExtents {
     std::fill(high_, high_ + kSide, std::numeric_limits<T>::lowest());
   }
 
-  // kRows rows at once, from `run` on: each saves a way through memory for what is kept here.
+  // kRows rows at once, from `run` on: fewer passes through the memory of this state.
   template <int kRows, class Nodata>
   void extend(const SampleGrid<T>& grid, const Nodata& is_nodata, const T* run, int cols) {
     for (int i = 0; i < cols; ++i) {
@@ -169,7 +169,7 @@ template <class T>
 void refuse_infinite(const SampleGrid<T>& grid, const SampleRect& rect) {
   if constexpr (std::is_floating_point_v<T>) {
     for (int row = rect.row; row < rect.row + rect.rows; ++row) {
-      // Without a branch per sample: infinities are rare.
+      // No branch per sample: infinities are rare.
       int beyond = 0;
       const T* run = grid.row(row) + rect.col;
       for (int i = 0; i < rect.cols; ++i) beyond += std::abs(run[i]) > std::numeric_limits<T>::max();
@@ -178,7 +178,7 @@ void refuse_infinite(const SampleGrid<T>& grid, const SampleRect& rect) {
         const T sample = grid.at(col, row);
         if (std::isinf(sample) && !grid.is_nodata(sample)) {
           throw Error(fmt::format(
-              "height field: the sample at column {}, row {} is infinite; mark such samples as nodata", col, row));
+              "height field: the sample at column {}, row {} is infinite (mark such samples as nodata)", col, row));
         }
       }
     }

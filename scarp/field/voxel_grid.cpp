@@ -18,7 +18,7 @@ constexpr int kVoxelsPerBrick = 64;
 // Bits of a mask below `bit`.
 constexpr std::uint64_t below(int bit) { return (std::uint64_t{1} << bit) - 1; }
 
-// std::popcount() is a call where the compiler may not count on the instruction.
+// std::popcount() is a call if the compiler cannot assume the instruction.
 int bits_set(std::uint64_t mask) {
   mask -= mask >> 1 & 0x5555555555555555u;
   mask = (mask & 0x3333333333333333u) + (mask >> 2 & 0x3333333333333333u);
@@ -45,7 +45,7 @@ constexpr std::uint64_t kLowX = 0x1111111111111111u, kLowY = 0x000f000f000f000fu
 
 }  // namespace
 
-// Entries by brick of the page and bit; those of empty voxels and of dropped ones mean nothing.
+// Entries by brick of the page and bit; undefined for empty voxels and dropped entries.
 struct VoxelGrid::PageVoxels {
   std::array<std::uint64_t, kPageBricks> solid{}, coloured{};
   std::vector<std::uint32_t> entries = std::vector<std::uint32_t>(kPageBricks * kVoxelsPerBrick);
@@ -55,10 +55,10 @@ VoxelGrid::VoxelGrid(const ivec3& size, int entry_bits)
     : size_(size), bricks_((size + 3) / 4), entry_bits_(entry_bits) {
   if (!valid_side(size.x) || !valid_side(size.y) || !valid_side(size.z)) {
     throw Error(
-        fmt::format("voxel grid: {} x {} x {} voxels; each side must be 1 to {}", size.x, size.y, size.z, kMaxSide));
+        fmt::format("voxel grid: {} x {} x {} voxels (each side must be 1 to {})", size.x, size.y, size.z, kMaxSide));
   }
   if (entry_bits < 1 || entry_bits > kMaxEntryBits) {
-    throw Error(fmt::format("voxel grid: {} bits per entry; 1 to {} are possible", entry_bits, kMaxEntryBits));
+    throw Error(fmt::format("voxel grid: {} bits per entry (must be 1 to {})", entry_bits, kMaxEntryBits));
   }
   const std::size_t bricks = brick_index(bricks_ - 1) + 1;
   masks_.resize(bricks);
@@ -101,7 +101,7 @@ void VoxelGrid::pack(std::size_t page, const PageVoxels& voxels) {
   const std::size_t first = page * kPageBricks, count = std::min<std::size_t>(kPageBricks, masks_.size() - first);
   std::size_t entries = 0;
   for (std::size_t brick = 0; brick < count; ++brick) entries += std::popcount(voxels.coloured[brick]);
-  // Before anything is stored: it may throw.
+  // Before anything is stored, because it may throw.
   std::vector<std::uint64_t> words((entries * static_cast<std::size_t>(entry_bits_) + 63) / 64);
   entries = 0;
   for (std::size_t brick = 0; brick < count; ++brick) {
@@ -121,11 +121,11 @@ void VoxelGrid::pack(std::size_t page, const PageVoxels& voxels) {
 
 void VoxelGrid::require_entry(std::uint32_t entry) const {
   if (entry > below(entry_bits_))
-    throw Error(fmt::format("voxel grid: the entry {} does not fit into {} bits", entry, entry_bits_));
+    throw Error(fmt::format("voxel grid: entry {} does not fit in {} bits", entry, entry_bits_));
 }
 
-// An edit under way: the page that it is at is unpacked, and packed again when it is left. One that is not finished,
-// because something was thrown, loses the page that it is at, and the grid is true to the others.
+// An edit in progress: unpacks the current page and packs it again on leaving it. If an exception ends the edit, the
+// changes to the current page are lost and the rest of the grid stays consistent.
 class VoxelGrid::Editing {
  public:
   explicit Editing(VoxelGrid& grid) : grid_(grid), page_(grid.pages_.size()) {}
@@ -144,7 +144,7 @@ class VoxelGrid::Editing {
     }
     in_page_ = index % kPageBricks;
   }
-  // A voxel of the brick.
+  // Edits a voxel of the brick.
   template <class ChangeOne>
   void change(const ivec3& voxel, const ChangeOne& change_one) {
     const int bit = bit_of(voxel);
@@ -164,11 +164,11 @@ class VoxelGrid::Editing {
     if (!before) added_ = around(added_, here);
     if (!after) removed_ = around(removed_, here);
   }
-  // What may have changed.
+  // Returns the voxels that may have changed.
   VoxelBox finish() {
     pack();
     grid_.bounds_ = around(grid_.bounds_, added_);
-    // What was cleared matters only where it touches the bounds.
+    // Cleared voxels matter only where they touch the bounds.
     const VoxelBox& bounds = grid_.bounds_;
     const bool inner =
         glm::all(glm::lessThan(bounds.low, removed_.low)) && glm::all(glm::greaterThan(bounds.high, removed_.high));
@@ -206,7 +206,7 @@ VoxelBox VoxelGrid::set(std::span<const Placed> voxels) {
   for (const Placed& placed : voxels) {
     if (placed.value) require_entry(*placed.value);
   }
-  // Sorted by page, so that each is unpacked once: how many there are before each, and then where the next of it goes.
+  // Counting sort by page, so that each is unpacked once: counts before each page, then the next index of each.
   const auto page_of = [&](const Placed& placed) { return brick_index(placed.voxel >> 2) / kPageBricks; };
   std::size_t low = pages_.size(), high = 0;
   for (const Placed& placed : voxels) {
@@ -255,7 +255,7 @@ VoxelBox VoxelGrid::scan_bounds() const {
   for_each_voxel({ivec3(0), bricks_}, [&](const ivec3& brick) {
     const std::uint64_t mask = masks_[index++];
     if (mask == 0) return;
-    // Where along each axis the brick has solid voxels: four bits.
+    // Positions along an axis where the brick has solid voxels: four bits.
     const auto occupied = [&](std::uint64_t layer, int shift) {
       unsigned bits = 0;
       for (int i = 0; i < 4; ++i) bits |= (mask >> (shift * i) & layer ? 1u : 0u) << i;
@@ -275,8 +275,8 @@ VoxelBox VoxelGrid::scan_bounds() const {
 VoxelBox VoxelGrid::combine(const VoxelGrid& other, MaskOp op) {
   if (other.size_ != size_ || other.entry_bits_ != entry_bits_) {
     throw Error(fmt::format(
-        "voxel grid: {} x {} x {} voxels of {} bits and {} x {} x {} of {} cannot be combined; they "
-        "must be alike",
+        "voxel grid: cannot combine {} x {} x {} voxels of {} bits with {} x {} x {} of {} bits (sizes "
+        "and bits must be equal)",
         size_.x, size_.y, size_.z, entry_bits_, other.size_.x, other.size_.y, other.size_.z, other.entry_bits_));
   }
   VoxelBox changed;
@@ -328,7 +328,7 @@ void VoxelGrid::drop_hidden_entries() {
   std::size_t index = 0;
   for_each_voxel({ivec3(0), bricks_}, [&](const ivec3& brick) {
     const std::uint64_t m = masks_[index];
-    // Bit v of each: whether the neighbour of v on that side is solid.
+    // Bit v: whether the neighbour of v on that side is solid.
     const std::uint64_t to_x = ((m >> 1) & ~(kLowX << 3)) | (neighbour(brick, {1, 0, 0}) & kLowX) << 3,
                         from_x = ((m << 1) & ~kLowX) | (neighbour(brick, {-1, 0, 0}) >> 3 & kLowX),
                         to_y = ((m >> 4) & ~(kLowY << 12)) | (neighbour(brick, {0, 1, 0}) & kLowY) << 12,
@@ -337,7 +337,7 @@ void VoxelGrid::drop_hidden_entries() {
                         from_z = m << 16 | neighbour(brick, {0, 0, -1}) >> 48;
     seen[index++] = m & ~(to_x & from_x & to_y & from_y & to_z & from_z);
   });
-  // Where nothing is hidden, which voxels have an entry need not be kept.
+  // If nothing is hidden, there is no need to store which voxels have an entry.
   if (seen == masks_) return;
   for (std::size_t page = 0; page < pages_.size(); ++page) {
     PageVoxels voxels = unpack(page);

@@ -310,16 +310,16 @@ std::string refusal(Form form) {
 TEST(DistanceField, RefusesWhatIsOutOfRange) {
   const double nan = std::nan("");
   const Shape ball = make_shape(Sphere{});
-  EXPECT_EQ(refusal(Sphere{-1}), "shape: sphere radius is -1; it must be between 2^-20 and 2^30");
-  EXPECT_EQ(refusal(Sphere{nan}), "shape: sphere radius is nan; it must be between 2^-20 and 2^30");
-  EXPECT_EQ(refusal(Box{{1, 0, 1}}), "shape: box half y is 0; it must be between 2^-20 and 2^30");
-  EXPECT_EQ(refusal(Box{{1, 2, 3}, 1.5}), "shape: box round is 1.5; it must be between 0 and the smallest half");
-  EXPECT_EQ(refusal(HalfSpace{{0, 0, 0}}), "shape: length of the plane normal is 0; it must be 2^-20 or more");
-  EXPECT_EQ(refusal(Moved{ball, {0, nan, 0}}), "shape: move by y is nan; it must be between -2^30 and 2^30");
-  EXPECT_EQ(refusal(Union{{ball, nullptr}}), "shape: union part 1 is missing; it must be a shape");
-  EXPECT_EQ(refusal(Union{}), "shape: union of nothing; at least one part is needed");
+  EXPECT_EQ(refusal(Sphere{-1}), "shape: sphere radius is -1 (must be between 2^-20 and 2^30)");
+  EXPECT_EQ(refusal(Sphere{nan}), "shape: sphere radius is nan (must be between 2^-20 and 2^30)");
+  EXPECT_EQ(refusal(Box{{1, 0, 1}}), "shape: box half y is 0 (must be between 2^-20 and 2^30)");
+  EXPECT_EQ(refusal(Box{{1, 2, 3}, 1.5}), "shape: box round is 1.5 (must be between 0 and the smallest half)");
+  EXPECT_EQ(refusal(HalfSpace{{0, 0, 0}}), "shape: length of the plane normal is 0 (must be at least 2^-20)");
+  EXPECT_EQ(refusal(Moved{ball, {0, nan, 0}}), "shape: move by y is nan (must be between -2^30 and 2^30)");
+  EXPECT_EQ(refusal(Union{{ball, nullptr}}), "shape: union part 1 is missing (must be a shape)");
+  EXPECT_EQ(refusal(Union{}), "shape: union without parts (at least one required)");
   EXPECT_EQ(refusal(Repeated{ball, {0, 1.5, 0}}),
-            "shape: repeat period y is 1.5; it must be at least 2, the length of what is repeated");
+            "shape: repeat period y is 1.5 (must be at least 2, the length of the repeated shape)");
   EXPECT_NE(refusal(Repeated{make_shape(HalfSpace{}), {1, 0, 0}}), "");
   EXPECT_NE(refusal(Repeated{ball, {3, 0, 0}, {-1, 0, 0}}), "");
   EXPECT_NE(refusal(Capsule{{0, 0, 0}, {nan, 0, 0}}), "");
@@ -335,7 +335,7 @@ TEST(DistanceField, RefusesWhatIsOutOfRange) {
   EXPECT_NE(refusal(FieldGround{}), "");
   const auto holed = std::make_shared<HeightField>(HeightField::own(std::vector<float>{1, 2, 3, std::nanf("")}, 2, 2));
   EXPECT_EQ(refusal(FieldGround{holed, 1}),
-            "shape: field of a ground has 1 nodata samples; make the ground by solid_ground()");
+            "shape: field of a ground has 1 nodata samples (make the ground with solid_ground())");
   EXPECT_THROW(DistanceField(nullptr), Error);
 }
 
@@ -344,7 +344,7 @@ TEST(DistanceField, RefusesWhatIsTooDeepOrTooLarge) {
   for (int i = 1; i < kDeepestShape; ++i) deep = make_shape(Moved{deep, {1, 0, 0}});
   EXPECT_NEAR(DistanceField(deep).value({0, 0, 0}), kDeepestShape - 2, 1e-9);
   EXPECT_EQ(refusal(Moved{deep}),
-            fmt::format("shape: {} nodes under one another; {} are possible", kDeepestShape + 1, kDeepestShape));
+            fmt::format("shape: nested {} deep (limited to {})", kDeepestShape + 1, kDeepestShape));
   Shape doubled = make_shape(Sphere{});
   for (int i = 0; i < 20; ++i) doubled = make_shape(Union{{doubled, make_shape(Moved{doubled, {0, 3, 0}})}});
   EXPECT_THROW(DistanceField{doubled}, Error);

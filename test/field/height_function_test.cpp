@@ -195,13 +195,13 @@ std::string refusal(FunctionShape shape) {
 TEST(HeightFunction, RefusesWhatIsOutOfRange) {
   const double nan = std::nan("");
   const Function plane = make_function(Plane{});
-  EXPECT_EQ(refusal(Plane{nan}), "terrain function: plane height is nan; it must be between -2^30 and 2^30");
+  EXPECT_EQ(refusal(Plane{nan}), "terrain function: plane height is nan (must be between -2^30 and 2^30)");
   EXPECT_EQ(refusal(Fractal{.octaves = {0, 1, 1}}),
-            "terrain function: fractal octaves of the march is 0; it must be 1 to 24");
+            "terrain function: fractal octaves of the march is 0 (must be 1 to 24)");
   EXPECT_EQ(refusal(SmoothMinimum{plane, plane, -1}),
-            "terrain function: smooth minimum radius is -1; it must be between 2^-20 and 2^30");
-  EXPECT_EQ(refusal(Minimum{plane, nullptr}), "terrain function: minimum operand b is missing; it must be a function");
-  EXPECT_EQ(refusal(Sines{}), "terrain function: sines without waves; at least one is needed");
+            "terrain function: smooth minimum radius is -1 (must be between 2^-20 and 2^30)");
+  EXPECT_EQ(refusal(Minimum{plane, nullptr}), "terrain function: minimum operand b is missing (must be a function)");
+  EXPECT_EQ(refusal(Sines{}), "terrain function: sines without waves (at least one required)");
   EXPECT_NE(refusal(Fractal{.wavelength = 0}), "");
   EXPECT_NE(refusal(Fractal{.wavelength = 1, .lacunarity = 8, .octaves = {9, 9, 9}}), "");
   EXPECT_NE(refusal(Fractal{.height = -1}), "");
@@ -218,8 +218,8 @@ TEST(HeightFunction, RefusesWhatIsTooDeepOrTooLarge) {
   for (int i = 1; i < kDeepestFunction; ++i) deep = make_function(Sum{deep, deep, 0.5, 0.5, 0});
   // Shared nodes are computed once: 2^255 paths, 256 instructions.
   EXPECT_EQ(HeightFunction(deep).value(1, 2), 0);
-  EXPECT_EQ(refusal(Sum{deep, deep}), fmt::format("terrain function: {} nodes under one another; {} are possible",
-                                                  kDeepestFunction + 1, kDeepestFunction));
+  EXPECT_EQ(refusal(Sum{deep, deep}),
+            fmt::format("terrain function: nested {} deep (limited to {})", kDeepestFunction + 1, kDeepestFunction));
   Function warped = make_function(Fractal{});
   for (int i = 0; i < 12; ++i) warped = make_function(Warp{warped, warped, warped});
   EXPECT_THROW(HeightFunction{warped}, Error);

@@ -90,9 +90,9 @@ TEST(FunctionJson, TellsWhereAndWhat) {
   EXPECT_EQ(message(R"({"type": "fbm", "seed": 18446744073709551615})").substr(0, 30),
             "/f/seed: is 184467440737095516");
   EXPECT_EQ(message(R"({"type": "fbm", "height": "x"})"), R"(/f/height: is "x"; expected a number)");
-  EXPECT_EQ(message(R"({"type": "fbm", "height": -1})"), "/f: fractal height is -1; it must be between 0 and 2^30");
+  EXPECT_EQ(message(R"({"type": "fbm", "height": -1})"), "/f: fractal height is -1 (must be between 0 and 2^30)");
   EXPECT_EQ(message(R"({"type": "sines", "waves": [{"wavelength": -1}]})"),
-            "/f: sine wavelength is -1; it must be between 2^-20 and 2^30");
+            "/f: sine wavelength is -1 (must be between 2^-20 and 2^30)");
   EXPECT_EQ(message(R"({"type": "sines", "waves": [{"length": 1}]})").substr(0, 28), "/f/waves/0/length: unknown; ");
   EXPECT_EQ(message(R"({"type": "sum", "of": [1, {"type": "mask", "outer": "wide"}]})"),
             R"(/f/of/1/outer: is "wide"; expected a number)");
@@ -138,9 +138,8 @@ TEST(ExampleFunctions, AGitLfsPointerIsNamed) {
     read_function(path.string());
     ADD_FAILURE() << "no error";
   } catch (const Error& error) {
-    EXPECT_EQ(
-        "function '" + path.string() + "': is a Git LFS pointer, not the file itself; fetch it with: git lfs pull",
-        std::string(error.what()));
+    EXPECT_EQ("function '" + path.string() + "': Git LFS pointer instead of the file (fetch it with: git lfs pull)",
+              std::string(error.what()));
   }
   std::filesystem::remove(path);
 }

@@ -150,7 +150,7 @@ TEST_F(RayDumps, AreRefusedInOneLineThatNamesTheLine) {
   EXPECT_EQ(refusal(head + "field int16 1 1\nrow 0x\n"), "line 3: sample '0x' is no number");
   EXPECT_EQ(refusal(head + "field int16 1 1\nrow --1\n"), "line 3: sample '--1' is no number");
   EXPECT_EQ(refusal(head + "field int16 1 1\ncell_x 0\nrow 1\nray\n"),
-            "line 5: height field: cell_x is 0; it must be finite and above 0");
+            "line 5: height field: cell_x is 0 (must be finite and above 0)");
   EXPECT_EQ(refusal(head + "field float32 1 1\nrow inf\nray\n").substr(0, 6), "line 4");
   EXPECT_EQ(refusal(head + "field int16 1 1\nwrap round\n"),
             "line 3: wrap 'round': there are: none, periodic, shared_border");

@@ -103,7 +103,7 @@ TEST(ShapeJson, TellsWhereItIsWrong) {
             at + "/plane/normal: expected a direction, got a vector of length 0");
   EXPECT_EQ(refusal(R"({"plane": {}, "material": "green"})"), at + "/material: no such material");
   EXPECT_EQ(refusal(R"({"repeat": {"period": [1, 0, 0]}, "of": {"sphere": {"radius": 1}}})"),
-            at + "/repeat: shape: repeat period x is 1; it must be at least 2, the length of what is repeated");
+            at + "/repeat: shape: repeat period x is 1 (must be at least 2, the length of the repeated shape)");
   EXPECT_EQ(refusal(R"({"repeat": {"period": [3, 0, 0], "count": [1.5, 0, 0]}, "of": {"sphere": {"radius": 1}}})"),
             at + "/repeat/count/0: expected a whole number, 0 or more, got 1.5");
   EXPECT_EQ(refusal(R"({"ground": "hills"})", {}), at + "/ground: there are no fields here that could be a ground");
