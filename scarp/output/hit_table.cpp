@@ -23,7 +23,7 @@ constexpr std::array<std::string_view, 5> kKindNames = {"heights", "function", "
 constexpr std::array<std::string_view, 7> kFaceNames = {"low_x", "high_x", "low_y", "high_y",
                                                         "low_z", "high_z", "inside"};
 // Columns of hits. Those of tables on one height field come first.
-enum Column : std::uint8_t {
+enum HitColumn : std::uint8_t {
   kRay,
   kStatus,
   kT,
@@ -204,7 +204,7 @@ void HitTable::add(std::span<const HitRow> rows) {
     numbers[kStatus] = static_cast<double>(hit.status);
     if (hit.status == HitStatus::exhausted && std::isfinite(hit.t)) numbers[kT] = hit.t;
     if (hit) {
-      const auto set = [&](Column first, const dvec3& p) {
+      const auto set = [&](HitColumn first, const dvec3& p) {
         for (int i = 0; i < 3; ++i) numbers[static_cast<std::size_t>(first + i)] = p[i];
       };
       numbers[kT] = hit.t;

@@ -19,10 +19,10 @@
 namespace scarp {
 namespace {
 
-constexpr std::int64_t kBytesPerPiece = 8 << 20;        // rows are read in pieces of about this size
-constexpr std::int64_t kLargestPieceBytes = 256 << 20;  // unless whole blocks of the file need more, up to this
+constexpr std::int64_t kBytesPerPiece = 8 << 20;        // approximate size of the pieces in which rows are read
+constexpr std::int64_t kLargestPieceBytes = 256 << 20;  // maximum size, if whole blocks of the file need more
 
-// Memory that can be had without swapping; what the machine has where the system does not tell.
+// Memory available without swapping; the machine's total if the system does not report it.
 double free_memory_bytes() {
   std::ifstream meminfo("/proc/meminfo");
   std::string word;
@@ -33,8 +33,8 @@ double free_memory_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-// Calls piece(first, count) for pieces of the window's rows that end where the band's blocks end, so that no block is
-// decoded twice.
+// Calls piece(first, count) for pieces of the window's rows that end at block boundaries of the band, so that no block
+// is decoded twice.
 template <class F>
 void for_row_pieces(GDALRasterBand& band, const RasterWindow& window, int bytes_per_sample, const Progress& progress,
                     F&& piece) {
@@ -55,34 +55,35 @@ void for_row_pieces(GDALRasterBand& band, const RasterWindow& window, int bytes_
   }
 }
 
-// What the samples contain besides heights.
+// Special samples found while reading.
 struct Findings {
   std::int64_t nan = 0;
   double rounding = 0;  // largest change by the conversion to float32
 };
 
-// Whether a float sample is the nodata value as far as files can say: texts like -3.402823e+38 miss the value by some
-// units in the last place. The width is that of GDAL's own test (4 epsilons, gdal_priv.h: ARE_REAL_EQUAL); for marks
-// that no height comes near to, it is that of texts of six digits, printf's usual number: half a unit of the sixth.
+// Whether a float sample equals the nodata value within the precision of files: texts like -3.402823e+38 differ from
+// the value by some units in the last place. The tolerance is that of GDAL's own test (4 epsilons, gdal_priv.h:
+// ARE_REAL_EQUAL); for marks beyond all heights it is that of texts of six digits, the default of printf: half a unit
+// of the sixth.
 bool is_float_nodata(double sample, double nodata) {
   constexpr double kSixDigits = 0.5e-5;
   const double width = std::abs(nodata) > kBeyondHeights ? kSixDigits : 4 * double{FLT_EPSILON};
   return sample == nodata || (std::isfinite(nodata) && std::abs(sample - nodata) <= width * std::abs(nodata));
 }
 
-// Neither beyond the largest float nor so small that it would become the height 0.
+// Neither beyond the largest float nor so small that it would become height 0.
 bool float_can_hold(double nodata) {
   return std::abs(nodata) <= FLT_MAX && (nodata == 0 || static_cast<float>(nodata) != 0);
 }
 
 [[noreturn]] void refuse_infinite(double value, int col, int row) {
   throw Error(
-      fmt::format("the sample at column {}, row {} is {}; heights must be finite: say --nodata={} if it marks holes",
+      fmt::format("the sample at column {}, row {} is {}, not a finite height (if it marks holes, add --nodata={})",
                   col, row, std::isinf(value) ? (value > 0 ? "infinite" : "minus infinity") : "beyond float32",
                   std::isinf(value) ? (value > 0 ? "inf" : "-inf") : fmt::format("{}", value)));
 }
 
-// Float samples: holes get one mark, infinities are refused. `source` is what `sample` was made of.
+// Normalises a float sample: all holes get one mark, infinities are rejected. `source` is the value before conversion.
 float clean(double source, std::optional<double> nodata, int col, int row, Findings& found) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   if (std::isnan(source)) {
@@ -119,7 +120,7 @@ std::vector<T> read_kept(GDALRasterBand& band, const RasterWindow& window, GDALD
   return samples;
 }
 
-// Samples of the wide types, through double.
+// Samples of wide types, through double.
 std::vector<float> read_narrowed(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
                                  Findings& found, GdalSession& session, const Progress& progress) {
   refuse_beyond_memory(window, sizeof(float));
@@ -138,7 +139,7 @@ std::vector<float> read_narrowed(GDALRasterBand& band, const RasterWindow& windo
   return samples;
 }
 
-// Turns the samples into float32 and hides what the mask hides. Returns how many it hides; with none, nothing changes.
+// Converts the samples to float32 and masks hidden ones. Returns the number of hidden samples; if 0, changes nothing.
 std::int64_t apply_mask(GDALRasterBand& mask, const RasterWindow& window, BandSamples& read, GdalSession& session) {
   std::vector<std::uint8_t> piece;
   std::int64_t hidden = 0;
@@ -212,8 +213,8 @@ void refuse_beyond_memory(const RasterWindow& window, int bytes_per_sample) {
   const double needed = static_cast<double>(window.cols) * window.rows * bytes_per_sample, have = free_memory_bytes();
   if (needed > have) {
     throw Error(
-        fmt::format("{} x {} samples need {:.1f} GiB, {:.1f} GiB of memory are free; read a part with --window "
-                    "COL,ROW,COLS,ROWS",
+        fmt::format("{} x {} samples need {:.1f} GiB, but {:.1f} GiB of memory are free (read a part with --window "
+                    "COL,ROW,COLS,ROWS)",
                     window.cols, window.rows, needed / (1 << 30), have / (1 << 30)));
   }
 }
@@ -223,12 +224,12 @@ void read_rows(GDALRasterBand& band, const RasterWindow& window, int row, int ro
   session.clear();
   const CPLErr result =
       band.RasterIO(GF_Read, window.col, row, window.cols, rows, out, window.cols, rows, type, 0, 0, nullptr);
-  // Some drivers report an error, fill up with zeros, and call that success.
+  // Some drivers report an error, fill with zeros, and return success.
   if (result != CE_None || session.failed()) {
     check_vrt_sources(band);
     const std::string reason = session.reason("");
-    throw Error(fmt::format("rows {} to {} cannot be read, the file is cut off or damaged{}; {}", row, row + rows - 1,
-                            reason.empty() ? "" : " (" + reason + ")", kFetchAgain));
+    throw Error(fmt::format("cannot read rows {} to {}: truncated or damaged file{} ({})", row, row + rows - 1,
+                            reason.empty() ? "" : ", " + reason, kFetchAgain));
   }
 }
 
@@ -237,8 +238,8 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   const GDALDataType type = band.GetRasterDataType();
   const std::string_view type_name = GDALGetDataTypeName(type);
   if (GDALDataTypeIsComplex(type)) {
-    throw Error(fmt::format(
-        "its samples are complex numbers ({}), no heights; convert them with gdal_translate -ot Float32", type_name));
+    throw Error(
+        fmt::format("samples are complex numbers ({}) (convert them with gdal_translate -ot Float32)", type_name));
   }
   const bool signed_bytes = is_signed_byte(band);
 
@@ -249,7 +250,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   const auto integers = [&]<class T>(T, GDALDataType as, std::string_view becomes) {
     if (read.nodata && !holds<T>(*read.nodata)) {
       read.notes.push_back(
-          fmt::format("nodata value {} cannot occur in {} samples: there are no holes", *read.nodata, type_name));
+          fmt::format("nodata value {} cannot occur in {} samples, so there are no holes", *read.nodata, type_name));
       read.nodata.reset();
     }
     read.samples = read_kept<T>(band, window, as, read.nodata, signed_bytes, found, session, progress);
@@ -268,11 +269,12 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
     read.samples = read_kept<float>(band, window, GDT_Float32, read.nodata, false, found, session, progress);
   } else {
     read.samples = read_narrowed(band, window, read.nodata, found, session, progress);
-    read.notes.push_back(found.rounding == 0 ? fmt::format("{} samples became float32, none was rounded", type_name)
-                                             : fmt::format("{} samples became float32, rounded by {:.3g} at most",
-                                                           type_name, found.rounding));
+    read.notes.push_back(
+        found.rounding == 0
+            ? fmt::format("{} samples converted to float32 without rounding", type_name)
+            : fmt::format("{} samples converted to float32, rounded by at most {:.3g}", type_name, found.rounding));
   }
-  // Float holes whose mark float32 cannot hold are NaN by now.
+  // Float holes whose mark does not fit in float32 are NaN by now.
   if (std::holds_alternative<std::vector<float>>(read.samples) && read.nodata) {
     if (float_can_hold(*read.nodata)) {
       read.nodata = static_cast<double>(static_cast<float>(*read.nodata));
@@ -280,7 +282,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
       read.nodata.reset();
     }
   }
-  // A mask that only repeats the nodata value says nothing new, and a nodata value of the caller's wins over it.
+  // A mask that only repeats the nodata value adds nothing, and the caller's nodata value overrides it.
   if (has_own_mask(band)) {
     const std::int64_t hidden = apply_mask(*band.GetMaskBand(), window, read, session);
     if (hidden > 0)
@@ -289,9 +291,8 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   }
   if (found.nan > 0) read.notes.push_back(fmt::format("{} samples are NaN: holes", found.nan));
   if (all_holes(read)) {
-    throw Error(fmt::format(
-        "all {} x {} samples are nodata{}; there is nothing to show: choose another part, or another --nodata",
-        window.cols, window.rows, read.nodata ? fmt::format(" ({})", *read.nodata) : ""));
+    throw Error(fmt::format("all {} x {} samples are nodata{} (choose another --window or --nodata)", window.cols,
+                            window.rows, read.nodata ? fmt::format(" ({})", *read.nodata) : ""));
   }
   return read;
 }

@@ -14,13 +14,13 @@ namespace scarp {
 namespace {
 
 constexpr std::string_view kMagic = "#binvox";
-constexpr std::size_t kLongestLine = 256;  // of a header
+constexpr std::size_t kLongestLine = 256;  // in a header
 constexpr int kMostLines = 64;
 
-// A line of the header, without its end; lines of other systems end in "\r\n".
+// A line of the header, without its end; accepts "\r\n".
 std::string_view take_line(std::string_view& bytes) {
   const std::size_t end = bytes.substr(0, kLongestLine).find('\n');
-  if (end == std::string_view::npos) throw Error("its header is cut off: there is no line 'data'");
+  if (end == std::string_view::npos) throw Error("truncated header, no line 'data'");
   std::string_view line = bytes.substr(0, end);
   bytes.remove_prefix(end + 1);
   if (line.ends_with('\r')) line.remove_suffix(1);
@@ -39,7 +39,7 @@ std::array<Number, 3> numbers(std::string_view line, std::string_view what, std:
     rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
   }
   if (!good || rest.find_first_not_of(' ') != std::string_view::npos)
-    throw Error(fmt::format("its header says {}; expected '{} {}'", printable(line), what, expected));
+    throw Error(fmt::format("header line {} (expected '{} {}')", printable(line), what, expected));
   return found;
 }
 
@@ -49,22 +49,23 @@ bool says(std::string_view line, std::string_view word) {
 
 Binvox parse_header(std::string_view& bytes) {
   if (!bytes.starts_with(kMagic)) {
-    throw Error(fmt::format("begins with {}, not with '#binvox'; it is no binvox file",
+    throw Error(fmt::format("not a binvox file: begins with {} instead of '#binvox'",
                             printable(bytes.substr(0, kMagic.size()))));
   }
   const std::string_view first = take_line(bytes);
-  if (first != "#binvox 1") throw Error(fmt::format("says {}; only version 1 is known: '#binvox 1'", printable(first)));
+  if (first != "#binvox 1")
+    throw Error(fmt::format("version {} is not supported (expected '#binvox 1')", printable(first)));
   Binvox binvox;
   bool sized = false;
   for (int line_number = 0;; ++line_number) {
-    if (line_number == kMostLines) throw Error("its header has no line 'data'");
+    if (line_number == kMostLines) throw Error("header has no line 'data'");
     const std::string_view line = take_line(bytes);
     if (line == "data") break;
     if (says(line, "dim")) {
       const auto [depth, height, width] = numbers<std::int64_t>(line, "dim", 3, "DEPTH HEIGHT WIDTH");
       for (const std::int64_t side : {depth, height, width}) {
         if (side < 1 || side > Binvox::kMaxSide)
-          throw Error(fmt::format("its header says {}; sides must be 1 to {}", printable(line), Binvox::kMaxSide));
+          throw Error(fmt::format("header line {} (sides must be 1 to {})", printable(line), Binvox::kMaxSide));
       }
       binvox.size = {depth, width, height};
       sized = true;
@@ -74,12 +75,12 @@ Binvox parse_header(std::string_view& bytes) {
     } else if (says(line, "scale")) {
       binvox.scale = numbers<double>(line, "scale", 1, "S")[0];
     } else if (!line.starts_with('#')) {
-      throw Error(fmt::format("its header has the line {}; expected dim, translate, scale or data", printable(line)));
+      throw Error(fmt::format("unknown header line {} (expected dim, translate, scale or data)", printable(line)));
     }
   }
-  if (!sized) throw Error("its header does not say 'dim DEPTH HEIGHT WIDTH'");
+  if (!sized) throw Error("header has no line 'dim DEPTH HEIGHT WIDTH'");
   if (!std::isfinite(binvox.translate.x + binvox.translate.y + binvox.translate.z + binvox.scale))
-    throw Error("its header's translate and scale are not finite");
+    throw Error("translate and scale of the header are not finite");
   return binvox;
 }
 
@@ -94,18 +95,18 @@ void Binvox::clear() { bits.assign((volume(size) + 63) / 64, 0); }
 Binvox parse_binvox(std::string_view bytes) {
   Binvox binvox = parse_header(bytes);
   const std::uint64_t voxels = volume(binvox.size);
-  std::uint64_t told = 0;
+  std::uint64_t counted = 0;
   for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
     const auto value = static_cast<std::uint8_t>(bytes[i]), count = static_cast<std::uint8_t>(bytes[i + 1]);
     if (value > 1 || count == 0)
-      throw Error(fmt::format("run {} is {} voxels of {}; expected 1 to 255 of 0 or 1", i / 2, count, value));
-    told += count;
+      throw Error(fmt::format("run {} is {} voxels of {} (expected 1 to 255 of 0 or 1)", i / 2, count, value));
+    counted += count;
   }
-  if (told != voxels) {
-    throw Error(fmt::format("its runs are {} voxels; the header says {} x {} x {}, which are {}{}", told, binvox.size.x,
-                            binvox.size.y, binvox.size.z, voxels, told < voxels ? "; is it cut off?" : ""));
+  if (counted != voxels) {
+    throw Error(fmt::format("runs contain {} voxels instead of {} x {} x {} = {}{}", counted, binvox.size.x,
+                            binvox.size.y, binvox.size.z, voxels, counted < voxels ? " (truncated file?)" : ""));
   }
-  if (bytes.size() % 2 != 0) throw Error("ends within a run; is it cut off?");
+  if (bytes.size() % 2 != 0) throw Error("ends within a run (truncated file?)");
   binvox.clear();
   std::uint64_t at = 0;
   for (std::size_t i = 0; at < voxels; i += 2) {
@@ -122,7 +123,7 @@ Binvox read_binvox(const std::string& path) {
   try {
     return parse_binvox(whole_file(path, kMagic));
   } catch (const Error& error) {
-    throw Error(fmt::format("binvox '{}': {}", path, error.what()));
+    throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
 

@@ -21,7 +21,7 @@
 namespace scarp {
 namespace {
 
-// No draped picture becomes larger than this along a side.
+// Maximum side of a warped overlay.
 constexpr int kMostSide = 16384;
 
 struct WarpOptions {
@@ -40,10 +40,10 @@ struct TranslateOptions {
   TranslateOptions& operator=(const TranslateOptions&) = delete;
 };
 
-// Palettes become colours; nothing is copied when there are bands of colours already.
+// Expands palettes to colours; copies nothing if there are colour bands already.
 GDALDatasetUniquePtr in_colours(GDALDatasetUniquePtr dataset, const GdalSession& session) {
   if (dataset->GetRasterBand(1)->GetRasterDataType() != GDT_Byte) {
-    throw Error("is no picture of 8 bits per channel");
+    throw Error("not an image with 8 bits per channel");
   }
   if (dataset->GetRasterCount() != 1 || !dataset->GetRasterBand(1)->GetColorTable()) return dataset;
   CPLStringList arguments;
@@ -52,7 +52,7 @@ GDALDatasetUniquePtr in_colours(GDALDatasetUniquePtr dataset, const GdalSession&
   int wrong = 0;
   GDALDatasetUniquePtr colours(
       GDALDataset::FromHandle(GDALTranslate("", GDALDataset::ToHandle(dataset.get()), options.options, &wrong)));
-  if (!colours) throw Error(session.reason("its palette cannot be read"));
+  if (!colours) throw Error(session.reason("cannot read its palette"));
   return colours;
 }
 
@@ -76,7 +76,7 @@ ColourImage pixels_of(GDALDataset& dataset, int height, const GdalSession& sessi
   return image;
 }
 
-// Of the picture, in units of the raster's CRS.
+// Pixel size of the image, in units of the raster's CRS.
 dvec2 pixel_size(GDALDataset& dataset, const Georeference& georeference, const GdalSession& session) {
   CPLStringList options;
   if (!georeference.crs_wkt.empty() && dataset.GetSpatialRef() != nullptr) {
@@ -89,7 +89,7 @@ dvec2 pixel_size(GDALDataset& dataset, const Georeference& georeference, const G
   const bool found = transform != nullptr && GDALSuggestedWarpOutput(handle, GDALGenImgProjTransform, transform, place,
                                                                      &across, &down) == CE_None;
   if (transform != nullptr) GDALDestroyGenImgProjTransformer(transform);
-  if (!found) throw Error(session.reason("cannot be brought onto the raster"));
+  if (!found) throw Error(session.reason("cannot be warped to the raster"));
   return {std::abs(place[1]), std::abs(place[5])};
 }
 
@@ -102,7 +102,7 @@ ColourImage read_colour_row(const std::string& path) {
     const GDALDatasetUniquePtr dataset = in_colours(open_gdal_raster(path, session), session);
     return pixels_of(*dataset, 1, session);
   } catch (const Error& error) {
-    throw Error(fmt::format("ramp '{}': {}", path, error.what()));
+    throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
 
@@ -115,8 +115,9 @@ ColourImage read_overlay(const std::string& path, const Georeference& georeferen
     GDALDatasetUniquePtr dataset = in_colours(std::move(stored), session);
     const bool placed = has_place(*dataset);
     if (placed != georeference.present) {
-      throw Error(placed ? "has a place on the earth, and the input has none (--crs and --bounds give one to a raster)"
-                         : "has no place on the earth, and the raster has one; gdal_translate -a_srs -a_ullr gives it");
+      throw Error(placed
+                      ? "overlay is georeferenced, but the input is not (georeference a raster with --crs and --bounds)"
+                      : "overlay is not georeferenced, but the raster is (use gdal_translate -a_srs -a_ullr)");
     }
     if (!placed) {
       ColourImage image = pixels_of(*dataset, dataset->GetRasterYSize(), session);
@@ -133,7 +134,7 @@ ColourImage read_overlay(const std::string& path, const Georeference& georeferen
       add("-t_srs");
       add(georeference.crs_wkt);
     }
-    // As fine as the picture itself.
+    // The resolution of the image.
     const dvec2 pixel = pixel_size(*dataset, georeference, session);
     const int across = std::clamp(static_cast<int>(std::ceil((east - west) / pixel.x)), 1, kMostSide);
     const int down = std::clamp(static_cast<int>(std::ceil((north - south) / pixel.y)), 1, kMostSide);
@@ -143,23 +144,24 @@ ColourImage read_overlay(const std::string& path, const Georeference& georeferen
     const int count = dataset->GetRasterCount();
     if (count != 2 && count != 4) add("-dstalpha");
     const WarpOptions options(arguments.List());
-    if (!options.options) throw Error(session.reason("cannot be brought onto the raster"));
+    if (!options.options) throw Error(session.reason("cannot be warped to the raster"));
     GDALDatasetH source = GDALDataset::ToHandle(dataset.get());
     int wrong = 0;
     const GDALDatasetUniquePtr warped(
         GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &source, options.options, &wrong)));
-    if (!warped) throw Error(session.reason("cannot be brought onto the raster"));
+    if (!warped) throw Error(session.reason("cannot be warped to the raster"));
     ColourImage image = pixels_of(*warped, warped->GetRasterYSize(), session);
     image.files = files;
     bool seen = false;
     for (std::size_t i = 3; i < image.rgba.size() && !seen; i += 4) seen = image.rgba[i] != 0;
     if (!seen) {
-      throw Error(fmt::format("lies beside the raster, which goes from {:.10g} to {:.10g} and from {:.10g} to {:.10g}",
-                              west, east, south, north));
+      throw Error(
+          fmt::format("overlay does not overlap the raster, which spans {:.10g} to {:.10g} by {:.10g} to {:.10g}", west,
+                      east, south, north));
     }
     return image;
   } catch (const Error& error) {
-    throw Error(fmt::format("overlay '{}': {}", path, error.what()));
+    throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
 

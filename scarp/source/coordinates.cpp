@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kNames = {"local", "map", "lonlat"};
 
-// Points go through PROJ by the batch: some kilobytes at a time.
+// Points go through PROJ in batches of some kilobytes.
 constexpr std::size_t kBatch = 1024;
 
 std::optional<std::size_t> apply(OGRCoordinateTransformation& transform, std::span<dvec3> points) {
@@ -46,7 +46,7 @@ std::string_view name_of(Coordinates coordinates) { return kNames[static_cast<st
 
 Coordinates find_coordinates(std::string_view name) {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
-  if (found == kNames.end()) throw Error(fmt::format("coordinates '{}': expected local, map or lonlat", name));
+  if (found == kNames.end()) throw Error(fmt::format("unknown coordinates '{}' (expected local, map or lonlat)", name));
   return static_cast<Coordinates>(found - kNames.begin());
 }
 
@@ -61,18 +61,19 @@ CoordinateFrame::CoordinateFrame(const Georeference& georeference, int cols, int
       centre_x_(georeference.map_from_node[0] + (cols - 1) / 2.0 * georeference.map_from_node[1]) {
   if (coordinates == Coordinates::local) return;
   if (!georeference.present) {
-    throw Error(fmt::format("has no georeference, which {} coordinates need; give --bounds W,S,E,N, or use local ones",
-                            name_of(coordinates)));
+    throw Error(
+        fmt::format("no georeference, which {} coordinates require (add --bounds W,S,E,N, or use local coordinates)",
+                    name_of(coordinates)));
   }
   if (coordinates == Coordinates::map) return;
   if (georeference.crs_wkt.empty()) {
     throw Error(
-        "names no coordinate reference system, which lonlat coordinates need; give one, or use map coordinates");
+        "no coordinate reference system, which lonlat coordinates require (specify one, or use map coordinates)");
   }
   GdalSession session;
   OGRSpatialReference map, lonlat;
   if (map.importFromWkt(georeference.crs_wkt.c_str()) != OGRERR_NONE || lonlat.importFromEPSG(4326) != OGRERR_NONE) {
-    throw Error(fmt::format("its coordinate reference system '{}' cannot be used: {}", georeference.crs_name,
+    throw Error(fmt::format("unusable coordinate reference system '{}': {}", georeference.crs_name,
                             session.reason("GDAL gives no reason")));
   }
   map.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
@@ -80,7 +81,7 @@ CoordinateFrame::CoordinateFrame(const Georeference& georeference, int cols, int
   map_from_lonlat_.reset(OGRCreateCoordinateTransformation(&lonlat, &map));
   lonlat_from_map_.reset(OGRCreateCoordinateTransformation(&map, &lonlat));
   if (!map_from_lonlat_ || !lonlat_from_map_) {
-    throw Error(fmt::format("PROJ knows no way between WGS 84 and its coordinate reference system '{}': {}",
+    throw Error(fmt::format("PROJ cannot convert between WGS 84 and the coordinate reference system '{}': {}",
                             georeference.crs_name, session.reason("GDAL gives no reason")));
   }
   if (map.IsGeographic()) turn_ = 2 * std::numbers::pi / map.GetAngularUnits();
@@ -92,7 +93,7 @@ CoordinateFrame::CoordinateFrame(CoordinateFrame&&) noexcept = default;
 std::optional<std::size_t> CoordinateFrame::to_local(std::span<dvec3> points) const {
   if (coordinates_ == Coordinates::local) return {};
   if (coordinates_ == Coordinates::lonlat) {
-    // PROJ would bring any number of degrees into its range: metres, for example, which somebody took for degrees.
+    // PROJ would wrap any number of degrees into its range, including metres passed by mistake.
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (!(std::abs(points[i].x) <= 360 && std::abs(points[i].y) <= 90)) return i;
     }
@@ -101,7 +102,7 @@ std::optional<std::size_t> CoordinateFrame::to_local(std::span<dvec3> points) co
   const Georeference& geo = georeference_;
   const auto& map = geo.map_from_node;
   for (dvec3& p : points) {
-    // One place has many longitudes: that next to the raster counts.
+    // A place has many equivalent longitudes: choose the one nearest to the raster.
     if (turn_ > 0) p.x += turn_ * std::round((centre_x_ - p.x) / turn_);
     p.x = (p.x - map[0]) / map[1] * geo.cell_x_m;
     p.y = (last_row_ - (p.y - map[3]) / map[5]) * geo.cell_y_m;
@@ -153,8 +154,8 @@ std::vector<Ray> rays_in_local(const RayTable& table, const CoordinateFrame& fra
     if (const auto failed = frame.to_local(points)) {
       const dvec3 given = table.rows[*failed].*member;
       throw Error(
-          fmt::format("{}: ({}, {}) is no place that the raster's CRS can show; x is the longitude and y the "
-                      "latitude, in degrees",
+          fmt::format("{}: ({}, {}) is outside the domain of the raster's CRS (x is the longitude and y the "
+                      "latitude, in degrees)",
                       table.where(*failed), given.x, given.y));
     }
   };

@@ -32,7 +32,7 @@ std::string_view trimmed(std::string_view text) {
 
 CsvRows::CsvRows(std::string_view text) : text_(text) {
   if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
-  // The first row with a separator is the header, whatever blank lines come before it.
+  // The first row with a separator is the header, even after blank lines.
   separator_ = separator_of(text_);
 }
 
@@ -55,10 +55,10 @@ std::string_view CsvRows::quoted_field() {
   const std::size_t begin = ++at_;
   std::string* unescaped = nullptr;
   for (;; ++at_) {
-    if (at_ == text_.size()) throw Error(fmt::format("line {}: a quote is never closed", row_line_));
+    if (at_ == text_.size()) throw Error(fmt::format("line {}: unclosed quote", row_line_));
     if (text_[at_] == '"') {
       if (at_ + 1 == text_.size() || text_[at_ + 1] != '"') break;
-      // From here on the field is no longer a part of the text.
+      // From here on the field is no longer a substring of the text.
       if (!unescaped) unescaped = &unescaped_.emplace_back(text_.substr(begin, at_ - begin));
       ++at_;
     } else if (text_[at_] == '\n' || (text_[at_] == '\r' && !text_.substr(at_).starts_with("\r\n"))) {
@@ -69,7 +69,7 @@ std::string_view CsvRows::quoted_field() {
   const std::string_view field = unescaped ? std::string_view(*unescaped) : text_.substr(begin, at_ - begin);
   ++at_;
   if (!at_line_end() && text_[at_] != separator_) {
-    throw Error(fmt::format("line {}: text follows a closing quote; quotes inside quotes are doubled", line_));
+    throw Error(fmt::format("line {}: text after a closing quote (double the quotes inside quoted text)", line_));
   }
   return field;
 }

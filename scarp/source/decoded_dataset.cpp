@@ -64,8 +64,8 @@ void check_colours(GDALDataset& colours, HeightEncoding encoding) {
   }
   if (bands == 1 && colours.GetRasterBand(1)->GetColorTable()) found += " with a palette";
   if (!good) {
-    throw Error(fmt::format("{} is decoded from bands of bytes for red, green, blue and perhaps alpha; {}",
-                            name_of(encoding), found));
+    throw Error(
+        fmt::format("{} needs byte bands for red, green, blue and optionally alpha; {}", name_of(encoding), found));
   }
 }
 

@@ -44,9 +44,9 @@ std::uint64_t needed_bytes(const VolumeFormat& format) {
 void require_length(const VolumeFormat& format, std::uint64_t bytes) {
   const std::uint64_t needed = needed_bytes(format);
   if (bytes >= needed && (bytes == needed || format.may_go_on)) return;
-  throw Error(fmt::format("has {} bytes; {} x {} x {} samples of {} bytes{} need {}", bytes, format.size.x,
+  throw Error(fmt::format("{} bytes, but {} x {} x {} samples of {} bytes{} need {}", bytes, format.size.x,
                           format.size.y, format.size.z, format.bytes,
-                          format.offset > 0 ? fmt::format(" behind {}", format.offset) : "", needed));
+                          format.offset > 0 ? fmt::format(" at offset {}", format.offset) : "", needed));
 }
 
 template <class Number>
@@ -66,10 +66,10 @@ double number(std::uint64_t bits) {
 VolumeFormat parse_volume_format(std::string_view text) {
   VolumeFormat format;
   if (!parse(text, format)) {
-    throw Error(fmt::format(
-        "volume of the form '{}': expected npy, or NXxNYxNZ:TYPE[+OFFSET], sides 1 to {}, TYPE one of u8 i8 u16 "
-        "i16 u32 i32 f32 f64 with le or be behind it, for example 256x256x128:u16le",
-        text, kMaxVolumeSide));
+    throw Error(
+        fmt::format("volume format '{}': expected npy, or NXxNYxNZ:TYPE[+OFFSET], sides 1 to {}, TYPE one of u8 i8 u16 "
+                    "i16 u32 i32 f32 f64 followed by le or be, for example 256x256x128:u16le",
+                    text, kMaxVolumeSide));
   }
   return format;
 }
@@ -77,15 +77,15 @@ VolumeFormat parse_volume_format(std::string_view text) {
 VolumeFormat npy_volume_format(std::string_view bytes) {
   const NpyHeader header = parse_npy_header(bytes);
   if (header.shape.size() != 3)
-    throw Error(fmt::format("is an array of {} dimensions; a volume has 3, [z][y][x]", header.shape.size()));
+    throw Error(fmt::format("array of {} dimensions (a volume needs 3, [z][y][x])", header.shape.size()));
   const bool sized = header.bytes == 1 || header.bytes == 2 || header.bytes == 4 || header.bytes == 8;
   const bool is_float = header.kind == 'f' && header.bytes >= 4;
   const bool is_whole = header.kind == 'i' || header.kind == 'u' || header.kind == 'b';
   if (!sized || !(is_float || is_whole))
-    throw Error(fmt::format("its samples are '{}'; a volume has whole numbers or floats", header.descr));
+    throw Error(fmt::format("samples of type '{}' (a volume needs integers or floats)", header.descr));
   for (const std::int64_t side : header.shape) {
     if (side < 1 || side > kMaxVolumeSide)
-      throw Error(fmt::format("is {} x {} x {}; sides must be 1 to {}", header.shape[2], header.shape[1],
+      throw Error(fmt::format("volume of {} x {} x {} voxels (sides must be 1 to {})", header.shape[2], header.shape[1],
                               header.shape[0], kMaxVolumeSide));
   }
   return {{header.shape[2], header.shape[1], header.shape[0]},
@@ -144,7 +144,7 @@ DenseVolume read_volume(const std::string& path, const std::string& text) {
     if (!error) require_length(format, length);
     return {format, whole_file(path, std::string_view())};
   } catch (const Error& error) {
-    throw Error(fmt::format("volume '{}': {}", path, error.what()));
+    throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
 

@@ -28,10 +28,10 @@
 namespace scarp {
 namespace {
 
-// The largest group of scan lines that most compressions pack together, so that none is unpacked twice.
+// The largest block of scan lines of most compressions, so that none is decompressed twice.
 constexpr int kBlockRows = 32;
 
-// OpenEXR's view of a file of GDAL's, so that /vsizip and its kin work here, too.
+// Adapts GDAL's file access to OpenEXR, so that /vsizip and similar work.
 class VsiStream final : public Imf::IStream {
  public:
   explicit VsiStream(const std::string& path) : IStream(path.c_str()), file_(VSIFOpenL(path.c_str(), "rb")) {
@@ -71,16 +71,16 @@ std::string choose_channel(const Imf::ChannelList& channels, const std::string& 
   const std::string names = names_of(channels);
   if (!wanted.empty()) {
     if (channels.findChannel(wanted)) return wanted;
-    throw Error(fmt::format("has no channel '{}'; --channel takes one of: {}", wanted, names));
+    throw Error(fmt::format("no channel '{}' (choose one with --channel: {})", wanted, names));
   }
   if (!has_several(channels)) return channels.begin().name();
   for (const char* name : {"Y", "R"}) {
     if (channels.findChannel(name)) return name;
   }
-  throw Error(fmt::format("has several channels; choose one with --channel: {}", names));
+  throw Error(fmt::format("several channels (choose one with --channel: {})", names));
 }
 
-// One channel of the first part as a dataset of one band.
+// One channel of the first part as a dataset with one band.
 class ExrDataset final : public GDALDataset {
  public:
   ExrDataset(const std::string& path, const std::string& wanted) : stream_(path), file_(stream_), part_(open_part()) {
@@ -90,7 +90,7 @@ class ExrDataset final : public GDALDataset {
                        rows = std::int64_t{window.max.y} - window.min.y + 1;
     constexpr std::int64_t kMost = std::numeric_limits<int>::max();
     if (cols < 1 || rows < 1 || cols > kMost || rows > kMost)
-      throw Error(fmt::format("is an EXR of {} x {} samples; extents from 1 to {} are read", cols, rows, kMost));
+      throw Error(fmt::format("EXR of {} x {} samples (sides must be 1 to {})", cols, rows, kMost));
     nRasterXSize = static_cast<int>(cols);
     nRasterYSize = static_cast<int>(rows);
     west_ = window.min.x;
@@ -98,13 +98,14 @@ class ExrDataset final : public GDALDataset {
     channel_ = choose_channel(header.channels(), wanted);
     const Imf::Channel& channel = header.channels()[channel_];
     if (channel.xSampling != 1 || channel.ySampling != 1)
-      throw Error(fmt::format("its channel '{}' has not a sample for every pixel; choose another with --channel: {}",
-                              channel_, names_of(header.channels())));
+      throw Error(fmt::format(
+          "channel '{}' is subsampled, without a sample for every pixel (choose another with --channel: {})", channel_,
+          names_of(header.channels())));
     type_ = channel.type;
     SetBand(1, new Band(*this));
   }
 
-  // The name of the sample type in OpenEXR's words.
+  // The sample type as OpenEXR names it.
   std::string type_name() const { return type_ == Imf::HALF ? "half" : type_ == Imf::FLOAT ? "float" : "uint"; }
   const std::string& channel() const { return channel_; }
   bool has_several_channels() const { return has_several(part_.header().channels()); }
@@ -141,7 +142,7 @@ class ExrDataset final : public GDALDataset {
   Imf::InputPart open_part() {
     const Imf::Header& header = file_.header(0);
     if (header.hasType() && (header.type() == Imf::DEEPSCANLINE || header.type() == Imf::DEEPTILE))
-      throw Error("is a deep EXR, with many samples at one place; flatten it first");
+      throw Error("deep EXR with several samples per pixel (flatten it first)");
     return Imf::InputPart(file_, 0);
   }
 
@@ -170,7 +171,7 @@ std::unique_ptr<ExrDataset> open_exr(const std::string& path, const std::string&
   } catch (const std::exception& error) {
     std::string reason = error.what();
     std::replace(reason.begin(), reason.end(), '\n', ' ');
-    throw Error(fmt::format("is no EXR image that OpenEXR can read: {}", reason));
+    throw Error(fmt::format("not an EXR image that OpenEXR can read: {}", reason));
   }
 }
 
@@ -185,9 +186,9 @@ Raster read_exr(const std::string& path, const RasterOptions& options, const Pro
     Raster raster = read_dataset(*dataset, options, session, progress);
     raster.file_type = dataset->type_name();
     if (options.channel.empty() && dataset->has_several_channels())
-      raster.notes.push_back(fmt::format("channel {} of {} is read; --channel takes another", dataset->channel(),
+      raster.notes.push_back(fmt::format("reads channel {} of {} (choose another with --channel)", dataset->channel(),
                                          dataset->channel_names()));
-    if (dataset->parts() > 1) raster.notes.push_back(fmt::format("the first of {} parts is read", dataset->parts()));
+    if (dataset->parts() > 1) raster.notes.push_back(fmt::format("reads the first of {} parts", dataset->parts()));
     return raster;
   });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The reader of a Scarp that was built without OpenEXR.
+// The reader in builds without OpenEXR.
 #include <fmt/format.h>
 
 #include "scarp/base/error.h"
@@ -9,8 +9,7 @@ namespace scarp {
 
 Raster read_exr(const std::string& path, const RasterOptions&, const Progress&) {
   throw Error(fmt::format(
-      "raster '{}': this Scarp was built without OpenEXR; build it with -D SCARP_OPENEXR=ON, or convert the image",
-      path));
+      "{}: this build of Scarp does not read EXR (build with -D SCARP_OPENEXR=ON, or convert the image)", path));
 }
 
 }  // namespace scarp

@@ -25,11 +25,12 @@ struct FileCloser {
 
 void require_bytes(double needed, std::uint64_t has) {
   if (static_cast<double>(has) < needed) {
-    throw Error(fmt::format("is cut off: its header needs {:.0f} bytes, it has {}; {}", needed, has, kFetchAgain));
+    throw Error(
+        fmt::format("truncated: {} bytes instead of {:.0f} as its header states ({})", has, needed, kFetchAgain));
   }
 }
 
-// ENVI's samples lie plainly behind an offset, all bands in one file.
+// ENVI stores samples uncompressed after an offset, all bands in one file.
 std::optional<double> envi_bytes(GDALDataset& dataset) {
   const auto entry = [&](const char* name) {
     const char* text = dataset.GetMetadataItem(name, "ENVI");
@@ -47,7 +48,7 @@ void check_file(const std::string& path) {
   VSIStatBufL status;
   if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG | VSI_STAT_SIZE_FLAG) != 0) return;
   if (!VSI_ISREG(status.st_mode)) return;
-  if (status.st_size == 0) throw Error("is empty (0 bytes); a raster file is needed");
+  if (status.st_size == 0) throw Error("empty file (0 bytes)");
   refuse_lfs_pointer(bytes_from(path, 0, kLfsPointer.size()));
 }
 
@@ -55,7 +56,7 @@ void check_end(const std::string& path) {
   const auto size = static_cast<std::uint64_t>(file_bytes(path));
   if (is_zip(path)) {
     if (!has_zip_end(path))
-      throw Error(fmt::format("is cut off: the record that archives end with is missing; {}", kFetchAgain));
+      throw Error(fmt::format("truncated: the end record of the archive is missing ({})", kFetchAgain));
     return;
   }
   const std::string start = bytes_from(path, 0, kNetcdfHeaderBytes);

@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t kWarningsWorthANote = 3;
 constexpr int kSubdatasetsListed = 6;
 
-// A container without bands of its own (netCDF, HDF5): name what is in it.
+// Rejects a container without bands of its own (netCDF, HDF5), listing its contents.
 [[noreturn]] void refuse_container(GDALDataset& dataset) {
   char** names = dataset.GetMetadata("SUBDATASETS");
   std::string list;
@@ -31,9 +31,9 @@ constexpr int kSubdatasetsListed = 6;
     if (!name) break;
     if (++count <= kSubdatasetsListed) list += fmt::format("{}{}", list.empty() ? "" : ", ", name);
   }
-  if (count == 0) throw Error("holds no raster band");
+  if (count == 0) throw Error("no raster band");
   if (count > kSubdatasetsListed) list += fmt::format(" and {} more", count - kSubdatasetsListed);
-  throw Error(fmt::format("holds {} rasters and no band of its own; open one of them: {}", count, list));
+  throw Error(fmt::format("container of {} rasters (open one of them: {})", count, list));
 }
 
 RasterWindow choose_window(GDALDataset& dataset, const std::optional<RasterWindow>& wanted) {
@@ -41,19 +41,18 @@ RasterWindow choose_window(GDALDataset& dataset, const std::optional<RasterWindo
   if (!wanted) return {0, 0, cols, rows};
   const RasterWindow& w = *wanted;
   if (w.col < 0 || w.row < 0 || w.cols < 1 || w.rows < 1 || w.cols > cols - w.col || w.rows > rows - w.row) {
-    throw Error(fmt::format("the window {},{},{},{} does not lie in its {} x {} samples; --window COL,ROW,COLS,ROWS",
+    throw Error(fmt::format("window {},{},{},{} is not inside the {} x {} samples (use --window COL,ROW,COLS,ROWS)",
                             w.col, w.row, w.cols, w.rows, cols, rows));
   }
   return w;
 }
 
-// Metres per vertical unit, from what is said first: the caller, the band, the vertical CRS.
+// Metres per vertical unit; precedence: the caller, the band, the vertical CRS.
 double choose_vertical_unit(GDALRasterBand& band, const RasterPlace& place, const std::string& wanted, Raster& raster) {
   if (!wanted.empty()) {
     const auto metres = metres_per_vertical_unit(wanted);
     if (!metres)
-      throw Error(
-          fmt::format("the vertical unit '{}' is not known; m, ft, us-ft, km, dm, cm, mm, yd and fathom are", wanted));
+      throw Error(fmt::format("unknown vertical unit '{}' (known: m, ft, us-ft, km, dm, cm, mm, yd, fathom)", wanted));
     raster.vertical_unit = wanted;
     return *metres;
   }
@@ -61,18 +60,17 @@ double choose_vertical_unit(GDALRasterBand& band, const RasterPlace& place, cons
   if (!own.empty()) {
     raster.vertical_unit = own;
     if (const auto metres = metres_per_vertical_unit(own)) return *metres;
-    raster.notes.push_back(fmt::format(
-        "the vertical unit '{}' is no length known here: metres are assumed; say --unit if they are not", own));
+    raster.notes.push_back(fmt::format("unknown vertical unit '{}', assuming metres (override with --unit)", own));
     return 1;
   }
   if (place.vertical_unit > 0) {
     raster.vertical_unit = place.vertical_unit_name;
     return place.vertical_unit;
   }
-  // People who map in feet mostly measure heights in feet.
+  // Maps in feet mostly have heights in feet.
   if (const std::string_view foot = foot_of(place.map_unit); !foot.empty()) {
     raster.notes.push_back(
-        fmt::format("map units are feet; heights are taken as metres; say --unit {} if they are not", foot));
+        fmt::format("map units are feet, but heights are assumed to be metres (override with --unit {})", foot));
   }
   return 1;
 }
@@ -82,18 +80,19 @@ void find_heights(GDALRasterBand& band, const RasterPlace& place, const RasterOp
   raster.offset = options.offset ? *options.offset : band.GetOffset();
   if (!std::isfinite(raster.scale) || raster.scale == 0 || !std::isfinite(raster.offset)) {
     throw Error(
-        fmt::format("its heights are sample * {} + {}, which are none; give finite --scale (not 0) and --offset",
+        fmt::format("invalid scale or offset: heights are sample * {} + {} (override with a finite, non-zero --scale "
+                    "and a finite --offset)",
                     raster.scale, raster.offset));
   }
   const double unit = choose_vertical_unit(band, place, options.unit, raster);
   if (unit != 1) {
     raster.scale *= unit;
     raster.offset *= unit;
-    raster.notes.push_back(fmt::format("heights are in '{}' and become metres: x {:.10g}", raster.vertical_unit, unit));
+    raster.notes.push_back(fmt::format("heights converted from '{}' to metres: x {:.10g}", raster.vertical_unit, unit));
   }
 }
 
-// A Raster's scale is above 0: with a negative one the heights are computed here.
+// Raster::scale is positive: with a negative one the heights are computed here.
 void apply_negative_scale(Raster& raster) {
   std::visit(
       [&](const auto& samples) {
@@ -105,8 +104,7 @@ void apply_negative_scale(Raster& raster) {
         raster.samples = std::move(heights);
       },
       decltype(raster.samples)(std::move(raster.samples)));
-  raster.notes.push_back(
-      fmt::format("heights fall with the samples (x {:g}): they became float32 in metres", raster.scale));
+  raster.notes.push_back(fmt::format("negative scale ({:g}): heights converted to float32 metres", raster.scale));
   raster.scale = 1;
   raster.offset = 0;
   raster.nodata.reset();
@@ -126,14 +124,14 @@ void flip(Raster& raster, bool rows, bool cols) {
       raster.samples);
 }
 
-// The first band of colours of every kind.
+// The first colour band of any kind.
 bool is_of_photographs(GDALColorInterp meaning) {
   return meaning == GCI_RedBand || meaning == GCI_CyanBand || meaning == GCI_YCbCr_YBand;
 }
 
 bool has_sign(GDALDataType type, bool signed_byte) { return signed_byte || GDALDataTypeIsSigned(type); }
 
-// The greatest value of an integer type.
+// The largest value of an integer type.
 double greatest_integer(GDALDataType type, bool with_sign) {
   return std::exp2(GDALGetDataTypeSizeBits(type) - (with_sign ? 1 : 0)) - 1;
 }
@@ -152,7 +150,8 @@ int height_band(GDALDataset& dataset, int wanted) {
   if (count == 0) refuse_container(dataset);
   if (wanted != 0) {
     if (wanted < 1 || wanted > count)
-      throw Error(fmt::format("band {} does not exist; it has {}: --band 1..{}", wanted, count, count));
+      throw Error(fmt::format("no band {}: the file has {} band{} (choose one with --band 1..{})", wanted, count,
+                              count == 1 ? "" : "s", count));
     return wanted;
   }
   int heights = 0, chosen = 0;
@@ -165,14 +164,13 @@ int height_band(GDALDataset& dataset, int wanted) {
     colours = colours || is_of_photographs(meaning);
   }
   if (heights != 1) {
-    throw Error(
-        fmt::format("{} with {} bands; one band of heights is needed: choose one with --band 1..{}{}",
-                    colours ? "is a colour photograph" : "is a raster", count, count,
-                    colours ? ", or say --encoding terrain-rgb or terrarium if its colours encode heights" : ""));
+    throw Error(fmt::format(
+        "{} with {} bands (choose the band of heights with --band 1..{}{})", colours ? "colour photograph" : "raster",
+        count, count,
+        colours ? ", or declare colours that encode heights with --encoding terrain-rgb or terrarium" : ""));
   }
   if (dataset.GetRasterBand(chosen)->GetColorTable()) {
-    throw Error(
-        "its samples are indices into a palette of colours, no heights; say --band 1 if they are heights all the same");
+    throw Error("samples are palette indices, not heights (use --band 1 if they are heights)");
   }
   return chosen;
 }
@@ -194,17 +192,17 @@ void settle_height_range(RasterOptions& options, GDALDataType type, bool signed_
   if (!options.height_range) return;
   const HeightRange range = *options.height_range;
   if (options.scale || options.offset)
-    throw Error("--height-range and --scale or --offset say the same thing twice; leave out one of them");
+    throw Error("--height-range cannot be combined with --scale or --offset (omit one of them)");
   if (options.encoding != HeightEncoding::none)
-    throw Error("--height-range does not go with --encoding, which has a scale of its own; leave out one of them");
+    throw Error("--height-range cannot be combined with --encoding, which defines its own scale (omit one of them)");
   if (!(std::isfinite(range.low) && std::isfinite(range.high) && range.low < range.high))
-    throw Error(fmt::format("the height range {},{} is empty; --height-range LOW,HIGH with LOW < HIGH is needed",
-                            range.low, range.high));
+    throw Error(fmt::format("height range {},{} is empty (use --height-range LOW,HIGH with LOW < HIGH)", range.low,
+                            range.high));
   const bool floating = GDALDataTypeIsFloating(type);
   if (!floating && has_sign(type, signed_byte))
     throw Error(
-        fmt::format("its samples are signed ({}), for which --height-range has no meaning; say --scale "
-                    "S,OFFSET",
+        fmt::format("samples are signed ({}), but --height-range applies to unsigned samples (use --scale and "
+                    "--offset)",
                     GDALGetDataTypeName(type)));
   const double greatest = floating ? 1 : greatest_integer(type, false);
   options.scale = (range.high - range.low) / greatest;
@@ -216,7 +214,7 @@ Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession
   RasterOptions options = given;
   std::unique_ptr<DecodedDataset> decoded;
   if (options.encoding != HeightEncoding::none) {
-    if (options.band != 0) throw Error("--encoding reads three bands at once; leave out --band");
+    if (options.band != 0) throw Error("--encoding reads three bands at once (omit --band)");
     decoded = std::make_unique<DecodedDataset>(stored, options.encoding);
   }
   GDALDataset& dataset = decoded ? *decoded : stored;
@@ -229,7 +227,7 @@ Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession
   raster.rows = window.rows;
   raster.file_type = decoded ? std::string(name_of(options.encoding)) : GDALGetDataTypeName(band.GetRasterDataType());
 
-  // What can be refused without reading is refused first.
+  // Errors that need no reading come first.
   RasterPlace place = find_place(dataset, window, options);
   raster.georeference = place.georeference;
   find_heights(band, place, options, raster);

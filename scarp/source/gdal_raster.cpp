@@ -20,7 +20,7 @@
 namespace scarp {
 namespace {
 
-// The file that a name of GDAL's has inside: /vsizip/FILE/MEMBER, NETCDF:FILE:VARIABLE. Empty when there is none.
+// The file inside a GDAL name: /vsizip/FILE/MEMBER, NETCDF:FILE:VARIABLE. Empty if there is none.
 std::string file_inside(const std::string& path) {
   constexpr std::string_view kZip = "/vsizip/";
   VSIStatBufL status;
@@ -45,45 +45,45 @@ std::string file_inside(const std::string& path) {
   return is_file(name) ? name : "";
 }
 
-// What a .zip has in it, for those who named the archive instead.
+// Lists members of a .zip that was given itself.
 std::string examples_in(const std::string& archive) {
   constexpr std::size_t kMembersNamed = 3;
   const std::vector<std::string> members = zip_members(archive);
-  // GDAL knows where the archive's name ends by .zip, or by braces.
+  // GDAL finds the end of the archive's name by .zip, or by braces.
   const std::string in_name = extension_of(archive) == ".zip" ? archive : "{" + archive + "}";
   std::string text;
   for (std::size_t i = 0; i < std::min(members.size(), kMembersNamed); ++i)
     text += fmt::format("{}/vsizip/{}/{}", i == 0 ? "" : ", ", in_name, members[i]);
   if (members.size() > kMembersNamed) text += fmt::format(" or {} more", members.size() - kMembersNamed);
-  return text.empty() ? "it is empty" : "name a raster in it: " + text;
+  return text.empty() ? "empty archive" : "name a raster in it: " + text;
 }
 
 [[noreturn]] void refuse_unopened(const std::string& path, const GdalSession& session) {
   VSIStatBufL status;
   const bool exists = VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG) == 0;
-  if (exists && VSI_ISDIR(status.st_mode)) throw Error("is a directory; a raster file is needed");
+  if (exists && VSI_ISDIR(status.st_mode)) throw Error("is a directory (name a raster file)");
   if (exists && VSI_ISREG(status.st_mode)) {
     check_end(path);
-    if (is_zip(path)) throw Error("is a .zip archive; " + examples_in(path));
+    if (is_zip(path)) throw Error(fmt::format("is a .zip archive ({})", examples_in(path)));
   } else if (const std::string file = exists ? "" : file_inside(path); !file.empty()) {
     try {
       check_file(file);
       check_end(file);
     } catch (const Error& error) {
-      throw Error(fmt::format("'{}' {}", file, error.what()));
+      throw Error(fmt::format("'{}': {}", file, error.what()));
     }
-    if (is_zip(file)) throw Error(fmt::format("does not exist in '{}'; {}", file, examples_in(file)));
+    if (is_zip(file)) throw Error(fmt::format("does not exist in '{}' ({})", file, examples_in(file)));
   }
-  // Names such as NETCDF:"f.nc":var and inline XML are no paths.
-  if (!exists && path.find_first_of(":<") == std::string::npos) throw Error("does not exist; name a raster file");
+  // Names such as NETCDF:"f.nc":var and inline XML are not paths.
+  if (!exists && path.find_first_of(":<") == std::string::npos) throw Error("does not exist (name a raster file)");
   if (exists && extension_of(path) == ".hgt") {
     throw Error(
-        "is no whole .hgt tile: its name must tell its corner (N46W123.hgt), its length must be that of 1201 x 1201 or "
-        "3601 x 3601 samples of 2 bytes");
+        "not a complete .hgt tile (it must be named by its corner, like N46W123.hgt, and contain 1201 x 1201 or "
+        "3601 x 3601 samples of 2 bytes)");
   }
-  throw Error(fmt::format("is no raster that GDAL {} can read: {}{}", GDALVersionInfo("RELEASE_NAME"),
-                          session.reason("it does not say why"),
-                          exists ? fmt::format("; if it should be one, {}", kFetchAgain) : ""));
+  throw Error(fmt::format("not a raster format that GDAL {} can read: {}{}", GDALVersionInfo("RELEASE_NAME"),
+                          session.reason("no reason given"),
+                          exists ? fmt::format(" (if it should be one, {})", kFetchAgain) : ""));
 }
 
 }  // namespace
@@ -101,7 +101,7 @@ Raster read_gdal_raster(const std::string& path, const RasterOptions& options, c
   GdalSession session;
   const StrictReading strict;
   return read_named(path, [&] {
-    if (path.empty()) throw Error("the file name is empty; name a raster file");
+    if (path.empty()) throw Error("file name is empty (name a raster file)");
     const GDALDatasetUniquePtr dataset = open_gdal_raster(path, session);
     return read_dataset(*dataset, options, session, progress);
   });

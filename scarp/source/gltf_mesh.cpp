@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// glTF 2.0 by tinygltf, which checks the document and not that what it points to is there: that is done here.
+// glTF 2.0 through tinygltf, which validates the document but not its references; this file does.
 #include <fmt/format.h>
 #include <tiny_gltf.h>
 
@@ -18,7 +18,7 @@
 namespace scarp {
 namespace {
 
-// Deeper documents are no trees, which they have to be.
+// Deeper documents cannot be trees, which glTF requires.
 constexpr int kDeepest = 256;
 constexpr std::size_t kMostCorners = std::size_t{1} << 31;
 
@@ -30,22 +30,22 @@ bool leave_out_image(tinygltf::Image*, const int, std::string*, std::string*, in
 template <class T>
 const T& at(const std::vector<T>& all, int index, const std::string& path, const char* what) {
   if (index < 0 || static_cast<std::size_t>(index) >= all.size())
-    refuse_mesh(path, fmt::format("points to {} {}, there are {}", what, index, all.size()));
+    refuse_mesh(path, fmt::format("refers to {} {} of {}", what, index, all.size()));
   return all[static_cast<std::size_t>(index)];
 }
 
-// Numbers of a document, element by element.
+// Numbers of an accessor, element by element.
 class Accessor {
  public:
   Accessor(const tinygltf::Model& model, int index, const std::string& path)
       : path_(path), accessor_(at(model.accessors, index, path, "accessor")) {
-    if (accessor_.sparse.isSparse) refuse_mesh(path, "has sparse accessors, which are not read");
+    if (accessor_.sparse.isSparse) refuse_mesh(path, "sparse accessors are not supported");
     const tinygltf::BufferView& view = at(model.bufferViews, accessor_.bufferView, path, "buffer view");
     const tinygltf::Buffer& buffer = at(model.buffers, view.buffer, path, "buffer");
     components_ = tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor_.type));
     const int bytes = tinygltf::GetComponentSizeInBytes(static_cast<std::uint32_t>(accessor_.componentType));
     const int stride = accessor_.ByteStride(view);
-    if (components_ < 1 || bytes < 1 || stride < 1) refuse_mesh(path, "has an accessor of an unknown type");
+    if (components_ < 1 || bytes < 1 || stride < 1) refuse_mesh(path, "accessor of unknown type");
     stride_ = static_cast<std::size_t>(stride);
     bytes_ = static_cast<std::size_t>(bytes);
     const std::size_t begin = view.byteOffset + accessor_.byteOffset;
@@ -60,7 +60,7 @@ class Accessor {
   std::size_t count() const { return accessor_.count; }
   int components() const { return components_; }
 
-  /// Component i of element n; whole numbers are divided by their largest where they stand for shares.
+  /// Returns component i of element n; normalised integers are divided by their maximum.
   double number(std::size_t n, int i) const {
     const unsigned char* from = data_ + n * stride_ + static_cast<std::size_t>(i) * bytes_;
     switch (accessor_.componentType) {
@@ -77,7 +77,7 @@ class Accessor {
       case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
         return as<std::uint32_t>(from);
       default:
-        refuse_mesh(path_, "has an accessor of an unknown type");
+        refuse_mesh(path_, "accessor of unknown type");
     }
   }
   dvec3 three(std::size_t n) const { return {number(n, 0), number(n, 1), number(n, 2)}; }
@@ -138,18 +138,18 @@ class GltfReader {
     }
     for (const int root : roots) add_node(root, glm::dmat4(1.0), 0);
     const auto note = [&](bool any, const char* what) {
-      if (any) mesh_.notes.push_back(fmt::format("mesh '{}': {} are left out", path_, what));
+      if (any) mesh_.notes.push_back(fmt::format("{}: ignored {}", path_, what));
     };
-    note(textured_, "its textures");
-    note(!model_.animations.empty(), "its animations");
-    note(others_, "its points and lines");
+    note(textured_, "textures");
+    note(!model_.animations.empty(), "animations");
+    note(others_, "points and lines");
     return std::move(mesh_);
   }
 
  private:
   void add_node(int index, const glm::dmat4& world_from_parent, int depth) {
-    // A document in which nodes meet again could be entered for ever.
-    if (depth > kDeepest || ++visits_ > model_.nodes.size()) refuse_mesh(path_, "its nodes are no tree");
+    // A document whose nodes form a cycle would never end.
+    if (depth > kDeepest || ++visits_ > model_.nodes.size()) refuse_mesh(path_, "nodes do not form a tree");
     const tinygltf::Node& node = at(model_.nodes, index, path_, "node");
     const glm::dmat4 world_from_node = world_from_parent * parent_from(node);
     if (node.mesh >= 0) {
@@ -170,7 +170,7 @@ class GltfReader {
       const auto found = primitive.attributes.find(name);
       if (found == primitive.attributes.end()) return {};
       Accessor of(model_, found->second, path_);
-      if (of.components() < least) refuse_mesh(path_, fmt::format("its {} have {} numbers", name, of.components()));
+      if (of.components() < least) refuse_mesh(path_, fmt::format("{} have {} components", name, of.components()));
       return of;
     };
     const auto positions = accessor("POSITION", 3);
@@ -187,18 +187,18 @@ class GltfReader {
     } else if (!colours) {
       base = kMeshGrey;
     }
-    // Normals go the way of planes.
+    // Normals transform with the inverse transpose.
     const glm::dmat3 turn(world_from_node), normal_turn = glm::transpose(glm::inverse(turn));
     const auto corner = [&](std::size_t i) {
       std::size_t n = i;
       if (indices) n = static_cast<std::size_t>(indices->number(i, 0));
       if (n >= positions->count())
-        refuse_mesh(path_, fmt::format("a triangle has corner {}, there are {}", n, positions->count()));
+        refuse_mesh(path_, fmt::format("triangle refers to vertex {} of {}", n, positions->count()));
       FileCorner result;
       result.position = dvec3(world_from_node * glm::dvec4(positions->three(n), 1));
       const dvec3& p = result.position;
       if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)))
-        refuse_mesh(path_, fmt::format("corner {} is at no finite numbers", n));
+        refuse_mesh(path_, fmt::format("vertex {} is not finite", n));
       if (normals && n < normals->count()) {
         const dvec3 normal = normal_turn * normals->three(n);
         if (std::isfinite(length(normal))) result.normal = normal;
@@ -208,9 +208,9 @@ class GltfReader {
       return result;
     };
     const std::size_t count = indices ? indices->count() : positions->count();
-    if (mesh_.corners.size() + 3 * count > kMostCorners) refuse_mesh(path_, "has too many triangles");
+    if (mesh_.corners.size() + 3 * count > kMostCorners) refuse_mesh(path_, "too many triangles");
     for (std::size_t i = 0; i + 2 < count; i += strip || fan ? 1 : 3) {
-      // Every second triangle of a strip turns the other way.
+      // Every second triangle of a strip has reversed order.
       const std::size_t turned = strip ? i % 2 : 0;
       add_triangle({corner(fan ? 0 : i), corner(i + 1 + turned), corner(i + 2 - turned)}, mesh_);
     }
@@ -235,12 +235,12 @@ TriangleMesh read_gltf(const std::string& path, bool binary) {
   if (!read) {
     std::replace(error.begin(), error.end(), '\n', ' ');
     while (!error.empty() && error.back() == ' ') error.pop_back();
-    refuse_mesh(path, error.empty() ? "is no glTF" : fmt::format("is no glTF that can be read: {}", error));
+    refuse_mesh(path, error.empty() ? "not a glTF file" : fmt::format("not a readable glTF file: {}", error));
   }
   if (!model.extensionsRequired.empty()) {
     for (const std::string& name : model.extensionsRequired) {
       if (!name.starts_with("KHR_materials") && name != "KHR_texture_transform")
-        refuse_mesh(path, fmt::format("needs the extension {}, which is not read", name));
+        refuse_mesh(path, fmt::format("requires the extension {}, which is not supported", name));
     }
   }
   return GltfReader(model, path).read();

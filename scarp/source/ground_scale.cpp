@@ -16,11 +16,11 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-// Half the step of the central differences, as a share of the ellipsoid's radius (about 950 m on Earth). The chord's
-// error is its square / 6 = 4e-9; inverse projections that iterate stop at some 1e-10 radian, so their share is 7e-7.
+// Half the step of the central differences, as a fraction of the ellipsoid's radius (about 950 m on Earth). The chord's
+// error is its square / 6 = 4e-9; iterative inverse projections stop at about 1e-10 radian, an error of 7e-7.
 constexpr double kStepShare = 1.5e-4;
 
-// Axes whose right angle is lost by more than this on the ground deserve a word: half a degree.
+// A note is added if the axes deviate from a right angle on the ground by more than half a degree.
 constexpr double kSkewWorthANote = 0.5 / kDegrees;
 
 struct PjDeleter {
@@ -52,7 +52,7 @@ Ellipsoid ellipsoid_of(PJ_CONTEXT* context, const PJ* crs) {
   double b = 0;
   if (!ellipsoid || !proj_ellipsoid_get_parameters(context, ellipsoid.get(), &result.a, &b, nullptr, nullptr) ||
       !(result.a > 0)) {
-    throw Error("the coordinate reference system has no ellipsoid; name another one with --crs");
+    throw Error("the coordinate reference system has no ellipsoid (choose another with --crs)");
   }
   result.e2 = 1 - (b / result.a) * (b / result.a);
   if (const char* name = proj_get_name(ellipsoid.get())) result.name = name;
@@ -75,10 +75,10 @@ GroundScale geographic(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
   const Ellipsoid ellipsoid = ellipsoid_of(context, crs);
   const double unit = axis_unit(context, crs), lat = y * unit;
   if (!(std::abs(lat) < std::numbers::pi / 2)) {
-    throw Error(
-        fmt::format("its centre ({}, {}) has the latitude {:.6g} degrees, where no degree of longitude has a length; "
-                    "latitudes between -90 and 90 are needed: give the right --crs or --bounds",
-                    x, y, lat * kDegrees));
+    throw Error(fmt::format(
+        "the latitude of the centre ({}, {}) is {:.6g} degrees (must be between -90 and 90; correct --crs or "
+        "--bounds)",
+        x, y, lat * kDegrees));
   }
   GroundScale scale;
   scale.metres_per_x = unit * ellipsoid.prime_vertical_radius(lat) * std::cos(lat);
@@ -90,20 +90,20 @@ GroundScale geographic(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
 
 GroundScale projected(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
   const Pj base(proj_crs_get_geodetic_crs(context, crs));
-  if (!base) throw Error("the coordinate reference system has no geographic base; name another one with --crs");
+  if (!base) throw Error("the coordinate reference system has no geographic base (choose another with --crs)");
   const Ellipsoid ellipsoid = ellipsoid_of(context, base.get());
   const double unit = axis_unit(context, crs), angle = axis_unit(context, base.get());
   Pj transform(proj_create_crs_to_crs_from_pj(context, crs, base.get(), nullptr, nullptr));
   if (transform) transform.reset(proj_normalize_for_visualization(context, transform.get()));
   if (!transform) {
-    throw Error(fmt::format("PROJ cannot invert the projection ({}); name another CRS with --crs",
+    throw Error(fmt::format("PROJ cannot invert the projection: {} (choose another CRS with --crs)",
                             proj_context_errno_string(context, proj_context_errno(context))));
   }
   const auto geographic_at = [&](double map_x, double map_y) {
     const PJ_COORD at = proj_trans(transform.get(), PJ_FWD, proj_coord(map_x, map_y, 0, 0));
     if (!std::isfinite(at.xy.x) || !std::isfinite(at.xy.y)) {
-      throw Error(fmt::format(
-          "its centre ({}, {}) lies outside of what its projection can show; give the right --crs or --bounds", x, y));
+      throw Error(
+          fmt::format("the centre ({}, {}) is outside the domain of the projection (correct --crs or --bounds)", x, y));
     }
     return dvec2(at.xy.x * angle, at.xy.y * angle);
   };
@@ -115,7 +115,7 @@ GroundScale projected(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
   const dvec3 along_x = (point(x + step, y) - point(x - step, y)) / (2 * step);
   const dvec3 along_y = (point(x, y + step) - point(x, y - step)) / (2 * step);
 
-  // East and north of the centre, in space.
+  // East and north at the centre, in space.
   const dvec2 centre = geographic_at(x, y);
   const double sin_lon = std::sin(centre.x), cos_lon = std::cos(centre.x);
   const dvec3 east(-sin_lon, cos_lon, 0);
@@ -125,14 +125,14 @@ GroundScale projected(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
   scale.metres_per_x = length(along_x);
   scale.metres_per_y = length(along_y);
   if (!(scale.metres_per_x > 0) || !(scale.metres_per_y > 0)) {
-    throw Error(fmt::format("the map has no scale at its centre ({}, {}); give the right --crs or --bounds", x, y));
+    throw Error(fmt::format("the map has no scale at its centre ({}, {}) (correct --crs or --bounds)", x, y));
   }
   scale.grid_north_azimuth = std::atan2(dot(along_y, east), dot(along_y, north));
   const double skew = std::asin(dot(along_x, along_y) / (scale.metres_per_x * scale.metres_per_y));
   if (std::abs(skew) > kSkewWorthANote) {
     scale.notes.push_back(
-        fmt::format("columns and rows meet at {:.1f} degrees on the ground at the centre; they are taken as 90: "
-                    "gdalwarp to a conformal CRS is better",
+        fmt::format("columns and rows meet at {:.1f} degrees on the ground at the centre, assuming 90 (gdalwarp to a "
+                    "conformal CRS is more accurate)",
                     (std::numbers::pi / 2 - skew) * kDegrees));
   }
   scale.found = fmt::format(
@@ -150,10 +150,11 @@ GroundScale ground_scale_at(const std::string& crs, double x, double y) {
   const PjContext context(proj_context_create());
   proj_log_level(context.get(), PJ_LOG_NONE);
   Pj pj(proj_create(context.get(), crs.c_str()));
-  // Peel off vertical parts and datum shifts: neither says how long a map unit is.
+  // Remove vertical parts and datum shifts: neither affects the length of a map unit.
   for (;;) {
     if (!pj)
-      throw Error("PROJ does not know its coordinate reference system; name one with --crs, for example EPSG:32610");
+      throw Error(
+          "PROJ does not know the coordinate reference system (specify one with --crs, for example EPSG:32610)");
     const PJ_TYPE type = proj_get_type(pj.get());
     if (type == PJ_TYPE_COMPOUND_CRS) {
       pj.reset(proj_crs_get_sub_crs(context.get(), pj.get(), 0));
@@ -172,13 +173,14 @@ GroundScale ground_scale_at(const std::string& crs, double x, double y) {
     case PJ_TYPE_ENGINEERING_CRS: {
       GroundScale scale;
       scale.metres_per_x = scale.metres_per_y = axis_unit(context.get(), pj.get());
-      scale.found = fmt::format("local coordinate system: {} m per unit, north taken as up", scale.metres_per_x);
+      scale.found =
+          fmt::format("local coordinate system: {} m per unit, assuming that north is up", scale.metres_per_x);
       return scale;
     }
     default:
       break;
   }
-  throw Error("its coordinate reference system is neither geographic nor projected; name another one with --crs");
+  throw Error("the coordinate reference system is neither geographic nor projected (choose another with --crs)");
 }
 
 }  // namespace scarp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is said of files that did not arrive, or not whole.
+// Message texts for missing and truncated files.
 #pragma once
 
 #include <string_view>
@@ -8,16 +8,16 @@
 
 namespace scarp {
 
-/// The end of messages about files that are cut off or damaged.
+/// Advice for files that are truncated or damaged.
 inline constexpr std::string_view kFetchAgain = "fetch or copy it again";
 
-/// Bytes from a file's start that tell a Git LFS pointer.
+/// First bytes of a Git LFS pointer.
 inline constexpr std::string_view kLfsPointer = "version https://git-lfs";
 
-/// What is said of one.
-inline constexpr const char* kLfsAdvice = "is a Git LFS pointer, not the file itself; fetch it with: git lfs pull";
+/// Message for a Git LFS pointer.
+inline constexpr const char* kLfsAdvice = "Git LFS pointer instead of the file (fetch it with: git lfs pull)";
 
-/// Throws Error (without the file's name) when a file that begins with `start` is a Git LFS pointer.
+/// Throws Error (without the file's name) if a file that begins with `start` is a Git LFS pointer.
 inline void refuse_lfs_pointer(std::string_view start) {
   if (start.starts_with(kLfsPointer)) throw Error(kLfsAdvice);
 }

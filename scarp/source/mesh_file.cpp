@@ -16,9 +16,7 @@
 
 namespace scarp {
 
-void refuse_mesh(const std::string& path, const std::string& what) {
-  throw Error(fmt::format("mesh '{}': {}", path, what));
-}
+void refuse_mesh(const std::string& path, const std::string& what) { throw Error(fmt::format("{}: {}", path, what)); }
 
 void add_triangle(const std::array<FileCorner, 3>& corners, TriangleMesh& mesh) {
   const dvec3 across = cross(corners[1].position - corners[0].position, corners[2].position - corners[0].position);
@@ -38,9 +36,9 @@ namespace {
 
 void require_file(const std::string& path) {
   std::error_code error;
-  if (std::filesystem::is_directory(path, error)) refuse_mesh(path, "is a folder");
-  if (!std::filesystem::exists(path, error)) refuse_mesh(path, "cannot be opened; is the name right?");
-  // What is no file, such as a pipe, is read once only.
+  if (std::filesystem::is_directory(path, error)) refuse_mesh(path, "is a directory");
+  if (!std::filesystem::exists(path, error)) refuse_mesh(path, "cannot be opened");
+  // Paths that are not regular files, such as pipes, can be read only once.
   if (!std::filesystem::is_regular_file(path, error)) return;
   std::string start(kLfsPointer.size(), '\0');
   std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
@@ -52,12 +50,11 @@ void require_file(const std::string& path) {
 TriangleMesh read_mesh(const std::string& path, MeshUp up) {
   const std::string extension = extension_of(path);
   const bool binary = extension == ".glb", gltf = binary || extension == ".gltf";
-  if (!gltf && extension != ".obj") refuse_mesh(path, "is not known by its name; meshes end in .obj, .gltf or .glb");
+  if (!gltf && extension != ".obj") refuse_mesh(path, "unknown mesh format (the name must end in .obj, .gltf or .glb)");
   require_file(path);
   TriangleMesh mesh = gltf ? read_gltf(path, binary) : read_obj(path);
   if (mesh.corners.empty()) {
-    refuse_mesh(path,
-                mesh.notes.empty() ? "has no triangles" : fmt::format("has no triangles ({})", mesh.notes.back()));
+    refuse_mesh(path, mesh.notes.empty() ? "no triangles" : fmt::format("no triangles ({})", mesh.notes.back()));
   }
   if (up == MeshUp::z) return mesh;
   for (MeshCorner& corner : mesh.corners) {
@@ -70,7 +67,7 @@ TriangleMesh read_mesh(const std::string& path, MeshUp up) {
 #else
 
 TriangleMesh read_mesh(const std::string& path, MeshUp) {
-  refuse_mesh(path, "this scarp was built without meshes (SCARP_MESH=OFF)");
+  refuse_mesh(path, "this build of Scarp does not read meshes (build with -D SCARP_MESH=ON)");
 }
 
 #endif

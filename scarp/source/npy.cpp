@@ -47,7 +47,7 @@ std::string shape_text(const NpyHeader& header) {
   return text.empty() ? "a single number" : text;
 }
 
-// Extents (rows, columns) of an array that is a raster, nothing for others.
+// Extents (rows, columns) of an array that is a raster, otherwise nullopt.
 std::optional<std::pair<std::int64_t, std::int64_t>> raster_shape(const NpyHeader& header) {
   std::vector<std::int64_t> shape = header.shape;
   if (shape.size() == 3 && shape.front() == 1) {
@@ -65,7 +65,7 @@ bool is_readable(const NpyHeader& header) {
   return is_half(header) || raw_sample_type(header.kind, header.bytes).has_value();
 }
 
-// What else an array may hold, in words; empty for what has none.
+// Names other contents of arrays; empty for those without a name.
 std::string_view word_of(const NpyHeader& header) {
   switch (header.kind) {
     case 'b':
@@ -81,14 +81,14 @@ std::string_view word_of(const NpyHeader& header) {
   }
 }
 
-// Halves are read as what has their size, and turned into float32 afterwards.
+// Halves are read as 16-bit integers and converted to float32 afterwards.
 RawSampleType sample_type(const NpyHeader& header) {
   if (is_half(header)) return {GDT_UInt16, false};
   if (const auto type = raw_sample_type(header.kind, header.bytes)) return *type;
   const std::string_view word = word_of(header);
-  throw Error(
-      fmt::format("holds samples of type '{}'{}; i1 u1 i2 u2 i4 u4 i8 u8 f2 f4 f8 are read: convert with .astype('f4')",
-                  header.descr, word.empty() ? "" : fmt::format(" ({})", word)));
+  throw Error(fmt::format(
+      "unsupported sample type '{}'{} (supported: i1 u1 i2 u2 i4 u4 i8 u8 f2 f4 f8; convert with .astype('f4'))",
+      header.descr, word.empty() ? "" : fmt::format(" ({})", word)));
 }
 
 // The value of an IEEE 754 half: a sign, 5 bits of exponent, 10 of fraction.
@@ -104,7 +104,7 @@ float half_value(std::uint16_t bits) {
   return bits >> 15 ? -value : value;
 }
 
-// The member of an archive to read: the only raster. Arrays of other types (a mask) do not count beside it.
+// Returns the archive member to read: the only raster. Ignores arrays of other types (a mask) beside it.
 std::string choose_member(const std::string& path, const std::string& key, const GdalSession& session) {
   if (is_zip(path)) check_end(path);
   const std::string folder = zip_folder(path);
@@ -126,20 +126,18 @@ std::string choose_member(const std::string& path, const std::string& key, const
     }
   }
   if (all.empty())
-    throw Error(fmt::format("is no .npz archive with arrays: {}", session.reason("no member ends in .npy")));
-  if (!key.empty()) throw Error(fmt::format("holds no array '{}'; --key takes one of: {}", key, all));
-  // Reading it tells what is wrong with it.
+    throw Error(fmt::format("not a .npz archive with arrays: {}", session.reason("no member ends in .npy")));
+  if (!key.empty()) throw Error(fmt::format("no array '{}' (choose one with --key: {})", key, all));
+  // Reading it reports the problem.
   if (rasters.empty() && unreadable.size() == 1) rasters.swap(unreadable);
   if (rasters.size() != 1) {
-    throw Error(
-        fmt::format("holds {} arrays of heights in two dimensions; choose one with --key: {}", rasters.size(), all));
+    throw Error(fmt::format("{} two-dimensional arrays of heights (choose one with --key: {})", rasters.size(), all));
   }
   return folder + "/" + rasters.front();
 }
 
-// Arrays that GDAL does not see as they lie in the file are read whole and shown to the reader from memory: those in
-// Fortran order, column by column, through strides (a packed file can be read forwards only), and halves. `bytes` must
-// outlive the dataset.
+// Arrays that GDAL cannot read in place are read whole and opened from memory: those in Fortran order, column by column
+// through strides (a compressed file can only be read forwards), and halves. `bytes` must outlive the dataset.
 GDALDatasetUniquePtr open_in_memory(GDALDataset& stored, const NpyHeader& header, std::vector<std::uint8_t>& bytes,
                                     GdalSession& session) {
   GDALRasterBand& band = *stored.GetRasterBand(1);
@@ -152,7 +150,7 @@ GDALDatasetUniquePtr open_in_memory(GDALDataset& stored, const NpyHeader& header
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   bytes.resize(count * static_cast<std::size_t>(sample_bytes));
   read_rows(band, all, 0, height, band.GetRasterDataType(), bytes.data(), session);
-  // In place, from the last one: a float takes the room of two halves.
+  // In place, from the last one: a float takes the space of two halves.
   for (std::size_t i = is_half(header) ? count : 0; i-- > 0;) {
     std::uint16_t half = 0;
     std::memcpy(&half, bytes.data() + i * sizeof(half), sizeof(half));
@@ -183,20 +181,20 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
   const NpyHeader header = read_header(file, session);
   const auto shape = raster_shape(header);
   if (!shape)
-    throw Error(fmt::format("is an array of {}; two dimensions (rows, columns) are needed", shape_text(header)));
+    throw Error(fmt::format("array of shape {} (two dimensions required: rows, columns)", shape_text(header)));
   const auto [rows, cols] = *shape;
   const RawSampleType type = sample_type(header);
-  if (rows < 1 || cols < 1) throw Error(fmt::format("is an array of {}, without samples", shape_text(header)));
+  if (rows < 1 || cols < 1) throw Error(fmt::format("array of shape {} without samples", shape_text(header)));
   // GDAL counts the bytes of a line in 32 bits.
   const std::int64_t most = std::numeric_limits<int>::max() / header.bytes;
   if (rows > most || cols > most)
-    throw Error(fmt::format("is an array of {}; extents up to {} are read", shape_text(header), most));
+    throw Error(fmt::format("array of shape {} (extents are limited to {})", shape_text(header), most));
   // In double: neither the product nor the sum can overflow.
   const double needed =
       static_cast<double>(header.data_begin) + static_cast<double>(rows) * static_cast<double>(cols) * header.bytes;
   if (static_cast<double>(bytes) < needed) {
-    throw Error(fmt::format("is cut off: {} samples of {} bytes need {:.0f} bytes, it has {}; {}", shape_text(header),
-                            header.bytes, needed, bytes, kFetchAgain));
+    throw Error(fmt::format("truncated: {} samples of {} bytes need {:.0f} bytes, but the file has {} ({})",
+                            shape_text(header), header.bytes, needed, bytes, kFetchAgain));
   }
 
   std::vector<std::uint8_t> whole;
@@ -209,10 +207,10 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
   Raster raster = read_dataset(*dataset, options, session, progress);
   if (is_half(header)) {
     raster.file_type = "Float16";
-    raster.notes.push_back("Float16 samples became float32, none was rounded");
+    raster.notes.push_back("Float16 samples converted to float32 without rounding");
   }
   if (header.shape.size() == 3)
-    raster.notes.push_back(fmt::format("an array of {}, read as {} x {}", shape_text(header), rows, cols));
+    raster.notes.push_back(fmt::format("array of shape {} read as {} x {}", shape_text(header), rows, cols));
   return raster;
 }
 
@@ -226,8 +224,7 @@ Raster read_npy(const std::string& path, const RasterOptions& options, const Pro
     file_bytes(path);
     check_file(path);
     const bool archive = extension_of(path) == ".npz";
-    if (!archive && !options.key.empty())
-      throw Error("--key names an array in a .npz file, which this is not; leave it out");
+    if (!archive && !options.key.empty()) throw Error("--key applies to .npz archives only (omit it)");
     const std::string file = archive ? choose_member(path, options.key, session) : full_path(path);
     RasterOptions of_array = options;
     of_array.key.clear();

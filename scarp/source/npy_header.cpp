@@ -16,10 +16,10 @@ constexpr const char* kNested =
 constexpr int kLargestStructure = 1 << 20;  // bytes; sums of field sizes stay far from overflow
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw Error(fmt::format("its .npy header is damaged: {}; save the array again with numpy.save", what));
+  throw Error(fmt::format("damaged .npy header: {} (save the array again with numpy.save)", what));
 }
 
-// Reads the dictionary, a literal of Python's, from left to right.
+// Reads the dictionary, a Python literal, from left to right.
 class Literal {
  public:
   explicit Literal(std::string_view text) : text_(text) {}
@@ -31,7 +31,7 @@ class Literal {
     return true;
   }
   void expect(char c) {
-    if (!take(c)) refuse(fmt::format("'{}' expected at byte {} of its dictionary", c, at_));
+    if (!take(c)) refuse(fmt::format("expected '{}' at byte {} of the dictionary", c, at_));
   }
   bool looking_at(char c) {
     skip_blanks();
@@ -39,10 +39,10 @@ class Literal {
   }
   std::string quoted() {
     skip_blanks();
-    if (at_ >= text_.size() || (text_[at_] != '\'' && text_[at_] != '"')) refuse("a text in quotes is expected");
+    if (at_ >= text_.size() || (text_[at_] != '\'' && text_[at_] != '"')) refuse("expected a quoted text");
     const char quote = text_[at_++];
     const std::size_t end = text_.find(quote, at_);
-    if (end == std::string_view::npos) refuse("a text has no closing quote");
+    if (end == std::string_view::npos) refuse("unclosed quote");
     const std::string value(text_.substr(at_, end - at_));
     at_ = end + 1;
     return value;
@@ -55,24 +55,24 @@ class Literal {
         return word == "True";
       }
     }
-    refuse("True or False is expected for 'fortran_order'");
+    refuse("expected True or False for 'fortran_order'");
   }
   std::int64_t integer() {
     skip_blanks();
     const std::size_t begin = at_;
     std::int64_t value = 0;
     for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9'; ++at_) {
-      if (value > (std::numeric_limits<std::int64_t>::max() - 9) / 10) refuse("an extent is beyond 64 bits");
+      if (value > (std::numeric_limits<std::int64_t>::max() - 9) / 10) refuse("an extent exceeds 64 bits");
       value = value * 10 + (text_[at_] - '0');
     }
-    if (at_ == begin) refuse("a whole number >= 0 is expected in 'shape'");
-    // Python 2 wrote long integers with a letter.
+    if (at_ == begin) refuse("expected an integer >= 0 in 'shape'");
+    // Python 2 wrote long integers with an L.
     if (at_ < text_.size() && text_[at_] == 'L') ++at_;
     return value;
   }
   void end() {
     skip_blanks();
-    if (at_ != text_.size()) refuse("something follows its dictionary");
+    if (at_ != text_.size()) refuse("text after the dictionary");
   }
 
  private:
@@ -90,11 +90,11 @@ void parse_descr(std::string_view descr, Type& header) {
   std::size_t at = 0;
   if (!descr.empty() && std::string_view("<>|=").find(descr[0]) != std::string_view::npos) {
     // '=' is the machine's own order, which NumPy never writes: files have a fixed one.
-    if (descr[0] == '=') refuse(fmt::format("the sample type '{}' has no byte order", descr));
+    if (descr[0] == '=') refuse(fmt::format("sample type '{}' without a byte order", descr));
     header.big_endian = descr[0] == '>';
     at = 1;
   }
-  if (at == descr.size()) refuse(fmt::format("the sample type '{}' is not known", descr));
+  if (at == descr.size()) refuse(fmt::format("unknown sample type '{}'", descr));
   header.kind = descr[at++];
   header.bytes = 0;
   for (; at < descr.size() && descr[at] >= '0' && descr[at] <= '9' && header.bytes < 1000; ++at)
@@ -109,23 +109,23 @@ void parse_structure(Literal& literal, NpyHeader& header) {
   while (!literal.take(']')) {
     NpyField& field = header.fields.emplace_back();
     literal.expect('(');
-    if (literal.looking_at('(')) throw Error("has a field with a title; name its fields plainly");
+    if (literal.looking_at('(')) throw Error("field with a title (use plain field names)");
     field.name = literal.quoted();
     literal.expect(',');
     if (literal.looking_at('[')) throw Error(kNested);
     parse_descr(literal.quoted(), field);
     if (literal.take(',') && !literal.looking_at(')')) throw Error(kNested);
     literal.expect(')');
-    // NumPy counts the letters of a text, which have four bytes each.
+    // NumPy counts the characters of a text, which have four bytes each.
     field.begin = header.bytes;
     header.bytes += field.kind == 'U' ? 4 * field.bytes : field.bytes;
-    if (header.bytes > kLargestStructure) refuse(fmt::format("a structure of more than {} bytes", kLargestStructure));
+    if (header.bytes > kLargestStructure) refuse(fmt::format("structure of more than {} bytes", kLargestStructure));
     if (!literal.take(',')) {
       literal.expect(']');
       break;
     }
   }
-  if (header.fields.empty()) refuse("a structure without fields");
+  if (header.fields.empty()) refuse("structure without fields");
 }
 
 std::uint32_t byte(std::string_view bytes, std::size_t i) { return static_cast<unsigned char>(bytes[i]); }
@@ -133,7 +133,7 @@ std::uint32_t byte(std::string_view bytes, std::size_t i) { return static_cast<u
 NpyHeader parse(std::string_view bytes, bool structures) {
   NpyHeader header;
   header.data_begin = npy_data_begin(bytes);
-  if (static_cast<std::int64_t>(bytes.size()) < header.data_begin) refuse("it ends too early");
+  if (static_cast<std::int64_t>(bytes.size()) < header.data_begin) refuse("truncated");
   const std::size_t begin = byte(bytes, 6) == 1 ? 10 : 12;
   Literal literal(bytes.substr(begin, static_cast<std::size_t>(header.data_begin) - begin));
   bool has_descr = false, has_order = false, has_shape = false;
@@ -145,7 +145,7 @@ NpyHeader parse(std::string_view bytes, bool structures) {
       if (structures && literal.looking_at('[')) {
         parse_structure(literal, header);
       } else if (literal.looking_at('[') || literal.looking_at('{') || literal.looking_at('(')) {
-        throw Error("is an array of structures; an array of plain numbers is needed: save one field of it");
+        throw Error("array of structures instead of plain numbers (save one of its fields)");
       } else {
         header.descr = literal.quoted();
         parse_descr(header.descr, header);
@@ -166,7 +166,7 @@ NpyHeader parse(std::string_view bytes, bool structures) {
       }
       has_shape = true;
     } else {
-      refuse(fmt::format("the entry '{}' is not known", key));
+      refuse(fmt::format("unknown entry '{}'", key));
     }
     if (!literal.take(',')) {
       literal.expect('}');
@@ -174,21 +174,21 @@ NpyHeader parse(std::string_view bytes, bool structures) {
     }
   }
   literal.end();
-  if (!has_descr || !has_order || !has_shape) refuse("'descr', 'fortran_order' and 'shape' are needed");
+  if (!has_descr || !has_order || !has_shape) refuse("'descr', 'fortran_order' and 'shape' are required");
   return header;
 }
 
 }  // namespace
 
 std::int64_t npy_data_begin(std::string_view preamble) {
-  if (preamble.substr(0, kMagic.size()) != kMagic) throw Error("is no .npy array: it does not begin with \\x93NUMPY");
-  if (preamble.size() < kNpyPreambleBytes) refuse("it ends too early");
+  if (preamble.substr(0, kMagic.size()) != kMagic) throw Error("not a .npy array: does not begin with \\x93NUMPY");
+  if (preamble.size() < kNpyPreambleBytes) refuse("truncated");
   const std::uint32_t major = byte(preamble, 6);
   if (major < 1 || major > 3)
-    throw Error(fmt::format("is a .npy array of version {}.{}; 1.0, 2.0 and 3.0 are known", major, byte(preamble, 7)));
+    throw Error(fmt::format("unsupported .npy version {}.{} (supported: 1.0, 2.0, 3.0)", major, byte(preamble, 7)));
   std::int64_t length = byte(preamble, 8) | byte(preamble, 9) << 8;
   if (major > 1) length |= static_cast<std::int64_t>(byte(preamble, 10) << 16 | byte(preamble, 11) << 24);
-  if (length > kLargestNpyHeader) refuse(fmt::format("a length of {} bytes", length));
+  if (length > kLargestNpyHeader) refuse(fmt::format("length of {} bytes", length));
   return (major == 1 ? 10 : 12) + length;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Wavefront OBJ by tinyobjloader, which takes what is no number for 0: coordinates are looked at before.
+// Wavefront OBJ through tinyobjloader, which reads invalid numbers as 0: coordinates are checked first.
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kLongestText = 60;
 
-// Numbers up to a comment; false where there is anything else, or one is not finite.
+// Whether the text up to a comment consists of finite numbers.
 bool has_numbers(const char* text) {
   for (;;) {
     while (*text == ' ' || *text == '\t' || *text == '\r') ++text;
@@ -30,7 +30,7 @@ bool has_numbers(const char* text) {
 
 void check_numbers(const std::string& path) {
   std::ifstream in(path);
-  if (!in) refuse_mesh(path, "cannot be opened; may it be read?");
+  if (!in) refuse_mesh(path, "cannot be opened (no read permission?)");
   std::string line;
   for (std::size_t number = 1; std::getline(in, line); ++number) {
     const std::size_t begin = line.find_first_not_of(" \t");
@@ -40,13 +40,13 @@ void check_numbers(const std::string& path) {
     const std::string_view word = std::string_view(line).substr(begin, end - begin);
     if ((word == "v" || word == "vn") && !has_numbers(line.c_str() + end)) {
       while (!line.empty() && line.back() == '\r') line.pop_back();
-      refuse_mesh(path, fmt::format("line {}: '{}': expected finite numbers", number, line.substr(0, kLongestText)));
+      refuse_mesh(path, fmt::format("line {}: '{}' (expected finite numbers)", number, line.substr(0, kLongestText)));
     }
   }
   if (in.bad()) refuse_mesh(path, "cannot be read to its end");
 }
 
-// One line of several, without their prefixes.
+// The first of several lines, without its prefix.
 std::string first_line(std::string text) {
   if (const std::size_t end = text.find('\n'); end != std::string::npos) text.resize(end);
   return text;
@@ -59,11 +59,11 @@ TriangleMesh read_obj(const std::string& path) {
   tinyobj::ObjReader reader;
   tinyobj::ObjReaderConfig config;
   config.mtl_search_path = std::filesystem::path(path).parent_path().string();
-  config.vertex_color = false;  // none are invented
+  config.vertex_color = false;  // do not invent colours
   if (!reader.ParseFromFile(path, config)) refuse_mesh(path, first_line(reader.Error()));
   TriangleMesh mesh;
   if (reader.Warning().find("aterial") != std::string::npos)
-    mesh.notes.push_back(fmt::format("mesh '{}': its .mtl file is not there; it is grey", path));
+    mesh.notes.push_back(fmt::format("{}: missing .mtl file, using grey", path));
   const tinyobj::attrib_t& all = reader.GetAttrib();
   const auto three = [](const std::vector<tinyobj::real_t>& numbers, int index) {
     const tinyobj::real_t* at = numbers.data() + 3 * static_cast<std::size_t>(index);
@@ -81,8 +81,8 @@ TriangleMesh read_obj(const std::string& path) {
       for (std::size_t i = 0; i < 3; ++i) {
         const tinyobj::index_t& index = faces.indices[3 * face + i];
         if (!is_in(all.vertices, index.vertex_index)) {
-          refuse_mesh(
-              path, fmt::format("a face has corner {}, there are {}", index.vertex_index + 1, all.vertices.size() / 3));
+          refuse_mesh(path,
+                      fmt::format("face refers to vertex {} of {}", index.vertex_index + 1, all.vertices.size() / 3));
         }
         corners[i].position = three(all.vertices, index.vertex_index);
         if (is_in(all.normals, index.normal_index)) corners[i].normal = three(all.normals, index.normal_index);
@@ -97,7 +97,7 @@ TriangleMesh read_obj(const std::string& path) {
       add_triangle(corners, mesh);
     }
   }
-  if (textured) mesh.notes.push_back(fmt::format("mesh '{}': its textures are left out", path));
+  if (textured) mesh.notes.push_back(fmt::format("{}: ignored textures", path));
   return mesh;
 }
 

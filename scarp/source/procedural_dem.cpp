@@ -18,8 +18,7 @@ constexpr double kLargestWavelength = kLargestProceduralSide;
 constexpr int kMostOctaves = 16;  // from 65,536 to 2 cells
 constexpr int kRowsPerPiece = 8;
 
-// Amplitude of an octave in proportion to that before: 0.5 gives all octaves the same slope, less lets the large ones
-// rule.
+// Amplitude ratio of successive octaves: 0.5 gives all octaves the same slope, less emphasises the large ones.
 constexpr double kFbmGain = 0.47;
 constexpr double kRidgedGain = 0.46;
 
@@ -29,7 +28,7 @@ constexpr double kFbmBase = 0.11;  // lifts most valleys above 0
 constexpr double kRidgedRelief = 0.11;
 
 constexpr double kNoiseToUnit = 1.5;  // |noise| beyond 0.67 is rare
-constexpr double kRidgedFocus = 2.0;  // Musgrave's gain: how soon a fold lets the next octave show
+constexpr double kRidgedFocus = 2.0;  // Musgrave's gain: how quickly a fold reveals the next octave
 
 // Mixes all bits (the finaliser of SplitMix64; S. Vigna 2015, after G. Steele et al., OOPSLA 2014).
 constexpr std::uint64_t mix(std::uint64_t x) {
@@ -38,7 +37,7 @@ constexpr std::uint64_t mix(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// Twelve directions around the circle, all of exactly the same length: those of the 3-4-5 triangle and of the axes.
+// Twelve directions on the circle, all of exactly the same length: those of the 3-4-5 triangle and of the axes.
 constexpr double kGradients[12][2] = {{1, 0},  {0.8, 0.6},   {0.6, 0.8},   {0, 1},  {-0.6, 0.8}, {-0.8, 0.6},
                                       {-1, 0}, {-0.8, -0.6}, {-0.6, -0.8}, {0, -1}, {0.6, -0.8}, {0.8, -0.6}};
 
@@ -49,7 +48,7 @@ struct Point {
 double fade(double t) { return t * t * t * (t * (t * 6 - 15) + 10); }
 
 // Perlin's gradient noise: 0 at lattice points, between -0.71 and 0.71, features as wide as the lattice. Neighbouring
-// samples mostly fall into the same lattice square, whose gradients are therefore kept.
+// samples mostly share a lattice square, so its gradients are cached.
 class GradientNoise {
  public:
   void reseed(std::uint64_t seed) { seed_ = seed; }
@@ -92,7 +91,7 @@ class GradientNoise {
   const double* south_east_ = nullptr;
 };
 
-// The settings with what follows from them, for one thread.
+// The settings with derived values, for one thread.
 class Terrain {
  public:
   explicit Terrain(const ProceduralDem& s) : kind_(s.kind) {
@@ -113,7 +112,7 @@ class Terrain {
  private:
   // Off the lattice: (0, 0) would be a zero of every octave.
   Point start(int col, int row) const { return {col / wavelength_ + 0.3125, row / wavelength_ + 0.6875}; }
-  // The next octave: half the wavelength, turned by the angle of the 3-4-5 triangle.
+  // The next octave: half the wavelength, rotated by the angle of the 3-4-5 triangle.
   static Point next(Point p) { return {2 * (0.8 * p.x - 0.6 * p.y), 2 * (0.6 * p.x + 0.8 * p.y)}; }
 
   double fbm(Point p) {
@@ -124,8 +123,7 @@ class Terrain {
     return sum;
   }
 
-  // Each octave is sharpest where it is zero, and shows only where those before are high: crests fork, valleys stay
-  // calm.
+  // Each octave is sharpest where it is zero, and is weighted by the previous ones: ridges fork, valleys stay smooth.
   double ridged(Point p) {
     double sum = 0, amplitude = kRidgedRelief, weight = 1;
     for (std::size_t octave = 0; octave < octaves_; ++octave, p = next(p), amplitude *= kRidgedGain) {
@@ -158,15 +156,15 @@ std::optional<TerrainKind> terrain_kind(std::string_view name) {
 void validate(const ProceduralDem& s) {
   const auto side = [](int n) { return n >= 1 && n <= kLargestProceduralSide; };
   if (!side(s.cols) || !side(s.rows)) {
-    throw Error(fmt::format("procedural terrain: {} x {} samples; 1 x 1 to {} x {} are possible", s.cols, s.rows,
+    throw Error(fmt::format("procedural terrain: {} x {} samples (must be 1 x 1 to {} x {})", s.cols, s.rows,
                             kLargestProceduralSide, kLargestProceduralSide));
   }
   if (!(s.cell_m > 0 && s.cell_m <= kLargestProceduralCell)) {
-    throw Error(fmt::format("procedural terrain: cells of {} m; above 0 and at most {} m are possible", s.cell_m,
+    throw Error(fmt::format("procedural terrain: cells of {} m (must be above 0 and at most {} m)", s.cell_m,
                             kLargestProceduralCell));
   }
   if (s.wavelength != 0 && !(s.wavelength >= kFinestWavelength && s.wavelength <= kLargestWavelength)) {
-    throw Error(fmt::format("procedural terrain: a wavelength of {} cells; {} to {} are possible, 0 chooses one",
+    throw Error(fmt::format("procedural terrain: wavelength of {} cells (must be {} to {}, or 0 for the default)",
                             s.wavelength, kFinestWavelength, kLargestWavelength));
   }
 }

@@ -20,21 +20,21 @@ constexpr int kBlock = 256;       // side of the file's tiles
 constexpr int kRowsPerPiece = 8;  // of a strip, for one thread
 
 [[noreturn]] void refuse(const std::string& path, const GdalSession& session) {
-  throw Error(fmt::format("output '{}': cannot be written, perhaps the disk is full: {}", path,
-                          session.reason("GDAL gives no reason")));
+  throw Error(
+      fmt::format("{}: cannot be written: {} (is the disk full?)", path, session.reason("GDAL gives no reason")));
 }
 
 GDALDatasetUniquePtr create(const std::string& path, const std::string& file, const ComputedDem& s,
                             GdalSession& session) {
   GDALDriver* const driver = GetGDALDriverManager()->GetDriverByName("GTiff");
-  if (!driver) throw Error("this GDAL has no GeoTIFF driver; install one that has");
+  if (!driver) throw Error("GDAL has no GeoTIFF driver (install a build that has)");
   CPLStringList options;
   options.SetNameValue("TILED", "YES");
   options.SetNameValue("BLOCKXSIZE", fmt::format("{}", kBlock).c_str());
   options.SetNameValue("BLOCKYSIZE", fmt::format("{}", kBlock).c_str());
   options.SetNameValue("COMPRESS", "DEFLATE");
   options.SetNameValue("PREDICTOR", "3");
-  // Noise does not get smaller by trying harder.
+  // Higher levels do not compress noise better.
   options.SetNameValue("ZLEVEL", "1");
   options.SetNameValue("NUM_THREADS", "ALL_CPUS");
   options.SetNameValue("BIGTIFF", "IF_SAFER");
@@ -75,13 +75,13 @@ void write_procedural_dem(const std::string& path, const ProceduralDem& settings
 void write_computed_dem(const std::string& path, const ComputedDem& settings, const Progress& progress) {
   const auto side = [](int n) { return n >= 1 && n <= kLargestProceduralSide; };
   if (!side(settings.cols) || !side(settings.rows))
-    throw Error(fmt::format("terrain: {} x {} samples; 1 to {} each are possible", settings.cols, settings.rows,
+    throw Error(fmt::format("terrain: {} x {} samples (sides must be 1 to {})", settings.cols, settings.rows,
                             kLargestProceduralSide));
   if (!(settings.cell_m > 0 && settings.cell_m <= kLargestProceduralCell))
-    throw Error(fmt::format("terrain: {} metres from sample to sample; above 0 to {} are possible", settings.cell_m,
+    throw Error(fmt::format("terrain: sample spacing of {} m (must be above 0 and at most {} m)", settings.cell_m,
                             kLargestProceduralCell));
   GdalSession session;
-  // Declared before the dataset: whatever ends this function, the file is closed before it is removed.
+  // Declared before the dataset, so that the file is closed before it is deleted, however this function ends.
   ReplaceFile output(path);
   GDALDatasetUniquePtr dataset = create(path, output.temporary_path(), settings, session);
   GDALRasterBand& band = *dataset->GetRasterBand(1);
@@ -101,7 +101,7 @@ void write_computed_dem(const std::string& path, const ComputedDem& settings, co
     const CPLErr result = band.RasterIO(GF_Write, 0, first, settings.cols, rows, strip.data(), settings.cols, rows,
                                         GDT_Float32, 0, 0, nullptr);
     if (result != CE_None) refuse(path, session);
-    // Out of GDAL's cache at once: it must not grow, and a full disk is told while it is known.
+    // Flushes GDAL's cache at once: it must not grow, and a full disk must be reported early.
     dataset->FlushCache();
     if (session.failed()) refuse(path, session);
   }

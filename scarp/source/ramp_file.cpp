@@ -21,15 +21,14 @@ class CptReader {
 
   RampStops read() {
     std::ifstream in(path_);
-    if (!in)
-      throw Error(fmt::format("ramp '{}': cannot be opened; name a .cpt file, a .png or a built-in ramp", path_));
+    if (!in) throw Error(fmt::format("{}: cannot be opened (name a .cpt file, a .png or a built-in ramp)", path_));
     std::string text;
     while (std::getline(in, text)) {
-      if (++line_ == 1 && text.starts_with(kLfsPointer)) throw Error(fmt::format("ramp '{}': {}", path_, kLfsAdvice));
+      if (++line_ == 1 && text.starts_with(kLfsPointer)) throw Error(fmt::format("{}: {}", path_, kLfsAdvice));
       take(text);
     }
-    if (in.bad()) throw Error(fmt::format("ramp '{}': cannot be read", path_));
-    if (stops_.slices.empty()) throw Error(fmt::format("ramp '{}': has no line 'low R G B high R G B'", path_));
+    if (in.bad()) throw Error(fmt::format("{}: cannot be read", path_));
+    if (stops_.slices.empty()) throw Error(fmt::format("{}: no line 'low R G B high R G B'", path_));
     const double low = stops_.slices.front().low, high = stops_.slices.back().high;
     stops_.hinged = hinge_ && low == -1 && high == 1;
     stops_.stretched = stops_.hinged || (low == 0 && high == 1);
@@ -38,19 +37,19 @@ class CptReader {
 
  private:
   [[noreturn]] void refuse(std::string_view what) const {
-    throw Error(fmt::format("ramp '{}', line {}: {}", path_, line_, what));
+    throw Error(fmt::format("{}: line {}: {}", path_, line_, what));
   }
 
   void take(std::string text) {
     if (text.find("HINGE") != std::string::npos && text.starts_with('#')) hinge_ = true;
     if (text.find("COLOR_MODEL") != std::string::npos && text.find("RGB") == std::string::npos) {
-      refuse("the colour model must be RGB");
+      refuse("unsupported colour model (must be RGB)");
     }
     text = text.substr(0, text.find_first_of("#;"));
     std::istringstream words(text);
     std::vector<std::string> parts;
     for (std::string word; words >> word;) parts.push_back(word);
-    // Labels' marks (L, U, B) may follow the colours; B, F and N in front are no slices.
+    // Label marks (L, U, B) may follow the colours; lines that start with B, F and N are not slices.
     while (!parts.empty() && (parts.back() == "L" || parts.back() == "U" || parts.back() == "B")) parts.pop_back();
     if (parts.empty() || parts[0] == "B" || parts[0] == "F" || parts[0] == "N") return;
     std::size_t at = 0;
@@ -59,17 +58,17 @@ class CptReader {
     slice.srgb_low = colour(parts, at, parts.size() >= 8);
     slice.high = number(parts, at);
     slice.srgb_high = colour(parts, at, parts.size() >= 8);
-    if (at != parts.size()) refuse(fmt::format("'{}' is too much; expected 'low R G B high R G B'", parts[at]));
+    if (at != parts.size()) refuse(fmt::format("unexpected '{}' (expected 'low R G B high R G B')", parts[at]));
     if (!(slice.low < slice.high)) refuse(fmt::format("{} to {} does not ascend", slice.low, slice.high));
     if (!stops_.slices.empty() && slice.low != stops_.slices.back().high) {
-      refuse(fmt::format("begins at {}, where the line before ends at {}; values must ascend without gaps", slice.low,
+      refuse(fmt::format("begins at {}, but the previous line ends at {} (values must ascend without gaps)", slice.low,
                          stops_.slices.back().high));
     }
     stops_.slices.push_back(slice);
   }
 
   double number(const std::vector<std::string>& parts, std::size_t& at) const {
-    if (at >= parts.size()) refuse("is too short; expected 'low R G B high R G B'");
+    if (at >= parts.size()) refuse("too short (expected 'low R G B high R G B')");
     return number(parts[at++]);
   }
   double number(const std::string& word) const {
@@ -79,7 +78,7 @@ class CptReader {
       value = std::stod(word, &used);
     } catch (const std::exception&) {
     }
-    if (used != word.size() || !std::isfinite(value)) refuse(fmt::format("'{}' is no number", word));
+    if (used != word.size() || !std::isfinite(value)) refuse(fmt::format("'{}' is not a number", word));
     return value;
   }
 
@@ -88,20 +87,21 @@ class CptReader {
     if (apart) {
       for (int i = 0; i < 3; ++i) rgb[i] = static_cast<float>(number(parts, at));
     } else {
-      if (at >= parts.size()) refuse("is too short; expected 'low R G B high R G B'");
+      if (at >= parts.size()) refuse("too short (expected 'low R G B high R G B')");
       const std::string& word = parts[at++];
       const std::size_t first = word.find('/');
       if (first == std::string::npos) {
         rgb = vec3(static_cast<float>(number(word)));
       } else {
         const std::size_t second = word.find('/', first + 1);
-        if (second == std::string::npos) refuse(fmt::format("'{}' is no colour; expected R/G/B", word));
+        if (second == std::string::npos) refuse(fmt::format("'{}' is not a colour (expected R/G/B)", word));
         rgb = vec3(number(word.substr(0, first)), number(word.substr(first + 1, second - first - 1)),
                    number(word.substr(second + 1)));
       }
     }
     for (int i = 0; i < 3; ++i) {
-      if (!(rgb[i] >= 0 && rgb[i] <= 255)) refuse(fmt::format("{} is no part of a colour; expected 0 to 255", rgb[i]));
+      if (!(rgb[i] >= 0 && rgb[i] <= 255))
+        refuse(fmt::format("{} is not a colour component (expected 0 to 255)", rgb[i]));
     }
     return rgb / 255.0f;
   }

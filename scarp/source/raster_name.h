@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whatever goes wrong while a raster is read, one line says which raster it was.
+// Adds the path to errors of raster readers.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,8 +12,8 @@
 
 namespace scarp {
 
-/// What read() returns, with `path` in it. Its Errors are thrown on with the path before their text, Interrupted as it
-/// is.
+/// Returns the result of read() with `path` in it. Rethrows its Errors with the path before their text, and Interrupted
+/// unchanged.
 template <class Read>
 Raster read_named(const std::string& path, Read&& read) {
   try {
@@ -23,10 +23,9 @@ Raster read_named(const std::string& path, Read&& read) {
   } catch (const Interrupted&) {
     throw;
   } catch (const Error& error) {
-    throw Error(fmt::format("raster '{}': {}", path, error.what()));
+    throw Error(fmt::format("{}: {}", path, error.what()));
   } catch (const std::bad_alloc&) {
-    throw Error(fmt::format(
-        "raster '{}': its samples do not fit into memory; read a part with --window COL,ROW,COLS,ROWS", path));
+    throw Error(fmt::format("{}: samples do not fit in memory (read a part with --window COL,ROW,COLS,ROWS)", path));
   }
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 std::string bounds_text(const MapBounds& b) { return fmt::format("{},{},{},{}", b.west, b.south, b.east, b.north); }
 
-// The geotransform by the caller's bounds or the file's own word; nothing when neither speaks.
+// The geotransform from the caller's bounds or the file; nullopt if neither has one.
 std::optional<GeoTransform> geotransform_of(GDALDataset& dataset, const RasterOptions& options) {
   const int cols = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
   GeoTransform map{};
@@ -24,8 +24,7 @@ std::optional<GeoTransform> geotransform_of(GDALDataset& dataset, const RasterOp
     const MapBounds& b = *options.bounds;
     if (!(std::isfinite(b.west) && std::isfinite(b.south) && b.west < b.east && b.south < b.north &&
           std::isfinite(b.east) && std::isfinite(b.north))) {
-      throw Error(fmt::format("the bounds {} are empty; west < east and south < north are needed: --bounds W,S,E,N",
-                              bounds_text(b)));
+      throw Error(fmt::format("bounds {} are empty (use --bounds W,S,E,N with W < E and S < N)", bounds_text(b)));
     }
     return GeoTransform{b.west, (b.east - b.west) / cols, 0, b.north, 0, (b.south - b.north) / rows};
   }
@@ -38,8 +37,8 @@ std::optional<OGRSpatialReference> crs_of(GDALDataset& dataset, const RasterOpti
   if (!options.crs.empty()) {
     const char* const no_network[] = {"ALLOW_NETWORK_ACCESS=NO", nullptr};
     if (crs.SetFromUserInput(options.crs.c_str(), no_network) != OGRERR_NONE) {
-      throw Error(fmt::format(
-          "the coordinate reference system '{}' is not known; name one such as EPSG:32610, or give WKT", options.crs));
+      throw Error(fmt::format("unknown coordinate reference system '{}' (specify one such as EPSG:32610, or WKT)",
+                              options.crs));
     }
   } else if (const OGRSpatialReference* own = dataset.GetSpatialRef()) {
     crs = *own;
@@ -70,26 +69,26 @@ std::string name_of(const OGRSpatialReference& crs) {
     if (zone != 0) {
       name = fmt::format("{} / UTM zone {}{}", base ? base : "unknown datum", zone, north ? 'N' : 'S');
     } else if (projection) {
-      name = fmt::format("{} / {} without a name", base ? base : "unknown datum", projection);
+      name = fmt::format("{} / unnamed {}", base ? base : "unknown datum", projection);
     } else {
-      name = "coordinate reference system without a name";
+      name = "unnamed coordinate reference system";
     }
   }
   const char *authority = crs.GetAuthorityName(nullptr), *code = crs.GetAuthorityCode(nullptr);
   return authority && code ? fmt::format("{} ({}:{})", name, authority, code) : name;
 }
 
-// Geographic rasters of many degrees are no plane: say by how much.
+// Geographic rasters of many degrees are not planar: a note says by how much.
 void note_latitude_span(const OGRSpatialReference& crs, double north, double south, RasterPlace& place) {
   const double unit = crs.GetAngularUnits(), far = std::max(std::abs(north), std::abs(south)) * unit;
   if (far > std::numbers::pi / 2) return;
   const double centre = std::cos((north + south) / 2 * unit), least = std::cos(far);
   const double most = north * south < 0 ? 1 : std::cos(std::min(std::abs(north), std::abs(south)) * unit);
-  // A hundredth of a cell per cell is what a picture shows.
+  // A hundredth of a cell per cell is visible in an image.
   if (std::max(centre - least, most - centre) > 0.01 * centre) {
     place.notes.push_back(fmt::format(
-        "cells are {:.1f} % wider at one edge and {:.1f} % narrower at the other than at the centre, where they "
-        "are measured; a projected CRS (gdalwarp) avoids that",
+        "cells are {:.1f} % wider at one edge and {:.1f} % narrower at the other than at the centre, whose size is "
+        "used (gdalwarp to a projected CRS avoids this)",
         (most / centre - 1) * 100, (1 - least / centre) * 100));
   }
 }
@@ -98,18 +97,18 @@ void note_latitude_span(const OGRSpatialReference& crs, double north, double sou
 
 void check_geotransform(const GeoTransform& map, int cols, int rows) {
   for (const double x : map) {
-    if (!std::isfinite(x)) throw Error("its geotransform is not finite; give its outer edges with --bounds W,S,E,N");
+    if (!std::isfinite(x)) throw Error("geotransform is not finite (specify the outer edges with --bounds W,S,E,N)");
   }
   // Drift of the far corner across the grid, in cells.
   const double across_cols = std::abs(map[2]) * rows / std::abs(map[1]),
                across_rows = std::abs(map[4]) * cols / std::abs(map[5]);
   if (map[2] != 0 || map[4] != 0) {
     if (!(across_cols <= kLargestDriftInCells && across_rows <= kLargestDriftInCells)) {
-      throw Error("its geotransform is rotated or sheared; make it north-up first: gdalwarp IN OUT.tif");
+      throw Error("geotransform is rotated or sheared (make the raster north-up first: gdalwarp IN OUT.tif)");
     }
   }
   if (map[1] == 0 || map[5] == 0)
-    throw Error("its geotransform has cells without size; give its outer edges with --bounds W,S,E,N");
+    throw Error("geotransform has cells of size 0 (specify the outer edges with --bounds W,S,E,N)");
 }
 
 RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const RasterOptions& options) {
@@ -127,20 +126,20 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
   const std::optional<GeoTransform> map = geotransform_of(dataset, options);
   if (!map) {
     if (!options.crs.empty())
-      throw Error("it has no geotransform that --crs could apply to; give its outer edges, too: --bounds W,S,E,N");
+      throw Error("no geotransform that --crs could apply to (specify the outer edges, too: --bounds W,S,E,N)");
     if (dataset.GetGCPCount() > 0)
-      throw Error("it has ground control points, but no geotransform; warp it first: gdalwarp IN OUT.tif");
-    geo.cell_size_found = "no georeference: cells of 1 m, north taken as up";
-    place.notes.push_back("no georeference: cells are taken as 1 m; give --bounds W,S,E,N and --crs if they are not");
+      throw Error("ground control points without a geotransform (warp the raster first: gdalwarp IN OUT.tif)");
+    geo.cell_size_found = "no georeference: cells of 1 m, assuming that north is up";
+    place.notes.push_back("no georeference, assuming cells of 1 m (override with --bounds W,S,E,N and --crs)");
     return place;
   }
   check_geotransform(*map, dataset.GetRasterXSize(), dataset.GetRasterYSize());
 
-  // Samples stand at the centres of pixels; rows run south, columns east.
+  // Samples are at pixel centres; rows run south, columns east.
   place.flip_rows = (*map)[5] > 0;
   place.flip_cols = (*map)[1] < 0;
-  if (place.flip_rows) place.notes.push_back("rows run from south to north in the file: flipped");
-  if (place.flip_cols) place.notes.push_back("columns run from east to west in the file: flipped");
+  if (place.flip_rows) place.notes.push_back("rows run from south to north in the file, flipped");
+  if (place.flip_cols) place.notes.push_back("columns run from east to west in the file, flipped");
   const double step_x = std::abs((*map)[1]), step_y = std::abs((*map)[5]);
   const double first_x = (*map)[0] + (window.col + (place.flip_cols ? window.cols - 0.5 : 0.5)) * (*map)[1];
   const double first_y = (*map)[3] + (window.row + (place.flip_rows ? window.rows - 0.5 : 0.5)) * (*map)[5];
@@ -148,15 +147,15 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
   geo.present = true;
   geo.map_from_node = {first_x, step_x, 0, first_y, 0, -step_y};
 
-  // Once round the earth and a half: from 0 to 360 and on both sides of either border. More is another CRS.
+  // Once and a half around the Earth: from 0 to 360 and beyond either border. More indicates another CRS.
   constexpr double kFarthestLongitude = 540;
   if (crs && crs->IsGeographic()) {
     const double west = first_x - 0.5 * step_x, east = first_x + (window.cols - 0.5) * step_x,
                  to_degrees = crs->GetAngularUnits() * 180 / std::numbers::pi;
     if (!(std::max(std::abs(west), std::abs(east)) * to_degrees <= kFarthestLongitude)) {
       throw Error(
-          fmt::format("its longitudes go from {:.10g} to {:.10g}; the CRS is {}, which has them within {} degrees: "
-                      "give the right --crs or --bounds",
+          fmt::format("longitudes span {:.10g} to {:.10g}, but the CRS {} limits them to {} degrees "
+                      "(correct --crs or --bounds)",
                       west, east, name_of(*crs), kFarthestLongitude));
     }
   }
@@ -167,9 +166,9 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
     const bool like_degrees = step_x < 1 && step_y < 1 && std::abs(first_x) <= 180 && std::abs(first_y) <= 90 &&
                               std::abs(last_y) <= 90 && first_x + (window.cols - 1) * step_x <= 360;
     place.notes.push_back(
-        like_degrees ? "no coordinate reference system: map units are taken as metres, but they look like degrees; "
-                       "give --crs EPSG:4326 if they are"
-                     : "no coordinate reference system: map units are taken as metres; give --crs if they are not");
+        like_degrees ? "no coordinate reference system, assuming map units of metres, but they look like degrees "
+                       "(override with --crs EPSG:4326)"
+                     : "no coordinate reference system, assuming map units of metres (override with --crs)");
     return place;
   }
   geo.crs_name = name_of(*crs);
@@ -185,8 +184,8 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
   place.notes.insert(place.notes.end(), ground.notes.begin(), ground.notes.end());
   if (crs->IsGeographic()) note_latitude_span(*crs, first_y, last_y, place);
   if (crs->IsDerivedGeographic())
-    place.notes.push_back("longitudes and latitudes count from a pole of their own: azimuths do, too");
-  if (crs->IsLocal()) place.notes.push_back("local coordinate system: its units are taken as they are, north as up");
+    place.notes.push_back("longitudes and latitudes refer to a rotated pole, and so do azimuths");
+  if (crs->IsLocal()) place.notes.push_back("local coordinate system, assuming that north is up");
   return place;
 }
 

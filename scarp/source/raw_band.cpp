@@ -35,14 +35,14 @@ std::string full_path(const std::string& path) {
 std::int64_t file_bytes(const std::string& path) {
   VSIStatBufL status;
   if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG | VSI_STAT_SIZE_FLAG) != 0) {
-    throw Error("does not exist; name a raster file");
+    throw Error("does not exist (name a raster file)");
   }
-  if (VSI_ISDIR(status.st_mode)) throw Error("is a directory; a raster file is needed");
+  if (VSI_ISDIR(status.st_mode)) throw Error("is a directory (name a raster file)");
   return static_cast<std::int64_t>(status.st_size);
 }
 
 GDALDatasetUniquePtr open_raw_band(const RawBand& band, const GdalSession& session) {
-  // Newer GDAL reads raw bands of virtual datasets only where it is told to.
+  // Newer GDAL reads raw bands of virtual datasets only with permission.
   const GdalOption raw("GDAL_VRT_RAWRASTERBAND_ALLOWED_SOURCE", "ALL");
   const std::string xml = fmt::format(
       "<VRTDataset rasterXSize=\"{0}\" rasterYSize=\"{1}\"><VRTRasterBand dataType=\"{2}\" band=\"1\" "

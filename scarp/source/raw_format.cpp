@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::int64_t kLargestOffset = std::int64_t{1} << 62;
 
-// What is left of a text that is read from left to right.
+// The rest of a text that is read from left to right.
 class Rest {
  public:
   explicit Rest(std::string_view text) : text_(text) {}
@@ -23,7 +23,7 @@ class Rest {
     text_.remove_prefix(word.size());
     return true;
   }
-  // A whole number of digits alone, in [least, most].
+  // An integer of digits alone, in [least, most].
   bool take_number(std::int64_t least, std::int64_t most, std::int64_t& number) {
     if (text_.empty() || text_[0] < '0' || text_[0] > '9') return false;
     const auto [end, error] = std::from_chars(text_.data(), text_.data() + text_.size(), number);
@@ -77,8 +77,8 @@ RawFormat parse_raw_format(std::string_view text) {
   RawFormat format;
   if (!parse(text, format)) {
     throw Error(
-        fmt::format("--raw '{}': expected COLSxROWS:TYPE[+OFFSET], TYPE one of u8 i8 u16 i16 u32 i32 f32 f64 with le "
-                    "or be behind it, OFFSET the bytes of a header, for example 4097x4097:u16le",
+        fmt::format("--raw '{}': expected COLSxROWS:TYPE[+OFFSET], TYPE one of u8 i8 u16 i16 u32 i32 f32 f64 "
+                    "followed by le or be, OFFSET the size of a header, for example 4097x4097:u16le",
                     text));
   }
   return format;

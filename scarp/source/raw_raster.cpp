@@ -13,17 +13,17 @@
 namespace scarp {
 namespace {
 
-// Bytes behind the samples. Throws Error when there are too few, or unexplained ones.
+// Bytes after the samples. Throws Error if there are too few, or extra ones without an offset.
 std::int64_t bytes_left(const RawFormat& format, std::int64_t bytes) {
   // In double: neither the product nor the sum can overflow.
   const double needed = static_cast<double>(format.offset) +
                         static_cast<double>(format.cols) * static_cast<double>(format.rows) * format.bytes;
   const double have = static_cast<double>(bytes);
   if (have == needed || (format.has_offset && have > needed)) return static_cast<std::int64_t>(have - needed);
-  throw Error(fmt::format("has {} bytes, --raw {} needs {:.0f}: {}", bytes, text_of(format), needed,
-                          have < needed ? "it is cut off, or size, type or offset are others"
-                                        : "size or type are others; if they are right, say +0 to leave out what "
-                                          "follows the samples, or +OFFSET to skip a header"));
+  throw Error(fmt::format("{} bytes, but --raw {} needs {:.0f} ({})", bytes, text_of(format), needed,
+                          have < needed ? "truncated file, or wrong size, type or offset"
+                                        : "wrong size or type; otherwise append +0 to ignore bytes after the "
+                                          "samples, or +OFFSET to skip a header"));
 }
 
 }  // namespace
@@ -40,7 +40,7 @@ Raster read_raw(const std::string& path, const RasterOptions& options, const Pro
                        format.bytes, format.big_endian, format.offset},
                       session);
     Raster raster = read_dataset(*dataset, options, session, progress);
-    if (left > 0) raster.notes.push_back(fmt::format("{} bytes behind the samples are left out", left));
+    if (left > 0) raster.notes.push_back(fmt::format("ignored {} bytes after the samples", left));
     return raster;
   });
 }

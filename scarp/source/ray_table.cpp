@@ -23,7 +23,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::string_view kNeeded = "x,y,z and either dx,dy,dz or tx,ty,tz are needed";
+constexpr std::string_view kNeeded = "required: x,y,z and either dx,dy,dz or tx,ty,tz";
 
 enum Column : std::size_t { x, y, z, dx, dy, dz, tx, ty, tz, t_min, t_max, start_col, start_row, column_count };
 constexpr std::array<std::string_view, column_count> kNames = {
@@ -33,7 +33,7 @@ std::string place_of(std::int64_t line, std::size_t row) {
   return line > 0 ? fmt::format("line {} (ray {})", line, row) : fmt::format("ray {}", row);
 }
 
-// A field as it can stand in a message of one line.
+// A field in a form that fits in a one-line message.
 std::string shown(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string result(text.substr(0, kLongest));
@@ -44,31 +44,31 @@ std::string shown(std::string_view text) {
 
 template <class Number>
 bool parse(std::string_view text, Number& number) {
-  // std::from_chars knows no plus.
+  // std::from_chars accepts no plus sign.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   return error == std::errc() && rest == text.data() + text.size() && !text.empty();
 }
 
-// What is true of a row wherever it comes from; `place` is asked for only when it is not.
+// Checks a row from any source; calls `place` only for errors.
 template <class Place>
 void check(const RayRow& row, RayAim aim, const Place& place) {
   const auto finite = [](const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); };
   const auto refuse = [&](std::string_view what) { throw Error(fmt::format("{}: {}", place(), what)); };
-  if (!finite(row.origin)) refuse("its origin is not finite");
+  if (!finite(row.origin)) refuse("origin is not finite");
   if (aim == RayAim::direction) {
-    if (!finite(row.aim)) refuse("its direction is not finite");
-    if (row.aim == dvec3(0.0)) refuse("its direction is zero");
+    if (!finite(row.aim)) refuse("direction is not finite");
+    if (row.aim == dvec3(0.0)) refuse("direction is zero");
   } else {
-    if (!finite(row.aim)) refuse("its target is not finite");
-    if (row.aim == row.origin) refuse("its target is its origin");
+    if (!finite(row.aim)) refuse("target is not finite");
+    if (row.aim == row.origin) refuse("target equals the origin");
   }
   if (!std::isfinite(row.t_min) || std::isnan(row.t_max) || row.t_max < row.t_min) {
-    refuse(fmt::format("its range is {} to {}; t_min must be finite and t_max no less", row.t_min, row.t_max));
+    refuse(fmt::format("range is {} to {} (t_min must be finite and at most t_max)", row.t_min, row.t_max));
   }
 }
 
-// Which field of a row is which column.
+// Maps fields of a row to columns.
 class Header {
  public:
   explicit Header(std::span<const std::string_view> fields) : fields_(fields.size()) {
@@ -81,11 +81,11 @@ class Header {
         continue;
       }
       std::size_t& place = places_[static_cast<std::size_t>(known - kNames.begin())];
-      if (place != kNone) throw Error(fmt::format("its header has the column '{}' twice", name));
+      if (place != kNone) throw Error(fmt::format("duplicate column '{}'", name));
       place = i;
     }
     const bool directions = has(dx) || has(dy) || has(dz), targets = has(tx) || has(ty) || has(tz);
-    if (directions && targets) throw Error("its header has directions and targets; dx,dy,dz or tx,ty,tz is needed");
+    if (directions && targets) throw Error("header has both directions and targets (use dx,dy,dz or tx,ty,tz)");
     require({x, y, z});
     if (targets) {
       require({tx, ty, tz});
@@ -93,8 +93,7 @@ class Header {
       require({dx, dy, dz});
     }
     if (has(start_col) != has(start_row)) {
-      throw Error(fmt::format("its header has no column '{}', which goes with '{}'",
-                              kNames[has(start_col) ? start_row : start_col],
+      throw Error(fmt::format("no column '{}', required with '{}'", kNames[has(start_col) ? start_row : start_col],
                               kNames[has(start_col) ? start_col : start_row]));
     }
     aim_ = targets ? RayAim::target : RayAim::direction;
@@ -111,7 +110,7 @@ class Header {
 
   void require(std::initializer_list<Column> columns) const {
     for (const Column column : columns) {
-      if (!has(column)) throw Error(fmt::format("its header has no column '{}'; {}", kNames[column], kNeeded));
+      if (!has(column)) throw Error(fmt::format("no column '{}' ({})", kNames[column], kNeeded));
     }
   }
 
@@ -126,14 +125,14 @@ class Row {
  public:
   Row(const Header& header, const CsvRows& rows, std::size_t number) : header_(header), rows_(rows), number_(number) {
     if (rows.fields().size() != header.fields()) {
-      refuse(fmt::format("{} fields, the header has {}", rows.fields().size(), header.fields()));
+      refuse(fmt::format("{} fields instead of {}", rows.fields().size(), header.fields()));
     }
   }
 
   std::string place() const { return place_of(rows_.line(), number_); }
   double number(Column column) const {
     double value = 0;
-    if (text(column).empty()) refuse(fmt::format("column '{}' is empty; a number is needed", kNames[column]));
+    if (text(column).empty()) refuse(fmt::format("column '{}' is empty (expected a number)", kNames[column]));
     if (!parse(text(column), value)) {
       refuse(fmt::format("'{}' in column '{}' is not a number", shown(text(column)), kNames[column]));
     }
@@ -146,7 +145,7 @@ class Row {
   int whole(Column column) const {
     int value = 0;
     if (!parse(text(column), value)) {
-      refuse(fmt::format("'{}' in column '{}' is not a whole number", shown(text(column)), kNames[column]));
+      refuse(fmt::format("'{}' in column '{}' is not an integer", shown(text(column)), kNames[column]));
     }
     return value;
   }
@@ -177,7 +176,7 @@ class Row {
   std::size_t number_;
 };
 
-// A number of an array at these bytes.
+// Reads a number of an array at these bytes.
 template <class Number, class Bits>
 double number_at(const char* bytes, bool big_endian) {
   Bits bits = 0;
@@ -190,7 +189,7 @@ double number_at(const char* bytes, bool big_endian) {
 
 using NumberReader = double (*)(const char* bytes, bool big_endian);
 
-// Null for what is no number.
+// Null for types that are not numbers.
 NumberReader reader_of(char kind, int bytes) {
   switch (kind) {
     case 'f':
@@ -215,13 +214,13 @@ NumberReader reader_of(char kind, int bytes) {
   return nullptr;
 }
 
-// The number of rays behind the header, which says that each takes `bytes`.
+// Number of rays after a header that states `bytes` per ray.
 std::size_t rays_of(const NpyHeader& header, std::string_view behind, std::int64_t bytes) {
   // In double: the product cannot overflow.
   const double needed = static_cast<double>(header.shape[0]) * static_cast<double>(bytes);
   if (static_cast<double>(behind.size()) < needed) {
-    throw Error(fmt::format("is cut off: {} rays need {:.0f} bytes behind the header, it has {}", header.shape[0],
-                            needed, behind.size()));
+    throw Error(fmt::format("truncated: {} rays need {:.0f} bytes after the header, but the file has {}",
+                            header.shape[0], needed, behind.size()));
   }
   return static_cast<std::size_t>(header.shape[0]);
 }
@@ -235,7 +234,8 @@ RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t
     if (!columns.has(static_cast<Column>(c))) continue;
     const NpyField& field = header.fields[columns[static_cast<Column>(c)]];
     readers[c] = reader_of(field.kind, field.bytes);
-    if (!readers[c]) throw Error(fmt::format("its field '{}' is no number of i1 to i8, u1 to u8, f4, f8", field.name));
+    if (!readers[c])
+      throw Error(fmt::format("field '{}' is not a number of type i1 to i8, u1 to u8, f4 or f8", field.name));
   }
   RayTable table;
   table.aim = columns.aim();
@@ -250,7 +250,7 @@ RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t
     const auto whole = [&](Column column) {
       const double value = number(column);
       if (value != std::floor(value) || !(std::abs(value) <= std::numeric_limits<int>::max())) {
-        throw Error(fmt::format("{}: {} in field '{}' is not a whole number", place_of(0, i), value, kNames[column]));
+        throw Error(fmt::format("{}: {} in field '{}' is not an integer", place_of(0, i), value, kNames[column]));
       }
       return static_cast<int>(value);
     };
@@ -298,7 +298,7 @@ struct FileCloser {
 
 std::string bytes_of(const std::string& path) {
   std::error_code ignored;
-  if (path != "-" && std::filesystem::is_directory(path, ignored)) throw Error("is a directory; a file is needed");
+  if (path != "-" && std::filesystem::is_directory(path, ignored)) throw Error("is a directory (name a file)");
   const std::unique_ptr<std::FILE, FileCloser> file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
   if (!file) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
   constexpr std::size_t kPiece = 1 << 20;
@@ -317,15 +317,15 @@ std::string bytes_of(const std::string& path) {
 }  // namespace
 
 std::string RayTable::where(std::size_t row) const {
-  return fmt::format("rays '{}': {}", path, place_of(rows[row].line, row));
+  return fmt::format("{}: {}", path, place_of(rows[row].line, row));
 }
 
 RayTable parse_ray_csv(std::string_view bytes) {
-  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("is UTF-16; save it as UTF-8");
+  if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("UTF-16 text (save it as UTF-8)");
   CsvRows rows(bytes);
-  if (!rows.next()) throw Error(fmt::format("is empty; a header is needed, in which {}", kNeeded));
+  if (!rows.next()) throw Error(fmt::format("empty file, no header ({})", kNeeded));
   if (double number = 0; parse(trimmed(rows.fields().front()), number)) {
-    throw Error(fmt::format("its first line is no header but numbers; {}", kNeeded));
+    throw Error(fmt::format("first line contains numbers instead of a header ({})", kNeeded));
   }
   const Header header(rows.fields());
   RayTable table;
@@ -344,16 +344,15 @@ RayTable parse_ray_npy(std::string_view bytes) {
   const std::string_view behind = bytes.substr(static_cast<std::size_t>(header.data_begin));
   if (!header.fields.empty()) {
     if (shape.size() != 1) {
-      throw Error(
-          fmt::format("is an array of structures of shape ({}); one dimension is needed", fmt::join(shape, ", ")));
+      throw Error(fmt::format("array of structures of shape ({}) (one dimension required)", fmt::join(shape, ", ")));
     }
     return parse_structures(header, behind.data(), rays_of(header, behind, header.bytes));
   }
   if (header.kind != 'f' || (header.bytes != 4 && header.bytes != 8)) {
-    throw Error(fmt::format("holds numbers of type '{}'; float32 and float64 are read", header.descr));
+    throw Error(fmt::format("unsupported type '{}' (supported: float32, float64)", header.descr));
   }
   if (shape.size() != 2 || (shape[1] != 6 && shape[1] != 8)) {
-    throw Error(fmt::format("is an array of shape ({}); (N, 6) or (N, 8) is needed: x,y,z,dx,dy,dz[,t_min,t_max]",
+    throw Error(fmt::format("array of shape ({}) (must be (N, 6) or (N, 8): x,y,z,dx,dy,dz[,t_min,t_max])",
                             fmt::join(shape, ", ")));
   }
   return parse_plain(header, behind.data(), rays_of(header, behind, shape[1] * header.bytes));
@@ -368,7 +367,7 @@ RayTable read_rays(const std::string& path) {
     table.path = path;
     return table;
   } catch (const Error& error) {
-    throw Error(fmt::format("rays '{}': {}", path, error.what()));
+    throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
 

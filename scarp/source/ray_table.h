@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Rays from a table: CSV, or an array of NumPy's.
+// Tables of rays: CSV, or NumPy arrays.
 //
-//   id,x,y,z,dx,dy,dz,t_max        columns in any order; x,y,z and either a direction dx,dy,dz or a target tx,ty,tz
-//   a,500,200,900,1,0,-0.5,4000    must be there; t_min, t_max, start_col, start_row may be
-//   b,510,200,900,1,0,-0.5,        an empty t_min, t_max or start is one that was not given
+//   id,x,y,z,dx,dy,dz,t_max        columns in any order; required: x,y,z and either a direction dx,dy,dz or a target
+//   a,500,200,900,1,0,-0.5,4000    tx,ty,tz; optional: t_min, t_max, start_col, start_row
+//   b,510,200,900,1,0,-0.5,        an empty t_min, t_max or start counts as not given
 //
-// Other columns (here `id`) are kept as text. Commas, semicolons or tabs separate, whichever the header has first
-// outside of quotes; quotes as in RFC 4180; lines end with LF, CR LF or CR; a byte order mark of UTF-8 and blank lines
-// are passed over. Numbers have a decimal point.
+// Other columns (here `id`) are kept as text. Separators are commas, semicolons or tabs, whichever comes first in the
+// header outside quotes; quotes as in RFC 4180; lines end with LF, CR LF or CR; a UTF-8 byte order mark and blank lines
+// are skipped. Numbers have a decimal point.
 //
-// An array holds float32 or float64, (N, 6) or (N, 8): x, y, z, dx, dy, dz[, t_min, t_max]; or N structures with fields
-// of the names above, numbers all of them. Its other fields are passed over.
+// Arrays are float32 or float64 of shape (N, 6) or (N, 8): x, y, z, dx, dy, dz[, t_min, t_max]; or N structures with
+// numeric fields of the names above. Other fields are skipped.
 //
-// Coordinates are those of the table: coordinates.h turns them into metres of a field.
+// Coordinates are those of the table: coordinates.h converts them to metres of a field.
 #pragma once
 
 #include <cstdint>
@@ -27,44 +27,45 @@
 
 namespace scarp {
 
-/// What a row tells of where its ray goes.
+/// Meaning of a row's second triple.
 enum class RayAim : std::uint8_t {
   direction,  ///< dx, dy, dz
-  target,     ///< tx, ty, tz: the point at t = 1, where the ray ends unless t_max says otherwise
+  target,     ///< tx, ty, tz: the point at t = 1, where the ray ends unless t_max is given
 };
 
-/// One ray as the table has it.
+/// One ray of the table.
 struct RayRow {
   dvec3 origin{0.0};  ///< finite
-  dvec3 aim{0.0};     ///< direction, finite and not zero; or target, finite and not the origin
+  dvec3 aim{0.0};     ///< direction, finite and non-zero; or target, finite and different from the origin
   double t_min = 0.0;
   double t_max = std::numeric_limits<double>::infinity();
-  RayStart start = RayStart::free;  ///< on_surface where start_col and start_row are given
+  RayStart start = RayStart::free;  ///< on_surface if start_col and start_row are given
   Cell start_cell{};
-  std::int64_t line = 0;  ///< of the file, from 1; 0: it has no lines
+  std::int64_t line = 0;  ///< line in the file, from 1; 0: a file without lines
 };
 
+/// The rays of a table.
 struct RayTable {
   std::string path;  ///< as opened, for messages
   RayAim aim = RayAim::direction;
   std::vector<RayRow> rows;
-  TextColumns carried;  ///< the other columns; a row per ray
+  TextColumns carried;  ///< the other columns; one row per ray
 
-  /// For messages: "rays 'a.csv': line 8 (ray 6)"; lines count from 1, rays from 0.
+  /// For messages: "a.csv: line 8 (ray 6)"; lines count from 1, rays from 0.
   std::string where(std::size_t row) const;
 };
 
-/// Throws Error whose text has no file name, but line and ray: a header without the columns, twice the same one or both
-/// aims; rows of another length than the header, what is no number or not finite, a direction of zero; quotes that do
-/// not close; nothing at all. A header alone is a table without rays.
+/// Throws Error with line and ray but without the file's name: missing columns, duplicate columns or both direction and
+/// target; rows of a different length than the header, fields that are not finite numbers, zero directions; unclosed
+/// quotes; an empty text. A header alone is a table without rays.
 RayTable parse_ray_csv(std::string_view bytes);
 
-/// The same for the bytes of a .npy file. Throws Error (no file name): another type or shape, bytes cut off, and what
-/// parse_ray_csv() does not let pass in rows.
+/// Parses the bytes of a .npy file. Throws Error without the file's name: another type or shape, truncated bytes, and
+/// values that parse_ray_csv() rejects.
 RayTable parse_ray_npy(std::string_view bytes);
 
-/// Reads a file, or standard input where `path` is "-". What begins as .npy does is read as such, all else as CSV.
-/// Throws Error naming the file.
+/// Reads a file, or standard input if `path` is "-". Detects .npy by its first bytes; everything else is CSV. Throws
+/// Error naming the file.
 RayTable read_rays(const std::string& path);
 
 }  // namespace scarp

@@ -21,17 +21,15 @@ namespace {
 
 constexpr std::size_t kFilesNamed = 3;
 
-// What only some files have a use for.
+// Rejects options that apply to other file types only.
 void refuse_foreign_options(const std::string& path, const RasterOptions& options) {
   const bool raw = options.raw.has_value(), exr = !raw && extension_of(path) == ".exr",
              archive = !raw && extension_of(path) == ".npz", array = !raw && is_npy_path(path);
-  const auto refuse = [&](std::string_view text) {
-    throw Error(fmt::format("raster '{}': {}; leave it out", path, text));
-  };
-  if (!options.key.empty() && !archive) refuse("--key names an array in a .npz file, which this is not");
-  if (!options.channel.empty() && !exr) refuse("--channel names a channel of an .exr file, which this is not");
+  const auto refuse = [&](std::string_view text) { throw Error(fmt::format("{}: {} (omit it)", path, text)); };
+  if (!options.key.empty() && !archive) refuse("--key applies to .npz archives only");
+  if (!options.channel.empty() && !exr) refuse("--channel applies to .exr files only");
   if (options.encoding != HeightEncoding::none && (raw || exr || array))
-    refuse("--encoding is for images with bands of colours, which this is not");
+    refuse("--encoding applies to colour images only");
 }
 
 Raster read_file(const std::string& path, const RasterOptions& options, const Progress& progress) {
@@ -55,7 +53,7 @@ Raster read_raster(const std::string& path, const RasterOptions& options, const 
 }
 
 Raster read_tiles(const std::vector<std::string>& inputs, const RasterOptions& options, const Progress& progress) {
-  if (inputs.empty()) throw Error("no raster is named; name a file or a folder");
+  if (inputs.empty()) throw Error("no raster given (name a file or a folder)");
   GdalSession session;
   const StrictReading strict;
   std::vector<std::string> files, notes;
@@ -75,9 +73,7 @@ Raster read_tiles(const std::vector<std::string>& inputs, const RasterOptions& o
       refuse_foreign_options(file, options);
       if (options.raw || is_npy_path(file) || extension_of(file) == ".exr")
         throw Error(fmt::format(
-            "raster '{}': has no georeference, by which one of several tiles finds its place; read it alone, or "
-            "convert it to GeoTIFF first",
-            file));
+            "{}: no georeference, which tiles require (read it alone, or convert it to GeoTIFF first)", file));
     }
     const TileSet tiles = open_tile_set(files, options, session, notes);
     raster = read_named(names_of(inputs), [&] {

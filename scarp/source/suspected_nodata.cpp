@@ -13,14 +13,14 @@ namespace scarp {
 namespace {
 
 constexpr double kLowMarks[] = {-32768, -32767, -9999, -99999, -999999};
-// From the Challenger Deep, -10,935 m, to the top of the Everest, 8,849 m, rounded up: no heights of the Earth are
-// farther apart, so no step between two that are neighbours in their order is larger.
+// From the Challenger Deep, -10,935 m, to the top of Everest, 8,849 m, rounded up: no heights on Earth are farther
+// apart, so no step between successive values is larger.
 constexpr double kReliefOfTheEarth_m = 20000;
 
-// The values at both ends, and those next to them.
+// The lowest and highest value, and those next to them.
 struct Ends {
   double lowest, above_lowest, below_highest, highest;
-  bool several = false;  // values; else there is no next one
+  bool several = false;  // whether there are several values; otherwise there is no next one
 };
 
 template <class T>
@@ -52,21 +52,21 @@ std::vector<std::string> suspected_nodata(const Raster& raster, std::optional<do
   std::vector<std::string> notes;
   const auto look_at = [&](std::string_view end, double value, bool marked, bool marked_if_apart, double gap,
                            double range_of_others) {
-    // Of two values alone either is apart from the other; ground is near height 0 rather than far from it.
+    // If there are only two values, either is isolated; ground is nearer to height 0.
     const bool of_two = ends.lowest == ends.below_highest;
     const bool apart = ends.several && gap > range_of_others &&
                        (!of_two || std::abs(value) == std::max(std::abs(ends.lowest), std::abs(ends.highest)));
     const bool far = apart && gap * std::abs(raster.scale) > kReliefOfTheEarth_m;
     if (!marked && !(marked_if_apart && apart) && !far) return;
-    notes.push_back(
-        fmt::format("the {} sample is {}{}, which often marks holes: say --nodata={} if it does", end, value,
-                    far ? fmt::format(", more than {} km from all others", kReliefOfTheEarth_m / 1000) : "", value));
+    notes.push_back(fmt::format("the {} sample is {}{}, which often marks holes (if so, add --nodata={})", end, value,
+                                far ? fmt::format(", more than {} km from all others", kReliefOfTheEarth_m / 1000) : "",
+                                value));
   };
   look_at("lowest", ends.lowest,
           ends.lowest < -kBeyondHeights ||
               std::find(std::begin(kLowMarks), std::end(kLowMarks), ends.lowest) != std::end(kLowMarks),
           false, ends.above_lowest - ends.lowest, ends.highest - ends.above_lowest);
-  // As float32, which samples of wide types have become.
+  // As float32, to which samples of wide types were converted.
   const bool is_greatest = greatest && static_cast<float>(ends.highest) == static_cast<float>(*greatest);
   look_at("highest", ends.highest, ends.highest > kBeyondHeights, is_greatest, ends.highest - ends.below_highest,
           ends.below_highest - ends.lowest);

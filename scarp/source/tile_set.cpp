@@ -22,7 +22,7 @@
 namespace scarp {
 namespace {
 
-// What one file brings along.
+// Properties of one file.
 struct Tile {
   std::string path;
   int band = 1;   // the first to read
@@ -47,16 +47,14 @@ Tile look_at(const std::string& path, const RasterOptions& options, const GdalSe
   if (options.encoding == HeightEncoding::none) {
     tile.band = height_band(*dataset, options.band);
   } else {
-    const DecodedDataset colours(*dataset, options.encoding);  // refuses what is none
+    const DecodedDataset colours(*dataset, options.encoding);  // throws for files that are not encoded
     tile.bands = dataset->GetRasterCount();
   }
   GDALRasterBand& band = *dataset->GetRasterBand(tile.band);
   tile.type = band.GetRasterDataType();
   if (is_signed_byte(band))
-    throw Error(
-        "its samples are signed bytes, which GDAL before 3.7 does not put together; convert it first: gdal_translate "
-        "-ot Int16 IN OUT.tif");
-  // Among colours a nodata value marks one of the bytes and no height.
+    throw Error("tiles of signed bytes require GDAL 3.7 (convert it first: gdal_translate -ot Int16 IN OUT.tif)");
+  // For colours, a nodata value marks a byte, not a height.
   if (tile.bands == 1) tile.nodata = nodata_of(band);
   tile.masked = tile.bands == 1 && has_own_mask(band);
   tile.scale = band.GetScale();
@@ -68,13 +66,10 @@ Tile look_at(const std::string& path, const RasterOptions& options, const GdalSe
   }
   if (dataset->GetGeoTransform(tile.map.data()) != CE_None)
     throw Error(
-        "has no georeference, by which a tile finds its place; give it one first: gdal_translate -a_ullr W N E S "
-        "-a_srs "
-        "CRS IN OUT.tif");
+        "no georeference, which tiles require (add one first: gdal_translate -a_ullr W N E S -a_srs CRS IN OUT.tif)");
   check_geotransform(tile.map, tile.cols, tile.rows);
   if (tile.map[1] < 0 || tile.map[5] > 0)
-    throw Error(
-        "its rows or columns run against the map, tiles must be north-up; make it so first: gdalwarp IN OUT.tif");
+    throw Error("rows or columns run against the map (tiles must be north-up, convert it first: gdalwarp IN OUT.tif)");
   return tile;
 }
 
@@ -89,12 +84,12 @@ std::string text_of(const Tile& tile) {
   return name ? name : "none";
 }
 
-// Throws Error when the tile does not go with the first one.
+// Throws Error if the tile does not match the first one.
 void compare(const Tile& first, const Tile& tile, const RasterOptions& options) {
   const auto differ = [&](std::string_view what, const std::string& its, const std::string& others,
                           std::string_view remedy) {
-    throw Error(fmt::format("its {} is {}, that of '{}' is {}; tiles of one raster must agree: {}", what, its,
-                            first.path, others, remedy));
+    throw Error(
+        fmt::format("{} is {}, but that of '{}' is {} (tiles must agree: {})", what, its, first.path, others, remedy));
   };
   const char* const ignore_axes[] = {"IGNORE_DATA_AXIS_TO_SRS_AXIS_MAPPING=YES", nullptr};
   if (tile.has_crs != first.has_crs || (tile.has_crs && !tile.crs.IsSame(&first.crs, ignore_axes)))
@@ -106,13 +101,13 @@ void compare(const Tile& first, const Tile& tile, const RasterOptions& options) 
     differ("number of bands", fmt::format("{}", tile.bands), fmt::format("{}", first.bands),
            "gdal_translate -b 1 -b 2 -b 3 IN OUT.tif");
   if (!options.nodata && !same_value(tile.nodata, first.nodata))
-    differ("nodata value", text_of(tile.nodata), text_of(first.nodata), "say --nodata, or gdal_translate -a_nodata");
+    differ("nodata value", text_of(tile.nodata), text_of(first.nodata), "use --nodata, or gdal_translate -a_nodata");
   if (tile.scale != first.scale || tile.offset != first.offset)
     differ("scale", fmt::format("x {} + {}", tile.scale, tile.offset),
            fmt::format("x {} + {}", first.scale, first.offset), "gdal_translate -unscale -ot Float32 IN OUT.tif");
   if (tile.unit != first.unit)
     differ("vertical unit", fmt::format("'{}'", tile.unit), fmt::format("'{}'", first.unit), "convert one of them");
-  // Over the width or height of the tile, its cells must not drift off those of the first.
+  // Over the width or height of the tile, its cells must not drift from those of the first.
   if (std::abs(tile.map[1] - first.map[1]) * tile.cols > kLargestDriftInCells * first.map[1] ||
       std::abs(tile.map[5] - first.map[5]) * tile.rows > kLargestDriftInCells * -first.map[5]) {
     differ("cell size", fmt::format("{} x {}", tile.map[1], -tile.map[5]),
@@ -120,19 +115,19 @@ void compare(const Tile& first, const Tile& tile, const RasterOptions& options) 
   }
 }
 
-// Where the tile lies, in whole samples from the first one's north-west sample.
+// Position of the tile, in whole samples from the first one's north-west sample.
 TileRect rect_of(const Tile& first, const Tile& tile) {
   const double col = (tile.map[0] - first.map[0]) / first.map[1], row = (tile.map[3] - first.map[3]) / first.map[5];
-  // Farther than that no raster reaches: its extents are ints.
+  // Rasters have int extents, so farther offsets are impossible.
   constexpr double kMost = std::numeric_limits<int>::max();
   if (!(std::abs(col) < kMost && std::abs(row) < kMost))
-    throw Error(fmt::format("is too far from '{}' for one raster: {:.3g} x {:.3g} samples", first.path, col, row));
+    throw Error(fmt::format("too far from '{}' for one raster: {:.3g} x {:.3g} samples", first.path, col, row));
   const double drift = std::max(std::abs(col - std::round(col)), std::abs(row - std::round(row)));
   if (drift > kLargestDriftInCells)
-    throw Error(
-        fmt::format("lies {:.3g} of a cell beside the samples of '{}', and nothing is resampled here; put both on one "
-                    "grid: gdalwarp -tr X Y -tap IN OUT.tif",
-                    drift, first.path));
+    throw Error(fmt::format(
+        "offset by {:.3g} of a cell from the samples of '{}', but tiles are not resampled (align the grids: "
+        "gdalwarp -tr X Y -tap IN OUT.tif)",
+        drift, first.path));
   return {std::llround(col), std::llround(row), tile.cols, tile.rows};
 }
 
@@ -151,12 +146,12 @@ std::optional<double> mark_of_holes(const Tile& tile, const RasterOptions& optio
   return value && !std::isnan(*value) && can_mark(tile, *value) ? value : std::nullopt;
 }
 
-// A type that holds all samples of `type` and NaN.
+// A type that represents all samples of `type` and NaN.
 GDALDataType type_with_nan(GDALDataType type) {
   return GDALDataTypeIsFloating(type) ? type : GDALGetDataTypeSizeBits(type) <= 16 ? GDT_Float32 : GDT_Float64;
 }
 
-// The elements that tell GDAL which part of which file goes where.
+// XML elements that map part of a file to part of the dataset.
 std::string source_xml(const Tile& tile, const TileRect& at, int band, std::string_view kind, const std::string& more) {
   return fmt::format(
       "<{0}><SourceFilename relativeToVRT=\"0\">{1}</SourceFilename><SourceBand>{2}</SourceBand><SourceProperties "
@@ -168,16 +163,16 @@ std::string source_xml(const Tile& tile, const TileRect& at, int band, std::stri
 
 GDALRasterBand& add_band(GDALDataset& dataset, GDALDataType type, const GdalSession& session) {
   if (dataset.AddBand(type, nullptr) != CE_None)
-    throw Error(fmt::format("cannot be put together: {}", session.reason("GDAL gives no reason")));
+    throw Error(fmt::format("cannot be combined: {}", session.reason("GDAL gives no reason")));
   return *dataset.GetRasterBand(dataset.GetRasterCount());
 }
 
 void add_source(GDALRasterBand& band, const std::string& xml, const GdalSession& session) {
   if (band.SetMetadataItem("source_0", xml.c_str(), "new_vrt_sources") != CE_None)
-    throw Error(fmt::format("cannot be put together: {}", session.reason("GDAL gives no reason")));
+    throw Error(fmt::format("cannot be combined: {}", session.reason("GDAL gives no reason")));
 }
 
-// The band of heights. Holes of a later tile let an earlier one through.
+// The band of heights. Holes of a later tile reveal an earlier one.
 void add_heights(GDALDataset& dataset, const std::vector<Tile>& tiles, const std::vector<TileRect>& places, bool gaps,
                  const RasterOptions& options, const GdalSession& session) {
   const Tile& first = tiles.front();
@@ -203,7 +198,7 @@ void add_heights(GDALDataset& dataset, const std::vector<Tile>& tiles, const std
   }
 }
 
-// Three bands of colours and, where the tiles have it or gaps need it, alpha.
+// Three bands of colours, and alpha if the tiles have it or gaps need it.
 void add_colours(GDALDataset& dataset, const std::vector<Tile>& tiles, const std::vector<TileRect>& places, bool gaps,
                  const GdalSession& session) {
   const bool alpha = tiles.front().bands == 4;
@@ -219,7 +214,7 @@ void add_colours(GDALDataset& dataset, const std::vector<Tile>& tiles, const std
   if (!alpha && !gaps) return;
   GDALRasterBand& band = add_band(dataset, GDT_Byte, session);
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    // Without alpha of its own a tile is opaque: any of its bands times 0 plus 255.
+    // A tile without alpha is opaque: any of its bands times 0 plus 255.
     add_source(band,
                source_xml(tiles[i], places[i], alpha ? 4 : 1, "ComplexSource",
                           alpha ? "<NODATA>0</NODATA>" : "<ScaleOffset>255</ScaleOffset><ScaleRatio>0</ScaleRatio>"),
@@ -240,7 +235,7 @@ std::vector<std::string> rasters_in(const std::string& folder, const RasterOptio
   const bool colours_are_heights = options.band != 0 || options.encoding != HeightEncoding::none;
   const CPLStringList entries(VSIReadDir(folder.c_str()));
   std::vector<std::string> found, others, pictures;
-  // Files that belong to a raster: overviews, masks, what a virtual raster is made of.
+  // Files that belong to a raster: overviews, masks, sources of a virtual raster.
   std::set<std::string> parts;
   for (int i = 0; i < entries.size(); ++i) {
     const std::string name = entries[i];
@@ -263,22 +258,20 @@ std::vector<std::string> rasters_in(const std::string& folder, const RasterOptio
     std::erase_if(files, [&](const std::string& path) { return parts.contains(path); });
     if (files.empty()) return;
     std::sort(files.begin(), files.end());
-    notes.push_back(fmt::format("left out as {}: {}{}", why, files.front(),
+    notes.push_back(fmt::format("skipped {}: {}{}", why, files.front(),
                                 files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1)));
   };
-  leave_out(others, "no rasters");
-  leave_out(pictures, "pictures without a place");
+  leave_out(others, "files that are not rasters");
+  leave_out(pictures, "pictures without a georeference");
   if (found.empty() && !pictures.empty()) {
     throw Error(fmt::format(
-        "raster '{}': is a folder of pictures without a place, as '{}'; say --encoding terrain-rgb or terrarium if "
-        "their colours encode heights",
+        "{}: folder of pictures without a georeference, such as '{}' (if their colours encode heights, use --encoding "
+        "terrain-rgb or terrarium)",
         folder, pictures.front()));
   }
   if (found.empty()) {
-    throw Error(
-        fmt::format("raster '{}': is a folder without a raster that GDAL {} can read; its subfolders are not "
-                    "searched",
-                    folder, GDALVersionInfo("RELEASE_NAME")));
+    throw Error(fmt::format("{}: folder without a raster that GDAL {} can read (subfolders are not searched)", folder,
+                            GDALVersionInfo("RELEASE_NAME")));
   }
   return found;
 }
@@ -293,7 +286,7 @@ TileSet open_tile_set(const std::vector<std::string>& files, const RasterOptions
       compare(tiles.front(), tiles.back(), options);
       places.push_back(rect_of(tiles.front(), tiles.back()));
     } catch (const Error& error) {
-      throw Error(fmt::format("raster '{}': {}", file, error.what()));
+      throw Error(fmt::format("{}: {}", file, error.what()));
     }
   }
   const TileRect all = bounding_rect(places);
@@ -302,9 +295,8 @@ TileSet open_tile_set(const std::vector<std::string>& files, const RasterOptions
     place.row -= all.row;
   }
   if (all.cols > std::numeric_limits<int>::max() || all.rows > std::numeric_limits<int>::max())
-    throw Error(
-        fmt::format("raster '{}': together with the others it makes {} x {} samples, more than a raster can have",
-                    files.front(), all.cols, all.rows));
+    throw Error(fmt::format("{}: with the other tiles the raster has {} x {} samples, more than supported",
+                            files.front(), all.cols, all.rows));
   const double samples = static_cast<double>(all.cols) * static_cast<double>(all.rows);
   const double gaps = samples - covered_samples(places);
 
@@ -312,7 +304,7 @@ TileSet open_tile_set(const std::vector<std::string>& files, const RasterOptions
   GDALDatasetUniquePtr dataset(
       driver ? driver->Create("", static_cast<int>(all.cols), static_cast<int>(all.rows), 0, GDT_Byte, nullptr)
              : nullptr);
-  if (!dataset) throw Error(fmt::format("tiles cannot be put together: {}", session.reason("this GDAL has no VRT")));
+  if (!dataset) throw Error(fmt::format("tiles cannot be combined: {}", session.reason("GDAL has no VRT driver")));
   const Tile& first = tiles.front();
   GeoTransform map = first.map;
   map[0] += static_cast<double>(all.col) * map[1];
@@ -324,10 +316,9 @@ TileSet open_tile_set(const std::vector<std::string>& files, const RasterOptions
   } else {
     add_colours(*dataset, tiles, places, gaps > 0, session);
   }
-  notes.push_back(fmt::format("{} tiles are one raster of {} x {} samples", tiles.size(), all.cols, all.rows));
+  notes.push_back(fmt::format("combined {} tiles into a raster of {} x {} samples", tiles.size(), all.cols, all.rows));
   if (gaps > 0)
-    notes.push_back(
-        fmt::format("the tiles leave gaps: {:.0f} samples ({:.3g} %) are holes", gaps, 100 * gaps / samples));
+    notes.push_back(fmt::format("gaps between tiles: {:.0f} samples ({:.3g} %) are holes", gaps, 100 * gaps / samples));
   return {std::move(dataset), first.type};
 }
 

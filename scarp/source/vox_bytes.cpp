@@ -13,7 +13,7 @@ namespace scarp {
 
 std::string_view VoxBytes::take(std::size_t count) {
   if (count > rest_.size())
-    throw Error(fmt::format("is cut off: {} bytes are needed, {} are left; {}", count, rest_.size(), kFetchAgain));
+    throw Error(fmt::format("truncated: {} bytes required, {} left ({})", count, rest_.size(), kFetchAgain));
   const std::string_view taken = rest_.substr(0, count);
   rest_.remove_prefix(count);
   return taken;
@@ -29,7 +29,7 @@ std::int32_t VoxBytes::number() {
 std::size_t VoxBytes::count(std::size_t least_bytes) {
   const auto count = static_cast<std::uint32_t>(number());
   if (count > rest_.size() / least_bytes)
-    throw Error(fmt::format("is cut off: {} entries need {} bytes at least, {} are left; {}", count,
+    throw Error(fmt::format("truncated: {} entries need at least {} bytes, {} left ({})", count,
                             std::uint64_t{count} * least_bytes, rest_.size(), kFetchAgain));
   return count;
 }
@@ -60,7 +60,7 @@ void put(std::string& out, std::int32_t number) {
 }
 
 void put_count(std::string& out, std::size_t count) {
-  if (count > std::numeric_limits<std::uint32_t>::max()) throw Error("vox: more than 2^32 entries cannot be written");
+  if (count > std::numeric_limits<std::uint32_t>::max()) throw Error("vox: cannot write more than 2^32 entries");
   put(out, static_cast<std::int32_t>(static_cast<std::uint32_t>(count)));
 }
 
@@ -154,15 +154,15 @@ std::string vox_bytes(const VoxFile& file) {
     put_chunk(chunks, "MATL", content);
   }
   for (const VoxChunk& chunk : file.others) {
-    if (chunk.name.size() != 4) throw Error("vox: the name of a chunk must have 4 bytes");
+    if (chunk.name.size() != 4) throw Error("vox: chunk names must have 4 bytes");
     put_chunk(chunks, chunk.name, chunk.content, chunk.children);
   }
   std::string out = "VOX ";
   put(out, file.version);
   put_chunk(out, "MAIN", {}, chunks);
-  // A document that cannot be read again is none.
+  // Rejects documents that cannot be read back.
   if (!(parse_vox(out) == file))
-    throw Error("vox: the document holds what its file would not; leave out what is not used");
+    throw Error("vox: the document contains data that the file cannot store (remove unused entries)");
   return out;
 }
 

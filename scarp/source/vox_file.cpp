@@ -21,7 +21,7 @@ VoxModel parse_size(VoxBytes& bytes) {
   for (int axis = 0; axis < 3; ++axis) model.size[axis] = bytes.number();
   for (int axis = 0; axis < 3; ++axis) {
     if (model.size[axis] < 1 || model.size[axis] > kMaxSide) {
-      throw Error(fmt::format("a model of {} x {} x {} voxels; each side must be 1 to {}", model.size.x, model.size.y,
+      throw Error(fmt::format("model of {} x {} x {} voxels (each side must be 1 to {})", model.size.x, model.size.y,
                               model.size.z, kMaxSide));
     }
   }
@@ -31,19 +31,18 @@ VoxModel parse_size(VoxBytes& bytes) {
 void parse_voxels(VoxBytes& bytes, VoxModel& model) {
   const auto count = static_cast<std::uint32_t>(bytes.number());
   if (bytes.left() != std::uint64_t{4} * count)
-    throw Error(fmt::format("{} voxels need {} bytes, there are {}", count, std::uint64_t{4} * count, bytes.left()));
+    throw Error(fmt::format("{} voxels need {} bytes instead of {}", count, std::uint64_t{4} * count, bytes.left()));
   model.voxels.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::string_view raw = bytes.take(4);
     const VoxVoxel voxel{static_cast<std::uint8_t>(raw[0]), static_cast<std::uint8_t>(raw[1]),
                          static_cast<std::uint8_t>(raw[2]), static_cast<std::uint8_t>(raw[3])};
     if (voxel.x >= model.size.x || voxel.y >= model.size.y || voxel.z >= model.size.z) {
-      throw Error(fmt::format("the voxel ({}, {}, {}) lies outside of the model's {} x {} x {}", voxel.x, voxel.y,
-                              voxel.z, model.size.x, model.size.y, model.size.z));
+      throw Error(fmt::format("voxel ({}, {}, {}) is outside the model of {} x {} x {}", voxel.x, voxel.y, voxel.z,
+                              model.size.x, model.size.y, model.size.z));
     }
     if (voxel.index == 0)
-      throw Error(
-          fmt::format("the voxel ({}, {}, {}) has palette index 0, which means empty", voxel.x, voxel.y, voxel.z));
+      throw Error(fmt::format("voxel ({}, {}, {}) has palette index 0, which means empty", voxel.x, voxel.y, voxel.z));
     model.voxels.push_back(voxel);
   }
 }
@@ -54,7 +53,7 @@ VoxTransform parse_transform(VoxBytes& bytes) {
   node.reserved = bytes.number();
   node.layer = bytes.number();
   const std::size_t count = bytes.count(4);
-  if (count == 0) throw Error("a transform without frames; one is needed");
+  if (count == 0) throw Error("transform without frames (at least one required)");
   node.frames.clear();
   for (std::size_t i = 0; i < count; ++i) node.frames.push_back(bytes.attributes());
   return node;
@@ -70,7 +69,7 @@ VoxGroup parse_group(VoxBytes& bytes) {
 VoxShape parse_shape(VoxBytes& bytes) {
   VoxShape node;
   const std::size_t count = bytes.count(8);
-  if (count == 0) throw Error("a shape without models; one is needed");
+  if (count == 0) throw Error("shape without models (at least one required)");
   node.models.clear();
   for (std::size_t i = 0; i < count; ++i) {
     const int model = bytes.number();
@@ -79,20 +78,20 @@ VoxShape parse_shape(VoxBytes& bytes) {
   return node;
 }
 
-// Reads the children of MAIN one after the other.
+// Parses the children of MAIN in order.
 class Parser {
  public:
   VoxFile file;
 
   void chunk(std::string_view name, VoxBytes& bytes) {
-    if (model_ && name != "XYZI") throw Error("a SIZE is not followed by its XYZI");
+    if (model_ && name != "XYZI") throw Error("SIZE without a following XYZI");
     if (name == "PACK") {
       file.pack = true;
       packed_ = bytes.number();
     } else if (name == "SIZE") {
       model_ = parse_size(bytes);
     } else if (name == "XYZI") {
-      if (!model_) throw Error("voxels without a SIZE before them");
+      if (!model_) throw Error("XYZI without a preceding SIZE");
       parse_voxels(bytes, *model_);
       file.models.push_back(std::move(*model_));
       model_.reset();
@@ -133,39 +132,40 @@ class Parser {
   bool known() { return std::exchange(known_, false); }
 
   void finish() const {
-    if (model_) throw Error("the last SIZE is not followed by its XYZI");
+    if (model_) throw Error("the last SIZE has no following XYZI");
     if (file.pack && packed_ != static_cast<std::int64_t>(file.models.size()))
-      throw Error(fmt::format("PACK says {} models, there are {}", packed_, file.models.size()));
+      throw Error(fmt::format("PACK states {} models instead of {}", packed_, file.models.size()));
     check_vox_scene(file);
   }
 
  private:
-  std::optional<VoxModel> model_;  // whose XYZI is to come
+  std::optional<VoxModel> model_;  // waiting for its XYZI
   int packed_ = 0;
   bool known_ = false;
 };
 
-// The version; the bytes up to the children of MAIN have been looked at.
+// Returns the version; checks the bytes up to the children of MAIN.
 int parse_header(std::string_view bytes, std::uint64_t file_bytes) {
-  if (bytes.empty()) throw Error("is empty (0 bytes); a MagicaVoxel file is needed");
+  if (bytes.empty()) throw Error("empty file (0 bytes)");
   refuse_lfs_pointer(bytes);
   if (bytes.substr(0, kMagic.size()) != kMagic) {
     std::string begin;
     for (const char byte : bytes.substr(0, kMagic.size()))
       begin += fmt::format("{}{:02x}", begin.empty() ? "" : " ", static_cast<unsigned char>(byte));
-    throw Error(fmt::format("is no MagicaVoxel file: it begins with the bytes {}, not with 'VOX '", begin));
+    throw Error(fmt::format("not a MagicaVoxel file: begins with the bytes {} instead of 'VOX '", begin));
   }
   if (bytes.size() < kHeaderBytes)
-    throw Error(fmt::format("is cut off: it has {} bytes, the header alone needs {}; {}", bytes.size(), kHeaderBytes,
+    throw Error(fmt::format("truncated: {} bytes, but the header alone needs {} ({})", bytes.size(), kHeaderBytes,
                             kFetchAgain));
   VoxBytes header(bytes.substr(kMagic.size()));
   const int version = header.number();
-  if (version != 150 && version != 200) throw Error(fmt::format("has version {}; 150 and 200 are read", version));
+  if (version != 150 && version != 200)
+    throw Error(fmt::format("unsupported version {} (supported: 150, 200)", version));
   if (header.take(4) != "MAIN") throw Error("does not begin with the chunk MAIN");
   const auto content = static_cast<std::uint32_t>(header.number()),
              children = static_cast<std::uint32_t>(header.number());
   if (std::uint64_t{content} + children > file_bytes - kHeaderBytes) {
-    throw Error(fmt::format("is cut off: its header says {} bytes, it has {}; {}",
+    throw Error(fmt::format("truncated: the header states {} bytes, but the file has {} ({})",
                             kHeaderBytes + std::uint64_t{content} + children, file_bytes, kFetchAgain));
   }
   return version;
@@ -179,12 +179,12 @@ const VoxPalette& vox_default_palette() {
   static const VoxPalette palette = [] {
     VoxPalette colours{};
     std::size_t count = 0;
-    // 255, 204, ..., 0 in red, green, blue; black, the last one, is none of them.
+    // 255, 204, ..., 0 in red, green, blue; black, the last one, is not included.
     for (int i = 0; i < 215; ++i, ++count) {
       const auto level = [](int step) { return static_cast<std::uint8_t>(255 - 51 * step); };
       colours[count] = {level(i / 36), level(i / 6 % 6), level(i % 6), 255};
     }
-    // Sixteenths of full light that are no fifths of it: ee dd bb aa 88 77 55 44 22 11.
+    // Sixteenths of full light that are not fifths: ee dd bb aa 88 77 55 44 22 11.
     for (int channels = 0; channels < 4; ++channels) {
       for (int level = 14; level > 0; --level) {
         if (level % 3 == 0) continue;
@@ -228,7 +228,7 @@ VoxFile parse_vox(std::string_view bytes) {
       if (!parser.known()) {
         parser.file.others.push_back({std::string(name), std::string(before), std::string(below)});
       } else if (chunk.left() > 0 || !below.empty()) {
-        throw Error(fmt::format("has {} bytes more than it needs", chunk.left() + below.size()));
+        throw Error(fmt::format("{} bytes too many", chunk.left() + below.size()));
       }
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", where, error.what()));
@@ -245,7 +245,7 @@ VoxFile read_vox(const std::string& path) {
       return true;
     }));
   } catch (const Error& error) {
-    throw Error(fmt::format("vox '{}': {}", path, error.what()));
+    throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
 

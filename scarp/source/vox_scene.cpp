@@ -22,17 +22,17 @@ int whole(std::string_view text, std::string_view what) {
   int value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
-    throw Error(fmt::format("{} is {}; a whole number is needed", what, printable(text)));
+    throw Error(fmt::format("{} is {} (expected an integer)", what, printable(text)));
   return value;
 }
 
 LatticeRotation turn_of(const VoxAttributes& frame) {
   const auto text = find_attribute(frame, "_r");
   if (!text) return {};
-  const int bits = whole(*text, "a rotation");
+  const int bits = whole(*text, "rotation");
   const int first = bits & 3, second = bits >> 2 & 3;
   if (bits < 0 || bits > 127 || first > 2 || second > 2 || first == second)
-    throw Error(fmt::format("a rotation is {}, which is none of the lattice's", bits));
+    throw Error(fmt::format("rotation {} is not a lattice rotation", bits));
   const auto sign = [&](int bit) { return bits >> bit & 1 ? -1 : 1; };
   return {{first, second, 3 - first - second}, {sign(4), sign(5), sign(6)}};
 }
@@ -45,10 +45,10 @@ ivec3 move_of(const VoxAttributes& frame) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::size_t end = axis < 2 ? rest.find(' ') : rest.size();
     if (end == std::string_view::npos)
-      throw Error(fmt::format("a translation is {}; 'x y z' is needed", printable(*text)));
-    move[axis] = whole(rest.substr(0, end), "a coordinate of a translation");
+      throw Error(fmt::format("translation is {} (expected 'x y z')", printable(*text)));
+    move[axis] = whole(rest.substr(0, end), "coordinate of a translation");
     if (std::abs(std::int64_t{move[axis]}) > kFarthest)
-      throw Error(fmt::format("a translation by {} voxels; {} is the most", move[axis], kFarthest));
+      throw Error(fmt::format("translation by {} voxels (limited to {})", move[axis], kFarthest));
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
   return move;
@@ -58,10 +58,10 @@ bool hidden(const VoxAttributes& attributes) { return find_attribute(attributes,
 
 int frame_of(const VoxAttributes& attributes) {
   const auto text = find_attribute(attributes, "_f");
-  return text ? whole(*text, "a frame") : 0;
+  return text ? whole(*text, "frame") : 0;
 }
 
-// The last of several that begins no later than the frame, or the first.
+// The last item that begins no later than the frame, or the first.
 template <class Items, class Attributes>
 const auto& at_frame(const Items& items, int frame, const Attributes& attributes) {
   const auto* found = &items.front();
@@ -76,7 +76,7 @@ using Nodes = std::unordered_map<int, const VoxNode*>;
 Nodes by_id(const VoxFile& file) {
   Nodes nodes;
   for (const VoxNode& node : file.nodes) {
-    if (!nodes.emplace(node.id, &node).second) throw Error(fmt::format("scene: two nodes have the number {}", node.id));
+    if (!nodes.emplace(node.id, &node).second) throw Error(fmt::format("scene: duplicate node {}", node.id));
   }
   return nodes;
 }
@@ -89,7 +89,7 @@ std::vector<int> children_of(const VoxNode& node) {
 
 void check_node(const VoxFile& file, const VoxNode& node, const Nodes& nodes) {
   for (const int child : children_of(node)) {
-    if (!nodes.contains(child)) throw Error(fmt::format("its child {} does not exist", child));
+    if (!nodes.contains(child)) throw Error(fmt::format("child {} does not exist", child));
   }
   if (const auto* transform = std::get_if<VoxTransform>(&node.content)) {
     for (const VoxAttributes& frame : transform->frames) turn_of(frame), move_of(frame), frame_of(frame);
@@ -98,7 +98,7 @@ void check_node(const VoxFile& file, const VoxNode& node, const Nodes& nodes) {
     for (const VoxModelUse& use : shape->models) {
       frame_of(use.attributes);
       if (use.model < 0 || static_cast<std::size_t>(use.model) >= file.models.size())
-        throw Error(fmt::format("its model {} does not exist; there are {}", use.model, file.models.size()));
+        throw Error(fmt::format("model {} does not exist (the file has {})", use.model, file.models.size()));
     }
   }
 }
@@ -107,7 +107,7 @@ void check_no_cycles(const VoxFile& file, const Nodes& nodes) {
   enum class State { open, done };
   std::unordered_map<int, State> states;
   for (const VoxNode& root : file.nodes) {
-    std::vector<std::pair<int, std::vector<int>>> path;  // nodes, each with the children that are still to be visited
+    std::vector<std::pair<int, std::vector<int>>> path;  // nodes, each with the children still to visit
     const auto enter = [&](int id) {
       states[id] = State::open;
       path.emplace_back(id, children_of(*nodes.at(id)));
@@ -164,10 +164,10 @@ std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOption
     VoxInstance place;
   };
   std::vector<Visit> stack{{file.nodes.front().id, {}}};
-  // Groups may be used several times over: what comes of that is counted.
+  // Groups may be used repeatedly: the total is limited.
   for (std::size_t visits = 0; !stack.empty(); ++visits) {
     if (visits >= 8 * kMostInstances || instances.size() >= kMostInstances)
-      throw Error(fmt::format("scene: more than {} models in one scene; that many are placed at most", kMostInstances));
+      throw Error(fmt::format("scene: more than {} model instances", kMostInstances));
     const Visit visit = stack.back();
     stack.pop_back();
     const VoxNode& node = *nodes.at(visit.node);
@@ -182,10 +182,10 @@ std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOption
       below.place.move += visit.place.turn(move_of(frame));
       const ivec3 away = glm::abs(below.place.move);
       if (std::max({away.x, away.y, away.z}) > kFarthest)
-        throw Error(fmt::format("scene: node {} lies more than {} voxels away", node.id, kFarthest));
+        throw Error(fmt::format("scene: node {} is more than {} voxels away", node.id, kFarthest));
       stack.push_back(below);
     } else if (const auto* group = std::get_if<VoxGroup>(&node.content)) {
-      if (group->children.size() > kMostInstances) throw Error("scene: a group of more than 2^20 nodes");
+      if (group->children.size() > kMostInstances) throw Error("scene: group of more than 2^20 nodes");
       for (auto child = group->children.rbegin(); child != group->children.rend(); ++child)
         stack.push_back({*child, visit.place});
     } else if (const auto* shape = std::get_if<VoxShape>(&node.content)) {

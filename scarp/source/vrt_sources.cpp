@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-// The file of a source, from the element that describes it; empty where there is none.
+// The file of a source, from the element that describes it; empty if there is none.
 std::string file_of(const CPLXMLTreeCloser& source, const std::string& vrt) {
   if (!source.get()) return {};
   const char* const name = CPLGetXMLValue(source.get(), "SourceFilename", nullptr);
@@ -32,13 +32,13 @@ void check_vrt_sources(GDALRasterBand& band) {
         file_of(CPLXMLTreeCloser(CPLParseXMLString(xml)), band.GetDataset() ? band.GetDataset()->GetDescription() : "");
     VSIStatBufL status;
     const bool exists = VSIStatExL(file.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
-    // Names such as NETCDF:"f.nc":var are no paths.
+    // Names such as NETCDF:"f.nc":var are not paths.
     if (!exists && !file.empty() && file.find_first_of(":<") == std::string::npos)
-      throw Error(fmt::format("its source '{}' does not exist; fetch it, or make the .vrt anew", file));
+      throw Error(fmt::format("source '{}' does not exist (fetch it, or rebuild the .vrt)", file));
     try {
       if (exists) check_file(file);
     } catch (const Error& error) {
-      throw Error(fmt::format("its source '{}' {}", file, error.what()));
+      throw Error(fmt::format("source '{}': {}", file, error.what()));
     }
   }
 }

@@ -13,7 +13,7 @@
 namespace scarp {
 namespace {
 
-// More than any header here.
+// Longer than any header here.
 constexpr std::uint64_t kFirstBytes = 64;
 
 }  // namespace
@@ -21,14 +21,14 @@ constexpr std::uint64_t kFirstBytes = 64;
 std::string whole_file(const std::string& path,
                        const std::function<bool(std::string_view first, std::uint64_t size)>& believe) {
   std::ifstream in(path, std::ios::binary | std::ios::ate);
-  if (!in) throw Error("cannot be opened; is the name right?");
+  if (!in) throw Error("cannot be opened");
   const std::streamoff length = in.tellg();
-  if (length < 0) throw Error("cannot be read; is it a file?");
+  if (length < 0) throw Error("cannot be read (is it a file?)");
   const auto size = static_cast<std::uint64_t>(length);
   in.seekg(0);
   std::string bytes(std::min(size, kFirstBytes), '\0');
   in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!in) throw Error("cannot be read; is it a file?");
+  if (!in) throw Error("cannot be read (is it a file?)");
   if (!believe(bytes, size)) return bytes;
   const std::size_t begin = bytes.size();
   bytes.resize(size);
@@ -46,7 +46,7 @@ void write_whole_file(const std::string& path, std::string_view bytes) {
   std::ofstream out(place.temporary_path(), std::ios::binary);
   out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   out.close();
-  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", path));
+  if (!out) throw Error(fmt::format("{}: cannot be written (is the disk full?)", path));
   place.commit();
 }
 

@@ -515,7 +515,7 @@ TEST_F(Cast, WrongOptionsAreRefused) {
   const std::string good = "x,y,z,dx,dy,dz\n15,15,500,0,0,-1\n";
   expect_refused({}, "--rays");
   expect_rays_refused(good, "--raster-crs", {"--crs", "EPSG:4326"});
-  expect_rays_refused(good, "give one", {"--crs", "lonlat"});
+  expect_rays_refused(good, "(specify one, or use map coordinates)", {"--crs", "lonlat"});
   expect_rays_refused(good, "bilinear or triangles", {"--surface", "spline"});
   expect_rays_refused(good, "none, periodic or shared", {"--wrap", "mirror"});
   expect_rays_refused(good, "not shared", {"--wrap", "shared"});

@@ -95,10 +95,10 @@ TEST_F(MeshOption, WhatIsWrongIsSaidInOneLine) {
   if (!has_device()) GTEST_SKIP() << "no Vulkan device";
   expect_refusal({"--mesh", roof_, "--mesh-at", "here"}, "--mesh-at 'here': expected X,Y or X,Y,Z");
   expect_refusal({"--mesh", roof_, "--mesh-at", "-500,0"}, "--mesh-at: there is no ground at -500,0");
-  expect_refusal({"--mesh", scratch_.path("none.obj")}, "none.obj': cannot be opened");
-  expect_refusal({"--mesh", scratch_.write("nan.obj", "v 0 nan 0\n")}, "line 1: 'v 0 nan 0': expected finite numbers");
-  expect_refusal({"--mesh", scratch_.write("far.obj", "v 0 0 0\nv 1 0 0\nf 1 2 5\n")}, "a face has corner 5");
-  expect_refusal({"--mesh", scratch_.write("empty.gltf", R"({"asset": {"version": "2.0"}})")}, "has no triangles");
+  expect_refusal({"--mesh", scratch_.path("none.obj")}, "none.obj: cannot be opened");
+  expect_refusal({"--mesh", scratch_.write("nan.obj", "v 0 nan 0\n")}, "line 1: 'v 0 nan 0' (expected finite numbers)");
+  expect_refusal({"--mesh", scratch_.write("far.obj", "v 0 0 0\nv 1 0 0\nf 1 2 5\n")}, "face refers to vertex 5");
+  expect_refusal({"--mesh", scratch_.write("empty.gltf", R"({"asset": {"version": "2.0"}})")}, "no triangles");
 }
 
 }  // namespace

@@ -83,12 +83,12 @@ TEST_F(CliVox, SaysInOneLineWhatIsWrong) {
   expect_refused({"render", model_, "-o", out, "--look", "pretty"}, "expected shaded, height, steps, error");
   expect_refused({"render", model_, model_, "-o", out}, "stands alone");
   expect_refused({"info", path("missing.vox")}, "cannot be opened");
-  expect_refused({"cast", model_, "--rays", "x.csv", "-o", path("hits.csv")}, "rays 'x.csv'");
+  expect_refused({"cast", model_, "--rays", "x.csv", "-o", path("hits.csv")}, "x.csv: cannot be opened");
   expect_refused({"render", model_, "-o", out, "--size", "320x240", "--legend"}, "do not depend on height");
   std::string bytes = test::text_of(model_);
   bytes.resize(bytes.size() / 2);
   scratch_.write("model.vox", bytes);
-  expect_refused({"render", model_, "-o", out}, "is cut off");
+  expect_refused({"render", model_, "-o", out}, "truncated");
   scratch_.write("model.vox", "\xff\xd8\xff\xe0, a picture");
   expect_refused({"render", model_, "-o", out}, "ff d8 ff e0");
 }
@@ -200,7 +200,7 @@ TEST_F(CliVox, TooLargeASceneIsNamed) {
   }
   file.nodes.push_back({2 * kLevels, {}, VoxTransform{2 * kLevels + 1}});
   file.nodes.push_back({2 * kLevels + 1, {}, VoxShape{}});
-  const std::string named = "voxels '" + model_ + "': scene: more than 1048576 models";
+  const std::string named = "voxels '" + model_ + "': scene: more than 1048576 model instances";
   write_vox(model_, file);
   expect_refused({"render", model_, "-o", path("out.png")}, named);
   expect_refused({"info", model_}, named);
@@ -224,7 +224,8 @@ TEST_F(CliVox, SaysInOneLineWhatDoesNotGo) {
   expect_refused({"info", path("dem.tif"), "--hidden"}, "applies to voxels only");
   expect_refused({"voxelise", path("dem.tif"), "-o", path("out.vox"), "--up", "y"}, "applies to voxels only");
   expect_refused({"voxelise", model_, "-o", path("out.obj")}, ".binvox");
-  expect_refused({"voxelise", model_, "-o", path("out.vox"), "--within", "50,50,50,60,60,60"}, "nothing to make");
+  expect_refused({"voxelise", model_, "-o", path("out.vox"), "--within", "50,50,50,60,60,60"},
+                 "nothing in the box to make voxels of");
   expect_refused({"section", model_, "-o", path("out.png")}, ".svg");
   expect_refused({"section", model_, "-o", path("out.svg"), "--at", "7"}, "layers 0 to 0 along z");
 }

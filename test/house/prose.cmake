@@ -6,7 +6,7 @@ cmake_minimum_required(VERSION 3.25)
 
 set(documents README.md CHANGELOG.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md)
 # folders whose *.h are checked, subfolders included, for example scarp/vk
-set(header_folders scarp/accel scarp/base scarp/field scarp/march/shape scarp/march/voxel scarp/output scarp/vk)
+set(header_folders scarp/accel scarp/base scarp/field scarp/march/shape scarp/march/voxel scarp/output scarp/source scarp/vk)
 # single headers, beside those of the folders
 set(headers scarp/scarp.h scarp/scene/cast.h scarp/scene/combine.h scarp/scene/file/scene_file.h scarp/scene/placement.h scarp/scene/scene.h
     scarp/scene/scene_vk.h scarp/scene/terrain.h scarp/scene/voxels.h)

@@ -39,17 +39,17 @@ TEST(Binvox, SaysWhatIsWrong) {
     EXPECT_NE(message.find(fragment), std::string::npos) << message;
     EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   };
-  refused("\xff\xd8\xff\xe0 JFIF", "it is no binvox file");
-  refused("#binvox 7\n", "only version 1 is known");
+  refused("\xff\xd8\xff\xe0 JFIF", "not a binvox file");
+  refused("#binvox 7\n", "expected '#binvox 1'");
   refused(header("2 2"), "DEPTH HEIGHT WIDTH");
   refused(header("2 2 4096"), "sides must be 1 to 2048");
   refused(header("99999999999999999999 2 2"), "DEPTH HEIGHT WIDTH");
-  refused("#binvox 1\nscale 1\ndata\n", "does not say 'dim");
-  refused("#binvox 1\ndim 2 2 2\n", "cut off");
-  refused(header("2048 2048 2048") + "\1\377", "its runs are 255 voxels");
-  refused(header("2 2 2") + "\1\11", "its runs are 9 voxels");
+  refused("#binvox 1\nscale 1\ndata\n", "no line 'dim");
+  refused("#binvox 1\ndim 2 2 2\n", "truncated");
+  refused(header("2048 2048 2048") + "\1\377", "runs contain 255 voxels");
+  refused(header("2 2 2") + "\1\11", "runs contain 9 voxels");
   refused(header("2 2 2") + std::string("\1\0", 2), "expected 1 to 255 of 0 or 1");
-  refused(header("2 2 2") + "\1\10\1\1", "its runs are 9 voxels");
+  refused(header("2 2 2") + "\1\10\1\1", "runs contain 9 voxels");
   refused(header("2 2 2") + "\1\10\1", "ends within a run");
   refused(header("2 2 2") + "\7\10", "expected 1 to 255 of 0 or 1");
 }
@@ -76,8 +76,8 @@ TEST(DenseVolume, SaysWhatIsWrong) {
   const auto with = [](std::size_t bytes) {
     return refusal([&] { DenseVolume(parse_volume_format("2x2x2:u8"), std::string(bytes, 'x')); });
   };
-  EXPECT_NE(with(7).find("has 7 bytes; 2 x 2 x 2 samples of 1 bytes need 8"), std::string::npos) << with(7);
-  EXPECT_NE(with(9).find("has 9 bytes"), std::string::npos) << with(9);
+  EXPECT_NE(with(7).find("7 bytes, but 2 x 2 x 2 samples of 1 bytes need 8"), std::string::npos) << with(7);
+  EXPECT_NE(with(9).find("9 bytes, but"), std::string::npos) << with(9);
   EXPECT_EQ(with(8), "");
 }
 

@@ -43,7 +43,7 @@ class DamagedFiles : public Files {
 TEST_F(DamagedFiles, AMissingFileIsNamed) { expect_says(read_error(path("none.tif")), "does not exist"); }
 TEST_F(DamagedFiles, AnEmptyNameIsRefused) { expect_says(read_error(""), "empty"); }
 TEST_F(DamagedFiles, ADirectoryIsNamed) {
-  expect_says(read_error(folder_.string()), "is a folder without a raster");
+  expect_says(read_error(folder_.string()), "folder without a raster");
   std::filesystem::create_directory(path("d.npy"));
   expect_says(read_error(path("d.npy")), "is a directory");
 }
@@ -57,8 +57,8 @@ TEST_F(DamagedFiles, AGitLfsPointerIsNamed) {
     expect_says(read_error(write_bytes(name, pointer)), "git lfs pull", fmt::format("{}", name));
 }
 TEST_F(DamagedFiles, AnythingElseIsNoRaster) {
-  expect_says(read_error(write_bytes("t.tif", "hello")), "is no raster");
-  expect_says(read_error(write_bytes("t.tif", std::string(5000, '\0'))), "is no raster");
+  expect_says(read_error(write_bytes("t.tif", "hello")), "not a raster format");
+  expect_says(read_error(write_bytes("t.tif", std::string(5000, '\0'))), "not a raster format");
   expect_says(read_error(write_bytes("N00E010.hgt", std::string(5000, '\1'))), ".hgt");
 }
 
@@ -98,7 +98,7 @@ TEST_F(DamagedFiles, ANetcdfOfVersion4ThatIsCutOffIsCalledSo) {
   if (file.empty()) GTEST_SKIP() << "this GDAL has no netCDF";
   const auto bytes = std::filesystem::file_size(file);
   cut(file, 0.5);
-  const std::string needed = fmt::format("is cut off: its header needs {} bytes, it has {}", bytes, bytes / 2);
+  const std::string needed = fmt::format("truncated: {} bytes instead of {} as its header states", bytes / 2, bytes);
   for (const std::string& name : {file, "NETCDF:\"" + file + "\":Band1", "NETCDF:" + file + ":Band1"}) {
     const std::string text = read_error(name);
     expect_says(text, needed);
@@ -111,9 +111,9 @@ TEST_F(DamagedFiles, AnArchiveThatIsCutOffIsCalledSo) {
   const std::string whole = write_zip("a.zip", {{"dem/slope.tif", tiff}, {"b", "1"}, {"c", "2"}, {"d", "3"}});
   EXPECT_NO_THROW(read_raster("/vsizip/" + whole + "/dem/slope.tif", {}));
   // Sound, but not named to its end, or wrongly: what is in it is told.
-  expect_says(read_error(whole), "is a .zip archive; name a raster in it: /vsizip/" + whole + "/dem/slope.tif, ");
+  expect_says(read_error(whole), "is a .zip archive (name a raster in it: /vsizip/" + whole + "/dem/slope.tif, ");
   expect_says(read_error(whole), "/c or 1 more");
-  expect_says(read_error("/vsizip/" + whole + "/slope.tif"), "does not exist in '" + whole + "'; name a raster in it");
+  expect_says(read_error("/vsizip/" + whole + "/slope.tif"), "does not exist in '" + whole + "' (name a raster in it");
   std::filesystem::copy(whole, path("a.archive"));
   const std::string braces = "/vsizip/{" + path("a.archive") + "}/dem/slope.tif";
   expect_says(read_error(path("a.archive")), "name a raster in it: " + braces);
@@ -123,7 +123,7 @@ TEST_F(DamagedFiles, AnArchiveThatIsCutOffIsCalledSo) {
     for (const std::string& name :
          {file, "/vsizip/" + file + "/dem/slope.tif", "/vsizip/{" + file + "}/dem/slope.tif"}) {
       const std::string text = read_error(name);
-      expect_says(text, "is cut off");
+      expect_says(text, "truncated");
       expect_advice(text);
     }
   }
@@ -141,11 +141,10 @@ TEST_F(DamagedFiles, TheSourceOfAVirtualRasterIsNamed) {
   EXPECT_NO_THROW(read_raster(vrt_of("two.tif", 1), {}));
   for (const int relative : {0, 1}) {
     const auto named = [&](const std::string& name) { return relative ? name : path(name); };
-    expect_says(read_error(vrt_of(named("none.tif"), relative)),
-                "its source '" + path("none.tif") + "' does not exist");
+    expect_says(read_error(vrt_of(named("none.tif"), relative)), "source '" + path("none.tif") + "' does not exist");
     write_bytes("p.tif", "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 12345\n");
     const std::string text = read_error(vrt_of(named("p.tif"), relative));
-    expect_says(text, "its source '" + path("p.tif") + "' is a Git LFS pointer");
+    expect_says(text, "source '" + path("p.tif") + "': Git LFS pointer");
     expect_says(text, "git lfs pull");
   }
 }
@@ -183,11 +182,12 @@ TEST_F(DamagedFiles, APhotographIsRefusedWithARemedy) {
   options.band = 2;
   EXPECT_EQ((std::vector<double>{1, 2, 3, 4}), doubles(read_raster(file, options)));
   options.band = 4;
-  expect_says(read_error(file, options), "band 4 does not exist");
+  expect_says(read_error(file, options), "no band 4: the file has");
 }
 
 TEST_F(DamagedFiles, SeveralBandsNeedAChoice) {
-  expect_says(read_error(write_tiff("two.tif", GDT_Int16, 2, 2, {1, 2, 3, 4}, {}, 2)), "choose one with --band 1..2");
+  expect_says(read_error(write_tiff("two.tif", GDT_Int16, 2, 2, {1, 2, 3, 4}, {}, 2)),
+              "with 2 bands (choose the band of heights with --band 1..2)");
 }
 
 TEST_F(DamagedFiles, APaletteIsRefused) {

@@ -204,7 +204,7 @@ TEST_F(HeightRanges, WhatHasNoRangeIsRefused) {
   expect_says(read_error(file, range(0, INFINITY)), "LOW < HIGH");
   RasterOptions twice = range(0, 1);
   twice.scale = 2;
-  expect_says(read_error(file, twice), "twice");
+  expect_says(read_error(file, twice), "cannot be combined");
   RasterOptions encoded = range(0, 1);
   encoded.encoding = HeightEncoding::terrarium;
   expect_says(read_error(write_image("a.png", 1, 1, {{1, 2, 3, 0}}, false), encoded), "--encoding");

@@ -132,7 +132,7 @@ TEST_F(ExrRaster, TheChannelIsTheOnlyOneElseYElseRElseAsked) {
   options.channel = "b";
   EXPECT_EQ(kDoubles, doubles(read_raster(file, options)));
   options.channel = "Y";
-  expect_says(read_error(file, options), "no channel 'Y'; --channel takes one of: a, b");
+  expect_says(read_error(file, options), "no channel 'Y' (choose one with --channel: a, b)");
 }
 
 TEST_F(ExrRaster, ARangeOfHeightsIsMapped) {
@@ -187,15 +187,15 @@ TEST_F(ExrRaster, ASubsampledChannelIsRefused) {
     file.setFrameBuffer(frame);
     file.writePixels(4);
   }
-  expect_says(read_error(path("s.exr")), "not a sample for every pixel");
+  expect_says(read_error(path("s.exr")), "without a sample for every pixel");
 }
 
 TEST_F(ExrRaster, WhatIsNoImageIsRefused) {
   expect_says(read_error(path("none.exr")), "does not exist");
   expect_says(read_error(write_bytes("e.exr", "")), "0 bytes");
-  expect_says(read_error(write_bytes("t.exr", "hello, this is text")), "is no EXR image");
+  expect_says(read_error(write_bytes("t.exr", "hello, this is text")), "not an EXR image");
   std::filesystem::create_directory(path("d.exr"));
-  expect_says(read_error(path("d.exr")), "is a folder without");
+  expect_says(read_error(path("d.exr")), "folder without");
   RasterOptions options;
   options.encoding = HeightEncoding::terrarium;
   expect_says(read_error(write_exr("a.exr", {"Y"}, Imf::FLOAT, 3, 2, kValues), options), "--encoding");

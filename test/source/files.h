@@ -111,7 +111,7 @@ inline std::string error_of(const std::function<void()>& f) {
 
 inline std::string read_error(const std::string& path, const RasterOptions& options = {}) {
   const std::string text = error_of([&] { read_raster(path, options); });
-  EXPECT_NE(std::string::npos, text.find("raster '" + path + "'")) << text;
+  EXPECT_NE(std::string::npos, text.find(path + ": ")) << text;
   return text;
 }
 

@@ -53,11 +53,11 @@ TEST_F(GdalRaster, ReadsSignedBytesWithTheirSign) {
 TEST_F(GdalRaster, NarrowsWideTypesAndNamesTheRounding) {
   const Raster whole = read_raster(write_tiff("a.tif", GDT_Int32, 2, 1, {16777216, -5}), {});
   EXPECT_TRUE(holds<float>(whole));
-  EXPECT_TRUE(has_note(whole, "none was rounded"));
+  EXPECT_TRUE(has_note(whole, "without rounding"));
   const Raster rounded = read_raster(write_tiff("b.tif", GDT_UInt32, 2, 1, {16777217, 5}), {});
-  EXPECT_TRUE(has_note(rounded, "rounded by 1 at most"));
+  EXPECT_TRUE(has_note(rounded, "rounded by at most 1"));
   EXPECT_TRUE(has_note(read_raster(write_tiff("c.tif", GDT_Float64, 2, 1, {0.1, 5}), {}),
-                       "Float64 samples became float32, rounded by 1.49e-09"));
+                       "Float64 samples converted to float32, rounded by at most 1.49e-09"));
 }
 
 TEST_F(GdalRaster, RefusesComplexSamples) {
@@ -154,7 +154,7 @@ class SuspectedNodata : public GdalRaster {
                       [&](GDALDataset& d) { d.GetRasterBand(1)->SetScale(scale); });
   }
   static void expect_advice_that_works(const std::string& file, const std::string& what) {
-    const std::string before = ", which often marks holes: say --nodata=";
+    const std::string before = ", which often marks holes (if so, add --nodata=";
     for (const std::string& note : read_raster(file, {}).notes) {
       const std::size_t at = note.find(before);
       if (at == std::string::npos) continue;
@@ -302,19 +302,19 @@ TEST_F(GdalRaster, FeetBecomeMetres) {
   const auto unit = [](const char* name) { return [name](GDALDataset& d) { d.GetRasterBand(1)->SetUnitType(name); }; };
   const Raster feet = read_raster(write_tiff("a.tif", GDT_Int16, 2, 1, {1, 2}, unit("ft")), {});
   EXPECT_DOUBLE_EQ(0.3048, feet.scale);
-  EXPECT_TRUE(has_note(feet, "become metres"));
+  EXPECT_TRUE(has_note(feet, "to metres"));
   EXPECT_DOUBLE_EQ(1200.0 / 3937,
                    read_raster(write_tiff("b.tif", GDT_Int16, 2, 1, {1, 2}, unit("US survey foot")), {}).scale);
   const Raster odd = read_raster(write_tiff("c.tif", GDT_Int16, 2, 1, {1, 2}, unit("furlong")), {});
   EXPECT_EQ(1, odd.scale);
   EXPECT_TRUE(has_note(odd, "furlong"));
   EXPECT_TRUE(has_note(read_raster(write_tiff("d.tif", GDT_Int16, 2, 1, {1, 2}, unit("1/3 ft")), {}),
-                       "the vertical unit '1/3 ft' is no length known here: metres are assumed"));
+                       "unknown vertical unit '1/3 ft', assuming metres"));
   RasterOptions options;
   options.unit = "ft";
   EXPECT_DOUBLE_EQ(0.3048, read_raster(path("c.tif"), options).scale);
   options.unit = "furlong";
-  expect_says(read_error(path("c.tif"), options), "'furlong' is not known");
+  expect_says(read_error(path("c.tif"), options), "unknown vertical unit 'furlong'");
 }
 
 TEST_F(GdalRaster, AWindowIsAPartOfTheFile) {
@@ -327,7 +327,7 @@ TEST_F(GdalRaster, AWindowIsAPartOfTheFile) {
   for (const RasterWindow bad :
        {RasterWindow{-1, 0, 2, 1}, {2, 0, 2, 1}, {0, 0, 0, 1}, {0, 0, 3, 3}, {1, 0, 2147483647, 1}}) {
     options.window = bad;
-    expect_says(read_error(file, options), "does not lie in its 3 x 2 samples");
+    expect_says(read_error(file, options), "is not inside the 3 x 2 samples");
   }
 }
 

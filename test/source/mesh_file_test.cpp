@@ -37,7 +37,7 @@ class MeshFiles : public testing::Test {
     try {
       read_mesh(path);
     } catch (const Error& error) {
-      const std::string text = error.what(), head = "mesh '" + path + "': ";
+      const std::string text = error.what(), head = path + ": ";
       EXPECT_EQ(text.find('\n'), std::string::npos) << text;
       return text.starts_with(head) ? text.substr(head.size()) : "other: " + text;
     }
@@ -95,19 +95,19 @@ TEST_F(MeshFiles, ObjHasNormalsMaterialsAndIndicesFromTheEnd) {
 
 TEST_F(MeshFiles, BadObjIsRefused) {
   EXPECT_EQ(refusal("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n"),
-            "line 2: 'v nan 0 0': expected finite numbers");
-  EXPECT_EQ(refusal("huge.obj", "v 0 0 1e999\n"), "line 1: 'v 0 0 1e999': expected finite numbers");
-  EXPECT_EQ(refusal("word.obj", "v 0 zero 0\n"), "line 1: 'v 0 zero 0': expected finite numbers");
-  EXPECT_EQ(refusal("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), "a face has corner 9, there are 3");
-  EXPECT_EQ(refusal("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "has no triangles");
-  EXPECT_EQ(refusal("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "has no triangles");
-  EXPECT_EQ(refusal("empty.obj", ""), "has no triangles");
+            "line 2: 'v nan 0 0' (expected finite numbers)");
+  EXPECT_EQ(refusal("huge.obj", "v 0 0 1e999\n"), "line 1: 'v 0 0 1e999' (expected finite numbers)");
+  EXPECT_EQ(refusal("word.obj", "v 0 zero 0\n"), "line 1: 'v 0 zero 0' (expected finite numbers)");
+  EXPECT_EQ(refusal("far.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n"), "face refers to vertex 9 of 3");
+  EXPECT_EQ(refusal("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n"), "no triangles");
+  EXPECT_EQ(refusal("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "no triangles");
+  EXPECT_EQ(refusal("empty.obj", ""), "no triangles");
   for (const char* name : {"pointer.obj", "pointer.gltf", "pointer.glb"}) {
     EXPECT_EQ(refusal(name, "version https://git-lfs.github.com/spec/v1\n"),
-              "is a Git LFS pointer, not the file itself; fetch it with: git lfs pull");
+              "Git LFS pointer instead of the file (fetch it with: git lfs pull)");
   }
   EXPECT_NE(refusal("zero.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 0 1 2\n"), "read");
-  EXPECT_EQ(refusal("model.stl", ""), "is not known by its name; meshes end in .obj, .gltf or .glb");
+  EXPECT_EQ(refusal("model.stl", ""), "unknown mesh format (the name must end in .obj, .gltf or .glb)");
   EXPECT_THROW(read_mesh((folder_ / "none.obj").string()), Error);
   EXPECT_THROW(read_mesh((folder_ / "none.glb").string()), Error);
 }
@@ -156,24 +156,24 @@ TEST_F(MeshFiles, BadGltfIsRefused) {
   };
   EXPECT_EQ(with([](json&) {}), "read");
   EXPECT_EQ(with([](json& d) { d["accessors"][0]["count"] = 4; }), "accessor 0 reaches beyond its buffer");
-  EXPECT_EQ(with([](json& d) { d["accessors"][0]["count"] = 2; }), "a triangle has corner 2, there are 2");
-  EXPECT_EQ(with([](json& d) { d["nodes"][0]["mesh"] = 7; }), "points to mesh 7, there are 1");
-  EXPECT_EQ(with([](json& d) { d["nodes"][0]["children"] = {0}; }), "its nodes are no tree");
+  EXPECT_EQ(with([](json& d) { d["accessors"][0]["count"] = 2; }), "triangle refers to vertex 2 of 2");
+  EXPECT_EQ(with([](json& d) { d["nodes"][0]["mesh"] = 7; }), "refers to mesh 7 of 1");
+  EXPECT_EQ(with([](json& d) { d["nodes"][0]["children"] = {0}; }), "nodes do not form a tree");
   EXPECT_EQ(with([](json& d) { d["meshes"][0]["primitives"][0]["mode"] = 1; }),
-            "has no triangles (mesh '" + (folder_ / "bad.gltf").string() + "': its points and lines are left out)");
-  EXPECT_EQ(with([](json& d) { d["meshes"][0]["primitives"][0]["attributes"] = json::object(); }), "has no triangles");
+            "no triangles (" + (folder_ / "bad.gltf").string() + ": ignored points and lines)");
+  EXPECT_EQ(with([](json& d) { d["meshes"][0]["primitives"][0]["attributes"] = json::object(); }), "no triangles");
   EXPECT_EQ(with([](json& d) { d["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }),
-            "needs the extension KHR_draco_mesh_compression, which is not read");
+            "requires the extension KHR_draco_mesh_compression, which is not supported");
   EXPECT_NE(with([](json& d) { d["buffers"][0]["uri"] = "gone.bin"; }), "read");
   // Textures alone.
   EXPECT_EQ(refusal("empty.gltf",
                     R"({"asset": {"version": "2.0"}, "images": [{"uri": "x.png"}], "textures": [{"source": 0}]})"),
-            "has no triangles");
+            "no triangles");
   EXPECT_NE(refusal("text.gltf", "not glTF"), "read");
   EXPECT_NE(refusal("short.glb", "glTF"), "read");
   EXPECT_NE(refusal("empty.glb", ""), "read");
   write("corners.bin", bytes_of({0, 0, 0, 1, NAN, 0, 0, 1, 0}, {0, 1, 2, 0}));
-  EXPECT_EQ(with([](json&) {}), "corner 1 is at no finite numbers");
+  EXPECT_EQ(with([](json&) {}), "vertex 1 is not finite");
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ TEST_F(RasterPlaceTest, PixelIsPointIsNotShiftedTwice) {
 
 TEST_F(RasterPlaceTest, HeightsOnAMapInFeetAreAskedFor) {
   const auto map = [](const char* crs) { return placed({6000000, 30, 0, 2000000, 0, -30}, crs); };
-  const std::string note = "map units are feet; heights are taken as metres; say --unit ";
+  const std::string note = "map units are feet, but heights are assumed to be metres (override with --unit ";
   EXPECT_TRUE(has_note(read(map("EPSG:2227")), note + "us-ft"));
   EXPECT_TRUE(has_note(read(placed({700000, 30, 0, 1000000, 0, -30}, "EPSG:2222")), note + "ft"));
   // Whoever says what heights are is not asked: the caller, the band, the vertical CRS, a map in metres.
@@ -116,7 +116,7 @@ TEST_F(RasterPlaceTest, DegreesLieOnAPlane) {
 TEST_F(RasterPlaceTest, LongitudesBeyondTheEarthAreAnotherCrs) {
   EXPECT_NO_THROW(read(placed({360, 1, 0, 40, 0, -1}, "EPSG:4326")));
   for (const double west : {500000.0, 541.0, -541.0}) {
-    expect_says(error(placed({west, 0.01, 0, 40, 0, -0.01}, "EPSG:4326")), "longitudes go from");
+    expect_says(error(placed({west, 0.01, 0, 40, 0, -0.01}, "EPSG:4326")), "longitudes span");
   }
 }
 
@@ -152,7 +152,7 @@ TEST_F(RasterPlaceTest, WithoutCrsMapUnitsAreMetres) {
   const Raster raster = read(placed({1000, 30, 0, 2000, 0, -30}));
   EXPECT_TRUE(raster.georeference.present);
   EXPECT_EQ(30, raster.georeference.cell_x_m);
-  EXPECT_TRUE(has_note(raster, "taken as metres"));
+  EXPECT_TRUE(has_note(raster, "assuming map units of metres"));
   EXPECT_TRUE(has_note(read(placed({10, 0.001, 0, 45, 0, -0.001})), "EPSG:4326"));
 }
 
@@ -167,15 +167,15 @@ TEST_F(RasterPlaceTest, CrsAndBoundsOfTheCallerWin) {
 TEST_F(RasterPlaceTest, WrongCrsAndBoundsAreRefused) {
   RasterOptions options;
   options.crs = "EPSG:999999";
-  expect_says(error({}, options), "'EPSG:999999' is not known");
+  expect_says(error({}, options), "unknown coordinate reference system 'EPSG:999999'");
   options.crs = "EPSG:4326";
   expect_says(error({}, options), "--bounds");
   expect_says(error(placed({500000, 30, 0, 5000000, 0, -30}), options), "longitudes");
   expect_says(error(placed({50, 30, 0, 5000000, 0, -30}), options), "latitude");
   options.bounds = {10, 45, 9, 46};
-  expect_says(error({}, options), "west < east");
+  expect_says(error({}, options), "W < E");
   options.bounds = {10, 46, 11, 45};
-  expect_says(error({}, options), "south < north");
+  expect_says(error({}, options), "S < N");
   options.bounds = {10, std::nan(""), 11, 45};
   expect_says(error({}, options), "--bounds W,S,E,N");
 }

@@ -56,21 +56,21 @@ TEST_F(RawRaster, AHeaderIsSkippedAndWhatFollowsIsSaid) {
   EXPECT_EQ(kHeights, doubles(read_raster(write_bytes("a.raw", "12345" + samples), as("3x2:i16le+5"))));
   const Raster raster = read_raster(write_bytes("a.raw", "12345" + samples + "678"), as("3x2:i16le+5"));
   EXPECT_EQ(kHeights, doubles(raster));
-  EXPECT_TRUE(has_note(raster, "3 bytes behind the samples"));
+  EXPECT_TRUE(has_note(raster, "ignored 3 bytes after the samples"));
 }
 
 TEST_F(RawRaster, TheLengthMustBeThatOfTheSamples) {
   const std::string samples = sample_bytes<std::int16_t>(kHeights);
   const std::string file = write_bytes("a.raw", samples);
   const std::string shorter = read_error(file, as("3x3:i16le"));
-  expect_says(shorter, "has 12 bytes, --raw 3x3:i16le needs 18");
-  expect_says(shorter, "cut off");
+  expect_says(shorter, "12 bytes, but --raw 3x3:i16le needs 18");
+  expect_says(shorter, "truncated");
   const std::string longer = read_error(file, as("3x1:i16le"));
   expect_says(longer, "needs 6");
   expect_says(longer, "+0");
   expect_says(read_error(file, as("3x2:i16le+1")), "needs 13");
-  expect_says(read_error(file, as("2147483647x2147483647:u8")), "cut off");
-  expect_says(read_error(file, as("3x2:i16le+4611686018427387904")), "cut off");
+  expect_says(read_error(file, as("2147483647x2147483647:u8")), "truncated");
+  expect_says(read_error(file, as("3x2:i16le+4611686018427387904")), "truncated");
 }
 
 TEST_F(RawRaster, WhatIsNoFileIsNamed) {
@@ -97,7 +97,7 @@ TEST_F(RawRaster, OptionsOfOtherFilesAreRefused) {
   expect_says(read_error(file, options), "--key");
   options = as("3x2:i16le");
   options.band = 2;
-  expect_says(read_error(file, options), "band 2 does not exist");
+  expect_says(read_error(file, options), "no band 2: the file has");
 }
 
 TEST_F(RawRaster, NodataWindowAndBoundsApply) {

@@ -108,11 +108,11 @@ TEST(RayCsv, AHeaderAloneIsATableWithoutRays) { EXPECT_TRUE(parse_ray_csv(kHeade
 TEST(RayCsv, MessagesNameLineAndRay) {
   std::string six_rays = kHeader;
   for (int i = 0; i < 6; ++i) six_rays += "1,2,3,0,0,-1\n";
-  expect_csv_refused(six_rays + "1,2,3,0,-1\n", "line 8 (ray 6): 5 fields, the header has 6");
-  expect_csv_refused(six_rays + "1,2,3,0,0,-1,9\n", "line 8 (ray 6): 7 fields, the header has 6");
+  expect_csv_refused(six_rays + "1,2,3,0,-1\n", "line 8 (ray 6): 5 fields instead of 6");
+  expect_csv_refused(six_rays + "1,2,3,0,0,-1,9\n", "line 8 (ray 6): 7 fields instead of 6");
   RayTable table = parse_ray_csv(six_rays);
   table.path = "a.csv";
-  EXPECT_EQ(table.where(5), "rays 'a.csv': line 7 (ray 5)");
+  EXPECT_EQ(table.where(5), "a.csv: line 7 (ray 5)");
 }
 
 TEST(RayCsv, BadRowsAreRefused) {
@@ -128,7 +128,7 @@ TEST(RayCsv, BadRowsAreRefused) {
   expect_csv_refused(row("1,2,3,0,nan,-1"), "direction is not finite");
   expect_csv_refused(row("1,2,3,0,0,0"), "direction is zero");
   expect_csv_refused(row("1,2,3,0,-0,0"), "direction is zero");
-  expect_csv_refused("x,y,z,tx,ty,tz\n1,2,3,1,2,3\n", "target is its origin");
+  expect_csv_refused("x,y,z,tx,ty,tz\n1,2,3,1,2,3\n", "target equals the origin");
   expect_csv_refused("x,y,z,tx,ty,tz\n1,2,3,1,2,inf\n", "target is not finite");
   expect_csv_refused("x,y,z,dx,dy,dz,t_min,t_max\n1,2,3,0,0,1,5,4\n", "range is 5 to 4");
   expect_csv_refused("x,y,z,dx,dy,dz,t_min\n1,2,3,0,0,1,inf\n", "t_min must be finite");
@@ -140,23 +140,23 @@ TEST(RayCsv, BadRowsAreRefused) {
 }
 
 TEST(RayCsv, BadHeadersAreRefused) {
-  expect_csv_refused("", "is empty");
-  expect_csv_refused("\xEF\xBB\xBF", "is empty");
-  expect_csv_refused("\n \r\n", "is empty");
-  expect_csv_refused("1,2,3,0,0,-1\n", "no header but numbers");
+  expect_csv_refused("", "empty file");
+  expect_csv_refused("\xEF\xBB\xBF", "empty file");
+  expect_csv_refused("\n \r\n", "empty file");
+  expect_csv_refused("1,2,3,0,0,-1\n", "numbers instead of a header");
   expect_csv_refused("x,y,dx,dy,dz\n", "no column 'z'");
   expect_csv_refused("x,y,z\n", "no column 'dx'");
   expect_csv_refused("x,y,z,tx,tz\n", "no column 'ty'");
   expect_csv_refused("lon,lat,z,dx,dy,dz\n", "no column 'x'");
-  expect_csv_refused("x,y,z,x,dx,dy,dz\n", "column 'x' twice");
+  expect_csv_refused("x,y,z,x,dx,dy,dz\n", "duplicate column 'x'");
   expect_csv_refused("x,y,z,dx,dy,dz,tx,ty,tz\n", "directions and targets");
-  expect_csv_refused("x,y,z,dx,dy,dz,start_row\n", "no column 'start_col', which goes with 'start_row'");
+  expect_csv_refused("x,y,z,dx,dy,dz,start_row\n", "no column 'start_col', required with 'start_row'");
   expect_csv_refused(std::string("\xFF\xFEx\0,\0", 6), "UTF-16");
 }
 
 TEST(RayCsv, BadQuotesAreRefused) {
-  expect_csv_refused(kHeader + "1,2,3,0,0,\"-1\n", "line 2: a quote is never closed");
-  expect_csv_refused(kHeader + "1,2,3,0,0,\"-1\"0\n", "line 2: text follows a closing quote");
+  expect_csv_refused(kHeader + "1,2,3,0,0,\"-1\n", "line 2: unclosed quote");
+  expect_csv_refused(kHeader + "1,2,3,0,0,\"-1\"0\n", "line 2: text after a closing quote");
 }
 
 TEST(RayNpy, PlainArrays) {
@@ -210,15 +210,15 @@ TEST(RayNpy, BadArraysAreRefused) {
   const auto plain = [](const std::string& shape, const std::string& bytes, const std::string& descr = "<f8") {
     return npy_bytes(npy_dictionary(descr, shape), bytes);
   };
-  expect_npy_refused("", "is no .npy");
-  expect_npy_refused(plain("(2, 6)", ray), "is cut off");
-  expect_npy_refused(plain("(4611686018427387904, 6)", ray), "is cut off");
+  expect_npy_refused("", "not a .npy");
+  expect_npy_refused(plain("(2, 6)", ray), "truncated");
+  expect_npy_refused(plain("(4611686018427387904, 6)", ray), "truncated");
   expect_npy_refused(plain("(6,)", ray), "shape (6)");
   expect_npy_refused(plain("(2, 3)", ray), "shape (2, 3)");
   expect_npy_refused(plain("(1, 6)", ray, "<i8"), "'<i8'");
   expect_npy_refused(plain("(1, 6)", ray, "<f2"), "'<f2'");
-  expect_npy_refused(plain("(1, 6)", sample_bytes<double>({1, std::nan(""), 3, 0, 0, -1})), "ray 0: its origin");
-  expect_npy_refused(plain("(1, 6)", sample_bytes<double>({1, 2, 3, 0, 0, 0})), "ray 0: its direction is zero");
+  expect_npy_refused(plain("(1, 6)", sample_bytes<double>({1, std::nan(""), 3, 0, 0, -1})), "ray 0: origin");
+  expect_npy_refused(plain("(1, 6)", sample_bytes<double>({1, 2, 3, 0, 0, 0})), "ray 0: direction is zero");
   const std::string xyz = "[('x', '<f8'), ('y', '<f8'), ('z', '<f8'), ";
   expect_npy_refused(structures(xyz + "]", ray), "no column 'dx'");
   expect_npy_refused(structures(xyz + "('dx', '<f8'), ('dy', '<f8'), ('dz', '<c16')]", ray + ray), "'dz'");
@@ -226,7 +226,7 @@ TEST(RayNpy, BadArraysAreRefused) {
   expect_npy_refused(structures(xyz + "('d', [('x', '<f8')])]", ray), "an array or a structure");
   expect_npy_refused(structures("[]", ray), "without fields");
   const std::string all = xyz + "('dx', '<f8'), ('dy', '<f8'), ('dz', '<f8')";
-  expect_npy_refused(structures(all + "]", ray.substr(1)), "is cut off");
+  expect_npy_refused(structures(all + "]", ray.substr(1)), "truncated");
   expect_npy_refused(structures(all + ", ('start_col', '<f8'), ('start_row', '<f8')]",
                                 ray + ray.substr(32, 8) + sample_bytes<double>({0.5})),
                      "0.5 in field 'start_row'");
@@ -234,15 +234,15 @@ TEST(RayNpy, BadArraysAreRefused) {
 
 TEST(ReadRays, TheFileIsNamed) {
   expect_refused([](const std::string& path) { return read_rays(path); }, "/no/such/rays.csv",
-                 "rays '/no/such/rays.csv': cannot be opened");
-  expect_refused([](const std::string& path) { return read_rays(path); }, "/", "rays '/': is a directory");
+                 "/no/such/rays.csv: cannot be opened");
+  expect_refused([](const std::string& path) { return read_rays(path); }, "/", "/: is a directory");
 }
 
 TEST(ReadRays, GitLfsPointersAreNamedSo) {
   for (const char* ending : {".csv", ".npy"}) {
     const std::string path = fmt::format("{}scarp-rays-{}{}", testing::TempDir(), ::getpid(), ending);
     std::ofstream(path) << "version https://git-lfs.github.com/spec/v1\n";
-    expect_refused([](const std::string& of) { return read_rays(of); }, path, "': is a Git LFS pointer");
+    expect_refused([](const std::string& of) { return read_rays(of); }, path, ": Git LFS pointer instead of the file");
     std::filesystem::remove(path);
   }
 }

@@ -58,7 +58,7 @@ class TileSet : public Files {
   static void expect_refused(const std::vector<std::string>& files, const std::string& file, const std::string& part,
                              const RasterOptions& options = {}) {
     const std::string text = error_of([&] { read_tiles(files, options); });
-    expect_says(text, "raster '" + file + "'");
+    expect_says(text, file + ": ");
     expect_says(text, part);
   }
 };
@@ -72,7 +72,7 @@ TEST_F(TileSet, TilesSideBySideAreOneRasterOfTheirType) {
   EXPECT_EQ("Int16", raster.file_type);
   expect_samples(raster, {1, 2, 5, 6, 3, 4, 7, 8});
   EXPECT_EQ(path("b.tif") + ", " + path("a.tif"), raster.path);
-  EXPECT_TRUE(has_note(raster, "2 tiles are one raster of 4 x 2"));
+  EXPECT_TRUE(has_note(raster, "combined 2 tiles into a raster of 4 x 2"));
   EXPECT_FALSE(has_note(raster, "gaps"));
   EXPECT_EQ(500005, raster.georeference.map_from_node[0]);
   EXPECT_EQ(3999995, raster.georeference.map_from_node[3]);
@@ -89,7 +89,7 @@ TEST_F(TileSet, AFolderStandsForItsRastersByName) {
   const Raster raster = read_raster(path("tiles"), {});
   expect_samples(raster, {1, 2, 5, 6, 3, 4, 7, 8});
   EXPECT_EQ(path("tiles"), raster.path);
-  EXPECT_TRUE(has_note(raster, "left out as no rasters: " + path("tiles/README.txt")));
+  EXPECT_TRUE(has_note(raster, "skipped files that are not rasters: " + path("tiles/README.txt")));
   expect_samples(read_tiles({path("tiles"), tile("c.tif", 0, 2, {9, 9, 9, 9})}, {}),
                  {1, 2, 5, 6, 3, 4, 7, 8, 9, 9, kHole, kHole, 9, 9, kHole, kHole});
 }
@@ -103,7 +103,7 @@ TEST_F(TileSet, PicturesInAFolderAreLeftOut) {
   };
   const std::string colours = picture("tiles/0.tif", 3);
   expect_samples(read_raster(path("tiles"), {}), {1, 2, 5, 6, 3, 4, 7, 8});
-  EXPECT_TRUE(has_note(read_raster(path("tiles"), {}), "left out as pictures without a place: " + colours));
+  EXPECT_TRUE(has_note(read_raster(path("tiles"), {}), "skipped pictures without a georeference: " + colours));
   picture("tiles/1.tif", 1, [](GDALDataset& d) {
     GDALColorTable table;
     const GDALColorEntry red{255, 0, 0, 255};
@@ -111,25 +111,26 @@ TEST_F(TileSet, PicturesInAFolderAreLeftOut) {
     d.GetRasterBand(1)->SetColorTable(&table);
   });
   picture("tiles/c.tif", 4);
-  EXPECT_TRUE(has_note(read_raster(path("tiles"), {}), "as pictures without a place: " + colours + " and 2 more"));
+  EXPECT_TRUE(
+      has_note(read_raster(path("tiles"), {}), "skipped pictures without a georeference: " + colours + " and 2 more"));
 
   // Those who say that colours are heights, or name a picture, mean it.
   RasterOptions options;
   options.band = 1;
-  expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif': has no georeference");
+  expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif: no georeference");
   options = {};
   options.encoding = HeightEncoding::terrarium;
-  expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif': has no georeference");
+  expect_says(error_of([&] { read_raster(path("tiles"), options); }), "0.tif: no georeference");
   expect_refused({colours, path("tiles/a.tif")}, colours, "colour photograph");
 
   // A picture with a place is no finished figure, but a mistake to be told.
   tile("tiles/d.tif", 4, 0, {1, 2, 3, 4}, GDT_Byte, {}, 3, {"PHOTOMETRIC=RGB"});
-  expect_says(error_of([&] { read_raster(path("tiles"), {}); }), "d.tif': is a colour photograph");
+  expect_says(error_of([&] { read_raster(path("tiles"), {}); }), "d.tif: colour photograph");
 
   std::filesystem::create_directory(path("album"));
   picture("album/a.tif", 3);
   const std::string text = read_error(path("album"));
-  expect_says(text, "a folder of pictures without a place, as '" + path("album/a.tif") + "'");
+  expect_says(text, "folder of pictures without a georeference, such as '" + path("album/a.tif") + "'");
   expect_says(text, "--encoding");
 }
 
@@ -153,7 +154,7 @@ TEST_F(TileSet, AFolderWithoutRastersIsOneLine) {
   write_bytes("none/README.txt", "hello");
   expect_says(read_error(path("none")), "folder without a raster");
   expect_refused({path("none"), tile("a.tif", 0, 0)}, path("none"), "folder without a raster");
-  expect_says(error_of([] { read_tiles({}, {}); }), "no raster is named");
+  expect_says(error_of([] { read_tiles({}, {}); }), "no raster given");
 }
 
 TEST_F(TileSet, GapsAreHolesMarkedByTheNodataValueOfTheTiles) {
@@ -163,7 +164,7 @@ TEST_F(TileSet, GapsAreHolesMarkedByTheNodataValueOfTheTiles) {
   EXPECT_TRUE(holds<std::int16_t>(raster));
   EXPECT_EQ(-9, raster.nodata);
   expect_samples(raster, {1, 2, kHole, kHole, 3, kHole, kHole, kHole, kHole, kHole, 5, 6, kHole, kHole, 7, 8});
-  EXPECT_TRUE(has_note(raster, "gaps: 8 samples (50 %) are holes"));
+  EXPECT_TRUE(has_note(raster, "gaps between tiles: 8 samples (50 %) are holes"));
 }
 
 TEST_F(TileSet, GapsBetweenTilesWithoutNodataAreNanThatNoSampleCanBe) {
@@ -183,7 +184,7 @@ TEST_F(TileSet, GapsBetweenTilesWithoutNodataAreNanThatNoSampleCanBe) {
     EXPECT_EQ(GDALGetDataTypeName(c.type), raster.file_type);
     const std::vector<double>& f = c.samples;
     expect_samples(raster, {f[0], f[1], kHole, kHole, f[0], f[1], f[2], f[3], kHole, kHole, f[2], f[3]});
-    EXPECT_TRUE(has_note(raster, "gaps: 4 samples (33.3 %)"));
+    EXPECT_TRUE(has_note(raster, "gaps between tiles: 4 samples (33.3 %)"));
   }
 }
 
@@ -196,7 +197,7 @@ TEST_F(TileSet, TheLaterTileWinsButNotWithItsHoles) {
 
 TEST_F(TileSet, NodataOfTheCallerWinsOverConflicts) {
   const std::string a = tile("a.tif", 0, 0, {1, 2, 3, 4}, GDT_Int16, nodata(-9)), b = tile("b.tif", 2, 2, {5, 6, 7, 8});
-  expect_refused({a, b}, b, "nodata value is none, that of '" + a + "' is -9");
+  expect_refused({a, b}, b, "nodata value is none, but that of '" + a + "' is -9");
   RasterOptions options;
   options.nodata = 4;
   const Raster raster = read_tiles({a, b}, options);
@@ -241,7 +242,7 @@ TEST_F(TileSet, HeightsInColoursAreDecodedAfterwards) {
   expect_samples(read_tiles({c, d}, options), {n(1), n(2), n(2), n(1), n(2), kHole});
   expect_samples(read_tiles({d, c}, options), {n(1), n(1), n(2), n(1), n(2), kHole});
   expect_refused({c, path("a.tif")}, path("a.tif"), "number of bands is 3", options);
-  expect_refused({c, tile("g.tif", 0, 0)}, path("g.tif"), "terrarium is decoded from", options);
+  expect_refused({c, tile("g.tif", 0, 0)}, path("g.tif"), "terrarium needs byte bands", options);
 }
 
 TEST_F(TileSet, ARangeOfHeightsIsThatOfTheTilesTypeThoughGapsWidenIt) {
@@ -289,7 +290,7 @@ TEST_F(TileSet, TilesThatDoNotAgreeAreRefusedByName) {
     d.SetSpatialRef(&other);
   };
   expect_refused({a, tile("b.tif", 2, 0, {1, 2, 3, 4}, GDT_Int16, crs)}, path("b.tif"),
-                 "CRS is WGS 84 / UTM zone 11N, that of '" + a + "' is WGS 84 / UTM zone 10N");
+                 "CRS is WGS 84 / UTM zone 11N, but that of '" + a + "' is WGS 84 / UTM zone 10N");
   expect_refused({a, tile("c.tif", 2, 0, {1, 2, 3, 4}, GDT_Float32)}, path("c.tif"), "sample type is Float32");
   const auto place = [](double x, double dx, double shear, double y, double dy) {
     return [=](GDALDataset& d) {
@@ -301,7 +302,7 @@ TEST_F(TileSet, TilesThatDoNotAgreeAreRefusedByName) {
     return tile(name, 0, 0, {1, 2, 3, 4}, GDT_Int16, edit);
   };
   expect_refused({a, placed("d.tif", place(500020, 20, 0, 4000000, -20))}, path("d.tif"), "cell size is 20 x 20");
-  expect_refused({a, placed("e.tif", place(500023, 10, 0, 4000000, -10))}, path("e.tif"), "0.3 of a cell beside");
+  expect_refused({a, placed("e.tif", place(500023, 10, 0, 4000000, -10))}, path("e.tif"), "offset by 0.3 of a cell");
   expect_refused({a, placed("f.tif", place(500020, 10, 0, 4000000, 10))}, path("f.tif"), "north-up");
   expect_refused({a, placed("g.tif", place(500020, 10, 3, 4000000, -10))}, path("g.tif"), "rotated");
   expect_refused({a, placed("h.tif", place(1e15, 10, 0, 4000000, -10))}, path("h.tif"), "too far");

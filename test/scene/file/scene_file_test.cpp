@@ -193,7 +193,7 @@ TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
   };
   const std::vector<Case> cases = {
       {"", "no JSON", "line 1"},
-      {"version https://git-lfs.github.com/spec/v1\n", "is a Git LFS pointer", "git lfs pull"},
+      {"version https://git-lfs.github.com/spec/v1\n", "Git LFS pointer", "git lfs pull"},
       {"{\"objects\": [,]}", "no JSON", "line 1, column 14"},
       {with_object(R"({"shape": {"sphere": {"radius": 1e999}}})"), "/objects/0/shape/sphere/radius", "1e999"},
       {with_object(R"({"shape": {"sphere": {"radius": NaN}}})"), "no JSON", "line 1"},
