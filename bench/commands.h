@@ -62,7 +62,7 @@ struct BatchesOptions {
 };
 void run_batches(const BatchesOptions& options, const ReportOptions& report);
 
-/// `simd`: the vectors beside the scalar walk, one thread, with each of their ideas left out.
+/// `simd`: the vectors beside the scalar walk, one thread, with each optimisation disabled in turn.
 struct SimdOptions {
   TraceOptions trace;
   std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes"};

@@ -66,7 +66,7 @@ Engine ScarpGround::closest_only(const HeightMarchEntry& march, const MarchSetti
   return engine;
 }
 
-Engine ScarpGround::vectors(const std::string& mode, const VectorIdeas& ideas) const {
+Engine ScarpGround::vectors(const std::string& mode, const VectorOptions& options) const {
   Engine engine = this->engine(find_height_march("max-mip"));
   engine.mode = mode;
   const HeightTarget to = target();
@@ -76,12 +76,12 @@ Engine ScarpGround::vectors(const std::string& mode, const VectorIdeas& ideas) c
     if (set.any_hit) {
       thread_local std::vector<std::uint8_t> blocked;
       blocked.resize(count);
-      occluded_max_mip_simd(to, rays, blocked, ideas);
+      occluded_max_mip_simd(to, rays, blocked, options);
       for (std::size_t i = 0; i < count; ++i) answers[i] = blocked[i] ? kBlocked : kMiss;
     } else {
       thread_local std::vector<Hit> hits;
       hits.resize(count);
-      closest_hits_max_mip_simd(to, rays, hits, ideas);
+      closest_hits_max_mip_simd(to, rays, hits, options);
       for (std::size_t i = 0; i < count; ++i) answers[i] = hits[i] ? static_cast<float>(hits[i].t) : kMiss;
     }
   };

@@ -26,8 +26,8 @@ class ScarpGround {
   /// The same, but any-hit rays are answered by the closest hit.
   Engine closest_only(const HeightMarchEntry& march, const MarchSettings& settings = {}) const;
 
-  /// `max-mip` in vectors, with all of their ideas or some.
-  Engine vectors(const std::string& mode, const VectorIdeas& ideas = {}) const;
+  /// `max-mip` in vectors, with all optimisations or some.
+  Engine vectors(const std::string& mode, const VectorOptions& options = {}) const;
 
   /// Every march of the table but the judge.
   std::vector<Engine> engines() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench simd`: what the vectors gain over the scalar walk, and what each of their ideas adds.
+// `scarp-bench simd`: what the vectors gain over the scalar walk, and what each optimisation adds.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 struct Variant {
   const char* name;
-  VectorIdeas ideas;
+  VectorOptions options;
 };
 const Variant kVariants[] = {
     {"all", {}},
@@ -56,7 +56,7 @@ void compare(const BenchField& ground, double exaggeration, const std::vector<Ra
              const SimdOptions& options, Json& rows) {
   const ScarpGround scarp(ground.field);
   std::vector<Engine> engines{scarp.engine(find_height_march("max-mip"))};
-  for (const Variant& variant : kVariants) engines.push_back(scarp.vectors(variant.name, variant.ideas));
+  for (const Variant& variant : kVariants) engines.push_back(scarp.vectors(variant.name, variant.options));
   for (const RaySet& set : make_rays(ground, classes, options.trace.rays, options.trace.ray_seed)) {
     const auto timings = measure(engines, set, {1, options.trace.repeats, options.trace.pass_limit_s});
     std::vector<std::vector<std::string>> lines{{"class", "exagg.", "ideas", "Mrays/cpu s", "x scalar", "blocks", "use",

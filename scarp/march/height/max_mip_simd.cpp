@@ -15,13 +15,12 @@
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/max_mip_resume.h"
 
-// This file is compiled once for each instruction set.
-// Vectors of a length that the compiler does not know cannot be members.
+// Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "scarp/march/height/max_mip_simd.cpp"
 #include "hwy/foreach_target.h"
-// foreach_target.h comes first.
+// foreach_target.h must come first.
 #include "hwy/cache_control.h"
 #include "hwy/highway.h"
 #include "scarp/march/height/max_mip_simd_beam.h"
@@ -41,22 +40,22 @@ struct Candidates {
   double t_clear[N];
 };
 
-// A ray that is to walk over a copy of a ground that wraps round.
+// A ray that is to cross a copy of a wrapped ground.
 struct Copy {
   std::size_t ray;
   std::int32_t x, y;
   bool seen;  // above the ground so far
 };
 
-// The walk of many rays, one batch on one thread.
+// Traverses many rays, one batch on one thread.
 template <bool any, class T>
 class VectorWalk {
  public:
   using Answer = std::conditional_t<any, std::uint8_t, Hit>;
 
   VectorWalk(const HeightTarget& target, const SampleGrid<T>& grid, std::span<const Ray> rays, Answer* answers,
-             const VectorIdeas& ideas)
-      : target_(target), field_(*target.field), rays_(rays), answers_(answers), ideas_(ideas) {
+             const VectorOptions& options)
+      : target_(target), field_(*target.field), rays_(rays), answers_(answers), options_(options) {
     const MaxPyramid& pyramid = *target.pyramid;
     const HeightCode& code = pyramid.code();
     g_ = {};
@@ -73,7 +72,7 @@ class VectorWalk {
     const double low = field_.min_sample(), high = field_.max_sample(), relief = high - low;
     const double cell_relief = std::min(relief, pyramid.cell_relief() * code.step);
     g_.margin_per_cell = static_cast<float>(4 * kSideways * cell_relief * code.per_step);
-    // No less than 2: a mask of 0 would not tell what is mirrored.
+    // At least 2: a mask of 0 would not show what is mirrored.
     const auto side = std::bit_ceil(static_cast<unsigned>(std::max({grid.cell_cols, grid.cell_rows, 2})));
     f_ = {.cols = static_cast<double>(grid.cell_cols),
           .rows = static_cast<double>(grid.cell_rows),
@@ -118,33 +117,33 @@ class VectorWalk {
   }
 
  private:
-  // Cells and new rays, when enough lanes wait for them. False: no lane has a ray, and there are no more.
+  // Processes cells and new rays when enough lanes wait for them. Returns false if no lane has a ray and none are left.
   HWY_INLINE bool follow_up(Packet& p, Lanes& lanes) {
     const VI zero = hn::Zero(di);
     const MI walking = p.walking(), at_cells = hn::And(walking, hn::Eq(p.level, zero));
     const std::size_t busy = hn::CountTrue(di, walking), cells = hn::CountTrue(di, at_cells);
     stats_.block_steps += N;
     stats_.block_lanes += busy - cells;
-    const std::size_t company = ideas_.wait ? kCompany : 1;
-    if (cells >= company || (cells > 0 && cells == busy)) {
+    const std::size_t quorum = options_.wait ? kQuorum : 1;
+    if (cells >= quorum || (cells > 0 && cells == busy)) {
       stats_.cell_steps += N;
       stats_.cell_lanes += cells;
       cell_step<any>(g_, put_off_all(), p);
     }
-    if (busy == 0 || (N - busy >= (ideas_.refill && !together_ ? kFree : N) && !is_empty())) {
+    if (busy == 0 || (N - busy >= (options_.refill && !together_ ? kFree : N) && !is_empty())) {
       return refill(p, lanes);
     }
     return true;
   }
 
-  HWY_INLINE MI put_off_all() const { return hn::Ne(hn::Set(di, ideas_.put_off ? 1 : 0), hn::Zero(di)); }
+  HWY_INLINE MI put_off_all() const { return hn::Ne(hn::Set(di, options_.put_off ? 1 : 0), hn::Zero(di)); }
 
   bool is_empty() const {
     return next_ >= rays_.size() && copies_.empty() &&
            std::all_of(waiting_, waiting_ + kFresh, [](std::uint64_t w) { return w == 0; });
   }
 
-  // Answers the rays that are done and puts new ones into their lanes. False: no lane has a ray.
+  // Answers finished rays and puts new ones in their lanes. Returns false if no lane has a ray.
   HWY_NOINLINE bool refill(Packet& p, Lanes& a) {
     const std::uint64_t walking = bits_of(p.walking());
     std::uint64_t idle = ~walking & kAllLanes;
@@ -179,11 +178,11 @@ class VectorWalk {
     }
   }
 
-  // The next rays into fresh_. Those that need no walk are answered.
+  // Prepares the next rays in fresh_. Answers those that need no traversal.
   HWY_NOINLINE void take_rays() {
     fresh_at_ = 0;
     for (Lanes& fresh : fresh_) take_rays(fresh);
-    if (!any && ideas_.beam) {
+    if (!any && options_.beam) {
       const std::uint64_t rays = follow_beam(g_, fresh_, kFresh, beam_length_);
       stats_.beam_rays += rays;
       together_ = rays > 0;
@@ -196,8 +195,8 @@ class VectorWalk {
     }
   }
 
-  // First cells are left here, where all lanes are busy. Rays of any-hit begin next to the ground as a rule: doubles
-  // look at once where floats would be unsure of most.
+  // First cells are left here, when all lanes are busy. Any-hit rays usually start next to the ground: doubles are used
+  // at once where floats would be unsure of most.
   void take_rays(Lanes& fresh) {
     if (field_.wraps()) {
       take_endless(fresh);
@@ -205,7 +204,7 @@ class VectorWalk {
       take_bounded(fresh);
     }
     prepare(f_, r_, fresh);
-    if (!ideas_.doubles || g_.triangles || !begins_over_field(fresh)) return;
+    if (!options_.doubles || g_.triangles || !begins_over_field(fresh)) return;
     if constexpr (any) {
       leave_first_cells<any>(g_, f_, r_, fresh);
     } else {
@@ -217,8 +216,8 @@ class VectorWalk {
     }
   }
 
-  // The rays of a vector into the caches. Each ray is read once, so all of them come from memory, and what reads ahead
-  // of programs by itself stops at the border of each page.
+  // Prefetches the rays of a vector. Each ray is read once, so all come from memory, and hardware prefetchers stop at
+  // page boundaries.
   void prefetch_rays(std::size_t first) const {
     if (first + N > rays_.size()) return;
     const auto* bytes = reinterpret_cast<const std::byte*>(&rays_[first]);
@@ -275,8 +274,8 @@ class VectorWalk {
     return false;
   }
 
-  // The scalar walk believes in the start cell, the vectors in positions: they follow where the two agree, and where
-  // the cell is not left before the ray begins.
+  // The scalar traversal trusts the start cell, the vectors trust positions: vectors continue where both agree and the
+  // cell is not left before the ray starts.
   HWY_NOINLINE SurfaceStart begin_on_surface(const Ray& ray, const GridRay& local) const {
     const auto is_in = [&](double o, double d, int cell) {
       return std::abs(o + d * ray.t_min - cell - 0.5) < 0.5 + kNearCell;
@@ -314,9 +313,9 @@ class VectorWalk {
     }
   }
 
-  // Ground that wraps round is walked over copy by copy, each as ground of its own, with the ray in the copy's frame.
-  // What that rounds of heights is within the doubt, see kFarthestCopy; of the first copy nothing may be doubtful, so a
-  // ray that begins next to a border is left to the scalar walk, which knows more ways to begin and counts farther.
+  // Wrapped ground is traversed copy by copy, each as a separate ground with the ray in the copy's frame. The rounding
+  // of heights is within the margin, see kFarthestCopy. Nothing may be in doubt in the first copy, so rays that start
+  // next to a border are left to the scalar traversal, which has more ways to start and counts farther.
   void begin_endless(std::size_t j, std::size_t index, Lanes& fresh) {
     const Ray& ray = rays_[index];
     const GridRay local = field_.grid_from_world(ray);
@@ -324,7 +323,7 @@ class VectorWalk {
         !max_mip::countable(local, ray)) {
       return answer_alone(index);
     }
-    // As the scalar walk does, down to the highest sample at once, over however many copies.
+    // As the scalar traversal: down to the highest sample at once, across any number of copies.
     double t = ray.t_min;
     if (local.direction.z < 0 && local.origin.z + local.direction.z * t > f_.highest) {
       const double quotient = (f_.highest - local.origin.z) / local.direction.z;
@@ -350,8 +349,8 @@ class VectorWalk {
     fresh.ray[j] = static_cast<std::int32_t>(copy.ray);
     fresh.copy_x[j] = copy.x, fresh.copy_y[j] = copy.y;
   }
-  // A ray that has met nothing in its copy: on to the next one, if it goes so far. Where borders of both axes are
-  // crossed almost at once, either may come first.
+  // A ray without a hit in its copy continues in the next, if it goes that far. If borders of both axes are crossed
+  // almost at once, either may come first.
   HWY_NOINLINE void leave_copy(const Lanes& a, std::size_t j) {
     Copy copy{static_cast<std::size_t>(a.ray[j]), a.copy_x[j], a.copy_y[j], a.seen[j] != 0};
     const Ray& ray = rays_[copy.ray];
@@ -374,7 +373,7 @@ class VectorWalk {
     is_near(copy.x * f_.cols, copy.y * f_.rows) ? copies_.push_back(copy) : answer_alone(copy.ray);
   }
 
-  // Answers the rays of some lanes of p, which are in memory, too.
+  // Answers the rays of some lanes of p, which are also in memory.
   HWY_INLINE void answer(const Packet& p, const Lanes& a, std::uint64_t lanes) {
     if constexpr (any) {
       const MI hits = hn::Eq(p.status, hn::Set(di, kHit)), misses = hn::Eq(p.status, hn::Set(di, kMiss));
@@ -426,7 +425,7 @@ class VectorWalk {
   }
 
   // Hits in the cells of the candidates as march_max_mip() computes them, bit for bit: the same operations in the same
-  // order, for the usual way through a cell. It is asked where the way is another one, and where there is no hit.
+  // order, for the common path through a cell. Other paths, and cells without a hit, fall back to march_max_mip().
   HWY_NOINLINE void find_hits() {
     Candidates& c = candidates_;
     GridRays rays;
@@ -456,12 +455,12 @@ class VectorWalk {
       const VD out = r.clearance_out(t_out, hn::Le(tx, ty));
       const VD t_far = hn::Max(hn::Abs(t_in), hn::Abs(t_out));
       const VD doubt = rounding(f_, r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, t_far);
-      // Above until it comes into the cell: known up to t_clear, and from there on because of how steep ground is.
+      // Above until it enters the cell: known up to t_clear, and from there on by the maximum slope of the ground.
       const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, t_clear + h)), zero);
       const VD steepest =
           hn::Add(hn::Abs(r.dz), hn::Mul(hn::Add(hn::Abs(r.dx), hn::Abs(r.dy)), hn::Set(dd, f_.cell_relief)));
       const auto above = hn::Gt(cc, hn::Add(hn::Mul(gap, steepest), doubt));
-      // march_max_mip() begins where the ray comes down to the highest sample, not before.
+      // march_max_mip() starts where the ray comes down to the highest sample, not before.
       const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), r.oz), r.dz);
       const VD t_top = hn::Sub(quotient, hn::Mul(hn::Set(dd, 2 * kUnit), hn::Abs(quotient)));
       const auto begun = hn::Or(hn::Ge(r.dz, zero), hn::Ge(t_line, t_top));
@@ -483,7 +482,7 @@ class VectorWalk {
       hn::Store(r.u(time), dd, u + h), hn::Store(r.v(time), dd, v + h), hn::Store(r.height(time), dd, height + h);
       hn::Store(hn::IfThenElseZero(hit, one), dd, found + h);
     }
-    const bool usual = ideas_.find_hits && !g_.triangles;
+    const bool usual = options_.find_hits && !g_.triangles;
     for (std::size_t i = 0; i < c.count; ++i) {
       const Ray& ray = rays_[static_cast<std::size_t>(c.ray[i])];
       Hit& to = answers_[c.ray[i]];
@@ -502,52 +501,52 @@ class VectorWalk {
     c.count = 0;
   }
 
-  // From a search over the rays of scarp-bench (decisions.md): lanes that wait until they are served.
-  static constexpr std::size_t kCompany = std::max<std::size_t>(1, any ? N / 4 : N * 3 / 8);
+  // From a search over the rays of scarp-bench (decisions.md): number of waiting lanes that triggers their processing.
+  static constexpr std::size_t kQuorum = std::max<std::size_t>(1, any ? N / 4 : N * 3 / 8);
   static constexpr std::size_t kFree = std::max<std::size_t>(1, any ? N / 4 : N / 2);
   static constexpr int kPackets = any ? 3 : 2;   // vectors in turn: while one waits for memory, others compute
-  static constexpr std::size_t kAhead = 64;      // rays that are on their way into the caches
-  static constexpr std::size_t kCacheLine = 64;  // bytes; where lines are longer some are asked for twice
-  static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that are a beam
+  static constexpr std::size_t kAhead = 64;      // rays prefetched ahead
+  static constexpr std::size_t kCacheLine = 64;  // bytes; with longer lines some are requested twice
+  static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that form a beam
   static constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << N) - 1;
   static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
-  // Cells, to the origin of a ray and to the last copy that is walked over here. Sideways, |origin| + |way| along x and
-  // y, it is then no farther than eight times that and twice the sides of a copy: in the frames of copies, too.
+  // In cells, to the origin of a ray and to the last copy traversed here. Horizontally, |origin| + |path| along x and y
+  // is then at most eight times that plus twice the sides of a copy, also in the frames of copies.
   static constexpr double kFarthestCopy = 0x1p17;
 
   const HeightTarget& target_;
   const HeightField& field_;
   std::span<const Ray> rays_;
   Answer* answers_;
-  const VectorIdeas& ideas_;
+  const VectorOptions& options_;
   VectorGround<T> g_;
   FieldFrame f_;
   GridRays r_;
   Lanes fresh_[kFresh], lanes_[kPackets];
   std::size_t next_ = 0, fresh_at_ = kFresh;
-  std::vector<Copy> copies_;            // that wait to be walked over
+  std::vector<Copy> copies_;            // waiting to be traversed
   std::uint64_t waiting_[kFresh] = {};  // lanes of fresh_ whose rays wait for a lane in lanes_
-  float beam_length_ = 0;               // of the last beam
-  bool together_ = false;  // whether the rays in fresh_ are a beam: as they start together they end together
+  float beam_length_ = 0;               // length of the last beam
+  bool together_ = false;               // whether the rays in fresh_ form a beam: they start and end together
   Candidates candidates_;
   VectorStats stats_;
 };
 
 template <bool any, class Answer>
-void walk(const HeightTarget& target, std::span<const Ray> rays, Answer* answers, const VectorIdeas& ideas,
+void walk(const HeightTarget& target, std::span<const Ray> rays, Answer* answers, const VectorOptions& options,
           VectorStats& stats) {
   target.field->visit([&](const auto& grid) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
-    VectorWalk<any, T>(target, grid, rays, answers, ideas).run(stats);
+    VectorWalk<any, T>(target, grid, rays, answers, options).run(stats);
   });
 }
-void walk_closest(const HeightTarget& target, std::span<const Ray> rays, Hit* hits, const VectorIdeas& ideas,
+void walk_closest(const HeightTarget& target, std::span<const Ray> rays, Hit* hits, const VectorOptions& options,
                   VectorStats& stats) {
-  walk<false>(target, rays, hits, ideas, stats);
+  walk<false>(target, rays, hits, options, stats);
 }
-void walk_any(const HeightTarget& target, std::span<const Ray> rays, std::uint8_t* blocked, const VectorIdeas& ideas,
-              VectorStats& stats) {
-  walk<true>(target, rays, blocked, ideas, stats);
+void walk_any(const HeightTarget& target, std::span<const Ray> rays, std::uint8_t* blocked,
+              const VectorOptions& options, VectorStats& stats) {
+  walk<true>(target, rays, blocked, options, stats);
 }
 
 }  // namespace
@@ -564,11 +563,11 @@ HWY_EXPORT(walk_any);
 
 thread_local VectorStats t_stats;
 
-// Copies of ground that wraps round are to be so wide at least: to go on to the next one takes as long as some cells.
+// Minimum width of copies of a wrapped ground: entering the next one takes as long as some cells.
 constexpr int kNarrowestCopy = 128;
 
-// Fields that the vectors do not walk over: those with holes, where a ray that is above all ground may be below the rim
-// of the next cell, and those beyond 32-bit offsets or floats.
+// Excludes fields that vector code does not support: those with holes, where a ray above all ground may be below the
+// rim of the next cell, and those beyond 32-bit offsets or floats.
 bool walks_over(const HeightTarget& target) {
   const HeightField& field = *target.field;
   if (!field.has_cells() || field.nodata_count() > 0) return false;
@@ -581,18 +580,18 @@ bool walks_over(const HeightTarget& target) {
 }  // namespace
 
 void closest_hits_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
-                               const VectorIdeas& ideas) {
+                               const VectorOptions& options) {
   if (walks_over(target)) {
-    HWY_DYNAMIC_DISPATCH(walk_closest)(target, rays, hits.data(), ideas, t_stats);
+    HWY_DYNAMIC_DISPATCH(walk_closest)(target, rays, hits.data(), options, t_stats);
   } else {
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = march_max_mip(target, rays[i]);
   }
 }
 
 void occluded_max_mip_simd(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-                           const VectorIdeas& ideas) {
+                           const VectorOptions& options) {
   if (walks_over(target)) {
-    HWY_DYNAMIC_DISPATCH(walk_any)(target, rays, blocked.data(), ideas, t_stats);
+    HWY_DYNAMIC_DISPATCH(walk_any)(target, rays, blocked.data(), options, t_stats);
   } else {
     for (std::size_t i = 0; i < rays.size(); ++i) blocked[i] = occluded_max_mip(target, rays[i]);
   }

@@ -47,14 +47,14 @@ testing::AssertionResult identical(const Hit& a, const Hit& b) {
 
 // All of the batch, in parts of `size`.
 void compare(const HeightTarget& target, const std::vector<Ray>& rays, const std::vector<Hit>& expected,
-             std::size_t size, const VectorIdeas& ideas, const std::string& what) {
+             std::size_t size, const VectorOptions& options, const std::string& what) {
   std::vector<Hit> hits(rays.size());
   std::vector<std::uint8_t> blocked(rays.size(), 7);
   for (std::size_t begin = 0; begin < rays.size(); begin += size) {
     const std::size_t count = std::min(size, rays.size() - begin);
     const std::span<const Ray> part(rays.data() + begin, count);
-    closest_hits_max_mip_simd(target, part, {hits.data() + begin, count}, ideas);
-    occluded_max_mip_simd(target, part, {blocked.data() + begin, count}, ideas);
+    closest_hits_max_mip_simd(target, part, {hits.data() + begin, count}, options);
+    occluded_max_mip_simd(target, part, {blocked.data() + begin, count}, options);
   }
   for (std::size_t i = 0; i < rays.size(); ++i) {
     ASSERT_TRUE(identical(hits[i], expected[i])) << what << ", ray " << i;
@@ -346,10 +346,10 @@ TEST(MaxMipSimd, RaysFromNextToTheGroundAreNotLeftToTheScalarWalk) {
   }
   std::vector<std::uint8_t> blocked(rays.size());
   std::vector<Hit> hits(rays.size());
-  const auto handed_over = [&](const VectorIdeas& ideas) {
+  const auto handed_over = [&](const VectorOptions& options) {
     take_vector_stats();
-    occluded_max_mip_simd(target, rays, blocked, ideas);
-    closest_hits_max_mip_simd(target, rays, hits, ideas);
+    occluded_max_mip_simd(target, rays, blocked, options);
+    closest_hits_max_mip_simd(target, rays, hits, options);
     return static_cast<double>(take_vector_stats().handed_over) / static_cast<double>(rays.size());
   };
   // Of two questions per ray. Left to the scalar walk is what hits in the first cell.
