@@ -37,8 +37,8 @@ set(rules
     "@mend(s|ed)?@ => fix"
     "@(leave it out|(if|as) (you|one) likes?)@ => is only valid for, optional")
 
-# Correct English that a rule would find, and one description of a march, until the tables of marches are rewritten.
-set(idioms "told by bit masks" "[Oo]f course" "[Ss]o far" "told apart" "(is|are|was|were|be) said to be" "(is|are|was|were|be) asked (to|for|whether)"
+# Correct English that a rule would find.
+set(idioms "[Oo]f course" "[Ss]o far" "told apart" "(is|are|was|were|be) said to be" "(is|are|was|were|be) asked (to|for|whether)"
     "[Tt]here (is|are|was|were|will be|would be|can be|may be|must be|should be) no"
     "(is|are|was|were|be) no (longer|more|less|fewer|better|worse|matter|doubt|greater|larger|smaller|higher|lower|slower|faster|farther|nearer|closer|wider|shorter)")
 

@@ -38,7 +38,8 @@ constexpr FunctionMarchEntry lipschitz_local() {
        .simd = true,
        .gpu = true,
        .parameters = "tolerance 0.000001 of the distance, 1024 steps",
-       .description = "bounds the ground anew on every segment of the ray; never passes, long steps where it is calm"});
+       .description =
+           "bounds the ground on each segment of the ray; never passes through; long steps over gentle ground"});
   entry.batch = closest_hits_lipschitz_local_simd;
   return entry;
 }

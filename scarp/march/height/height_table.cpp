@@ -44,7 +44,7 @@ constexpr HeightMarchEntry max_mip() {
        .guarantee = Guarantee::exact,
        .simd = true,
        .gpu = true,
-       .description = "hierarchical walk through a maximum mipmap, closed form in the bilinear cell"},
+       .description = "hierarchical walk through a maximum mipmap; closed-form hit in the bilinear cell"},
       true, false);
   entry.own_any_hit = true;
   entry.occluded = [](const HeightTarget& target, const Ray& ray, const MarchSettings&) {
@@ -62,14 +62,15 @@ constexpr std::array kTable = {
     height_march<march_exhaustive>(
         {.name = "exhaustive",
          .guarantee = Guarantee::exact,
-         .description = "every cell under the ray on its own, in double: the judge of the others, slow"},
+         .description = "tests every cell under the ray, in double; the reference for the others; slow"},
         false, false),
     max_mip(),
     height_march<march_max_mip_bisect>(
         {.name = "max-mip-bisect",
          .guarantee = Guarantee::approximate,
          .parameters = "16 halvings",
-         .description = "the same walk with the paper's binary search in the cell; passes rays that dip into a cell"},
+         .description =
+             "the same walk with the paper's binary search in the cell; misses rays that only dip into a cell"},
         true, false),
     height_march<march_naive>(kNaiveEntry, false, false),
     height_march<march_fixed_step>(kFixedStepEntry, false, false),

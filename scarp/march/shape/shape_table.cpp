@@ -15,7 +15,8 @@ constexpr std::array kTable = {
          .guarantee = Guarantee::conservative,
          .gpu = true,
          .parameters = "tolerance 1e-6 of the distance, 1024 steps",
-         .description = "steps by the distance to the nearest surface, closes in by bounds of segments; never passes"},
+         .description =
+             "steps by the distance to the nearest surface, converges by bounds of segments; never passes through"},
         march_sphere_trace,
         occluded_sphere_trace},
 };

@@ -29,19 +29,18 @@ bool occluded_voxel_exhaustive(const VoxelTarget& target, const QuantisedRay& ra
 
 constexpr std::array kTable = {
     voxel_march("voxel-exhaustive", VoxelAccelerator::none, march_voxel_exhaustive, occluded_voxel_exhaustive, nullptr,
-                "solid voxels one by one, in rationals: the judge of the voxel marches, slow"),
+                "tests solid voxels one by one, in exact arithmetic; the reference for voxel marches; slow"),
     voxel_march("voxel-planes", VoxelAccelerator::none, march_voxel_planes, occluded_voxel_planes,
-                march_packet_voxel_planes, "from plane to plane, voxel by voxel"),
+                march_packet_voxel_planes, "steps from voxel to voxel"),
     voxel_march("voxel-spheres", VoxelAccelerator::spheres, march_voxel_spheres, occluded_voxel_spheres, nullptr,
-                "over the empty sphere around each voxel"),
+                "skips the empty sphere around each voxel"),
     voxel_march("voxel-cubes", VoxelAccelerator::cubes, march_voxel_cubes, occluded_voxel_cubes,
-                march_packet_voxel_cubes, "out of the largest empty cube around each voxel"),
+                march_packet_voxel_cubes, "skips the largest empty cube around each voxel"),
     voxel_march("voxel-octants", VoxelAccelerator::octants, march_voxel_octants, occluded_voxel_octants,
                 march_packet_voxel_octants,
-                "out of the largest empty cube ahead of each voxel, one for each octant of directions"),
+                "skips the largest empty cube ahead of each voxel, one for each octant of directions"),
     voxel_march("voxel-bricks", VoxelAccelerator::bricks, march_voxel_bricks, occluded_voxel_bricks,
-                march_packet_voxel_bricks,
-                "out of empty blocks of 2 to 16 voxels, told by bit masks; the smallest memory"),
+                march_packet_voxel_bricks, "skips empty blocks of 2 to 16 voxels, found by bit masks; least memory"),
 };
 
 }  // namespace
