@@ -30,6 +30,26 @@ DeviceFunctionRay device_shape_ray(const DistanceField& shape, const ShapeSingle
 /// which values change by a metre per metre.
 double shape_ray_growth(const ShapeSingleRounding& rounding);
 
+/// Rays of RayRuns (ray_runs_vk.h) whose states travel with them.
+struct FunctionRays {
+  using Prepared = DeviceFunctionRay;
+  using Ray = glsl::ScarpFunctionRay;
+  using Hit = glsl::ScarpFunctionHit;
+  static Hit none() { return glsl::scarp_function_miss(); }
+  static bool under_way(const Hit& hit) { return hit.status == glsl::kScarpFunctionUnderWay; }
+  static void go_on(Ray& ray, const Hit& hit) { ray.state = hit.state; }
+  /// The answer of a run, with the costs of the runs before.
+  static void add(const Hit& answer, Hit& hit) {
+    const std::uint32_t bounds = hit.bounds, heights = hit.heights;
+    hit = answer;
+    hit.bounds += bounds;
+    hit.heights += heights;
+  }
+  static bool is_hit(const DeviceFunctionRay& prepared, const Hit& hit) {
+    return prepared.marches && hit.status == glsl::kScarpFunctionHit;
+  }
+};
+
 /// The answer that belongs to a ray.
 Hit hit_from_device(const Ray& ray, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer);
 

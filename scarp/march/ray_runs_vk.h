@@ -1,50 +1,59 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: rays of ray_states.glsl.h by the batch on a device, run after run until none is under way.
+// Private to the station: batches of rays on a device, run after run until no march is under way.
 //
-//   slice of rays ──prepare──▶ those that march ──▶ run ──▶ under way ──▶ run ──▶ ... ──▶ answers, in the rays' order
+//   slice of rays ──prepare──▶ device ──▶ run ──▶ under way ──▶ run ──▶ ... ──▶ answers, in the rays' order
 #pragma once
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
-#include <numeric>
 #include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
-#include "scarp/march/device_function_ray.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/memory.h"
 #include "scarp/vk/pipeline.h"
 
 namespace scarp {
 
-/// Throws Error when a batch has not as many answers and costs (or none) as rays.
-inline void require_room(std::size_t rays, std::size_t hits, std::size_t steps) {
-  if (rays != hits || (steps != 0 && rays != steps))
-    throw Error(fmt::format("batch: {} rays, room for {} answers and {} costs", rays, hits, steps));
-}
-inline void require_room(std::size_t rays, std::size_t blocked) {
-  if (rays != blocked) throw Error(fmt::format("batch: {} rays, room for {} answers", rays, blocked));
-}
-inline bool is_blocked(const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
-  return prepared.marches && answer.status == glsl::kScarpFunctionHit;
+/// Throws Error unless a batch has as many answers and costs (or none) as rays.
+inline void require_room(std::size_t rays, std::size_t hits, std::size_t costs) {
+  if (rays != hits || (costs != 0 && rays != costs))
+    throw Error(fmt::format("batch: {} rays, room for {} answers and {} costs", rays, hits, costs));
 }
 
+/// Names of the rows of a table of device marches, separated by commas.
+template <class Table>
+std::string names_of(const Table& table) {
+  std::string names;
+  for (const auto& row : table) names += fmt::format("{}{}", names.empty() ? "" : ", ", row.name);
+  return names;
+}
+
+/// What a kind of ray is on the host (Prepared), on the device (Ray), and its answer (Hit). A march that is interrupted
+/// is `under_way`. Its state either stays on the device, where `Batch::resume` continues it, or comes back with the
+/// answer and goes out again with the ray (`go_on`).
+template <class Kind>
 class RayRuns {
  public:
+  using Prepared = typename Kind::Prepared;
+  using Ray = typename Kind::Ray;
+  using Hit = typename Kind::Hit;
+
   static constexpr std::uint32_t kThreads = 64;  // of a workgroup
 
   /// Throws Error: a slice out of its range, no memory on the device.
   RayRuns(const Device& device, std::uint32_t rays_at_once)
       : slice_(checked(rays_at_once)),
-        rays_(device, std::uint64_t{slice_} * sizeof(glsl::ScarpFunctionRay), "rays"),
-        answers_(device, std::uint64_t{slice_} * sizeof(glsl::ScarpFunctionHit), "hits"),
+        rays_(device, std::uint64_t{slice_} * sizeof(Ray), "rays"),
+        answers_(device, std::uint64_t{slice_} * sizeof(Hit), "hits"),
         commands_(device) {}
 
-  /// For each i below count, on all threads: prepare(i) makes a DeviceFunctionRay, answer(i, prepared, answer) takes
-  /// what the march tells. `batch` is the shader's push constants, with rays, hits and count.
+  /// For each i below count, on all threads: prepare(i) returns a Prepared, answer(i, prepared, hit) takes the answer,
+  /// which means nothing for rays that do not march. `batch` is the shader's push constants, with rays, hits and count.
   template <class Batch, class Prepare, class Answer>
   void ask(const ComputePipeline& pipeline, Batch batch, std::size_t count, const Prepare& prepare,
            const Answer& answer) {
@@ -54,19 +63,16 @@ class RayRuns {
     for (std::size_t first = 0; first < count; first += slice_) {
       const std::size_t some = std::min<std::size_t>(slice_, count - first);
       prepared_.resize(some);
-      place_.resize(some);
-      packed_.clear();
-      for_each(some, [&](std::size_t i) { prepared_[i] = prepare(first + i); });
-      // Rays that never come to where the field can be met stay here.
-      for (std::size_t i = 0; i < some; ++i) {
-        place_[i] = packed_.size();
-        if (prepared_[i].marches) packed_.push_back(prepared_[i].ray);
-      }
-      found_.assign(packed_.size(), glsl::scarp_function_miss());
-      run(pipeline, batch);
+      packed_.resize(some);
+      found_.assign(some, Kind::none());
+      std::atomic<bool> any = false;
       for_each(some, [&](std::size_t i) {
-        answer(first + i, prepared_[i], prepared_[i].marches ? found_[place_[i]] : glsl::scarp_function_miss());
+        prepared_[i] = prepare(first + i);
+        packed_[i] = prepared_[i].ray;
+        if (prepared_[i].marches && !any.load(std::memory_order_relaxed)) any.store(true, std::memory_order_relaxed);
       });
+      if (any) march(pipeline, batch);
+      for_each(some, [&](std::size_t i) { answer(first + i, prepared_[i], found_[i]); });
     }
   }
 
@@ -89,45 +95,62 @@ class RayRuns {
   }
 
   template <class Batch>
-  void run(const ComputePipeline& pipeline, Batch batch) {
-    open_.resize(packed_.size());
-    std::iota(open_.begin(), open_.end(), std::size_t{0});
-    while (!open_.empty()) {
-      batch.count = static_cast<std::uint32_t>(open_.size());
-      answered_.resize(open_.size());
-      upload(rays_, 0, packed_.data(), open_.size() * sizeof(glsl::ScarpFunctionRay));
-      commands_.dispatch(pipeline, batch, {(batch.count + kThreads - 1) / kThreads, 1, 1});
-      commands_.run();
-      passes_.insert(passes_.end(), commands_.passes().begin(), commands_.passes().end());
-      download(answers_, 0, answered_.data(), open_.size() * sizeof(glsl::ScarpFunctionHit));
-      std::size_t left = 0;
-      for (std::size_t i = 0; i < answered_.size(); ++i) {
-        glsl::ScarpFunctionHit& hit = found_[open_[i]];
-        const std::uint32_t bounds = hit.bounds, heights = hit.heights;
-        hit = answered_[i];
-        hit.bounds += bounds;
-        hit.heights += heights;
-        if (hit.status != glsl::kScarpFunctionUnderWay) continue;
-        packed_[left] = packed_[i];
-        packed_[left].state = hit.state;
-        open_[left++] = open_[i];
+  void march(const ComputePipeline& pipeline, Batch& batch) {
+    if constexpr (requires { batch.resume; }) {
+      // Each ray keeps its place. Those that do not march end at once.
+      upload(rays_, 0, packed_.data(), packed_.size() * sizeof(Ray));
+      batch.resume = 0;
+      do {
+        run(pipeline, batch, found_);
+        batch.resume = 1;
+      } while (std::any_of(found_.begin(), found_.end(), Kind::under_way));
+    } else {
+      // A run has the rays that are under way only.
+      open_.clear();
+      for (std::size_t i = 0; i < packed_.size(); ++i) {
+        if (!prepared_[i].marches) continue;
+        packed_[open_.size()] = packed_[i];
+        open_.push_back(i);
       }
-      open_.resize(left);
+      while (!open_.empty()) {
+        upload(rays_, 0, packed_.data(), open_.size() * sizeof(Ray));
+        answered_.resize(open_.size());
+        run(pipeline, batch, answered_);
+        std::size_t left = 0;
+        for (std::size_t i = 0; i < answered_.size(); ++i) {
+          Hit& hit = found_[open_[i]];
+          Kind::add(answered_[i], hit);
+          if (!Kind::under_way(hit)) continue;
+          packed_[left] = packed_[i];
+          Kind::go_on(packed_[left], hit);
+          open_[left++] = open_[i];
+        }
+        open_.resize(left);
+      }
     }
+  }
+
+  // One invocation for each answer.
+  template <class Batch>
+  void run(const ComputePipeline& pipeline, Batch& batch, std::vector<Hit>& answers) {
+    batch.count = static_cast<std::uint32_t>(answers.size());
+    commands_.dispatch(pipeline, batch, {(batch.count + kThreads - 1) / kThreads, 1, 1});
+    commands_.run();
+    passes_.insert(passes_.end(), commands_.passes().begin(), commands_.passes().end());
+    download(answers_, 0, answers.data(), answers.size() * sizeof(Hit));
   }
 
   std::uint32_t slice_;
   DeviceBuffer rays_, answers_;
   Commands commands_;
   std::vector<PassTime> passes_;
-  // Of one slice.
-  std::vector<DeviceFunctionRay> prepared_;
-  std::vector<glsl::ScarpFunctionRay> packed_;
-  std::vector<std::size_t> place_;
-  std::vector<glsl::ScarpFunctionHit> found_;
-  // Of one run: those under way, by their places, and what the device tells of them.
+  // Of one slice, by ray.
+  std::vector<Prepared> prepared_;
+  std::vector<Hit> found_;
+  std::vector<Ray> packed_;  // as they lie on the device
+  // Of one run with rays under way only: their indices and answers.
   std::vector<std::size_t> open_;
-  std::vector<glsl::ScarpFunctionHit> answered_;
+  std::vector<Hit> answered_;
 };
 
 }  // namespace scarp

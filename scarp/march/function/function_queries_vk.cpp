@@ -42,13 +42,11 @@ constexpr std::array kDeviceMarches = {
 };
 
 const DeviceMarch& device_march(const FunctionMarchEntry& march) {
-  std::string names;
   for (const DeviceMarch& candidate : kDeviceMarches) {
     if (candidate.name == march.name) return candidate;
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", candidate.name);
   }
-  throw Error(
-      fmt::format("march '{}': does not run over functions on Vulkan devices; there run: {}", march.name, names));
+  throw Error(fmt::format("march '{}': does not run over functions on Vulkan devices (available: {})", march.name,
+                          names_of(kDeviceMarches)));
 }
 
 glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, double slope) {
@@ -95,7 +93,7 @@ struct DeviceFunctionQueries::Impl {
     const std::uint32_t choice = march.choice + (any && march.has_any ? 1 : 0), parts = function_parts(program);
     const auto made = pipelines.find({choice, parts});
     if (made != pipelines.end()) return made->second;
-    const std::uint32_t constants[] = {RayRuns::kThreads, choice, parts};
+    const std::uint32_t constants[] = {RayRuns<FunctionRays>::kThreads, choice, parts};
     return pipelines
         .try_emplace({choice, parts}, device, march.words, std::string(march.name) + " over functions",
                      std::uint32_t{sizeof(glsl::FunctionBatch)}, constants)
@@ -124,7 +122,7 @@ struct DeviceFunctionQueries::Impl {
   const DeviceMarch& march;
   MarchSettings march_settings;
   Device device;
-  RayRuns runs;
+  RayRuns<FunctionRays> runs;
   std::map<std::pair<std::uint32_t, std::uint32_t>, ComputePipeline> pipelines;  // by choice and contents
 };
 
@@ -154,10 +152,10 @@ void DeviceFunctionQueries::closest_hits(const DeviceFunctionTarget& target, std
 
 void DeviceFunctionQueries::occluded(const DeviceFunctionTarget& target, std::span<const Ray> rays,
                                      std::span<std::uint8_t> blocked) {
-  require_room(rays.size(), blocked.size());
+  require_room(rays.size(), blocked.size(), 0);
   impl_->ask(target, true, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
-               blocked[i] = is_blocked(prepared, answer);
+               blocked[i] = FunctionRays::is_hit(prepared, answer);
              });
 }
 

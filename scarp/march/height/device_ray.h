@@ -18,7 +18,9 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
 
 /// A ray on its way to a march in single precision.
 struct DeviceRay {
-  glsl::ScarpRay ray{};
+  DeviceRay() { ray.exit = -1; }
+
+  glsl::ScarpRay ray{};  ///< ends before it begins, unless it marches
   double begin = 0;      ///< t = (begin + time) * per_time for a time that the march tells
   double per_time = 1;   ///< a power of two
   bool marches = false;  ///< whether there is anything to march: else `known` is the answer

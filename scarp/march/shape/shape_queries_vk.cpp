@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/march/device_function_ray.h"
 #include "scarp/march/function/function_batch.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
 #include "scarp/march/shape/shape_batch.glsl.h"
@@ -101,7 +102,7 @@ struct DeviceShapeQueries::Impl {
     const std::uint32_t choice = any, parts = shape_parts(program), functions = shape_function_parts(program);
     const auto made = pipelines.find({choice, parts, functions});
     if (made != pipelines.end()) return made->second;
-    const std::uint32_t constants[] = {RayRuns::kThreads, choice, parts, functions};
+    const std::uint32_t constants[] = {RayRuns<FunctionRays>::kThreads, choice, parts, functions};
     return pipelines
         .try_emplace({choice, parts, functions}, device, kSphereTraceWords, "sphere-trace",
                      std::uint32_t{sizeof(glsl::ShapeBatch)}, constants)
@@ -127,7 +128,7 @@ struct DeviceShapeQueries::Impl {
 
   MarchSettings march_settings;
   Device device;
-  RayRuns runs;
+  RayRuns<FunctionRays> runs;
   std::map<std::array<std::uint32_t, 3>, ComputePipeline>
       pipelines;  // by choice, contents, and contents of its functions
 };
@@ -136,7 +137,7 @@ DeviceShapeQueries::DeviceShapeQueries(const Device& device, const ShapeMarchEnt
                                        const MarchSettings& march_settings, const DeviceQuerySettings& settings) {
   if (march.name != "sphere-trace") {
     throw Error(
-        fmt::format("march '{}': does not run against shapes on Vulkan devices; there runs: sphere-trace", march.name));
+        fmt::format("march '{}': does not run on shapes on Vulkan devices (available: sphere-trace)", march.name));
   }
   validate(march_settings);
   impl_ = std::make_unique<Impl>(device, march_settings, settings);
@@ -162,10 +163,10 @@ void DeviceShapeQueries::closest_hits(const DeviceShapeTarget& target, std::span
 
 void DeviceShapeQueries::occluded(const DeviceShapeTarget& target, std::span<const Ray> rays,
                                   std::span<std::uint8_t> blocked) {
-  require_room(rays.size(), blocked.size());
+  require_room(rays.size(), blocked.size(), 0);
   impl_->ask(target, true, rays,
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
-               blocked[i] = is_blocked(prepared, answer);
+               blocked[i] = FunctionRays::is_hit(prepared, answer);
              });
 }
 

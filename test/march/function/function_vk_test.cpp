@@ -109,8 +109,8 @@ TEST_F(FunctionsOnDevice, SayWhatIsWrong) {
   FunctionMarchEntry unknown = find_function_march("naive");
   unknown.name = "max-mip";
   EXPECT_EQ(test::refusal([&] { DeviceFunctionQueries(device(), unknown); }),
-            "march 'max-mip': does not run over functions on Vulkan devices; there run: naive, fixed-step, relaxed, "
-            "lipschitz, lipschitz-local");
+            "march 'max-mip': does not run over functions on Vulkan devices (available: naive, fixed-step, relaxed, "
+            "lipschitz, lipschitz-local)");
   const HeightFunction plane(make_function(Plane{5}));
   const DeviceFunction on_device(device(), plane);
   std::vector<Ray> rays(2);

@@ -256,14 +256,14 @@ TEST_F(QueriesOnDevice, SayWhatIsWrong) {
   const HeightField field = HeightField::own(std::vector<float>(16, 1.0F), 4, 4);
   const DeviceGround ground(device(), field);
   EXPECT_EQ(test::refusal([&] { DeviceQueries(device(), find_height_march("exhaustive")); }),
-            "march 'exhaustive': does not run on Vulkan devices; there run: max-mip, naive, fixed-step, relaxed, "
-            "lipschitz");
+            "march 'exhaustive': does not run on Vulkan devices (available: max-mip, naive, fixed-step, relaxed, "
+            "lipschitz)");
   std::vector<Ray> rays(2);
   std::vector<Hit> hits(1);
   EXPECT_EQ(test::refusal([&] {
               queries("max-mip").closest_hits({&field, &ground}, rays, hits);
             }),
-            "batch: 2 rays, room for 1 answers");
+            "batch: 2 rays, room for 1 answers and 0 costs");
   hits.resize(2);
   EXPECT_NE(test::refusal([&] { queries("lipschitz").closest_hits({&field, &ground}, rays, hits); }), "");
   EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_height_march("max-mip"), {}, {.rays_at_once = 0}); }), "");
