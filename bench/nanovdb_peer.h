@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "bench/voxel_engine.h"
+#include "scarp/field/voxel_grid.h"
 
 namespace scarp::bench {
 

@@ -24,7 +24,7 @@ std::string text_of(const FaceOf& face) {
 // Compares a row of pixels; `near` are the faces near edges of its pixels.
 class Rows {
  public:
-  Rows(const RasterPicture& quads, const VoxelScene& scene, const PictureFrame& frame, double off)
+  Rows(const RasterPicture& quads, const Scene& scene, const PictureFrame& frame, double off)
       : quads_(quads), scene_(scene), frame_(frame), off_(off) {}
 
   void compare(int row) {
@@ -73,7 +73,7 @@ class Rows {
   }
 
   const RasterPicture& quads_;
-  const VoxelScene& scene_;
+  const Scene& scene_;
   const PictureFrame& frame_;
   double off_;
   PixelMatch found_;
@@ -88,7 +88,7 @@ void add(PixelMatch& to, const PixelMatch& part) {
 
 }  // namespace
 
-PixelMatch compare_with_quads(const RasterPicture& quads, const VoxelScene& scene, const VoxelGrid& grid, double side,
+PixelMatch compare_with_quads(const RasterPicture& quads, const Scene& scene, const VoxelGrid& grid, double side,
                               const PictureFrame& frame) {
   const ivec3 size = grid.bounds().high - grid.bounds().low;
   const double longest = std::max({size.x, size.y, size.z});

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "bench/quad_raster.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp::bench {
 
@@ -33,7 +34,7 @@ struct PixelMatch {
 };
 
 /// `scene`: one with the same objects. Throws Error when rays may be off by more than the margin.
-PixelMatch compare_with_quads(const RasterPicture& quads, const VoxelScene& scene, const VoxelGrid& grid, double side,
+PixelMatch compare_with_quads(const RasterPicture& quads, const Scene& scene, const VoxelGrid& grid, double side,
                               const PictureFrame& frame);
 
 struct NamedFrame {

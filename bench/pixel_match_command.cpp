@@ -31,7 +31,7 @@ void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& repo
     const RasterPicture quads = rasterise(grid, places, view.frame, kPixelMargin);
     for (const std::string& name : options.marches) {
       const auto model = std::make_shared<const VoxelModel>(grid, find_voxel_march(name));
-      const VoxelScene scene({model}, places);
+      const Scene scene(scene_voxels({{model}, places}));
       const PixelMatch found = compare_with_quads(quads, scene, grid, places[0].world_from_grid[0][0], view.frame);
       wrong += found.differ + found.near_edge_wrong;
       if (first.empty() && !found.first.empty())

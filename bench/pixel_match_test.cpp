@@ -12,8 +12,8 @@
 namespace scarp::bench {
 namespace {
 
-VoxelScene scene_of(const VoxelGrid& grid, std::span<const VoxelPlace> places) {
-  return VoxelScene({std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))}, places);
+Scene scene_of(const VoxelGrid& grid, const std::vector<VoxelPlace>& places) {
+  return Scene(scene_voxels({{std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))}, places}));
 }
 
 PixelMatch expect_match(std::string_view set, int thousands, const NamedFrame& view) {

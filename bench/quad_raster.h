@@ -22,7 +22,7 @@
 #include <span>
 #include <vector>
 
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/placed_voxels.h"
 
 namespace scarp::bench {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/base/ray.h"
 
 namespace scarp::bench {
 
@@ -15,7 +15,7 @@ struct VoxelEngine {
   std::string mode;  ///< x1: one ray at a time; x64, x8: so many neighbours at once
   std::string box;   ///< which part of objects is followed: grid or bounds
   double mib = 0;    ///< with one model for all objects
-  /// hits[i] answers rays[i]: status, t, voxel and part. On the calling thread.
+  /// hits[i] answers rays[i]: status, t, voxel and part. On one thread.
   std::function<void(std::span<const Ray> rays, std::span<Hit> hits)> trace;
 };
 

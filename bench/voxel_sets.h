@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/placed_voxels.h"
 
 namespace scarp::bench {
 

@@ -17,6 +17,8 @@
 #include "bench/voxel_hash.h"
 #include "bench/voxel_sets.h"
 #include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp::bench {
 namespace {
@@ -73,8 +75,8 @@ void measure_colours(Json& rows, std::vector<std::vector<std::string>>& lines) {
       again.drop_hidden_entries();
     });
     std::vector<ivec3> asked;
-    const VoxelScene scene({std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-planes"))},
-                           std::vector{VoxelPlace{}});
+    const auto model = std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-planes"));
+    const Scene scene(scene_voxels({{model}, {VoxelPlace{}}}));
     for (const Ray& ray : octant_rays(dvec3(grid.size()), 64)) {
       if (const Hit hit = scene.closest_hit(ray)) asked.push_back(hit.voxel);
     }
@@ -150,11 +152,10 @@ std::vector<Measured> measure_engines(const std::vector<VoxelEngine>& engines, c
 }
 
 // A scene as two engines: ray by ray, and in batches.
-void add_engines(const VoxelScene& scene, std::string_view march, const char* box, double model_bytes,
-                 std::vector<VoxelEngine>& engines) {
+void add_engines(const Scene& scene, std::string_view march, const char* box, std::vector<VoxelEngine>& engines) {
   VoxelEngine engine;
   engine.name = march, engine.mode = "x1", engine.box = box;
-  engine.mib = (model_bytes + static_cast<double>(scene.bytes())) / kMiB;
+  engine.mib = static_cast<double>(scene.only_field()->bytes()) / kMiB;
   engine.trace = [&scene](std::span<const Ray> rays, std::span<Hit> hits) {
     for (std::size_t i = 0; i < rays.size(); ++i) hits[i] = scene.closest_hit(rays[i]);
   };
@@ -168,7 +169,7 @@ void add_engines(const VoxelScene& scene, std::string_view march, const char* bo
 void measure_frame(const std::string& set, int n, const VoxelsOptions& options, Json& rows,
                    std::vector<std::vector<std::string>>& lines) {
   struct Technique {
-    std::unique_ptr<VoxelScene> scene;
+    std::unique_ptr<Scene> scene;
     double bytes, lossless, build_s;
   };
   const std::vector<Ray> rays = camera_rays(options.stride);
@@ -182,11 +183,11 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
       grid.drop_hidden_entries();
       const auto model = std::make_shared<const VoxelModel>(std::move(grid), march, std::vector<VoxelColour>{}, extent);
       const Stopwatch build;
-      auto scene = std::make_unique<VoxelScene>(std::vector{model}, places);
+      auto scene = std::make_unique<Scene>(scene_voxels({{model}, places}));
       techniques.push_back(
           {std::move(scene), static_cast<double>(model->bytes()), static_cast<double>(lossless), build.cpu_s()});
       add_engines(*techniques.back().scene, march.name, extent == VoxelModel::Extent::grid ? "grid" : "bounds",
-                  techniques.back().bytes, engines);
+                  engines);
     }
   }
   const VoxelGrid grid = voxel_object(set);
@@ -221,7 +222,7 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
       // Steps are the same in batches.
       for (std::size_t i = 0; i < rays.size(); i += 7, ++asked) {
         MarchStats of_ray;
-        t.scene->closest_hit(rays[i], &of_ray);
+        t.scene->closest_hit(rays[i], nullptr, &of_ray);
         stats.steps += of_ray.steps, stats.boxes += of_ray.boxes;
       }
       row["steps_per_ray"] = static_cast<double>(stats.steps) / static_cast<double>(asked);
@@ -230,8 +231,8 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
       row["bytes_per_object_lossless"] = t.lossless;
       row["mib_per_1k_distinct"] = t.bytes * 1024 / kMiB;
       row["mib_per_1k_lossless"] = t.lossless * 1024 / kMiB;
-      row["mib_per_1k_instanced"] =
-          static_cast<double>(t.scene->bytes()) / static_cast<double>(t.scene->objects()) * 1024 / kMiB;
+      row["mib_per_1k_instanced"] = (static_cast<double>(t.scene->only_field()->bytes()) - t.bytes) /
+                                    static_cast<double>(places.size()) * 1024 / kMiB;
       row["scene_build_s"] = t.build_s;
     }
     std::vector<std::string> line;
@@ -248,12 +249,12 @@ void measure_frame(const std::string& set, int n, const VoxelsOptions& options, 
 void measure_grid(const char* name, const VoxelGrid& grid, const VoxelsOptions& options, Json& rows,
                   std::vector<std::vector<std::string>>& lines) {
   const std::vector<Ray> rays = octant_rays(dvec3(grid.size()), options.width);
-  std::vector<std::unique_ptr<VoxelScene>> scenes;
+  std::vector<std::unique_ptr<Scene>> scenes;
   std::vector<VoxelEngine> engines;
   for (const VoxelMarchEntry& march : voxel_marches().subspan(1)) {
     const auto model = std::make_shared<const VoxelModel>(grid, march);
-    scenes.push_back(std::make_unique<VoxelScene>(std::vector{model}, std::vector{VoxelPlace{}}));
-    add_engines(*scenes.back(), march.name, "bounds", static_cast<double>(model->bytes()), engines);
+    scenes.push_back(std::make_unique<Scene>(scene_voxels({{model}, {VoxelPlace{}}})));
+    add_engines(*scenes.back(), march.name, "bounds", engines);
   }
 #ifdef SCARP_BENCH_NANOVDB
   const NanovdbPeer nanovdb(grid);
@@ -294,6 +295,7 @@ VoxelGrid block_of(const ivec3& objects) {
 }  // namespace
 
 void run_voxels(const VoxelsOptions& options, const ReportOptions& report) {
+  const ThreadLimit limit(1);
   Json rows = Json::array();
   std::vector<std::vector<std::string>> builds{{"set", "builder", "us", "bytes"}};
   measure_builders(rows, builds);

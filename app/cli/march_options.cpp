@@ -41,7 +41,7 @@ void add_march_option(Command& command, std::string& march) {
                        .choices = march_names(),
                        .unlisted = true,
                        .note = "see 'scarp marches'",
-                       .fallback = fmt::format("{}; voxels {}, functions {}", kTerrainMarch, VoxelSceneOptions{}.march,
+                       .fallback = fmt::format("{}; voxels {}, functions {}", kTerrainMarch, VoxelFileOptions{}.march,
                                                kFunctionMarch),
                        .topic = Topic::march,
                        .common = true,

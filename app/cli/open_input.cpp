@@ -31,14 +31,14 @@ OpenedInput terrain(const InputOptions& options) {
 }
 
 OpenedInput voxels(const InputOptions& options, const std::string& ramp) {
-  VoxelSceneOptions voxels;
+  VoxelFileOptions voxels;
   if (!options.march.empty()) voxels.march = options.march;
   find_voxel_march(voxels.march);
   voxels.surface_colours = options.vox.surface_colours;
   voxels.rounding = options.vox_look.rounding;
   const VoxelShading shading = shading_of(options.vox_look);
   VoxInput read = read_voxels(options.inputs.front(), options.vox, voxels, ramp);
-  OpenedInput opened{Scene(scene_voxels(std::move(read.scene), voxels.march, shading))};
+  OpenedInput opened{Scene(scene_voxels(std::move(read.voxels), shading))};
   opened.numbers = read.numbers;
   return opened;
 }

@@ -133,7 +133,7 @@ void add_vox_look_options(Command& command, VoxLookOptions& options) {
                         .inputs = {kVoxels | kScene, "only voxels can be merged"}});
 }
 
-VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelSceneOptions& voxels,
+VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels,
                      const std::string& ramp) {
   const bool volume = !options.volume.empty(), binvox = !volume && extension_of(path) == ".binvox";
   const FromVolumeOptions from{voxels, options.up == "y" ? UpAxis::y : UpAxis::z, options.solid_from};
@@ -142,15 +142,15 @@ VoxInput read_voxels(const std::string& path, const VoxOptions& options, const V
   refuse(!volume && !binvox && options.up != "z", "--up", "binvox files and volumes");
   if (volume) {
     const DenseVolume numbers = read_volume(path, options.volume);
-    VoxInput input{{}, voxel_scene_from(numbers, colours_of(ramp), from)};
+    VoxInput input{{}, placed_voxels_from(numbers, colours_of(ramp), from)};
     const SolidRange range = solid_range(numbers, options.solid_from);
     if (!ramp.empty() && std::isfinite(range.high)) input.numbers = range;
     return input;
   }
-  if (binvox) return {{}, voxel_scene_from(read_binvox(path), kPlainVoxels, from), {}};
+  if (binvox) return {{}, placed_voxels_from(read_binvox(path), kPlainVoxels, from), {}};
   VoxFile document = read_vox(path);
-  VoxelScene scene = naming(path, [&] { return voxel_scene_from(document, {options.scene, voxels}); });
-  return {std::move(document), std::move(scene), {}};
+  PlacedVoxels placed = naming(path, [&] { return placed_voxels_from(document, {options.scene, voxels}); });
+  return {std::move(document), std::move(placed), {}};
 }
 
 VoxelShading shading_of(const VoxLookOptions& options) {
@@ -190,7 +190,7 @@ void describe_document(const VoxFile& file, const VoxOptions& options, Json& inf
 }  // namespace
 
 Json describe_vox(const std::string& path, const VoxOptions& options) {
-  VoxelSceneOptions voxels;
+  VoxelFileOptions voxels;
   voxels.surface_colours = options.surface_colours;
   const VoxInput input = read_voxels(path, options, voxels, {});
   Json info;
@@ -200,13 +200,12 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
     naming(path, [&] { describe_document(*input.document, options, info); });
   } else {
     info["format"] = options.volume.empty() ? "binvox" : "volume";
-    const VoxelGrid& grid = input.scene.models()[0]->grid();
+    const VoxelGrid& grid = input.voxels.models[0]->grid();
     info["models"] = {{{"size", {grid.size().x, grid.size().y, grid.size().z}}, {"voxels", grid.solid_count()}}};
   }
-  std::size_t bytes = input.scene.bytes();
-  for (const auto& model : input.scene.models()) bytes += model->bytes();
-  info["bytes"] = bytes;
-  const WorldBox& box = input.scene.box();
+  const SceneFieldPtr field = scene_voxels(input.voxels);
+  info["bytes"] = field->bytes();
+  const WorldBox box = *field->box();
   const bool empty = !(box.low.x <= box.high.x);
   const auto corner = [](const dvec3& p) { return Json{std::llround(p.x), std::llround(p.y), std::llround(p.z)}; };
   info["low"] = empty ? Json() : corner(box.low);

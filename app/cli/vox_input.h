@@ -49,11 +49,11 @@ std::vector<VoxelColour> colours_of(const std::string& ramp);
 /// A voxel file read.
 struct VoxInput {
   std::optional<VoxFile> document;  ///< of MagicaVoxel
-  VoxelScene scene;
+  PlacedVoxels voxels;
   std::optional<SolidRange> numbers{};  ///< volumes: range that the colours show
 };
 /// Numbers of volumes are shown by `ramp`, of ramp_names(); empty: not at all.
-VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelSceneOptions& voxels,
+VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels,
                      const std::string& ramp);
 
 VoxelShading shading_of(const VoxLookOptions& options);

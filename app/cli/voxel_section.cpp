@@ -103,7 +103,7 @@ void run(const SectionOptions& options) {
   if (!is_vox_input({options.input}, options.vox))
     throw Error(fmt::format("'{}': not a voxel file (expected .vox or .binvox, or --volume)", options.input));
   const VoxInput input = read_voxels(options.input, options.vox, {}, {});
-  const auto& models = input.scene.models();
+  const auto& models = input.voxels.models;
   if (options.model >= static_cast<int>(models.size()))
     throw Error(fmt::format("--model {}: there are {}, counted from 0", options.model, models.size()));
   const VoxelModel& model = *models[static_cast<std::size_t>(options.model)];

@@ -6,6 +6,7 @@
 // off, except the shadow rays of voxels with smooth normals.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -19,7 +20,7 @@
 #include "scarp/march/height/height_table.h"
 #include "scarp/march/shape/shape_table.h"
 #include "scarp/scene/box_tree.h"
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/placed_voxels.h"
 #include "scarp/scene/voxel_shading.h"
 
 namespace scarp {
@@ -48,8 +49,7 @@ struct SceneFieldParts {
   using Function = Marched<HeightFunction, FunctionMarchEntry>;
   using Shape = Marched<DistanceField, ShapeMarchEntry>;
 
-  /// monostate: none of these.
-  std::variant<std::monostate, Heights, Function, Shape, const VoxelScene*> of{};
+  std::variant<std::monostate, Heights, Function, Shape> of{};  ///< monostate: none of these
 };
 
 /// Immutable; may be queried from many threads at once.
@@ -97,6 +97,9 @@ class SceneField {
   /// The ray as the march takes it: on the surface of `from`, or free when that is null.
   virtual Ray started(const Ray& ray, const Hit* from) const;
 
+  /// Memory of the models and of what was built over them: of voxels. 0: not counted.
+  virtual std::size_t bytes() const { return 0; }
+
   /// Whether batches are faster than single rays.
   virtual bool likes_batches() const { return false; }
   /// The same answers for many rays, on the calling thread.
@@ -137,9 +140,10 @@ SceneFieldPtr scene_function(HeightFunction function,
 SceneFieldPtr scene_shape(DistanceField shape, const ShapeMarchEntry& march = find_shape_march("sphere-trace"),
                           const MarchSettings& settings = {});
 
-/// The objects of a voxel scene as one; each model has its march. With VoxelNormals::smooth, occluded() moves a ray
-/// that begins on a voxel up the smooth normal, by sqrt(3) voxels, lest it be shaded by the steps of what looks smooth.
-/// Throws Error for a shading out of its range.
-SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march, const VoxelShading& shading = {});
+/// Models in their places as one field; each model has its march. With VoxelNormals::smooth, occluded() moves a ray
+/// that begins on a voxel up the smooth normal, by sqrt(3) voxels, so that the steps of what looks smooth do not shade
+/// it. Throws Error naming the place: a model that does not exist, a matrix that is not a rotation with a scale; or a
+/// model that is null, a rounding or shading out of its range.
+SceneFieldPtr scene_voxels(PlacedVoxels voxels, const VoxelShading& shading = {});
 
 }  // namespace scarp

@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Voxels in scenes.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "scarp/scene/scene_field.h"
+#include "scarp/scene/voxel_objects.h"
 
 namespace scarp {
 namespace {
@@ -15,77 +20,86 @@ constexpr std::string_view kJudge = "voxel-planes";
 
 class Voxels final : public SceneField {
  public:
-  Voxels(VoxelScene scene, std::string_view march, const VoxelShading& shading)
-      : scene_(std::move(scene)), march_(march), shading_(shading) {
+  Voxels(VoxelObjects objects, const VoxelShading& shading) : objects_(std::move(objects)), shading_(shading) {
     validate(shading);
+    std::set<std::string_view> marches;
+    for (const auto& model : objects_.models()) marches.insert(model->march().name);
+    march_ = fmt::format("{}", fmt::join(marches, ", "));
   }
 
   std::string_view kind() const override { return "voxels"; }
   std::string_view march() const override { return march_; }
-  std::optional<WorldBox> box() const override { return scene_.box(); }
+  std::optional<WorldBox> box() const override { return objects_.box(); }
 
   // A ray alone does not say on which voxel it begins: without `from` all rays are free.
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
-    return scene_.closest_hit(ray, from, stats);
+    return objects_.closest_hit(ray, from, stats);
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
-    if (!from) return scene_.occluded(ray);
+    if (!from) return objects_.occluded(ray);
     return shading_.normals == VoxelNormals::smooth ? occluded_above_steps(ray, *from)
-                                                    : scene_.occluded_from(*from, ray);
+                                                    : objects_.occluded_from(*from, ray);
   }
   bool likes_batches() const override { return true; }
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const override {
-    scene_.closest_hits(rays, hits, from);
+    objects_.closest_hits(rays, hits, from);
   }
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from) const override {
     if (shading_.normals == VoxelNormals::smooth && !from.empty()) return SceneField::occluded(rays, blocked, from);
-    scene_.occluded(rays, blocked, from);
+    objects_.occluded(rays, blocked, from);
   }
   FieldSurface surface(const Ray& ray, const Hit& hit) const override {
     const dvec3 p = ray.at(hit.t);
     FieldSurface surface;
-    surface.normal = scene_.normal(p, hit);
+    surface.normal = objects_.normal(p, hit);
     surface.shading_normal = shading_normal(hit, p, surface.normal);
-    surface.colour = scene_.colour(hit);
+    surface.colour = objects_.colour(hit);
     if (shading_.corner_ao)
-      surface.openness = corner_openness(scene_.grid(hit), hit.voxel, hit.face, scene_.place_in_grid(hit, p));
+      surface.openness = corner_openness(objects_.grid(hit), hit.voxel, hit.face, objects_.place_in_grid(hit, p));
     return surface;
   }
-  SceneFieldParts parts() const override { return {&scene_}; }
+  SceneFieldParts parts() const override { return {}; }
+  std::size_t bytes() const override {
+    std::size_t bytes = objects_.bytes();
+    for (const auto& model : objects_.models()) bytes += model->bytes();
+    return bytes;
+  }
 
   std::optional<FieldSurface> within(const dvec3& p) const override {
-    const auto colour = scene_.colour_at(p);
+    const auto colour = objects_.colour_at(p);
     if (!colour) return {};
     return FieldSurface{{0, 0, 1}, {0, 0, 1}, colour};
   }
-  double cell_side() const override { return scene_.voxel_side(); }
+  double cell_side() const override { return objects_.voxel_side(); }
   std::int64_t elements() const override {
     std::int64_t solid = 0;
-    for (const auto& model : scene_.models()) solid += model->grid().solid_count();
+    for (const auto& model : objects_.models()) solid += model->grid().solid_count();
     return solid;
   }
-  SceneFieldPtr judge() const override { return scene_voxels(scene_.marched_by(kJudge), kJudge, shading_); }
-  SceneFieldPtr coarser(int level) const override { return scene_voxels(scene_.coarser(level), march_, shading_); }
+  SceneFieldPtr judge() const override { return std::make_shared<Voxels>(objects_.marched_by(kJudge), shading_); }
+  SceneFieldPtr coarser(int level) const override {
+    return std::make_shared<Voxels>(objects_.coarser(level), shading_);
+  }
 
  private:
   // A surface that is shaded as a smooth one is not shaded by its own steps. Voxels with their middles below a plane
   // have corners up to sqrt(3) / 2 voxel above it, and faces as far below: above all of them the ray begins free.
   bool occluded_above_steps(const Ray& ray, const Hit& from) const {
-    const dvec3 p = ray.at(ray.t_min), normal = scene_.normal(p, from);
+    const dvec3 p = ray.at(ray.t_min), normal = objects_.normal(p, from);
     Ray above = ray;
-    above.origin += std::sqrt(3.0) * scene_.voxel_side(from) * shading_normal(from, p, normal);
-    return scene_.occluded(above);
+    above.origin += std::sqrt(3.0) * objects_.voxel_side(from) * shading_normal(from, p, normal);
+    return objects_.occluded(above);
   }
 
   dvec3 shading_normal(const Hit& hit, const dvec3& p, const dvec3& normal) const {
     if (shading_.normals == VoxelNormals::flat || hit.face == VoxelFace::inside) return normal;
     const dvec3 point = shading_.normals == VoxelNormals::smooth
-                            ? scene_.place_in_grid(hit, p)
+                            ? objects_.place_in_grid(hit, p)
                             : dvec3(hit.voxel) + 0.5 + 0.5 * dvec3(normal_of(hit.face));
-    const dvec3 smooth = smooth_normal(scene_.grid(hit), point, shading_.normal_radius, dvec3(normal_of(hit.face)));
+    const dvec3 smooth = smooth_normal(objects_.grid(hit), point, shading_.normal_radius, dvec3(normal_of(hit.face)));
     if (smooth == dvec3(0.0)) return normal;
-    const dvec3 in_world = scene_.world_from_grid(hit, smooth);
+    const dvec3 in_world = objects_.world_from_grid(hit, smooth);
     const double towards = dot(in_world, normal);
     if (towards > 0) return in_world;
     // A face of a step that looks up the slope is lit as the slope along it; of a leaf or a thread, where the other
@@ -94,15 +108,15 @@ class Voxels final : public SceneField {
     return normalize(along + std::max(0.0, 1 - 2 * length(along)) * normal);
   }
 
-  VoxelScene scene_;
+  VoxelObjects objects_;
   std::string march_;
   VoxelShading shading_;
 };
 
 }  // namespace
 
-SceneFieldPtr scene_voxels(VoxelScene scene, std::string_view march, const VoxelShading& shading) {
-  return std::make_shared<Voxels>(std::move(scene), march, shading);
+SceneFieldPtr scene_voxels(PlacedVoxels voxels, const VoxelShading& shading) {
+  return std::make_shared<Voxels>(VoxelObjects(std::move(voxels)), shading);
 }
 
 }  // namespace scarp

@@ -7,7 +7,8 @@
 #include <utility>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/placed_voxels.h"
+#include "scarp/scene/scene_field.h"
 
 namespace scarp {
 namespace {
@@ -15,8 +16,7 @@ namespace {
 constexpr std::string_view kMarch = "voxel-bricks";
 
 Scene scene_of(const std::shared_ptr<VoxelModel>& model, double side) {
-  const std::vector places{VoxelPlace{.world_from_grid = glm::dmat3(side)}};
-  return scene_voxels(VoxelScene({model}, places), kMarch);
+  return scene_voxels({{model}, {VoxelPlace{.world_from_grid = glm::dmat3(side)}}});
 }
 
 }  // namespace

@@ -56,8 +56,7 @@ SceneFieldPtr voxel_block() {
     return (v.x + v.y + v.z) % 2 == 0 ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
   });
   auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
-  const VoxelPlace place{};
-  return scene_voxels(VoxelScene({model}, std::span(&place, 1)), "voxel-bricks");
+  return scene_voxels({{model}, {VoxelPlace{}}});
 }
 
 SceneFieldPtr ball(double radius) { return scene_shape(DistanceField(make_shape(shape::Sphere{radius}))); }
@@ -222,12 +221,11 @@ TEST(SceneOfManyFields, BatchesAndOcclusionAgreeWithSingleRays) {
 TEST(SceneOfManyFields, RaysFromASurfaceAreNotBlockedByIt) {
   VoxelGrid cube(ivec3(1), 8);
   cube.edit(cube.box(), [](const ivec3&, const VoxelGrid::Voxel&) { return VoxelGrid::Voxel(1); });
-  const VoxelPlace at_origin{};
   auto model = std::make_shared<const VoxelModel>(std::move(cube), find_voxel_march("voxel-bricks"));
   std::vector<float> flat(25, 3.0f);
   const std::vector<SceneFieldPtr> fields{
       scene_heights(HeightField::own(std::move(flat), 5, 5, {.cell_x = 0.3, .cell_y = 0.3})),
-      scene_voxels(VoxelScene({model}, std::span(&at_origin, 1)), "voxel-bricks"),
+      scene_voxels({{model}, {VoxelPlace{}}}),
       ball(0.7),
       scene_function(HeightFunction(make_function(Plane{.height = 0.1, .slope_x = 0.3, .slope_y = -0.7}))),
   };

@@ -12,6 +12,7 @@
 #include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/file/to_vox.h"
 #include "scarp/scene/scene.h"
+#include "scarp/scene/voxel_objects.h"
 #include "scarp/scene/voxelised.h"
 
 namespace scarp {
@@ -125,7 +126,7 @@ TEST(CoarseVoxels, HaveTheMeanColourOfWhatIsSeen) {
 
 TEST(CoarseVoxels, AreTakenWherePixelsAreLarger) {
   const VoxelGrid wall = grid_where(ivec3(64), [](const ivec3& v) { return v.z == 0; });
-  const SceneFieldPtr field = scene_voxels(VoxelScene({model_of(wall)}, std::vector{VoxelPlace{}}), "voxel-bricks");
+  const SceneFieldPtr field = scene_voxels({{model_of(wall)}, {VoxelPlace{}}});
   const Scene scene({field}, {SceneObject{0, 0, {glm::dmat3(1.0), 0.5, {0, 0, 0}}}, SceneObject{0, 0, {}}});
   // The eye is 100 m above; voxels are 0.5 and 1 m, a pixel 2.2 m: levels 2 and 1.
   const Scene coarse = scene.coarser({{0, 0, 101}, {0, 0, -1}, [](double depth) { return 0.022 * depth; }});
@@ -140,11 +141,11 @@ TEST(CoarseVoxels, AreTakenWherePixelsAreLarger) {
 // Stairs that the sun shines along, a little above their slope: flat ones shade themselves, smooth ones do not.
 TEST(SmoothVoxels, AreNotShadedByTheirOwnSteps) {
   const VoxelGrid stairs = grid_where(ivec3(64, 16, 40), [](const ivec3& v) { return 2 * v.z < v.x; });
-  const VoxelScene voxels({model_of(stairs)}, std::vector{VoxelPlace{0, glm::dmat3(0.5), {10, 0, 0}}});
+  const PlacedVoxels voxels{{model_of(stairs)}, {VoxelPlace{0, glm::dmat3(0.5), {10, 0, 0}}}};
   const auto blocked = [&](VoxelNormals normals, int towards) {
     VoxelShading shading;
     shading.normals = normals;
-    const Scene scene({scene_voxels(voxels, "voxel-bricks", shading)}, {SceneObject{}});
+    const Scene scene(scene_voxels(voxels, shading));
     int count = 0;
     for (int i = 0; i < 100; ++i) {
       Ray down;
@@ -167,8 +168,7 @@ TEST(SmoothVoxels, AreNotShadedByTheirOwnSteps) {
 // sheet before a thick wall, seen from between them.
 TEST(SmoothVoxels, LightFacesThatLookTheOtherWay) {
   const auto seen = [](const VoxelGrid& grid, const dvec3& from, const dvec3& direction) {
-    const VoxelScene voxels({model_of(grid)}, std::vector{VoxelPlace{}});
-    const SceneFieldPtr field = scene_voxels(voxels, "voxel-bricks", {.normals = VoxelNormals::smooth});
+    const SceneFieldPtr field = scene_voxels({{model_of(grid)}, {VoxelPlace{}}}, {.normals = VoxelNormals::smooth});
     Ray ray;
     ray.origin = from, ray.direction = direction;
     return field->surface(ray, field->closest_hit(ray, nullptr, nullptr));
@@ -189,9 +189,9 @@ TEST(SmoothVoxels, AreOfTheModelThatWasHit) {
   const auto slab = model_of(grid_where(ivec3(8), [](const ivec3& v) { return v.z < 1; }));
   const auto stairs = model_of(grid_where(ivec3(16), [](const ivec3& v) { return v.x + v.y + v.z < 24; }));
   const VoxelShading shading{.normals = VoxelNormals::smooth, .corner_ao = true};
-  const std::vector<VoxelPlace> places{VoxelPlace{.origin = {40, 0, 0}}, VoxelPlace{.model = 1}};
-  const SceneFieldPtr alone = scene_voxels(VoxelScene({stairs}, std::vector{VoxelPlace{}}), "voxel-bricks", shading),
-                      second = scene_voxels(VoxelScene({slab, stairs}, places), "voxel-bricks", shading);
+  const SceneFieldPtr alone = scene_voxels({{stairs}, {VoxelPlace{}}}, shading);
+  const SceneFieldPtr second =
+      scene_voxels({{slab, stairs}, {VoxelPlace{.origin = {40, 0, 0}}, VoxelPlace{.model = 1}}}, shading);
   Ray down;
   down.origin = {8.3, 7.6, 30};
   const Hit hit = second->closest_hit(down, nullptr, nullptr);
@@ -258,7 +258,7 @@ TEST(ToVox, KeepsPlacesAndColours) {
   const VoxFile file = vox_file_of(grid, {-7, 20, 5}, exact);
   EXPECT_TRUE(exact);
   EXPECT_EQ(file.models.size(), 2U);
-  const VoxelScene scene = voxel_scene_from(parse_vox(vox_bytes(file)));
+  const VoxelObjects scene(placed_voxels_from(parse_vox(vox_bytes(file))));
   for_each_voxel(grid.box(), [&](const ivec3& v) {
     const auto colour = scene.colour_at(dvec3(v + ivec3(-7, 20, 5)) + 0.5);
     ASSERT_EQ(colour.has_value(), grid.solid(v)) << v.x << ' ' << v.y << ' ' << v.z;
@@ -273,7 +273,7 @@ TEST(ToVox, TakesTheNearestOfFewerColours) {
     return VoxelGrid::Voxel(static_cast<std::uint32_t>(17 * v.x | 17 * v.y << 8 | 17 * v.z << 16));
   });
   bool exact = true;
-  const VoxelScene scene = voxel_scene_from(vox_file_of(grid, ivec3(0), exact));
+  const VoxelObjects scene(placed_voxels_from(vox_file_of(grid, ivec3(0), exact)));
   EXPECT_FALSE(exact);
   for_each_voxel(grid.box(), [&](const ivec3& v) {
     const auto colour = *scene.colour_at(dvec3(v) + 0.5);
@@ -289,12 +289,12 @@ TEST(FromVolume, StandsUp) {
   binvox.size = {2, 3, 4};
   binvox.clear();
   binvox.set({1, 2, 0});
-  const VoxelScene as_is = voxel_scene_from(binvox, {9, 8, 7});
+  const VoxelObjects as_is(placed_voxels_from(binvox, {9, 8, 7}));
   EXPECT_EQ(as_is.colour_at({1.5, 2.5, 0.5}), (VoxelColour{9, 8, 7}));
   FromVolumeOptions options;
   options.up = UpAxis::y;
   // y goes up, z comes towards the viewer: south.
-  const VoxelScene up = voxel_scene_from(binvox, {9, 8, 7}, options);
+  const VoxelObjects up(placed_voxels_from(binvox, {9, 8, 7}, options));
   EXPECT_EQ(up.colour_at({1.5, 3.5, 2.5}), (VoxelColour{9, 8, 7}));
   EXPECT_EQ(up.models()[0]->grid().solid_count(), 1);
 }
@@ -303,14 +303,14 @@ TEST(FromVolume, ColoursByNumber) {
   const DenseVolume volume(parse_volume_format("5x1x1:u8"), std::string("\0\12\24\36\31", 5));
   const std::vector<VoxelColour> colours{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
   FromVolumeOptions options;
-  const VoxelScene all = voxel_scene_from(volume, colours, options);
+  const VoxelObjects all(placed_voxels_from(volume, colours, options));
   EXPECT_FALSE(all.colour_at({0.5, 0.5, 0.5}));
   EXPECT_EQ((*all.colour_at({1.5, 0.5, 0.5}))[0], 1);
   EXPECT_EQ((*all.colour_at({2.5, 0.5, 0.5}))[0], 2);
   EXPECT_EQ((*all.colour_at({3.5, 0.5, 0.5}))[0], 3);
   EXPECT_EQ((*all.colour_at({4.5, 0.5, 0.5}))[0], 3);  // 1.5 steps of 10: the nearest above
   options.solid_from = 25;
-  const VoxelScene some = voxel_scene_from(volume, colours, options);
+  const VoxelObjects some(placed_voxels_from(volume, colours, options));
   EXPECT_FALSE(some.colour_at({2.5, 0.5, 0.5}));
   EXPECT_EQ((*some.colour_at({4.5, 0.5, 0.5}))[0], 1);
 }

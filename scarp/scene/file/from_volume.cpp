@@ -17,8 +17,8 @@ bool is_solid(double value, std::optional<double> from) { return from ? value >=
 
 // `entry(v)` of a voxel of the file.
 template <class Entry>
-VoxelScene scene_of(const ivec3& size, const FromVolumeOptions& options, std::vector<VoxelColour> palette,
-                    const Entry& entry) {
+PlacedVoxels model_of(const ivec3& size, const FromVolumeOptions& options, std::vector<VoxelColour> palette,
+                      const Entry& entry) {
   // A quarter turn about x: the file's y becomes z.
   const LatticeRotation turn = options.up == UpAxis::y ? LatticeRotation{{0, 2, 1}, {1, -1, 1}} : LatticeRotation{};
   const ivec3 turned_size = abs(turn(size));
@@ -29,7 +29,7 @@ VoxelScene scene_of(const ivec3& size, const FromVolumeOptions& options, std::ve
   if (options.voxels.surface_colours) grid.drop_hidden_entries();
   const auto model =
       std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(options.voxels.march), std::move(palette));
-  return VoxelScene({model}, std::vector{VoxelPlace{}}, options.voxels.rounding);
+  return {{model}, {VoxelPlace{}}, options.voxels.rounding};
 }
 
 }  // namespace
@@ -43,13 +43,13 @@ SolidRange solid_range(const DenseVolume& volume, std::optional<double> solid_fr
   return range;
 }
 
-VoxelScene voxel_scene_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options) {
-  return scene_of(binvox.size, options, {colour, colour},
+PlacedVoxels placed_voxels_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options) {
+  return model_of(binvox.size, options, {colour, colour},
                   [&](const ivec3& v) { return binvox.solid(v) ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel(); });
 }
 
-VoxelScene voxel_scene_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
-                            const FromVolumeOptions& options) {
+PlacedVoxels placed_voxels_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
+                                const FromVolumeOptions& options) {
   if (colours.empty() || colours.size() > kMostColours) throw Error("volume: 1 to 255 colours are needed");
   const auto [low, high] = solid_range(volume, options.solid_from);
   // Infinite numbers have the last colour.
@@ -57,7 +57,7 @@ VoxelScene voxel_scene_from(const DenseVolume& volume, std::span<const VoxelColo
   std::vector<VoxelColour> palette{VoxelColour{}};
   palette.insert(palette.end(), colours.begin(), colours.end());
   const auto last = static_cast<double>(colours.size() - 1);
-  return scene_of(volume.size(), options, std::move(palette), [&, least = low](const ivec3& v) {
+  return model_of(volume.size(), options, std::move(palette), [&, least = low](const ivec3& v) {
     const double value = volume[v];
     if (!is_solid(value, options.solid_from)) return VoxelGrid::Voxel();
     const double share = range > 0 ? std::min(1.0, (value - least) / range) : 1;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Voxels of binvox files and of volumes of numbers as a scene of one object, a voxel 1 m, its corner at (0, 0, 0).
+// Voxels of binvox files and of volumes of numbers as one model, a voxel 1 m, its corner at (0, 0, 0).
 #pragma once
 
 #include <optional>
 #include <span>
 
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/placed_voxels.h"
 #include "scarp/source/binvox.h"
 #include "scarp/source/dense_volume.h"
 
@@ -15,7 +15,7 @@ namespace scarp {
 enum class UpAxis : std::uint8_t { y, z };
 
 struct FromVolumeOptions {
-  VoxelSceneOptions voxels{};
+  VoxelFileOptions voxels{};
   UpAxis up = UpAxis::z;
   std::optional<double> solid_from;  ///< the least number of a solid voxel; nothing: all above 0 are solid
 };
@@ -27,11 +27,11 @@ struct SolidRange {
 SolidRange solid_range(const DenseVolume& volume, std::optional<double> solid_from);
 
 /// `colour`: of all voxels.
-VoxelScene voxel_scene_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options = {});
+PlacedVoxels placed_voxels_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options = {});
 
 /// The lowest number of solid_range() has the first of the colours, the highest the last; at most 255 colours, at
 /// least one. NaN is empty. Throws Error when there are more or none.
-VoxelScene voxel_scene_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
-                            const FromVolumeOptions& options = {});
+PlacedVoxels placed_voxels_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
+                                const FromVolumeOptions& options = {});
 
 }  // namespace scarp

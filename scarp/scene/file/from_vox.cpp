@@ -157,7 +157,7 @@ void for_each_overlap(const std::vector<OnLattice>& instances, const Body& body)
 
 }  // namespace
 
-VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options) {
+PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options) {
   const VoxelMarchEntry& march = find_voxel_march(options.voxels.march);
   const std::vector<VoxInstance> instances = vox_instances(file, options.scene);
   std::vector<VoxelColour> palette(256);
@@ -195,25 +195,24 @@ VoxelScene voxel_scene_from(const VoxFile& file, const FromVoxOptions& options) 
     }
   });
 
-  std::vector<std::shared_ptr<const VoxelModel>> models;
+  PlacedVoxels placed{.rounding = options.voxels.rounding};
   std::map<int, std::uint32_t> shared;
-  std::vector<VoxelPlace> places;
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const int model = instances[i].model;
     const auto own = cut.find(i);
     const auto known = shared.find(model);
-    auto index = static_cast<std::uint32_t>(models.size());
+    auto index = static_cast<std::uint32_t>(placed.models.size());
     if (own == cut.end() && known != shared.end()) {
       index = known->second;
     } else {
       VoxelGrid grid = own != cut.end() ? std::move(own->second) : grids.at(model).grid;
       if (options.voxels.surface_colours) grid.drop_hidden_entries();
-      models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march, palette));
+      placed.models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march, palette));
       if (own == cut.end()) shared.emplace(model, index);
     }
-    places.push_back(on_lattice[i].place(index));
+    placed.places.push_back(on_lattice[i].place(index));
   }
-  return VoxelScene(std::move(models), places, options.voxels.rounding);
+  return placed;
 }
 
 }  // namespace scarp

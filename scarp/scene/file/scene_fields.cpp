@@ -150,8 +150,8 @@ VoxelColour colour_from(const Json& json) {
 }
 
 // By its ending, or by `volume`.
-VoxelScene voxels_of_file(const Json& json, const std::string& path, const std::string& file,
-                          const VoxelSceneOptions& voxels) {
+PlacedVoxels voxels_of_file(const Json& json, const std::string& path, const std::string& file,
+                            const VoxelFileOptions& voxels) {
   FromVolumeOptions volume{voxels, json.value("up", "z") == "y" ? UpAxis::y : UpAxis::z,
                            optional<double>(json, "solid_from")};
   const auto refuse = [&](std::initializer_list<const char*> keys, const char* why) {
@@ -162,21 +162,21 @@ VoxelScene voxels_of_file(const Json& json, const std::string& path, const std::
   const VoxelColour colour = json.contains("colour") ? colour_from(json["colour"]) : kPlainVoxels;
   if (json.contains("volume")) {
     refuse({"frame", "hidden"}, "goes with MagicaVoxel files; leave it out");
-    return voxel_scene_from(read_volume(file, json["volume"]), std::vector{colour}, volume);
+    return placed_voxels_from(read_volume(file, json["volume"]), std::vector{colour}, volume);
   }
   refuse({"solid_from"}, "goes with volume; leave it out");
   if (extension_of(file) == ".binvox") {
     refuse({"frame", "hidden"}, "goes with MagicaVoxel files; leave it out");
-    return voxel_scene_from(read_binvox(file), colour, volume);
+    return placed_voxels_from(read_binvox(file), colour, volume);
   }
   refuse({"up", "colour"}, "goes with binvox files and volumes; leave it out");
-  return voxel_scene_from(read_vox(file), {{json.value("frame", 0), json.value("hidden", false)}, voxels});
+  return placed_voxels_from(read_vox(file), {{json.value("frame", 0), json.value("hidden", false)}, voxels});
 }
 
 FieldWithPlace voxels_from(const Json& json, const std::string& path, const FieldSurroundings& around,
                            const VoxelMarchEntry& march) {
   try {
-    VoxelSceneOptions options{march.name, json.value("surface_colours", false), {}};
+    VoxelFileOptions options{march.name, json.value("surface_colours", false), {}};
     options.rounding = {json.value("rounded", 0.0), json.value("each", false)};
     VoxelShading shading;
     const std::string normals = json.value("normals", "flat");
@@ -186,13 +186,13 @@ FieldWithPlace voxels_from(const Json& json, const std::string& path, const Fiel
     shading.normal_radius = json.value("normal_radius", shading.normal_radius);
     shading.corner_ao = json.value("corner_ao", false);
     const std::string file = resolved(around, json["file"]);
-    VoxelScene scene = voxels_of_file(json, path, file, options);
+    SceneFieldPtr field = scene_voxels(voxels_of_file(json, path, file, options), shading);
     around.files->push_back(file);
-    const WorldBox box = scene.box();
+    const WorldBox box = *field->box();
     dvec3 shift(0.0);
     if (json.value("centred", false) && box.low.x <= box.high.x)
       shift = -dvec3(0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y), box.low.z);
-    return {scene_voxels(std::move(scene), march.name, shading), shift};
+    return {std::move(field), shift};
   } catch (const Error&) {
     rethrow_at(path + "/file");
   }

@@ -37,8 +37,7 @@ Scene voxels() {
     return v.z + 0.5 <= 1 + hill(v.x + 0.5, v.y + 0.5) ? VoxelGrid::Voxel(0x60a040) : VoxelGrid::Voxel();
   });
   auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
-  const VoxelPlace place{};
-  return Scene(scene_voxels(VoxelScene({std::move(model)}, std::span(&place, 1)), "voxel-bricks"));
+  return Scene(scene_voxels({{std::move(model)}, {VoxelPlace{}}}));
 }
 
 Scene function() {

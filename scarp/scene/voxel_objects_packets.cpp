@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays at voxel scenes.
+// Batches of rays at voxel objects.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/voxel_objects.h"
 
 namespace scarp {
 namespace {
@@ -29,18 +29,17 @@ void for_each_bit(std::uint64_t bits, const Body& body) {
 }
 
 void require_same_length(std::size_t rays, std::size_t answers) {
-  if (rays != answers)
-    throw Error(fmt::format("voxel scene: {} rays and {} answers; there must be as many", rays, answers));
+  if (rays != answers) throw Error(fmt::format("voxels: {} rays and {} answers; there must be as many", rays, answers));
 }
 
 }  // namespace
 
 // Up to 64 world rays on their way through the objects together.
-class VoxelScene::PacketQuery {
+class VoxelObjects::PacketQuery {
  public:
   using From = std::span<const Hit* const>;
 
-  explicit PacketQuery(const VoxelScene& scene) : scene_(scene) {}
+  explicit PacketQuery(const VoxelObjects& scene) : scene_(scene) {}
 
   // hits[i] answers rays[i]; without them whether there is one is asked. False: they go too far apart, or their
   // directions are of no usual length, and nothing is known.
@@ -161,7 +160,7 @@ class VoxelScene::PacketQuery {
 
   static constexpr std::uint32_t kNoTurn = 0xffff'ffff;
 
-  const VoxelScene& scene_;
+  const VoxelObjects& scene_;
   std::span<const Ray> rays_;
   From from_;
   Hit* hits_ = nullptr;
@@ -172,8 +171,8 @@ class VoxelScene::PacketQuery {
 };
 
 template <class Together, class Alone>
-void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const Hit* const> from, Hit* hits,
-                            const Together& together, const Alone& alone) const {
+void VoxelObjects::by_packets(std::span<const Ray> rays, std::span<const Hit* const> from, Hit* hits,
+                              const Together& together, const Alone& alone) const {
   if (!from.empty()) require_same_length(rays.size(), from.size());
   // Rounded voxels are met by rays alone.
   if (rounding_) {
@@ -199,15 +198,16 @@ void VoxelScene::by_packets(std::span<const Ray> rays, std::span<const Hit* cons
   }
 }
 
-void VoxelScene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const {
+void VoxelObjects::closest_hits(std::span<const Ray> rays, std::span<Hit> hits,
+                                std::span<const Hit* const> from) const {
   require_same_length(rays.size(), hits.size());
   by_packets(
       rays, from, hits.data(), [](const PacketQuery&, std::size_t, std::size_t) {},
       [&](std::size_t i, const Hit* start) { hits[i] = closest_hit(rays[i], start, nullptr); });
 }
 
-void VoxelScene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-                          std::span<const Hit* const> from) const {
+void VoxelObjects::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
+                            std::span<const Hit* const> from) const {
   require_same_length(rays.size(), blocked.size());
   by_packets(
       rays, from, nullptr,

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Many voxel objects in one world: models, each in as many places as one likes, turned, moved and scaled.
+// Private to the station: the queries of a voxel field (scene_voxels()), whose objects are models in their places.
 //
 // Rays are answered in the space of each model that they may meet, quantised there (voxel_ray.h). t counts in the
-// length of the world's direction throughout. Of hits at the same t that of the object that was placed first counts.
+// length of the ray's direction throughout. Of hits at the same t that of the first place counts.
 //
-// Batches go through the hierarchy as beams of 64 rays, and through each model's grid in vectors (voxel_packet.h);
-// where rays go apart, one by one.
+// Batches go through a hierarchy of their own as beams of 64 rays, and through each model's grid in vectors
+// (voxel_packet.h); where rays go apart, one by one. That is why the models are not objects of the scene: its hierarchy
+// knows fields alone, and asks them ray by ray.
 #pragma once
 
 #include <cstddef>
@@ -17,38 +18,22 @@
 #include <string_view>
 #include <vector>
 
-#include "scarp/march/voxel/rounded_voxels.h"
 #include "scarp/scene/box_tree.h"
-#include "scarp/scene/voxel_model.h"
+#include "scarp/scene/placed_voxels.h"
 
 namespace scarp {
 
-/// Where a model stands: p_world = world_from_grid * p_grid + origin.
-struct VoxelPlace {
-  std::uint32_t model = 0;          ///< index of the scene's models
-  glm::dmat3 world_from_grid{1.0};  ///< a rotation or reflection times a scale: the metres of a voxel's side, > 0
-  dvec3 origin{0.0};                ///< metres, of the grid's corner (0, 0, 0)
-};
-
-/// How readers make scenes of files.
-struct VoxelSceneOptions {
-  std::string_view march = "voxel-bricks";  ///< of voxel_marches()
-  bool surface_colours = false;             ///< VoxelGrid::drop_hidden_entries(): less memory, lossy inside
-  VoxelRounding rounding{};
-};
-
-/// Immutable. Questions may be asked from many threads at once.
-class VoxelScene {
+/// Immutable. May be queried from many threads at once.
+class VoxelObjects {
  public:
-  /// Throws Error, naming the place: a model that is not there, a matrix that is no rotation with a scale; a model that
-  /// is null, a rounding out of its range. Models are shared with the caller, who may not change them any more.
-  VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places,
-             const VoxelRounding& rounding = {});
+  /// Throws Error naming the place: a model that does not exist, a matrix that is not a rotation with a scale; or a
+  /// model that is null, a rounding out of its range.
+  explicit VoxelObjects(PlacedVoxels voxels);
 
   /// The same with `level` times 2 x 2 x 2 voxels made one, see coarse_voxels.h.
-  VoxelScene coarser(int level) const;
+  VoxelObjects coarser(int level) const;
   /// The same with another march, a row of voxel_marches().
-  VoxelScene marched_by(std::string_view march) const;
+  VoxelObjects marched_by(std::string_view march) const;
 
   /// The ray counts as one that starts free. `stats`, when given, is overwritten. `part` of hits is an index of the
   /// places.

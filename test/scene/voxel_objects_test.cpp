@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/voxel_objects.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ Hit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, const std:
     model = std::make_shared<const VoxelModel>(model->grid(), find_voxel_march("voxel-exhaustive"));
   Hit best;
   for (std::uint32_t i = 0; i < places.size(); ++i) {
-    const VoxelScene alone(models, std::vector{places[i]});
+    const VoxelObjects alone({models, {places[i]}});
     const Hit hit = alone.closest_hit(ray);
     if (hit && (!best || hit.t < best.t)) best = hit, best.part = i;
   }
@@ -55,7 +55,7 @@ Hit one_by_one(std::vector<std::shared_ptr<const VoxelModel>> models, const std:
 }
 
 // A hundred thousand objects of a thousand grids, turned and scaled: those near each ray are asked one by one.
-TEST(VoxelScene, FindsTheNearestOfAHundredThousand) {
+TEST(VoxelObjects, FindsTheNearestOfAHundredThousand) {
   constexpr int kModels = 1000, kObjects = 100'000, kRays = 100;
   constexpr double kSide = 300;              // of the cube that they stand in
   constexpr double kRounding = 1 + 0x1p-30;  // of a distance, generously
@@ -71,7 +71,7 @@ TEST(VoxelScene, FindsTheNearestOfAHundredThousand) {
                       {uniform(random, 0, kSide), uniform(random, 0, kSide), uniform(random, 0, kSide)}});
     radii.push_back(scale * length(dvec3(models[places.back().model]->grid().size())));
   }
-  const VoxelScene scene(models, places);
+  const VoxelObjects scene({models, places});
   std::vector<Ray> rays(kRays);
   for (Ray& ray : rays) {
     ray.origin = {uniform(random, 0, kSide), uniform(random, 0, kSide), uniform(random, 0, kSide)};
@@ -106,10 +106,10 @@ TEST(VoxelScene, FindsTheNearestOfAHundredThousand) {
 }
 
 // Lengths are powers of two and components eighths of them, so that nothing is rounded however short the direction is.
-TEST(VoxelScene, TakesDirectionsOfAnyLength) {
+TEST(VoxelObjects, TakesDirectionsOfAnyLength) {
   Random random(3);
   const auto models = std::vector{model(8, 0.2, "voxel-bricks", random), model(5, 0.5, "voxel-cubes", random)};
-  const VoxelScene scene(models, std::vector{VoxelPlace{0, turned(random, 0.5), {2, 1, 0}}, VoxelPlace{1}});
+  const VoxelObjects scene({models, {VoxelPlace{0, turned(random, 0.5), {2, 1, 0}}, VoxelPlace{1}}});
   const auto eighths = [&] { return static_cast<double>(static_cast<int>(random() % 17) - 8) / 8; };
   int hits = 0;
   for (const int exponent : {-1071, -1030, -1015, -600, -450, 450, 600, 1000, 1023}) {
@@ -144,7 +144,7 @@ TEST(VoxelScene, TakesDirectionsOfAnyLength) {
   EXPECT_FALSE(scene.occluded(none));
 }
 
-TEST(VoxelScene, FindsTheNearestOfTurnedAndOverlappingObjects) {
+TEST(VoxelObjects, FindsTheNearestOfTurnedAndOverlappingObjects) {
   Random random(1);
   int hits = 0;
   for (int round = 0; round < 20; ++round) {
@@ -156,7 +156,7 @@ TEST(VoxelScene, FindsTheNearestOfTurnedAndOverlappingObjects) {
       const dvec3 at(uniform(random, -20, 20), uniform(random, -20, 20), uniform(random, -20, 20));
       places.push_back({static_cast<std::uint32_t>(i % 3), i % 4 ? turned(random, scale) : glm::dmat3(1.0), at});
     }
-    const VoxelScene scene(models, places);
+    const VoxelObjects scene({models, places});
     for (int i = 0; i < 40; ++i) {
       Ray ray;
       ray.direction = direction(random) * uniform(random, 0.1, 10);
@@ -175,13 +175,12 @@ TEST(VoxelScene, FindsTheNearestOfTurnedAndOverlappingObjects) {
   EXPECT_GT(hits, 100);
 }
 
-TEST(VoxelScene, HitsWhatStandsAMillionMetresAway) {
+TEST(VoxelObjects, HitsWhatStandsAMillionMetresAway) {
   Random random(2);
   VoxelPlace place{0, turned(random, 0.25), dvec3(1e6, -2e6, 3e6)};
   VoxelGrid grid(ivec3(9), 1);
   grid.fill(grid.box(), 1);
-  const VoxelScene scene({std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))},
-                         std::vector{place});
+  const VoxelObjects scene({{std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))}, {place}});
   Ray ray;
   ray.direction = place.world_from_grid * dvec3(4.5) + place.origin;
   const Hit hit = scene.closest_hit(ray);
@@ -190,12 +189,12 @@ TEST(VoxelScene, HitsWhatStandsAMillionMetresAway) {
 }
 
 // A shadow ray starts in the empty voxel before the face, by number, and is not stopped by the voxel that it leaves.
-TEST(VoxelScene, ShadowRaysDoNotHitWhatTheyLeave) {
+TEST(VoxelObjects, ShadowRaysDoNotHitWhatTheyLeave) {
   Random random(3);
   VoxelGrid grid(ivec3(40), 1);
   grid.fill_sphere(dvec3(20), 19.5, 1);
-  const VoxelScene scene({std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))},
-                         std::vector{VoxelPlace{0, turned(random, 0.1), dvec3(100)}});
+  const VoxelObjects scene({{std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))},
+                            {VoxelPlace{0, turned(random, 0.1), dvec3(100)}}});
   const dvec3 middle = 0.5 * (scene.box().low + scene.box().high);
   int free = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -214,7 +213,7 @@ TEST(VoxelScene, ShadowRaysDoNotHitWhatTheyLeave) {
 }
 
 // Cubes and rounded ones alike: into the solid is a hit at once, and any-hit says so, too; one by one and in batches.
-TEST(VoxelScene, RaysFromASurfaceIntoItHitItAtOnce) {
+TEST(VoxelObjects, RaysFromASurfaceIntoItHitItAtOnce) {
   // Rays that go in less steeply may leave a cube's face by an edge, as quantised; those that do not come to its plane
   // within what that moves them by, 2^-17 voxel (voxel_ray.h).
   constexpr double kSteep = 0.01, kOffRay = 0x1p-17 / kSteep;
@@ -226,7 +225,7 @@ TEST(VoxelScene, RaysFromASurfaceIntoItHitItAtOnce) {
   const std::vector places = {VoxelPlace{0, turned(random, 0.5), dvec3(3)}};
   const std::vector models = {std::make_shared<const VoxelModel>(grid, find_voxel_march("voxel-bricks"))};
   for (const VoxelRounding& rounding : std::vector<VoxelRounding>{{}, {0.1, false}, {0.5, false}, {0.3, true}}) {
-    const VoxelScene scene(models, places, rounding);
+    const VoxelObjects scene({models, places, rounding});
     const dvec3 middle = 0.5 * (scene.box().low + scene.box().high);
     std::vector<Hit> first;
     std::vector<Ray> rays;
@@ -272,17 +271,17 @@ TEST(VoxelScene, RaysFromASurfaceIntoItHitItAtOnce) {
   }
 }
 
-TEST(VoxelScene, RefusesWhatIsNoPlace) {
+TEST(VoxelObjects, RefusesWhatIsNoPlace) {
   Random random(4);
   const std::vector models = {model(3, 0.5, "voxel-planes", random)};
-  const auto refused = [&](const VoxelPlace& place) { EXPECT_THROW(VoxelScene(models, std::vector{place}), Error); };
+  const auto refused = [&](const VoxelPlace& place) { EXPECT_THROW(VoxelObjects({models, {place}}), Error); };
   refused({1, glm::dmat3(1.0), dvec3(0)});
   refused({0, glm::dmat3(0.0), dvec3(0)});
   refused({0, glm::dmat3(1, 0, 0, 0, 2, 0, 0, 0, 1), dvec3(0)});
   refused({0, glm::dmat3(1, 0, 0, 1, 1, 0, 0, 0, 1), dvec3(0)});
   refused({0, glm::dmat3(1.0), dvec3(std::nan(""))});
-  EXPECT_EQ(test::refusal([&] { VoxelScene({models[0], nullptr}, {}); }), "voxel scene: model 1 is null");
-  EXPECT_FALSE(VoxelScene({}, {}).closest_hit(Ray{}));
+  EXPECT_EQ(test::refusal([&] { VoxelObjects({{models[0], nullptr}, {}}); }), "voxels: model 1 is null");
+  EXPECT_FALSE(VoxelObjects(PlacedVoxels{}).closest_hit(Ray{}));
 }
 
 TEST(VoxelModel, FollowsEdits) {
@@ -344,7 +343,7 @@ VoxFile two_cubes(int version) {
 // From version 200 on the first of two is seen where they overlap, before the last.
 TEST(FromVox, ShowsOneVoxelWhereTwoOverlap) {
   for (const int version : {150, 200}) {
-    const VoxelScene scene = voxel_scene_from(two_cubes(version));
+    const VoxelObjects scene(placed_voxels_from(two_cubes(version)));
     EXPECT_EQ(scene.box().low, dvec3(-2)) << version;
     const auto colour_at = [&](double x) {
       Ray ray;
@@ -374,7 +373,7 @@ TEST(FromVox, PutsTurnedVoxelsWhereTheFileSays) {
     } catch (const Error&) {
       continue;  // no rotation
     }
-    const VoxelScene scene = voxel_scene_from(file);
+    const VoxelObjects scene(placed_voxels_from(file));
     const dvec3 middle = instances[0].turn(dvec3(2.5, 0.5, 1.5) - dvec3(1, 2, 1)) + dvec3(10, 20, 30);
     Ray ray;
     ray.origin = middle + dvec3(0, 0, 5);
@@ -403,7 +402,7 @@ VoxFile canvases(int models, const std::vector<VoxVoxel>& voxels) {
 
 // 256^3 voxels take 2 MiB of masks alone: all of them less than one would as a canvas.
 TEST(FromVox, TakesMemoryForVoxelsAndNotForCanvases) {
-  const VoxelScene scene = voxel_scene_from(canvases(500, {{200, 100, 255, 7}}));
+  const VoxelObjects scene(placed_voxels_from(canvases(500, {{200, 100, 255, 7}})));
   EXPECT_EQ(scene.objects(), 500u);
   EXPECT_LT(scene.bytes(), std::size_t{1} << 21);
   Ray down;
@@ -417,7 +416,7 @@ TEST(FromVox, TakesMemoryForVoxelsAndNotForCanvases) {
 // Small files that ask for much are refused before it is spent.
 TEST(FromVox, RefusesWhatWouldTakeForEver) {
   const VoxFile wide = canvases(1025, {{0, 0, 0, 1}, {255, 255, 255, 1}});
-  EXPECT_NE(test::refusal([&] { voxel_scene_from(wide); }).find("hold more than 17179869184 voxels"),
+  EXPECT_NE(test::refusal([&] { placed_voxels_from(wide); }).find("hold more than 17179869184 voxels"),
             std::string::npos);
   // 2^18 instances of a voxel in one place, each group twice the next one.
   constexpr int kGroups = 18;
@@ -425,7 +424,7 @@ TEST(FromVox, RefusesWhatWouldTakeForEver) {
   heap.nodes.clear();
   for (int i = 0; i < kGroups; ++i) heap.nodes.push_back({i, {}, VoxGroup{{i + 1, i + 1}}});
   heap.nodes.push_back({kGroups, {}, VoxShape{{{0, {}}}}});
-  EXPECT_EQ(test::refusal([&] { voxel_scene_from(heap); }),
+  EXPECT_EQ(test::refusal([&] { placed_voxels_from(heap); }),
             "vox scene: more of its models overlap than can be settled");
 }
 
@@ -453,7 +452,7 @@ TEST(FromVox, PlacesPlanesOfInstances) {
            VoxTransform{3 * i + 3, -1, -1, {{{"_t", fmt::format("{} {} {}", move.x, move.y, move.z)}}}}});
     }
     file.nodes.push_back({2 * kDoublings * 3, {}, VoxShape{{{0, {}}}}});
-    const VoxelScene scene = voxel_scene_from(file);
+    const VoxelObjects scene(placed_voxels_from(file));
     EXPECT_EQ(scene.objects(), std::size_t{1} << (2 * kDoublings));
     ivec3 size(1 << kDoublings);
     size[axis] = 1;

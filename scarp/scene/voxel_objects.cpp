@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/voxel_objects.h"
 
 #include <fmt/format.h>
 
@@ -28,8 +28,7 @@ void require_rigid(const glm::dmat3& m, std::size_t place) {
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j <= i; ++j) good = good && std::abs(dot(m[i], m[j]) - (i == j ? square : 0)) <= kRigid * square;
   }
-  if (!good)
-    throw Error(fmt::format("voxel scene: object {}: its matrix must be a rotation times a scale above 0", place));
+  if (!good) throw Error(fmt::format("voxels: object {}: its matrix must be a rotation times a scale above 0", place));
 }
 
 WorldBox world_box(const VoxelPlace& place, const VoxelBox& box) {
@@ -45,24 +44,22 @@ WorldBox world_box(const VoxelPlace& place, const VoxelBox& box) {
 
 }  // namespace
 
-VoxelScene::VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, std::span<const VoxelPlace> places,
-                       const VoxelRounding& rounding)
-    : models_(std::move(models)), rounding_(rounding) {
-  validate(rounding);
+VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.models)), rounding_(voxels.rounding) {
+  validate(rounding_);
   for (const auto& model : models_) {
-    if (!model) throw Error(fmt::format("voxel scene: model {} is null", targets_.size()));
+    if (!model) throw Error(fmt::format("voxels: model {} is null", targets_.size()));
     targets_.push_back(model->target());
   }
   std::unordered_map<std::string, std::uint32_t> turns;
   std::vector<WorldBox> boxes;
-  for (const VoxelPlace& place : places) {
+  for (const VoxelPlace& place : voxels.places) {
     const std::size_t index = objects_.size();
     if (place.model >= models_.size())
-      throw Error(fmt::format("voxel scene: object {}: its model {} does not exist; there are {}", index, place.model,
+      throw Error(fmt::format("voxels: object {}: its model {} does not exist; there are {}", index, place.model,
                               models_.size()));
     const dvec3& origin = place.origin;
     if (!std::isfinite(origin.x + origin.y + origin.z))
-      throw Error(fmt::format("voxel scene: object {}: its place is not finite", index));
+      throw Error(fmt::format("voxels: object {}: its place is not finite", index));
     require_rigid(place.world_from_grid, index);
     const std::string key(reinterpret_cast<const char*>(&place.world_from_grid), sizeof(place.world_from_grid));
     const auto [turn, fresh] = turns.try_emplace(key, static_cast<std::uint32_t>(turns_.size()));
@@ -79,13 +76,13 @@ VoxelScene::VoxelScene(std::vector<std::shared_ptr<const VoxelModel>> models, st
 }
 
 // A world ray on its way through the objects; what neighbouring objects share is computed once.
-struct VoxelScene::Query {
-  const VoxelScene& scene;
+struct VoxelObjects::Query {
+  const VoxelObjects& scene;
   const Ray& ray;
   std::uint32_t turn;
   VoxelDirection direction;
 
-  Query(const VoxelScene& in, const Ray& world_ray)
+  Query(const VoxelObjects& in, const Ray& world_ray)
       : scene(in),
         ray(world_ray),
         turn(in.objects_[in.in_tree_[0]].turn),
@@ -115,11 +112,11 @@ struct VoxelScene::Query {
 
 // A ray into the rounded voxel that it begins on hits there, at once, as one into a cube does: of that no neighbour,
 // where the walk begins, would tell.
-bool VoxelScene::begins_into(const Ray& ray, const Hit* from) const {
+bool VoxelObjects::begins_into(const Ray& ray, const Hit* from) const {
   return rounding_ && from && ray.t_min <= ray.t_max && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0;
 }
 
-Hit VoxelScene::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
+Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
   if (stats) *stats = {};
   Hit best;
   if (in_tree_.empty()) return best;
@@ -165,7 +162,7 @@ Hit VoxelScene::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) 
   return best;
 }
 
-bool VoxelScene::occluded(const Ray& ray, const Hit* from) const {
+bool VoxelObjects::occluded(const Ray& ray, const Hit* from) const {
   if (in_tree_.empty()) return false;
   if (const double longest = longest_of(ray.direction); !is_usual(longest))
     return is_direction(longest) && occluded(scaled_down(ray, std::ilogb(longest)), from);
@@ -185,26 +182,26 @@ bool VoxelScene::occluded(const Ray& ray, const Hit* from) const {
   return blocked;
 }
 
-dvec3 VoxelScene::normal(const dvec3& p, const Hit& hit) const {
+dvec3 VoxelObjects::normal(const dvec3& p, const Hit& hit) const {
   if (hit.face == VoxelFace::inside) return dvec3(0.0);
   if (!rounding_) return world_from_grid(hit, dvec3(normal_of(hit.face)));
   return world_from_grid(hit, rounded_normal(grid(hit), hit.voxel, hit.face, place_in_grid(hit, p), rounding_));
 }
 
-dvec3 VoxelScene::place_in_grid(const Hit& hit, const dvec3& p) const {
+dvec3 VoxelObjects::place_in_grid(const Hit& hit, const dvec3& p) const {
   const Object& object = objects_[hit.part];
   return turns_[object.turn].grid_from_world * (p - object.origin);
 }
 
-double VoxelScene::voxel_side(const Hit& hit) const {
+double VoxelObjects::voxel_side(const Hit& hit) const {
   return length(turns_[objects_[hit.part].turn].world_from_grid[0]);
 }
 
-dvec3 VoxelScene::world_from_grid(const Hit& hit, const dvec3& direction) const {
+dvec3 VoxelObjects::world_from_grid(const Hit& hit, const dvec3& direction) const {
   return normalize(turns_[objects_[hit.part].turn].world_from_grid * direction);
 }
 
-std::optional<VoxelColour> VoxelScene::colour_at(const dvec3& p) const {
+std::optional<VoxelColour> VoxelObjects::colour_at(const dvec3& p) const {
   for (const Object& object : objects_) {
     const dvec3 at = floor(turns_[object.turn].grid_from_world * (p - object.origin));
     const VoxelModel& model = *models_[object.model];
@@ -216,7 +213,7 @@ std::optional<VoxelColour> VoxelScene::colour_at(const dvec3& p) const {
   return {};
 }
 
-double VoxelScene::voxel_side() const {
+double VoxelObjects::voxel_side() const {
   double least = 0;
   for (const Turn& turn : turns_) {
     const double side = length(turn.world_from_grid[0]);
@@ -225,31 +222,30 @@ double VoxelScene::voxel_side() const {
   return least;
 }
 
-VoxelScene VoxelScene::coarser(int level) const {
-  std::vector<std::shared_ptr<const VoxelModel>> models;
-  for (const auto& model : models_) models.push_back(coarse_voxels(model, level));
-  std::vector<VoxelPlace> places;
+VoxelObjects VoxelObjects::coarser(int level) const {
+  PlacedVoxels coarse{.rounding = rounding_};
+  for (const auto& model : models_) coarse.models.push_back(coarse_voxels(model, level));
   for (const Object& object : objects_)
-    places.push_back({object.model, std::ldexp(1, level) * turns_[object.turn].world_from_grid, object.origin});
-  return VoxelScene(std::move(models), places, rounding_);
+    coarse.places.push_back({object.model, std::ldexp(1, level) * turns_[object.turn].world_from_grid, object.origin});
+  return VoxelObjects(std::move(coarse));
 }
 
-VoxelScene VoxelScene::marched_by(std::string_view march) const {
+VoxelObjects VoxelObjects::marched_by(std::string_view march) const {
   const VoxelMarchEntry& entry = find_voxel_march(march);
-  std::vector<std::shared_ptr<const VoxelModel>> models;
-  for (const auto& model : models_) models.push_back(std::make_shared<const VoxelModel>(model->marched_by(entry)));
-  std::vector<VoxelPlace> places;
+  PlacedVoxels placed{.rounding = rounding_};
+  for (const auto& model : models_)
+    placed.models.push_back(std::make_shared<const VoxelModel>(model->marched_by(entry)));
   for (const Object& object : objects_)
-    places.push_back({object.model, turns_[object.turn].world_from_grid, object.origin});
-  return VoxelScene(std::move(models), places, rounding_);
+    placed.places.push_back({object.model, turns_[object.turn].world_from_grid, object.origin});
+  return VoxelObjects(std::move(placed));
 }
 
-VoxelColour VoxelScene::colour(const Hit& hit) const {
+VoxelColour VoxelObjects::colour(const Hit& hit) const {
   const VoxelModel& model = *models_[objects_[hit.part].model];
   return model.colour(model.grid().entry(hit.voxel));
 }
 
-std::size_t VoxelScene::bytes() const {
+std::size_t VoxelObjects::bytes() const {
   return sizeof(*this) - sizeof(tree_) + objects_.size() * sizeof(Object) + turns_.size() * sizeof(Turn) +
          in_tree_.size() * sizeof(std::uint32_t) + targets_.size() * sizeof(VoxelTarget) + tree_.bytes();
 }

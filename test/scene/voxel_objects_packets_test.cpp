@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays at voxel scenes against the same rays one by one, to the bit.
+// Batches of rays at voxel objects against the same rays one by one, to the bit.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -7,7 +7,7 @@
 #include <random>
 
 #include "scarp/base/error.h"
-#include "scarp/scene/voxel_scene.h"
+#include "scarp/scene/voxel_objects.h"
 
 namespace scarp {
 namespace {
@@ -31,7 +31,7 @@ std::shared_ptr<const VoxelModel> model(int size, double share, std::string_view
 }
 
 // Objects of all marches, turned, overlapping, some of them twice in the same place.
-VoxelScene crowd(Random& random, int count) {
+VoxelObjects crowd(Random& random, int count) {
   const std::vector models = {model(8, 0.2, "voxel-bricks", random),  model(5, 0.5, "voxel-cubes", random),
                               model(9, 0.1, "voxel-octants", random), model(6, 0.3, "voxel-spheres", random),
                               model(3, 0.9, "voxel-planes", random),  model(1, 0.0, "voxel-planes", random)};
@@ -42,7 +42,7 @@ VoxelScene crowd(Random& random, int count) {
     places.push_back({static_cast<std::uint32_t>(i % 6), turn * uniform(random, 0.5, 2), point(random, 40)});
     if (i % 10 == 0) places.push_back(places.back());
   }
-  return VoxelScene(models, places);
+  return VoxelObjects({models, places});
 }
 
 // A camera's rays, 8 x 8 pixels after 8 x 8 pixels; with spread 1 they go anywhere.
@@ -63,11 +63,11 @@ bool same(const Hit& a, const Hit& b) {
   return a == b && std::bit_cast<std::uint64_t>(a.t) == std::bit_cast<std::uint64_t>(b.t);
 }
 
-TEST(VoxelScenePackets, AnswerAsSingleRaysDo) {
+TEST(VoxelObjectsPackets, AnswerAsSingleRaysDo) {
   Random random(1);
   int hits = 0, again = 0;
   for (int round = 0; round < 60; ++round) {
-    const VoxelScene scene = crowd(random, 1 + round * 4);
+    const VoxelObjects scene = crowd(random, 1 + round * 4);
     const dvec3 eye = point(random, round % 3 ? 90 : 30);
     dvec3 towards = -eye;
     // Along an axis, or in a plane of two: slopes around 0.
@@ -106,16 +106,16 @@ TEST(VoxelScenePackets, AnswerAsSingleRaysDo) {
   EXPECT_GT(again, 300);
 }
 
-TEST(VoxelScenePackets, RefuseSpansThatDiffer) {
+TEST(VoxelObjectsPackets, RefuseSpansThatDiffer) {
   Random random(2);
-  const VoxelScene scene = crowd(random, 3);
+  const VoxelObjects scene = crowd(random, 3);
   const std::vector<Ray> rays(5);
   std::vector<Hit> answers(4);
   EXPECT_THROW(scene.closest_hits(rays, answers), Error);
   answers.resize(5);
   const std::vector<const Hit*> from(6);
   EXPECT_THROW(scene.closest_hits(rays, answers, from), Error);
-  VoxelScene({}, {}).closest_hits(rays, answers);
+  VoxelObjects(PlacedVoxels{}).closest_hits(rays, answers);
   EXPECT_FALSE(answers[0]);
 }
 

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// Voxel models and the places where they stand: what scene_voxels() makes a field of, and what readers return.
+#pragma once
+
+#include <cstdint>
+#include <glm/mat3x3.hpp>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include "scarp/march/voxel/rounded_voxels.h"
+#include "scarp/scene/voxel_model.h"
+
+namespace scarp {
+
+/// Where a model stands: p_field = world_from_grid * p_grid + origin.
+struct VoxelPlace {
+  std::uint32_t model = 0;          ///< index of the models
+  glm::dmat3 world_from_grid{1.0};  ///< a rotation or reflection times a scale: the metres of a voxel's side, > 0
+  dvec3 origin{0.0};                ///< metres, of the grid's corner (0, 0, 0)
+};
+
+/// Models are shared with the caller, who must not change them once they are in a scene.
+struct PlacedVoxels {
+  std::vector<std::shared_ptr<const VoxelModel>> models{};
+  std::vector<VoxelPlace> places{};
+  VoxelRounding rounding{};
+};
+
+/// How readers make models of files.
+struct VoxelFileOptions {
+  std::string_view march = "voxel-bricks";  ///< of voxel_marches()
+  bool surface_colours = false;             ///< VoxelGrid::drop_hidden_entries(): less memory, lossy inside
+  VoxelRounding rounding{};
+};
+
+}  // namespace scarp
