@@ -31,7 +31,7 @@ void render(const Scene& scene, const std::string& path, const PictureSettings& 
   // Reserved first: an unwritable place is found before the work.
   ReplaceFile file(path);
   const Scene shown = scene.only_field() && !scene.on_device() ? with_plinth(scene) : scene;
-  const Box box = picture_box(shown);
+  const WorldBox box = picture_box(shown);
   const HeightField* heights = scene.only_heights();
   const Camera camera =
       heights ? view_of_field(*heights, box, view, settings.grid_north_azimuth, settings.width, settings.height).camera

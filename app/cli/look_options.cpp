@@ -27,7 +27,7 @@ constexpr double kFarthestCorner = 2;
 constexpr int kLowresWidth = 320, kLowresHeight = 240;
 
 // Metres from the camera to the nearest point of a box.
-double way_to(const Box& box, const Camera& camera) {
+double way_to(const WorldBox& box, const Camera& camera) {
   return length(glm::clamp(camera.eye(), box.low, box.high) - camera.eye());
 }
 
@@ -303,7 +303,7 @@ std::vector<std::string> read_overlay_files(const LookOptions& o, const Georefer
   return std::move(image.files);
 }
 
-void see_from_afar(const LookOptions& o, const Box& box, const Camera& camera, PictureSettings& picture) {
+void see_from_afar(const LookOptions& o, const WorldBox& box, const Camera& camera, PictureSettings& picture) {
   constexpr double kWays = 10;
   if (o.visibility) return;
   picture.fog.visibility += kWays * way_to(box, camera);
@@ -322,7 +322,7 @@ void finish_look(const LookOptions& o, double across, const ReliefRange& heights
   if (!o.fog_falloff) picture.fog.falloff = std::max(1.0, relief / 4);
 }
 
-double reach_of(const LookOptions& o, double across, const Scene& scene, const Box& box, const Camera& camera) {
+double reach_of(const LookOptions& o, double across, const Scene& scene, const WorldBox& box, const Camera& camera) {
   if (o.reach) return *o.reach;
   if (!scene.wraps()) return std::numeric_limits<double>::infinity();
   return across + kFarthestCorner * way_to(box, camera);

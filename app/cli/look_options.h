@@ -45,10 +45,11 @@ void finish_look(const LookOptions& options, double across, const ReliefRange& h
                  PictureSettings& picture);
 /// A camera that stands back from the scene still has to see it: without --visibility that grows by ten times the way
 /// to the box, on which less than a third of a contrast is lost.
-void see_from_afar(const LookOptions& options, const Box& box, const Camera& camera, PictureSettings& picture);
+void see_from_afar(const LookOptions& options, const WorldBox& box, const Camera& camera, PictureSettings& picture);
 
 /// How far the camera's rays go: infinitely far, except over ground that wraps round. There, without --reach, `across`,
 /// and from outside of the box twice the way to it more, so that an eye that sees all of the ground sees its corners.
-double reach_of(const LookOptions& options, double across, const Scene& scene, const Box& box, const Camera& camera);
+double reach_of(const LookOptions& options, double across, const Scene& scene, const WorldBox& box,
+                const Camera& camera);
 
 }  // namespace scarp::cli

@@ -120,7 +120,8 @@ RenderInput function(OpenedInput opened, RenderOptions& options, const ViewSetti
   PictureSettings& picture = options.picture;
   const HeightFunction function = std::move(*opened.function);
   const ReliefRange heights = heights_around(function, extent);
-  picture.ground_box = Box{{-0.5 * extent, -0.5 * extent, heights.low}, {0.5 * extent, 0.5 * extent, heights.high}};
+  picture.ground_box =
+      WorldBox{{-0.5 * extent, -0.5 * extent, heights.low}, {0.5 * extent, 0.5 * extent, heights.high}};
   // A ramp from a file and natural ground are painted by the renderer.
   if (!picture.ground.natural && !picture.ramp_stops) picture.materials = materials_of(heights, picture.ramp);
   const auto material = static_cast<std::uint32_t>(std::max<std::size_t>(picture.materials.size(), 1) - 1);

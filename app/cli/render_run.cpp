@@ -37,7 +37,7 @@ class Watch {
 };
 
 // A map without --size has the shape of the scene, its longer side as long as a picture's default width.
-void fit_size_to_scene(const Box& box, PictureSettings& picture) {
+void fit_size_to_scene(const WorldBox& box, PictureSettings& picture) {
   const dvec3 size = box.high - box.low;
   const double pixels_per_metre = picture.width / std::max(size.x, size.y);
   picture.width = std::max(1, static_cast<int>(std::lround(size.x * pixels_per_metre)));
@@ -100,11 +100,11 @@ class Render {
   }
 
   // Where nothing has an end, a point: the middle of what the picture is about.
-  Box scene_box() const {
+  WorldBox scene_box() const {
     const WorldBox& box = scene_.box();
     if (box.low.x <= box.high.x || !scene_.endless()) return picture_box(scene_);
     return scene_.terrain() ? picture_box(scene_)
-                            : Box{input_.target.value_or(dvec3(0.0)), input_.target.value_or(dvec3(0.0))};
+                            : WorldBox{input_.target.value_or(dvec3(0.0)), input_.target.value_or(dvec3(0.0))};
   }
 
   // What depends on where the picture is seen from.

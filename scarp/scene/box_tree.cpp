@@ -25,8 +25,6 @@ constexpr double kSteepestOfBeam = 4, kWidestBeam = 0.5;
 
 }  // namespace
 
-WorldBox around(const WorldBox& a, const WorldBox& b) { return {glm::min(a.low, b.low), glm::max(a.high, b.high)}; }
-
 // Ranges of objects, split until one is left.
 struct BoxTree::Builder {
   struct Range {

@@ -25,17 +25,9 @@
 #include <vector>
 
 #include "scarp/base/ray.h"
+#include "scarp/base/world_box.h"
 
 namespace scarp {
-
-/// A box in world space, closed; empty to begin with.
-struct WorldBox {
-  dvec3 low{std::numeric_limits<double>::infinity()};
-  dvec3 high{-std::numeric_limits<double>::infinity()};
-};
-
-/// The least box around both.
-WorldBox around(const WorldBox& a, const WorldBox& b);
 
 class BoxTree {
  public:

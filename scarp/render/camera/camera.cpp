@@ -20,7 +20,7 @@ constexpr double kMargin = 0.03;
 constexpr double kLeastDistance = 0.05;
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("view: {} is {}; it must be {}", what, value, range));
+  if (!good) throw Error(fmt::format("view: {} is {} (must be {})", what, value, range));
 }
 
 void require_fov(double fov_deg) {
@@ -75,8 +75,8 @@ Camera Camera::look_at(const dvec3& eye, const dvec3& target, double fov_deg, in
   return camera;
 }
 
-Camera Camera::framed(const Box& box, const ViewSettings& settings, double grid_north_azimuth, int width, int height,
-                      const std::optional<dvec3>& focus) {
+Camera Camera::framed(const WorldBox& box, const ViewSettings& settings, double grid_north_azimuth, int width,
+                      int height, const std::optional<dvec3>& focus) {
   validate(settings);
   const double azimuth = glm::radians(settings.azimuth_deg), elevation = glm::radians(settings.elevation_deg);
   Camera camera;
@@ -111,7 +111,7 @@ Camera Camera::framed(const Box& box, const ViewSettings& settings, double grid_
   return camera;
 }
 
-Camera Camera::top(const Box& box, int width, int height) {
+Camera Camera::top(const WorldBox& box, int width, int height) {
   const dvec3 size = box.high - box.low;
   Camera camera;
   const double metres_per_pixel = std::max(size.x / width, size.y / height);

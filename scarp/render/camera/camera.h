@@ -16,18 +16,9 @@
 
 #include "scarp/base/ray.h"
 #include "scarp/base/vec.h"
+#include "scarp/base/world_box.h"
 
 namespace scarp {
-
-/// A box in world space.
-struct Box {
-  dvec3 low{0.0};
-  dvec3 high{0.0};
-
-  dvec3 middle() const { return 0.5 * (low + high); }
-  /// Corner 0..7.
-  dvec3 corner(int i) const { return {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z}; }
-};
 
 /// A view onto a whole field, framed automatically.
 struct ViewSettings {
@@ -49,11 +40,11 @@ class Camera {
   /// A perspective camera that has the whole box in the picture, as large as a small margin lets it be (at distance 1).
   /// What nearer views go towards is `focus`, the middle of the box where none is given; it should lie in the box.
   /// Throws Error for settings out of their range.
-  static Camera framed(const Box& box, const ViewSettings& settings, double grid_north_azimuth, int width, int height,
-                       const std::optional<dvec3>& focus = {});
+  static Camera framed(const WorldBox& box, const ViewSettings& settings, double grid_north_azimuth, int width,
+                       int height, const std::optional<dvec3>& focus = {});
   /// An orthographic camera looking straight down, the grid's north up, square pixels on the ground. The box fits in
   /// exactly: its border is the picture's border in one of the two directions.
-  static Camera top(const Box& box, int width, int height);
+  static Camera top(const WorldBox& box, int width, int height);
 
   /// The ray through a place in the picture: unit direction, so t counts in metres.
   Ray ray(double pixel_x, double pixel_y) const;

@@ -9,7 +9,7 @@ constexpr double kClear = 0.01;
 
 }  // namespace
 
-FieldView view_of_field(const HeightField& field, const Box& box, const ViewSettings& settings,
+FieldView view_of_field(const HeightField& field, const WorldBox& box, const ViewSettings& settings,
                         double grid_north_azimuth, int width, int height) {
   dvec3 focus(0.5 * field.width(), 0.5 * field.depth(), 0);
   focus.z = field.height(focus.x, focus.y).value_or(field.max_height());

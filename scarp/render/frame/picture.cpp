@@ -30,7 +30,7 @@ constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr int kMaxSamples = 4096;
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("picture: {} is {}; it must be {}", what, value, range));
+  if (!good) throw Error(fmt::format("picture: {} is {} (must be {})", what, value, range));
 }
 
 class ImageTile final : public TileWork {
@@ -177,22 +177,22 @@ void require_visible(const Scene& scene) {
       throw Error(fmt::format("picture: the field has {} x {} samples and so no cells (at least 2 x 2 are needed)",
                               field->cols(), field->rows()));
     }
-    if (field->all_nodata()) throw Error("picture: all samples of the field are nodata; there is nothing to see");
+    if (field->all_nodata()) throw Error("picture: all samples of the field are nodata (nothing to see)");
   }
   if (!scene.endless() && !has_end(scene.box())) throw Error("picture: nothing in the scene can be seen");
 }
 
-Box picture_box(const Scene& scene) {
+WorldBox picture_box(const Scene& scene) {
   WorldBox box = scene.box();
   // One copy of ground that wraps round.
   if (const HeightField* field = scene.terrain(); field && field->wraps())
     box = around(box, {{0, 0, field->min_height()}, {field->width(), field->depth(), field->max_height()}});
   if (!has_end(box)) {
-    throw Error(scene.endless() ? "picture: nothing in the scene has an end that a camera could be framed by; give the "
-                                  "camera an eye and a target"
+    throw Error(scene.endless() ? "picture: everything in the scene is endless, so the camera cannot be framed (set an "
+                                  "eye and a target)"
                                 : "picture: nothing in the scene can be seen");
   }
-  return {box.low, box.high};
+  return box;
 }
 
 Picture render_picture(const Scene& scene, const Camera& camera, const PictureSettings& settings,

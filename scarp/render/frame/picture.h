@@ -61,7 +61,8 @@ struct PictureSettings {
   GroundPaintSettings ground{};       ///< of height fields without a material, and on top of all surfaces
   std::string ramp{};                 ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
   std::shared_ptr<const RampStops> ramp_stops{};  ///< instead of `ramp`; null: none
-  std::optional<Box> ground_box{};  ///< heights of `ramp` and `ground`, place of the overlay; nothing: the scene's own
+  std::optional<WorldBox>
+      ground_box{};  ///< heights of `ramp` and `ground`, place of the overlay; nothing: the scene's own
 
   // Environment.
   double grid_north_azimuth = 0;  ///< of the world's y axis, radians clockwise from true north
@@ -97,7 +98,7 @@ bool is_ramped(const SceneField& field, const PictureSettings& settings);
 void validate(const PictureSettings& settings);
 
 /// What a camera should have in the picture: everything that has an end. Throws Error if there is nothing.
-Box picture_box(const Scene& scene);
+WorldBox picture_box(const Scene& scene);
 
 /// What was found besides the picture.
 struct StepRange {

@@ -15,7 +15,7 @@
 namespace scarp {
 namespace {
 
-const Box kBox{{0, 0, 200}, {30000, 32000, 1900}};
+const WorldBox kBox{{0, 0, 200}, {30000, 32000, 1900}};
 
 void expect_round_trip(const Camera& camera, int width, int height) {
   for (const double x : {0.0, 0.3, 0.5, 0.99}) {
@@ -72,8 +72,8 @@ TEST(Camera, PointsBehindItAppearNowhere) {
 }
 
 TEST(Camera, FramingHasAllCornersInThePictureAndWastesNone) {
-  const Box boxes[] = {kBox, {{0, 0, 0}, {1, 1, 0}}, {{0, 0, -9000}, {10, 5000, 9000}}, {{0, 0, 5}, {4000, 3, 6}}};
-  for (const Box& box : boxes) {
+  const WorldBox boxes[] = {kBox, {{0, 0, 0}, {1, 1, 0}}, {{0, 0, -9000}, {10, 5000, 9000}}, {{0, 0, 5}, {4000, 3, 6}}};
+  for (const WorldBox& box : boxes) {
     for (const auto& [width, height] : {std::pair(1280, 720), {720, 1280}, {500, 500}, {3000, 200}}) {
       for (const double azimuth : {0.0, 45.0, 190.0, 271.0}) {
         for (const double elevation : {0.0, 10.0, 35.0, 89.0, 90.0}) {

@@ -24,7 +24,7 @@ HeightField field_of(Edit&& edit, Wrap wrap = Wrap::none) {
 }
 const auto kLevel = [](const auto&) {};
 
-Box box_of(const HeightField& field, bool plinth) {
+WorldBox box_of(const HeightField& field, bool plinth) {
   return picture_box(plinth ? test::terrain_on_plinth(field) : test::terrain(field));
 }
 
@@ -77,7 +77,7 @@ TEST(FieldView, IsRaisedOutOfHills) {
   EXPECT_EQ(view.camera.forward(), Camera::framed(box_of(field, true), south, 0.2, 640, 360).forward());
 }
 
-// Level views of ground that goes on beyond its border begin in the middle of the block's height.
+// Level views of ground that goes on beyond its border begin in the middle of the plinth's height.
 TEST(FieldView, IsRaisedOutOfGroundThatGoesOn) {
   const HeightField field = field_of(kLevel, Wrap::periodic);
   const FieldView view = view_of(field, {.elevation_deg = 0});

@@ -49,7 +49,7 @@ Picture map_of(const HeightField& field, PictureSettings settings, double grid_n
 Image middle_of(const HeightField& field, PictureSettings settings, double grid_north = 0) {
   constexpr int kRows = 2;
   const Scene scene = test::terrain(field);
-  Box box = picture_box(scene);
+  WorldBox box = picture_box(scene);
   const double middle = box.middle().y, half = (box.high.y - middle) * kRows / settings.height;
   box.low.y = middle - half, box.high.y = middle + half;
   settings.height = kRows;

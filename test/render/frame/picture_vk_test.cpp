@@ -174,7 +174,7 @@ class PicturesOnDevice : public OnDevice {
     return {cpu, scene_on(device(), cpu), camera_of(cpu), alone, scene_on(device(), alone)};
   }
   static Camera camera_of(const Scene& scene, double raised = 0) {
-    Box box = picture_box(scene);
+    WorldBox box = picture_box(scene);
     box.low.z += raised;
     box.high.z += raised;
     return Camera::framed(box, {.elevation_deg = 20}, 0, kWidth, kHeight);
@@ -248,7 +248,7 @@ TEST_F(PicturesOnDevice, StepsAreTheCpus) {
     const Picture watched = render_picture(judged(of, judge, false), of.camera, settings(Look::steps));
     EXPECT_EQ(device.image.rgb, watched.image.rgb);
     EXPECT_GT(device.steps->most, 10u);
-    EXPECT_EQ(device.steps->least, 0u) << "rays that miss the block";
+    EXPECT_EQ(device.steps->least, 0u) << "rays that miss the plinth";
     EXPECT_GT(judge->counted, 1000u);
   }
 }
