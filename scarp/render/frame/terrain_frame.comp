@@ -31,7 +31,7 @@ const bool has_drape = (parts & kFrameHasDrape) != 0u;
 const bool has_contours = (parts & kFrameHasContours) != 0u;
 const bool has_fog = (parts & kFrameHasFog) != 0u;
 const bool has_samples = (parts & kFrameHasSamples) != 0u;
-const bool has_block = (parts & kFrameHasBlock) != 0u;
+const bool has_plinth = (parts & kFrameHasPlinth) != 0u;
 const bool has_rims = (parts & kFrameHasRims) != 0u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Pixels { uint words[]; };
@@ -42,8 +42,8 @@ layout(push_constant, scalar) uniform Push { FramePush push; };
 #include "scarp/march/height/ground_host.glsl.h"
 #include "scarp/render/frame/terrain_frame_ground.glsl.h"
 // These ask it for places and directions.
-#include "scarp/render/frame/terrain_frame_block.glsl.h"
 #include "scarp/render/frame/terrain_frame_light.glsl.h"
+#include "scarp/render/frame/terrain_frame_plinth.glsl.h"
 #include "scarp/render/frame/terrain_frame_water.glsl.h"
 
 float eye_height(FrameSeen seen) { return height_of(seen.line.origin.z); }
@@ -267,7 +267,7 @@ bool send(ScarpField field, int task, inout Sent sent) {
         if (scarp_two_less(end, water.t)) water.kind = 0;
       }
       if (water.kind != 0) end = water.t;
-      bool hidden = has_block && hidden_by_block(field, begin, end, seen);
+      bool hidden = has_plinth && hidden_by_plinth(field, begin, end, seen);
       if (seen.kind == kFrameWall) water.kind = 0;
       water_met = water;
       if (hidden) {

@@ -38,8 +38,8 @@ const uint kFrameHasDrape = 8u;
 const uint kFrameHasContours = 16u;
 const uint kFrameHasFog = 32u;
 const uint kFrameHasSamples = 64u;  ///< of sun and sky
-const uint kFrameHasBlock = 128u;   ///< below the terrain
-/// Walls at the rims of holes that are the block's: the march knows those of solid ground.
+const uint kFrameHasPlinth = 128u;  ///< below the terrain
+/// Walls at the rims of holes of the plinth: the march knows those of solid ground.
 const uint kFrameHasRims = 256u;
 
 const int kFrameRounds = 16;
@@ -100,7 +100,7 @@ struct FrameSettings {
   float base_of_heights;  ///< sample units: where metres of heights count from, with what it lies above their zero
   float metres_at_base;
   float last_row;  ///< rows of samples - 1
-  int block;       ///< 1: there is one below the terrain, down to
+  int plinth;      ///< 1: there is one below the terrain, down to
   float base_sample;
   float base_sample_low;
   // The steps of the look comanche; of rays to the sun those of the march.

@@ -95,7 +95,7 @@ void set_field(glsl::FrameSettings& s, const HeightField& field, const std::opti
   s.metres_at_base =
       static_cast<float>(field.height_from_sample(static_cast<double>(s.base_of_heights)) - zero_of_heights);
   s.last_row = static_cast<float>(field.rows() - 1);
-  s.block = plinth.has_value();
+  s.plinth = plinth.has_value();
   if (plinth) split(plinth->base_sample(), s.base_sample, s.base_sample_low);
 }
 
@@ -293,14 +293,14 @@ class FrameMaker {
 
  private:
   const ComputePipeline& pipeline_for(const glsl::FrameSettings& s) {
-    const bool block = s.block != 0 && !stepped_;  // steps do not see it
+    const bool plinth = s.plinth != 0 && !stepped_;  // steps do not see it
     const bool rims = (flags_ & (glsl::kScarpHoles | glsl::kScarpSolid)) == glsl::kScarpHoles;
     const std::uint32_t parts =
         (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
         (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) | (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
         (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) |
-        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (block ? glsl::kFrameHasBlock : 0) |
-        (block && rims ? glsl::kFrameHasRims : 0);
+        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (plinth ? glsl::kFrameHasPlinth : 0) |
+        (plinth && rims ? glsl::kFrameHasRims : 0);
     const auto found = pipelines_.find(parts);
     if (found != pipelines_.end()) return found->second;
     const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};

@@ -110,11 +110,11 @@ TEST(Layers, WallsOfSolidGroundAreNoSurface) {
   PictureSettings settings = small();
   settings.haze = 0;  // it depends on the size of the plinth
   const PictureLayers layers = render_layers(test::terrain(field), camera, settings);
-  const PictureLayers block = render_layers(test::terrain_on_plinth(field), camera, settings);
+  const PictureLayers on_plinth = render_layers(test::terrain_on_plinth(field), camera, settings);
   for (std::size_t i = 0; i < layers.depth.size(); ++i) {
     EXPECT_FLOAT_EQ(layers.depth[i], 20);
     EXPECT_EQ(layers.normal[i], vec3(0, -1, 0));
-    EXPECT_EQ(layers.colour[i], block.colour[i]) << "that of the plinth's wall";
+    EXPECT_EQ(layers.colour[i], on_plinth.colour[i]) << "that of the plinth's wall";
   }
 }
 

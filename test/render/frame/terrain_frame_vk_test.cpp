@@ -74,7 +74,7 @@ struct Row {
   std::function<void(PictureSettings&)> change = [](PictureSettings&) {};
   HeightFieldSettings field{.wrap = Wrap::periodic};
   bool top = false;
-  bool block = false;
+  bool plinth = false;
   Holes holes = Holes::one;
   dvec3 eye{70, -30, 40};  // over a field that ends, looking north-west and down
   double down = 0.6;
@@ -193,70 +193,70 @@ std::vector<Row> rows() {
     soft(s);
     s.sun.size_deg = 0;
   });
-  const auto block = [&](const std::string& name, const std::function<void(PictureSettings&)>& change,
-                         const HeightFieldSettings& field) {
+  const auto plinth = [&](const std::string& name, const std::function<void(PictureSettings&)>& change,
+                          const HeightFieldSettings& field) {
     add(name, "max-mip", change, field);
-    all.back().block = true;
+    all.back().plinth = true;
     all.back().holes = Holes::none;
   };
-  block(
-      "block", [](PictureSettings& s) { s.look = Look::shaded; }, ends);
-  block("block_of_triangles",
-        [](PictureSettings& s) {
-          s.look = Look::shaded;
-          s.haze = 0.4;
-          s.aa = 2;
-          s.sun.azimuth_deg = 110;
-        },
-        {.cell_x = 1.25, .cell_y = 0.75, .offset = -20, .exaggeration = 2, .surface = Surface::triangles});
-  block(
-      "block_in_water",
+  plinth(
+      "plinth", [](PictureSettings& s) { s.look = Look::shaded; }, ends);
+  plinth("plinth_of_triangles",
+         [](PictureSettings& s) {
+           s.look = Look::shaded;
+           s.haze = 0.4;
+           s.aa = 2;
+           s.sun.azimuth_deg = 110;
+         },
+         {.cell_x = 1.25, .cell_y = 0.75, .offset = -20, .exaggeration = 2, .surface = Surface::triangles});
+  plinth(
+      "plinth_in_water",
       [=](PictureSettings& s) {
         water(s);
         fog(s, FogKind::height);
       },
       ends);
-  const auto block_with_holes = [&](const std::string& name, const dvec3& eye, double down,
-                                    const std::function<void(PictureSettings&)>& change,
-                                    const HeightFieldSettings& field) {
-    block(name, change, field);
+  const auto plinth_with_holes = [&](const std::string& name, const dvec3& eye, double down,
+                                     const std::function<void(PictureSettings&)>& change,
+                                     const HeightFieldSettings& field) {
+    plinth(name, change, field);
     all.back().holes = Holes::many;
     all.back().eye = eye;
     all.back().down = down;
   };
-  block_with_holes(
-      "block_with_holes", {70, -30, 40}, 0.6, [](PictureSettings& s) { s.look = Look::shaded; }, ends);
-  block_with_holes(
-      "block_with_holes_from_above", {52, 8, 45}, 0.95,
+  plinth_with_holes(
+      "plinth_with_holes", {70, -30, 40}, 0.6, [](PictureSettings& s) { s.look = Look::shaded; }, ends);
+  plinth_with_holes(
+      "plinth_with_holes_from_above", {52, 8, 45}, 0.95,
       [=](PictureSettings& s) {
         s.look = Look::shaded;
         soft(s);
       },
       ends);
-  block_with_holes("block_with_holes_of_triangles", {70, -30, 70}, 0.75,
-                   [](PictureSettings& s) {
-                     s.look = Look::shaded;
-                     s.haze = 0.4;
-                     s.aa = 2;
-                     s.sun.azimuth_deg = 110;
-                   },
-                   {.cell_x = 1.25, .cell_y = 0.75, .offset = -20, .exaggeration = 4, .surface = Surface::triangles});
-  block_with_holes(
-      "block_with_holes_in_water", {70, -30, 40}, 0.6,
+  plinth_with_holes("plinth_with_holes_of_triangles", {70, -30, 70}, 0.75,
+                    [](PictureSettings& s) {
+                      s.look = Look::shaded;
+                      s.haze = 0.4;
+                      s.aa = 2;
+                      s.sun.azimuth_deg = 110;
+                    },
+                    {.cell_x = 1.25, .cell_y = 0.75, .offset = -20, .exaggeration = 4, .surface = Surface::triangles});
+  plinth_with_holes(
+      "plinth_with_holes_in_water", {70, -30, 40}, 0.6,
       [=](PictureSettings& s) {
         water(s);
         fog(s, FogKind::height);
       },
       ends);
   // In the shaft of the hole inside, in the rock, and below the base.
-  block_with_holes(
-      "in_a_hole_of_a_block", {50, 22.2, 4}, -0.1, [](PictureSettings& s) { s.look = Look::shaded; }, ends);
-  block_with_holes("in_the_rock_of_a_block", {52, 6, 1}, -0.2, [](PictureSettings& s) { s.look = Look::shaded; },
-                   {.exaggeration = 4});
-  block_with_holes("from_below_a_block", {62, -20, -30}, -0.75, [](PictureSettings& s) { s.look = Look::shaded; },
-                   {.exaggeration = 4});
-  block_with_holes("solid_block_with_holes", {70, -30, 40}, 0.6, [](PictureSettings& s) { s.look = Look::shaded; },
-                   {.exaggeration = 1.5, .solid = true});
+  plinth_with_holes(
+      "in_a_hole_of_a_plinth", {50, 22.2, 4}, -0.1, [](PictureSettings& s) { s.look = Look::shaded; }, ends);
+  plinth_with_holes("in_the_rock_of_a_plinth", {52, 6, 1}, -0.2, [](PictureSettings& s) { s.look = Look::shaded; },
+                    {.exaggeration = 4});
+  plinth_with_holes("from_below_a_plinth", {62, -20, -30}, -0.75, [](PictureSettings& s) { s.look = Look::shaded; },
+                    {.exaggeration = 4});
+  plinth_with_holes("solid_plinth_with_holes", {70, -30, 40}, 0.6, [](PictureSettings& s) { s.look = Look::shaded; },
+                    {.exaggeration = 1.5, .solid = true});
   constexpr double kHigh = 1e7;
   const auto high_above_zero = [&](const std::string& name, const std::function<void(PictureSettings&)>& change) {
     add(name, "max-mip",
@@ -328,7 +328,7 @@ Camera camera_of(const Row& row, const HeightField& field, const dvec2& turn) {
 double pixel_angle() { return 2 * std::tan(kFov * std::numbers::pi / 360) / kHeight; }
 
 Scene scene_of(const Row& row, const HeightField& field) {
-  return row.block ? test::terrain_on_plinth(field, row.march) : test::terrain(field, row.march);
+  return row.plinth ? test::terrain_on_plinth(field, row.march) : test::terrain(field, row.march);
 }
 
 class TerrainFrames : public OnDevice, public testing::WithParamInterface<Row> {};

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Walls of the plinth for terrain_frame.comp, which includes this: Plinth (plinth.h). GLSL.
+//
+// Without holes they stand at the border alone, and a ray is told there. With holes the march finds them: it takes the
+// ground for solid, on that part of the way that is above the base.
+
+// The ray's height above the plinth's base at time t.
+float above_base(ScarpLine line, ScarpTwoFloat t) {
+  Settings s = settings();
+  ScarpTwoFloat base = two(s.is.base_sample, s.is.base_sample_low);
+  return scarp_two_add(scarp_line_height(line, t), scarp_two_negate(base)).high;
+}
+
+// When a ray that is not level passes the base.
+ScarpTwoFloat time_at_base(ScarpLine line) {
+  Settings s = settings();
+  ScarpTwoFloat base = two(s.is.base_sample, s.is.base_sample_low);
+  return scarp_time_at(base, line.origin.z, line.origin_low.z, line.direction.z, line.direction_low.z);
+}
+
+// A ray that falls meets no wall below the base.
+void end_at_base(ScarpLine line, inout ScarpTwoFloat end) {
+  if (line.direction.z < 0.0) end = scarp_two_earlier(end, time_at_base(line));
+}
+
+// Limits to the plinth the way of a ray of the camera, from `begin` to `end`; a wall at the border is put into what
+// the ray has seen. True: the plinth hides the field, by a wall or because the ray falls past it; there is no ground to
+// be looked for.
+bool hidden_by_plinth(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTwoFloat end, inout FrameSeen seen) {
+  Settings s = settings();
+  ScarpLine line = seen.line;
+  ScarpSpan x = scarp_span_x(field, line);
+  ScarpSpan y = scarp_span_y(field, line);
+  ScarpTwoFloat over = scarp_two_later(scarp_two(0.0), scarp_two_later(x.begin, y.begin));
+  if (over.high >= kScarpNever) return true;  // along a side, beside the field
+  bool from_below = above_base(line, over) < 0.0;
+  if (from_below && line.direction.z <= 0.0) return true;
+  // Walls of solid ground end at the base as well.
+  if (from_below) begin = time_at_base(line);
+  end_at_base(line, end);
+  if (has_rims) return false;
+  // One that rises comes in through the base, and sees nothing of the ground from below: the march says so.
+  if (from_below) return false;
+  // Through a side of constant column, then one of constant row where that is crossed later: the order of ties.
+  bool through_x = scarp_two_less(scarp_two(0.0), x.begin) && !scarp_two_less(x.begin, over);
+  bool through_y = scarp_two_less(scarp_two(0.0), y.begin) && !scarp_two_less(y.begin, over);
+  if (!through_x && !through_y) return false;
+  if (scarp_two_less(scarp_two_earlier(end, scarp_two_earlier(x.end, y.end)), over)) return false;
+  vec3 direction = line.direction;
+  ScarpAxisPlace col = scarp_axis_place(scarp_line_col(line, over), field.cells.x, false);
+  ScarpAxisPlace row = scarp_axis_place(scarp_line_row(line, over), field.cells.y, false);
+  ivec2 cell = ivec2(col.cell, row.cell);
+  vec2 place = vec2(col.place, row.place);
+  if (through_x) {
+    cell.x = direction.x > 0.0 ? 0 : field.cells.x - 1;
+    place.x = direction.x > 0.0 ? 0.0 : 1.0;
+  } else {
+    cell.y = direction.y > 0.0 ? 0 : field.cells.y - 1;
+    place.y = direction.y > 0.0 ? 0.0 : 1.0;
+  }
+  ScarpTwoFloat z = scarp_line_height(line, over);
+  ScarpCell ground = scarp_cell(field, cell.x, cell.y, z.high);
+  if (ground.hole) return false;  // of solid ground: the march finds the walls at its rim
+  if (z.low > scarp_surface(field, ground, place.x, place.y)) return false;
+  seen.kind = kFrameWall;
+  seen.t = over;
+  seen.cell = cell;
+  seen.place = place;
+  return true;
+}
+
+// Whether a ray sees walls at rims: not one that begins in the rock.
+bool meets_rims(ScarpField field, ScarpRay ray) {
+  if ((ray.flags & (kScarpFromOutside | kScarpAbove)) != 0u) return true;
+  ScarpCell ground = scarp_cell(field, ray.cell.x, ray.cell.y, ray.z);
+  return ground.hole || ray.z_low >= scarp_surface(field, ground, ray.place.x, ray.place.y);
+}
