@@ -15,11 +15,11 @@
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/scene/scene_answers.h"
+#include "scarp/scene/scene_limits.h"
 
 namespace scarp {
 namespace {
 
-constexpr std::int64_t kRaysPerPiece = 512;
 // So many of the objects that like batches, the largest ones, are asked about all rays; the others are found by the
 // tree.
 constexpr std::size_t kMostBesideTree = 4;

@@ -14,11 +14,11 @@
 #include "scarp/base/parallel.h"
 #include "scarp/scene/scene.h"
 #include "scarp/scene/scene_answers.h"
+#include "scarp/scene/scene_limits.h"
 
 namespace scarp {
 namespace {
 
-constexpr std::int64_t kRaysPerPiece = 512;
 // The pairs of a slice of rays are answered together.
 constexpr std::size_t kRaysAtOnce = 1 << 17;
 

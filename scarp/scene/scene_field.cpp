@@ -2,11 +2,10 @@
 #include "scarp/scene/scene_field.h"
 
 #include "scarp/base/parallel.h"
+#include "scarp/scene/scene_limits.h"
 
 namespace scarp {
 namespace {
-
-constexpr std::int64_t kRaysPerFieldPiece = 512;
 
 const Hit* at(std::span<const Hit* const> from, std::size_t i) { return from.empty() ? nullptr : from[i]; }
 std::span<const Hit* const> part(std::span<const Hit* const> from, std::size_t first, std::size_t count) {
@@ -16,7 +15,7 @@ std::span<const Hit* const> part(std::span<const Hit* const> from, std::size_t f
 // piece(first, count) on all threads.
 template <class Piece>
 void for_each_piece(std::size_t rays, const Piece& piece) {
-  parallel_for(static_cast<std::int64_t>(rays), kRaysPerFieldPiece, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(static_cast<std::int64_t>(rays), kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
     piece(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
   });
 }

@@ -7,13 +7,12 @@
 
 #include "scarp/scene/function_shadow.h"
 #include "scarp/scene/scene_field.h"
+#include "scarp/scene/scene_limits.h"
 
 namespace scarp {
 namespace {
 
 dvec3 upward(const dvec2& slope) { return normalize(dvec3(-slope.x, -slope.y, 1)); }
-
-constexpr int kStepsOfJudge = 1 << 20;
 
 class FunctionField final : public SceneField {
  public:

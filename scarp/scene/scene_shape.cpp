@@ -3,12 +3,12 @@
 #include <utility>
 
 #include "scarp/scene/scene_field.h"
+#include "scarp/scene/scene_limits.h"
 
 namespace scarp {
 namespace {
 
 constexpr double kToleranceOfJudge = 1e-9;
-constexpr int kStepsOfShapeJudge = 1 << 20;
 
 class ShapeField final : public SceneField {
  public:
@@ -43,7 +43,7 @@ class ShapeField final : public SceneField {
   }
   SceneFieldPtr judge() const override {
     MarchSettings settings;
-    settings.sphere_trace = {.tolerance = kToleranceOfJudge, .max_steps = kStepsOfShapeJudge};
+    settings.sphere_trace = {.tolerance = kToleranceOfJudge, .max_steps = kStepsOfJudge};
     return scene_shape(shape_, find_shape_march("sphere-trace"), settings);
   }
   SceneFieldParts parts() const override { return {SceneFieldParts::Shape{&shape_, &march_, &settings_}}; }
