@@ -20,7 +20,7 @@ using namespace shape;
 constexpr std::size_t kMostInstructions = 16384;
 
 // Frame of a shape: its own position of a point p of the register is turn (p - at) / scale.
-struct Place {
+struct ShapeFrame {
   Turn turn = kNoTurn;
   dvec3 at{0.0};
   double scale = 1;
@@ -33,7 +33,7 @@ struct Place {
   dvec3 out(const dvec3& local) const { return at + scale * turned(back(turn), local); }
 };
 
-ShapeBox box_in_register(const Place& place, const ShapeBox& box) {
+ShapeBox box_in_register(const ShapeFrame& place, const ShapeBox& box) {
   if (box.empty()) return box;
   const Turn m = back(place.turn);
   ShapeBox out{place.at, place.at};
@@ -109,7 +109,7 @@ Cost cost_of(const Shape& shape) {
 class Compiler {
  public:
   DistanceProgram program(const Shape& shape) {
-    emit(shape, Place{}, 0);
+    emit(shape, ShapeFrame{}, 0);
     constexpr double kUnit = 0x1p-53;
     // Roundings of a solid, of each rotation before it, and of all smooth operations in sequence. The maximum counted
     // is 20, 8 and 10.
@@ -120,7 +120,7 @@ class Compiler {
   }
 
  private:
-  void emit(const Shape& shape, const Place& place, int out) {
+  void emit(const Shape& shape, const ShapeFrame& place, int out) {
     // Position registers of a shape are free again after it.
     const int positions = positions_;
     std::visit([&](const auto& form) { put(form, *shape, place, out); }, shape->form);
@@ -128,25 +128,25 @@ class Compiler {
   }
 
   // Solids.
-  void put(const Sphere& s, const ShapeNode&, const Place& place, int out) {
+  void put(const Sphere& s, const ShapeNode&, const ShapeFrame& place, int out) {
     solid(DistanceOp::sphere, place, out, {s.radius});
   }
-  void put(const Box& b, const ShapeNode&, Place place, int out) {
+  void put(const Box& b, const ShapeNode&, ShapeFrame place, int out) {
     place = straightened(place);
     const dvec3 core = b.half - b.round;
     solid(DistanceOp::box, place, out, {core.x, core.y, core.z, b.round});
   }
-  void put(const HalfSpace& p, const ShapeNode&, const Place& place, int out) {
+  void put(const HalfSpace& p, const ShapeNode&, const ShapeFrame& place, int out) {
     const dvec3 n = turned(back(place.turn), normalize(p.normal));
     const double height = p.height * place.scale + dot(n, place.at);
     add({.op = DistanceOp::plane, .out = value(out), .a = position(place), .number = numbers({n.x, n.y, n.z, height})},
         place);
     note(place, std::abs(p.height) * place.scale);
   }
-  void put(const Capsule& c, const ShapeNode&, const Place& place, int out) {
+  void put(const Capsule& c, const ShapeNode&, const ShapeFrame& place, int out) {
     const dvec3 along = c.to - c.from;
     const double half = 0.5 * length(along);
-    Place local = place;
+    ShapeFrame local = place;
     local.at = place.out(0.5 * (c.from + c.to));
     if (half > 0) {
       // The shortest rotation of the axis onto z.
@@ -158,26 +158,26 @@ class Compiler {
     local = straightened(local);
     solid(DistanceOp::capsule, local, out, {half, c.radius});
   }
-  void put(const Cylinder& c, const ShapeNode&, Place place, int out) {
+  void put(const Cylinder& c, const ShapeNode&, ShapeFrame place, int out) {
     place = straightened(place);
     solid(DistanceOp::cylinder, place, out, {c.radius, c.half_height});
   }
-  void put(const Cone& c, const ShapeNode&, Place place, int out) {
+  void put(const Cone& c, const ShapeNode&, ShapeFrame place, int out) {
     place.at = place.out({0, 0, 0.5 * c.height});
     place = straightened(place);
     solid(DistanceOp::cone, place, out, {c.radius, c.top, 0.5 * c.height});
   }
-  void put(const Torus& t, const ShapeNode&, Place place, int out) {
+  void put(const Torus& t, const ShapeNode&, ShapeFrame place, int out) {
     place = straightened(place);
     solid(DistanceOp::torus, place, out, {t.radius, t.tube});
   }
-  void put(const Ellipsoid& e, const ShapeNode& node, Place place, int out) {
+  void put(const Ellipsoid& e, const ShapeNode& node, ShapeFrame place, int out) {
     place = straightened(place);
     solid(DistanceOp::ellipsoid, place, out,
           {e.radii.x, e.radii.y, e.radii.z, std::min({e.radii.x, e.radii.y, e.radii.z})});
     clamp(place, node.box, out);
   }
-  void put(const FunctionGround& g, const ShapeNode& node, Place place, int out) {
+  void put(const FunctionGround& g, const ShapeNode& node, ShapeFrame place, int out) {
     place = straightened(place);
     const FunctionBound& all = g.function->bound_everywhere();
     const double shrink = shrink_of(all.slope), scale = place.scale;
@@ -193,7 +193,7 @@ class Compiler {
     }
     clamp(place, node.box, out);
   }
-  void put(const FieldGround& g, const ShapeNode& node, Place place, int out) {
+  void put(const FieldGround& g, const ShapeNode& node, ShapeFrame place, int out) {
     place = straightened(place);
     const HeightField& field = *g.field;
     const double scale = place.scale;
@@ -206,22 +206,22 @@ class Compiler {
   }
 
   // Places.
-  void put(const Moved& m, const ShapeNode&, Place place, int out) {
+  void put(const Moved& m, const ShapeNode&, ShapeFrame place, int out) {
     place.at = place.out(m.by);
     emit(m.shape, place, out);
   }
-  void put(const Turned& t, const ShapeNode&, Place place, int out) {
+  void put(const Turned& t, const ShapeNode&, ShapeFrame place, int out) {
     place.turn = after(back(turn_about(t.axis, t.angle)), place.turn);
     emit(t.shape, place, out);
   }
-  void put(const Scaled& s, const ShapeNode&, Place place, int out) {
+  void put(const Scaled& s, const ShapeNode&, ShapeFrame place, int out) {
     place.scale *= s.factor;
     if (!(place.scale >= kLeastLength && place.scale <= kMostLength)) {
       throw Error(fmt::format("shape: scale factors multiply to {} (must stay between 2^-20 and 2^30)", place.scale));
     }
     emit(s.shape, place, out);
   }
-  void put(const Repeated& r, const ShapeNode& node, Place place, int out) {
+  void put(const Repeated& r, const ShapeNode& node, ShapeFrame place, int out) {
     const ShapeBox& box = r.shape->box;
     if (box.empty() || r.period == dvec3(0.0)) return emit(r.shape, place, out);
     place = straightened(place);
@@ -238,7 +238,7 @@ class Compiler {
       k[6 + i] = r.count[i];
     }
     const std::uint32_t copies = numbers(k);
-    Place copy = place;
+    ShapeFrame copy = place;
     copy.position = next_position();
     copy.turns += 1;  // a fold rounds no more than a rotation
     add({.op = DistanceOp::fold, .out = value(copy.position), .a = position(place), .number = copies}, place);
@@ -274,7 +274,7 @@ class Compiler {
   }
 
   // Operations.
-  void put(const Union& u, const ShapeNode&, Place place, int out) {
+  void put(const Union& u, const ShapeNode&, ShapeFrame place, int out) {
     // Empty parts are dropped: their values carry no information.
     std::vector<Shape> parts;
     for (const Shape& part : u.parts) {
@@ -301,7 +301,7 @@ class Compiler {
       for (const Shape& part : rest) unite_one(part, place, out, first);
     }
   }
-  void put(const Intersection& x, const ShapeNode& node, Place place, int out) {
+  void put(const Intersection& x, const ShapeNode& node, ShapeFrame place, int out) {
     if (x.parts.size() == 1) return emit(x.parts.front(), place, out);
     place = straightened(place);
     emit(x.parts.front(), place, out);
@@ -315,7 +315,7 @@ class Compiler {
     }
     clamp(place, node.box, out);
   }
-  void put(const Subtraction& s, const ShapeNode&, Place place, int out) {
+  void put(const Subtraction& s, const ShapeNode&, ShapeFrame place, int out) {
     if (s.what->box.empty()) return emit(s.from, place, out);
     place = straightened(place);
     emit(s.from, place, out);
@@ -328,12 +328,12 @@ class Compiler {
     }
     end_skip(skip);
   }
-  void put(const Painted& p, const ShapeNode&, Place place, int out) {
+  void put(const Painted& p, const ShapeNode&, ShapeFrame place, int out) {
     place.material = p.material;
     emit(p.shape, place, out);
   }
 
-  void unite_one(const Shape& part, const Place& place, int out, bool& first) {
+  void unite_one(const Shape& part, const ShapeFrame& place, int out, bool& first) {
     if (std::exchange(first, false)) return emit(part, place, out);
     const std::size_t skip = skip_far(part, place, out, 0, 0);
     emit(part, place, out + 1);
@@ -341,7 +341,7 @@ class Compiler {
     end_skip(skip);
   }
   // Splits the parts along the axis of their largest extent; each half is skipped if its box is far.
-  void unite_group(std::span<Shape> parts, const Place& place, int out, bool& first) {
+  void unite_group(std::span<Shape> parts, const ShapeFrame& place, int out, bool& first) {
     constexpr std::size_t kFew = 2;
     if (parts.size() <= kFew) {
       for (const Shape& part : parts) unite_one(part, place, out, first);
@@ -374,7 +374,7 @@ class Compiler {
   // Instructions.
   static constexpr std::size_t kNoSkip = ~std::size_t{0};
 
-  void add(DistanceInstruction in, const Place& place) {
+  void add(DistanceInstruction in, const ShapeFrame& place) {
     if (program_.code.size() == kMostInstructions) {
       throw Error(
           fmt::format("shape: more than {} instructions (use fewer solids, or several objects)", kMostInstructions));
@@ -395,7 +395,7 @@ class Compiler {
     if (out >= kDistanceValues) too_many_registers();
     return static_cast<std::uint8_t>(out);
   }
-  static std::uint8_t position(const Place& place) { return static_cast<std::uint8_t>(place.position); }
+  static std::uint8_t position(const ShapeFrame& place) { return static_cast<std::uint8_t>(place.position); }
   int next_position() {
     if (positions_ == kDistancePositions) too_many_registers();
     return positions_++;
@@ -406,11 +406,11 @@ class Compiler {
   }
 
   // Records for rounding: size of a solid's numbers besides the position, metres.
-  void note(const Place& place, double size) {
+  void note(const ShapeFrame& place, double size) {
     size_ = std::max(size_, place.chain + length(place.at) + size);
     turns_ = std::max(turns_, place.turns);
   }
-  void solid(DistanceOp op, const Place& place, int out, std::initializer_list<double> lengths) {
+  void solid(DistanceOp op, const ShapeFrame& place, int out, std::initializer_list<double> lengths) {
     double size = 0;
     const std::uint32_t begin = numbers({place.at.x, place.at.y, place.at.z});
     for (const double k : lengths) {
@@ -420,7 +420,7 @@ class Compiler {
     add({.op = op, .out = value(out), .a = position(place), .number = begin}, place);
     note(place, size);
   }
-  void ground(DistanceOp op, const Place& place, int out, std::initializer_list<double> k, std::size_t index) {
+  void ground(DistanceOp op, const ShapeFrame& place, int out, std::initializer_list<double> k, std::size_t index) {
     const std::uint32_t begin = numbers({place.at.x, place.at.y, place.at.z});
     program_.numbers.insert(program_.numbers.end(), k);
     add({.op = op,
@@ -433,19 +433,19 @@ class Compiler {
   // 1 / sqrt(1 + c^2), rounded towards 0 by more than its three roundings.
   static double shrink_of(double slope) { return (1 - 0x1p-50) / std::hypot(1.0, slope); }
 
-  void smooth(DistanceOp op, const Place& place, int out, double radius) {
+  void smooth(DistanceOp op, const ShapeFrame& place, int out, double radius) {
     add({.op = op, .out = value(out), .a = value(out), .b = value(out + 1), .number = numbers({radius * place.scale})},
         place);
     ++smooth_;
     radii_ += radius * place.scale;
   }
-  void clamp(const Place& place, const ShapeBox& local, int out) {
+  void clamp(const ShapeFrame& place, const ShapeBox& local, int out) {
     const ShapeBox box = box_in_register(place, local);
     if (!bounds_anything(box)) return;
     add({.op = DistanceOp::clamp, .out = value(out), .a = value(out), .b = position(place), .number = numbers(box, 0)},
         place);
   }
-  std::size_t skip_box(const ShapeBox& local, const Place& place, int out, int mask, double radius) {
+  std::size_t skip_box(const ShapeBox& local, const ShapeFrame& place, int out, int mask, double radius) {
     const ShapeBox box = box_in_register(place, local);
     if (!bounds_anything(box)) return kNoSkip;
     add({.op = DistanceOp::skip_far,
@@ -457,7 +457,7 @@ class Compiler {
     return program_.code.size() - 1;
   }
   // Testing whether a single solid is far costs as much as the solid.
-  std::size_t skip_far(const Shape& part, const Place& place, int out, int mask, double radius) {
+  std::size_t skip_far(const Shape& part, const ShapeFrame& place, int out, int mask, double radius) {
     return cost_of(part) == Cost::single ? kNoSkip : skip_box(part->box, place, out, mask, radius);
   }
   void end_skip(std::size_t skip) {
@@ -466,9 +466,9 @@ class Compiler {
   }
 
   // The place in its own register, where the shape is upright.
-  Place straightened(const Place& place) {
+  ShapeFrame straightened(const ShapeFrame& place) {
     if (place.upright()) return place;
-    Place out;
+    ShapeFrame out;
     out.scale = place.scale;
     out.position = next_position();
     out.chain = place.chain + length(place.at);

@@ -19,7 +19,7 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
   const auto stops = [](double, double clearance) { return clearance <= 0; };
   Hit hit;
   bool above = on_surface;
-  Look before{probe.t_enter, 0, on_surface};
+  SamplePoint before{probe.t_enter, 0, on_surface};
   for (int i = on_surface ? 1 : 0;; ++i) {
     if (i == settings.max_steps) return exhausted_at(before.t);
     // Counted, not summed up, while steps are equal.
@@ -28,15 +28,15 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
     t = std::min(t, probe.t_exit);
     ++stats.steps;
     const auto sample = probe.at(t);
-    const Look look{t, sample.clearance, sample.valid};
-    if (look.known) {
-      if (look.h > 0 || (on_surface && look.h == 0)) {
+    const SamplePoint point{t, sample.clearance, sample.valid};
+    if (point.known) {
+      if (point.h > 0 || (on_surface && point.h == 0)) {
         above = true;
       } else if (before.known && above) {
         // From a point on the surface there is no interval to refine.
         if (!(before.h > 0)) return probe.hit(t, sample);
-        return refined_hit(probe, all.sampling, refinement_of_fixed_step(all), before, look, sample, 0, stops, stats);
-      } else if (!before.known && look.h == 0) {
+        return refined_hit(probe, all.sampling, refinement_of_fixed_step(all), before, point, sample, 0, stops, stats);
+      } else if (!before.known && point.h == 0) {
         return probe.hit(t, sample);
       } else {
         const bool first = stats.steps == 1;
@@ -45,7 +45,7 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
         above = false;
       }
     }
-    before = look;
+    before = point;
     if (!(t < probe.t_exit)) return hit;
   }
 }

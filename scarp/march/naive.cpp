@@ -19,18 +19,18 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
   const auto limit = [&](double t) { return std::max(near, settings.tolerance * (t - start)); };
   const auto stops = [&](double t, double clearance) { return clearance * per_clearance < limit(t); };
   const bool refines = all.sampling.refinement != Refinement::none;
-  Look before;
+  SamplePoint before;
   double t = probe.t_enter + (probe.ray().start == RayStart::on_surface ? least : 0.0);
   for (int step = 0; t <= probe.t_exit; ++step) {
     if (step == settings.max_steps) return exhausted_at(t);
     ++stats.steps;
     const auto sample = probe.at(t);
-    const Look look{t, sample.clearance * per_clearance, sample.valid};
-    if (look.known && stops(t, sample.clearance))
-      return refined_hit(probe, all.sampling, all.sampling.refinement, before, look, sample, limit(t), stops, stats);
-    if (refines) before = look;
+    const SamplePoint point{t, sample.clearance * per_clearance, sample.valid};
+    if (point.known && stops(t, sample.clearance))
+      return refined_hit(probe, all.sampling, all.sampling.refinement, before, point, sample, limit(t), stops, stats);
+    if (refines) before = point;
     // Over a hole there is no height to go by.
-    t += std::max(look.known ? settings.step_factor * std::abs(look.h) : 0.0, least);
+    t += std::max(point.known ? settings.step_factor * std::abs(point.h) : 0.0, least);
   }
   return {};
 }

@@ -84,7 +84,7 @@ class RayRuns {
 
   static std::uint32_t checked(std::uint32_t rays) {
     if (rays >= 1 && rays <= kMostRaysAtOnce) return rays;
-    throw Error(fmt::format("device queries: {} rays at once; there can be 1 to {}", rays, kMostRaysAtOnce));
+    throw Error(fmt::format("device queries: {} rays at once (must be 1 to {})", rays, kMostRaysAtOnce));
   }
 
   template <class Body>

@@ -18,26 +18,26 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
   const auto limit = [&](double t) { return std::max(near, settings.tolerance * (t - start)); };
   const auto stops = [&](double t, double clearance) { return std::abs(clearance * per_clearance) < limit(t); };
   const bool on_surface = probe.ray().start == RayStart::on_surface;
-  Look before;
+  SamplePoint before;
   double t = probe.t_enter + (on_surface ? blind : 0.0);
   for (int step = 0; t <= probe.t_exit; ++step) {
     if (step == settings.max_steps) return exhausted_at(t);
     ++stats.steps;
     const auto sample = probe.at(t);
-    const Look look{t, sample.clearance * per_clearance, sample.valid};
-    if (!look.known) {
+    const SamplePoint point{t, sample.clearance * per_clearance, sample.valid};
+    if (!point.known) {
       t += blind;
     } else if (stops(t, sample.clearance)) {
       // It may come from above or, having overshot, from below.
       const double met = std::copysign(limit(t), before.h);
-      return refined_hit(probe, all.sampling, all.sampling.refinement, before, look, sample, met, stops, stats);
-    } else if (look.h < 0 && step == 0) {
-      // Below at the first look: the way back would leave the ray's range.
+      return refined_hit(probe, all.sampling, all.sampling.refinement, before, point, sample, met, stops, stats);
+    } else if (point.h < 0 && step == 0) {
+      // Below at the first sample: the way back would leave the ray's range.
       return on_surface ? probe.hit(t, sample) : below();
     } else {
-      t = std::max(t + settings.step_factor * look.h, probe.t_enter);
+      t = std::max(t + settings.step_factor * point.h, probe.t_enter);
     }
-    before = look;
+    before = point;
   }
   return {};
 }

@@ -13,7 +13,7 @@
 namespace scarp {
 
 /// A point of the ray that a march has sampled.
-struct Look {
+struct SamplePoint {
   double t = 0;
   double h = 0;        ///< clearance, in the unit of the test for a hit
   bool known = false;  ///< whether it is over ground
@@ -42,8 +42,8 @@ inline Hit exhausted_at(double t) {
 /// where it begins to hold. The secant takes that for a clearance of `limit`. The hit stays at `last` if `before` is
 /// over a hole, or the result is.
 template <class Probe, class Stops>
-Hit refined_hit(const Probe& probe, const SamplingSettings& settings, Refinement how, const Look& before,
-                const Look& last, const typename Probe::Sample& sample, double limit, const Stops& stops,
+Hit refined_hit(const Probe& probe, const SamplingSettings& settings, Refinement how, const SamplePoint& before,
+                const SamplePoint& last, const typename Probe::Sample& sample, double limit, const Stops& stops,
                 MarchStats& stats) {
   if (!before.known || how == Refinement::none) return probe.hit(last.t, sample);
   double from = before.t, to = last.t;

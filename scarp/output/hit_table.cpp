@@ -129,7 +129,7 @@ std::optional<HitKind> find_hit_kind(std::string_view name) {
   return static_cast<HitKind>(found - kKindNames.begin());
 }
 
-void HitTable::FileCloser::operator()(std::FILE* file) const {
+void HitTable::OutputCloser::operator()(std::FILE* file) const {
   if (file != stdout) std::fclose(file);
 }
 

@@ -72,7 +72,7 @@ class HitTable {
   void commit();
 
  private:
-  struct FileCloser {
+  struct OutputCloser {
     void operator()(std::FILE* file) const;
   };
 
@@ -86,7 +86,7 @@ class HitTable {
   const TextColumns& carried_;
   bool npy_;
   std::unique_ptr<ReplaceFile> place_;  // null: standard output
-  std::unique_ptr<std::FILE, FileCloser> file_;
+  std::unique_ptr<std::FILE, OutputCloser> file_;
   std::string text_;  // not written yet
   std::int64_t rows_ = 0;
 };

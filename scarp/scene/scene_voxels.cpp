@@ -18,9 +18,9 @@ namespace {
 // It visits every voxel in turn, in whole numbers.
 constexpr std::string_view kJudge = "voxel-planes";
 
-class Voxels final : public SceneField {
+class VoxelField final : public SceneField {
  public:
-  Voxels(VoxelObjects objects, const VoxelShading& shading) : objects_(std::move(objects)), shading_(shading) {
+  VoxelField(VoxelObjects objects, const VoxelShading& shading) : objects_(std::move(objects)), shading_(shading) {
     validate(shading);
     std::set<std::string_view> marches;
     for (const auto& model : objects_.models()) marches.insert(model->march().name);
@@ -77,9 +77,9 @@ class Voxels final : public SceneField {
     for (const auto& model : objects_.models()) solid += model->grid().solid_count();
     return solid;
   }
-  SceneFieldPtr judge() const override { return std::make_shared<Voxels>(objects_.marched_by(kJudge), shading_); }
+  SceneFieldPtr judge() const override { return std::make_shared<VoxelField>(objects_.marched_by(kJudge), shading_); }
   SceneFieldPtr coarser(int level) const override {
-    return std::make_shared<Voxels>(objects_.coarser(level), shading_);
+    return std::make_shared<VoxelField>(objects_.coarser(level), shading_);
   }
 
  private:
@@ -116,7 +116,7 @@ class Voxels final : public SceneField {
 }  // namespace
 
 SceneFieldPtr scene_voxels(PlacedVoxels voxels, const VoxelShading& shading) {
-  return std::make_shared<Voxels>(VoxelObjects(std::move(voxels)), shading);
+  return std::make_shared<VoxelField>(VoxelObjects(std::move(voxels)), shading);
 }
 
 }  // namespace scarp

@@ -14,14 +14,11 @@
 #include "scarp/source/incomplete_file.h"
 #include "scarp/source/netcdf_size.h"
 #include "scarp/source/raw_band.h"
+#include "scarp/source/vsi_file.h"
 #include "scarp/source/zip_archive.h"
 
 namespace scarp {
 namespace {
-
-struct FileCloser {
-  void operator()(VSILFILE* file) const { VSIFCloseL(file); }
-};
 
 void require_bytes(double needed, std::uint64_t has) {
   if (static_cast<double>(has) < needed) {
@@ -66,7 +63,7 @@ void check_end(const std::string& path) {
 
 std::string bytes_from(const std::string& path, std::uint64_t begin, std::size_t count) {
   errno = 0;
-  const std::unique_ptr<VSILFILE, FileCloser> file(VSIFOpenL(path.c_str(), "rb"));
+  const VsiFile file(VSIFOpenL(path.c_str(), "rb"));
   if (!file) throw Error(fmt::format("cannot be opened: {}", errno ? std::strerror(errno) : "GDAL gives no reason"));
   std::string bytes(count, '\0');
   VSIFSeekL(file.get(), begin, SEEK_SET);

@@ -30,7 +30,7 @@ struct PjDeleter {
 using Pj = std::unique_ptr<PJ, PjDeleter>;
 using PjContext = std::unique_ptr<PJ_CONTEXT, PjDeleter>;
 
-struct Ellipsoid {
+struct EarthEllipsoid {
   double a = 0;   // semi-major axis, metres
   double e2 = 0;  // eccentricity squared
   std::string name;
@@ -46,9 +46,9 @@ struct Ellipsoid {
   }
 };
 
-Ellipsoid ellipsoid_of(PJ_CONTEXT* context, const PJ* crs) {
+EarthEllipsoid ellipsoid_of(PJ_CONTEXT* context, const PJ* crs) {
   const Pj ellipsoid(proj_get_ellipsoid(context, crs));
-  Ellipsoid result;
+  EarthEllipsoid result;
   double b = 0;
   if (!ellipsoid || !proj_ellipsoid_get_parameters(context, ellipsoid.get(), &result.a, &b, nullptr, nullptr) ||
       !(result.a > 0)) {
@@ -72,7 +72,7 @@ double axis_unit(PJ_CONTEXT* context, const PJ* crs) {
 }
 
 GroundScale geographic(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
-  const Ellipsoid ellipsoid = ellipsoid_of(context, crs);
+  const EarthEllipsoid ellipsoid = ellipsoid_of(context, crs);
   const double unit = axis_unit(context, crs), lat = y * unit;
   if (!(std::abs(lat) < std::numbers::pi / 2)) {
     throw Error(fmt::format(
@@ -91,7 +91,7 @@ GroundScale geographic(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
 GroundScale projected(PJ_CONTEXT* context, const PJ* crs, double x, double y) {
   const Pj base(proj_crs_get_geodetic_crs(context, crs));
   if (!base) throw Error("the coordinate reference system has no geographic base (choose another with --crs)");
-  const Ellipsoid ellipsoid = ellipsoid_of(context, base.get());
+  const EarthEllipsoid ellipsoid = ellipsoid_of(context, base.get());
   const double unit = axis_unit(context, crs), angle = axis_unit(context, base.get());
   Pj transform(proj_create_crs_to_crs_from_pj(context, crs, base.get(), nullptr, nullptr));
   if (transform) transform.reset(proj_normalize_for_visualization(context, transform.get()));

@@ -11,7 +11,7 @@ constexpr std::uint64_t kStreaming = 0xffffffff;  // unknown number of records
 constexpr int kTypeBytes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
 
 // Takes big-endian numbers from the header; `good` stays false once the bytes run out.
-struct Header {
+struct NetcdfHeader {
   std::string_view bytes;
   std::size_t at = 0;
   bool good = true;
@@ -55,7 +55,7 @@ struct Header {
 
 std::optional<double> netcdf_classic_bytes(std::string_view start) {
   if (start.size() < 4 || start.substr(0, 3) != "CDF" || (start[3] != 1 && start[3] != 2 && start[3] != 5)) return {};
-  Header header{start};
+  NetcdfHeader header{start};
   header.at = 4;
   header.wide = start[3] == 5;
   const std::size_t offset_width = start[3] == 1 ? 4 : 8;

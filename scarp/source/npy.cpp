@@ -20,17 +20,14 @@
 #include "scarp/source/npy_header.h"
 #include "scarp/source/raster_name.h"
 #include "scarp/source/raw_band.h"
+#include "scarp/source/vsi_file.h"
 #include "scarp/source/zip_archive.h"
 
 namespace scarp {
 namespace {
 
-struct FileCloser {
-  void operator()(VSILFILE* file) const { VSIFCloseL(file); }
-};
-
 NpyHeader read_header(const std::string& path, const GdalSession& session) {
-  const std::unique_ptr<VSILFILE, FileCloser> file(VSIFOpenL(path.c_str(), "rb"));
+  const VsiFile file(VSIFOpenL(path.c_str(), "rb"));
   if (!file) throw Error(fmt::format("cannot be opened: {}", session.reason("permission denied, or no such file")));
   std::string bytes(kNpyPreambleBytes, '\0');
   bytes.resize(VSIFReadL(bytes.data(), 1, bytes.size(), file.get()));

@@ -92,9 +92,9 @@ class GradientNoise {
 };
 
 // The settings with derived values, for one thread.
-class Terrain {
+class ProceduralTerrain {
  public:
-  explicit Terrain(const ProceduralDem& s) : kind_(s.kind) {
+  explicit ProceduralTerrain(const ProceduralDem& s) : kind_(s.kind) {
     wavelength_ =
         s.wavelength > 0 ? s.wavelength : std::max(kFinestWavelength, std::min(1024.0, std::max(s.cols, s.rows) / 2.0));
     for (double w = wavelength_; w >= kFinestWavelength && octaves_ < kMostOctaves; w /= 2) {
@@ -171,7 +171,7 @@ void validate(const ProceduralDem& s) {
 
 void fill_rectangle(const ProceduralDem& settings, int col, int row, int cols, int rows, float* out,
                     std::ptrdiff_t stride) {
-  Terrain terrain(settings);
+  ProceduralTerrain terrain(settings);
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < cols; ++c) out[r * stride + c] = terrain.height(col + c, row + r);
   }

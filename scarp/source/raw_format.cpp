@@ -37,16 +37,16 @@ class Rest {
   std::string_view text_;
 };
 
-struct SampleType {
+struct RawType {
   std::string_view name;
   char kind;
   int bytes;
 };
-constexpr SampleType kTypes[] = {{"u8", 'u', 1},  {"i8", 'i', 1},  {"u16", 'u', 2}, {"i16", 'i', 2},
-                                 {"u32", 'u', 4}, {"i32", 'i', 4}, {"f32", 'f', 4}, {"f64", 'f', 8}};
+constexpr RawType kTypes[] = {{"u8", 'u', 1},  {"i8", 'i', 1},  {"u16", 'u', 2}, {"i16", 'i', 2},
+                              {"u32", 'u', 4}, {"i32", 'i', 4}, {"f32", 'f', 4}, {"f64", 'f', 8}};
 
 bool take_type(Rest& rest, RawFormat& format) {
-  for (const SampleType& type : kTypes) {
+  for (const RawType& type : kTypes) {
     if (!rest.take(type.name)) continue;
     format.kind = type.kind;
     format.bytes = type.bytes;

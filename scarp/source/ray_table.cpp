@@ -69,9 +69,9 @@ void check(const RayRow& row, RayAim aim, const Place& place) {
 }
 
 // Maps fields of a row to columns.
-class Header {
+class CsvHeader {
  public:
-  explicit Header(std::span<const std::string_view> fields) : fields_(fields.size()) {
+  explicit CsvHeader(std::span<const std::string_view> fields) : fields_(fields.size()) {
     places_.fill(kNone);
     for (std::size_t i = 0; i < fields.size(); ++i) {
       const std::string_view name = trimmed(fields[i]);
@@ -121,9 +121,10 @@ class Header {
 };
 
 // The fields of one row as numbers.
-class Row {
+class CsvRow {
  public:
-  Row(const Header& header, const CsvRows& rows, std::size_t number) : header_(header), rows_(rows), number_(number) {
+  CsvRow(const CsvHeader& header, const CsvRows& rows, std::size_t number)
+      : header_(header), rows_(rows), number_(number) {
     if (rows.fields().size() != header.fields()) {
       refuse(fmt::format("{} fields instead of {}", rows.fields().size(), header.fields()));
     }
@@ -171,7 +172,7 @@ class Row {
   std::string_view text(Column column) const { return trimmed(rows_.fields()[header_[column]]); }
   [[noreturn]] void refuse(const std::string& what) const { throw Error(fmt::format("{}: {}", place(), what)); }
 
-  const Header& header_;
+  const CsvHeader& header_;
   const CsvRows& rows_;
   std::size_t number_;
 };
@@ -228,7 +229,7 @@ std::size_t rays_of(const NpyHeader& header, std::string_view behind, std::int64
 RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t rays) {
   std::vector<std::string_view> names;
   for (const NpyField& field : header.fields) names.push_back(field.name);
-  const Header columns(names);
+  const CsvHeader columns(names);
   std::array<NumberReader, column_count> readers{};
   for (std::size_t c = 0; c < column_count; ++c) {
     if (!columns.has(static_cast<Column>(c))) continue;
@@ -290,7 +291,7 @@ RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays
   return table;
 }
 
-struct FileCloser {
+struct InputCloser {
   void operator()(std::FILE* file) const {
     if (file != stdin) std::fclose(file);
   }
@@ -299,7 +300,7 @@ struct FileCloser {
 std::string bytes_of(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && std::filesystem::is_directory(path, ignored)) throw Error("is a directory (name a file)");
-  const std::unique_ptr<std::FILE, FileCloser> file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
+  const std::unique_ptr<std::FILE, InputCloser> file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
   if (!file) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
   constexpr std::size_t kPiece = 1 << 20;
   std::string bytes;
@@ -327,12 +328,12 @@ RayTable parse_ray_csv(std::string_view bytes) {
   if (double number = 0; parse(trimmed(rows.fields().front()), number)) {
     throw Error(fmt::format("first line contains numbers instead of a header ({})", kNeeded));
   }
-  const Header header(rows.fields());
+  const CsvHeader header(rows.fields());
   RayTable table;
   table.aim = header.aim();
   for (const std::size_t i : header.carried()) table.carried.names.emplace_back(trimmed(rows.fields()[i]));
   while (rows.next()) {
-    table.rows.push_back(Row(header, rows, table.rows.size()).ray());
+    table.rows.push_back(CsvRow(header, rows, table.rows.size()).ray());
     for (const std::size_t i : header.carried()) table.carried.cells.emplace_back(rows.fields()[i]);
   }
   return table;

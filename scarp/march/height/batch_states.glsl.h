@@ -22,7 +22,7 @@ struct BatchWalk {
 };
 
 /// Of the others.
-struct BatchLook {
+struct BatchMarch {
   ScarpHit hit;
   ScarpMarchState state;
 };
@@ -30,7 +30,7 @@ struct BatchLook {
 #ifndef __cplusplus
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchWalks { BatchWalk of[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchLooks { BatchLook of[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchMarches { BatchMarch of[]; };
 
 #endif
 

@@ -17,11 +17,11 @@ constexpr double kUnit = 0x1p-53;
 // Positions up to which doubles tell a cell from the next well enough.
 constexpr double kFarthestCell = 0x1p40;
 
-struct Pair {
+struct TwoFloats {
   float high, low;
 };
 
-Pair pair(double x) {
+TwoFloats two_floats(double x) {
   const auto high = static_cast<float>(x);
   return {high, static_cast<float>(x - static_cast<double>(high))};
 }
@@ -30,12 +30,12 @@ bool inside(double o, int cells) { return o >= 0 && o <= cells; }
 
 // A ray as two floats per number. Times beyond kScarpNever are told as that.
 void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec3& direction, double length) {
-  const Pair u = pair(place.x), v = pair(place.y), z = pair(height);
+  const TwoFloats u = two_floats(place.x), v = two_floats(place.y), z = two_floats(height);
   out.cell = {cell.col, cell.row};
   out.place = {u.high, v.high};
   out.place_low = {u.low, v.low};
   for (int axis = 0; axis < 3; ++axis) {
-    const Pair d = pair(direction[axis]);
+    const TwoFloats d = two_floats(direction[axis]);
     out.direction[axis] = d.high;
     out.direction_low[axis] = d.low;
     if (axis < 2 && direction[axis] != 0) {
@@ -43,7 +43,7 @@ void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec
       out.per_direction[axis] = static_cast<float>(std::clamp(1 / direction[axis], -never, never));
     }
   }
-  const Pair end = pair(std::min(length, double{glsl::kScarpNever}));
+  const TwoFloats end = two_floats(std::min(length, double{glsl::kScarpNever}));
   out.z = z.high;
   out.z_low = z.low;
   out.end = end.high;
@@ -157,7 +157,7 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
   result.lowest = static_cast<float>(field.min_sample());
   result.highest = static_cast<float>(field.max_sample());
   if (pyramid) {
-    const Pair base = pair(pyramid->code().base);
+    const TwoFloats base = two_floats(pyramid->code().base);
     result.top_level = pyramid->top_level();
     result.code_base = base.high;
     result.code_base_low = base.low;

@@ -18,7 +18,7 @@ constexpr std::int64_t kRaysPerPiece = 1 << 14;
 constexpr int kPairs = 512;  // of successive rays, looked at to tell whether they are in order already
 constexpr int kNearTiles = 2;
 
-struct Tile {
+struct GroundTile {
   int x, y;
 };
 
@@ -30,7 +30,7 @@ class Tiles {
         per_row_(kTilesPerSide / static_cast<double>(field.cell_rows())) {}
 
   // Where the ray comes to the height of the ground, or begins if it does so there.
-  Tile tile(const Ray& ray) const {
+  GroundTile tile(const Ray& ray) const {
     const GridRay local = field_.grid_from_world(ray);
     double t = ray.t_min;
     const double above = field_.max_sample() - (local.origin.z + local.direction.z * t);
@@ -56,13 +56,13 @@ std::uint32_t spread(int n) {
   bits = (bits | (bits << 2)) & 0x3333u;
   return (bits | (bits << 1)) & 0x5555u;
 }
-std::uint16_t morton(Tile tile) { return static_cast<std::uint16_t>(spread(tile.x) | (spread(tile.y) << 1)); }
+std::uint16_t morton(GroundTile tile) { return static_cast<std::uint16_t>(spread(tile.x) | (spread(tile.y) << 1)); }
 
 bool in_order_already(const Tiles& tiles, std::span<const Ray> rays) {
   int near = 0;
   const std::size_t stride = (rays.size() - 1) / kPairs;
   for (std::size_t i = 0; i < kPairs; ++i) {
-    const Tile a = tiles.tile(rays[i * stride]), b = tiles.tile(rays[i * stride + 1]);
+    const GroundTile a = tiles.tile(rays[i * stride]), b = tiles.tile(rays[i * stride + 1]);
     near += std::abs(a.x - b.x) <= kNearTiles && std::abs(a.y - b.y) <= kNearTiles;
   }
   return near > kPairs / 2;

@@ -21,13 +21,13 @@ void main() {
   ScarpHit hit = scarp_no_hit();
   ScarpMarchState state = scarp_sampled_begin(field, ray, settings);
   if (batch.resume != 0u) {
-    hit = BatchLooks(batch.states).of[i].hit;
-    state = BatchLooks(batch.states).of[i].state;
+    hit = BatchMarches(batch.states).of[i].hit;
+    state = BatchMarches(batch.states).of[i].state;
   }
   if (scarp_sampled_on(field, ray, settings, batch.turns, state, hit)) {
     batch_answer(i, hit);
     return;
   }
-  BatchLooks(batch.states).of[i] = BatchLook(hit, state);
+  BatchMarches(batch.states).of[i] = BatchMarch(hit, state);
   batch_interrupt(i);
 }

@@ -41,7 +41,7 @@ struct Candidates {
 };
 
 // A ray that is to cross a copy of a wrapped ground.
-struct Copy {
+struct CopyRay {
   std::size_t ray;
   std::int32_t x, y;
   bool seen;  // above the ground so far
@@ -342,7 +342,7 @@ class VectorWalk {
     take_copy(j, {index, static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), false}, fresh);
   }
   static bool is_near(double x, double y) { return std::abs(x) < kFarthestCopy && std::abs(y) < kFarthestCopy; }
-  void take_copy(std::size_t j, const Copy& copy, Lanes& fresh) {
+  void take_copy(std::size_t j, const CopyRay& copy, Lanes& fresh) {
     const Ray& ray = rays_[copy.ray];
     put_ray(r_, j, ray, field_.grid_from_world(ray));
     r_.ox[j] -= copy.x * f_.cols, r_.oy[j] -= copy.y * f_.rows, r_.seen[j] = copy.seen;
@@ -352,7 +352,7 @@ class VectorWalk {
   // A ray without a hit in its copy continues in the next, if it goes that far. If borders of both axes are crossed
   // almost at once, either may come first.
   HWY_NOINLINE void leave_copy(const Lanes& a, std::size_t j) {
-    Copy copy{static_cast<std::size_t>(a.ray[j]), a.copy_x[j], a.copy_y[j], a.seen[j] != 0};
+    CopyRay copy{static_cast<std::size_t>(a.ray[j]), a.copy_x[j], a.copy_y[j], a.seen[j] != 0};
     const Ray& ray = rays_[copy.ray];
     const GridRay local = field_.grid_from_world(ray);
     const auto exit = [](double o, double d, double from, double cells) {
@@ -524,7 +524,7 @@ class VectorWalk {
   GridRays r_;
   Lanes fresh_[kFresh], lanes_[kPackets];
   std::size_t next_ = 0, fresh_at_ = kFresh;
-  std::vector<Copy> copies_;            // waiting to be traversed
+  std::vector<CopyRay> copies_;         // waiting to be traversed
   std::uint64_t waiting_[kFresh] = {};  // lanes of fresh_ whose rays wait for a lane in lanes_
   float beam_length_ = 0;               // length of the last beam
   bool together_ = false;               // whether the rays in fresh_ form a beam: they start and end together

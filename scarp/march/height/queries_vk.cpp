@@ -44,7 +44,7 @@ struct DeviceMarch {
 };
 
 constexpr DeviceMarch sampling_march(std::string_view name, std::uint32_t choice) {
-  return {name, kHeightMarchesWords, sampled_device_ray, false, choice, sizeof(glsl::BatchLook)};
+  return {name, kHeightMarchesWords, sampled_device_ray, false, choice, sizeof(glsl::BatchMarch)};
 }
 
 constexpr std::array kDeviceMarches = {
@@ -76,7 +76,7 @@ glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& set
 
 int checked_turns(int turns) {
   if (turns >= 1 && turns <= glsl::kScarpLoopTurns) return turns;
-  throw Error(fmt::format("device queries: {} turns at once; there can be 1 to {}", turns, glsl::kScarpLoopTurns));
+  throw Error(fmt::format("device queries: {} turns at once (must be 1 to {})", turns, glsl::kScarpLoopTurns));
 }
 
 }  // namespace

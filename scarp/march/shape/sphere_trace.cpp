@@ -29,10 +29,10 @@ constexpr int kPatience = 6;
 constexpr double kFirst = 0x1p-8;
 
 // Which side of the surface the ray is on.
-enum class Side { outside, inside };
+enum class Medium { outside, inside };
 
 enum class Ended { crossing, exit, exhausted };
-struct Walk {
+struct WalkEnd {
   Ended ended;
   double t;       // end; for a crossing, the last time known to be before it
   double beyond;  // for a crossing: a time after it, or t if the ray is indistinguishable from a crossing
@@ -63,7 +63,7 @@ class Trace {
     Hit hit;
     double t = t_enter_;
     if (!first_outside(t, hit)) return hit;
-    const Walk walk = follow(t, Side::outside);
+    const WalkEnd walk = follow(t, Medium::outside);
     if (walk.ended == Ended::crossing) return hit_at(walk.beyond > walk.t ? crossing(walk.t, walk.beyond) : walk.t);
     if (walk.ended == Ended::exhausted) return exhausted(walk.t);
     hit.status = began_inside_ ? HitStatus::below : HitStatus::miss;
@@ -74,7 +74,7 @@ class Trace {
     Hit hit;
     double t = t_enter_;
     if (!first_outside(t, hit)) return bool(hit);
-    return follow(t, Side::outside).ended == Ended::crossing;
+    return follow(t, Medium::outside).ended == Ended::crossing;
   }
 
  private:
@@ -126,7 +126,7 @@ class Trace {
     for (;;) {
       hit = Hit{};
       hit.status = HitStatus::below;
-      const Walk walk = follow(t, Side::inside);
+      const WalkEnd walk = follow(t, Medium::inside);
       if (walk.ended == Ended::exhausted) hit = exhausted(walk.t);
       if (walk.ended != Ended::crossing) return false;
       t = std::max(walk.beyond, walk.t + least_at(walk.t));
@@ -173,8 +173,8 @@ class Trace {
   }
 
   // Along one side of the surface to its crossing: by balls while they grow, otherwise by segments.
-  Walk follow(double t, Side side) {
-    const double sign = side == Side::outside ? 1 : -1;
+  WalkEnd follow(double t, Medium side) {
+    const double sign = side == Medium::outside ? 1 : -1;
     double length = 0;  // of the next segment
     int patience = kPatience;
     while (t < t_exit_) {

@@ -85,7 +85,7 @@ HWY_INLINE void transform(const glm::dmat3& m, const VD (&v)[3], VD (&to)[3]) {
 
 // Result of a lookup: whether voxels are solid, and otherwise how many planes may be crossed along each axis. `at` are
 // the voxels, mirrored along negative directions.
-struct Seen {
+struct LookResult {
   MI solid;
   VI planes[3];
 };
@@ -112,7 +112,7 @@ struct PlanesLook {
   const VoxelGrid& grid;
 
   explicit PlanesLook(const VoxelTarget& target) : grid(*target.grid) {}
-  HWY_INLINE Seen operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
+  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
     const VI brick[3] = {hn::ShiftRight<2>(v[0]), hn::ShiftRight<2>(v[1]), hn::ShiftRight<2>(v[2])};
     const VI mask = gather_words(grid.masks().data(), hn::IfThenElseZero(alive, index_in(brick, grid.bricks())));
     const VI one = hn::Set(di, 1);
@@ -126,7 +126,7 @@ struct CubesLook {
   const VoxelBytes& bytes;
 
   explicit CubesLook(const VoxelTarget& target) : bytes(target.cubes->distances()) {}
-  HWY_INLINE Seen operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
+  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
     const VI index = hn::IfThenElseZero(alive, index_in(v, bytes.size()));
     const VI distance = gather_bytes(bytes.data(), index);
     return {hn::Eq(distance, hn::Zero(di)), {distance, distance, distance}};
@@ -139,7 +139,7 @@ struct OctantsLook {
   ivec3 size;
 
   explicit OctantsLook(const VoxelTarget& target) : bytes(target.octants->sides()), size(target.grid->size()) {}
-  HWY_INLINE Seen operator()(const VI (&v)[3], const VI (&)[3], const VI (&down)[3], MI alive) const {
+  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&down)[3], MI alive) const {
     const VI octant = hn::Or(hn::And(down[0], hn::Set(di, 1)),
                              hn::Or(hn::And(down[1], hn::Set(di, 2)), hn::And(down[2], hn::Set(di, 4))));
     const VI z = hn::Add(v[2], product(octant, hn::Set(di, size.z)));
@@ -160,7 +160,7 @@ struct BricksLook {
     const VI pair = shifted(mask, hn::And(bit, hn::Set(di, kEven)));
     return hn::Eq(hn::And(pair, hn::Set(di, static_cast<std::int64_t>(kPair))), hn::Zero(di));
   }
-  HWY_INLINE Seen operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive) const {
+  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive) const {
     const VI zero = hn::Zero(di), one = hn::Set(di, 1);
     const VI octant = hn::Or(hn::And(down[0], hn::Set(di, 64)),
                              hn::Or(hn::And(down[1], hn::Set(di, 128)), hn::And(down[2], hn::Set(di, 256))));
@@ -192,7 +192,7 @@ struct BricksLook {
 };
 
 // Rays in one box, in lanes; each compaction removes finished ones.
-struct Walk {
+struct LaneWalk {
   using Numbers = VoxelPacket::Lanes<std::int64_t>;
   // at: the voxel, mirrored along negative directions; end: the first one beyond the box.
   alignas(64) Numbers next[3], at[3], end[3], speed[3], down[3];
@@ -241,14 +241,14 @@ HWY_INLINE VD slowness_of(VI speed) {
 
 // quantise() of voxel_ray.cpp, the same operations in the same order. Starts rays that enter the box, and returns them.
 HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& packet, std::size_t o, MI rays,
-                    Walk& walk) {
+                    LaneWalk& walk) {
   const VD zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
   VD from[3], origin[3];
   for (int i = 0; i < 3; ++i) from[i] = hn::Sub(hn::Load(dd, packet.origin[i] + o), hn::Set(dd, stand.origin[i]));
   transform(stand.grid_from_world, from, origin);
   VD t = hn::Load(dd, packet.t_min + o), t_out = hn::Load(dd, packet.t_max + o);
   MD alive = hn::And(hn::RebindMask(dd, rays), hn::Lt(hn::Load(dd, packet.t_per_s + o), hn::Inf(dd)));
-  VI entered = hn::Set(di, Walk::kInside);
+  VI entered = hn::Set(di, LaneWalk::kInside);
   MD down[3];
   VD given[3];
   for (int i = 0; i < 3; ++i) {
@@ -261,7 +261,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     const VD to_low = hn::Mul(hn::Sub(low, origin[i]), inverse), to_high = hn::Mul(hn::Sub(high, origin[i]), inverse);
     const VD near = hn::IfThenElse(down[i], to_high, to_low), far = hn::IfThenElse(down[i], to_low, to_high);
     const MD later = hn::AndNot(level, hn::Ge(near, t));
-    entered = hn::IfThenElse(hn::RebindMask(di, later), hn::Set(di, Walk::kEntered + i), entered);
+    entered = hn::IfThenElse(hn::RebindMask(di, later), hn::Set(di, LaneWalk::kEntered + i), entered);
     t = hn::IfThenElse(hn::And(later, hn::Gt(near, t)), near, t);
     t_out = hn::IfThenElse(hn::AndNot(level, hn::Lt(far, t_out)), far, t_out);
   }
@@ -274,7 +274,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     VD place = hn::Add(origin[i], hn::Mul(t, given[i]));
     place = hn::IfThenElse(hn::Gt(place, low), place, low);
     place = hn::IfThenElse(hn::Lt(place, high), place, high);
-    const MD in_here = hn::RebindMask(dd, hn::Eq(entered, hn::Set(di, Walk::kEntered + i)));
+    const MD in_here = hn::RebindMask(dd, hn::Eq(entered, hn::Set(di, LaneWalk::kEntered + i)));
     const VD whole = hn::Trunc(place);
     voxel[i] = hn::Sub(whole, hn::IfThenElseZero(hn::And(down[i], hn::Eq(whole, place)), one));
     alive = hn::And(alive, hn::Or(in_here, hn::And(hn::Ge(voxel[i], low), hn::Lt(voxel[i], high))));
@@ -307,7 +307,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
 }
 
 // VoxelWalk::hit() of rays in solid voxels.
-HWY_INLINE void finish(VoxelPacket& packet, const Walk& walk, std::size_t o, MI solid) {
+HWY_INLINE void finish(VoxelPacket& packet, const LaneWalk& walk, std::size_t o, MI solid) {
   const VI crossed = hn::Load(di, walk.crossed + o), ray = hn::Load(di, walk.ray + o);
   VI next = hn::Load(di, walk.next[0] + o), speed = hn::Load(di, walk.speed[0] + o);
   VI down = hn::Load(di, walk.down[0] + o);
@@ -328,7 +328,7 @@ HWY_INLINE void finish(VoxelPacket& packet, const Walk& walk, std::size_t o, MI 
   const MI hit = hn::And(solid, hn::RebindMask(di, hn::Not(hn::Gt(t, t_max))));
   const VI inside = hn::Set(di, static_cast<std::int64_t>(VoxelFace::inside));
   const VI face =
-      hn::IfThenElse(hn::Eq(crossed, hn::Set(di, Walk::kInside)), inside, hn::Sub(hn::Add(axis, axis), down));
+      hn::IfThenElse(hn::Eq(crossed, hn::Set(di, LaneWalk::kInside)), inside, hn::Sub(hn::Add(axis, axis), down));
   const Chosen chosen(bits_of(hit));
   const std::size_t to = packet.hits;
   chosen.append(t, packet.t + to);
@@ -339,7 +339,7 @@ HWY_INLINE void finish(VoxelPacket& packet, const Walk& walk, std::size_t o, MI 
   packet.hits += hn::CountTrue(di, hit);
 }
 
-HWY_NOINLINE void finish_all(VoxelPacket& packet, Walk& walk) {
+HWY_NOINLINE void finish_all(VoxelPacket& packet, LaneWalk& walk) {
   for (std::size_t o = 0; o < walk.lanes; o += N) {
     if (walk.solid[o / N] != 0) finish(packet, walk, o, lanes_of(walk.solid[o / N]));
     walk.solid[o / N] = 0;
@@ -349,7 +349,7 @@ HWY_NOINLINE void finish_all(VoxelPacket& packet, Walk& walk) {
 // VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; returns those still in the box. The others
 // do not change.
 template <class Look>
-HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::size_t o, MI alive) {
+HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std::size_t o, MI alive) {
   const VI one = hn::Set(di, 1), zero = hn::Zero(di);
   VI at[3], next[3], speed[3], down[3], voxel[3], end[3];
   for (int i = 0; i < 3; ++i) {
@@ -358,7 +358,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::si
     speed[i] = hn::Load(di, walk.speed[i] + o), down[i] = hn::Load(di, walk.down[i] + o);
     voxel[i] = hn::Xor(at[i], down[i]);
   }
-  const Seen seen = look(voxel, at, down, alive);
+  const LookResult seen = look(voxel, at, down, alive);
   const MI solid = hn::And(alive, seen.solid);
   if (!hn::AllFalse(di, solid)) {
     walk.solid[o / N] |= bits_of(solid);
@@ -413,7 +413,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, Walk& walk, std::si
 }
 
 // Moves the rays that are still in the box together.
-HWY_NOINLINE void compact(Walk& walk) {
+HWY_NOINLINE void compact(LaneWalk& walk) {
   std::size_t to = 0;
   for (std::size_t o = 0; o < walk.lanes; o += N) {
     const std::uint64_t bits = walk.alive[o / N];
@@ -435,7 +435,7 @@ HWY_NOINLINE void compact(Walk& walk) {
 }
 
 // Marks the first lanes as in use.
-HWY_INLINE void wake(Walk& walk) {
+HWY_INLINE void wake(LaneWalk& walk) {
   for (std::size_t o = 0; o < walk.lanes; o += N) {
     const std::size_t here = walk.lanes - o < N ? walk.lanes - o : N;
     walk.alive[o / N] = (std::uint64_t{1} << here) - 1;
@@ -446,7 +446,7 @@ template <class Look>
 std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
   const Look look(target);
   std::uint64_t met = 0;
-  Walk walk;
+  LaneWalk walk;
   packet.hits = 0;
   for (std::size_t o = 0; o < packet.count; o += N) {
     if ((rays >> o & ((std::uint64_t{1} << N) - 1)) == 0) continue;

@@ -269,7 +269,7 @@ TEST_F(QueriesOnDevice, SayWhatIsWrong) {
   EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_height_march("max-mip"), {}, {.rays_at_once = 0}); }), "");
   EXPECT_EQ(
       test::refusal([&] { DeviceQueries(device(), find_height_march("max-mip"), {}, {.turns_at_once = 60'001}); }),
-      "device queries: 60001 turns at once; there can be 1 to 60000");
+      "device queries: 60001 turns at once (must be 1 to 60000)");
   MarchSettings settings;
   settings.naive.max_steps = 0;
   EXPECT_NE(test::refusal([&] { DeviceQueries(device(), find_height_march("naive"), settings); }), "");
@@ -304,7 +304,7 @@ TEST(BatchLayout, IsThatOfTheShaders) {
   EXPECT_TRUE(has_struct(kShader, {offsetof(RayBatch, ground), offsetof(RayBatch, rays), offsetof(RayBatch, hits),
                                    offsetof(RayBatch, count), offsetof(RayBatch, settings), offsetof(RayBatch, turns),
                                    offsetof(RayBatch, resume), offsetof(RayBatch, states)}));
-  using glsl::BatchLook, glsl::BatchWalk, glsl::ScarpWalk;
+  using glsl::BatchMarch, glsl::BatchWalk, glsl::ScarpWalk;
   EXPECT_TRUE(has_struct(kShader, {offsetof(BatchWalk, hit), offsetof(BatchWalk, walk), offsetof(BatchWalk, z),
                                    offsetof(BatchWalk, z_low)}));
   EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpWalk, frame), offsetof(ScarpWalk, level), offsetof(ScarpWalk, col),
@@ -312,7 +312,7 @@ TEST(BatchLayout, IsThatOfTheShaders) {
                                    offsetof(ScarpWalk, through), offsetof(ScarpWalk, begun), offsetof(ScarpWalk, start),
                                    offsetof(ScarpWalk, relief)}));
   EXPECT_TRUE(is_laid_out_like<BatchWalk>(kShader));
-  EXPECT_TRUE(is_laid_out_like<BatchLook>(kSamplingShader));
+  EXPECT_TRUE(is_laid_out_like<BatchMarch>(kSamplingShader));
 }
 
 }  // namespace
