@@ -175,7 +175,7 @@ struct EmbreePeer::Scene {
 EmbreeQuality find_embree_quality(std::string_view name) {
   if (name == "medium") return EmbreeQuality::medium;
   if (name == "high") return EmbreeQuality::high;
-  throw Error(fmt::format("Embree quality '{}': unknown; there are: medium, high", name));
+  throw Error(fmt::format("Embree quality '{}': unknown (available: medium, high)", name));
 }
 
 EmbreePeer::EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality)

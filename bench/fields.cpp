@@ -46,7 +46,7 @@ BenchField procedural(const FieldOptions& options) {
   dem.seed = options.seed;
   dem.cell_m = 1;
   const auto kind = terrain_kind(options.kind);
-  if (!kind) throw Error(fmt::format("procedural DEM '{}': unknown; there are: ridged, fbm", options.kind));
+  if (!kind) throw Error(fmt::format("procedural DEM '{}': unknown (available: ridged, fbm)", options.kind));
   dem.kind = *kind;
   return described(HeightField::own(generate_dem(dem), options.size, options.size),
                    fmt::format("{}, seed {}", options.kind, options.seed));

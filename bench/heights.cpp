@@ -49,7 +49,7 @@ class Contest {
         for (const bool accelerated : {true, false})
           add({bullets_.emplace_back(std::make_unique<BulletPeer>(ground.field, accelerated))->engine()});
       } else {
-        throw Error(fmt::format("engine '{}': unknown; there are: scarp, embree-tri, embree-grid, bullet", name));
+        throw Error(fmt::format("engine '{}': unknown (available: scarp, embree-tri, embree-grid, bullet)", name));
       }
     }
   }

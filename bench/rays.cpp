@@ -220,7 +220,7 @@ RayClass find_ray_class(std::string_view name) {
   for (const RayClass ray_class : kRayClasses) {
     if (name_of(ray_class) == name) return ray_class;
   }
-  throw Error(fmt::format("ray class '{}': unknown; there are: primary, shadow, grazing, ao, nodes, chunk", name));
+  throw Error(fmt::format("ray class '{}': unknown (available: primary, shadow, grazing, ao, nodes, chunk)", name));
 }
 
 PinholeCamera primary_camera(const HeightField& field, int width, int height, const RayView& view) {

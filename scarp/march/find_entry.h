@@ -21,7 +21,7 @@ const Entry& find_entry(std::span<const Entry> table, std::string_view name) {
     if (entry.name == name) return entry;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
   }
-  throw Error(fmt::format("march '{}': unknown; there are: {}", name, names));
+  throw Error(fmt::format("march '{}': unknown (available: {})", name, names));
 }
 
 }  // namespace scarp

@@ -13,7 +13,7 @@ namespace scarp {
 namespace {
 
 void require(bool good, std::string_view name, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("march setting {}: is {}; it must be {}", name, value, range));
+  if (!good) throw Error(fmt::format("march setting {}: is {} (must be {})", name, value, range));
 }
 
 // In the order of Refinement.
@@ -28,7 +28,7 @@ std::string_view name_of(Refinement refinement) { return kRefinements[static_cas
 Refinement find_refinement(std::string_view name) {
   const auto* found = std::find(kRefinements.begin(), kRefinements.end(), name);
   if (found == kRefinements.end()) {
-    throw Error(fmt::format("refinement '{}': unknown; there are: {}", name, fmt::join(kRefinements, ", ")));
+    throw Error(fmt::format("refinement '{}': unknown (available: {})", name, fmt::join(kRefinements, ", ")));
   }
   return static_cast<Refinement>(found - kRefinements.begin());
 }

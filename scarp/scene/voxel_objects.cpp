@@ -55,7 +55,7 @@ VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.model
   for (const VoxelPlace& place : voxels.places) {
     const std::size_t index = objects_.size();
     if (place.model >= models_.size())
-      throw Error(fmt::format("voxels: object {}: its model {} does not exist; there are {}", index, place.model,
+      throw Error(fmt::format("voxels: object {}: its model {} does not exist (there are {})", index, place.model,
                               models_.size()));
     const dvec3& origin = place.origin;
     if (!std::isfinite(origin.x + origin.y + origin.z))

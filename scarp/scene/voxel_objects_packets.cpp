@@ -29,7 +29,7 @@ void for_each_bit(std::uint64_t bits, const Body& body) {
 }
 
 void require_same_length(std::size_t rays, std::size_t answers) {
-  if (rays != answers) throw Error(fmt::format("voxels: {} rays and {} answers; there must be as many", rays, answers));
+  if (rays != answers) throw Error(fmt::format("voxels: {} rays, but {} answers", rays, answers));
 }
 
 }  // namespace

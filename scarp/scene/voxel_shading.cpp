@@ -20,7 +20,7 @@ bool solid(const VoxelGrid& grid, const ivec3& voxel) { return grid.box().contai
 
 void validate(const VoxelShading& shading) {
   if (!(shading.normal_radius >= 1 && shading.normal_radius <= 8)) {
-    throw Error(fmt::format("normals of voxels: their radius is {}; it must be 1 to 8 voxels", shading.normal_radius));
+    throw Error(fmt::format("normals of voxels: their radius is {} (must be 1 to 8 voxels)", shading.normal_radius));
   }
 }
 

@@ -18,8 +18,8 @@ constexpr double kFarthest = 1 << 24;  // voxels
 
 VoxelLattice lattice_around(const Scene& scene, double side, const std::optional<WorldBox>& within) {
   if (!(side > 0 && std::isfinite(side)))
-    throw Error(fmt::format("voxels: their side is {} m; it must be above 0", side));
-  if (!within && scene.endless()) throw Error("voxels: the scene has no end; say within which box voxels are made");
+    throw Error(fmt::format("voxels: their side is {} m (must be above 0)", side));
+  if (!within && scene.endless()) throw Error("voxels: the scene is endless (set a box to make voxels in)");
   WorldBox box = scene.box();
   if (within) {
     box = *within;
@@ -29,16 +29,16 @@ VoxelLattice lattice_around(const Scene& scene, double side, const std::optional
     }
   }
   if (!(box.low.x < box.high.x && box.low.y < box.high.y && box.low.z <= box.high.z))
-    throw Error("voxels: there is nothing to make voxels of in the box");
+    throw Error("voxels: nothing in the box to make voxels of");
   VoxelLattice lattice{side, {}};
   for (int axis = 0; axis < 3; ++axis) {
     const double low = std::floor(box.low[axis] / side), high = std::max(low + 1, std::ceil(box.high[axis] / side));
     if (high - low > VoxelGrid::kMaxSide) {
-      throw Error(fmt::format("voxels of {} m: {} along {}, at most {} can be; take larger ones", side, high - low,
+      throw Error(fmt::format("voxels of {} m: {} along {} (limited to {}; choose larger voxels)", side, high - low,
                               "xyz"[axis], VoxelGrid::kMaxSide));
     }
     if (!(std::abs(low) <= kFarthest && std::abs(high) <= kFarthest))
-      throw Error(fmt::format("voxels of {} m: {} of them from the origin; at most 2^24 can be", side,
+      throw Error(fmt::format("voxels of {} m: {} of them from the origin (limited to 2^24)", side,
                               std::max(std::abs(low), std::abs(high))));
     lattice.box.low[axis] = static_cast<int>(low);
     lattice.box.high[axis] = static_cast<int>(high);

@@ -29,7 +29,7 @@ struct Voxels::State {
 
 Voxels::Voxels(VoxelGrid grid, VoxelSettings settings) {
   if (!(std::isfinite(settings.side) && settings.side > 0))
-    throw Error(fmt::format("voxels: side is {}; it must be finite and above 0", settings.side));
+    throw Error(fmt::format("voxels: side is {} (must be finite and above 0)", settings.side));
   auto model = std::make_shared<VoxelModel>(std::move(grid), find_voxel_march(kMarch), std::move(settings.palette));
   state_ = std::make_shared<State>(State{settings.side, std::move(model)});
 }

@@ -96,7 +96,7 @@ TEST(Voxels, RefuseBadInput) {
   EXPECT_EQ(refusal([] {
               Voxels(VoxelGrid({1, 1, 1}), {.side = 0});
             }),
-            "voxels: side is 0; it must be finite and above 0");
+            "voxels: side is 0 (must be finite and above 0)");
   EXPECT_NE(refusal([] { Voxels(VoxelGrid({1, 1, 1}), {.side = NAN}); }), "");
 }
 

@@ -82,7 +82,7 @@ const MarchPreset& find_march_preset(std::string_view name) {
     if (preset.name == name) return preset;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", preset.name);
   }
-  throw Error(fmt::format("preset '{}': unknown; there are: {}", name, names));
+  throw Error(fmt::format("preset '{}': unknown (available: {})", name, names));
 }
 
 }  // namespace scarp

@@ -146,7 +146,7 @@ VoxelFace face_along(const dvec3& normal) {
 void validate(const VoxelRounding& rounding) {
   if (!(rounding.radius >= 0 && rounding.radius <= 0.5)) {
     throw Error(
-        fmt::format("rounding of voxels: the radius is {}; it must be 0 to 0.5 sides of a voxel", rounding.radius));
+        fmt::format("rounding of voxels: the radius is {} (must be 0 to 0.5 sides of a voxel)", rounding.radius));
   }
 }
 

@@ -11,7 +11,7 @@ namespace scarp {
 
 void validate(const DepthRange& range) {
   if (!(std::isfinite(range.near_m) && range.near_m > 0)) {
-    throw Error(fmt::format("depth: the near plane is at {} m; it must be finite and above 0", range.near_m));
+    throw Error(fmt::format("depth: the near plane is at {} m (must be finite and above 0)", range.near_m));
   }
   if (!(range.far_m > range.near_m)) {
     throw Error(

@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 4> kNames = {"none", "distance", "height"
 const double kContrastLeft = std::log(50.0);
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("fog: {} is {}; it must be {}", what, value, range));
+  if (!good) throw Error(fmt::format("fog: {} is {} (must be {})", what, value, range));
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ FogKind find_fog(std::string_view name) {
   for (std::size_t i = 0; i < kNames.size(); ++i) {
     if (kNames[i] == name) return static_cast<FogKind>(i);
   }
-  throw Error(fmt::format("fog '{}': unknown; there are: {}", name, fmt::join(kNames, ", ")));
+  throw Error(fmt::format("fog '{}': unknown (available: {})", name, fmt::join(kNames, ", ")));
 }
 
 void validate(const FogSettings& settings) {

@@ -19,7 +19,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void require(bool good, std::string_view what, int value, std::string_view range) {
-  if (!good) throw Error(fmt::format("comanche: {} is {}; it must be {}", what, value, range));
+  if (!good) throw Error(fmt::format("comanche: {} is {} (must be {})", what, value, range));
 }
 
 // Where a ray comes to be over the field: from there on fixed-step counts its samples.

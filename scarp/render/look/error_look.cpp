@@ -156,11 +156,10 @@ void validate(const ErrorSettings& settings) {
   const auto good = [](double x) { return std::isfinite(x) && x >= 0; };
   if (!good(settings.tolerance)) {
     throw Error(
-        fmt::format("picture: the error tolerance is {}; it must be 0 or more sides of a cell", settings.tolerance));
+        fmt::format("picture: the error tolerance is {} (must be 0 or more sides of a cell)", settings.tolerance));
   }
   if (!good(settings.share)) {
-    throw Error(
-        fmt::format("picture: the error tolerance is {} of the distance; it must be 0 or more", settings.share));
+    throw Error(fmt::format("picture: the error tolerance is {} of the distance (must be 0 or more)", settings.share));
   }
 }
 

@@ -39,8 +39,11 @@ double scarp_paint_noise(const dvec2& place, int /*set*/, int octave, double siz
 namespace scarp {
 namespace {
 
+// Relief of level ground, so that its heights are the share 0 of it and not 0 / 0.
+constexpr double kLeastRelief = 1e-300;
+
 void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("ground: {} is {}; it must be {}", what, value, range));
+  if (!good) throw Error(fmt::format("ground: {} is {} (must be {})", what, value, range));
 }
 
 }  // namespace
@@ -59,7 +62,7 @@ GroundPaint::GroundPaint(const GroundPaintSettings& settings, const PaintExtent&
       extent_(extent),
       ramp_(std::move(ramp)),
       away_from_sun_(-to_sun.x, -to_sun.y),
-      relief_(std::max(extent.high - extent.low, 1e-300)),
+      relief_(std::max(extent.high - extent.low, kLeastRelief)),
       detail_size_(settings.detail_size > 0 ? settings.detail_size : 16 * extent.cell) {}
 
 vec3 GroundPaint::draped(const dvec3& position, vec3 below) const {

@@ -73,7 +73,7 @@ Ramp::Ramp(std::string_view name, double low, double high) {
   if (pieces_.empty()) {
     std::string names;
     for (const std::string_view known : kNames) names += fmt::format("{}{}", names.empty() ? "" : ", ", known);
-    throw Error(fmt::format("ramp '{}': unknown; there are: {}", name, names));
+    throw Error(fmt::format("ramp '{}': unknown (available: {})", name, names));
   }
 }
 

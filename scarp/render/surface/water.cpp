@@ -37,7 +37,7 @@ const std::array<dvec2, kWaves> kAlong = [] {
 }();
 
 void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("water: {} is {}; it must be {}", what, value, range));
+  if (!good) throw Error(fmt::format("water: {} is {} (must be {})", what, value, range));
 }
 
 // The range of t in which a ray is in [0, high] along one axis.

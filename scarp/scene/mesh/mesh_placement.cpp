@@ -12,7 +12,7 @@ namespace scarp {
 
 Placement mesh_placement(const TriangleMesh& mesh, const MeshPlacement& placement) {
   if (!(std::isfinite(placement.scale) && placement.scale > 0))
-    throw Error(fmt::format("mesh: the scale is {}; it must be above 0", placement.scale));
+    throw Error(fmt::format("mesh: the scale is {} (must be above 0)", placement.scale));
   if (!std::isfinite(placement.turn_deg) || !finite(placement.at))
     throw Error("mesh: its place and its turn must be finite numbers");
   const WorldBox box = box_of(mesh);

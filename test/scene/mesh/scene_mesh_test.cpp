@@ -333,8 +333,8 @@ TEST(SceneMesh, StandsWhereItIsPlaced) {
   const auto refuse = [&](const MeshPlacement& wrong, const char* what) {
     EXPECT_EQ(test::refusal([&] { mesh_placement(mesh, wrong); }), what);
   };
-  refuse({.scale = 0}, "mesh: the scale is 0; it must be above 0");
-  refuse({.scale = kInfinity}, "mesh: the scale is inf; it must be above 0");
+  refuse({.scale = 0}, "mesh: the scale is 0 (must be above 0)");
+  refuse({.scale = kInfinity}, "mesh: the scale is inf (must be above 0)");
   refuse({.turn_deg = kInfinity}, "mesh: its place and its turn must be finite numbers");
   refuse({.at = {0, kInfinity, 0}}, "mesh: its place and its turn must be finite numbers");
   refuse({.scale = 1e308}, "mesh: is too large at this scale");
