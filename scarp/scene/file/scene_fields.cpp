@@ -149,32 +149,37 @@ VoxelColour colour_from(const Json& json) {
   return {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8), static_cast<std::uint8_t>(rgb)};
 }
 
-// By its ending, or by `volume`.
-PlacedVoxels voxels_of_file(const Json& json, const std::string& path, const std::string& file,
-                            const VoxelFileOptions& voxels) {
-  FromVolumeOptions volume{voxels, json.value("up", "z") == "y" ? UpAxis::y : UpAxis::z,
-                           optional<double>(json, "solid_from")};
+bool is_binvox(const Json& json) { return extension_of(json["file"].get<std::string>()) == ".binvox"; }
+
+// Keys apply to some formats only. The format follows from the ending, or from `volume`.
+void require_keys_of_format(const Json& json, const std::string& path) {
   const auto refuse = [&](std::initializer_list<const char*> keys, const char* why) {
     for (const char* key : keys) {
       if (json.contains(key)) throw Error(fmt::format("{}/{}: {}", path, key, why));
     }
   };
+  const bool volume = json.contains("volume");
+  if (!volume) refuse({"solid_from"}, "applies to volumes only (leave it out)");
+  if (volume || is_binvox(json)) {
+    refuse({"frame", "hidden"}, "applies to MagicaVoxel files only (leave it out)");
+  } else {
+    refuse({"up", "colour"}, "applies to binvox files and volumes only (leave it out)");
+  }
+}
+
+PlacedVoxels voxels_of_file(const Json& json, const std::string& file, const VoxelFileOptions& voxels) {
+  const FromVolumeOptions volume{voxels, json.value("up", "z") == "y" ? UpAxis::y : UpAxis::z,
+                                 optional<double>(json, "solid_from")};
   const VoxelColour colour = json.contains("colour") ? colour_from(json["colour"]) : kPlainVoxels;
-  if (json.contains("volume")) {
-    refuse({"frame", "hidden"}, "goes with MagicaVoxel files; leave it out");
+  if (json.contains("volume"))
     return placed_voxels_from(read_volume(file, json["volume"]), std::vector{colour}, volume);
-  }
-  refuse({"solid_from"}, "goes with volume; leave it out");
-  if (extension_of(file) == ".binvox") {
-    refuse({"frame", "hidden"}, "goes with MagicaVoxel files; leave it out");
-    return placed_voxels_from(read_binvox(file), colour, volume);
-  }
-  refuse({"up", "colour"}, "goes with binvox files and volumes; leave it out");
+  if (is_binvox(json)) return placed_voxels_from(read_binvox(file), colour, volume);
   return placed_voxels_from(read_vox(file), {{json.value("frame", 0), json.value("hidden", false)}, voxels});
 }
 
 FieldWithPlace voxels_from(const Json& json, const std::string& path, const FieldSurroundings& around,
                            const VoxelMarchEntry& march) {
+  require_keys_of_format(json, path);
   try {
     VoxelFileOptions options{march.name, json.value("surface_colours", false), {}};
     options.rounding = {json.value("rounded", 0.0), json.value("each", false)};
@@ -186,7 +191,7 @@ FieldWithPlace voxels_from(const Json& json, const std::string& path, const Fiel
     shading.normal_radius = json.value("normal_radius", shading.normal_radius);
     shading.corner_ao = json.value("corner_ao", false);
     const std::string file = resolved(around, json["file"]);
-    SceneFieldPtr field = scene_voxels(voxels_of_file(json, path, file, options), shading);
+    SceneFieldPtr field = scene_voxels(voxels_of_file(json, file, options), shading);
     around.files->push_back(file);
     const WorldBox box = *field->box();
     dvec3 shift(0.0);
@@ -228,8 +233,6 @@ void rethrow_at(const std::string& path) {
   } catch (const Interrupted&) {
     throw;
   } catch (const Error& error) {
-    // What has a place already keeps it.
-    if (*error.what() == '/') throw;
     throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
@@ -314,7 +317,9 @@ FieldWithPlace field_from_json(const Json& json, const std::string& path, const 
     const ShapeNames names{around.material, [&](const Json& ground, const std::string& at) {
                              try {
                                return ground_from(ground, at, around);
-                             } catch (const Error&) {
+                             } catch (const Error& error) {
+                               // Most have a place already.
+                               if (*error.what() == '/') throw;
                                rethrow_at(at);
                              }
                            }};

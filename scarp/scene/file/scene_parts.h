@@ -55,7 +55,7 @@ std::optional<SceneFog> fog_from_json(const nlohmann::json& scene);
 /// Settings of all marches, by the names that the command line has, with underscores.
 MarchSettings march_settings_from_json(const nlohmann::json& json, const std::string& path);
 
-/// Throws the error again with the place before it, unless it has one.
+/// Rethrows the current Error with the place before it.
 [[noreturn]] void rethrow_at(const std::string& path);
 
 }  // namespace scarp
