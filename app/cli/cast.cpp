@@ -112,7 +112,7 @@ CoordinateFrame frame_of(const CastOptions& options, const OpenedInput& input) {
   try {
     return {input.georeference, input.cols, input.rows, coordinates};
   } catch (const Error& error) {
-    throw Error(fmt::format("raster '{}': {}", input.path, error.what()));
+    throw Error(fmt::format("{}: {}", input.path, error.what()));
   }
 }
 

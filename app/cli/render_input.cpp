@@ -40,11 +40,11 @@ void measure(RenderInput& input) {
 
 void require_ground(const HeightField& field, const std::string& path) {
   if (!field.has_cells()) {
-    throw Error(fmt::format("raster '{}': {} x {} samples have no cells between them; at least 2 x 2 are needed", path,
+    throw Error(fmt::format("{}: {} x {} samples have no cells between them (at least 2 x 2 are needed)", path,
                             field.cols(), field.rows()));
   }
   if (field.all_nodata())
-    throw Error(fmt::format("raster '{}': all samples are nodata; is the nodata value right (--nodata)?", path));
+    throw Error(fmt::format("{}: all samples are nodata (is the nodata value right? --nodata)", path));
 }
 
 RenderInput terrain(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {

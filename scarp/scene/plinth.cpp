@@ -49,7 +49,8 @@ Plinth::Plinth(const HeightField& field, double base)
 std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
   if (!field_.has_cells()) return {};
   const GridRay local = field_.grid_from_world(ray);
-  // Clip to the block. side: the axis whose face the ray enters through, 2 for top and base, -1 when it starts inside.
+  // Clip to the box of plinth and terrain. side: the axis whose face the ray enters through, 2 for top and base, -1
+  // when it starts inside.
   const std::array<double, 3> low{0, 0, base_sample_};
   const std::array<double, 3> high{field_.cols() - 1.0, field_.rows() - 1.0, field_.max_sample()};
   double t_in = ray.t_min, t_out = ray.t_max;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The block that a terrain model is cut out of: vertical walls from its border, and from the edges of its holes, down
-// to a common base. The surface itself is a sheet; walls are a matter of pictures and no part of any march.
+// The plinth below a terrain model, as if it were cut out of a block: vertical walls from its border, and from the
+// edges of its holes, down to a common base. The surface itself is a sheet; walls are a matter of pictures and no part
+// of any march.
 //
 //        __/\_            A ray that comes from outside (or from over a hole) into a valid cell, below the edge of the
 //   ____/     \___        surface and above the base, meets a wall there. Cells are walked one after another; a field

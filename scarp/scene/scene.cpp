@@ -68,7 +68,7 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
   for (const SceneObject& object : objects_) {
     const auto index = static_cast<std::size_t>(&object - objects_.data());
     if (object.field >= fields_.size()) {
-      throw Error(fmt::format("scene: object {}: its field {} does not exist; there are {}", index, object.field,
+      throw Error(fmt::format("scene: object {}: its field {} does not exist (there are {})", index, object.field,
                               fields_.size()));
     }
     if (!good(object.placement))
@@ -403,7 +403,7 @@ void validate(const Ray& ray, const Scene& scene) {
     throw Error("ray: its range has no end; over a field that wraps round t_max must be finite");
   if (ray.start != RayStart::on_surface) return;
   if (ray.start_object >= scene.objects().size()) {
-    throw Error(fmt::format("ray: it starts on the surface of object {}, which does not exist; there are {}",
+    throw Error(fmt::format("ray: it starts on the surface of object {}, which does not exist (there are {})",
                             ray.start_object, scene.objects().size()));
   }
   if (const HeightField* heights = height_field_of(scene.field_of(ray.start_object))) validate(ray, *heights);

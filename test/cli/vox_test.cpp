@@ -200,7 +200,7 @@ TEST_F(CliVox, TooLargeASceneIsNamed) {
   }
   file.nodes.push_back({2 * kLevels, {}, VoxTransform{2 * kLevels + 1}});
   file.nodes.push_back({2 * kLevels + 1, {}, VoxShape{}});
-  const std::string named = "voxels '" + model_ + "': scene: more than 1048576 model instances";
+  const std::string named = model_ + ": scene: more than 1048576 model instances";
   write_vox(model_, file);
   expect_refused({"render", model_, "-o", path("out.png")}, named);
   expect_refused({"info", model_}, named);

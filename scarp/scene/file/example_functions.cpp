@@ -60,7 +60,7 @@ Function example_function(std::string_view name) {
     if (example.name == name) return function_from_json(nlohmann::json::parse(example.json), "");
     names += fmt::format("{}{}", names.empty() ? "" : ", ", example.name);
   }
-  throw Error(fmt::format("function '{}': unknown; there are: {}", name, names));
+  throw Error(fmt::format("function '{}': unknown (available: {})", name, names));
 }
 
 Function read_function(const std::string& name_or_path) {

@@ -28,7 +28,7 @@ HeightField height_field_from(Raster raster, const FieldOptions& options) {
         [&](auto&& samples) { return HeightField::own(std::move(samples), raster.cols, raster.rows, settings); },
         std::move(raster.samples));
   } catch (const Error& error) {
-    throw Error(fmt::format("raster '{}': {}", raster.path, error.what()));
+    throw Error(fmt::format("{}: {}", raster.path, error.what()));
   }
 }
 

@@ -97,7 +97,7 @@ void JsonObject::finish() const {
   for (const auto& [key, value] : json_.items()) {
     if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
       constexpr std::size_t kMost = 60;
-      throw Error(fmt::format("{}: unknown; there are: {}", path_of(key.substr(0, kMost)), fmt::join(known_, ", ")));
+      throw Error(fmt::format("{}: unknown (available: {})", path_of(key.substr(0, kMost)), fmt::join(known_, ", ")));
     }
   }
 }

@@ -173,7 +173,7 @@ class Reader {
   std::size_t choice(std::string_view what, std::initializer_list<std::string_view> names) {
     const std::string_view text = word();
     const auto found = std::find(names.begin(), names.end(), text);
-    if (found == names.end()) fail(fmt::format("{} '{}': there are: {}", what, text, fmt::join(names, ", ")));
+    if (found == names.end()) fail(fmt::format("{} '{}': unknown (available: {})", what, text, fmt::join(names, ", ")));
     return static_cast<std::size_t>(found - names.begin());
   }
 

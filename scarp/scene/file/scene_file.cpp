@@ -132,7 +132,7 @@ class Reader {
     } catch (const Interrupted&) {
       throw;
     } catch (const Error& error) {
-      throw Error(fmt::format("{}/scene: scene '{}': {}", path, inner, error.what()));
+      throw Error(fmt::format("{}/scene: {}: {}", path, inner, error.what()));
     }
   }
 
@@ -277,7 +277,7 @@ SceneFile read_scene(const std::string& path, const Progress& progress) {
   } catch (const Interrupted&) {
     throw;
   } catch (const Error& error) {
-    throw Error(fmt::format("scene '{}': {}", path, error.what()));
+    throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
 

@@ -110,7 +110,7 @@ class SchemaWalk {
       SchemaWalk inner = walk;
       inner.enter(key);
       if (!inner.expected().starts_with("something else")) continue;
-      throw Error(fmt::format("{}/{}: unknown; there are: {}", shortened(path), shortened(key), walk.keys()));
+      throw Error(fmt::format("{}/{}: unknown (available: {})", shortened(path), shortened(key), walk.keys()));
     }
   }
   refuse_json(shortened(path), *here, walk.expected());

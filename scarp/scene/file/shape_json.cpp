@@ -60,7 +60,7 @@ class Settings {
     for (const auto& [key, value] : json.items()) {
       bool is_known = false;
       for (const std::string_view name : known) is_known = is_known || key == name;
-      if (!is_known) throw Error(fmt::format("{}: unknown key; there are: {}", within(path_, key), names));
+      if (!is_known) throw Error(fmt::format("{}: unknown key (available: {})", within(path_, key), names));
     }
   }
 
@@ -146,7 +146,7 @@ class Reader {
     for (const auto& [key, value] : json.items()) {
       if (is_setting(key)) continue;
       if (!is_kind(key))
-        throw Error(fmt::format("{}: unknown kind of shape; there are: {}", within(path, key), kinds()));
+        throw Error(fmt::format("{}: unknown kind of shape (available: {})", within(path, key), kinds()));
       if (!kind.empty()) {
         throw Error(fmt::format("{}: both {} and {}; a shape is one thing", path.empty() ? "/" : path, kind, key));
       }

@@ -139,7 +139,8 @@ TEST_F(RayDumps, AreRefusedInOneLineThatNamesTheLine) {
   EXPECT_EQ(refusal(head), "line 1: there is no ray in it");
   EXPECT_EQ(refusal(head + "ray\n"), "line 2: a ray without a field; a line 'field TYPE COLUMNS ROWS' must come first");
   EXPECT_EQ(refusal(head + "row 1\n"), "line 2: 'row': a line 'field TYPE COLUMNS ROWS' must come first");
-  EXPECT_EQ(refusal(head + "field float64 2 2\n"), "line 2: type 'float64': there are: int16, uint16, float32");
+  EXPECT_EQ(refusal(head + "field float64 2 2\n"),
+            "line 2: type 'float64': unknown (available: int16, uint16, float32)");
   EXPECT_EQ(refusal(head + "field int16 0 2\n"), "line 2: 0 x 2 samples; at least 1 x 1 are needed");
   EXPECT_EQ(refusal(head + "field int16 99999999999 2\n"), "line 2: columns '99999999999' is no whole number in range");
   EXPECT_EQ(refusal(head + "field int16 2 2 2\n"), "line 2: '2' is too much");
@@ -153,7 +154,7 @@ TEST_F(RayDumps, AreRefusedInOneLineThatNamesTheLine) {
             "line 5: height field: cell_x is 0 (must be finite and above 0)");
   EXPECT_EQ(refusal(head + "field float32 1 1\nrow inf\nray\n").substr(0, 6), "line 4");
   EXPECT_EQ(refusal(head + "field int16 1 1\nwrap round\n"),
-            "line 3: wrap 'round': there are: none, periodic, shared_border");
+            "line 3: wrap 'round': unknown (available: none, periodic, shared_border)");
   EXPECT_EQ(refusal(head + "field int16 1 1\ncolour red\n"), "line 3: 'colour' is no line of a field");
   EXPECT_EQ(refusal(head + field + "ray\norigin 1 2\n"), "line 6: origin '' is no number");
   EXPECT_EQ(refusal(head + field + "ray\ncell_x 1\n"), "line 6: 'cell_x' is no line of a ray");
@@ -161,7 +162,7 @@ TEST_F(RayDumps, AreRefusedInOneLineThatNamesTheLine) {
   EXPECT_EQ(refusal(head + field + "ray\nstart on_surface 5 0\n"),
             "line 6: ray: it starts on the surface of cell (5, 0), which does not exist");
   EXPECT_EQ(refusal(head + "field float32 2 2\ngenerate hills 1 1 0\n"),
-            "line 3: kind 'hills': there are: fbm, ridged");
+            "line 3: kind 'hills': unknown (available: fbm, ridged)");
   EXPECT_EQ(refusal(head + "field float32 2 2\ngenerate fbm 1 1 0\nrow 1 2\n"),
             "line 4: the samples are generated; there can be no rows");
   EXPECT_EQ(refusal(head + "field float32 65536 65536\ngenerate ridged 1 1 0\n"),

@@ -37,7 +37,7 @@ class SceneFiles : public testing::Test {
     try {
       read(text);
     } catch (const Error& error) {
-      const std::string what = error.what(), file = fmt::format("scene '{}': ", (folder_ / "scene.json").string());
+      const std::string what = error.what(), file = fmt::format("{}: ", (folder_ / "scene.json").string());
       EXPECT_EQ(what.find('\n'), std::string::npos) << what;
       EXPECT_EQ(what.substr(0, file.size()), file);
       return what.substr(std::min(file.size(), what.size()));
@@ -201,7 +201,7 @@ TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
       {"{}", "/objects:", "is missing; expected a list of objects"},
       {R"({"objects": []})", "/objects:", "at least one"},
       {R"({"objects": [], "objects": []})", "/objects:", "twice"},
-      {R"({"objects": [)" + kBall + R"(], "camara": {}})", "/camara:", "unknown; there are: $schema, about, camera"},
+      {R"({"objects": [)" + kBall + R"(], "camara": {}})", "/camara:", "unknown (available: $schema, about, camera"},
       {R"({"objects": [)" + kBall + R"(], "sun": {"altitude": 91}})", "/sun/altitude:", "at most 90"},
       {R"({"objects": [)" + kBall + R"(], "picture": {"size": [0, 5]}})", "/picture/size/0:", "from 1 to 65536"},
       {R"({"objects": [)" + kBall + R"(], "camera": {"eye": [0, 0, 0]}})", "/camera/target:", "is missing"},

@@ -86,7 +86,7 @@ TEST(ShapeJson, TellsWhereItIsWrong) {
             at + "/sphere/radius: expected a number between -2^30 and 2^30, got 1e+300");
   EXPECT_EQ(refusal(R"({"sphere": {}})"), at + "/sphere/radius: is missing");
   EXPECT_EQ(refusal(R"({"sphere": {"radius": 1, "colour/x": 2}})"),
-            at + "/sphere/colour~1x: unknown key; there are: radius, at");
+            at + "/sphere/colour~1x: unknown key (available: radius, at)");
   EXPECT_EQ(refusal(R"({"box": {"half": [1, 0, 1]}})"), at + "/box/half/1: expected > 0, got 0");
   EXPECT_EQ(refusal(R"({"box": {"half": [1, 1]}})"), at + "/box/half: expected a list of 3 numbers, got a list of 2");
   EXPECT_EQ(refusal(R"({"union": [{"sphere": {"radius": 1}}, {"torus": {"radius": 1, "tube": 0}}]})"),
