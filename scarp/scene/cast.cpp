@@ -14,7 +14,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::int64_t kRaysPerPiece = 8192;
+constexpr std::int64_t kRaysPerCheck = 8192;
 
 // True only for rays that validate() accepts: nearly all that it accepts, at a fraction of its cost. Sums of numbers
 // are finite only if the numbers are.
@@ -47,7 +47,7 @@ void require_valid(std::span<const Ray> rays, std::span<const Hit* const> from, 
   const auto from_of = [&](std::int64_t i) { return from.empty() ? nullptr : from[static_cast<std::size_t>(i)]; };
   const auto count = static_cast<std::int64_t>(rays.size());
   std::atomic<std::int64_t> first_bad = count;
-  parallel_for(count, kRaysPerPiece, [&](std::int64_t begin, std::int64_t end) {
+  parallel_for(count, kRaysPerCheck, [&](std::int64_t begin, std::int64_t end) {
     for (std::int64_t i = begin; i < std::min(end, first_bad.load(std::memory_order_relaxed)); ++i) {
       if (is_valid(rays[static_cast<std::size_t>(i)], from_of(i), scene)) continue;
       std::int64_t known = first_bad;
