@@ -189,12 +189,12 @@ bool FrameTile::ask_light(RayRound& round) {
       seen.colour = view_.unlit(seen.ray, seen.hit, surface);
       continue;
     }
-    const Open open{&seen, surface, lighting.ask(light_point(surface, seen.hit), points_[seen.point], round.rays)};
-    if (open.asked.sun == open.asked.end) {
-      light(open, round);
+    const LightRays asked = lighting.ask(light_point(surface, seen.hit), points_[seen.point], round.rays);
+    if (asked.sun == asked.end) {
+      light({&seen, surface, {}}, round);
       continue;
     }
-    open_.push_back(open);
+    open_.push_back({&seen, surface, asked});
     if (by_hit) round.from.resize(round.rays.size(), &seen.hit);
   }
   if (!round.rays.empty()) return true;

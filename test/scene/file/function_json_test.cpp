@@ -82,7 +82,7 @@ TEST(FunctionJson, TellsWhereAndWhat) {
   EXPECT_EQ(message("[1]"), "/f: is a list of 1; expected a function: an object with a type, a height, or a name");
   EXPECT_EQ(message(R"({"height": 1})").substr(0, 35), "/f/type: is missing; it must be one");
   EXPECT_EQ(message(R"({"type": "fmb"})").substr(0, 40), R"(/f/type: is "fmb"; expected one of plane)");
-  EXPECT_EQ(message(R"({"type": "fbm", "octave": 3})").substr(0, 25), "/f/octave: unknown; there");
+  EXPECT_EQ(message(R"({"type": "fbm", "octave": 3})").substr(0, 25), "/f/octave: unknown (avail");
   EXPECT_EQ(message(R"({"type": "fbm", "octaves": 3.5})"), "/f/octaves: is 3.5; expected a whole number, 1 to 24");
   EXPECT_EQ(message(R"({"type": "fbm", "octaves": {"march": 25}})"),
             "/f/octaves/march: is 25; expected a whole number, 1 to 24");
@@ -93,7 +93,7 @@ TEST(FunctionJson, TellsWhereAndWhat) {
   EXPECT_EQ(message(R"({"type": "fbm", "height": -1})"), "/f: fractal height is -1 (must be between 0 and 2^30)");
   EXPECT_EQ(message(R"({"type": "sines", "waves": [{"wavelength": -1}]})"),
             "/f: sine wavelength is -1 (must be between 2^-20 and 2^30)");
-  EXPECT_EQ(message(R"({"type": "sines", "waves": [{"length": 1}]})").substr(0, 28), "/f/waves/0/length: unknown; ");
+  EXPECT_EQ(message(R"({"type": "sines", "waves": [{"length": 1}]})").substr(0, 28), "/f/waves/0/length: unknown (");
   EXPECT_EQ(message(R"({"type": "sum", "of": [1, {"type": "mask", "outer": "wide"}]})"),
             R"(/f/of/1/outer: is "wide"; expected a number)");
   EXPECT_EQ(message(R"({"type": "sum", "of": [1, 2], "factors": [1]})"),
@@ -101,7 +101,7 @@ TEST(FunctionJson, TellsWhereAndWhat) {
   EXPECT_EQ(message(R"({"type": "smooth-minimum", "of": [1, 2, 3]})"),
             "/f/of: is a list of 3; expected a list of two functions");
   EXPECT_EQ(message(R"({"type": "warp", "base": 1, "shift_x": 1})"), "/f/shift_y: is missing");
-  EXPECT_EQ(message(R"("hill")").substr(0, 37), "/f: function 'hill': unknown; there a");
+  EXPECT_EQ(message(R"("hill")").substr(0, 37), "/f: function 'hill': unknown (availab");
   EXPECT_EQ(message(R"({"type": "mask", "centre": [1, 2, 3]})"),
             "/f/centre: is a list of 3; expected a list of two finite numbers");
 }

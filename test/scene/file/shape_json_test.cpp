@@ -108,7 +108,7 @@ TEST(ShapeJson, TellsWhereItIsWrong) {
             at + "/repeat/count/0: expected a whole number, 0 or more, got 1.5");
   EXPECT_EQ(refusal(R"({"ground": "hills"})", {}), at + "/ground: there are no fields here that could be a ground");
   EXPECT_EQ(refusal("{}").substr(0, 44), at + ": expected a shape, one of: ");
-  EXPECT_EQ(refusal(R"({"cube": {}})").substr(0, 50), at + "/cube: unknown kind of shape; ther");
+  EXPECT_EQ(refusal(R"({"cube": {}})").substr(0, 50), at + "/cube: unknown kind of shape (avai");
 }
 
 TEST(ShapeJson, RefusesDeepNesting) {
