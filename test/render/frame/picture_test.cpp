@@ -9,6 +9,7 @@
 #include <numeric>
 #include <vector>
 
+#include "cases.h"
 #include "render/terrain.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -120,7 +121,8 @@ TEST(Picture, SamplesLeaveLevelGroundInTheSunAsItIs) {
 TEST(Picture, SamplesDependOnPixelAndSeedAndNotOnThreads) {
   const HeightField field = wall();
   PictureSettings settings = map_settings(field);
-  settings.width = settings.height = 60;
+  // Several tiles.
+  settings.width = settings.height = test::cases(60, 60, 20);
   settings.aa = 2;
   settings.samples = 5;
   settings.sun.size_deg = 20;
