@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cases.h"
 #include "render/terrain.h"
 #include "scarp/field/function_node.h"
 #include "scarp/render/frame/layers.h"
@@ -17,7 +18,8 @@
 namespace scarp {
 namespace {
 
-constexpr int kWidth = 64, kHeight = 48;
+// Judges of functions take milliseconds per ray, and a hundred times that under sanitizers.
+const int kWidth = test::cases(64, 64, 20), kHeight = test::cases(48, 48, 15);
 constexpr int kCells = 32;
 
 // A hill of 32 m x 32 m, 12 m high, round its middle.
@@ -107,7 +109,7 @@ TEST_P(EveryInput, HasNoErrorsWithAMarchThatPassesNothing) {
   PictureSettings with = settings();
   with.look = Look::error;
   const ErrorCounts errors = render_picture(GetParam().make(), camera(), with).errors.value();
-  EXPECT_GT(errors[Verdict::right_hit], 300) << errors.judges;
+  EXPECT_GT(errors[Verdict::right_hit], kWidth * kHeight / 11) << errors.judges;
   for (const Verdict wrong : {Verdict::lost, Verdict::invented, Verdict::early, Verdict::late, Verdict::gave_up})
     EXPECT_EQ(errors[wrong], 0) << name_of(wrong) << ", judged by " << errors.judges;
   EXPECT_EQ(errors.contradictions, 0);
@@ -136,8 +138,8 @@ TEST_P(EveryInput, HasWater) {
       EXPECT_LT(length(before.colour[i] - after.colour[i]), 1e-3);
     }
   }
-  EXPECT_GT(flooded, 20);
-  EXPECT_GT(above, 20);
+  EXPECT_GT(flooded, kWidth * kHeight / 200);
+  EXPECT_GT(above, kWidth * kHeight / 200);
 }
 
 TEST_P(EveryInput, HasFogAndHaze) {
@@ -174,7 +176,7 @@ TEST_P(EveryInput, HasPaintOnTop) {
     const Image painted = render_picture(scene, camera(), with).image;
     int different = 0;
     for (std::size_t i = 0; i < plain.rgb.size(); ++i) different += plain.rgb[i] != painted.rgb[i];
-    EXPECT_GT(different, 100);
+    EXPECT_GT(different, kWidth * kHeight / 31);
   }
 }
 
