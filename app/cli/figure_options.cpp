@@ -73,7 +73,7 @@ FigureLegend legend_of_heights(const PictureSettings& settings, const Scene& sce
   });
   if (painted) ++ramps;
   if (ramps != 1) {
-    throw Error(fmt::format("--legend: {} (leave it out, or choose --look height, steps or error)",
+    throw Error(fmt::format("--legend: {} (use --look height, steps or error)",
                             ramps == 0 ? "the colours of this picture do not depend on height"
                                        : "several scales of heights colour this picture"));
   }

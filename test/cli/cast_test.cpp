@@ -11,6 +11,7 @@
 #include <string>
 
 #include "cli/program.h"
+#include "scarp/march/march_settings.h"
 
 namespace scarp {
 namespace {
@@ -315,7 +316,7 @@ TEST_F(CastInputs, FunctionsTellHeightAndNormal) {
   const auto rows = cast({"--function", write("plane.json", "7")}, down(1e6, -3));
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].at("status") + rows[0].at("kind"), "hitfunction");
-  EXPECT_NEAR(number(rows[0], "z"), 7, 1e-6);
+  EXPECT_NEAR(number(rows[0], "z"), 7, LipschitzLocalSettings{}.tolerance * 93);
   EXPECT_EQ(number(rows[0], "nz"), 1);
   EXPECT_EQ(rows[0].at("col") + rows[0].at("voxel_x") + rows[0].at("material"), "");
 }
@@ -325,7 +326,7 @@ TEST_F(CastInputs, ScenesTellObjectAndMaterial) {
       cast({scene()}, "id,x,y,z,dx,dy,dz\nball,0,0,100,0,0,-1\nplane,50,0,100,0,0,-1\nsky,0,0,100,0,0,1\n");
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].at("id") + rows[0].at("object") + rows[0].at("kind") + rows[0].at("material"), "ball1shape1");
-  EXPECT_NEAR(number(rows[0], "z"), 8, 1e-6);
+  EXPECT_NEAR(number(rows[0], "z"), 8, SphereTraceSettings{}.tolerance * 92);
   EXPECT_EQ(rows[1].at("id") + rows[1].at("object") + rows[1].at("kind") + rows[1].at("material"), "plane0function0");
   EXPECT_EQ(rows[2].at("status") + rows[2].at("object"), "miss");
   ASSERT_EQ(run({"cast", path("scene.json"), "--rays", path("rays.csv"), "-o", path("hits.npy")}).status, 0);
@@ -349,8 +350,8 @@ TEST_F(CastInputs, MeshesTellTheTriangle) {
   EXPECT_EQ(number(row, "z"), 5);
   EXPECT_EQ(number(row, "t"), 47.5);
   // The corners (8, 0), (8, 8), (0, 8).
-  EXPECT_NEAR(number(row, "u"), 0.5, 1e-6);
-  EXPECT_NEAR(number(row, "v"), 0.25, 1e-6);
+  EXPECT_FLOAT_EQ(static_cast<float>(number(row, "u")), 0.5f);
+  EXPECT_FLOAT_EQ(static_cast<float>(number(row, "v")), 0.25f);
   // On terrain it is an object like the terrain.
   const Names over{hills(), "--crs", "local", "--mesh", mesh, "--mesh-up", "z", "--mesh-at", "15,15,900"};
   const auto rows = cast(over, "x,y,z,dx,dy,dz\n15,15,1000,0,0,-1\n35,25,1000,0,0,-1\n");
@@ -367,7 +368,7 @@ TEST_F(CastInputs, AMeshStandsOnTheNearestSurface) {
     const Row row = cast(on, down(x, 0.5)).at(0);
     const bool mesh_hit = row.at("kind") == "mesh";
     found += mesh_hit;
-    EXPECT_NEAR(number(row, "z"), mesh_hit ? 1.25 : 1, 1e-6) << x;
+    EXPECT_FLOAT_EQ(static_cast<float>(number(row, "z")), mesh_hit ? 1.25f : 1.0f) << x;
   }
   EXPECT_EQ(found, 1);
 }

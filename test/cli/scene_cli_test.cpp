@@ -114,9 +114,9 @@ TEST_F(Scenes, HaveWaterAndFog) {
   scene(R"("fog": {"kind": "iterations"},)");
   refused({}, "/fog/kind");
   scene(R"("fog": {"kind": "distance", "falloff": 3},)");
-  refused({}, "/fog/falloff: belongs to fog of the kind height");
+  refused({}, "/fog/falloff: only valid for the fog kind 'height'");
   scene(R"("fog": {"kind": "distance"}, "haze": {"distance": 100},)");
-  refused({}, "/haze: does not go with fog");
+  refused({}, "/haze: not valid together with fog");
 }
 
 #ifdef SCARP_CAIRO

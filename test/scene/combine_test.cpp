@@ -16,6 +16,8 @@ using test::refusal;
 
 Terrain plain(float z) { return Terrain::own(std::vector<float>(4, z), 2, 2, {.cell_x = 10, .cell_y = 10}); }
 SceneFieldPtr ball() { return scene_shape(DistanceField(make_shape(shape::Sphere{.radius = 1}))); }
+// Length of the last interval of sphere-trace at t.
+double bracket(double t) { return SphereTraceSettings{}.tolerance * t; }
 Ray down(double x, double y) { return {.origin = {x, y, 100}, .direction = {0, 0, -1}}; }
 
 TEST(Combine, KeepsTheOrderOfItsParts) {
@@ -33,7 +35,7 @@ TEST(Combine, KeepsTheOrderOfItsParts) {
   EXPECT_EQ(voxel.object, 1u);
   EXPECT_EQ(voxel.t, 94);
   EXPECT_EQ(top.object, 2u);
-  EXPECT_NEAR(top.t, 90, 1e-6);
+  EXPECT_NEAR(top.t, 90, bracket(90));
 }
 
 TEST(Combine, SharesFields) {
@@ -52,7 +54,7 @@ TEST(Combine, PlacesScenesOfScenes) {
   EXPECT_EQ(scene.objects()[1].placement.scale, 2);
   EXPECT_EQ(scene.objects()[1].material, 7u);
   EXPECT_EQ(scene.objects()[3].material, 3u);
-  EXPECT_NEAR(cast(scene, down(20, 100)).t, 98, 1e-6);
+  EXPECT_NEAR(cast(scene, down(20, 100)).t, 98, bracket(98));
   EXPECT_EQ(cast(scene, down(10, -100)).object, 3u);
 }
 

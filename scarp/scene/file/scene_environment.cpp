@@ -9,11 +9,8 @@
 #include "scarp/scene/file/scene_parts.h"
 
 namespace scarp {
-namespace {
 
 using Json = nlohmann::json;
-
-}  // namespace
 
 SceneSun sun_from_json(const Json& scene) {
   SceneSun sun;
@@ -41,12 +38,12 @@ std::optional<SceneWater> water_from_json(const Json& scene) {
 
 std::optional<SceneFog> fog_from_json(const Json& scene) {
   if (!scene.contains("fog")) return {};
-  if (scene.contains("haze")) throw Error("/haze: does not go with fog, which replaces it; leave one of them out");
+  if (scene.contains("haze")) throw Error("/haze: not valid together with fog, which replaces it");
   const Json& json = scene["fog"];
   SceneFog fog{.kind = json["kind"].get<std::string>()};
   for (const char* key : {"base", "falloff"}) {
     if (fog.kind != "height" && json.contains(key))
-      throw Error(fmt::format("/fog/{}: belongs to fog of the kind height; leave it out", key));
+      throw Error(fmt::format("/fog/{}: only valid for the fog kind 'height'", key));
   }
   take_json(fog.visibility, json, "visibility");
   take_json(fog.base, json, "base");

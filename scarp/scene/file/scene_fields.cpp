@@ -159,11 +159,11 @@ void require_keys_of_format(const Json& json, const std::string& path) {
     }
   };
   const bool volume = json.contains("volume");
-  if (!volume) refuse({"solid_from"}, "applies to volumes only (leave it out)");
+  if (!volume) refuse({"solid_from"}, "only valid for volumes");
   if (volume || is_binvox(json)) {
-    refuse({"frame", "hidden"}, "applies to MagicaVoxel files only (leave it out)");
+    refuse({"frame", "hidden"}, "only valid for MagicaVoxel files");
   } else {
-    refuse({"up", "colour"}, "applies to binvox files and volumes only (leave it out)");
+    refuse({"up", "colour"}, "only valid for binvox files and volumes");
   }
 }
 

@@ -207,8 +207,7 @@ SceneCamera Reader::camera() const {
   const Json& json = json_["camera"];
   if (json.contains("eye")) {
     for (const char* key : {"azimuth", "elevation", "distance"}) {
-      if (json.contains(key))
-        throw Error(fmt::format("/camera/{}: does not go with eye and target; leave it out", key));
+      if (json.contains(key)) throw Error(fmt::format("/camera/{}: not valid together with eye and target", key));
     }
     camera.eye = point(json["eye"]);
     camera.target = point(json["target"]);

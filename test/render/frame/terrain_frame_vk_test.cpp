@@ -367,8 +367,8 @@ TEST_P(TerrainFrames, AreTheCpusPictures) {
   EXPECT_LT(uniform, 3 * kWidth * kHeight / 2) << "there is something to be seen";
 }
 
-// Nearly all of the time goes to drivers, which are no code of ours. `./dev test` tries each row once: every third one
-// where memory is watched, the others here; `./dev test --long` tries all.
+// The driver takes nearly all of the time. `./dev test` tries each row once: every third row under sanitizers, the
+// others in optimised builds. `./dev test --long` tries all rows in optimised builds.
 std::vector<Row> tried_rows() {
   const bool all = test::cases(1, 0, 0) != 0;
 #ifdef NDEBUG
