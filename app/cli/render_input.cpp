@@ -84,6 +84,7 @@ RenderInput scene_file(OpenedInput opened, RenderOptions& options, const ViewSet
   RenderInput input{std::move(opened.scene)};
   input.view = view_of(document, view, options.given);
   input.coarse_voxels = document.picture.coarse_voxels || options.vox_look.coarse;
+  input.viewed = document.camera.azimuth_deg || document.camera.elevation_deg || document.camera.distance;
   input.eye = document.camera.eye, input.target = document.camera.target;
   frame_by_box(input, options);
   measure(input);

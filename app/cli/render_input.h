@@ -22,6 +22,7 @@ struct RenderInput {
   std::vector<std::string> files{};  ///< that were read, beside those that were typed
   std::string march{};               ///< what times are printed with; empty: nothing
   ViewSettings view{};
+  bool viewed = false;  ///< the input itself says from where it is seen, by azimuth, elevation or distance
   bool coarse_voxels = false;
   double across = 0;      ///< metres that a picture is about: visibility, reach
   ReliefRange heights{};  ///< of the ground, exaggerated

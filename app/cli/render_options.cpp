@@ -100,7 +100,10 @@ void add_light_options(Command& command, RenderOptions& o) {
                       .help = "fraction of haze over the diagonal of the scene (of functions over --extent)",
                       .range = {0, 0.95},
                       .fallback = fmt::format("{}; functions {}; other inputs 0", picture.haze, kFunctionHaze),
-                      .looks = {"shaded", "the others have no haze", kEveryInput & ~kFunction}});
+                      .looks = {"shaded", "the others have no haze", kEveryInput & ~kFunction},
+                      .rules = {{"has no effect with --fog, which replaces it",
+                                 [&o] { return o.look_options.fog.empty() || o.look_options.fog == "none"; },
+                                 kEveryInput & ~kFunction}}});
 }
 
 void add_camera_options(Command& command, RenderOptions& o) {

@@ -133,7 +133,7 @@ class Render {
     }
     if (options_.view.empty()) {
       if (input_.eye) return Camera::look_at(*input_.eye, *input_.target, input_.view.fov_deg, width, height);
-      if (options_.picture.look == Look::comanche && scene_.terrain()) {
+      if (options_.picture.look == Look::comanche && scene_.terrain() && !input_.viewed) {
         return flight_camera(*scene_.terrain(), options_.picture.grid_north_azimuth, input_.view.fov_deg, width,
                              height);
       }

@@ -18,6 +18,16 @@ using Json = nlohmann::ordered_json;
 
 bool is_scene_path(const std::string& path) { return extension_of(path) == ".json"; }
 
+// For options that need something that the command line or the file may have.
+void require(bool there, const std::vector<std::string>& given, std::initializer_list<std::string_view> names,
+             std::string_view what) {
+  if (there) return;
+  for (const std::string& option : given) {
+    if (std::find(names.begin(), names.end(), option) != names.end())
+      throw Error(fmt::format("{} has no effect {}", option, what));
+  }
+}
+
 // Sets what the file has, unless the option was given.
 class Taking {
  public:
@@ -59,19 +69,14 @@ PictureSettings picture_of(const SceneFile& file, PictureSettings settings, cons
   take(file.sun.azimuth_deg, "--sun", settings.sun.azimuth_deg);
   take(file.sun.altitude_deg, "--sun", settings.sun.altitude_deg);
   take(file.sun.size_deg, "--sun-size", settings.sun.size_deg);
+  require(settings.samples > 0, given, {"--seed", "--sun-size", "--ao-distance"},
+          "without --samples N, or samples in the scene file");
   validate(settings);
   return settings;
 }
 
 void take_environment(const SceneFile& file, const std::vector<std::string>& given, LookOptions& options) {
   const Taking take(given);
-  const auto require = [&](bool there, std::initializer_list<const char*> names, const char* what) {
-    if (there) return;
-    for (const std::string& option : given) {
-      if (std::find(names.begin(), names.end(), option) != names.end())
-        throw Error(fmt::format("{} has no effect without {}", option, what));
-    }
-  };
   if (const auto& water = file.water) {
     take(std::optional(water->level), "--water", options.water);
     take(water->srgb, "--water-colour", options.water_settings.srgb);
@@ -89,12 +94,14 @@ void take_environment(const SceneFile& file, const std::vector<std::string>& giv
     take(fog->falloff, "--fog-falloff", options.fog_falloff);
     take(fog->sun_tint, "--sun-tint", options.fog_settings.sun_tint);
   }
-  require(options.water.has_value(),
+  require(options.water.has_value(), given,
           {"--water-colour", "--turbidity", "--waves", "--wavelength", "--no-reflection", "--no-refraction"},
-          "--water M, or water in the scene file");
+          "without --water M, or water in the scene file");
   const bool foggy = !options.fog.empty() && options.fog != "none";
-  require(foggy, {"--visibility", "--sun-tint"}, "--fog KIND, or fog in the scene file");
-  require(options.fog == "height", {"--fog-base", "--fog-falloff"}, "--fog height, or such fog in the scene file");
+  require(foggy, given, {"--visibility", "--sun-tint"}, "without --fog KIND, or fog in the scene file");
+  require(options.fog == "height", given, {"--fog-base", "--fog-falloff"},
+          "without --fog height, or such fog in the scene file");
+  require(!foggy, given, {"--haze"}, "with the fog of the scene file, which replaces it (add --fog none)");
 }
 
 ViewSettings view_of(const SceneFile& file, ViewSettings view, const std::vector<std::string>& given) {

@@ -534,7 +534,7 @@ TEST_F(Cast, WrongOptionsAreRefused) {
   EXPECT_NE(run({"cast", path("missing.tif"), "--rays", path("rays.csv")}).err.find("missing.tif"), std::string::npos);
 }
 
-TEST_F(Cast, RaysFarOffTheRasterAreToldWhereItLies) {
+TEST_F(Cast, RaysFarOffTheRasterGetANoteWithItsExtent) {
   const auto note_of = [&](const std::string& ray) {
     return run({"cast", hills(), "--rays", rays("x,y,z,dx,dy,dz\n" + ray + "\n")}).err;
   };

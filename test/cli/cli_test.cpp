@@ -197,7 +197,7 @@ TEST_F(Cli, AnUnwritableOutputIsFoundBeforeTheWork) {
   EXPECT_EQ(scratch_.files(), before);
 }
 
-TEST_F(Cli, AnEyeBelowTheGroundIsToldInPlainNumbers) {
+TEST_F(Cli, ReportsAnEyeBelowTheGroundInPlainNumbers) {
   // The ground is at 3.5 m there.
   const auto result = run(
       {"render", good(), "-o", path("out.png"), "--size", "8x6", "--eye", "15,10,-3656.5", "--target", "15,20,-3656"});
@@ -389,7 +389,7 @@ TEST_F(Cli, WhatIsNeededIsAskedFor) {
   }
 }
 
-TEST_F(Cli, AWordThatIsNoSubcommandIsToldWhichThereAre) {
+TEST_F(Cli, AnUnknownSubcommandGetsTheListOfSubcommands) {
   for (const Names& arguments : {Names{"rendr"}, {"rendr", good(), "-o", path("out.png")}}) {
     const auto result = run(arguments);
     EXPECT_EQ(result.status, 2);
@@ -406,7 +406,7 @@ TEST_F(Cli, AWordThatIsNoSubcommandIsToldWhichThereAre) {
                                   good()));
 }
 
-TEST_F(Cli, AWrongNameIsToldBeforeWhatIsMissing) {
+TEST_F(Cli, ReportsAWrongNameBeforeAMissingOption) {
   EXPECT_NE(run({"render", "--ouput", "x.png"}).err.find("--ouput"), std::string::npos);
 }
 

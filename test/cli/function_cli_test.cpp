@@ -98,7 +98,7 @@ TEST_F(Functions, HaveTheColoursOfARamp) {
   EXPECT_NE(rendered({"--ramp", "grey"}), plain);
 }
 
-TEST_F(Functions, AreToldByInfo) {
+TEST_F(Functions, AreDescribedByInfo) {
   const auto result = test::run({"info", "--function", "island", "--extent", "4000", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Json info = Json::parse(result.out);

@@ -51,7 +51,7 @@ class MeshOption : public testing::Test {
                     roof_ = scratch_.write("roof.obj", kRoof);
 };
 
-TEST_F(MeshOption, StandsWhereItIsToldTo) {
+TEST_F(MeshOption, StandsWhereMeshAtPutsIt) {
   if (!has_device()) GTEST_SKIP() << "no Vulkan device";
   // 64 pixels for 64 cells of 30 m: a roof of 300 m in the middle, 100 m above the highest ground, or to the west.
   const auto reds = [&](const std::vector<std::string>& more) {

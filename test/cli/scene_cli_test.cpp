@@ -91,6 +91,8 @@ TEST_F(Scenes, HaveWaterAndFog) {
   EXPECT_NE(dry, foggy);
   refused({"--turbidity", "2"}, "--turbidity has no effect without --water M, or water in the scene file");
   refused({"--sun-tint", "0"}, "--sun-tint has no effect without --fog KIND, or fog in the scene file");
+  refused({"--seed", "2"}, "--seed has no effect without --samples N, or samples in the scene file");
+  refused({"--fog", "height", "--haze", "0.5"}, "--haze has no effect with --fog, which replaces it");
 
   scene(R"("water": {"level": 0, "turbidity": 2},)");
   EXPECT_EQ(picture(), wet);
@@ -105,6 +107,8 @@ TEST_F(Scenes, HaveWaterAndFog) {
   EXPECT_EQ(picture({"--fog", "none"}), dry);
   EXPECT_NE(picture({"--visibility", "9"}), foggy);
   scene(R"("fog": {"kind": "distance"},)");
+  refused({"--haze", "0.5"}, "--haze has no effect with the fog of the scene file");
+  EXPECT_NE(picture({"--fog", "none", "--haze", "0.5"}), dry);
   refused({"--fog-base", "1"}, "--fog-base has no effect without --fog height, or such fog in the scene file");
 
   scene(R"("water": {"waves": 0.1},)");
@@ -135,7 +139,7 @@ TEST_F(Scenes, HaveALegendWhereARampColoursThem) {
 }
 #endif
 
-TEST_F(Scenes, AreToldByInfo) {
+TEST_F(Scenes, AreDescribedByInfo) {
   const auto result = test::run({"info", path_, "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const Json info = Json::parse(result.out);

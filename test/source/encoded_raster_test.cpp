@@ -127,7 +127,7 @@ TEST_F(EncodedRaster, APaletteIsRefused) {
   expect_says(read_error(path("p.png")), "palette");
 }
 
-TEST_F(EncodedRaster, APhotographIsToldOfTheEncodings) {
+TEST_F(EncodedRaster, RefusesAPhotographAndNamesTheEncodings) {
   const std::string text = read_error(write_image("a.png", 1, 1, {{1, 2, 3, 0}}, false));
   expect_says(text, "photograph");
   expect_says(text, "--encoding terrain-rgb or terrarium");

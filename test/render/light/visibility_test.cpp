@@ -98,7 +98,7 @@ TEST(SkyOcclusion, AtTheFootOfAWallIsThatOfItsHorizon) {
   }
 }
 
-TEST(SkyOcclusion, LooksAsFarAsItIsTold) {
+TEST(SkyOcclusion, EndsAtTheGivenDistance) {
   const Scene scene = scene_of(40, 41, [](int col, int) { return col >= 33 ? 50 : 0; });
   const LightPoint point = point_at(scene, 22, 20);
   const auto within = [&](double distance) {
