@@ -16,10 +16,10 @@ int main() {
     }
   }
 
-  // The terrain reads the samples where they are and copies nothing.
+  // The terrain refers to the samples and does not copy them.
   const auto terrain = scarp::Terrain::view(heights.data(), side, side, {.cell_x = 10.0, .cell_y = 10.0});
 
-  // From 500 m above the south-west corner to the north-east, 1 m down on 9.9 m. x east, y north, z up.
+  // From 500 m above the south-west corner to the north-east, descending 1 m per 9.9 m. x east, y north, z up.
   const scarp::Ray ray{.origin = {0, 0, 500}, .direction = {7, 7, -1}};
   const scarp::Hit hit = scarp::cast(terrain, ray);
   if (!hit) {

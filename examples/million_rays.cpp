@@ -19,14 +19,14 @@ int main() {
   }
   const auto terrain = scarp::Terrain::view(heights.data(), side, side, {.cell_x = 10.0, .cell_y = 10.0});
 
-  // Parallel rays, 45 degrees down to the north. Answers stand where their rays stand.
+  // Parallel rays, 45 degrees down to the north. hits[i] belongs to rays[i].
   std::vector<scarp::Ray> rays;
   for (int i = 0; i < 1000 * 1000; ++i)
     rays.push_back({.origin = {5.0 + 10 * (i % 1000), 5.0 + 8 * (i / 1000) - 200, 200}, .direction = {0, 1, -1}});
   std::vector<scarp::Hit> hits(rays.size());
   scarp::cast(terrain, rays, hits);
 
-  // From each hit to the sun, low in the east. A ray from a surface names the hit that it starts on.
+  // From each hit to the sun, low in the east. from[i] is the hit on whose surface to_sun[i] starts.
   std::vector<scarp::Ray> to_sun;
   std::vector<const scarp::Hit*> from;
   for (std::size_t i = 0; i < rays.size(); ++i) {

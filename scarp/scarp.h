@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The door for programs. One include, and a few lines per task:
+// The main header. It covers the common tasks with a few lines each:
 //
 //   #include "scarp/scarp.h"
 //
@@ -15,9 +15,9 @@
 //
 //   scarp::render(scarp::Terrain::open("dem.tif"), "dem.png");
 //
-// scarp::core contains all of this except Terrain::open() and render(), which read and write files and are in
-// scarp::scarp: a program that links only scarp::core gets "undefined reference to scarp::render" from the linker.
-// Errors are exceptions of type scarp::Error. Whatever takes a Scene takes a Terrain or Voxels.
+// scarp::core implements all of this except Terrain::open() and render(). These read and write files and are in
+// scarp::scarp; a program that calls them but links only scarp::core fails to link (undefined reference to
+// scarp::render). Errors are exceptions of type scarp::Error. A Terrain or Voxels converts to a Scene.
 #pragma once
 
 #include <string>
@@ -38,14 +38,16 @@ namespace scarp {
 struct PictureSettings;  // scarp/render/frame/picture.h
 struct ViewSettings;     // scarp/render/camera/camera.h
 
-/// Renders a scene to a PNG file, seen from the south and above, framed to show all of it; a terrain alone stands on a
-/// plinth, as in `scarp render`. Throws Error for a scene that has nothing to see or no end (then call render_picture()
-/// with a Camera), and for a path that cannot be written; nothing is left there then. In scarp::scarp.
+/// Renders a scene to a PNG file, seen from the south and above, framed to show all of it. A terrain alone stands on a
+/// plinth, as in `scarp render`, and has a haze of 0.1; other scenes have none. Throws Error if nothing is visible, if
+/// all objects are unbounded or terrain wraps (then call render_picture() with a Camera), or if the file cannot be
+/// written; an existing file is then unchanged. In scarp::scarp.
 void render(const Scene& scene, const std::string& path);
-/// The same; the sun stands where it does in true compass directions, by the terrain's georeference.
+/// As above; compass directions of the eye and the sun follow the terrain's georeference.
 void render(const Terrain& terrain, const std::string& path);
-/// The same with settings: size, light, materials, water, ...; compass direction, height and distance of the eye.
-/// Throws Error naming a setting out of range.
+/// As above, with settings: `picture` for size, light, materials, water, ...; `view` for compass azimuth, elevation and
+/// distance of the eye. Ignores the georeference of a terrain: set PictureSettings::grid_north_azimuth. The default
+/// PictureSettings::haze, 0.1, applies to all scenes. Throws Error naming the setting if one is out of range.
 void render(const Scene& scene, const std::string& path, const PictureSettings& picture, const ViewSettings& view);
 
 }  // namespace scarp

@@ -197,7 +197,7 @@ class Caster {
   }
 
   std::size_t hits() const { return hits_; }
-  /// Of blocked(): rays that are not, for they began below the ground and never came above.
+  /// Returns the number of rays of blocked() that start below ground and never emerge.
   std::size_t below() const { return below_; }
   double seconds() const { return seconds_; }
 
@@ -333,8 +333,8 @@ void run(CastOptions options, const Command& command) {
   if (caster.below() > 0) {
     fmt::print(
         stderr,
-        "note: {} of {} rays begin below the ground and never come above it; they are told as not blocked, and as "
-        "'below' without --any: are their heights right?\n",
+        "note: {} of {} rays start below ground and never emerge; they are reported as not blocked (without --any: as "
+        "'below'); check their heights\n",
         caster.below(), rays.size());
   }
   if (caster.hits() == 0 && !rays.empty()) {
@@ -371,7 +371,7 @@ void add_cast(Program& program) {
                .help = "coordinates of rays and hits",
                .choices = {std::string(name_of(Coordinates::local)), std::string(name_of(Coordinates::map)),
                            std::string(name_of(Coordinates::lonlat))},
-               .fallback = "map; local for inputs without a place",
+               .fallback = "map; local for inputs without a georeference",
                .common = true,
                .rules = {{"map or lonlat applies to terrain only (other inputs have no georeference)",
                           [&o] { return o.coordinates == name_of(Coordinates::local); }, kEveryInput & ~kTerrain}}});

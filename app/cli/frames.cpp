@@ -42,7 +42,7 @@ void add_frame_options(Command& command, FrameOptions& o) {
                         .note = "the output is frame-####.png",
                         .topic = Topic::flight});
   command.add(&o.turntable, {.names = "--turntable",
-                             .help = "frames once round the scene, clockwise from --view, as frame-####.png",
+                             .help = "one orbit around the scene, clockwise from --view; the output is frame-####.png",
                              .topic = Topic::flight,
                              .common = true,
                              .excludes = {"--path"}});

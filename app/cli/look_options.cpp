@@ -89,21 +89,20 @@ void add_look_options(Command& command, LookOptions& o) {
     };
   };
   const auto ground = lit(Topic::ground), water = lit(Topic::water), fog = lit(Topic::fog);
-  command.add(
-      &o.ramp,
-      {.names = "--ramp",
-       .value = "RAMP",
-       .help = "colours by height",
-       .choices = {ramp_names().begin(), ramp_names().end()},
-       .files = "cpt png",
-       .note = "or a .cpt file, or a .png of 1 x N colours",
-       .fallback = "hypsometric; viridis for the look steps",
-       .topic = Topic::ground,
-       .common = true,
-       .looks = {"shaded steps comanche", "the others have colours of their own"},
-       .rules = {{"has no effect without --volume or --look steps (voxels and meshes have colours of their own)",
-                  [&command] { return command.given("--volume") || command.value("--look") == "steps"; },
-                  kVoxels | kMesh}}});
+  command.add(&o.ramp,
+              {.names = "--ramp",
+               .value = "RAMP",
+               .help = "colours by height",
+               .choices = {ramp_names().begin(), ramp_names().end()},
+               .files = "cpt png",
+               .note = "or a .cpt file, or a .png of 1 x N colours",
+               .fallback = "hypsometric; viridis for the look steps",
+               .topic = Topic::ground,
+               .common = true,
+               .looks = {"shaded steps comanche", "the others have their own colours"},
+               .rules = {{"has no effect without --volume or --look steps (voxels and meshes have their own colours)",
+                          [&command] { return command.given("--volume") || command.value("--look") == "steps"; },
+                          kVoxels | kMesh}}});
   ground(&o.ground_colours, {.names = "--ground",
                              .value = "KIND",
                              .help = "ground colours",
@@ -133,8 +132,8 @@ void add_look_options(Command& command, LookOptions& o) {
   ground(&o.overlay,
          {.names = "--overlay",
           .value = "FILE",
-          .help = "image draped over everything from above: where its georeference says, if the terrain has one too, "
-                  "else from border to border of the scene (of functions of --extent)",
+          .help = "image projected onto everything from above: placed by its georeference if the terrain has one too, "
+                  "else stretched over the scene (functions: over --extent)",
           .files = "*",
           .common = true});
 
@@ -192,8 +191,8 @@ void add_look_options(Command& command, LookOptions& o) {
                       .help = "visibility in fog",
                       .unit = "metres",
                       .range = kAboveZero,
-                      .note = "2 % of the contrast remain at that distance",
-                      .fallback = "--reach, else the longer side of the field; more from outside",
+                      .note = "2 % of the contrast remains at this distance",
+                      .fallback = "--reach, else the longer side of the field; more if the eye is outside",
                       .common = true,
                       .rules = {foggy}});
   fog(&o.fog_base, {.names = "--fog-base",
@@ -239,13 +238,13 @@ void add_look_options(Command& command, LookOptions& o) {
                                    .looks = kLarge,
                                    .rules = {stepped}});
   large(&o.comanche.iterations, {.names = "--iterations",
-                                 .help = "picture of the number of steps, from black (none) to white (all)",
+                                 .help = "picture of the number of steps, from black (0) to white (the maximum)",
                                  .looks = kLarge});
   large(&o.reach, {.names = "--reach",
                    .help = "maximum length of camera rays",
                    .unit = "metres",
                    .range = kAboveZero,
-                   .fallback = "unlimited; fields that wrap: the longer side, more from outside"});
+                   .fallback = "unlimited; fields that wrap: the longer side, more if the eye is outside"});
 }
 
 void settle_look(const LookOptions& o, const MarchSettings& march_settings, PictureSettings& picture) {

@@ -23,12 +23,13 @@ void add_picture_options(Command& command, RenderOptions& o) {
     option.topic = Topic::picture;
     command.add(std::move(to), std::move(option));
   };
-  add(&o.size, {.names = "--size",
-                .value = "WIDTHxHEIGHT",
-                .help = "size of the picture in pixels",
-                .fallback = fmt::format("{}x{}; with --top the shape of the ground", o.picture.width, o.picture.height),
-                .common = true,
-                .looks = {"shaded height steps error", "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
+  add(&o.size,
+      {.names = "--size",
+       .value = "WIDTHxHEIGHT",
+       .help = "size of the picture in pixels",
+       .fallback = fmt::format("{}x{}; with --top the aspect ratio of the ground", o.picture.width, o.picture.height),
+       .common = true,
+       .looks = {"shaded height steps error", "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
   std::vector<std::string> looks;
   for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error, Look::comanche})
     looks.emplace_back(name_of(look));
@@ -111,7 +112,7 @@ void add_camera_options(Command& command, RenderOptions& o) {
     option.topic = Topic::camera;
     command.add(std::move(to), std::move(option));
   };
-  const Rule no_frames{"has no effect with --path or --turntable, which have cameras of their own",
+  const Rule no_frames{"has no effect with --path or --turntable, which define their own cameras",
                        [&o] { return !o.frames.several(); }};
   const ViewSettings view;
   add(&o.view,

@@ -135,10 +135,10 @@ void replay(const std::string& path) {
 }  // namespace
 
 void add_replay(Program& program) {
-  Command& command = program.add("replay", "Trace the rays of a dump by all marches; fails when exact marches differ");
+  Command& command = program.add("replay", "Trace the rays of a dump with all marches; fail if exact marches disagree");
   const auto path = std::make_shared<std::string>();
   command.add(path.get(), {.names = "FILE",
-                           .help = "ray dump as scarp-bench leaks and the tests write it (scarp/scene/file/ray_dump.h)",
+                           .help = "ray dump of scarp-bench leaks or the tests (format: scarp/scene/file/ray_dump.h)",
                            .files = "*",
                            .required = true});
   command.runs([path] { replay(*path); });

@@ -97,7 +97,7 @@ void add_vox_rounding_options(Command& command, VoxLookOptions& options) {
       {.names = "--rounded", .help = "radius of open edges in sides of a voxel", .range = {0, 0.5}, .inputs = kModels});
   add(&options.rounding.each,
       {.names = "--each",
-       .help = "every voxel rounded on its own, like a heap of dice",
+       .help = "every voxel rounded on all sides, like a heap of dice",
        .inputs = kModels,
        .rules = {needs("--rounded F", [&options] { return static_cast<bool>(options.rounding); })}});
 }
@@ -124,10 +124,11 @@ void add_vox_look_options(Command& command, VoxLookOptions& options) {
        .inputs = kModels,
        .looks = kShaded,
        .rules = {needs("--normals voxel or smooth", [&options] { return options.normals != "flat"; })}});
-  add(&options.corner_ao, {.names = "--corner-ao",
-                           .help = "darker corners, from neighbouring voxels; not where --samples measures the sky",
-                           .inputs = kModels,
-                           .looks = kShaded});
+  add(&options.corner_ao,
+      {.names = "--corner-ao",
+       .help = "ambient occlusion in corners from neighbouring voxels, unless --samples computes it",
+       .inputs = kModels,
+       .looks = kShaded});
   add(&options.coarse, {.names = "--coarse-voxels",
                         .help = "voxels smaller than pixels merged 2 x 2 x 2",
                         .inputs = {kVoxels | kScene, "only voxels can be merged"}});

@@ -110,7 +110,7 @@ void run(const SectionOptions& options) {
   const int axis = options.axis == "x" ? 0 : options.axis == "y" ? 1 : 2;
   const int side = model.grid().size()[axis], at = options.at < 0 ? side / 2 : options.at;
   if (at >= side) {
-    throw Error(fmt::format("--at {}: the box round the model's voxels has layers 0 to {} along {}", at, side - 1,
+    throw Error(fmt::format("--at {}: the box around the model's voxels has layers 0 to {} along {}", at, side - 1,
                             options.axis));
   }
   const VoxelGrid grid = with_margin(model.grid(), options.margin);
@@ -144,15 +144,17 @@ void add_section(Program& program) {
                          .closed = true});
   command.add(&o.axis, {.names = "--axis",
                         .value = "AXIS",
-                        .help = "axis across the layer",
+                        .help = "axis perpendicular to the layer",
                         .choices = {"x", "y", "z"},
                         .closed = true});
   command.add(&o.at, {.names = "--at",
-                      .help = "layer of the box round the voxels",
+                      .help = "index of the layer in the box around the voxels",
                       .range = {0, VoxelGrid::kMaxSide - 1},
                       .fallback = "the middle"});
-  command.add(&o.model, {.names = "--model", .help = "model of the file", .range = {0, 1 << 20}});
-  command.add(&o.margin, {.names = "--margin", .help = "empty voxels round the model", .range = {0, 100}});
+  command.add(&o.model, {.names = "--model", .help = "index of the model in the file", .range = {0, 1 << 20}});
+  command.add(
+      &o.margin,
+      {.names = "--margin", .help = "width of the empty border around the model, in voxels", .range = {0, 100}});
   add_vox_options(command, o.vox);
   command.example("scarp section model.vox -o section.svg --axis y");
   command.runs([options, &command] {

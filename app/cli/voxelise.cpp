@@ -120,7 +120,7 @@ void add_voxelise(Program& program) {
                          .help = "side of a voxel",
                          .unit = "metres",
                          .range = kAboveZero,
-                         .fallback = "of --count; 1 for voxels"});
+                         .fallback = "derived from --count; 1 for voxels"});
   command.add(&o.count, {.names = "--count",
                          .help = "voxels along the longest side",
                          .range = {2, VoxelGrid::kMaxSide},

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A height field that can be edited while other threads query it. Queries and edits take turns; nothing is copied.
+// A height field that can be edited while other threads query it. Queries and edits alternate on one field; an edit
+// copies its samples into it.
 //
 //   reader  --[ epoch 7 ]------[ epoch 7 ]--------------[ epoch 8 ]---
 //   reader  ----[ epoch 7 ]----------------              [ epoch 8 ]--
 //   edit                          waits  [ copy, update ]
 //
-// A reader holds a Reading while its queries must be consistent: for a ray, a batch, a frame. All these queries see one
-// epoch of the field. An edit waits for current readings, and later readings wait for the edit, so neither side
-// starves. An edit blocks readers while it copies its samples and updates the pyramid over them: 0.1 to 0.2 ms for 256
-// x 256 samples of a large field.
+// A reader holds a Reading for as long as its queries must see one state of the field: for a ray, a batch or a frame.
+// The epoch of a state is the number of edits before it. An edit waits for current readings, and later readings wait
+// for the edit, so neither side starves. An edit blocks readers while it copies its samples and updates the pyramid
+// over them: 0.1 to 0.2 ms for 256 x 256 samples of a large field.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +25,11 @@ namespace scarp {
 /// A height field and its pyramid, shared by readers and editors.
 class LiveField {
  public:
-  /// Builds the pyramid; `reserve` as in MaxPyramid. The field and its samples must not be changed in any other way.
+  /// Takes a field and builds its pyramid; `reserve` as in MaxPyramid. Afterwards only edit() may change the field.
   explicit LiveField(HeightField field, const std::optional<SampleRange>& reserve = std::nullopt);
 
-  /// The field at one epoch. Edits wait during its lifetime: a thread that holds a Reading must not edit, and must not
-  /// take another Reading, which could wait for an edit that waits for the first.
+  /// The field at one epoch. Edits wait while a Reading exists. A thread that holds one must not call edit() or read():
+  /// it would wait for itself.
   class Reading {
    public:
     const HeightField& field() const { return live_->field_; }
@@ -42,7 +43,7 @@ class LiveField {
     std::shared_lock<std::shared_mutex> held_;
   };
 
-  /// Thread-safe. Waits for running and waiting edits.
+  /// Returns a Reading of the current state. Waits for edits that run or already wait. Thread-safe.
   Reading read() const { return Reading(*this); }
 
   /// Sets samples and updates the pyramid in one step for all readers; returns the new epoch. Thread-safe. Throws Error

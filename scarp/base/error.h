@@ -7,7 +7,8 @@
 
 namespace scarp {
 
-/// Base of all exceptions thrown by the library. The text is one line: `FILE: what is wrong (what to do)`.
+/// Base of all exceptions thrown by the library. The text is one line, `SUBJECT: what is wrong (what to do)`. The
+/// subject is a file, an object or a setting.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

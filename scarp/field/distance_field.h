@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Signed distance fields of solids: negative inside, positive outside, and never larger than the distance to the
+// Signed distance fields of solids: negative inside, positive outside. The magnitude never exceeds the distance to the
 // surface.
 //
 //   tree of settings (distance_node.h) --compile--> flat program (distance_program.h)
 //   program at a position  ---------> value, material (distance_run.h)
 //   program over a segment of a ray -> linear model with a remainder (distance_local.h): bounds, and gradients
 //
-// value() is 1-Lipschitz, so the ball of this radius contains no surface. It is the exact distance for single solids
-// and for unions outside them; elsewhere it is a bound: inside unions, near edges of intersections, for ellipsoids and
-// grounds. Bounds hold for the true function; value() is within rounding() of it. Outside box(), value() is at least
-// the distance to the box.
+// value() is 1-Lipschitz: a ball of radius |value()| around a position contains no surface. It is the exact distance
+// for single solids and outside unions of them. It is a lower bound inside unions, near edges of intersections, and for
+// ellipsoids and grounds. Bounds hold for the true function; value() differs from it by at most rounding(). Outside
+// box(), value() is at least the distance to the box.
 #pragma once
 
 #include "scarp/field/distance_node.h"
@@ -17,7 +17,7 @@
 
 namespace scarp {
 
-/// Maximum coordinate, metres from the origin along each axis.
+/// Maximum absolute coordinate along each axis, in metres.
 inline constexpr double kDistanceReach = 0x1p30;
 
 /// Bounds of the field along a segment of a line, t = middle + s * half with s in [-1, 1]: the true value is within
@@ -40,21 +40,22 @@ class DistanceField {
   /// Bounding box of the solid; infinite on sides where the solid is unbounded.
   const ShapeBox& box() const { return shape_->box; }
 
-  /// Returns a signed bound of the distance to the surface, in metres, at a position within kDistanceReach.
+  /// Returns the field at a position within kDistanceReach: a signed lower bound of the distance to the surface, in
+  /// metres.
   double value(const dvec3& position) const;
-  /// Bound of the rounding error of value() for positions up to `reach` from the origin.
+  /// Returns a bound of the rounding error of value(), in metres, for positions up to `reach` metres from the origin.
   double rounding(double reach) const;
-  /// Returns the material of the solid with the nearest surface according to value(); 0 if it has none.
+  /// Returns the material of the solid whose surface is nearest by value(); 0 if that solid has no material.
   int material(const dvec3& position) const;
 
-  /// Returns the gradient of value(), analytic; at a crease, that of one side. Where the analytic gradient is undefined
-  /// (the centre of a sphere) it uses differences at the corners of a tetrahedron.
+  /// Returns the analytic gradient of value(). At a crease it is that of one side. Where it is undefined (at the centre
+  /// of a sphere), returns finite differences over the corners of a tetrahedron.
   dvec3 gradient(const dvec3& position) const;
   /// Returns the outward unit normal: the direction of the gradient.
   dvec3 normal(const dvec3& position) const;
 
-  /// Returns bounds along origin + t * direction for t in [t0, t1], within kDistanceReach. Without `rates` the bounds
-  /// of the derivative are wide: over grounds they cost as much as the others.
+  /// Returns bounds along origin + t * direction for t in [t0, t1], within kDistanceReach. If `rates` is
+  /// false, rate_low and rate_high are wide bounds: over grounds, tight ones cost as much as all other bounds together.
   DistanceSegment along(const dvec3& origin, const dvec3& direction, double t0, double t1, bool rates = true) const;
 
  private:

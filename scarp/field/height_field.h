@@ -9,7 +9,8 @@
 //     +--> x east, z up                        |  |  |  |
 //   the south-west sample is at (0, 0)         o--o--o--o
 //
-// The surface is a sheet seen from above. A cell with a nodata sample at one of its four corners is a hole: rays pass.
+// Rays hit the surface only from above. A cell with a nodata sample at one of its four corners is a hole: rays pass
+// through it.
 // A wrapped field covers the whole plane: world (x, y), (x + width(), y) and (x, y + depth()) are the same point.
 #pragma once
 
@@ -46,7 +47,7 @@ enum class Surface : std::uint8_t {
 
 /// Continuation beyond the border.
 enum class Wrap : std::uint8_t {
-  none,          ///< none: N x M samples have (N-1) x (M-1) cells
+  none,          ///< ends at the border: N x M samples have (N-1) x (M-1) cells
   periodic,      ///< repeats; the last column is followed by the first: N x M cells, period N and M cells
   shared_border  ///< repeats; the last column and row equal the first: (N-1) x (M-1) cells and period
 };
@@ -61,8 +62,8 @@ struct HeightFieldSettings {
   std::optional<double> nodata = std::nullopt;  ///< sample value of a hole; NaN is always a hole in float32
   Surface surface = Surface::bilinear;
   Wrap wrap = Wrap::none;
-  /// Whether the field is solid below the sheet: rays that enter below it through the border or out of a hole hit the
-  /// wall there. Rays that start inside are `below`, as without it.
+  /// Whether the volume below the surface is solid: rays that enter it through the border or from a hole hit a wall
+  /// there. Rays that start inside are `below`, as without `solid`.
   bool solid = false;
 };
 
@@ -76,7 +77,8 @@ inline double height_in_cell(Surface surface, const CellHeights& h, double u, do
   return h.h11 + (1 - u) * (h.h01 - h.h11) + (1 - v) * (h.h10 - h.h11);
 }
 
-/// Cells [col_begin, col_end) x [row_begin, row_end). In a wrapped field a begin may be -1, the last column or row.
+/// Cells [col_begin, col_end) x [row_begin, row_end). In a wrapped field col_begin or row_begin may be -1, which means
+/// the last column or row.
 struct CellBox {
   int col_begin = 0;
   int row_begin = 0;
@@ -84,7 +86,7 @@ struct CellBox {
   int row_end = 0;
 };
 
-/// A ray in grid units: x in columns, y in rows (southwards), z in sample units; t is that of the world ray.
+/// A ray in grid units: x in columns, y in rows (southwards), z in sample units. t is the same as for the world ray.
 struct GridRay {
   dvec3 origin;
   dvec3 direction;
@@ -94,7 +96,8 @@ struct GridRay {
 /// samples_changed() change a field, and must not run concurrently with queries (accel/live_field.h synchronises them).
 class HeightField {
  public:
-  /// Wraps caller-owned memory without copying; it must outlive every copy of the field. `row_stride` counts samples.
+  /// Wraps caller-owned memory without copying; it must outlive every copy of the field. `row_stride` is the distance
+  /// between rows in samples; if it is negative, `samples` points to the northernmost row, which is last in memory.
   /// Throws Error for a null pointer, fewer than 1 column or row, rows that overlap (a stride shorter than a row), a
   /// setting out of range, an infinite sample (with its position), or a shared border whose sides differ (with the
   /// position).

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// A procedural terrain: heights over the whole plane, gradients, and certified bounds of both.
+// Procedural terrain: a height function over the whole plane, its gradients, and certified bounds of both.
 //
 //   tree of settings (function_node.h) --compile--> flat programs (function_program.h), one per use
 //   program over doubles ---------------------------> heights; with derivatives: analytic gradients
 //   program over Taylor models (function_taylor.h) -> bounds over rectangles, and along segments of a ray
 //
-// Bounds hold for the true function; value() is within `rounding` of it. Noise, and everything built from it without
-// Sines, is bit-identical on all machines. Bounds are sound, not tight: test/field prints how tight.
+// Bounds hold for the true function; value() differs from it by at most `rounding`. Noise, and functions built from it
+// without Sines, are bit-identical on all machines. Bounds always hold but are not the tightest possible.
 #pragma once
 
 #include "scarp/field/function_node.h"
@@ -14,7 +14,7 @@
 
 namespace scarp {
 
-/// Maximum coordinate, metres from the origin in x and y: doubles are coarser than 2^-22 m beyond.
+/// Maximum absolute x and y, in metres. Beyond it, doubles are at least 2^-22 m apart.
 inline constexpr double kFunctionReach = 0x1p30;
 
 /// A rectangle of the plane, metres; low <= high.
@@ -48,7 +48,8 @@ class HeightFunction {
 
   /// Returns the height in metres at a position within kFunctionReach.
   double value(double x, double y, FunctionUse use = FunctionUse::march) const;
-  /// Returns its derivatives, metres per metre; at a crease (absolute, minimum, ...), those of one side.
+  /// Returns the gradient (dh/dx, dh/dy), in metres per metre. At a crease (absolute, minimum, ...) it is that of one
+  /// side.
   dvec2 gradient(double x, double y, FunctionUse use = FunctionUse::normal) const;
 
   /// Returns bounds over a rectangle within kFunctionReach.
@@ -60,10 +61,10 @@ class HeightFunction {
 
   /// Returns bounds along origin + t * direction for t in [t0, t1], within kFunctionReach.
   SegmentBound along(dvec2 origin, dvec2 direction, double t0, double t1, FunctionUse use = FunctionUse::march) const;
-  /// Returns the minimum and maximum of dh/dt there.
+  /// Returns a lower and an upper bound of dh/dt along the same segment.
   dvec2 slope_along(dvec2 origin, dvec2 direction, double t0, double t1, FunctionUse use = FunctionUse::march) const;
 
-  /// Whether normals use as many octaves as the marched surface.
+  /// Whether normals are those of the marched surface: FunctionUse::normal and FunctionUse::march have one program.
   bool normals_are_of_march() const { return normals_are_of_march_; }
 
  private:

@@ -4,8 +4,7 @@
 //   shape   one bit per voxel, in bricks of 4 x 4 x 4: a 64-bit mask, bit x + 4 y + 16 z
 //   bricks  x fastest, then y, then z; if a side is not a multiple of 4, the last ones are padded with empty voxels
 //   colour  an entry per SOLID voxel, packed in entry_bits each; its index is the voxel's rank, the number of solid
-//   voxels
-//           before it. The owner defines the meaning of entries: palette indices, or RGB in 24 bits
+//           voxels before it. The owner defines the meaning of entries: palette indices, or RGB in 24 bits
 //
 // Voxel (x, y, z) is the cube from (x, y, z) to (x + 1, y + 1, z + 1); right-handed, z up, like the world. Space
 // outside the grid is empty.
@@ -64,9 +63,9 @@ class VoxelGrid {
   /// Returns the entry of a solid voxel; 0 if drop_hidden_entries() dropped it.
   std::uint32_t entry(const ivec3& voxel) const;
 
-  // Edits ignore parts outside the grid, and return a box around all voxels that may have changed, for updates of
-  // accelerators and scenes. Entries must fit in entry_bits(); otherwise they throw Error and, except for edit(),
-  // change nothing.
+  // Edits ignore positions outside the grid. They return a box around all voxels that may have changed, for updates of
+  // accelerators and scenes. They throw Error if an entry does not fit in entry_bits(); all except edit() then change
+  // nothing.
 
   VoxelBox set(const ivec3& voxel, std::uint32_t entry);
   VoxelBox clear(const ivec3& voxel);
@@ -86,24 +85,24 @@ class VoxelGrid {
     ivec3 voxel;
     Voxel value;
   };
-  /// Sets many voxels at any positions; of several for one position the last one counts.
+  /// Sets many voxels, in any order. If a position occurs more than once, the last one counts.
   VoxelBox set(std::span<const Placed> voxels);
   using Change = std::function<Voxel(const ivec3& voxel, const Voxel& before)>;
   /// Calls `change` once for each voxel of the box, in no particular order. If it throws, or returns an entry that does
   /// not fit, only some of the voxels visited so far are changed; counts and bounds stay consistent.
   VoxelBox edit(const VoxelBox& box, const Change& change);
 
-  // Boolean operations with a grid of the same size and entry_bits; throw Error if these differ.
+  // Boolean operations with a grid of the same size and entry_bits. They throw Error if these differ.
 
-  /// Union. Keeps its own entries.
+  /// Union: adds the solid voxels of `other`. Voxels that are solid in both keep their entries in this grid.
   VoxelBox unite(const VoxelGrid& other);
-  /// Intersection.
+  /// Intersection: clears voxels that are empty in `other`.
   VoxelBox intersect(const VoxelGrid& other);
-  /// Difference.
+  /// Difference: clears voxels that are solid in `other`.
   VoxelBox subtract(const VoxelGrid& other);
 
-  /// Drops the entries of voxels without an empty neighbour across a face: those invisible from outside. Lossy: hidden
-  /// voxels that a later edit exposes have the entry 0.
+  /// Drops the entries of voxels that are invisible from outside: those whose six neighbours are all solid. Lossy: if a
+  /// later edit exposes such a voxel, its entry is 0.
   void drop_hidden_entries();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scenes made of scenes: terrain, voxels, shapes, functions, each in any number of places.
+// Combines scenes into one: terrain, voxels, shapes and functions, each in any number of placements.
 //
 //   const scarp::Scene scene = scarp::combine({{terrain}, {tower, {.scale = 0.5, .origin = {300, 200, 120}}}});
 #pragma once
@@ -12,16 +12,17 @@
 
 namespace scarp {
 
-/// A scene (a Terrain, Voxels, a field, or a combined one) and where it stands.
+/// A scene (a Terrain, Voxels, a field, or a combined scene) and its placement.
 struct ScenePart {
   Scene scene;
-  Placement placement{};                    ///< rotation, scale and origin; as it is by default
-  std::optional<std::uint32_t> material{};  ///< index into the materials of pictures; nullopt: that of its objects
+  Placement placement{};                    ///< rotation, scale and origin; identity by default
+  std::optional<std::uint32_t> material{};  ///< index into PictureSettings::materials; nullopt: as in `scene`
 };
 
-/// All objects of all parts, in their order: Hit::object counts them from 0, so in a scene of single objects it is the
-/// index of the part. Fields are shared, not copied. Throws Error naming the object for a placement that is not a
-/// rotation with a scale above 0, and for a scene on a device: combine first, then scene_on().
+/// Returns a scene of all objects of all parts, in order. Hit::object is the index of an object, from 0; if every part
+/// has one object, it is the index of the part. Fields are shared, not copied. Throws Error naming the object if a
+/// placement is not a rotation with a finite origin and a scale above 0. Throws Error naming the part if it is on a
+/// device: combine first, then call scene_on().
 Scene combine(const std::vector<ScenePart>& parts);
 
 }  // namespace scarp

@@ -142,7 +142,7 @@ void Scene::take_hit(const Hit& hit, std::uint32_t object, Hit& best) const {
   take(hit, object, best);
 }
 
-void Scene::ask(const Asking& ray, std::uint32_t object, Hit& best, MarchStats* stats) const {
+void Scene::trace(const StartedRay& ray, std::uint32_t object, Hit& best, MarchStats* stats) const {
   MarchStats march;
   take_hit(field_of(object).closest_hit(local(ray, object, best), ray.from_on(object), stats ? &march : nullptr),
            object, best);
@@ -151,21 +151,21 @@ void Scene::ask(const Asking& ray, std::uint32_t object, Hit& best, MarchStats* 
   stats->cell_tests += march.cell_tests, stats->boxes += march.boxes;
 }
 
-void Scene::ask_tree(const Asking& ray, Hit& best, MarchStats* stats) const {
+void Scene::trace_tree(const StartedRay& ray, Hit& best, MarchStats* stats) const {
   Ray reach = ray.ray;
   if (best) reach.t_max = best.t;
   tree_.traverse(reach, [&](std::uint32_t in_tree) {
-    ask(ray, in_tree_[in_tree], best, stats);
+    trace(ray, in_tree_[in_tree], best, stats);
     if (stats) ++stats->boxes;
     return best ? best.t : ray.ray.t_max;
   });
 }
 
-Hit Scene::closest(const Asking& ray, MarchStats* stats) const {
+Hit Scene::closest(const StartedRay& ray, MarchStats* stats) const {
   Hit best;
   if (stats) *stats = {};
-  for (const std::uint32_t object : beside_tree_) ask(ray, object, best, stats);
-  ask_tree(ray, best, stats);
+  for (const std::uint32_t object : beside_tree_) trace(ray, object, best, stats);
+  trace_tree(ray, best, stats);
   return best;
 }
 
@@ -182,11 +182,11 @@ Hit Scene::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const
   return closest({ray, from}, stats);
 }
 
-bool Scene::blocks(const Asking& ray, std::uint32_t object) const {
+bool Scene::blocks(const StartedRay& ray, std::uint32_t object) const {
   return !field_of(object).is_backdrop() && field_of(object).occluded(local(ray, object, {}), ray.from_on(object));
 }
 
-bool Scene::tree_blocks(const Asking& ray) const {
+bool Scene::tree_blocks(const StartedRay& ray) const {
   bool blocked = false;
   tree_.traverse(ray.ray, [&](std::uint32_t in_tree) {
     blocked = blocks(ray, in_tree_[in_tree]);
@@ -202,10 +202,10 @@ bool Scene::occluded(const Ray& ray, const Hit* from) const {
     return blocked != 0;
   }
   if (sole_) return field_of(sole_object_).occluded(ray, from);
-  const Asking asking(ray, from);
+  const StartedRay started(ray, from);
   return std::any_of(beside_tree_.begin(), beside_tree_.end(),
-                     [&](std::uint32_t object) { return blocks(asking, object); }) ||
-         tree_blocks(asking);
+                     [&](std::uint32_t object) { return blocks(started, object); }) ||
+         tree_blocks(started);
 }
 
 void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits) const {
@@ -215,7 +215,7 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
   std::fill(hits.begin(), hits.end(), Hit{});
   for (const std::uint32_t object : beside_tree_) {
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Asking ray(rays, from, i);
+      const StartedRay ray(rays, from, i);
       make_local(ray, object, hits[i], locals[i]);
       if (!from.empty()) on_object[i] = ray.from_on(object);
     }
@@ -223,7 +223,7 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
     for (std::size_t i = 0; i < rays.size(); ++i) take_hit(answers[i], object, hits[i]);
   }
   if (in_tree_.empty()) return;
-  for (std::size_t i = 0; i < rays.size(); ++i) ask_tree({rays, from, i}, hits[i], nullptr);
+  for (std::size_t i = 0; i < rays.size(); ++i) trace_tree({rays, from, i}, hits[i], nullptr);
 }
 
 void Scene::occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked) const {
@@ -240,7 +240,7 @@ void Scene::occluded_of_piece(std::span<const Ray> rays, From from, std::span<st
     if (field_of(object).is_backdrop()) continue;
     locals.clear(), on_object.clear();
     for (const std::size_t i : open) {
-      const Asking ray(rays, from, i);
+      const StartedRay ray(rays, from, i);
       locals.push_back(local(ray, object, {}));
       if (!from.empty()) on_object.push_back(ray.from_on(object));
     }

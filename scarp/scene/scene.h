@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A scene combines terrain, functions, shapes, voxels and meshes, each in any number of places, and answers closest-hit
-// and any-hit queries over all of them.
+// A scene combines terrain, functions, shapes, voxels and meshes under placements, and answers closest-hit and any-hit
+// queries over all of them.
 //
 //   ray ──▶ unbounded ground, and the largest batch-friendly fields    each by its own march;
 //       ──▶ hierarchy of boxes over all other objects (box_tree.h)     the nearest hit wins
 //
-// Each object is traced in its own space; t always counts in lengths of the world-space direction. If several objects
-// are hit at the same t, the first one counts. A ray that starts on a surface does so by the rule of that object, and
-// is free for all others. Origins are not offset, except those of shadow rays of voxels with smooth normals.
+// Each object is traced in its own space; t is always in units of the length of the world-space direction. If several
+// objects are hit at the same t, the one with the lowest index counts. A ray that starts on the surface of an object is
+// RayStart::on_surface for that object and RayStart::free for all others. Origins are not offset, except those of
+// shadow rays of voxels with smooth normals.
 //
-// A scene of one field at the origin is that field: rays and batches go straight to it.
+// In a scene of one field at the origin, queries go directly to that field.
 #pragma once
 
 #include <cstddef>
@@ -28,10 +29,10 @@
 
 namespace scarp {
 
-/// A field in one place.
+/// A field with its placement and material.
 struct SceneObject {
   std::uint32_t field = 0;     ///< index into Scene::fields()
-  std::uint32_t material = 0;  ///< returned in SceneSurface; pictures use it as an index into their materials
+  std::uint32_t material = 0;  ///< returned in SceneSurface; index into PictureSettings::materials
   Placement placement{};
 };
 
@@ -39,11 +40,11 @@ struct SceneObject {
 struct SceneSurface {
   dvec3 position{0.0};
   dvec3 normal{0.0};          ///< unit, outward; zero for a ray that started inside a voxel
-  dvec3 shading_normal{0.0};  ///< unit, outward, smooth; zero as `normal`
+  dvec3 shading_normal{0.0};  ///< unit, outward, smooth; zero if `normal` is
   std::uint32_t object = 0;
-  std::uint32_t material = 0;         ///< of the object, or of the part of a shape, less 1
+  std::uint32_t material = 0;         ///< SceneObject::material, or that of the part of a shape that was hit, less 1
   dvec3 place{0.0};                   ///< position in the object's own space
-  std::optional<VoxelColour> colour;  ///< of fields with their own colours
+  std::optional<VoxelColour> colour;  ///< nullopt if the field has no colours
   double openness = 1;                ///< fraction of the sky that the object itself leaves open, 0..1
   bool wall = false;                  ///< whether a wall of solid ground or of a plinth was hit
   std::optional<double> height;       ///< z of the surface, if known more precisely than by `position`
@@ -56,44 +57,44 @@ struct SceneDetail {
                                          ///< metres
 };
 
-/// Objects with closest-hit and any-hit queries over all of them. Immutable. May be queried from many threads at once,
-/// except with a back end.
+/// Objects with closest-hit and any-hit queries over all of them. Immutable. Thread-safe, except with a back end.
 ///
-/// Rays start as Ray::start states, on the surface of Ray::start_object if it is `on_surface`. `from` overrides it: the
-/// ray starts on the surface of that hit of this scene. In batches `from` is empty or as long as `rays`; rays whose
-/// entry is null start free. Rays that start on voxels need `from`.
+/// Ray::start states how a ray starts: `free`, or `on_surface` of the object Ray::start_object. `from` overrides it:
+/// the ray starts on the surface of that hit of this scene. In batches `from` is empty or as long as `rays`; rays whose
+/// entry is null start free. Rays that start on voxels require `from`.
 class Scene {
  public:
-  /// Throws Error for a field that is null, and, naming the object, for a field that does not exist or a placement that
-  /// is not a rotation with a scale above 0.
+  /// Throws Error if a field is null. Throws Error naming the object if its field does not exist or its placement is
+  /// not a rotation with a finite origin and a scale above 0.
   Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects);
-  /// The field alone, at the origin. Implicit: one field is a scene.
+  /// A scene of one field at the origin. Implicit conversion.
   Scene(SceneFieldPtr field);
 
-  /// Returns the same scene with a back end that answers the rays, such as a device (scene_vk.h). For one thread at a
-  /// time; a single ray takes as long as thousands.
+  /// Returns the same scene with queries answered by a back end, such as a device (scene_vk.h). Not thread-safe. A
+  /// query of a single ray takes as long as one of thousands.
   Scene answered_by(std::shared_ptr<SceneBackEnd> back_end) const;
   bool on_device() const { return back_end_ != nullptr; }
-  /// Returns the one height field of this scene on its device; null for all other scenes.
+  /// Returns the height field on its device if the scene is a single height field, at the origin, on a device; null for
+  /// all other scenes. A plinth does not count.
   const DeviceTerrain* device_terrain() const;
 
-  /// Returns the nearest hit. Without one, the status is `exhausted` if a march reached its limit, or `below` if the
-  /// ray started below the ground of an object and never emerged, or else `miss`. Objects whose boxes the ray misses
-  /// are not queried, so a ray that starts below bounded ground may also return `miss`; within() finds where a point
-  /// is. A march that reaches its limit does not hide hits on other objects. Overwrites `stats` if given; back ends set
-  /// only its steps.
+  /// Returns the closest hit. Without a hit, the status is `exhausted` if a march reached its limit, else `below` if
+  /// the ray starts below the ground of an object and never emerges, else `miss`. Objects whose bounding boxes the ray
+  /// misses are not queried, so a ray that starts below bounded ground may also return `miss`; within() tests whether a
+  /// point is below ground. If a march reaches its limit, hits on other objects are still found. Overwrites `stats` if
+  /// not null; back ends set only its steps.
   Hit closest_hit(const Ray& ray, const Hit* from = nullptr, MarchStats* stats = nullptr) const;
-  /// Returns whether anything blocks the ray: true where closest_hit() returns a hit, with three exceptions. Plinths
-  /// block nothing, terrain functions may have other octaves for shadows (Octaves of field/function_node.h), and rays
-  /// from a hit on voxels with smooth normals (VoxelNormals::smooth) start above the steps of these voxels
+  /// Returns whether anything blocks the ray: true if closest_hit() returns a hit, with three exceptions. Plinths block
+  /// nothing. Terrain functions may have a different number of octaves for shadows (Octaves in field/function_node.h).
+  /// Rays from a hit on voxels with smooth normals (VoxelNormals::smooth) start above the steps of these voxels
   /// (scene_voxels()).
   bool occluded(const Ray& ray, const Hit* from = nullptr) const;
 
-  /// Sets hits[i] to closest_hit(rays[i], from[i]), bit for bit except on devices, and steps[i] to its steps unless
-  /// `steps` is empty. On all threads. Throws Error if spans differ in length.
+  /// Sets hits[i] to closest_hit(rays[i], from[i]), bit for bit except on devices. Sets steps[i] to its number of steps
+  /// unless `steps` is empty. Uses all threads. Throws Error if spans differ in length.
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps = {},
                     std::span<const Hit* const> from = {}) const;
-  /// Sets blocked[i] to 1 if occluded(rays[i], from[i]), else to 0. As closest_hits().
+  /// Sets blocked[i] to 1 if occluded(rays[i], from[i]), else to 0. Threads and errors as for closest_hits().
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;
 
@@ -102,12 +103,12 @@ class Scene {
 
   /// Returns the surface of the first object that contains a point; see SceneField::within().
   std::optional<SceneSurface> within(const dvec3& p) const;
-  /// Returns z of the highest ground at (x, y), of height fields and functions that are not tilted; nullopt without
-  /// any.
+  /// Returns z of the highest ground at (x, y), in metres, over all height fields and functions that are not tilted;
+  /// nullopt if there is none.
   std::optional<double> height(double x, double y) const;
 
-  /// Returns the same objects with voxels merged 2 x 2 x 2, repeatedly, as long as they stay no larger than the
-  /// distance between two samples of the picture wherever their object is visible. On the CPU.
+  /// Returns the same objects with voxels merged 2 x 2 x 2, repeatedly, as long as they are no larger than the distance
+  /// between two samples of the picture at the smallest depth of their object. The result has no back end.
   Scene coarser(const SceneDetail& detail) const;
 
   const std::vector<SceneFieldPtr>& fields() const { return fields_; }
@@ -115,15 +116,16 @@ class Scene {
   /// Returns the field of a scene of one field at the origin; null for all other scenes.
   const SceneField* only_field() const { return alone_ ? fields_[objects_[0].field].get() : nullptr; }
   const SceneField& field_of(std::uint32_t object) const { return *fields_[objects_[object].field]; }
-  /// Returns the height field of a scene of one at the origin, with or without its plinth; null for all other scenes.
+  /// Returns the height field if it is the only object, at the origin, with or without its plinth; null for all other
+  /// scenes.
   const HeightField* only_heights() const { return sole_ && terrain_ ? terrain_ : nullptr; }
-  /// Returns the one height field at the origin, whatever else is in the scene; null if there is none, or several.
+  /// Returns the height field at the origin if the scene has exactly one, else null. The scene may have other objects.
   const HeightField* terrain() const { return terrain_; }
-  /// Index of the object of terrain(), if that is not null.
+  /// Returns the index of the object of terrain(). Undefined if that is null.
   std::uint32_t terrain_object() const { return terrain_object_; }
-  /// Side of the smallest cell or voxel of all objects, in metres; 0 if there is none.
+  /// Returns the side of the smallest cell or voxel of all objects, in metres; 0 if none has cells or voxels.
   double cell_side() const;
-  /// Returns the same objects with reference marches. On the CPU.
+  /// Returns the same objects with the marches that judge others (SceneField::judge()). The result has no back end.
   Scene judge() const;
   /// Returns the names of all marches, each once, separated by ", ".
   std::string marches() const;
@@ -145,31 +147,32 @@ class Scene {
   SceneSurface placed_surface(std::uint32_t object, const FieldSurface& own, const dvec3& p,
                               const dvec3& in_field) const;
 
-  // Queries of rays that know how they start; see scene_answers.h.
-  struct Asking;
-  void make_local(const Asking& asking, std::uint32_t object, const Hit& best, Ray& local) const;
-  Ray local(const Asking& asking, std::uint32_t object, const Hit& best) const;
-  void ask(const Asking& ray, std::uint32_t object, Hit& best, MarchStats* stats) const;
+  // A ray with its start; see scene_answers.h.
+  struct StartedRay;
+  void make_local(const StartedRay& started, std::uint32_t object, const Hit& best, Ray& local) const;
+  Ray local(const StartedRay& started, std::uint32_t object, const Hit& best) const;
+  // trace() and trace_tree() replace `best` if they find a better hit.
+  void trace(const StartedRay& ray, std::uint32_t object, Hit& best, MarchStats* stats) const;
   void take_hit(const Hit& hit, std::uint32_t object, Hit& best) const;
-  void ask_tree(const Asking& ray, Hit& best, MarchStats* stats) const;
-  bool blocks(const Asking& ray, std::uint32_t object) const;
-  bool tree_blocks(const Asking& ray) const;
-  Hit closest(const Asking& ray, MarchStats* stats) const;
+  void trace_tree(const StartedRay& ray, Hit& best, MarchStats* stats) const;
+  bool blocks(const StartedRay& ray, std::uint32_t object) const;
+  bool tree_blocks(const StartedRay& ray) const;
+  Hit closest(const StartedRay& ray, MarchStats* stats) const;
   void closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits) const;
   void occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked) const;
 
-  // A query of one ray against one object, for back ends.
+  // One ray to trace against one object, for back ends.
   struct Pair {
     std::uint32_t object;
     std::uint32_t ray;
   };
-  void ask_closest(std::span<const Ray> rays, From from, std::span<const Pair> pairs, std::span<Hit> hits,
-                   std::span<std::uint32_t> steps) const;
-  void ask_occluded(std::span<const Ray> rays, From from, std::span<const Pair> pairs,
-                    std::span<std::uint8_t> blocked) const;
+  void trace_closest(std::span<const Ray> rays, From from, std::span<const Pair> pairs, std::span<Hit> hits,
+                     std::span<std::uint32_t> steps) const;
+  void trace_occluded(std::span<const Ray> rays, From from, std::span<const Pair> pairs,
+                      std::span<std::uint8_t> blocked) const;
   std::vector<Pair> pairs_in_tree(std::span<const Ray> rays, std::span<const Hit> hits) const;
-  template <class Ask>
-  void by_field(std::vector<Pair>& pairs, const Ask& ask) const;
+  template <class Query>
+  void by_field(std::vector<Pair>& pairs, const Query& query) const;
   void closest_by_back_end(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
                            From from) const;
   void occluded_by_back_end(std::span<const Ray> rays, std::span<std::uint8_t> blocked, From from) const;
@@ -177,22 +180,22 @@ class Scene {
   std::vector<SceneFieldPtr> fields_;
   std::shared_ptr<SceneBackEnd> back_end_;  // null: the fields' own marches
   std::vector<SceneObject> objects_;
-  std::vector<std::uint8_t> in_place_;      // by object: 1 where its placement is the identity
+  std::vector<std::uint8_t> in_place_;      // per object: 1 if its placement is the identity
   std::vector<std::uint32_t> beside_tree_;  // objects that every ray is traced against, before the tree
-  std::vector<std::uint32_t> in_tree_;      // the others that can be met, in the order of the tree's numbers
+  std::vector<std::uint32_t> in_tree_;      // the other objects that are not empty, by index in the tree
   BoxTree tree_;
   WorldBox box_;
   bool endless_ = false, wraps_ = false;
-  // The height at which walls of solid ground end: the base of the plinth.
+  // z at which walls of solid ground end: the base of the plinth.
   double walls_end_ = -std::numeric_limits<double>::infinity();
-  bool alone_ = false;  // one object, where its field stands: nothing is transformed, nothing compared
-  bool sole_ = false;   // the same, but for backdrops: they are seen, but rays are not blocked by them
+  bool alone_ = false;  // a single object with the identity as placement: nothing to transform or compare
+  bool sole_ = false;   // the same, not counting backdrops, which are visible but block no rays
   std::uint32_t sole_object_ = 0, terrain_object_ = 0;
   const HeightField* terrain_ = nullptr;
 };
 
-/// Throws Error if a ray cannot be traced through the scene: as validate() of march/height/queries.h, and for an
-/// infinite t_max if a field wraps round, or a start on an object or cell that does not exist.
+/// Throws Error if a ray is not valid (validate() in march/height/queries.h), if its t_max is infinite and a field
+/// wraps, or if it starts on an object or cell that does not exist.
 void validate(const Ray& ray, const Scene& scene);
 
 }  // namespace scarp

@@ -43,8 +43,8 @@ const DeviceTerrain* Scene::device_terrain() const {
 }
 
 // pairs: all of one field.
-void Scene::ask_closest(std::span<const Ray> rays, From from, std::span<const Pair> pairs, std::span<Hit> hits,
-                        std::span<std::uint32_t> steps) const {
+void Scene::trace_closest(std::span<const Ray> rays, From from, std::span<const Pair> pairs, std::span<Hit> hits,
+                          std::span<std::uint32_t> steps) const {
   if (pairs.empty()) return;
   std::vector<Ray> locals(pairs.size());
   std::vector<const Hit*> on_object(from.empty() ? 0 : pairs.size());
@@ -52,9 +52,9 @@ void Scene::ask_closest(std::span<const Ray> rays, From from, std::span<const Pa
   std::vector<std::uint32_t> cost(steps.empty() ? 0 : pairs.size());
   for_each(pairs.size(), [&](std::size_t i) {
     const auto [object, ray] = pairs[i];
-    const Asking asking(rays, from, ray);
-    locals[i] = local(asking, object, hits[ray]);
-    if (!from.empty()) on_object[i] = asking.from_on(object);
+    const StartedRay started(rays, from, ray);
+    locals[i] = local(started, object, hits[ray]);
+    if (!from.empty()) on_object[i] = started.from_on(object);
   });
   back_end_->closest_hits(objects_[pairs.front().object].field, locals, answers, cost, on_object);
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -63,17 +63,17 @@ void Scene::ask_closest(std::span<const Ray> rays, From from, std::span<const Pa
   }
 }
 
-void Scene::ask_occluded(std::span<const Ray> rays, From from, std::span<const Pair> pairs,
-                         std::span<std::uint8_t> blocked) const {
+void Scene::trace_occluded(std::span<const Ray> rays, From from, std::span<const Pair> pairs,
+                           std::span<std::uint8_t> blocked) const {
   if (pairs.empty()) return;
   std::vector<Ray> locals(pairs.size());
   std::vector<const Hit*> on_object(from.empty() ? 0 : pairs.size());
   std::vector<std::uint8_t> answers(pairs.size());
   for_each(pairs.size(), [&](std::size_t i) {
     const auto [object, ray] = pairs[i];
-    const Asking asking(rays, from, ray);
-    locals[i] = local(asking, object, {});
-    if (!from.empty()) on_object[i] = asking.from_on(object);
+    const StartedRay started(rays, from, ray);
+    locals[i] = local(started, object, {});
+    if (!from.empty()) on_object[i] = started.from_on(object);
   });
   back_end_->occluded(objects_[pairs.front().object].field, locals, answers, on_object);
   for (std::size_t i = 0; i < pairs.size(); ++i) blocked[pairs[i].ray] |= answers[i];
@@ -97,15 +97,15 @@ std::vector<Scene::Pair> Scene::pairs_in_tree(std::span<const Ray> rays, std::sp
   return pairs;
 }
 
-template <class Ask>
-void Scene::by_field(std::vector<Pair>& pairs, const Ask& ask) const {
+template <class Query>
+void Scene::by_field(std::vector<Pair>& pairs, const Query& query) const {
   const auto field_of_pair = [&](const Pair& pair) { return objects_[pair.object].field; };
   std::stable_sort(pairs.begin(), pairs.end(),
                    [&](const Pair& a, const Pair& b) { return field_of_pair(a) < field_of_pair(b); });
   for (auto begin = pairs.begin(); begin != pairs.end();) {
     const auto end = std::find_if(begin, pairs.end(),
                                   [&](const Pair& pair) { return field_of_pair(pair) != field_of_pair(*begin); });
-    ask(std::span<const Pair>(begin, end));
+    query(std::span<const Pair>(begin, end));
     begin = end;
   }
 }
@@ -124,10 +124,10 @@ void Scene::closest_by_back_end(std::span<const Ray> rays, std::span<Hit> hits, 
     for (const std::uint32_t object : beside_tree_) {
       std::vector<Pair> pairs(count);
       for (std::size_t i = 0; i < count; ++i) pairs[i] = {object, static_cast<std::uint32_t>(i)};
-      ask_closest(some, begun, pairs, found, cost);
+      trace_closest(some, begun, pairs, found, cost);
     }
     std::vector<Pair> pairs = pairs_in_tree(some, found);
-    by_field(pairs, [&](std::span<const Pair> of_field) { ask_closest(some, begun, of_field, found, cost); });
+    by_field(pairs, [&](std::span<const Pair> of_field) { trace_closest(some, begun, of_field, found, cost); });
   }
 }
 
@@ -140,14 +140,14 @@ void Scene::occluded_by_back_end(std::span<const Ray> rays, std::span<std::uint8
     const auto begun = from.empty() ? from : from.subspan(first, count);
     const auto answers = blocked.subspan(first, count);
     std::vector<Pair> pairs = pairs_in_tree(some, {});
-    by_field(pairs, [&](std::span<const Pair> of_field) { ask_occluded(some, begun, of_field, answers); });
+    by_field(pairs, [&](std::span<const Pair> of_field) { trace_occluded(some, begun, of_field, answers); });
     for (const std::uint32_t object : beside_tree_) {
       if (field_of(object).is_backdrop()) continue;
       pairs.clear();
       for (std::size_t i = 0; i < count; ++i) {
         if (!answers[i]) pairs.push_back({object, static_cast<std::uint32_t>(i)});
       }
-      ask_occluded(some, begun, pairs, answers);
+      trace_occluded(some, begun, pairs, answers);
     }
   }
 }

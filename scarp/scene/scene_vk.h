@@ -17,20 +17,20 @@
 
 namespace scarp {
 
-/// Copies the fields that run on the device into its memory; later edits do not reach it. Throws Error naming the
-/// field: none that runs there, a march that does not, too little memory. Queries throw Error if the device is lost.
-/// Results are those of march/height/queries_vk.h, march/function/function_queries_vk.h and
-/// march/shape/shape_queries_vk.h.
+/// Returns the same scene, traced on a device. Copies the fields that run on the device into its memory; later edits do
+/// not reach it. Throws Error naming the field if no field runs on the device, if a march does not, or if the device
+/// lacks memory. Queries throw Error if the device is lost. march/height/queries_vk.h,
+/// march/function/function_queries_vk.h and march/shape/shape_queries_vk.h document the accuracy of results.
 ///
-/// A field made by scene_heights() with AnsweredBy::back_end builds nothing for the CPU.
+/// Fields made by scene_heights() with AnsweredBy::back_end build no acceleration structure for the CPU.
 Scene scene_on(const Device& device, const Scene& scene);
 
-/// The height field of a scene of one at the origin, on its device: Scene::device_terrain().
+/// A height field on its device, returned by Scene::device_terrain().
 struct DeviceTerrain {
   Device device;
   const DeviceGround& ground;
   const MarchSettings& settings;
-  mutable std::shared_ptr<void> kept{};  ///< cache of the station that renders pictures
+  mutable std::shared_ptr<void> kept{};  ///< cache of the render station
 };
 
 }  // namespace scarp

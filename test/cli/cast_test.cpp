@@ -257,7 +257,9 @@ TEST_F(Cast, RaysFromBelowAreNoted) {
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0].at("blocked"), "0");
   EXPECT_EQ(rows[1].at("blocked"), "1");
-  EXPECT_NE(told.err.find("note: 1 of 3 rays begin below the ground"), std::string::npos) << told.err;
+  EXPECT_NE(told.err.find("note: 1 of 3 rays start below ground and never emerge; they are reported as not blocked"),
+            std::string::npos)
+      << told.err;
   EXPECT_EQ(rows_of(run(arguments).out)[0].at("status"), "below");
 }
 

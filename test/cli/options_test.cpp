@@ -269,8 +269,8 @@ TEST_F(WithoutEffect, IsRefusedOfTerrain) {
   expect_refused(render, {"--sun-size", "1"}, "--samples N");
   expect_refused(render, {"--mesh-up", "y"}, "--mesh FILE");
   const Names flight{"render", dem_, "-o", scratch_.path("out-##.png"), "--turntable"};
-  expect_refused(flight, {"--eye", "1,2,3"}, "cameras of their own");
-  expect_refused(flight, {"--top"}, "cameras of their own");
+  expect_refused(flight, {"--eye", "1,2,3"}, "define their own cameras");
+  expect_refused(flight, {"--top"}, "define their own cameras");
   expect_refused({"render", dem_, "-o", scratch_.path("out-##.png"), "--path", "p.csv"}, {"--view", "1,2"}, "table");
 }
 

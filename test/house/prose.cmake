@@ -7,9 +7,8 @@ cmake_minimum_required(VERSION 3.25)
 set(documents README.md CHANGELOG.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md)
 # folders whose *.h are checked, subfolders included, for example scarp/vk
 set(header_folders scarp/accel scarp/base scarp/field scarp/march/shape scarp/march/voxel scarp/output scarp/source scarp/vk)
-# single headers, beside those of the folders
-set(headers scarp/scarp.h scarp/scene/cast.h scarp/scene/combine.h scarp/scene/file/scene_file.h scarp/scene/placement.h scarp/scene/scene.h
-    scarp/scene/scene_vk.h scarp/scene/terrain.h scarp/scene/voxels.h)
+# single headers, besides those of the folders and the common ones (doc/api/common_headers.txt)
+set(headers scarp/march/height/queries.h scarp/march/height/queries_vk.h scarp/scene/placement.h)
 set(help_calls)      # calls of the program whose output is checked, for example "render --help"
 
 # PATTERN => remedy. < is the start of a sentence, > the end of a paragraph or a table cell, @ a word boundary.
@@ -167,7 +166,10 @@ foreach(folder IN LISTS header_folders)
   endif()
   list(APPEND files ${matching})
 endforeach()
-foreach(file IN LISTS files headers)
+file(STRINGS ${ROOT}/doc/api/common_headers.txt common_headers)
+list(APPEND files ${common_headers} ${headers})
+list(REMOVE_DUPLICATES files)
+foreach(file IN LISTS files)
   file(READ ${ROOT}/${file} text)
   if(file MATCHES "[.]h$")
     comments_of("${text}" text)

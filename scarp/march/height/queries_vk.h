@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Rays by the batch on a Vulkan device: queries.h for the marches that run there (HeightMarchEntry::gpu).
+// Batch queries on a Vulkan device, for the marches that run there (device_march_names()).
 //
 //   rays, double ──▶ clipped, two floats per number ──▶ device, a slice at a time ──▶ answers ──▶ hits, double
 //
-// Answers are those of single precision (doc/dev/numerics.md): the same as on the CPU wherever the ray passes or meets
-// the surface by more than the bound that is derived there. Closest and any always agree.
+// Results are in single precision. If a ray clears or hits the surface by more than the bound that doc/dev/numerics.md
+// derives, its result agrees with the CPU's. Closest-hit and any-hit queries always agree.
 #pragma once
 
 #include <cstdint>
@@ -21,49 +21,50 @@
 
 namespace scarp {
 
-/// What a ray cost on the device.
+/// Cost of one ray on the device.
 struct DeviceRayCost {
-  std::uint32_t steps = 0;    ///< blocks, cells or points looked at
+  std::uint32_t steps = 0;    ///< visited blocks, cells or points
   std::uint32_t fetches = 0;  ///< samples and entries of the pyramid read
 };
 
 struct DeviceQuerySettings {
-  bool statistics = false;               ///< whether costs are counted; else they are told as zeros
-  std::uint32_t rays_at_once = 1 << 18;  ///< a slice: what is on the device together, 1 to 4,000,000
+  bool statistics = false;               ///< whether costs are counted; if false, they are returned as zeros
+  std::uint32_t rays_at_once = 1 << 18;  ///< size of a slice: rays on the device at once, 1 to 4,000,000
   int turns_at_once =
-      60'000;  ///< of a march's loop, then it goes on in the next run, so that runs are short: 1 to 60,000
+      60'000;  ///< maximum loop iterations per ray in one run, 1 to 60,000; longer marches continue in the next run
 };
 
-/// What is marched on a device.
+/// A height field on a device.
 struct DeviceTarget {
   const HeightField* field = nullptr;
-  const DeviceGround* ground = nullptr;  ///< made of the field
+  const DeviceGround* ground = nullptr;  ///< made from the field
   /// slope_bound(*field), metres per metre; needed by marches with needs_slope.
   double slope = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// One march, ready to run on any ground of a device. Used by one thread at a time.
+/// One march, ready to run on any ground of a device. Not thread-safe.
 class DeviceQueries {
  public:
-  /// Throws Error: the march does not run on devices (which do), a setting out of its range, no memory on the device.
+  /// Throws Error if the march does not run on devices (listing those that do), a setting is out of range, or the
+  /// device lacks memory.
   explicit DeviceQueries(const Device& device, const HeightMarchEntry& march = find_height_march("max-mip"),
                          const MarchSettings& march_settings = {}, const DeviceQuerySettings& settings = {});
   DeviceQueries(DeviceQueries&&) noexcept;
   DeviceQueries& operator=(DeviceQueries&&) noexcept;
   ~DeviceQueries();
 
-  /// For the calls that follow. Throws Error: a setting out of its range.
+  /// Sets the march settings of later calls. Throws Error if a setting is out of range.
   void set_march_settings(const MarchSettings& march_settings);
 
-  /// hits[i] answers rays[i], which must be valid (queries.h). costs, when not empty, is filled. Throws Error when
-  /// spans differ in length, a slope is needed and not given, or the device is lost.
+  /// Sets hits[i] to the closest hit of rays[i], which must be valid (queries.h), and costs[i] to its cost unless
+  /// `costs` is empty. Throws Error if spans differ in length, a required slope is missing, or the device is lost.
   void closest_hits(const DeviceTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                     std::span<DeviceRayCost> costs = {});
-  /// blocked[i] is 1 where closest_hits would tell a hit, else 0.
+  /// Sets blocked[i] to 1 if closest_hits() would return a hit, else to 0.
   void occluded(const DeviceTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<DeviceRayCost> costs = {});
 
-  /// One for each run of the last call: a slice takes one, and more where marches are longer than turns_at_once.
+  /// Returns the times of the last call's runs. A slice takes one run, or more if marches exceed turns_at_once.
   const std::vector<PassTime>& passes() const;
 
  private:
@@ -71,7 +72,7 @@ class DeviceQueries {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Names of the marches that run on devices, with commas between.
+/// Returns the names of the marches that run on devices, separated by commas.
 std::string device_march_names();
 
 }  // namespace scarp

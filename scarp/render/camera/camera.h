@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Where a picture is seen from: pixels to rays, points to pixels.
+// Cameras: pixels to rays, and points to pixels.
 //
-//   pixel coordinates: (0, 0) is the picture's upper left corner, x to the right, y down; pixel (i, j) has its centre
-//   at (i + 0.5, j + 0.5). World coordinates: metres, x east, y north from the field's south-west sample, z up.
+//   pixel coordinates: (0, 0) is the upper left corner of the picture, x to the right, y down; pixel (i, j) has its
+//   centre at (i + 0.5, j + 0.5). World coordinates: metres, x east, y north from the field's south-west sample, z up.
 //
-// Automatic framing has a closed form. With the camera's axes fixed, a point with the camera coordinates (a, b, c) is
-// inside the picture of an eye (x, y, z) when |a - x| <= p (c - z) and |b - y| <= q (c - z), p and q being the tangents
-// of half the angles of view. The corners of a box thus bound x and y from both sides, linearly in z; the nearest eye
-// is the largest z that leaves both intervals something, and the middle of the wider one centres the field.
+// Automatic framing has a closed form. The axes of the camera are given. A point with the camera coordinates (a, b, c)
+// is inside the picture of an eye at (x, y, z) if |a - x| <= p (c - z) and |b - y| <= q (c - z), where p and q are the
+// tangents of half the angles of view. Each corner of a box thus bounds x and y from both sides, linearly in z. The
+// nearest eye has the largest z for which neither interval is empty; the middles of the intervals centre the box.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -20,60 +20,66 @@
 
 namespace scarp {
 
-/// A view onto a whole field, framed automatically.
+/// A view of a whole scene, framed automatically.
 struct ViewSettings {
-  double azimuth_deg = 190;   ///< compass azimuth at which the camera stands as seen from what it looks at; finite
-  double elevation_deg = 35;  ///< its angle above the horizon from there; 0..90
-  double distance = 1;        ///< in multiples of the distance at which the field just fits into the picture; > 0.
-                              ///< Below 1 the eye goes straight towards the focus of Camera::framed()
-  double fov_deg = 30;        ///< vertical angle of view; 1..150
+  double azimuth_deg = 190;   ///< compass azimuth of the eye as seen from the scene; finite
+  double elevation_deg = 35;  ///< angle of the eye above the horizon as seen from the scene, 0..90
+  double distance = 1;        ///< as a multiple of the distance at which the scene just fits into the picture, > 0.
+                              ///< Below 1 the eye moves straight towards the focus of Camera::framed()
+  double fov_deg = 30;        ///< vertical angle of view, 1..150
 };
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting that is out of range.
 void validate(const ViewSettings& settings);
 
+/// A perspective or orthographic camera.
 class Camera {
  public:
-  /// A perspective camera of the caller's choice, upright; looking straight down or up, the picture's top is north.
-  /// Throws Error: eye and target are one point or not finite, fov_deg outside 1..150. `width`, `height` in pixels.
+  /// Returns an upright perspective camera. `width` and `height` are in pixels. If it looks straight down or up, north
+  /// is at the top of the picture (down) or at the bottom (up). Throws Error if eye and target are equal or not finite,
+  /// or fov_deg is outside 1..150.
   static Camera look_at(const dvec3& eye, const dvec3& target, double fov_deg, int width, int height);
-  /// A perspective camera that has the whole box in the picture, as large as a small margin lets it be (at distance 1).
-  /// What nearer views go towards is `focus`, the middle of the box where none is given; it should lie in the box.
-  /// Throws Error for settings out of their range.
+  /// Returns a perspective camera. At distance 1 it shows the whole box as large as possible, with a small margin. At
+  /// distances below 1 the eye moves towards `focus`, a point in the box; nullopt: its centre. `grid_north_azimuth` is
+  /// the compass azimuth of the world's y axis in radians. Throws Error if a setting is out of range.
   static Camera framed(const WorldBox& box, const ViewSettings& settings, double grid_north_azimuth, int width,
                        int height, const std::optional<dvec3>& focus = {});
-  /// An orthographic camera looking straight down, the grid's north up, square pixels on the ground. The box fits in
-  /// exactly: its border is the picture's border in one of the two directions.
+  /// Returns an orthographic camera that looks straight down, with grid north at the top and square pixels on the
+  /// ground. The box fits exactly: it fills the picture in at least one direction.
   static Camera top(const WorldBox& box, int width, int height);
 
-  /// The ray through a place in the picture: unit direction, so t counts in metres.
+  /// Returns the ray through a position in the picture. Its direction has length 1, so t is in metres.
   Ray ray(double pixel_x, double pixel_y) const;
-  /// All rays at once, as sums: the ray through (x, y) goes from origin + x origin_right + y origin_down along
-  /// direction + x right + y down, which is not normalised but goes a metre along the view axis per t.
+  /// All rays in linear form: the ray through (x, y) has the origin `origin + x origin_right + y origin_down` and the
+  /// direction `direction + x right + y down`. The direction is not normalised: t is in metres along the view axis.
   struct PixelRays {
     dvec3 origin, origin_right, origin_down;
     dvec3 direction, right, down;
   };
+  /// Returns the rays of all pixels.
   PixelRays pixel_rays() const;
   bool orthographic() const { return orthographic_; }
-  /// Where a point appears, inside the picture or not; nothing for points that are not in front of the camera.
+  /// Returns the pixel coordinates of a point, which may lie outside the picture; nullopt if the point is not in front
+  /// of the camera.
   std::optional<dvec2> pixel(const dvec3& p_world) const;
 
-  /// Camera coordinates of world points: x to the right, y up, z metres along the view axis (left-handed).
+  /// Returns the matrix from world to camera coordinates: metres, x to the right, y up, z along the view axis
+  /// (left-handed).
   glm::dmat4 camera_from_world() const;
-  /// Homogeneous coordinates that divide to x and y in [-1, 1] from the picture's left to right and bottom to top. z
-  /// divides to 1 - 1 m / depth in perspective, and is the depth in metres of an orthographic camera.
+  /// Returns the matrix from world to homogeneous coordinates. After division by w, x and y are in [-1, 1] from left to
+  /// right and from bottom to top of the picture. z is 1 - 1 m / depth in perspective, and the depth in metres for an
+  /// orthographic camera.
   glm::dmat4 ndc_from_world() const;
 
-  /// Rays end `metres` away; above 0. A picture of a field that wraps round needs an end.
+  /// Sets t_max of the rays, in metres, > 0; infinite by default. Terrain that wraps requires a finite reach.
   void set_reach(double metres) { reach_ = metres; }
   double reach() const { return reach_; }
 
-  /// How wide a pixel is at a depth, in metres.
+  /// Returns the width of a pixel at a depth, both in metres.
   double pixel_width(double depth) const { return 2 * half_width_ / width_ * (orthographic_ ? 1 : depth); }
 
   const dvec3& eye() const { return eye_; }
-  /// It looks the same way from there.
+  /// Moves the eye and keeps the view direction.
   void move_eye(const dvec3& eye) { eye_ = eye; }
   const dvec3& forward() const { return forward_; }
 
@@ -82,7 +88,7 @@ class Camera {
 
   dvec3 eye_{0.0};
   dvec3 right_{1, 0, 0}, up_{0, 1, 0}, forward_{0, 0, -1};
-  // Half the picture: tangents of half the angles of view, or metres for an orthographic camera.
+  // Half the size of the picture: tangents of half the angles of view, or metres for an orthographic camera.
   double half_width_ = 1, half_height_ = 1;
   double width_ = 1, height_ = 1;
   bool orthographic_ = false;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A picture of a scene, in one of several looks. Looks are functions of what the rays of the camera hit.
+// Renders a picture of a scene in one of several looks. A look maps the hits of camera rays to colours.
 //
-//   shaded    materials in the light of sun and sky, exact hard shadows (or, with `samples`, soft ones and ambient
+//   shaded    materials lit by sun and sky, with exact hard shadows (or, with `samples`, soft shadows and ambient
 //             occlusion); water, haze or fog, sky
 //   height    grey, linear in height, see height_look.h
-//   steps     what the march cost: steps per ray as a ramp from the least to the most in the picture
+//   steps     steps of the march per ray, as a colour ramp from the minimum to the maximum in the picture
 //   comanche  like `shaded`, in few large pixels, see comanche.h
-//   error     where the march is wrong, see error_look.h
+//   error     errors of the march, see error_look.h
 //
-// `shaded` takes several samples per pixel; `height`, `steps` and `error` show one ray's answer, through the middle of
-// the pixel.
+// `shaded` takes several samples per pixel. `height`, `steps` and `error` trace one ray through the centre of each
+// pixel.
 #pragma once
 
 #include <cstdint>
@@ -37,90 +37,94 @@ namespace scarp {
 
 enum class Look { shaded, height, steps, error, comanche };
 
-/// "shaded", "height", "steps", "error", "comanche".
+/// Returns "shaded", "height", "steps", "error" or "comanche".
 std::string_view name_of(Look look);
-/// Throws Error listing the names when there is no such look.
+/// Returns the look with this name. Throws Error listing the names if `name` is unknown.
 Look find_look(std::string_view name);
 
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-/// Metres, world z.
+/// A range of heights, in metres of world z.
 struct ReliefRange {
   double low = 0, high = 0;
 };
 
-/// How a picture is made. The camera says where it is seen from.
+/// Settings of a picture, apart from the camera.
 struct PictureSettings {
   int width = 1280;  ///< pixels, 1..65536; width * height at most 2^28
   int height = 720;  ///< pixels, 1..65536
   Look look = Look::shaded;
-  int aa = 2;  ///< aa x aa samples per pixel in `shaded`; 1..16
+  int aa = 2;  ///< `shaded`: aa x aa samples per pixel, 1..16
 
   // Surfaces.
-  std::vector<Material> materials{};  ///< SceneObject::material is an index into it
-  GroundPaintSettings ground{};       ///< of height fields without a material, and on top of all surfaces
-  std::string ramp{};                 ///< a name of ramp_names(); empty: hypsometric, and viridis for `steps`
-  std::shared_ptr<const RampStops> ramp_stops{};  ///< instead of `ramp`; null: none
-  std::optional<WorldBox>
-      ground_box{};  ///< heights of `ramp` and `ground`, place of the overlay; nothing: the scene's own
+  std::vector<Material> materials{};  ///< indexed by SceneObject::material
+  GroundPaintSettings ground{};       ///< ground colours; overlay, patches and contours apply to all surfaces
+  std::string ramp{};                 ///< one of ramp_names(); empty: viridis for `steps`, else hypsometric
+  std::shared_ptr<const RampStops> ramp_stops{};  ///< replaces `ramp` unless null
+  /// Range of heights for `ramp` and `ground`, and extent of the overlay; nullopt: those of the scene.
+  std::optional<WorldBox> ground_box{};
 
   // Environment.
-  double grid_north_azimuth = 0;  ///< of the world's y axis, radians clockwise from true north
+  double grid_north_azimuth = 0;  ///< compass azimuth of the world's y axis: radians clockwise from true north
   SunSettings sun{};
-  bool shadows = true;                ///< of the sun; false: it shines through everything
-  double haze = 0.1;                  ///< share of haze over a distance as long as the scene's diagonal; 0..0.95
-  double haze_distance = kUnlimited;  ///< metres after which 1/e of a colour is left, instead of `haze`; > 0
-  FogSettings fog{};                  ///< instead of haze
+  bool shadows = true;                ///< whether surfaces block the sun
+  double haze = 0.1;                  ///< fraction of haze over a distance equal to the scene's diagonal, 0..0.95
+  double haze_distance = kUnlimited;  ///< replaces `haze` if finite: metres over which contrast falls to 1/e, > 0
+  FogSettings fog{};                  ///< replaces haze unless its kind is `none`
   std::optional<WaterSettings> water{};
 
   // Sampling of light.
-  int samples = 0;  ///< rays to the sun's disc, and to the sky, per sample of `shaded`; 0..4096; 0: exact hard shadows
-                    ///< of the disc's middle and no ambient occlusion
+  int samples = 0;  ///< rays to the sun's disc, and as many to the sky, per sample of `shaded`, 0..4096; 0: hard
+                    ///< shadows from the centre of the disc, and no ambient occlusion
   double ao_distance = kUnlimited;  ///< maximum distance of ambient occlusion in metres, >= 0; 0 disables it
-  std::uint32_t seed = 0;           ///< of the samples' pattern
+  std::uint32_t seed = 0;           ///< seed of the sampling pattern
 
   // Looks.
   ComancheSettings comanche{};
   ErrorSettings error{};
 };
 
-/// The name of the ramp in the settings, or what suits the look.
+/// Returns the name of the ramp in the settings or, if that is empty, the default for the look.
 std::string_view ramp_of(const PictureSettings& settings);
-/// The ramp of the settings over a range of heights (exaggerated) or other numbers.
+/// Returns the ramp of the settings over a range of exaggerated heights or other values, low <= high. `scale` is the
+/// factor for heights in PictureSettings::ramp_stops, such as the exaggeration. Throws Error if the ramp is unknown.
 Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale = 1);
-/// The extent of the scene that ground is painted by, and the ramp of its heights.
+/// Returns the extent of the scene, or of PictureSettings::ground_box, that ground colours refer to.
 PaintExtent paint_extent(const Scene& scene, const PictureSettings& settings);
+/// Returns the ramp over the heights of that extent.
 Ramp ground_ramp(const Scene& scene, const PictureSettings& settings);
 /// Returns whether that ramp colours a field without a material: heights, and functions if the settings name a ramp.
 bool is_ramped(const SceneField& field, const PictureSettings& settings);
 
-/// Throws Error naming the first setting out of its range.
+/// Throws Error naming the first setting that is out of range.
 void validate(const PictureSettings& settings);
 
-/// What a camera should have in the picture: everything that has an end. Throws Error if there is nothing.
+/// Returns the box to frame: around all bounded objects and, if terrain wraps, one period of it. Throws Error if it is
+/// empty.
 WorldBox picture_box(const Scene& scene);
 
-/// What was found besides the picture.
+/// Minimum, maximum and mean number of steps per ray.
 struct StepRange {
   std::uint32_t least = 0;
   std::uint32_t most = 0;
   double mean = 0;
 };
 
+/// A picture, and statistics of some looks.
 struct Picture {
   Image image;
-  std::optional<StepRange> steps{};      ///< of `steps`
-  std::optional<ErrorCounts> errors{};   ///< of `error`
-  std::optional<ReliefRange> heights{};  ///< of `height`: what grey 1 and 255 mean; nothing if nothing was hit
+  std::optional<StepRange> steps{};      ///< set by the look `steps`
+  std::optional<ErrorCounts> errors{};   ///< set by the look `error`
+  std::optional<ReliefRange> heights{};  ///< set by the look `height`, if anything was hit: heights of grey 1 and 255
 };
 
-/// `camera` must have been made for the settings' width and height; over ground that wraps round it needs a reach.
-/// Throws Error when a setting is out of its range or the scene has nothing to see (no cells, no valid samples),
-/// Interrupted when progress asks for it.
+/// Renders a picture. `camera` must have been created with the width and height of the settings; if terrain wraps, it
+/// needs a finite reach. Throws Error if a setting is out of range, nothing in the scene is visible, or the eye is not
+/// above the water. Throws Interrupted if `progress` returns false.
 Picture render_picture(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                        const Progress& progress = {});
 
-/// Throws Error when the scene has nothing to see: no cells, no valid samples, no objects.
+/// Throws Error if nothing in the scene is visible: no cells, no valid samples, or no objects.
 void require_visible(const Scene& scene);
 
 }  // namespace scarp

@@ -24,7 +24,7 @@
 
 namespace scarp {
 
-/// Camera of a file. Members without a value, here and below, are left to the caller's settings.
+/// Camera of a file. Here and below, members without a value are not set by the file; the caller chooses them.
 struct SceneCamera {
   std::optional<dvec3> eye, target;  ///< both or none, metres, world
   std::optional<double> azimuth_deg, elevation_deg, distance, fov_deg;
@@ -58,7 +58,8 @@ struct SceneFog {
   std::optional<double> visibility{}, base{}, falloff{}, sun_tint{};
 };
 
-/// An object of a file. One with several places, a scattered one or another scene becomes several objects of a Scene.
+/// An object of a file. It becomes several objects of the Scene if it has several placements, is scattered or is itself
+/// a scene.
 struct SceneObjectName {
   std::string name;         ///< as in the file, or its position there
   std::uint32_t first = 0;  ///< index of its first object in the scene
@@ -80,10 +81,10 @@ struct SceneFile {
   std::vector<std::string> files;  ///< all files that were read: this one, other scenes, heights, voxels
 };
 
-/// Reads a file and everything that it names. Throws Error in one line that contains the file, the position in it as a
-/// JSON pointer, and the expected value: no such file, not JSON, not valid by the schema, files that cannot be read,
-/// unknown names, scenes or materials that contain themselves, more than 2^20 objects. Throws Interrupted if `progress`
-/// returns false.
+/// Reads a scene file and all files that it names. Throws Error if a file is missing or not readable, is not JSON, does
+/// not match the schema, contains unknown names, scenes or materials that contain themselves, or has more than 2^20
+/// objects. The message names the file, the position in it as a JSON pointer, and the expected value. Throws
+/// Interrupted if `progress` returns false.
 SceneFile read_scene(const std::string& path, const Progress& progress = {});
 
 }  // namespace scarp
