@@ -31,25 +31,31 @@ function(scarp_compile_options target)
   endif()
 endfunction()
 
-# scarp_unity(target FILES [ALWAYS] [ALONE FILE...]): compiles that many files of the target as one: headers take most of the time. Stations
-# are compiled so where SCARP_UNITY is on, or ALWAYS; programs are in every build. File by file a build finds what a file forgets to include.
+# scarp_unity(target FILES [ALONE FILE...]): compiles that many files of the target as one: headers take most of the time.
+# `-D SCARP_UNITY=OFF` compiles file by file and finds what a file forgets to include; ./dev test --long does so.
 # ALONE: files whose local names clash with others'; those with options of their own are compiled alone, too.
 function(scarp_unity target files)
-  cmake_parse_arguments(arg "ALWAYS" "" "ALONE" ${ARGN})
-  get_property(stations GLOBAL PROPERTY SCARP_STATIONS)
-  if(NOT SCARP_UNITY AND NOT arg_ALWAYS AND target IN_LIST stations)
+  cmake_parse_arguments(arg "" "" "ALONE" ${ARGN})
+  if(NOT SCARP_UNITY)
     return()
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
   set_source_files_properties(${arg_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
-# scarp_quick(FILE...): compiles these without optimisation in the debug build with sanitizers, where that takes a half to a third of
-# the time. For files that no test waits for.
+# scarp_quick(FILE or TARGET...): compiles these without optimisation in the debug build with sanitizers, where that takes a half to a
+# tenth of the time. For what no test waits for.
 function(scarp_quick)
-  if(CMAKE_BUILD_TYPE STREQUAL "Debug" AND SCARP_SANITIZE)
-    set_source_files_properties(${ARGN} PROPERTIES COMPILE_OPTIONS -O0)
+  if(NOT CMAKE_BUILD_TYPE STREQUAL "Debug" OR NOT SCARP_SANITIZE)
+    return()
   endif()
+  foreach(item ${ARGN})
+    if(TARGET ${item})
+      target_compile_options(${item} PRIVATE -O0)
+    else()
+      set_source_files_properties(${item} PROPERTIES COMPILE_OPTIONS -O0)
+    endif()
+  endforeach()
 endfunction()
 
 # scarp_station(NAME SOURCES ... HEADERS ... STATIONS ... PUBLIC_LIBRARIES ... LIBRARIES ...)

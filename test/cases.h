@@ -7,9 +7,9 @@
 namespace scarp::test {
 
 /// Returns `usual` in optimised builds, `many` in those under `./dev test --long`, and `checked` in builds with
-/// assertions, where each case takes ten times as long and what it does to memory repeats soon.
+/// assertions or the thread sanitizer, where each case takes ten times as long and what it does to memory repeats soon.
 inline int cases([[maybe_unused]] int many, [[maybe_unused]] int usual, [[maybe_unused]] int checked) {
-#ifdef NDEBUG
+#if defined(NDEBUG) && !defined(__SANITIZE_THREAD__)
   return std::getenv("SCARP_LONG_TESTS") ? many : usual;
 #else
   return checked;

@@ -88,13 +88,11 @@ MeshInput::MeshInput(const std::string& path, const MeshOptions& options) : opti
 
 namespace {
 
-bool has_end(const WorldBox& box) { return box.low.x <= box.high.x; }
-
 // Height of the highest surface at (x, y): ground, or whatever a ray from above hits.
 std::optional<double> surface_at(const Scene& scene, double x, double y) {
   if (const auto ground = scene.height(x, y)) return ground;
   // A height field has no surface in its holes.
-  if (scene.only_heights() || !has_end(scene.box())) return {};
+  if (scene.only_heights() || scene.box().empty()) return {};
   const Ray down{{x, y, scene.box().high.z + 1}, {0, 0, -1}};
   const Hit hit = scene.closest_hit(down);
   return hit ? std::optional(down.at(hit.t).z) : std::nullopt;
@@ -104,7 +102,7 @@ std::optional<double> surface_at(const Scene& scene, double x, double y) {
 dvec3 place_near_middle(const Scene& scene) {
   constexpr int kHalf = 32;  // places from the middle to the border
   const WorldBox& box = scene.box();
-  if (!has_end(box)) return {0, 0, surface_at(scene, 0, 0).value_or(0.0)};
+  if (box.empty()) return {0, 0, surface_at(scene, 0, 0).value_or(0.0)};
   const dvec3 middle = 0.5 * (box.low + box.high), step = (box.high - middle) / static_cast<double>(kHalf);
   dvec3 best(middle.x, middle.y, box.low.z);
   if (const auto z = surface_at(scene, best.x, best.y)) return {best.x, best.y, *z};

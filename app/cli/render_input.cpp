@@ -21,8 +21,6 @@ namespace {
 constexpr double kFaintest = 64;   // rays end where haze hides all but 1 / 64 of a colour
 constexpr double kLongReach = 64;  // extents, where there is less haze
 
-bool has_end(const Scene& scene) { return scene.box().low.x <= scene.box().high.x; }
-
 // Framed by its box.
 void frame_by_box(RenderInput& input, const RenderOptions& options) {
   input.framed = [&picture = options.picture](const Scene& scene, const ViewSettings& view) {
@@ -32,7 +30,7 @@ void frame_by_box(RenderInput& input, const RenderOptions& options) {
 }
 
 void measure(RenderInput& input) {
-  if (!has_end(input.scene)) return;
+  if (input.scene.box().empty()) return;
   const dvec3 size = input.scene.box().high - input.scene.box().low;
   input.across = std::max(size.x, size.y);
   input.heights = {input.scene.box().low.z, input.scene.box().high.z};

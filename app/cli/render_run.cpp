@@ -102,7 +102,7 @@ class Render {
   // Where nothing has an end, a point: the middle of what the picture is about.
   WorldBox scene_box() const {
     const WorldBox& box = scene_.box();
-    if (box.low.x <= box.high.x || !scene_.endless()) return picture_box(scene_);
+    if (!box.empty() || !scene_.endless()) return picture_box(scene_);
     return scene_.terrain() ? picture_box(scene_)
                             : WorldBox{input_.target.value_or(dvec3(0.0)), input_.target.value_or(dvec3(0.0))};
   }

@@ -153,9 +153,8 @@ Json describe_scene(const std::string& path) {
   info["materials"] = file.materials.size();
   info["endless"] = file.scene.endless();
   const WorldBox& box = file.scene.box();
-  const bool empty = !(box.low.x <= box.high.x);
-  info["low_m"] = empty ? Json() : Json{box.low.x, box.low.y, box.low.z};
-  info["high_m"] = empty ? Json() : Json{box.high.x, box.high.y, box.high.z};
+  info["low_m"] = box.empty() ? Json() : Json{box.low.x, box.low.y, box.low.z};
+  info["high_m"] = box.empty() ? Json() : Json{box.high.x, box.high.y, box.high.z};
   info["hierarchy_bytes"] = file.scene.bytes();
   info["notes"] = file.notes;
   return info;

@@ -207,10 +207,9 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   const SceneFieldPtr field = scene_voxels(input.voxels);
   info["bytes"] = field->bytes();
   const WorldBox box = *field->box();
-  const bool empty = !(box.low.x <= box.high.x);
   const auto corner = [](const dvec3& p) { return Json{std::llround(p.x), std::llround(p.y), std::llround(p.z)}; };
-  info["low"] = empty ? Json() : corner(box.low);
-  info["high"] = empty ? Json() : corner(box.high);
+  info["low"] = box.empty() ? Json() : corner(box.low);
+  info["high"] = box.empty() ? Json() : corner(box.high);
   return info;
 }
 

@@ -14,6 +14,7 @@ struct WorldBox {
   dvec3 low{std::numeric_limits<double>::infinity()};
   dvec3 high{-std::numeric_limits<double>::infinity()};
 
+  bool empty() const { return !(low.x <= high.x); }
   dvec3 middle() const { return 0.5 * (low + high); }
   /// Corner 0..7.
   dvec3 corner(int i) const { return {i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z}; }

@@ -39,8 +39,6 @@ bool good(const Placement& p) {
 // Levels of voxels: a grid of 2,048 is a single one then.
 constexpr int kCoarsest = 11;
 
-bool empty(const WorldBox& box) { return !(box.low.x <= box.high.x); }
-
 WorldBox world_box(const Placement& placement, const WorldBox& box) {
   WorldBox world;
   for (int corner = 0; corner < 8; ++corner) {
@@ -80,14 +78,14 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
     const std::optional<WorldBox> extent = field_of(i).extent();
     endless_ = endless_ || !extent;
-    if (extent && !empty(*extent)) box_ = around(box_, world_box(objects_[i].placement, *extent));
+    if (extent && !extent->empty()) box_ = around(box_, world_box(objects_[i].placement, *extent));
     const std::optional<WorldBox>& box = field_boxes[objects_[i].field];
     if (field_of(i).is_backdrop() && box) walls_end_ = world_box(objects_[i].placement, *box).low.z;
     if (!box) {
       beside_tree_.push_back(i);
       continue;
     }
-    if (empty(*box)) continue;
+    if (box->empty()) continue;
     const WorldBox here = world_box(objects_[i].placement, *box);
     boxes.push_back(here);
     in_tree_.push_back(i);
@@ -367,7 +365,7 @@ Scene Scene::coarser(const SceneDetail& detail) const {
     const SceneField& field = *fields_[object.field];
     const std::optional<WorldBox> box = field.box();
     const double side = field.cell_side() * object.placement.scale;
-    if (!(side > 0) || !box || empty(*box)) continue;
+    if (!(side > 0) || !box || box->empty()) continue;
     const WorldBox in_world = world_box(object.placement, *box);
     double depth = std::numeric_limits<double>::infinity();
     for (int corner = 0; corner < 8; ++corner) {

@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "cases.h"
 #include "scarp/base/error.h"
 #include "scarp/march/height/queries.h"
 
@@ -18,6 +19,7 @@ namespace {
 
 constexpr int kSide = 65;
 constexpr SampleRect kRect{8, 16, 40, 30};
+const int kRays = test::cases(1500, 1500, 300);
 
 template <class T>
 std::vector<T> ground(int phase, int side) {
@@ -40,7 +42,7 @@ std::vector<T> cut(const std::vector<T>& samples, const SampleRect& rect) {
 
 std::vector<Ray> rays() {
   std::vector<Ray> all;
-  for (int i = 0; i < 1500; ++i) {
+  for (int i = 0; i < kRays; ++i) {
     Ray ray;
     ray.origin = {std::fmod(i * 0.37, kSide), std::fmod(i * 0.73, kSide), 100};
     ray.direction = {std::sin(i) * 0.7, std::cos(i) * 0.7, -0.4 - (i % 5)};

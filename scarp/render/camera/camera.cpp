@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/render/camera/camera.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <glm/trigonometric.hpp>
 #include <limits>
 
 #include "scarp/base/error.h"
+#include "scarp/base/setting.h"
 #include "scarp/render/camera/compass.h"
 
 namespace scarp {
@@ -19,12 +18,8 @@ constexpr double kMargin = 0.03;
 // Least distance from the box, as a share of its diagonal: a level view of flat ground would fit from its very border.
 constexpr double kLeastDistance = 0.05;
 
-void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("view: {} is {} (must be {})", what, value, range));
-}
-
 void require_fov(double fov_deg) {
-  require(fov_deg >= 1 && fov_deg <= 150, "the angle of view", fov_deg, "1 to 150 degrees");
+  require_setting("view", fov_deg >= 1 && fov_deg <= 150, "the angle of view", fov_deg, "1 to 150 degrees");
 }
 
 bool finite(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
@@ -48,11 +43,12 @@ struct Across {
 }  // namespace
 
 void validate(const ViewSettings& settings) {
-  require(std::isfinite(settings.azimuth_deg), "the azimuth", settings.azimuth_deg, "a finite number of degrees");
-  require(settings.elevation_deg >= 0 && settings.elevation_deg <= 90, "the elevation", settings.elevation_deg,
-          "0 to 90 degrees");
-  require(std::isfinite(settings.distance) && settings.distance > 0, "the distance", settings.distance,
-          "above 0 (1: the whole field just fits)");
+  require_setting("view", std::isfinite(settings.azimuth_deg), "the azimuth", settings.azimuth_deg,
+                  "a finite number of degrees");
+  require_setting("view", settings.elevation_deg >= 0 && settings.elevation_deg <= 90, "the elevation",
+                  settings.elevation_deg, "0 to 90 degrees");
+  require_setting("view", std::isfinite(settings.distance) && settings.distance > 0, "the distance", settings.distance,
+                  "above 0 (1: the whole field just fits)");
   require_fov(settings.fov_deg);
 }
 

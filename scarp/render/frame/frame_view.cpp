@@ -21,12 +21,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr vec3 kEarth(0.64f, 0.58f, 0.53f);
 constexpr float kUnlitWall = 0.55f;
 
-bool has_end(const WorldBox& box) { return box.low.x <= box.high.x; }
-
 // Rays over ground that wraps round need an end: the top of everything.
 std::optional<double> ceiling_of(const Scene& scene) {
   if (const HeightField* field = scene.only_heights()) return field->max_height();
-  double top = has_end(scene.box()) ? scene.box().high.z : -kInfinity;
+  double top = !scene.box().empty() ? scene.box().high.z : -kInfinity;
   for (const SceneObject& object : scene.objects()) {
     const HeightField* field = height_field_of(*scene.fields()[object.field]);
     if (!field || !field->wraps()) continue;
@@ -38,8 +36,8 @@ std::optional<double> ceiling_of(const Scene& scene) {
 // No ray from a surface has a longer way to the end of the scene.
 double ao_distance_of(const Scene& scene, const PictureSettings& settings) {
   const WorldBox& box = scene.box();
-  return scene.endless() || !has_end(box) ? settings.ao_distance
-                                          : std::min(settings.ao_distance, length(box.high - box.low));
+  return scene.endless() || box.empty() ? settings.ao_distance
+                                        : std::min(settings.ao_distance, length(box.high - box.low));
 }
 
 // Haze of the settings' share lies over the scene, not between it and a camera that stands back.
@@ -47,7 +45,7 @@ Haze haze_of(const Scene& scene, const Camera& camera, const PictureSettings& se
   if (settings.look == Look::comanche || settings.fog.kind != FogKind::none) return {};
   if (std::isfinite(settings.haze_distance)) return {1 / settings.haze_distance, 0};
   const WorldBox& box = scene.box();
-  if (!has_end(box)) return {};
+  if (box.empty()) return {};
   const dvec3 nearest = glm::clamp(camera.eye(), box.low, box.high);
   return {-std::log(1 - settings.haze) / length(box.high - box.low), length(nearest - camera.eye())};
 }

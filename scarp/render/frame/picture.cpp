@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/base/setting.h"
 #include "scarp/render/frame/frame_tile.h"
 #include "scarp/render/frame/middles.h"
 #include "scarp/render/frame/tile_work.h"
@@ -28,10 +29,6 @@ constexpr std::array<std::string_view, 5> kLookNames = {"shaded", "height", "ste
 constexpr int kMaxSide = 65536;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 constexpr int kMaxSamples = 4096;
-
-void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("picture: {} is {} (must be {})", what, value, range));
-}
 
 class ImageTile final : public TileWork {
  public:
@@ -95,8 +92,6 @@ Picture render_steps(const Scene& scene, const Camera& camera, const PictureSett
   return picture_of_steps(settings, steps);
 }
 
-bool has_end(const WorldBox& box) { return box.low.x <= box.high.x; }
-
 }  // namespace
 
 std::string_view name_of(Look look) { return kLookNames[static_cast<std::size_t>(look)]; }
@@ -125,7 +120,7 @@ PaintExtent paint_extent(const Scene& scene, const PictureSettings& settings) {
     extent.low = field->min_height(), extent.high = field->max_height();
     extent.exaggeration = field->settings().exaggeration;
     extent.size = {field->width(), field->depth()};
-  } else if (has_end(scene.box())) {
+  } else if (!scene.box().empty()) {
     extent.low = scene.box().low.z, extent.high = scene.box().high.z;
     extent.origin = dvec2(scene.box().low);
     extent.size = dvec2(scene.box().high - scene.box().low);
@@ -149,19 +144,23 @@ bool is_ramped(const SceneField& field, const PictureSettings& settings) {
 }
 
 void validate(const PictureSettings& settings) {
-  require(settings.width >= 1 && settings.width <= kMaxSide, "the width", settings.width, "1 to 65536 pixels");
-  require(settings.height >= 1 && settings.height <= kMaxSide, "the height", settings.height, "1 to 65536 pixels");
+  require_setting("picture", settings.width >= 1 && settings.width <= kMaxSide, "the width", settings.width,
+                  "1 to 65536 pixels");
+  require_setting("picture", settings.height >= 1 && settings.height <= kMaxSide, "the height", settings.height,
+                  "1 to 65536 pixels");
   const std::int64_t pixels = std::int64_t{settings.width} * settings.height;
   if (pixels > kMaxPixels) {
     throw Error(fmt::format("picture: {} x {} are {} pixels; at most {} are made at once", settings.width,
                             settings.height, pixels, kMaxPixels));
   }
-  require(settings.aa >= 1 && settings.aa <= 16, "the number of samples per side (aa)", settings.aa, "1 to 16");
-  require(settings.samples >= 0 && settings.samples <= kMaxSamples, "the number of rays (samples)", settings.samples,
-          "0 to 4096");
-  require(settings.ao_distance >= 0, "the distance of ambient occlusion", settings.ao_distance, "0 or more metres");
-  require(settings.haze >= 0 && settings.haze <= 0.95, "the haze", settings.haze, "0 to 0.95");
-  require(settings.haze_distance > 0, "the haze distance", settings.haze_distance, "above 0 metres");
+  require_setting("picture", settings.aa >= 1 && settings.aa <= 16, "the number of samples per side (aa)", settings.aa,
+                  "1 to 16");
+  require_setting("picture", settings.samples >= 0 && settings.samples <= kMaxSamples, "the number of rays (samples)",
+                  settings.samples, "0 to 4096");
+  require_setting("picture", settings.ao_distance >= 0, "the distance of ambient occlusion", settings.ao_distance,
+                  "0 or more metres");
+  require_setting("picture", settings.haze >= 0 && settings.haze <= 0.95, "the haze", settings.haze, "0 to 0.95");
+  require_setting("picture", settings.haze_distance > 0, "the haze distance", settings.haze_distance, "above 0 metres");
   validate(settings.error);
   validate(settings.sun);
   if (settings.water) validate(*settings.water);
@@ -179,7 +178,7 @@ void require_visible(const Scene& scene) {
     }
     if (field->all_nodata()) throw Error("picture: all samples of the field are nodata (nothing to see)");
   }
-  if (!scene.endless() && !has_end(scene.box())) throw Error("picture: nothing in the scene can be seen");
+  if (!scene.endless() && scene.box().empty()) throw Error("picture: nothing in the scene can be seen");
 }
 
 WorldBox picture_box(const Scene& scene) {
@@ -187,7 +186,7 @@ WorldBox picture_box(const Scene& scene) {
   // One copy of ground that wraps round.
   if (const HeightField* field = scene.terrain(); field && field->wraps())
     box = around(box, {{0, 0, field->min_height()}, {field->width(), field->depth(), field->max_height()}});
-  if (!has_end(box)) {
+  if (box.empty()) {
     throw Error(scene.endless() ? "picture: everything in the scene is endless, so the camera cannot be framed (set an "
                                   "eye and a target)"
                                 : "picture: nothing in the scene can be seen");

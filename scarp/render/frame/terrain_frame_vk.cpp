@@ -191,8 +191,8 @@ void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPa
   s.snow_share = static_cast<float>(settings.snow_share);
   s.low = static_cast<float>(field.min_height() - zero_of_heights);
   // Of level ground any number will do that a float holds.
-  constexpr double kLeastRelief = 1e-30;
-  s.per_relief = static_cast<float>(1 / std::max(field.max_height() - field.min_height(), kLeastRelief));
+  constexpr double kLevelRelief = 1e-30;
+  s.per_relief = static_cast<float>(1 / std::max(field.max_height() - field.min_height(), kLevelRelief));
   s.from_sun = glm::vec2(paint.away_from_sun());
   s.detail = static_cast<float>(settings.detail);
   s.detail_size = static_cast<float>(paint.detail_size());

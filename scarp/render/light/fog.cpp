@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "scarp/base/error.h"
+#include "scarp/base/setting.h"
 #include "scarp/render/light/air.glsl.h"
 
 namespace scarp {
@@ -17,10 +18,6 @@ namespace {
 constexpr std::array<std::string_view, 4> kNames = {"none", "distance", "height", "iterations"};
 
 const double kContrastLeft = std::log(50.0);
-
-void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("fog: {} is {} (must be {})", what, value, range));
-}
 
 }  // namespace
 
@@ -34,11 +31,13 @@ FogKind find_fog(std::string_view name) {
 }
 
 void validate(const FogSettings& settings) {
-  require(std::isfinite(settings.visibility) && settings.visibility > 0, "the visibility", settings.visibility,
-          "above 0 metres");
-  require(std::isfinite(settings.base), "the base", settings.base, "a finite height in metres");
-  require(std::isfinite(settings.falloff) && settings.falloff > 0, "the falloff", settings.falloff, "above 0 metres");
-  require(settings.sun_tint >= 0 && settings.sun_tint <= 1, "the sun's tint", settings.sun_tint, "0 to 1");
+  require_setting("fog", std::isfinite(settings.visibility) && settings.visibility > 0, "the visibility",
+                  settings.visibility, "above 0 metres");
+  require_setting("fog", std::isfinite(settings.base), "the base", settings.base, "a finite height in metres");
+  require_setting("fog", std::isfinite(settings.falloff) && settings.falloff > 0, "the falloff", settings.falloff,
+                  "above 0 metres");
+  require_setting("fog", settings.sun_tint >= 0 && settings.sun_tint <= 1, "the sun's tint", settings.sun_tint,
+                  "0 to 1");
 }
 
 Fog::Fog(const FogSettings& settings, const dvec3& to_sun)

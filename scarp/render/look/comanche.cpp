@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/render/look/comanche.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "scarp/base/error.h"
+#include "scarp/base/setting.h"
 #include "scarp/march/fixed_step.h"
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/camera/compass.h"
@@ -17,10 +15,6 @@ namespace scarp {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-void require(bool good, std::string_view what, int value, std::string_view range) {
-  if (!good) throw Error(fmt::format("comanche: {} is {} (must be {})", what, value, range));
-}
 
 // Where a ray comes to be over the field: from there on fixed-step counts its samples.
 double entry(const HeightField& field, const Ray& ray) {
@@ -35,8 +29,9 @@ double entry(const HeightField& field, const Ray& ray) {
 }  // namespace
 
 void validate(const ComancheSettings& settings) {
-  require(settings.scale >= 1 && settings.scale <= 64, "the scale", settings.scale, "1 to 64");
-  require(settings.steps >= 1 && settings.steps <= 65536, "the number of steps", settings.steps, "1 to 65536");
+  require_setting("comanche", settings.scale >= 1 && settings.scale <= 64, "the scale", settings.scale, "1 to 64");
+  require_setting("comanche", settings.steps >= 1 && settings.steps <= 65536, "the number of steps", settings.steps,
+                  "1 to 65536");
 }
 
 double default_reach(const HeightField& field) { return std::max(field.width(), field.depth()); }

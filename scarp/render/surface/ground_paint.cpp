@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/render/surface/ground_paint.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
-#include "scarp/base/error.h"
+#include "scarp/base/setting.h"
 #include "scarp/field/noise.h"
 
 namespace scarp::glsl {
@@ -42,19 +39,16 @@ namespace {
 // Relief of level ground, so that its heights are the share 0 of it and not 0 / 0.
 constexpr double kLeastRelief = 1e-300;
 
-void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("ground: {} is {} (must be {})", what, value, range));
-}
-
 }  // namespace
 
 void validate(const GroundPaintSettings& settings) {
-  require(std::isfinite(settings.snow_share), "the snow line", settings.snow_share, "a finite share of the relief");
-  require(settings.detail >= 0 && settings.detail <= 1, "the detail", settings.detail, "0 to 1");
-  require(std::isfinite(settings.detail_size) && settings.detail_size >= 0, "the detail's size", settings.detail_size,
-          "0 or more metres");
-  require(std::isfinite(settings.contours) && settings.contours >= 0, "the distance of contour lines",
-          settings.contours, "0 or more metres");
+  require_setting("ground", std::isfinite(settings.snow_share), "the snow line", settings.snow_share,
+                  "a finite share of the relief");
+  require_setting("ground", settings.detail >= 0 && settings.detail <= 1, "the detail", settings.detail, "0 to 1");
+  require_setting("ground", std::isfinite(settings.detail_size) && settings.detail_size >= 0, "the detail's size",
+                  settings.detail_size, "0 or more metres");
+  require_setting("ground", std::isfinite(settings.contours) && settings.contours >= 0, "the distance of contour lines",
+                  settings.contours, "0 or more metres");
 }
 
 GroundPaint::GroundPaint(const GroundPaintSettings& settings, const PaintExtent& extent, Ramp ramp, const dvec3& to_sun)

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/render/surface/water.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 
-#include "scarp/base/error.h"
+#include "scarp/base/setting.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/render/surface/water.glsl.h"
 
@@ -36,10 +33,6 @@ const std::array<dvec2, kWaves> kAlong = [] {
   return along;
 }();
 
-void require(bool good, std::string_view what, double value, std::string_view range) {
-  if (!good) throw Error(fmt::format("water: {} is {} (must be {})", what, value, range));
-}
-
 // The range of t in which a ray is in [0, high] along one axis.
 struct Span {
   double from = -kInfinity, to = kInfinity;
@@ -53,14 +46,16 @@ Span span_in(double origin, double direction, double high) {
 }  // namespace
 
 void validate(const WaterSettings& settings) {
-  require(std::isfinite(settings.level), "the level", settings.level, "a finite height in metres");
-  require(std::isfinite(settings.turbidity) && settings.turbidity >= 0, "the turbidity", settings.turbidity,
-          "0 or more per metre");
-  require(settings.waves >= 0 && settings.waves <= 0.5, "the waves' slope", settings.waves, "0 to 0.5");
-  require(std::isfinite(settings.wavelength) && settings.wavelength >= 0, "the wavelength", settings.wavelength,
-          "0 or more metres");
+  require_setting("water", std::isfinite(settings.level), "the level", settings.level, "a finite height in metres");
+  require_setting("water", std::isfinite(settings.turbidity) && settings.turbidity >= 0, "the turbidity",
+                  settings.turbidity, "0 or more per metre");
+  require_setting("water", settings.waves >= 0 && settings.waves <= 0.5, "the waves' slope", settings.waves,
+                  "0 to 0.5");
+  require_setting("water", std::isfinite(settings.wavelength) && settings.wavelength >= 0, "the wavelength",
+                  settings.wavelength, "0 or more metres");
   for (int i = 0; i < 3; ++i) {
-    require(settings.srgb[i] >= 0 && settings.srgb[i] <= 1, "a part of the colour", settings.srgb[i], "0 to 1");
+    require_setting("water", settings.srgb[i] >= 0 && settings.srgb[i] <= 1, "a part of the colour", settings.srgb[i],
+                    "0 to 1");
   }
 }
 

@@ -27,9 +27,9 @@ const std::vector<std::string_view> kTypes = {"plane", "sines", "fbm",     "ridg
                                               "mask",  "sum",   "product", "minimum", "maximum", "smooth-minimum"};
 enum Type { plane, sines, fbm, ridged, warp, terraces, mask, sum, product, minimum, maximum, smooth_minimum };
 
-class Reader {
+class FunctionReader {
  public:
-  explicit Reader(const FunctionByName& by_name) : by_name_(by_name) {}
+  explicit FunctionReader(const FunctionByName& by_name) : by_name_(by_name) {}
 
   Function read(const Json& json, const std::string& path, int depth) const {
     if (depth > kDeepestFunction) {
@@ -213,7 +213,7 @@ Function function_from_json(const Json& json, std::string_view path, const Funct
       throw Error(fmt::format("{}: {}", place.empty() ? "/" : place, error.what()));
     }
   };
-  return Reader(by_name ? by_name : examples).read(json, std::string(path), 1);
+  return FunctionReader(by_name ? by_name : examples).read(json, std::string(path), 1);
 }
 
 }  // namespace scarp

@@ -83,9 +83,9 @@ bool same_field(const HeightField& a, const HeightField& b) {
          b.visit([](const auto& grid) { return static_cast<const void*>(grid.data); });
 }
 
-class Reader {
+class DumpReader {
  public:
-  explicit Reader(const std::string& path) : path_(path), in_(path) {
+  explicit DumpReader(const std::string& path) : path_(path), in_(path) {
     if (!in_) throw Error(fmt::format("'{}': cannot be opened", path));
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) {
@@ -355,6 +355,6 @@ void write_ray_dumps(const std::string& path, std::span<const RayDump> dumps) {
   file.commit();
 }
 
-std::vector<RayDump> read_ray_dumps(const std::string& path) { return Reader(path).read(); }
+std::vector<RayDump> read_ray_dumps(const std::string& path) { return DumpReader(path).read(); }
 
 }  // namespace scarp

@@ -9,8 +9,11 @@
 #include "scarp/scene/file/scene_parts.h"
 
 namespace scarp {
+namespace {
 
 using Json = nlohmann::json;
+
+}  // namespace
 
 SceneSun sun_from_json(const Json& scene) {
   SceneSun sun;

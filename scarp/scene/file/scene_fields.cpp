@@ -195,7 +195,7 @@ FieldWithPlace voxels_from(const Json& json, const std::string& path, const Fiel
     around.files->push_back(file);
     const WorldBox box = *field->box();
     dvec3 shift(0.0);
-    if (json.value("centred", false) && box.low.x <= box.high.x)
+    if (json.value("centred", false) && !box.empty())
       shift = -dvec3(0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y), box.low.z);
     return {std::move(field), shift};
   } catch (const Error&) {

@@ -47,9 +47,9 @@ struct Whole {
 };
 
 // One file. Objects of others that it names are in its own space by then.
-class Reader {
+class SceneReader {
  public:
-  Reader(const std::string& path, Whole& whole) : path_(path), whole_(whole) {
+  SceneReader(const std::string& path, Whole& whole) : path_(path), whole_(whole) {
     json_ = parse_scene_text(text_of(path));
     whole_.files.push_back(path);
     check_scene_schema(json_);
@@ -125,7 +125,7 @@ class Reader {
       throw Error(fmt::format("{}/scene: '{}' is the file itself, or contains it; a scene cannot", path, file));
     whole_.open_files.push_back(canonical);
     try {
-      Reader reader(inner, whole_);
+      SceneReader reader(inner, whole_);
       reader.read();
       whole_.open_files.pop_back();
       return std::move(reader.objects());
@@ -201,7 +201,7 @@ class Reader {
 
 dvec3 point(const Json& json) { return {json[0], json[1], json[2]}; }
 
-SceneCamera Reader::camera() const {
+SceneCamera SceneReader::camera() const {
   SceneCamera camera;
   if (!json_.contains("camera")) return camera;
   const Json& json = json_["camera"];
@@ -246,7 +246,7 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
   whole.progress = progress;
   std::error_code none;
   whole.open_files.push_back(fs::weakly_canonical(path, none).string());
-  Reader reader(path, whole);
+  SceneReader reader(path, whole);
   reader.read();
   const Json& json = reader.json();
   const SceneCamera camera = reader.camera();
@@ -261,7 +261,7 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
                  fog_from_json(json),
                  std::move(whole.notes),
                  std::move(whole.files)};
-  if (!file.scene.endless() && !(file.scene.box().low.x <= file.scene.box().high.x))
+  if (!file.scene.endless() && file.scene.box().empty())
     throw Error("/objects: none of them has anything to see: voxels without a solid one, or heights without a cell");
   file.materials = std::move(whole.materials);
   if (json.contains("haze")) file.haze_distance = json["haze"]["distance"].get<double>();

@@ -12,9 +12,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-class Reader {
+class MaterialReader {
  public:
-  Reader(const Json& json, std::string path, std::vector<Material>& all)
+  MaterialReader(const Json& json, std::string path, std::vector<Material>& all)
       : json_(json), path_(std::move(path)), all_(all) {}
 
   std::map<std::string, std::uint32_t> read() {
@@ -84,7 +84,7 @@ vec3 colour_from_json(const Json& json) {
 
 std::map<std::string, std::uint32_t> materials_from_json(const Json& json, const std::string& path,
                                                          std::vector<Material>& all) {
-  return Reader(json, path, all).read();
+  return MaterialReader(json, path, all).read();
 }
 
 }  // namespace scarp

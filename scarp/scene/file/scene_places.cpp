@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double kRadians = std::numbers::pi / 180;
+constexpr double kRadiansPerDegree = std::numbers::pi / 180;
 constexpr std::int64_t kMostTries = 256;  // per copy that is scattered
 
 glm::dmat3 about(int axis, double angle) {
@@ -33,7 +33,7 @@ Placement placement_from(const Json& json) {
   if (json.contains("turn")) {
     for (int axis = 0; axis < 3; ++axis)
       placement.turn =
-          about(axis, json["turn"][static_cast<std::size_t>(axis)].get<double>() * kRadians) * placement.turn;
+          about(axis, json["turn"][static_cast<std::size_t>(axis)].get<double>() * kRadiansPerDegree) * placement.turn;
   }
   placement.scale = json.value("scale", 1.0);
   return placement;
@@ -59,7 +59,7 @@ std::optional<double> steepness(const SceneGround& ground, double x, double y, d
   constexpr double kStep = 0.25;
   const auto east = ground.height(x + kStep, y), north = ground.height(x, y + kStep);
   if (!east || !north) return {};
-  return std::atan(std::hypot(*east - z, *north - z) / kStep) / kRadians;
+  return std::atan(std::hypot(*east - z, *north - z) / kStep) / kRadiansPerDegree;
 }
 
 ScenePlaces scattered(const Json& json, const std::string& path, const SceneGround& ground) {

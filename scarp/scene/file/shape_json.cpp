@@ -133,9 +133,9 @@ Settings settings(const Json& json, const std::string& path, const std::string_v
 // Words that are settings of a shape, not what it is.
 bool is_setting(std::string_view key) { return key == "material" || key == "smooth" || key == "of"; }
 
-class Reader {
+class ShapeReader {
  public:
-  explicit Reader(const ShapeNames& names) : names_(names) {}
+  explicit ShapeReader(const ShapeNames& names) : names_(names) {}
 
   Shape shape(const Json& json, const std::string& path, int depth) const {
     if (depth > kDeepestJson) {
@@ -303,7 +303,7 @@ class Reader {
 }  // namespace
 
 Shape shape_from_json(const nlohmann::json& json, const std::string& path, const ShapeNames& names) {
-  return Reader(names).shape(json, path, 1);
+  return ShapeReader(names).shape(json, path, 1);
 }
 
 DistanceField distance_field_from_json(const nlohmann::json& json, const std::string& path, const ShapeNames& names) {

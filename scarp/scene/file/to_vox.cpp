@@ -12,7 +12,7 @@ namespace scarp {
 namespace {
 
 constexpr int kModelSide = 256, kRgbBits = 24;
-constexpr std::size_t kMostColours = 255;
+constexpr std::size_t kMostPaletteColours = 255;
 constexpr int kReds = 6, kGreens = 7, kBlues = 6;
 
 // The step of a byte nearest to a value.
@@ -23,11 +23,11 @@ class Palette {
  public:
   explicit Palette(const VoxelGrid& grid) {
     for_each_voxel(grid.bounds(), [&](const ivec3& v) {
-      if (!grid.solid(v) || known_.size() > kMostColours) return;
+      if (!grid.solid(v) || known_.size() > kMostPaletteColours) return;
       const auto next = static_cast<int>(known_.size());
       known_.try_emplace(grid.entry(v), next);
     });
-    exact_ = known_.size() <= kMostColours;
+    exact_ = known_.size() <= kMostPaletteColours;
   }
   bool exact() const { return exact_; }
 

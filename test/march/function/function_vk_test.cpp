@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/refusal.h"
+#include "cases.h"
 #include "field/terrain_functions.h"
 #include "march/function/function_judge.h"
 #include "march/function/function_rays.h"
@@ -75,7 +76,7 @@ TEST_F(FunctionsOnDevice, MarchesTellWhatSinglePrecisionAllows) {
 // Invocations share a vector and its turns of loops, and come to their last evaluations at different steps: the longest
 // program, and the most of these.
 TEST_F(FunctionsOnDevice, NeighboursDoNotShow) {
-  constexpr int kTogether = 16;
+  const int kTogether = cases(16, 16, 4);
   Fractal fractal{.damping = 0.1, .octaves = {kMostOctaves, kMostOctaves, kMostOctaves}};
   Function sum = make_function(fractal);
   while (true) {

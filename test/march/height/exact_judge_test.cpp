@@ -20,7 +20,7 @@
 namespace scarp::test {
 namespace {
 
-const int kRays = cases(20'000, 4000, 2'000);
+const int kRays = cases(20'000, 4000, 600);
 constexpr int kRaysPerField = 20;
 
 struct Kind {

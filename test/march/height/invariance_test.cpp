@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cases.h"
 #include "march/height/spiteful.h"
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip.h"
@@ -16,7 +17,7 @@
 namespace scarp::test {
 namespace {
 
-constexpr int kCases = 20'000;
+const int kCases = cases(20'000, 20'000, 4'000);
 
 // A field and a ray in grid units.
 struct Case {

@@ -33,7 +33,7 @@ namespace scarp::test {
 namespace {
 
 // Under the sanitizers eight fields per pair: they look for what marches do to memory, which repeats with each ray.
-const int kRaysPerPair = cases(100'000, 10'000, 2'000);
+const int kRaysPerPair = cases(100'000, 10'000, 700);
 constexpr int kRaysPerField = 250;
 // Marches that promise nothing are only asked to stay in the ray's range.
 constexpr int kRaysPerApproximation = 20;

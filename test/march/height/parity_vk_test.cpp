@@ -173,7 +173,9 @@ TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
   }
   Random random(5);
   int more_runs = 0;
-  for (const FieldKind& fields : spiteful_fields()) {
+  const std::size_t every = static_cast<std::size_t>(cases(1, 1, 5));
+  for (std::size_t at = 0; at < spiteful_fields().size(); at += every) {
+    const FieldKind& fields = spiteful_fields()[at];
     const HeightField field = fields.make(random);
     const DeviceGround ground(device(), field);
     const DeviceTarget target{&field, &ground, slope_bound(field)};
@@ -203,7 +205,7 @@ TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
       }
     }
   }
-  EXPECT_GT(more_runs, 20);
+  EXPECT_GT(more_runs, 5);
 }
 
 // Longer than lavapipe lets a loop be: over a slope along the ray, close above it for 100,000 cells, then against a

@@ -21,7 +21,7 @@ namespace scarp::test {
 namespace {
 
 constexpr int kFieldsPerPair = 2;
-const int kRaysPerField = cases(40, 10, 10);
+const int kRaysPerField = cases(40, 10, 4);
 
 struct Marched {
   std::string_view march;

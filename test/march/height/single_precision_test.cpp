@@ -22,7 +22,7 @@
 namespace scarp::test {
 namespace {
 
-const int kRaysPerPair = cases(2'500, 500, 100);
+const int kRaysPerPair = cases(2'500, 500, 40);
 const int kWideRays = cases(500, 100, 20);
 constexpr int kRaysPerField = 250;
 
@@ -117,7 +117,7 @@ TEST(SinglePrecisionAcrossTiles, MaxMipDecidesAsTheSurfaceDoes) {
 // Any-hit looks ahead: it agrees with closest-hit all the same, and reads less. Levels and rising rays have no other
 // early answer.
 TEST(SinglePrecisionLookingAhead, AnyHitAgreesWithTheClosestHit) {
-  const int kRays = cases(50'000, 10'000, 2'000);
+  const int kRays = cases(50'000, 10'000, 500);
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
     const HeightField field = hills(2100, 900, surface);
     const MaxPyramid pyramid(field);

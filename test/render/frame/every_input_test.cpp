@@ -43,7 +43,8 @@ Scene voxels() {
 }
 
 Scene function() {
-  return Scene(scene_function(HeightFunction(make_function(Fractal{.wavelength = 24, .height = 12}))));
+  return Scene(
+      scene_function(HeightFunction(make_function(Fractal{.wavelength = 24, .height = 12, .octaves = {3, 3, 4}}))));
 }
 
 // A ball that stands half in the ground.

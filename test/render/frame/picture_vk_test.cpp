@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "cases.h"
 #include "march/height/rounding_judge.h"
 #include "march/height/spiteful_text.h"
 #include "march/sampling_rules.h"
@@ -30,7 +31,8 @@
 namespace scarp::test {
 namespace {
 
-constexpr int kWidth = 80, kHeight = 48;
+const int kWidth = cases(80, 80, 40), kHeight = cases(48, 48, 24);
+const unsigned kManyRays = static_cast<unsigned>(kWidth * kHeight / 4);
 constexpr double kSideways = 0x1p-10;  // of a cell: the most that a march is off, sideways, in a tile
 
 bool same(const Hit& a, const Hit& b) { return a.status == b.status && (!a || (a.wall == b.wall && a.cell == b.cell)); }
@@ -199,7 +201,7 @@ class PicturesOnDevice : public OnDevice {
     const Picture cpu = render_picture(of.cpu, of.camera, settings);
     std::shared_ptr<Judged> judge;
     const Picture repaired = render_picture(judged(of, judge, true), of.camera, settings);
-    EXPECT_GT(judge->asked, 1000u);
+    EXPECT_GT(judge->asked, kManyRays);
     EXPECT_LE(pixels_unlike(cpu.image, repaired.image), static_cast<int>(judge->otherwise));
     EXPECT_LT(judge->otherwise, judge->asked / 2);
     if (!device_alone_too) return;
@@ -233,7 +235,7 @@ TEST_F(PicturesOnDevice, Error) {
   expect_the_cpus(of, settings(Look::error));
   const ErrorCounts counts = render_picture(of.device, of.camera, settings(Look::error)).errors.value();
   const ErrorCounts cpu = render_picture(of.cpu, of.camera, settings(Look::error)).errors.value();
-  EXPECT_GT(counts[Verdict::right_hit], 1000);
+  EXPECT_GT(counts[Verdict::right_hit], kWidth * kHeight / 4);
   EXPECT_EQ(counts.pixels, cpu.pixels);
 }
 
@@ -249,7 +251,7 @@ TEST_F(PicturesOnDevice, StepsAreTheCpus) {
     EXPECT_EQ(device.image.rgb, watched.image.rgb);
     EXPECT_GT(device.steps->most, 10u);
     EXPECT_EQ(device.steps->least, 0u) << "rays that miss the plinth";
-    EXPECT_GT(judge->counted, 1000u);
+    EXPECT_GT(judge->counted, kManyRays);
   }
 }
 
@@ -275,7 +277,7 @@ TEST_F(PicturesOnDevice, Layers) {
   }
   EXPECT_LE(unlike, judge->otherwise);
   EXPECT_LE(moved, judge->otherwise);
-  EXPECT_GT(counted, 1000u);
+  EXPECT_GT(counted, kManyRays);
 }
 
 // Marches that take samples may stop elsewhere, each ray by its own rule.
@@ -286,7 +288,7 @@ TEST_F(PicturesOnDevice, EveryMarchMakesThem) {
     std::shared_ptr<Judged> judge;
     const Image device = render_picture(of.device, of.camera, settings(Look::shaded)).image;
     EXPECT_EQ(render_picture(judged(of, judge, false), of.camera, settings(Look::shaded)).image.rgb, device.rgb);
-    EXPECT_GT(judge->asked, 1000u) << march.name;
+    EXPECT_GT(judge->asked, kManyRays) << march.name;
   }
 }
 
