@@ -2,13 +2,13 @@
 // `scarp composite`: another renderer's picture and ours in one, pixel by pixel what is nearer.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "app/cli/commands.h"
@@ -19,7 +19,7 @@
 #include "scarp/base/file_name.h"
 #include "scarp/output/png.h"
 #include "scarp/render/frame/film.h"
-#include "scarp/source/read_raster.h"
+#include "scarp/source/exr_raster.h"
 #ifdef SCARP_OPENEXR
 #include "scarp/output/exr.h"
 #endif
@@ -32,33 +32,13 @@ struct CompositeOptions {
   DepthOptions depth;
 };
 
-// Channels of one picture, row by row.
-class ExrChannels {
- public:
-  explicit ExrChannels(std::string path) : path_(std::move(path)) {}
-
-  std::vector<float> read(const std::string& channel) {
-    RasterOptions options;
-    options.channel = channel;
-    options.nodata = std::numeric_limits<double>::infinity();  // where nothing is
-    const Raster raster = read_raster(path_, options);
-    if (width == 0) {
-      width = raster.cols;
-      height = raster.rows;
-    }
-    const auto* samples = std::get_if<std::vector<float>>(&raster.samples);
-    if (!samples || raster.cols != width || raster.rows != height) {
-      throw Error(fmt::format("picture '{}': its channel '{}' is not one of numbers like the others", path_, channel));
-    }
-    return *samples;
-  }
-  const std::string& path() const { return path_; }
-
-  int width = 0, height = 0;
-
- private:
-  std::string path_;
-};
+// Depths of a picture; NaN is nothing, as infinity is.
+std::vector<float> read_depth(const std::string& path, const std::string& channel) {
+  std::vector<float> depth = read_exr_channel(path, channel).values;
+  std::replace_if(
+      depth.begin(), depth.end(), [](float z) { return std::isnan(z); }, std::numeric_limits<float>::infinity());
+  return depth;
+}
 
 void write(const std::string& path, int width, int height, const std::vector<vec3>& colour,
            const std::vector<float>& depth) {
@@ -88,24 +68,25 @@ void run(const CompositeOptions& options) {
     throw Error(fmt::format("output '{}': pictures are PNG or EXR (name it *.png or *.exr)", options.output));
   }
   const auto range = depth_range_of(options.depth);
-  ExrChannels ours(options.ours), theirs(options.theirs);
-  std::vector<float> depth = ours.read("Z");
-  std::vector<float> their_depth = theirs.read(options.depth_channel);
+  const ExrSamples ours = read_exr_channel(options.ours, "R"), theirs = read_exr_channel(options.theirs, "R");
   if (theirs.width != ours.width || theirs.height != ours.height) {
     throw Error(fmt::format("picture '{}': {} x {} pixels, where '{}' has {} x {}; render both in one size",
-                            theirs.path(), theirs.width, theirs.height, ours.path(), ours.width, ours.height));
+                            options.theirs, theirs.width, theirs.height, options.ours, ours.width, ours.height));
   }
+  std::vector<float> depth = read_depth(options.ours, "Z");
+  const std::vector<float> their_depth = read_depth(options.theirs, options.depth_channel);
   std::vector<vec3> colour(depth.size()), their_colour(depth.size());
   const char* const names[] = {"R", "G", "B"};
   for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<float> own = ours.read(names[axis]), other = theirs.read(names[axis]);
+    const std::vector<float> own = read_exr_channel(options.ours, names[axis]).values,
+                             other = read_exr_channel(options.theirs, names[axis]).values;
     for (std::size_t i = 0; i < depth.size(); ++i) {
       colour[i][axis] = own[i];
       their_colour[i][axis] = other[i];
     }
   }
   std::vector<float> alpha(depth.size(), 1.0f);
-  if (!options.alpha.empty()) alpha = theirs.read(options.alpha);
+  if (!options.alpha.empty()) alpha = read_exr_channel(options.theirs, options.alpha).values;
   std::size_t taken = 0;
   for (std::size_t i = 0; i < depth.size(); ++i) {
     double z = their_depth[i];
@@ -121,7 +102,8 @@ void run(const CompositeOptions& options) {
     depth[i] = static_cast<float>(z);
   }
   write(options.output, ours.width, ours.height, colour, depth);
-  fmt::print("{}: {} x {} pixels, {} of them from {}\n", options.output, ours.width, ours.height, taken, theirs.path());
+  fmt::print("{}: {} x {} pixels, {} of them from {}\n", options.output, ours.width, ours.height, taken,
+             options.theirs);
 }
 
 }  // namespace

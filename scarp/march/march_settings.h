@@ -71,8 +71,10 @@ Refinement find_refinement(std::string_view name);
 /// Settings that naive, fixed-step and relaxed share.
 struct SamplingSettings {
   Refinement refinement = Refinement::none;
-  int halvings = 24;     ///< of `bisect`, 1..60
-  double tolerance = 0;  ///< of naive and relaxed: metres off the ground that count as a hit at any distance, >= 0
+  int halvings = 24;  ///< of `bisect`, 1..60
+  /// Metres off the ground that count as a hit of naive and relaxed at any distance, >= 0. naive ignores it for rays
+  /// that start on the surface: they begin within it.
+  double tolerance = 0;
 };
 
 /// Settings of marches over terrain functions alone, which have no cells to measure by and no end.

@@ -15,12 +15,15 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
   const NaiveSettings settings = all.naive;
   // Distances count from the ray's start, in t: an unnormalised direction changes the unit of t and nothing else.
   const double start = probe.ray().t_min, per_clearance = probe.per_clearance();
-  const double least = settings.min_step * (probe.t_exit - start), near = all.sampling.tolerance * probe.per_metre();
+  const bool on_surface = probe.ray().start == RayStart::on_surface;
+  const double least = settings.min_step * (probe.t_exit - start);
+  // Rays off the surface begin within the tolerance.
+  const double near = on_surface ? 0.0 : all.sampling.tolerance * probe.per_metre();
   const auto limit = [&](double t) { return std::max(near, settings.tolerance * (t - start)); };
   const auto stops = [&](double t, double clearance) { return clearance * per_clearance < limit(t); };
   const bool refines = all.sampling.refinement != Refinement::none;
   SamplePoint before;
-  double t = probe.t_enter + (probe.ray().start == RayStart::on_surface ? least : 0.0);
+  double t = probe.t_enter + (on_surface ? least : 0.0);
   for (int step = 0; t <= probe.t_exit; ++step) {
     if (step == settings.max_steps) return exhausted_at(t);
     ++stats.steps;

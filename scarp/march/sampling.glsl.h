@@ -35,7 +35,7 @@ struct ScarpSampling {
   float factor;     ///< naive, relaxed: of the vertical distance; lipschitz: shrink factor; fixed-step: cells or metres
   float least;      ///< naive: least step, a share of the ray's length; fixed-step: share of the distance travelled
   float tolerance;  ///< distance off the ground that counts as a hit, per unit of distance; fixed-step ignores it
-  float height;     ///< naive, relaxed: sample units or metres off the ground that count as a hit at any distance
+  float height;     ///< naive, relaxed: sample units or metres off the ground that are a hit at any distance
   int max_steps;    ///< most points, >= 1; then kScarpExhausted
   uint refinement;  ///< of the last interval, kScarpRefineNone and so on; lipschitz ignores it
   int halvings;     ///< for kScarpRefineBisect
@@ -74,9 +74,12 @@ const uint kScarpKnown = 1u;       ///< the previous point was over ground
 const uint kScarpWasAbove = 2u;    ///< the last point over ground was above it
 const uint kScarpBeganBelow = 4u;  ///< the first one was under it
 
-/// The distance off the ground below which a point at time s is a hit of naive and relaxed, as a time.
+/// The distance off the ground below which a point at time s is a hit of naive and relaxed, as a time. Rays of naive
+/// that start on the surface begin within settings.height.
 SCARP_FN float scarp_hit_limit(ScarpWay way, ScarpSampling settings, float s) {
-  return max(settings.height * way.per_clearance, settings.tolerance * (s + way.travelled));
+  bool ignores_height = settings.march == kScarpNaive && way.from_surface;
+  float height = ignores_height ? 0.0f : settings.height;
+  return max(height * way.per_clearance, settings.tolerance * (s + way.travelled));
 }
 
 /// Moves from state.s, a point over ground if `known`, to time s.

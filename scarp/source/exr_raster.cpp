@@ -193,4 +193,22 @@ Raster read_exr(const std::string& path, const RasterOptions& options, const Pro
   });
 }
 
+ExrSamples read_exr_channel(const std::string& path, const std::string& channel) {
+  GdalSession session;
+  ExrSamples samples;
+  read_named(path, [&] {
+    file_bytes(path);
+    check_file(path);
+    const std::unique_ptr<ExrDataset> dataset = open_exr(path, channel);
+    samples.width = dataset->GetRasterXSize(), samples.height = dataset->GetRasterYSize();
+    const auto width = static_cast<std::size_t>(samples.width), height = static_cast<std::size_t>(samples.height);
+    samples.values.resize(width * height);
+    if (dataset->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, samples.width, samples.height, samples.values.data(),
+                                            samples.width, samples.height, GDT_Float32, 0, 0, nullptr) != CE_None)
+      throw Error(fmt::format("channel '{}' cannot be read: {}", channel, CPLGetLastErrorMsg()));
+    return Raster();
+  });
+  return samples;
+}
+
 }  // namespace scarp

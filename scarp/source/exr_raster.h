@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "scarp/base/progress.h"
 #include "scarp/source/raster.h"
@@ -15,5 +16,14 @@ namespace scarp {
 /// georeference: options.bounds and options.crs provide it. Throws as read_gdal_raster() does, and for a missing
 /// channel, a subsampled channel, a deep image, or a build without OpenEXR.
 Raster read_exr(const std::string& path, const RasterOptions& options, const Progress& progress = {});
+
+/// One channel of a picture, row by row from the top.
+struct ExrSamples {
+  int width = 0, height = 0;
+  std::vector<float> values;
+};
+/// Reads a channel of the first part as it is, with infinities and NaN. Throws Error naming the file as read_exr()
+/// does.
+ExrSamples read_exr_channel(const std::string& path, const std::string& channel);
 
 }  // namespace scarp

@@ -7,9 +7,16 @@
 
 namespace scarp {
 
-Raster read_exr(const std::string& path, const RasterOptions&, const Progress&) {
-  throw Error(fmt::format(
+namespace {
+
+Error no_exr(const std::string& path) {
+  return Error(fmt::format(
       "{}: this build of Scarp does not read EXR (build with -D SCARP_OPENEXR=ON, or convert the image)", path));
 }
+
+}  // namespace
+
+Raster read_exr(const std::string& path, const RasterOptions&, const Progress&) { throw no_exr(path); }
+ExrSamples read_exr_channel(const std::string& path, const std::string&) { throw no_exr(path); }
 
 }  // namespace scarp

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The look comanche, water, fog, flights and composites as typed.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -8,6 +9,7 @@
 #include <csignal>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -16,6 +18,7 @@
 #include "scarp/output/png.h"
 #ifdef SCARP_OPENEXR
 #include "scarp/output/exr.h"
+#include "scarp/source/exr_raster.h"
 #endif
 
 namespace scarp {
@@ -264,6 +267,36 @@ TEST(Composite, TheNearerPixelIsSeen) {
   const auto result = test::run({"composite", ours, scratch.path("small.exr"), "-o", scratch.path("x.png")});
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("4 x 4 pixels"), std::string::npos) << result.err;
+}
+
+// Nothing is as far away as the sky: a plate is seen before it, and another renderer's sky hides nothing.
+TEST(Composite, ThingsAreSeenBeforeTheSky) {
+  constexpr int kSide = 16;
+  const test::Scratch scratch;
+  const std::string ours = scratch.path("ours.exr"), out = scratch.path("out.exr");
+  const std::string size = fmt::format("{0}x{0}", kSide);
+  // The hill fills the middle of the picture; the sky is round it.
+  ASSERT_EQ(test::run({"render", hill(scratch), "-o", ours, "--view", "180,10,2", "--size", size, "--aa", "1"}).status,
+            0);
+  const auto write = [&](float plate) {
+    const std::vector<float> zero(kSide * kSide, 0.0f), one(kSide * kSide, 1.0f), z(kSide * kSide, plate);
+    write_exr(scratch.path("plate.exr"),
+              {kSide, kSide, {{"R", zero.data()}, {"G", one.data()}, {"B", zero.data()}, {"Z", z.data()}}, {}});
+    EXPECT_EQ(test::run({"composite", ours, scratch.path("plate.exr"), "-o", out}).status, 0);
+    return read_exr_channel(out, "Z").values;
+  };
+  const auto count_sky = [](const std::vector<float>& depth) {
+    return std::count_if(depth.begin(), depth.end(), [](float z) { return std::isinf(z); });
+  };
+  const auto sky = count_sky(read_exr_channel(ours, "Z").values);
+  ASSERT_GT(sky, kSide);
+  ASSERT_LT(sky, kSide * kSide);
+  constexpr float kFar = 100000;
+  const std::vector<float> far = write(kFar);
+  EXPECT_EQ(count_sky(far), 0);
+  EXPECT_EQ(std::count(far.begin(), far.end(), kFar), sky);
+  EXPECT_EQ(count_sky(write(std::numeric_limits<float>::infinity())), sky);
+  EXPECT_EQ(count_sky(write(std::numeric_limits<float>::quiet_NaN())), sky);
 }
 #endif
 

@@ -258,6 +258,27 @@ TEST(FunctionMarches, PresetsHaveTheirNumbers) {
   EXPECT_THROW(find_march_preset("comanche"), Error);
 }
 
+// castle ends within a millimetre of the ground at any distance, and a ray to the sun starts there.
+TEST(FunctionMarches, RaysFromTheSurfaceLeaveItWithEveryPreset) {
+  const HeightFunction hills(make_function(Fractal{.wavelength = 200, .height = 20, .octaves = {3, 3, 3}}));
+  for (const MarchPreset& preset : march_presets()) {
+    const FunctionMarchEntry& march = find_function_march(preset.march);
+    int met = 0;
+    for (int i = 0; i < 100; ++i) {
+      const Ray down{{17.0 * i, 5.0 * i, 100}, {0.3, 0.1, -1}, 0, 400};
+      const Hit hit = march.cpu(hills, down, preset.settings, nullptr, FunctionUse::march);
+      if (!hit || down.at(hit.t).z < hills.value(down.at(hit.t).x, down.at(hit.t).y)) continue;
+      ++met;
+      const Ray to_sun{.origin = down.at(hit.t), .direction = {0.1, 0, 1}, .t_max = 300, .start = RayStart::on_surface};
+      EXPECT_FALSE(march.cpu(hills, to_sun, preset.settings, nullptr, FunctionUse::shadow)) << preset.name;
+    }
+    // Those without a tolerance end below the ground.
+    if (preset.name == "castle") {
+      EXPECT_GT(met, 20);
+    }
+  }
+}
+
 // A ramp, on which every march's last interval is known.
 TEST(FunctionMarches, FixedStepCountsItsSamples) {
   const HeightFunction ramp(make_function(Plane{0, 1, 0}));
