@@ -13,6 +13,7 @@
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/march/height/exhaustive.h"
+#include "scarp/march/height/height_table.h"
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/rounding.h"
 #include "scarp/scene/file/ray_dump.h"

@@ -12,6 +12,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/render/surface/ramp.h"
+#include "scarp/scene/scene_field.h"
 
 namespace scarp::cli {
 namespace {
