@@ -33,11 +33,24 @@ struct CompositeOptions {
 };
 
 // Depths of a picture; NaN is nothing, as infinity is.
-std::vector<float> read_depth(const std::string& path, const std::string& channel) {
-  std::vector<float> depth = read_exr_channel(path, channel).values;
+ExrSamples read_depth(const std::string& path, const std::string& channel) {
+  ExrSamples depth = read_exr_channel(path, channel);
   std::replace_if(
-      depth.begin(), depth.end(), [](float z) { return std::isnan(z); }, std::numeric_limits<float>::infinity());
+      depth.values.begin(), depth.values.end(), [](float z) { return std::isnan(z); },
+      std::numeric_limits<float>::infinity());
   return depth;
+}
+
+std::vector<vec3> read_colour(const std::string& path) {
+  std::vector<vec3> colour;
+  int axis = 0;
+  for (const char* name : {"R", "G", "B"}) {
+    const std::vector<float> values = read_exr_channel(path, name).values;
+    colour.resize(values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) colour[i][axis] = values[i];
+    ++axis;
+  }
+  return colour;
 }
 
 void write(const std::string& path, int width, int height, const std::vector<vec3>& colour,
@@ -68,28 +81,20 @@ void run(const CompositeOptions& options) {
     throw Error(fmt::format("output '{}': pictures are PNG or EXR (name it *.png or *.exr)", options.output));
   }
   const auto range = depth_range_of(options.depth);
-  const ExrSamples ours = read_exr_channel(options.ours, "R"), theirs = read_exr_channel(options.theirs, "R");
+  ExrSamples ours = read_depth(options.ours, "Z");
+  const ExrSamples theirs = read_depth(options.theirs, options.depth_channel);
   if (theirs.width != ours.width || theirs.height != ours.height) {
     throw Error(fmt::format("picture '{}': {} x {} pixels, where '{}' has {} x {}; render both in one size",
                             options.theirs, theirs.width, theirs.height, options.ours, ours.width, ours.height));
   }
-  std::vector<float> depth = read_depth(options.ours, "Z");
-  const std::vector<float> their_depth = read_depth(options.theirs, options.depth_channel);
-  std::vector<vec3> colour(depth.size()), their_colour(depth.size());
-  const char* const names[] = {"R", "G", "B"};
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::vector<float> own = read_exr_channel(options.ours, names[axis]).values,
-                             other = read_exr_channel(options.theirs, names[axis]).values;
-    for (std::size_t i = 0; i < depth.size(); ++i) {
-      colour[i][axis] = own[i];
-      their_colour[i][axis] = other[i];
-    }
-  }
+  std::vector<float>& depth = ours.values;
+  std::vector<vec3> colour = read_colour(options.ours);
+  const std::vector<vec3> their_colour = read_colour(options.theirs);
   std::vector<float> alpha(depth.size(), 1.0f);
   if (!options.alpha.empty()) alpha = read_exr_channel(options.theirs, options.alpha).values;
   std::size_t taken = 0;
   for (std::size_t i = 0; i < depth.size(); ++i) {
-    double z = their_depth[i];
+    double z = theirs.values[i];
     if (range) {
       // What lies on the far plane is what was never drawn.
       const bool cleared = range->reversed ? z <= 0 : z >= 1;

@@ -72,8 +72,8 @@ Refinement find_refinement(std::string_view name);
 struct SamplingSettings {
   Refinement refinement = Refinement::none;
   int halvings = 24;  ///< of `bisect`, 1..60
-  /// Metres off the ground that count as a hit of naive and relaxed at any distance, >= 0. naive ignores it for rays
-  /// that start on the surface: they begin within it.
+  /// Metres off the ground that count as a hit of naive and relaxed at any distance, >= 0. Rays of naive that start on
+  /// the surface begin within it: they hit only what is deeper below the ground.
   double tolerance = 0;
 };
 

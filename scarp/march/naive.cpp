@@ -16,10 +16,13 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
   // Distances count from the ray's start, in t: an unnormalised direction changes the unit of t and nothing else.
   const double start = probe.ray().t_min, per_clearance = probe.per_clearance();
   const bool on_surface = probe.ray().start == RayStart::on_surface;
-  const double least = settings.min_step * (probe.t_exit - start);
-  // Rays off the surface begin within the tolerance.
-  const double near = on_surface ? 0.0 : all.sampling.tolerance * probe.per_metre();
-  const auto limit = [&](double t) { return std::max(near, settings.tolerance * (t - start)); };
+  const double near = all.sampling.tolerance * probe.per_metre();
+  // Rays from the surface begin within the tolerance: they step over it, and hit what is deeper.
+  const double least = std::max(settings.min_step * (probe.t_exit - start), on_surface ? near : 0.0);
+  const auto limit = [&](double t) {
+    const double share = settings.tolerance * (t - start);
+    return on_surface ? share - near : std::max(near, share);
+  };
   const auto stops = [&](double t, double clearance) { return clearance * per_clearance < limit(t); };
   const bool refines = all.sampling.refinement != Refinement::none;
   SamplePoint before;

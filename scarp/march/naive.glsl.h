@@ -17,7 +17,7 @@ SCARP_FN ScarpSampling scarp_naive(float step_factor, float min_step, float tole
 
 /// The least step, a time; also the first step off the surface.
 SCARP_FN float scarp_naive_least(ScarpWay way, ScarpSampling settings) {
-  return settings.least * (way.travelled + way.exit);
+  return max(settings.least * (way.travelled + way.exit), scarp_start_margin(way, settings));
 }
 
 /// Whether a point at time s is a hit: every point below the ground is.

@@ -5,6 +5,8 @@
 //   t = t_enter;   h = ray height - ground;   h < tolerance * t: hit;   t += max(step_factor * |h|, min_step * t_exit)
 //
 // t and t_exit, where the ray leaves the field, are counted from t_min here: how far it has come, and can.
+// SamplingSettings::tolerance is a height that counts as a hit at any distance. A ray from the surface begins within
+// it: its steps are no shorter than this height, and it hits only ground that it is deeper under.
 //
 // The hit is refined on request (Refinement): `secant`, of I. Quilez, "Rainforest", 2016, draws a straight line through
 // the last two clearances, and ends where it meets the tolerance, not the ground.

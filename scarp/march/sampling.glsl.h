@@ -74,12 +74,17 @@ const uint kScarpKnown = 1u;       ///< the previous point was over ground
 const uint kScarpWasAbove = 2u;    ///< the last point over ground was above it
 const uint kScarpBeganBelow = 4u;  ///< the first one was under it
 
-/// The distance off the ground below which a point at time s is a hit of naive and relaxed, as a time. Rays of naive
-/// that start on the surface begin within settings.height.
+/// The height around the ground, as a time, within which rays of naive from the surface begin; 0 without a tolerance
+/// for it. Rounding may be more.
+SCARP_FN float scarp_start_margin(ScarpWay way, ScarpSampling settings) {
+  bool counts = settings.march == kScarpNaive && way.from_surface && settings.height > 0.0f;
+  return counts ? max(settings.height, way.rounding) * way.per_clearance : 0.0f;
+}
+
+/// The distance off the ground below which a point at time s is a hit of naive and relaxed, as a time.
 SCARP_FN float scarp_hit_limit(ScarpWay way, ScarpSampling settings, float s) {
-  bool ignores_height = settings.march == kScarpNaive && way.from_surface;
-  float height = ignores_height ? 0.0f : settings.height;
-  return max(height * way.per_clearance, settings.tolerance * (s + way.travelled));
+  float share = settings.tolerance * (s + way.travelled), margin = scarp_start_margin(way, settings);
+  return margin > 0.0f ? share - margin : max(settings.height * way.per_clearance, share);
 }
 
 /// Moves from state.s, a point over ground if `known`, to time s.

@@ -123,6 +123,21 @@ TEST_F(Scenes, HaveWaterAndFog) {
   refused({}, "/haze: not valid together with fog");
 }
 
+// The look comanche flies over terrain by itself, but not where the file has a camera.
+TEST_F(Scenes, HaveTheirOwnCameraInEveryLook) {
+  const auto picture = [&](const std::string& camera) {
+    std::ofstream(path_) << "{" << camera
+                         << R"("objects": [{"heights": {"generate": {"size": [33, 33], "cell": 4}}}]})";
+    const auto result =
+        test::run({"render", path_, "-o", picture_, "--look", "comanche", "--lowres", "32x24", "--pixel-size", "1"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    return test::text_of(picture_);
+  };
+  const std::string south = picture(R"("camera": {"azimuth": 180, "elevation": 40},)");
+  EXPECT_NE(picture(R"("camera": {"azimuth": 90, "elevation": 40},)"), south);
+  EXPECT_NE(picture(""), south);
+}
+
 #ifdef SCARP_CAIRO
 // Of one ramp over heights.
 TEST_F(Scenes, HaveALegendWhereARampColoursThem) {

@@ -16,6 +16,7 @@
 #include "scarp/march/device_function_ray.h"
 #include "scarp/march/function/function_batch.glsl.h"
 #include "scarp/march/function/function_queries_vk.h"
+#include "scarp/march/function/presets.h"
 #include "vk/device_under_test.h"
 #include "vk/spirv_layout.h"
 
@@ -104,6 +105,24 @@ TEST_F(FunctionsOnDevice, NeighboursDoNotShow) {
       EXPECT_EQ(hits[i].t, other[i].t) << march.name << ", ray " << i;
     }
   }
+}
+
+// castle ends within a millimetre of the ground, less than a float may be off: its rays to the sun begin there.
+TEST_F(FunctionsOnDevice, RaysFromTheSurfaceLeaveIt) {
+  const HeightFunction hills(make_function(Fractal{.wavelength = 200, .height = 20, .octaves = {3, 3, 3}}));
+  const DeviceFunction on_device(device(), hills);
+  const DeviceFunctionTarget target{&hills, &on_device};
+  const MarchPreset& castle = find_march_preset("castle");
+  std::vector<Ray> to_sun;
+  for (int i = 0; i < 100; ++i) {
+    const Ray down{{17.0 * i, 5.0 * i, 100}, {0.3, 0.1, -1}, 0, 400};
+    const Hit hit = find_function_march("lipschitz-local").cpu(hills, down, {}, nullptr, FunctionUse::march);
+    ASSERT_TRUE(hit);
+    to_sun.push_back({.origin = down.at(hit.t), .direction = {0.1, 0, 1}, .t_max = 300, .start = RayStart::on_surface});
+  }
+  std::vector<std::uint8_t> blocked(to_sun.size());
+  DeviceFunctionQueries(device(), find_function_march(castle.march), castle.settings).occluded(target, to_sun, blocked);
+  EXPECT_EQ(std::count(blocked.begin(), blocked.end(), 1), 0);
 }
 
 TEST_F(FunctionsOnDevice, SayWhatIsWrong) {
