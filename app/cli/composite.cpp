@@ -29,6 +29,7 @@ namespace {
 
 struct CompositeOptions {
   std::string ours, theirs, output, alpha, depth_channel = "Z";
+  bool no_tone_curve = false;
   DepthOptions depth;
 };
 
@@ -54,12 +55,15 @@ std::vector<vec3> read_colour(const std::string& path) {
 }
 
 void write(const std::string& path, int width, int height, const std::vector<vec3>& colour,
-           const std::vector<float>& depth) {
+           const std::vector<float>& depth, bool tone_curve) {
   ReplaceFile file(path);
   if (extension_of(path) == ".png") {
     Image image(width, height);
     for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) set_pixel(image, x, y, colour[static_cast<std::size_t>(y * width + x)]);
+      for (int x = 0; x < width; ++x) {
+        const vec3& linear = colour[static_cast<std::size_t>(y * width + x)];
+        set_pixel(image, x, y, tone_curve ? toned(linear) : linear);
+      }
     }
     return write_png(file, path, {image.rgb.data(), width, height});
   }
@@ -106,7 +110,7 @@ void run(const CompositeOptions& options) {
     colour[i] = their_colour[i] + colour[i] * (1 - alpha[i]);
     depth[i] = static_cast<float>(z);
   }
-  write(options.output, ours.width, ours.height, colour, depth);
+  write(options.output, ours.width, ours.height, colour, depth, !options.no_tone_curve);
   fmt::print("{}: {} x {} pixels, {} of them from {}\n", options.output, ours.width, ours.height, taken,
              options.theirs);
 }
@@ -133,6 +137,7 @@ void add_composite(Program& program) {
                          .value = "NAME",
                          .help = "their opacity channel, which their colours are multiplied by",
                          .fallback = "none"});
+  add_tone_option(command, o.no_tone_curve, o.output, Topic::general);
   add_depth_options(command, o.depth);
   command.example("scarp composite terrain.exr ship.exr -o both.png");
   command.runs([options, &command] {

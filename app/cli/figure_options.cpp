@@ -21,7 +21,8 @@ void add_figure_options(Command& command, FigureOptions& options) {
   command.add(&options.legend, {.names = "--legend",
                                 .help = "legend of the colours in the lower right corner",
                                 .topic = Topic::figure,
-                                .common = true});
+                                .common = true,
+                                .looks = {"shaded height steps error comanche", "its greys have no unit"}});
   command.add(&options.scale_bar, {.names = "--scale-bar",
                                    .help = "scale bar in the lower left corner",
                                    .note = "in perspective it holds in the middle",
@@ -122,6 +123,8 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
       figure.legend = std::move(scale);
       break;
     }
+    case Look::hillshade:
+      break;  // greys of an angle have no unit
     case Look::shaded:
     case Look::comanche:
       figure.legend = numbers ? legend_of_numbers(*numbers, settings.ramp) : legend_of_heights(settings, scene, extent);

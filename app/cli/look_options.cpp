@@ -208,7 +208,12 @@ void add_look_options(Command& command, LookOptions& o) {
                        .fallback = "a quarter of the relief",
                        .rules = {high}});
   fog(&o.fog_settings.sun_tint,
-      {.names = "--sun-tint", .help = "warmth of the fog towards the sun", .range = {0, 1}, .rules = {foggy}});
+      {.names = "--sun-tint",
+       .help = "warmth of the fog towards the sun",
+       .range = {0, 1},
+       .rules = {foggy, {"has no effect with --sky scattering, which colours the fog", [&command] {
+                           return command.value("--sky") != "scattering";
+                         }}}});
 
   const Rule stepped = needs("--march fixed-step", [&command] { return command.value("--march") == "fixed-step"; });
   const auto large = [&](Binding to, Option option) {

@@ -35,6 +35,8 @@ ViewSettings settle(RenderOptions& options) {
   PictureSettings& picture = options.picture;
   picture.look = find_look(options.look);
   picture.shadows = !options.no_shadows;
+  picture.tone_curve = !options.no_tone_curve;
+  if (!options.sky.empty()) picture.sky.kind = find_sky(options.sky);
   if (options.is_given("--error-tolerance")) picture.error = {options.error_tolerance, options.error_tolerance / 100};
   settle_look(options.look_options, options.march_settings, picture);
   if (!options.size.empty()) {

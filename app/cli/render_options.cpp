@@ -29,9 +29,9 @@ void add_picture_options(Command& command, RenderOptions& o) {
        .help = "size of the picture in pixels",
        .fallback = fmt::format("{}x{}; with --top the aspect ratio of the ground", o.picture.width, o.picture.height),
        .common = true,
-       .looks = {"shaded height steps error", "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
+       .looks = {"shaded hillshade height steps error", "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
   std::vector<std::string> looks;
-  for (const Look look : {Look::shaded, Look::height, Look::steps, Look::error, Look::comanche})
+  for (const Look look : {Look::shaded, Look::hillshade, Look::height, Look::steps, Look::error, Look::comanche})
     looks.emplace_back(name_of(look));
   add(&o.look, {.names = "--look",
                 .value = "LOOK",
@@ -69,7 +69,25 @@ void add_light_options(Command& command, RenderOptions& o) {
                .fallback = fmt::format("{},{}; voxels and meshes {},{}", picture.sun.azimuth_deg,
                                        picture.sun.altitude_deg, kModelSunAzimuth, picture.sun.altitude_deg),
                .common = true,
+               .looks = {"shaded hillshade comanche", "the others show numbers"}});
+  add(&o.sky, {.names = "--sky",
+               .value = "KIND",
+               .help = "sky",
+               .choices = {"plain", "scattering"},
+               .closed = true,
+               .note = "scattering: with the sun, its colours at that altitude and its glitter on water",
+               .fallback = "plain",
+               .common = true,
                .looks = kLit});
+  add(&picture.sky.turbidity,
+      {.names = "--sky-turbidity",
+       .help = "extinction relative to that of pure air",
+       .range = {2, 10},
+       .note = "2: very clear, 10: hazy",
+       .looks = kLit,
+       .rules = {needs(
+           "--sky scattering", [&o] { return o.sky == "scattering"; }, kEveryInput & ~kScene)}});
+  add_tone_option(command, o.no_tone_curve, o.output, Topic::light, kLit);
   add(&o.no_shadows, {.names = "--no-shadows", .help = "no cast shadows", .common = true, .looks = {"shaded"}});
   add(&picture.samples, {.names = "--samples",
                          .help = "rays to sun and sky per sample, for soft shadows and ambient occlusion",

@@ -26,10 +26,10 @@ struct RenderOptions : InputOptions {
   FrameOptions frames;
   DepthOptions depth;
   FigureOptions figure;
-  std::string size, look = "shaded", sun, view, eye, target;
+  std::string size, look = "shaded", sun, sky, view, eye, target;
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg, error_tolerance = ErrorSettings{}.tolerance;
-  bool top = false, no_shadows = false, no_plinth = false;
+  bool top = false, no_shadows = false, no_plinth = false, no_tone_curve = false;
   int threads = 0;
   std::vector<std::string> given;  ///< names of the options that were typed
   std::vector<std::string> typed;  ///< and their values

@@ -69,6 +69,13 @@ PictureSettings picture_of(const SceneFile& file, PictureSettings settings, cons
   take(file.sun.azimuth_deg, "--sun", settings.sun.azimuth_deg);
   take(file.sun.altitude_deg, "--sun", settings.sun.altitude_deg);
   take(file.sun.size_deg, "--sun-size", settings.sun.size_deg);
+  if (file.sky.kind && std::find(given.begin(), given.end(), "--sky") == given.end())
+    settings.sky.kind = find_sky(*file.sky.kind);
+  take(file.sky.turbidity, "--sky-turbidity", settings.sky.turbidity);
+  require(settings.sky.kind == SkyKind::scattering, given, {"--sky-turbidity"},
+          "without --sky scattering, or such a sky in the scene file");
+  require(settings.sky.kind == SkyKind::plain, given, {"--sun-tint"},
+          "with a scattering sky, which colours the fog (add --sky plain)");
   require(settings.samples > 0, given, {"--seed", "--sun-size", "--ao-distance"},
           "without --samples N, or samples in the scene file");
   validate(settings);

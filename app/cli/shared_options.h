@@ -13,6 +13,8 @@ void add_output_option(Command& command, std::string& output, const std::string&
                        bool required = true);
 /// Declares --threads.
 void add_threads_option(Command& command, int& threads);
+/// Declares --no-tone-curve for pictures in the file `output`, which must outlive the command.
+void add_tone_option(Command& command, bool& no_tone_curve, const std::string& output, Topic topic, Looks looks = {});
 /// Declares --json.
 void add_json_option(Command& command, bool& json);
 

@@ -20,7 +20,7 @@ using real = double;
 using real2 = dvec2;
 using real3 = dvec3;
 using glm::dot, glm::length, glm::normalize;
-using std::cos, std::exp, std::pow, std::sin;
+using std::acos, std::cos, std::exp, std::pow, std::sin;
 
 }  // namespace scarp::glsl
 

@@ -56,7 +56,7 @@ TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
     std::string says;
   };
   const std::vector<Case> cases{
-      {{"--look", "comanchee"}, "--look 'comanchee': expected shaded, height, steps, error or comanche"},
+      {{"--look", "comanchee"}, "--look 'comanchee': expected shaded, hillshade, height, steps, error or comanche"},
       {{"--look", "comanche", "--size", "640x480"}, "--lowres WIDTHxHEIGHT and --pixel-size PX"},
       {{"--lowres", "64x48"}, "applies to the look comanche, not to 'shaded' (other looks have --size)"},
       {{"--look", "comanche", "--lowres", "64"}, "expected WIDTHxHEIGHT"},
@@ -245,7 +245,7 @@ TEST(Composite, TheNearerPixelIsSeen) {
     const test::Rgb picture = test::read_png(scratch.path("out.png"));
     int count = 0;
     for (std::size_t i = 0; i < 64; ++i) {
-      count += picture.bytes[3 * i] == 0 && picture.bytes[3 * i + 1] == 255 && picture.bytes[3 * i + 2] == 0;
+      count += picture.bytes[3 * i] == 0 && picture.bytes[3 * i + 1] > 200 && picture.bytes[3 * i + 2] == 0;
     }
     return count;
   };

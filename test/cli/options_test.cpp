@@ -305,7 +305,10 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
       steps{"--march", "fixed-step", "--reach", "200"};
   const std::vector<Case> cases = {
       {{"--ramp", "magma"}, {"shaded", "steps", "comanche"}},
-      {{"--sun", "100,20"}, lit},
+      {{"--sun", "100,20"}, {"shaded", "hillshade", "comanche"}},
+      {{"--sky", "scattering"}, lit},
+      {{"--sky-turbidity", "9"}, lit, {"--sky", "scattering"}},
+      {{"--no-tone-curve"}, lit},
       {{"--no-shadows"}, {"shaded"}},
       {{"--samples", "4"}, lit},
       {{"--sun-size", "60"}, {"shaded"}, soft},
@@ -355,7 +358,7 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
   const cli::Command& render = *declared().find("render");
   std::map<Names, std::string> without;
   for (const Case& c : cases) {
-    for (const std::string look : {"shaded", "height", "steps", "error", "comanche"}) {
+    for (const std::string look : {"shaded", "hillshade", "height", "steps", "error", "comanche"}) {
       const std::string what = fmt::format("{} with {}", fmt::join(c.options, " "), look);
       if (std::find(c.looks.begin(), c.looks.end(), look) == c.looks.end()) {
         const std::string form = c.looks.size() == 1 ? "applies to the look " : "applies to the looks ";
@@ -387,7 +390,7 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
     }
   }
   expect_refused({"render", rough, "-o", out_ + ".png"}, {"--sun", "1,30", "--look", "height"},
-                 "applies to the looks shaded and comanche, not to 'height'");
+                 "applies to the looks shaded, hillshade and comanche, not to 'height'");
   for (const std::string look : {"height", "steps"}) {
     expect_refused({"render", vox_, "-o", out_}, {"--normals", "smooth", "--look", look}, "applies to the look shaded");
     expect_refused({"render", vox_, "-o", out_}, {"--corner-ao", "--look", look}, "applies to the look shaded");

@@ -62,8 +62,8 @@ TEST_F(Scenes, GiveWayToOptions) {
   EXPECT_NE(test::run({"render", path_, path_, "-o", picture_}).err.find("stands alone"), std::string::npos);
 }
 
-// Water and fog of the file, and what options make of them.
-TEST_F(Scenes, HaveWaterAndFog) {
+// Sky, water and fog of the file, and what options make of them.
+TEST_F(Scenes, HaveAnEnvironment) {
   const auto scene = [&](const std::string& environment) {
     std::ofstream(path_)
         << R"({"picture": {"size": [48, 32], "aa": 1}, "camera": {"eye": [0, -20, 5], "target": [0, 0, 0]},)"
@@ -110,6 +110,20 @@ TEST_F(Scenes, HaveWaterAndFog) {
   refused({"--haze", "0.5"}, "--haze has no effect with the fog of the scene file");
   EXPECT_NE(picture({"--fog", "none", "--haze", "0.5"}), dry);
   refused({"--fog-base", "1"}, "--fog-base has no effect without --fog height, or such fog in the scene file");
+
+  scene(R"("sky": {"kind": "scattering", "turbidity": 5},)");
+  const std::string clear = picture();
+  EXPECT_NE(clear, dry);
+  EXPECT_NE(picture({"--sky-turbidity", "2"}), clear);
+  EXPECT_EQ(picture({"--sky", "plain"}), dry);
+  refused({"--fog", "distance", "--sun-tint", "1"}, "--sun-tint has no effect with a scattering sky");
+  scene("");
+  EXPECT_EQ(picture({"--sky", "scattering", "--sky-turbidity", "5"}), clear);
+  refused({"--sky-turbidity", "5"}, "--sky-turbidity has no effect without --sky scattering, or such a sky");
+  scene(R"("sky": {"kind": "plain", "turbidity": 5},)");
+  refused({}, "/sky/turbidity: only valid for the sky kind 'scattering'");
+  scene(R"("sky": {"kind": "scattering"}, "fog": {"kind": "distance", "sun_tint": 1},)");
+  refused({}, "/fog/sun_tint: not valid together with a scattering sky");
 
   scene(R"("water": {"waves": 0.1},)");
   refused({}, "/water");

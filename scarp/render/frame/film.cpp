@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "scarp/render/surface/colour.glsl.h"
 #include "scarp/render/surface/ramp.h"
 
 namespace scarp {
@@ -26,6 +27,8 @@ void set_pixel(Image& image, int x, int y, vec3 linear) {
   rgb[1] = srgb_byte(linear.y);
   rgb[2] = srgb_byte(linear.z);
 }
+
+vec3 toned(vec3 linear) { return glsl::scarp_toned(linear); }
 
 PixelTiles::PixelTiles(int width, int height, int aa)
     : width_(width),

@@ -26,6 +26,10 @@ struct Image {
 /// Sets a pixel from linear light.
 void set_pixel(Image& image, int x, int y, vec3 linear);
 
+/// Bright colours compressed, so that light surfaces in the sun keep their shades: channels up to 0.7 do not
+/// change, 1.75 becomes 1, and hues stay. In and out: linear light.
+vec3 toned(vec3 linear);
+
 /// Pixels [x0, x1) x [y0, y1).
 struct PixelTile {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;

@@ -132,16 +132,23 @@ void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting) {
   const Water& water = *view_.water();
   const Ray& ray = seen_[point].ray;
   dvec3 normal = meeting.normal;
+  double roughness = 0;
   if (normal.z > 0) {
     // A pixel is longer on the water than it is wide, seen at a grazing angle.
     const double cosine = -ray.direction.z, wide = view_.camera().pixel_width(meeting.t);
-    normal = water.normal_at(ray.at(meeting.t), wide / std::sqrt(std::max(cosine, 0.01)));
+    const double footprint = wide / std::sqrt(std::max(cosine, 0.01));
+    normal = water.normal_at(ray.at(meeting.t), footprint);
+    roughness = water.roughness_at(footprint);
     if (dot(normal, ray.direction) >= 0) normal = {0, 0, 1};
   }
   dvec3 mirrored = reflected(ray.direction, normal);
   if (meeting.normal.z > 0) mirrored = glsl::scarp_kept_above(mirrored);
   const double reach = view_.camera().reach();
-  WaterPoint found{point, meeting.t, schlick(-dot(normal, ray.direction)), 0, {}};
+  WaterPoint found{point, meeting.t, schlick(-dot(normal, ray.direction)), vec3(0.0f), 0, {}};
+  if (meeting.normal.z > 0) {
+    found.glitter = glsl::scarp_glitter(view_.sky().numbers(), view_.sky().sunlight(), ray.direction, normal, roughness,
+                                        found.reflectance);
+  }
   found.mirror = send(point, meeting, mirrored, water.settings().reflection ? reach : 0);
   if (water.settings().refraction && !meeting.sea) {
     found.bottom = send(point, meeting, refracted(ray.direction, normal), reach);
@@ -187,6 +194,9 @@ bool FrameTile::ask_light(RayRound& round) {
     seen.lit = seen.hit && FrameView::is_lit(surface);
     if (!seen.lit) {
       seen.colour = view_.unlit(seen.ray, seen.hit, surface);
+      // Water reflects the sun as glitter.
+      if (!seen.hit && asked_points_ < seen_.size())
+        seen.colour += view_.from_beyond(view_.sky().disc(seen.ray.direction), seen.ray);
       continue;
     }
     const LightRays asked = lighting.ask(light_point(surface, seen.hit), points_[seen.point], round.rays);
@@ -229,8 +239,11 @@ vec3 FrameTile::water_colour(const WaterPoint& found) const {
       body = water.through(bottom.colour, bottom.ray.t_max);
     }
   }
-  const auto mirror = static_cast<float>(found.reflectance);
-  return colour_of(water_rays_[found.mirror]) * mirror + body * (1 - mirror);
+  const auto reflectance = static_cast<float>(found.reflectance);
+  const Seen& mirror = water_rays_[found.mirror];
+  vec3 colour = colour_of(mirror) * reflectance + body * (1 - reflectance);
+  if (!mirror.hit) colour += view_.from_beyond(found.glitter, mirror.ray);
+  return colour;
 }
 
 std::vector<vec3> FrameTile::colours() const {

@@ -34,6 +34,7 @@ class FrameTile {
     std::size_t point;
     double t;
     double reflectance;
+    vec3 glitter;                       // of the sun, where the mirrored ray meets nothing
     std::size_t mirror;                 // in water_rays_
     std::optional<std::size_t> bottom;  // likewise
   };

@@ -10,7 +10,6 @@
 
 #include "scarp/base/error.h"
 #include "scarp/render/light/air.glsl.h"
-#include "scarp/render/light/sky.h"
 
 namespace scarp {
 namespace {
@@ -60,7 +59,8 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
       lighting_(settings, ao_distance_of(scene, settings), scene.wraps() ? ceiling_ : std::nullopt),
       colours_(settings.materials),
       paint_(settings.ground, paint_extent(scene, settings), ground_ramp(scene, settings), lighting_.to_sun()),
-      fog_(settings.fog, lighting_.to_sun()),
+      sky_(settings.sky, lighting_.to_sun(), lighting_.light().sun_radius()),
+      fog_(settings.fog, sky_),
       haze_(haze_of(scene, camera, settings)) {
   for (const SceneObject& object : scene.objects())
     ramped_.push_back(is_ramped(*scene.fields()[object.field], settings));
@@ -98,8 +98,7 @@ vec3 FrameView::lit(const Ray& ray, const Hit& hit, const SceneSurface& surface,
 vec3 FrameView::unlit(const Ray& ray, const Hit& hit, const SceneSurface& surface) const {
   if (!hit) {
     // Ground that lies farther away than the picture reaches is at the horizon.
-    const double z = horizon_below() ? std::max(0.0, ray.direction.z) : ray.direction.z;
-    return fog_(ray, kInfinity, sky_colour(z));
+    return fog_(ray, kInfinity, sky_.colour(horizon_below() ? glsl::scarp_not_below(ray.direction) : ray.direction));
   }
   if (surface.wall) return in_air(wall_colour(surface.normal), ray, hit.t);
   // The camera is inside: the voxel's colour is all there is to see.
@@ -108,7 +107,11 @@ vec3 FrameView::unlit(const Ray& ray, const Hit& hit, const SceneSurface& surfac
 
 vec3 FrameView::in_air(vec3 colour, const Ray& ray, double t) const {
   if (fog_.kind() != FogKind::none) return fog_(ray, t, colour);
-  return glsl::scarp_in_haze(colour, ray.direction.z, haze_.per_metre, t - haze_.clear_distance);
+  return glsl::scarp_in_haze(colour, sky_.numbers(), ray.direction, haze_.per_metre, t - haze_.clear_distance);
+}
+
+vec3 FrameView::from_beyond(vec3 light, const Ray& ray) const {
+  return light * static_cast<float>(fog_.transmittance(ray, kInfinity));
 }
 
 vec3 FrameView::earth() const { return linear_from_srgb(kEarth); }

@@ -9,8 +9,9 @@
 
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/picture.h"
-#include "scarp/render/light/fog.h"
+#include "scarp/render/light/fog_model.h"
 #include "scarp/render/light/lighting.h"
+#include "scarp/render/light/sky_model.h"
 #include "scarp/render/look/comanche.h"
 #include "scarp/render/surface/ground_paint.h"
 #include "scarp/render/surface/surface_colour.h"
@@ -37,6 +38,7 @@ class FrameView {
   const Camera& camera() const { return camera_; }
   const PictureSettings& settings() const { return settings_; }
   const Lighting& lighting() const { return lighting_; }
+  const Sky& sky() const { return sky_; }
   const Fog& fog() const { return fog_; }
   const Haze& haze() const { return haze_; }
   const GroundPaint& paint() const { return paint_; }
@@ -61,6 +63,8 @@ class FrameView {
   vec3 unlit(const Ray& ray, const Hit& hit, const SceneSurface& surface) const;
   /// A colour seen through t metres of haze or fog.
   vec3 in_air(vec3 colour, const Ray& ray, double t) const;
+  /// What fog leaves of light that comes along a ray from beyond the scene.
+  vec3 from_beyond(vec3 light, const Ray& ray) const;
 
   /// Cut earth of walls in linear light, and the share of it that walls facing away from the sun have.
   vec3 earth() const;
@@ -76,6 +80,7 @@ class FrameView {
   Lighting lighting_;
   SurfaceColours colours_;
   GroundPaint paint_;
+  Sky sky_;
   Fog fog_;
   Haze haze_;
   std::optional<Water> water_;

@@ -16,6 +16,7 @@
 #include "scarp/render/frame/middles.h"
 #include "scarp/render/frame/tile_work.h"
 #include "scarp/render/look/height_look.h"
+#include "scarp/render/look/hillshade_look.h"
 #include "scarp/render/look/step_look.h"
 #ifdef SCARP_VULKAN
 #include "scarp/render/frame/terrain_frame_vk.h"
@@ -24,7 +25,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::array<std::string_view, 5> kLookNames = {"shaded", "height", "steps", "error", "comanche"};
+constexpr std::array<std::string_view, 6> kLookNames = {"shaded", "hillshade", "height", "steps", "error", "comanche"};
 
 constexpr int kMaxSide = 65536;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
@@ -33,14 +34,14 @@ constexpr int kMaxSamples = 4096;
 class ImageTile final : public TileWork {
  public:
   ImageTile(const FrameView& view, const PixelTile& tile, Image& image)
-      : tile_(tile), frame_(view, tile, view.settings().aa), image_(image) {}
+      : tile_(tile), frame_(view, tile, view.settings().aa), tones_(uses_tone_curve(view.settings())), image_(image) {}
 
   bool next(RayRound& round) override {
     if (frame_.next(round)) return true;
     const std::vector<vec3> colours = frame_.pixels();
     std::size_t i = 0;
     for (int y = tile_.y0; y < tile_.y1; ++y) {
-      for (int x = tile_.x0; x < tile_.x1; ++x) set_pixel(image_, x, y, colours[i++]);
+      for (int x = tile_.x0; x < tile_.x1; ++x, ++i) set_pixel(image_, x, y, tones_ ? toned(colours[i]) : colours[i]);
     }
     return false;
   }
@@ -48,6 +49,7 @@ class ImageTile final : public TileWork {
  private:
   PixelTile tile_;
   FrameTile frame_;
+  bool tones_;
   Image& image_;
 };
 
@@ -67,6 +69,20 @@ Image render_shaded(const Scene& scene, const Camera& camera, const PictureSetti
       scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(view),
       [&](const PixelTile& tile) { return std::make_unique<ImageTile>(view, tile, image); }, progress);
   return image;
+}
+
+Picture render_hillshade(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                         const Progress& progress) {
+  Picture picture{Image(settings.width, settings.height)};
+  const dvec3 to_sun = Light(settings.sun, settings.grid_north_azimuth).to_sun();
+  look_through_middles(scene, camera, settings, false, progress,
+                       [&](std::size_t i, const Ray& ray, const Hit& hit, std::uint32_t) {
+                         if (!hit || scene.field_of(hit.object).is_backdrop()) return;
+                         const auto width = static_cast<std::size_t>(settings.width);
+                         std::fill_n(picture.image.pixel(static_cast<int>(i % width), static_cast<int>(i / width)), 3,
+                                     grey_of_normal(scene.surface(ray, hit).shading_normal, to_sun));
+                       });
+  return picture;
 }
 
 Picture render_height(const Scene& scene, const Camera& camera, const PictureSettings& settings,
@@ -101,6 +117,11 @@ Look find_look(std::string_view name) {
     if (kLookNames[i] == name) return static_cast<Look>(i);
   }
   throw Error(fmt::format("unknown look '{}' (available: {})", name, fmt::join(kLookNames, ", ")));
+}
+
+bool uses_tone_curve(const PictureSettings& settings) {
+  const bool counts = settings.look == Look::comanche && settings.comanche.iterations;
+  return settings.tone_curve && !counts;
 }
 
 std::string_view ramp_of(const PictureSettings& settings) {
@@ -163,6 +184,7 @@ void validate(const PictureSettings& settings) {
   require_setting("picture", settings.haze_distance > 0, "the haze distance", settings.haze_distance, "above 0 metres");
   validate(settings.error);
   validate(settings.sun);
+  validate(settings.sky);
   if (settings.water) validate(*settings.water);
   validate(settings.ground);
   validate(settings.fog);
@@ -199,6 +221,8 @@ Picture render_picture(const Scene& scene, const Camera& camera, const PictureSe
   validate(settings);
   require_visible(scene);
   switch (settings.look) {
+    case Look::hillshade:
+      return render_hillshade(scene, camera, settings, progress);
     case Look::height:
       return render_height(scene, camera, settings, progress);
     case Look::steps:

@@ -3,13 +3,14 @@
 //
 //   shaded    materials lit by sun and sky, with exact hard shadows (or, with `samples`, soft shadows and ambient
 //             occlusion); water, haze or fog, sky
+//   hillshade grey by the angle to the sun, without shadows, see hillshade_look.h
 //   height    grey, linear in height, see height_look.h
 //   steps     steps of the march per ray, as a colour ramp from the minimum to the maximum in the picture
 //   comanche  like `shaded`, in few large pixels, see comanche.h
 //   error     errors of the march, see error_look.h
 //
-// `shaded` takes several samples per pixel. `height`, `steps` and `error` trace one ray through the centre of each
-// pixel.
+// `shaded` takes several samples per pixel. `hillshade`, `height`, `steps` and `error` trace one ray through the centre
+// of each pixel.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +26,7 @@
 #include "scarp/render/frame/film.h"
 #include "scarp/render/light/fog.h"
 #include "scarp/render/light/light.h"
+#include "scarp/render/light/sky.h"
 #include "scarp/render/look/comanche.h"
 #include "scarp/render/look/error_look.h"
 #include "scarp/render/surface/ground_paint.h"
@@ -35,9 +37,9 @@
 
 namespace scarp {
 
-enum class Look { shaded, height, steps, error, comanche };
+enum class Look { shaded, hillshade, height, steps, error, comanche };
 
-/// Returns "shaded", "height", "steps", "error" or "comanche".
+/// Returns "shaded", "hillshade", "height", "steps", "error" or "comanche".
 std::string_view name_of(Look look);
 /// Returns the look with this name. Throws Error listing the names if `name` is unknown.
 Look find_look(std::string_view name);
@@ -67,11 +69,14 @@ struct PictureSettings {
   // Environment.
   double grid_north_azimuth = 0;  ///< compass azimuth of the world's y axis: radians clockwise from true north
   SunSettings sun{};
+  SkySettings sky{};
   bool shadows = true;                ///< whether surfaces block the sun
   double haze = 0.1;                  ///< fraction of haze over a distance equal to the scene's diagonal, 0..0.95
   double haze_distance = kUnlimited;  ///< replaces `haze` if finite: metres over which contrast falls to 1/e, > 0
   FogSettings fog{};                  ///< replaces haze unless its kind is `none`
   std::optional<WaterSettings> water{};
+
+  bool tone_curve = true;  ///< whether `shaded` and `comanche` compress bright colours (toned()); layers never do
 
   // Sampling of light.
   int samples = 0;  ///< rays to the sun's disc, and as many to the sky, per sample of `shaded`, 0..4096; 0: hard
@@ -83,6 +88,9 @@ struct PictureSettings {
   ComancheSettings comanche{};
   ErrorSettings error{};
 };
+
+/// Whether the curve applies: not to pictures of counts.
+bool uses_tone_curve(const PictureSettings& settings);
 
 /// Returns the name of the ramp in the settings or, if that is empty, the default for the look.
 std::string_view ramp_of(const PictureSettings& settings);

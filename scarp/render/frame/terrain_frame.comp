@@ -33,6 +33,7 @@ const bool has_fog = (parts & kFrameHasFog) != 0u;
 const bool has_samples = (parts & kFrameHasSamples) != 0u;
 const bool has_plinth = (parts & kFrameHasPlinth) != 0u;
 const bool has_rims = (parts & kFrameHasRims) != 0u;
+const bool has_scattering = (parts & kFrameHasScattering) != 0u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Pixels { uint words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer States { FrameState states[]; };
@@ -49,14 +50,28 @@ layout(push_constant, scalar) uniform Push { FramePush push; };
 float eye_height(FrameSeen seen) { return height_of(seen.line.origin.z); }
 vec3 direction_of(FrameSeen seen) { return normalize(world_direction(seen.line.direction)); }
 
+ScarpSky the_sky() {
+  ScarpSky sky = settings().is.sky;
+  if (!has_scattering) sky.scattering = 0;  // a constant to the compiler
+  return sky;
+}
+
 vec3 in_air(vec3 colour, FrameSeen seen, vec3 direction, float metres) {
   Settings s = settings();
   if (!has_fog || s.is.fog == kScarpNoFog)
-    return scarp_in_haze(colour, direction.z, s.is.haze_per_metre, metres - s.is.clear_distance);
+    return scarp_in_haze(colour, the_sky(), direction, s.is.haze_per_metre, metres - s.is.clear_distance);
   if (s.is.fog == kScarpFogByIterations) return colour;
   float left = scarp_fog_transmittance(s.is.fog, s.is.fog_per_metre, s.is.fog_base, s.is.fog_falloff, eye_height(seen),
                                        direction.z, metres);
-  return scarp_between(scarp_fog_colour(dot(direction, s.is.to_sun), s.is.sun_tint), colour, left);
+  return scarp_between(scarp_fog_colour(the_sky(), direction, s.is.sun_tint), colour, left);
+}
+
+// What fog leaves of light from beyond the scene.
+float left_from_beyond(FrameSeen seen, vec3 direction) {
+  Settings s = settings();
+  if (!has_fog) return 1.0;
+  return scarp_fog_transmittance_of_sky(s.is.fog, s.is.fog_per_metre, s.is.fog_base, s.is.fog_falloff, eye_height(seen),
+                                        direction.z);
 }
 
 // Of what is not ground.
@@ -73,11 +88,11 @@ vec3 beside_ground(FrameSeen seen, vec3 direction) {
     return in_air(s.is.earth * (s.is.unlit_wall + (1.0 - s.is.unlit_wall) * lit), seen, direction,
                   seen.t.high * seen.metres);
   }
-  vec3 sky = scarp_sky_colour(s.is.no_descent != 0 ? max(0.0, direction.z) : direction.z);
+  ScarpSky air = the_sky();
+  vec3 sky = scarp_sky_colour(air, s.is.no_descent != 0 ? scarp_not_below(direction) : direction);
   if (!has_fog || s.is.fog == kScarpNoFog || s.is.fog == kScarpFogByIterations) return sky;
-  float left = scarp_fog_transmittance_of_sky(s.is.fog, s.is.fog_per_metre, s.is.fog_base, s.is.fog_falloff,
-                                              eye_height(seen), direction.z);
-  return scarp_between(scarp_fog_colour(dot(direction, s.is.to_sun), s.is.sun_tint), sky, left);
+  float left = left_from_beyond(seen, direction);
+  return scarp_between(scarp_fog_colour(the_sky(), direction, s.is.sun_tint), sky, left);
 }
 
 vec3 shading_normal(ScarpField field, FrameSeen seen) {
@@ -88,7 +103,7 @@ vec3 shading_normal(ScarpField field, FrameSeen seen) {
 vec3 lit_ground(ScarpField field, FrameSeen seen) {
   Settings s = settings();
   return ground_colour(field, seen, direction_of(seen), seen.normal) *
-         scarp_light(seen.normal, s.is.sky_side, s.is.sun, seen.sun_cosine, seen.sky);
+         scarp_light(seen.normal, s.is.sky_side, s.is.skylight, s.is.sun, seen.sun_cosine, seen.sky);
 }
 
 vec3 seen_colour(FrameSeen seen) {
@@ -302,13 +317,18 @@ void send_from_water(ScarpField field, FrameSeen camera, inout FrameWater water)
   ScarpTwoFloat y = scarp_line_row(camera.line, water.t);
   ScarpTwoFloat z = scarp_line_height(camera.line, water.t);
   vec3 normal = water.normal;
+  float roughness = 0.0;
   if (normal.z > 0.0) {
     // A pixel is longer on the water than it is wide, seen at a grazing angle.
     float wide = s.is.pixel_width * (s.is.orthographic != 0 ? 1.0 : metres);
-    normal = water_normal(paint_place(camera.line, water.t), wide / sqrt(max(-direction.z, 0.01)));
+    float footprint = wide / sqrt(max(-direction.z, 0.01));
+    normal = water_normal(paint_place(camera.line, water.t), footprint);
+    if (has_scattering) roughness = water_roughness(footprint);
     if (dot(normal, direction) >= 0.0) normal = vec3(0.0, 0.0, 1.0);
   }
   water.reflectance = scarp_schlick(-dot(normal, direction), 1.333);
+  if (has_scattering && water.normal.z > 0.0)
+    water.glitter = scarp_glitter(the_sky(), s.is.sun, direction, normal, roughness, water.reflectance);
   vec3 mirrored = scarp_reflected(direction, normal);
   if (water.normal.z > 0.0) mirrored = scarp_kept_above(mirrored);
   FrameSeen sent = no_sight();
@@ -392,7 +412,11 @@ vec3 water_colour(FrameWater water) {
                                  bottom.end.high);
     }
   }
-  return seen_colour(seen_of(kFrameMirror)) * water.reflectance + body * (1.0 - water.reflectance);
+  FrameSeen mirror = seen_of(kFrameMirror);
+  vec3 colour = seen_colour(mirror) * water.reflectance + body * (1.0 - water.reflectance);
+  if (has_scattering && mirror.kind == kFrameNothing)
+    colour += water.glitter * left_from_beyond(mirror, direction_of(mirror));
+  return colour;
 }
 
 vec3 colour_of_point() {
@@ -407,8 +431,10 @@ vec3 colour_of_point() {
     colour = in_air(water_colour(water), camera, direction, water.t.high * camera.metres);
   else
     colour = seen_colour(camera);
+  if (has_scattering && !(has_water && water.kind != 0) && camera.kind == kFrameNothing)
+    colour += scarp_sun_disc(the_sky(), direction) * left_from_beyond(camera, direction);
   if (has_fog && s.is.fog == kScarpFogByIterations)
-    colour = scarp_between(colour, scarp_fog_colour(dot(direction, s.is.to_sun), s.is.sun_tint), share);
+    colour = scarp_between(colour, scarp_fog_colour(the_sky(), direction, s.is.sun_tint), share);
   return colour;
 }
 
@@ -529,6 +555,7 @@ void main() {
     return;
   }
   vec3 colour = sum / float(points);
+  if (settings().is.tone_curve != 0) colour = scarp_toned(colour);
   Pixels(push.pixels).words[slot] = uint(scarp_srgb_byte(colour.x)) | (uint(scarp_srgb_byte(colour.y)) << 8) |
                                     (uint(scarp_srgb_byte(colour.z)) << 16) | 0xff000000u;
 }

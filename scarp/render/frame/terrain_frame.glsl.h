@@ -41,6 +41,7 @@ const uint kFrameHasSamples = 64u;  ///< of sun and sky
 const uint kFrameHasPlinth = 128u;  ///< below the terrain
 /// Walls at the rims of holes of the plinth: the march knows those of solid ground.
 const uint kFrameHasRims = 256u;
+const uint kFrameHasScattering = 512u;  ///< sky
 
 const int kFrameRounds = 16;
 const int kFrameTurns = 3000;
@@ -136,6 +137,7 @@ struct FrameSettings {
   float sun_tint;
   float haze_per_metre;
   float clear_distance;
+  ScarpSky sky;
   int shadows;
   vec3 to_sun;
   vec3 sun_line;  ///< in grid units
@@ -149,8 +151,10 @@ struct FrameSettings {
   int index_bits;
   vec3 sky_side;
   vec3 sun;
+  vec3 skylight;
   vec3 earth;
   float unlit_wall;
+  int tone_curve;  ///< 1: bright colours are compressed
   // Ground.
   int natural;
   float snow_share;
@@ -220,6 +224,7 @@ struct FrameWater {
   vec2 place;
   vec3 normal;
   float reflectance;
+  vec3 glitter;
 };
 
 struct FrameState {

@@ -171,8 +171,11 @@ void set_air(glsl::FrameSettings& s, const HeightField& field, const FrameView& 
   s.sun_line_low = line.direction_low;
   s.sky_side = vec3(light.sky_side());
   s.sun = light.sun();
+  s.skylight = light.skylight();
+  s.sky = view.sky().numbers();
   s.earth = view.earth();
   s.unlit_wall = FrameView::unlit_wall();
+  s.tone_curve = uses_tone_curve(view.settings());
 }
 
 void set_samples(glsl::FrameSettings& s, const Lighting& lighting, int samples) {
@@ -299,8 +302,8 @@ class FrameMaker {
         (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
         (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) | (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
         (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) |
-        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (plinth ? glsl::kFrameHasPlinth : 0) |
-        (plinth && rims ? glsl::kFrameHasRims : 0);
+        (s.sky.scattering ? glsl::kFrameHasScattering : 0) | (s.samples > 0 ? glsl::kFrameHasSamples : 0) |
+        (plinth ? glsl::kFrameHasPlinth : 0) | (plinth && rims ? glsl::kFrameHasRims : 0);
     const auto found = pipelines_.find(parts);
     if (found != pipelines_.end()) return found->second;
     const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};

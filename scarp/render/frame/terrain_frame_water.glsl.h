@@ -23,6 +23,7 @@ FrameWater water_on(ScarpField field, ScarpLine line, ScarpTwoFloat end) {
   found.place = vec2(0.0);
   found.normal = vec3(0.0, 0.0, 1.0);
   found.reflectance = 0.0;
+  found.glitter = vec3(0.0);
   if (!has_water) return found;
   bool wraps = (field.flags & kScarpWraps) != 0u;
   ScarpTwoFloat level = two(s.is.level_sample, s.is.level_sample_low);
@@ -93,6 +94,15 @@ vec3 water_normal(ScarpPaintPlace place, float footprint) {
     tilt += seen * scarp_wave_slope(i, (turns.high - floor(turns.high)) + turns.low, s.is.waves) * wave.along;
   }
   return normalize(vec3(-tilt.x, -tilt.y, 1.0));
+}
+
+// Variance of the slopes that water_normal() leaves out.
+float water_roughness(float footprint) {
+  Settings s = settings();
+  float roughness = 0.0;
+  for (int i = 0; i < kScarpWaves; ++i)
+    roughness += scarp_wave_roughness(scarp_wave_seen(s.is.wave[i].metres, footprint), s.is.waves);
+  return roughness;
 }
 
 // Metres to where a ray in the water comes out at a side of the field; kScarpNever where it has none.

@@ -1,30 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Sky, fog and the light of sun and sky: the formulas of sky.h, fog.h and light.h. Text of C++ and of GLSL.
+// Haze, fog and the light of sun and sky: the formulas of fog.h and light.h. Text of C++ and of GLSL.
 #ifndef SCARP_RENDER_AIR_GLSL_H
 #define SCARP_RENDER_AIR_GLSL_H
 
-#include "scarp/render/surface/colour.glsl.h"
+#include "scarp/render/light/sky.glsl.h"
 
 SCARP_GLSL_BEGIN
 
-const vec3 kScarpZenith = vec3(0.12f, 0.30f, 0.66f);
-const vec3 kScarpHorizon = vec3(0.80f, 0.87f, 0.93f);
-const vec3 kScarpNadir = vec3(0.60f, 0.66f, 0.72f);
-const vec3 kScarpSunlight = vec3(1.0f, 0.83f, 0.58f);  ///< of fog, towards the sun
+const vec3 kScarpSunlight = vec3(1.0f, 0.83f, 0.58f);  ///< of fog below a plain sky, towards the sun
 
-/// Colour of the sky in linear light towards a unit vector with this z. The haze gives way with the 3rd power of 1 - z
-/// upwards, with its power of 1.5 downwards.
-SCARP_FN vec3 scarp_sky_colour(real z) {
-  real far = real(1.0) - min(abs(z), real(1.0));
-  if (z >= real(0.0)) return scarp_between(kScarpHorizon, kScarpZenith, real(1.0) - far * far * far);
-  return scarp_between(kScarpHorizon, kScarpNadir, real(1.0) - far * sqrt(far));
-}
-
-/// A colour seen through `metres` of haze along a ray whose unit direction has this z. Haze has the colour of the sky
-/// behind it, and that of the horizon below.
-SCARP_FN vec3 scarp_in_haze(vec3 colour, real z, real per_metre, real metres) {
+/// A colour seen through `metres` of haze along a ray with this unit direction. Haze has the colour of the sky behind
+/// it, and that of the horizon below.
+SCARP_FN vec3 scarp_in_haze(vec3 colour, ScarpSky sky, real3 direction, real per_metre, real metres) {
   real clear = exp(-per_metre * max(real(0.0), metres));
-  return scarp_between(scarp_sky_colour(max(real(0.0), z)), colour, clear);
+  return scarp_between(scarp_sky_colour(sky, scarp_not_below(direction)), colour, clear);
 }
 
 /// FogKind.
@@ -56,9 +45,11 @@ SCARP_FN real scarp_fog_transmittance_of_sky(int kind, real per_metre, real base
   return rise > real(0.0) ? exp(-here / (rise / falloff)) : real(0.0);
 }
 
-/// Colour of fog in linear light, `cosine` of the angle between view and sun: warm with its 8th power.
-SCARP_FN vec3 scarp_fog_colour(real cosine, real sun_tint) {
-  real towards = max(real(0.0), cosine);
+/// Colour of fog in linear light, looking along a unit vector: that of the sky at the horizon. Below a plain sky it is
+/// warm towards the sun with the 8th power of the angle's cosine.
+SCARP_FN vec3 scarp_fog_colour(ScarpSky sky, real3 direction, real sun_tint) {
+  if (sky.scattering != 0) return scarp_sky_colour(sky, scarp_not_below(real3(direction.x, direction.y, real(-1.0))));
+  real towards = max(real(0.0), dot(direction, real3(sky.to_sun)));
   towards *= towards;
   towards *= towards;
   towards *= towards;
@@ -68,14 +59,15 @@ SCARP_FN vec3 scarp_fog_colour(real cosine, real sun_tint) {
 /// The sine of the lowest sun that casts shadows over endless ground: 0.06 degrees, a ninth of its disc.
 const float kScarpLeastSunRise = 1e-3f;
 
-/// Light of the sky on level ground; the sun gives what lacks to white.
+/// Light of the plain sky on level ground; the sun gives what lacks to white.
 const vec3 kScarpSkylight = vec3(0.27f, 0.32f, 0.39f);
 
-/// Light on a surface with this unit normal. The sky is brightest towards `sky_side` and seen by the share
-/// `sky_share`; `sun` is the sun's light on what faces it, `sun_cosine` the mean cosine to what is seen of its disc.
-SCARP_FN vec3 scarp_light(real3 normal, real3 sky_side, vec3 sun, real sun_cosine, real sky_share) {
+/// Light on a surface with this unit normal. The sky gives `skylight` to level ground, is brightest towards `sky_side`
+/// and seen by the share `sky_share`; `sun` is the sun's light on what faces it, `sun_cosine` the mean cosine to what
+/// is seen of its disc.
+SCARP_FN vec3 scarp_light(real3 normal, real3 sky_side, vec3 skylight, vec3 sun, real sun_cosine, real sky_share) {
   real sky = sky_share * (real(1.0) + dot(normal, sky_side)) / (real(1.0) + sky_side.z);
-  return float(sky) * kScarpSkylight + float(sun_cosine) * sun;
+  return float(sky) * skylight + float(sun_cosine) * sun;
 }
 
 SCARP_GLSL_END

@@ -11,6 +11,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/setting.h"
 #include "scarp/render/light/air.glsl.h"
+#include "scarp/render/light/fog_model.h"
 
 namespace scarp {
 namespace {
@@ -40,8 +41,8 @@ void validate(const FogSettings& settings) {
                   "0 to 1");
 }
 
-Fog::Fog(const FogSettings& settings, const dvec3& to_sun)
-    : settings_(settings), per_metre_(kContrastLeft / settings.visibility), to_sun_(to_sun) {}
+Fog::Fog(const FogSettings& settings, const Sky& sky)
+    : settings_(settings), per_metre_(kContrastLeft / settings.visibility), sky_(sky) {}
 
 double Fog::transmittance(const Ray& ray, double t) const {
   const FogSettings& s = settings_;
@@ -53,7 +54,7 @@ double Fog::transmittance(const Ray& ray, double t) const {
 }
 
 vec3 Fog::colour(const dvec3& direction) const {
-  return glsl::scarp_fog_colour(dot(direction, to_sun_), settings_.sun_tint);
+  return glsl::scarp_fog_colour(sky_.numbers(), direction, settings_.sun_tint);
 }
 
 vec3 Fog::operator()(const Ray& ray, double t, vec3 behind) const {

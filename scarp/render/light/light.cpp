@@ -10,15 +10,9 @@
 #include "scarp/base/error.h"
 #include "scarp/render/camera/compass.h"
 #include "scarp/render/light/air.glsl.h"
+#include "scarp/render/light/sky_model.h"
 
 namespace scarp {
-namespace {
-
-// Below sin(30 degrees) the sun is not made stronger any more: level ground darkens in the evening.
-constexpr double kLowestFullSun = 0.5;
-
-}  // namespace
-
 void validate(const SunSettings& settings) {
   if (!std::isfinite(settings.azimuth_deg)) {
     throw Error(fmt::format("sun: the azimuth is {} (must be a finite number of degrees)", settings.azimuth_deg));
@@ -31,18 +25,21 @@ void validate(const SunSettings& settings) {
   }
 }
 
-Light::Light(const SunSettings& settings, double grid_north_azimuth)
+Light::Light(const SunSettings& settings, double grid_north_azimuth, const SkySettings& sky)
     : to_sun_(towards(glm::radians(settings.azimuth_deg), glm::radians(settings.altitude_deg), grid_north_azimuth)),
       sun_radius_(glm::radians(settings.size_deg) / 2),
-      sky_side_(normalize(dvec3(0, 0, 1) + 0.7 * towards(glm::radians(settings.azimuth_deg), 0, grid_north_azimuth))),
-      sun_((vec3(1.0f) - glsl::kScarpSkylight) / static_cast<float>(std::max(to_sun_.z, kLowestFullSun))) {}
+      sky_side_(normalize(dvec3(0, 0, 1) + 0.7 * towards(glm::radians(settings.azimuth_deg), 0, grid_north_azimuth))) {
+  const Sky above(sky, to_sun_, sun_radius_);
+  sun_ = above.sunlight();
+  skylight_ = above.skylight();
+}
 
 vec3 Light::on(const dvec3& normal, bool in_sun) const {
   return on(normal, in_sun ? std::max(0.0, dot(normal, to_sun_)) : 0.0, 1.0);
 }
 
 vec3 Light::on(const dvec3& normal, double sun_cosine, double sky_share) const {
-  return glsl::scarp_light(normal, sky_side_, sun_, sun_cosine, sky_share);
+  return glsl::scarp_light(normal, sky_side_, skylight_, sun_, sun_cosine, sky_share);
 }
 
 }  // namespace scarp

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The light on the ground: a sun at a compass azimuth and altitude, and the sky around it.
 //
-// Level ground in full sun has the brightness 1 in every channel (for a sun at 30 degrees or more), so colours of a
-// ramp stay what they are there; slopes are brighter or darker. Shadowed ground has the sky's light alone, bluish, and
-// more of it where it turns towards the sun's side: shadowed slopes still read.
+// Level ground in full sun has the brightness 1 (for a sun at 30 degrees or more): in every channel below a plain sky,
+// so colours of a ramp stay what they are there; slopes are brighter or darker. Shadowed ground has the sky's light
+// alone, bluish, and more of it where it turns towards the sun's side: shadowed slopes still read.
 #pragma once
 
 #include "scarp/base/vec.h"
+#include "scarp/render/light/sky.h"
 
 namespace scarp {
 
@@ -21,7 +22,8 @@ void validate(const SunSettings& settings);
 
 class Light {
  public:
-  Light(const SunSettings& settings, double grid_north_azimuth);
+  /// The settings must be valid. `grid_north_azimuth`: radians clockwise from true north.
+  Light(const SunSettings& settings, double grid_north_azimuth, const SkySettings& sky = {});
 
   /// Unit vector to the middle of the sun's disc.
   const dvec3& to_sun() const { return to_sun_; }
@@ -31,6 +33,8 @@ class Light {
   const dvec3& sky_side() const { return sky_side_; }
   /// The sun's light on a surface that faces it.
   vec3 sun() const { return sun_; }
+  /// The sky's light on level ground.
+  vec3 skylight() const { return skylight_; }
   /// Light on a surface with this unit normal, in linear light.
   vec3 on(const dvec3& normal, bool in_sun) const;
   /// The same from what the surface sees: `sun_cosine` is the mean cosine to the visible part of the sun's disc, 0..1,
@@ -41,7 +45,7 @@ class Light {
   dvec3 to_sun_;
   double sun_radius_;
   dvec3 sky_side_;
-  vec3 sun_;
+  vec3 sun_, skylight_;
 };
 
 }  // namespace scarp

@@ -21,7 +21,7 @@ void end_above_ground(std::span<Ray> rays, double highest) {
 
 Lighting::Lighting(const PictureSettings& settings, double ao_distance, std::optional<double> highest)
     : settings_(settings),
-      light_(settings.sun, settings.grid_north_azimuth),
+      light_(settings.sun, settings.grid_north_azimuth, settings.sky),
       pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
       ao_distance_(ao_distance),
       highest_(highest) {}

@@ -1,16 +1,30 @@
 // SPDX-License-Identifier: MIT
-// What rays see that meet nothing: a clear sky above, haze at the horizon, and below it a pale ground that a terrain
-// model stands out against.
+// Which sky a picture has.
+//
+//   plain       a pale gradient without a sun, which a terrain model stands out against; the light on the ground is
+//               white
+//   scattering  clear air in which sunlight is scattered (A. J. Preetham, P. Shirley, B. Smits, "A practical analytic
+//               model for daylight", SIGGRAPH 1999), with the sun's disc. Sky, sun and ground have the colours and
+//               proportions of that model: a low sun is orange
 #pragma once
 
-#include "scarp/base/vec.h"
+#include <string_view>
 
 namespace scarp {
 
-/// Colour in linear light towards a direction whose unit vector has this z.
-vec3 sky_colour(double direction_z);
+enum class SkyKind { plain, scattering };
 
-/// Colour of far haze in linear light: that of the horizon.
-vec3 haze_colour();
+/// "plain", "scattering".
+std::string_view name_of(SkyKind kind);
+/// Throws Error listing the names when there is no such sky.
+SkyKind find_sky(std::string_view name);
+
+struct SkySettings {
+  SkyKind kind = SkyKind::plain;
+  double turbidity = 3;  ///< of `scattering`: extinction relative to that of pure air, 2 (very clear) to 10 (haze)
+};
+
+/// Throws Error naming the first setting out of its range.
+void validate(const SkySettings& settings);
 
 }  // namespace scarp

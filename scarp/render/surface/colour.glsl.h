@@ -26,6 +26,24 @@ SCARP_FN float scarp_srgb_byte(float linear) {
   return floor(255.0f * s + 0.5f);
 }
 
+// The tone curve: up to the first value nothing changes, at the second one a channel is full.
+const float kScarpToneBegin = 0.7f;
+const float kScarpToneFull = 1.75f;
+
+/// Compresses bright colours in linear light: the largest channel by a curve whose slope begins at 1, the others in
+/// proportion, so that hues stay. Sunlit slopes of light ground keep their shades. Beyond full, as near the sun,
+/// colours turn white.
+SCARP_FN vec3 scarp_toned(vec3 linear) {
+  float most = max(linear.x, max(linear.y, linear.z));
+  if (!(most > kScarpToneBegin)) return linear;
+  float range = 1.0f - kScarpToneBegin;
+  float full = (kScarpToneFull - kScarpToneBegin) / range;
+  float at = min((most - kScarpToneBegin) / range, full);
+  float toned = kScarpToneBegin + range * at / (1.0f + (full - 1.0f) / full * at);
+  vec3 colour = linear * (toned / most);
+  return scarp_between(vec3(1.0f), colour, min(real(1.0), real(kScarpToneFull / most)));
+}
+
 /// Where a value lies in a table of `count` colours, evenly spaced from `low` to `high`: entry + place, 0..1, to the
 /// next one.
 struct ScarpTablePlace {

@@ -156,6 +156,13 @@ dvec3 Water::normal_at(const dvec3& position, double footprint) const {
   return normalize(dvec3(-tilt.x, -tilt.y, 1));
 }
 
+double Water::roughness_at(double footprint) const {
+  double roughness = 0;
+  for (int i = 0; i < glsl::kScarpWaves; ++i)
+    roughness += glsl::scarp_wave_roughness(glsl::scarp_wave_seen(wavelength(i), footprint), settings_.waves);
+  return roughness;
+}
+
 dvec2 Water::wave_direction(int i) { return kAlong[static_cast<std::size_t>(i)]; }
 double Water::wavelength(int i) const { return wavelength_ * std::pow(kShorter, i); }
 

@@ -3,7 +3,7 @@
 #ifndef SCARP_RENDER_WATER_GLSL_H
 #define SCARP_RENDER_WATER_GLSL_H
 
-#include "scarp/vk/real.glsl.h"
+#include "scarp/render/light/sky.glsl.h"
 
 SCARP_GLSL_BEGIN
 
@@ -46,6 +46,30 @@ SCARP_FN real scarp_wave_seen(real wavelength, real footprint) {
 /// together: that of a cos is its height by sqrt(2), and slopes of different directions add up squared.
 SCARP_FN real scarp_wave_slope(int i, real turns, real slope) {
   return slope * sqrt(real(2.0) / real(kScarpWaves)) * cos(real(6.283185307179586) * turns + real(i));
+}
+
+/// Mean square slope of wave i where it is seen by the share `seen`: what is not seen roughens the water.
+SCARP_FN real scarp_wave_roughness(real seen, real slope) {
+  return (real(1.0) - seen * seen) * slope * slope / real(kScarpWaves);
+}
+
+/// What rough water reflects of the sun in a scattering sky, in linear light, up to the brightness of its disc: its
+/// slopes have a normal distribution of the variance `roughness` around that of the unit normal (C. Cox and W. Munk,
+/// "Measurement of the roughness of the sea surface from photographs of the sun's glitter", JOSA 44, 1954). `sunlight`
+/// is that on what faces the sun, `view` a unit vector from the eye.
+SCARP_FN vec3 scarp_glitter(ScarpSky sky, vec3 sunlight, real3 view, real3 normal, real roughness, real reflectance) {
+  // A facet that turns by an angle turns the mirrored ray by twice as much: this is the variance over the sun's disc.
+  real spread = roughness + real(sky.disc_square) / real(8.0);
+  real3 facet = normalize(real3(sky.to_sun) - view);
+  if (sky.scattering == 0 || spread == real(0.0) || facet.z <= real(0.0)) return vec3(0.0f);
+  real x = facet.x / facet.z - normal.x / normal.z;
+  real y = facet.y / facet.z - normal.y / normal.z;
+  real square = facet.z * facet.z;
+  real grazing = real(0.05);  // lower, waves hide one another
+  real share =
+      reflectance * exp(-(x * x + y * y) / spread) / (spread * real(4.0) * max(-view.z, grazing) * square * square);
+  vec3 seen = sunlight * float(share);
+  return vec3(min(seen.x, sky.disc.x), min(seen.y, sky.disc.y), min(seen.z, sky.disc.z));
 }
 
 /// The share of light, per colour, that is left after some metres (Beer).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The sun, the water and the fog of a scene file. Ranges are in the schema.
+// The sun, the sky, the water and the fog of a scene file. Ranges are in the schema.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -26,6 +26,17 @@ SceneSun sun_from_json(const Json& scene) {
   return sun;
 }
 
+SceneSky sky_from_json(const Json& scene) {
+  SceneSky sky;
+  if (!scene.contains("sky")) return sky;
+  const Json& json = scene["sky"];
+  take_json(sky.kind, json, "kind");
+  take_json(sky.turbidity, json, "turbidity");
+  if (sky.turbidity && *sky.kind != "scattering")
+    throw Error("/sky/turbidity: only valid for the sky kind 'scattering'");
+  return sky;
+}
+
 std::optional<SceneWater> water_from_json(const Json& scene) {
   if (!scene.contains("water")) return {};
   const Json& json = scene["water"];
@@ -48,6 +59,8 @@ std::optional<SceneFog> fog_from_json(const Json& scene) {
     if (fog.kind != "height" && json.contains(key))
       throw Error(fmt::format("/fog/{}: only valid for the fog kind 'height'", key));
   }
+  if (json.contains("sun_tint") && sky_from_json(scene).kind == "scattering")
+    throw Error("/fog/sun_tint: not valid together with a scattering sky, which colours the fog");
   take_json(fog.visibility, json, "visibility");
   take_json(fog.base, json, "base");
   take_json(fog.falloff, json, "falloff");

@@ -255,6 +255,7 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
                  std::move(reader.names()),
                  camera,
                  sun_from_json(json),
+                 sky_from_json(json),
                  picture_from(json),
                  {},
                  water_from_json(json),

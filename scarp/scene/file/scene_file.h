@@ -44,6 +44,12 @@ struct ScenePicture {
   bool coarse_voxels = false;  ///< whether to call Scene::coarser()
 };
 
+/// Sky of a file, as SkySettings of render/light/sky.h.
+struct SceneSky {
+  std::optional<std::string> kind{};  ///< "plain" or "scattering"
+  std::optional<double> turbidity{};
+};
+
 /// Water of a file, as WaterSettings of render/surface/water.h.
 struct SceneWater {
   double level = 0;            ///< metres, not exaggerated
@@ -73,6 +79,7 @@ struct SceneFile {
   std::vector<SceneObjectName> names;
   SceneCamera camera;
   SceneSun sun;
+  SceneSky sky;
   ScenePicture picture;
   std::optional<double> haze_distance;  ///< metres; never set if `fog` is
   std::optional<SceneWater> water;

@@ -47,8 +47,9 @@ std::map<std::string, std::uint32_t> materials_from_json(const nlohmann::json& j
 /// "#rrggbb" as sRGB, 0..1.
 vec3 colour_from_json(const nlohmann::json& json);
 
-/// The sun, the water and the fog of a scene.
+/// The sun, the sky, the water and the fog of a scene.
 SceneSun sun_from_json(const nlohmann::json& scene);
+SceneSky sky_from_json(const nlohmann::json& scene);
 std::optional<SceneWater> water_from_json(const nlohmann::json& scene);
 std::optional<SceneFog> fog_from_json(const nlohmann::json& scene);
 

@@ -81,7 +81,7 @@ TEST(Layers, TheColourIsThePicturesBeforeItsTransfer) {
   const Image image = render_picture(scene, camera, settings).image;
   Image developed(kWidth, kHeight);
   for (int i = 0; i < kWidth * kHeight; ++i) {
-    set_pixel(developed, i % kWidth, i / kWidth, layers.colour[static_cast<std::size_t>(i)]);
+    set_pixel(developed, i % kWidth, i / kWidth, toned(layers.colour[static_cast<std::size_t>(i)]));
   }
   EXPECT_EQ(developed.rgb, image.rgb);
 }

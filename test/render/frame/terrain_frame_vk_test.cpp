@@ -125,6 +125,12 @@ std::vector<Row> rows() {
     s.ground.natural = true;
     s.ground.contours = 1;
   });
+  add("glitter_in_fog", "max-mip", [=](PictureSettings& s) {
+    water(s);
+    fog(s, FogKind::height);
+    s.sky.kind = SkyKind::scattering;
+    s.sun = {.azimuth_deg = 330, .altitude_deg = 20, .size_deg = 8};
+  });
   add("mirror_of_the_sky", "max-mip", [=](PictureSettings& s) {
     water(s);
     s.water->reflection = s.water->refraction = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scarp/render/light/fog.h"
+#include "scarp/render/light/fog_model.h"
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,8 @@ FogSettings high_fog() {
 
 TEST(Fog, ByHeightIsTheIntegralAlongTheRay) {
   const FogSettings settings = high_fog();
-  const Fog fog(settings, {0, 0, 1});
+  const Sky sky({}, {0, 0, 1}, 0);
+  const Fog fog(settings, sky);
   const double per_metre = std::log(50.0) / settings.visibility;
   int judged = 0;
   for (const double z : {150.0, 200.0, 700.0}) {
@@ -69,7 +70,8 @@ TEST(Fog, ByDistanceLeavesTwoHundredthsAtTheVisibility) {
   FogSettings settings;
   settings.kind = FogKind::distance;
   settings.visibility = 1234;
-  const Fog fog(settings, {0, 0, 1});
+  const Sky sky({}, {0, 0, 1}, 0);
+  const Fog fog(settings, sky);
   const Ray r = ray({0, 0, 0}, {1, 2, 3});
   EXPECT_NEAR(fog.transmittance(r, 1234), 0.02, 1e-15);
   EXPECT_EQ(fog.transmittance(r, 0), 1);
@@ -82,18 +84,20 @@ TEST(Fog, IsWarmTowardsTheSunAlone) {
   FogSettings settings = high_fog();
   settings.sun_tint = 1;
   const dvec3 to_sun = normalize(dvec3(1, 0, 1));
-  const Fog fog(settings, to_sun);
+  const Sky sky({}, to_sun, 0);
+  const Fog fog(settings, sky);
   const vec3 towards = fog.colour(to_sun), away = fog.colour(-to_sun);
   EXPECT_GT(towards.x - towards.z, 0.3f);
   EXPECT_LT(away.x, away.z);
   settings.sun_tint = 0;
-  EXPECT_EQ(Fog(settings, to_sun).colour(to_sun), away);
+  EXPECT_EQ(Fog(settings, sky).colour(to_sun), away);
 }
 
 TEST(Fog, ByIterationsIsTheShare) {
   FogSettings settings;
   settings.kind = FogKind::iterations;
-  const Fog fog(settings, {0, 0, 1});
+  const Sky sky({}, {0, 0, 1}, 0);
+  const Fog fog(settings, sky);
   const Ray r = ray({0, 0, 0}, {1, 0, 0});
   const vec3 ground(0.1f, 0.2f, 0.3f);
   EXPECT_EQ(fog(r, 1e9, ground), ground);

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "scarp/base/error.h"
+#include "scarp/render/frame/film.h"
 #include "scarp/render/light/light.h"
-#include "scarp/render/light/sky.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/render/surface/ramp_tables.h"
 
@@ -109,13 +109,23 @@ TEST(Light, ASunBelowTheHorizonIsRefused) {
   EXPECT_THROW(validate(SunSettings{.azimuth_deg = nan}), Error);
 }
 
-TEST(Sky, IsBlueAtTheZenithAndPaleAtTheHorizon) {
-  EXPECT_TRUE(bluish(sky_colour(1)));
-  EXPECT_GT(sky_colour(0).x, 2 * sky_colour(1).x);
-  EXPECT_EQ(sky_colour(0), haze_colour());
+// Shades of a white hill-shade stay apart, hues stay, and dark colours do not change.
+TEST(ToneCurve, CompressesBrightColoursAlone) {
+  for (const vec3 dark : {vec3(0.0f), vec3(0.1f, 0.7f, 0.3f)}) EXPECT_EQ(toned(dark), dark);
+  float before = toned(vec3(0.7f)).x;
+  for (int i = 71; i <= 175; ++i) {
+    const float now = toned(vec3(0.01f * static_cast<float>(i))).x;
+    EXPECT_GT(now, before) << i;
+    EXPECT_LE(now, 1.0f + 1e-6f) << i;
+    before = now;
+  }
+  EXPECT_NEAR(toned(vec3(1.75f)).x, 1, 1e-6);
+  const vec3 orange = toned({1.6f, 0.8f, 0.4f});
+  EXPECT_NEAR(orange.y / orange.x, 0.5, 1e-6);
+  EXPECT_NEAR(orange.z / orange.x, 0.25, 1e-6);
+  const vec3 sun = toned({175, 80, 20});
+  EXPECT_GT(sun.z, 0.98f) << "white beyond all channels";
 }
-
-TEST(Sky, HasNoEdgeAtTheHorizon) { EXPECT_LT(length(sky_colour(1e-4) - sky_colour(-1e-4)), 1e-3f); }
 
 }  // namespace
 }  // namespace scarp

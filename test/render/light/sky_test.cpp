@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/render/light/sky_model.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/trigonometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "scarp/base/error.h"
+#include "scarp/render/surface/water.glsl.h"
+
+namespace scarp {
+namespace {
+
+constexpr double kSunRadius = 0.00465;
+
+// Degrees above the horizon; the sun is in the east.
+dvec3 direction(double altitude, double from_sun = 0) {
+  const double up = glm::radians(altitude), turn = glm::radians(from_sun);
+  return {std::cos(up) * std::cos(turn), std::cos(up) * std::sin(turn), std::sin(up)};
+}
+
+Sky scattering(double altitude, double turbidity = 3) {
+  return Sky({SkyKind::scattering, turbidity}, direction(altitude), kSunRadius);
+}
+
+float luminance(vec3 c) { return 0.2126f * c.x + 0.7152f * c.y + 0.0722f * c.z; }
+
+TEST(Sky, OfAPlainKindIsBlueAtTheZenithAndPaleAtTheHorizon) {
+  const Sky sky({}, direction(30), kSunRadius);
+  const vec3 zenith = sky.colour({0, 0, 1}), horizon = sky.colour({1, 0, 0});
+  EXPECT_GT(zenith.z, 3 * zenith.x);
+  EXPECT_GT(horizon.x, 2 * zenith.x);
+  EXPECT_EQ(sky.disc(direction(30)), vec3(0.0f));
+}
+
+TEST(Sky, HasNoEdgeAtTheHorizon) {
+  for (const Sky& sky : {Sky({}, direction(30), kSunRadius), scattering(30)})
+    EXPECT_LT(length(sky.colour(normalize(dvec3(1, 0, 1e-6))) - sky.colour(normalize(dvec3(1, 0, -1e-6)))), 1e-3f);
+}
+
+// Worked out from the paper's formulas by another program: turbidity 3, the sun 45 degrees high.
+TEST(Sky, HasPreethamsLuminanceAndChromaticityAtTheZenith) {
+  const Sky sky = scattering(45);
+  const vec3 zenith = sky.colour({0, 0, 1});
+  const dvec3 c(zenith);
+  // IEC 61966-2-1.
+  const double x = 0.4124 * c.x + 0.3576 * c.y + 0.1805 * c.z, y = 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z,
+               z = 0.0193 * c.x + 0.1192 * c.y + 0.9505 * c.z;
+  EXPECT_NEAR(x / (x + y + z), 0.24568, 2e-4);
+  EXPECT_NEAR(y / (x + y + z), 0.25148, 2e-4);
+  // 7.320 kcd/m^2 of the sky; sunlight gives 81.52 klx, pi times as many kcd/m^2 of a white surface.
+  EXPECT_NEAR(luminance(zenith) / luminance(sky.sunlight()), 7.320 / (81.52 / std::numbers::pi), 0.005);
+}
+
+TEST(Sky, OfALowSunIsOrangeAndItsLightToo) {
+  const Sky low = scattering(5), high = scattering(60);
+  EXPECT_GT(low.sunlight().x, 4 * low.sunlight().z);
+  EXPECT_LT(high.sunlight().x, 2 * high.sunlight().z);
+  EXPECT_GT(low.skylight().z, low.skylight().x) << "what is in shadow is blue";
+  const vec3 beside = low.colour(direction(5, 10));
+  EXPECT_GT(beside.x, 1.2f * beside.z);
+}
+
+TEST(Sky, IsBrightestAroundTheSun) {
+  for (const double altitude : {5.0, 30.0, 60.0}) {
+    const Sky sky = scattering(altitude);
+    float before = luminance(sky.colour(direction(altitude)));
+    for (const double from_sun : {5.0, 15.0, 40.0, 90.0}) {
+      const float now = luminance(sky.colour(direction(altitude, from_sun)));
+      EXPECT_LT(now, before) << altitude << ": " << from_sun;
+      before = now;
+    }
+  }
+}
+
+TEST(Sky, ShowsADiscOfTheSunsSize) {
+  const Sky sky = scattering(30);
+  const double radius = glm::degrees(kSunRadius);
+  for (const double side : {-1.0, 1.0}) {
+    EXPECT_GT(luminance(sky.disc(direction(30 + 0.98 * side * radius))), 0.99f * kBrightest);
+    EXPECT_EQ(sky.disc(direction(30 + 1.02 * side * radius)), vec3(0.0f));
+  }
+}
+
+TEST(Sky, LightsLevelGroundWithOneWhenTheSunIsHigh) {
+  for (const double altitude : {45.0, 60.0, 90.0}) {
+    const Sky sky = scattering(altitude);
+    const float light =
+        luminance(sky.skylight() + sky.sunlight() * std::sin(static_cast<float>(glm::radians(altitude))));
+    EXPECT_NEAR(light, 1, 1e-5) << altitude;
+  }
+}
+
+TEST(Sky, IsFiniteAndNotNegativeEverywhere) {
+  for (const double turbidity : {2.0, 10.0}) {
+    for (const double sun : {0.01, 3.0, 45.0, 90.0}) {
+      const Sky sky = scattering(sun, turbidity);
+      for (double altitude = -90; altitude <= 90; altitude += 7.5) {
+        for (double turn = 0; turn < 360; turn += 45) {
+          const vec3 colour = sky.colour(direction(altitude, turn));
+          for (int i = 0; i < 3; ++i) EXPECT_TRUE(colour[i] >= 0 && colour[i] < 1e3f) << turbidity << ", " << sun;
+        }
+      }
+    }
+  }
+}
+
+TEST(Sky, RefusesWhatIsOutOfRange) {
+  EXPECT_THROW(find_sky("clear"), Error);
+  EXPECT_EQ(find_sky("scattering"), SkyKind::scattering);
+  for (const double turbidity : {1.9, 10.1, std::numeric_limits<double>::quiet_NaN()})
+    EXPECT_THROW(validate(SkySettings{SkyKind::scattering, turbidity}), Error);
+}
+
+// Water that reflects all light loses none of the sun's: what all eyes above it see is what came in.
+TEST(Glitter, IsAllOfTheSunlight) {
+  for (const double altitude : {40.0, 70.0}) {
+    glsl::ScarpSky sky = scattering(altitude).numbers();
+    sky.disc = vec3(1e9f);
+    constexpr int kUp = 400, kAround = 800;
+    double sum = 0;
+    for (int i = 0; i < kUp; ++i) {
+      const double up = (i + 0.5) / kUp, level = std::sqrt(1 - up * up);
+      for (int j = 0; j < kAround; ++j) {
+        const double turn = 2 * std::numbers::pi * (j + 0.5) / kAround;
+        const dvec3 to_eye(level * std::cos(turn), level * std::sin(turn), up);
+        sum += up * glsl::scarp_glitter(sky, vec3(1.0f), -to_eye, {0, 0, 1}, 0.01, 1).x;
+      }
+    }
+    const double seen = sum * 2 * std::numbers::pi / (kUp * kAround);
+    EXPECT_NEAR(seen / (std::numbers::pi * std::sin(glm::radians(altitude))), 1, 0.02) << altitude;
+  }
+}
+
+TEST(Glitter, IsNotBrighterThanTheSunAndNeedsOne) {
+  const Sky sky = scattering(30);
+  const dvec3 mirrored(std::cos(glm::radians(30.0)), 0, -0.5);
+  const vec3 seen = glsl::scarp_glitter(sky.numbers(), sky.sunlight(), mirrored, {0, 0, 1}, 0, 0.5);
+  EXPECT_EQ(seen, sky.numbers().disc);
+  const Sky plain({}, direction(30), kSunRadius);
+  EXPECT_EQ(glsl::scarp_glitter(plain.numbers(), plain.sunlight(), mirrored, {0, 0, 1}, 0.01, 0.5), vec3(0.0f));
+}
+
+}  // namespace
+}  // namespace scarp
