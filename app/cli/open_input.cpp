@@ -39,7 +39,7 @@ OpenedInput voxels(const InputOptions& options, const std::string& ramp) {
   const VoxelShading shading = shading_of(options.vox_look);
   VoxInput read = read_voxels(options.inputs.front(), options.vox, voxels, ramp);
   OpenedInput opened{Scene(scene_voxels(std::move(read.voxels), shading))};
-  opened.numbers = read.numbers;
+  opened.numbers = read.numbers, opened.notes = std::move(read.notes);
   return opened;
 }
 

@@ -13,6 +13,7 @@
 #include "scarp/base/file_name.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/scene/scene_field.h"
+#include "scarp/source/vox_animation.h"
 
 namespace scarp::cli {
 namespace {
@@ -149,10 +150,11 @@ VoxInput read_voxels(const std::string& path, const VoxOptions& options, const V
     if (!ramp.empty() && std::isfinite(range.high)) input.numbers = range;
     return input;
   }
-  if (binvox) return {{}, placed_voxels_from(read_binvox(path), kPlainVoxels, from), {}};
+  if (binvox) return {{}, placed_voxels_from(read_binvox(path), kPlainVoxels, from)};
   VoxFile document = read_vox(path);
   PlacedVoxels placed = naming(path, [&] { return placed_voxels_from(document, {options.scene, voxels}); });
-  return {std::move(document), std::move(placed), {}};
+  std::vector<std::string> notes = vox_notes(document, options.scene);
+  return {std::move(document), std::move(placed), {}, std::move(notes)};
 }
 
 VoxelShading shading_of(const VoxLookOptions& options) {
@@ -173,12 +175,16 @@ void describe_document(const VoxFile& file, const VoxOptions& options, Json& inf
   info["format"] = "MagicaVoxel";
   info["version"] = file.version;
   info["models"] = Json::array();
-  for (const VoxModel& model : file.models)
-    info["models"].push_back({{"size", {model.size.x, model.size.y, model.size.z}}, {"voxels", model.voxels.size()}});
+  for (const VoxModel& model : file.models) {
+    const auto solid =
+        std::count_if(model.voxels.begin(), model.voxels.end(), [](const auto& v) { return v.index > 0; });
+    info["models"].push_back({{"size", {model.size.x, model.size.y, model.size.z}}, {"voxels", solid}});
+  }
   std::set<int> colours;
   for (const VoxModel& model : file.models) {
     for (const VoxVoxel& voxel : model.voxels) colours.insert(voxel.index);
   }
+  colours.erase(0);
   info["colours_used"] = colours.size();
   info["default_palette"] = !file.palette.has_value();
   info["nodes"] = file.nodes.size();
@@ -186,6 +192,9 @@ void describe_document(const VoxFile& file, const VoxOptions& options, Json& inf
   info["materials"] = file.materials.size();
   const std::size_t shown = vox_instances(file, options.scene).size();
   info["instances"] = shown;
+  const VoxAnimation animation = vox_animation(file);
+  info["frames"] = animation.frames;
+  info["loops"] = !animation.loops ? "none" : animation.ends ? "parts" : "all";
   info["hidden_instances"] = vox_instances(file, {.frame = options.scene.frame, .hidden = true}).size() - shown;
 }
 
@@ -211,6 +220,7 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   const auto corner = [](const dvec3& p) { return Json{std::llround(p.x), std::llround(p.y), std::llround(p.z)}; };
   info["low"] = box.empty() ? Json() : corner(box.low);
   info["high"] = box.empty() ? Json() : corner(box.high);
+  info["notes"] = input.notes;
   return info;
 }
 
@@ -236,6 +246,13 @@ std::string vox_text_of(const Json& info) {
   if (document) {
     line("scene", fmt::format("{} nodes, {} layers; {} objects, {} hidden", count("nodes"), count("layers"),
                               count("instances"), count("hidden_instances")));
+    const std::int64_t frames = count("frames");
+    const auto loops = info["loops"].get<std::string>();
+    line("frames", frames == 1 ? "1"
+                               : fmt::format("{} (--frame 0 to {}){}", frames, frames - 1,
+                                             loops == "all"     ? ", repeating"
+                                             : loops == "parts" ? ", parts of them repeating"
+                                                                : ""));
     line("colours", fmt::format("{} of the {} palette; {} materials", count("colours_used"),
                                 info["default_palette"].get<bool>() ? "default" : "file's", count("materials")));
   }
@@ -247,6 +264,7 @@ std::string vox_text_of(const Json& info) {
     line("box", fmt::format("({}, {}, {}) to ({}, {}, {}) voxels", at("low", 0), at("low", 1), at("low", 2),
                             at("high", 0), at("high", 1), at("high", 2)));
   }
+  for (const Json& note : info["notes"]) line("note", note.get<std::string>());
   return out;
 }
 

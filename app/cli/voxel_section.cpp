@@ -123,6 +123,7 @@ void run(const SectionOptions& options) {
     svg = svg_of(grid, axis, at + options.margin, [&](const ivec3& v) { return cubes.distance(v) - 1; });
   }
   write_text(options.output, svg);
+  for (const std::string& note : input.notes) fmt::print(stderr, "note: {}\n", note);
   fmt::print("{}: model {}, layer {} of {} along {}, radii of {}\n", options.output, options.model, at, side,
              options.axis, options.radii);
 }

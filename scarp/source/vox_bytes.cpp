@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <limits>
 #include <type_traits>
 
@@ -51,6 +52,14 @@ std::string printable(std::string_view bytes) {
   std::string text = "'";
   for (const char byte : bytes.substr(0, kMost)) text += byte >= ' ' && byte <= '~' ? byte : '.';
   return text + (bytes.size() > kMost ? "...'" : "'");
+}
+
+int whole_number(std::string_view text, std::string_view what) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw Error(fmt::format("{} is {} (expected an integer)", what, printable(text)));
+  return value;
 }
 
 namespace {

@@ -41,8 +41,6 @@ void parse_voxels(VoxBytes& bytes, VoxModel& model) {
       throw Error(fmt::format("voxel ({}, {}, {}) is outside the model of {} x {} x {}", voxel.x, voxel.y, voxel.z,
                               model.size.x, model.size.y, model.size.z));
     }
-    if (voxel.index == 0)
-      throw Error(fmt::format("voxel ({}, {}, {}) has palette index 0, which means empty", voxel.x, voxel.y, voxel.z));
     model.voxels.push_back(voxel);
   }
 }

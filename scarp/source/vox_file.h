@@ -4,7 +4,7 @@
 //   'VOX ' version
 //   MAIN                         all other chunks are its children; a chunk: name, bytes, bytes of children
 //     PACK                       number of models (old files with several)
-//     SIZE XYZI  ...             a model each: its size, z up, and its solid voxels (x, y, z, palette index 1..255)
+//     SIZE XYZI  ...             a model each: its size, z up, and its voxels (x, y, z, palette index 1..255; 0: empty)
 //     nTRN nGRP nSHP  ...        the scene: transforms, groups, shapes (uses of models); see vox_scene.h
 //     LAYR  ...                  layers, which may be hidden
 //     RGBA                       the palette: entry i is the colour of index i + 1; without it, vox_default_palette()
@@ -31,10 +31,10 @@
 
 namespace scarp {
 
-/// A solid voxel of a model.
+/// A voxel of a model.
 struct VoxVoxel {
   std::uint8_t x = 0, y = 0, z = 0;
-  std::uint8_t index = 1;  ///< palette index, 1..255
+  std::uint8_t index = 1;  ///< palette index, 1..255; 0: empty
   friend bool operator==(const VoxVoxel&, const VoxVoxel&) = default;
 };
 
@@ -72,7 +72,7 @@ struct VoxModelUse {
 
 /// A node that shows models.
 struct VoxShape {
-  std::vector<VoxModelUse> models{1};  ///< one per frame
+  std::vector<VoxModelUse> models{1};  ///< one per keyframe
   friend bool operator==(const VoxShape&, const VoxShape&) = default;
 };
 
@@ -117,7 +117,7 @@ struct VoxFile {
   int version = 150;
   bool pack = false;  ///< whether there is a PACK chunk
   std::vector<VoxModel> models;
-  std::vector<VoxNode> nodes;  ///< the first one is the root; empty: no scene
+  std::vector<VoxNode> nodes;  ///< the root is node 0; empty: no scene
   std::vector<VoxLayer> layers;
   std::optional<VoxPalette> palette;
   std::optional<std::array<std::uint8_t, 256>> index_map;
@@ -136,8 +136,8 @@ const VoxPalette& vox_default_palette();
 /// Returns the value of the last attribute with this name.
 std::optional<std::string_view> find_attribute(const VoxAttributes& attributes, std::string_view name);
 
-/// Throws Error, in one line: not .vox, another version, truncated, inconsistent sizes, voxels outside the model or
-/// with index 0, nodes that are missing, duplicate or contain themselves, missing models, invalid rotations.
+/// Throws Error, in one line: not .vox, another version, truncated, inconsistent sizes, voxels outside the model, nodes
+/// that are missing, duplicate or contain themselves, missing models, invalid rotations.
 VoxFile parse_vox(std::string_view bytes);
 /// Parses a file; errors name it.
 VoxFile read_vox(const std::string& path);

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <glm/common.hpp>
 #include <unordered_map>
 
 #include "scarp/base/error.h"
+#include "scarp/source/vox_animation.h"
 #include "scarp/source/vox_bytes.h"
 
 namespace scarp {
@@ -18,18 +18,10 @@ namespace {
 constexpr std::size_t kMostInstances = std::size_t{1} << 20;
 constexpr int kFarthest = 1 << 24;
 
-int whole(std::string_view text, std::string_view what) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw Error(fmt::format("{} is {} (expected an integer)", what, printable(text)));
-  return value;
-}
-
 LatticeRotation turn_of(const VoxAttributes& frame) {
   const auto text = find_attribute(frame, "_r");
   if (!text) return {};
-  const int bits = whole(*text, "rotation");
+  const int bits = whole_number(*text, "rotation");
   const int first = bits & 3, second = bits >> 2 & 3;
   if (bits < 0 || bits > 127 || first > 2 || second > 2 || first == second)
     throw Error(fmt::format("rotation {} is not a lattice rotation", bits));
@@ -46,7 +38,7 @@ ivec3 move_of(const VoxAttributes& frame) {
     const std::size_t end = axis < 2 ? rest.find(' ') : rest.size();
     if (end == std::string_view::npos)
       throw Error(fmt::format("translation is {} (expected 'x y z')", printable(*text)));
-    move[axis] = whole(rest.substr(0, end), "coordinate of a translation");
+    move[axis] = whole_number(rest.substr(0, end), "coordinate of a translation");
     if (std::abs(std::int64_t{move[axis]}) > kFarthest)
       throw Error(fmt::format("translation by {} voxels (limited to {})", move[axis], kFarthest));
     rest.remove_prefix(std::min(end + 1, rest.size()));
@@ -56,19 +48,36 @@ ivec3 move_of(const VoxAttributes& frame) {
 
 bool hidden(const VoxAttributes& attributes) { return find_attribute(attributes, "_hidden") == "1"; }
 
-int frame_of(const VoxAttributes& attributes) {
-  const auto text = find_attribute(attributes, "_f");
-  return text ? whole(*text, "frame") : 0;
+// A translation between two keyframes, rounded to whole voxels.
+ivec3 interpolated(const ivec3& from, const ivec3& to, const VoxMoment& moment) {
+  ivec3 move;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Twice the exact value, plus 1 to round, as a fraction.
+    const std::int64_t above = 2 * (std::int64_t{to[axis]} - from[axis]) * moment.passed + moment.distance;
+    const std::int64_t below = 2 * moment.distance, whole = above / below;
+    move[axis] = from[axis] + static_cast<int>(whole - (above % below < 0 ? 1 : 0));
+  }
+  return move;
 }
 
-// The last item that begins no later than the frame, or the first.
-template <class Items, class Attributes>
-const auto& at_frame(const Items& items, int frame, const Attributes& attributes) {
-  const auto* found = &items.front();
-  for (const auto& item : items) {
-    if (frame_of(attributes(item)) <= frame) found = &item;
+// What a node contributes at a frame.
+struct AtFrame {
+  VoxInstance place;  // of a transform, without a model
+  int model = 0;      // of a shape
+};
+
+AtFrame at_frame(const VoxNode& node, int frame) {
+  AtFrame now;
+  const std::vector<std::int64_t> keyframes = vox_keyframes(node);
+  if (keyframes.empty()) return now;
+  const VoxMoment moment = vox_moment(keyframes, vox_loops(node), frame);
+  if (const auto* transform = std::get_if<VoxTransform>(&node.content)) {
+    const VoxAttributes &before = transform->frames[moment.before], &after = transform->frames[moment.after];
+    now.place = {0, turn_of(before), interpolated(move_of(before), move_of(after), moment)};
+  } else {
+    now.model = std::get<VoxShape>(node.content).models[moment.before].model;
   }
-  return *found;
+  return now;
 }
 
 using Nodes = std::unordered_map<int, const VoxNode*>;
@@ -81,6 +90,9 @@ Nodes by_id(const VoxFile& file) {
   return nodes;
 }
 
+// The editor's root is node 0. A scene without one begins with its first node.
+int root_of(const Nodes& nodes, const VoxFile& file) { return nodes.contains(0) ? 0 : file.nodes.front().id; }
+
 std::vector<int> children_of(const VoxNode& node) {
   if (const auto* transform = std::get_if<VoxTransform>(&node.content)) return {transform->child};
   if (const auto* group = std::get_if<VoxGroup>(&node.content)) return group->children;
@@ -88,15 +100,15 @@ std::vector<int> children_of(const VoxNode& node) {
 }
 
 void check_node(const VoxFile& file, const VoxNode& node, const Nodes& nodes) {
+  vox_keyframes(node);
   for (const int child : children_of(node)) {
     if (!nodes.contains(child)) throw Error(fmt::format("child {} does not exist", child));
   }
   if (const auto* transform = std::get_if<VoxTransform>(&node.content)) {
-    for (const VoxAttributes& frame : transform->frames) turn_of(frame), move_of(frame), frame_of(frame);
+    for (const VoxAttributes& frame : transform->frames) turn_of(frame), move_of(frame);
   }
   if (const auto* shape = std::get_if<VoxShape>(&node.content)) {
     for (const VoxModelUse& use : shape->models) {
-      frame_of(use.attributes);
       if (use.model < 0 || static_cast<std::size_t>(use.model) >= file.models.size())
         throw Error(fmt::format("model {} does not exist (the file has {})", use.model, file.models.size()));
     }
@@ -159,12 +171,16 @@ std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOption
   std::unordered_map<int, bool> hidden_layers;
   for (const VoxLayer& layer : file.layers) hidden_layers[layer.id] = hidden(layer.attributes);
 
+  // Once each: groups may use a node many times.
+  std::unordered_map<int, AtFrame> now;
+  for (const VoxNode& node : file.nodes) now.emplace(node.id, at_frame(node, options.frame));
+
   struct Visit {
     int node;
     VoxInstance place;
   };
-  std::vector<Visit> stack{{file.nodes.front().id, {}}};
-  // Groups may be used repeatedly: the total is limited.
+  std::vector<Visit> stack{{root_of(nodes, file), {}}};
+  // The total is limited, too.
   for (std::size_t visits = 0; !stack.empty(); ++visits) {
     if (visits >= 8 * kMostInstances || instances.size() >= kMostInstances)
       throw Error(fmt::format("scene: more than {} model instances", kMostInstances));
@@ -175,11 +191,10 @@ std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOption
     if (const auto* transform = std::get_if<VoxTransform>(&node.content)) {
       const auto layer = hidden_layers.find(transform->layer);
       if (!options.hidden && layer != hidden_layers.end() && layer->second) continue;
-      const VoxAttributes& frame =
-          at_frame(transform->frames, options.frame, [](const VoxAttributes& f) -> const VoxAttributes& { return f; });
+      const VoxInstance& own = now.at(visit.node).place;
       Visit below{transform->child, visit.place};
-      below.place.turn = visit.place.turn * turn_of(frame);
-      below.place.move += visit.place.turn(move_of(frame));
+      below.place.turn = visit.place.turn * own.turn;
+      below.place.move += visit.place.turn(own.move);
       const ivec3 away = glm::abs(below.place.move);
       if (std::max({away.x, away.y, away.z}) > kFarthest)
         throw Error(fmt::format("scene: node {} is more than {} voxels away", node.id, kFarthest));
@@ -188,13 +203,31 @@ std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOption
       if (group->children.size() > kMostInstances) throw Error("scene: group of more than 2^20 nodes");
       for (auto child = group->children.rbegin(); child != group->children.rend(); ++child)
         stack.push_back({*child, visit.place});
-    } else if (const auto* shape = std::get_if<VoxShape>(&node.content)) {
-      const VoxModelUse& use = at_frame(shape->models, options.frame,
-                                        [](const VoxModelUse& u) -> const VoxAttributes& { return u.attributes; });
-      instances.push_back({use.model, visit.place.turn, visit.place.move});
+    } else {
+      instances.push_back({now.at(visit.node).model, visit.place.turn, visit.place.move});
     }
   }
   return instances;
+}
+
+std::vector<std::string> vox_notes(const VoxFile& file, const VoxSceneOptions& options) {
+  std::vector<std::string> notes;
+  const VoxAnimation animation = vox_animation(file);
+  const std::int64_t last = animation.frames - 1;
+  if (options.frame > last) {
+    notes.push_back(fmt::format(
+        "frame {}: {}", options.frame,
+        last == 0          ? "the file has a single frame, which is shown"
+        : !animation.loops ? fmt::format("the animation ends at frame {}, which is shown", last)
+        : !animation.ends  ? fmt::format("the animation repeats, its last frame is {}", last)
+                           : fmt::format("parts of the animation repeat, the others are shown as at frame {}", last)));
+  }
+  std::size_t empty = 0;
+  for (const VoxModel& model : file.models)
+    empty += static_cast<std::size_t>(std::count_if(model.voxels.begin(), model.voxels.end(),
+                                                    [](const VoxVoxel& voxel) { return voxel.index == 0; }));
+  if (empty > 0) notes.push_back(fmt::format("voxels with palette index 0 count as empty: {}", empty));
+  return notes;
 }
 
 }  // namespace scarp

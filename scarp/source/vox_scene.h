@@ -5,14 +5,17 @@
 //                     └── transform ── shape ── model       quarter turns and whole voxels
 //
 //   nTRN  _r  a byte: bits 0-1 and 2-3 are the columns of the entries of rows 0 and 1 of the matrix, bits 4, 5, 6 are
-//             set if rows 0, 1, 2 are negative         _t  "x y z"     _f  first frame that it applies to
-//         _hidden  1: everything below is hidden       nSHP  _f  likewise for its models
+//             set if rows 0, 1, 2 are negative         _t  "x y z"
+//         _hidden  1: everything below is hidden       _f, _loop of nTRN and nSHP: see vox_animation.h
 //   LAYR  _hidden  1: its transforms are hidden
+//
+// The root is node 0, or the first node of a scene without a node 0.
 //
 // A model rotates about its centre, rounded down to a voxel corner: a point p of it moves to turn * (p - floor(size /
 // 2)) + move.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "scarp/base/lattice_rotation.h"
@@ -29,7 +32,7 @@ struct VoxInstance {
 
 /// Selection of instances.
 struct VoxSceneOptions {
-  int frame = 0;        ///< of animations, >= 0
+  int frame = 0;        ///< of animations, >= 0; beyond the last frame: see vox_animation.h
   bool hidden = false;  ///< whether to include hidden nodes and layers
 };
 
@@ -37,6 +40,9 @@ struct VoxSceneOptions {
 /// Without a scene, returns the first model, or that of the frame in a file with PACK. Throws Error for more than 2^20
 /// instances, or positions beyond 2^24 voxels.
 std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOptions& options = {});
+
+/// Returns notes for users, one line each: a frame beyond the end, voxels with palette index 0.
+std::vector<std::string> vox_notes(const VoxFile& file, const VoxSceneOptions& options = {});
 
 /// Throws Error in one line if the scene is invalid: see parse_vox().
 void check_vox_scene(const VoxFile& file);

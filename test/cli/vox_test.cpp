@@ -58,6 +58,38 @@ TEST_F(CliVox, InfoSaysWhatIsInTheFile) {
   EXPECT_EQ(json["high"], (std::vector<int>{2, 2, 9}));
 }
 
+// The plate moves 8 voxels east in 4 frames. One of its voxels is empty by its palette index.
+TEST_F(CliVox, FramesOfAnAnimation) {
+  VoxFile file = read_vox(model_);
+  std::get<VoxTransform>(file.nodes[0].content).frames = {{{"_t", "0 0 0"}}, {{"_f", "4"}, {"_t", "8 0 0"}}};
+  file.models[0].voxels.push_back({1, 1, 2, 0});
+  write_vox(model_, file);
+  const auto info = run({"info", model_});
+  EXPECT_NE(info.out.find("frames       5 (--frame 0 to 4)\n"), std::string::npos) << info.out;
+  EXPECT_NE(info.out.find("note         voxels with palette index 0 count as empty: 1\n"), std::string::npos)
+      << info.out;
+  const auto low = [&](const char* frame) {
+    const auto json = nlohmann::json::parse(run({"info", model_, "--json", "--frame", frame}).out);
+    EXPECT_EQ(json["models"][0]["voxels"], 9);
+    EXPECT_EQ(json["colours_used"], 1);
+    return json["low"][0].get<int>();
+  };
+  EXPECT_EQ(low("0"), -1);
+  EXPECT_EQ(low("3"), 5);
+  EXPECT_EQ(low("9"), 7);
+  const auto past = run({"render", model_, "-o", path("past.png"), "--size", "30x30", "--frame", "9"});
+  EXPECT_EQ(past.status, 0);
+  EXPECT_NE(past.err.find("note: frame 9: the animation ends at frame 4, which is shown\n"), std::string::npos)
+      << past.err;
+  // Scene files note it with the name of the file.
+  const std::string scene =
+      scratch_.write("scene.json", R"({"objects": [{"voxels": {"file": "model.vox", "frame": 5}}]})");
+  const auto placed = run({"render", scene, "-o", path("placed.png"), "--size", "30x30"});
+  EXPECT_EQ(placed.status, 0);
+  EXPECT_NE(placed.err.find("model.vox: frame 5: the animation ends at frame 4, which is shown\n"), std::string::npos)
+      << placed.err;
+}
+
 // The default palette's entry 216 is a pure red; from above, in full sun, it stays what it is.
 TEST_F(CliVox, AllMarchesRenderTheSamePicture) {
   std::string first;

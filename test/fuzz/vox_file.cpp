@@ -8,6 +8,7 @@
 
 #include "fuzz/fuzz.h"
 #include "scarp/base/error.h"
+#include "scarp/source/vox_animation.h"
 #include "scarp/source/vox_scene.h"
 
 namespace {
@@ -27,11 +28,14 @@ void parse(std::string_view bytes) {
     require(scarp::parse_vox(scarp::vox_bytes(file)) == file);
     for (const scarp::VoxModel& model : file.models) {
       for (const scarp::VoxVoxel& voxel : model.voxels)
-        require(voxel.x < model.size.x && voxel.y < model.size.y && voxel.z < model.size.z && voxel.index > 0);
+        require(voxel.x < model.size.x && voxel.y < model.size.y && voxel.z < model.size.z);
     }
     try {
-      for (const scarp::VoxInstance& instance : scarp::vox_instances(file))
-        require(instance.model >= 0 && static_cast<std::size_t>(instance.model) < file.models.size());
+      for (const int frame : {0, 7, 1 << 30}) {
+        for (const scarp::VoxInstance& instance : scarp::vox_instances(file, {.frame = frame}))
+          require(instance.model >= 0 && static_cast<std::size_t>(instance.model) < file.models.size());
+      }
+      require(scarp::vox_animation(file).frames >= 1);
     } catch (const scarp::Error& error) {
       expect_one_line(error);
     }

@@ -3,12 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "base/refusal.h"
 #include "scarp/base/error.h"
+#include "scarp/source/vox_animation.h"
 #include "scarp/source/vox_scene.h"
 
 namespace scarp {
@@ -105,9 +107,15 @@ TEST(VoxFile, RefusesSizesThatLie) {
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "is outside", with(32, 2));
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "2147483648 voxels need", with(56, 1u << 31));
   EXPECT_PRED_FORMAT2(testing::IsSubstring, "voxels need", with(56, 1));
-  std::string empty = good;
-  empty[63] = 0;
-  EXPECT_PRED_FORMAT2(testing::IsSubstring, "palette index 0", parse_message(empty));
+}
+
+TEST(VoxFile, CountsVoxelsOfIndexZeroAsEmpty) {
+  VoxFile file = cube_file();
+  EXPECT_TRUE(vox_notes(file).empty());
+  file.models[0].voxels[0].index = 0;
+  const VoxFile read = parse_vox(vox_bytes(file));
+  EXPECT_EQ(read, file);
+  EXPECT_EQ(vox_notes(read), std::vector<std::string>{"voxels with palette index 0 count as empty: 1"});
 }
 
 TEST(VoxFile, RefusesScenesThatCannotBe) {
@@ -169,12 +177,70 @@ TEST(VoxScene, LeavesOutWhatIsHidden) {
   EXPECT_EQ(vox_instances(file, {.frame = 0, .hidden = true}).size(), 3u);
 }
 
-TEST(VoxScene, FollowsFrames) {
+TEST(VoxScene, BeginsWithNodeZero) {
+  VoxFile file = scene_file({{{"_t", "1 2 3"}}});
+  std::reverse(file.nodes.begin(), file.nodes.end());
+  ASSERT_EQ(vox_instances(file).size(), 1u);
+  EXPECT_EQ(vox_instances(file)[0].move, ivec3(1, 2, 3));
+}
+
+// Keyframes at 2 and 5, in any order: the first and the last are held, positions in between are rounded.
+TEST(VoxScene, InterpolatesPositionsAndSwitchesTheRest) {
   VoxFile file = scene_file({{}});
-  std::get<VoxTransform>(file.nodes[2].content).frames = {{{"_t", "1 0 0"}}, {{"_f", "5"}, {"_t", "2 0 0"}}};
-  EXPECT_EQ(vox_instances(file)[0].move.x, 1);
-  EXPECT_EQ(vox_instances(file, {.frame = 4})[0].move.x, 1);
-  EXPECT_EQ(vox_instances(file, {.frame = 5})[0].move.x, 2);
+  file.models.push_back({{1, 1, 1}, {{0, 0, 0, 1}}});
+  const std::string quarter = std::to_string(1 | 0 << 2 | 1 << 5);
+  std::get<VoxTransform>(file.nodes[2].content).frames = {{{"_f", "5"}, {"_t", "11 -11 4"}, {"_r", quarter}},
+                                                          {{"_f", "2"}, {"_t", "1 -1 3"}}};
+  std::get<VoxShape>(file.nodes[3].content).models = {{0, {}}, {1, {{"_f", "4"}}}};
+  const auto at = [&](int frame) { return vox_instances(file, {.frame = frame}).at(0); };
+  EXPECT_EQ(at(0).move, ivec3(1, -1, 3));
+  EXPECT_EQ(at(2).move, ivec3(1, -1, 3));
+  EXPECT_EQ(at(3).move, ivec3(4, -4, 3));  // 4.33, -4.33, 3.33
+  EXPECT_EQ(at(4).move, ivec3(8, -8, 4));  // 7.67, -7.67, 3.67
+  EXPECT_EQ(at(4).turn, LatticeRotation{});
+  EXPECT_EQ(at(5).move, ivec3(11, -11, 4));
+  EXPECT_NE(at(5).turn, LatticeRotation{});
+  EXPECT_EQ(at(1 << 30).move, ivec3(11, -11, 4));
+  EXPECT_EQ(at(3).model, 0);
+  EXPECT_EQ(at(4).model, 1);
+  // Halves go up, below 0 as well.
+  std::get<VoxTransform>(file.nodes[2].content).frames = {{{"_t", "0 0 -3"}}, {{"_f", "2"}, {"_t", "1 -1 -4"}}};
+  EXPECT_EQ(at(1).move, ivec3(1, 0, -3));
+}
+
+TEST(VoxScene, RepeatsLoops) {
+  VoxFile file = scene_file({{}});
+  file.nodes[2].attributes = {{"_loop", "1"}};
+  std::get<VoxTransform>(file.nodes[2].content).frames = {{{"_f", "2"}, {"_t", "0 0 0"}},
+                                                          {{"_f", "5"}, {"_t", "3 0 0"}}};
+  std::vector<int> x;
+  for (int frame = 0; frame < 12; ++frame) x.push_back(vox_instances(file, {.frame = frame})[0].move.x);
+  EXPECT_EQ(x, (std::vector<int>{2, 3, 0, 1, 2, 3, 0, 1, 2, 3, 0, 1}));
+}
+
+TEST(VoxScene, CountsFramesAndNotesThoseBeyondTheEnd) {
+  VoxFile file = scene_file({{}, {}});
+  const auto note = [&](int frame) {
+    const std::vector<std::string> notes = vox_notes(file, {.frame = frame});
+    return notes.empty() ? "" : notes.at(0);
+  };
+  EXPECT_EQ(vox_animation(file).frames, 1);
+  EXPECT_EQ(note(0), "");
+  EXPECT_EQ(note(1), "frame 1: the file has a single frame, which is shown");
+  std::get<VoxTransform>(file.nodes[2].content).frames = {{}, {{"_f", "9"}}};
+  EXPECT_EQ(vox_animation(file).frames, 10);
+  EXPECT_EQ(note(9), "");
+  EXPECT_EQ(note(10), "frame 10: the animation ends at frame 9, which is shown");
+  file.nodes[2].attributes = {{"_loop", "1"}};
+  EXPECT_EQ(note(10), "frame 10: the animation repeats, its last frame is 9");
+  std::get<VoxShape>(file.nodes[5].content).models = {{0, {}}, {0, {{"_f", "4"}}}};
+  EXPECT_EQ(note(10), "frame 10: parts of the animation repeat, the others are shown as at frame 9");
+  // Files of old versions: a model is a frame.
+  VoxFile old = cube_file();
+  old.models.push_back(old.models[0]);
+  EXPECT_EQ(vox_animation(old).frames, 1);
+  old.pack = true;
+  EXPECT_EQ(vox_animation(old).frames, 2);
 }
 
 TEST(VoxFile, IsWrittenWholeOrNotAtAll) {
@@ -182,7 +248,7 @@ TEST(VoxFile, IsWrittenWholeOrNotAtAll) {
   write_vox(path, cube_file());
   EXPECT_EQ(read_vox(path), cube_file());
   VoxFile bad = cube_file();
-  bad.models[0].voxels[0].index = 0;
+  bad.models[0].voxels[0].x = 3;
   EXPECT_THROW(write_vox(path, bad), Error);
   EXPECT_EQ(read_vox(path), cube_file());
   std::filesystem::remove(path);

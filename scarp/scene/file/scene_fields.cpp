@@ -167,14 +167,18 @@ void require_keys_of_format(const Json& json, const std::string& path) {
   }
 }
 
-PlacedVoxels voxels_of_file(const Json& json, const std::string& file, const VoxelFileOptions& voxels) {
+PlacedVoxels voxels_of_file(const Json& json, const std::string& file, const VoxelFileOptions& voxels,
+                            std::vector<std::string>& notes) {
   const FromVolumeOptions volume{voxels, json.value("up", "z") == "y" ? UpAxis::y : UpAxis::z,
                                  optional<double>(json, "solid_from")};
   const VoxelColour colour = json.contains("colour") ? colour_from(json["colour"]) : kPlainVoxels;
   if (json.contains("volume"))
     return placed_voxels_from(read_volume(file, json["volume"]), std::vector{colour}, volume);
   if (is_binvox(json)) return placed_voxels_from(read_binvox(file), colour, volume);
-  return placed_voxels_from(read_vox(file), {{json.value("frame", 0), json.value("hidden", false)}, voxels});
+  const VoxFile document = read_vox(file);
+  const VoxSceneOptions scene{json.value("frame", 0), json.value("hidden", false)};
+  for (const std::string& note : vox_notes(document, scene)) notes.push_back(fmt::format("{}: {}", file, note));
+  return placed_voxels_from(document, {scene, voxels});
 }
 
 FieldWithPlace voxels_from(const Json& json, const std::string& path, const FieldSurroundings& around,
@@ -191,7 +195,7 @@ FieldWithPlace voxels_from(const Json& json, const std::string& path, const Fiel
     shading.normal_radius = json.value("normal_radius", shading.normal_radius);
     shading.corner_ao = json.value("corner_ao", false);
     const std::string file = resolved(around, json["file"]);
-    SceneFieldPtr field = scene_voxels(voxels_of_file(json, file, options), shading);
+    SceneFieldPtr field = scene_voxels(voxels_of_file(json, file, options, *around.notes), shading);
     around.files->push_back(file);
     const WorldBox box = *field->box();
     dvec3 shift(0.0);
