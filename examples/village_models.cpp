@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Makes the voxel models of examples/scenes: village_models FOLDER writes house.vox, church.vox, pine.vox and
-// broadleaf.vox there. A voxel is half a metre in the scenes.
+// Makes the voxel models of examples/scenes: village_models FOLDER writes house.vox, church.vox, pine.vox,
+// broadleaf.vox and block.vox there. A voxel is half a metre in the village.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -188,6 +188,17 @@ Builder broadleaf() {
   return b;
 }
 
+// Solid, to cut other models with.
+Builder block() {
+  Builder b(16, 12, 20);
+  for (int z = 0; z < 20; ++z) {
+    for (int y = 0; y < 12; ++y) {
+      for (int x = 0; x < 16; ++x) b.set(x, y, z, stone);
+    }
+  }
+  return b;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) try {
@@ -200,7 +211,8 @@ int main(int argc, char** argv) try {
   church().write(folder / "church.vox");
   pine().write(folder / "pine.vox");
   broadleaf().write(folder / "broadleaf.vox");
-  std::printf("house.vox church.vox pine.vox broadleaf.vox\n");
+  block().write(folder / "block.vox");
+  std::printf("house.vox church.vox pine.vox broadleaf.vox block.vox\n");
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "village_models: %s\n", error.what());

@@ -211,7 +211,7 @@ TEST_P(GoldenScene, AsItWasLookedAt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Examples, GoldenScene,
-                         testing::Values("balloons", "endless", "lake", "mix", "quarry", "standing-in-noise",
+                         testing::Values("balloons", "cutaway", "endless", "lake", "mix", "quarry", "standing-in-noise",
                                          "torus-at-sea", "village"),
                          [](const auto& scene) {
                            std::string name = scene.param;

@@ -90,6 +90,41 @@ TEST_F(CliVox, FramesOfAnAnimation) {
       << placed.err;
 }
 
+// From four sides, and along a path: as an input, and in a scene. The tower in the plate's eastern corner is in another
+// place of each picture.
+TEST_F(CliVox, TurnsAndFliesRound) {
+  VoxFile file = read_vox(model_);
+  for (std::uint8_t z = 1; z < 3; ++z) file.models[0].voxels.push_back({2, 0, z, 1});
+  write_vox(model_, file);
+  const std::string scene = scratch_.write("scene.json", R"({"objects": [{"voxels": {"file": "model.vox"}}]})");
+  const std::string flight = scratch_.write("path.csv", "x,y,z,tx,ty,tz\n9,-9,5,0,0,0\n9,9,5,0,0,0\n-9,9,5,0,0,0\n");
+  const auto frames = [&](const std::string& input, const std::string& name, int count, std::vector<std::string> how) {
+    how.insert(how.begin(), {"render", input, "-o", path(name + "#.png"), "--size", "48x32", "--haze", "0"});
+    const auto result = run(how);
+    EXPECT_EQ(result.status, 0) << result.err;
+    std::vector<std::string> pictures;
+    for (int i = 0; i < count; ++i) pictures.push_back(test::text_of(path(name + std::to_string(i) + ".png")));
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < i; ++j) EXPECT_NE(pictures[i], pictures[j]) << name << i << ' ' << j;
+    }
+    return pictures;
+  };
+  const std::vector<std::string> turn{"--turntable", "--frames", "4", "--sun", "235,45"};
+  const auto turned = frames(model_, "turned", 4, turn);
+  EXPECT_EQ(frames(scene, "scene", 4, turn), turned);
+  const std::vector<std::string> fly{"--path", flight, "--frames", "3", "--sun", "235,45"};
+  EXPECT_EQ(frames(scene, "flown", 3, fly), frames(model_, "flight", 3, fly));
+  // A quarter turn is what --view shows from there.
+  ASSERT_EQ(run({"render", model_, "-o", path("a.png"), "--size", "48x32", "--turntable"}).status, 1);
+  ASSERT_EQ(run({"render", model_, "-o", path("a.png"), "--size", "48x32", "--haze", "0", "--view", "290,30"}).status,
+            0);
+  ASSERT_EQ(run({"render", model_, "-o", path("b#.png"), "--size", "48x32", "--haze", "0", "--view", "200,30",
+                 "--turntable", "--frames", "4"})
+                .status,
+            0);
+  EXPECT_EQ(test::text_of(path("a.png")), test::text_of(path("b1.png")));
+}
+
 // The default palette's entry 216 is a pure red; from above, in full sun, it stays what it is.
 TEST_F(CliVox, AllMarchesRenderTheSamePicture) {
   std::string first;
@@ -112,7 +147,7 @@ TEST_F(CliVox, AllMarchesRenderTheSamePicture) {
 TEST_F(CliVox, SaysInOneLineWhatIsWrong) {
   const std::string out = path("out.png");
   expect_refused({"render", model_, "-o", out, "--march", "max-mip"}, "voxel-exhaustive, voxel-planes");
-  expect_refused({"render", model_, "-o", out, "--look", "pretty"}, "expected shaded, height, steps, error");
+  expect_refused({"render", model_, "-o", out, "--look", "pretty"}, "expected shaded, hillshade, height, steps");
   expect_refused({"render", model_, model_, "-o", out}, "stands alone");
   expect_refused({"info", path("missing.vox")}, "cannot be opened");
   expect_refused({"cast", model_, "--rays", "x.csv", "-o", path("hits.csv")}, "x.csv: cannot be opened");

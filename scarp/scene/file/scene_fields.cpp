@@ -10,10 +10,7 @@
 
 #include "scarp/accel/solid_ground.h"
 #include "scarp/base/error.h"
-#include "scarp/base/file_name.h"
 #include "scarp/scene/file/from_raster.h"
-#include "scarp/scene/file/from_volume.h"
-#include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/file/json_object.h"
 #include "scarp/scene/file/scene_parts.h"
 #include "scarp/scene/file/shape_json.h"
@@ -32,10 +29,6 @@ using Json = nlohmann::json;
 template <class T>
 std::optional<T> optional(const Json& json, const char* key) {
   return json.contains(key) ? std::optional<T>(json[key].get<T>()) : std::nullopt;
-}
-
-std::string resolved(const FieldSurroundings& around, const Json& file) {
-  return (std::filesystem::path(around.folder) / file.get<std::string>()).lexically_normal().string();
 }
 
 RasterOptions raster_options_from(const Json& json, const std::string& path) {
@@ -144,69 +137,6 @@ Shape ground_from(const Json& json, const std::string& path, const FieldSurround
   refuse_json(path, json, "the name of a field, or an object with heights or a function");
 }
 
-VoxelColour colour_from(const Json& json) {
-  const auto rgb = std::stoul(json.get<std::string>().substr(1), nullptr, 16);
-  return {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8), static_cast<std::uint8_t>(rgb)};
-}
-
-bool is_binvox(const Json& json) { return extension_of(json["file"].get<std::string>()) == ".binvox"; }
-
-// Keys apply to some formats only. The format follows from the ending, or from `volume`.
-void require_keys_of_format(const Json& json, const std::string& path) {
-  const auto refuse = [&](std::initializer_list<const char*> keys, const char* why) {
-    for (const char* key : keys) {
-      if (json.contains(key)) throw Error(fmt::format("{}/{}: {}", path, key, why));
-    }
-  };
-  const bool volume = json.contains("volume");
-  if (!volume) refuse({"solid_from"}, "only valid for volumes");
-  if (volume || is_binvox(json)) {
-    refuse({"frame", "hidden"}, "only valid for MagicaVoxel files");
-  } else {
-    refuse({"up", "colour"}, "only valid for binvox files and volumes");
-  }
-}
-
-PlacedVoxels voxels_of_file(const Json& json, const std::string& file, const VoxelFileOptions& voxels,
-                            std::vector<std::string>& notes) {
-  const FromVolumeOptions volume{voxels, json.value("up", "z") == "y" ? UpAxis::y : UpAxis::z,
-                                 optional<double>(json, "solid_from")};
-  const VoxelColour colour = json.contains("colour") ? colour_from(json["colour"]) : kPlainVoxels;
-  if (json.contains("volume"))
-    return placed_voxels_from(read_volume(file, json["volume"]), std::vector{colour}, volume);
-  if (is_binvox(json)) return placed_voxels_from(read_binvox(file), colour, volume);
-  const VoxFile document = read_vox(file);
-  const VoxSceneOptions scene{json.value("frame", 0), json.value("hidden", false)};
-  for (const std::string& note : vox_notes(document, scene)) notes.push_back(fmt::format("{}: {}", file, note));
-  return placed_voxels_from(document, {scene, voxels});
-}
-
-FieldWithPlace voxels_from(const Json& json, const std::string& path, const FieldSurroundings& around,
-                           const VoxelMarchEntry& march) {
-  require_keys_of_format(json, path);
-  try {
-    VoxelFileOptions options{march.name, json.value("surface_colours", false), {}};
-    options.rounding = {json.value("rounded", 0.0), json.value("each", false)};
-    VoxelShading shading;
-    const std::string normals = json.value("normals", "flat");
-    shading.normals = normals == "smooth"  ? VoxelNormals::smooth
-                      : normals == "voxel" ? VoxelNormals::voxel
-                                           : VoxelNormals::flat;
-    shading.normal_radius = json.value("normal_radius", shading.normal_radius);
-    shading.corner_ao = json.value("corner_ao", false);
-    const std::string file = resolved(around, json["file"]);
-    SceneFieldPtr field = scene_voxels(voxels_of_file(json, file, options, *around.notes), shading);
-    around.files->push_back(file);
-    const WorldBox box = *field->box();
-    dvec3 shift(0.0);
-    if (json.value("centred", false) && !box.empty())
-      shift = -dvec3(0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y), box.low.z);
-    return {std::move(field), shift};
-  } catch (const Error&) {
-    rethrow_at(path + "/file");
-  }
-}
-
 #ifdef SCARP_EMBREE
 
 FieldWithPlace mesh_from(const Json& json, const std::string& path, const FieldSurroundings& around) {
@@ -230,6 +160,10 @@ FieldWithPlace mesh_from(const Json&, const std::string& path, const FieldSurrou
 #endif
 
 }  // namespace
+
+std::string resolved(const FieldSurroundings& around, const Json& file) {
+  return (std::filesystem::path(around.folder) / file.get<std::string>()).lexically_normal().string();
+}
 
 void rethrow_at(const std::string& path) {
   try {
@@ -329,7 +263,7 @@ FieldWithPlace field_from_json(const Json& json, const std::string& path, const 
                            }};
     return {scene_shape(distance_field_from_json(field, inner, names), by, settings)};
   }
-  if (kind == kKinds[3]) return voxels_from(field, inner, around, march(find_voxel_march, "voxel-bricks"));
+  if (kind == kKinds[3]) return voxels_from_json(field, inner, around, march(find_voxel_march, "voxel-bricks"));
   for (const char* key : {"march", "settings"}) {
     if (json.contains(key)) throw Error(fmt::format("{}/{}: does not go with mesh, which Embree traces", path, key));
   }

@@ -40,6 +40,13 @@ struct FieldWithPlace {
 /// One of heights, function, shape, voxels, mesh, with march and settings.
 FieldWithPlace field_from_json(const nlohmann::json& json, const std::string& path, const FieldSurroundings& around);
 
+/// The field of `voxels`, for a march of voxel_marches().
+FieldWithPlace voxels_from_json(const nlohmann::json& json, const std::string& path, const FieldSurroundings& around,
+                                const VoxelMarchEntry& march);
+
+/// The path of a file that counts from the scene's folder.
+std::string resolved(const FieldSurroundings& around, const nlohmann::json& file);
+
 /// Materials by name, appended to `all` in an order in which they refer to earlier ones alone; the index of each.
 std::map<std::string, std::uint32_t> materials_from_json(const nlohmann::json& json, const std::string& path,
                                                          std::vector<Material>& all);

@@ -27,18 +27,6 @@ glm::dmat3 about(int axis, double angle) {
   return turn;
 }
 
-Placement placement_from(const Json& json) {
-  Placement placement;
-  if (json.contains("at")) placement.origin = {json["at"][0], json["at"][1], json["at"][2]};
-  if (json.contains("turn")) {
-    for (int axis = 0; axis < 3; ++axis)
-      placement.turn =
-          about(axis, json["turn"][static_cast<std::size_t>(axis)].get<double>() * kRadiansPerDegree) * placement.turn;
-  }
-  placement.scale = json.value("scale", 1.0);
-  return placement;
-}
-
 // Numbers of one copy, the same on every machine.
 class Dice {
  public:
@@ -103,6 +91,18 @@ ScenePlaces scattered(const Json& json, const std::string& path, const SceneGrou
 
 }  // namespace
 
+Placement placement_from_json(const Json& json) {
+  Placement placement;
+  if (json.contains("at")) placement.origin = {json["at"][0], json["at"][1], json["at"][2]};
+  if (json.contains("turn")) {
+    for (int axis = 0; axis < 3; ++axis)
+      placement.turn =
+          about(axis, json["turn"][static_cast<std::size_t>(axis)].get<double>() * kRadiansPerDegree) * placement.turn;
+  }
+  placement.scale = json.value("scale", 1.0);
+  return placement;
+}
+
 std::optional<double> SceneGround::height(double x, double y) const {
   Ray ray;
   ray.origin = {x, y, placement.origin.z};
@@ -119,7 +119,7 @@ double SceneGround::height(double x, double y, const std::string& at) const {
 }
 
 ScenePlaces places_from_json(const Json& object, const std::string& path, const GroundByName& grounds) {
-  const Placement own = placement_from(object);
+  const Placement own = placement_from_json(object);
   std::optional<SceneGround> ground;
   if (object.contains("on")) {
     ground = grounds(object["on"], path + "/on");
@@ -136,7 +136,7 @@ ScenePlaces places_from_json(const Json& object, const std::string& path, const 
   }
   const Json list = object.contains("places") ? object["places"] : Json::array({Json::object()});
   for (std::size_t i = 0; i < list.size(); ++i) {
-    Placement place = placed(placement_from(list[i]), own);
+    Placement place = placed(placement_from_json(list[i]), own);
     const std::string at = object.contains("places") ? fmt::format("{}/places/{}/at", path, i) : path + "/at";
     if (ground) place.origin.z += ground->height(place.origin.x, place.origin.y, at);
     places.push_back(place);

@@ -29,6 +29,9 @@ using GroundByName = std::function<SceneGround(const std::string& name, const st
 
 using ScenePlaces = std::vector<Placement>;
 
+/// From at, turn and scale of an object that keeps to the schema.
+Placement placement_from_json(const nlohmann::json& json);
+
 /// From at, turn, scale, on, places and scatter of an object that keeps to the schema. Throws Error naming the place in
 /// the file: no ground there, ground that is tilted, too little of it for what is scattered.
 ScenePlaces places_from_json(const nlohmann::json& object, const std::string& path, const GroundByName& grounds);

@@ -144,6 +144,58 @@ TEST_F(SceneFiles, SayHowVoxelsLook) {
   EXPECT_EQ(surface.openness, 1);
 }
 
+// A cube of 4 voxels, without a cube of 2 in its upper corner, which is turned and moved, and of another colour.
+TEST_F(SceneFiles, CombineVoxels) {
+  for (const int side : {2, 4}) {
+    Binvox cube;
+    cube.size = ivec3(side);
+    cube.clear();
+    for_each_voxel({ivec3(0), cube.size}, [&](const ivec3& v) { cube.set(v); });
+    write_binvox((folder_ / fmt::format("cube{}.binvox", side)).string(), cube);
+  }
+  const auto parts = [](const char* at) {
+    return fmt::format(R"([{{"file": "cube4.binvox", "colour": "#ff0000", "at": [0.5, 0, 0]}},
+                           {{"file": "cube2.binvox", "colour": "#00ff00", "turn": [0, 0, 90], "at": {}}}])",
+                       at);
+  };
+  const auto combined = [&](const std::string& name, const char* at) {
+    return with_object(fmt::format(R"({{"scale": 2, "voxels": {{"{}": {}}}}})", name, parts(at)));
+  };
+  // From above, in metres: half a voxel is one.
+  const auto height = [](const SceneFile& file, double x, double y) {
+    const Ray ray{.origin = {x, y, 100}, .direction = {0, 0, -1}};
+    const Hit hit = file.scene.closest_hit(ray);
+    return hit ? 100 - hit.t : -1;
+  };
+  const SceneFile cut = read(combined("subtract", "[4.5, 2, 2]"));
+  EXPECT_EQ(height(cut, 2, 1), 8);
+  EXPECT_EQ(height(cut, 8, 7), 4);
+  EXPECT_EQ(height(cut, 0.5, 1), -1);
+  const SceneFile common = read(combined("intersection", "[4.5, 3, 3]"));
+  EXPECT_EQ(common.scene.box().low, dvec3(5, 6, 6));
+  EXPECT_EQ(common.scene.box().high, dvec3(9, 8, 8));
+  const SceneFile both = read(combined("union", "[6.5, 0, 3]"));
+  EXPECT_EQ(height(both, 2, 1), 8);
+  EXPECT_EQ(height(both, 10, 1), 10);
+  // Combinations are parts of others; what is left of nothing is a note.
+  const SceneFile nested = read(R"({"objects": [{"shape": {"sphere": {"radius": 1}}}, {"voxels": {"centred": true,
+    "subtract": [{"union": [{"file": "cube2.binvox"}, {"file": "cube2.binvox", "at": [2, 0, 0]}]},
+                 {"file": "cube4.binvox"}]}}]})");
+  EXPECT_EQ(nested.notes, std::vector<std::string>{"/objects/1/voxels/subtract: no voxel is left"});
+  EXPECT_EQ(error(combined("union", "[1, 0, 0]")),
+            "/objects/0/voxels/union: part 1 is (0.5, 0, 0) voxels from the first one (voxels that are combined need "
+            "whole numbers)");
+  EXPECT_EQ(
+      error(with_object(R"({"voxels": {"union": [{"file": "cube2.binvox"}], "file": "cube2.binvox"}})")).substr(0, 18),
+      "/objects/0/voxels:");
+  EXPECT_EQ(error(with_object(R"({"voxels": {"union": [{"file": "cube2.binvox"}], "up": "y"}})")),
+            "/objects/0/voxels/up: does not go with union; give it in its parts");
+  EXPECT_EQ(error(with_object(R"({"voxels": {"union": [{"file": "cube2.binvox", "frame": 2}]}})")).substr(0, 31),
+            "/objects/0/voxels/union/0/frame");
+  EXPECT_NE(error(with_object(R"({"voxels": {"subtract": [{"file": "cube2.binvox"}]}})")).find("at least two"),
+            std::string::npos);
+}
+
 TEST_F(SceneFiles, TakeOtherScenesAsOneObject) {
   write("pair.json", R"({"materials": {"red": {"colour": "#ff0000"}}, "objects": [
     {"shape": {"sphere": {"radius": 1}}, "material": "red"}, {"shape": {"sphere": {"radius": 1}}, "at": [4, 0, 0]}]})");
@@ -237,6 +289,7 @@ TEST_F(SceneFiles, TellWhatIsWrongAndWhere) {
       {with_object(R"({"function": 1, "settings": {"speed": 1}})"), "/objects/0/settings/speed:", "unknown"},
       {with_object(R"({"field": "tree"})"), "/objects/0/field:", "no field 'tree'"},
       {with_object(R"({"field": "tree", "march": "naive"})"), "/objects/0/march:", "does not go with field"},
+      {with_object(R"({"voxels": {}})"), "/objects/0/voxels:", "one of file, union, intersection, subtract"},
       {with_object(R"({"voxels": {"file": "none.vox"}})"), "/objects/0/voxels/file:", "none.vox"},
       {with_object(R"({"voxels": {"file": "none.vox", "rounded": 0.7}})"), "/objects/0/voxels/rounded:", "0 to 0.5"},
       {with_object(R"({"voxels": {"file": "none.vox", "normals": "soft"}})"), "/objects/0/voxels/normals:", "smooth"},
