@@ -133,6 +133,14 @@ struct VoxelsOptions {
 };
 void run_voxels(const VoxelsOptions& options, const ReportOptions& report);
 
+/// `voxel-models`: all voxel marches over the models of files.
+struct VoxelModelsOptions {
+  std::vector<std::string> files;  ///< .vox and .binvox
+  int width = 256;                 ///< pixels per side of the pictures, from eight sides
+  int repeats = 5;
+};
+void run_voxel_models(const VoxelModelsOptions& options, const ReportOptions& report);
+
 /// `voxel-leaks`: all voxel marches on very many rays.
 struct VoxelLeaksOptions {
   std::int64_t rays = 10'000'000;

@@ -293,6 +293,20 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*voxels_command, report);
 
+  VoxelModelsOptions voxel_models;
+  CLI::App* voxel_models_command =
+      app.add_subcommand("voxel-models", "all voxel marches over the models of files: building, memory, speed");
+  voxel_models_command->add_option("files", voxel_models.files, ".vox and .binvox")
+      ->required()
+      ->check(CLI::ExistingFile);
+  voxel_models_command->add_option("--width", voxel_models.width, "pixels per side of the pictures, a multiple of 8")
+      ->check(CLI::Range(8, 2048))
+      ->capture_default_str();
+  voxel_models_command->add_option("--repeats", voxel_models.repeats, "counted passes")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  add_json_option(*voxel_models_command, report);
+
   VoxelLeaksOptions voxel_leaks;
   double voxel_leak_rays = static_cast<double>(voxel_leaks.rays);
   CLI::App* voxel_leaks_command =
@@ -437,6 +451,7 @@ int run(int argc, char** argv) {
 #endif
   if (*leaks_command) run_leaks(leaks, report);
   if (*voxels_command) run_voxels(voxels, report);
+  if (*voxel_models_command) run_voxel_models(voxel_models, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*pixel_match_command) run_pixel_match(pixel_match, report);
   if (*edits_command) run_edits(edits, report);

@@ -41,8 +41,8 @@ void add_march_option(Command& command, std::string& march) {
                        .choices = march_names(),
                        .unlisted = true,
                        .note = "see 'scarp marches'",
-                       .fallback = fmt::format("{}; voxels {}, functions {}", kTerrainMarch, VoxelFileOptions{}.march,
-                                               kFunctionMarch),
+                       .fallback = fmt::format("{}; voxels voxel-octants, many voxels voxel-bricks; functions {}",
+                                               kTerrainMarch, kFunctionMarch),
                        .topic = Topic::march,
                        .common = true,
                        .inputs = {kTerrain | kVoxels | kFunction, "meshes are traced by Embree"}});

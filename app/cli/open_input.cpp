@@ -32,8 +32,9 @@ OpenedInput terrain(const InputOptions& options) {
 
 OpenedInput voxels(const InputOptions& options, const std::string& ramp) {
   VoxelFileOptions voxels;
-  if (!options.march.empty()) voxels.march = options.march;
-  find_voxel_march(voxels.march);
+  voxels.march = options.march;
+  // An unknown name is found before the file is read.
+  if (!options.march.empty()) find_voxel_march(options.march);
   voxels.surface_colours = options.vox.surface_colours;
   voxels.rounding = options.vox_look.rounding;
   const VoxelShading shading = shading_of(options.vox_look);

@@ -110,7 +110,6 @@ void combine_into(VoxelGrid& grid, VoxelCombination combination, const VoxelGrid
 
 PlacedVoxels combined_voxels(VoxelCombination combination, std::span<const PlacedVoxels> parts,
                              const VoxelFileOptions& options) {
-  const VoxelMarchEntry& march = find_voxel_march(options.march);
   PlacedVoxels combined{.rounding = options.rounding};
   const auto first = std::find_if(parts.begin(), parts.end(), [](const auto& part) { return !part.places.empty(); });
   if (first == parts.end()) return combined;
@@ -140,6 +139,7 @@ PlacedVoxels combined_voxels(VoxelCombination combination, std::span<const Place
   for (std::size_t i = 1; i < parts.size(); ++i) combine_into(grid, combination, grid_of(placed[i], box));
   if (grid.solid_count() == 0) return combined;
   if (options.surface_colours) grid.drop_hidden_entries();
+  const VoxelMarchEntry& march = file_voxel_march(options.march, {&size, 1});
   combined.models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march));
   combined.places.push_back({0, lattice.world_from_grid, lattice.origin + lattice.world_from_grid * dvec3(box.low)});
   return combined;

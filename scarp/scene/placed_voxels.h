@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/mat3x3.hpp>
 #include <memory>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -29,9 +30,14 @@ struct PlacedVoxels {
 
 /// How readers make models of files.
 struct VoxelFileOptions {
-  std::string_view march = "voxel-bricks";  ///< of voxel_marches()
-  bool surface_colours = false;             ///< VoxelGrid::drop_hidden_entries(): less memory, lossy inside
+  std::string_view march{};      ///< of voxel_marches(); empty: see file_voxel_march()
+  bool surface_colours = false;  ///< VoxelGrid::drop_hidden_entries(): less memory, lossy inside
   VoxelRounding rounding{};
 };
+
+/// Returns the march with this name; for an empty name the usual one for models with grids of these sizes:
+/// `voxel-octants` while they have at most 2^20 voxels in total and 512 per side, `voxel-bricks` above. Octants are the
+/// fastest for small models, but take eight bytes per voxel and time to build. Throws Error if there is no such march.
+const VoxelMarchEntry& file_voxel_march(std::string_view name, std::span<const ivec3> sizes);
 
 }  // namespace scarp

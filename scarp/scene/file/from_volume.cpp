@@ -27,8 +27,8 @@ PlacedVoxels model_of(const ivec3& size, const FromVolumeOptions& options, std::
   grid.edit(grid.box(),
             [&](const ivec3& v, const VoxelGrid::Voxel&) { return entry(rotated_voxel(v, turned_size, back)); });
   if (options.voxels.surface_colours) grid.drop_hidden_entries();
-  const auto model =
-      std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march(options.voxels.march), std::move(palette));
+  const VoxelMarchEntry& march = file_voxel_march(options.voxels.march, {&turned_size, 1});
+  const auto model = std::make_shared<const VoxelModel>(std::move(grid), march, std::move(palette));
   return {{model}, {VoxelPlace{}}, options.voxels.rounding};
 }
 

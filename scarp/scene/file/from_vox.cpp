@@ -158,7 +158,6 @@ void for_each_overlap(const std::vector<OnLattice>& instances, const Body& body)
 }  // namespace
 
 PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options) {
-  const VoxelMarchEntry& march = find_voxel_march(options.voxels.march);
   const std::vector<VoxInstance> instances = vox_instances(file, options.scene);
   std::vector<VoxelColour> palette(256);
   for (std::size_t i = 1; i < palette.size(); ++i) {
@@ -196,22 +195,28 @@ PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& optio
   });
 
   PlacedVoxels placed{.rounding = options.voxels.rounding};
+  std::vector<VoxelGrid> own_grids;
+  std::vector<ivec3> sizes;
   std::map<int, std::uint32_t> shared;
   for (std::size_t i = 0; i < instances.size(); ++i) {
     const int model = instances[i].model;
     const auto own = cut.find(i);
     const auto known = shared.find(model);
-    auto index = static_cast<std::uint32_t>(placed.models.size());
+    auto index = static_cast<std::uint32_t>(own_grids.size());
     if (own == cut.end() && known != shared.end()) {
       index = known->second;
     } else {
       VoxelGrid grid = own != cut.end() ? std::move(own->second) : grids.at(model).grid;
       if (options.voxels.surface_colours) grid.drop_hidden_entries();
-      placed.models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march, palette));
+      sizes.push_back(grid.size());
+      own_grids.push_back(std::move(grid));
       if (own == cut.end()) shared.emplace(model, index);
     }
     placed.places.push_back(on_lattice[i].place(index));
   }
+  const VoxelMarchEntry& march = file_voxel_march(options.voxels.march, sizes);
+  for (VoxelGrid& grid : own_grids)
+    placed.models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march, palette));
   return placed;
 }
 

@@ -263,7 +263,8 @@ FieldWithPlace field_from_json(const Json& json, const std::string& path, const 
                            }};
     return {scene_shape(distance_field_from_json(field, inner, names), by, settings)};
   }
-  if (kind == kKinds[3]) return voxels_from_json(field, inner, around, march(find_voxel_march, "voxel-bricks"));
+  if (kind == kKinds[3])
+    return voxels_from_json(field, inner, around, json.contains("march") ? march(find_voxel_march, "").name : "");
   for (const char* key : {"march", "settings"}) {
     if (json.contains(key)) throw Error(fmt::format("{}/{}: does not go with mesh, which Embree traces", path, key));
   }

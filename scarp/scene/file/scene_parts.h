@@ -40,9 +40,9 @@ struct FieldWithPlace {
 /// One of heights, function, shape, voxels, mesh, with march and settings.
 FieldWithPlace field_from_json(const nlohmann::json& json, const std::string& path, const FieldSurroundings& around);
 
-/// The field of `voxels`, for a march of voxel_marches().
+/// The field of `voxels`, for a march of voxel_marches(); empty: see file_voxel_march().
 FieldWithPlace voxels_from_json(const nlohmann::json& json, const std::string& path, const FieldSurroundings& around,
-                                const VoxelMarchEntry& march);
+                                std::string_view march);
 
 /// The path of a file that counts from the scene's folder.
 std::string resolved(const FieldSurroundings& around, const nlohmann::json& file);

@@ -134,8 +134,8 @@ VoxelsWithPlace placed_voxels_from_json(const Json& json, const std::string& pat
 }  // namespace
 
 FieldWithPlace voxels_from_json(const Json& json, const std::string& path, const FieldSurroundings& around,
-                                const VoxelMarchEntry& march) {
-  VoxelFileOptions options{march.name, json.value("surface_colours", false), {}};
+                                std::string_view march) {
+  VoxelFileOptions options{march, json.value("surface_colours", false), {}};
   options.rounding = {json.value("rounded", 0.0), json.value("each", false)};
   VoxelShading shading;
   const std::string normals = json.value("normals", "flat");
