@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <string>
+
 namespace scarp::cli {
 
 void print_findings(const Picture& picture) {
@@ -15,6 +17,7 @@ void print_findings(const Picture& picture) {
   }
   if (!picture.errors) return;
   const ErrorCounts& errors = *picture.errors;
+  for (const std::string& caveat : errors.caveats) fmt::print("{}\n", caveat);
   fmt::print("judged by {}; tolerance {} along the ray; pixels:\n", errors.judges,
              errors.tolerance_m > 0 ? fmt::format("{:.3g} m", errors.tolerance_m)
                                     : fmt::format("{:.3g} % of the distance", 100 * errors.share));

@@ -85,7 +85,7 @@ void add_march_options(Command& command, MarchSettings& march) {
   add("--relaxed-max-steps", &relaxed.max_steps, "maximum number of steps", kSteps, "relaxed");
   LipschitzSettings& lipschitz = march.lipschitz;
   add("--shrink", &lipschitz.shrink, "step as a fraction of the vertical distance", {0, 1}, "lipschitz",
-      "0: as large as the steepest slope allows");
+      "0: as large as the steepest slope allows; more than that is approximate, as rays pass through slopes");
   add("--lipschitz-tolerance", &lipschitz.tolerance,
       "distance to the ground that counts as a hit, per unit of distance travelled", kZeroOrMore, "lipschitz");
   add("--lipschitz-max-steps", &lipschitz.max_steps, "maximum number of steps", kSteps, "lipschitz");

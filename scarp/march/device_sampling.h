@@ -6,6 +6,7 @@
 
 #include "scarp/march/march_settings.h"
 #include "scarp/march/sampling_marches.glsl.h"
+#include "scarp/march/shrink_factor.h"
 
 namespace scarp {
 
@@ -14,19 +15,23 @@ static_assert(glsl::kScarpRefineNone == static_cast<glsl::uint>(Refinement::none
               glsl::kScarpRefineSecant == static_cast<glsl::uint>(Refinement::secant) &&
               glsl::kScarpRefineBisect == static_cast<glsl::uint>(Refinement::bisect));
 
-/// Settings of the march of that name. fixed-step gets its step in cells, lipschitz the factor `shrink`. A unit of
-/// clearance is `unit` metres.
-inline glsl::ScarpSampling device_sampling(std::string_view march, const MarchSettings& all, double shrink,
-                                           double unit) {
+/// Settings of the march of that name. fixed-step gets its step in cells; `slope` is for lipschitz, whose proven factor
+/// is reduced by the share `rounding`. A unit of clearance is `unit` metres.
+inline glsl::ScarpSampling device_sampling(std::string_view march, const MarchSettings& all, double slope,
+                                           double rounding, double unit) {
   const auto f = [](double value) { return static_cast<float>(value); };
-  if (march == "lipschitz")
-    return glsl::scarp_lipschitz(f(shrink), f(all.lipschitz.tolerance), all.lipschitz.max_steps);
-  glsl::ScarpSampling settings =
-      march == "naive" ? glsl::scarp_naive(f(all.naive.step_factor), f(all.naive.min_step), f(all.naive.tolerance),
-                                           all.naive.max_steps)
-      : march == "relaxed"
-          ? glsl::scarp_relaxed(f(all.relaxed.step_factor), f(all.relaxed.tolerance), all.relaxed.max_steps)
-          : glsl::scarp_fixed_step(f(all.fixed_step.step), 0, all.fixed_step.max_steps);
+  glsl::ScarpSampling settings;
+  if (march == "lipschitz") {
+    const ShrinkFactor shrink = shrink_factor(all.lipschitz, slope, rounding);
+    settings = glsl::scarp_lipschitz(f(shrink.factor), f(all.lipschitz.tolerance), all.lipschitz.max_steps);
+    settings.proven = shrink.guarantee == Guarantee::conservative;
+    return settings;
+  }
+  settings = march == "naive" ? glsl::scarp_naive(f(all.naive.step_factor), f(all.naive.min_step),
+                                                  f(all.naive.tolerance), all.naive.max_steps)
+             : march == "relaxed"
+                 ? glsl::scarp_relaxed(f(all.relaxed.step_factor), f(all.relaxed.tolerance), all.relaxed.max_steps)
+                 : glsl::scarp_fixed_step(f(all.fixed_step.step), 0, all.fixed_step.max_steps);
   settings.height = f(all.sampling.tolerance / unit);
   settings.refinement =
       static_cast<glsl::uint>(march == "fixed-step" ? refinement_of_fixed_step(all) : all.sampling.refinement);

@@ -40,7 +40,7 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
         return probe.hit(t, sample);
       } else {
         const bool first = stats.steps == 1;
-        if (!before.known && probe.solid() && (!first || probe.t_enter > ray.t_min)) return wall(probe.hit(t, sample));
+        if (!before.known && probe.solid() && (!first || probe.from_outside())) return wall(probe.hit(t, sample));
         if (first) hit = below();
         above = false;
       }

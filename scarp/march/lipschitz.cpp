@@ -1,53 +1,76 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/march/lipschitz.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
-#include "scarp/base/error.h"
 #include "scarp/march/function/function_probe.h"
 #include "scarp/march/height/height_probe.h"
+#include "scarp/march/shrink_factor.h"
 
 namespace scarp {
 namespace {
 
-// `shrink` is the factor that steps are shorter by than the vertical distance.
 template <class Probe>
-Hit march(const Probe& probe, const LipschitzSettings& settings, double shrink, MarchStats& stats) {
+Hit march(const Probe& probe, const LipschitzSettings& settings, const ShrinkFactor& shrink, MarchStats& stats) {
   const Ray& ray = probe.ray();
   const bool on_surface = ray.start == RayStart::on_surface;
+  Underground ground(probe.from_outside());
   double t = probe.t_enter + (on_surface ? probe.blind_step() : 0.0);
   for (int step = 0; t <= probe.t_exit; ++step) {
     if (step == settings.max_steps) return exhausted_at(t);
     ++stats.steps;
     const auto sample = probe.at(t);
-    if (!sample.valid) {
-      t = probe.bounded_until(sample, t);
-      continue;
+    const SamplePoint point{t, sample.clearance, sample.valid};
+    const bool sunk = sample.valid && probe.under_ground(sample);
+    // Under the ground the nearest surface is as far as it is above it.
+    const double free = sample.valid ? probe.free_time(sample, shrink.factor) : 0.0;
+    const double limit = settings.tolerance * (t - ray.t_min), least = probe.least_step_under();
+    ground.take(point, sunk, !sunk && free > std::max(limit, least));
+    if (ground.comes_in() && probe.solid()) return wall(probe.hit(t, sample));
+    // A ray that comes in may have touched the edge of the ground, which is a hit: just above, or at a hole's corner.
+    const bool approximate = shrink.guarantee == Guarantee::approximate;
+    const bool unsure = ground.comes_in() && (free <= least || (step > 0 && !approximate));
+    if (sunk && (unsure || !ground.is_under())) {
+      if (step == 0 && !unsure) return on_surface ? probe.hit(t, sample) : below();
+      return approximate ? probe.hit(t, sample) : exhausted_at(t);
     }
-    if (probe.under_ground(sample)) {
-      // There from the start, or out of a hole.
-      if (on_surface && step == 0) return probe.hit(t, sample);
-      if (probe.solid() && t > ray.t_min) return wall(probe.hit(t, sample));
-      return step == 0 ? below() : exhausted_at(t);
+    double next = std::numeric_limits<double>::infinity();
+    if (sample.valid && ground.is_under()) {
+      next = t + std::max(free, least);
+    } else if (sample.valid) {
+      // A step that is too short to be one is no way on.
+      if (free <= limit || t + free <= t) return probe.hit(t, sample);
+      next = t + free;
     }
-    const double free = probe.free_time(sample, shrink);
-    // A step that is too short to be one is no way on.
-    if (free <= settings.tolerance * (t - ray.t_min) || t + free <= t) return probe.hit(t, sample);
-    t = std::min(t + free, probe.bounded_until(sample, t));
+    t = std::min(next, probe.bounded_until(sample, t));
+    ground.step_from(point);
   }
-  return {};
+  return ground.missed();
 }
 
 }  // namespace
 
+double largest_proven_shrink(double slope) { return 1 / std::hypot(1.0, slope); }
+
+Guarantee lipschitz_guarantee(const LipschitzSettings& settings, double slope) {
+  // Written so that an unknown slope, NaN, proves nothing.
+  const bool proven = settings.shrink == 0 || settings.shrink <= largest_proven_shrink(slope);
+  return proven ? Guarantee::conservative : Guarantee::approximate;
+}
+
+std::string lipschitz_caveat(const LipschitzSettings& settings, double slope) {
+  if (lipschitz_guarantee(settings, slope) == Guarantee::conservative) return {};
+  return fmt::format(
+      "lipschitz with shrink factor {:.4g} is approximate: slopes up to {:.4g} prove factors up to {:.4g}",
+      settings.shrink, slope, largest_proven_shrink(slope));
+}
+
 Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
-  double shrink = settings.lipschitz.shrink;
-  if (shrink == 0) {
-    if (std::isnan(target.slope))
-      throw Error("lipschitz: neither the field's slope bound (HeightTarget::slope) nor a shrink factor is given");
-    shrink = 1 / std::hypot(1.0, target.slope);
-  }
+  const ShrinkFactor shrink = shrink_factor(settings.lipschitz, target.slope);
   return march_over(target, ray, stats, [&](const auto& probe, MarchStats& counted) {
     return march(probe, settings.lipschitz, shrink, counted);
   });
@@ -55,9 +78,8 @@ Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSetti
 
 Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
                     FunctionUse use) {
-  // A step of the factor 1 / sqrt(1 + c^2), rounded towards 0 by more than its three roundings.
-  const double certified = (1 - 0x1p-50) / std::hypot(1.0, function.bound_everywhere(use).slope);
-  const double shrink = settings.lipschitz.shrink > 0 ? settings.lipschitz.shrink : certified;
+  // Rounded towards 0 by more than its three roundings.
+  const ShrinkFactor shrink = shrink_factor(settings.lipschitz, function.bound_everywhere(use).slope, 0x1p-50);
   return march_over(function, ray, use, settings.function.reach, stats, [&](const auto& probe, MarchStats& counted) {
     return march(probe, settings.lipschitz, shrink, counted);
   });

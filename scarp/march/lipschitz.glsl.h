@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `lipschitz` for shaders: the march of lipschitz.h in single precision. Guarantee: conservative, as there, but for
-// rounding (doc/dev/numerics.md, "Single precision"); over functions rounding is counted.
+// rounding (doc/dev/numerics.md, "Single precision"); over functions rounding is counted. Without
+// ScarpSampling::proven: approximate.
 //
 // Text of C++ and of GLSL, GLSL ES 3.0 included.
 #ifndef SCARP_MARCH_LIPSCHITZ_GLSL_H
@@ -11,7 +12,8 @@
 
 SCARP_GLSL_BEGIN
 
-/// Makes settings; see LipschitzSettings. `shrink` is at most 1 / sqrt(1 + c^2), c the field's slope bound.
+/// Makes settings; see LipschitzSettings. `shrink` is at most 1 / sqrt(1 + c^2), c the field's slope bound; for a
+/// larger one set `proven` of the result to 0.
 SCARP_FN ScarpSampling scarp_lipschitz(float shrink, float tolerance, int max_steps) {
   return scarp_sampling(kScarpLipschitz, shrink, 0.0f, tolerance, max_steps, kScarpRefineNone);
 }
@@ -22,23 +24,32 @@ SCARP_FN int scarp_lipschitz_turn(ScarpWay way, ScarpSampling settings, bool val
                                   SCARP_INOUT(ScarpMarchState) state) {
   int status = kScarpMiss;
   float next = until;
-  if (valid && clearance < -way.rounding) {
-    // There from the start, or out of a hole.
-    bool first = state.steps == 0;
-    bool from_outside = state.s + way.travelled > 0.0f;
-    status = way.from_surface && first   ? kScarpHit
-             : way.solid && from_outside ? kScarpWall
-             : first                     ? kScarpBelow
-                                         : kScarpExhausted;
+  bool first = state.steps == 0;
+  bool sunk = valid && clearance < -way.rounding;
+  bool comes_in = scarp_comes_in_under(way, valid, clearance, state);
+  // Under the ground the nearest surface is as far as it is above it.
+  float free = ((sunk ? -clearance : clearance) - way.rounding) * settings.factor * way.per_clearance;
+  float limit = settings.tolerance * (state.s + way.travelled);
+  float least = scarp_least_under(way, state.s);
+  scarp_mark_under(comes_in, valid, clearance, !sunk && free > max(limit, least), state);
+  bool under = (state.phase & kScarpUnder) != 0u;
+  // A ray that comes in may have touched the edge of the ground, which is a hit: just above, or at a hole's corner.
+  bool proven = settings.proven != 0u;
+  bool unsure = comes_in && (free <= least || (!first && proven));
+  if (comes_in && way.solid) {
+    status = kScarpWall;
+  } else if (sunk && (unsure || !under)) {
+    int passed = proven ? kScarpExhausted : kScarpHit;
+    status = !first || unsure ? passed : way.from_surface ? kScarpHit : kScarpBelow;
+  } else if (valid && under) {
+    next = min(state.s + max(free, least), until);
   } else if (valid) {
-    float free = (clearance - way.rounding) * settings.factor * way.per_clearance;
     // Less by what the sum may round up. A step that is too short to advance is a hit.
     next = state.s + (free - 1.1920928955078125e-7f * (state.s + free));
-    if (free <= settings.tolerance * (state.s + way.travelled) || !(next > state.s)) status = kScarpHit;
+    if (free <= limit || !(next > state.s)) status = kScarpHit;
     next = min(next, until);
   }
-  // Its hits are not refined.
-  if (status == kScarpMiss) scarp_step_to(next, false, clearance, state);
+  if (status == kScarpMiss) scarp_step_to(next, valid, clearance, state);
   return status;
 }
 

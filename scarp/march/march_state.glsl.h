@@ -11,7 +11,7 @@ SCARP_GLSL_BEGIN
 
 const int kScarpMiss = 0;
 const int kScarpHit = 1;
-const int kScarpBelow = 2;      ///< began below the surface and never came from above to it
+const int kScarpBelow = 2;      ///< began or came in below the surface, and hit nothing
 const int kScarpExhausted = 3;  ///< a limit was reached: nothing is known beyond the time
 const int kScarpWall = 4;       ///< a hit, of the wall under a border or a hole's rim
 

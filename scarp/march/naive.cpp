@@ -24,21 +24,25 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
     return on_surface ? share - near : std::max(near, share);
   };
   const auto stops = [&](double t, double clearance) { return clearance * per_clearance < limit(t); };
-  const bool refines = all.sampling.refinement != Refinement::none;
-  SamplePoint before;
+  Underground ground(probe.from_outside());
   double t = probe.t_enter + (on_surface ? least : 0.0);
   for (int step = 0; t <= probe.t_exit; ++step) {
     if (step == settings.max_steps) return exhausted_at(t);
     ++stats.steps;
     const auto sample = probe.at(t);
     const SamplePoint point{t, sample.clearance * per_clearance, sample.valid};
-    if (point.known && stops(t, sample.clearance))
-      return refined_hit(probe, all.sampling, all.sampling.refinement, before, point, sample, limit(t), stops, stats);
-    if (refines) before = point;
+    const bool stopped = point.known && stops(t, sample.clearance);
+    ground.take(point, probe.under_ground(sample), !stopped);
+    if (ground.comes_in() && probe.solid()) return wall(probe.hit(t, sample));
+    if (stopped && !ground.is_under()) {
+      return refined_hit(probe, all.sampling, all.sampling.refinement, ground.before(), point, sample, limit(t), stops,
+                         stats);
+    }
+    ground.step_from(point);
     // Over a hole there is no height to go by.
     t += std::max(point.known ? settings.step_factor * std::abs(point.h) : 0.0, least);
   }
-  return {};
+  return ground.missed();
 }
 
 }  // namespace

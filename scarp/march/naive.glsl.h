@@ -20,21 +20,29 @@ SCARP_FN float scarp_naive_least(ScarpWay way, ScarpSampling settings) {
   return max(settings.least * (way.travelled + way.exit), scarp_start_margin(way, settings));
 }
 
-/// Whether a point at time s is a hit: every point below the ground is.
+/// Whether a point at time s is a hit: every point below the ground is, unless the ray has come in under it.
 SCARP_FN bool scarp_naive_stops(ScarpWay way, ScarpSampling settings, float s, float clearance) {
   return clearance * way.per_clearance < scarp_hit_limit(way, settings, s);
 }
 
-/// Returns kScarpHit for the point at state.s, over ground if `valid`; or kScarpMiss, and moves to the next.
+/// Returns kScarpHit or kScarpWall for the point at state.s, over ground if `valid`; or kScarpMiss, and moves to the
+/// next.
 SCARP_FN int scarp_naive_turn(ScarpWay way, ScarpSampling settings, bool valid, float clearance,
                               SCARP_INOUT(ScarpMarchState) state) {
+  int status = kScarpMiss;
   bool stops = valid && scarp_naive_stops(way, settings, state.s, clearance);
-  if (!stops) {
+  bool comes_in = scarp_comes_in_under(way, valid, clearance, state);
+  scarp_mark_under(comes_in, valid, clearance, !stops, state);
+  if (comes_in && way.solid) {
+    status = kScarpWall;
+  } else if (stops && (state.phase & kScarpUnder) == 0u) {
+    status = kScarpHit;
+  } else {
     // Over a hole only the least step is known.
     float by_height = valid ? settings.factor * abs(clearance * way.per_clearance) : 0.0f;
     scarp_step_to(state.s + max(by_height, scarp_naive_least(way, settings)), valid, clearance, state);
   }
-  return stops ? kScarpHit : kScarpMiss;
+  return status;
 }
 
 SCARP_GLSL_END

@@ -18,17 +18,22 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
   const auto limit = [&](double t) { return std::max(near, settings.tolerance * (t - start)); };
   const auto stops = [&](double t, double clearance) { return std::abs(clearance * per_clearance) < limit(t); };
   const bool on_surface = probe.ray().start == RayStart::on_surface;
-  SamplePoint before;
+  Underground ground(probe.from_outside());
   double t = probe.t_enter + (on_surface ? blind : 0.0);
   for (int step = 0; t <= probe.t_exit; ++step) {
     if (step == settings.max_steps) return exhausted_at(t);
     ++stats.steps;
     const auto sample = probe.at(t);
     const SamplePoint point{t, sample.clearance * per_clearance, sample.valid};
+    ground.take(point, probe.under_ground(sample), point.h >= limit(t));
+    if (ground.comes_in() && probe.solid()) return wall(probe.hit(t, sample));
     if (!point.known) {
       t += blind;
+    } else if (ground.is_under()) {
+      t += std::max(settings.step_factor * std::abs(point.h), probe.least_step_under());
     } else if (stops(t, sample.clearance)) {
       // It may come from above or, having overshot, from below.
+      const SamplePoint& before = ground.before();
       const double met = std::copysign(limit(t), before.h);
       return refined_hit(probe, all.sampling, all.sampling.refinement, before, point, sample, met, stops, stats);
     } else if (point.h < 0 && step == 0) {
@@ -37,9 +42,9 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
     } else {
       t = std::max(t + settings.step_factor * point.h, probe.t_enter);
     }
-    before = point;
+    ground.step_from(point);
   }
-  return {};
+  return ground.missed();
 }
 
 }  // namespace

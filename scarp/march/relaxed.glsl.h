@@ -21,17 +21,24 @@ SCARP_FN bool scarp_relaxed_stops(ScarpWay way, ScarpSampling settings, float s,
 }
 
 /// Returns the status of the point at state.s, over ground if `valid`; or kScarpMiss, and moves to the next, back from
-/// below the ground.
+/// below the ground unless the ray has come in there.
 SCARP_FN int scarp_relaxed_turn(ScarpWay way, ScarpSampling settings, bool valid, float clearance,
                                 SCARP_INOUT(ScarpMarchState) state) {
   int status = kScarpMiss;
   float next = state.s + way.blind;
-  if (valid && scarp_relaxed_stops(way, settings, state.s, clearance))
+  bool comes_in = scarp_comes_in_under(way, valid, clearance, state);
+  float above = clearance * way.per_clearance;
+  scarp_mark_under(comes_in, valid, clearance, above >= scarp_hit_limit(way, settings, state.s), state);
+  if (comes_in && way.solid)
+    status = kScarpWall;
+  else if (valid && (state.phase & kScarpUnder) != 0u)
+    next = state.s + max(settings.factor * abs(above), scarp_least_under(way, state.s));
+  else if (valid && scarp_relaxed_stops(way, settings, state.s, clearance))
     status = kScarpHit;
   else if (valid && clearance < 0.0f && state.steps == 0)  // going back would leave the ray's range
     status = way.from_surface ? kScarpHit : kScarpBelow;
   else if (valid)
-    next = max(state.s + settings.factor * (clearance * way.per_clearance), 0.0f);
+    next = max(state.s + settings.factor * above, 0.0f);
   if (status == kScarpMiss) scarp_step_to(next, valid, clearance, state);
   return status;
 }

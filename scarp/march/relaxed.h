@@ -18,7 +18,8 @@
 namespace scarp {
 
 /// Closest hit as this march finds it, in [t_min, t_max] and inside the field. A ray that begins on the surface steps
-/// off it by one cell, unseen. Uses settings.relaxed and settings.sampling; no pyramid.
+/// off it by one cell, unseen. One that begins under the ground is `below`. Uses settings.relaxed and
+/// settings.sampling; no pyramid.
 Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                   MarchStats* stats = nullptr);
 /// The same over a terrain function, within settings.function.reach. Off the surface it steps by 2^-10 of the way out.

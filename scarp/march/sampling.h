@@ -3,6 +3,9 @@
 // ray over a field: HeightProbe (height/height_probe.h) or FunctionProbe (function/function_probe.h).
 //
 //   march: t ──▶ probe.at(t): clearance, or nothing over a hole ──▶ hit, or the next t
+//
+// A ray that comes in under the ground, through the border or out of a hole, has not hit it. It goes on (Underground),
+// and hits where it later goes down through the ground; walls of solid ground are hit where it comes in.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +22,7 @@ struct SamplePoint {
   bool known = false;  ///< whether it is over ground
 };
 
-/// The answer for a ray that begins under the ground.
+/// The answer for a ray that begins, or comes in through the border, under the ground and hits nothing.
 inline Hit below() {
   Hit hit;
   hit.status = HitStatus::below;
@@ -37,6 +40,41 @@ inline Hit exhausted_at(double t) {
   hit.t = t;
   return hit;
 }
+
+/// Where a ray is that comes in under the ground: scarp_comes_in_under() and scarp_mark_under() of sampling.glsl.h.
+class Underground {
+ public:
+  /// `from_outside`: the ray's first point is where it comes in through the border.
+  explicit Underground(bool from_outside) : from_outside_(from_outside) {}
+
+  /// Takes the next point. `sunk`: it is under the ground; `clear`: it is further above than what counts as a hit.
+  void take(const SamplePoint& point, bool sunk, bool clear) {
+    comes_in_ = point.known && sunk && !before_.known && (!first_ || from_outside_);
+    const bool was_above = before_.known && before_.h >= 0;
+    if (comes_in_) {
+      under_ = true;
+      entered_below_ = entered_below_ || first_;
+    } else if (point.known && (clear || (was_above && point.h < before_.h))) {
+      under_ = false;  // it is out, or comes down again
+    }
+  }
+  /// Ends the turn of the point taken last.
+  void step_from(const SamplePoint& point) {
+    before_ = point;
+    first_ = false;
+  }
+
+  bool comes_in() const { return comes_in_; }  ///< with the last point
+  bool is_under() const { return under_; }     ///< it has come in, and has not come out since
+  const SamplePoint& before() const { return before_; }
+  /// The answer for a ray without a hit.
+  Hit missed() const { return entered_below_ ? below() : Hit{}; }
+
+ private:
+  SamplePoint before_;
+  bool from_outside_, first_ = true;
+  bool comes_in_ = false, under_ = false, entered_below_ = false;
+};
 
 /// Returns the hit between `before`, where the test stops(t, clearance) fails, and `last`, where it holds: nearer to
 /// where it begins to hold. The secant takes that for a clearance of `limit`. The hit stays at `last` if `before` is

@@ -34,6 +34,7 @@ inline constexpr MarchEntry kLipschitzEntry{
     .gpu = true,
     .parameters = "shrink factor 1/sqrt(1 + c^2), c the slope bound, tolerance 0.0005 of the distance, 1024 steps",
     .description =
-        "steps by the distance that the steepest slope allows; never passes through; slow near steep ground"};
+        "steps by the distance that the steepest slope allows; never passes through; slow near steep ground; "
+        "approximate with a larger shrink factor"};
 
 }  // namespace scarp

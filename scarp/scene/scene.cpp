@@ -357,6 +357,13 @@ std::string Scene::marches() const {
   return fmt::format("{}", fmt::join(names, ", "));
 }
 
+std::vector<std::string> Scene::caveats() const {
+  std::set<std::string> caveats;
+  for (const SceneObject& object : objects_) caveats.insert(fields_[object.field]->caveat());
+  caveats.erase("");
+  return {caveats.begin(), caveats.end()};
+}
+
 Scene Scene::coarser(const SceneDetail& detail) const {
   std::vector<SceneFieldPtr> fields = fields_;
   std::vector<SceneObject> objects = objects_;

@@ -129,6 +129,8 @@ class Scene {
   Scene judge() const;
   /// Returns the names of all marches, each once, separated by ", ".
   std::string marches() const;
+  /// SceneField::caveat() of its fields, each once.
+  std::vector<std::string> caveats() const;
 
   /// Box around all bounded objects (SceneField::extent()); empty if there is none.
   const WorldBox& box() const { return box_; }

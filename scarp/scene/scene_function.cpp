@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "scarp/march/lipschitz.h"
 #include "scarp/scene/function_shadow.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/scene/scene_limits.h"
@@ -23,6 +24,10 @@ class FunctionField final : public SceneField {
 
   std::string_view kind() const override { return "function"; }
   std::string_view march() const override { return march_.name; }
+  std::string caveat() const override {
+    if (march_.name != "lipschitz") return {};
+    return lipschitz_caveat(settings_.lipschitz, function_.bound_everywhere(FunctionUse::march).slope);
+  }
   std::optional<WorldBox> box() const override { return {}; }
   std::optional<double> height(double x, double y) const override { return function_.value(x, y); }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Height fields in scenes.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/march/height/wall.h"
+#include "scarp/march/lipschitz.h"
 #include "scarp/scene/scene_field.h"
 
 namespace scarp {
@@ -34,6 +36,10 @@ class Heights final : public SceneField {
 
   std::string_view kind() const override { return "heights"; }
   std::string_view march() const override { return march_.name; }
+  std::string caveat() const override {
+    if (march_.name != "lipschitz" || settings_.lipschitz.shrink == 0) return {};
+    return lipschitz_caveat(settings_.lipschitz, std::isnan(slope_) ? slope_bound(field_) : slope_);
+  }
   std::optional<WorldBox> box() const override {
     if (nothing()) return WorldBox{};
     // Walls of solid ground reach as deep as any ray.

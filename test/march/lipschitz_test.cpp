@@ -11,6 +11,7 @@
 
 #include "cases.h"
 #include "march/height/spiteful.h"
+#include "march/steep_waves.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/march/height/exhaustive.h"
@@ -50,6 +51,43 @@ TEST(Lipschitz, TakesAShrinkFactorInsteadOfTheSlope) {
   EXPECT_THROW(validate(settings), Error);
 }
 
+// As shaders whose factor was found by trial: rays pass through slopes, and hit where they are found under the ground.
+TEST(Lipschitz, HitsUnderTheGroundWithAFactorThatTheSlopeDoesNotProve) {
+  const HeightField field = waves();
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid, slope_bound(field)};
+  const std::vector<Ray> rays = rays_over_waves(500);
+  std::vector<Hit> hits;
+  MarchSettings settings;
+  settings.lipschitz.shrink = 0.7;
+  for (const Ray& ray : rays) hits.push_back(march_lipschitz(target, ray, settings));
+  expect_hits_under_the_ground(field, rays, hits);
+  EXPECT_EQ(lipschitz_guarantee(settings.lipschitz, target.slope), Guarantee::approximate);
+  EXPECT_NE(lipschitz_caveat(settings.lipschitz, target.slope), "");
+  // Without a slope bound nothing is proven.
+  for (std::size_t i = 0; i < rays.size(); ++i)
+    EXPECT_EQ(march_lipschitz({&field, &pyramid}, rays[i], settings), hits[i]);
+}
+
+TEST(Lipschitz, KeepsItsGuaranteeWithASmallerFactor) {
+  const HeightField field = waves();
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid, slope_bound(field)};
+  MarchSettings proven, smaller;
+  proven.lipschitz.shrink = largest_proven_shrink(target.slope);
+  smaller.lipschitz.shrink = 0.5 * proven.lipschitz.shrink;
+  EXPECT_EQ(lipschitz_guarantee(proven.lipschitz, target.slope), Guarantee::conservative);
+  EXPECT_EQ(lipschitz_caveat(proven.lipschitz, target.slope), "");
+  for (const Ray& ray : rays_over_waves(200)) {
+    const Hit judge = march_exhaustive(target, ray), hit = march_lipschitz(target, ray, smaller);
+    EXPECT_EQ(march_lipschitz(target, ray, proven), march_lipschitz(target, ray));
+    EXPECT_TRUE(hit.status == judge.status || hit.status == HitStatus::exhausted);
+    if (hit) {
+      EXPECT_LE(hit.t, judge.t);
+    }
+  }
+}
+
 TEST(Lipschitz, NeverPassesTheSurface) {
   const int kFields = cases(40, 10, 4);
   constexpr int kRays = 50;
@@ -76,11 +114,15 @@ TEST(Lipschitz, NeverPassesTheSurface) {
           if (hit && hit.t <= judge.t + 0x1p-18 * cell) continue;
           Ray before = ray;
           before.t_max = hit ? std::min(hit.t, ray.t_max) : ray.t_max;
-          const dvec3 after = ray.at(judge.t + 0x1p-10 * cell);
-          const auto ground = field.height(after.x, after.y);
-          const double reach = std::abs(after.z) + length(ray.origin) + field.width() + field.depth();
-          EXPECT_FALSE(ground && after.z < *ground - 0x1p-48 * reach * (1 + target.slope) &&
-                       judge.t + 0x1p-10 * cell < before.t_max)
+          const auto is_under = [&](double t) {
+            const dvec3 p = ray.at(t);
+            const auto ground = field.height(p.x, p.y);
+            const double reach = std::abs(p.z) + length(ray.origin) + field.width() + field.depth();
+            return ground && p.z < *ground - 0x1p-48 * reach * (1 + target.slope);
+          };
+          // From under the ground it may pass what it is above it for a little.
+          const double later = judge.t + 0x1p-10 * cell;
+          EXPECT_FALSE(is_under(later) && later < before.t_max && !is_under(judge.t - 0x1p-10 * cell))
               << fields.name << ", " << rays.name << ": passed t = " << judge.t << ", got "
               << (hit ? fmt::format("{}", hit.t) : "a miss");
         }

@@ -47,7 +47,7 @@ std::string sampling_objection(std::string_view march, const MarchSettings& sett
     if (hit && clearance.low > settings.naive.tolerance * travelled) return "a hit above its tolerance";
   } else if (march == "relaxed") {
     const double tolerance = settings.relaxed.tolerance * travelled;
-    if (hit && !on_surface && (clearance.low > tolerance || clearance.high < -tolerance))
+    if (hit && !hit.wall && !on_surface && (clearance.low > tolerance || clearance.high < -tolerance))
       return "a hit outside its tolerance";
   } else if (march == "lipschitz") {
     // What a ray from the surface steps over unseen is no hit that it passes.

@@ -23,7 +23,7 @@ SCARP_FN ScarpWay scarp_way(ScarpFunctionRay ray, ScarpSampling settings) {
   way.blind = 9.765625e-4f * ray.exit;  // for want of cells
   way.stride = settings.factor / ray.speed;
   way.from_surface = (ray.flags & kScarpFromSurface) != 0u;
-  way.from_outside = false;
+  way.from_outside = ray.travelled > 0.0f;
   way.solid = false;
   return way;
 }

@@ -20,6 +20,8 @@ class FunctionProbe {
 
   const Ray& ray() const { return ray_.ray(); }
   double per_metre() const { return per_metre_; }
+  /// Whether the ray begins where there is no ground: beyond kFunctionReach, or above all of it.
+  bool from_outside() const { return t_enter > ray().t_min; }
 
   struct Sample {
     static constexpr bool valid = true;
@@ -38,6 +40,8 @@ class FunctionProbe {
 
   /// The first step off the surface: a share of the way out, as there are no cells. lipschitz_local.h needs none.
   double blind_step() const { return 0x1p-10 * (t_exit - t_enter); }
+  /// The least step of a ray under the ground: it may pass shorter ways above it.
+  double least_step_under() const { return 0x1p-12 * blind_step(); }
   /// fixed-step's step, and its least share of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.function.step * per_metre_; }
   double stride_share(const MarchSettings& settings) const { return settings.function.step_share; }
@@ -45,9 +49,10 @@ class FunctionProbe {
 
   // Rounding is counted.
   bool under_ground(const Sample& sample) const { return sample.metres < -ray_.rounding(); }
-  /// The step that is free if the ground rises no more than `shrink` allows.
+  /// The step that is free of the surface if it rises no more than `shrink` allows.
   double free_time(const Sample& sample, double shrink) const {
-    return (sample.metres - ray_.rounding()) * shrink / ray_.metres_per_t();
+    const double metres = under_ground(sample) ? -sample.metres : sample.metres;
+    return (metres - ray_.rounding()) * shrink / ray_.metres_per_t();
   }
   static constexpr double bounded_until(const Sample&, double) { return std::numeric_limits<double>::infinity(); }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -56,9 +55,8 @@ glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& set
     result.max_steps = settings.lipschitz_local.max_steps;
     return result;
   }
-  // Reduced by more than its roundings, here and in the step.
-  const double certified = (1 - 0x1p-20) / std::hypot(1.0, slope);
-  result = device_sampling(march, settings, settings.lipschitz.shrink > 0 ? settings.lipschitz.shrink : certified, 1);
+  // 2^-20 is more than what rounds in the factor and in the step.
+  result = device_sampling(march, settings, slope, 0x1p-20, 1);
   if (march == "fixed-step") {
     result.factor = static_cast<float>(settings.function.step);
     result.least = static_cast<float>(settings.function.step_share);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scarp/march/height/grid_axis.h"
+#include "scarp/march/ray_clip.h"
 
 namespace scarp {
 namespace {
@@ -185,21 +186,15 @@ DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray) {
     world[axis] = std::ldexp(ray.direction[axis], -exponent);
   }
   const double first = std::ldexp(ray.t_min, exponent);
-  double begin = first, end = std::ldexp(ray.t_max, exponent);
-  const auto clip = [&](double low, double high, double o, double d) {
-    if (d == 0) {
-      if (!(o >= low && o <= high)) end = -HUGE_VAL;
-      return;
-    }
-    const double a = (low - o) / d, b = (high - o) / d;
-    begin = std::max(begin, std::min(a, b));
-    end = std::min(end, std::max(a, b));
-  };
+  double border = -HUGE_VAL, end = std::ldexp(ray.t_max, exponent);
   const int cells[] = {field.cell_cols(), field.cell_rows()};
   if (!field.wraps()) {
-    for (int axis = 0; axis < 2; ++axis) clip(0, cells[axis], local.origin[axis], local.direction[axis]);
+    for (int axis = 0; axis < 2; ++axis)
+      clip_to_range(0, cells[axis], local.origin[axis], local.direction[axis], border, end);
   }
-  if (std::isinf(end)) clip(field.min_sample(), field.max_sample(), local.origin.z, local.direction.z);
+  double begin = std::max(first, border);
+  if (std::isinf(end))
+    clip_to_range(field.min_sample(), field.max_sample(), local.origin.z, local.direction.z, begin, end);
   if (!(begin <= end) || std::isinf(end)) return result;
   int cell[2];
   double place[2];
@@ -211,8 +206,10 @@ DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray) {
     place[axis] = position - cell[axis];
   }
   glsl::ScarpRay& out = result.ray;
-  if (ray.start == RayStart::on_surface) out.flags |= glsl::kScarpOnSurface;
-  if (begin > first) out.flags |= glsl::kScarpFromOutside;
+  if (ray.start == RayStart::on_surface)
+    out.flags |= glsl::kScarpOnSurface;
+  else if (border >= first)
+    out.flags |= glsl::kScarpFromOutside;
   pack(out, {cell[0], cell[1]}, {place[0], place[1]}, local.origin.z + local.direction.z * begin, local.direction,
        end - begin);
   const HeightFieldSettings& settings = field.settings();

@@ -26,14 +26,17 @@ class HeightProbe {
         speed_(length(ray.direction)),
         per_metre_(1 / speed_),
         has_holes_(field_.nodata_count() > 0) {
-    t_enter = ray.t_min;
     t_exit = ray.t_max;
+    double border = -std::numeric_limits<double>::infinity();
     if (!field_.wraps()) {
-      clip(0, grid.cell_cols, local_.origin.x, local_.direction.x);
-      clip(0, grid.cell_rows, local_.origin.y, local_.direction.y);
+      clip_to_range(0, grid.cell_cols, local_.origin.x, local_.direction.x, border, t_exit);
+      clip_to_range(0, grid.cell_rows, local_.origin.y, local_.direction.y, border, t_exit);
     }
+    from_outside_ = ray.start == RayStart::free && border >= ray.t_min;
+    t_enter = std::max(ray.t_min, border);
     // Upright rays never leave sideways: they are followed as far as there is ground.
-    if (std::isinf(t_exit)) clip(field_.min_sample(), field_.max_sample(), local_.origin.z, local_.direction.z);
+    if (std::isinf(t_exit))
+      clip_to_range(field_.min_sample(), field_.max_sample(), local_.origin.z, local_.direction.z, t_enter, t_exit);
   }
 
   double t_enter, t_exit;  ///< the ray inside the field's bounds; empty when t_enter > t_exit
@@ -41,6 +44,8 @@ class HeightProbe {
   bool crosses() const { return t_enter <= t_exit && std::isfinite(t_exit) && speed_ > 0; }
   const Ray& ray() const { return ray_; }
   double per_metre() const { return per_metre_; }
+  /// Whether the ray comes in through the border, at t_enter.
+  bool from_outside() const { return from_outside_; }
 
   struct Sample {
     bool valid = false;    ///< false over holes
@@ -88,12 +93,16 @@ class HeightProbe {
   /// fixed-step's step, and its least share of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.fixed_step.step * blind_step(); }
   double stride_share(const MarchSettings&) const { return 0; }
+  /// The least step of a ray under the ground: it may pass shorter ways above it.
+  double least_step_under() const { return 0x1p-12 * blind_step(); }
   /// Whether there is rock under the sheet: walls at its rims.
   bool solid() const { return field_.settings().solid; }
 
   bool under_ground(const Sample& sample) const { return sample.clearance < 0; }
-  /// The step that is free if the ground rises no more than `shrink` allows.
-  double free_time(const Sample& sample, double shrink) const { return sample.clearance * shrink * per_metre_; }
+  /// The step that is free of the surface if it rises no more than `shrink` allows.
+  double free_time(const Sample& sample, double shrink) const {
+    return std::abs(sample.clearance) * shrink * per_metre_;
+  }
   /// Until when that bound holds, which is not across holes: the exit from the largest block of the pyramid around the
   /// point without holes; over a hole, from its cell.
   double bounded_until(const Sample& sample, double t) const {
@@ -130,7 +139,6 @@ class HeightProbe {
     if (field_.wraps()) position -= std::floor(position / cells) * cells;
     return std::clamp(position, 0.0, static_cast<double>(cells));
   }
-  void clip(double low, double high, double o, double d) { clip_to_range(low, high, o, d, t_enter, t_exit); }
 
   const HeightField& field_;
   const MaxPyramid* pyramid_;
@@ -141,6 +149,7 @@ class HeightProbe {
   double speed_;   // metres per t
   double per_metre_;
   bool has_holes_;
+  bool from_outside_;
 };
 
 /// Calls march(probe, counted) where the ray can meet the ground.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <string>
 
 #include "scarp/base/error.h"
@@ -64,14 +63,8 @@ const DeviceMarch& device_march(const HeightMarchEntry& march) {
 }
 
 glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, const DeviceTarget& target) {
-  double shrink = settings.lipschitz.shrink;
-  if (march == "lipschitz" && shrink == 0) {
-    if (std::isnan(target.slope))
-      throw Error("lipschitz: neither the field's slope bound (slope) nor a shrink factor is given");
-    shrink = 1 / std::hypot(1.0, target.slope);
-  }
   const HeightFieldSettings& field = target.field->settings();
-  return device_sampling(march, settings, shrink, field.scale * field.exaggeration);
+  return device_sampling(march, settings, target.slope, 0, field.scale * field.exaggeration);
 }
 
 int checked_turns(int turns) {

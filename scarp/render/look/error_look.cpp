@@ -169,6 +169,7 @@ ErrorPicture render_error(const Scene& scene, const Camera& camera, int width, i
   const Light light(SunSettings{}, 0);
   ErrorPicture picture{Image(width, height), {}};
   picture.counts.judges = judges.marches();
+  picture.counts.caveats = scene.caveats();
   picture.counts.tolerance_m = settings.tolerance * judges.cell_side();
   picture.counts.share = settings.share;
   Tally tally;

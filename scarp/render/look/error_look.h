@@ -13,13 +13,14 @@
 //   blue       early: the march stopped before the ground, or at something nearer
 //   orange     late: the march hit behind the first ground
 //   yellow     gave up: the march came to its step limit
-//   brown      not judged: the ray comes in below the surface (through the border, a hole, or from an eye under ground)
+//   brown      not judged: the ray begins or comes in below the surface and never meets it from above
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "scarp/base/progress.h"
 #include "scarp/render/camera/camera.h"
@@ -51,6 +52,7 @@ void validate(const ErrorSettings& settings);
 struct ErrorCounts {
   std::array<std::int64_t, kVerdicts> pixels{};  ///< by Verdict
   std::string judges{};                          ///< names of their marches
+  std::vector<std::string> caveats{};            ///< Scene::caveats() of the scene that is judged
   double tolerance_m = 0;           ///< along the ray, of the field with the smallest cells; 0: fields have no cells
   double share = 0;                 ///< of the distance, the tolerance of fields without cells
   std::int64_t proven = 0;          ///< pixels of a function that interval bisection decided

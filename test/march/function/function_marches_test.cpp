@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "cases.h"
 #include "field/terrain_functions.h"
 #include "march/function/function_rays.h"
+#include "march/steep_waves.h"
 #include "scarp/base/error.h"
 #include "scarp/march/fixed_step.h"
 #include "scarp/march/function/function_exhaustive.h"
@@ -330,6 +332,40 @@ TEST(FunctionMarches, RefineTheLastInterval) {
   settings.sampling = {.refinement = Refinement::bisect, .tolerance = 3};
   settings.relaxed.tolerance = 0;
   EXPECT_NEAR(march_relaxed(ramp, ray, settings).t, 99, 4 * 0x1p-24);
+}
+
+TEST(FunctionMarches, LipschitzHitsUnderTheGroundWithALargeShrinkFactor) {
+  const HeightFunction function(endless_waves());
+  const double proven = largest_proven_shrink(function.bound_everywhere().slope);
+  MarchSettings too_large, smaller;
+  too_large.lipschitz.shrink = 0.7;
+  smaller.lipschitz.shrink = 0.5 * proven;
+  ASSERT_LT(proven, 0.5);
+  int late = 0, under = 0;
+  for (const Ray& ray : rays_over_waves(500)) {
+    const Hit hit = march_lipschitz(function, ray, too_large), judge = march_lipschitz_local(function, ray);
+    ASSERT_TRUE(hit);
+    const dvec3 p = ray.at(hit.t);
+    late += hit.t > judge.t + 0.1;
+    under += p.z < function.value(p.x, p.y) - 0.1;
+    EXPECT_LE(march_lipschitz(function, ray, smaller).t, judge.t);
+  }
+  EXPECT_GT(late, 25);
+  EXPECT_GT(under, 10);
+}
+
+// From beyond the reach of functions, under the ground there: down through it later on.
+TEST(FunctionMarches, FollowRaysThatComeInUnderTheGround) {
+  const HeightFunction function(make_function(Sines{{{10, 100, 0.5 * std::numbers::pi, 0}}}));
+  const Ray ray{{-kFunctionReach - 10, 25, 5}, {1, 1, 0}, 0, 200};
+  for (const FunctionMarchEntry& march : function_marches()) {
+    const Hit hit = march.cpu(function, ray, {}, nullptr, FunctionUse::march);
+    if (march.name == "lipschitz-local") {
+      EXPECT_EQ(hit.status, HitStatus::below) << "as documented";
+    } else {
+      EXPECT_NEAR(hit.t, 100 + 100.0 / 12 - 25, 1) << march.name;
+    }
+  }
 }
 
 TEST(FunctionMarches, VectorsAnswerBitForBit) {

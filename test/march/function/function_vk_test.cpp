@@ -3,6 +3,7 @@
 // agrees with closest-hit, and validation has nothing to say.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
@@ -13,10 +14,12 @@
 #include "field/terrain_functions.h"
 #include "march/function/function_judge.h"
 #include "march/function/function_rays.h"
+#include "march/steep_waves.h"
 #include "scarp/march/device_function_ray.h"
 #include "scarp/march/function/function_batch.glsl.h"
 #include "scarp/march/function/function_queries_vk.h"
 #include "scarp/march/function/presets.h"
+#include "scarp/march/lipschitz.h"
 #include "vk/device_under_test.h"
 #include "vk/spirv_layout.h"
 
@@ -125,6 +128,25 @@ TEST_F(FunctionsOnDevice, RaysFromTheSurfaceLeaveIt) {
   EXPECT_EQ(std::count(blocked.begin(), blocked.end(), 1), 0);
 }
 
+TEST_F(FunctionsOnDevice, HitUnderTheGroundWithALargeShrinkFactor) {
+  const HeightFunction function(endless_waves());
+  const DeviceFunction on_device(device(), function);
+  MarchSettings settings;
+  settings.lipschitz.shrink = 0.7;
+  const std::vector<Ray> rays = rays_over_waves(500);
+  std::vector<Hit> hits(rays.size());
+  DeviceFunctionQueries& lipschitz = queries(find_function_march("lipschitz"));
+  lipschitz.set_march_settings(settings);
+  lipschitz.closest_hits({&function, &on_device}, rays, hits);
+  lipschitz.set_march_settings({});
+  int same = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_TRUE(hits[i]);
+    same += std::abs(hits[i].t - march_lipschitz(function, rays[i], settings).t) < 1e-3;
+  }
+  EXPECT_GT(same, 475);
+}
+
 TEST_F(FunctionsOnDevice, SayWhatIsWrong) {
   FunctionMarchEntry unknown = find_function_march("naive");
   unknown.name = "max-mip";
@@ -167,9 +189,10 @@ TEST(FunctionBatchLayout, IsThatOfTheShaders) {
                 offsetof(FunctionBatch, settings), offsetof(FunctionBatch, run_steps)}));
   using glsl::ScarpSampling;
   EXPECT_TRUE(has_struct(
-      kShader, {offsetof(ScarpSampling, march), offsetof(ScarpSampling, factor), offsetof(ScarpSampling, least),
-                offsetof(ScarpSampling, tolerance), offsetof(ScarpSampling, height), offsetof(ScarpSampling, max_steps),
-                offsetof(ScarpSampling, refinement), offsetof(ScarpSampling, halvings)}));
+      kShader,
+      {offsetof(ScarpSampling, march), offsetof(ScarpSampling, factor), offsetof(ScarpSampling, least),
+       offsetof(ScarpSampling, tolerance), offsetof(ScarpSampling, height), offsetof(ScarpSampling, max_steps),
+       offsetof(ScarpSampling, refinement), offsetof(ScarpSampling, halvings), offsetof(ScarpSampling, proven)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpInstruction)));
   EXPECT_EQ(sizeof(ScarpInstruction), 64u);
 }

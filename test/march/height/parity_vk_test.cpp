@@ -11,11 +11,13 @@
 
 #include "base/refusal.h"
 #include "cases.h"
+#include "march/height/entering_rays.h"
 #include "march/height/rounding_judge.h"
 #include "march/height/spiteful.h"
 #include "march/height/spiteful_text.h"
 #include "march/refinement_judge.h"
 #include "march/sampling_rules.h"
+#include "march/steep_waves.h"
 #include "scarp/accel/slope_bound.h"
 #include "scarp/march/height/batch_states.glsl.h"
 #include "scarp/march/height/max_mip.h"
@@ -108,6 +110,31 @@ INSTANTIATE_TEST_SUITE_P(Spiteful, ParityOnDevice, testing::ValuesIn(all_fields(
                          [](const auto& of) { return test_name(std::string(spiteful_fields()[of.param].name)); });
 
 class QueriesOnDevice : public OnDevice {};
+
+TEST_F(QueriesOnDevice, FollowRaysThatComeInUnderTheGround) {
+  for (const HeightMarchEntry& march : height_marches()) {
+    if (!march.gpu) continue;
+    expect_entering_rays_go_on(march,
+                               [&](const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
+                                 const DeviceGround ground(device(), field);
+                                 queries(march.name).closest_hits({&field, &ground, slope_bound(field)}, rays, hits);
+                               });
+  }
+}
+
+// A shrink factor that the slope does not prove: what is under the ground is a hit, not lost.
+TEST_F(QueriesOnDevice, HitUnderTheGroundWithALargeShrinkFactor) {
+  const HeightField field = waves();
+  const DeviceGround ground(device(), field);
+  MarchSettings settings;
+  settings.lipschitz.shrink = 0.7;
+  const std::vector<Ray> rays = rays_over_waves(500);
+  std::vector<Hit> hits(rays.size());
+  queries("lipschitz").set_march_settings(settings);
+  queries("lipschitz").closest_hits({&field, &ground, slope_bound(field)}, rays, hits);
+  queries("lipschitz").set_march_settings({});
+  expect_hits_under_the_ground(field, rays, hits);
+}
 
 TEST_F(QueriesOnDevice, RefineTheirHits) {
   for (const std::string_view march : {"naive", "fixed-step", "relaxed"}) {

@@ -53,7 +53,7 @@ TEST_P(SinglePrecisionSampling, KeepsItsRule) {
         glsl::ScarpHit answer{};
         if (prepared.marches)
           answer = glsl::scarp_sampled(device_field(field, &pyramid), prepared.ray,
-                                       device_sampling(marched.march, marched.settings, 1 / std::hypot(1.0, slope), 1));
+                                       device_sampling(marched.march, marched.settings, slope, 0, 1));
         const Hit hit = hit_from_device(ray, prepared, answer);
         hits += static_cast<bool>(hit);
         const std::string objection =

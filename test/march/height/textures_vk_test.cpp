@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <string>
 #include <utility>
@@ -182,8 +181,8 @@ MarchSettings march_settings() {
 std::vector<Realisation> realisations(double slope) {
   std::vector<Realisation> all = {{"max-mip", glsl::kTexturesMaxMip, device_ray, {}}};
   for (const std::string_view name : {"naive", "fixed-step", "relaxed", "lipschitz"}) {
-    all.push_back({name, glsl::kTexturesSampled, sampled_device_ray,
-                   device_sampling(name, march_settings(), 1 / std::hypot(1.0, slope), 1)});
+    all.push_back(
+        {name, glsl::kTexturesSampled, sampled_device_ray, device_sampling(name, march_settings(), slope, 0, 1)});
   }
   return all;
 }

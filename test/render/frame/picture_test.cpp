@@ -269,6 +269,34 @@ TEST(ErrorLook, AnExactMarchHasNoErrors) {
   }
 }
 
+// Under the rim of a bowl, from outside.
+TEST(ErrorLook, RaysThatComeInUnderTheGroundAreNotLost) {
+  const HeightField bowl = field_of(33, 0, [](std::vector<float>& samples, int side) {
+    for (int i = 0; i < side * side; ++i)
+      samples[static_cast<std::size_t>(i)] =
+          static_cast<float>(0.05 * (std::pow(i % side - 16, 2) + std::pow(i / side - 16, 2)));
+  });
+  PictureSettings settings;
+  settings.width = settings.height = 32;
+  settings.look = Look::error;
+  const Camera camera = Camera::look_at({16, -10, 10}, {16, 16, 6}, 20, 32, 32);
+  for (const std::string_view march : {"relaxed", "lipschitz", "max-mip"}) {
+    const Picture picture = render_picture(test::terrain(bowl, march), camera, settings);
+    EXPECT_EQ((*picture.errors)[Verdict::lost], 0) << march;
+    EXPECT_GT((*picture.errors)[Verdict::right_hit] + (*picture.errors)[Verdict::early], 500) << march;
+    EXPECT_TRUE(picture.errors->caveats.empty()) << march;
+  }
+}
+
+TEST(ErrorLook, NamesAShrinkFactorThatIsNotProven) {
+  MarchSettings settings;
+  settings.lipschitz.shrink = 0.7;
+  const Picture picture = errors_at_a_spike("lipschitz", settings);
+  ASSERT_EQ(picture.errors->caveats.size(), 1u);
+  EXPECT_NE(picture.errors->caveats[0].find("0.7 is approximate"), std::string::npos) << picture.errors->caveats[0];
+  EXPECT_EQ((*picture.errors)[Verdict::gave_up], 0);
+}
+
 TEST(ErrorLook, TheVerdictIsByStatusThenByDistance) {
   const auto hit = [](double t) {
     Hit h;

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// All marches on rays that come in under the ground: they go on, and hit where they later go down through it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "march/glsl_host.h"
+#include "march/height/entering_rays.h"
+#include "march/height/spiteful_text.h"
+#include "scarp/accel/slope_bound.h"
+#include "scarp/march/device_sampling.h"
+#include "scarp/march/height/device_ray.h"
+#include "scarp/march/height/height_marches.glsl.h"
+
+namespace scarp::test {
+namespace {
+
+class EnteringRays : public testing::TestWithParam<HeightMarchEntry> {};
+
+TEST_P(EnteringRays, GoOn) {
+  expect_entering_rays_go_on(GetParam(),
+                             [](const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
+                               const MaxPyramid pyramid(field);
+                               const HeightTarget target{&field, &pyramid, slope_bound(field)};
+                               GetParam().batch(target, rays, hits, {});
+                               for (std::size_t i = 0; i < rays.size(); ++i) {
+                                 EXPECT_EQ(hits[i], GetParam().cpu(target, rays[i], {}, nullptr));
+                                 EXPECT_EQ(static_cast<bool>(hits[i]), GetParam().occluded(target, rays[i], {}));
+                               }
+                             });
+}
+
+INSTANTIATE_TEST_SUITE_P(Marches, EnteringRays, testing::ValuesIn(height_marches().begin(), height_marches().end()),
+                         [](const auto& of) { return test_name(std::string(of.param.name)); });
+
+// The shaders' text, as C++.
+TEST(EnteringRays, GoOnInSinglePrecision) {
+  for (const std::string_view name : {"naive", "fixed-step", "relaxed", "lipschitz"}) {
+    expect_entering_rays_go_on(
+        find_height_march(name), [&](const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
+          const MaxPyramid pyramid(field);
+          glsl::host_field = &field;
+          glsl::host_pyramid = &pyramid;
+          const glsl::ScarpSampling settings = device_sampling(name, {}, slope_bound(field), 0, 1);
+          for (std::size_t i = 0; i < rays.size(); ++i) {
+            const DeviceRay prepared = sampled_device_ray(field, rays[i]);
+            hits[i] = hit_from_device(rays[i], prepared,
+                                      glsl::scarp_sampled(device_field(field, &pyramid), prepared.ray, settings));
+          }
+        });
+  }
+}
+
+// A tolerance that grows with the distance does not hide where they come out.
+TEST(EnteringRays, GoOnFromFarAway) {
+  const HeightField field = bowl_field(false, false);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid, slope_bound(field)};
+  Ray ray{{-1e6, 20, 10}, {1, 0, 0}};
+  const Hit judge = march_exhaustive(target, ray);
+  ASSERT_TRUE(judge);
+  MarchSettings settings;
+  settings.naive.min_step = 1e-7;  // of a million metres
+  for (const HeightMarchEntry& march : height_marches()) {
+    const Hit hit = march.cpu(target, ray, settings, nullptr);
+    EXPECT_TRUE(hit) << march.name;
+    EXPECT_GT(hit.t, 1e6 + 10) << march.name;
+    EXPECT_LT(hit.t, judge.t + 1) << march.name;
+  }
+}
+
+// A ray that begins under the ground of the field keeps the answer that the march documents.
+TEST(EnteringRays, ThatBeginUnderTheGroundKeepTheirAnswers) {
+  const HeightField field = bowl_field(false, false);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid, slope_bound(field)};
+  const Ray ray{{2, 20, 10}, {1, 0, 0}};
+  for (const HeightMarchEntry& march : height_marches()) {
+    const Hit hit = march.cpu(target, ray, {}, nullptr);
+    if (march.name == "naive") {
+      EXPECT_EQ(hit.t, 0);
+    } else if (march.name == "relaxed" || march.name == "lipschitz") {
+      EXPECT_EQ(hit.status, HitStatus::below) << march.name;
+    } else {
+      EXPECT_NEAR(hit.t, march_exhaustive(target, ray).t, 0.5) << march.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace scarp::test
