@@ -244,6 +244,7 @@ void add_look_options(Command& command, LookOptions& o) {
                                    .rules = {stepped}});
   large(&o.comanche.iterations, {.names = "--iterations",
                                  .help = "picture of the number of steps, from black (0) to white (the maximum)",
+                                 .note = "fixed-step: the sky is white",
                                  .looks = kLarge});
   large(&o.reach, {.names = "--reach",
                    .help = "maximum length of camera rays",

@@ -29,13 +29,9 @@ constexpr int kByteRounding = 2;
 // from white to black, and does so in few pixels. Of one sample per pixel it changes all.
 constexpr int kMaxDifference = 140, kAnyDifference = 255;
 constexpr double kMaxShare = 0.001;
-// The eye of the look comanche is as high as the highest ground. On a device, a ray that rises from there may leave the
-// ground's heights a step sooner: of a picture of steps, the sky's part.
-constexpr double kShareOfSteps = 0.03;
 
 // The picture as a file of the tests, `name`.png, against the golden one; `where` tells who has made it.
-void expect_golden(const std::string& picture, const std::string& name, int most, double most_share = kMaxShare,
-                   const std::string& where = "") {
+void expect_golden(const std::string& picture, const std::string& name, int most, const std::string& where = "") {
   const test::Rgb now = test::read_png(picture);
   const fs::path kept = fs::path(SCARP_FAILED_IMAGES) / (name + where + "_now.png");
   const std::string golden_path = (fs::path(SCARP_SOURCE_DIR) / "test" / "golden" / (name + ".png")).string();
@@ -59,7 +55,7 @@ void expect_golden(const std::string& picture, const std::string& name, int most
   }
   const double share = static_cast<double>(differing) / (static_cast<double>(now.width) * now.height);
   EXPECT_LE(largest, most);
-  EXPECT_LE(share, most_share);
+  EXPECT_LE(share, kMaxShare);
   if (testing::Test::HasFailure()) {
     const std::string shown = (fs::path(SCARP_FAILED_IMAGES) / (name + where + "_difference.png")).string();
     write_png(shown, {difference.data(), now.width, now.height});
@@ -142,8 +138,7 @@ TEST_P(GoldenPicture, IsTheSameOnADevice) {
   arguments.insert(arguments.end(), {"--device", "auto"});
   const auto result = test::run_on_device(arguments);
   ASSERT_EQ(result.status, 0) << result.err;
-  const bool of_steps = wanted.name == std::string("comanche-iterations");
-  expect_golden(picture, wanted.name, wanted.max_difference, of_steps ? kShareOfSteps : kMaxShare, "_on_device");
+  expect_golden(picture, wanted.name, wanted.max_difference, "_on_device");
 }
 #endif
 

@@ -246,13 +246,20 @@ vec3 FrameTile::water_colour(const WaterPoint& found) const {
   return colour;
 }
 
+float FrameTile::share_of_steps(std::size_t point, double most) const {
+  const Seen& seen = seen_[point];
+  const bool meets = seen.hit || (view_.water() && meetings_[point]);
+  // A stepped ray takes all its steps unless it meets something; none of them are sampled where nothing can be met.
+  if (view_.step_march() && !meets) return 1;
+  return static_cast<float>(std::min(1.0, seen.steps / most));
+}
+
 std::vector<vec3> FrameTile::colours() const {
   const StepMarch* march = view_.step_march();
   const double most = march ? static_cast<double>(march->most_steps()) : kMostSteps;
   std::vector<vec3> colours(seen_.size());
   if (shows_steps()) {
-    for (std::size_t i = 0; i < seen_.size(); ++i)
-      colours[i] = vec3(static_cast<float>(std::min(1.0, seen_[i].steps / most)));
+    for (std::size_t i = 0; i < seen_.size(); ++i) colours[i] = vec3(share_of_steps(i, most));
     return colours;
   }
   for (std::size_t i = 0; i < seen_.size(); ++i) colours[i] = colour_of(seen_[i]);

@@ -424,7 +424,11 @@ vec3 colour_of_point() {
   FrameSeen camera = seen_of(kFrameCamera);
   FrameWater water = water_met;
   float share = min(1.0, float(camera.steps) / float(s.is.most_steps));
-  if (s.is.iterations != 0) return vec3(share);
+  if (s.is.iterations != 0) {
+    // A stepped ray takes all its steps unless it meets something; none of them are sampled where nothing can be met.
+    bool meets = camera.kind != kFrameNothing || (has_water && water.kind != 0);
+    return vec3(stepped && !meets ? 1.0 : share);
+  }
   vec3 direction = direction_of(camera);
   vec3 colour;
   if (has_water && water.kind != 0)
