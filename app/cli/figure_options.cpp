@@ -22,7 +22,7 @@ void add_figure_options(Command& command, FigureOptions& options) {
                                 .help = "legend of the colours in the lower right corner",
                                 .topic = Topic::figure,
                                 .common = true,
-                                .looks = {"shaded height steps error comanche", "its greys have no unit"}});
+                                .looks = {"shaded height steps error comanche level", "its greys have no unit"}});
   command.add(&options.scale_bar, {.names = "--scale-bar",
                                    .help = "scale bar in the lower left corner",
                                    .note = "in perspective it holds in the middle",
@@ -97,10 +97,10 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
   const ReliefRange grey = picture.heights.value_or(ReliefRange{extent.low, extent.high});
   // The legend shows heights without exaggeration.
   const double exaggeration = extent.exaggeration;
-  switch (settings.look) {
+  switch (settings.comanche.heights ? Look::height : settings.look) {
     case Look::steps:
-      figure.legend = legend_of("steps per ray", picture.steps->least, picture.steps->most,
-                                ramp_over(settings, picture.steps->least, picture.steps->most));
+      figure.legend = legend_of("steps per ray", picture.steps->scale.low, picture.steps->scale.high,
+                                ramp_over(settings, picture.steps->scale.low, picture.steps->scale.high));
       break;
     case Look::error: {
       FigureKey key{"the march is", {}};
@@ -114,7 +114,8 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
       figure.key = std::move(key);
       break;
     }
-    case Look::height: {
+    case Look::height:
+    case Look::level: {
       FigureLegend scale{"height, m", {}, ticks_of(grey.low / exaggeration, grey.high / exaggeration)};
       for (int i = 0; i < 255; ++i) {
         const auto byte = static_cast<std::uint8_t>(1 + i);
@@ -159,6 +160,9 @@ void settle_figure(const FigureOptions& options, const PictureSettings& settings
   if (!options.any()) return;
   const std::string_view option = options.legend ? "--legend" : "--scale-bar";
   if (exr) throw Error(fmt::format("{} is drawn into PNG pictures only (name the output *.png)", option));
+  if (options.legend && settings.comanche.iterations) {
+    throw Error("--legend has no scale to show with --iterations (use --look steps)");
+  }
   const bool ramp = settings.look == Look::shaded || settings.look == Look::comanche;
   if (options.legend && ramp && settings.ground.natural) {
     throw Error("--legend has no colour scale to show with --ground natural (leave one of them out)");

@@ -9,8 +9,15 @@ namespace scarp::cli {
 
 void print_findings(const Picture& picture) {
   if (picture.steps) {
-    fmt::print("steps per ray: {} (first colour of the ramp) to {} (last), mean {:.1f}\n", picture.steps->least,
-               picture.steps->most, picture.steps->mean);
+    const StepRange& steps = *picture.steps;
+    const bool whole = steps.scale.low == steps.least && steps.scale.high == steps.most;
+    if (whole) {
+      fmt::print("steps per ray: {} (first colour of the ramp) to {} (last), mean {:.1f}\n", steps.least, steps.most,
+                 steps.mean);
+    } else {
+      fmt::print("steps per ray: {} to {}, mean {:.1f}; colours of the ramp from {} to {}\n", steps.least, steps.most,
+                 steps.mean, steps.scale.low, steps.scale.high);
+    }
   }
   if (picture.heights) {
     fmt::print("heights: {:.6g} m (grey 1) to {:.6g} m (grey 255)\n", picture.heights->low, picture.heights->high);

@@ -63,6 +63,15 @@ ColourImage mirrored(const ColourImage& image) {
   return four;
 }
 
+std::shared_ptr<const DetailTexture> read_detail_texture(const std::string& path) {
+  const ColourImage image = read_colour_image(path);
+  try {
+    return std::make_shared<DetailTexture>(image.width, image.height, image.rgba);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path, error.what()));
+  }
+}
+
 int pixels(double number, const std::string& text) {
   if (number != std::floor(number) || !(std::abs(number) <= 1e9)) {
     throw Error(fmt::format("--lowres '{}': expected WIDTHxHEIGHT in pixels, for example 320x240", text));
@@ -116,13 +125,22 @@ void add_look_options(Command& command, LookOptions& o) {
                         .unit = "metres",
                         .fallback = fmt::format("{} of the relief", o.ground.snow_share),
                         .rules = {needs("--ground natural", [&o] { return o.ground_colours == "natural"; })}});
-  ground(&o.ground.detail, {.names = "--detail", .help = "strength of noise patches on the ground", .range = {0, 1}});
+  const Rule detailed = needs("--detail F", [&o] { return o.ground.detail > 0; });
+  ground(&o.ground.detail, {.names = "--detail",
+                            .help = "strength of noise patches, or of --detail-texture, on the ground",
+                            .range = {0, 1}});
   ground(&o.ground.detail_size, {.names = "--detail-size",
-                                 .help = "size of the largest patches",
+                                 .help = "size of the largest patches, or width of --detail-texture",
                                  .unit = "metres",
                                  .range = kZeroOrMore,
                                  .fallback = "16 cells",
-                                 .rules = {needs("--detail F", [&o] { return o.ground.detail > 0; })}});
+                                 .rules = {detailed}});
+  ground(&o.detail_texture,
+         {.names = "--detail-texture",
+          .value = "FILE",
+          .help = "image that is repeated over the ground instead of noise: its grey levels change the brightness",
+          .files = "*",
+          .rules = {detailed}});
   ground(&o.ground.contours, {.names = "--contours",
                               .help = "contour interval",
                               .unit = "metres",
@@ -191,7 +209,7 @@ void add_look_options(Command& command, LookOptions& o) {
                       .help = "visibility in fog",
                       .unit = "metres",
                       .range = kAboveZero,
-                      .note = "2 % of the contrast remains at this distance",
+                      .note = "2 % of contrast remains there",
                       .fallback = "--reach, else the longer side of the field; more if the eye is outside",
                       .common = true,
                       .rules = {foggy}});
@@ -215,7 +233,10 @@ void add_look_options(Command& command, LookOptions& o) {
                            return command.value("--sky") != "scattering";
                          }}}});
 
+  constexpr Looks kPixels{"height comanche"};
   const Rule stepped = needs("--march fixed-step", [&command] { return command.value("--march") == "fixed-step"; });
+  const Rule large_pixels{"needs --lowres WIDTHxHEIGHT with --look height",
+                          [&command, &o] { return command.value("--look") != "height" || !o.lowres.empty(); }};
   const auto large = [&](Binding to, Option option) {
     option.topic = Topic::comanche;
     command.add(std::move(to), std::move(option));
@@ -223,25 +244,29 @@ void add_look_options(Command& command, LookOptions& o) {
   large(&o.lowres, {.names = "--lowres",
                     .value = "WIDTHxHEIGHT",
                     .help = "size of the picture in large pixels",
+                    .note = "the look height then has the rays and the camera of comanche",
                     .fallback = fmt::format("{}x{}", kLowresWidth, kLowresHeight),
-                    .looks = {"comanche", "other looks have --size"}});
+                    .looks = {"height comanche", "other looks have --size"},
+                    .excludes = {"--size", "--refine"}});
   large(&o.comanche.scale, {.names = "--pixel-size",
                             .value = "PX",
                             .help = "side of a large pixel in pixels of the image",
                             .range = {1, 64},
-                            .looks = kLarge});
+                            .looks = kPixels,
+                            .rules = {large_pixels}});
   large(&o.comanche.steps, {.names = "--steps",
                             .help = "number of steps of fixed-step over the reach",
                             .range = {1, 65536},
-                            .looks = kLarge});
+                            .looks = kPixels,
+                            .rules = {stepped, large_pixels}});
   large(&o.comanche.shells, {.names = "--shells",
                              .help = "fixed-step samples on spheres round the eye instead of planes",
-                             .looks = kLarge,
-                             .rules = {stepped}});
+                             .looks = kPixels,
+                             .rules = {stepped, large_pixels}});
   large(&o.comanche.step_by_view, {.names = "--step-by-view",
                                    .help = "longer steps of fixed-step for rays that look down",
-                                   .looks = kLarge,
-                                   .rules = {stepped}});
+                                   .looks = kPixels,
+                                   .rules = {stepped, large_pixels}});
   large(&o.comanche.iterations, {.names = "--iterations",
                                  .help = "picture of the number of steps, from black (0) to white (the maximum)",
                                  .note = "fixed-step: the sky is white",
@@ -254,11 +279,16 @@ void add_look_options(Command& command, LookOptions& o) {
 }
 
 void settle_look(const LookOptions& o, const MarchSettings& march_settings, PictureSettings& picture) {
-  const bool comanche = picture.look == Look::comanche;
   picture.comanche = o.comanche;
+  if (picture.look == Look::height && !o.lowres.empty()) {
+    picture.look = Look::comanche;
+    picture.comanche.heights = true;
+  }
+  const bool comanche = picture.look == Look::comanche;
   picture.comanche.interpolate = march_settings.fixed_step.interpolate;
   picture.ground = o.ground;
   picture.ground.natural = o.ground_colours == "natural";
+  if (!o.detail_texture.empty()) picture.ground.detail_texture = read_detail_texture(o.detail_texture);
   const std::string extension = extension_of(o.ramp);
   if (extension == ".cpt") {
     picture.ramp_stops = std::make_shared<RampStops>(read_cpt(o.ramp));

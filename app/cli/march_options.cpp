@@ -104,7 +104,7 @@ void add_march_options(Command& command, MarchSettings& march) {
                .fallback = std::string(name_of(sampling.refinement)),
                .topic = Topic::march,
                .inputs = kMarched,
-               .looks = {"shaded height steps error", "it has --fixed-step-interpolate instead"},
+               .looks = {"shaded hillshade height steps error level", "it has --fixed-step-interpolate instead"},
                .marches = "naive fixed-step relaxed"});
   command.add(&sampling.halvings,
               {.names = "--refine-halvings",

@@ -38,6 +38,12 @@ ViewSettings settle(RenderOptions& options) {
   picture.tone_curve = !options.no_tone_curve;
   if (!options.sky.empty()) picture.sky.kind = find_sky(options.sky);
   if (options.is_given("--error-tolerance")) picture.error = {options.error_tolerance, options.error_tolerance / 100};
+  if (!options.steps_range.empty()) {
+    const auto range = numbers_from(options.steps_range, ',', 2, 2, "--steps-range", "LOW,HIGH, for example 0,128");
+    if (!(range[0] >= 0 && range[1] > range[0]))
+      throw Error(fmt::format("--steps-range '{}': expected 0 <= LOW < HIGH", options.steps_range));
+    picture.step_scale = StepScale{range[0], range[1]};
+  }
   settle_look(options.look_options, options.march_settings, picture);
   if (!options.size.empty()) {
     const auto size = numbers_from(options.size, 'x', 2, 2, "--size", "WIDTHxHEIGHT in pixels, for example 1280x720");

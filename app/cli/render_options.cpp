@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <limits>
+#include <system_error>
 #include <utility>
 
 #include "app/cli/device_option.h"
@@ -18,6 +21,34 @@ namespace {
 constexpr std::string_view kNoPlinth = "only a raster alone is shown on a plinth";
 constexpr Looks kLit{"shaded comanche", "the others show numbers"};
 
+// Those without a number.
+std::vector<std::string> plain_looks() {
+  std::vector<std::string> looks;
+  for (const Look look : {Look::shaded, Look::hillshade, Look::height, Look::steps, Look::error, Look::comanche})
+    looks.emplace_back(name_of(look));
+  return looks;
+}
+
+// "steps", "level:3".
+void set_look(const std::string& text, RenderOptions& o) {
+  const std::string level = std::string(name_of(Look::level)) + ":";
+  if (text.starts_with(level)) {
+    const char *first = text.data() + level.size(), *last = text.data() + text.size();
+    const auto [rest, error] = std::from_chars(first, last, o.picture.level);
+    if (error != std::errc() || rest != last || o.picture.level < 0)
+      throw WrongUsage(fmt::format("--look '{}': expected {}N, N a whole number, 0 or more", text, level));
+    o.look = name_of(Look::level);
+    return;
+  }
+  const std::vector<std::string> plain = plain_looks();
+  if (std::find(plain.begin(), plain.end(), text) == plain.end()) {
+    std::vector<std::string_view> words(plain.begin(), plain.end());
+    words.push_back("level:N");
+    throw WrongUsage(fmt::format("--look '{}': expected {}", text, listed(words, "or")));
+  }
+  o.look = text;
+}
+
 void add_picture_options(Command& command, RenderOptions& o) {
   const auto add = [&](Binding to, Option option) {
     option.topic = Topic::picture;
@@ -29,16 +60,17 @@ void add_picture_options(Command& command, RenderOptions& o) {
        .help = "size of the picture in pixels",
        .fallback = fmt::format("{}x{}; with --top the aspect ratio of the ground", o.picture.width, o.picture.height),
        .common = true,
-       .looks = {"shaded hillshade height steps error", "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
-  std::vector<std::string> looks;
-  for (const Look look : {Look::shaded, Look::hillshade, Look::height, Look::steps, Look::error, Look::comanche})
-    looks.emplace_back(name_of(look));
-  add(&o.look, {.names = "--look",
-                .value = "LOOK",
-                .help = "what the picture shows",
-                .choices = std::move(looks),
-                .closed = true,
-                .common = true});
+       .looks = {"shaded hillshade height steps error level", "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
+  add([&o](const std::string& text) { set_look(text, o); },
+      {.names = "--look",
+       .value = "LOOK",
+       .help = "what the picture shows",
+       .choices = plain_looks(),
+       .note = "or level:N, the maximum of each 2^N x 2^N cells, as in the pyramid",
+       .fallback = o.look,
+       .common = true,
+       .rules = {{"level:N needs a raster (other inputs have no pyramid)", [&o] { return o.look != "level"; },
+                  kEveryInput & ~kTerrain}}});
   add(&o.picture.aa, {.names = "--aa",
                       .help = "anti-aliasing: N x N samples per pixel",
                       .range = {1, 16},
@@ -46,6 +78,11 @@ void add_picture_options(Command& command, RenderOptions& o) {
   add(&o.no_plinth, {.names = "--no-plinth",
                      .help = "no walls below the border of the terrain",
                      .inputs = {kTerrain, kNoPlinth, kNoPlinth}});
+  add(&o.steps_range, {.names = "--steps-range",
+                       .value = "LOW,HIGH",
+                       .help = "numbers of steps of the first and last colour, for pictures to be compared",
+                       .fallback = "those in the picture",
+                       .looks = {"steps"}});
   add(&o.error_tolerance,
       {.names = "--error-tolerance",
        .help = "tolerance of the look error along the ray: cells, or percent of the distance for functions and shapes",
@@ -69,7 +106,14 @@ void add_light_options(Command& command, RenderOptions& o) {
                .fallback = fmt::format("{},{}; voxels and meshes {},{}", picture.sun.azimuth_deg,
                                        picture.sun.altitude_deg, kModelSunAzimuth, picture.sun.altitude_deg),
                .common = true,
-               .looks = {"shaded hillshade comanche", "the others show numbers"}});
+               .looks = {"shaded hillshade comanche", "the others show numbers"},
+               .rules = {{"has no effect with --unlit, except on --water, --fog, --sky and --ground natural",
+                          [&o] {
+                            const LookOptions& look = o.look_options;
+                            return !o.picture.unlit || look.water || !look.fog.empty() || o.sky == "scattering" ||
+                                   look.ground_colours == "natural";
+                          },
+                          kEveryInput & ~kScene}}});
   add(&o.sky, {.names = "--sky",
                .value = "KIND",
                .help = "sky",
@@ -88,6 +132,11 @@ void add_light_options(Command& command, RenderOptions& o) {
        .rules = {needs(
            "--sky scattering", [&o] { return o.sky == "scattering"; }, kEveryInput & ~kScene)}});
   add_tone_option(command, o.no_tone_curve, o.output, Topic::light, kLit);
+  add(&picture.unlit, {.names = "--unlit",
+                       .help = "colours of surfaces as they are, without light of sun and sky and without shadows",
+                       .looks = kLit,
+                       .excludes = {"--no-shadows", "--samples", "--sun-size", "--ao-distance", "--seed",
+                                    "--no-tone-curve", "--normals", "--normal-radius", "--corner-ao"}});
   add(&o.no_shadows, {.names = "--no-shadows", .help = "no cast shadows", .common = true, .looks = {"shaded"}});
   add(&picture.samples, {.names = "--samples",
                          .help = "rays to sun and sky per sample, for soft shadows and ambient occlusion",

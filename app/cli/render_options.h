@@ -26,7 +26,7 @@ struct RenderOptions : InputOptions {
   FrameOptions frames;
   DepthOptions depth;
   FigureOptions figure;
-  std::string size, look = "shaded", sun, sky, view, eye, target;
+  std::string size, look = "shaded", steps_range, sun, sky, view, eye, target;
   bool exr = false;
   double fov_deg = ViewSettings{}.fov_deg, error_tolerance = ErrorSettings{}.tolerance;
   bool top = false, no_shadows = false, no_plinth = false, no_tone_curve = false;

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -76,6 +77,18 @@ ColourImage pixels_of(GDALDataset& dataset, int height, const GdalSession& sessi
   return image;
 }
 
+// At most this many rows, from the top.
+ColourImage read_rows(const std::string& path, int most) {
+  GdalSession session;
+  const StrictReading strict;
+  try {
+    const GDALDatasetUniquePtr dataset = in_colours(open_gdal_raster(path, session), session);
+    return pixels_of(*dataset, std::min(most, dataset->GetRasterYSize()), session);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path, error.what()));
+  }
+}
+
 // Pixel size of the image, in units of the raster's CRS.
 dvec2 pixel_size(GDALDataset& dataset, const Georeference& georeference, const GdalSession& session) {
   CPLStringList options;
@@ -95,16 +108,9 @@ dvec2 pixel_size(GDALDataset& dataset, const Georeference& georeference, const G
 
 }  // namespace
 
-ColourImage read_colour_row(const std::string& path) {
-  GdalSession session;
-  const StrictReading strict;
-  try {
-    const GDALDatasetUniquePtr dataset = in_colours(open_gdal_raster(path, session), session);
-    return pixels_of(*dataset, 1, session);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path, error.what()));
-  }
-}
+ColourImage read_colour_row(const std::string& path) { return read_rows(path, 1); }
+
+ColourImage read_colour_image(const std::string& path) { return read_rows(path, std::numeric_limits<int>::max()); }
 
 ColourImage read_overlay(const std::string& path, const Georeference& georeference, int cols, int rows) {
   GdalSession session;

@@ -21,6 +21,9 @@ struct ColourImage {
 /// Returns the first row of an image with 8 bits per channel: grey, palette or colour. Throws Error naming the file.
 ColourImage read_colour_row(const std::string& path);
 
+/// Returns all of such an image. Throws Error naming the file.
+ColourImage read_colour_image(const std::string& path);
+
 /// Returns an image warped to the ground of a raster: its upper left pixel at the north-west corner, its last pixel at
 /// the south-east corner, interpolated bilinearly by GDAL's warper, from any CRS; transparent outside the image. A
 /// raster and an image that both lack a georeference are aligned border to border. Throws Error naming the file:

@@ -56,9 +56,18 @@ TEST(Comanche, BadInputIsOneLineAndLeavesNothing) {
     std::string says;
   };
   const std::vector<Case> cases{
-      {{"--look", "comanchee"}, "--look 'comanchee': expected shaded, hillshade, height, steps, error or comanche"},
+      {{"--look", "comanchee"},
+       "--look 'comanchee': expected shaded, hillshade, height, steps, error, comanche or level:N"},
       {{"--look", "comanche", "--size", "640x480"}, "--lowres WIDTHxHEIGHT and --pixel-size PX"},
-      {{"--lowres", "64x48"}, "applies to the look comanche, not to 'shaded' (other looks have --size)"},
+      {{"--lowres", "64x48"}, "applies to the looks height and comanche, not to 'shaded' (other"},
+      {{"--look", "height", "--lowres", "64x48", "--size", "64x48"}, "--lowres cannot be combined with --size"},
+      {{"--look", "level:x"}, "--look 'level:x': expected level:N, N a whole number, 0 or more"},
+      {{"--look", "level:-1"}, "--look 'level:-1': expected level:N"},
+      {{"--look", "level:4"}, "there is no level 4 (the pyramid over 8 x 8 cells has levels 0 to 3)"},
+      {{"--look", "steps", "--steps-range", "9,5"}, "--steps-range '9,5': expected 0 <= LOW < HIGH"},
+      {{"--look", "steps", "--steps-range", "9"}, "--steps-range '9': expected LOW,HIGH"},
+      {{"--detail", "1", "--detail-texture", scratch.path("none.png")}, "none.png: does not exist"},
+      {{"--unlit", "--samples", "4"}, "--unlit cannot be combined with --samples"},
       {{"--look", "comanche", "--lowres", "64"}, "expected WIDTHxHEIGHT"},
       {{"--look", "comanche", "--pixel-size", "0"}, "--pixel-size '0': expected a whole number from 1 to 64"},
       {{"--look", "comanche", "--steps", "0"}, "--steps '0': expected a whole number from 1 to 65536"},

@@ -264,7 +264,10 @@ TEST_F(WithoutEffect, IsRefusedOfTerrain) {
   expect_refused(render, {"--fog-falloff", "1", "--fog", "distance"}, "--fog height");
   expect_refused(render, {"--snow-line", "1"}, "--ground natural");
   expect_refused(render, {"--detail-size", "1"}, "--detail F");
-  expect_refused(render, {"--steps", "9"}, "applies to the look comanche");
+  expect_refused(render, {"--steps", "9"}, "applies to the looks height and comanche");
+  expect_refused(render, {"--steps", "9", "--look", "comanche"}, "--march fixed-step");
+  expect_refused(render, {"--pixel-size", "2", "--look", "height"}, "needs --lowres WIDTHxHEIGHT with --look height");
+  expect_refused(render, {"--sun", "1,30", "--unlit"}, "has no effect with --unlit");
   expect_refused(render, {"--error-tolerance", "1"}, "applies to the look error");
   expect_refused(render, {"--sun-size", "1"}, "--samples N");
   expect_refused(render, {"--mesh-up", "y"}, "--mesh FILE");
@@ -302,7 +305,7 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
     bool seen = true;  // in a picture as small as this one
   };
   const Names soft{"--samples", "4"}, fog{"--fog", "height"}, lake{"--water", "30"}, lit{"shaded", "comanche"},
-      steps{"--march", "fixed-step", "--reach", "200"};
+      steps{"--march", "fixed-step", "--reach", "200", "--lowres", "24x18"};
   const std::vector<Case> cases = {
       {{"--ramp", "magma"}, {"shaded", "steps", "comanche"}},
       {{"--sun", "100,20"}, {"shaded", "hillshade", "comanche"}},
@@ -310,6 +313,7 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
       {{"--sky-turbidity", "9"}, lit, {"--sky", "scattering"}},
       {{"--no-tone-curve"}, lit},
       {{"--no-shadows"}, {"shaded"}},
+      {{"--unlit"}, lit},
       {{"--samples", "4"}, lit},
       {{"--sun-size", "60"}, {"shaded"}, soft},
       {{"--ao-distance", "1"}, lit, soft},
@@ -321,7 +325,9 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
       {{"--snow-line", "1"}, lit, {"--ground", "natural"}},
       {{"--detail", "1"}, lit},
       {{"--detail-size", "3"}, lit, {"--detail", "1"}},
+      {{"--detail-texture", path("overlay.asc")}, lit, {"--detail", "1"}, false},
       {{"--contours", "7"}, lit},
+      {{"--steps-range", "0,900"}, {"steps"}},
       {{"--overlay", path("overlay.asc")}, lit, {}, false},
       {{"--water", "30"}, lit},
       {{"--water-colour", "ff0000"}, lit, lake},
@@ -335,19 +341,19 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
       {{"--fog-base", "90"}, lit, fog},
       {{"--fog-falloff", "1"}, lit, fog},
       {{"--sun-tint", "1"}, lit, fog, false},
-      {{"--pixel-size", "2"}, {"comanche"}},
-      {{"--steps", "3"}, {"comanche"}, steps},
-      {{"--shells"}, {"comanche"}, steps, false},
-      {{"--step-by-view"}, {"comanche"}, steps, false},
+      {{"--pixel-size", "2"}, {"height", "comanche"}, {"--lowres", "24x18"}},
+      {{"--steps", "3"}, {"height", "comanche"}, steps},
+      {{"--shells"}, {"height", "comanche"}, steps, false},
+      {{"--step-by-view"}, {"height", "comanche"}, steps, false},
       {{"--iterations"}, {"comanche"}},
   };
   const std::string rough = scratch_.write(
       "rough.asc",
       "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 70 3 40\n9 2 60 30\n5 50 8 20\n90 4 10 6\n");
   const auto picture = [&](const std::string& look, const Names& options, const Names& others) {
-    Names arguments{
-        "render", rough,   "-o",        out_,       "--look",  look, look == "comanche" ? "--lowres" : "--size",
-        "24x18",  "--eye", "15,-20,90", "--target", "15,15,20"};
+    Names arguments{"render", rough, "-o", out_, "--look", look, "--eye", "15,-20,90", "--target", "15,15,20"};
+    if (std::find(others.begin(), others.end(), "--lowres") == others.end())
+      arguments.insert(arguments.end(), {look == "comanche" ? "--lowres" : "--size", "24x18"});
     if (look == "error") arguments.insert(arguments.end(), {"--march", "naive"});
     arguments.insert(arguments.end(), others.begin(), others.end());
     arguments.insert(arguments.end(), options.begin(), options.end());
@@ -358,7 +364,7 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
   const cli::Command& render = *declared().find("render");
   std::map<Names, std::string> without;
   for (const Case& c : cases) {
-    for (const std::string look : {"shaded", "hillshade", "height", "steps", "error", "comanche"}) {
+    for (const std::string look : {"shaded", "hillshade", "height", "steps", "error", "comanche", "level"}) {
       const std::string what = fmt::format("{} with {}", fmt::join(c.options, " "), look);
       if (std::find(c.looks.begin(), c.looks.end(), look) == c.looks.end()) {
         const std::string form = c.looks.size() == 1 ? "applies to the look " : "applies to the looks ";

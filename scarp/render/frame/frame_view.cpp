@@ -51,6 +51,13 @@ Haze haze_of(const Scene& scene, const Camera& camera, const PictureSettings& se
 
 }  // namespace
 
+std::optional<StepMarch> step_march_of(const Scene& scene, const Camera& camera, const PictureSettings& settings) {
+  const HeightField* field = scene.only_heights();
+  if (settings.look != Look::comanche || !field || scene.marches() != "fixed-step") return {};
+  const double reach = std::isfinite(camera.reach()) ? camera.reach() : default_reach(*field);
+  return StepMarch(*field, settings.comanche, reach, camera.forward());
+}
+
 FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSettings& settings)
     : scene_(scene),
       camera_(camera),
@@ -61,7 +68,8 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
       paint_(settings.ground, paint_extent(scene, settings), ground_ramp(scene, settings), lighting_.to_sun()),
       sky_(settings.sky, lighting_.to_sun(), lighting_.light().sun_radius()),
       fog_(settings.fog, sky_),
-      haze_(haze_of(scene, camera, settings)) {
+      haze_(haze_of(scene, camera, settings)),
+      step_march_(step_march_of(scene, camera, settings)) {
   for (const SceneObject& object : scene.objects())
     ramped_.push_back(is_ramped(*scene.fields()[object.field], settings));
   if (settings.water) {
@@ -70,11 +78,6 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
       throw Error(fmt::format("water: its level, {} m, is not below the eye, at {} m; pictures are made from above it",
                               water_->level(), camera.eye().z));
     }
-  }
-  const HeightField* field = scene.only_heights();
-  if (settings.look == Look::comanche && field && scene.marches() == "fixed-step") {
-    const double reach = std::isfinite(camera.reach()) ? camera.reach() : default_reach(*field);
-    step_march_.emplace(*field, settings.comanche, reach, camera.forward());
   }
 }
 
@@ -115,11 +118,11 @@ vec3 FrameView::from_beyond(vec3 light, const Ray& ray) const {
 }
 
 vec3 FrameView::earth() const { return linear_from_srgb(kEarth); }
-float FrameView::unlit_wall() { return kUnlitWall; }
+float FrameView::unlit_wall() const { return settings_.unlit ? 1.0f : kUnlitWall; }
 
 vec3 FrameView::wall_colour(const dvec3& normal) const {
   const auto lit = static_cast<float>(std::max(0.0, dot(normal, lighting_.to_sun())));
-  return earth() * (kUnlitWall + (1 - kUnlitWall) * lit);
+  return earth() * (unlit_wall() + (1 - unlit_wall()) * lit);
 }
 
 }  // namespace scarp

@@ -26,6 +26,10 @@ struct Haze {
   double clear_distance = 0;  ///< metres in front of the eye without haze
 };
 
+/// What answers rays of camera and water instead of the scene: the steps of the look `comanche`, with the march
+/// `fixed-step` over one height field; else nothing. Refers to the scene.
+std::optional<StepMarch> step_march_of(const Scene& scene, const Camera& camera, const PictureSettings& settings);
+
 /// Refers to scene, camera and settings. Settings must be valid.
 class FrameView {
  public:
@@ -44,8 +48,7 @@ class FrameView {
   const GroundPaint& paint() const { return paint_; }
   /// Null without water.
   const Water* water() const { return water_ ? &*water_ : nullptr; }
-  /// Answers rays of camera and water instead of the scene in the look `comanche` with the march `fixed-step`; else
-  /// null.
+  /// step_march_of(), or null.
   const StepMarch* step_march() const { return step_march_ ? &*step_march_ : nullptr; }
   /// Height above which nothing is met, metres of world z; nothing if the scene has no such height.
   const std::optional<double>& ceiling() const { return ceiling_; }
@@ -66,9 +69,10 @@ class FrameView {
   /// What fog leaves of light that comes along a ray from beyond the scene.
   vec3 from_beyond(vec3 light, const Ray& ray) const;
 
-  /// Cut earth of walls in linear light, and the share of it that walls facing away from the sun have.
+  /// Cut earth of walls in linear light, and the share of it that walls facing away from the sun have: all of it in
+  /// unlit pictures.
   vec3 earth() const;
-  static float unlit_wall();
+  float unlit_wall() const;
 
  private:
   vec3 wall_colour(const dvec3& normal) const;

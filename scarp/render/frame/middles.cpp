@@ -10,8 +10,9 @@ namespace {
 
 class MiddlesTile final : public TileWork {
  public:
-  MiddlesTile(const Camera& camera, const PixelTile& tile, int width, bool count, const TakeMiddle& take)
-      : camera_(camera), tile_(tile), width_(width), count_(count), take_(take) {}
+  MiddlesTile(const Camera& camera, const PixelTile& tile, int width, bool count, const TakeMiddle& take,
+              const StepMarch* stepped)
+      : camera_(camera), tile_(tile), width_(width), count_(count), take_(take), stepped_(stepped) {}
 
   bool next(RayRound& round) override {
     if (!asked_) {
@@ -19,7 +20,8 @@ class MiddlesTile final : public TileWork {
       round.question = count_ ? RayRound::Question::closest_cost : RayRound::Question::closest;
       round.rays = rays_through_middles(camera_, tile_);
       round.from.clear();
-      return true;
+      if (!stepped_) return true;
+      answer_by_steps(round);
     }
     std::size_t i = 0;
     for (int y = tile_.y0; y < tile_.y1; ++y) {
@@ -32,11 +34,22 @@ class MiddlesTile final : public TileWork {
   }
 
  private:
+  void answer_by_steps(RayRound& round) const {
+    round.hits.clear();
+    round.steps.clear();
+    for (const Ray& ray : round.rays) {
+      const StepMarch::Answer answer = stepped_->march(ray, nullptr);
+      round.hits.push_back(answer.hit);
+      round.steps.push_back(answer.steps);
+    }
+  }
+
   const Camera& camera_;
   PixelTile tile_;
   int width_;
   bool count_, asked_ = false;
   const TakeMiddle& take_;
+  const StepMarch* stepped_;
 };
 
 }  // namespace
@@ -51,11 +64,13 @@ std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& til
 }
 
 void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings, bool count,
-                          const Progress& progress, const TakeMiddle& take) {
+                          const Progress& progress, const TakeMiddle& take, const StepMarch* stepped) {
   const PixelTiles tiles(settings.width, settings.height, 1);
   work_on_tiles(
       scene, tiles, tiles[0].pixels(),
-      [&](const PixelTile& tile) { return std::make_unique<MiddlesTile>(camera, tile, settings.width, count, take); },
+      [&](const PixelTile& tile) {
+        return std::make_unique<MiddlesTile>(camera, tile, settings.width, count, take, stepped);
+      },
       progress);
 }
 

@@ -10,6 +10,7 @@
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/film.h"
 #include "scarp/render/frame/picture.h"
+#include "scarp/render/look/comanche.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp {
@@ -20,8 +21,9 @@ std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& til
 /// Receives a pixel's index (rows from the top), its ray, what that hit, and its steps (0 without `count`).
 using TakeMiddle = std::function<void(std::size_t, const Ray&, const Hit&, std::uint32_t)>;
 
-/// Calls `take` for each pixel, on any thread. `count`: whether steps are counted.
+/// Calls `take` for each pixel, on any thread. `count`: whether steps are counted. `stepped` answers the rays instead
+/// of the scene unless it is null.
 void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings, bool count,
-                          const Progress& progress, const TakeMiddle& take);
+                          const Progress& progress, const TakeMiddle& take, const StepMarch* stepped = nullptr);
 
 }  // namespace scarp

@@ -17,6 +17,7 @@
 #include "scarp/render/frame/tile_work.h"
 #include "scarp/render/look/height_look.h"
 #include "scarp/render/look/hillshade_look.h"
+#include "scarp/render/look/level_look.h"
 #include "scarp/render/look/step_look.h"
 #ifdef SCARP_VULKAN
 #include "scarp/render/frame/terrain_frame_vk.h"
@@ -25,7 +26,8 @@
 namespace scarp {
 namespace {
 
-constexpr std::array<std::string_view, 6> kLookNames = {"shaded", "hillshade", "height", "steps", "error", "comanche"};
+constexpr std::array<std::string_view, 7> kLookNames = {"shaded", "hillshade", "height", "steps",
+                                                        "error",  "comanche",  "level"};
 
 constexpr int kMaxSide = 65536;
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
@@ -53,16 +55,21 @@ class ImageTile final : public TileWork {
   Image& image_;
 };
 
+// On a device, steps of the look `comanche` are those of whole frames.
+void require_steps(const Scene& scene) {
+  if (scene.on_device() && scene.marches() == "fixed-step") {
+    throw Error(
+        "comanche: on a device the eye must be within 2^22 cells of the field for fixed-step (use max-mip, or the "
+        "CPU)");
+  }
+}
+
 Image render_shaded(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                     const Progress& progress) {
 #ifdef SCARP_VULKAN
   if (makes_whole_frames(scene, camera, settings)) return render_whole_frame(scene, camera, settings, progress);
 #endif
-  if (scene.on_device() && settings.look == Look::comanche && scene.marches() == "fixed-step") {
-    throw Error(
-        "comanche: on a device the eye must be within 2^22 cells of the field for fixed-step (use max-mip, or the "
-        "CPU)");
-  }
+  if (settings.look == Look::comanche) require_steps(scene);
   const FrameView view(scene, camera, settings);
   Image image(settings.width, settings.height);
   work_on_tiles(
@@ -85,18 +92,75 @@ Picture render_hillshade(const Scene& scene, const Camera& camera, const Picture
   return picture;
 }
 
+// By pixel, of misses.
+std::vector<double> no_heights(const PictureSettings& settings) {
+  return std::vector<double>(static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height),
+                             std::numeric_limits<double>::quiet_NaN());
+}
+
+#ifdef SCARP_VULKAN
+// Of what the rays of a whole frame meet, which is made without anything else.
+std::vector<double> heights_of_whole_frame(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                                           const Progress& progress) {
+  PictureSettings bare;
+  bare.look = settings.look;
+  bare.width = settings.width, bare.height = settings.height;
+  bare.aa = 1;
+  bare.unlit = true;
+  bare.comanche = settings.comanche;
+  FrameReport report{.tells_sightings = true};
+  render_whole_frame(scene, camera, bare, progress, &report);
+  std::vector<double> heights = no_heights(settings);
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const FrameSighting& seen = report.sightings[i];
+    if (seen.kind != FrameSighting::Kind::ground) continue;
+    const auto width = static_cast<std::size_t>(settings.width);
+    heights[i] = camera.ray(static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5).at(seen.t).z;
+  }
+  return heights;
+}
+#endif
+
+// Pictures of one terrain can be compared: they share its range.
+std::optional<ReliefRange> range_of_terrain(const Scene& scene) {
+  const HeightField* field = scene.terrain();
+  return field ? std::optional(ReliefRange{field->min_height(), field->max_height()}) : std::nullopt;
+}
+
+std::vector<double> heights_seen(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                                 const Progress& progress) {
+  const std::optional<StepMarch> stepped = step_march_of(scene, camera, settings);
+  if (stepped && scene.on_device()) {
+#ifdef SCARP_VULKAN
+    if (makes_whole_frames(scene, camera, settings)) return heights_of_whole_frame(scene, camera, settings, progress);
+#endif
+    require_steps(scene);
+  }
+  std::vector<double> heights = no_heights(settings);
+  look_through_middles(
+      scene, camera, settings, false, progress,
+      [&](std::size_t i, const Ray& ray, const Hit& hit, std::uint32_t) {
+        if (hit && !scene.field_of(hit.object).is_backdrop()) heights[i] = ray.at(hit.t).z;
+      },
+      stepped ? &*stepped : nullptr);
+  return heights;
+}
+
 Picture render_height(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                       const Progress& progress) {
-  std::vector<double> heights(static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height),
-                              std::numeric_limits<double>::quiet_NaN());
+  const std::vector<double> heights = heights_seen(scene, camera, settings, progress);
+  return picture_of_heights(settings, heights, range_of_terrain(scene));
+}
+
+Picture render_level(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                     const Progress& progress) {
+  const LevelMaxima maxima(scene, settings.level);
+  std::vector<double> heights = no_heights(settings);
   look_through_middles(scene, camera, settings, false, progress,
-                       [&](std::size_t i, const Ray& ray, const Hit& hit, std::uint32_t) {
-                         if (hit && !scene.field_of(hit.object).is_backdrop()) heights[i] = ray.at(hit.t).z;
+                       [&](std::size_t i, const Ray&, const Hit& hit, std::uint32_t) {
+                         if (hit && !scene.field_of(hit.object).is_backdrop()) heights[i] = maxima.over(hit.cell);
                        });
-  // Pictures of one terrain can be compared: they share its range.
-  std::optional<ReliefRange> range;
-  if (const HeightField* field = scene.terrain()) range = ReliefRange{field->min_height(), field->max_height()};
-  return picture_of_heights(settings, heights, range);
+  return picture_of_heights(settings, heights, range_of_terrain(scene));
 }
 
 Picture render_steps(const Scene& scene, const Camera& camera, const PictureSettings& settings,
@@ -121,7 +185,7 @@ Look find_look(std::string_view name) {
 
 bool uses_tone_curve(const PictureSettings& settings) {
   const bool counts = settings.look == Look::comanche && settings.comanche.iterations;
-  return settings.tone_curve && !counts;
+  return settings.tone_curve && !settings.unlit && !counts;
 }
 
 std::string_view ramp_of(const PictureSettings& settings) {
@@ -182,6 +246,13 @@ void validate(const PictureSettings& settings) {
                   "0 or more metres");
   require_setting("picture", settings.haze >= 0 && settings.haze <= 0.95, "the haze", settings.haze, "0 to 0.95");
   require_setting("picture", settings.haze_distance > 0, "the haze distance", settings.haze_distance, "above 0 metres");
+  if (const auto& scale = settings.step_scale) {
+    require_setting("picture", scale->low >= 0 && scale->low < kUnlimited, "the first number of steps", scale->low,
+                    "0 or more");
+    require_setting("picture", scale->high > scale->low && scale->high < kUnlimited, "the last number of steps",
+                    scale->high, "above the first");
+  }
+  require_setting("picture", settings.level >= 0, "the level", settings.level, "0 or more");
   validate(settings.error);
   validate(settings.sun);
   validate(settings.sky);
@@ -225,14 +296,20 @@ Picture render_picture(const Scene& scene, const Camera& camera, const PictureSe
       return render_hillshade(scene, camera, settings, progress);
     case Look::height:
       return render_height(scene, camera, settings, progress);
+    case Look::level:
+      return render_level(scene, camera, settings, progress);
     case Look::steps:
       return render_steps(scene, camera, settings, progress);
     case Look::error: {
       ErrorPicture error = render_error(scene, camera, settings.width, settings.height, settings.error, progress);
       return {std::move(error.image), {}, error.counts, {}};
     }
-    case Look::comanche:
-      return {scaled_up(render_shaded(scene, camera, settings, progress), settings.comanche.scale)};
+    case Look::comanche: {
+      Picture picture = settings.comanche.heights ? render_height(scene, camera, settings, progress)
+                                                  : Picture{render_shaded(scene, camera, settings, progress)};
+      picture.image = scaled_up(picture.image, settings.comanche.scale);
+      return picture;
+    }
     case Look::shaded:
       break;
   }

@@ -5,12 +5,14 @@
 //             occlusion); water, haze or fog, sky
 //   hillshade grey by the angle to the sun, without shadows, see hillshade_look.h
 //   height    grey, linear in height, see height_look.h
-//   steps     steps of the march per ray, as a colour ramp from the minimum to the maximum in the picture
+//   steps     steps of the march per ray, as a colour ramp from the minimum to the maximum in the picture, or over a
+//             given range
 //   comanche  like `shaded`, in few large pixels, see comanche.h
 //   error     errors of the march, see error_look.h
+//   level     maxima of a level of the pyramid, see level_look.h
 //
-// `shaded` takes several samples per pixel. `hillshade`, `height`, `steps` and `error` trace one ray through the centre
-// of each pixel.
+// `shaded` takes several samples per pixel. `hillshade`, `height`, `steps`, `error` and `level` trace one ray through
+// the centre of each pixel.
 #pragma once
 
 #include <cstdint>
@@ -37,9 +39,9 @@
 
 namespace scarp {
 
-enum class Look { shaded, hillshade, height, steps, error, comanche };
+enum class Look { shaded, hillshade, height, steps, error, comanche, level };
 
-/// Returns "shaded", "hillshade", "height", "steps", "error" or "comanche".
+/// Returns "shaded", "hillshade", "height", "steps", "error", "comanche" or "level".
 std::string_view name_of(Look look);
 /// Returns the look with this name. Throws Error listing the names if `name` is unknown.
 Look find_look(std::string_view name);
@@ -48,6 +50,11 @@ constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
 /// A range of heights, in metres of world z.
 struct ReliefRange {
+  double low = 0, high = 0;
+};
+
+/// A range of numbers of steps: those of the first and last colour of a ramp; 0 <= low < high.
+struct StepScale {
   double low = 0, high = 0;
 };
 
@@ -71,6 +78,7 @@ struct PictureSettings {
   SunSettings sun{};
   SkySettings sky{};
   bool shadows = true;                ///< whether surfaces block the sun
+  bool unlit = false;                 ///< surfaces keep their own colours: no light of sun and sky, no shadows
   double haze = 0.1;                  ///< fraction of haze over a distance equal to the scene's diagonal, 0..0.95
   double haze_distance = kUnlimited;  ///< replaces `haze` if finite: metres over which contrast falls to 1/e, > 0
   FogSettings fog{};                  ///< replaces haze unless its kind is `none`
@@ -87,9 +95,12 @@ struct PictureSettings {
   // Looks.
   ComancheSettings comanche{};
   ErrorSettings error{};
+  std::optional<StepScale> step_scale{};  ///< `steps`: colours of more and fewer steps are the last and the first;
+                                          ///< nullopt: from the minimum to the maximum in the picture
+  int level = 0;                          ///< `level`: of the pyramid, 0 (cells) to its top
 };
 
-/// Whether the curve applies: not to pictures of counts.
+/// Whether the curve applies: not to pictures of counts, nor to unlit ones.
 bool uses_tone_curve(const PictureSettings& settings);
 
 /// Returns the name of the ramp in the settings or, if that is empty, the default for the look.
@@ -111,11 +122,12 @@ void validate(const PictureSettings& settings);
 /// empty.
 WorldBox picture_box(const Scene& scene);
 
-/// Minimum, maximum and mean number of steps per ray.
+/// Minimum, maximum and mean number of steps per ray, and the scale of the colours.
 struct StepRange {
   std::uint32_t least = 0;
   std::uint32_t most = 0;
   double mean = 0;
+  StepScale scale{};
 };
 
 /// A picture, and statistics of some looks.
@@ -127,8 +139,8 @@ struct Picture {
 };
 
 /// Renders a picture. `camera` must have been created with the width and height of the settings; if terrain wraps, it
-/// needs a finite reach. Throws Error if a setting is out of range, nothing in the scene is visible, or the eye is not
-/// above the water. Throws Interrupted if `progress` returns false.
+/// needs a finite reach. Throws Error if a setting is out of range, nothing in the scene is visible, the eye is not
+/// above the water, or the scene has no such level. Throws Interrupted if `progress` returns false.
 Picture render_picture(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                        const Progress& progress = {});
 

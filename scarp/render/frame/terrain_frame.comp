@@ -34,6 +34,7 @@ const bool has_samples = (parts & kFrameHasSamples) != 0u;
 const bool has_plinth = (parts & kFrameHasPlinth) != 0u;
 const bool has_rims = (parts & kFrameHasRims) != 0u;
 const bool has_scattering = (parts & kFrameHasScattering) != 0u;
+const bool has_texture = (parts & kFrameHasTexture) != 0u;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Pixels { uint words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer States { FrameState states[]; };
@@ -102,8 +103,9 @@ vec3 shading_normal(ScarpField field, FrameSeen seen) {
 // Ground in its light, without air.
 vec3 lit_ground(ScarpField field, FrameSeen seen) {
   Settings s = settings();
-  return ground_colour(field, seen, direction_of(seen), seen.normal) *
-         scarp_light(seen.normal, s.is.sky_side, s.is.skylight, s.is.sun, seen.sun_cosine, seen.sky);
+  vec3 colour = ground_colour(field, seen, direction_of(seen), seen.normal);
+  if (s.is.unlit != 0) return colour;
+  return colour * scarp_light(seen.normal, s.is.sky_side, s.is.skylight, s.is.sun, seen.sun_cosine, seen.sky);
 }
 
 vec3 seen_colour(FrameSeen seen) {

@@ -33,7 +33,7 @@ SCARP_GLSL_BEGIN
 // drivers take seconds for all of it.
 const uint kFrameHasWater = 1u;
 const uint kFrameHasShadows = 2u;
-const uint kFrameHasPatches = 4u;  ///< detail or natural ground
+const uint kFrameHasPatches = 4u;  ///< detail by noise, or natural ground
 const uint kFrameHasDrape = 8u;
 const uint kFrameHasContours = 16u;
 const uint kFrameHasFog = 32u;
@@ -42,6 +42,7 @@ const uint kFrameHasPlinth = 128u;  ///< below the terrain
 /// Walls at the rims of holes of the plinth: the march knows those of solid ground.
 const uint kFrameHasRims = 256u;
 const uint kFrameHasScattering = 512u;  ///< sky
+const uint kFrameHasTexture = 1024u;    ///< detail by an image
 
 const int kFrameRounds = 16;
 const int kFrameTurns = 3000;
@@ -155,6 +156,7 @@ struct FrameSettings {
   vec3 earth;
   float unlit_wall;
   int tone_curve;  ///< 1: bright colours are compressed
+  int unlit;       ///< 1: no light
   // Ground.
   int natural;
   float snow_share;
@@ -171,6 +173,10 @@ struct FrameSettings {
   Address drape;
   int drape_width;  ///< 0: none
   int drape_height;
+  FramePatch texture_place;  ///< fractions of the image per metre, to the east and north
+  Address texture;
+  ivec2 texture_size;  ///< texels; 0: none
+  float texels_per_metre;
 };
 
 struct FramePush {

@@ -5,6 +5,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Set
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RampPieces { FrameRampPiece pieces[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RampColours { vec3 colours[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Drape { uint texels[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Texture { float texels[]; };
 
 Settings settings() { return Settings(push.settings); }
 
@@ -33,6 +34,12 @@ float scarp_paint_noise(ScarpPaintPlace place, int set, int octave, float size) 
       .n;
 }
 
+struct ScarpTexels {
+  Address at;
+};
+float scarp_texel(ScarpTexels texels, int index) { return Texture(texels.at).texels[index]; }
+
+#include "scarp/render/surface/detail_texture.glsl.h"
 #include "scarp/render/surface/ground_paint.glsl.h"
 
 // Between unit vectors of the world and directions of the grid.
@@ -97,6 +104,19 @@ vec3 draped(ScarpField field, ivec2 cell, vec2 place, vec3 below) {
   return sum + (1.0 - opacity) * below;
 }
 
+float fraction(ScarpTwoFloat x) {
+  float low = x.high - floor(x.high) + x.low;
+  return low - floor(low);
+}
+
+float texture_detail(ScarpPaintPlace place, float footprint) {
+  Settings s = settings();
+  FramePatch of = s.is.texture_place;
+  vec2 at =
+      vec2(fraction(weighed(place, of.along, of.along_low)), 1.0 - fraction(weighed(place, of.across, of.across_low)));
+  return scarp_texture_detail(ScarpTexels(s.is.texture), s.is.texture_size, at, footprint * s.is.texels_per_metre);
+}
+
 vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction, vec3 shading_normal) {
   Settings s = settings();
   float metres = seen.t.high * seen.metres;
@@ -110,7 +130,7 @@ vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction, vec3 shadin
   // One place where noise is asked for keeps the shader small.
   vec3 patches = vec3(0.0);
   for (int set = 0; set < (has_patches ? kScarpPatchSets : 0); ++set) {
-    if (set == kScarpDetail ? s.is.detail == 0.0 : s.is.natural == 0) continue;
+    if (set == kScarpDetail ? s.is.detail == 0.0 || has_texture : s.is.natural == 0) continue;
     float patch_sum = scarp_patches(place, set, s.is.detail_size, footprint);
     if (set == kScarpDetail) patches.x = patch_sum;
     if (set == kScarpBlur) patches.y = patch_sum;
@@ -123,7 +143,8 @@ vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction, vec3 shadin
   else
     colour = ramp_colour(height);
   if (has_drape) colour = draped(field, seen.cell, seen.place, colour);
-  if (has_patches && s.is.detail > 0.0) colour *= max(0.0, 1.0 + s.is.detail * patches.x);
+  if (has_texture) patches.x = texture_detail(place, footprint);
+  if (has_texture || (has_patches && s.is.detail > 0.0)) colour *= max(0.0, 1.0 + s.is.detail * patches.x);
   if (has_contours) colour = scarp_with_contours(colour, height, shading_normal, footprint, s.is.contours);
   return colour;
 }

@@ -164,7 +164,7 @@ void set_air(glsl::FrameSettings& s, const HeightField& field, const FrameView& 
   s.clear_distance = static_cast<float>(view.haze().clear_distance);
   s.no_descent = view.horizon_below();
   const Light& light = view.lighting().light();
-  s.shadows = view.settings().shadows;
+  s.shadows = view.lighting().shadows();
   s.to_sun = vec3(light.to_sun());
   const glsl::ScarpLine line = line_of(field, {}, false, light.to_sun());
   s.sun_line = line.direction;
@@ -174,16 +174,17 @@ void set_air(glsl::FrameSettings& s, const HeightField& field, const FrameView& 
   s.skylight = light.skylight();
   s.sky = view.sky().numbers();
   s.earth = view.earth();
-  s.unlit_wall = FrameView::unlit_wall();
+  s.unlit_wall = view.unlit_wall();
+  s.unlit = view.settings().unlit;
   s.tone_curve = uses_tone_curve(view.settings());
 }
 
-void set_samples(glsl::FrameSettings& s, const Lighting& lighting, int samples) {
+void set_samples(glsl::FrameSettings& s, const Lighting& lighting) {
   s.sun_rays = lighting.sun_rays();
   s.sky_rays = lighting.sky_rays();
   s.sun_depth = static_cast<float>(cap_depth(lighting.sun_radius()));
   s.ao_distance = static_cast<float>(lighting.ao_distance());
-  s.samples = samples;
+  s.samples = lighting.samples();
   s.seed = lighting.pattern().seed();
   s.index_bits = lighting.pattern().index_bits();
 }
@@ -251,6 +252,7 @@ class FrameMaker {
     glsl::FrameSettings s = numbers;
     set_ramp(s, paint.ramp(), zero_of_heights);
     if (const Drape* drape = paint.settings().drape.get()) set_drape(s, *drape);
+    if (paint.settings().detail > 0 && paint.settings().detail_texture) set_texture(s, paint);
     const ComputePipeline& pipeline = pipeline_for(s);
     Image image(s.width, s.height);
     const std::int64_t pixels = std::int64_t{s.width} * s.height, most = std::min(pixels, kPixelsAtOnce);
@@ -300,10 +302,11 @@ class FrameMaker {
     const bool rims = (flags_ & (glsl::kScarpHoles | glsl::kScarpSolid)) == glsl::kScarpHoles;
     const std::uint32_t parts =
         (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
-        (s.natural != 0 || s.detail > 0 ? glsl::kFrameHasPatches : 0) | (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) |
-        (s.contours > 0 ? glsl::kFrameHasContours : 0) | (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) |
-        (s.sky.scattering ? glsl::kFrameHasScattering : 0) | (s.samples > 0 ? glsl::kFrameHasSamples : 0) |
-        (plinth ? glsl::kFrameHasPlinth : 0) | (plinth && rims ? glsl::kFrameHasRims : 0);
+        (s.natural != 0 || (s.detail > 0 && s.texture_size.x == 0) ? glsl::kFrameHasPatches : 0) |
+        (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) | (s.contours > 0 ? glsl::kFrameHasContours : 0) |
+        (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) | (s.sky.scattering ? glsl::kFrameHasScattering : 0) |
+        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (plinth ? glsl::kFrameHasPlinth : 0) |
+        (plinth && rims ? glsl::kFrameHasRims : 0) | (s.texture_size.x > 0 ? glsl::kFrameHasTexture : 0);
     const auto found = pipelines_.find(parts);
     if (found != pipelines_.end()) return found->second;
     const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
@@ -332,6 +335,16 @@ class FrameMaker {
     s.drape = drape_.keep(device_, std::span<const std::uint8_t>(drape.rgba));
   }
 
+  void set_texture(glsl::FrameSettings& s, const GroundPaint& paint) {
+    const DetailTexture& texture = *paint.settings().detail_texture;
+    const double width = paint.detail_size(), height = width * texture.height() / texture.width();
+    split(dvec2(1 / width, 0), s.texture_place.along, s.texture_place.along_low);
+    split(dvec2(0, 1 / height), s.texture_place.across, s.texture_place.across_low);
+    s.texture_size = {texture.width(), texture.height()};
+    s.texels_per_metre = static_cast<float>(texture.width() / width);
+    s.texture = texture_.keep(device_, texture.texels());
+  }
+
   static void take_sights(const DeviceBuffer& from, std::vector<FrameSighting>& sightings) {
     std::vector<glsl::FrameSight> sights(sightings.size());
     download(from, 0, sights.data(), sights.size() * sizeof(glsl::FrameSight));
@@ -350,7 +363,7 @@ class FrameMaker {
   std::map<std::uint32_t, ComputePipeline> pipelines_;  // by what the picture has
   Commands commands_;
   KeptBuffer settings_{"a frame's settings"}, pieces_{"a ramp"}, colours_{"a ramp's colours"}, drape_{"an overlay"},
-      pixels_{"pixels"}, states_{"a frame's states"}, sights_{"a frame's sights"};
+      texture_{"a detail texture"}, pixels_{"pixels"}, states_{"a frame's states"}, sights_{"a frame's sights"};
   std::vector<std::uint32_t> found_;
 };
 
@@ -385,7 +398,7 @@ Image render_whole_frame(const Scene& scene, const Camera& camera, const Picture
   set_steps(numbers, scene, camera, settings);
   set_water(numbers, field, view.water(), zero);
   set_air(numbers, field, view, zero);
-  set_samples(numbers, view.lighting(), settings.samples);
+  set_samples(numbers, view.lighting());
   set_ground(numbers, field, view.paint(), zero);
   FrameReport unasked;
   FrameReport& found = report ? *report : unasked;

@@ -22,38 +22,39 @@ void end_above_ground(std::span<Ray> rays, double highest) {
 Lighting::Lighting(const PictureSettings& settings, double ao_distance, std::optional<double> highest)
     : settings_(settings),
       light_(settings.sun, settings.grid_north_azimuth, settings.sky),
-      pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, settings.samples * settings.aa * settings.aa))),
+      pattern_(settings.seed, static_cast<std::uint32_t>(std::max(1, samples() * settings.aa * settings.aa))),
       ao_distance_(ao_distance),
       highest_(highest) {}
 
-int Lighting::sun_rays() const { return !settings_.shadows ? 0 : sun_radius() > 0 ? settings_.samples : 1; }
-int Lighting::sky_rays() const { return ao_distance_ > 0 ? settings_.samples : 0; }
+int Lighting::sun_rays() const { return !shadows() ? 0 : sun_radius() > 0 ? samples() : 1; }
+int Lighting::sky_rays() const { return ao_distance_ > 0 ? samples() : 0; }
 
-std::size_t Lighting::most_rays() const { return static_cast<std::size_t>(std::max(1, 2 * settings_.samples)); }
+std::size_t Lighting::most_rays() const { return static_cast<std::size_t>(std::max(1, 2 * samples())); }
 
 LightRays Lighting::ask(const LightPoint& at, const PicturePoint& point, std::vector<Ray>& rays) const {
-  const auto samples = [&](std::uint32_t purpose) {
-    const auto count = static_cast<std::uint32_t>(settings_.samples);
+  const auto pattern = [&](std::uint32_t purpose) {
+    const auto count = static_cast<std::uint32_t>(samples());
     if (count == 0) return PatternRange{};  // a point of a sun needs none
     return PatternRange{pattern_.pixel(point.pixel_x, point.pixel_y, purpose),
                         count * static_cast<std::uint32_t>(point.index), count};
   };
   LightRays asked;
   asked.sun = rays.size();
-  if (settings_.shadows) ask_sun(at, light_.to_sun(), sun_radius(), samples(glsl::kScarpPointsOfSun), rays);
+  if (shadows()) ask_sun(at, light_.to_sun(), sun_radius(), pattern(glsl::kScarpPointsOfSun), rays);
   if (highest_) end_above_ground(std::span(rays).subspan(asked.sun), *highest_);
   asked.sky = rays.size();
-  if (sky_rays() > 0) ask_sky(at, ao_distance_, samples(glsl::kScarpPointsOfSky), rays);
+  if (sky_rays() > 0) ask_sky(at, ao_distance_, pattern(glsl::kScarpPointsOfSky), rays);
   asked.end = rays.size();
   return asked;
 }
 
 vec3 Lighting::on(const LightPoint& at, const LightRays& asked, std::span<const Ray> rays,
                   std::span<const std::uint8_t> blocked) const {
+  if (settings_.unlit) return vec3(1.0f);
   double sun = std::max(0.0, dot(at.shading_normal, light_.to_sun())), sky = at.openness;
-  if (settings_.shadows) {
+  if (shadows()) {
     const std::size_t count = asked.sky - asked.sun;
-    sun = sun_cosine(at, sun_radius(), static_cast<std::uint32_t>(settings_.samples), rays.subspan(asked.sun, count),
+    sun = sun_cosine(at, sun_radius(), static_cast<std::uint32_t>(samples()), rays.subspan(asked.sun, count),
                      blocked.subspan(asked.sun, count));
   }
   if (asked.end > asked.sky) sky = 1 - sky_occlusion(blocked.subspan(asked.sky, asked.end - asked.sky));

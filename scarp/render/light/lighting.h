@@ -40,6 +40,9 @@ class Lighting {
   /// Of a point: to the sun at most, and to the sky.
   int sun_rays() const;
   int sky_rays() const;
+  /// Whether surfaces block the sun, and rays for each purpose per point; none in unlit pictures.
+  bool shadows() const { return settings_.shadows && !settings_.unlit; }
+  int samples() const { return settings_.unlit ? 0 : settings_.samples; }
   /// Metres; where rays to the sky end.
   double ao_distance() const { return ao_distance_; }
   const SamplePattern& pattern() const { return pattern_; }
@@ -47,7 +50,7 @@ class Lighting {
   /// Unit vector to the middle of the sun's disc.
   const dvec3& to_sun() const { return light_.to_sun(); }
   /// Of the disc with `samples`; else the sun is a point.
-  double sun_radius() const { return settings_.samples > 0 ? light_.sun_radius() : 0; }
+  double sun_radius() const { return samples() > 0 ? light_.sun_radius() : 0; }
 
  private:
   const PictureSettings& settings_;

@@ -32,6 +32,7 @@ struct ComancheSettings {
   bool step_by_view = false;  ///< longer steps looking down
   bool interpolate = true;    ///< whether a hit is put between the last two samples, or on the last
   bool iterations = false;    ///< a picture of the steps instead, from black (0) to white (the most)
+  bool heights = false;       ///< grey levels of the look `height` instead, by the same rays
 };
 
 /// Throws Error naming the first setting out of its range.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The look `height`: grey, linear in height from the lowest (1) to the highest (255) point; misses are black (0). The
 // range is that of a terrain, so that its pictures can be compared, else that of the picture.
+//
+// With ComancheSettings::heights it shows what the rays of the look `comanche` hit.
 #pragma once
 
 #include <cstdint>

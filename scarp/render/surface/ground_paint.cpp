@@ -86,6 +86,11 @@ double GroundPaint::patches(const dvec3& position, int set, double footprint) co
   return glsl::scarp_patches(dvec2(position), set, detail_size_, footprint);
 }
 
+double GroundPaint::detail(const dvec3& position, double footprint) const {
+  if (settings_.detail_texture) return settings_.detail_texture->at(dvec2(position), detail_size_, footprint);
+  return patches(position, glsl::kScarpDetail, footprint);
+}
+
 vec3 GroundPaint::ground(const dvec3& position, double height, const dvec3& normal, double footprint) const {
   if (!settings_.natural) return ramp_(height);
   return glsl::scarp_natural((height - extent_.low) / relief_, normal, away_from_sun_, settings_.snow_share,
@@ -96,8 +101,8 @@ vec3 GroundPaint::ground(const dvec3& position, double height, const dvec3& norm
 vec3 GroundPaint::over(vec3 colour, const dvec3& position, double height, const dvec3& normal, double footprint) const {
   if (settings_.drape) colour = draped(position, colour);
   if (settings_.detail > 0) {
-    const double patch = patches(position, glsl::kScarpDetail, footprint);
-    colour *= static_cast<float>(std::max(0.0, 1 + settings_.detail * patch));
+    const double factor = 1 + settings_.detail * detail(position, footprint);
+    colour *= static_cast<float>(std::max(0.0, factor));
   }
   if (settings_.contours > 0) colour = glsl::scarp_with_contours(colour, height, normal, footprint, contour_interval());
   return colour;

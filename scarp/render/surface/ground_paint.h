@@ -4,8 +4,8 @@
 //
 //   natural   rock on steep slopes; snow above a line that is lower on the shadowed side, where slopes hold it; else
 //             grass, darker below and drier above; noise blurs the borders
-//   detail    noise of several sizes, twice as long along the slope's horizontal as across; patterns smaller than a
-//             pixel are left out
+//   detail    noise of several sizes, twice as long along the slope's horizontal as across, or an image, repeated
+//             (detail_texture.h); patterns smaller than a pixel are left out
 //   contours  lines of constant width in pixels: the distance to a line is the difference in height divided by the
 //             slope; every fifth is heavier; lines fade where they would touch. Level surfaces have none
 #pragma once
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "scarp/base/vec.h"
+#include "scarp/render/surface/detail_texture.h"
 #include "scarp/render/surface/ramp.h"
 
 namespace scarp {
@@ -27,12 +28,14 @@ struct Drape {
 };
 
 struct GroundPaintSettings {
-  bool natural = false;                  ///< rock, grass and snow instead of the ramp
-  double snow_share = 0.7;               ///< share of the relief at which snow begins, `natural`; finite
-  double detail = 0;                     ///< strength of the patches, 0..1
-  double detail_size = 0;                ///< metres of the largest patches, >= 0; 0: sixteen cells
-  double contours = 0;                   ///< metres from line to line, not exaggerated, >= 0; 0: none
-  std::shared_ptr<const Drape> drape{};  ///< null: none
+  bool natural = false;     ///< rock, grass and snow instead of the ramp
+  double snow_share = 0.7;  ///< share of the relief at which snow begins, `natural`; finite
+  double detail = 0;        ///< strength of the patches, 0..1
+  double detail_size = 0;   ///< metres of the largest patches, or the width of the texture, >= 0;
+                            ///< 0: sixteen cells
+  std::shared_ptr<const DetailTexture> detail_texture{};  ///< instead of noise; null: noise
+  double contours = 0;                                    ///< metres from line to line, not exaggerated, >= 0; 0: none
+  std::shared_ptr<const Drape> drape{};                   ///< null: none
 };
 
 /// Throws Error naming the first setting out of its range.
@@ -61,7 +64,7 @@ class GroundPaint {
   const Ramp& ramp() const { return ramp_; }
   /// Horizontally, with the sun's cosine.
   const dvec2& away_from_sun() const { return away_from_sun_; }
-  /// Metres of the largest patches.
+  /// Metres of the largest patches, or the width of the texture.
   double detail_size() const { return detail_size_; }
   /// Lattice units of a set's octave (ground_paint.glsl.h) per metre of x and y, along its grain and across.
   struct Patch {
@@ -75,6 +78,7 @@ class GroundPaint {
  private:
   vec3 draped(const dvec3& position, vec3 below) const;
   double patches(const dvec3& position, int set, double footprint) const;
+  double detail(const dvec3& position, double footprint) const;
 
   GroundPaintSettings settings_;
   PaintExtent extent_;

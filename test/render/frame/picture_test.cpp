@@ -188,6 +188,67 @@ TEST(Picture, HolesShowTheSky) {
   EXPECT_EQ(red(image, 40, 40), red(beside, 1, 40));
 }
 
+// The ramp grey is linear in height, wherever the ground turns to, in the shadow of the wall as in the sun.
+TEST(Picture, UnlitGroundHasItsOwnColours) {
+  const HeightField field = wall();
+  for (const Look look : {Look::shaded, Look::comanche}) {
+    PictureSettings settings = map_settings(field);
+    settings.look = look;
+    settings.comanche.scale = 1;
+    settings.sun = {270, 20};
+    settings.unlit = true;
+    settings.samples = 4;
+    const Image image = map_of(field, settings).image;
+    for (int x = 0; x < settings.width; ++x) {
+      const double height = 4 * std::max(0.0, 1 - std::abs((x + 0.5) / 10 - 10));
+      EXPECT_NEAR(red(image, x, 55), 255 * height / 4, 1) << name_of(look) << " " << x;
+    }
+  }
+}
+
+TEST(Picture, UnlitWallsAreAlike) {
+  const Scene scene = test::terrain_on_plinth(field_of(5, 30, nothing));
+  PictureSettings settings;
+  settings.width = settings.height = 64;
+  settings.haze = 0;
+  // Towards the edge between two walls, just below the ground.
+  const Camera camera = Camera::look_at({9, -5, 29.99}, {4, 0, 29.99}, 1, 64, 64);
+  settings.sun = {180, 30};
+  const Image lit = render_picture(scene, camera, settings).image;
+  settings.unlit = true;
+  const Image unlit = render_picture(scene, camera, settings).image;
+  EXPECT_NE(red(lit, 24, 36), red(lit, 40, 36));
+  EXPECT_EQ(red(unlit, 24, 36), red(unlit, 40, 36));
+  EXPECT_GT(red(unlit, 24, 36), red(lit, 40, 36));
+}
+
+// 7 x 5 cells: level 1 has 4 x 3 nodes, whose last are narrower.
+TEST(Picture, LevelsShowTheMaximaOfTheirNodes) {
+  std::vector<float> samples;
+  for (int i = 0; i < 8 * 6; ++i) samples.push_back(static_cast<float>(i * 29 % 48));
+  const HeightField field = HeightField::own(std::move(samples), 8, 6);
+  PictureSettings settings = map_settings(field);
+  settings.look = Look::level;
+  for (settings.level = 0; settings.level <= 3; ++settings.level) {
+    const Image image = map_of(field, settings).image;
+    for (int row = 0; row < 5; ++row) {
+      for (int col = 0; col < 7; ++col) {
+        const int side = 1 << settings.level, c0 = col / side * side, r0 = row / side * side;
+        double most = 0;
+        for (int r = r0; r <= std::min(r0 + side, 5); ++r) {
+          for (int c = c0; c <= std::min(c0 + side, 7); ++c) most = std::max(most, (r * 8 + c) * 29 % 48 * 1.0);
+        }
+        // A code of the pyramid is a 65535th of the range.
+        EXPECT_NEAR(red(image, 10 * col + 4, 10 * row + 6), 1 + 254 * most / 47, 0.51) << col << " " << row;
+      }
+    }
+  }
+  settings.level = 4;
+  EXPECT_THROW(map_of(field, settings), Error);
+  settings.level = -1;
+  EXPECT_THROW(map_of(field, settings), Error);
+}
+
 TEST(Picture, HeightIsLinearFromOneAndMissesAreBlack) {
   // Ten steps from 100 m in the west to 110 m in the east, with a hole.
   const HeightField field = field_of(11, 0, [](std::vector<float>& samples, int side) {
@@ -227,6 +288,16 @@ TEST(Picture, StepsCountWhatTheMarchReports) {
   EXPECT_EQ(picture.steps->most, most);
   EXPECT_EQ(picture.steps->least, 0u) << "rays beside the field";
   EXPECT_NEAR(picture.steps->mean, sum / (40 * 30), 1e-9);
+  // On a scale of its own a number of steps has one colour in all pictures.
+  settings.step_scale = StepScale{0, 2.0 * most};
+  const Picture scaled = render_picture(scene, camera, settings);
+  EXPECT_EQ(scaled.steps->most, most);
+  EXPECT_EQ(scaled.steps->scale.high, 2.0 * most);
+  for (int y = 0; y < 30; ++y) {
+    for (int x = 0; x < 40; ++x) EXPECT_NEAR(red(scaled.image, x, y), red(picture.image, x, y) / 2.0, 1);
+  }
+  settings.step_scale = StepScale{5, 5};
+  EXPECT_THROW(render_picture(scene, camera, settings), Error);
 }
 
 // From the south, just above the ground, towards a spike in the middle of a plain.

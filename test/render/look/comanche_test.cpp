@@ -12,6 +12,7 @@
 #include "render/terrain.h"
 #include "scarp/base/error.h"
 #include "scarp/render/frame/picture.h"
+#include "scarp/render/look/height_look.h"
 
 namespace scarp {
 namespace {
@@ -173,6 +174,35 @@ TEST(Comanche, ThePictureOfStepsIsBlackToWhite) {
     }
   }
   EXPECT_GT(white, 20) << "rays that came to the end of their steps";
+}
+
+TEST(Comanche, HeightsAreThoseThatItsRaysHit) {
+  const HeightField field = endless();
+  PictureSettings settings = comanche(48, 36);
+  settings.comanche.heights = true;
+  settings.comanche.interpolate = false;
+  settings.comanche.steps = 30;
+  settings.comanche.scale = 2;
+  Camera camera = Camera::look_at({3, 3, 8}, {3, 9, 6}, 60, 48, 36);
+  camera.set_reach(30);
+  for (const char* march : {"fixed-step", "max-mip"}) {
+    const Scene scene = test::terrain(field, march);
+    const bool stepped = march == std::string("fixed-step");
+    const StepMarch steps(field, settings.comanche, 30, camera.forward());
+    const Image image = render_picture(scene, camera, settings).image;
+    ASSERT_EQ(image.width, 96);
+    int ground = 0;
+    for (int y = 0; y < 36; ++y) {
+      for (int x = 0; x < 48; ++x) {
+        const Ray ray = camera.ray(x + 0.5, y + 0.5);
+        const Hit hit = stepped ? steps.march(ray, nullptr).hit : scene.closest_hit(ray);
+        const int grey = hit ? grey_of_height(ray.at(hit.t).z, field.min_height(), field.max_height()) : 0;
+        EXPECT_EQ(image.pixel(2 * x, 2 * y + 1)[1], grey) << march << " " << x << ", " << y;
+        ground += grey > 0;
+      }
+    }
+    EXPECT_GT(ground, 400) << march;
+  }
 }
 
 TEST(Comanche, RefusesWhatIsOutOfRange) {
