@@ -41,10 +41,10 @@ std::array<std::uint8_t, 3> bytes(vec3 linear) {
   return {srgb_byte(linear.x), srgb_byte(linear.y), srgb_byte(linear.z)};
 }
 
-std::vector<FigureTick> ticks_of(double low, double high) {
+std::vector<FigureTick> ticks_of(double low, double high, double least_step = 0) {
   if (!(high > low)) return {{0.5, fmt::format("{:.6g}", low)}};  // ground without relief
   std::vector<FigureTick> ticks;
-  for (const double number : round_numbers(low, high, kNumbers)) {
+  for (const double number : round_numbers(low, high, kNumbers, least_step)) {
     ticks.push_back({(number - low) / (high - low), fmt::format("{:.6g}", number)});
   }
   return ticks;
@@ -101,6 +101,7 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
     case Look::steps:
       figure.legend = legend_of("steps per ray", picture.steps->scale.low, picture.steps->scale.high,
                                 ramp_over(settings, picture.steps->scale.low, picture.steps->scale.high));
+      figure.legend->ticks = ticks_of(picture.steps->scale.low, picture.steps->scale.high, 1);
       break;
     case Look::error: {
       FigureKey key{"the march is", {}};

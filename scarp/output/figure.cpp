@@ -50,6 +50,7 @@ class Drawing {
     const double panel_height = 2 * pad() + title_height + bar() + gap() + font_.height;
     const double left = pad(), top = height_ - pad() - panel_height;
     paper(left, top, 2 * pad() + wide, panel_height, "the scale bar");
+    scale_end_ = left + 2 * pad() + wide;
     write(left + pad(), top + pad() + font_.ascent, scale.title);
     const double x = left + pad() + sides.left, y = top + pad() + title_height;
     for (std::size_t i = 0; i + 1 < scale.ticks.size(); ++i) {
@@ -164,6 +165,12 @@ class Drawing {
           fmt::format("figure: {} needs {:.0f} x {:.0f} pixels, too large for the image of {} x {} (enlarge the image)",
                       what, wide, high, width_, height_));
     }
+    if (x < scale_end_) {
+      throw Error(
+          fmt::format("figure: the scale bar and {} need {:.0f} pixels side by side, too wide for the image of {} x {} "
+                      "(enlarge the image, or leave one out)",
+                      what, scale_end_ + wide + pad(), width_, height_));
+    }
     cairo_set_source_rgba(cr(), 1, 1, 1, kPaper);
     cairo_rectangle(cr(), x, y, wide, high);
     cairo_fill(cr());
@@ -184,21 +191,35 @@ class Drawing {
     cairo_move_to(cr(), x, baseline);
     cairo_show_text(cr(), text.c_str());
   }
+  // Every so many labels, counted from the last, do not touch.
+  std::size_t label_stride(double length, const std::vector<FigureTick>& ticks) const {
+    const auto touch = [&](const FigureTick& a, const FigureTick& b) {
+      const double middles = (b.share - a.share) * length;
+      return middles < (extents(a.text).x_advance + extents(b.text).x_advance) / 2 + gap();
+    };
+    for (std::size_t stride = 1;; ++stride) {
+      bool fits = true;
+      for (std::size_t i = ticks.size(); i > stride; i -= stride) fits &= !touch(ticks[i - 1 - stride], ticks[i - 1]);
+      if (fits) return stride;
+    }
+  }
   void write_ticks(double x, double y, double length, const std::vector<FigureTick>& ticks) {
-    for (const FigureTick& tick : ticks) {
+    const std::size_t stride = label_stride(length, ticks);
+    for (std::size_t left = ticks.size(); const FigureTick& tick : ticks) {
       const double at = x + tick.share * length;
       cairo_set_source_rgb(cr(), 0, 0, 0);
       cairo_set_line_width(cr(), text_ / 12);
       cairo_move_to(cr(), at, y - bar() / 3);
       cairo_line_to(cr(), at, y + gap() / 2);
       cairo_stroke(cr());
-      write(at - extents(tick.text).x_advance / 2, y + gap() + font_.ascent, tick.text);
+      if (--left % stride == 0) write(at - extents(tick.text).x_advance / 2, y + gap() + font_.ascent, tick.text);
     }
   }
 
   std::uint8_t* rgb_;
   int width_, height_;
   double text_;
+  double scale_end_ = 0;  // where the scale bar's paper ends
   std::unique_ptr<cairo_surface_t, Free> surface_;
   std::unique_ptr<cairo_t, Free> context_;
   cairo_font_extents_t font_{};
@@ -206,13 +227,13 @@ class Drawing {
 
 }  // namespace
 
-std::vector<double> round_numbers(double low, double high, int most) {
+std::vector<double> round_numbers(double low, double high, int most, double least_step) {
   const double range = high - low;
   double power = std::pow(10.0, std::floor(std::log10(range)) - 1);
   for (;; power *= 10) {
     for (const double digit : {1.0, 2.0, 5.0}) {
       const double step = digit * power, first = std::ceil(low / step), last = std::floor(high / step);
-      if (last - first + 1 > most) continue;
+      if (step < least_step || last - first + 1 > most) continue;
       std::vector<double> numbers;
       for (double k = first; k <= last; ++k) numbers.push_back(k * step);
       return numbers;

@@ -57,11 +57,12 @@ struct Figure {
   std::optional<FigureScale> scale{};
 };
 
-/// Returns tick values in [low, high]: multiples of 1, 2 or 5 times a power of ten, at most `most`, and at least two
-/// wherever two exist. low < high, most >= 2.
-std::vector<double> round_numbers(double low, double high, int most);
+/// Returns tick values in [low, high]: multiples of 1, 2 or 5 times a power of ten that is not below `least_step`, at
+/// most `most`, and at least two wherever two exist. low < high, most >= 2.
+std::vector<double> round_numbers(double low, double high, int most, double least_step = 0);
 
-/// Draws over an image of 3 bytes per pixel, rows from the top. Throws Error if the image is too small for the figure.
+/// Draws over an image of 3 bytes per pixel, rows from the top. Ticks whose labels would touch are drawn without them,
+/// the last one always with it. Throws Error if the image is too small for the figure.
 void draw_figure(std::uint8_t* rgb, int width, int height, const Figure& figure);
 
 }  // namespace scarp

@@ -75,7 +75,8 @@ TEST_F(Cli, FiguresHaveAScaleThatIsTrue) {
 
 TEST_F(Cli, FiguresAreRefusedWhereTheyMeanNothing) {
   const auto refused = [&](const Names& more, const std::string& size, const std::string& fragment) {
-    Names words{"render", good(), "-o", path("out.png"), "--size", size};
+    Names words{"render", good(), "-o", path("out.png")};
+    if (!size.empty()) words.insert(words.end(), {"--size", size});
     words.insert(words.end(), more.begin(), more.end());
     const auto result = run(words);
     EXPECT_EQ(result.status, 1);
@@ -85,6 +86,8 @@ TEST_F(Cli, FiguresAreRefusedWhereTheyMeanNothing) {
   };
   refused({"--legend", "--ground", "natural"}, "320x240", "no colour scale to show with --ground natural");
   refused({"--legend"}, "40x20", "enlarge the image");
+  refused({"--legend", "--scale-bar"}, "240x150", "the scale bar and the legend need");
+  refused({"--legend", "--look", "comanche", "--iterations"}, "", "no scale to show with --iterations");
 }
 #endif
 

@@ -37,6 +37,51 @@ TEST(Figure, NumbersAreRoundAndCoverTheRange) {
   }
 }
 
+TEST(Figure, NumbersAreWholeOnRequest) {
+  EXPECT_EQ(round_numbers(0, 1, 6, 1), (std::vector<double>{0, 1}));
+  EXPECT_EQ(round_numbers(0, 7, 6, 1), (std::vector<double>{0, 2, 4, 6}));
+  EXPECT_EQ(round_numbers(0.5, 2.5, 6, 1), (std::vector<double>{1, 2}));
+  EXPECT_EQ(round_numbers(0, 1, 6).size(), 6u);
+}
+
+// The longest piece of the line of labels without a gap of some pixels: one label.
+TEST(Figure, LabelsDoNotTouch) {
+  const auto longest = [](const std::vector<FigureTick>& ticks) {
+    Canvas canvas;
+    draw_figure(canvas.rgb.data(), canvas.width, canvas.height,
+                {.legend = FigureLegend{"", {{90, 90, 90}, {90, 90, 90}}, ticks}});
+    const int low = canvas.height - 31, high = canvas.height - 20;
+    int most = 0, begin = -1, end = -1;
+    for (int x = 0; x < canvas.width; ++x) {
+      bool ink = false;
+      for (int y = low; y < high; ++y) ink |= canvas.at(x, y)[0] < 120;
+      if (!ink) continue;
+      if (begin < 0 || x - end > 4) begin = x;
+      end = x;
+      most = std::max(most, end - begin + 1);
+    }
+    return most;
+  };
+  std::vector<FigureTick> ticks;
+  for (int i = 0; i < 6; ++i) ticks.push_back({0.2 * i, "8847.925"});
+  const int one = longest({ticks.back()});
+  EXPECT_GT(one, 30);
+  EXPECT_LE(longest(ticks), one + 2) << "rounded to whole pixels";
+}
+
+TEST(Figure, TheBarAndTheLegendDoNotOverlap) {
+  Canvas canvas;
+  const FigureLegend legend{"steps", {{1, 2, 3}}, {{0, "0"}, {1, "1"}}};
+  const auto draw = [&](double pixels) {
+    draw_figure(canvas.rgb.data(), canvas.width, canvas.height,
+                {.legend = legend, .scale = FigureScale{pixels, "", {{0, ""}, {1, ""}}}});
+  };
+  draw(200);
+  const std::vector<std::uint8_t> before = canvas.rgb;
+  EXPECT_THROW(draw(450), Error);
+  EXPECT_EQ(canvas.rgb, before);
+}
+
 TEST(Figure, TheBarIsAsLongAsSaid) {
   Canvas canvas;
   draw_figure(canvas.rgb.data(), canvas.width, canvas.height, {.scale = FigureScale{200, "", {{0, ""}, {1, ""}}}});
