@@ -301,20 +301,41 @@ TEST(Picture, StepsCountWhatTheMarchReports) {
 }
 
 // From the south, just above the ground, towards a spike in the middle of a plain.
-Picture errors_at_a_spike(std::string_view march, const MarchSettings& march_settings = {}) {
+Picture spike(Look look, std::string_view march, const MarchSettings& march_settings = {}) {
   const HeightField field = field_of(
       65, 0, [](std::vector<float>& samples, int side) { samples[static_cast<std::size_t>(32 * side + 32)] = 20; });
   PictureSettings settings;
   settings.width = settings.height = 64;
-  settings.look = Look::error;
+  settings.look = look;
+  settings.aa = 1;
+  settings.haze = 0;
+  settings.ramp = "grey";
+  settings.unlit = true;
   const Camera camera = Camera::look_at({32, -20, 12}, {32, 32, 8}, 25, settings.width, settings.height);
   return render_picture(test::terrain(field, march, march_settings), camera, settings);
 }
 
-TEST(ErrorLook, ANaiveMarchLosesASpike) {
+MarchSettings coarse_naive() {
   MarchSettings coarse;
   coarse.naive.min_step = 0.2;
-  const Picture picture = errors_at_a_spike("naive", coarse);
+  return coarse;
+}
+
+// In the colours of the ramp grey the ground is grey, and the sky is blue.
+TEST(Picture, SkyIsSeenWhereANaiveMarchLosesTheGround) {
+  const Image right = spike(Look::shaded, "max-mip").image, naive = spike(Look::shaded, "naive", coarse_naive()).image;
+  const ErrorCounts counts = spike(Look::error, "naive", coarse_naive()).errors.value();
+  std::int64_t holes = 0;
+  const auto grey = [](const std::uint8_t* p) { return p[0] == p[1] && p[1] == p[2]; };
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) holes += grey(right.pixel(x, y)) && !grey(naive.pixel(x, y));
+  }
+  EXPECT_GT(holes, 10);
+  EXPECT_EQ(holes, counts[Verdict::lost]);
+}
+
+TEST(ErrorLook, ANaiveMarchLosesASpike) {
+  const Picture picture = spike(Look::error, "naive", coarse_naive());
   ASSERT_TRUE(picture.errors);
   const ErrorCounts& counts = *picture.errors;
   EXPECT_GT(counts[Verdict::lost] + counts[Verdict::late], 10);
@@ -331,7 +352,7 @@ TEST(ErrorLook, ANaiveMarchLosesASpike) {
 }
 
 TEST(ErrorLook, AnExactMarchHasNoErrors) {
-  const Picture picture = errors_at_a_spike("max-mip");
+  const Picture picture = spike(Look::error, "max-mip");
   const ErrorCounts& counts = *picture.errors;
   EXPECT_GT(counts[Verdict::right_hit], 500);
   EXPECT_GT(counts[Verdict::right_miss], 500);
