@@ -215,14 +215,21 @@ TEST(Overlay, IsMirroredWithTheGround) {
   for (std::size_t i = 0; i < red.size(); i += 3) red[i] = i / 3 % 80 < 40 ? 255 : 0;
   write_png(image, {red.data(), 80, 80});
   scratch.write("red.pgw", "1\n0\n0\n-1\n500000.5\n4000079.5\n");
-  const auto result = test::run({"render", dem, "-o", scratch.path("out.png"), "--wrap", "mirror", "--top", "--size",
-                                 "160x160", "--overlay", image, "--haze", "0", "--no-shadows"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const test::Rgb picture = test::read_png(scratch.path("out.png"));
+  const auto map_with = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> words{"render", dem,         "-o", scratch.path("out.png"), "--wrap", "mirror",
+                                   "--top",  "--overlay", image};
+    words.insert(words.end(), options.begin(), options.end());
+    const auto result = test::run(words);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return test::read_png(scratch.path("out.png"));
+  };
+  const test::Rgb picture = map_with({"--size", "160x160", "--haze", "0", "--no-shadows"});
+  const test::Rgb unlit = map_with({"--look", "comanche", "--unlit", "--lowres", "160x160", "--pixel-size", "1"});
   for (int y = 5; y < 160; y += 10) {
     for (int x = 5; x < 160; x += 10) {
       if (std::abs(x - 40) < 4 || std::abs(x - 120) < 4) continue;
       EXPECT_EQ(picture.pixel(x, y)[0] > 40, x < 40 || x > 120) << x << ", " << y;
+      EXPECT_EQ(unlit.pixel(x, y)[0], x < 40 || x > 120 ? 255 : 0) << x << ", " << y;
     }
   }
 }

@@ -91,6 +91,20 @@ TEST(GroundPaint, DrapesAPictureOverTheField) {
   EXPECT_NEAR(middle.y, 0.5, 1e-6);
 }
 
+TEST(GroundPaint, DrapesRepeatWithTheField) {
+  auto drape = std::make_shared<Drape>(Drape{2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 9, 9, 9, 0}});
+  const GroundPaint paper({.drape = drape}, {.origin = {5, 7}, .size = {100, 50}, .repeats = true}, Ramp("grey", 0, 1),
+                          kSun);
+  const auto at = [&](double x, double y) { return paper.over(vec3(0), {x, y, 0}, 0, {0, 0, 1}, 1); };
+  for (const double x : {-300.0, 0.0, 4000.0}) {
+    for (const double y : {-50.0, 0.0, 5000.0}) {
+      EXPECT_EQ(at(15 + x, 50 + y), vec3(1, 0, 0));
+      EXPECT_EQ(at(95 + x, 50 + y), vec3(0, 1, 0));
+      EXPECT_EQ(at(15 + x, 12 + y), vec3(0, 0, 1));
+    }
+  }
+}
+
 TEST(GroundPaint, DetailIsGoneFarAway) {
   const Paint rough = paint({.detail = 0.5, .detail_size = 10}), smooth = paint({});
   int different = 0;
