@@ -383,7 +383,7 @@ TEST(ErrorLook, RaysThatComeInUnderTheGroundAreNotLost) {
 TEST(ErrorLook, NamesAShrinkFactorThatIsNotProven) {
   MarchSettings settings;
   settings.lipschitz.shrink = 0.7;
-  const Picture picture = errors_at_a_spike("lipschitz", settings);
+  const Picture picture = spike(Look::error, "lipschitz", settings);
   ASSERT_EQ(picture.errors->caveats.size(), 1u);
   EXPECT_NE(picture.errors->caveats[0].find("0.7 is approximate"), std::string::npos) << picture.errors->caveats[0];
   EXPECT_EQ((*picture.errors)[Verdict::gave_up], 0);

@@ -1,0 +1,81 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Makes the pictures of doc/user/techniques.md and fills its tables: what stands between "<!-- table NAME -->" and
+# "<!-- end -->". ./dev gallery calls it.
+#
+#   doc/techniques.sh SCARP DEM        the program; the model of ./dev demo
+set -euo pipefail
+scarp=$1 dem=$2
+root=$(cd "$(dirname "$0")/.." && pwd)
+page=$root/doc/user/techniques.md
+images=$root/doc/images
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+small=320x200 large=1600x1000
+
+# Seconds of the fastest of three renderings of a large picture of heights: rays of the camera and nothing else.
+seconds() {
+  local i
+  for i in 1 2 3; do
+    "$scarp" render "$@" --look height --size $large -o "$scratch/large.png" | sed -n 's/.* render \([0-9.]*\) s.*/\1/p'
+  done | sort -n | head -1
+}
+
+# A row: TABLE NAME RANGE OPTIONS...; the field is in `field`, and `judged` says whether there is a look error.
+row() {
+  local table=$1 name=$2 range=$3 file steps errors='| ' counts='' shown
+  shift 3
+  file=techniques-$table-$(tr ' ./' '---' <<<"$name")
+  "$scarp" render "${field[@]}" "$@" --size $small -o "$images/$file.png" >/dev/null
+  steps=$("$scarp" render "${field[@]}" "$@" --size $small --look steps --steps-range "$range" \
+    -o "$images/$file-steps.png" | sed -n 's/steps per ray: .*mean \([0-9.]*\).*/\1/p')
+  if $judged; then
+    "$scarp" render "${field[@]}" "$@" --size $small --look error -o "$images/$file-error.png" >"$scratch/errors"
+    count() { awk -v what="$1" '$0 ~ "^  " what {print $NF}' "$scratch/errors"; }
+    errors="![](../images/$file-error.png) | "
+    counts=" | $(count lost) | $(count late) | $(count early) | $(count 'gave up')"
+  fi
+  shown=${*:-}
+  printf '| `%s` | ![](../images/%s.png) | ![](../images/%s-steps.png) %s%s | %s%s |\n' "${shown#--march }" "$file" "$file" \
+    "$($judged && printf '| ')" "$($judged && printf '%s' "${errors% | }")" "$steps | $(seconds "${field[@]}" "$@") s" "$counts"
+}
+
+# Replaces the rows of a table on the page, below its two heading lines.
+fill() {
+  awk -v table="$1" -v rows="$scratch/rows" '
+    $0 == "<!-- table " table " -->" { print; getline; print; getline; print; while ((getline line < rows) > 0) print line; skip = 1; next }
+    $0 == "<!-- end -->" { skip = 0 }
+    !skip { print }' "$page" >"$scratch/page"
+  cp "$scratch/page" "$page"
+}
+
+judged=true
+field=("$dem" --crs EPSG:4326 --bounds=-84.41375,36.44625,-84.0779166667,36.7329166667 --exaggeration 4 --view 195,40 --no-plinth)
+{
+  row heights naive 0,100 --march naive
+  row heights naive-fine 0,100 --march naive --naive-min-step 0.00005 --naive-tolerance 0 --naive-max-steps 20000 --refine bisect
+  row heights fixed-step 0,100 --march fixed-step
+  row heights relaxed 0,100 --march relaxed
+  row heights lipschitz 0,100 --march lipschitz
+  row heights max-mip-bisect 0,100 --march max-mip-bisect
+  row heights max-mip 0,100 --march max-mip
+} >"$scratch/rows"
+fill heights
+
+field=(--function ridges --view 250,22,0.8)
+{
+  row functions castle 0,300 --preset castle
+  row functions elevated 0,300 --preset elevated
+  row functions iq2002 0,300 --preset iq2002
+  row functions shrink 0,300 --march lipschitz --shrink 0.5
+  row functions lipschitz 0,300 --march lipschitz
+  row functions lipschitz-local 0,300 --march lipschitz-local
+} >"$scratch/rows"
+fill functions
+
+judged=false
+field=("$root/examples/scenes/church.vox" --view 215,25)
+{
+  for march in planes spheres cubes octants bricks; do row voxels $march 0,40 --march voxel-$march; done
+} >"$scratch/rows"
+fill voxels
