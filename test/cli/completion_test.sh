@@ -29,9 +29,9 @@ expect() {
 }
 expect 'scarp ren' 'render'
 expect 'scarp c' 'cast composite'
-expect 'scarp render --look ' 'comanche error height shaded steps'
+expect 'scarp render --look ' 'comanche error height hillshade shaded steps'
 expect 'scarp render --look s' 'shaded steps'
-expect 'scarp render --look = h' 'height'
+expect 'scarp render --look = h' 'height hillshade'
 expect 'scarp render --fog d' 'distance'
 expect 'scarp render --march voxel-b' 'voxel-bricks'
 expect 'scarp cast --march rel' 'relaxed'
