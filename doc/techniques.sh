@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Makes the pictures of doc/user/techniques.md and fills its tables: what stands between "<!-- table NAME -->" and
-# "<!-- end -->". ./dev gallery calls it.
+# Renders the pictures of doc/user/techniques.md and fills in its tables, which are between "<!-- table NAME -->" and
+# "<!-- end -->". Called by ./dev gallery.
 #
-#   doc/techniques.sh SCARP DEM        the program; the model of ./dev demo
+#   doc/techniques.sh SCARP DEM        SCARP: the program; DEM: the model of ./dev demo
 set -euo pipefail
 scarp=$1 dem=$2
 root=$(cd "$(dirname "$0")/.." && pwd)
@@ -13,7 +13,7 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 small=320x200 large=1600x1000
 
-# Seconds of the fastest of three renderings of a large picture of heights: rays of the camera and nothing else.
+# Prints the time in seconds to render a large picture of heights (camera rays only): the fastest of three runs.
 seconds() {
   local i
   for i in 1 2 3; do
@@ -21,9 +21,10 @@ seconds() {
   done | sort -n | head -1
 }
 
-# A row: TABLE NAME RANGE OPTIONS...; the field is in `field`, and `judged` says whether there is a look error.
+# row TABLE NAME RANGE OPTIONS...: prints a table row. Reads `field` (input options) and `judged` (whether to render
+# errors).
 row() {
-  local table=$1 name=$2 range=$3 file steps errors='| ' counts='' shown
+  local table=$1 name=$2 range=$3 file steps errors='' counts='' shown
   shift 3
   file=techniques-$table-$(tr ' ./' '---' <<<"$name")
   "$scarp" render "${field[@]}" "$@" --size $small -o "$images/$file.png" >/dev/null
@@ -40,7 +41,7 @@ row() {
     "$($judged && printf '| ')" "$($judged && printf '%s' "${errors% | }")" "$steps | $(seconds "${field[@]}" "$@") s" "$counts"
 }
 
-# Replaces the rows of a table on the page, below its two heading lines.
+# Replaces the rows of a table on the page; keeps its two header lines.
 fill() {
   awk -v table="$1" -v rows="$scratch/rows" '
     $0 == "<!-- table " table " -->" { print; getline; print; getline; print; while ((getline line < rows) > 0) print line; skip = 1; next }

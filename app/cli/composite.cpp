@@ -48,7 +48,7 @@ std::vector<vec3> read_colour(const std::string& path) {
   for (const char* name : {"R", "G", "B"}) {
     const std::vector<float> values = read_exr_channel(path, name).values;
     colour.resize(values.size());
-    for (std::size_t i = 0; i < values.size(); ++i) colour[i][axis] = values[i];
+    for (std::size_t i = 0; i < values.size(); ++i) colour[i][axis] = std::isnan(values[i]) ? 0.0f : values[i];
     ++axis;
   }
   return colour;

@@ -126,7 +126,7 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
       break;
     }
     case Look::hillshade:
-      break;  // greys of an angle have no unit
+      break;  // cosines have no unit
     case Look::shaded:
     case Look::comanche:
       figure.legend = numbers ? legend_of_numbers(*numbers, settings.ramp) : legend_of_heights(settings, scene, extent);
@@ -162,7 +162,7 @@ void settle_figure(const FigureOptions& options, const PictureSettings& settings
   const std::string_view option = options.legend ? "--legend" : "--scale-bar";
   if (exr) throw Error(fmt::format("{} is drawn into PNG pictures only (name the output *.png)", option));
   if (options.legend && settings.comanche.iterations) {
-    throw Error("--legend has no scale to show with --iterations (use --look steps)");
+    throw Error("--legend is not available with --iterations (use --look steps)");
   }
   const bool ramp = settings.look == Look::shaded || settings.look == Look::comanche;
   if (options.legend && ramp && settings.ground.natural) {

@@ -64,7 +64,7 @@ ColourImage mirrored(const ColourImage& image) {
 }
 
 std::shared_ptr<const DetailTexture> read_detail_texture(const std::string& path) {
-  const ColourImage image = read_colour_image(path);
+  const ColourImage image = read_colour_image(path, DetailTexture::kMostSide);
   try {
     return std::make_shared<DetailTexture>(image.width, image.height, image.rgba);
   } catch (const Error& error) {
@@ -126,21 +126,19 @@ void add_look_options(Command& command, LookOptions& o) {
                         .fallback = fmt::format("{} of the relief", o.ground.snow_share),
                         .rules = {needs("--ground natural", [&o] { return o.ground_colours == "natural"; })}});
   const Rule detailed = needs("--detail F", [&o] { return o.ground.detail > 0; });
-  ground(&o.ground.detail, {.names = "--detail",
-                            .help = "strength of noise patches, or of --detail-texture, on the ground",
-                            .range = {0, 1}});
+  ground(&o.ground.detail,
+         {.names = "--detail", .help = "strength of noise patches or of --detail-texture", .range = {0, 1}});
   ground(&o.ground.detail_size, {.names = "--detail-size",
-                                 .help = "size of the largest patches, or width of --detail-texture",
+                                 .help = "size of the largest patches or width of --detail-texture",
                                  .unit = "metres",
                                  .range = kZeroOrMore,
                                  .fallback = "16 cells",
                                  .rules = {detailed}});
-  ground(&o.detail_texture,
-         {.names = "--detail-texture",
-          .value = "FILE",
-          .help = "image that is repeated over the ground instead of noise: its grey levels change the brightness",
-          .files = "*",
-          .rules = {detailed}});
+  ground(&o.detail_texture, {.names = "--detail-texture",
+                             .value = "FILE",
+                             .help = "image, repeated over the ground, whose grey levels replace the noise",
+                             .files = "*",
+                             .rules = {detailed}});
   ground(&o.ground.contours, {.names = "--contours",
                               .help = "contour interval",
                               .unit = "metres",
@@ -209,7 +207,7 @@ void add_look_options(Command& command, LookOptions& o) {
                       .help = "visibility in fog",
                       .unit = "metres",
                       .range = kAboveZero,
-                      .note = "2 % of contrast remains there",
+                      .note = "contrast falls to 2 % there",
                       .fallback = "--reach, else the longer side of the field; more if the eye is outside",
                       .common = true,
                       .rules = {foggy}});
@@ -229,7 +227,7 @@ void add_look_options(Command& command, LookOptions& o) {
       {.names = "--sun-tint",
        .help = "warmth of the fog towards the sun",
        .range = {0, 1},
-       .rules = {foggy, {"has no effect with --sky scattering, which colours the fog", [&command] {
+       .rules = {foggy, {"has no effect with --sky scattering, which sets the colour of fog", [&command] {
                            return command.value("--sky") != "scattering";
                          }}}});
 
@@ -244,7 +242,7 @@ void add_look_options(Command& command, LookOptions& o) {
   large(&o.lowres, {.names = "--lowres",
                     .value = "WIDTHxHEIGHT",
                     .help = "size of the picture in large pixels",
-                    .note = "the look height then has the rays and the camera of comanche",
+                    .note = "the look height then uses the rays and camera of comanche",
                     .fallback = fmt::format("{}x{}", kLowresWidth, kLowresHeight),
                     .looks = {"height comanche", "other looks have --size"},
                     .excludes = {"--size", "--refine"}});
@@ -269,7 +267,7 @@ void add_look_options(Command& command, LookOptions& o) {
                                    .rules = {stepped, large_pixels}});
   large(&o.comanche.iterations, {.names = "--iterations",
                                  .help = "picture of the number of steps, from black (0) to white (the maximum)",
-                                 .note = "fixed-step: the sky is white",
+                                 .note = "with fixed-step the sky is white",
                                  .looks = kLarge});
   large(&o.reach, {.names = "--reach",
                    .help = "maximum length of camera rays",

@@ -41,7 +41,7 @@ void add_march_option(Command& command, std::string& march) {
                        .choices = march_names(),
                        .unlisted = true,
                        .note = "see 'scarp marches'",
-                       .fallback = fmt::format("{}; voxels voxel-octants, many voxels voxel-bricks; functions {}",
+                       .fallback = fmt::format("{}; voxels: voxel-octants, large models voxel-bricks; functions: {}",
                                                kTerrainMarch, kFunctionMarch),
                        .topic = Topic::march,
                        .common = true,
@@ -85,7 +85,7 @@ void add_march_options(Command& command, MarchSettings& march) {
   add("--relaxed-max-steps", &relaxed.max_steps, "maximum number of steps", kSteps, "relaxed");
   LipschitzSettings& lipschitz = march.lipschitz;
   add("--shrink", &lipschitz.shrink, "step as a fraction of the vertical distance", {0, 1}, "lipschitz",
-      "0: as large as the steepest slope allows; more than that is approximate, as rays pass through slopes");
+      "0: the largest factor that the steepest slope proves; larger factors are approximate");
   add("--lipschitz-tolerance", &lipschitz.tolerance,
       "distance to the ground that counts as a hit, per unit of distance travelled", kZeroOrMore, "lipschitz");
   add("--lipschitz-max-steps", &lipschitz.max_steps, "maximum number of steps", kSteps, "lipschitz");

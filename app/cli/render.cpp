@@ -40,8 +40,9 @@ ViewSettings settle(RenderOptions& options) {
   if (options.is_given("--error-tolerance")) picture.error = {options.error_tolerance, options.error_tolerance / 100};
   if (!options.steps_range.empty()) {
     const auto range = numbers_from(options.steps_range, ',', 2, 2, "--steps-range", "LOW,HIGH, for example 0,128");
-    if (!(range[0] >= 0 && range[1] > range[0]))
-      throw Error(fmt::format("--steps-range '{}': expected 0 <= LOW < HIGH", options.steps_range));
+    if (!(range[0] >= 0 && range[1] - range[0] >= 1))
+      throw Error(
+          fmt::format("--steps-range '{}': expected 0 <= LOW, and HIGH at least 1 above it", options.steps_range));
     picture.step_scale = StepScale{range[0], range[1]};
   }
   settle_look(options.look_options, options.march_settings, picture);

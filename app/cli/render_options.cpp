@@ -21,7 +21,7 @@ namespace {
 constexpr std::string_view kNoPlinth = "only a raster alone is shown on a plinth";
 constexpr Looks kLit{"shaded comanche", "the others show numbers"};
 
-// Those without a number.
+// All looks except level:N.
 std::vector<std::string> plain_looks() {
   std::vector<std::string> looks;
   for (const Look look : {Look::shaded, Look::hillshade, Look::height, Look::steps, Look::error, Look::comanche})
@@ -66,7 +66,7 @@ void add_picture_options(Command& command, RenderOptions& o) {
        .value = "LOOK",
        .help = "what the picture shows",
        .choices = plain_looks(),
-       .note = "or level:N, the maximum of each 2^N x 2^N cells, as in the pyramid",
+       .note = "or level:N, maxima of blocks of 2^N x 2^N cells, level N of the pyramid",
        .fallback = o.look,
        .common = true,
        .rules = {{"level:N needs a raster (other inputs have no pyramid)", [&o] { return o.look != "level"; },
@@ -80,8 +80,8 @@ void add_picture_options(Command& command, RenderOptions& o) {
                      .inputs = {kTerrain, kNoPlinth, kNoPlinth}});
   add(&o.steps_range, {.names = "--steps-range",
                        .value = "LOW,HIGH",
-                       .help = "numbers of steps of the first and last colour, for pictures to be compared",
-                       .fallback = "those in the picture",
+                       .help = "step counts of the first and last colour, to compare pictures",
+                       .fallback = "minimum and maximum in the picture",
                        .looks = {"steps"}});
   add(&o.error_tolerance,
       {.names = "--error-tolerance",
@@ -106,7 +106,7 @@ void add_light_options(Command& command, RenderOptions& o) {
                .fallback = fmt::format("{},{}; voxels and meshes {},{}", picture.sun.azimuth_deg,
                                        picture.sun.altitude_deg, kModelSunAzimuth, picture.sun.altitude_deg),
                .common = true,
-               .looks = {"shaded hillshade comanche", "the others show numbers"},
+               .looks = {"shaded hillshade comanche", "the others show no sunlight"},
                .rules = {{"has no effect with --unlit, except on --water, --fog, --sky and --ground natural",
                           [&o] {
                             const LookOptions& look = o.look_options;
@@ -116,16 +116,16 @@ void add_light_options(Command& command, RenderOptions& o) {
                           kEveryInput & ~kScene}}});
   add(&o.sky, {.names = "--sky",
                .value = "KIND",
-               .help = "sky",
+               .help = "sky model",
                .choices = {"plain", "scattering"},
                .closed = true,
-               .note = "scattering: with the sun, its colours at that altitude and its glitter on water",
+               .note = "scattering: daylight with the sun's disc, and glitter on water",
                .fallback = "plain",
                .common = true,
                .looks = kLit});
   add(&picture.sky.turbidity,
       {.names = "--sky-turbidity",
-       .help = "extinction relative to that of pure air",
+       .help = "turbidity of the air: extinction relative to pure air",
        .range = {2, 10},
        .note = "2: very clear, 10: hazy",
        .looks = kLit,
@@ -133,7 +133,7 @@ void add_light_options(Command& command, RenderOptions& o) {
            "--sky scattering", [&o] { return o.sky == "scattering"; }, kEveryInput & ~kScene)}});
   add_tone_option(command, o.no_tone_curve, o.output, Topic::light, kLit);
   add(&picture.unlit, {.names = "--unlit",
-                       .help = "colours of surfaces as they are, without light of sun and sky and without shadows",
+                       .help = "surface colours without sunlight, skylight and shadows",
                        .looks = kLit,
                        .excludes = {"--no-shadows", "--samples", "--sun-size", "--ao-distance", "--seed",
                                     "--no-tone-curve", "--normals", "--normal-radius", "--corner-ao"}});

@@ -74,6 +74,8 @@ PictureSettings picture_of(const SceneFile& file, PictureSettings settings, cons
   take(file.sky.turbidity, "--sky-turbidity", settings.sky.turbidity);
   require(settings.sky.kind == SkyKind::scattering, given, {"--sky-turbidity"},
           "without --sky scattering, or such a sky in the scene file");
+  if (settings.sky.kind == SkyKind::scattering && file.fog && file.fog->sun_tint)
+    throw Error("--sky scattering has no effect on the sun_tint of the fog in the scene file (remove the key)");
   require(settings.sky.kind == SkyKind::plain, given, {"--sun-tint"},
           "with a scattering sky, which colours the fog (add --sky plain)");
   require(settings.samples > 0, given, {"--seed", "--sun-size", "--ao-distance"},

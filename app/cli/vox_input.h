@@ -51,7 +51,7 @@ struct VoxInput {
   std::optional<VoxFile> document;  ///< of MagicaVoxel
   PlacedVoxels voxels;
   std::optional<SolidRange> numbers{};  ///< volumes: range that the colours show
-  std::vector<std::string> notes{};     ///< one line each, for people
+  std::vector<std::string> notes{};     ///< one line each, for users
 };
 /// Numbers of volumes are shown by `ramp`, of ramp_names(); empty: not at all.
 VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels,

@@ -45,7 +45,7 @@ struct Ray {
 enum class HitStatus : std::uint8_t {
   miss,
   hit,
-  below,      ///< the ray begins, or comes in through the border, below the surface, and hits nothing
+  below,      ///< the ray starts below the surface, or enters below it through the border, and hits nothing
   exhausted,  ///< the march reached its step limit, or the last cell of a wrapped field that it can index; the ray
               ///< beyond t is unknown
 };

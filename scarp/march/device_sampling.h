@@ -15,8 +15,8 @@ static_assert(glsl::kScarpRefineNone == static_cast<glsl::uint>(Refinement::none
               glsl::kScarpRefineSecant == static_cast<glsl::uint>(Refinement::secant) &&
               glsl::kScarpRefineBisect == static_cast<glsl::uint>(Refinement::bisect));
 
-/// Settings of the march of that name. fixed-step gets its step in cells; `slope` is for lipschitz, whose proven factor
-/// is reduced by the share `rounding`. A unit of clearance is `unit` metres.
+/// Returns device settings of the march with this name. The step of fixed-step is in cells. `slope` is the slope bound
+/// for lipschitz, whose proven factor is reduced by the share `rounding`. A unit of clearance is `unit` metres.
 inline glsl::ScarpSampling device_sampling(std::string_view march, const MarchSettings& all, double slope,
                                            double rounding, double unit) {
   const auto f = [](double value) { return static_cast<float>(value); };

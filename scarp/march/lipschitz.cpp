@@ -26,12 +26,13 @@ Hit march(const Probe& probe, const LipschitzSettings& settings, const ShrinkFac
     const auto sample = probe.at(t);
     const SamplePoint point{t, sample.clearance, sample.valid};
     const bool sunk = sample.valid && probe.under_ground(sample);
-    // Under the ground the nearest surface is as far as it is above it.
+    // Below the ground the bound on the distance is the same as above it.
     const double free = sample.valid ? probe.free_time(sample, shrink.factor) : 0.0;
-    const double limit = settings.tolerance * (t - ray.t_min), least = probe.least_step_under();
+    const double limit = settings.tolerance * (t - ray.t_min), least = probe.least_step_under(t);
     ground.take(point, sunk, !sunk && free > std::max(limit, least));
     if (ground.comes_in() && probe.solid()) return wall(probe.hit(t, sample));
-    // A ray that comes in may have touched the edge of the ground, which is a hit: just above, or at a hole's corner.
+    // A ray that enters may have touched the edge of the ground, which is a hit: just above, or at the corner of a
+    // hole.
     const bool approximate = shrink.guarantee == Guarantee::approximate;
     const bool unsure = ground.comes_in() && (free <= least || (step > 0 && !approximate));
     if (sunk && (unsure || !ground.is_under())) {
@@ -42,7 +43,7 @@ Hit march(const Probe& probe, const LipschitzSettings& settings, const ShrinkFac
     if (sample.valid && ground.is_under()) {
       next = t + std::max(free, least);
     } else if (sample.valid) {
-      // A step that is too short to be one is no way on.
+      // A step too short to advance is a hit.
       if (free <= limit || t + free <= t) return probe.hit(t, sample);
       next = t + free;
     }
@@ -57,7 +58,7 @@ Hit march(const Probe& probe, const LipschitzSettings& settings, const ShrinkFac
 double largest_proven_shrink(double slope) { return 1 / std::hypot(1.0, slope); }
 
 Guarantee lipschitz_guarantee(const LipschitzSettings& settings, double slope) {
-  // Written so that an unknown slope, NaN, proves nothing.
+  // NaN, an unknown slope, proves nothing.
   const bool proven = settings.shrink == 0 || settings.shrink <= largest_proven_shrink(slope);
   return proven ? Guarantee::conservative : Guarantee::approximate;
 }
@@ -65,7 +66,7 @@ Guarantee lipschitz_guarantee(const LipschitzSettings& settings, double slope) {
 std::string lipschitz_caveat(const LipschitzSettings& settings, double slope) {
   if (lipschitz_guarantee(settings, slope) == Guarantee::conservative) return {};
   return fmt::format(
-      "lipschitz with shrink factor {:.4g} is approximate: slopes up to {:.4g} prove factors up to {:.4g}",
+      "lipschitz with shrink factor {:.4g} is approximate: the slope bound {:.4g} proves only factors up to {:.4g}",
       settings.shrink, slope, largest_proven_shrink(slope));
 }
 
@@ -78,7 +79,7 @@ Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSetti
 
 Hit march_lipschitz(const HeightFunction& function, const Ray& ray, const MarchSettings& settings, MarchStats* stats,
                     FunctionUse use) {
-  // Rounded towards 0 by more than its three roundings.
+  // Reduced by more than its three rounding errors.
   const ShrinkFactor shrink = shrink_factor(settings.lipschitz, function.bound_everywhere(use).slope, 0x1p-50);
   return march_over(function, ray, use, settings.function.reach, stats, [&](const auto& probe, MarchStats& counted) {
     return march(probe, settings.lipschitz, shrink, counted);

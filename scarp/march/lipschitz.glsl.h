@@ -27,13 +27,13 @@ SCARP_FN int scarp_lipschitz_turn(ScarpWay way, ScarpSampling settings, bool val
   bool first = state.steps == 0;
   bool sunk = valid && clearance < -way.rounding;
   bool comes_in = scarp_comes_in_under(way, valid, clearance, state);
-  // Under the ground the nearest surface is as far as it is above it.
+  // Below the ground the bound on the distance is the same as above it.
   float free = ((sunk ? -clearance : clearance) - way.rounding) * settings.factor * way.per_clearance;
   float limit = settings.tolerance * (state.s + way.travelled);
   float least = scarp_least_under(way, state.s);
   scarp_mark_under(comes_in, valid, clearance, !sunk && free > max(limit, least), state);
   bool under = (state.phase & kScarpUnder) != 0u;
-  // A ray that comes in may have touched the edge of the ground, which is a hit: just above, or at a hole's corner.
+  // A ray that enters may have touched the edge of the ground, which is a hit: just above, or at the corner of a hole.
   bool proven = settings.proven != 0u;
   bool unsure = comes_in && (free <= least || (!first && proven));
   if (comes_in && way.solid) {

@@ -12,14 +12,14 @@
 // of the pyramid round the point that has no hole, and over a hole a step goes to the edge of its cell.
 //
 // Guarantee: conservative. A hit is reported above the ground, within the tolerance; where the ray comes too close to
-// go on, it is given up (exhausted). A ray that begins on the surface steps off it by one cell, which is not looked at.
-// A ray that begins under the ground is `below`. One that comes in under it through the border goes on (sampling.h), by
-// the same factor: it may pass what it is above the ground for less than 2^-12 of a cell. Out of a hole it is given up,
-// as it may have touched the rim.
+// advance, it is exhausted. A ray that starts on the surface steps off it by one cell without a test. A ray that starts
+// below the ground is `below`. A ray that enters below it through the border is followed (sampling.h) with the same
+// factor; it may skip stretches above the ground that are shorter than 2^-12 of a cell. A ray that enters below the
+// ground from a hole is exhausted, because it may have touched the rim.
 //
-// A shrink factor above 1 / sqrt(1 + c^2) makes steps that may pass through the ground, as in shaders whose factor was
-// found by trial. The guarantee is then approximate: a sample under the ground is a hit where it lies, so holes and
-// halos are seen. Source: J. C. Hart, "Sphere tracing", The Visual Computer 12, 1996; the factor
+// With a shrink factor above 1 / sqrt(1 + c^2), steps may pass through the ground, as in shaders whose factor was found
+// by trial. The guarantee is then approximate: the first sample below the ground is the hit, which shows holes and
+// halos. Source: J. C. Hart, "Sphere tracing", The Visual Computer 12, 1996; the factor
 // for height functions as in the founding text on Lipschitz bounds. Cost: up to 1024 heights per ray, most on steep
 // fields, where c is that of the steepest cell.
 #pragma once
@@ -33,12 +33,12 @@
 
 namespace scarp {
 
-/// The largest shrink factor that a slope bound c proves: 1 / sqrt(1 + c^2).
+/// Returns the largest shrink factor that a slope bound c proves: 1 / sqrt(1 + c^2).
 double largest_proven_shrink(double slope);
-/// What the march promises over ground with this slope bound (NaN: unknown): conservative, or approximate if the
-/// settings have a shrink factor that the slope bound does not prove.
+/// Returns the guarantee over ground with this slope bound (NaN: unknown): approximate if the settings have a shrink
+/// factor that the slope bound does not prove, else conservative.
 Guarantee lipschitz_guarantee(const LipschitzSettings& settings, double slope);
-/// A sentence for people about an approximate guarantee, without a full stop; empty if it is conservative.
+/// Returns a message for users if the guarantee is approximate, without a full stop; empty if it is conservative.
 std::string lipschitz_caveat(const LipschitzSettings& settings, double slope);
 
 /// Closest hit; conventions as in ray.h. Uses settings.lipschitz, and target.slope unless a shrink factor is set there.

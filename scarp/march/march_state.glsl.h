@@ -11,7 +11,7 @@ SCARP_GLSL_BEGIN
 
 const int kScarpMiss = 0;
 const int kScarpHit = 1;
-const int kScarpBelow = 2;      ///< began or came in below the surface, and hit nothing
+const int kScarpBelow = 2;      ///< started or entered below the surface, and hit nothing
 const int kScarpExhausted = 3;  ///< a limit was reached: nothing is known beyond the time
 const int kScarpWall = 4;       ///< a hit, of the wall under a border or a hole's rim
 

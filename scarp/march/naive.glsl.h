@@ -20,7 +20,7 @@ SCARP_FN float scarp_naive_least(ScarpWay way, ScarpSampling settings) {
   return max(settings.least * (way.travelled + way.exit), scarp_start_margin(way, settings));
 }
 
-/// Whether a point at time s is a hit: every point below the ground is, unless the ray has come in under it.
+/// Whether a point at time s is a hit: every point below the ground is, unless the ray has entered below it.
 SCARP_FN bool scarp_naive_stops(ScarpWay way, ScarpSampling settings, float s, float clearance) {
   return clearance * way.per_clearance < scarp_hit_limit(way, settings, s);
 }

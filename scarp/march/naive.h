@@ -24,8 +24,8 @@
 namespace scarp {
 
 /// Closest hit as this march finds it. t lies in the ray's range and inside the field; `height` is the height of the
-/// ray's point there. A ray that begins under the ground hits it at once. A ray that begins on the surface takes its
-/// first step unseen. Uses settings.naive and settings.sampling; no pyramid.
+/// ray's point there. A ray that starts below the ground hits at its start. A ray that starts on the surface takes its
+/// first step without a test. Uses settings.naive and settings.sampling; no pyramid.
 Hit march_naive(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                 MarchStats* stats = nullptr);
 /// The same over a terrain function, within settings.function.reach.

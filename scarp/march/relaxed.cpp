@@ -30,7 +30,7 @@ Hit march(const Probe& probe, const MarchSettings& all, MarchStats& stats) {
     if (!point.known) {
       t += blind;
     } else if (ground.is_under()) {
-      t += std::max(settings.step_factor * std::abs(point.h), probe.least_step_under());
+      t += std::max(settings.step_factor * std::abs(point.h), probe.least_step_under(t));
     } else if (stops(t, sample.clearance)) {
       // It may come from above or, having overshot, from below.
       const SamplePoint& before = ground.before();

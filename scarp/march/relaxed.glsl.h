@@ -21,7 +21,7 @@ SCARP_FN bool scarp_relaxed_stops(ScarpWay way, ScarpSampling settings, float s,
 }
 
 /// Returns the status of the point at state.s, over ground if `valid`; or kScarpMiss, and moves to the next, back from
-/// below the ground unless the ray has come in there.
+/// below the ground unless the ray has entered there.
 SCARP_FN int scarp_relaxed_turn(ScarpWay way, ScarpSampling settings, bool valid, float clearance,
                                 SCARP_INOUT(ScarpMarchState) state) {
   int status = kScarpMiss;

@@ -17,8 +17,8 @@
 
 namespace scarp {
 
-/// Closest hit as this march finds it, in [t_min, t_max] and inside the field. A ray that begins on the surface steps
-/// off it by one cell, unseen. One that begins under the ground is `below`. Uses settings.relaxed and
+/// Closest hit as this march finds it, in [t_min, t_max] and inside the field. A ray that starts on the surface steps
+/// off it by one cell without a test. One that starts below the ground is `below`. Uses settings.relaxed and
 /// settings.sampling; no pyramid.
 Hit march_relaxed(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                   MarchStats* stats = nullptr);

@@ -39,7 +39,7 @@ struct ScarpSampling {
   int max_steps;    ///< most points, >= 1; then kScarpExhausted
   uint refinement;  ///< of the last interval, kScarpRefineNone and so on; lipschitz ignores it
   int halvings;     ///< for kScarpRefineBisect
-  uint proven;      ///< lipschitz: 0 if steps of `factor` may pass through the ground: points under it are hits
+  uint proven;      ///< lipschitz: 0 if steps of `factor` may pass through the ground; points below it are then hits
 };
 
 /// Makes settings with `height` and `halvings` 0 and `proven` 1.
@@ -75,7 +75,7 @@ struct ScarpWay {
 const uint kScarpKnown = 1u;       ///< the previous point was over ground
 const uint kScarpWasAbove = 2u;    ///< the last point over ground was above it
 const uint kScarpBeganBelow = 4u;  ///< the first one was under it
-const uint kScarpUnder = 8u;       ///< the ray has come in under the ground, and has not come out since
+const uint kScarpUnder = 8u;       ///< the ray has entered below the ground, and has not emerged since
 
 /// The height around the ground, as a time, within which rays of naive from the surface begin; 0 without a tolerance
 /// for it. Rounding may be more.
@@ -90,14 +90,14 @@ SCARP_FN float scarp_hit_limit(ScarpWay way, ScarpSampling settings, float s) {
   return margin > 0.0f ? share - margin : max(settings.height * way.per_clearance, share);
 }
 
-/// Whether the ray comes in under the ground with the point at state.s: through the border, or out of a hole. It has
-/// not hit the ground then: it goes on, and hits where it later goes down through the ground.
+/// Returns whether the ray enters below the ground at the point at state.s, through the border or from a hole. That is
+/// no hit: the ray continues, and hits where it later crosses the ground from above.
 SCARP_FN bool scarp_comes_in_under(ScarpWay way, bool valid, float clearance, ScarpMarchState state) {
   bool unseen_before = (state.phase & kScarpKnown) == 0u && (state.steps > 0 || way.from_outside);
   return valid && clearance < -way.rounding && unseen_before;
 }
-/// Sets kScarpUnder at such a point, and clears it where the ray is `clear` of the ground, above it by more than counts
-/// as a hit, and where it comes down again.
+/// Sets kScarpUnder at such a point. Clears it where the ray is `clear` of the ground, above it by more than the hit
+/// tolerance, or descends again.
 SCARP_FN void scarp_mark_under(bool comes_in, bool valid, float clearance, bool clear,
                                SCARP_INOUT(ScarpMarchState) state) {
   bool was_above = (state.phase & kScarpKnown) != 0u && state.h_before >= 0.0f;
@@ -106,8 +106,8 @@ SCARP_FN void scarp_mark_under(bool comes_in, bool valid, float clearance, bool 
   else if (valid && (clear || (was_above && clearance < state.h_before)))
     state.phase &= ~kScarpUnder;
 }
-/// The least step of a ray under the ground, which may pass shorter ways above it: 2^-12 of a cell, and more than what
-/// times round.
+/// Minimum step of a ray below the ground: 2^-12 of a cell, plus the rounding of times. It may skip shorter stretches
+/// above the ground.
 SCARP_FN float scarp_least_under(ScarpWay way, float s) {
   return 2.44140625e-4f * way.blind + 4.76837158203125e-7f * s;
 }

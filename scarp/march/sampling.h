@@ -4,8 +4,8 @@
 //
 //   march: t ──▶ probe.at(t): clearance, or nothing over a hole ──▶ hit, or the next t
 //
-// A ray that comes in under the ground, through the border or out of a hole, has not hit it. It goes on (Underground),
-// and hits where it later goes down through the ground; walls of solid ground are hit where it comes in.
+// A ray that enters below the ground, through the border or from a hole, does not hit there (Underground). It hits
+// where it later crosses the ground from above. Walls of solid ground are hit where the ray enters.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ struct SamplePoint {
   bool known = false;  ///< whether it is over ground
 };
 
-/// The answer for a ray that begins, or comes in through the border, under the ground and hits nothing.
+/// The result of a ray that starts below the ground, or enters below it through the border, and hits nothing.
 inline Hit below() {
   Hit hit;
   hit.status = HitStatus::below;
@@ -41,13 +41,14 @@ inline Hit exhausted_at(double t) {
   return hit;
 }
 
-/// Where a ray is that comes in under the ground: scarp_comes_in_under() and scarp_mark_under() of sampling.glsl.h.
+/// Tracks a ray that enters below the ground; equals scarp_comes_in_under() and scarp_mark_under() of sampling.glsl.h.
 class Underground {
  public:
-  /// `from_outside`: the ray's first point is where it comes in through the border.
+  /// `from_outside`: whether the ray's first point is on the border, where it enters.
   explicit Underground(bool from_outside) : from_outside_(from_outside) {}
 
-  /// Takes the next point. `sunk`: it is under the ground; `clear`: it is further above than what counts as a hit.
+  /// Takes the next point. `sunk`: it is below the ground; `clear`: it is above the ground by more than the hit
+  /// tolerance.
   void take(const SamplePoint& point, bool sunk, bool clear) {
     comes_in_ = point.known && sunk && !before_.known && (!first_ || from_outside_);
     const bool was_above = before_.known && before_.h >= 0;
@@ -55,7 +56,7 @@ class Underground {
       under_ = true;
       entered_below_ = entered_below_ || first_;
     } else if (point.known && (clear || (was_above && point.h < before_.h))) {
-      under_ = false;  // it is out, or comes down again
+      under_ = false;  // it has emerged, or descends again
     }
   }
   /// Ends the turn of the point taken last.
@@ -65,9 +66,9 @@ class Underground {
   }
 
   bool comes_in() const { return comes_in_; }  ///< with the last point
-  bool is_under() const { return under_; }     ///< it has come in, and has not come out since
+  bool is_under() const { return under_; }     ///< it has entered, and has not emerged since
   const SamplePoint& before() const { return before_; }
-  /// The answer for a ray without a hit.
+  /// The result of a ray without a hit.
   Hit missed() const { return entered_below_ ? below() : Hit{}; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Private to the station: the shrink factor of lipschitz, and whether a slope bound proves it.
+// Internal: the shrink factor of lipschitz and its guarantee.
 #pragma once
 
 #include <cmath>
@@ -15,8 +15,8 @@ struct ShrinkFactor {
   Guarantee guarantee;  ///< conservative if the slope bound proves the factor, else approximate
 };
 
-/// The factor of the settings, or the largest one that the slope bound c proves, 1 / sqrt(1 + c^2), less the share
-/// `rounding`. Throws Error if there is neither a factor nor a slope bound, which is NaN if unknown.
+/// Returns the factor of the settings or, if that is 0, largest_proven_shrink(slope) reduced by the share `rounding`.
+/// Throws Error if the factor is 0 and the slope is unknown (NaN).
 inline ShrinkFactor shrink_factor(const LipschitzSettings& settings, double slope, double rounding = 0) {
   if (settings.shrink > 0) return {settings.shrink, lipschitz_guarantee(settings, slope)};
   if (std::isnan(slope)) throw Error("lipschitz: neither the field's slope bound nor a shrink factor is given");

@@ -191,7 +191,7 @@ class Drawing {
     cairo_move_to(cr(), x, baseline);
     cairo_show_text(cr(), text.c_str());
   }
-  // Every so many labels, counted from the last, do not touch.
+  // Returns the smallest n such that every n-th label, counted from the last, does not touch the next one.
   std::size_t label_stride(double length, const std::vector<FigureTick>& ticks) const {
     const auto touch = [&](const FigureTick& a, const FigureTick& b) {
       const double middles = (b.share - a.share) * length;

@@ -61,8 +61,8 @@ struct Figure {
 /// most `most`, and at least two wherever two exist. low < high, most >= 2.
 std::vector<double> round_numbers(double low, double high, int most, double least_step = 0);
 
-/// Draws over an image of 3 bytes per pixel, rows from the top. Ticks whose labels would touch are drawn without them,
-/// the last one always with it. Throws Error if the image is too small for the figure.
+/// Draws over an image of 3 bytes per pixel, rows from the top. Omits labels that would touch, but never that
+/// of the last tick. Throws Error if the image is too small for the figure.
 void draw_figure(std::uint8_t* rgb, int width, int height, const Figure& figure);
 
 }  // namespace scarp

@@ -44,22 +44,22 @@ std::optional<LatticeRotation> lattice_rotation(const glm::dmat3& matrix) {
   return turn;
 }
 
-// Where a place is on the lattice of another one.
+// Converts a place to the lattice of another one.
 OnLattice on_lattice(const VoxelPlace& place, const VoxelPlace& lattice, const VoxelModel& model, std::size_t part) {
   const glm::dmat3 lattice_from_world = glm::inverse(lattice.world_from_grid);
   const auto turn = lattice_rotation(lattice_from_world * place.world_from_grid);
   if (!turn) {
     throw Error(
-        fmt::format("part {} is turned or scaled against the first one (voxels that are combined need quarter "
-                    "turns and the same size)",
+        fmt::format("part {} is rotated or scaled relative to the first one (combined voxels need quarter turns "
+                    "and equal sizes)",
                     part));
   }
   const dvec3 offset = lattice_from_world * (place.origin - lattice.origin), whole = glm::round(offset);
   const dvec3 away = glm::abs(offset - whole);
   if (!(std::max({away.x, away.y, away.z}) <= kTolerance)) {
     throw Error(
-        fmt::format("part {} is ({:.6g}, {:.6g}, {:.6g}) voxels from the first one (voxels that are combined "
-                    "need whole numbers)",
+        fmt::format("part {} is ({:.6g}, {:.6g}, {:.6g}) voxels from the first one (combined voxels need whole "
+                    "offsets)",
                     part, offset.x, offset.y, offset.z));
   }
   if (std::max({std::abs(whole.x), std::abs(whole.y), std::abs(whole.z)}) > kFarthest)
@@ -82,7 +82,7 @@ VoxelGrid grid_of(const std::vector<OnLattice>& part, const VoxelBox& box) {
     grid.edit({common.low - box.low, common.high - box.low},
               [&](const ivec3& v, const VoxelGrid::Voxel& before) -> VoxelGrid::Voxel {
                 if (before) return before;
-                // The middles of voxels, doubled.
+                // Doubled centres of voxels are integers.
                 const ivec3 middle = placed.back(2 * (v + box.low - placed.origin) + 1), voxel = (middle - 1) / 2;
                 if (!from.solid(voxel)) return {};
                 const VoxelColour rgb = placed.model->colour(from.entry(voxel));

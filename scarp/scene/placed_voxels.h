@@ -35,9 +35,9 @@ struct VoxelFileOptions {
   VoxelRounding rounding{};
 };
 
-/// Returns the march with this name; for an empty name the usual one for models with grids of these sizes:
-/// `voxel-octants` while they have at most 2^20 voxels in total and 512 per side, `voxel-bricks` above. Octants are the
-/// fastest for small models, but take eight bytes per voxel and time to build. Throws Error if there is no such march.
+/// Returns the march with this name or, if it is empty, the default for grids of these sizes: `voxel-octants` up to
+/// 2^20 voxels in total and 512 per side, else `voxel-bricks`. Octants are the fastest for small models, but take eight
+/// bytes per voxel and longer to build. Throws Error if there is no such march.
 const VoxelMarchEntry& file_voxel_march(std::string_view name, std::span<const ivec3> sizes);
 
 }  // namespace scarp

@@ -129,7 +129,7 @@ class Scene {
   Scene judge() const;
   /// Returns the names of all marches, each once, separated by ", ".
   std::string marches() const;
-  /// SceneField::caveat() of its fields, each once.
+  /// Returns the distinct SceneField::caveat() messages of its fields.
   std::vector<std::string> caveats() const;
 
   /// Box around all bounded objects (SceneField::extent()); empty if there is none.

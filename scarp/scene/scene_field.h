@@ -63,7 +63,7 @@ class SceneField {
 
   virtual std::string_view kind() const = 0;   ///< "heights", "function", "shape", "voxels", "mesh"
   virtual std::string_view march() const = 0;  ///< its name
-  /// Why the march, with its settings, guarantees less than its table says; empty if it does not.
+  /// Returns why the march with its settings guarantees less than MarchEntry states; empty if it does not.
   virtual std::string caveat() const { return {}; }
   /// Around everything that rays can meet: empty when that is nothing, nullopt for a field without an end.
   virtual std::optional<WorldBox> box() const = 0;

@@ -78,11 +78,14 @@ ColourImage pixels_of(GDALDataset& dataset, int height, const GdalSession& sessi
 }
 
 // At most this many rows, from the top.
-ColourImage read_rows(const std::string& path, int most) {
+ColourImage read_rows(const std::string& path, int most, int most_side = std::numeric_limits<int>::max()) {
   GdalSession session;
   const StrictReading strict;
   try {
     const GDALDatasetUniquePtr dataset = in_colours(open_gdal_raster(path, session), session);
+    const int width = dataset->GetRasterXSize(), height = dataset->GetRasterYSize();
+    if (std::max(width, height) > most_side)
+      throw Error(fmt::format("{} x {} pixels (must be at most {} from side to side)", width, height, most_side));
     return pixels_of(*dataset, std::min(most, dataset->GetRasterYSize()), session);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));
@@ -110,7 +113,9 @@ dvec2 pixel_size(GDALDataset& dataset, const Georeference& georeference, const G
 
 ColourImage read_colour_row(const std::string& path) { return read_rows(path, 1); }
 
-ColourImage read_colour_image(const std::string& path) { return read_rows(path, std::numeric_limits<int>::max()); }
+ColourImage read_colour_image(const std::string& path, int most_side) {
+  return read_rows(path, std::numeric_limits<int>::max(), most_side);
+}
 
 ColourImage read_overlay(const std::string& path, const Georeference& georeference, int cols, int rows) {
   GdalSession session;

@@ -21,8 +21,9 @@ struct ColourImage {
 /// Returns the first row of an image with 8 bits per channel: grey, palette or colour. Throws Error naming the file.
 ColourImage read_colour_row(const std::string& path);
 
-/// Returns all of such an image. Throws Error naming the file.
-ColourImage read_colour_image(const std::string& path);
+/// Returns a whole image with 8 bits per channel. Throws Error naming the file, also if a side is longer than
+/// `most_side` pixels.
+ColourImage read_colour_image(const std::string& path, int most_side);
 
 /// Returns an image warped to the ground of a raster: its upper left pixel at the north-west corner, its last pixel at
 /// the south-east corner, interpolated bilinearly by GDAL's warper, from any CRS; transparent outside the image. A

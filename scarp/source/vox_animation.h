@@ -2,15 +2,15 @@
 // Animation in a .vox file: keyframes of transforms and shapes.
 //
 //   frame       0  1  2  3  4  5  6  7  8     of a node with keyframes at 2 and 5
-//   without     2  2  2  .  .  5  5  5  5     the first and the last keyframe are held
+//   no _loop    2  2  2  .  .  5  5  5  5     the first and the last keyframe are held
 //   _loop 1     .  5  2  .  .  5  2  .  .     frames 2 to 5 repeat
 //
 // Between two keyframes (the dots), a translation is interpolated linearly and rounded to whole voxels, halves up;
-// rotation and model are those of the earlier keyframe. Each transform is rounded on its own, before it is combined
-// with those above it, so voxels stay on one lattice.
+// rotation and model are those of the earlier keyframe. Each transform is rounded before it is combined with its
+// parents, so voxels stay on one lattice.
 //
-// Source: ephtracy/voxel-model, "MagicaVoxel .vox file format extension", for _f and _loop. It leaves open what lies
-// between keyframes and how a loop ends; the rules above, except for the rounding, are those of jpaver/opengametools.
+// Source: ephtracy/voxel-model, "MagicaVoxel .vox file format extension", for _f and _loop. It does
+// not define interpolation and loops; the rules above, except for the rounding, are those of jpaver/opengametools.
 #pragma once
 
 #include <cstddef>
@@ -40,13 +40,13 @@ std::vector<std::int64_t> vox_keyframes(const VoxNode& node);
 /// Returns whether the frames of a node repeat.
 bool vox_loops(const VoxNode& node);
 
-/// A frame between two keyframes, which are the same one where a keyframe is held.
+/// A frame between two keyframes; both are the same if a keyframe is held.
 struct VoxMoment {
   std::size_t before = 0, after = 0;      ///< indices of the keyframes
   std::int64_t passed = 0, distance = 1;  ///< frames since the earlier keyframe; frames between both, > 0
 };
 
-/// Finds a frame among keyframes, in any order, at least one. If several have the same frame, the last one counts.
+/// Finds the keyframes around a frame. `keyframes`: at least one, in any order; of equal ones the last one counts.
 VoxMoment vox_moment(std::span<const std::int64_t> keyframes, bool loop, std::int64_t frame);
 
 }  // namespace scarp

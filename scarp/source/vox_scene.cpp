@@ -60,7 +60,7 @@ ivec3 interpolated(const ivec3& from, const ivec3& to, const VoxMoment& moment) 
   return move;
 }
 
-// What a node contributes at a frame.
+// Placement or model of a node at a frame.
 struct AtFrame {
   VoxInstance place;  // of a transform, without a model
   int model = 0;      // of a shape
@@ -171,7 +171,7 @@ std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOption
   std::unordered_map<int, bool> hidden_layers;
   for (const VoxLayer& layer : file.layers) hidden_layers[layer.id] = hidden(layer.attributes);
 
-  // Once each: groups may use a node many times.
+  // Computed once per node: groups may use a node many times.
   std::unordered_map<int, AtFrame> now;
   for (const VoxNode& node : file.nodes) now.emplace(node.id, at_frame(node, options.frame));
 
@@ -226,7 +226,7 @@ std::vector<std::string> vox_notes(const VoxFile& file, const VoxSceneOptions& o
   for (const VoxModel& model : file.models)
     empty += static_cast<std::size_t>(std::count_if(model.voxels.begin(), model.voxels.end(),
                                                     [](const VoxVoxel& voxel) { return voxel.index == 0; }));
-  if (empty > 0) notes.push_back(fmt::format("voxels with palette index 0 count as empty: {}", empty));
+  if (empty > 0) notes.push_back(fmt::format("voxels with palette index 0, treated as empty: {}", empty));
   return notes;
 }
 

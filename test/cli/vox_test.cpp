@@ -66,7 +66,7 @@ TEST_F(CliVox, FramesOfAnAnimation) {
   write_vox(model_, file);
   const auto info = run({"info", model_});
   EXPECT_NE(info.out.find("frames       5 (--frame 0 to 4)\n"), std::string::npos) << info.out;
-  EXPECT_NE(info.out.find("note         voxels with palette index 0 count as empty: 1\n"), std::string::npos)
+  EXPECT_NE(info.out.find("note         voxels with palette index 0, treated as empty: 1\n"), std::string::npos)
       << info.out;
   const auto low = [&](const char* frame) {
     const auto json = nlohmann::json::parse(run({"info", model_, "--json", "--frame", frame}).out);

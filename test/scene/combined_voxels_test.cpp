@@ -118,10 +118,9 @@ TEST(CombinedVoxels, NeedOneLattice) {
   };
   EXPECT_EQ(message(cube(2, turned(90), {3, 0, 0})), "");
   EXPECT_EQ(message(cube(2, glm::dmat3(1.0), {0, 0.5, 0})),
-            "part 1 is (0, 0.5, 0) voxels from the first one (voxels that are combined need whole numbers)");
+            "part 1 is (0, 0.5, 0) voxels from the first one (combined voxels need whole offsets)");
   const std::string turned_or_scaled =
-      "part 1 is turned or scaled against the first one (voxels that are combined need quarter turns and the same "
-      "size)";
+      "part 1 is rotated or scaled relative to the first one (combined voxels need quarter turns and equal sizes)";
   EXPECT_EQ(message(cube(2, turned(45))), turned_or_scaled);
   EXPECT_EQ(message(cube(2, glm::dmat3(2.0))), turned_or_scaled);
   EXPECT_EQ(message(cube(2, glm::dmat3(1.0), {3000, 0, 0})),

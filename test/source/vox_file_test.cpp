@@ -115,7 +115,7 @@ TEST(VoxFile, CountsVoxelsOfIndexZeroAsEmpty) {
   file.models[0].voxels[0].index = 0;
   const VoxFile read = parse_vox(vox_bytes(file));
   EXPECT_EQ(read, file);
-  EXPECT_EQ(vox_notes(read), std::vector<std::string>{"voxels with palette index 0 count as empty: 1"});
+  EXPECT_EQ(vox_notes(read), std::vector<std::string>{"voxels with palette index 0, treated as empty: 1"});
 }
 
 TEST(VoxFile, RefusesScenesThatCannotBe) {

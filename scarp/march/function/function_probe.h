@@ -4,6 +4,8 @@
 // followed within the height range of the ground and within kFunctionReach.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "scarp/march/function/function_ray.h"
@@ -40,8 +42,8 @@ class FunctionProbe {
 
   /// The first step off the surface: a share of the way out, as there are no cells. lipschitz_local.h needs none.
   double blind_step() const { return 0x1p-10 * (t_exit - t_enter); }
-  /// The least step of a ray under the ground: it may pass shorter ways above it.
-  double least_step_under() const { return 0x1p-12 * blind_step(); }
+  /// Minimum step of a ray below the ground; it may skip shorter stretches above it. At least what t can resolve.
+  double least_step_under(double t) const { return std::max(0x1p-12 * blind_step(), 0x1p-50 * std::abs(t)); }
   /// fixed-step's step, and its least share of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.function.step * per_metre_; }
   double stride_share(const MarchSettings& settings) const { return settings.function.step_share; }
@@ -49,7 +51,7 @@ class FunctionProbe {
 
   // Rounding is counted.
   bool under_ground(const Sample& sample) const { return sample.metres < -ray_.rounding(); }
-  /// The step that is free of the surface if it rises no more than `shrink` allows.
+  /// A step that cannot reach the surface if its slope is within what `shrink` allows.
   double free_time(const Sample& sample, double shrink) const {
     const double metres = under_ground(sample) ? -sample.metres : sample.metres;
     return (metres - ray_.rounding()) * shrink / ray_.metres_per_t();

@@ -55,7 +55,7 @@ glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& set
     result.max_steps = settings.lipschitz_local.max_steps;
     return result;
   }
-  // 2^-20 is more than what rounds in the factor and in the step.
+  // 2^-20 exceeds the rounding errors of the factor and the step.
   result = device_sampling(march, settings, slope, 0x1p-20, 1);
   if (march == "fixed-step") {
     result.factor = static_cast<float>(settings.function.step);

@@ -53,7 +53,7 @@ SCARP_FN ScarpRay scarp_ray(ivec2 cell, vec2 place, float z, vec3 direction, flo
 /// is. False: there is nothing of the field on its way, and the ray means nothing. An upright ray needs an end.
 SCARP_FN bool scarp_ray_from(ScarpField field, vec3 origin, vec3 direction, float end, SCARP_OUT(ScarpRay) ray) {
   ray = scarp_ray(ivec2(0, 0), vec2(0.0f, 0.0f), origin.z, direction, end, 0u);
-  float begin = 0.0f;
+  float border = -kScarpNever;  // where the ray enters the field
   float exit = end;
   bool wraps = (field.flags & kScarpWraps) != 0u;
   vec2 size = vec2(float(field.cells.x), float(field.cells.y));
@@ -63,19 +63,20 @@ SCARP_FN bool scarp_ray_from(ScarpField field, vec3 origin, vec3 direction, floa
     float south = (size.y - origin.y) * ray.per_direction.y;
     float north = -origin.y * ray.per_direction.y;
     if (ray.direction.x != 0.0f) {
-      begin = max(begin, min(east, west));
+      border = max(border, min(east, west));
       exit = min(exit, max(east, west));
     } else if (origin.x < 0.0f || origin.x > size.x) {
       return false;
     }
     if (ray.direction.y != 0.0f) {
-      begin = max(begin, min(north, south));
+      border = max(border, min(north, south));
       exit = min(exit, max(north, south));
     } else if (origin.y < 0.0f || origin.y > size.y) {
       return false;
     }
-    if (begin > 0.0f) ray.flags |= kScarpFromOutside;
+    if (border >= 0.0f) ray.flags |= kScarpFromOutside;
   }
+  float begin = max(border, 0.0f);
   if (origin.z + ray.direction.z * begin > field.highest) {
     if (!(ray.direction.z < 0.0f)) return false;
     begin = max(begin, (field.highest - origin.z) / ray.direction.z);

@@ -44,7 +44,7 @@ class HeightProbe {
   bool crosses() const { return t_enter <= t_exit && std::isfinite(t_exit) && speed_ > 0; }
   const Ray& ray() const { return ray_; }
   double per_metre() const { return per_metre_; }
-  /// Whether the ray comes in through the border, at t_enter.
+  /// Whether the ray enters through the border, at t_enter.
   bool from_outside() const { return from_outside_; }
 
   struct Sample {
@@ -93,13 +93,13 @@ class HeightProbe {
   /// fixed-step's step, and its least share of the distance travelled.
   double stride(const MarchSettings& settings) const { return settings.fixed_step.step * blind_step(); }
   double stride_share(const MarchSettings&) const { return 0; }
-  /// The least step of a ray under the ground: it may pass shorter ways above it.
-  double least_step_under() const { return 0x1p-12 * blind_step(); }
+  /// Minimum step of a ray below the ground; it may skip shorter stretches above it. At least what t can resolve.
+  double least_step_under(double t) const { return std::max(0x1p-12 * blind_step(), 0x1p-50 * std::abs(t)); }
   /// Whether there is rock under the sheet: walls at its rims.
   bool solid() const { return field_.settings().solid; }
 
   bool under_ground(const Sample& sample) const { return sample.clearance < 0; }
-  /// The step that is free of the surface if it rises no more than `shrink` allows.
+  /// A step that cannot reach the surface if its slope is within what `shrink` allows.
   double free_time(const Sample& sample, double shrink) const {
     return std::abs(sample.clearance) * shrink * per_metre_;
   }

@@ -26,8 +26,8 @@ struct Image {
 /// Sets a pixel from linear light.
 void set_pixel(Image& image, int x, int y, vec3 linear);
 
-/// Bright colours compressed, so that light surfaces in the sun keep their shades: channels up to 0.7 do not
-/// change, 1.75 becomes 1, and hues stay. In and out: linear light.
+/// Compresses bright colours in linear light, so that bright sunlit surfaces keep their detail (scarp_toned()). Colours
+/// whose largest channel is at most 0.7 do not change; 1.75 becomes 1; hues are preserved up to there.
 vec3 toned(vec3 linear);
 
 /// Pixels [x0, x1) x [y0, y1).

@@ -249,7 +249,7 @@ vec3 FrameTile::water_colour(const WaterPoint& found) const {
 float FrameTile::share_of_steps(std::size_t point, double most) const {
   const Seen& seen = seen_[point];
   const bool meets = seen.hit || (view_.water() && meetings_[point]);
-  // A stepped ray takes all its steps unless it meets something; none of them are sampled where nothing can be met.
+  // A stepped ray that hits nothing takes all its steps, sampled or not.
   if (view_.step_march() && !meets) return 1;
   return static_cast<float>(std::min(1.0, seen.steps / most));
 }

@@ -67,6 +67,8 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
       colours_(settings.materials),
       paint_(settings.ground, paint_extent(scene, settings), ground_ramp(scene, settings), lighting_.to_sun()),
       sky_(settings.sky, lighting_.to_sun(), lighting_.light().sun_radius()),
+      wall_light_(sky_.scatters() ? sky_.skylight() + sky_.sunlight() * static_cast<float>(lighting_.to_sun().z)
+                                  : vec3(1.0f)),
       fog_(settings.fog, sky_),
       haze_(haze_of(scene, camera, settings)),
       step_march_(step_march_of(scene, camera, settings)) {
@@ -101,7 +103,8 @@ vec3 FrameView::lit(const Ray& ray, const Hit& hit, const SceneSurface& surface,
 vec3 FrameView::unlit(const Ray& ray, const Hit& hit, const SceneSurface& surface) const {
   if (!hit) {
     // Ground that lies farther away than the picture reaches is at the horizon.
-    return fog_(ray, kInfinity, sky_.colour(horizon_below() ? glsl::scarp_not_below(ray.direction) : ray.direction));
+    return fog_(ray, kInfinity,
+                horizon_below() ? glsl::scarp_sky_beyond(sky_.numbers(), ray.direction) : sky_.colour(ray.direction));
   }
   if (surface.wall) return in_air(wall_colour(surface.normal), ray, hit.t);
   // The camera is inside: the voxel's colour is all there is to see.
@@ -117,7 +120,7 @@ vec3 FrameView::from_beyond(vec3 light, const Ray& ray) const {
   return light * static_cast<float>(fog_.transmittance(ray, kInfinity));
 }
 
-vec3 FrameView::earth() const { return linear_from_srgb(kEarth); }
+vec3 FrameView::earth() const { return linear_from_srgb(kEarth) * wall_light_; }
 float FrameView::unlit_wall() const { return settings_.unlit ? 1.0f : kUnlitWall; }
 
 vec3 FrameView::wall_colour(const dvec3& normal) const {

@@ -26,8 +26,8 @@ struct Haze {
   double clear_distance = 0;  ///< metres in front of the eye without haze
 };
 
-/// What answers rays of camera and water instead of the scene: the steps of the look `comanche`, with the march
-/// `fixed-step` over one height field; else nothing. Refers to the scene.
+/// Returns the stepped march that traces camera and water rays instead of the scene, in the look `comanche` with the
+/// march `fixed-step` over one height field; nullopt otherwise. Refers to the scene.
 std::optional<StepMarch> step_march_of(const Scene& scene, const Camera& camera, const PictureSettings& settings);
 
 /// Refers to scene, camera and settings. Settings must be valid.
@@ -48,7 +48,7 @@ class FrameView {
   const GroundPaint& paint() const { return paint_; }
   /// Null without water.
   const Water* water() const { return water_ ? &*water_ : nullptr; }
-  /// step_march_of(), or null.
+  /// Null without a stepped march; see step_march_of().
   const StepMarch* step_march() const { return step_march_ ? &*step_march_ : nullptr; }
   /// Height above which nothing is met, metres of world z; nothing if the scene has no such height.
   const std::optional<double>& ceiling() const { return ceiling_; }
@@ -66,11 +66,10 @@ class FrameView {
   vec3 unlit(const Ray& ray, const Hit& hit, const SceneSurface& surface) const;
   /// A colour seen through t metres of haze or fog.
   vec3 in_air(vec3 colour, const Ray& ray, double t) const;
-  /// What fog leaves of light that comes along a ray from beyond the scene.
+  /// Light from beyond the scene, attenuated by the fog along the ray.
   vec3 from_beyond(vec3 light, const Ray& ray) const;
 
-  /// Cut earth of walls in linear light, and the share of it that walls facing away from the sun have: all of it in
-  /// unlit pictures.
+  /// Colour of walls in linear light, and the share of it on walls that face away from the sun: 1 in unlit pictures.
   vec3 earth() const;
   float unlit_wall() const;
 
@@ -85,6 +84,7 @@ class FrameView {
   SurfaceColours colours_;
   GroundPaint paint_;
   Sky sky_;
+  vec3 wall_light_;  // on cut earth: that of level ground
   Fog fog_;
   Haze haze_;
   std::optional<Water> water_;

@@ -21,8 +21,8 @@ std::vector<Ray> rays_through_middles(const Camera& camera, const PixelTile& til
 /// Receives a pixel's index (rows from the top), its ray, what that hit, and its steps (0 without `count`).
 using TakeMiddle = std::function<void(std::size_t, const Ray&, const Hit&, std::uint32_t)>;
 
-/// Calls `take` for each pixel, on any thread. `count`: whether steps are counted. `stepped` answers the rays instead
-/// of the scene unless it is null.
+/// Calls `take` for each pixel, on any thread. `count`: whether to count steps. If not null, `stepped` traces the rays
+/// instead of the scene.
 void look_through_middles(const Scene& scene, const Camera& camera, const PictureSettings& settings, bool count,
                           const Progress& progress, const TakeMiddle& take, const StepMarch* stepped = nullptr);
 

@@ -55,7 +55,7 @@ class ImageTile final : public TileWork {
   Image& image_;
 };
 
-// On a device, steps of the look `comanche` are those of whole frames.
+// On a device, only whole frames support the stepped rays of `comanche`.
 void require_steps(const Scene& scene) {
   if (scene.on_device() && scene.marches() == "fixed-step") {
     throw Error(
@@ -92,14 +92,14 @@ Picture render_hillshade(const Scene& scene, const Camera& camera, const Picture
   return picture;
 }
 
-// By pixel, of misses.
+// One NaN per pixel.
 std::vector<double> no_heights(const PictureSettings& settings) {
   return std::vector<double>(static_cast<std::size_t>(settings.width) * static_cast<std::size_t>(settings.height),
                              std::numeric_limits<double>::quiet_NaN());
 }
 
 #ifdef SCARP_VULKAN
-// Of what the rays of a whole frame meet, which is made without anything else.
+// Heights that the rays of a whole frame hit; the frame is rendered without light, water and fog.
 std::vector<double> heights_of_whole_frame(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                                            const Progress& progress) {
   PictureSettings bare;

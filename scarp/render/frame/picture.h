@@ -53,7 +53,7 @@ struct ReliefRange {
   double low = 0, high = 0;
 };
 
-/// A range of numbers of steps: those of the first and last colour of a ramp; 0 <= low < high.
+/// Step counts of the first and last colour of a ramp; 0 <= low < high.
 struct StepScale {
   double low = 0, high = 0;
 };
@@ -95,12 +95,12 @@ struct PictureSettings {
   // Looks.
   ComancheSettings comanche{};
   ErrorSettings error{};
-  std::optional<StepScale> step_scale{};  ///< `steps`: colours of more and fewer steps are the last and the first;
-                                          ///< nullopt: from the minimum to the maximum in the picture
-  int level = 0;                          ///< `level`: of the pyramid, 0 (cells) to its top
+  std::optional<StepScale> step_scale{};  ///< `steps`: range of the ramp, clamped; nullopt: the minimum and
+                                          ///< maximum in the picture
+  int level = 0;                          ///< `level`: level of the pyramid, 0 (cells) to the coarsest
 };
 
-/// Whether the curve applies: not to pictures of counts, nor to unlit ones.
+/// Returns whether the tone curve applies: not to pictures of counts or unlit pictures.
 bool uses_tone_curve(const PictureSettings& settings);
 
 /// Returns the name of the ramp in the settings or, if that is empty, the default for the look.

@@ -67,7 +67,7 @@ vec3 in_air(vec3 colour, FrameSeen seen, vec3 direction, float metres) {
   return scarp_between(scarp_fog_colour(the_sky(), direction, s.is.sun_tint), colour, left);
 }
 
-// What fog leaves of light from beyond the scene.
+// Transmittance of the fog for light from beyond the scene.
 float left_from_beyond(FrameSeen seen, vec3 direction) {
   Settings s = settings();
   if (!has_fog) return 1.0;
@@ -90,7 +90,7 @@ vec3 beside_ground(FrameSeen seen, vec3 direction) {
                   seen.t.high * seen.metres);
   }
   ScarpSky air = the_sky();
-  vec3 sky = scarp_sky_colour(air, s.is.no_descent != 0 ? scarp_not_below(direction) : direction);
+  vec3 sky = s.is.no_descent != 0 ? scarp_sky_beyond(air, direction) : scarp_sky_colour(air, direction);
   if (!has_fog || s.is.fog == kScarpNoFog || s.is.fog == kScarpFogByIterations) return sky;
   float left = left_from_beyond(seen, direction);
   return scarp_between(scarp_fog_colour(the_sky(), direction, s.is.sun_tint), sky, left);
@@ -427,7 +427,7 @@ vec3 colour_of_point() {
   FrameWater water = water_met;
   float share = min(1.0, float(camera.steps) / float(s.is.most_steps));
   if (s.is.iterations != 0) {
-    // A stepped ray takes all its steps unless it meets something; none of them are sampled where nothing can be met.
+    // A stepped ray that hits nothing takes all its steps, sampled or not.
     bool meets = camera.kind != kFrameNothing || (has_water && water.kind != 0);
     return vec3(stepped && !meets ? 1.0 : share);
   }

@@ -4,9 +4,10 @@
 //
 //   camera, settings ──▶ some hundred numbers ──▶ terrain_frame.comp, a pixel per invocation ──▶ Image
 //
-// Formulas are those of the CPU, from one text (air.glsl.h, water.glsl.h, ground_paint.glsl.h, detail_texture.glsl.h,
-// colour.glsl.h, sample_pattern.glsl.h, sample_directions.glsl.h), in single precision; rays are those of the marches
-// (max-mip, fixed-step). render_picture() comes here for scenes that a device answers, see makes_whole_frames().
+// Formulas are those of the CPU, from one text (sky.glsl.h, air.glsl.h, water.glsl.h, ground_paint.glsl.h,
+// detail_texture.glsl.h, colour.glsl.h, sample_pattern.glsl.h, sample_directions.glsl.h), in single precision; rays are
+// those of the marches (max-mip, fixed-step). render_picture() comes here for scenes that a device answers, see
+// makes_whole_frames().
 #pragma once
 
 #include <cstdint>

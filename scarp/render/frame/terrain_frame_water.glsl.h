@@ -96,7 +96,7 @@ vec3 water_normal(ScarpPaintPlace place, float footprint) {
   return normalize(vec3(-tilt.x, -tilt.y, 1.0));
 }
 
-// Variance of the slopes that water_normal() leaves out.
+// Mean square of the wave slopes that water_normal() omits.
 float water_roughness(float footprint) {
   Settings s = settings();
   float roughness = 0.0;

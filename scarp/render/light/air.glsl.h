@@ -13,7 +13,7 @@ const vec3 kScarpSunlight = vec3(1.0f, 0.83f, 0.58f);  ///< of fog below a plain
 /// it, and that of the horizon below.
 SCARP_FN vec3 scarp_in_haze(vec3 colour, ScarpSky sky, real3 direction, real per_metre, real metres) {
   real clear = exp(-per_metre * max(real(0.0), metres));
-  return scarp_between(scarp_sky_colour(sky, scarp_not_below(direction)), colour, clear);
+  return scarp_between(scarp_sky_beyond(sky, direction), colour, clear);
 }
 
 /// FogKind.
@@ -38,7 +38,7 @@ SCARP_FN real scarp_fog_transmittance(int kind, real per_metre, real base, real 
   real here = per_metre * exp(-(z - base) / falloff);
   return exp(-here * t * scarp_mean_of_decay(t * (rise / falloff)));
 }
-/// The same from where there is nothing more.
+/// The same for light from infinity.
 SCARP_FN real scarp_fog_transmittance_of_sky(int kind, real per_metre, real base, real falloff, real z, real rise) {
   if (kind != kScarpFogByHeight) return real(1.0);
   real here = per_metre * exp(-(z - base) / falloff);
@@ -48,7 +48,7 @@ SCARP_FN real scarp_fog_transmittance_of_sky(int kind, real per_metre, real base
 /// Colour of fog in linear light, looking along a unit vector: that of the sky at the horizon. Below a plain sky it is
 /// warm towards the sun with the 8th power of the angle's cosine.
 SCARP_FN vec3 scarp_fog_colour(ScarpSky sky, real3 direction, real sun_tint) {
-  if (sky.scattering != 0) return scarp_sky_colour(sky, scarp_not_below(real3(direction.x, direction.y, real(-1.0))));
+  if (sky.scattering != 0) return scarp_horizon_colour(sky, direction);
   real towards = max(real(0.0), dot(direction, real3(sky.to_sun)));
   towards *= towards;
   towards *= towards;
@@ -59,12 +59,12 @@ SCARP_FN vec3 scarp_fog_colour(ScarpSky sky, real3 direction, real sun_tint) {
 /// The sine of the lowest sun that casts shadows over endless ground: 0.06 degrees, a ninth of its disc.
 const float kScarpLeastSunRise = 1e-3f;
 
-/// Light of the plain sky on level ground; the sun gives what lacks to white.
+/// Light of the plain sky on level ground; the sun supplies the rest of white.
 const vec3 kScarpSkylight = vec3(0.27f, 0.32f, 0.39f);
 
-/// Light on a surface with this unit normal. The sky gives `skylight` to level ground, is brightest towards `sky_side`
-/// and seen by the share `sky_share`; `sun` is the sun's light on what faces it, `sun_cosine` the mean cosine to what
-/// is seen of its disc.
+/// Light on a surface with this unit normal. `skylight` is the light of the sky on level ground; the sky is brightest
+/// towards `sky_side`, and `sky_share` of it is visible. `sun` is the sunlight on a surface that faces the sun,
+/// `sun_cosine` the mean cosine to the visible part of its disc.
 SCARP_FN vec3 scarp_light(real3 normal, real3 sky_side, vec3 skylight, vec3 sun, real sun_cosine, real sky_share) {
   real sky = sky_share * (real(1.0) + dot(normal, sky_side)) / (real(1.0) + sky_side.z);
   return float(sky) * skylight + float(sun_cosine) * sun;

@@ -11,8 +11,8 @@
 //               caster has it: it depends on how the march steps, and is kept for comparison
 //
 // s follows from the visibility V, at which 2 of 100 parts of a contrast are left: s = ln(50) / V (Koschmieder 1924).
-// Its colour is that of the sky at the horizon. Below a plain sky, which has no sun, it is warm towards the sun: it
-// goes over to the colour of sunlight with the 8th power of the angle's cosine (I. Quilez, "Better fog", 2010).
+// Its colour is that of the sky at the horizon. Below a plain sky, which has no sun disc, it blends to the colour of
+// sunlight towards the sun, by the 8th power of the cosine (I. Quilez, "Better fog", 2010).
 #pragma once
 
 #include <string_view>
@@ -31,7 +31,7 @@ struct FogSettings {
   double visibility = 20000;  ///< metres, at the height `base`; > 0
   double base = 0;            ///< metres of world z where `visibility` holds; `height` alone
   double falloff = 300;       ///< metres in which the fog thins out by the factor e; > 0; `height` alone
-  double sun_tint = 0.6;      ///< how far the colour goes over to sunlight, looking into the sun; 0..1; plain sky alone
+  double sun_tint = 0.6;      ///< share of the colour of sunlight, looking into the sun; 0..1; plain sky only
 };
 
 /// Throws Error naming the first setting out of its range.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What fog does to colours: the formulas of fog.h.
+// Colours seen through fog, by the formulas of fog.h.
 #pragma once
 
 #include "scarp/base/ray.h"
@@ -18,7 +18,7 @@ class Fog {
   /// t may be infinite: 1 for fog by distance, whose colour is that of the sky at the horizon anyway. For `iterations`
   /// it is 1.
   double transmittance(const Ray& ray, double t) const;
-  /// Of the fog, in linear light, looking along a unit vector.
+  /// Colour of the fog in linear light along a unit vector.
   vec3 colour(const dvec3& direction) const;
   double per_metre() const { return per_metre_; }
   const FogSettings& settings() const { return settings_; }

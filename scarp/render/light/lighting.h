@@ -40,7 +40,7 @@ class Lighting {
   /// Of a point: to the sun at most, and to the sky.
   int sun_rays() const;
   int sky_rays() const;
-  /// Whether surfaces block the sun, and rays for each purpose per point; none in unlit pictures.
+  /// Whether surfaces block the sun, and the number of rays per point and purpose; none in unlit pictures.
   bool shadows() const { return settings_.shadows && !settings_.unlit; }
   int samples() const { return settings_.unlit ? 0 : settings_.samples; }
   /// Metres; where rays to the sky end.

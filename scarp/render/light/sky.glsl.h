@@ -12,7 +12,7 @@ const vec3 kScarpZenith = vec3(0.12f, 0.30f, 0.66f);
 const vec3 kScarpHorizon = vec3(0.80f, 0.87f, 0.93f);
 const vec3 kScarpNadir = vec3(0.60f, 0.66f, 0.72f);
 
-/// A sky over a world with +z up. Of a plain one `scattering` is 0, and `to_sun` is all that it uses.
+/// A sky; +z is up. A plain sky has `scattering` 0 and uses only `to_sun`.
 struct ScarpSky {
   int scattering;
   vec3 to_sun;  ///< unit
@@ -22,30 +22,23 @@ struct ScarpSky {
   vec3 c;
   vec3 d;
   vec3 e;
-  vec3 zenith;        ///< Y, x, y there, divided by Perez's formula there
+  vec3 zenith;        ///< Y, x, y at the zenith, divided by Perez's formula at the zenith
+  vec3 horizon;       ///< mean colour of the horizon, linear light
   vec3 ground;        ///< pale ground below the horizon, linear light
   vec3 disc;          ///< of the sun, linear light
-  float disc_square;  ///< of the chord that is the disc's radius on the unit sphere; 0: a point, which is not seen
+  float disc_square;  ///< squared chord of the disc's angular radius on the unit sphere; 0: invisible
 };
 
-/// The lowest sine at which Perez's formula is used: it divides by it.
+/// Minimum sine of the elevation in Perez's formula, which divides by it.
 const float kScarpLowestSky = 1e-3f;
 
-/// The direction itself or, where that descends, the one at the horizon above it.
-SCARP_FN real3 scarp_not_below(real3 direction) {
-  if (direction.z >= real(0.0)) return direction;
-  real level = sqrt(direction.x * direction.x + direction.y * direction.y);
-  if (level == real(0.0)) return real3(real(1.0), real(0.0), real(0.0));
-  return real3(direction.x / level, direction.y / level, real(0.0));
-}
-
-/// Perez's formula: `up` is the sine above the horizon, `angle` the one to the sun and `cosine` its cosine.
+/// Perez's formula. `up`: sine of the elevation; `angle`: angle to the sun; `cosine`: its cosine.
 SCARP_FN float scarp_perez(float a, float b, float c, float d, float e, real up, real angle, real cosine) {
   return float((real(1.0) + real(a) * exp(real(b) / up)) *
                (real(1.0) + real(c) * exp(real(d) * angle) + real(e) * cosine * cosine));
 }
 
-/// Linear sRGB of a colour with the luminance Y and the chromaticities x and y (CIE 1931; IEC 61966-2-1); not negative.
+/// Converts luminance Y and chromaticities x, y to linear sRGB (CIE 1931; IEC 61966-2-1), clamped to >= 0.
 SCARP_FN vec3 scarp_linear_from_luminance(float luminance, float x, float y) {
   float cx = luminance * x / y;
   float cz = luminance * (1.0f - x - y) / y;
@@ -64,22 +57,36 @@ SCARP_FN vec3 scarp_scattered(ScarpSky sky, real3 direction) {
                                      z.z * scarp_perez(sky.a.z, sky.b.z, sky.c.z, sky.d.z, sky.e.z, up, angle, cosine));
 }
 
-/// Colour of the sky in linear light towards a unit vector, without the sun's disc. The plain gradient gives way with
-/// the 3rd power of 1 - z; below the horizon pale ground comes in with its power of 1.5.
+/// Colour of the sky at the horizon, in linear light, in the direction of a unit vector. Towards zenith and nadir,
+/// where directions lie close together, it becomes the mean of all.
+SCARP_FN vec3 scarp_horizon_colour(ScarpSky sky, real3 direction) {
+  if (sky.scattering == 0) return kScarpHorizon;
+  real square = min(direction.x * direction.x + direction.y * direction.y, real(1.0));
+  if (square < real(1e-12)) return sky.horizon;
+  real level = sqrt(square);
+  vec3 there = scarp_scattered(sky, real3(direction.x / level, direction.y / level, real(0.0)));
+  return scarp_between(sky.horizon, there, square * square);
+}
+
+/// Colour of the sky in linear light towards a unit vector, without the sun's disc. The plain gradient follows the 3rd
+/// power of 1 - z; below the horizon it changes to pale ground with its power of 1.5.
 SCARP_FN vec3 scarp_sky_colour(ScarpSky sky, real3 direction) {
   real far = real(1.0) - min(abs(direction.z), real(1.0));
   bool scatters = sky.scattering != 0;
-  vec3 above = kScarpHorizon;
-  vec3 ground = kScarpNadir;
-  if (scatters) {
-    above = scarp_scattered(sky, scarp_not_below(direction));
-    ground = sky.ground;
+  if (direction.z < real(0.0)) {
+    vec3 ground = scatters ? sky.ground : kScarpNadir;
+    return scarp_between(scarp_horizon_colour(sky, direction), ground, real(1.0) - far * sqrt(far));
   }
-  if (direction.z < real(0.0)) return scarp_between(above, ground, real(1.0) - far * sqrt(far));
-  return scatters ? above : scarp_between(kScarpHorizon, kScarpZenith, real(1.0) - far * far * far);
+  return scatters ? scarp_scattered(sky, direction)
+                  : scarp_between(kScarpHorizon, kScarpZenith, real(1.0) - far * far * far);
 }
 
-/// What the sun's disc adds to that.
+/// The same for ground that is too far away to be seen: below the horizon it has the horizon's colour.
+SCARP_FN vec3 scarp_sky_beyond(ScarpSky sky, real3 direction) {
+  return direction.z < real(0.0) ? scarp_horizon_colour(sky, direction) : scarp_sky_colour(sky, direction);
+}
+
+/// Radiance of the sun's disc, to be added to scarp_sky_colour().
 SCARP_FN vec3 scarp_sun_disc(ScarpSky sky, real3 direction) {
   real3 off = direction - real3(sky.to_sun);
   bool seen = direction.z >= real(0.0) && dot(off, off) < real(sky.disc_square);

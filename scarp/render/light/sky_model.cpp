@@ -11,11 +11,14 @@ namespace scarp {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-// Below sin(30 degrees) the sun is not made stronger any more: level ground darkens in the evening.
+// Sine of the sun's altitude below which its light is no longer scaled up: level ground darkens in the evening.
 constexpr double kLowestFullSun = 0.5;
 
-// Where the sky's brightness is measured, radians above the sun.
+// Angle above the sun at which the brightness of the sky is measured, radians.
 constexpr double kBesideSun = 0.26;
+
+// Directions round the horizon of which means are taken.
+constexpr int kAround = 48;
 
 // Linear in the turbidity.
 struct Line {
@@ -42,14 +45,14 @@ double chromaticity(const double (&rows)[3][4], double turbidity, double angle) 
   return sum;
 }
 
-// Of the zenith, thousands of cd/m^2.
+// Luminance of the zenith, kcd/m^2.
 double zenith_luminance(double turbidity, double angle) {
   const double chi = (4.0 / 9 - turbidity / 120) * (kPi - 2 * angle);
   return (4.0453 * turbidity - 4.9710) * std::tan(chi) - 0.2155 * turbidity + 2.4192;
 }
 
-// Sunlight on what faces it, thousands of lux: ibid., appendix A.1, without mixed gases and vapour, which take little
-// of these colours.
+// Sunlight on a surface that faces it, klx: ibid., appendix A.1, without mixed gases and water vapour, which absorb
+// little at these wavelengths.
 vec3 sunlight_below_air(double turbidity, double altitude) {
   constexpr double kAbove = 128, kOzone = 0.0035;        // klx; metres
   constexpr double kWavelength[3] = {0.65, 0.55, 0.45};  // micrometres
@@ -68,9 +71,9 @@ vec3 sunlight_below_air(double turbidity, double altitude) {
 // Of linear sRGB (IEC 61966-2-1).
 float luminance(vec3 colour) { return dot(colour, vec3(0.2126f, 0.7152f, 0.0722f)); }
 
-// The mean over the hemisphere by its cosine: the light on level ground that reflects all of it.
+// Cosine-weighted mean over the hemisphere: the radiance of white level ground in skylight.
 vec3 mean_of(const glsl::ScarpSky& sky) {
-  constexpr int kRings = 24, kAround = 48;
+  constexpr int kRings = 24;
   vec3 sum(0.0f);
   for (int ring = 0; ring < kRings; ++ring) {
     // Rings of equal area on the disc below the hemisphere have equal weights.
@@ -111,7 +114,7 @@ void Sky::scatter(double turbidity) {
     numbers_.zenith[i] = static_cast<float>(zenith[i]) / there;
   }
   const vec3 sky = mean_of(numbers_), sun = sunlight_below_air(turbidity, altitude) / static_cast<float>(kPi);
-  // Above a low sun the sky is brighter than the ground: exposed half-way between the two.
+  // Above a low sun the sky is brighter than the ground: the exposure is the geometric mean for both.
   const double beside = std::min(kPi / 2, altitude + kBesideSun);
   const dvec2 level = dvec2(numbers_.to_sun.x, numbers_.to_sun.y) / std::max(std::cos(altitude), 1e-6);
   const float ground = luminance(sky + sun * static_cast<float>(std::max(up, kLowestFullSun))),
@@ -120,7 +123,12 @@ void Sky::scatter(double turbidity) {
   skylight_ = sky * exposure;
   sunlight_ = sun * exposure;
   numbers_.zenith.x *= exposure;
-  constexpr float kPaleGround = 0.4f;  // what it reflects
+  for (int i = 0; i < kAround; ++i) {
+    const double turn = 2 * kPi * (i + 0.5) / kAround;
+    numbers_.horizon +=
+        glsl::scarp_scattered(numbers_, {std::cos(turn), std::sin(turn), 0}) / static_cast<float>(kAround);
+  }
+  constexpr float kPaleGround = 0.4f;  // albedo
   numbers_.ground = kPaleGround * (skylight_ + sunlight_ * static_cast<float>(up));
   numbers_.disc = sunlight_ * (kBrightest / luminance(sunlight_));
 }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A sky, and the light that it and the sun give.
+// The radiance of the sky, and the light of sky and sun on surfaces.
 //
 //   Perez's formula   F = (1 + a exp(b / cos z)) (1 + c exp(d g) + e cos^2 g), z from the zenith, g from the sun
 //   Preetham et al.   a to e and the zenith's Y, x, y as functions of turbidity and sun;   Y = Yz F / F(zenith)
-//   sunlight          128 klx above the air, times what Rayleigh scattering, aerosols and ozone leave of it at 650, 550
-//                     and 450 nm, along the air mass of Kasten (1965)
-//   skylight          the sky's mean over the hemisphere, by its cosine
+//   sunlight          128 klx above the atmosphere, times its transmittance (Rayleigh scattering, aerosols, ozone) at
+//                     650, 550 and 450 nm, with the air mass of Kasten (1965)
+//   skylight          cosine-weighted mean of the sky over the hemisphere
 //
-// All of it is scaled together: level ground that reflects all light has the luminance 1 below a high sun, and less
-// below a sun that the sky is brighter above. The sun's disc is ten thousand times as bright as the sky; pictures cut
-// it off at kBrightest, so that its edge can be anti-aliased.
+// One exposure scales everything: white level ground has the luminance 1 under a high sun, and less where the sky above
+// a low sun is brighter than the ground. The sun's disc is more than ten thousand times as bright as the sky; it is
+// limited to kBrightest so that its edge can be anti-aliased.
 #pragma once
 
 #include "scarp/base/vec.h"
@@ -18,7 +18,7 @@
 
 namespace scarp {
 
-/// Luminance of the sun's disc and of its reflections, at most.
+/// Maximum luminance of the sun's disc and of its reflections.
 constexpr float kBrightest = 8;
 
 class Sky {
@@ -27,13 +27,13 @@ class Sky {
   Sky(const SkySettings& settings, const dvec3& to_sun, double sun_radius);
 
   bool scatters() const { return numbers_.scattering != 0; }
-  /// In linear light towards a unit vector, without the sun's disc.
+  /// Colour of the sky in linear light towards a unit vector, without the sun's disc.
   vec3 colour(const dvec3& direction) const { return glsl::scarp_sky_colour(numbers_, direction); }
-  /// What the sun's disc adds to that: 0 outside of it, and in a plain sky.
+  /// Returns the radiance of the sun's disc, to be added to colour(): 0 outside the disc and in a plain sky.
   vec3 disc(const dvec3& direction) const { return glsl::scarp_sun_disc(numbers_, direction); }
   /// Light of the sky on level ground.
   vec3 skylight() const { return skylight_; }
-  /// Light of the sun on what faces it.
+  /// Light of the sun on a surface that faces it.
   vec3 sunlight() const { return sunlight_; }
   const glsl::ScarpSky& numbers() const { return numbers_; }
 

@@ -32,7 +32,7 @@ struct ComancheSettings {
   bool step_by_view = false;  ///< longer steps looking down
   bool interpolate = true;    ///< whether a hit is put between the last two samples, or on the last
   bool iterations = false;    ///< a picture of the steps instead, from black (0) to white (the most)
-  bool heights = false;       ///< grey levels of the look `height` instead, by the same rays
+  bool heights = false;       ///< shows the heights that the same rays hit, in grey levels of the look `height`
 };
 
 /// Throws Error naming the first setting out of its range.

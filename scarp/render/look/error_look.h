@@ -52,7 +52,7 @@ void validate(const ErrorSettings& settings);
 struct ErrorCounts {
   std::array<std::int64_t, kVerdicts> pixels{};  ///< by Verdict
   std::string judges{};                          ///< names of their marches
-  std::vector<std::string> caveats{};            ///< Scene::caveats() of the scene that is judged
+  std::vector<std::string> caveats{};            ///< Scene::caveats() of the judged scene
   double tolerance_m = 0;           ///< along the ray, of the field with the smallest cells; 0: fields have no cells
   double share = 0;                 ///< of the distance, the tolerance of fields without cells
   std::int64_t proven = 0;          ///< pixels of a function that interval bisection decided

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The look `steps`: what rays cost, as a ramp from the least to the most in the picture, or over a scale that several
-// pictures share (PictureSettings::step_scale).
+// The look `steps`: steps per ray as a colour ramp from the minimum to the maximum in the picture, or over a given
+// scale (PictureSettings::step_scale).
 #pragma once
 
 #include <cstdint>

@@ -26,16 +26,16 @@ SCARP_FN float scarp_srgb_byte(float linear) {
   return floor(255.0f * s + 0.5f);
 }
 
-// The tone curve: up to the first value nothing changes, at the second one a channel is full.
+// The tone curve begins at the first value; the second one maps to 1.
 const float kScarpToneBegin = 0.7f;
 const float kScarpToneFull = 1.75f;
 
-/// Compresses bright colours in linear light: the largest channel by a curve whose slope begins at 1, the others in
-/// proportion, so that hues stay. Sunlit slopes of light ground keep their shades. Beyond full, as near the sun,
-/// colours turn white.
+/// Compresses bright colours in linear light: the largest channel by a curve with the initial slope 1, the others in
+/// proportion, which preserves hues. Above kScarpToneFull, as near the sun, colours fade to white.
 SCARP_FN vec3 scarp_toned(vec3 linear) {
   float most = max(linear.x, max(linear.y, linear.z));
   if (!(most > kScarpToneBegin)) return linear;
+  if (most > 1e30f) return vec3(1.0f);  // infinite, say
   float range = 1.0f - kScarpToneBegin;
   float full = (kScarpToneFull - kScarpToneBegin) / range;
   float at = min((most - kScarpToneBegin) / range, full);

@@ -25,7 +25,7 @@ real scarp_texel(ScarpTexels texels, int index) { return static_cast<double>(tex
 namespace scarp {
 namespace {
 
-// Calls add(i, share) for the parts of `from` entries that entry `to` of `count` covers; the shares add up to 1.
+// Calls add(i, share) for each of the `from` fine entries that coarse entry `to` of `count` covers; shares sum to 1.
 template <class Add>
 void for_covered(int to, int count, int from, const Add& add) {
   const double wide = static_cast<double>(from) / count, low = to * wide, high = low + wide;
@@ -33,7 +33,7 @@ void for_covered(int to, int count, int from, const Add& add) {
     add(i, (std::min(high, i + 1.0) - std::max(low, static_cast<double>(i))) / wide);
 }
 
-// The level of size `to` over one of size `from`, by means over areas.
+// Averages a level of size `from` to one of size `to`.
 std::vector<float> coarser(std::span<const float> texels, const glsl::ivec2& from, const glsl::ivec2& to) {
   std::vector<float> means;
   means.reserve(static_cast<std::size_t>(to.x) * static_cast<std::size_t>(to.y));

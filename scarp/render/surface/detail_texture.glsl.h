@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Looks up a DetailTexture (detail_texture.h). Text of C++ and of GLSL. Who includes it has defined, before,
-//   struct ScarpTexels, which names the texels of all levels, and
-//   real scarp_texel(ScarpTexels texels, int index)   one of them, rows from the north, the finest level first
+// Looks up a DetailTexture (detail_texture.h). Text of C++ and of GLSL. The including file must define before:
+//   struct ScarpTexels                                refers to the texels of all levels
+//   real scarp_texel(ScarpTexels texels, int index)   returns a texel: rows from the north, the finest level first
 #ifndef SCARP_RENDER_DETAIL_TEXTURE_GLSL_H
 #define SCARP_RENDER_DETAIL_TEXTURE_GLSL_H
 
@@ -9,14 +9,14 @@
 
 SCARP_GLSL_BEGIN
 
-/// Above the finest one, over an image of DetailTexture::kMostSide.
+/// Number of levels above the finest one of an image with sides of DetailTexture::kMostSide.
 const int kScarpMostTextureLevels = 13;
 
 /// Size in texels of the next coarser level.
 SCARP_FN ivec2 scarp_coarser_texture(ivec2 size) { return ivec2(max(1, size.x / 2), max(1, size.y / 2)); }
 
-/// Bilinear between the texels of a level of `size` that starts at `begin`, repeated. `place` is a fraction of the
-/// image from its north-west corner to the east and south, 0 to 1.
+/// Interpolates bilinearly in the level of this size that starts at `begin`, with wrap-around. `place`: fractions of
+/// the image from its north-west corner to the east and south, 0 to 1.
 SCARP_FN real scarp_texture_at(ScarpTexels texels, int begin, ivec2 size, real2 place) {
   real x = place.x * real(size.x) - real(0.5);
   real y = place.y * real(size.y) - real(0.5);
@@ -34,11 +34,11 @@ SCARP_FN real scarp_texture_at(ScarpTexels texels, int begin, ivec2 size, real2 
   return sum;
 }
 
-/// The texture at a place, where a pixel covers `covered` texels of the finest level from side to side: a mixture of
-/// the two levels whose texels are a pixel to half a pixel wide.
+/// The texture at a place where a pixel is `covered` texels of the finest level wide: a mixture of the level whose
+/// texels are half a pixel to a pixel wide and the next coarser one.
 SCARP_FN real scarp_texture_detail(ScarpTexels texels, ivec2 size, real2 place, real covered) {
   int begin = 0;
-  // All lanes take all turns: where some leave a loop earlier, lavapipe (Mesa 22.3) gives them the values of others.
+  // All lanes run all iterations: if some leave a loop early, lavapipe (Mesa 22.3) returns values of other lanes.
   for (int level = 0; level < kScarpMostTextureLevels; ++level) {
     bool coarser = covered > real(2.0) && (size.x > 1 || size.y > 1);
     begin += coarser ? size.x * size.y : 0;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// An image whose grey levels change the brightness of the ground, repeated over it.
+// An image that is repeated over the ground and modulates its brightness.
 //
 //   detail = 2 * (grey - mean grey)    -2 to 2; the mean is 0, so the ground keeps its brightness on average
 //
-// Coarser levels are means over areas, each half the size of the finer one, down to a single texel: detail that is
-// smaller than a pixel fades to 0.
+// Coarser levels are area averages, each half the size of the finer one, down to a single texel. Detail smaller than a
+// pixel fades to 0.
 #pragma once
 
 #include <cstdint>

@@ -4,8 +4,8 @@
 //
 //   natural   rock on steep slopes; snow above a line that is lower on the shadowed side, where slopes hold it; else
 //             grass, darker below and drier above; noise blurs the borders
-//   detail    noise of several sizes, twice as long along the slope's horizontal as across, or an image, repeated
-//             (detail_texture.h); patterns smaller than a pixel are left out
+//   detail    noise of several sizes, twice as long along the slope's horizontal as across, or a repeated image
+//             (detail_texture.h); patterns smaller than a pixel are omitted
 //   contours  lines of constant width in pixels: the distance to a line is the difference in height divided by the
 //             slope; every fifth is heavier; lines fade where they would touch. Level surfaces have none
 #pragma once

@@ -48,24 +48,25 @@ SCARP_FN real scarp_wave_slope(int i, real turns, real slope) {
   return slope * sqrt(real(2.0) / real(kScarpWaves)) * cos(real(6.283185307179586) * turns + real(i));
 }
 
-/// Mean square slope of wave i where it is seen by the share `seen`: what is not seen roughens the water.
+/// Mean square slope of a wave that is resolved by the share `seen`; the unresolved part roughens the water.
 SCARP_FN real scarp_wave_roughness(real seen, real slope) {
   return (real(1.0) - seen * seen) * slope * slope / real(kScarpWaves);
 }
 
-/// What rough water reflects of the sun in a scattering sky, in linear light, up to the brightness of its disc: its
-/// slopes have a normal distribution of the variance `roughness` around that of the unit normal (C. Cox and W. Munk,
-/// "Measurement of the roughness of the sea surface from photographs of the sun's glitter", JOSA 44, 1954). `sunlight`
-/// is that on what faces the sun, `view` a unit vector from the eye.
+/// Sunlight that rough water reflects below a scattering sky, in linear light, at most as bright as the sun's disc.
+/// Slopes are normally distributed around that of the unit normal, with the mean square `roughness` (C. Cox and W.
+/// Munk, "Measurement of the roughness of the sea surface from photographs of the sun's glitter", JOSA 44, 1954).
+/// `sunlight` is the light on a surface that faces the sun, `view` a unit vector from the eye.
 SCARP_FN vec3 scarp_glitter(ScarpSky sky, vec3 sunlight, real3 view, real3 normal, real roughness, real reflectance) {
-  // A facet that turns by an angle turns the mirrored ray by twice as much: this is the variance over the sun's disc.
+  // A facet turned by an angle turns the mirrored ray by twice that angle. The second term is the mean square over the
+  // disc.
   real spread = roughness + real(sky.disc_square) / real(8.0);
   real3 facet = normalize(real3(sky.to_sun) - view);
   if (sky.scattering == 0 || spread == real(0.0) || facet.z <= real(0.0)) return vec3(0.0f);
   real x = facet.x / facet.z - normal.x / normal.z;
   real y = facet.y / facet.z - normal.y / normal.z;
   real square = facet.z * facet.z;
-  real grazing = real(0.05);  // lower, waves hide one another
+  real grazing = real(0.05);  // at lower angles waves hide one another
   real share =
       reflectance * exp(-(x * x + y * y) / spread) / (spread * real(4.0) * max(-view.z, grazing) * square * square);
   vec3 seen = sunlight * float(share);

@@ -9,7 +9,7 @@
 //                                                                                          (Beer; d as traced)
 // Absorption is that of pure water at 650, 550 and 450 nm (Pope and Fry 1997), and `turbidity` for what floats in it.
 // Waves tilt the normal alone: some sines along different directions whose slopes are known in closed form; those
-// shorter than a pixel is wide are left out; they widen the sun's image, which glitters (Cox and Munk 1954).
+// shorter than the width of a pixel are omitted; they widen the sun's reflection to glitter (Cox and Munk 1954).
 //
 // A scene that has an end holds water in its box, like a basin whose sides are met, too; over ground that goes on
 // forever so does the water.
@@ -66,7 +66,7 @@ class Water {
 
   /// Unit normal of the surface with its waves; `footprint` is the width of a pixel there in metres.
   dvec3 normal_at(const dvec3& position, double footprint) const;
-  /// Variance of the slopes that normal_at() leaves out there.
+  /// Mean square of the wave slopes that normal_at() omits.
   double roughness_at(double footprint) const;
   /// Bottom, or what else is there, `distance` metres away through the water, in linear light.
   vec3 through(vec3 behind, double distance) const;

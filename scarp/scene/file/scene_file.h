@@ -44,7 +44,7 @@ struct ScenePicture {
   bool coarse_voxels = false;  ///< whether to call Scene::coarser()
 };
 
-/// Sky of a file, as SkySettings of render/light/sky.h.
+/// Sky settings of a file; see SkySettings in render/light/sky.h.
 struct SceneSky {
   std::optional<std::string> kind{};  ///< "plain" or "scattering"
   std::optional<double> turbidity{};

@@ -44,7 +44,7 @@ FieldWithPlace field_from_json(const nlohmann::json& json, const std::string& pa
 FieldWithPlace voxels_from_json(const nlohmann::json& json, const std::string& path, const FieldSurroundings& around,
                                 std::string_view march);
 
-/// The path of a file that counts from the scene's folder.
+/// Returns the path of a file given relative to the scene's folder.
 std::string resolved(const FieldSurroundings& around, const nlohmann::json& file);
 
 /// Materials by name, appended to `all` in an order in which they refer to earlier ones alone; the index of each.

@@ -29,7 +29,7 @@ using GroundByName = std::function<SceneGround(const std::string& name, const st
 
 using ScenePlaces = std::vector<Placement>;
 
-/// From at, turn and scale of an object that keeps to the schema.
+/// Reads at, turn and scale of an object that conforms to the schema.
 Placement placement_from_json(const nlohmann::json& json);
 
 /// From at, turn, scale, on, places and scatter of an object that keeps to the schema. Throws Error naming the place in

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Voxels of a scene file: those of one file, or unions, intersections and differences of several.
+// Voxels of a scene file: from one file, or unions, intersections and differences of several.
 #include <fmt/format.h>
 
 #include <array>
@@ -65,14 +65,14 @@ constexpr std::array<std::pair<const char*, VoxelCombination>, 3> kCombinations 
 
 struct VoxelsWithPlace {
   PlacedVoxels voxels;
-  dvec3 shift{0.0};  // of centred ones
+  dvec3 shift{0.0};  // offset of `centred`
 };
 
 // Voxels of a file, or of several parts combined.
 VoxelsWithPlace placed_voxels_from_json(const Json& json, const std::string& path, const FieldSurroundings& around,
                                         const VoxelFileOptions& options);
 
-// A part of a combination, in its place. Rays never meet it, so its march is one that builds nothing.
+// A placed part of a combination. It is never traced, so it gets the march without an accelerator.
 PlacedVoxels voxel_part(const Json& json, const std::string& path, const FieldSurroundings& around) {
   VoxelsWithPlace part = placed_voxels_from_json(json, path, around, {.march = "voxel-planes"});
   const Placement placement = placement_from_json(json);
@@ -86,8 +86,7 @@ PlacedVoxels voxel_part(const Json& json, const std::string& path, const FieldSu
 PlacedVoxels combined_from(const Json& json, const char* name, VoxelCombination combination, const std::string& path,
                            const FieldSurroundings& around, const VoxelFileOptions& options) {
   for (const char* key : {"volume", "solid_from", "up", "colour", "frame", "hidden"}) {
-    if (json.contains(key))
-      throw Error(fmt::format("{}/{}: does not go with {}; give it in its parts", path, key, name));
+    if (json.contains(key)) throw Error(fmt::format("{}/{}: not valid with {} (set it in the parts)", path, key, name));
   }
   const std::string inner = fmt::format("{}/{}", path, name);
   std::vector<PlacedVoxels> parts;
@@ -95,7 +94,7 @@ PlacedVoxels combined_from(const Json& json, const char* name, VoxelCombination 
     parts.push_back(voxel_part(json[name][i], fmt::format("{}/{}", inner, i), around));
   try {
     PlacedVoxels combined = combined_voxels(combination, parts, options);
-    if (combined.places.empty()) around.notes->push_back(fmt::format("{}: no voxel is left", inner));
+    if (combined.places.empty()) around.notes->push_back(fmt::format("{}: the result is empty", inner));
     return combined;
   } catch (const Error&) {
     rethrow_at(inner);

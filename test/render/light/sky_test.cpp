@@ -108,6 +108,15 @@ TEST(Sky, IsFiniteAndNotNegativeEverywhere) {
   }
 }
 
+// Straight down directions of all azimuths meet: their colours must, too.
+TEST(Sky, HasOneColourTowardsTheNadir) {
+  const glsl::ScarpSky sky = scattering(5).numbers();
+  const vec3 down = glsl::scarp_sky_beyond(sky, {0, 0, -1});
+  for (double turn = 0; turn < 360; turn += 30)
+    EXPECT_LT(length(glsl::scarp_sky_beyond(sky, direction(-89, turn)) - down), 1e-3f) << turn;
+  EXPECT_GT(length(glsl::scarp_sky_beyond(sky, direction(-5)) - glsl::scarp_sky_beyond(sky, direction(-5, 180))), 0.1f);
+}
+
 TEST(Sky, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(find_sky("clear"), Error);
   EXPECT_EQ(find_sky("scattering"), SkyKind::scattering);

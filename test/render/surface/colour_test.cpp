@@ -125,6 +125,7 @@ TEST(ToneCurve, CompressesBrightColoursAlone) {
   EXPECT_NEAR(orange.z / orange.x, 0.25, 1e-6);
   const vec3 sun = toned({175, 80, 20});
   EXPECT_GT(sun.z, 0.98f) << "white beyond all channels";
+  EXPECT_EQ(toned({std::numeric_limits<float>::infinity(), 1, 0}), vec3(1.0f));
 }
 
 }  // namespace

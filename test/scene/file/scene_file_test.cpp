@@ -181,15 +181,15 @@ TEST_F(SceneFiles, CombineVoxels) {
   const SceneFile nested = read(R"({"objects": [{"shape": {"sphere": {"radius": 1}}}, {"voxels": {"centred": true,
     "subtract": [{"union": [{"file": "cube2.binvox"}, {"file": "cube2.binvox", "at": [2, 0, 0]}]},
                  {"file": "cube4.binvox"}]}}]})");
-  EXPECT_EQ(nested.notes, std::vector<std::string>{"/objects/1/voxels/subtract: no voxel is left"});
-  EXPECT_EQ(error(combined("union", "[1, 0, 0]")),
-            "/objects/0/voxels/union: part 1 is (0.5, 0, 0) voxels from the first one (voxels that are combined need "
-            "whole numbers)");
+  EXPECT_EQ(nested.notes, std::vector<std::string>{"/objects/1/voxels/subtract: the result is empty"});
+  EXPECT_EQ(
+      error(combined("union", "[1, 0, 0]")),
+      "/objects/0/voxels/union: part 1 is (0.5, 0, 0) voxels from the first one (combined voxels need whole offsets)");
   EXPECT_EQ(
       error(with_object(R"({"voxels": {"union": [{"file": "cube2.binvox"}], "file": "cube2.binvox"}})")).substr(0, 18),
       "/objects/0/voxels:");
   EXPECT_EQ(error(with_object(R"({"voxels": {"union": [{"file": "cube2.binvox"}], "up": "y"}})")),
-            "/objects/0/voxels/up: does not go with union; give it in its parts");
+            "/objects/0/voxels/up: not valid with union (set it in the parts)");
   EXPECT_EQ(error(with_object(R"({"voxels": {"union": [{"file": "cube2.binvox", "frame": 2}]}})")).substr(0, 31),
             "/objects/0/voxels/union/0/frame");
   EXPECT_NE(error(with_object(R"({"voxels": {"subtract": [{"file": "cube2.binvox"}]}})")).find("at least two"),
