@@ -267,8 +267,10 @@ void add_look_options(Command& command, LookOptions& o) {
                                    .rules = {stepped, large_pixels}});
   large(&o.comanche.iterations, {.names = "--iterations",
                                  .help = "picture of the number of steps, from black (0) to white (the maximum)",
-                                 .note = "with fixed-step the sky is white",
-                                 .looks = kLarge});
+                                 .note = "with fixed-step over terrain the sky is white",
+                                 .looks = kLarge,
+                                 .excludes = {"--sun", "--sky", "--no-tone-curve", "--unlit", "--samples", "--ramp",
+                                              "--ground", "--detail", "--contours", "--overlay", "--fog"}});
   large(&o.reach, {.names = "--reach",
                    .help = "maximum length of camera rays",
                    .unit = "metres",

@@ -147,7 +147,8 @@ RenderInput function(OpenedInput opened, RenderOptions& options, const ViewSetti
 void settle_function(RenderOptions& options) {
   const double extent = options.function.extent;
   PictureSettings& picture = options.picture;
-  picture.haze_distance = -extent / std::log(1 - (options.is_given("--haze") ? picture.haze : kFunctionHaze));
+  const double haze = options.is_given("--haze") ? picture.haze : kFunctionHaze;
+  picture.haze_distance = haze > 0 ? -extent / std::log1p(-haze) : kUnlimited;
   double& reach = options.march_settings.function.reach;
   if (std::isinf(reach)) reach = std::min(picture.haze_distance * std::log(kFaintest), kLongReach * extent);
   if (std::isinf(picture.ao_distance)) picture.ao_distance = extent / 8;

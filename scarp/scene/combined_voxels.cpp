@@ -58,9 +58,9 @@ OnLattice on_lattice(const VoxelPlace& place, const VoxelPlace& lattice, const V
   const dvec3 away = glm::abs(offset - whole);
   if (!(std::max({away.x, away.y, away.z}) <= kTolerance)) {
     throw Error(
-        fmt::format("part {} is ({:.6g}, {:.6g}, {:.6g}) voxels from the first one (combined voxels need whole "
-                    "offsets)",
-                    part, offset.x, offset.y, offset.z));
+        fmt::format("part {} is ({:.6g}, {:.6g}, {:.6g}) voxels off the lattice of the first one (combined voxels "
+                    "need whole offsets)",
+                    part, away.x, away.y, away.z));
   }
   if (std::max({std::abs(whole.x), std::abs(whole.y), std::abs(whole.z)}) > kFarthest)
     throw Error(fmt::format("part {} is more than {} voxels from the first one", part, static_cast<int>(kFarthest)));

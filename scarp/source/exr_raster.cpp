@@ -71,7 +71,7 @@ std::string choose_channel(const Imf::ChannelList& channels, const std::string& 
   const std::string names = names_of(channels);
   if (!wanted.empty()) {
     if (channels.findChannel(wanted)) return wanted;
-    throw Error(fmt::format("no channel '{}' (choose one with --channel: {})", wanted, names));
+    throw Error(fmt::format("no channel '{}' (available: {})", wanted, names));
   }
   if (!has_several(channels)) return channels.begin().name();
   for (const char* name : {"Y", "R"}) {

@@ -87,7 +87,7 @@ TEST_F(Cli, FiguresAreRefusedWhereTheyMeanNothing) {
   refused({"--legend", "--ground", "natural"}, "320x240", "no colour scale to show with --ground natural");
   refused({"--legend"}, "40x20", "enlarge the image");
   refused({"--legend", "--scale-bar"}, "240x150", "the scale bar and the legend need");
-  refused({"--legend", "--look", "comanche", "--iterations"}, "", "no scale to show with --iterations");
+  refused({"--legend", "--look", "comanche", "--iterations"}, "", "--legend is not available with --iterations");
 }
 #endif
 

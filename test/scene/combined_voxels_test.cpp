@@ -118,7 +118,7 @@ TEST(CombinedVoxels, NeedOneLattice) {
   };
   EXPECT_EQ(message(cube(2, turned(90), {3, 0, 0})), "");
   EXPECT_EQ(message(cube(2, glm::dmat3(1.0), {0, 0.5, 0})),
-            "part 1 is (0, 0.5, 0) voxels from the first one (combined voxels need whole offsets)");
+            "part 1 is (0, 0.5, 0) voxels off the lattice of the first one (combined voxels need whole offsets)");
   const std::string turned_or_scaled =
       "part 1 is rotated or scaled relative to the first one (combined voxels need quarter turns and equal sizes)";
   EXPECT_EQ(message(cube(2, turned(45))), turned_or_scaled);

@@ -132,7 +132,7 @@ TEST_F(ExrRaster, TheChannelIsTheOnlyOneElseYElseRElseAsked) {
   options.channel = "b";
   EXPECT_EQ(kDoubles, doubles(read_raster(file, options)));
   options.channel = "Y";
-  expect_says(read_error(file, options), "no channel 'Y' (choose one with --channel: a, b)");
+  expect_says(read_error(file, options), "no channel 'Y' (available: a, b)");
 }
 
 TEST_F(ExrRaster, ARangeOfHeightsIsMapped) {

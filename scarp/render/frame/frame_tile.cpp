@@ -13,6 +13,11 @@ namespace {
 // Steps that fog by iterations and pictures of iterations take for the most, where the march has no such number.
 constexpr double kMostSteps = 256;
 
+// Surfaces of voxels, shapes and meshes that lie in the plane of the water: rounding decides which of the two a ray
+// meets first. Relative to the distance, or to the size of the scene. A terrain's own samples say where it is level
+// with the water.
+constexpr double kCoincident = 1e-7;
+
 }  // namespace
 
 std::size_t most_rays_of(const FrameView& view) {
@@ -79,7 +84,7 @@ bool FrameTile::look(RayRound& round) {
     }
     if (!view_.water()) continue;
     meetings_[seen.point] = view_.water()->meets(ray);
-    if (meetings_[seen.point]) ray.t_max = meetings_[seen.point]->t;
+    if (meetings_[seen.point]) ray.t_max = meetings_[seen.point]->t + coincidence(meetings_[seen.point]->t);
   }
   return true;
 }
@@ -100,7 +105,19 @@ std::optional<Water::Meeting> FrameTile::water_of(const Ray& ray, const Hit& hit
   if (water->is_sea(hit)) return Water::Meeting{hit.t, {0, 0, 1}, hit};
   const auto meeting = water->meets(ray);
   if (!meeting) return {};
-  return meeting->t < (hit ? hit.t : std::numeric_limits<double>::infinity()) ? meeting : std::nullopt;
+  return !hit || is_before(*meeting, hit) ? meeting : std::nullopt;
+}
+
+double FrameTile::coincidence(double t) const {
+  if (view_.scene().only_heights()) return 0;
+  const WorldBox& box = view_.scene().box();
+  return kCoincident * std::max(t, box.empty() ? 1.0 : length(box.high - box.low));
+}
+
+// The level is before what lies in its plane; sides of the basin are behind.
+bool FrameTile::is_before(const Water::Meeting& meeting, const Hit& hit) const {
+  const double margin = coincidence(meeting.t);
+  return meeting.t < (meeting.normal.z > 0 ? hit.t + margin : hit.t - margin);
 }
 
 void FrameTile::find_water() {
@@ -108,8 +125,8 @@ void FrameTile::find_water() {
     const Hit& hit = seen_[i].hit;
     if (view_.water()->is_sea(hit)) {
       add_water(i, {hit.t, {0, 0, 1}, hit});
-    } else if (meetings_[i] && !hit) {
-      add_water(i, *meetings_[i]);
+    } else if (meetings_[i] && (!hit || is_before(*meetings_[i], hit))) {
+      add_water(i, *meetings_[i], !hit);
     }
   }
 }
@@ -128,7 +145,7 @@ std::size_t FrameTile::send(std::size_t point, const Water::Meeting& meeting, co
   return water_rays_.size() - 1;
 }
 
-void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting) {
+void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting, bool deep) {
   const Water& water = *view_.water();
   const Ray& ray = seen_[point].ray;
   dvec3 normal = meeting.normal;
@@ -150,7 +167,10 @@ void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting) {
                                         found.reflectance);
   }
   found.mirror = send(point, meeting, mirrored, water.settings().reflection ? reach : 0);
-  if (water.settings().refraction && !meeting.sea) {
+  // Above what lies in the plane of the water, too.
+  if (const double margin = coincidence(meeting.t); meeting.normal.z > 0 && margin > 0)
+    water_rays_.back().ray.origin.z = water.level() + margin;
+  if (deep && water.settings().refraction && !meeting.sea) {
     found.bottom = send(point, meeting, refracted(ray.direction, normal), reach);
     Ray& sent = water_rays_.back().ray;
     sent.t_max = std::min(sent.t_max, water.leaves(sent));

@@ -64,7 +64,11 @@ class FrameTile {
   bool ask_light(RayRound& round);
   void take_light(const RayRound& round);
   void find_water();
-  void add_water(std::size_t point, const Water::Meeting& meeting);
+  // `deep`: whether there may be a bottom below it.
+  void add_water(std::size_t point, const Water::Meeting& meeting, bool deep = true);
+  // Distance within which a surface is in the plane of the water.
+  double coincidence(double t) const;
+  bool is_before(const Water::Meeting& meeting, const Hit& hit) const;
   static void add(std::vector<Seen>& all, std::size_t point, const Ray& ray);
   std::size_t send(std::size_t point, const Water::Meeting& meeting, const dvec3& direction, double t_max);
   void light(const Open& open, const RayRound& round) const;

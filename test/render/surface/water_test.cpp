@@ -231,6 +231,31 @@ TEST(Water, AFlatSeaAtTheLevelIsWater) {
   }
 }
 
+// Rounding does not decide between water and what lies in its plane.
+TEST(Water, TopsOfVoxelsAtTheLevelAreDeepWater) {
+  VoxelGrid grid({64, 64, 8}, 24);
+  grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
+    return v.z < 4 || (v.x == 0 && v.y == 0) ? VoxelGrid::Voxel(0x60a040) : VoxelGrid::Voxel();
+  });
+  auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
+  const Scene scene(scene_voxels({{std::move(model)}, {VoxelPlace{}}}));
+  PictureSettings settings = plain(48, 32);
+  settings.water->level = 4;
+  const Camera camera = Camera::look_at({32.3, 3.1, 15.7}, {33.1, 34.2, 4}, 40, 48, 32);
+  const PictureLayers layers = render_layers(scene, camera, settings);
+  const vec3 deep = Water(*settings.water, scene).deep();
+  int seen = 0;
+  for (int i = 0; i < 48 * 32; ++i) {
+    const auto pixel = static_cast<std::size_t>(i);
+    if (std::abs(layers.position[pixel].z - 4) > 1e-3) continue;
+    const Ray ray = camera.ray(i % 48 + 0.5, i / 48 + 0.5);
+    const double mirror = schlick(-ray.direction.z);
+    ++seen;
+    EXPECT_NEAR(layers.colour[pixel].x, mirror * sky_at(-ray.direction.z).x + (1 - mirror) * deep.x, 1e-3) << i;
+  }
+  EXPECT_GT(seen, 1000);
+}
+
 TEST(Water, WavesHaveTheSlopeThatWasAsked) {
   const Scene scene = test::terrain(flat(0));
   WaterSettings settings;

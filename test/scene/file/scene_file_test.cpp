@@ -182,9 +182,9 @@ TEST_F(SceneFiles, CombineVoxels) {
     "subtract": [{"union": [{"file": "cube2.binvox"}, {"file": "cube2.binvox", "at": [2, 0, 0]}]},
                  {"file": "cube4.binvox"}]}}]})");
   EXPECT_EQ(nested.notes, std::vector<std::string>{"/objects/1/voxels/subtract: the result is empty"});
-  EXPECT_EQ(
-      error(combined("union", "[1, 0, 0]")),
-      "/objects/0/voxels/union: part 1 is (0.5, 0, 0) voxels from the first one (combined voxels need whole offsets)");
+  EXPECT_EQ(error(combined("union", "[1, 0, 0]")),
+            "/objects/0/voxels/union: part 1 is (0.5, 0, 0) voxels off the lattice of the first one (combined voxels "
+            "need whole offsets)");
   EXPECT_EQ(
       error(with_object(R"({"voxels": {"union": [{"file": "cube2.binvox"}], "file": "cube2.binvox"}})")).substr(0, 18),
       "/objects/0/voxels:");
