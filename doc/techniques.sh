@@ -11,7 +11,7 @@ page=$root/doc/user/techniques.md
 images=$root/doc/images
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-small=320x200 large=1600x1000
+small=288x180 large=480x300
 
 # Prints the time in seconds to render a large picture of heights (camera rays only): the fastest of three runs.
 seconds() {
@@ -24,21 +24,19 @@ seconds() {
 # row TABLE NAME RANGE OPTIONS...: prints a table row. Reads `field` (input options) and `judged` (whether to render
 # errors).
 row() {
-  local table=$1 name=$2 range=$3 file steps errors='' counts='' shown
+  local file=techniques-$1-$2 range=$3 steps pictures counts=''
   shift 3
-  file=techniques-$table-$(tr ' ./' '---' <<<"$name")
   "$scarp" render "${field[@]}" "$@" --size $small -o "$images/$file.png" >/dev/null
   steps=$("$scarp" render "${field[@]}" "$@" --size $small --look steps --steps-range "$range" \
     -o "$images/$file-steps.png" | sed -n 's/steps per ray: .*mean \([0-9.]*\).*/\1/p')
+  pictures="![](../images/$file.png) | ![](../images/$file-steps.png)"
   if $judged; then
     "$scarp" render "${field[@]}" "$@" --size $small --look error -o "$images/$file-error.png" >"$scratch/errors"
     count() { awk -v what="$1" '$0 ~ "^  " what {print $NF}' "$scratch/errors"; }
-    errors="![](../images/$file-error.png) | "
+    pictures="$pictures | ![](../images/$file-error.png)"
     counts=" | $(count lost) | $(count late) | $(count early) | $(count 'gave up')"
   fi
-  shown=${*:-}
-  printf '| `%s` | ![](../images/%s.png) | ![](../images/%s-steps.png) %s%s | %s%s |\n' "${shown#--march }" "$file" "$file" \
-    "$($judged && printf '| ')" "$($judged && printf '%s' "${errors% | }")" "$steps | $(seconds "${field[@]}" "$@") s" "$counts"
+  echo "| \`${*}\` | $pictures | $steps | $(seconds "${field[@]}" "$@") s$counts |"
 }
 
 # Replaces the rows of a table on the page; keeps its two header lines.

@@ -119,7 +119,7 @@ void add_light_options(Command& command, RenderOptions& o) {
                .help = "sky model",
                .choices = {"plain", "scattering"},
                .closed = true,
-               .note = "scattering: daylight with the sun's disc, and glitter on water",
+               .note = "scattering: daylight with its sun",
                .fallback = "plain",
                .common = true,
                .looks = kLit});
