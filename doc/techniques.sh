@@ -62,17 +62,17 @@ field=("$dem" --crs EPSG:4326 --bounds=-84.41375,36.44625,-84.0779166667,36.7329
 fill heights
 
 field=(--function ridges --view 250,22,0.8)
+small=192x120 large=192x120  # heights of functions take long
 {
   row functions castle 0,300 --preset castle
   row functions elevated 0,300 --preset elevated
-  row functions iq2002 0,300 --preset iq2002
   row functions shrink 0,300 --march lipschitz --shrink 0.5
   row functions lipschitz 0,300 --march lipschitz
   row functions lipschitz-local 0,300 --march lipschitz-local
 } >"$scratch/rows"
 fill functions
 
-judged=false
+judged=false small=288x180 large=480x300
 field=("$root/examples/scenes/church.vox" --view 215,25)
 {
   for march in planes spheres cubes octants bricks; do row voxels $march 0,40 --march voxel-$march; done
