@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "scarp/base/error.h"
+#include "scarp/base/setting.h"
 
 namespace scarp {
 namespace {
@@ -26,11 +27,7 @@ bool positive(double x) { return std::isfinite(x) && x > 0; }
 std::string_view name_of(Refinement refinement) { return kRefinements[static_cast<std::size_t>(refinement)]; }
 
 Refinement find_refinement(std::string_view name) {
-  const auto* found = std::find(kRefinements.begin(), kRefinements.end(), name);
-  if (found == kRefinements.end()) {
-    throw Error(fmt::format("refinement '{}': unknown (available: {})", name, fmt::join(kRefinements, ", ")));
-  }
-  return static_cast<Refinement>(found - kRefinements.begin());
+  return static_cast<Refinement>(find_setting("refinement", kRefinements, name));
 }
 
 void validate(const MarchSettings& settings) {

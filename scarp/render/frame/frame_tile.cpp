@@ -14,9 +14,10 @@ namespace {
 constexpr double kMostSteps = 256;
 
 // Surfaces of voxels, shapes and meshes that lie in the plane of the water: rounding decides which of the two a ray
-// meets first. Relative to the distance, or to the size of the scene. A terrain's own samples say where it is level
-// with the water.
-constexpr double kCoincident = 1e-7;
+// meets first. Relative to the distance, or to the diagonal of the scene if that is longer. Rays through voxels are
+// rounded most, by 2^-20 of a voxel (and 2^-28 of the direction), and no voxel is longer than the diagonal. A terrain's
+// own samples say where it is level with the water.
+constexpr double kCoincident = 0x1p-20;
 
 }  // namespace
 

@@ -66,10 +66,9 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
       lighting_(settings, ao_distance_of(scene, settings), scene.wraps() ? ceiling_ : std::nullopt),
       colours_(settings.materials),
       paint_(settings.ground, paint_extent(scene, settings), ground_ramp(scene, settings), lighting_.to_sun()),
-      sky_(settings.sky, lighting_.to_sun(), lighting_.light().sun_radius()),
-      wall_light_(sky_.scatters() ? sky_.skylight() + sky_.sunlight() * static_cast<float>(lighting_.to_sun().z)
-                                  : vec3(1.0f)),
-      fog_(settings.fog, sky_),
+      wall_light_(sky().scatters() ? sky().skylight() + sky().sunlight() * static_cast<float>(lighting_.to_sun().z)
+                                   : vec3(1.0f)),
+      fog_(settings.fog, sky()),
       haze_(haze_of(scene, camera, settings)),
       step_march_(step_march_of(scene, camera, settings)) {
   for (const SceneObject& object : scene.objects())
@@ -104,7 +103,7 @@ vec3 FrameView::unlit(const Ray& ray, const Hit& hit, const SceneSurface& surfac
   if (!hit) {
     // Ground that lies farther away than the picture reaches is at the horizon.
     return fog_(ray, kInfinity,
-                horizon_below() ? glsl::scarp_sky_beyond(sky_.numbers(), ray.direction) : sky_.colour(ray.direction));
+                horizon_below() ? glsl::scarp_sky_beyond(sky().numbers(), ray.direction) : sky().colour(ray.direction));
   }
   if (surface.wall) return in_air(wall_colour(surface.normal), ray, hit.t);
   // The camera is inside: the voxel's colour is all there is to see.
@@ -113,7 +112,7 @@ vec3 FrameView::unlit(const Ray& ray, const Hit& hit, const SceneSurface& surfac
 
 vec3 FrameView::in_air(vec3 colour, const Ray& ray, double t) const {
   if (fog_.kind() != FogKind::none) return fog_(ray, t, colour);
-  return glsl::scarp_in_haze(colour, sky_.numbers(), ray.direction, haze_.per_metre, t - haze_.clear_distance);
+  return glsl::scarp_in_haze(colour, sky().numbers(), ray.direction, haze_.per_metre, t - haze_.clear_distance);
 }
 
 vec3 FrameView::from_beyond(vec3 light, const Ray& ray) const {

@@ -42,7 +42,7 @@ class FrameView {
   const Camera& camera() const { return camera_; }
   const PictureSettings& settings() const { return settings_; }
   const Lighting& lighting() const { return lighting_; }
-  const Sky& sky() const { return sky_; }
+  const Sky& sky() const { return lighting_.light().sky(); }
   const Fog& fog() const { return fog_; }
   const Haze& haze() const { return haze_; }
   const GroundPaint& paint() const { return paint_; }
@@ -83,7 +83,6 @@ class FrameView {
   Lighting lighting_;
   SurfaceColours colours_;
   GroundPaint paint_;
-  Sky sky_;
   vec3 wall_light_;  // on cut earth: that of level ground
   Fog fog_;
   Haze haze_;

@@ -2,7 +2,6 @@
 #include "scarp/render/frame/picture.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -176,12 +175,7 @@ Picture render_steps(const Scene& scene, const Camera& camera, const PictureSett
 
 std::string_view name_of(Look look) { return kLookNames[static_cast<std::size_t>(look)]; }
 
-Look find_look(std::string_view name) {
-  for (std::size_t i = 0; i < kLookNames.size(); ++i) {
-    if (kLookNames[i] == name) return static_cast<Look>(i);
-  }
-  throw Error(fmt::format("unknown look '{}' (available: {})", name, fmt::join(kLookNames, ", ")));
-}
+Look find_look(std::string_view name) { return static_cast<Look>(find_setting("look", kLookNames, name)); }
 
 bool uses_tone_curve(const PictureSettings& settings) {
   const bool counts = settings.look == Look::comanche && settings.comanche.iterations;

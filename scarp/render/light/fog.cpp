@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/render/light/fog.h"
 
-#include <fmt/format.h>
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "scarp/base/error.h"
 #include "scarp/base/setting.h"
 #include "scarp/render/light/air.glsl.h"
 #include "scarp/render/light/fog_model.h"
@@ -24,12 +20,7 @@ const double kContrastLeft = std::log(50.0);
 
 std::string_view name_of(FogKind kind) { return kNames[static_cast<std::size_t>(kind)]; }
 
-FogKind find_fog(std::string_view name) {
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (kNames[i] == name) return static_cast<FogKind>(i);
-  }
-  throw Error(fmt::format("fog '{}': unknown (available: {})", name, fmt::join(kNames, ", ")));
-}
+FogKind find_fog(std::string_view name) { return static_cast<FogKind>(find_setting("fog", kNames, name)); }
 
 void validate(const FogSettings& settings) {
   require_setting("fog", std::isfinite(settings.visibility) && settings.visibility > 0, "the visibility",

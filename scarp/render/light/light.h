@@ -7,7 +7,7 @@
 #pragma once
 
 #include "scarp/base/vec.h"
-#include "scarp/render/light/sky.h"
+#include "scarp/render/light/sky_model.h"
 
 namespace scarp {
 
@@ -32,9 +32,10 @@ class Light {
   /// Unit vector to where the sky is brightest.
   const dvec3& sky_side() const { return sky_side_; }
   /// The sun's light on a surface that faces it.
-  vec3 sun() const { return sun_; }
+  vec3 sun() const { return sky_.sunlight(); }
   /// The sky's light on level ground.
-  vec3 skylight() const { return skylight_; }
+  vec3 skylight() const { return sky_.skylight(); }
+  const Sky& sky() const { return sky_; }
   /// Light on a surface with this unit normal, in linear light.
   vec3 on(const dvec3& normal, bool in_sun) const;
   /// The same from what the surface sees: `sun_cosine` is the mean cosine to the visible part of the sun's disc, 0..1,
@@ -45,7 +46,7 @@ class Light {
   dvec3 to_sun_;
   double sun_radius_;
   dvec3 sky_side_;
-  vec3 sun_, skylight_;
+  Sky sky_;
 };
 
 }  // namespace scarp

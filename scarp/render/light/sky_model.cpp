@@ -14,7 +14,8 @@ constexpr double kPi = 3.14159265358979323846;
 // Sine of the sun's altitude below which its light is no longer scaled up: level ground darkens in the evening.
 constexpr double kLowestFullSun = 0.5;
 
-// Angle above the sun at which the brightness of the sky is measured, radians.
+// Angle above the sun at which the brightness of the sky is measured, radians: 15 degrees, half the default field of
+// view, so that a picture of the sun is exposed for the sky at its border.
 constexpr double kBesideSun = 0.26;
 
 // Directions round the horizon of which means are taken.
