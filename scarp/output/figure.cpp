@@ -235,7 +235,7 @@ std::vector<double> round_numbers(double low, double high, int most, double leas
       const double step = digit * power, first = std::ceil(low / step), last = std::floor(high / step);
       if (step < least_step || last - first + 1 > most) continue;
       std::vector<double> numbers;
-      for (double k = first; k <= last; ++k) numbers.push_back(k * step);
+      for (double k = first; k <= last; ++k) numbers.push_back(k * step + 0.0);  // not -0
       return numbers;
     }
   }

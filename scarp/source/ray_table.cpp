@@ -23,7 +23,10 @@
 namespace scarp {
 namespace {
 
-constexpr std::string_view kNeeded = "required: x,y,z and either dx,dy,dz or tx,ty,tz";
+std::string_view needed(RayHeights heights) {
+  return heights == RayHeights::required ? "required: x,y,z and either dx,dy,dz or tx,ty,tz"
+                                         : "required: x,y[,z] and either dx,dy,dz or tx,ty[,tz]";
+}
 
 enum Column : std::size_t { x, y, z, dx, dy, dz, tx, ty, tz, t_min, t_max, start_col, start_row, column_count };
 constexpr std::array<std::string_view, column_count> kNames = {
@@ -71,7 +74,7 @@ void check(const RayRow& row, RayAim aim, const Place& place) {
 // Maps fields of a row to columns.
 class CsvHeader {
  public:
-  explicit CsvHeader(std::span<const std::string_view> fields) : fields_(fields.size()) {
+  CsvHeader(std::span<const std::string_view> fields, RayHeights heights) : fields_(fields.size()), heights_(heights) {
     places_.fill(kNone);
     for (std::size_t i = 0; i < fields.size(); ++i) {
       const std::string_view name = trimmed(fields[i]);
@@ -86,12 +89,14 @@ class CsvHeader {
     }
     const bool directions = has(dx) || has(dy) || has(dz), targets = has(tx) || has(ty) || has(tz);
     if (directions && targets) throw Error("header has both directions and targets (use dx,dy,dz or tx,ty,tz)");
-    require({x, y, z});
+    require({x, y});
     if (targets) {
-      require({tx, ty, tz});
+      require({tx, ty});
     } else {
       require({dx, dy, dz});
     }
+    if (heights == RayHeights::required) require({z});
+    if (heights == RayHeights::required && targets) require({tz});
     if (has(start_col) != has(start_row)) {
       throw Error(fmt::format("no column '{}', required with '{}'", kNames[has(start_col) ? start_row : start_col],
                               kNames[has(start_col) ? start_col : start_row]));
@@ -110,15 +115,25 @@ class CsvHeader {
 
   void require(std::initializer_list<Column> columns) const {
     for (const Column column : columns) {
-      if (!has(column)) throw Error(fmt::format("no column '{}' ({})", kNames[column], kNeeded));
+      if (!has(column)) throw Error(fmt::format("no column '{}' ({})", kNames[column], needed(heights_)));
     }
   }
 
   std::array<std::size_t, column_count> places_{};
   std::vector<std::size_t> carried_;
   std::size_t fields_;
+  RayHeights heights_;
   RayAim aim_ = RayAim::direction;
 };
+
+// Without rows.
+RayTable table_of(const CsvHeader& header) {
+  RayTable table;
+  table.aim = header.aim();
+  table.has_z = header.has(z);
+  table.has_target_z = header.has(tz);
+  return table;
+}
 
 // The fields of one row as numbers.
 class CsvRow {
@@ -141,7 +156,7 @@ class CsvRow {
   }
   double number(Column column, double otherwise) const { return given(column) ? number(column) : otherwise; }
   dvec3 vector(Column first, Column second, Column third) const {
-    return {number(first), number(second), number(third)};
+    return {number(first), number(second), header_.has(third) ? number(third) : 0};
   }
   int whole(Column column) const {
     int value = 0;
@@ -226,10 +241,10 @@ std::size_t rays_of(const NpyHeader& header, std::string_view behind, std::int64
   return static_cast<std::size_t>(header.shape[0]);
 }
 
-RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t rays) {
+RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t rays, RayHeights heights) {
   std::vector<std::string_view> names;
   for (const NpyField& field : header.fields) names.push_back(field.name);
-  const CsvHeader columns(names);
+  const CsvHeader columns(names, heights);
   std::array<NumberReader, column_count> readers{};
   for (std::size_t c = 0; c < column_count; ++c) {
     if (!columns.has(static_cast<Column>(c))) continue;
@@ -238,13 +253,13 @@ RayTable parse_structures(const NpyHeader& header, const char* data, std::size_t
     if (!readers[c])
       throw Error(fmt::format("field '{}' is not a number of type i1 to i8, u1 to u8, f4 or f8", field.name));
   }
-  RayTable table;
-  table.aim = columns.aim();
+  RayTable table = table_of(columns);
   const bool targets = table.aim == RayAim::target;
   table.rows.resize(rays);
   for (std::size_t i = 0; i < rays; ++i) {
     const char* const structure = data + i * static_cast<std::size_t>(header.bytes);
     const auto number = [&](Column column) {
+      if (!columns.has(column)) return 0.0;
       const NpyField& field = header.fields[columns[column]];
       return readers[column](structure + field.begin, field.big_endian);
     };
@@ -321,16 +336,15 @@ std::string RayTable::where(std::size_t row) const {
   return fmt::format("{}: {}", path, place_of(rows[row].line, row));
 }
 
-RayTable parse_ray_csv(std::string_view bytes) {
+RayTable parse_ray_csv(std::string_view bytes, RayHeights heights) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("UTF-16 text (save it as UTF-8)");
   CsvRows rows(bytes);
-  if (!rows.next()) throw Error(fmt::format("empty file, no header ({})", kNeeded));
+  if (!rows.next()) throw Error(fmt::format("empty file, no header ({})", needed(heights)));
   if (double number = 0; parse(trimmed(rows.fields().front()), number)) {
-    throw Error(fmt::format("first line contains numbers instead of a header ({})", kNeeded));
+    throw Error(fmt::format("first line contains numbers instead of a header ({})", needed(heights)));
   }
-  const CsvHeader header(rows.fields());
-  RayTable table;
-  table.aim = header.aim();
+  const CsvHeader header(rows.fields(), heights);
+  RayTable table = table_of(header);
   for (const std::size_t i : header.carried()) table.carried.names.emplace_back(trimmed(rows.fields()[i]));
   while (rows.next()) {
     table.rows.push_back(CsvRow(header, rows, table.rows.size()).ray());
@@ -339,7 +353,7 @@ RayTable parse_ray_csv(std::string_view bytes) {
   return table;
 }
 
-RayTable parse_ray_npy(std::string_view bytes) {
+RayTable parse_ray_npy(std::string_view bytes, RayHeights heights) {
   const NpyHeader header = parse_npy_table_header(bytes);
   const auto& shape = header.shape;
   const std::string_view behind = bytes.substr(static_cast<std::size_t>(header.data_begin));
@@ -347,7 +361,7 @@ RayTable parse_ray_npy(std::string_view bytes) {
     if (shape.size() != 1) {
       throw Error(fmt::format("array of structures of shape ({}) (one dimension required)", fmt::join(shape, ", ")));
     }
-    return parse_structures(header, behind.data(), rays_of(header, behind, header.bytes));
+    return parse_structures(header, behind.data(), rays_of(header, behind, header.bytes), heights);
   }
   if (header.kind != 'f' || (header.bytes != 4 && header.bytes != 8)) {
     throw Error(fmt::format("unsupported type '{}' (supported: float32, float64)", header.descr));
@@ -359,12 +373,12 @@ RayTable parse_ray_npy(std::string_view bytes) {
   return parse_plain(header, behind.data(), rays_of(header, behind, shape[1] * header.bytes));
 }
 
-RayTable read_rays(const std::string& path) {
+RayTable read_rays(const std::string& path, RayHeights heights) {
   try {
     const std::string bytes = bytes_of(path);
     refuse_lfs_pointer(bytes);
     const bool npy = bytes.starts_with("\x93NUMPY") || (path.ends_with(".npy") && !bytes.empty());
-    RayTable table = npy ? parse_ray_npy(bytes) : parse_ray_csv(bytes);
+    RayTable table = npy ? parse_ray_npy(bytes, heights) : parse_ray_csv(bytes, heights);
     table.path = path;
     return table;
   } catch (const Error& error) {

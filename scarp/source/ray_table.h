@@ -33,6 +33,9 @@ enum class RayAim : std::uint8_t {
   target,     ///< tx, ty, tz: the point at t = 1, where the ray ends unless t_max is given
 };
 
+/// Whether a table must have the columns z and tz. Where they are missing, z is 0.
+enum class RayHeights : std::uint8_t { required, optional };
+
 /// One ray of the table.
 struct RayRow {
   dvec3 origin{0.0};  ///< finite
@@ -48,6 +51,7 @@ struct RayRow {
 struct RayTable {
   std::string path;  ///< as opened, for messages
   RayAim aim = RayAim::direction;
+  bool has_z = true, has_target_z = true;  ///< whether the columns z and tz exist; see RayHeights
   std::vector<RayRow> rows;
   TextColumns carried;  ///< the other columns; one row per ray
 
@@ -58,14 +62,14 @@ struct RayTable {
 /// Throws Error with line and ray but without the file's name: missing columns, duplicate columns or both direction and
 /// target; rows of a different length than the header, fields that are not finite numbers, zero directions; unclosed
 /// quotes; an empty text. A header alone is a table without rays.
-RayTable parse_ray_csv(std::string_view bytes);
+RayTable parse_ray_csv(std::string_view bytes, RayHeights heights = RayHeights::required);
 
 /// Parses the bytes of a .npy file. Throws Error without the file's name: another type or shape, truncated bytes, and
 /// values that parse_ray_csv() rejects.
-RayTable parse_ray_npy(std::string_view bytes);
+RayTable parse_ray_npy(std::string_view bytes, RayHeights heights = RayHeights::required);
 
 /// Reads a file, or standard input if `path` is "-". Detects .npy by its first bytes; everything else is CSV. Throws
 /// Error naming the file.
-RayTable read_rays(const std::string& path);
+RayTable read_rays(const std::string& path, RayHeights heights = RayHeights::required);
 
 }  // namespace scarp

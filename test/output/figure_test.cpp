@@ -37,6 +37,10 @@ TEST(Figure, NumbersAreRoundAndCoverTheRange) {
   }
 }
 
+TEST(Figure, NumbersHaveNoNegativeZero) {
+  for (const double number : round_numbers(-0.5, 9, 6)) EXPECT_FALSE(number == 0 && std::signbit(number));
+}
+
 TEST(Figure, NumbersAreWholeOnRequest) {
   EXPECT_EQ(round_numbers(0, 1, 6, 1), (std::vector<double>{0, 1}));
   EXPECT_EQ(round_numbers(0, 7, 6, 1), (std::vector<double>{0, 2, 4, 6}));

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 
+#include "base/refusal.h"
 #include "scarp/base/error.h"
 #include "source/npy_bytes.h"
 
@@ -101,6 +102,22 @@ TEST(RayCsv, QuotesHoldSeparatorsQuotesAndLineEnds) {
   EXPECT_EQ(table.carried.at(1, 0), "");
   EXPECT_EQ(table.carried.at(1, 1), "plain");
   EXPECT_EQ(table.rows[1].line, 4) << "the first ray takes two lines";
+}
+
+TEST(RayCsv, HeightsMayBeLeftOut) {
+  const RayTable targets = parse_ray_csv("x,y,tx,ty\n1,2,3,4\n", RayHeights::optional);
+  EXPECT_FALSE(targets.has_z || targets.has_target_z);
+  EXPECT_EQ(targets.rows.at(0).origin, dvec3(1, 2, 0));
+  EXPECT_EQ(targets.rows.at(0).aim, dvec3(3, 4, 0));
+  const RayTable with_z = parse_ray_csv("x,y,z,dx,dy,dz\n1,2,3,0,0,-1\n", RayHeights::optional);
+  EXPECT_TRUE(with_z.has_z);
+  const auto refusal = [](const char* text, RayHeights heights) {
+    return test::refusal([&] { static_cast<void>(parse_ray_csv(text, heights)); });
+  };
+  EXPECT_NE(refusal("x,y,tx,ty\n1,2,3,4\n", RayHeights::required).find("no column 'z'"), std::string::npos);
+  EXPECT_NE(refusal("x,y,z,tx,ty\n1,2,3,4,5\n", RayHeights::required).find("no column 'tz'"), std::string::npos);
+  EXPECT_NE(refusal("x,tx,ty\n1,3,4\n", RayHeights::optional).find("no column 'y' (required: x,y[,z]"),
+            std::string::npos);
 }
 
 TEST(RayCsv, AHeaderAloneIsATableWithoutRays) { EXPECT_TRUE(parse_ray_csv(kHeader).rows.empty()); }

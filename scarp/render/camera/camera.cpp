@@ -142,6 +142,11 @@ Camera::PixelRays Camera::pixel_rays() const {
   return {eye_, none, none, forward_ + corner, right, down};
 }
 
+double Camera::footprint(const Ray& ray, double t, const dvec3& normal) const {
+  constexpr double kLeastCosine = 0.05;  // as in terrain_frame_ground.glsl.h
+  return pixel_width(t) / std::sqrt(std::max(kLeastCosine, -dot(ray.direction, normal)));
+}
+
 std::optional<dvec2> Camera::pixel(const dvec3& p_world) const {
   const dvec3 from_eye = p_world - eye_;
   const double depth = dot(from_eye, forward_);

@@ -75,6 +75,10 @@ class Camera {
   void set_reach(double metres) { reach_ = metres; }
   double reach() const { return reach_; }
 
+  /// Returns the width of the surface with this unit normal that a pixel covers at `t` of one of its rays, in metres:
+  /// the mean of length and width, as surfaces seen from the side are longer.
+  double footprint(const Ray& ray, double t, const dvec3& normal) const;
+
   /// Returns the width of a pixel at a depth, both in metres.
   double pixel_width(double depth) const { return 2 * half_width_ / width_ * (orthographic_ ? 1 : depth); }
 

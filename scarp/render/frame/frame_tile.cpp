@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "scarp/render/surface/water.glsl.h"
 
@@ -12,6 +13,7 @@ namespace {
 
 // Steps that fog by iterations and pictures of iterations take for the most, where the march has no such number.
 constexpr double kMostSteps = 256;
+constexpr std::string_view kFixedStep = "fixed-step";
 
 // Surfaces of voxels, shapes and meshes that lie in the plane of the water: rounding decides which of the two a ray
 // meets first. Relative to the distance, or to the diagonal of the scene if that is longer. Rays through voxels are
@@ -271,7 +273,7 @@ float FrameTile::share_of_steps(std::size_t point, double most) const {
   const Seen& seen = seen_[point];
   const bool meets = seen.hit || (view_.water() && meetings_[point]);
   // A stepped ray that hits nothing takes all its steps, sampled or not.
-  if (view_.step_march() && !meets) return 1;
+  if (!meets && (view_.step_march() || view_.scene().marches() == kFixedStep)) return 1;
   return static_cast<float>(std::min(1.0, seen.steps / most));
 }
 

@@ -83,15 +83,13 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
 }
 
 vec3 FrameView::surface_colour(const Ray& ray, const Hit& hit, const SceneSurface& surface) const {
-  // A pixel covers more of a surface that is seen from the side: the mean of length and width.
-  const double cosine = std::max(0.05, -dot(ray.direction, surface.normal));
-  const double footprint = camera_.pixel_width(hit.t) / std::sqrt(cosine);
+  const double footprint = camera_.footprint(ray, hit.t, surface.normal);
   const double height = surface.height.value_or(surface.position.z);
   const bool has_material = surface.material < settings_.materials.size();
   const bool painted = !has_material && (settings_.ground.natural || (!surface.colour && ramped_[surface.object]));
   const vec3 own =
       painted ? paint_.ground(surface.position, height, surface.shading_normal, footprint) : colours_(surface);
-  return paint_.over(own, surface.position, height, surface.shading_normal, footprint);
+  return paint_.over(own, surface.position, height, surface.normal, footprint);
 }
 
 vec3 FrameView::lit(const Ray& ray, const Hit& hit, const SceneSurface& surface, const LightRays& asked,

@@ -120,8 +120,9 @@ std::vector<double> heights_of_whole_frame(const Scene& scene, const Camera& cam
 }
 #endif
 
-// Pictures of one terrain can be compared: they share its range.
-std::optional<ReliefRange> range_of_terrain(const Scene& scene) {
+// Pictures of one terrain can be compared: they share its range. Nullopt: that of the heights in the picture.
+std::optional<ReliefRange> range_of_grey(const Scene& scene, const PictureSettings& settings) {
+  if (settings.ramp_range) return ramp_heights(scene, settings);
   const HeightField* field = scene.terrain();
   return field ? std::optional(ReliefRange{field->min_height(), field->max_height()}) : std::nullopt;
 }
@@ -148,7 +149,7 @@ std::vector<double> heights_seen(const Scene& scene, const Camera& camera, const
 Picture render_height(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                       const Progress& progress) {
   const std::vector<double> heights = heights_seen(scene, camera, settings, progress);
-  return picture_of_heights(settings, heights, range_of_terrain(scene));
+  return picture_of_heights(settings, heights, range_of_grey(scene, settings));
 }
 
 Picture render_level(const Scene& scene, const Camera& camera, const PictureSettings& settings,
@@ -159,7 +160,7 @@ Picture render_level(const Scene& scene, const Camera& camera, const PictureSett
                        [&](std::size_t i, const Ray&, const Hit& hit, std::uint32_t) {
                          if (hit && !scene.field_of(hit.object).is_backdrop()) heights[i] = maxima.over(hit.cell);
                        });
-  return picture_of_heights(settings, heights, range_of_terrain(scene));
+  return picture_of_heights(settings, heights, range_of_grey(scene, settings));
 }
 
 Picture render_steps(const Scene& scene, const Camera& camera, const PictureSettings& settings,
@@ -212,9 +213,16 @@ PaintExtent paint_extent(const Scene& scene, const PictureSettings& settings) {
   return extent;
 }
 
-Ramp ground_ramp(const Scene& scene, const PictureSettings& settings) {
+ReliefRange ramp_heights(const Scene& scene, const PictureSettings& settings) {
   const PaintExtent extent = paint_extent(scene, settings);
-  return ramp_over(settings, extent.low, extent.high, extent.exaggeration);
+  const auto& range = settings.ramp_range;
+  return range ? ReliefRange{range->low * extent.exaggeration, range->high * extent.exaggeration}
+               : ReliefRange{extent.low, extent.high};
+}
+
+Ramp ground_ramp(const Scene& scene, const PictureSettings& settings) {
+  const ReliefRange heights = ramp_heights(scene, settings);
+  return ramp_over(settings, heights.low, heights.high, paint_extent(scene, settings).exaggeration);
 }
 
 bool is_ramped(const SceneField& field, const PictureSettings& settings) {
@@ -245,6 +253,11 @@ void validate(const PictureSettings& settings) {
                     "0 or more");
     require_setting("picture", scale->high > scale->low && scale->high < kUnlimited, "the last number of steps",
                     scale->high, "above the first");
+  }
+  if (const auto& range = settings.ramp_range) {
+    require_setting("picture", std::isfinite(range->low), "the height of the first colour", range->low, "finite");
+    require_setting("picture", std::isfinite(range->high) && range->high > range->low, "the height of the last colour",
+                    range->high, "above the first");
   }
   require_setting("picture", settings.level >= 0, "the level", settings.level, "0 or more");
   validate(settings.error);

@@ -70,6 +70,9 @@ struct PictureSettings {
   GroundPaintSettings ground{};       ///< ground colours; overlay, patches and contours apply to all surfaces
   std::string ramp{};                 ///< one of ramp_names(); empty: viridis for `steps`, else hypsometric
   std::shared_ptr<const RampStops> ramp_stops{};  ///< replaces `ramp` unless null
+  /// Heights of the first and last colour of ramps and of grey, in metres, not exaggerated; low < high; nullopt: those
+  /// of the scene. Values outside have the colour of the nearer end.
+  std::optional<ReliefRange> ramp_range{};
   /// Range of heights for `ramp` and `ground`, and extent of the overlay; nullopt: those of the scene.
   std::optional<WorldBox> ground_box{};
 
@@ -110,7 +113,9 @@ std::string_view ramp_of(const PictureSettings& settings);
 Ramp ramp_over(const PictureSettings& settings, double low, double high, double scale = 1);
 /// Returns the extent of the scene, or of PictureSettings::ground_box, that ground colours refer to.
 PaintExtent paint_extent(const Scene& scene, const PictureSettings& settings);
-/// Returns the ramp over the heights of that extent.
+/// Returns the exaggerated heights of PictureSettings::ramp_range, or of that extent.
+ReliefRange ramp_heights(const Scene& scene, const PictureSettings& settings);
+/// Returns the ramp over ramp_heights().
 Ramp ground_ramp(const Scene& scene, const PictureSettings& settings);
 /// Returns whether that ramp colours a field without a material: heights, and functions if the settings name a ramp.
 bool is_ramped(const SceneField& field, const PictureSettings& settings);

@@ -145,6 +145,6 @@ vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction, vec3 shadin
   if (has_drape) colour = draped(field, seen.cell, seen.place, colour);
   if (has_texture) patches.x = texture_detail(place, footprint);
   if (has_texture || (has_patches && s.is.detail > 0.0)) colour *= max(0.0, 1.0 + s.is.detail * patches.x);
-  if (has_contours) colour = scarp_with_contours(colour, height, shading_normal, footprint, s.is.contours);
+  if (has_contours) colour = scarp_with_contours(colour, height, normal, footprint, s.is.contours);
   return colour;
 }

@@ -7,7 +7,7 @@
 #ifndef SCARP_RENDER_GROUND_PAINT_GLSL_H
 #define SCARP_RENDER_GROUND_PAINT_GLSL_H
 
-#include "scarp/render/surface/colour.glsl.h"
+#include "scarp/render/surface/contours.glsl.h"
 
 SCARP_GLSL_BEGIN
 
@@ -18,7 +18,6 @@ const vec3 kScarpDry = vec3(0.60f, 0.55f, 0.36f);
 const vec3 kScarpRock = vec3(0.47f, 0.43f, 0.40f);
 const vec3 kScarpScree = vec3(0.60f, 0.56f, 0.51f);
 const vec3 kScarpSnow = vec3(0.93f, 0.95f, 0.98f);
-const vec3 kScarpContour = vec3(0.24f, 0.16f, 0.10f);
 
 /// Sets of patches: what they are for, their octaves and the largest, in sizes of the detail.
 const int kScarpDetail = 0;
@@ -37,11 +36,6 @@ SCARP_FN real scarp_smaller_patch(real size) { return size / real(2.17); }
 /// octaves have one grain. They are twice as long there as across.
 SCARP_FN real2 scarp_patch_grain(int octave) {
   return octave % 2 == 0 ? real2(real(0.8), real(0.6)) : real2(real(0.6), real(-0.8));
-}
-
-SCARP_FN real scarp_smooth(real from, real to, real x) {
-  real s = clamp((x - from) / (to - from), real(0.0), real(1.0));
-  return s * s * (real(3.0) - real(2.0) * s);
 }
 
 /// Noise of a set; what is smaller than a pixel, `footprint` metres wide, is left out.
@@ -75,34 +69,6 @@ SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_
   real snow = scarp_smooth(line - real(0.05), line + real(0.05), share + real(0.07) * blur) *
               scarp_smooth(real(0.55), real(0.72), normal.z + real(0.06) * rough);
   return scarp_linear_from_srgb(scarp_between(colour, kScarpSnow, snow));
-}
-
-/// What keeps quotients finite, far from any number that shows: of walls the cosine to straight up, of level ground the
-/// metres of height to a pixel.
-const float kScarpLeastUpright = 1e-9f;
-const float kScarpLeastPerPixel = 1e-12f;
-
-/// Every so many contour lines one is heavy, from height 0 on.
-const int kScarpHeavyContour = 5;
-
-/// With contour lines over it, `interval` metres apart. Level surfaces have none: a lake or the top of a voxel would
-/// be painted as a whole. The slope counts up to 1: a pixel covers no more height than its length on the surface.
-SCARP_FN vec3 scarp_with_contours(vec3 colour, real height, real3 normal, real footprint, real interval) {
-  real slope = sqrt(max(real(0.0), real(1.0) - normal.z * normal.z)) / max(normal.z, real(kScarpLeastUpright));
-  if (slope == real(0.0)) return colour;
-  slope = min(slope, real(1.0));
-  real per_pixel = max(slope * footprint, real(kScarpLeastPerPixel));  // metres of height
-  real line = floor(height / interval + real(0.5));
-  real pixels = abs(height - line * interval) / per_pixel;
-  // A tenth of a line more than rounding takes from the quotient.
-  real fifth = abs(line) - real(kScarpHeavyContour) * floor(abs(line) / real(kScarpHeavyContour) + real(0.1));
-  bool heavy = fifth == real(0.0);
-  real width = heavy ? real(2.0) : real(1.1);
-  // Of all lines when 8 pixels apart; none at 3 but for the heavy ones, which are five times as far apart.
-  real apart = interval * (heavy ? real(kScarpHeavyContour) : real(1.0)) / per_pixel;
-  real ink = clamp(width / real(2.0) + real(0.5) - pixels, real(0.0), real(1.0)) *
-             scarp_smooth(real(3.0), real(8.0), apart) * (heavy ? real(0.85) : real(0.6));
-  return scarp_between(colour, scarp_linear_from_srgb(kScarpContour), ink);
 }
 
 SCARP_GLSL_END

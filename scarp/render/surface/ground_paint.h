@@ -7,7 +7,8 @@
 //   detail    noise of several sizes, twice as long along the slope's horizontal as across, or a repeated image
 //             (detail_texture.h); patterns smaller than a pixel are omitted
 //   contours  lines of constant width in pixels: the distance to a line is the difference in height divided by the
-//             slope; every fifth is heavier; lines fade where they would touch. Level surfaces have none
+//             slope of the surface itself; every fifth is heavier; lines fade where they would touch. Level surfaces
+//             have none
 #pragma once
 
 #include <cstdint>
@@ -56,7 +57,8 @@ class GroundPaint {
   GroundPaint(const GroundPaintSettings& settings, const PaintExtent& extent, Ramp ramp, const dvec3& to_sun);
 
   /// The ground's own colour and what lies over any colour, in linear light. `height` of the surface at `position` in
-  /// metres, `normal` unit, `footprint` the width of a pixel there in metres.
+  /// metres, `normal` unit: smooth for the ground's own colour, of the surface itself for contour lines; `footprint`
+  /// the width of a pixel there in metres.
   vec3 ground(const dvec3& position, double height, const dvec3& normal, double footprint) const;
   vec3 over(vec3 colour, const dvec3& position, double height, const dvec3& normal, double footprint) const;
 

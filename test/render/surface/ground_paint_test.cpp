@@ -61,6 +61,7 @@ TEST(GroundPaint, UprightSurfacesHaveContoursAndLevelOnesHaveNone) {
   EXPECT_TRUE(inked(40 + 1.0 * kPixel, upright));
   EXPECT_FALSE(inked(40 + 1.1 * kPixel, upright));
   EXPECT_FALSE(inked(40, up));
+  EXPECT_FALSE(inked(40, normalize(dvec3(1e-7, 0, 1)))) << "rounding of the samples";
 }
 
 TEST(GroundPaint, RockIsSteepAndSnowIsHigh) {

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Whether the contour lines of a picture can be told apart: lines closer than a few pixels are left out
+// (surface/ground_paint.h), and a picture with too small an interval has none.
+#pragma once
+
+#include <optional>
+
+#include "scarp/render/camera/camera.h"
+#include "scarp/render/frame/picture.h"
+#include "scarp/scene/scene.h"
+
+namespace scarp {
+
+/// Returns an interval at which half of the ground has all lines and nearly all of it the heavy ones, 1, 2 or 5 times a
+/// power of ten in metres, not exaggerated, if the interval of the settings is too small for nearly all of the ground
+/// in the picture. Returns nullopt if lines are seen, or there is no sloping ground. Follows some thousand rays.
+std::optional<double> better_contours(const Scene& scene, const Camera& camera, const PictureSettings& settings);
+
+}  // namespace scarp
