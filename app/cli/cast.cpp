@@ -20,6 +20,7 @@
 #include "app/cli/kept_inputs.h"
 #include "app/cli/march_options.h"
 #include "app/cli/open_input.h"
+#include "app/cli/places.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/shared_options.h"
@@ -54,7 +55,7 @@ constexpr const char* kTables = R"(Rays, CSV with a header, columns in any order
 Rays, .npy: float32 or float64 of N x 6 or N x 8: x,y,z,dx,dy,dz[,t_min,t_max]; or structures with
 fields of these names.
 
-Coordinates (--crs); z is always in metres:
+Coordinates (--crs), also of --mesh-at; z is always in metres:
   local    metres east and north of the south-west sample, or of the origin of the scene
   map      units of the raster's CRS, for dx,dy as well; dz in metres
   lonlat   longitude and latitude in degrees, WGS 84; dx,dy,dz are metres east, north and up
@@ -104,16 +105,12 @@ OpenedInput open(const CastOptions& options, InputKind kind) {
   }
 }
 
-// Only rasters have a georeference.
-CoordinateFrame frame_of(const CastOptions& options, const OpenedInput& input) {
+// Only rasters have a georeference. z of rays and hits is that of the field, exaggerated in all coordinates.
+Places places_of(const CastOptions& options, const OpenedInput& input) {
   const Coordinates coordinates = !options.coordinates.empty() ? find_coordinates(options.coordinates)
                                   : input.georeference.present ? Coordinates::map
                                                                : Coordinates::local;
-  try {
-    return {input.georeference, input.cols, input.rows, coordinates};
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", input.path, error.what()));
-  }
+  return {{input.path, input.georeference, input.cols, input.rows}, coordinates, 1};
 }
 
 // Checks all rays. Those that start on a surface start on the only terrain of the scene.
@@ -139,21 +136,19 @@ void check(const RayTable& table, std::span<Ray> rays, const Scene& scene) {
 
 // A note with the bounds of the scene, for rays that hit nothing: the table may be in other coordinates. Empty if a ray
 // starts above the scene, or the scene is endless.
-std::string place_of(const Scene& scene, std::span<const Ray> rays, const CoordinateFrame& frame) {
-  const WorldBox& box = scene.box();
-  const HeightField* field = scene.only_heights();
-  std::array corners = {field ? dvec3(0.0) : box.low, field ? dvec3(field->width(), field->depth(), 0.0) : box.high};
+std::string place_of(const Scene& scene, std::span<const Ray> rays, const Places& places) {
+  const WorldBox box = ground_box(scene);
   const auto over = [&](const Ray& ray) {
-    return ray.origin.x >= corners[0].x && ray.origin.x <= corners[1].x && ray.origin.y >= corners[0].y &&
-           ray.origin.y <= corners[1].y;
+    return ray.origin.x >= box.low.x && ray.origin.x <= box.high.x && ray.origin.y >= box.low.y &&
+           ray.origin.y <= box.high.y;
   };
-  if (scene.endless() || std::any_of(rays.begin(), rays.end(), over) || frame.from_local(corners)) return {};
-  const std::string place =
-      fmt::format("in {} coordinates x {:.8g} to {:.8g}, y {:.8g} to {:.8g}", name_of(frame.coordinates()),
-                  corners[0].x, corners[1].x, corners[0].y, corners[1].y);
-  return field ? fmt::format("nothing was hit, and no ray begins over the raster: {}; are the rays in these (--crs)?",
-                             place)
-               : fmt::format("nothing was hit, and no ray begins over the scene: {}", place);
+  const std::string bounds = places.bounds_text(scene);
+  if (bounds.empty() || std::any_of(rays.begin(), rays.end(), over)) return {};
+  const std::string place = fmt::format("in {} coordinates {}", name_of(places.frame().coordinates()), bounds);
+  return scene.only_heights()
+             ? fmt::format("nothing was hit, and no ray begins over the raster: {}; are the rays in these (--crs)?",
+                           place)
+             : fmt::format("nothing was hit, and no ray begins over the scene: {}", place);
 }
 
 // Answers rays and writes what they met, piece by piece.
@@ -197,7 +192,8 @@ class Caster {
   }
 
   std::size_t hits() const { return hits_; }
-  /// Returns the number of rays of blocked() that start below ground and never emerge.
+  /// Returns the number of rays that start below ground and never emerge; of those asked by hits(), also of those that
+  /// enter below ground through the border.
   std::size_t below() const { return below_; }
   double seconds() const { return seconds_; }
 
@@ -209,7 +205,8 @@ class Caster {
     seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   }
 
-  // Only rays that begin under the height of the ground are asked once more: nearly all begin above.
+  // Counts rays that are not blocked because they are below ground. Only those that begin under the height of the
+  // ground are asked once more: nearly all begin above.
   void count_below(std::span<const Ray> rays, std::span<const std::uint8_t> blocked) {
     std::vector<Ray> low;
     for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -233,6 +230,7 @@ class Caster {
         HitRow& row = rows.emplace_back();
         row.ray = static_cast<std::int64_t>(first + i);
         row.hit = hit;
+        if (hit.status == HitStatus::below) ++below_;
         if (!hit) continue;
         ++hits_;
         const SceneSurface surface = scene_.surface(rays[i], hit);
@@ -266,6 +264,33 @@ class Caster {
   std::size_t hits_ = 0, below_ = 0;
   double seconds_ = 0;
 };
+
+// A note where the answers need one. Empty: they do not.
+std::string finding_of(const Caster& caster, bool any, std::span<const Ray> rays, const Scene& scene,
+                       const Places& places) {
+  if (rays.empty()) return "the table of rays has a header alone: 0 rays, and no rows in the output";
+  if (any && caster.below() > 0) {
+    return fmt::format(
+        "{} of {} rays start below ground and never emerge; they are reported as not blocked (without --any: as "
+        "'below'); check their heights",
+        caster.below(), rays.size());
+  }
+  if (caster.hits() > 0) return {};
+  std::size_t below = caster.below();
+  if (any) {
+    // Rays from beside the ground are below it where they enter through its border.
+    std::vector<Hit> hits(std::min(rays.size(), kPiece));
+    scene.closest_hits(rays.first(hits.size()), hits);
+    below = static_cast<std::size_t>(
+        std::count_if(hits.begin(), hits.end(), [](const Hit& hit) { return hit.status == HitStatus::below; }));
+  }
+  if (below == 0) return place_of(scene, rays, places);
+  return fmt::format(
+      "nothing was hit: {} of {} rays start below ground, or enter it through its border, and never emerge; check "
+      "their "
+      "heights",
+      below, rays.size());
+}
 
 // Explains why rays cannot hit the terrain.
 void add_notes(const HeightField& field, std::vector<std::string>& notes) {
@@ -305,11 +330,12 @@ void run(CastOptions options, const Command& command) {
   OpenedInput input = open(options, kind);
   keep_inputs(options.output, input.files);
   std::vector<std::string> notes = input.notes;
-  const CoordinateFrame frame = frame_of(options, input);
+  const Places places = places_of(options, input);
+  const CoordinateFrame& frame = places.frame();
   std::vector<Ray> rays = rays_in_local(table, frame);
   if (kind == InputKind::terrain) add_notes(*input.scene.only_heights(), notes);
   stop_if_interrupted();
-  const Scene whole = mesh.with_mesh(std::move(input.scene));
+  const Scene whole = mesh.with_mesh(std::move(input.scene), places);
   notes.insert(notes.end(), mesh.notes().begin(), mesh.notes().end());
   check(table, rays, whole);
   stop_if_interrupted();
@@ -330,17 +356,8 @@ void run(CastOptions options, const Command& command) {
   out.commit();
   // Last: who fails says one line alone.
   for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", in_words_of_cast(note));
-  if (caster.below() > 0) {
-    fmt::print(
-        stderr,
-        "note: {} of {} rays start below ground and never emerge; they are reported as not blocked (without --any: as "
-        "'below'); check their heights\n",
-        caster.below(), rays.size());
-  }
-  if (caster.hits() == 0 && !rays.empty()) {
-    const std::string note = place_of(scene, rays, frame);
-    if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
-  }
+  if (const std::string note = finding_of(caster, options.any, rays, scene, places); !note.empty())
+    fmt::print(stderr, "note: {}\n", note);
   if (::isatty(STDERR_FILENO) != 0) {
     constexpr double kTick_s = 1e-9;  // of the clock: few rays may take less
     fmt::print(stderr, "{} rays, {} {}; {:.3g} s, {:.3g} Mrays/s{}\n", rays.size(), caster.hits(),
@@ -365,16 +382,11 @@ void add_cast(Program& program) {
                         .note = "-: CSV from standard input",
                         .required = true});
   add_output_option(command, o.output, "table of hits: .csv or .npy; -: CSV to standard output", "csv npy", false);
-  command.add(&o.coordinates,
-              {.names = "--crs",
-               .value = "KIND",
-               .help = "coordinates of rays and hits",
-               .choices = {std::string(name_of(Coordinates::local)), std::string(name_of(Coordinates::map)),
-                           std::string(name_of(Coordinates::lonlat))},
-               .fallback = "map; local for inputs without a georeference",
-               .common = true,
-               .rules = {{"map or lonlat applies to terrain only (other inputs have no georeference)",
-                          [&o] { return o.coordinates == name_of(Coordinates::local); }, kEveryInput & ~kTerrain}}});
+  add_coordinates_option(command, o.coordinates,
+                         {.names = "--crs",
+                          .help = "coordinates of rays, hits and --mesh-at",
+                          .fallback = "map; local for inputs without a georeference",
+                          .common = true});
   command.add(&o.any, {.names = "--any",
                        .help = "occlusion only: columns ray,blocked (1, or 0; 0 also for rays that start below ground)",
                        .common = true});
@@ -388,7 +400,7 @@ void add_cast(Program& program) {
   add_threads_option(command, o.threads);
   add_field_options(command, o.field, BeyondBorders::wraps);
   add_march_options(command, o.march_settings);
-  add_mesh_options(command, o.mesh);
+  add_mesh_options(command, o.mesh, "--crs");
   add_vox_options(command, o.vox);
   add_vox_rounding_options(command, o.vox_look);
   add_function_options(command, o.function, {}, o.march, o.march_settings);

@@ -1,23 +1,74 @@
 // SPDX-License-Identifier: MIT
 #include "app/cli/field_options.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace scarp::cli {
+#include "app/cli/numbers.h"
+#include "scarp/render/frame/picture.h"
 
-void add_field_options(Command& command, FieldOptions& options, BeyondBorders borders) {
+namespace scarp::cli {
+namespace {
+
+constexpr NumberRange kExaggerations{.least = 0, .most = kMostOfGround, .above_least = true};
+
+void set_exaggeration(const std::string& text, FieldOptions& options, Exaggeration* exaggeration) {
+  if (text == "auto") {
+    if (!exaggeration) throw WrongUsage("--exaggeration 'auto': applies to pictures only (give a number)");
+    exaggeration->chosen = true;
+    return;
+  }
+  const std::string wrong = number_in(kExaggerations)(text);
+  if (!wrong.empty()) throw WrongUsage("--exaggeration " + wrong);
+  options.exaggeration = std::strtod(text.c_str(), nullptr);
+  if (exaggeration) exaggeration->chosen = false;
+}
+
+}  // namespace
+
+double chosen_exaggeration(double relief, double side) {
+  // As steep as the Alps over the width of a chain: clearly seen, and still like mountains.
+  constexpr double kShare = 0.1;
+  if (!(relief > 0)) return 1;
+  const double most = std::min(kShare * side / relief, kMostOfGround);
+  if (!(most > 1)) return 1;
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
+  return most >= 5 * power ? 5 * power : most >= 2 * power ? 2 * power : power;
+}
+
+std::string flatness_note(double relief, double side) {
+  // Pixels that the relief is high where the longer side of the ground fills a picture of the default width, as in the
+  // default view: fewer are taken for a plane.
+  constexpr double kLeastPixels = 4;
+  const double width = PictureSettings{}.width;
+  if (relief * width >= kLeastPixels * side) return {};
+  if (!(relief > 0)) return "the ground is level: it has no relief to show";
+  return fmt::format(
+      "the relief of {} m over {} m hardly shows (--exaggeration auto, or a factor such as {:g}, raises it)",
+      metres_text(relief), metres_text(side), chosen_exaggeration(relief, side));
+}
+
+void add_field_options(Command& command, FieldOptions& options, BeyondBorders borders, Exaggeration* exaggeration) {
   constexpr Inputs kSurfaces{kTerrain, "it shapes the surface between the samples of rasters"};
   const auto add = [&](Binding to, Option option) {
     option.topic = Topic::surface;
     option.inputs = kSurfaces;
     command.add(std::move(to), std::move(option));
   };
-  add(&options.exaggeration, {.names = "--exaggeration",
-                              .help = "factor of all heights",
-                              .range = {.least = 0, .most = kMostOfGround, .above_least = true},
-                              .common = true});
+  add([&options, exaggeration](const std::string& text) { set_exaggeration(text, options, exaggeration); },
+      {.names = "--exaggeration",
+       .value = "F",
+       .help = "factor of all heights",
+       .range = kExaggerations,
+       .note = exaggeration ? "auto: by the relief" : "",
+       .fallback = "1",
+       .common = true});
   add([&options](
           const std::string& text) { options.surface = text == "triangles" ? Surface::triangles : Surface::bilinear; },
       {.names = "--surface",

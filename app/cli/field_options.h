@@ -2,6 +2,8 @@
 // The options of every subcommand that makes a surface of a raster.
 #pragma once
 
+#include <string>
+
 #include "app/cli/command.h"
 #include "scarp/scene/file/from_raster.h"
 
@@ -10,7 +12,19 @@ namespace scarp::cli {
 /// What a subcommand can do beyond the border of a field: nothing, go round it, or be at its mirror images, too.
 enum class BeyondBorders { none, wraps, mirrors };
 
-/// Declares --exaggeration, --surface, --solid and, except for `none`, --wrap.
-void add_field_options(Command& command, FieldOptions& options, BeyondBorders borders);
+/// --exaggeration as typed, beside FieldOptions::exaggeration.
+struct Exaggeration {
+  bool chosen = false;  ///< `auto`: by the relief of the raster
+};
+/// Returns the factor at which a relief is a tenth of the longer side of the ground, both in metres, rounded down to 1,
+/// 2 or 5 times a power of ten; at least 1.
+double chosen_exaggeration(double relief, double side);
+/// Returns what to tell about ground whose relief hardly shows in pictures; empty: it shows.
+std::string flatness_note(double relief, double side);
+
+/// Declares --exaggeration, --surface, --solid and, except for `none`, --wrap. Without `exaggeration`, the value auto
+/// is refused.
+void add_field_options(Command& command, FieldOptions& options, BeyondBorders borders,
+                       Exaggeration* exaggeration = nullptr);
 
 }  // namespace scarp::cli

@@ -79,8 +79,9 @@ FigureLegend legend_of_heights(const PictureSettings& settings, const Scene& sce
                                        : "several scales of heights colour this picture"));
   }
   const double exaggeration = extent.exaggeration;
+  const ReliefRange heights = ramp_heights(scene, settings);
   return ramp ? legend_of("height, m", ramp->low, ramp->high, Ramp(ramp->ramp, ramp->low, ramp->high))
-              : legend_of("height, m", extent.low / exaggeration, extent.high / exaggeration,
+              : legend_of("height, m", heights.low / exaggeration, heights.high / exaggeration,
                           ground_ramp(scene, settings), exaggeration);
 }
 
@@ -94,7 +95,7 @@ FigureLegend legend_of_numbers(const SolidRange& numbers, const std::string& ram
 void add_meaning(const PictureSettings& settings, const Scene& scene, const std::optional<SolidRange>& numbers,
                  const Picture& picture, Figure& figure) {
   const PaintExtent extent = paint_extent(scene, settings);
-  const ReliefRange grey = picture.heights.value_or(ReliefRange{extent.low, extent.high});
+  const ReliefRange grey = picture.heights.value_or(ramp_heights(scene, settings));
   // The legend shows heights without exaggeration.
   const double exaggeration = extent.exaggeration;
   switch (settings.comanche.heights ? Look::height : settings.look) {

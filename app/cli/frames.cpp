@@ -30,17 +30,44 @@ Place place_of_number(const std::string& output) {
   return {first, (end == std::string::npos ? output.size() : end) - first};
 }
 
+// Puts an eye at its height above the surface. A direction stays as it is.
+void lift(CameraStation& station, const RayTable& table, const PathPlaces& path, const std::string& what) {
+  const dvec3 eye = path.above_surface(station.eye, what);
+  if (table.aim == RayAim::direction) station.target.z += eye.z - station.eye.z;
+  station.eye = eye;
+}
+
+// One per row, in world metres.
+std::vector<CameraStation> stations_of(const RayTable& table, const PathPlaces& path) {
+  std::vector<CameraStation> stations;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const RayRow& row = table.rows[i];
+    const std::string what = table.where(i);
+    CameraStation station{path.places.world(row.origin, what), {}};
+    if (table.aim == RayAim::direction) {
+      station.target = station.eye + path.places.world_direction(row.aim);
+    } else {
+      station.target = path.places.world(row.aim, what);
+      if (!table.has_target_z) station.target = path.places.on_surface(station.target, path.scene, what);
+    }
+    if (!table.has_z) lift(station, table, path, what);
+    stations.push_back(station);
+  }
+  return stations;
+}
+
 }  // namespace
 
 void add_frame_options(Command& command, FrameOptions& o) {
   const auto several = [&o] { return o.several(); };
-  command.add(&o.path, {.names = "--path",
-                        .value = "FILE",
-                        .help = "table of cameras: columns x,y,z of the eye and tx,ty,tz of the target, or dx,dy,dz of "
-                                "the direction, in metres as for --eye",
-                        .files = "csv npy",
-                        .note = "the output is frame-####.png",
-                        .topic = Topic::flight});
+  command.add(&o.path,
+              {.names = "--path",
+               .value = "FILE",
+               .help = "table of cameras: columns x,y[,z] of the eye and tx,ty[,tz] of the target, or dx,dy,dz "
+                       "of the direction, in coordinates of --coords",
+               .files = "csv npy",
+               .note = "without z --eye-above M over the ground; the output is frame-####.png",
+               .topic = Topic::flight});
   command.add(&o.turntable, {.names = "--turntable",
                              .help = "one orbit around the scene, clockwise from --view; the output is frame-####.png",
                              .topic = Topic::flight,
@@ -66,7 +93,7 @@ void settle_frames(const FrameOptions& o, const std::string& output) {
 }
 
 std::vector<Camera> frame_cameras(const FrameOptions& o, const ViewSettings& view, int width, int height,
-                                  const std::function<Camera(const ViewSettings&)>& framed) {
+                                  const std::function<Camera(const ViewSettings&)>& framed, const PathPlaces& path) {
   std::vector<Camera> cameras;
   if (o.turntable) {
     const int frames = o.frames > 0 ? o.frames : kTurntableFrames;
@@ -77,21 +104,25 @@ std::vector<Camera> frame_cameras(const FrameOptions& o, const ViewSettings& vie
     }
     return cameras;
   }
-  const RayTable table = read_rays(o.path);
+  const RayTable table = read_rays(o.path, RayHeights::optional);
   if (table.rows.empty()) throw Error(fmt::format("path '{}': has no rows; one camera each is expected", o.path));
-  std::vector<CameraStation> stations;
-  for (const RayRow& row : table.rows) {
-    stations.push_back({row.origin, table.aim == RayAim::target ? row.aim : row.origin + row.aim});
+  if (table.has_z == static_cast<bool>(path.above_surface)) {
+    throw Error(fmt::format("path '{}': {}", o.path,
+                            table.has_z ? "has heights of the eye, which --eye-above replaces (leave out the column z)"
+                                        : "has no column 'z' (give --eye-above M)"));
   }
-  const auto add = [&](const CameraStation& station) {
+  std::vector<CameraStation> stations = stations_of(table, path);
+  if (o.frames > 0) {
+    const CameraPath smooth(std::move(stations));
+    stations.clear();
+    for (int i = 0; i < o.frames; ++i) {
+      CameraStation station = smooth.at(o.frames > 1 ? i / (o.frames - 1.0) : 0.0);
+      if (!table.has_z) lift(station, table, path, fmt::format("{}: frame {}", table.path, i));
+      stations.push_back(station);
+    }
+  }
+  for (const CameraStation& station : stations)
     cameras.push_back(Camera::look_at(station.eye, station.target, view.fov_deg, width, height));
-  };
-  if (o.frames == 0) {
-    for (const CameraStation& station : stations) add(station);
-    return cameras;
-  }
-  const CameraPath path(std::move(stations));
-  for (int i = 0; i < o.frames; ++i) add(path.at(o.frames > 1 ? i / (o.frames - 1.0) : 0.0));
   return cameras;
 }
 

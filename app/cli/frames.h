@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/cli/places.h"
 #include "scarp/render/camera/camera.h"
 
 namespace scarp::cli {
@@ -25,10 +26,18 @@ void add_frame_options(Command& command, FrameOptions& options);
 /// Throws Error where several frames have an output without a place for their number.
 void settle_frames(const FrameOptions& options, const std::string& output);
 
-/// Where the frames are seen from; `framed` makes those of a turntable, which begins at `view`. Throws Error naming
-/// file and line.
+/// How positions of a table become positions in world metres.
+struct PathPlaces {
+  const Places& places;
+  const Scene& scene;  ///< targets without z are on its surface
+  /// The eye over (x, y) of a position; null: every eye needs z.
+  std::function<dvec3(const dvec3& at, const std::string& what)> above_surface{};
+};
+
+/// Where the frames are seen from; `framed` makes those of a turntable, which begins at `view`. Eyes without z follow
+/// the surface, between the rows of the table as well. Throws Error naming file and line.
 std::vector<Camera> frame_cameras(const FrameOptions& options, const ViewSettings& view, int width, int height,
-                                  const std::function<Camera(const ViewSettings&)>& framed);
+                                  const std::function<Camera(const ViewSettings&)>& framed, const PathPlaces& path);
 
 /// The output's name with frame i (from 0) in place of its #s, at least as many digits.
 std::string frame_name(const std::string& output, int i);

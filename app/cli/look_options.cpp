@@ -15,6 +15,7 @@
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/source/colour_image.h"
+#include "scarp/source/colour_relief_file.h"
 #include "scarp/source/ramp_file.h"
 
 namespace scarp::cli {
@@ -103,8 +104,8 @@ void add_look_options(Command& command, LookOptions& o) {
                .value = "RAMP",
                .help = "colours by height",
                .choices = {ramp_names().begin(), ramp_names().end()},
-               .files = "cpt png",
-               .note = "or a .cpt file, or a .png of 1 x N colours",
+               .files = "cpt txt clr png",
+               .note = "or a file: .cpt, .txt or .clr of gdaldem, .png of 1 x N colours",
                .fallback = "hypsometric; viridis for the look steps",
                .topic = Topic::ground,
                .common = true,
@@ -112,6 +113,16 @@ void add_look_options(Command& command, LookOptions& o) {
                .rules = {{"has no effect without --volume or --look steps (voxels and meshes have their own colours)",
                           [&command] { return command.given("--volume") || command.value("--look") == "steps"; },
                           kVoxels | kMesh}}});
+  command.add(&o.ramp_range,
+              {.names = "--ramp-range",
+               .value = "LOW,HIGH",
+               .help = "heights of the first and last colour of the ramp, or of the look height, in metres",
+               .fallback = "lowest and highest ground",
+               .topic = Topic::ground,
+               .looks = {"shaded height comanche level", "the others show no heights"},
+               .rules = {{"has no effect with --ground natural", [&o] { return o.ground_colours != "natural"; }},
+                         {"has no effect without --look height (voxels and meshes have their own colours)",
+                          [&command] { return command.value("--look") == "height"; }, kVoxels | kMesh}}});
   ground(&o.ground_colours, {.names = "--ground",
                              .value = "KIND",
                              .help = "ground colours",
@@ -233,6 +244,9 @@ void add_look_options(Command& command, LookOptions& o) {
 
   constexpr Looks kPixels{"height comanche"};
   const Rule stepped = needs("--march fixed-step", [&command] { return command.value("--march") == "fixed-step"; });
+  const Rule alone{"has no effect with --mesh, among which rays step by --fixed-step",
+                   [&command] { return !command.given("--mesh"); }};
+  constexpr Inputs kStepped{kTerrain, "rays over functions step by --function-step M", "its rays do not step"};
   const Rule large_pixels{"needs --lowres WIDTHxHEIGHT with --look height",
                           [&command, &o] { return command.value("--look") != "height" || !o.lowres.empty(); }};
   const auto large = [&](Binding to, Option option) {
@@ -255,22 +269,26 @@ void add_look_options(Command& command, LookOptions& o) {
   large(&o.comanche.steps, {.names = "--steps",
                             .help = "number of steps of fixed-step over the reach",
                             .range = {1, 65536},
+                            .inputs = kStepped,
                             .looks = kPixels,
-                            .rules = {stepped, large_pixels}});
+                            .rules = {stepped, large_pixels, alone}});
   large(&o.comanche.shells, {.names = "--shells",
                              .help = "fixed-step samples on spheres round the eye instead of planes",
+                             .inputs = kStepped,
                              .looks = kPixels,
-                             .rules = {stepped, large_pixels}});
+                             .rules = {stepped, large_pixels, alone}});
   large(&o.comanche.step_by_view, {.names = "--step-by-view",
                                    .help = "longer steps of fixed-step for rays that look down",
+                                   .inputs = kStepped,
                                    .looks = kPixels,
-                                   .rules = {stepped, large_pixels}});
-  large(&o.comanche.iterations, {.names = "--iterations",
-                                 .help = "picture of the number of steps, from black (0) to white (the maximum)",
-                                 .note = "with fixed-step over terrain the sky is white",
-                                 .looks = kLarge,
-                                 .excludes = {"--sun", "--sky", "--no-tone-curve", "--unlit", "--samples", "--ramp",
-                                              "--ground", "--detail", "--contours", "--overlay", "--fog"}});
+                                   .rules = {stepped, large_pixels, alone}});
+  large(&o.comanche.iterations,
+        {.names = "--iterations",
+         .help = "picture of the number of steps, from black (0) to white (the maximum)",
+         .note = "with fixed-step the sky is white",
+         .looks = kLarge,
+         .excludes = {"--sun", "--sky", "--no-tone-curve", "--unlit", "--samples", "--ramp", "--ramp-range", "--ground",
+                      "--detail", "--contours", "--overlay", "--fog"}});
   large(&o.reach, {.names = "--reach",
                    .help = "maximum length of camera rays",
                    .unit = "metres",
@@ -292,6 +310,8 @@ void settle_look(const LookOptions& o, const MarchSettings& march_settings, Pict
   const std::string extension = extension_of(o.ramp);
   if (extension == ".cpt") {
     picture.ramp_stops = std::make_shared<RampStops>(read_cpt(o.ramp));
+  } else if (extension == ".txt" || extension == ".clr") {
+    picture.ramp_stops = std::make_shared<RampStops>(read_colour_relief(o.ramp));
   } else if (extension == ".png") {
     const ColourImage row = read_colour_row(o.ramp);
     std::vector<std::uint8_t> rgb;
@@ -301,6 +321,14 @@ void settle_look(const LookOptions& o, const MarchSettings& march_settings, Pict
     picture.ramp_stops = std::make_shared<RampStops>(ramp_of_row(rgb));
   } else {
     picture.ramp = o.ramp;
+  }
+  if (!o.ramp_range.empty()) {
+    const auto range =
+        ground_numbers_from(o.ramp_range, 2, 2, "--ramp-range", "LOW,HIGH in metres, for example 0,2400");
+    if (!(range[0] < range[1])) throw Error(fmt::format("--ramp-range '{}': expected LOW below HIGH", o.ramp_range));
+    if (picture.ramp_stops && !picture.ramp_stops->stretched)
+      throw Error(fmt::format("--ramp-range: {} has heights of its own (leave one of the two out)", o.ramp));
+    picture.ramp_range = ReliefRange{range[0], range[1]};
   }
   if (comanche) {
     picture.width = kLowresWidth;

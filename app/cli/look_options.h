@@ -21,7 +21,7 @@ struct LookOptions {
   FogSettings fog_settings;
   ComancheSettings comanche;
   GroundPaintSettings ground;
-  std::string ground_colours, ramp, overlay, detail_texture;
+  std::string ground_colours, ramp, ramp_range, overlay, detail_texture;
   std::optional<double> snow_line;
   bool no_refraction = false, no_reflection = false;
 };

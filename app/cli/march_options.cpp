@@ -67,7 +67,23 @@ void add_march_options(Command& command, MarchSettings& march) {
   add("--naive-tolerance", &naive.tolerance, "height above ground that counts as a hit, per unit of distance",
       kZeroOrMore, "naive");
   add("--naive-max-steps", &naive.max_steps, "maximum number of steps", kSteps, "naive");
-  add("--fixed-step", &march.fixed_step.step, "step length in cells", kAboveZero, "fixed-step");
+  // The look comanche steps over a raster alone by its own rules (step_march_of() in frame_view.h).
+  std::vector<Rule> plain;
+  if (command.find("--steps")) {
+    plain.push_back({"has no effect with --look comanche or --lowres, whose rays take --steps N",
+                     [&command] {
+                       return command.given("--mesh") ||
+                              (command.value("--look") != "comanche" && !command.given("--lowres"));
+                     },
+                     kTerrain});
+  }
+  command.add(&march.fixed_step.step, {.names = "--fixed-step",
+                                       .help = "step length in cells",
+                                       .range = kAboveZero,
+                                       .topic = Topic::march,
+                                       .inputs = {kTerrain, "functions have --function-step M"},
+                                       .marches = "fixed-step",
+                                       .rules = plain});
   command.add(&march.fixed_step.interpolate, {.names = "--fixed-step-interpolate",
                                               .value = "BOOL",
                                               .help = "hit between the last two samples instead of on the last one",
@@ -76,7 +92,13 @@ void add_march_options(Command& command, MarchSettings& march) {
                                               .topic = Topic::march,
                                               .inputs = kMarched,
                                               .marches = "fixed-step"});
-  add("--fixed-step-max-steps", &march.fixed_step.max_steps, "maximum number of steps", kSteps, "fixed-step");
+  command.add(&march.fixed_step.max_steps, {.names = "--fixed-step-max-steps",
+                                            .help = "maximum number of steps",
+                                            .range = kSteps,
+                                            .topic = Topic::march,
+                                            .inputs = kMarched,
+                                            .marches = "fixed-step",
+                                            .rules = plain});
   RelaxedSettings& relaxed = march.relaxed;
   add("--relaxed-step-factor", &relaxed.step_factor, "step as a fraction of the vertical distance", kAboveZero,
       "relaxed");

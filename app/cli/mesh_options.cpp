@@ -31,7 +31,7 @@ bool is_mesh_input(const std::vector<std::string>& inputs) {
   return true;
 }
 
-void add_mesh_options(Command& command, MeshOptions& options) {
+void add_mesh_options(Command& command, MeshOptions& options, std::string_view coordinates) {
   // The same options place a mesh that is the input.
   const Rule of_mesh = needs(
       "--mesh FILE", [&command] { return command.given("--mesh"); }, kEveryInput & ~kMesh);
@@ -48,13 +48,14 @@ void add_mesh_options(Command& command, MeshOptions& options) {
           .rules = {{"is not available: this scarp was built without Embree (SCARP_EMBREE=OFF)", [] { return false; }}},
 #endif
       });
-  command.add(&options.at,
-              {.names = "--mesh-at",
-               .value = "X,Y[,Z]",
-               .help = "position of the mesh in metres, as for --eye: its middle, and its lowest point",
-               .fallback = "middle of the scene, or nearest to it, on the ground; meshes as input: as in the file",
-               .topic = Topic::mesh,
-               .rules = {of_mesh}});
+  command.add(
+      &options.at,
+      {.names = "--mesh-at",
+       .value = "X,Y[,Z]",
+       .help = fmt::format("position of the mesh in coordinates of {}: its middle, and its lowest point", coordinates),
+       .fallback = "middle of the scene, or nearest to it, on the ground; meshes as input: as in the file",
+       .topic = Topic::mesh,
+       .rules = {of_mesh}});
   command.add(&options.scale, {.names = "--mesh-scale",
                                .help = "length of the file's unit",
                                .unit = "metres",
@@ -88,15 +89,7 @@ MeshInput::MeshInput(const std::string& path, const MeshOptions& options) : opti
 
 namespace {
 
-// Height of the highest surface at (x, y): ground, or whatever a ray from above hits.
-std::optional<double> surface_at(const Scene& scene, double x, double y) {
-  if (const auto ground = scene.height(x, y)) return ground;
-  // A height field has no surface in its holes.
-  if (scene.only_heights() || scene.box().empty()) return {};
-  const Ray down{{x, y, scene.box().high.z + 1}, {0, 0, -1}};
-  const Hit hit = scene.closest_hit(down);
-  return hit ? std::optional(down.at(hit.t).z) : std::nullopt;
-}
+constexpr std::string_view kMeshAt = "--mesh-at";
 
 // The point nearest to the middle of the scene, on a lattice, that has a surface; else the middle at the lowest height.
 dvec3 place_near_middle(const Scene& scene) {
@@ -119,31 +112,12 @@ dvec3 place_near_middle(const Scene& scene) {
   return best;
 }
 
-// Parses X,Y[,Z] of --mesh-at.
-std::vector<double> numbers_of_place(const std::string& text) {
-  return numbers_from(text, ',', 2, 3, "--mesh-at",
-                      "X,Y or X,Y,Z in metres from the south-west sample, for example 500,300 or 500,300,1200");
-}
-
 }  // namespace
 
-Scene MeshInput::with_mesh(Scene scene) const {
+Scene MeshInput::with_mesh(Scene scene, const Places& places) const {
   if (options_.file.empty()) return scene;
-  dvec3 at{0.0};
-  if (options_.at.empty()) {
-    at = place_near_middle(scene);
-  } else {
-    const auto numbers = numbers_of_place(options_.at);
-    const auto z = numbers.size() > 2 ? std::optional(numbers[2]) : surface_at(scene, numbers[0], numbers[1]);
-    if (!z) {
-      const WorldBox& box = scene.box();
-      throw Error(
-          fmt::format("--mesh-at: there is no ground at {:g},{:g} for the mesh to stand on (give X,Y,Z; the scene "
-                      "is {:g} x {:g} m)",
-                      numbers[0], numbers[1], box.high.x - box.low.x, box.high.y - box.low.y));
-    }
-    at = {numbers[0], numbers[1], *z};
-  }
+  const dvec3 at =
+      options_.at.empty() ? place_near_middle(scene) : places.world(typed_place(options_.at, kMeshAt), scene, kMeshAt);
   const Placement placement = mesh_placement(mesh_, {at, options_.scale, options_.turn_deg});
   std::vector<SceneFieldPtr> fields = scene.fields();
   std::vector<SceneObject> objects = scene.objects();
@@ -156,8 +130,8 @@ Scene MeshInput::with_mesh(Scene scene) const {
 Scene MeshInput::alone() const {
   MeshPlacement place{.scale = options_.scale, .turn_deg = options_.turn_deg};
   if (!options_.at.empty()) {
-    const auto numbers = numbers_of_place(options_.at);
-    place.at = {numbers[0], numbers[1], numbers.size() > 2 ? numbers[2] : 0.0};
+    const TypedPlace at = typed_place(options_.at, kMeshAt);
+    place.at = {at.x, at.y, at.z.value_or(0.0)};
   }
   Placement placement = mesh_placement(mesh_, place);
   if (options_.at.empty()) placement.origin = dvec3(0.0);
@@ -167,7 +141,7 @@ Scene MeshInput::alone() const {
 #else
 
 // The rule of --mesh has refused all meshes.
-Scene MeshInput::with_mesh(Scene scene) const { return scene; }
+Scene MeshInput::with_mesh(Scene scene, const Places&) const { return scene; }
 
 Scene MeshInput::alone() const {
   throw Error("rays at a mesh are not available: this scarp was built without Embree (SCARP_EMBREE=OFF)");

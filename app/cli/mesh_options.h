@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "app/cli/places.h"
 #include "scarp/scene/scene.h"
 #include "scarp/source/mesh_file.h"
 
@@ -19,8 +20,8 @@ struct MeshOptions {
   double scale = 1, turn_deg = 0;
 };
 
-/// Declares --mesh and its settings.
-void add_mesh_options(Command& command, MeshOptions& options);
+/// Declares --mesh and its settings. `coordinates` is the option that names the coordinates of --mesh-at.
+void add_mesh_options(Command& command, MeshOptions& options, std::string_view coordinates);
 /// Declares only --mesh-up, for inputs.
 void add_mesh_up_option(Command& command, MeshOptions& options, std::vector<Rule> rules = {});
 
@@ -38,7 +39,7 @@ class MeshInput {
   /// Returns the scene with the mesh. Without --mesh-at it stands in the middle on the highest surface, else on the
   /// surface nearest to the middle, else at the lowest height of the scene. Throws Error if --mesh-at has neither Z nor
   /// a surface.
-  Scene with_mesh(Scene scene) const;
+  Scene with_mesh(Scene scene, const Places& places) const;
   /// Returns the mesh alone, without --mesh-at in the coordinates of its file.
   Scene alone() const;
 

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "app/cli/device_option.h"
 #include "app/cli/progress.h"
@@ -15,6 +18,29 @@
 namespace scarp::cli {
 namespace {
 
+// --exaggeration auto, by the field without exaggeration.
+void choose_exaggeration(const Raster& raster, FieldOptions& settings, std::vector<std::string>& notes) {
+  const HeightFieldSettings plain{.cell_x = raster.georeference.cell_x_m,
+                                  .cell_y = raster.georeference.cell_y_m,
+                                  .scale = raster.scale,
+                                  .offset = raster.offset,
+                                  .nodata = raster.nodata};
+  const auto view = [&](const auto& samples) {
+    return HeightField::view(samples.data(), raster.cols, raster.rows, raster.cols, plain);
+  };
+  try {
+    const HeightField field = std::visit(view, raster.samples);
+    if (field.all_nodata()) return;  // refused later
+    const double relief = field.max_height() - field.min_height(), side = std::max(field.width(), field.depth());
+    settings.exaggeration = chosen_exaggeration(relief, side);
+    notes.push_back(fmt::format(
+        "--exaggeration auto is {:g}: the relief of {} m over {} m becomes {:.2g} of the longer side",
+        settings.exaggeration, metres_text(relief), metres_text(side), settings.exaggeration * relief / side));
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", raster.path, error.what()));
+  }
+}
+
 OpenedInput terrain(const InputOptions& options) {
   const HeightMarchEntry& march = find_height_march(options.march.empty() ? kTerrainMarch : options.march);
   require_device_march(options.device, march);
@@ -23,7 +49,9 @@ OpenedInput terrain(const InputOptions& options) {
   OpenedInput opened;
   opened.notes = raster.notes, opened.files = raster.files, opened.path = raster.path;
   opened.georeference = raster.georeference, opened.cols = raster.cols, opened.rows = raster.rows;
-  HeightField field = height_field_from(std::move(raster), options.field);
+  FieldOptions settings = options.field;
+  if (options.exaggeration.chosen) choose_exaggeration(raster, settings, opened.notes);
+  HeightField field = height_field_from(std::move(raster), settings);
   stop_if_interrupted();
   opened.scene = Scene(scene_heights(std::move(field), march, options.march_settings,
                                      options.device.empty() ? AnsweredBy::cpu : AnsweredBy::back_end));

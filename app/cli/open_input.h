@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/cli/field_options.h"
 #include "app/cli/function_input.h"
 #include "app/cli/mesh_options.h"
 #include "app/cli/option.h"
@@ -29,6 +30,7 @@ struct InputOptions {
   std::vector<std::string> inputs;
   RasterOptions raster;
   FieldOptions field;
+  Exaggeration exaggeration;
   VoxOptions vox;
   VoxLookOptions vox_look;
   FunctionInput function;

@@ -12,6 +12,7 @@
 #include "app/cli/exr_output.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/numbers.h"
+#include "app/cli/places.h"
 #include "app/cli/render_input.h"
 #include "app/cli/render_options.h"
 #include "app/cli/render_run.h"
@@ -95,8 +96,12 @@ void run(RenderOptions options, const Command& command) {
   command.require_effect({kind, options.look, march_of(options, kind)});
   const ViewSettings view = settle(options);
   keep_inputs(options.output, options.typed);
-  if (!options.eye.empty()) point_from(options.eye, "--eye");
-  if (!options.target.empty()) point_from(options.target, "--target");
+  if (!options.target.empty()) typed_place(options.target, "--target");
+  if (!options.eye.empty() && typed_place(options.eye, "--eye").z.has_value() == options.eye_above.has_value()) {
+    throw Error(fmt::format(
+        "--eye '{}': {}", options.eye,
+        options.eye_above ? "--eye-above replaces Z (give X,Y)" : "expected X,Y,Z, or X,Y with --eye-above M"));
+  }
   const ThreadLimit limit(options.threads);
   render_input(kind, std::move(options), view);
 }

@@ -122,7 +122,8 @@ RenderInput function(OpenedInput opened, RenderOptions& options, const ViewSetti
   picture.ground_box =
       WorldBox{{-0.5 * extent, -0.5 * extent, heights.low}, {0.5 * extent, 0.5 * extent, heights.high}};
   // A ramp from a file and natural ground are painted by the renderer.
-  if (!picture.ground.natural && !picture.ramp_stops) picture.materials = materials_of(heights, picture.ramp);
+  if (!picture.ground.natural && !picture.ramp_stops)
+    picture.materials = materials_of(picture.ramp_range.value_or(heights), picture.ramp);
   const auto material = static_cast<std::uint32_t>(std::max<std::size_t>(picture.materials.size(), 1) - 1);
   RenderInput input{Scene(opened.scene.fields(), {{.material = material}})};
   input.march = opened.scene.marches() +
@@ -183,8 +184,16 @@ RenderInput open_render_input(InputKind kind, RenderOptions& options, const View
   files.insert(files.end(), overlay.begin(), overlay.end());
   keep_inputs(options.output, files);
   const std::optional<SolidRange> numbers = opened.numbers;
+  PlaceRaster raster{opened.path, opened.georeference, opened.cols, opened.rows};
   RenderInput input = with_defaults(kind, std::move(opened), options, view);
-  input.numbers = numbers;
+  input.numbers = numbers, input.raster = std::move(raster);
+  const bool in_perspective =
+      !options.top && (options.picture.look == Look::shaded || options.picture.look == Look::comanche);
+  if (kind == InputKind::terrain && in_perspective && !options.is_given("--exaggeration")) {
+    const double side = default_reach(*input.scene.terrain());
+    if (const std::string note = flatness_note(input.heights.high - input.heights.low, side); !note.empty())
+      notes.push_back(note);
+  }
   input.notes = std::move(notes), input.files = std::move(files);
   return input;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/open_input.h"
+#include "app/cli/places.h"
 #include "app/cli/render_options.h"
 #include "scarp/render/camera/field_view.h"
 #include "scarp/scene/scene.h"
@@ -20,6 +21,7 @@ struct RenderInput {
   Scene scene;
   std::vector<std::string> notes{};  ///< one line each, for people
   std::vector<std::string> files{};  ///< that were read, beside those that were typed
+  PlaceRaster raster{};              ///< by which positions are converted; terrain only
   std::string march{};               ///< what times are printed with; empty: nothing
   ViewSettings view{};
   bool viewed = false;  ///< the input itself says from where it is seen, by azimuth, elevation or distance

@@ -12,6 +12,7 @@
 #include "app/cli/device_option.h"
 #include "app/cli/field_options.h"
 #include "app/cli/march_options.h"
+#include "app/cli/places.h"
 #include "app/cli/raster_options.h"
 #include "app/cli/shared_options.h"
 
@@ -192,16 +193,34 @@ void add_camera_options(Command& command, RenderOptions& o) {
        .rules = {{"has no effect with --path, whose table holds the cameras", [&o] { return o.frames.path.empty(); }}},
        .excludes = {"--eye"}});
   add(&o.eye, {.names = "--eye",
-               .value = "X,Y,Z",
-               .help = "eye in metres: x east and y north of the south-west sample, z up, exaggerated",
+               .value = "X,Y[,Z]",
+               .help = "eye in coordinates of --coords",
+               .note = "Z is needed without --eye-above",
                .common = true,
                .rules = {no_frames}});
+  add(&o.eye_above,
+      {.names = "--eye-above",
+       .help = "height of the eye above the highest surface or water below it",
+       .unit = "metres",
+       .range = {.least = 0, .most = kMostOfGround, .above_least = true},
+       .note = "not exaggerated",
+       .rules = {needs("--eye X,Y or --path FILE", [&o] { return !o.eye.empty() || !o.frames.path.empty(); })}});
   add(&o.target, {.names = "--target",
-                  .value = "X,Y,Z",
-                  .help = "point that the eye looks at, in metres",
+                  .value = "X,Y[,Z]",
+                  .help = "point that the eye looks at; without Z on the ground",
                   .fallback = "the middle",
                   .common = true,
-                  .rules = {no_frames, needs("--eye X,Y,Z", [&o] { return !o.eye.empty(); })}});
+                  .rules = {no_frames, needs("--eye X,Y[,Z]", [&o] { return !o.eye.empty(); })}});
+  add_coordinates_option(
+      command, o.coordinates,
+      {.names = "--coords",
+       .help = "coordinates of --eye, --target, --mesh-at and --path",
+       .closed = true,
+       .note = "local: metres from the south-west sample, z exaggerated; map: units of the CRS; lonlat: degrees, WGS "
+               "84; with map and lonlat z is a height of the file in metres",
+       .topic = Topic::camera,
+       .rules = {needs("--eye, --path or --mesh-at",
+                       [&o] { return !o.eye.empty() || !o.frames.path.empty() || !o.mesh.at.empty(); })}});
   add(&o.fov_deg,
       {.names = "--fov",
        .help = "vertical field of view",
@@ -229,12 +248,12 @@ Command& declare_render(Program& program, RenderOptions& o) {
   add_picture_options(command, o);
   add_light_options(command, o);
   add_camera_options(command, o);
-  add_field_options(command, o.field, BeyondBorders::mirrors);
+  add_field_options(command, o.field, BeyondBorders::mirrors, &o.exaggeration);
   add_look_options(command, o.look_options);
   add_figure_options(command, o.figure);
   add_frame_options(command, o.frames);
   add_depth_options(command, o.depth);
-  add_mesh_options(command, o.mesh);
+  add_mesh_options(command, o.mesh, "--coords");
   add_vox_options(command, o.vox);
   add_vox_rounding_options(command, o.vox_look);
   add_vox_look_options(command, o.vox_look);

@@ -2,6 +2,7 @@
 // The options of `scarp render`.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ struct RenderOptions : InputOptions {
   FrameOptions frames;
   DepthOptions depth;
   FigureOptions figure;
-  std::string size, look = "shaded", steps_range, sun, sky, view, eye, target;
+  std::string size, look = "shaded", steps_range, sun, sky, view, eye, target, coordinates = "local";
   bool exr = false;
+  std::optional<double> eye_above;
   double fov_deg = ViewSettings{}.fov_deg, error_tolerance = ErrorSettings{}.tolerance;
   bool top = false, no_shadows = false, no_plinth = false, no_tone_curve = false;
   int threads = 0;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,11 +16,13 @@
 #include "app/cli/findings.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/numbers.h"
+#include "app/cli/places.h"
 #include "app/cli/progress.h"
 #include "app/cli/render_input.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/output/png.h"
+#include "scarp/render/frame/contour_spacing.h"
 
 namespace scarp::cli {
 namespace {
@@ -64,6 +67,7 @@ class Render {
     const Picture picture = make(file, options_.output, camera, terminal_progress("render"));
     const double render_s = watch_.lap();
     tell_notes();
+    tell_of_contours(camera);
     tell_if_buried(camera, "the eye");
     const int scale = options_.picture.look == Look::comanche ? options_.picture.comanche.scale : 1;
     fmt::print("{}: {} x {} pixels; {}read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options_.output,
@@ -80,7 +84,8 @@ class Render {
     options_.typed.insert(options_.typed.end(), input_.files.begin(), input_.files.end());
     stop_if_interrupted();
     read_s_ = watch_.lap();
-    input_.scene = mesh.with_mesh(std::move(input_.scene));
+    places_.emplace(input_.raster, find_coordinates(options_.coordinates), exaggeration());
+    input_.scene = mesh.with_mesh(std::move(input_.scene), *places_);
     input_.notes.insert(input_.notes.end(), mesh.notes().begin(), mesh.notes().end());
     if (input_.coarse_voxels) {
       scene_ = input_.scene;
@@ -122,14 +127,39 @@ class Render {
     return found.camera;
   }
 
+  // The factor between heights of the file and z.
+  double exaggeration() const {
+    const HeightField* field = input_.scene.terrain();
+    return field ? field->settings().exaggeration : 1;
+  }
+
+  dvec3 typed_eye() const {
+    constexpr std::string_view kEye = "--eye";
+    const TypedPlace eye = typed_place(options_.eye, kEye);
+    if (eye.z) return places_->world(eye, input_.scene, kEye);
+    return above_surface(places_->world(dvec3(eye.x, eye.y, 0), kEye), kEye);
+  }
+
+  // --eye-above over the surface at (x, y) of `at`, or over water that covers it.
+  dvec3 above_surface(const dvec3& at, std::string_view what) const {
+    dvec3 eye = places_->on_surface(at, input_.scene, what);
+    if (options_.picture.water) eye.z = std::max(eye.z, options_.picture.water->level * exaggeration());
+    return eye + dvec3(0, 0, *options_.eye_above * exaggeration());
+  }
+
   Camera only_camera() {
     const int width = options_.picture.width, height = options_.picture.height;
+    if (options_.top && scene_.box().empty() && scene_.endless() && !scene_.terrain())
+      throw Error(
+          "--top: everything in the scene is endless, without a border to fit a map to (leave --top out, and use "
+          "--eye and --target)");
     if (options_.top) return Camera::top(picture_box(scene_), width, height);
     if (!options_.eye.empty()) {
-      const dvec3 target = !options_.target.empty() ? point_from(options_.target, "--target")
-                           : input_.target          ? *input_.target
-                                                    : picture_box(scene_).middle();
-      return Camera::look_at(point_from(options_.eye, "--eye"), target, input_.view.fov_deg, width, height);
+      const dvec3 target = !options_.target.empty()
+                               ? places_->world(typed_place(options_.target, "--target"), input_.scene, "--target")
+                           : input_.target ? *input_.target
+                                           : picture_box(scene_).middle();
+      return Camera::look_at(typed_eye(), target, input_.view.fov_deg, width, height);
     }
     if (options_.view.empty()) {
       if (input_.eye) return Camera::look_at(*input_.eye, *input_.target, input_.view.fov_deg, width, height);
@@ -141,11 +171,18 @@ class Render {
     return framed(input_.view);
   }
 
+  PathPlaces path_places() const {
+    PathPlaces path{*places_, input_.scene};
+    if (options_.eye_above)
+      path.above_surface = [this](const dvec3& at, const std::string& what) { return above_surface(at, what); };
+    return path;
+  }
+
   void make_all() {
     const FrameOptions& frames = options_.frames;
-    const std::vector<Camera> cameras =
-        frame_cameras(frames, input_.view, options_.picture.width, options_.picture.height,
-                      [&](const ViewSettings& turned) { return framed(turned); });
+    const std::vector<Camera> cameras = frame_cameras(
+        frames, input_.view, options_.picture.width, options_.picture.height,
+        [&](const ViewSettings& turned) { return framed(turned); }, path_places());
     // Without --overwrite nothing is written over.
     for (int i = 0; frames.overwrite && i < static_cast<int>(cameras.size()); ++i)
       keep_inputs(frame_name(options_.output, i), options_.typed);
@@ -156,6 +193,7 @@ class Render {
       if (!options_.exr) tell_if_buried(camera, fmt::format("the eye of '{}'", name));
     });
     tell_notes();
+    if (!cameras.empty()) tell_of_contours(cameras.front());
   }
 
   // Renders and writes one picture. What was found is returned; layers have no findings.
@@ -180,6 +218,23 @@ class Render {
     }
   }
 
+  // Contour lines of which nothing is seen.
+  void tell_of_contours(const Camera& camera) const {
+    const double interval = options_.picture.ground.contours;
+    if (!(interval > 0)) return;
+    const PaintExtent extent = paint_extent(scene_, options_.picture);
+    const double low = extent.low / extent.exaggeration, high = extent.high / extent.exaggeration;
+    if (std::ceil(low / interval) > std::floor(high / interval)) {
+      fmt::print(stderr, "note: --contours {:g}: no line lies between {:.6g} and {:.6g} m, the heights of the scene\n",
+                 interval, low, high);
+    } else if (const auto better = better_contours(scene_, camera, options_.picture)) {
+      fmt::print(stderr,
+                 "note: --contours {:g}: the lines are closer than pixels and left out nearly everywhere; --contours "
+                 "{:g} shows them\n",
+                 interval, *better);
+    }
+  }
+
   // From under the ground one sees its other side, and through it.
   void tell_if_buried(const Camera& camera, const std::string& whose) const {
     const auto ground = scene_.height(camera.eye().x, camera.eye().y);
@@ -191,6 +246,7 @@ class Render {
   RenderOptions options_;
   ViewSettings typed_view_;
   RenderInput input_{Scene({}, {})};
+  std::optional<Places> places_;
   Scene scene_{{}, {}};
   std::string device_;
   Watch watch_;
@@ -199,12 +255,6 @@ class Render {
 };
 
 }  // namespace
-
-dvec3 point_from(const std::string& text, std::string_view option) {
-  const auto p =
-      numbers_from(text, ',', 3, 3, option, "X,Y,Z in metres from the south-west sample, for example 500,-2000,1800");
-  return {p[0], p[1], p[2]};
-}
 
 void render_input(InputKind kind, RenderOptions options, const ViewSettings& view) {
   Render(kind, std::move(options), view).run();

@@ -9,7 +9,4 @@ namespace scarp::cli {
 /// `view` is what was typed. The options are consistent with each other. Throws Error.
 void render_input(InputKind kind, RenderOptions options, const ViewSettings& view);
 
-/// X,Y,Z of an option. Throws Error.
-dvec3 point_from(const std::string& text, std::string_view option);
-
 }  // namespace scarp::cli

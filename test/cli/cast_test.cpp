@@ -439,6 +439,25 @@ TEST_F(Cast, RenderTakesTheSameSurfaces) {
   for (const char* wrap : {"periodic", "mirror"}) EXPECT_EQ(with({"--wrap", wrap}).status, 0) << wrap;
 }
 
+TEST_F(Cast, NotesSayWhyNothingWasHit) {
+  const auto note = [&](const std::string& table, Names more = {}) {
+    Names arguments{"cast", hills(), "--crs", "local", "--rays", rays(table)};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.err;
+  };
+  const std::string header = "x,y,z,dx,dy,dz\n", under = header + "-50,15,-9000,1,0,0\n",
+                    beside = header + "-50,15,90000,1,0,0\n";
+  EXPECT_NE(note(header).find("the table of rays has a header alone: 0 rays"), std::string::npos);
+  for (const Names& any : {Names{}, {"--any"}}) {
+    EXPECT_NE(note(under, any).find("1 of 1 rays start below ground, or enter it through its border"),
+              std::string::npos);
+    EXPECT_EQ(note(under, any).find("--crs"), std::string::npos);
+    EXPECT_NE(note(beside, any).find("are the rays in these (--crs)?"), std::string::npos);
+  }
+}
+
 TEST_F(Cast, RaysStartOnTheSurface) {
   hills("0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0\n0 0 0 0 0");
   // Along the plane: touching is a hit for a free ray, none for one that starts on it.

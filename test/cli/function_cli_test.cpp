@@ -62,6 +62,17 @@ TEST_F(Functions, AreShownByHeight) {
   EXPECT_EQ(most, 255);
 }
 
+TEST_F(Functions, StepThroughAWhiteSky) {
+  const std::string picture = out("a.png");
+  const auto result =
+      test::run({"render", "--function", ramp(), "--look", "comanche", "--march", "fixed-step", "--iterations",
+                 "--lowres", "16x12", "--pixel-size", "1", "--eye", "200,0,160", "--target", "0,0,120", "-o", picture});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const test::Rgb image = test::read_png(picture);
+  EXPECT_EQ(image.pixel(8, 0)[0], 255);
+  EXPECT_LT(image.pixel(8, 11)[0], 255);
+}
+
 #ifdef SCARP_OPENEXR
 TEST_F(Functions, HaveLayers) {
   const std::string layers = out("a.exr");

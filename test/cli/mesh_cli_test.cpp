@@ -83,6 +83,7 @@ TEST_F(MeshOption, StandsWhereMeshAtPutsIt) {
   const std::vector<int> on_ground = reds({});
   EXPECT_GT(on_ground[0], 5);
   EXPECT_LT(on_ground[0], 100);
+  EXPECT_EQ(reds({"--mesh-at", "-480,480,9000", "--coords", "map"}), north_west);
   // In the ground.
   EXPECT_EQ(reds({"--mesh-at", "960,960,-9000"})[0], 0);
 }

@@ -266,6 +266,12 @@ TEST_F(WithoutEffect, IsRefusedOfTerrain) {
   expect_refused(render, {"--detail-size", "1"}, "--detail F");
   expect_refused(render, {"--steps", "9"}, "applies to the looks height and comanche");
   expect_refused(render, {"--steps", "9", "--look", "comanche"}, "--march fixed-step");
+  const Names function{"render", "--function", "hills", "-o", out_};
+  for (const char* option : {"--fixed-step", "--fixed-step-max-steps"})
+    expect_refused(render, {option, "2", "--march", "fixed-step", "--look", "comanche"}, "whose rays take --steps N");
+  expect_refused(function, {"--steps", "9", "--march", "fixed-step", "--look", "comanche"}, "applies to terrain only");
+  expect_refused(function, {"--shells", "--march", "fixed-step", "--look", "comanche"}, "step by --function-step M");
+  expect_refused(function, {"--fixed-step", "2", "--march", "fixed-step"}, "functions have --function-step M");
   expect_refused(render, {"--pixel-size", "2", "--look", "height"}, "needs --lowres WIDTHxHEIGHT with --look height");
   expect_refused(render, {"--sun", "1,30", "--unlit"}, "has no effect with --unlit");
   expect_refused(render, {"--error-tolerance", "1"}, "applies to the look error");
@@ -308,6 +314,7 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
       steps{"--march", "fixed-step", "--reach", "200", "--lowres", "24x18"};
   const std::vector<Case> cases = {
       {{"--ramp", "magma"}, {"shaded", "steps", "comanche"}},
+      {{"--ramp-range", "20,30"}, {"shaded", "height", "comanche", "level"}},
       {{"--sun", "100,20"}, {"shaded", "hillshade", "comanche"}},
       {{"--sky", "scattering"}, lit},
       {{"--sky-turbidity", "9"}, lit, {"--sky", "scattering"}},
@@ -351,7 +358,8 @@ TEST_F(WithoutEffect, IsRefusedOfLooks) {
       "rough.asc",
       "ncols 4\nnrows 4\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 70 3 40\n9 2 60 30\n5 50 8 20\n90 4 10 6\n");
   const auto picture = [&](const std::string& look, const Names& options, const Names& others) {
-    Names arguments{"render", rough, "-o", out_, "--look", look, "--eye", "15,-20,90", "--target", "15,15,20"};
+    Names arguments{"render", rough,       "-o",       out_,      "--look", look == "level" ? "level:1" : look,
+                    "--eye",  "15,-20,90", "--target", "15,15,20"};
     if (std::find(others.begin(), others.end(), "--lowres") == others.end())
       arguments.insert(arguments.end(), {look == "comanche" ? "--lowres" : "--size", "24x18"});
     if (look == "error") arguments.insert(arguments.end(), {"--march", "naive"});
