@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,7 @@
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_raster.h"
+#include "scarp/source/map_extent.h"
 #include "scarp/source/read_raster.h"
 
 namespace scarp::cli {
@@ -33,6 +35,18 @@ struct InfoOptions : InputOptions {
 };
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+
+Json json_of(const std::optional<MapBounds>& b) { return b ? Json{b->west, b->south, b->east, b->north} : Json(); }
+
+// Bounds of the samples and of the outer edges, on the map and in degrees.
+Json extent_of(const Georeference& geo, int cols, int rows) {
+  if (!geo.present) return {};
+  const MapExtent extent = map_extent(geo, cols, rows);
+  return {{"samples", json_of(extent.samples)},
+          {"edges", json_of(extent.edges)},
+          {"samples_lonlat", json_of(extent.samples_lonlat)},
+          {"edges_lonlat", json_of(extent.edges_lonlat)}};
+}
 
 // Everything there is to say, once: the text and the JSON are made of this.
 Json describe(const InfoOptions& options) {
@@ -48,6 +62,7 @@ Json describe(const InfoOptions& options) {
   info["crs"] = geo.crs_name.empty() ? Json() : Json(geo.crs_name);
   info["georeferenced"] = geo.present;
   info["map_from_node"] = geo.map_from_node;
+  info["bounds"] = extent_of(geo, raster.cols, raster.rows);
   info["cell_size_m"] = {geo.cell_x_m, geo.cell_y_m};
   info["cell_size_found"] = geo.cell_size_found;
   info["grid_north_azimuth_deg"] = geo.grid_north_azimuth * kDegrees;
@@ -93,6 +108,20 @@ std::string text_of(const Json& info) {
   line("cell",
        fmt::format("{:.6g} x {:.6g} m", info["cell_size_m"][0].get<double>(), info["cell_size_m"][1].get<double>()));
   line("", text("cell_size_found", ""));
+  if (const Json& bounds = info["bounds"]; !bounds.is_null()) {
+    const auto bounds_lines = [&](std::string_view name, const char* key) {
+      const auto edges_of = [](const Json& b) {
+        const auto at = [&](std::size_t i) { return b[i].get<double>(); };
+        // Millimetres of projected maps, and of degrees.
+        return fmt::format("west {:.10g}, south {:.10g}, east {:.10g}, north {:.10g}", at(0), at(1), at(2), at(3));
+      };
+      const Json &own = bounds[key], &degrees = bounds[std::string(key) + "_lonlat"];
+      line(name, edges_of(own) + (own == degrees ? " (degrees)" : ""));
+      if (!degrees.is_null() && own != degrees) line("", edges_of(degrees) + " (degrees)");
+    };
+    bounds_lines("samples", "samples");
+    bounds_lines("outer edges", "edges");
+  }
   line("units", fmt::format("{}; metres = sample x {:.10g} + {:.10g}",
                             text("vertical_unit", "not said, metres assumed"), number("scale"), number("offset")));
   line("nodata", info["nodata_count"].get<std::int64_t>() == 0
@@ -104,8 +133,8 @@ std::string text_of(const Json& info) {
                               number("min_sample"), number("max_sample")));
   line("slope bound",
        fmt::format("{:.4g} ({:.1f} degrees)", number("slope_bound"), std::atan(number("slope_bound")) * kDegrees));
-  line("samples", fmt::format("{} (in the file {}), {:.2f} bytes each with the pyramid", text("sample_type", ""),
-                              text("file_type", ""), number("bytes_per_sample")));
+  line("type", fmt::format("{} (in the file {}), {:.2f} bytes each with the pyramid", text("sample_type", ""),
+                           text("file_type", ""), number("bytes_per_sample")));
   for (const Json& note : info["notes"]) line("note", note.get<std::string>());
   return out;
 }

@@ -123,6 +123,7 @@ void add_raster_options(Command& command, RasterOptions& options, const std::str
   add(&options.crs, {.names = crs_option,
                      .value = "CRS",
                      .help = "coordinate reference system, for example EPSG:4326",
+                     .note = "none: metres",
                      .fallback = "the file's",
                      .common = true});
   add([&options](const std::string& text) { options.bounds = bounds_from(text); },

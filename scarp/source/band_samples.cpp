@@ -59,6 +59,9 @@ void for_row_pieces(GDALRasterBand& band, const RasterWindow& window, int bytes_
 struct Findings {
   std::int64_t nan = 0;
   double rounding = 0;  // largest change by the conversion to float32
+  bool beyond_are_holes = true;
+  std::int64_t beyond = 0;  // undeclared marks beyond all heights
+  double least_beyond = 0, most_beyond = 0;
 };
 
 // Whether a float sample equals the nodata value within the precision of files: texts like -3.402823e+38 differ from
@@ -91,6 +94,12 @@ float clean(double source, std::optional<double> nodata, int col, int row, Findi
     return kNan;
   }
   if (nodata && is_float_nodata(source, *nodata)) return float_can_hold(*nodata) ? static_cast<float>(*nodata) : kNan;
+  if (std::abs(source) > kBeyondHeights && found.beyond_are_holes && std::isfinite(source)) {
+    found.least_beyond = found.beyond == 0 ? source : std::min(found.least_beyond, source);
+    found.most_beyond = found.beyond == 0 ? source : std::max(found.most_beyond, source);
+    ++found.beyond;
+    return kNan;
+  }
   if (!(std::abs(source) <= FLT_MAX)) refuse_infinite(source, col, row);
   const float sample = static_cast<float>(source);
   found.rounding = std::max(found.rounding, std::abs(source - sample));
@@ -247,6 +256,7 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
   read.nodata = nodata ? nodata : nodata_of(band);
   if (read.nodata && std::isnan(*read.nodata)) read.nodata.reset();
   Findings found;
+  found.beyond_are_holes = !nodata;
   const auto integers = [&]<class T>(T, GDALDataType as, std::string_view becomes) {
     if (read.nodata && !holds<T>(*read.nodata)) {
       read.notes.push_back(
@@ -290,6 +300,20 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
                                        band.GetMaskFlags() & GMF_ALPHA ? "alpha band" : "mask"));
   }
   if (found.nan > 0) read.notes.push_back(fmt::format("{} samples are NaN: holes", found.nan));
+  if (found.beyond > 0) {
+    // The shortest digits of a float are not those of the same number as a double.
+    const auto text = [](double x) {
+      return std::abs(x) <= FLT_MAX && static_cast<float>(x) == x ? fmt::format("{}", static_cast<float>(x))
+                                                                  : fmt::format("{}", x);
+    };
+    const std::string value = found.least_beyond == found.most_beyond
+                                  ? "of " + text(found.least_beyond)
+                                  : fmt::format("from {} to {}", text(found.least_beyond), text(found.most_beyond));
+    read.notes.push_back(
+        fmt::format("{} samples {} are taken as holes: no heights are beyond {:g} (--nodata=nan keeps "
+                    "them)",
+                    found.beyond, value, kBeyondHeights));
+  }
   if (all_holes(read)) {
     throw Error(fmt::format("all {} x {} samples are nodata{} (choose another --window or --nodata)", window.cols,
                             window.rows, read.nodata ? fmt::format(" ({})", *read.nodata) : ""));

@@ -9,6 +9,7 @@
 //   Int32, UInt32, Int64, UInt64,      float32, with a note that states the largest rounding
 //   Float64, Float16
 //   complex                            rejected
+//   beyond +-1e30, undeclared          NaN, unless the caller names a nodata value
 //   any, with a mask or alpha band     float32 with NaN for masked samples
 //   that hides samples
 #pragma once

@@ -65,7 +65,7 @@ CoordinateFrame::CoordinateFrame(const Georeference& georeference, int cols, int
         fmt::format("no georeference, which {} coordinates require (add --bounds W,S,E,N, or use local coordinates)",
                     name_of(coordinates)));
   }
-  if (coordinates == Coordinates::map) return;
+  if (coordinates == Coordinates::map && georeference.crs_wkt.empty()) return;
   if (georeference.crs_wkt.empty()) {
     throw Error(
         "no coordinate reference system, which lonlat coordinates require (specify one, or use map coordinates)");
@@ -76,6 +76,8 @@ CoordinateFrame::CoordinateFrame(const Georeference& georeference, int cols, int
     throw Error(fmt::format("unusable coordinate reference system '{}': {}", georeference.crs_name,
                             session.reason("GDAL gives no reason")));
   }
+  if (map.IsGeographic()) turn_ = 2 * std::numbers::pi / map.GetAngularUnits();
+  if (coordinates == Coordinates::map) return;
   map.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   lonlat.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   map_from_lonlat_.reset(OGRCreateCoordinateTransformation(&lonlat, &map));
@@ -84,7 +86,6 @@ CoordinateFrame::CoordinateFrame(const Georeference& georeference, int cols, int
     throw Error(fmt::format("PROJ cannot convert between WGS 84 and the coordinate reference system '{}': {}",
                             georeference.crs_name, session.reason("GDAL gives no reason")));
   }
-  if (map.IsGeographic()) turn_ = 2 * std::numbers::pi / map.GetAngularUnits();
 }
 
 CoordinateFrame::~CoordinateFrame() = default;
@@ -103,7 +104,7 @@ std::optional<std::size_t> CoordinateFrame::to_local(std::span<dvec3> points) co
   const auto& map = geo.map_from_node;
   for (dvec3& p : points) {
     // A place has many equivalent longitudes: choose the one nearest to the raster.
-    if (turn_ > 0) p.x += turn_ * std::round((centre_x_ - p.x) / turn_);
+    if (turn_ > 0 && std::abs(p.x) <= turn_) p.x += turn_ * std::round((centre_x_ - p.x) / turn_);
     p.x = (p.x - map[0]) / map[1] * geo.cell_x_m;
     p.y = (last_row_ - (p.y - map[3]) / map[5]) * geo.cell_y_m;
   }

@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <string_view>
 
 #include "scarp/base/error.h"
 #include "scarp/source/band_samples.h"
 #include "scarp/source/decoded_dataset.h"
+#include "scarp/source/default_scale.h"
 #include "scarp/source/raster_place.h"
 #include "scarp/source/suspected_nodata.h"
 #include "scarp/source/vertical_unit.h"
@@ -136,6 +138,13 @@ double greatest_integer(GDALDataType type, bool with_sign) {
   return std::exp2(GDALGetDataTypeSizeBits(type) - (with_sign ? 1 : 0)) - 1;
 }
 
+// Formats of pictures, which state no height scale.
+bool is_picture_format(GDALDataset& dataset) {
+  constexpr std::string_view kDrivers[] = {"PNG", "PNM", "BMP", "GIF", "JPEG", "WEBP", "SGI", "JPEGXL", "PCX"};
+  GDALDriver* driver = dataset.GetDriver();
+  return driver && std::find(std::begin(kDrivers), std::end(kDrivers), driver->GetDescription()) != std::end(kDrivers);
+}
+
 }  // namespace
 
 std::vector<std::string> files_of(GDALDataset& dataset) {
@@ -237,6 +246,13 @@ Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession
   const GDALDataType type = band.GetRasterDataType();
   std::optional<double> greatest;
   if (!GDALDataTypeIsFloating(type)) greatest = greatest_integer(type, has_sign(type, is_signed_byte(band)));
+  const bool scaled = options.scale || options.offset || !options.unit.empty() || raster.scale != 1 ||
+                      raster.offset != 0 || !raster.vertical_unit.empty();
+  const double longer_side = std::max((dataset.GetRasterXSize() - 1) * place.georeference.cell_x_m,
+                                      (dataset.GetRasterYSize() - 1) * place.georeference.cell_y_m);
+  const std::string proportion = settle_default_scale(
+      raster,
+      {is_picture_format(stored), scaled, has_sign(type, is_signed_byte(band)) ? std::nullopt : greatest, longer_side});
   const std::vector<std::string> suspected = suspected_nodata(raster, greatest);
   if (raster.scale < 0) apply_negative_scale(raster);
   flip(raster, place.flip_rows, place.flip_cols);
@@ -244,6 +260,7 @@ Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession
   raster.notes.insert(raster.notes.end(), read.notes.begin(), read.notes.end());
   raster.notes.insert(raster.notes.end(), suspected.begin(), suspected.end());
   raster.notes.insert(raster.notes.end(), place.notes.begin(), place.notes.end());
+  if (!proportion.empty()) raster.notes.push_back(proportion);
   const auto& warnings = session.warnings();
   for (std::size_t i = 0; i < std::min(warnings.size(), kWarningsWorthANote); ++i)
     raster.notes.push_back("GDAL: " + warnings[i]);

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "scarp/source/raw_format.h"
 #include "scarp/source/terrain_rgb.h"
@@ -32,6 +33,9 @@ struct HeightRange {
   double high = 1;  ///< > low
 };
 
+/// RasterOptions::crs for a raster without a CRS, whatever the file says: map units are metres.
+inline constexpr std::string_view kNoCrs = "none";
+
 /// How to read a raster. Members that are set override the file.
 struct RasterOptions {
   int band = 0;                        ///< counts from 1; 0: the only one
@@ -42,8 +46,10 @@ struct RasterOptions {
   /// Replaces scale and offset, in `unit`: heights of 0 and of the largest value of an unsigned sample type (65535 for
   /// UInt16), or of 0 and 1 for float samples. Not for signed samples.
   std::optional<HeightRange> height_range;
-  std::string unit;                 ///< vertical unit: "m", "ft", "us-ft", ...; default: the file's, else metres
-  std::string crs;                  ///< any text that GDAL accepts: "EPSG:4326", WKT, PROJ; default: the file's
+  std::string unit;  ///< vertical unit: "m", "ft", "us-ft", ...; default: the file's, else metres
+  /// Any text that GDAL accepts ("EPSG:4326", WKT, PROJ), or kNoCrs; default: the file's, else EPSG:4326 if all bounds
+  /// fit degrees, else none.
+  std::string crs;
   std::optional<MapBounds> bounds;  ///< of the whole file, before `window`; default: the file's geotransform
   HeightEncoding encoding = HeightEncoding::none;  ///< of heights in the colours of 3 or 4 Byte bands
   std::optional<RawFormat> raw;  ///< the file contains raw samples, whatever its name; default: by name and content

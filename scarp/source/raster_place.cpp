@@ -32,15 +32,17 @@ std::optional<GeoTransform> geotransform_of(GDALDataset& dataset, const RasterOp
   return map;
 }
 
-std::optional<OGRSpatialReference> crs_of(GDALDataset& dataset, const RasterOptions& options) {
+// The CRS from the caller or the file; nullopt if neither has one.
+std::optional<OGRSpatialReference> crs_of(const OGRSpatialReference* own, const RasterOptions& options) {
   OGRSpatialReference crs;
+  if (options.crs == kNoCrs) return {};
   if (!options.crs.empty()) {
     const char* const no_network[] = {"ALLOW_NETWORK_ACCESS=NO", nullptr};
     if (crs.SetFromUserInput(options.crs.c_str(), no_network) != OGRERR_NONE) {
       throw Error(fmt::format("unknown coordinate reference system '{}' (specify one such as EPSG:32610, or WKT)",
                               options.crs));
     }
-  } else if (const OGRSpatialReference* own = dataset.GetSpatialRef()) {
+  } else if (own) {
     crs = *own;
   } else {
     return {};
@@ -80,17 +82,53 @@ std::string name_of(const OGRSpatialReference& crs) {
 
 // Geographic rasters of many degrees are not planar: a note says by how much.
 void note_latitude_span(const OGRSpatialReference& crs, double north, double south, RasterPlace& place) {
-  const double unit = crs.GetAngularUnits(), far = std::max(std::abs(north), std::abs(south)) * unit;
-  if (far > std::numbers::pi / 2) return;
+  const double unit = crs.GetAngularUnits(), pole = std::numbers::pi / 2;
+  const double far = std::min(std::max(std::abs(north), std::abs(south)) * unit, pole);
   const double centre = std::cos((north + south) / 2 * unit), least = std::cos(far);
   const double most = north * south < 0 ? 1 : std::cos(std::min(std::abs(north), std::abs(south)) * unit);
+  // A cell near a pole is less than a tenth as wide as at the centre: no plane shows both.
+  constexpr double kNearAPole = 0.1;
+  if (least < kNearAPole * centre) {
+    place.notes.push_back(
+        "the latitudes reach a pole, where cells have no width, but all get the width at the centre: a plane suits "
+        "regions only (choose one with --window, or gdalwarp to a projected CRS)");
+    return;
+  }
   // A hundredth of a cell per cell is visible in an image.
   if (std::max(centre - least, most - centre) > 0.01 * centre) {
-    place.notes.push_back(fmt::format(
-        "cells are {:.1f} % wider at one edge and {:.1f} % narrower at the other than at the centre, whose size is "
-        "used (gdalwarp to a projected CRS avoids this)",
-        (most / centre - 1) * 100, (1 - least / centre) * 100));
+    place.notes.push_back(
+        fmt::format("true cell widths are {:.1f} to {:.1f} % of the width at the centre, which is used for all cells "
+                    "(gdalwarp to a projected CRS avoids this)",
+                    100 * least / centre, 100 * most / centre));
   }
+}
+
+// Whether all bounds of the file fit degrees. Cells of a degree are coarse for an elevation model, except for one of
+// the whole globe. A corner at exactly (0, 0) is the usual origin of local metres, and a point of the open ocean; but
+// elevation models do not have cells below a centimetre.
+enum class Degrees { no, perhaps, yes };
+constexpr double kFinestLocalCell_m = 0.01;
+Degrees like_degrees(const GeoTransform& map, double cols, double rows) {
+  constexpr double kTurn = 360;
+  const double step_x = std::abs(map[1]), step_y = std::abs(map[5]);
+  const double west = std::min(map[0], map[0] + cols * map[1]), east = west + cols * step_x,
+               south = std::min(map[3], map[3] + rows * map[5]), north = south + rows * step_y;
+  // Samples at the borders of the globe have edges half a cell beyond.
+  const bool fits =
+      west >= -180 - step_x / 2 && east <= kTurn + step_x / 2 && south >= -90 - step_y / 2 && north <= 90 + step_y / 2;
+  const bool globe = std::abs(east - west - kTurn) <= step_x;
+  if (!fits || !(globe || (step_x < 1 && step_y < 1))) return Degrees::no;
+  const double close = kLargestDriftInCells;
+  const bool at_origin = step_x >= kFinestLocalCell_m && std::abs(west) < close * step_x &&
+                         (std::abs(south) < close * step_y || std::abs(north) < close * step_y);
+  return at_origin ? Degrees::perhaps : Degrees::yes;
+}
+
+OGRSpatialReference wgs84() {
+  OGRSpatialReference crs;
+  crs.importFromEPSG(4326);
+  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return crs;
 }
 
 }  // namespace
@@ -111,10 +149,17 @@ void check_geotransform(const GeoTransform& map, int cols, int rows) {
     throw Error("geotransform has cells of size 0 (specify the outer edges with --bounds W,S,E,N)");
 }
 
+double turn_of(const OGRSpatialReference* own, const GeoTransform& map, double cols, double rows,
+               const RasterOptions& options) {
+  const std::optional<OGRSpatialReference> crs = crs_of(own, options);
+  if (crs) return crs->IsGeographic() ? 2 * std::numbers::pi / crs->GetAngularUnits() : 0;
+  return options.crs != kNoCrs && like_degrees(map, cols, rows) != Degrees::no ? 360 : 0;
+}
+
 RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const RasterOptions& options) {
   RasterPlace place;
   Georeference& geo = place.georeference;
-  std::optional<OGRSpatialReference> crs = crs_of(dataset, options);
+  std::optional<OGRSpatialReference> crs = crs_of(dataset.GetSpatialRef(), options);
   if (crs && (crs->IsCompound() || crs->IsVertical())) {
     const char* name = nullptr;
     const double unit = crs->GetTargetLinearUnits("VERT_CS", &name);
@@ -125,7 +170,7 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
   }
   const std::optional<GeoTransform> map = geotransform_of(dataset, options);
   if (!map) {
-    if (!options.crs.empty())
+    if (!options.crs.empty() && options.crs != kNoCrs)
       throw Error("no geotransform that --crs could apply to (specify the outer edges, too: --bounds W,S,E,N)");
     if (dataset.GetGCPCount() > 0)
       throw Error("ground control points without a geotransform (warp the raster first: gdalwarp IN OUT.tif)");
@@ -147,9 +192,27 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
   geo.present = true;
   geo.map_from_node = {first_x, step_x, 0, first_y, 0, -step_y};
 
+  if (!crs && options.crs != kNoCrs) {
+    const Degrees degrees = like_degrees(*map, dataset.GetRasterXSize(), dataset.GetRasterYSize());
+    if (degrees == Degrees::yes) crs = wgs84();
+    place.notes.push_back(
+        degrees == Degrees::yes
+            ? "no coordinate reference system, assuming degrees (EPSG:4326), because all bounds fit "
+              "(override with --crs; --crs none: map units are metres)"
+        : degrees == Degrees::perhaps
+            ? "no coordinate reference system, assuming map units of metres, because a corner is at 0,0, but the "
+              "bounds fit degrees (override with --crs EPSG:4326)"
+            : "no coordinate reference system, assuming map units of metres (override with --crs)");
+  }
+  if (!crs) {
+    geo.cell_x_m = step_x;
+    geo.cell_y_m = step_y;
+    geo.cell_size_found = "no coordinate reference system: map units taken as metres, north as up";
+    return place;
+  }
   // Once and a half around the Earth: from 0 to 360 and beyond either border. More indicates another CRS.
   constexpr double kFarthestLongitude = 540;
-  if (crs && crs->IsGeographic()) {
+  if (crs->IsGeographic()) {
     const double west = first_x - 0.5 * step_x, east = first_x + (window.cols - 0.5) * step_x,
                  to_degrees = crs->GetAngularUnits() * 180 / std::numbers::pi;
     if (!(std::max(std::abs(west), std::abs(east)) * to_degrees <= kFarthestLongitude)) {
@@ -158,18 +221,6 @@ RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const R
                       "(correct --crs or --bounds)",
                       west, east, name_of(*crs), kFarthestLongitude));
     }
-  }
-  if (!crs) {
-    geo.cell_x_m = step_x;
-    geo.cell_y_m = step_y;
-    geo.cell_size_found = "no coordinate reference system: map units taken as metres, north as up";
-    const bool like_degrees = step_x < 1 && step_y < 1 && std::abs(first_x) <= 180 && std::abs(first_y) <= 90 &&
-                              std::abs(last_y) <= 90 && first_x + (window.cols - 1) * step_x <= 360;
-    place.notes.push_back(
-        like_degrees ? "no coordinate reference system, assuming map units of metres, but they look like degrees "
-                       "(override with --crs EPSG:4326)"
-                     : "no coordinate reference system, assuming map units of metres (override with --crs)");
-    return place;
   }
   geo.crs_name = name_of(*crs);
   crs->StripVertical();

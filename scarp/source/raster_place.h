@@ -4,6 +4,7 @@
 #pragma once
 
 #include <gdal_priv.h>
+#include <ogr_spatialref.h>
 
 #include <array>
 #include <string>
@@ -33,6 +34,12 @@ inline constexpr double kLargestDriftInCells = 1e-3;
 
 /// Throws Error without the file's name: not finite, rotated, cells without size.
 void check_geotransform(const GeoTransform& map, int cols, int rows);
+
+/// Returns a full circle in map units if the map's x is a longitude, by the CRS of the options, else of the file
+/// (`own`, may be null), else by bounds that fit degrees; otherwise 0. Throws Error without the file's name: an
+/// unusable CRS.
+double turn_of(const OGRSpatialReference* own, const GeoTransform& map, double cols, double rows,
+               const RasterOptions& options);
 
 /// Throws Error without the file's name: a rotated or degenerate geotransform, an unusable CRS.
 RasterPlace find_place(GDALDataset& dataset, const RasterWindow& window, const RasterOptions& options);

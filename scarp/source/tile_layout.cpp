@@ -2,7 +2,9 @@
 #include "scarp/source/tile_layout.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace scarp {
 
@@ -17,6 +19,40 @@ TileRect bounding_rect(const std::vector<TileRect>& tiles) {
     all.rows = south - all.row;
   }
   return all;
+}
+
+std::vector<int> turns_side_by_side(const std::vector<TileSpan>& tiles, double circle, double least) {
+  const auto in_circle = [&](double x) { return x - circle * std::floor(x / circle); };
+  std::vector<std::size_t> order(tiles.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return in_circle(tiles[a].west) < in_circle(tiles[b].west); });
+
+  // The widest gap ends at a tile's west edge: that tile begins the mosaic. Tiles may reach across the end of the
+  // circle, so the gap before the first tile follows the easternmost of all.
+  double reached = -circle;
+  for (const TileSpan& tile : tiles)
+    reached = std::max(reached, in_circle(tile.west) + (tile.east - tile.west) - circle);
+  double widest = -1;
+  std::size_t begin = order.front();
+  for (const std::size_t i : order) {
+    const double west = in_circle(tiles[i].west);
+    if (west - reached > widest) widest = west - reached, begin = i;
+    reached = std::max(reached, west + (tiles[i].east - tiles[i].west));
+  }
+
+  std::vector<int> turns(tiles.size());
+  const double west = tiles[begin].west;
+  double east = tiles[begin].east, least_west = west, greatest_east = east;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    // Tiles of one column may differ by rounding.
+    turns[i] = -static_cast<int>(std::floor((tiles[i].west - west + least) / circle));
+    east = std::max(east, tiles[i].east + turns[i] * circle);
+    least_west = std::min(least_west, tiles[i].west);
+    greatest_east = std::max(greatest_east, tiles[i].east);
+  }
+  if (!((greatest_east - least_west) - (east - west) >= least)) std::fill(turns.begin(), turns.end(), 0);
+  return turns;
 }
 
 double covered_samples(const std::vector<TileRect>& tiles) {

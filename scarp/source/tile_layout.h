@@ -18,6 +18,16 @@ struct TileRect {
 /// Returns the smallest rectangle around all tiles; there must be at least one.
 TileRect bounding_rect(const std::vector<TileRect>& tiles);
 
+/// West and east edge of a tile, in longitudes of any unit; west < east.
+struct TileSpan {
+  double west = 0;
+  double east = 0;
+};
+
+/// Returns for each tile how many full circles to add to its longitudes, so that all tiles lie side by side: the circle
+/// of longitudes is cut in its widest gap. All 0 if that saves less than `least`, a fraction of a cell. Time: n log n.
+std::vector<int> turns_side_by_side(const std::vector<TileSpan>& tiles, double circle, double least);
+
 /// Returns the number of samples covered by at least one tile. Time: tiles times their distinct edges.
 double covered_samples(const std::vector<TileRect>& tiles);
 

@@ -131,6 +131,32 @@ TileRect rect_of(const Tile& first, const Tile& tile) {
   return {std::llround(col), std::llround(row), tile.cols, tile.rows};
 }
 
+// Moves tiles on both sides of 180 degrees side by side, by full circles.
+void join_across_180(std::vector<Tile>& tiles, const RasterOptions& options, std::vector<std::string>& notes) {
+  const Tile& first = tiles.front();
+  const double step_x = first.map[1], step_y = -first.map[5];
+  std::vector<TileSpan> spans;
+  double west = first.map[0], east = west, north = first.map[3], south = north;
+  for (const Tile& tile : tiles) {
+    const TileSpan& span = spans.emplace_back(TileSpan{tile.map[0], tile.map[0] + tile.cols * tile.map[1]});
+    west = std::min(west, span.west), east = std::max(east, span.east);
+    north = std::max(north, tile.map[3]), south = std::min(south, tile.map[3] + tile.rows * tile.map[5]);
+  }
+  const double circle = turn_of(first.has_crs ? &first.crs : nullptr, {west, step_x, 0, north, 0, -step_y},
+                                (east - west) / step_x, (north - south) / step_y, options);
+  if (circle == 0) return;
+  const std::vector<int> turns = turns_side_by_side(spans, circle, step_x / 2);
+  std::size_t moved = 0;
+  for (std::size_t i = 0; i < tiles.size(); ++i) {
+    tiles[i].map[0] += turns[i] * circle;
+    moved += turns[i] != 0 ? 1 : 0;
+  }
+  if (moved > 0) {
+    notes.push_back(
+        fmt::format("moved {} of {} tiles by a full circle of longitude, next to the others", moved, tiles.size()));
+  }
+}
+
 // Whether samples of the tiles' type can have this value.
 bool can_mark(const Tile& tile, double value) {
   if (GDALDataTypeIsFloating(tile.type)) return true;
@@ -284,9 +310,16 @@ TileSet open_tile_set(const std::vector<std::string>& files, const RasterOptions
     try {
       tiles.push_back(look_at(file, options, session));
       compare(tiles.front(), tiles.back(), options);
-      places.push_back(rect_of(tiles.front(), tiles.back()));
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", file, error.what()));
+    }
+  }
+  join_across_180(tiles, options, notes);
+  for (const Tile& tile : tiles) {
+    try {
+      places.push_back(rect_of(tiles.front(), tile));
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", tile.path, error.what()));
     }
   }
   const TileRect all = bounding_rect(places);

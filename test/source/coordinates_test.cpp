@@ -118,6 +118,11 @@ TEST_F(CoordinatesOfFiles, LongitudesAreThoseNextToTheRaster) {
     for (const dvec3& p : points) EXPECT_NEAR(p.x / geo.cell_x_m, 150, 1e-8) << place.west;
     ASSERT_FALSE(frame.from_local(points));
     EXPECT_LE(std::abs(points[0].x), 180);
+    // The map's own longitudes are as good.
+    const CoordinateFrame map(geo, kCols, kRows, Coordinates::map);
+    points = {{lon - 360, lat, 0}, {lon, lat, 0}};
+    ASSERT_FALSE(map.to_local(points));
+    for (const dvec3& p : points) EXPECT_NEAR(p.x / geo.cell_x_m, 150, 1e-8) << place.west;
   }
 }
 

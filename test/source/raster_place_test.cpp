@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
+#include <vector>
 
+#include "scarp/source/map_extent.h"
 #include "source/files.h"
 
 namespace scarp {
@@ -121,7 +124,15 @@ TEST_F(RasterPlaceTest, LongitudesBeyondTheEarthAreAnotherCrs) {
 }
 
 TEST_F(RasterPlaceTest, AWholeHemisphereIsNoPlaneAndSaysSo) {
-  EXPECT_TRUE(has_note(read(placed({0, 1, 0, 80, 0, -40}, "EPSG:4326")), "wider"));
+  EXPECT_TRUE(has_note(read(placed({0, 1, 0, 80, 0, -20}, "EPSG:4326")),
+                       "true cell widths are 68.4 to 128.6 % of the width at the centre"));
+  // Percentages of nothing say nothing: samples at a pole, and at both.
+  for (const double step : {90.0, 180.0}) {
+    const Raster globe = read(placed({-180, 120, 0, 90 + step / 2, 0, -step}, "EPSG:4326"));
+    EXPECT_TRUE(has_note(globe, "the latitudes reach a pole"));
+    EXPECT_TRUE(has_note(globe, "--window, or gdalwarp"));
+    EXPECT_FALSE(has_note(globe, "%"));
+  }
 }
 
 TEST_F(RasterPlaceTest, MapsInFeetBecomeMetres) {
@@ -153,7 +164,65 @@ TEST_F(RasterPlaceTest, WithoutCrsMapUnitsAreMetres) {
   EXPECT_TRUE(raster.georeference.present);
   EXPECT_EQ(30, raster.georeference.cell_x_m);
   EXPECT_TRUE(has_note(raster, "assuming map units of metres"));
-  EXPECT_TRUE(has_note(read(placed({10, 0.001, 0, 45, 0, -0.001})), "EPSG:4326"));
+  // Metres from a corner of the site, in cells that elevation models have.
+  const Raster site = read(placed({0, 0.5, 0, 1, 0, -0.5}));
+  EXPECT_EQ(0.5, site.georeference.cell_x_m);
+  EXPECT_TRUE(has_note(site, "a corner is at 0,0, but the bounds fit degrees (override with --crs EPSG:4326)"));
+}
+
+TEST_F(RasterPlaceTest, BoundsThatFitDegreesAreDegrees) {
+  const auto tile = placed({10, 0.001, 0, 45.001, 0, -0.001});
+  const Raster raster = read(tile);
+  EXPECT_NEAR(78.847, raster.georeference.cell_x_m, 0.001);
+  EXPECT_EQ("WGS 84 (EPSG:4326)", raster.georeference.crs_name);
+  EXPECT_TRUE(
+      has_note(raster, "assuming degrees (EPSG:4326), because all bounds fit (override with --crs; --crs none"));
+  // The whole file decides, not the window.
+  RasterOptions options;
+  options.window = {1, 0, 2, 2};
+  EXPECT_EQ("WGS 84 (EPSG:4326)", read(tile, options).georeference.crs_name);
+  // Cells too small for metres at 0,0; and whole globes of coarse cells, of either origin.
+  for (const auto& map :
+       {std::array<double, 6>{0, 0.001, 0, 1, 0, -0.5}, {-180, 120, 0, 90, 0, -90}, {0, 120, 0, 90, 0, -90}})
+    EXPECT_EQ("WGS 84 (EPSG:4326)", read(placed(map)).georeference.crs_name) << map[0];
+  for (const auto& map : {std::array<double, 6>{10, 2, 0, 45, 0, -2},
+                          {300, 30, 0, 45, 0, -0.5},
+                          {10, 0.5, 0, 91, 0, -0.5},
+                          {-181, 0.5, 0, 45, 0, -0.5}})
+    EXPECT_EQ("", read(placed(map)).georeference.crs_name) << map[0];
+}
+
+TEST_F(RasterPlaceTest, NoCrsOverridesGuessAndFile) {
+  RasterOptions options;
+  options.crs = "none";
+  for (const char* crs : {static_cast<const char*>(nullptr), "EPSG:4326"}) {
+    const Raster raster = read(placed({10, 0.001, 0, 45.001, 0, -0.001}, crs), options);
+    EXPECT_EQ(0.001, raster.georeference.cell_x_m);
+    EXPECT_EQ("", raster.georeference.crs_name);
+    EXPECT_FALSE(has_note(raster, "coordinate reference system"));
+  }
+  EXPECT_EQ(1, read({}, options).georeference.cell_x_m);
+}
+
+TEST_F(RasterPlaceTest, ExtentOfSamplesAndOfEdges) {
+  const auto extent = [&](const Raster& raster) { return map_extent(raster.georeference, raster.cols, raster.rows); };
+  const auto numbers = [](const std::optional<MapBounds>& b) {
+    return b ? std::vector<double>{b->west, b->south, b->east, b->north} : std::vector<double>{};
+  };
+  const MapExtent degrees = extent(read(placed({10, 1, 0, 45, 0, -0.5}, "EPSG:4326")));
+  EXPECT_EQ((std::vector<double>{10.5, 44.25, 12.5, 44.75}), numbers(degrees.samples));
+  EXPECT_EQ((std::vector<double>{10, 44, 13, 45}), numbers(degrees.edges));
+  EXPECT_EQ(numbers(degrees.samples), numbers(degrees.samples_lonlat));
+  EXPECT_EQ(numbers(degrees.edges), numbers(degrees.edges_lonlat));
+  // 500 km east is the central meridian, 15 degrees.
+  const MapExtent metres = extent(read(placed({400000, 100000, 0, 5100000, 0, -100000}, "EPSG:32633")));
+  EXPECT_EQ((std::vector<double>{400000, 4900000, 700000, 5100000}), numbers(metres.edges));
+  ASSERT_TRUE(metres.samples_lonlat);
+  EXPECT_LT(metres.samples_lonlat->west, 15);
+  EXPECT_GT(metres.samples_lonlat->east, 16.9);
+  EXPECT_LT(metres.edges_lonlat->west, metres.samples_lonlat->west);
+  EXPECT_NEAR(46.05, metres.edges_lonlat->north, 0.01);
+  EXPECT_FALSE(extent(read(placed({1000, 30, 0, 2000, 0, -30}))).edges_lonlat);
 }
 
 TEST_F(RasterPlaceTest, CrsAndBoundsOfTheCallerWin) {

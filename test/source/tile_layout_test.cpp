@@ -18,6 +18,23 @@ TEST(TileLayout, OneTileIsTheWhole) {
   EXPECT_EQ(covered_samples({{-3, 4, 10, 20}}), 200);
 }
 
+TEST(TileLayout, TilesAcrossTheEndOfTheCircleLieSideBySide) {
+  using Turns = std::vector<int>;
+  const auto turns = [](const std::vector<TileSpan>& tiles) { return turns_side_by_side(tiles, 360, 0.01); };
+  EXPECT_EQ(turns({{179, 180}, {-180, -179}}), (Turns{0, 1}));
+  EXPECT_EQ(turns({{-180, -179}, {179, 180}, {-179, -170}}), (Turns{1, 0, 1}));
+  EXPECT_EQ(turns({{-180, -170}, {170, 180}, {160, 170.000001}, {-180.000001, -170}}), (Turns{1, 0, 0, 1}));
+  EXPECT_EQ(turns({{359, 360}, {0, 1}}), (Turns{0, 1}));
+  // Two conventions for one place.
+  EXPECT_EQ(turns({{200, 210}, {-150, -140}}), (Turns{0, 1}));
+  // Nothing to gain: side by side already, far apart, the whole globe, more than the globe.
+  EXPECT_EQ(turns({{5, 6}, {6, 7}}), (Turns{0, 0}));
+  EXPECT_EQ(turns({{-80, -70}, {100, 110}}), (Turns{0, 0}));
+  EXPECT_EQ(turns({{-180, 0}, {0, 180}}), (Turns{0, 0}));
+  EXPECT_EQ(turns({{0, 180}, {180, 360}}), (Turns{0, 0}));
+  EXPECT_EQ(turns({{-180.5, 180.5}}), (Turns{0}));
+}
+
 TEST(TileLayout, OverlapsCountOnce) {
   EXPECT_EQ(covered_samples({{0, 0, 4, 4}, {0, 0, 4, 4}}), 16);
   EXPECT_EQ(covered_samples({{0, 0, 4, 4}, {3, 3, 4, 4}}), 31);

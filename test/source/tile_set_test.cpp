@@ -2,6 +2,7 @@
 // Several files as one raster.
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "source/files.h"
 
@@ -77,6 +78,33 @@ TEST_F(TileSet, TilesSideBySideAreOneRasterOfTheirType) {
   EXPECT_EQ(500005, raster.georeference.map_from_node[0]);
   EXPECT_EQ(3999995, raster.georeference.map_from_node[3]);
   EXPECT_EQ("WGS 84 / UTM zone 10N (EPSG:32610)", raster.georeference.crs_name);
+}
+
+TEST_F(TileSet, TilesOnBothSidesOf180DegreesLieSideBySide) {
+  const auto at = [&](const std::string& name, double west, const char* crs, std::vector<double> samples) {
+    return tile(name, 0, 0, std::move(samples), GDT_Int16, [=](GDALDataset& d) {
+      double map[] = {west, 0.5, 0, 50, 0, -0.5};
+      d.SetGeoTransform(map);
+      OGRSpatialReference srs;
+      if (crs) {
+        EXPECT_EQ(OGRERR_NONE, srs.SetFromUserInput(crs));
+      }
+      d.SetSpatialRef(crs ? &srs : nullptr);
+    });
+  };
+  for (const char* crs : {"EPSG:4326", static_cast<const char*>(nullptr)}) {
+    const Raster raster = read_tiles({at("w.tif", -180, crs, {5, 6, 7, 8}), at("e.tif", 179, crs, {1, 2, 3, 4})}, {});
+    expect_samples(raster, {1, 2, 5, 6, 3, 4, 7, 8});
+    EXPECT_EQ(179.25, raster.georeference.map_from_node[0]);
+    EXPECT_TRUE(has_note(raster, "moved 1 of 2 tiles by a full circle of longitude"));
+    EXPECT_FALSE(has_note(raster, "gaps"));
+  }
+  // Metres are no circle, whatever the bounds.
+  RasterOptions metres;
+  metres.crs = "none";
+  EXPECT_EQ(720, read_tiles({path("w.tif"), path("e.tif")}, metres).cols);
+  EXPECT_EQ(
+      4, read_tiles({at("a.tif", -1, "EPSG:4326", {1, 2, 3, 4}), at("b.tif", 0, "EPSG:4326", {1, 2, 3, 4})}, {}).cols);
 }
 
 TEST_F(TileSet, AFolderStandsForItsRastersByName) {
@@ -175,8 +203,8 @@ TEST_F(TileSet, GapsBetweenTilesWithoutNodataAreNanThatNoSampleCanBe) {
                {GDT_Int16, {-32768, 32767, 0, 1}},
                {GDT_UInt16, {0, 65535, 1, 2}},
                {GDT_Int32, {-16777216, 16777216, 0, 1}},
-               {GDT_Float32, {-0x1p100, 0x1p100, 0, 1}},
-               {GDT_Float64, {-0x1p100, 0x1p100, 0, 1}}};
+               {GDT_Float32, {-0x1p99, 0x1p99, 0, 1}},
+               {GDT_Float64, {-0x1p99, 0x1p99, 0, 1}}};
   for (const auto& c : cases) {
     const Raster raster =
         read_tiles({tile("a.tif", 0, 0, c.samples, c.type), tile("b.tif", 4, 0, c.samples, c.type)}, {});
