@@ -19,6 +19,7 @@
 #include "app/cli/places.h"
 #include "app/cli/progress.h"
 #include "app/cli/render_input.h"
+#include "app/cli/seen.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/output/png.h"
@@ -68,7 +69,7 @@ class Render {
     const double render_s = watch_.lap();
     tell_notes();
     tell_of_contours(camera);
-    tell_if_buried(camera, "the eye");
+    if (!blank_.tell()) tell_if_buried(camera, "the eye");
     const int scale = options_.picture.look == Look::comanche ? options_.picture.comanche.scale : 1;
     fmt::print("{}: {} x {} pixels; {}read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options_.output,
                options_.picture.width * scale, options_.picture.height * scale,
@@ -94,6 +95,8 @@ class Render {
     }
     stop_if_interrupted();
     if (options_.top && options_.size.empty()) fit_size_to_scene(picture_box(scene_), options_.picture);
+    facts_.heights = input_.heights;
+    if (kind_ == InputKind::function) facts_.function_reach = options_.march_settings.function.reach;
     finish_look(options_.look_options, input_.across, input_.heights, input_.exaggeration, options_.picture);
     build_s_ = watch_.lap();
   }
@@ -189,29 +192,42 @@ class Render {
     make_frames(frames, options_.output, cameras, [&](Camera camera, const std::string& name) {
       finish(camera);
       ReplaceFile file(name);
+      const int blank_before = blank_.count();
       make(file, name, camera, [](double) { return caught_signal() == 0; });
-      if (!options_.exr) tell_if_buried(camera, fmt::format("the eye of '{}'", name));
+      if (!options_.exr && blank_.count() == blank_before) tell_if_buried(camera, fmt::format("the eye of '{}'", name));
     });
     tell_notes();
     if (!cameras.empty()) tell_of_contours(cameras.front());
+    blank_.tell();
   }
 
   // Renders and writes one picture. What was found is returned; layers have no findings.
-  Picture make(ReplaceFile& file, const std::string& name, const Camera& camera, const Progress& progress) const {
+  Picture make(ReplaceFile& file, const std::string& name, const Camera& camera, const Progress& progress) {
     if (options_.exr) {
       const PictureLayers layers = render_layers(scene_, camera, options_.picture, progress);
+      look_if_blank(name, camera, has_one_colour(layers));
       write_layers(file, name, layers, camera, depth_range_of(options_.depth));
       return {};
     }
     Picture picture = render_picture(scene_, camera, options_.picture, progress);
+    // Green throughout is what the look of errors should be.
+    look_if_blank(name, camera, options_.picture.look != Look::error && has_one_colour(picture.image));
     draw_figure_of(options_.figure, options_.picture, scene_, camera, options_.top, input_.numbers, picture);
     write_png(file, name, {picture.image.rgb.data(), picture.image.width, picture.image.height});
     return picture;
   }
 
+  void look_if_blank(const std::string& name, const Camera& camera, bool one_colour) {
+    BlankFacts facts = facts_;
+    facts.one_colour = one_colour;
+    blank_.add(name, why_blank(scene_, camera, options_.picture, facts));
+  }
+
   // Last: what fails prints one line alone.
   void tell_notes() const {
     for (const std::string& note : input_.notes) fmt::print(stderr, "note: {}\n", note);
+    if (const std::string note = note_on_low_water(scene_, options_.picture, facts_); !note.empty())
+      fmt::print(stderr, "note: {}\n", note);
     if (raised_ > 0) {
       fmt::print(stderr, "note: the eye is raised by {}{} m, out of the ground\n",
                  options_.frames.several() ? "up to " : "", metres_text(raised_));
@@ -252,6 +268,8 @@ class Render {
   Watch watch_;
   double read_s_ = 0, build_s_ = 0;
   double raised_ = 0;  // metres, of the eye, the most of all frames
+  BlankFacts facts_;
+  BlankPictures blank_;
 };
 
 }  // namespace

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// Pictures that show nothing: warns, and says why.
+//
+// A coarse grid of camera rays counts the share of the picture on surfaces above water. Below half a percent the
+// picture counts as blank, and the reason is sought in the facts: where the eye is, what stands in the way, what the
+// heights are. A picture of one colour counts as blank, too.
+#pragma once
+
+#include <string>
+
+#include "scarp/render/camera/camera.h"
+#include "scarp/render/frame/layers.h"
+#include "scarp/render/frame/picture.h"
+#include "scarp/scene/scene.h"
+
+namespace scarp::cli {
+
+/// Shares of a picture, 0 to 1, by the rays of a coarse grid.
+struct SeenShares {
+  double surfaces = 0;     ///< surfaces above water, not hidden by fog; plinths are no surfaces
+  double under_water = 0;  ///< ground below the level of the water
+  double in_fog = 0;       ///< surfaces beyond the visibility
+  double inside = 0;       ///< rays that begin inside a solid
+  double nearest = 0;      ///< metres to the nearest hit; 0 without one
+};
+
+/// Traces at most some thousand rays.
+SeenShares seen_shares(const Scene& scene, const Camera& camera, const PictureSettings& picture);
+
+/// What the reasons refer to, beside scene and camera.
+struct BlankFacts {
+  ReliefRange heights{};  ///< of the ground, exaggerated
+  bool one_colour = false;
+  double function_reach = 0;  ///< metres, of rays over functions; 0: no function
+};
+
+/// Returns why a picture is blank, to follow a colon; empty if it is not.
+std::string why_blank(const Scene& scene, const Camera& camera, const PictureSettings& picture,
+                      const BlankFacts& facts);
+
+/// Returns whether all pixels have one colour.
+bool has_one_colour(const Image& image);
+bool has_one_colour(const PictureLayers& layers);
+
+/// Collects blank pictures of one run, for one warning.
+class BlankPictures {
+ public:
+  /// `why` is what why_blank() returns.
+  void add(const std::string& name, const std::string& why);
+  /// Prints the warning, if there is one to print; returns whether there was.
+  bool tell() const;
+  /// Returns the number of blank pictures.
+  int count() const { return blank_; }
+
+ private:
+  int pictures_ = 0, blank_ = 0;
+  std::string first_, why_;  // of the first blank picture
+};
+
+/// Returns a note for water below all ground; empty: there is none.
+std::string note_on_low_water(const Scene& scene, const PictureSettings& picture, const BlankFacts& facts);
+
+}  // namespace scarp::cli
