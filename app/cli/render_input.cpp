@@ -21,6 +21,28 @@ namespace {
 constexpr double kFaintest = 64;   // rays end where haze hides all but 1 / 64 of a colour
 constexpr double kLongReach = 64;  // extents, where there is less haze
 
+// Samples for a picture of everything: 4 x 4 to a pixel. The near ground of a slanted view has pixels about four times
+// as close as the mean, and the others have some to spare.
+constexpr std::int64_t kSamplesPerPixel = 16;
+
+// The samples that a picture of a large raster shows. A small picture has as many as one of 1000 x 1000 pixels, which
+// read as fast. Views of a part have as many as rasters that are read completely, and looks that measure read all.
+std::optional<Decimation> decimation_for(const RenderOptions& options, const ViewSettings& view) {
+  constexpr std::int64_t kLeast = kSamplesPerPixel * 1000 * 1000;
+  const PictureSettings& picture = options.picture;
+  const bool measures = picture.look == Look::steps || picture.look == Look::error || picture.look == Look::level;
+  // The shared border would be averaged with what lies beside it.
+  if (options.full || measures || options.field.wrap == Wrap::shared_border) return {};
+  const bool part = !options.eye.empty() || !options.frames.path.empty() || view.distance < 1 ||
+                    options.is_given("--fov") || picture.look == Look::comanche;
+  std::int64_t pixels = std::int64_t{picture.width} * picture.height;
+  // The longer side is the width; the other one follows from the raster.
+  if (options.top && options.size.empty()) pixels = std::int64_t{picture.width} * picture.width;
+  Decimation decimation;
+  decimation.samples = part ? decimation.above : std::clamp(kSamplesPerPixel * pixels, kLeast, decimation.above);
+  return decimation;
+}
+
 // Framed by its box.
 void frame_by_box(RenderInput& input, const RenderOptions& options) {
   input.framed = [&picture = options.picture](const Scene& scene, const ViewSettings& view) {
@@ -176,6 +198,7 @@ bool RenderOptions::is_given(std::string_view option) const { return cli::is_giv
 
 RenderInput open_render_input(InputKind kind, RenderOptions& options, const ViewSettings& view) {
   if (kind == InputKind::function) settle_function(options);
+  if (kind == InputKind::terrain) options.raster.decimation = decimation_for(options, view);
   OpenedInput opened = open_input(kind, options, options.picture.ramp);
   stop_if_interrupted();
   std::vector<std::string> notes = opened.notes, files = opened.files;

@@ -259,6 +259,12 @@ Command& declare_render(Program& program, RenderOptions& o) {
   add_vox_look_options(command, o.vox_look);
   add_function_options(command, o.function, "side of the ground in the picture", o.march, o.march_settings);
   add_raster_options(command, o.raster);
+  command.add(&o.full, {.names = "--full",
+                        .help = fmt::format("all samples of rasters with more than {} million, of which pictures "
+                                            "otherwise show averages of blocks",
+                                            Decimation{}.above / 1'000'000),
+                        .topic = Topic::input,
+                        .inputs = {kTerrain, "other inputs are always read completely"}});
   add_march_option(command, o.march);
   add_march_options(command, o.march_settings);
   command.example("scarp render dem.tif -o dem.png --sun 300,30");

@@ -12,15 +12,11 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
-#include "scarp/source/incomplete_file.h"
+#include "scarp/source/band_pieces.h"
 #include "scarp/source/suspected_nodata.h"
-#include "scarp/source/vrt_sources.h"
 
 namespace scarp {
 namespace {
-
-constexpr std::int64_t kBytesPerPiece = 8 << 20;        // approximate size of the pieces in which rows are read
-constexpr std::int64_t kLargestPieceBytes = 256 << 20;  // maximum size, if whole blocks of the file need more
 
 // Memory available without swapping; the machine's total if the system does not report it.
 double free_memory_bytes() {
@@ -33,32 +29,11 @@ double free_memory_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-// Calls piece(first, count) for pieces of the window's rows that end at block boundaries of the band, so that no block
-// is decoded twice.
-template <class F>
-void for_row_pieces(GDALRasterBand& band, const RasterWindow& window, int bytes_per_sample, const Progress& progress,
-                    F&& piece) {
-  int block_cols = 1, block_rows = 1;
-  band.GetBlockSize(&block_cols, &block_rows);
-  const std::int64_t row_bytes = std::int64_t{window.cols} * bytes_per_sample;
-  std::int64_t step = std::max<std::int64_t>(1, kBytesPerPiece / row_bytes);
-  const std::int64_t whole_blocks = (step + block_rows - 1) / block_rows * block_rows;
-  const bool align = whole_blocks * row_bytes <= kLargestPieceBytes || whole_blocks == 1;
-  if (align) step = whole_blocks;
-  std::int64_t row = window.row;
-  const std::int64_t end = std::int64_t{window.row} + window.rows;
-  while (row < end) {
-    const std::int64_t next = std::min(align ? (row / step + 1) * step : row + step, end);
-    piece(static_cast<int>(row), static_cast<int>(next - row));
-    row = next;
-    if (progress && !progress(static_cast<double>(row - window.row) / window.rows)) throw Interrupted();
-  }
-}
-
 // Special samples found while reading.
 struct Findings {
   std::int64_t nan = 0;
-  double rounding = 0;  // largest change by the conversion to float32
+  std::int64_t hidden = 0;  // by a mask
+  double rounding = 0;      // largest change by the conversion to float32
   bool beyond_are_holes = true;
   std::int64_t beyond = 0;  // undeclared marks beyond all heights
   double least_beyond = 0, most_beyond = 0;
@@ -106,72 +81,129 @@ float clean(double source, std::optional<double> nodata, int col, int row, Findi
   return sample;
 }
 
-// Samples whose type is kept, or widened by GDAL without loss.
+// What samples are in the file.
+struct Stored {
+  GDALDataType type = GDT_Unknown;
+  bool signed_bytes = false;
+  std::optional<double> nodata;
+  GDALRasterBand* mask = nullptr;  // where 0, it hides samples, which are read as floats; null: none
+};
+
+// Whether float32 does not hold all samples of the type.
+bool is_wide(GDALDataType type) {
+  return GDALDataTypeIsFloating(type) ? type != GDT_Float32 : GDALGetDataTypeSizeBits(type) > 16;
+}
+
+// Reads pieces as samples of type T, clean.
 template <class T>
-std::vector<T> read_kept(GDALRasterBand& band, const RasterWindow& window, GDALDataType type,
-                         std::optional<double> nodata, bool signed_bytes, Findings& found, GdalSession& session,
-                         const Progress& progress) {
-  refuse_beyond_memory(window, sizeof(T));
-  std::vector<T> samples(static_cast<std::size_t>(window.cols) * static_cast<std::size_t>(window.rows));
-  for_row_pieces(band, window, sizeof(T), progress, [&](int row, int rows) {
-    T* const first = samples.data() + static_cast<std::ptrdiff_t>(row - window.row) * window.cols;
-    read_rows(band, window, row, rows, type, first, session);
-    const std::ptrdiff_t count = static_cast<std::ptrdiff_t>(rows) * window.cols;
+class PieceReader {
+ public:
+  PieceReader(GDALRasterBand& band, const Stored& stored, Findings& found, GdalSession& session)
+      : band_(band), stored_(stored), found_(found), session_(session) {}
+
+  // Rows of `out` are `row_samples` samples apart.
+  void read(const RasterWindow& piece, T* out, int row_samples) {
     if constexpr (std::is_floating_point_v<T>) {
-      for (std::ptrdiff_t i = 0; i < count; ++i) {
-        first[i] = clean(first[i], nodata, window.col + static_cast<int>(i % window.cols),
-                         row + static_cast<int>(i / window.cols), found);
+      if (is_wide(stored_.type)) {
+        wide_.resize(static_cast<std::size_t>(piece.rows) * static_cast<std::size_t>(piece.cols));
+        read_piece(band_, piece, GDT_Float64, wide_.data(), piece.cols, session_);
+        tidy(piece, wide_.data(), piece.cols, out, row_samples);
+      } else {
+        read_piece(band_, piece, GDT_Float32, out, row_samples, session_);
+        tidy(piece, out, row_samples, out, row_samples);
       }
-    } else if (signed_bytes) {
-      std::transform(first, first + count, first, [](T s) { return static_cast<T>(static_cast<std::int8_t>(s)); });
-    }
-  });
-  return samples;
-}
-
-// Samples of wide types, through double.
-std::vector<float> read_narrowed(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
-                                 Findings& found, GdalSession& session, const Progress& progress) {
-  refuse_beyond_memory(window, sizeof(float));
-  std::vector<float> samples(static_cast<std::size_t>(window.cols) * static_cast<std::size_t>(window.rows));
-  std::vector<double> piece;
-  for_row_pieces(band, window, sizeof(double), progress, [&](int row, int rows) {
-    piece.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(window.cols));
-    read_rows(band, window, row, rows, GDT_Float64, piece.data(), session);
-    float* out = samples.data() + static_cast<std::ptrdiff_t>(row - window.row) * window.cols;
-    for (std::size_t i = 0; i < piece.size(); ++i) {
-      const auto cols = static_cast<std::size_t>(window.cols);
-      out[i] =
-          clean(piece[i], nodata, window.col + static_cast<int>(i % cols), row + static_cast<int>(i / cols), found);
-    }
-  });
-  return samples;
-}
-
-// Converts the samples to float32 and masks hidden ones. Returns the number of hidden samples; if 0, changes nothing.
-std::int64_t apply_mask(GDALRasterBand& mask, const RasterWindow& window, BandSamples& read, GdalSession& session) {
-  std::vector<std::uint8_t> piece;
-  std::int64_t hidden = 0;
-  const auto hide = [&](auto&& each) {
-    for_row_pieces(mask, window, 1, {}, [&](int row, int rows) {
-      piece.resize(static_cast<std::size_t>(rows) * static_cast<std::size_t>(window.cols));
-      read_rows(mask, window, row, rows, GDT_Byte, piece.data(), session);
-      const std::size_t first = static_cast<std::size_t>(row - window.row) * static_cast<std::size_t>(window.cols);
-      for (std::size_t i = 0; i < piece.size(); ++i) {
-        if (piece[i] == 0) each(first + i);
+      if (stored_.mask) hide(piece, out, row_samples);
+    } else {
+      read_piece(band_, piece, std::is_signed_v<T> ? GDT_Int16 : GDT_UInt16, out, row_samples, session_);
+      for (int row = 0; stored_.signed_bytes && row < piece.rows; ++row) {
+        T* const line = out + static_cast<std::ptrdiff_t>(row) * row_samples;
+        std::transform(line, line + piece.cols, line, [](T s) { return static_cast<T>(static_cast<std::int8_t>(s)); });
       }
-    });
-  };
-  hide([&](std::size_t) { ++hidden; });
-  if (hidden == 0) return 0;
-  auto& samples = read.samples;
-  if (!std::holds_alternative<std::vector<float>>(samples)) {
-    refuse_beyond_memory(window, sizeof(float));
-    samples = std::visit([](const auto& s) { return std::vector<float>(s.begin(), s.end()); }, samples);
+    }
   }
-  auto& floats = std::get<std::vector<float>>(samples);
-  hide([&](std::size_t i) { floats[i] = std::numeric_limits<float>::quiet_NaN(); });
-  return hidden;
+
+ private:
+  template <class Source>
+  void tidy(const RasterWindow& piece, const Source* in, int in_row_samples, float* out, int row_samples) {
+    for (int row = 0; row < piece.rows; ++row) {
+      const Source* const source = in + static_cast<std::ptrdiff_t>(row) * in_row_samples;
+      float* const line = out + static_cast<std::ptrdiff_t>(row) * row_samples;
+      for (int col = 0; col < piece.cols; ++col) {
+        const double sample = stored_.signed_bytes && source[col] > 127 ? source[col] - 256 : source[col];
+        line[col] = clean(sample, stored_.nodata, piece.col + col, piece.row + row, found_);
+      }
+    }
+  }
+
+  void hide(const RasterWindow& piece, float* out, int row_samples) {
+    mask_.resize(static_cast<std::size_t>(piece.rows) * static_cast<std::size_t>(piece.cols));
+    read_piece(*stored_.mask, piece, GDT_Byte, mask_.data(), piece.cols, session_);
+    for (std::size_t i = 0; i < mask_.size(); ++i) {
+      if (mask_[i] != 0) continue;
+      const auto row = static_cast<std::ptrdiff_t>(i) / piece.cols, col = static_cast<std::ptrdiff_t>(i) % piece.cols;
+      out[row * row_samples + col] = std::numeric_limits<float>::quiet_NaN();
+      ++found_.hidden;
+    }
+  }
+
+  GDALRasterBand& band_;
+  const Stored& stored_;
+  Findings& found_;
+  GdalSession& session_;
+  std::vector<double> wide_;
+  std::vector<std::uint8_t> mask_;
+};
+
+// The one loop that reads samples: into the result, or block by block into averages.
+template <class T>
+std::vector<T> read_as(const ReadingPlan& plan, const Stored& stored, Findings& found, GdalSession& session,
+                       const Progress& progress) {
+  const RasterWindow& window = plan.window;
+  refuse_beyond_memory({0, 0, plan.cols, plan.rows}, sizeof(T));
+  PieceReader<T> reader(*plan.band, stored, found, session);
+  if (!plan.decimates) {
+    std::vector<T> samples(static_cast<std::size_t>(window.cols) * static_cast<std::size_t>(window.rows));
+    for_pieces(*plan.band, window, sizeof(T), progress,
+               {[&](const RasterWindow& piece) {
+                  reader.read(piece,
+                              samples.data() + static_cast<std::ptrdiff_t>(piece.row - window.row) * window.cols +
+                                  (piece.col - window.col),
+                              window.cols);
+                },
+                {}});
+    return samples;
+  }
+  std::optional<T> hole;
+  if (stored.nodata && (!std::is_floating_point_v<T> || float_can_hold(*stored.nodata)))
+    hole = static_cast<T>(*stored.nodata);
+  // Blocks that a file leaves out have the nodata value.
+  const bool sparse = stored.nodata && stored.nodata == nodata_of(*plan.band);
+  Decimator<T> decimator(window.cols, window.rows, plan.cols, plan.rows, hole);
+  std::vector<T> samples;
+  for_pieces(*plan.band, window, sizeof(T), progress,
+             {[&](const RasterWindow& piece) {
+                if (sparse && is_empty_piece(*plan.band, piece)) return;
+                samples.resize(static_cast<std::size_t>(piece.cols) * static_cast<std::size_t>(piece.rows));
+                reader.read(piece, samples.data(), piece.cols);
+                decimator.add({piece.col - window.col, piece.row - window.row, piece.cols, piece.rows}, samples.data());
+              },
+              [&](int end) { decimator.close_rows(end - window.row); }});
+  return decimator.finish(plan.known);
+}
+
+// Whether a mask hides a sample of the window.
+bool hides_some(GDALRasterBand& mask, const RasterWindow& window, GdalSession& session) {
+  std::vector<std::uint8_t> samples;
+  bool hides = false;
+  for_pieces(mask, window, 1, {},
+             {[&](const RasterWindow& piece) {
+                if (hides) return;
+                samples.resize(static_cast<std::size_t>(piece.cols) * static_cast<std::size_t>(piece.rows));
+                read_piece(mask, piece, GDT_Byte, samples.data(), piece.cols, session);
+                hides = std::find(samples.begin(), samples.end(), 0) != samples.end();
+              },
+              {}});
+  return hides;
 }
 
 bool all_holes(const BandSamples& read) {
@@ -228,61 +260,61 @@ void refuse_beyond_memory(const RasterWindow& window, int bytes_per_sample) {
   }
 }
 
-void read_rows(GDALRasterBand& band, const RasterWindow& window, int row, int rows, GDALDataType type, void* out,
-               GdalSession& session) {
-  session.clear();
-  const CPLErr result =
-      band.RasterIO(GF_Read, window.col, row, window.cols, rows, out, window.cols, rows, type, 0, 0, nullptr);
-  // Some drivers report an error, fill with zeros, and return success.
-  if (result != CE_None || session.failed()) {
-    check_vrt_sources(band);
-    const std::string reason = session.reason("");
-    throw Error(fmt::format("cannot read rows {} to {}: truncated or damaged file{} ({})", row, row + rows - 1,
-                            reason.empty() ? "" : ", " + reason, kFetchAgain));
-  }
-}
-
 BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
-                      GdalSession& session, const Progress& progress) {
+                      const std::optional<Decimation>& decimation, GdalSession& session, const Progress& progress) {
   const GDALDataType type = band.GetRasterDataType();
   const std::string_view type_name = GDALGetDataTypeName(type);
   if (GDALDataTypeIsComplex(type)) {
     throw Error(
         fmt::format("samples are complex numbers ({}) (convert them with gdal_translate -ot Float32)", type_name));
   }
-  const bool signed_bytes = is_signed_byte(band);
-
+  const GdalCacheLimit cache;
+  const ReadingPlan plan = plan_reading(band, window, decimation, !nodata);
   BandSamples read;
+  read.cols = plan.cols;
+  read.rows = plan.rows;
+  read.across = plan.across;
+  read.down = plan.down;
   read.nodata = nodata ? nodata : nodata_of(band);
   if (read.nodata && std::isnan(*read.nodata)) read.nodata.reset();
+  if (!plan.note.empty()) read.notes.push_back(plan.note);
+
+  Stored stored{type, is_signed_byte(band), {}, nullptr};
+  // A mask that only repeats the nodata value adds nothing, and the caller's nodata value overrides it.
+  if (has_own_mask(*plan.band)) stored.mask = plan.band->GetMaskBand();
+  // To learn it, a mask that is reduced would be read twice.
+  if (stored.mask && !plan.decimates && !hides_some(*stored.mask, window, session)) stored.mask = nullptr;
   Findings found;
   found.beyond_are_holes = !nodata;
-  const auto integers = [&]<class T>(T, GDALDataType as, std::string_view becomes) {
+  const auto read_floats = [&] { read.samples = read_as<float>(plan, stored, found, session, progress); };
+  const auto integers = [&]<class T>(T, std::string_view becomes) {
     if (read.nodata && !holds<T>(*read.nodata)) {
       read.notes.push_back(
           fmt::format("nodata value {} cannot occur in {} samples, so there are no holes", *read.nodata, type_name));
       read.nodata.reset();
     }
-    read.samples = read_kept<T>(band, window, as, read.nodata, signed_bytes, found, session, progress);
+    stored.nodata = read.nodata;
+    if (stored.mask) return read_floats();
+    read.samples = read_as<T>(plan, stored, found, session, progress);
     if (!becomes.empty())
-      read.notes.push_back(fmt::format("{} samples are kept as {}", signed_bytes ? "Int8" : type_name, becomes));
+      read.notes.push_back(fmt::format("{} samples are kept as {}", stored.signed_bytes ? "Int8" : type_name, becomes));
   };
   if (type == GDT_Int16) {
-    integers(std::int16_t{}, GDT_Int16, "");
+    integers(std::int16_t{}, "");
   } else if (type == GDT_UInt16) {
-    integers(std::uint16_t{}, GDT_UInt16, "");
-  } else if (signed_bytes || type_name == "Int8") {
-    integers(std::int16_t{}, GDT_Int16, "int16");
+    integers(std::uint16_t{}, "");
+  } else if (stored.signed_bytes || type_name == "Int8") {
+    integers(std::int16_t{}, "int16");
   } else if (type == GDT_Byte) {
-    integers(std::uint16_t{}, GDT_UInt16, "uint16");
-  } else if (type == GDT_Float32) {
-    read.samples = read_kept<float>(band, window, GDT_Float32, read.nodata, false, found, session, progress);
+    integers(std::uint16_t{}, "uint16");
   } else {
-    read.samples = read_narrowed(band, window, read.nodata, found, session, progress);
-    read.notes.push_back(
-        found.rounding == 0
-            ? fmt::format("{} samples converted to float32 without rounding", type_name)
-            : fmt::format("{} samples converted to float32, rounded by at most {:.3g}", type_name, found.rounding));
+    stored.nodata = read.nodata;
+    read_floats();
+    if (type != GDT_Float32)
+      read.notes.push_back(
+          found.rounding == 0
+              ? fmt::format("{} samples converted to float32 without rounding", type_name)
+              : fmt::format("{} samples converted to float32, rounded by at most {:.3g}", type_name, found.rounding));
   }
   // Float holes whose mark does not fit in float32 are NaN by now.
   if (std::holds_alternative<std::vector<float>>(read.samples) && read.nodata) {
@@ -292,13 +324,9 @@ BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::opt
       read.nodata.reset();
     }
   }
-  // A mask that only repeats the nodata value adds nothing, and the caller's nodata value overrides it.
-  if (has_own_mask(band)) {
-    const std::int64_t hidden = apply_mask(*band.GetMaskBand(), window, read, session);
-    if (hidden > 0)
-      read.notes.push_back(fmt::format("{} samples are holes by the file's {}", hidden,
-                                       band.GetMaskFlags() & GMF_ALPHA ? "alpha band" : "mask"));
-  }
+  if (found.hidden > 0)
+    read.notes.push_back(fmt::format("{} samples are holes by the file's {}", found.hidden,
+                                     band.GetMaskFlags() & GMF_ALPHA ? "alpha band" : "mask"));
   if (found.nan > 0) read.notes.push_back(fmt::format("{} samples are NaN: holes", found.nan));
   if (found.beyond > 0) {
     // The shortest digits of a float are not those of the same number as a double.

@@ -11,7 +11,7 @@
 //   complex                            rejected
 //   beyond +-1e30, undeclared          NaN, unless the caller names a nodata value
 //   any, with a mask or alpha band     float32 with NaN for masked samples
-//   that hides samples
+//   that hides samples                 (if reduced: with any mask or alpha band)
 #pragma once
 
 #include <gdal_priv.h>
@@ -25,24 +25,25 @@
 #include "scarp/base/progress.h"
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/raster_options.h"
+#include "scarp/source/reading_plan.h"
 
 namespace scarp {
 
 /// Result of read_band().
 struct BandSamples {
   std::variant<std::vector<std::int16_t>, std::vector<std::uint16_t>, std::vector<float>> samples;
+  int cols = 0;
+  int rows = 0;
+  SampleSpacing across, down;  ///< of the samples, in columns and rows of the window
   std::optional<double> nodata;
   std::vector<std::string> notes;
 };
 
-/// Reads a window, which must lie inside the band; rows as stored. `nodata` overrides the band's own. Throws Error
-/// without the file's name: unreadable, complex, infinite or all nodata, too large for the free memory.
+/// Reads a window, which must lie inside the band; rows as stored. `nodata` overrides the band's own. With `decimation`
+/// a large window is reduced. Throws Error without the file's name: unreadable, complex, infinite or all nodata, too
+/// large for the free memory.
 BandSamples read_band(GDALRasterBand& band, const RasterWindow& window, std::optional<double> nodata,
-                      GdalSession& session, const Progress& progress);
-
-/// Reads whole rows of a window as `type` into `out`. Throws Error if the file lacks them.
-void read_rows(GDALRasterBand& band, const RasterWindow& window, int row, int rows, GDALDataType type, void* out,
-               GdalSession& session);
+                      const std::optional<Decimation>& decimation, GdalSession& session, const Progress& progress);
 
 /// Returns whether the samples are signed bytes, which GDAL before 3.7 reports only as metadata of Byte.
 bool is_signed_byte(GDALRasterBand& band);

@@ -112,6 +112,20 @@ void apply_negative_scale(Raster& raster) {
   raster.nodata.reset();
 }
 
+double last_of(const SampleSpacing& side, int samples) { return side.first + (samples - 1) * side.step; }
+
+// Places samples between those of the window.
+void respace(Georeference& geo, const SampleSpacing& across, const SampleSpacing& down) {
+  geo.cell_x_m *= across.step;
+  geo.cell_y_m *= down.step;
+  if (!geo.present) return;
+  auto& map = geo.map_from_node;
+  map[0] += across.first * map[1];
+  map[3] += down.first * map[5];
+  map[1] *= across.step;
+  map[5] *= down.step;
+}
+
 void flip(Raster& raster, bool rows, bool cols) {
   std::visit(
       [&](auto& samples) {
@@ -232,16 +246,19 @@ Raster read_dataset(GDALDataset& stored, const RasterOptions& given, GdalSession
   const RasterWindow window = choose_window(dataset, options.window);
   Raster raster;
   raster.files = files_of(stored);
-  raster.cols = window.cols;
-  raster.rows = window.rows;
   raster.file_type = decoded ? std::string(name_of(options.encoding)) : GDALGetDataTypeName(band.GetRasterDataType());
 
   // Errors that need no reading come first.
   RasterPlace place = find_place(dataset, window, options);
   raster.georeference = place.georeference;
   find_heights(band, place, options, raster);
-  BandSamples read = read_band(band, window, options.nodata, session, progress);
+  BandSamples read = read_band(band, window, options.nodata, options.decimation, session, progress);
   raster.samples = std::move(read.samples);
+  raster.cols = read.cols;
+  raster.rows = read.rows;
+  if (place.flip_cols) read.across.first = window.cols - 1 - last_of(read.across, read.cols);
+  if (place.flip_rows) read.down.first = window.rows - 1 - last_of(read.down, read.rows);
+  respace(raster.georeference, read.across, read.down);
   raster.nodata = read.nodata;
   const GDALDataType type = band.GetRasterDataType();
   std::optional<double> greatest;

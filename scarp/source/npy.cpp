@@ -12,6 +12,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
+#include "scarp/source/band_pieces.h"
 #include "scarp/source/band_samples.h"
 #include "scarp/source/file_check.h"
 #include "scarp/source/gdal_dataset.h"
@@ -146,7 +147,7 @@ GDALDatasetUniquePtr open_in_memory(GDALDataset& stored, const NpyHeader& header
   refuse_beyond_memory(all, sample_bytes);
   const std::size_t count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   bytes.resize(count * static_cast<std::size_t>(sample_bytes));
-  read_rows(band, all, 0, height, band.GetRasterDataType(), bytes.data(), session);
+  read_piece(band, all, band.GetRasterDataType(), bytes.data(), width, session);
   // In place, from the last one: a float takes the space of two halves.
   for (std::size_t i = is_half(header) ? count : 0; i-- > 0;) {
     std::uint16_t half = 0;

@@ -2,6 +2,7 @@
 // Reading options: what a raster file does not state, or states wrongly. One struct for all readers.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -36,6 +37,12 @@ struct HeightRange {
 /// RasterOptions::crs for a raster without a CRS, whatever the file says: map units are metres.
 inline constexpr std::string_view kNoCrs = "none";
 
+/// Reads rasters of more than `above` samples with at most about `samples` samples, for pictures (source/decimate.h).
+struct Decimation {
+  std::int64_t above = 64'000'000;    ///< > 0
+  std::int64_t samples = 16'000'000;  ///< at least 4, at most `above`
+};
+
 /// How to read a raster. Members that are set override the file.
 struct RasterOptions {
   int band = 0;                        ///< counts from 1; 0: the only one
@@ -55,6 +62,7 @@ struct RasterOptions {
   std::optional<RawFormat> raw;  ///< the file contains raw samples, whatever its name; default: by name and content
   std::string channel;           ///< channel of an EXR; default: the only one, else Y, else R
   std::string key;               ///< array in a .npz; default: the only one with heights
+  std::optional<Decimation> decimation;  ///< default: all samples, however many
 };
 
 }  // namespace scarp

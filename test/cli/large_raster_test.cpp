@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Pictures of rasters with more samples than they show.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "cli/program.h"
+#include "output/read_png.h"
+
+namespace scarp {
+namespace {
+
+// 8001 x 8000 samples: each of the 2 x 2 in the file many times.
+std::string large_raster(const test::Scratch& scratch) {
+  scratch.write("small.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1000\n10 20\n30 4000\n");
+  return scratch.write("large.vrt", R"(<VRTDataset rasterXSize="8001" rasterYSize="8000">
+<SRS>EPSG:32610</SRS><GeoTransform>500000, 10, 0, 5000000, 0, -10</GeoTransform>
+<VRTRasterBand dataType="Int16" band="1"><SimpleSource><SourceFilename relativeToVRT="1">small.asc</SourceFilename>
+<SourceBand>1</SourceBand><SrcRect xOff="0" yOff="0" xSize="2" ySize="2"/>
+<DstRect xOff="0" yOff="0" xSize="8001" ySize="8000"/></SimpleSource></VRTRasterBand></VRTDataset>)");
+}
+
+TEST(LargeRaster, IsShownByAveragesAndWithFullByAllOfItsSamples) {
+  const test::Scratch scratch;
+  const std::string dem = large_raster(scratch), few = scratch.path("few.png"), all = scratch.path("all.png");
+  const std::vector<std::string> look{"--top", "--size", "64x64", "--look", "height"};
+  const auto render = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> words{"render", dem, "-o", out};
+    words.insert(words.end(), look.begin(), look.end());
+    words.insert(words.end(), more.begin(), more.end());
+    return test::run(words);
+  };
+  const auto reduced = render(few, {});
+  ASSERT_EQ(reduced.status, 0) << reduced.err;
+  EXPECT_NE(
+      reduced.err.find("note: 8001 x 8000 samples, rendered from 2667 x 2667 (average of 3 x 3; --full reads all)"),
+      std::string::npos)
+      << reduced.err;
+  const auto full = render(all, {"--full"});
+  ASSERT_EQ(full.status, 0) << full.err;
+  EXPECT_EQ(full.err.find("--full"), std::string::npos) << full.err;
+  const test::Rgb a = test::read_png(few), b = test::read_png(all);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      // The pixels over the steps between the four heights show either side.
+      if (std::abs(x - 32) < 2 || std::abs(y - 32) < 2) continue;
+      EXPECT_EQ(a.pixel(x, y)[0], b.pixel(x, y)[0]) << x << ' ' << y;
+    }
+  }
+  EXPECT_NE(a.pixel(60, 60)[0], a.pixel(4, 4)[0]) << "blank";
+}
+
+}  // namespace
+}  // namespace scarp
