@@ -48,22 +48,6 @@ std::string colour_text(vec3 srgb) {
   return fmt::format("{:02x}{:02x}{:02x}", byte(srgb.x), byte(srgb.y), byte(srgb.z));
 }
 
-// The image in the south-west corner and its mirror images, as --wrap mirror extends the raster (source/mirrored.h).
-ColourImage mirrored(const ColourImage& image) {
-  const int w = image.width, h = image.height;
-  ColourImage four{2 * w, 2 * h, {}, image.files};
-  four.rgba.reserve(4 * image.rgba.size());
-  for (int y = 0; y < 2 * h; ++y) {
-    const int row = y < h ? h - 1 - y : y - h;
-    for (int x = 0; x < 2 * w; ++x) {
-      const int col = x < w ? x : 2 * w - 1 - x;
-      const auto pixel = image.rgba.begin() + 4 * (std::int64_t{row} * w + col);
-      four.rgba.insert(four.rgba.end(), pixel, pixel + 4);
-    }
-  }
-  return four;
-}
-
 std::shared_ptr<const DetailTexture> read_detail_texture(const std::string& path) {
   const ColourImage image = read_colour_image(path, DetailTexture::kMostSide);
   try {
@@ -358,11 +342,16 @@ void settle_environment(const LookOptions& o, PictureSettings& picture) {
 }
 
 std::vector<std::string> read_overlay_files(const LookOptions& o, const Georeference& georeference, int cols, int rows,
-                                            bool mirror, PictureSettings& picture) {
+                                            bool mirror, std::int64_t most_pixels, PictureSettings& picture) {
   if (o.overlay.empty()) return {};
-  ColourImage image = read_overlay(o.overlay, georeference, cols, rows);
-  if (mirror) image = mirrored(image);
-  picture.ground.drape = std::make_shared<Drape>(Drape{image.width, image.height, std::move(image.rgba)});
+  Overlay overlay = read_overlay(o.overlay, georeference, cols, rows, most_pixels);
+  ColourImage& image = overlay.image;
+  picture.ground.drape = std::make_shared<Drape>(Drape{image.width,
+                                                       image.height,
+                                                       std::move(image.rgba),
+                                                       {overlay.west, overlay.north},
+                                                       {overlay.east, overlay.south},
+                                                       mirror});
   return std::move(image.files);
 }
 

@@ -2,6 +2,7 @@
 // The options of pictures with water, fog and few large pixels.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -35,9 +36,9 @@ void settle_look(const LookOptions& options, const MarchSettings& march_settings
 void settle_environment(const LookOptions& options, PictureSettings& picture);
 
 /// Reads the image of --overlay for a raster of `cols` x `rows` samples, or for any scene if there is no georeference.
-/// Returns all files that were opened.
+/// With more than `most_pixels` over the raster it is averaged. Returns all files that were opened.
 std::vector<std::string> read_overlay_files(const LookOptions& options, const Georeference& georeference, int cols,
-                                            int rows, bool mirror, PictureSettings& picture);
+                                            int rows, bool mirror, std::int64_t most_pixels, PictureSettings& picture);
 
 /// What follows from the scene where nothing was given: visibility, base and falloff of the fog. `across` and `heights`
 /// are metres that the picture is about; `heights` are exaggerated.

@@ -21,25 +21,31 @@ namespace {
 constexpr double kFaintest = 64;   // rays end where haze hides all but 1 / 64 of a colour
 constexpr double kLongReach = 64;  // extents, where there is less haze
 
-// Samples for a picture of everything: 4 x 4 to a pixel. The near ground of a slanted view has pixels about four times
-// as close as the mean, and the others have some to spare.
+// Samples, or pixels of an overlay, for a picture of everything: 4 x 4 to a pixel. The near ground of a slanted view
+// has pixels about four times as close as the mean, and the others have some to spare.
 constexpr std::int64_t kSamplesPerPixel = 16;
 
-// The samples that a picture of a large raster shows. A small picture has as many as one of 1000 x 1000 pixels, which
-// read as fast. Views of a part have as many as rasters that are read completely, and looks that measure read all.
-std::optional<Decimation> decimation_for(const RenderOptions& options, const ViewSettings& view) {
-  constexpr std::int64_t kLeast = kSamplesPerPixel * 1000 * 1000;
+// The samples that a picture shows. A small picture has as many as one of 1000 x 1000 pixels, which read as fast; views
+// of a part have as many as rasters that are read completely.
+std::int64_t samples_shown(const RenderOptions& options, const ViewSettings& view) {
+  constexpr std::int64_t kLeast = kSamplesPerPixel * 1000 * 1000, kMost = Decimation{}.above;
   const PictureSettings& picture = options.picture;
-  const bool measures = picture.look == Look::steps || picture.look == Look::error || picture.look == Look::level;
+  if (!options.eye.empty() || !options.frames.path.empty() || view.distance < 1 || options.is_given("--fov") ||
+      picture.look == Look::comanche)
+    return kMost;
+  // The longer side is the width; the other one follows from the raster.
+  const int height = options.top && options.size.empty() ? picture.width : picture.height;
+  return std::clamp(kSamplesPerPixel * picture.width * height, kLeast, kMost);
+}
+
+// Looks that measure read all samples.
+std::optional<Decimation> decimation_for(const RenderOptions& options, const ViewSettings& view) {
+  const Look look = options.picture.look;
+  const bool measures = look == Look::steps || look == Look::error || look == Look::level;
   // The shared border would be averaged with what lies beside it.
   if (options.full || measures || options.field.wrap == Wrap::shared_border) return {};
-  const bool part = !options.eye.empty() || !options.frames.path.empty() || view.distance < 1 ||
-                    options.is_given("--fov") || picture.look == Look::comanche;
-  std::int64_t pixels = std::int64_t{picture.width} * picture.height;
-  // The longer side is the width; the other one follows from the raster.
-  if (options.top && options.size.empty()) pixels = std::int64_t{picture.width} * picture.width;
   Decimation decimation;
-  decimation.samples = part ? decimation.above : std::clamp(kSamplesPerPixel * pixels, kLeast, decimation.above);
+  decimation.samples = samples_shown(options, view);
   return decimation;
 }
 
@@ -202,8 +208,9 @@ RenderInput open_render_input(InputKind kind, RenderOptions& options, const View
   OpenedInput opened = open_input(kind, options, options.picture.ramp);
   stop_if_interrupted();
   std::vector<std::string> notes = opened.notes, files = opened.files;
-  const std::vector<std::string> overlay = read_overlay_files(options.look_options, opened.georeference, opened.cols,
-                                                              opened.rows, options.field.mirror, options.picture);
+  const std::vector<std::string> overlay =
+      read_overlay_files(options.look_options, opened.georeference, opened.cols, opened.rows, options.field.mirror,
+                         samples_shown(options, view), options.picture);
   files.insert(files.end(), overlay.begin(), overlay.end());
   keep_inputs(options.output, files);
   const std::optional<SolidRange> numbers = opened.numbers;

@@ -173,6 +173,9 @@ struct FrameSettings {
   Address drape;
   int drape_width;  ///< 0: none
   int drape_height;
+  vec2 drape_first;  ///< as in Drape
+  vec2 drape_last;
+  int drape_mirrored;
   FramePatch texture_place;  ///< fractions of the image per metre, to the east and north
   Address texture;
   ivec2 texture_size;  ///< texels; 0: none

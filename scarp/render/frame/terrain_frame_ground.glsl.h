@@ -87,6 +87,8 @@ vec3 draped(ScarpField field, ivec2 cell, vec2 place, vec3 below) {
   vec2 at = vec2((float(cell.x) + place.x) / float(field.cells.x),
                  (float(cell.y) + place.y + (float(field.cells.y) - s.is.last_row)) / float(field.cells.y));
   if ((field.flags & kScarpWraps) != 0u) at = fract(at);
+  at = scarp_drape_place(at, s.is.drape_first, s.is.drape_last, s.is.drape_mirrored != 0);
+  if (any(lessThan(at, vec2(0.0))) || any(greaterThan(at, vec2(1.0)))) return below;
   ivec2 size = ivec2(s.is.drape_width, s.is.drape_height);
   vec2 texel = clamp(at * vec2(size) - 0.5, vec2(0.0), vec2(size - 1));
   ivec2 corner = ivec2(texel);

@@ -332,6 +332,9 @@ class FrameMaker {
   void set_drape(glsl::FrameSettings& s, const Drape& drape) {
     s.drape_width = drape.width;
     s.drape_height = drape.height;
+    s.drape_first = glm::vec2(drape.first);
+    s.drape_last = glm::vec2(drape.last);
+    s.drape_mirrored = drape.mirrored;
     s.drape = drape_.keep(device_, std::span<const std::uint8_t>(drape.rgba));
   }
 

@@ -61,13 +61,12 @@ GroundPaint::GroundPaint(const GroundPaintSettings& settings, const PaintExtent&
 
 vec3 GroundPaint::draped(const dvec3& position, vec3 below) const {
   const Drape& image = *settings_.drape;
-  double x = (position.x - extent_.origin.x) / extent_.size.x, y = 1 - (position.y - extent_.origin.y) / extent_.size.y;
-  if (extent_.repeats) {
-    x -= std::floor(x);
-    y -= std::floor(y);
-  }
-  const double col = std::clamp(x * image.width - 0.5, 0.0, image.width - 1.0),
-               row = std::clamp(y * image.height - 0.5, 0.0, image.height - 1.0);
+  dvec2 at((position.x - extent_.origin.x) / extent_.size.x, 1 - (position.y - extent_.origin.y) / extent_.size.y);
+  if (extent_.repeats) at -= floor(at);
+  at = glsl::scarp_drape_place(at, image.first, image.last, image.mirrored);
+  if (at.x < 0 || at.y < 0 || at.x > 1 || at.y > 1) return below;
+  const double col = std::clamp(at.x * image.width - 0.5, 0.0, image.width - 1.0),
+               row = std::clamp(at.y * image.height - 0.5, 0.0, image.height - 1.0);
   const int c0 = static_cast<int>(col), r0 = static_cast<int>(row);
   vec3 sum(0.0f);
   float opacity = 0;

@@ -71,6 +71,16 @@ SCARP_FN vec3 scarp_natural(real share, real3 normal, real2 from_sun, real snow_
   return scarp_linear_from_srgb(scarp_between(colour, kScarpSnow, snow));
 }
 
+/// Where in a picture, 0..1 from its north-west corner, a share of the extent lies; beyond 0..1 outside the picture.
+/// See Drape in ground_paint.h.
+SCARP_FN real2 scarp_drape_place(real2 share, real2 first, real2 last, bool mirrored) {
+  // The border of the extent, but for rounding.
+  share = clamp(share, real2(0.0), real2(1.0));
+  // The raster lies in the south-west quarter.
+  if (mirrored) share = real2(real(1.0) - abs(real(2.0) * share.x - real(1.0)), abs(real(2.0) * share.y - real(1.0)));
+  return (share - first) / (last - first);
+}
+
 SCARP_GLSL_END
 
 #endif

@@ -21,11 +21,14 @@
 
 namespace scarp {
 
-/// A picture over the whole extent: its first pixel is the north-west corner.
+/// A picture over the extent or part of it, with nothing beside it. Corners are shares of the extent, east and south
+/// from its north-west corner.
 struct Drape {
   int width = 0;                   ///< pixels, >= 1
   int height = 0;                  ///< pixels, >= 1
-  std::vector<std::uint8_t> rgba;  ///< 4 bytes a pixel, sRGB; opacity 0: what is below
+  std::vector<std::uint8_t> rgba;  ///< 4 bytes a pixel, sRGB, from the north-west; opacity 0: what is below
+  dvec2 first{0.0}, last{1.0};     ///< corners of the first and the last pixel, last > first
+  bool mirrored = false;  ///< over an extent mirrored as by source/mirrored.h, of whose quarter these are shares
 };
 
 struct GroundPaintSettings {

@@ -290,6 +290,10 @@ std::vector<Row> rows() {
     for (int i = 0; i < 24; ++i) drape.rgba.push_back(static_cast<std::uint8_t>(i % 4 == 3 ? 40 * i / 4 : 10 * i));
     s.ground.drape = std::make_shared<Drape>(drape);
   });
+  add("draped_in_part", "max-mip", [](PictureSettings& s) {
+    Drape drape{2, 2, {200, 0, 0, 255, 0, 200, 0, 255, 0, 0, 200, 255, 90, 90, 90, 100}, {0.3, 0.1}, {0.8, 0.7}, true};
+    s.ground.drape = std::make_shared<Drape>(drape);
+  });
   add("unlit_texture", "max-mip", [](PictureSettings& s) {
     s.unlit = s.shadows = true;
     s.samples = 4;

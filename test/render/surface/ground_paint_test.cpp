@@ -92,6 +92,27 @@ TEST(GroundPaint, DrapesAPictureOverTheField) {
   EXPECT_NEAR(middle.y, 0.5, 1e-6);
 }
 
+TEST(GroundPaint, DrapesOverAPartLeaveTheRest) {
+  Drape part{1, 1, {255, 0, 0, 255}, {0.25, 0.5}, {0.75, 1}};
+  const auto red_at = [](const Paint& paper, double x, double y) {
+    return paper({x, y, 0}, 100, {0, 0, 1}, 1) == vec3(1, 0, 0);
+  };
+  const Paint once = paint({.drape = std::make_shared<Drape>(part)});
+  part.mirrored = true;
+  const Paint mirrored = paint({.drape = std::make_shared<Drape>(part)});
+  // In a mirrored field the raster is the south-west quarter.
+  const auto in_part = [](double x, double y) { return x >= 25 && x <= 75 && y <= 50; };
+  for (int y = 1; y < 100; y += 4) {
+    for (int x = 1; x < 100; x += 4) {
+      EXPECT_EQ(in_part(x, y), red_at(once, x, y)) << x << ' ' << y;
+      EXPECT_EQ(in_part(x < 50 ? 2 * x : 200 - 2 * x, y < 50 ? 2 * y : 200 - 2 * y), red_at(mirrored, x, y))
+          << x << ' ' << y;
+    }
+  }
+  EXPECT_TRUE(red_at(once, 25, 0)) << "the corners belong to it";
+  EXPECT_TRUE(red_at(once, 75, 50));
+}
+
 TEST(GroundPaint, DrapesRepeatWithTheField) {
   auto drape = std::make_shared<Drape>(Drape{2, 2, {255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 9, 9, 9, 0}});
   const GroundPaint paper({.drape = drape}, {.origin = {5, 7}, .size = {100, 50}, .repeats = true}, Ramp("grey", 0, 1),
