@@ -10,6 +10,7 @@
 #include <fstream>
 #include <limits>
 #include <string_view>
+#include <type_traits>
 
 #include "scarp/base/error.h"
 #include "scarp/source/band_pieces.h"
@@ -81,6 +82,17 @@ float clean(double source, std::optional<double> nodata, int col, int row, Findi
   return sample;
 }
 
+// Whether clean() would change nothing in a line, nor throw. No branch per sample, so that compilers vectorise it.
+bool is_clean(const float* line, int samples, std::optional<double> nodata) {
+  constexpr double kAround = 1e-5;  // more than the widest tolerance of is_float_nodata()
+  const double mark = nodata.value_or(0), width = kAround * std::abs(mark);
+  const auto low = static_cast<float>(mark - width), high = static_cast<float>(mark + width);
+  int finite = 0, marked = 0;
+  for (int i = 0; i < samples; ++i) finite += std::abs(line[i]) <= FLT_MAX;
+  for (int i = 0; nodata && i < samples; ++i) marked += (line[i] >= low) & (line[i] <= high);
+  return finite == samples && marked == 0;
+}
+
 // What samples are in the file.
 struct Stored {
   GDALDataType type = GDT_Unknown;
@@ -128,6 +140,9 @@ class PieceReader {
     for (int row = 0; row < piece.rows; ++row) {
       const Source* const source = in + static_cast<std::ptrdiff_t>(row) * in_row_samples;
       float* const line = out + static_cast<std::ptrdiff_t>(row) * row_samples;
+      if constexpr (std::is_same_v<Source, float>) {
+        if (!stored_.signed_bytes && is_clean(source, piece.cols, stored_.nodata)) continue;
+      }
       for (int col = 0; col < piece.cols; ++col) {
         const double sample = stored_.signed_bytes && source[col] > 127 ? source[col] - 256 : source[col];
         line[col] = clean(sample, stored_.nodata, piece.col + col, piece.row + row, found_);
