@@ -82,6 +82,8 @@ class Camera {
   /// Returns the width of a pixel at a depth, both in metres.
   double pixel_width(double depth) const { return 2 * half_width_ / width_ * (orthographic_ ? 1 : depth); }
 
+  /// Returns the width and height of the picture in pixels.
+  dvec2 size() const { return {width_, height_}; }
   const dvec3& eye() const { return eye_; }
   /// Moves the eye and keeps the view direction.
   void move_eye(const dvec3& eye) { eye_ = eye; }

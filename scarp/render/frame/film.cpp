@@ -21,6 +21,10 @@ Image::Image(int image_width, int image_height)
       height(image_height),
       rgb(3 * static_cast<std::size_t>(image_width) * static_cast<std::size_t>(image_height)) {}
 
+std::uint8_t opacity_byte(std::size_t shown, std::size_t points) {
+  return static_cast<std::uint8_t>((255 * shown + points / 2) / points);
+}
+
 void set_pixel(Image& image, int x, int y, vec3 linear) {
   std::uint8_t* rgb = image.pixel(x, y);
   rgb[0] = srgb_byte(linear.x);

@@ -15,13 +15,20 @@ struct Image {
   int width = 0;
   int height = 0;
   std::vector<std::uint8_t> rgb;
+  std::vector<std::uint8_t> alpha{};  ///< opacity, a byte a pixel; empty: all pixels are opaque
 
   Image() = default;
   /// Black.
   Image(int image_width, int image_height);
   std::uint8_t* pixel(int x, int y) { return rgb.data() + 3 * (std::int64_t{y} * width + x); }
   const std::uint8_t* pixel(int x, int y) const { return rgb.data() + 3 * (std::int64_t{y} * width + x); }
+  void make_transparent() { alpha.assign(rgb.size() / 3, 0); }
+  /// Requires that `alpha` is not empty.
+  std::uint8_t& opacity(int x, int y) { return alpha[static_cast<std::size_t>(std::int64_t{y} * width + x)]; }
 };
+
+/// The byte for a share of a pixel's points.
+std::uint8_t opacity_byte(std::size_t shown, std::size_t points);
 
 /// Sets a pixel from linear light.
 void set_pixel(Image& image, int x, int y, vec3 linear);

@@ -295,6 +295,16 @@ std::vector<vec3> FrameTile::colours() const {
   return colours;
 }
 
+std::vector<bool> FrameTile::shown() const {
+  std::vector<bool> shown(seen_.size());
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const Hit& hit = seen_[i].hit;
+    shown[i] = hit && !view_.scene().field_of(hit.object).is_backdrop();
+  }
+  for (const WaterPoint& found : water_) shown[found.point] = true;
+  return shown;
+}
+
 std::vector<vec3> FrameTile::pixels() const {
   const std::vector<vec3> of_points = colours();
   const auto per_pixel = static_cast<std::size_t>(aa_ * aa_);

@@ -26,6 +26,8 @@ class FrameTile {
   /// Colours of points and mean colours of pixels, row by row, in linear light. Valid after the last round.
   std::vector<vec3> colours() const;
   std::vector<vec3> pixels() const;
+  /// Whether the points show a surface or water, not the sky or the plinth. Valid after the last round.
+  std::vector<bool> shown() const;
   /// The water that a ray of the camera meets before anything else.
   std::optional<Water::Meeting> water_of(const Ray& ray, const Hit& hit) const;
 

@@ -39,7 +39,7 @@ class ImageTile final : public TileWork {
 
   bool next(RayRound& round) override {
     if (frame_.next(round)) return true;
-    const std::vector<vec3> colours = frame_.pixels();
+    const std::vector<vec3> colours = image_.alpha.empty() ? frame_.pixels() : means_of_shown();
     std::size_t i = 0;
     for (int y = tile_.y0; y < tile_.y1; ++y) {
       for (int x = tile_.x0; x < tile_.x1; ++x, ++i) set_pixel(image_, x, y, tones_ ? toned(colours[i]) : colours[i]);
@@ -48,6 +48,26 @@ class ImageTile final : public TileWork {
   }
 
  private:
+  // Colours of pixels without the points that show nothing; sets the opacity.
+  std::vector<vec3> means_of_shown() {
+    const std::vector<vec3> colours = frame_.colours();
+    const std::vector<bool> shown = frame_.shown();
+    const std::size_t per_pixel = colours.size() / tile_.pixels();
+    std::vector<vec3> means;
+    std::vector<vec3> points;
+    for (std::size_t first = 0; first < colours.size(); first += per_pixel) {
+      points.clear();
+      for (std::size_t i = first; i < first + per_pixel; ++i) {
+        if (shown[i]) points.push_back(colours[i]);
+      }
+      const std::size_t pixel = means.size(), across = static_cast<std::size_t>(tile_.x1 - tile_.x0);
+      image_.opacity(tile_.x0 + static_cast<int>(pixel % across), tile_.y0 + static_cast<int>(pixel / across)) =
+          opacity_byte(points.size(), per_pixel);
+      means.push_back(points.empty() ? vec3(0.0f) : mean_colour(points));
+    }
+    return means;
+  }
+
   PixelTile tile_;
   FrameTile frame_;
   bool tones_;
@@ -71,6 +91,7 @@ Image render_shaded(const Scene& scene, const Camera& camera, const PictureSetti
   if (settings.look == Look::comanche) require_steps(scene);
   const FrameView view(scene, camera, settings);
   Image image(settings.width, settings.height);
+  if (settings.alpha) image.make_transparent();
   work_on_tiles(
       scene, PixelTiles(settings.width, settings.height, settings.aa), most_rays_of(view),
       [&](const PixelTile& tile) { return std::make_unique<ImageTile>(view, tile, image); }, progress);
@@ -294,10 +315,10 @@ WorldBox picture_box(const Scene& scene) {
   return box;
 }
 
-Picture render_picture(const Scene& scene, const Camera& camera, const PictureSettings& settings,
-                       const Progress& progress) {
-  validate(settings);
-  require_visible(scene);
+namespace {
+
+Picture render_look(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                    const Progress& progress) {
   switch (settings.look) {
     case Look::hillshade:
       return render_hillshade(scene, camera, settings, progress);
@@ -311,16 +332,39 @@ Picture render_picture(const Scene& scene, const Camera& camera, const PictureSe
       ErrorPicture error = render_error(scene, camera, settings.width, settings.height, settings.error, progress);
       return {std::move(error.image), {}, error.counts, {}};
     }
-    case Look::comanche: {
-      Picture picture = settings.comanche.heights ? render_height(scene, camera, settings, progress)
-                                                  : Picture{render_shaded(scene, camera, settings, progress)};
-      picture.image = scaled_up(picture.image, settings.comanche.scale);
-      return picture;
-    }
+    case Look::comanche:
+      if (settings.comanche.heights) return render_height(scene, camera, settings, progress);
+      break;
     case Look::shaded:
       break;
   }
   return {render_shaded(scene, camera, settings, progress)};
+}
+
+// For looks of one ray per pixel.
+void find_alpha(const Scene& scene, const Camera& camera, const PictureSettings& settings, Image& image) {
+  image.make_transparent();
+  look_through_middles(scene, camera, settings, false, {},
+                       [&](std::size_t i, const Ray&, const Hit& hit, std::uint32_t) {
+                         if (hit && !scene.field_of(hit.object).is_backdrop()) {
+                           image.alpha[i] = 255;
+                         } else {
+                           std::fill_n(image.rgb.begin() + 3 * static_cast<std::ptrdiff_t>(i), 3, std::uint8_t{0});
+                         }
+                       });
+}
+
+}  // namespace
+
+Picture render_picture(const Scene& scene, const Camera& camera, const PictureSettings& settings,
+                       const Progress& progress) {
+  validate(settings);
+  require_visible(scene);
+  Picture picture = render_look(scene, camera, settings, progress);
+  Image& image = picture.image;
+  if (settings.alpha && image.alpha.empty()) find_alpha(scene, camera, settings, image);
+  if (settings.look == Look::comanche) image = scaled_up(image, settings.comanche.scale);
+  return picture;
 }
 
 }  // namespace scarp

@@ -421,6 +421,8 @@ vec3 water_colour(FrameWater water) {
   return colour;
 }
 
+bool shows_something() { return seen_of(kFrameCamera).kind == kFrameGround || (has_water && water_met.kind != 0); }
+
 vec3 colour_of_point() {
   Settings s = settings();
   FrameSeen camera = seen_of(kFrameCamera);
@@ -490,6 +492,7 @@ void main() {
   int task = -1;
   bool under_way = false;
   vec3 sum = vec3(0.0);
+  int shown = 0;
   if (push.resume != 0u) {
     if (Pixels(push.pixels).words[slot] != 0u) return;
     States all = States(push.states);
@@ -497,6 +500,7 @@ void main() {
     task = all.states[slot].task;
     under_way = all.states[slot].under_way != 0;
     sum = all.states[slot].sum;
+    shown = all.states[slot].shown;
     camera_seen = all.states[slot].seen[kFrameCamera];
     water_met = all.states[slot].water;
     sent.light = all.states[slot].light;
@@ -535,7 +539,10 @@ void main() {
     task = has_water && water_met.kind != 0 ? task + 1 : task == kFrameCamera ? kFrameSeens : kFrameTasks;
     if (task < tasks) continue;
     if (point == 0 && push.tell_sights != 0u) tell_sight();
-    sum += colour_of_point();
+    if (settings().is.alpha == 0 || shows_something()) {
+      sum += colour_of_point();
+      shown += 1;
+    }
     point += 1;
     task = -1;
   }
@@ -545,6 +552,7 @@ void main() {
     all.states[slot].task = task;
     all.states[slot].under_way = under_way ? 1 : 0;
     all.states[slot].sum = sum;
+    all.states[slot].shown = shown;
     all.states[slot].seen[kFrameCamera] = camera_seen;
     all.states[slot].water = water_met;
     all.states[slot].light = sent.light;
@@ -560,8 +568,9 @@ void main() {
     Pixels(push.pixels).words[slot] = 0u;
     return;
   }
-  vec3 colour = sum / float(points);
+  vec3 colour = sum / float(max(shown, 1));
   if (settings().is.tone_curve != 0) colour = scarp_toned(colour);
   Pixels(push.pixels).words[slot] = uint(scarp_srgb_byte(colour.x)) | (uint(scarp_srgb_byte(colour.y)) << 8) |
-                                    (uint(scarp_srgb_byte(colour.z)) << 16) | 0xff000000u;
+                                    (uint(scarp_srgb_byte(colour.z)) << 16) |
+                                    (scarp_frame_opacity(float(shown) / float(points)) << 24);
 }

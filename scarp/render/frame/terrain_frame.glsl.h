@@ -4,7 +4,7 @@
 //
 //   FramePush ──settings──▶ FrameSettings ──ramp──▶ pieces and colours of a ramp;  ──drape──▶ a picture on the ground
 //       │  ├──ground────▶ GroundBuffers
-//       │  ├──pixels────▶ a word per pixel: red | green << 8 | blue << 16 | 255 << 24; 0: not done
+//       │  ├──pixels────▶ a word per pixel: red | green << 8 | blue << 16 | opacity << 24; 0: not done
 //       │  ├──states────▶ FrameState, of each invocation
 //       │  └──sights────▶ FrameSight per pixel, for those who ask what rays have found
 //       └─ which pixels; whether they go on from their states
@@ -156,6 +156,7 @@ struct FrameSettings {
   vec3 earth;
   float unlit_wall;
   int tone_curve;  ///< 1: bright colours are compressed
+  int alpha;       ///< 1: pixels are means of the points that show something, and carry the share of these
   int unlit;       ///< 1: no light
   // Ground.
   int natural;
@@ -236,6 +237,10 @@ struct FrameWater {
   vec3 glitter;
 };
 
+/// The fourth byte of a finished pixel: 255 times the share of its points in the mean. 0 marks a pixel that is not
+/// done, so 1 stands for 0.
+SCARP_FN uint scarp_frame_opacity(float share) { return max(uint(floor(255.0f * share + 0.5f)), 1u); }
+
 struct FrameState {
   int point;      ///< of the pixel
   int task;       ///< -1: the point has not been begun
@@ -244,6 +249,7 @@ struct FrameState {
   float weight;
   int walls;  ///< 1: the ray sees those at rims
   vec3 sum;
+  int shown;  ///< points in the sum
   FrameSeen seen[kFrameSeens];
   FrameWater water;
   ScarpSent sent;

@@ -177,6 +177,7 @@ void set_air(glsl::FrameSettings& s, const HeightField& field, const FrameView& 
   s.unlit_wall = view.unlit_wall();
   s.unlit = view.settings().unlit;
   s.tone_curve = uses_tone_curve(view.settings());
+  s.alpha = view.settings().alpha;
 }
 
 void set_samples(glsl::FrameSettings& s, const Lighting& lighting) {
@@ -290,6 +291,9 @@ class FrameMaker {
         *rgb++ = static_cast<std::uint8_t>(word >> 8);
         *rgb++ = static_cast<std::uint8_t>(word >> 16);
       }
+      if (s.alpha == 0) continue;
+      for (const std::uint32_t word : found_)
+        image.alpha.push_back(word >> 24 == 1 ? std::uint8_t{0} : static_cast<std::uint8_t>(word >> 24));
     }
     if (sights) take_sights(*sights, report.sightings);
     if (progress && !progress(1.0)) throw Interrupted();

@@ -102,6 +102,12 @@ Image scaled_up(const Image& image, int factor) {
   for (int y = 0; y < large.height; ++y) {
     for (int x = 0; x < large.width; ++x) std::copy_n(image.pixel(x / factor, y / factor), 3, large.pixel(x, y));
   }
+  if (image.alpha.empty()) return large;
+  large.alpha.reserve(large.rgb.size() / 3);
+  for (std::size_t i = 0; i < large.rgb.size() / 3; ++i) {
+    const std::size_t width = static_cast<std::size_t>(large.width), side = static_cast<std::size_t>(factor);
+    large.alpha.push_back(image.alpha[i / width / side * static_cast<std::size_t>(image.width) + i % width / side]);
+  }
   return large;
 }
 

@@ -51,6 +51,8 @@ void validate(const GroundPaintSettings& settings) {
                   settings.contours, "0 or more metres");
 }
 
+int lines_per_heavy_contour() { return glsl::kScarpHeavyContour; }
+
 GroundPaint::GroundPaint(const GroundPaintSettings& settings, const PaintExtent& extent, Ramp ramp, const dvec3& to_sun)
     : settings_(settings),
       extent_(extent),

@@ -45,6 +45,9 @@ struct GroundPaintSettings {
 /// Throws Error naming the first setting out of its range.
 void validate(const GroundPaintSettings& settings);
 
+/// One contour line of so many is heavy.
+int lines_per_heavy_contour();
+
 /// What paint measures by, in world space.
 struct PaintExtent {
   double low = 0, high = 1;      ///< heights in metres

@@ -16,6 +16,7 @@
 #include <cstddef>
 #include <functional>
 #include <numbers>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -420,6 +421,7 @@ TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
     settings.ground.detail = 0;
     settings.width = settings.height = 12;
     settings.aa = stepped ? 1 : 3;
+    settings.alpha = !stepped;
     settings.shadows = !stepped;
     settings.comanche.steps = 65536;
     const Scene cpu = scene_of(row, field);
@@ -430,6 +432,9 @@ TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
     int unlike = 0;
     for (std::size_t i = 0; i < a.rgb.size(); ++i) unlike += std::abs(a.rgb[i] - b.rgb[i]) > kRounding;
     EXPECT_EQ(unlike, 0) << row.march;
+    EXPECT_EQ(a.alpha, b.alpha) << row.march;
+    const std::set<std::uint8_t> opacities(a.alpha.begin(), a.alpha.end());
+    EXPECT_EQ(opacities.size() > 2 && opacities.contains(0), settings.alpha) << "sky, crests and ground";
   }
 }
 
