@@ -14,6 +14,7 @@
 #include "app/cli/commands.h"
 #include "app/cli/depth_options.h"
 #include "app/cli/kept_inputs.h"
+#include "app/cli/picture_format.h"
 #include "app/cli/shared_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
@@ -80,10 +81,9 @@ void write(const std::string& path, int width, int height, const std::vector<vec
 }
 
 void run(const CompositeOptions& options) {
-  const std::string extension = extension_of(options.output);
-  if (extension != ".png" && extension != ".exr") {
-    throw Error(fmt::format("output '{}': pictures are PNG or EXR (name it *.png or *.exr)", options.output));
-  }
+  const PictureKind format = picture_format_of(options.output).kind;
+  if (format != PictureKind::png && format != PictureKind::exr)
+    throw Error(fmt::format("output '{}': composites are PNG or EXR (name it *.png or *.exr)", options.output));
   const auto range = depth_range_of(options.depth);
   ExrSamples ours = read_depth(options.ours, "Z");
   const ExrSamples theirs = read_depth(options.theirs, options.depth_channel);

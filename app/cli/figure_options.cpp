@@ -3,21 +3,34 @@
 
 #include <fmt/format.h>
 
+#include "app/cli/numbers.h"
 #include "app/cli/vox_input.h"
 #include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 
 #ifdef SCARP_CAIRO
 #include <algorithm>
 #include <cmath>
 #include <variant>
 
-#include "scarp/output/figure.h"
+#include "app/cli/contour_labels.h"
+#include "app/cli/graticule.h"
+#include "scarp/render/camera/compass.h"
 #include "scarp/render/surface/ramp.h"
 #endif
 
 namespace scarp::cli {
 
-void add_figure_options(Command& command, FigureOptions& options) {
+std::string_view FigureOptions::any() const {
+  return legend           ? "--legend"
+         : scale_bar      ? "--scale-bar"
+         : north_arrow    ? "--north-arrow"
+         : contour_labels ? "--contour-labels"
+         : !title.empty() ? "--title"
+                          : std::string_view(graticule.empty() ? "" : "--graticule");
+}
+
+void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output) {
   command.add(&options.legend, {.names = "--legend",
                                 .help = "legend of the colours in the lower right corner",
                                 .topic = Topic::figure,
@@ -28,7 +41,59 @@ void add_figure_options(Command& command, FigureOptions& options) {
                                    .note = "in perspective it holds in the middle",
                                    .topic = Topic::figure,
                                    .common = true});
+  const Rule on_map = needs("--top: only maps have one", [&top] { return top; });
+  const auto add = [&](Binding to, Option option) {
+    option.topic = Topic::figure;
+    command.add(std::move(to), std::move(option));
+  };
+  add(&options.title,
+      {.names = "--title", .value = "TEXT", .help = "title at the top, broken into at most three lines"});
+  add(&options.north_arrow,
+      {.names = "--north-arrow", .help = "arrow to true north", .note = "it holds in the middle of the picture"});
+  add(&options.graticule, {.names = "--graticule",
+                           .value = "DEG",
+                           .help = "labelled meridians and parallels, so many degrees apart",
+                           .choices = {"auto"},
+                           .unlisted = true,
+                           .note = "or auto",
+                           .fallback = "none",
+                           .inputs = {kTerrain, "only rasters are georeferenced", "only rasters are georeferenced"},
+                           .rules = {on_map}});
+  add(&options.contour_labels,
+      {.names = "--contour-labels",
+       .help = "heights along every fifth contour line",
+       .inputs = {kTerrain, "only maps of rasters have them", "only maps of rasters have them"},
+       .looks = {"shaded comanche", "the others have no contour lines"},
+       .rules = {on_map, needs("--contours M", [&command] { return command.given("--contours"); })}});
+  add(&options.layout, {.names = "--layout",
+                        .value = "WHERE",
+                        .help = "place of title, legend, scale bar, north arrow and labels of the graticule",
+                        .choices = {"on", "beside"},
+                        .closed = true,
+                        .note = "beside: on white margins around the picture",
+                        .rules = {needs("--legend, --scale-bar, --title, --north-arrow or --graticule", [&options] {
+                          return !options.any().empty() && options.any() != "--contour-labels";
+                        })}});
+  add(&options.dots_per_inch,
+      {.names = "--dpi",
+       .help = "resolution of the picture on a page of PDF",
+       .unit = "pixels per inch",
+       .range = {10, 4800},
+       .rules = {{"applies to .pdf files only", [&output] { return extension_of(output) == ".pdf"; }}}});
 }
+
+namespace {
+
+// Nullopt: automatic.
+std::optional<double> graticule_spacing(const std::string& text) {
+  if (text == "auto") return {};
+  const double spacing = numbers_from(text, ',', 1, 1, "--graticule", "degrees, for example 0.5, or auto")[0];
+  if (!(spacing > 0 && spacing <= 90))
+    throw Error(fmt::format("--graticule '{}': expected degrees above 0 and at most 90, or auto", text));
+  return spacing;
+}
+
+}  // namespace
 
 #ifdef SCARP_CAIRO
 
@@ -135,12 +200,25 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
   }
 }
 
-// What the picture's middle shows, else the middle of the scene.
-double depth_in_the_middle(const PictureSettings& settings, const Scene& scene, const Camera& camera) {
-  const Ray ray = camera.ray(0.5 * settings.width, 0.5 * settings.height);
-  const Hit hit = scene.closest_hit(ray);
-  const dvec3 there = hit ? ray.at(hit.t) : picture_box(scene).middle();
-  return dot(there - camera.eye(), camera.forward());
+// What the picture's middle shows, else the middle of the scene. Throws Error if neither is in front of the camera.
+dvec3 middle_of(const FigureSubject& subject, std::string_view option) {
+  const dvec2 size = subject.camera.size();
+  const Ray ray = subject.camera.ray(0.5 * size.x, 0.5 * size.y);
+  const Hit hit = subject.scene.closest_hit(ray);
+  const dvec3 there = hit ? ray.at(hit.t) : picture_box(subject.scene).middle();
+  if (dot(there - subject.camera.eye(), subject.camera.forward()) > 0) return there;
+  throw Error(fmt::format("{}: the middle of the picture shows no ground to measure", option));
+}
+
+// Radians clockwise from up.
+double north_in_picture(const FigureSubject& subject, double grid_north_azimuth) {
+  constexpr double kAhead = 1e-3;  // of the distance: short enough to be straight in perspective
+  const Camera& camera = subject.camera;
+  const dvec3 there = middle_of(subject, "--north-arrow");
+  const double metres = kAhead * dot(there - camera.eye(), camera.forward());
+  const auto from = camera.pixel(there), to = camera.pixel(there + metres * towards(0, 0, grid_north_azimuth));
+  if (!from || !to) throw Error("--north-arrow: north has no direction in this picture");
+  return std::atan2(to->x - from->x, from->y - to->y);
 }
 
 FigureScale scale_of(double pixels_wide, double metres_per_pixel, bool map) {
@@ -158,10 +236,20 @@ FigureScale scale_of(double pixels_wide, double metres_per_pixel, bool map) {
 
 }  // namespace
 
-void settle_figure(const FigureOptions& options, const PictureSettings& settings, bool exr) {
-  if (!options.any()) return;
-  const std::string_view option = options.legend ? "--legend" : "--scale-bar";
-  if (exr) throw Error(fmt::format("{} is drawn into PNG pictures only (name the output *.png)", option));
+void settle_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format) {
+  if (options.any().empty()) return;
+  if (format.layers) {
+    throw Error(fmt::format("{} is not drawn into {}, which holds numbers for further work (name the output *.png)",
+                            options.any(), format.name));
+  }
+  if (options.layout == "beside" && !format.margins) {
+    throw Error(
+        fmt::format("--layout beside: {} holds the map alone, margins have no place on Earth (name the output "
+                    "*.png or *.pdf)",
+                    format.name));
+  }
+  if (!is_figure_text(options.title)) throw Error("--title: the text is not valid UTF-8");
+  if (!options.graticule.empty()) graticule_spacing(options.graticule);
   if (options.legend && settings.comanche.iterations) {
     throw Error("--legend is not available with --iterations (use --look steps)");
   }
@@ -171,29 +259,51 @@ void settle_figure(const FigureOptions& options, const PictureSettings& settings
   }
 }
 
-void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const Scene& scene,
-                    const Camera& camera, bool map, const std::optional<SolidRange>& numbers, Picture& picture) {
-  if (!options.any()) return;
-  Figure figure;
-  if (options.legend) add_meaning(settings, scene, numbers, picture, figure);
+std::optional<Figure> figure_of(const FigureOptions& options, const PictureSettings& settings,
+                                const FigureSubject& subject) {
+  if (options.any().empty()) return {};
+  const Scene& scene = subject.scene;
+  const Camera& camera = subject.camera;
+  const double per_pixel = settings.look == Look::comanche ? settings.comanche.scale : 1;
+  const double width = per_pixel * settings.width, height = per_pixel * settings.height;
+  Figure figure{.title = options.title};
+  if (options.layout == "beside") figure.layout = FigureLayout::beside;
   if (options.scale_bar) {
-    const double depth = depth_in_the_middle(settings, scene, camera);
-    if (!(depth > 0)) throw Error("--scale-bar: the middle of the picture shows no ground to measure");
-    figure.scale = scale_of(picture.image.width, camera.pixel_width(depth) * settings.width / picture.image.width, map);
+    const double depth = dot(middle_of(subject, "--scale-bar") - camera.eye(), camera.forward());
+    figure.scale = scale_of(width, camera.pixel_width(depth) / per_pixel, subject.map);
   }
-  draw_figure(picture.image.rgb.data(), picture.image.width, picture.image.height, figure);
+  if (options.north_arrow) figure.north = north_in_picture(subject, settings.grid_north_azimuth);
+  if (!options.graticule.empty()) {
+    figure.graticule = graticule_of(subject.georeference, subject.cols, subject.rows, camera, per_pixel,
+                                    graticule_spacing(options.graticule));
+  }
+  if (const HeightField* field = scene.terrain(); options.contour_labels && field && settings.ground.contours > 0) {
+    ContourLabelSettings labels{settings.ground.contours * lines_per_heavy_contour()};
+    if (settings.water) labels.above = settings.water->level;
+    labels.text = figure_label_height(static_cast<int>(width), static_cast<int>(height));
+    labels.per_pixel = per_pixel;
+    figure.labels = contour_labels_of(*field, camera, labels);
+  }
+  return figure;
+}
+
+void add_legend(const FigureOptions& options, const PictureSettings& settings, const FigureSubject& subject,
+                const Picture& picture, std::optional<Figure>& figure) {
+  if (options.legend && figure) add_meaning(settings, subject.scene, subject.numbers, picture, *figure);
 }
 
 #else
 
-void settle_figure(const FigureOptions& options, const PictureSettings&, bool) {
-  if (options.any()) {
-    throw Error("--legend, --scale-bar: this scarp was built without Cairo (SCARP_CAIRO=OFF)");
-  }
+void settle_figure(const FigureOptions& options, const PictureSettings&, const PictureFormat&) {
+  if (!options.graticule.empty()) graticule_spacing(options.graticule);
+  if (!options.any().empty())
+    throw Error(fmt::format("{}: this scarp was built without Cairo (SCARP_CAIRO=OFF)", options.any()));
 }
 
-void draw_figure_of(const FigureOptions&, const PictureSettings&, const Scene&, const Camera&, bool,
-                    const std::optional<SolidRange>&, Picture&) {}
+std::optional<Figure> figure_of(const FigureOptions&, const PictureSettings&, const FigureSubject&) { return {}; }
+
+void add_legend(const FigureOptions&, const PictureSettings&, const FigureSubject&, const Picture&,
+                std::optional<Figure>&) {}
 
 #endif
 

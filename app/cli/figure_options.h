@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A legend and a scale bar over pictures.
+// What explains a picture: title, legend, scale bar, north arrow, graticule, labels of contour lines.
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "app/cli/command.h"
+#include "app/cli/picture_format.h"
+#include "scarp/base/georeference.h"
+#include "scarp/output/figure.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/scene/file/from_volume.h"
 
@@ -12,20 +16,37 @@ namespace scarp::cli {
 
 /// What was typed.
 struct FigureOptions {
-  bool legend = false, scale_bar = false;
+  bool legend = false, scale_bar = false, north_arrow = false, contour_labels = false;
+  std::string title, graticule, layout = "on";
+  double dots_per_inch = 150;
 
-  bool any() const { return legend || scale_bar; }
+  /// The first option that was given, for messages; empty: none.
+  std::string_view any() const;
 };
 
-/// Declares --legend and --scale-bar.
-void add_figure_options(Command& command, FigureOptions& options);
+/// `top`: the option --top, and `output` the file's name; both must outlive the command.
+void add_figure_options(Command& command, FigureOptions& options, const bool& top, const std::string& output);
 
 /// What can be judged without the field. Throws Error.
-void settle_figure(const FigureOptions& options, const PictureSettings& settings, bool exr);
+void settle_figure(const FigureOptions& options, const PictureSettings& settings, const PictureFormat& format);
 
-/// Draws what was asked for over a picture. `map`: seen without perspective; `numbers`: range of a volume that is
-/// coloured by its numbers. Throws Error where there is no room, or colours have no scale.
-void draw_figure_of(const FigureOptions& options, const PictureSettings& settings, const Scene& scene,
-                    const Camera& camera, bool map, const std::optional<SolidRange>& numbers, Picture& picture);
+/// What a figure shows.
+struct FigureSubject {
+  const Scene& scene;
+  const Camera& camera;
+  bool map = false;                          ///< seen without perspective
+  const std::optional<SolidRange>& numbers;  ///< of a volume that is coloured by its numbers
+  const Georeference& georeference;          ///< of a raster
+  int cols = 0, rows = 0;                    ///< likewise
+};
+
+/// What was asked for over a picture, but for the legend; nullopt: nothing. Throws Error where the middle of the
+/// picture shows nothing, or a graticule has no georeference.
+std::optional<Figure> figure_of(const FigureOptions& options, const PictureSettings& settings,
+                                const FigureSubject& subject);
+
+/// Adds the legend of a rendered picture if it was asked for. Throws Error where colours have no scale.
+void add_legend(const FigureOptions& options, const PictureSettings& settings, const FigureSubject& subject,
+                const Picture& picture, std::optional<Figure>& figure);
 
 }  // namespace scarp::cli

@@ -26,7 +26,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, kTopics> kTo
     {"water", "Water"},
     {"fog", "Fog"},
     {"comanche", "Look comanche"},
-    {"figure", "Legend and scale"},
+    {"figure", "Figure"},
     {"flight", "Flights"},
     {"depth", "Depth buffer"},
     {"mesh", "Mesh"},

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "app/cli/commands.h"
-#include "app/cli/exr_output.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/numbers.h"
 #include "app/cli/places.h"
@@ -17,7 +16,6 @@
 #include "app/cli/render_options.h"
 #include "app/cli/render_run.h"
 #include "scarp/base/error.h"
-#include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
 #include "scarp/render/frame/picture.h"
 
@@ -72,22 +70,22 @@ ViewSettings settle(RenderOptions& options) {
   validate(view);
   validate(options.march_settings);
   settle_frames(options.frames, options.output);
-  options.exr = extension_of(options.output) == ".exr";
-  if (const auto range = depth_range_of(options.depth); range && !options.exr) {
+  options.format = &picture_format_of(options.output);
+  if (const auto range = depth_range_of(options.depth); range && !options.format->layers) {
     throw Error("--depth-range needs an EXR picture, of which it is a channel (name the output *.exr)");
   }
-  settle_figure(options.figure, picture, options.exr);
-  if (options.exr) {
-    require_exr(options.output);
-    if (picture.look != Look::shaded) {
-      throw Error(
-          fmt::format("--look {}: EXR pictures hold the look 'shaded', with depth, position and steps as channels "
-                      "(leave --look out, or name the output *.png)",
-                      options.look));
-    }
-  } else if (!options.output.empty() && extension_of(options.output) != ".png") {
-    throw Error(fmt::format("output '{}': pictures are PNG or EXR (name it *.png or *.exr)", options.output));
+  settle_figure(options.figure, picture, *options.format);
+  if (options.format->layers && picture.look != Look::shaded) {
+    throw Error(
+        fmt::format("--look {}: EXR pictures hold the look 'shaded', with depth, position and steps as channels "
+                    "(leave --look out, or name the output *.png)",
+                    options.look));
   }
+  if (options.format->map && !options.top) {
+    throw Error(
+        fmt::format("output '{}': a {} is a map (add --top, or name it *.png)", options.output, options.format->name));
+  }
+  picture.alpha = options.format->map;
   return view;
 }
 

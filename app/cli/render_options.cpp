@@ -242,7 +242,7 @@ Command& declare_render(Program& program, RenderOptions& o) {
   Command& command =
       program.add("render", "Render an elevation model, voxels, a mesh, a scene or a terrain function as a picture");
   add_raster_inputs(command, o.inputs, kEveryFile, false);
-  add_output_option(command, o.output, "picture: .png, or .exr with depth, normals, positions and steps", "png exr");
+  add_output_option(command, o.output, picture_help(), picture_extensions());
   add_device_option(command, o.device);
   add_threads_option(command, o.threads);
   add_picture_options(command, o);
@@ -250,7 +250,7 @@ Command& declare_render(Program& program, RenderOptions& o) {
   add_camera_options(command, o);
   add_field_options(command, o.field, BeyondBorders::mirrors, &o.exaggeration);
   add_look_options(command, o.look_options);
-  add_figure_options(command, o.figure);
+  add_figure_options(command, o.figure, o.top, o.output);
   add_frame_options(command, o.frames);
   add_depth_options(command, o.depth);
   add_mesh_options(command, o.mesh, "--coords");

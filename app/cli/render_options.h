@@ -28,8 +28,8 @@ struct RenderOptions : InputOptions {
   DepthOptions depth;
   FigureOptions figure;
   std::string size, look = "shaded", steps_range, sun, sky, view, eye, target, coordinates = "local";
-  bool exr = false;
   std::optional<double> eye_above;
+  const PictureFormat* format = nullptr;  ///< of the output
   double fov_deg = ViewSettings{}.fov_deg, error_tolerance = ErrorSettings{}.tolerance;
   bool top = false, no_shadows = false, no_plinth = false, no_tone_curve = false;
   bool full = false;  ///< reads all samples of large rasters

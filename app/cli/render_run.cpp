@@ -16,13 +16,13 @@
 #include "app/cli/findings.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/numbers.h"
+#include "app/cli/picture_output.h"
 #include "app/cli/places.h"
 #include "app/cli/progress.h"
 #include "app/cli/render_input.h"
 #include "app/cli/seen.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
-#include "scarp/output/png.h"
 #include "scarp/render/frame/contour_spacing.h"
 
 namespace scarp::cli {
@@ -70,11 +70,9 @@ class Render {
     tell_notes();
     tell_of_contours(camera);
     if (!blank_.tell()) tell_if_buried(camera, "the eye");
-    const int scale = options_.picture.look == Look::comanche ? options_.picture.comanche.scale : 1;
     fmt::print("{}: {} x {} pixels; {}read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options_.output,
-               options_.picture.width * scale, options_.picture.height * scale,
-               input_.march.empty() ? "" : input_.march + "; ", read_s_, build_s_, render_s,
-               device_.empty() ? "" : ", on " + device_);
+               written_.width, written_.height, input_.march.empty() ? "" : input_.march + "; ", read_s_, build_s_,
+               render_s, device_.empty() ? "" : ", on " + device_);
     print_findings(picture);
   }
 
@@ -194,7 +192,7 @@ class Render {
       ReplaceFile file(name);
       const int blank_before = blank_.count();
       make(file, name, camera, [](double) { return caught_signal() == 0; });
-      if (!options_.exr && blank_.count() == blank_before) tell_if_buried(camera, fmt::format("the eye of '{}'", name));
+      if (!options_.format->layers && blank_.count() == blank_before) tell_if_buried(camera, fmt::format("the eye of '{}'", name));
     });
     tell_notes();
     if (!cameras.empty()) tell_of_contours(cameras.front());
@@ -203,17 +201,26 @@ class Render {
 
   // Renders and writes one picture. What was found is returned; layers have no findings.
   Picture make(ReplaceFile& file, const std::string& name, const Camera& camera, const Progress& progress) {
-    if (options_.exr) {
+    if (options_.format->layers) {
       const PictureLayers layers = render_layers(scene_, camera, options_.picture, progress);
       look_if_blank(name, camera, has_one_colour(layers));
       write_layers(file, name, layers, camera, depth_range_of(options_.depth));
+      written_ = {layers.width, layers.height};
       return {};
     }
+    const FigureSubject subject{scene_,      camera,     options_.top, input_.numbers, input_.raster.georeference,
+                                input_.raster.cols, input_.raster.rows};
+    std::optional<Figure> figure = figure_of(options_.figure, options_.picture, subject);
     Picture picture = render_picture(scene_, camera, options_.picture, progress);
     // Green throughout is what the look of errors should be.
     look_if_blank(name, camera, options_.picture.look != Look::error && has_one_colour(picture.image));
-    draw_figure_of(options_.figure, options_.picture, scene_, camera, options_.top, input_.numbers, picture);
-    write_png(file, name, {picture.image.rgb.data(), picture.image.width, picture.image.height});
+    add_legend(options_.figure, options_.picture, subject, picture, figure);
+    std::optional<MapPlace> place;
+    if (options_.format->map) {
+      place = place_of_map(camera, picture.image.width, picture.image.height, input_.raster.georeference, input_.raster.cols,
+                           input_.raster.rows);
+    }
+    written_ = write_picture(file, name, *options_.format, picture.image, figure, place, options_.figure.dots_per_inch);
     return picture;
   }
 
@@ -228,6 +235,8 @@ class Render {
     for (const std::string& note : input_.notes) fmt::print(stderr, "note: {}\n", note);
     if (const std::string note = note_on_low_water(scene_, options_.picture, facts_); !note.empty())
       fmt::print(stderr, "note: {}\n", note);
+    if (options_.format->map && !input_.raster.georeference.present)
+      fmt::print(stderr, "note: the input has no georeference, nor has {}\n", options_.output);
     if (raised_ > 0) {
       fmt::print(stderr, "note: the eye is raised by {}{} m, out of the ground\n",
                  options_.frames.several() ? "up to " : "", metres_text(raised_));
@@ -267,6 +276,7 @@ class Render {
   std::string device_;
   Watch watch_;
   double read_s_ = 0, build_s_ = 0;
+  WrittenSize written_;
   double raised_ = 0;  // metres, of the eye, the most of all frames
   BlankFacts facts_;
   BlankPictures blank_;

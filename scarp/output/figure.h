@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Draws a legend and a scale bar over an image.
+// Draws what explains a picture: title, legend, scale bar, north arrow, graticule, labels of contour lines.
 //
-//     +---------------------------+                    +-----------------------------+
-//     |  [####]----[####]----     |                    |  height, m                  |
-//     |  0        2        4 km   |                    |  [ramp from low to high ]   |
-//     +---------------------------+                    |  200      400       600     |
-//      lower left: the scale bar                       +-----------------------------+
-//                                                       lower right: the legend
+//     +-----------------------------------------+     A title
+//     |               A title              N    |        84°W    83°W
+//     |                                    ^    |     +----------------------+
+//     |      the picture                        |  37°N   the picture        |
+//     |                                         |     +----------------------+
+//     | [##]--[##]--    [ramp, low to high]     |     [##]--[##]--    N   [ramp, low to high]
+//     | 0    2    4 km  200    400    600       |     0    2    4 km  ^   200    400    600
+//     +-----------------------------------------+
+//      FigureLayout::on                               FigureLayout::beside
 //
-// Text height is 1/40 of the image's shorter side, at least 10 pixels. Drawn with Cairo in the system's "sans" font.
+// Text height is 1/40 of the picture's shorter side, at least 10 pixels; labels of contour lines are smaller. Drawn
+// with Cairo in the system's "sans" font: the functions require a build with Cairo (SCARP_CAIRO).
 #pragma once
 
 #include <array>
@@ -16,6 +20,9 @@
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "scarp/base/replace_file.h"
+#include "scarp/output/rgb_view.h"
 
 namespace scarp {
 
@@ -50,19 +57,69 @@ struct FigureScale {
   std::vector<FigureTick> ticks;
 };
 
-/// A legend or key, and a scale bar.
+/// A position in the picture, in pixels: (0, 0) is the upper left corner, y counts down.
+struct FigurePoint {
+  double x = 0, y = 0;
+};
+
+/// A line of a graticule. It is labelled where it leaves the picture: meridians at the top, parallels on the left.
+struct FigureLine {
+  std::vector<FigurePoint> points{};
+  std::string text{};
+  bool meridian = false;
+};
+
+/// A text in the picture.
+struct FigureLabel {
+  FigurePoint centre{};
+  double angle = 0;  ///< radians clockwise from a text that runs to the right
+  std::string text{};
+};
+
+/// Where title, legend, scale bar, north arrow and labels of the graticule stand.
+enum class FigureLayout : std::uint8_t {
+  on,      ///< on the picture
+  beside,  ///< on white margins around the picture; only lines and contour labels are drawn over its pixels
+};
+
 struct Figure {
+  std::string title{};  ///< UTF-8; empty: none. Broken between words into at most three lines
   std::optional<FigureLegend> legend{};
   std::optional<FigureKey> key{};  ///< replaces the legend
   std::optional<FigureScale> scale{};
+  std::optional<double> north{};  ///< direction of the north arrow, radians clockwise from up; nullopt: none
+  std::vector<FigureLine> graticule{};
+  /// In order of preference: labels that would touch what is drawn already, or would repeat a text within twenty times
+  /// its height, are omitted.
+  std::vector<FigureLabel> labels{};
+  FigureLayout layout = FigureLayout::on;
+};
+
+/// A picture with its figure.
+struct FigureImage {
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> rgb;  ///< as RgbView
 };
 
 /// Returns tick values in [low, high]: multiples of 1, 2 or 5 times a power of ten that is not below `least_step`, at
 /// most `most`, and at least two wherever two exist. low < high, most >= 2.
 std::vector<double> round_numbers(double low, double high, int most, double least_step = 0);
 
-/// Draws over an image of 3 bytes per pixel, rows from the top. Omits labels that would touch, but never that
-/// of the last tick. Throws Error if the image is too small for the figure.
-void draw_figure(std::uint8_t* rgb, int width, int height, const Figure& figure);
+/// Returns the height of text over a picture, in pixels, and that of Figure::labels.
+double figure_text_height(int width, int height);
+double figure_label_height(int width, int height);
+
+/// Returns whether the text can be written: valid UTF-8.
+bool is_figure_text(const std::string& text);
+
+/// Draws a figure. The result has the size of the picture if the layout is `on`. Omits labels of ticks that would
+/// touch, but never that of the last. Throws Error if the picture is too small for the figure.
+FigureImage draw_figure(const RgbView& picture, const Figure& figure);
+
+/// Writes a PDF of one page: the picture at `dots_per_inch`, > 0, and the figure as lines and text. Writes the
+/// temporary file of `file`, and commits it; `path` is for messages only. Throws Error as above, and if writing fails
+/// (disk full); then no file remains once `file` is destroyed.
+void write_pdf(ReplaceFile& file, const std::string& path, const RgbView& picture, const Figure& figure,
+               double dots_per_inch);
 
 }  // namespace scarp

@@ -2,19 +2,12 @@
 // Writes PNG images.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include "scarp/base/replace_file.h"
+#include "scarp/output/rgb_view.h"
 
 namespace scarp {
-
-/// Caller-owned pixels: rows from the top, 3 bytes (red, green, blue; sRGB) per pixel, no padding.
-struct RgbView {
-  const std::uint8_t* data = nullptr;
-  int width = 0;   ///< >= 1
-  int height = 0;  ///< >= 1
-};
 
 /// Writes an 8-bit RGB PNG to the temporary file of `file`, and commits it. `path` is for messages only. Throws Error
 /// if writing fails (disk full); then no file remains once `file` is destroyed.

@@ -86,7 +86,7 @@ TEST_F(Cli, FiguresAreRefusedWhereTheyMeanNothing) {
   };
   refused({"--legend", "--ground", "natural"}, "320x240", "no colour scale to show with --ground natural");
   refused({"--legend"}, "40x20", "enlarge the image");
-  refused({"--legend", "--scale-bar"}, "240x150", "the scale bar and the legend need");
+  refused({"--legend", "--scale-bar"}, "240x150", "the scale bar and the legend overlap");
   refused({"--legend", "--look", "comanche", "--iterations"}, "", "--legend is not available with --iterations");
 }
 #endif

@@ -2,9 +2,15 @@
 #include "scarp/output/figure.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
-#include <set>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <utility>
 
 #include "scarp/base/error.h"
 
@@ -21,7 +27,26 @@ struct Canvas {
     const std::uint8_t* p = rgb.data() + 3 * (std::size_t{1} * y * width + x);
     return {p[0], p[1], p[2]};
   }
+  RgbView view() const { return {rgb.data(), width, height}; }
+  void draw(const Figure& figure) {
+    FigureImage drawn = draw_figure(view(), figure);
+    width = drawn.width, height = drawn.height;
+    rgb = std::move(drawn.rgb);
+  }
+  // The box around the pixels that are not of the colour.
+  std::array<int, 4> box_of_others(Colour colour, int x0 = 0, int y0 = 0, int x1 = 1 << 20, int y1 = 1 << 20) const {
+    std::array<int, 4> box{width, height, -1, -1};
+    for (int y = y0; y < std::min(y1, height); ++y) {
+      for (int x = x0; x < std::min(x1, width); ++x) {
+        if (at(x, y) == colour) continue;
+        box = {std::min(box[0], x), std::min(box[1], y), std::max(box[2], x), std::max(box[3], y)};
+      }
+    }
+    return box;
+  }
 };
+
+constexpr Colour kGround{90, 90, 90}, kPaper{255, 255, 255};
 
 TEST(Figure, NumbersAreRoundAndCoverTheRange) {
   for (const auto& [low, high] :
@@ -52,8 +77,7 @@ TEST(Figure, NumbersAreWholeOnRequest) {
 TEST(Figure, LabelsDoNotTouch) {
   const auto longest = [](const std::vector<FigureTick>& ticks) {
     Canvas canvas;
-    draw_figure(canvas.rgb.data(), canvas.width, canvas.height,
-                {.legend = FigureLegend{"", {{90, 90, 90}, {90, 90, 90}}, ticks}});
+    canvas.draw({.legend = FigureLegend{"", {{90, 90, 90}, {90, 90, 90}}, ticks}});
     const int low = canvas.height - 31, high = canvas.height - 20;
     int most = 0, begin = -1, end = -1;
     for (int x = 0; x < canvas.width; ++x) {
@@ -77,8 +101,7 @@ TEST(Figure, TheBarAndTheLegendDoNotOverlap) {
   Canvas canvas;
   const FigureLegend legend{"steps", {{1, 2, 3}}, {{0, "0"}, {1, "1"}}};
   const auto draw = [&](double pixels) {
-    draw_figure(canvas.rgb.data(), canvas.width, canvas.height,
-                {.legend = legend, .scale = FigureScale{pixels, "", {{0, ""}, {1, ""}}}});
+    canvas.draw({.legend = legend, .scale = FigureScale{pixels, "", {{0, ""}, {1, ""}}}});
   };
   draw(200);
   const std::vector<std::uint8_t> before = canvas.rgb;
@@ -88,7 +111,7 @@ TEST(Figure, TheBarAndTheLegendDoNotOverlap) {
 
 TEST(Figure, TheBarIsAsLongAsSaid) {
   Canvas canvas;
-  draw_figure(canvas.rgb.data(), canvas.width, canvas.height, {.scale = FigureScale{200, "", {{0, ""}, {1, ""}}}});
+  canvas.draw({.scale = FigureScale{200, "", {{0, ""}, {1, ""}}}});
   // One piece, black: the longest run of black pixels in any row, the outline's half a line at either end included.
   int longest = 0;
   for (int y = 0; y < canvas.height; ++y) {
@@ -105,8 +128,7 @@ TEST(Figure, TheBarIsAsLongAsSaid) {
 TEST(Figure, TheLegendHasTheColoursItExplains) {
   Canvas canvas;
   const std::vector<Colour> colours{{200, 10, 20}, {30, 210, 40}, {50, 60, 220}};
-  draw_figure(canvas.rgb.data(), canvas.width, canvas.height,
-              {.legend = FigureLegend{"height, m", colours, {{0, "0"}, {1, "1000"}}}});
+  canvas.draw({.legend = FigureLegend{"height, m", colours, {{0, "0"}, {1, "1000"}}}});
   std::array<int, 3> first{}, counts{};
   for (int y = canvas.height - 1; y >= 0; --y) {
     for (int x = canvas.width - 1; x >= 0; --x) {
@@ -124,8 +146,124 @@ TEST(Figure, TheLegendHasTheColoursItExplains) {
 
 TEST(Figure, NeedsRoom) {
   std::vector<std::uint8_t> rgb(std::size_t{3} * 64 * 48);
-  EXPECT_THROW(draw_figure(rgb.data(), 64, 48, {.scale = FigureScale{100, "", {{0, "0"}, {1, "1 km"}}}}), Error);
-  EXPECT_EQ(std::set<std::uint8_t>(rgb.begin(), rgb.end()).size(), 1u);
+  const Figure figure{.scale = FigureScale{100, "", {{0, "0"}, {1, "1 km"}}}};
+  EXPECT_THROW(draw_figure({rgb.data(), 64, 48}, figure), Error);
+}
+
+Figure whole_figure(FigureLayout layout) {
+  Figure figure;
+  figure.title = "Heights of the Jacksboro fault";
+  figure.legend = FigureLegend{"height, m", {{200, 10, 20}, {30, 210, 40}}, {{0, "0"}, {1, "1000"}}};
+  figure.scale = FigureScale{100, "", {{0, "0"}, {1, "1 km"}}};
+  figure.north = 0;
+  figure.graticule = {{{{-10, 200}, {700, 200}}, "36°30'N", false}, {{{320, 500}, {320, -20}}, "84°W", true}};
+  figure.layout = layout;
+  return figure;
+}
+
+TEST(Figure, BesideLeavesThePixelsOfThePicture) {
+  Figure figure = whole_figure(FigureLayout::beside);
+  figure.graticule.clear();
+  Canvas canvas;
+  canvas.draw(figure);
+  EXPECT_GT(canvas.width, 640);
+  EXPECT_GT(canvas.height, 480 + 50);
+  // The frame is a line around the picture; everything inside is the picture.
+  int left = 0, top = 0;
+  while (canvas.at(left, 200) != kGround) ++left;
+  while (canvas.at(left, top) != kGround) ++top;
+  EXPECT_EQ(canvas.box_of_others(kGround, left, top, left + 640, top + 480)[2], -1);
+  EXPECT_NE(canvas.at(left - 1, top), kGround);
+  // Title above, the rest below, and none of it cut off.
+  EXPECT_LT(canvas.box_of_others(kPaper, 0, 0, 1 << 20, top - 3)[3], top);
+  EXPECT_GT(canvas.box_of_others(kPaper, 0, top + 484)[2], canvas.width / 2);
+  const auto all = canvas.box_of_others(kPaper);
+  EXPECT_GE(all[0], 2);
+  EXPECT_GE(all[1], 2);
+  EXPECT_LE(all[2], canvas.width - 3);
+  EXPECT_LE(all[3], canvas.height - 3);
+}
+
+TEST(Figure, BesideATinyPictureNothingIsCutOff) {
+  Canvas canvas;
+  canvas.width = canvas.height = 30;
+  canvas.rgb.resize(3 * 30 * 30);
+  Figure figure = whole_figure(FigureLayout::beside);
+  figure.title = "Heights";
+  canvas.draw(figure);
+  const auto all = canvas.box_of_others(kPaper);
+  EXPECT_GE(all[0], 2);
+  EXPECT_LE(all[2], canvas.width - 3);
+  EXPECT_LE(all[3], canvas.height - 3);
+}
+
+TEST(Figure, TheArrowPointsNorth) {
+  // The arrow's left half is black: the picture's mean of black pixels is on the left of the direction.
+  for (const double north : {0.0, 1.5707963267948966}) {
+    Canvas canvas;
+    canvas.draw({.north = north});
+    double x = 0, y = 0, count = 0;
+    for (int j = 0; j < 80; ++j) {
+      for (int i = 540; i < 640; ++i) {
+        if (canvas.at(i, j) != Colour{0, 0, 0}) continue;
+        x += i, y += j, ++count;
+      }
+    }
+    const auto box = canvas.box_of_others(kGround);
+    const double to_left = x / count - (box[0] + box[2]) / 2.0, down = y / count - (box[1] + box[3]) / 2.0;
+    if (north == 0) {
+      EXPECT_LT(to_left, -1);
+    } else {
+      EXPECT_LT(down, -1);
+    }
+  }
+}
+
+TEST(Figure, LabelsKeepOffOneAnotherAndOffThePanels) {
+  const FigureLabel label{{320, 240}, 0, "1500"};
+  Canvas one, three, covered;
+  one.draw({.labels = {label}});
+  FigureLabel near = label, other = label;
+  near.centre.x += 60;
+  other.text = "1600";
+  other.centre.y += 5;
+  three.draw({.labels = {label, near, other}});
+  EXPECT_EQ(one.rgb, three.rgb);
+  EXPECT_NE(one.rgb, covered.rgb);
+  Figure figure{.north = 0};
+  Canvas arrow, same;
+  arrow.draw(figure);
+  figure.labels = {{{620, 30}, 0.5, "1500"}};
+  same.draw(figure);
+  EXPECT_EQ(arrow.rgb, same.rgb);
+}
+
+TEST(Figure, TitlesAreBrokenOrRefused) {
+  std::string title = "word";
+  for (int i = 0; i < 12; ++i) title += " another";
+  Canvas canvas;
+  EXPECT_NO_THROW(canvas.draw({.title = title}));
+  for (int i = 0; i < 100; ++i) title += " another";
+  EXPECT_THROW(canvas.draw({.title = title}), Error);
+  EXPECT_THROW(canvas.draw({.title = std::string(200, 'x')}), Error);
+  EXPECT_TRUE(is_figure_text("Größe: 5 °C"));
+  EXPECT_FALSE(is_figure_text("\xff\xfe"));
+}
+
+// Bytes of the page: its size in points, and text as text in the system's font.
+TEST(Pdf, HasTheSizeOfThePictureAndText) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("scarp-figure-" + std::to_string(::getpid()) + ".pdf");
+  const Canvas canvas;
+  ReplaceFile file(path.string());
+  write_pdf(file, path.string(), canvas.view(), whole_figure(FigureLayout::on), 150);
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::filesystem::remove(path);
+  EXPECT_TRUE(bytes.starts_with("%PDF-"));
+  EXPECT_NE(bytes.find("/MediaBox [ 0 0 307.2 230.4"), std::string::npos);
+  EXPECT_NE(bytes.find("/ToUnicode"), std::string::npos);
+  EXPECT_NE(bytes.find("/Width 640"), std::string::npos);
 }
 
 }  // namespace

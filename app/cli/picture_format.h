@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// Formats of pictures, by the extension of the output. Checks, help and completion read this table.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace scarp::cli {
+
+enum class PictureKind : std::uint8_t { png, jpeg, tiff, pdf, exr };
+
+struct PictureFormat {
+  PictureKind kind;
+  std::string_view name;        ///< "JPEG"
+  std::string_view extensions;  ///< without dots: "jpg jpeg"; the first is shown
+  std::string_view holds;       ///< for help, after the extension; empty: a picture
+  bool layers = false;          ///< linear light and what rays found, instead of colours for the screen
+  bool map = false;             ///< georeferenced: needs --top
+  bool margins = true;          ///< may be larger than the picture
+};
+
+/// Throws Error listing the extensions if there is no such format, and if this build lacks its library.
+const PictureFormat& picture_format_of(const std::string& output);
+
+/// "png jpg jpeg tif tiff pdf exr".
+std::string picture_extensions();
+/// "picture: .png, .jpg, .tif (GeoTIFF, with --top), ...".
+std::string picture_help();
+
+}  // namespace scarp::cli

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// What a figure draws into the picture itself: graticule and labels of contour lines.
+#pragma once
+
+#include <vector>
+
+#include "scarp/output/figure.h"
+#include "scarp/output/figure_pen.h"
+
+namespace scarp {
+
+/// Room that the graticule's labels need outside the picture, in the layout `beside`.
+struct FigureMargins {
+  double left = 0, top = 0;
+};
+FigureMargins graticule_margins(const FigurePen& pen, const std::vector<FigureLine>& graticule);
+
+/// Draws into the picture in `frame`. `taken`: where nothing else may be written; grows.
+void draw_graticule(const FigurePen& pen, const Figure& figure, const FigureRect& frame,
+                    std::vector<FigureRect>& taken);
+/// `pen` of figure_label_height().
+void draw_labels(const FigurePen& pen, const Figure& figure, const FigureRect& frame, std::vector<FigureRect>& taken);
+
+}  // namespace scarp

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/output/figure_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scarp/base/error.h"
+#include "scarp/output/figure_lines.h"
+
+namespace scarp {
+namespace {
+
+constexpr double kFrameLine = 1;  // pixels, around the picture on a page
+
+}  // namespace
+
+FigurePage::FigurePage(const Figure& figure, int width, int height)
+    : figure_(figure),
+      text_(figure_text_height(width, height)),
+      label_text_(figure_label_height(width, height)),
+      width_(width),
+      height_(height),
+      frame_{0, 0, static_cast<double>(width), static_cast<double>(height)} {
+  const CairoSurface surface(cairo_image_surface_create(CAIRO_FORMAT_RGB24, 1, 1));
+  const CairoContext context(cairo_create(surface.get()));
+  const FigurePen pen(context.get(), text_);
+  if (figure.layout == FigureLayout::on) {
+    place_on(pen, width, height);
+  } else {
+    place_beside(pen, width, height);
+  }
+  require_good(surface.get(), context.get());
+}
+
+void FigurePage::place(FigurePanel panel, double x, double y, double pad) {
+  const FigureRect rect{x, y, panel.width + 2 * pad, panel.height + 2 * pad};
+  placed_.push_back({std::move(panel), rect});
+}
+
+void FigurePage::place_on(const FigurePen& pen, int width, int height) {
+  const double pad = pen.pad();
+  const auto bottom = [&](const FigurePanel& panel) { return height - 3 * pad - panel.height; };
+  const auto right = [&](const FigurePanel& panel) { return width - 3 * pad - panel.width; };
+  double free_width = width - 4 * pad;
+  if (figure_.scale) {
+    FigurePanel panel = scale_panel(pen, *figure_.scale);
+    const double y = bottom(panel);
+    place(std::move(panel), pad, y, pad);
+  }
+  if (figure_.key || figure_.legend) {
+    FigurePanel panel =
+        figure_.key ? key_panel(pen, *figure_.key) : legend_panel(pen, *figure_.legend, width - 6 * pad);
+    const double x = right(panel), y = bottom(panel);
+    place(std::move(panel), x, y, pad);
+  }
+  if (figure_.north) {
+    FigurePanel panel = arrow_panel(pen, *figure_.north);
+    const double x = right(panel) + 2 * pad;  // its square has room of its own
+    free_width -= 2 * (panel.width + pad);    // on both sides: the title is centred
+    place(std::move(panel), x, pad, 0);
+  }
+  if (!figure_.title.empty()) {
+    FigurePanel panel = title_panel(pen, figure_.title, free_width);
+    const double x = (width - panel.width) / 2 - pad;
+    place(std::move(panel), x, pad, pad);
+  }
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const FigureRect& rect = placed_[i].rect;
+    if (rect.x < 0 || rect.y < 0 || rect.x + rect.width > width || rect.y + rect.height > height) {
+      throw Error(fmt::format(
+          "figure: {} needs {:.0f} x {:.0f} pixels, too large for the image of {} x {} (enlarge the image, or place it "
+          "beside)",
+          placed_[i].panel.name, rect.width, rect.height, width, height));
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!rect.touches(placed_[j].rect)) continue;
+      throw Error(fmt::format(
+          "figure: {} and {} overlap, the image of {} x {} is too small for both (enlarge the image, leave one out, or "
+          "place them beside)",
+          placed_[j].panel.name, placed_[i].panel.name, width, height));
+    }
+  }
+}
+
+void FigurePage::place_beside(const FigurePen& pen, int width, int height) {
+  const double pad = pen.pad();
+  const FigureMargins labels = graticule_margins(pen, figure_.graticule);
+  // Whole pixels, so that the picture's own pixels stay as they are.
+  frame_.x = std::ceil(pad + labels.left);
+  frame_.y = std::ceil(pad + labels.top);
+  double right = frame_.x + width;  // of the widest part
+  if (!figure_.title.empty()) {
+    FigurePanel panel = title_panel(pen, figure_.title, width);
+    frame_.y = std::ceil(frame_.y + panel.height + pen.gap());
+    const double x = std::max(pad, frame_.x + (width - panel.width) / 2);
+    right = std::max(right, x + panel.width);
+    place(std::move(panel), x, pad, 0);
+  }
+  std::vector<FigurePanel> below;
+  if (figure_.scale) below.push_back(scale_panel(pen, *figure_.scale));
+  if (figure_.north) below.push_back(arrow_panel(pen, *figure_.north));
+  if (figure_.key) {
+    below.push_back(key_panel(pen, *figure_.key));
+  } else if (figure_.legend) {
+    below.push_back(legend_panel(pen, *figure_.legend, std::max<double>(width, 12 * text_)));
+  }
+  // Rows as wide as the picture: the first panel on its left, the last one on its right.
+  double y = frame_.y + height;
+  for (std::size_t first = 0, last = 0; first < below.size(); first = last) {
+    double needed = 0, high = 0;
+    for (last = first; last < below.size(); ++last) {
+      const double more = needed + below[last].width + (last > first ? 2 * pad : 0);
+      if (last > first && more > width) break;
+      needed = more;
+      high = std::max(high, below[last].height);
+    }
+    const double slack = last - first > 1 ? std::max(0.0, width - needed) / static_cast<double>(last - first - 1) : 0;
+    double x = frame_.x;
+    y += pad;
+    for (std::size_t i = first; i < last; ++i) {
+      const double wide = below[i].width;
+      right = std::max(right, x + wide);
+      place(std::move(below[i]), x, y, 0);
+      x += wide + 2 * pad + slack;
+    }
+    y += high;
+  }
+  width_ = static_cast<int>(std::ceil(right + pad));
+  height_ = static_cast<int>(std::ceil(y + pad));
+}
+
+void FigurePage::draw(cairo_t* cr, cairo_surface_t* picture) const {
+  FigurePen pen(cr, text_);
+  const bool beside = figure_.layout == FigureLayout::beside;
+  if (beside) {
+    pen.fill({0, 0, static_cast<double>(width_), static_cast<double>(height_)}, {255, 255, 255});
+    pen.frame(
+        {frame_.x - kFrameLine / 2, frame_.y - kFrameLine / 2, frame_.width + kFrameLine, frame_.height + kFrameLine},
+        kFrameLine);
+  }
+  cairo_set_source_surface(cr, picture, frame_.x, frame_.y);
+  cairo_rectangle(cr, frame_.x, frame_.y, frame_.width, frame_.height);
+  cairo_fill(cr);
+  std::vector<FigureRect> taken;
+  for (const Placed& placed : placed_) taken.push_back(placed.rect);
+  draw_graticule(pen, figure_, frame_, taken);
+  draw_labels(FigurePen(cr, label_text_), figure_, frame_, taken);
+  pen = FigurePen(cr, text_);  // the context's font is the last pen's
+  for (const auto& [panel, rect] : placed_) {
+    if (!beside) pen.paper(rect);
+    panel.draw(pen, rect.x + (rect.width - panel.width) / 2, rect.y + (rect.height - panel.height) / 2);
+  }
+}
+
+}  // namespace scarp

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// Places the parts of a figure, and draws them with the picture.
+#pragma once
+
+#include <vector>
+
+#include "scarp/output/figure_panels.h"
+#include "scarp/output/figure_pen.h"
+
+namespace scarp {
+
+class FigurePage {
+ public:
+  /// For a picture of this size. Refers to the figure. Throws Error if the picture is too small for it.
+  FigurePage(const Figure& figure, int width, int height);
+
+  /// Size in pixels: that of the picture, or with margins.
+  int width() const { return width_; }
+  int height() const { return height_; }
+  /// `cr`: in pixels, (0, 0) is the upper left corner of the page. `picture`: an image surface.
+  void draw(cairo_t* cr, cairo_surface_t* picture) const;
+
+ private:
+  struct Placed {
+    FigurePanel panel;
+    FigureRect rect;  // with padding
+  };
+
+  void place_on(const FigurePen& pen, int width, int height);
+  void place_beside(const FigurePen& pen, int width, int height);
+  void place(FigurePanel panel, double x, double y, double pad);
+
+  const Figure& figure_;
+  double text_, label_text_;
+  int width_, height_;
+  FigureRect frame_;  // of the picture
+  std::vector<Placed> placed_;
+};
+
+}  // namespace scarp

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// The parts of a figure that stand in a rectangle of their own: they measure themselves, and a page places them.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "scarp/output/figure.h"
+#include "scarp/output/figure_pen.h"
+
+namespace scarp {
+
+struct FigurePanel {
+  std::string name{};  ///< for messages: "the legend"
+  double width = 0, height = 0;
+  /// Draws it with its upper left corner there. Refers to what the panel was made of.
+  std::function<void(const FigurePen& pen, double x, double y)> draw{};
+};
+
+FigurePanel scale_panel(const FigurePen& pen, const FigureScale& scale);
+/// `most_width`: of the bar of colours.
+FigurePanel legend_panel(const FigurePen& pen, const FigureLegend& legend, double most_width);
+FigurePanel key_panel(const FigurePen& pen, const FigureKey& key);
+FigurePanel arrow_panel(const FigurePen& pen, double north);
+/// Lines not longer than `most_width` where words permit. Throws Error if there would be more than three.
+FigurePanel title_panel(const FigurePen& pen, const std::string& title, double most_width);
+
+}  // namespace scarp
