@@ -284,6 +284,8 @@ std::optional<Figure> figure_of(const FigureOptions& options, const PictureSetti
     labels.per_pixel = per_pixel;
     figure.labels = contour_labels_of(*field, camera, labels);
   }
+  // Found before the work: all but the legend is known.
+  require_room(figure, static_cast<int>(width), static_cast<int>(height));
   return figure;
 }
 

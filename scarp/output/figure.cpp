@@ -42,6 +42,8 @@ bool is_figure_text(const std::string& text) {
   return cairo_status(context.get()) != CAIRO_STATUS_INVALID_STRING;
 }
 
+void require_room(const Figure& figure, int width, int height) { FigurePage(figure, width, height); }
+
 FigureImage draw_figure(const RgbView& picture, const Figure& figure) {
   const FigurePage page(figure, picture.width, picture.height);
   const CairoSurface pixels = image_surface(picture);

@@ -112,6 +112,9 @@ double figure_label_height(int width, int height);
 /// Returns whether the text can be written: valid UTF-8.
 bool is_figure_text(const std::string& text);
 
+/// Throws Error if a picture of this size is too small for the figure.
+void require_room(const Figure& figure, int width, int height);
+
 /// Draws a figure. The result has the size of the picture if the layout is `on`. Omits labels of ticks that would
 /// touch, but never that of the last. Throws Error if the picture is too small for the figure.
 FigureImage draw_figure(const RgbView& picture, const Figure& figure);

@@ -21,14 +21,15 @@ bool is_inside(const FigureRect& rect, const FigureRect& frame) {
          rect.y + rect.height <= frame.y + frame.height;
 }
 
-// Where the line leaves the picture: meridians at its top, parallels at its left side. In pixels along that side.
-std::optional<double> place_of_label(const FigureLine& line, const FigureRect& frame) {
+// Where the line leaves a picture of this size: meridians at its top, parallels at its left side. In pixels along that
+// side.
+std::optional<double> place_of_label(const FigureLine& line, double width, double height) {
   for (std::size_t i = 1; i < line.points.size(); ++i) {
     FigurePoint a = line.points[i - 1], b = line.points[i];
     if (!line.meridian) std::swap(a.x, a.y), std::swap(b.x, b.y);
     if ((a.y < 0) == (b.y < 0)) continue;
     const double at = a.x + (b.x - a.x) * (0 - a.y) / (b.y - a.y);
-    if (at >= 0 && at <= (line.meridian ? frame.width : frame.height)) return at;
+    if (at >= 0 && at <= (line.meridian ? width : height)) return at;
   }
   return {};
 }
@@ -46,13 +47,19 @@ void draw_line(const FigurePen& pen, const FigureLine& line) {
 
 }  // namespace
 
-FigureMargins graticule_margins(const FigurePen& pen, const std::vector<FigureLine>& graticule) {
+FigureMargins graticule_margins(const FigurePen& pen, const std::vector<FigureLine>& graticule, double width,
+                                double height) {
   FigureMargins margins;
   for (const FigureLine& line : graticule) {
+    const std::optional<double> at = place_of_label(line, width, height);
+    if (!at) continue;
+    const double wide = pen.width_of(line.text);
+    margins.top = std::max(margins.top, pen.line_height() + pen.gap());
     if (line.meridian) {
-      margins.top = pen.line_height() + pen.gap();
+      margins.left = std::max(margins.left, wide / 2 - *at);
+      margins.right = std::max(margins.right, *at + wide / 2 - width);
     } else {
-      margins.left = std::max(margins.left, pen.width_of(line.text) + pen.gap());
+      margins.left = std::max(margins.left, wide + pen.gap());
     }
   }
   return margins;
@@ -69,7 +76,7 @@ void draw_graticule(const FigurePen& pen, const Figure& figure, const FigureRect
   const bool beside = figure.layout == FigureLayout::beside;
   const double high = pen.line_height(), gap = pen.gap();
   for (const FigureLine& line : figure.graticule) {
-    const std::optional<double> at = place_of_label(line, frame);
+    const std::optional<double> at = place_of_label(line, frame.width, frame.height);
     if (!at) continue;
     const double wide = pen.width_of(line.text);
     FigurePoint centre{frame.x + *at, frame.y + (beside ? -gap - high / 2 : gap + high / 2)};

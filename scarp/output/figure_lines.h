@@ -9,11 +9,12 @@
 
 namespace scarp {
 
-/// Room that the graticule's labels need outside the picture, in the layout `beside`.
+/// Room that the graticule's labels need outside a picture of this size, in the layout `beside`.
 struct FigureMargins {
-  double left = 0, top = 0;
+  double left = 0, top = 0, right = 0;
 };
-FigureMargins graticule_margins(const FigurePen& pen, const std::vector<FigureLine>& graticule);
+FigureMargins graticule_margins(const FigurePen& pen, const std::vector<FigureLine>& graticule, double width,
+                                double height);
 
 /// Draws into the picture in `frame`. `taken`: where nothing else may be written; grows.
 void draw_graticule(const FigurePen& pen, const Figure& figure, const FigureRect& frame,

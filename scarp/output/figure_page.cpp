@@ -13,7 +13,8 @@
 namespace scarp {
 namespace {
 
-constexpr double kFrameLine = 1;  // pixels, around the picture on a page
+constexpr double kFrameLine = 1;    // pixels, around the picture on a page
+constexpr double kLeastTitle = 24;  // text heights: a tiny picture gets a wider page
 
 }  // namespace
 
@@ -87,13 +88,13 @@ void FigurePage::place_on(const FigurePen& pen, int width, int height) {
 
 void FigurePage::place_beside(const FigurePen& pen, int width, int height) {
   const double pad = pen.pad();
-  const FigureMargins labels = graticule_margins(pen, figure_.graticule);
+  const FigureMargins labels = graticule_margins(pen, figure_.graticule, width, height);
   // Whole pixels, so that the picture's own pixels stay as they are.
   frame_.x = std::ceil(pad + labels.left);
   frame_.y = std::ceil(pad + labels.top);
-  double right = frame_.x + width;  // of the widest part
+  double right = frame_.x + width + labels.right;  // of the widest part
   if (!figure_.title.empty()) {
-    FigurePanel panel = title_panel(pen, figure_.title, width);
+    FigurePanel panel = title_panel(pen, figure_.title, std::max<double>(width, kLeastTitle * text_));
     frame_.y = std::ceil(frame_.y + panel.height + pen.gap());
     const double x = std::max(pad, frame_.x + (width - panel.width) / 2);
     right = std::max(right, x + panel.width);

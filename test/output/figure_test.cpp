@@ -184,6 +184,18 @@ TEST(Figure, BesideLeavesThePixelsOfThePicture) {
   EXPECT_LE(all[3], canvas.height - 3);
 }
 
+// A meridian at either border: half of its label stands beyond it.
+TEST(Figure, BesideNoLabelOfTheGraticuleIsCutOff) {
+  for (const double x : {1.0, 639.0}) {
+    Canvas canvas;
+    canvas.draw({.graticule = {{{{x, -5}, {x, 500}}, "122°07'12\"W", true}}, .layout = FigureLayout::beside});
+    const auto all = canvas.box_of_others(kPaper);
+    EXPECT_GE(all[0], 2) << x;
+    EXPECT_GE(all[1], 2) << x;
+    EXPECT_LE(all[2], canvas.width - 3) << x;
+  }
+}
+
 TEST(Figure, BesideATinyPictureNothingIsCutOff) {
   Canvas canvas;
   canvas.width = canvas.height = 30;
