@@ -41,7 +41,7 @@ void add_figure_options(Command& command, FigureOptions& options, const bool& to
                                    .note = "in perspective it holds in the middle",
                                    .topic = Topic::figure,
                                    .common = true});
-  const Rule on_map = needs("--top: only maps have one", [&top] { return top; });
+  const Rule on_map = needs("--top (only maps have one)", [&top] { return top; });
   const auto add = [&](Binding to, Option option) {
     option.topic = Topic::figure;
     command.add(std::move(to), std::move(option));

@@ -188,7 +188,7 @@ TEST_F(Cli, AnUnwritableOutputIsFoundBeforeTheWork) {
   good();
   const Names before = scratch_.files();
   for (const std::string& output :
-       {path("no/such/folder/out.png"), path(""), std::string("/proc/out.png"), path("out.jpg")}) {
+       {path("no/such/folder/out.png"), path(""), std::string("/proc/out.png"), path("out.bmp")}) {
     // The input does not exist either: the output is looked at first.
     const auto result = run({"render", path("missing.tif"), "-o", output});
     EXPECT_EQ(result.status, 1) << output;

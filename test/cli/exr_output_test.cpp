@@ -87,7 +87,7 @@ TEST_F(ExrOutput, WhatDoesNotWorkIsOneLineAndLeavesNothing) {
       {{"-o", scratch_.path("no/folder/out.exr")}, "folder"},
       {{"-o", "/proc/out.exr"}, "/proc"},
       {{"-o", scratch_.path("full.exr")}, "device"},
-      {{"-o", scratch_.path("out.tiff")}, ".exr"},
+      {{"-o", scratch_.path("out.bmp")}, ".exr"},
   };
   for (const auto& c : cases) {
     std::vector<std::string> arguments{"render", input, "--size", "8x8"};
