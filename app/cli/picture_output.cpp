@@ -14,6 +14,14 @@
 namespace scarp::cli {
 namespace {
 
+// Transparent pixels are paper to a figure.
+Image on_white(Image image) {
+  for (std::size_t i = 0; i < image.alpha.size(); ++i) {
+    if (image.alpha[i] == 0) std::fill_n(image.rgb.begin() + 3 * static_cast<std::ptrdiff_t>(i), 3, std::uint8_t{255});
+  }
+  return image;
+}
+
 // What a figure is drawn over is not transparent.
 std::vector<std::uint8_t> with_figure(const Image& image, const std::vector<std::uint8_t>& drawn) {
   std::vector<std::uint8_t> alpha = image.alpha;
@@ -50,12 +58,14 @@ WrittenSize write_picture(ReplaceFile& file, const std::string& path, const Pict
   }
   FigureImage drawn;
   if (figure) {
-    drawn = draw_figure(view, *figure);
-    alpha = with_figure(image, drawn.rgb);
+    const Image below = on_white(image);
+    drawn = draw_figure({below.rgb.data(), below.width, below.height}, *figure);
+    alpha = with_figure(below, drawn.rgb);
     view = {drawn.rgb.data(), drawn.width, drawn.height};
   }
 #else
-  static_cast<void>(figure), static_cast<void>(dots_per_inch), static_cast<void>(&with_figure);
+  static_cast<void>(figure), static_cast<void>(dots_per_inch), static_cast<void>(&with_figure),
+      static_cast<void>(&on_white);
 #endif
   switch (format.kind) {
     case PictureKind::tiff:
