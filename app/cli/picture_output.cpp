@@ -14,10 +14,13 @@
 namespace scarp::cli {
 namespace {
 
-// Transparent pixels are paper to a figure.
+// Nearly the white of a figure's paper, but no grey, so that all that is drawn over it is a change: with_figure().
+constexpr std::array<std::uint8_t, 3> kBelowFigure = {250, 255, 250};
+
 Image on_white(Image image) {
   for (std::size_t i = 0; i < image.alpha.size(); ++i) {
-    if (image.alpha[i] == 0) std::fill_n(image.rgb.begin() + 3 * static_cast<std::ptrdiff_t>(i), 3, std::uint8_t{255});
+    if (image.alpha[i] == 0)
+      std::copy_n(kBelowFigure.begin(), 3, image.rgb.begin() + 3 * static_cast<std::ptrdiff_t>(i));
   }
   return image;
 }
