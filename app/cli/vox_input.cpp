@@ -5,24 +5,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "app/cli/numbers.h"
+#include "app/cli/progress.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/render/surface/ramp.h"
-#include "scarp/scene/scene_field.h"
-#include "scarp/source/vox_animation.h"
+#include "scarp/scene/file/from_parts.h"
 
 namespace scarp::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr int kRampColours = 255;
 
-bool is_voxel_path(const std::string& path) { return extension_of(path) == ".vox" || extension_of(path) == ".binvox"; }
+bool is_voxel_path(const std::string& path) {
+  return extension_of(path) == ".vox" || extension_of(path) == ".binvox" || is_voxel_parts_path(path);
+}
 
 // What is wrong with a file that has been read names it, too.
 template <class Work>
@@ -136,25 +135,68 @@ void add_vox_look_options(Command& command, VoxLookOptions& options) {
                         .inputs = {kVoxels | kScene, "only voxels can be merged"}});
 }
 
+namespace {
+
+VoxInput read_volume_voxels(const std::string& path, const VoxOptions& options, const FromVolumeOptions& from,
+                            const std::string& ramp) {
+  naming(path, [&] { require_marchable(volume_format_of(path, options.volume), from.voxels); });
+  const DenseVolume numbers = read_volume(path, options.volume);
+  stop_if_interrupted();
+  const SolidRange range = ramp.empty() ? SolidRange{} : solid_range(numbers, options.solid_from);
+  VoxInput input{{}, placed_voxels_from(numbers, colours_of(ramp), range, from)};
+  if (input.voxels.models[0]->grid().solid_count() == 0) {
+    const SolidRange all = number_range(numbers);
+    if (all.low > all.high) throw Error(fmt::format("{}: no voxel is solid: all numbers are NaN", path));
+    throw Error(fmt::format("{}: no voxel is solid: its numbers are {} to {} (choose --solid-from in this range)", path,
+                            all.low, all.high));
+  }
+  if (!ramp.empty() && std::isfinite(range.high)) input.numbers = range;
+  return input;
+}
+
+VoxInput read_parts(const std::string& path, const VoxelFileOptions& voxels) {
+  const VoxelParts parts = read_voxel_parts(path);
+  VoxInput input{{}, naming(path, [&] { return placed_voxels_from(parts, voxels); })};
+  input.format = parts.format, input.notes = parts.notes;
+  return input;
+}
+
+VoxInput read_document(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels) {
+  VoxFile document = read_vox(path);
+  VoxInput input{{}, naming(path, [&] { return placed_voxels_from(document, {options.scene, voxels}); })};
+  input.notes = vox_notes(document, options.scene);
+  input.document = std::move(document);
+  input.format = "MagicaVoxel";
+  return input;
+}
+
+}  // namespace
+
+VoxInput read_any_voxels(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels,
+                         const std::string& ramp) {
+  const bool volume = !options.volume.empty(), binvox = !volume && extension_of(path) == ".binvox";
+  const bool parts = !volume && !binvox && is_voxel_parts_file(path);
+  const FromVolumeOptions from{voxels, options.up == "y" ? UpAxis::y : UpAxis::z, options.solid_from};
+  refuse((volume || binvox || parts) && options.scene.frame > 0, "--frame", "MagicaVoxel files");
+  refuse((volume || binvox || parts) && options.scene.hidden, "--hidden", "MagicaVoxel files");
+  refuse(!volume && !binvox && options.up != "z", "--up", "binvox files and volumes");
+  if (volume) return read_volume_voxels(path, options, from, ramp);
+  if (parts) return read_parts(path, voxels);
+  if (!binvox) return read_document(path, options, voxels);
+  const Binvox solid = read_binvox(path);
+  return {{}, naming(path, [&] { return placed_voxels_from(solid, kPlainVoxels, from); })};
+}
+
 VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels,
                      const std::string& ramp) {
-  const bool volume = !options.volume.empty(), binvox = !volume && extension_of(path) == ".binvox";
-  const FromVolumeOptions from{voxels, options.up == "y" ? UpAxis::y : UpAxis::z, options.solid_from};
-  refuse((volume || binvox) && options.scene.frame > 0, "--frame", "MagicaVoxel files");
-  refuse((volume || binvox) && options.scene.hidden, "--hidden", "MagicaVoxel files");
-  refuse(!volume && !binvox && options.up != "z", "--up", "binvox files and volumes");
-  if (volume) {
-    const DenseVolume numbers = read_volume(path, options.volume);
-    VoxInput input{{}, placed_voxels_from(numbers, colours_of(ramp), from)};
-    const SolidRange range = solid_range(numbers, options.solid_from);
-    if (!ramp.empty() && std::isfinite(range.high)) input.numbers = range;
-    return input;
+  VoxInput input = read_any_voxels(path, options, voxels, ramp);
+  if (world_box(input.voxels).empty()) {
+    const bool hidden = input.document && !options.scene.hidden &&
+                        !vox_instances(*input.document, {.frame = options.scene.frame, .hidden = true}).empty() &&
+                        vox_instances(*input.document, options.scene).empty();
+    throw Error(fmt::format("{}: no visible voxels{}", path, hidden ? " (all are hidden: --hidden shows them)" : ""));
   }
-  if (binvox) return {{}, placed_voxels_from(read_binvox(path), kPlainVoxels, from)};
-  VoxFile document = read_vox(path);
-  PlacedVoxels placed = naming(path, [&] { return placed_voxels_from(document, {options.scene, voxels}); });
-  std::vector<std::string> notes = vox_notes(document, options.scene);
-  return {std::move(document), std::move(placed), {}, std::move(notes)};
+  return input;
 }
 
 VoxelShading shading_of(const VoxLookOptions& options) {
@@ -167,105 +209,6 @@ VoxelShading shading_of(const VoxLookOptions& options) {
   validate(shading);
   validate(options.rounding);
   return shading;
-}
-
-namespace {
-
-void describe_document(const VoxFile& file, const VoxOptions& options, Json& info) {
-  info["format"] = "MagicaVoxel";
-  info["version"] = file.version;
-  info["models"] = Json::array();
-  for (const VoxModel& model : file.models) {
-    const auto solid =
-        std::count_if(model.voxels.begin(), model.voxels.end(), [](const auto& v) { return v.index > 0; });
-    info["models"].push_back({{"size", {model.size.x, model.size.y, model.size.z}}, {"voxels", solid}});
-  }
-  std::set<int> colours;
-  for (const VoxModel& model : file.models) {
-    for (const VoxVoxel& voxel : model.voxels) colours.insert(voxel.index);
-  }
-  colours.erase(0);
-  info["colours_used"] = colours.size();
-  info["default_palette"] = !file.palette.has_value();
-  info["nodes"] = file.nodes.size();
-  info["layers"] = file.layers.size();
-  info["materials"] = file.materials.size();
-  const std::size_t shown = vox_instances(file, options.scene).size();
-  info["instances"] = shown;
-  const VoxAnimation animation = vox_animation(file);
-  info["frames"] = animation.frames;
-  info["loops"] = !animation.loops ? "none" : animation.ends ? "parts" : "all";
-  info["hidden_instances"] = vox_instances(file, {.frame = options.scene.frame, .hidden = true}).size() - shown;
-}
-
-}  // namespace
-
-Json describe_vox(const std::string& path, const VoxOptions& options) {
-  VoxelFileOptions voxels;
-  voxels.surface_colours = options.surface_colours;
-  const VoxInput input = read_voxels(path, options, voxels, {});
-  Json info;
-  info["path"] = path;
-  info["kind"] = name_of(InputKind::voxels);
-  if (input.document) {
-    naming(path, [&] { describe_document(*input.document, options, info); });
-  } else {
-    info["format"] = options.volume.empty() ? "binvox" : "volume";
-    const VoxelGrid& grid = input.voxels.models[0]->grid();
-    info["models"] = {{{"size", {grid.size().x, grid.size().y, grid.size().z}}, {"voxels", grid.solid_count()}}};
-  }
-  const SceneFieldPtr field = scene_voxels(input.voxels);
-  info["bytes"] = field->bytes();
-  const WorldBox box = *field->box();
-  const auto corner = [](const dvec3& p) { return Json{std::llround(p.x), std::llround(p.y), std::llround(p.z)}; };
-  info["low"] = box.empty() ? Json() : corner(box.low);
-  info["high"] = box.empty() ? Json() : corner(box.high);
-  info["notes"] = input.notes;
-  return info;
-}
-
-std::string vox_text_of(const Json& info) {
-  std::string out;
-  const auto line = [&](std::string_view name, const std::string& value) {
-    out += fmt::format("{:<12} {}\n", name, value);
-  };
-  const auto count = [&](const char* name) { return info[name].get<std::int64_t>(); };
-  line("file", info["path"].get<std::string>());
-  const bool document = info.contains("version");
-  line("format", info["format"].get<std::string>() + (document ? fmt::format(", version {}", count("version")) : ""));
-  std::int64_t voxels = 0;
-  for (const Json& model : info["models"]) voxels += model["voxels"].get<std::int64_t>();
-  line("models", fmt::format("{}, {} voxels", info["models"].size(), voxels));
-  constexpr std::size_t kListed = 8;
-  for (std::size_t i = 0; i < std::min(kListed, info["models"].size()); ++i) {
-    const Json& model = info["models"][i];
-    line("", fmt::format("{}: {} x {} x {}, {} voxels", i, model["size"][0].get<int>(), model["size"][1].get<int>(),
-                         model["size"][2].get<int>(), model["voxels"].get<std::int64_t>()));
-  }
-  if (info["models"].size() > kListed) line("", fmt::format("... and {} more", info["models"].size() - kListed));
-  if (document) {
-    line("scene", fmt::format("{} nodes, {} layers; {} objects, {} hidden", count("nodes"), count("layers"),
-                              count("instances"), count("hidden_instances")));
-    const std::int64_t frames = count("frames");
-    const auto loops = info["loops"].get<std::string>();
-    line("frames", frames == 1 ? "1"
-                               : fmt::format("{} (--frame 0 to {}){}", frames, frames - 1,
-                                             loops == "all"     ? ", repeating"
-                                             : loops == "parts" ? ", parts of them repeating"
-                                                                : ""));
-    line("colours", fmt::format("{} of the {} palette; {} materials", count("colours_used"),
-                                info["default_palette"].get<bool>() ? "default" : "file's", count("materials")));
-  }
-  line("memory", fmt::format("{} bytes, with all that rays need", count("bytes")));
-  if (info["low"].is_null()) {
-    line("box", "empty: there is no voxel to see");
-  } else {
-    const auto at = [&](const char* name, int axis) { return info[name][axis].get<std::int64_t>(); };
-    line("box", fmt::format("({}, {}, {}) to ({}, {}, {}) voxels", at("low", 0), at("low", 1), at("low", 2),
-                            at("high", 0), at("high", 1), at("high", 2)));
-  }
-  for (const Json& note : info["notes"]) line("note", note.get<std::string>());
-  return out;
 }
 
 }  // namespace scarp::cli

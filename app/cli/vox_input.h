@@ -52,10 +52,16 @@ struct VoxInput {
   PlacedVoxels voxels;
   std::optional<SolidRange> numbers{};  ///< volumes: range that the colours show
   std::vector<std::string> notes{};     ///< one line each, for users
+  std::string format = "binvox";        ///< name of the file's format
 };
-/// Numbers of volumes are shown by `ramp`, of ramp_names(); empty: not at all.
+/// Throws Error naming the file if nothing is visible. Numbers of volumes are shown by `ramp`, of ramp_names(); empty:
+/// not at all.
 VoxInput read_voxels(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels,
                      const std::string& ramp);
+
+/// The same for files in which nothing is visible, except volumes.
+VoxInput read_any_voxels(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels,
+                         const std::string& ramp);
 
 VoxelShading shading_of(const VoxLookOptions& options);
 

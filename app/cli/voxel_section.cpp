@@ -101,7 +101,8 @@ void run(const SectionOptions& options) {
   if (extension_of(options.output) != ".svg")
     throw Error(fmt::format("output '{}': sections are written as SVG (name it *.svg)", options.output));
   if (!is_vox_input({options.input}, options.vox))
-    throw Error(fmt::format("'{}': not a voxel file (expected .vox or .binvox, or --volume)", options.input));
+    throw Error(
+        fmt::format("'{}': not a voxel file (expected .vox, .binvox, .qb, .kv6 or .vxl, or --volume)", options.input));
   const VoxInput input = read_voxels(options.input, options.vox, {}, {});
   const auto& models = input.voxels.models;
   if (options.model >= static_cast<int>(models.size()))
@@ -112,6 +113,12 @@ void run(const SectionOptions& options) {
   if (at >= side) {
     throw Error(fmt::format("--at {}: the box around the model's voxels has layers 0 to {} along {}", at, side - 1,
                             options.axis));
+  }
+  const ivec3 size = model.grid().size() + 2 * options.margin;
+  try {
+    require_accelerable(size, "section");
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", options.input, error.what()));
   }
   const VoxelGrid grid = with_margin(model.grid(), options.margin);
   std::string svg;
@@ -134,9 +141,10 @@ void add_section(Program& program) {
   Command& command = program.add("section", "Draw one layer of a voxel model with its empty spheres or cubes as SVG");
   const auto options = std::make_shared<SectionOptions>();
   SectionOptions& o = *options;
-  command.add(
-      &o.input,
-      {.names = "IN", .help = "voxel file (.vox, .binvox) or volume", .files = "vox binvox npy raw", .required = true});
+  command.add(&o.input, {.names = "IN",
+                         .help = "voxel file (.vox, .binvox, .qb, .kv6, .vxl) or volume",
+                         .files = "vox binvox qb kv6 vxl npy raw",
+                         .required = true});
   add_output_option(command, o.output, "SVG to write", "svg");
   command.add(&o.radii, {.names = "--radii",
                          .value = "KIND",

@@ -7,7 +7,9 @@ BrickMasks::BrickMasks(const VoxelGrid& grid)
     : sectors_((grid.bricks() + 3) / 4),
       masks_(static_cast<std::size_t>(sectors_.x) * static_cast<std::size_t>(sectors_.y) *
              static_cast<std::size_t>(sectors_.z)) {
-  update(grid, grid.box());
+  grid.for_each_solid_brick([&](const ivec3& brick, std::uint64_t) {
+    masks_[index(brick >> 2)] |= std::uint64_t{1} << VoxelGrid::bit_of(brick);
+  });
 }
 
 void BrickMasks::update(const VoxelGrid& grid, const VoxelBox& changed) {
@@ -17,10 +19,7 @@ void BrickMasks::update(const VoxelGrid& grid, const VoxelBox& changed) {
     for_each_voxel(intersection({4 * sector, 4 * sector + 4}, {ivec3(0), grid.bricks()}), [&](const ivec3& brick) {
       if (grid.mask(brick) != 0) mask |= std::uint64_t{1} << VoxelGrid::bit_of(brick);
     });
-    masks_[static_cast<std::size_t>(sector.x) +
-           static_cast<std::size_t>(sectors_.x) *
-               (static_cast<std::size_t>(sector.y) +
-                static_cast<std::size_t>(sectors_.y) * static_cast<std::size_t>(sector.z))] = mask;
+    masks_[index(sector)] = mask;
   });
 }
 

@@ -21,12 +21,7 @@ class BrickMasks {
   void update(const VoxelGrid& grid, const VoxelBox& changed);
 
   /// Mask of the sector with these coordinates, which must exist.
-  std::uint64_t sector(const ivec3& sector) const {
-    return masks_[static_cast<std::size_t>(sector.x) +
-                  static_cast<std::size_t>(sectors_.x) *
-                      (static_cast<std::size_t>(sector.y) +
-                       static_cast<std::size_t>(sectors_.y) * static_cast<std::size_t>(sector.z))];
-  }
+  std::uint64_t sector(const ivec3& sector) const { return masks_[index(sector)]; }
   /// Sectors per axis, and all masks, x fastest.
   const ivec3& sectors() const { return sectors_; }
   std::span<const std::uint64_t> masks() const { return masks_; }
@@ -34,6 +29,13 @@ class BrickMasks {
   friend bool operator==(const BrickMasks&, const BrickMasks&) = default;
 
  private:
+  std::size_t index(const ivec3& sector) const {
+    return static_cast<std::size_t>(sector.x) +
+           static_cast<std::size_t>(sectors_.x) *
+               (static_cast<std::size_t>(sector.y) +
+                static_cast<std::size_t>(sectors_.y) * static_cast<std::size_t>(sector.z));
+  }
+
   ivec3 sectors_;
   std::vector<std::uint64_t> masks_;
 };

@@ -25,7 +25,7 @@ constexpr std::array<std::uint64_t, 256> kZeros = make_zeros();
 
 EmptyCubes::EmptyCubes(const VoxelGrid& grid, CubeBuilder builder)
     : distances_(glm::min(grid.size(), kMaxAcceleratedSide), kFarthest) {
-  require_accelerable(grid, "empty cubes");
+  require_accelerable(grid.size(), "empty cubes");
   if (grid.solid_count() == 0) return;
   switch (builder) {
     case CubeBuilder::rows:

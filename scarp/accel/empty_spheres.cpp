@@ -8,7 +8,7 @@
 namespace scarp {
 
 EmptySpheres::EmptySpheres(const VoxelGrid& grid) : distances_(glm::min(grid.size(), kMaxAcceleratedSide), kFarthest) {
-  require_accelerable(grid, "empty spheres");
+  require_accelerable(grid.size(), "empty spheres");
   build(grid, grid.box());
 }
 

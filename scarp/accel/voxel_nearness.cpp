@@ -30,7 +30,7 @@ VoxelNearness::VoxelNearness(const VoxelGrid& grid, const VoxelBox& window)
   const VoxelBox bricks = {window.low >> 2, (window.high + 3) >> 2}, inner = {(window.low + 3) >> 2, window.high >> 2};
   const std::size_t to_next_row = stride_, to_next_slab = stride_ * static_cast<std::size_t>(size_.y);
   for_each_voxel(bricks, [&](const ivec3& brick) {
-    const std::uint64_t mask = grid.masks()[grid.brick_index(brick)];
+    const std::uint64_t mask = grid.mask(brick);
     if (mask == 0) return;
     const ivec3 at = 4 * brick - window.low;
     // Most bricks are whole. Separated so that values which stores might alias are not reloaded.

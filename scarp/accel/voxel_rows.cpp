@@ -10,8 +10,7 @@
 
 namespace scarp {
 
-void require_accelerable(const VoxelGrid& grid, std::string_view what) {
-  const ivec3& size = grid.size();
+void require_accelerable(const ivec3& size, std::string_view what) {
   if (std::max({size.x, size.y, size.z}) <= kMaxAcceleratedSide) return;
   throw Error(fmt::format("{}: {} x {} x {} voxels, limited to {} per side (use voxel-bricks for larger grids)", what,
                           size.x, size.y, size.z, kMaxAcceleratedSide));
@@ -20,10 +19,7 @@ void require_accelerable(const VoxelGrid& grid, std::string_view what) {
 VoxelRows::VoxelRows(const VoxelGrid& grid)
     : size(grid.size()), words_per_row((static_cast<std::size_t>(size.x) + 63) / 64) {
   words.resize(words_per_row * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
-  std::size_t index = 0;
-  for_each_voxel({ivec3(0), grid.bricks()}, [&](const ivec3& brick) {
-    const std::uint64_t mask = grid.masks()[index++];
-    if (mask == 0) return;
+  grid.for_each_solid_brick([&](const ivec3& brick, std::uint64_t mask) {
     const ivec3 rows = glm::min(size - 4 * brick, 4);
     const int shift = 4 * (brick.x % 16);
     for (int z = 0; z < rows.z; ++z) {

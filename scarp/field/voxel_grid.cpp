@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <numeric>
 
 #include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
 
 namespace scarp {
 namespace {
@@ -32,13 +34,16 @@ std::uint32_t packed(const std::vector<std::uint64_t>& words, std::size_t place,
   return static_cast<std::uint32_t>(value & below(bits));
 }
 
-void pack_at(std::vector<std::uint64_t>& words, std::size_t place, int bits, std::uint32_t entry) {
-  const std::size_t first = place * static_cast<std::size_t>(bits), word = first / 64, shift = first % 64;
-  words[word] |= std::uint64_t{entry} << shift;
-  if (shift + static_cast<std::size_t>(bits) > 64) words[word + 1] |= std::uint64_t{entry} >> (64 - shift);
-}
-
 bool valid_side(int side) { return side >= 1 && side <= VoxelGrid::kMaxSide; }
+
+// The voxels of a brick that are inside a grid of which `left` voxels remain along each axis.
+std::uint64_t mask_inside(const ivec3& left) {
+  if (left.x >= 4 && left.y >= 4 && left.z >= 4) return ~std::uint64_t{0};
+  std::uint64_t mask = 0;
+  for_each_voxel({ivec3(0), glm::min(left, 4)},
+                 [&](const ivec3& v) { mask |= std::uint64_t{1} << VoxelGrid::bit_of(v); });
+  return mask;
+}
 
 // The first layer of voxels of a brick along each axis.
 constexpr std::uint64_t kLowX = 0x1111111111111111u, kLowY = 0x000f000f000f000fu, kLowZ = 0x000000000000ffffu;
@@ -60,20 +65,34 @@ VoxelGrid::VoxelGrid(const ivec3& size, int entry_bits)
   if (entry_bits < 1 || entry_bits > kMaxEntryBits) {
     throw Error(fmt::format("voxel grid: {} bits per entry (must be 1 to {})", entry_bits, kMaxEntryBits));
   }
-  const std::size_t bricks = brick_index(bricks_ - 1) + 1;
-  masks_.resize(bricks);
-  pages_.resize((bricks + kPageBricks - 1) / kPageBricks);
+  first_mask_.resize(static_cast<std::size_t>(pages_of(size)) + 1);
+  empty_pages_ = page_count();
+  masks_.resize(kPageBricks);
+  pages_.resize(1);
+}
+
+std::int64_t VoxelGrid::pages_of(const ivec3& size) {
+  const ivec3 bricks = (size + 3) / 4;
+  return (std::int64_t{bricks.x} * bricks.y * bricks.z + kPageBricks - 1) / kPageBricks;
+}
+
+std::int64_t VoxelGrid::bytes_of(const ivec3& size, std::int64_t pages, std::int64_t solid, int entry_bits) {
+  constexpr std::int64_t kPageBytes = kPageBricks * sizeof(std::uint64_t) + sizeof(Page) + sizeof(std::uint64_t);
+  return static_cast<std::int64_t>(sizeof(VoxelGrid) + sizeof(std::uint32_t)) +
+         pages_of(size) * static_cast<std::int64_t>(sizeof(std::uint32_t)) + (pages + 1) * kPageBytes +
+         solid * entry_bits / 8;
 }
 
 std::size_t VoxelGrid::bytes() const {
-  std::size_t sum = sizeof(*this) + (masks_.size() + coloured_.size()) * sizeof(std::uint64_t);
+  std::size_t sum = sizeof(*this) + first_mask_.size() * sizeof(std::uint32_t) +
+                    (masks_.size() + coloured_.size()) * sizeof(std::uint64_t);
   for (const Page& page : pages_) sum += sizeof(page) + page.words.size() * sizeof(std::uint64_t);
   return sum;
 }
 
 std::uint32_t VoxelGrid::entry(const ivec3& voxel) const {
   const std::span<const std::uint64_t> masks = entry_masks();
-  const std::size_t brick = brick_index(voxel >> 2);
+  const std::size_t index = brick_index(voxel >> 2), brick = first_mask_[index / kPageBricks] + index % kPageBricks;
   const int bit = bit_of(voxel);
   if (!(masks[brick] >> bit & 1)) return 0;
   const Page& page = pages_[brick / kPageBricks];
@@ -85,38 +104,73 @@ std::uint32_t VoxelGrid::entry(const ivec3& voxel) const {
 
 VoxelGrid::PageVoxels VoxelGrid::unpack(std::size_t page) const {
   PageVoxels voxels;
-  const std::size_t first = page * kPageBricks, count = std::min<std::size_t>(kPageBricks, masks_.size() - first);
+  const std::size_t first = first_mask_[page];
   std::size_t rank = 0;
-  for (std::size_t brick = 0; brick < count; ++brick) {
+  for (std::size_t brick = 0; brick < kPageBricks; ++brick) {
     voxels.solid[brick] = masks_[first + brick];
     voxels.coloured[brick] = entry_masks()[first + brick];
     for (std::uint64_t rest = voxels.coloured[brick]; rest != 0; rest &= rest - 1)
       voxels.entries[brick * kVoxelsPerBrick + std::countr_zero(rest)] =
-          packed(pages_[page].words, rank++, entry_bits_);
+          packed(pages_[first / kPageBricks].words, rank++, entry_bits_);
   }
   return voxels;
 }
 
+VoxelGrid::Page VoxelGrid::packed_page(std::span<const std::uint64_t> coloured,
+                                       std::span<const std::uint32_t> entries) const {
+  Page page;
+  std::size_t count = 0;
+  for (std::size_t brick = 0; brick < kPageBricks; ++brick) {
+    if (brick % kRankBricks == 0) page.rank_from[brick / kRankBricks] = static_cast<std::uint16_t>(count);
+    count += static_cast<std::size_t>(bits_set(coloured[brick]));
+  }
+  page.words.reserve((count * static_cast<std::size_t>(entry_bits_) + 63) / 64);
+  std::uint64_t word = 0;
+  int used = 0;  // bits of it
+  for (std::size_t brick = 0; brick < kPageBricks; ++brick) {
+    for (std::uint64_t rest = coloured[brick]; rest != 0; rest &= rest - 1) {
+      const std::uint64_t entry = entries[brick * kVoxelsPerBrick + static_cast<std::size_t>(std::countr_zero(rest))];
+      word |= entry << used;
+      used += entry_bits_;
+      if (used < 64) continue;
+      page.words.push_back(word);
+      used -= 64;
+      word = used > 0 ? entry >> (entry_bits_ - used) : 0;
+    }
+  }
+  if (used > 0) page.words.push_back(word);
+  return page;
+}
+
+// Returns the index of a page's first mask; a page that was empty gets its own.
+std::size_t VoxelGrid::stored(std::size_t page) {
+  if (!is_empty(page)) return first_mask_[page];
+  if (empty_pages_ == 1) {
+    empty_pages_ = 0;
+    return 0;
+  }
+  const std::size_t first = masks_.size();
+  // If one of these throws, the others have more pages than are used.
+  pages_.resize(first / kPageBricks + 1);
+  if (!coloured_.empty()) coloured_.resize(first + kPageBricks);
+  masks_.resize(first + kPageBricks);
+  first_mask_[page] = static_cast<std::uint32_t>(first);
+  --empty_pages_;
+  return first;
+}
+
 void VoxelGrid::pack(std::size_t page, const PageVoxels& voxels) {
-  const std::size_t first = page * kPageBricks, count = std::min<std::size_t>(kPageBricks, masks_.size() - first);
-  std::size_t entries = 0;
-  for (std::size_t brick = 0; brick < count; ++brick) entries += std::popcount(voxels.coloured[brick]);
-  // Before anything is stored, because it may throw.
-  std::vector<std::uint64_t> words((entries * static_cast<std::size_t>(entry_bits_) + 63) / 64);
-  entries = 0;
-  for (std::size_t brick = 0; brick < count; ++brick) {
-    if (brick % kRankBricks == 0) pages_[page].rank_from[brick / kRankBricks] = static_cast<std::uint16_t>(entries);
-    entries += std::popcount(voxels.coloured[brick]);
+  const auto any = [](std::uint64_t mask) { return mask != 0; };
+  if (is_empty(page) && std::none_of(voxels.solid.begin(), voxels.solid.end(), any)) return;
+  // Before anything is stored, because they may throw.
+  Page entries = packed_page(voxels.coloured, voxels.entries);
+  const std::size_t first = stored(page);
+  for (std::size_t brick = 0; brick < kPageBricks; ++brick) {
     solid_count_ += std::popcount(voxels.solid[brick]) - std::popcount(masks_[first + brick]);
     masks_[first + brick] = voxels.solid[brick];
     if (!coloured_.empty()) coloured_[first + brick] = voxels.coloured[brick];
   }
-  std::size_t rank = 0;
-  for (std::size_t brick = 0; brick < count; ++brick) {
-    for (std::uint64_t rest = voxels.coloured[brick]; rest != 0; rest &= rest - 1)
-      pack_at(words, rank++, entry_bits_, voxels.entries[brick * kVoxelsPerBrick + std::countr_zero(rest)]);
-  }
-  pages_[page].words = std::move(words);
+  pages_[first / kPageBricks] = std::move(entries);
 }
 
 void VoxelGrid::require_entry(std::uint32_t entry) const {
@@ -128,7 +182,7 @@ void VoxelGrid::require_entry(std::uint32_t entry) const {
 // changes to the current page are lost and the rest of the grid stays consistent.
 class VoxelGrid::Editing {
  public:
-  explicit Editing(VoxelGrid& grid) : grid_(grid), page_(grid.pages_.size()) {}
+  explicit Editing(VoxelGrid& grid) : grid_(grid), page_(grid.page_count()) {}
   Editing(const Editing&) = delete;
   Editing& operator=(const Editing&) = delete;
   ~Editing() {
@@ -179,7 +233,7 @@ class VoxelGrid::Editing {
 
  private:
   void pack() {
-    if (page_ < grid_.pages_.size()) grid_.pack(page_, voxels_);
+    if (page_ < grid_.page_count()) grid_.pack(page_, voxels_);
   }
 
   VoxelGrid& grid_;
@@ -208,7 +262,7 @@ VoxelBox VoxelGrid::set(std::span<const Placed> voxels) {
   }
   // Counting sort by page, so that each is unpacked once: counts before each page, then the next index of each.
   const auto page_of = [&](const Placed& placed) { return brick_index(placed.voxel >> 2) / kPageBricks; };
-  std::size_t low = pages_.size(), high = 0;
+  std::size_t low = page_count(), high = 0;
   for (const Placed& placed : voxels) {
     if (!box().contains(placed.voxel)) continue;
     low = std::min(low, page_of(placed));
@@ -251,10 +305,7 @@ VoxelBox VoxelGrid::paint(const VoxelBox& box, std::uint32_t entry) {
 
 VoxelBox VoxelGrid::scan_bounds() const {
   VoxelBox bounds;
-  std::size_t index = 0;
-  for_each_voxel({ivec3(0), bricks_}, [&](const ivec3& brick) {
-    const std::uint64_t mask = masks_[index++];
-    if (mask == 0) return;
+  for_each_solid_brick([&](const ivec3& brick, std::uint64_t mask) {
     // Positions along an axis where the brick has solid voxels: four bits.
     const auto occupied = [&](std::uint64_t layer, int shift) {
       unsigned bits = 0;
@@ -280,7 +331,8 @@ VoxelBox VoxelGrid::combine(const VoxelGrid& other, MaskOp op) {
         size_.x, size_.y, size_.z, entry_bits_, other.size_.x, other.size_.y, other.size_.z, other.entry_bits_));
   }
   VoxelBox changed;
-  for (std::size_t page = 0; page < pages_.size(); ++page) {
+  for (std::size_t page = 0; page < page_count(); ++page) {
+    if (is_empty(page) && other.is_empty(page)) continue;
     PageVoxels mine = unpack(page);
     const PageVoxels theirs = other.unpack(page);
     bool touched = false;
@@ -294,8 +346,7 @@ VoxelBox VoxelGrid::combine(const VoxelGrid& other, MaskOp op) {
       }
       mine.solid[brick] = after;
       mine.coloured[brick] = (mine.coloured[brick] & after) | (theirs.coloured[brick] & after & ~before);
-      const auto index = static_cast<int>(page * kPageBricks + brick);
-      const ivec3 at(index % bricks_.x, index / bricks_.x % bricks_.y, index / bricks_.x / bricks_.y);
+      const ivec3 at = brick_at(page * kPageBricks + brick);
       changed = around(changed, intersection({4 * at, 4 * at + 4}, box()));
     }
     if (touched) {
@@ -319,15 +370,54 @@ VoxelBox VoxelGrid::subtract(const VoxelGrid& other) {
   return combine(other, [](std::uint64_t a, std::uint64_t b) { return a & ~b; });
 }
 
+VoxelGrid VoxelGrid::built(const ivec3& size, int entry_bits, const FillBrick& fill) {
+  VoxelGrid grid(size, entry_bits);
+  struct Stored {
+    std::array<std::uint64_t, kPageBricks> masks{};
+    Page page;
+  };
+  std::vector<std::unique_ptr<Stored>> pages(grid.page_count());
+  const std::size_t bricks = grid.brick_index(grid.bricks_ - 1) + 1;
+  constexpr int kGrain = 64;  // pages: some milliseconds
+  parallel_for(static_cast<std::int64_t>(pages.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    std::vector<std::uint32_t> entries(kPageBricks * kVoxelsPerBrick);
+    for (auto page = static_cast<std::size_t>(begin); page < static_cast<std::size_t>(end); ++page) {
+      std::array<std::uint64_t, kPageBricks> masks{};
+      std::uint64_t any = 0;
+      for (std::size_t i = 0; i < kPageBricks && page * kPageBricks + i < bricks; ++i) {
+        const ivec3 brick = grid.brick_at(page * kPageBricks + i);
+        const std::span<std::uint32_t, kVoxelsPerBrick> own(&entries[i * kVoxelsPerBrick], kVoxelsPerBrick);
+        masks[i] = fill(brick, own) & mask_inside(size - 4 * brick);
+        any |= masks[i];
+        for (std::uint64_t rest = masks[i]; rest != 0; rest &= rest - 1)
+          grid.require_entry(own[static_cast<std::size_t>(std::countr_zero(rest))]);
+      }
+      if (any != 0) pages[page] = std::make_unique<Stored>(Stored{masks, grid.packed_page(masks, entries)});
+    }
+  });
+  const auto count = static_cast<std::size_t>(pages.size() - std::count(pages.begin(), pages.end(), nullptr));
+  grid.masks_.reserve((count + 1) * kPageBricks);
+  grid.pages_.reserve(count + 1);
+  for (std::size_t page = 0; page < pages.size(); ++page) {
+    if (!pages[page]) continue;
+    const std::size_t first = grid.stored(page);
+    std::copy(pages[page]->masks.begin(), pages[page]->masks.end(), &grid.masks_[first]);
+    for (const std::uint64_t mask : pages[page]->masks) grid.solid_count_ += bits_set(mask);
+    grid.pages_[first / kPageBricks] = std::move(pages[page]->page);
+    pages[page].reset();
+  }
+  grid.bounds_ = grid.scan_bounds();
+  return grid;
+}
+
 void VoxelGrid::drop_hidden_entries() {
   const auto neighbour = [&](const ivec3& brick, const ivec3& by) {
     const ivec3 at = brick + by;
     return VoxelBox{ivec3(0), bricks_}.contains(at) ? mask(at) : 0;
   };
   std::vector<std::uint64_t> seen(masks_.size());
-  std::size_t index = 0;
-  for_each_voxel({ivec3(0), bricks_}, [&](const ivec3& brick) {
-    const std::uint64_t m = masks_[index];
+  for_each_solid_brick([&](const ivec3& brick, std::uint64_t m) {
+    const std::size_t index = brick_index(brick);
     // Bit v: whether the neighbour of v on that side is solid.
     const std::uint64_t to_x = ((m >> 1) & ~(kLowX << 3)) | (neighbour(brick, {1, 0, 0}) & kLowX) << 3,
                         from_x = ((m << 1) & ~kLowX) | (neighbour(brick, {-1, 0, 0}) >> 3 & kLowX),
@@ -335,14 +425,15 @@ void VoxelGrid::drop_hidden_entries() {
                         from_y = ((m << 4) & ~kLowY) | (neighbour(brick, {0, -1, 0}) >> 12 & kLowY),
                         to_z = m >> 16 | (neighbour(brick, {0, 0, 1}) & kLowZ) << 48,
                         from_z = m << 16 | neighbour(brick, {0, 0, -1}) >> 48;
-    seen[index++] = m & ~(to_x & from_x & to_y & from_y & to_z & from_z);
+    seen[first_mask_[index / kPageBricks] + index % kPageBricks] = m & ~(to_x & from_x & to_y & from_y & to_z & from_z);
   });
   // If nothing is hidden, there is no need to store which voxels have an entry.
   if (seen == masks_) return;
-  for (std::size_t page = 0; page < pages_.size(); ++page) {
+  for (std::size_t page = 0; page < page_count(); ++page) {
+    if (is_empty(page)) continue;
+    const std::size_t first = first_mask_[page];
     PageVoxels voxels = unpack(page);
-    const std::size_t first = page * kPageBricks, count = std::min<std::size_t>(kPageBricks, masks_.size() - first);
-    for (std::size_t brick = 0; brick < count; ++brick) voxels.coloured[brick] &= seen[first + brick];
+    for (std::size_t brick = 0; brick < kPageBricks; ++brick) voxels.coloured[brick] &= seen[first + brick];
     pack(page, voxels);
   }
   if (coloured_.empty()) coloured_ = std::move(seen);

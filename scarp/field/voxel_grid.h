@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A dense voxel grid: solidity, and a colour entry for each solid voxel.
+// A voxel grid: solidity, and a colour entry for each solid voxel.
 //
 //   shape   one bit per voxel, in bricks of 4 x 4 x 4: a 64-bit mask, bit x + 4 y + 16 z
 //   bricks  x fastest, then y, then z; if a side is not a multiple of 4, the last ones are padded with empty voxels
@@ -10,7 +10,8 @@
 // outside the grid is empty.
 //
 // Bricks are stored in pages of 64, each with the entries of its own voxels: an edit repacks only the pages that it
-// touches. Cost: 1.6 bits per voxel, and entry_bits per solid one.
+// touches. Pages without solid voxels are not stored. Cost: 1/128 byte per voxel of the box, 1.6 bits per voxel of a
+// stored page, and entry_bits per solid voxel.
 #pragma once
 
 #include <array>
@@ -25,7 +26,7 @@
 
 namespace scarp {
 
-/// A dense voxel grid.
+/// A voxel grid.
 class VoxelGrid {
  public:
   static constexpr int kMaxSide = 2048;
@@ -34,6 +35,12 @@ class VoxelGrid {
 
   /// An empty grid. Each side 1 to kMaxSide, entry_bits 1 to kMaxEntryBits; throws Error otherwise.
   explicit VoxelGrid(const ivec3& size, int entry_bits = 8);
+
+  /// Fills a brick: sets the entries of its solid voxels, by bit_of(), and returns its mask.
+  using FillBrick = std::function<std::uint64_t(const ivec3& brick, std::span<std::uint32_t, 64> entries)>;
+  /// Builds a grid brick by brick, on all threads; faster than edit(). `fill` is called once per brick, concurrently;
+  /// voxels outside the grid are ignored. Throws Error as the constructor, or if an entry does not fit.
+  static VoxelGrid built(const ivec3& size, int entry_bits, const FillBrick& fill);
 
   const ivec3& size() const { return size_; }
   VoxelBox box() const { return {ivec3(0), size_}; }
@@ -52,9 +59,31 @@ class VoxelGrid {
                (static_cast<std::size_t>(brick.y) +
                 static_cast<std::size_t>(bricks_.y) * static_cast<std::size_t>(brick.z));
   }
-  std::uint64_t mask(const ivec3& brick) const { return masks_[brick_index(brick)]; }
-  /// All bricks, by brick_index().
+  std::uint64_t mask(const ivec3& brick) const {
+    const std::size_t index = brick_index(brick);
+    return masks_[first_mask_[index / kPageBricks] + index % kPageBricks];
+  }
+  static constexpr int kPageBricks = 64;
+  /// Masks of the stored pages, for vector code: that of brick_index() i is first_masks()[i / kPageBricks] + i %
+  /// kPageBricks. All empty pages share one.
   std::span<const std::uint64_t> masks() const { return masks_; }
+  /// An index of masks() per page, then one more that is readable.
+  std::span<const std::uint32_t> first_masks() const { return first_mask_; }
+  /// Calls body(brick, mask) for each brick with solid voxels, in the order of brick_index().
+  template <class Body>
+  void for_each_solid_brick(const Body& body) const {
+    for (std::size_t page = 0; page + 1 < first_mask_.size(); ++page) {
+      if (is_empty(page)) continue;
+      for (std::size_t i = 0; i < kPageBricks; ++i) {
+        if (const std::uint64_t mask = masks_[first_mask_[page] + i]; mask != 0)
+          body(brick_at(page * kPageBricks + i), mask);
+      }
+    }
+  }
+  /// Pages of a grid of this size.
+  static std::int64_t pages_of(const ivec3& size);
+  /// Bytes of a grid of this size with `pages` pages that are not empty, and of the entries of `solid` voxels.
+  static std::int64_t bytes_of(const ivec3& size, std::int64_t pages, std::int64_t solid, int entry_bits);
   /// Bit of a voxel in the mask of its brick.
   static int bit_of(const ivec3& voxel) { return (voxel.x & 3) | (voxel.y & 3) << 2 | (voxel.z & 3) << 4; }
 
@@ -106,7 +135,7 @@ class VoxelGrid {
   void drop_hidden_entries();
 
  private:
-  static constexpr int kPageBricks = 64, kRankBricks = 4;
+  static constexpr int kRankBricks = 4;
   static constexpr int kRanks = kPageBricks / kRankBricks;
 
   // Entries of the voxels of 64 bricks, in the order of bricks and bits.
@@ -119,6 +148,14 @@ class VoxelGrid {
   using MaskOp = std::uint64_t (*)(std::uint64_t, std::uint64_t);
 
   std::span<const std::uint64_t> entry_masks() const { return coloured_.empty() ? masks_ : coloured_; }
+  bool is_empty(std::size_t page) const { return first_mask_[page] == 0 && empty_pages_ > 0; }
+  std::size_t page_count() const { return first_mask_.size() - 1; }
+  ivec3 brick_at(std::size_t index) const {
+    const auto i = static_cast<int>(index);
+    return {i % bricks_.x, i / bricks_.x % bricks_.y, i / bricks_.x / bricks_.y};
+  }
+  Page packed_page(std::span<const std::uint64_t> coloured, std::span<const std::uint32_t> entries) const;
+  std::size_t stored(std::size_t page);
   PageVoxels unpack(std::size_t page) const;
   void pack(std::size_t page, const PageVoxels& voxels);
   VoxelBox combine(const VoxelGrid& other, MaskOp op);
@@ -127,9 +164,11 @@ class VoxelGrid {
 
   ivec3 size_, bricks_;
   int entry_bits_;
-  std::vector<std::uint64_t> masks_;
-  std::vector<std::uint64_t> coloured_;  // voxels with an entry; empty: all solid ones
-  std::vector<Page> pages_;
+  std::vector<std::uint32_t> first_mask_;
+  std::size_t empty_pages_;              // they share the first masks; the last of them to be filled takes these
+  std::vector<std::uint64_t> masks_;     // page by page
+  std::vector<std::uint64_t> coloured_;  // voxels with an entry, likewise; empty: all solid ones
+  std::vector<Page> pages_;              // as masks_
   std::int64_t solid_count_ = 0;
   VoxelBox bounds_;
 };

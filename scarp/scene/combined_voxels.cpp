@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
-#include "scarp/base/lattice_rotation.h"
+#include "scarp/scene/lattice_place.h"
 
 namespace scarp {
 namespace {
@@ -24,9 +24,8 @@ constexpr int kRgbBits = 24;
 // A model on the lattice that all parts share.
 struct OnLattice {
   const VoxelModel* model;
-  LatticeRotation turn, back;  // lattice from grid, and its inverse
-  ivec3 origin;                // of the grid's corner
-  VoxelBox bounds;             // around its solid voxels
+  LatticePlace place;
+  VoxelBox bounds;  // around its solid voxels
 };
 
 std::optional<LatticeRotation> lattice_rotation(const glm::dmat3& matrix) {
@@ -64,12 +63,8 @@ OnLattice on_lattice(const VoxelPlace& place, const VoxelPlace& lattice, const V
   }
   if (std::max({std::abs(whole.x), std::abs(whole.y), std::abs(whole.z)}) > kFarthest)
     throw Error(fmt::format("part {} is more than {} voxels from the first one", part, static_cast<int>(kFarthest)));
-  OnLattice found{&model, *turn, turn->inverse(), ivec3(whole), {}};
-  if (const VoxelBox& solid = model.grid().bounds(); !solid.empty()) {
-    const ivec3 a = (*turn)(solid.low) + found.origin, b = (*turn)(solid.high) + found.origin;
-    found.bounds = {glm::min(a, b), glm::max(a, b)};
-  }
-  return found;
+  const LatticePlace on(*turn, ivec3(whole));
+  return {&model, on, on.lattice_box(model.grid().bounds())};
 }
 
 // The voxels of a part within a box of the lattice.
@@ -82,8 +77,7 @@ VoxelGrid grid_of(const std::vector<OnLattice>& part, const VoxelBox& box) {
     grid.edit({common.low - box.low, common.high - box.low},
               [&](const ivec3& v, const VoxelGrid::Voxel& before) -> VoxelGrid::Voxel {
                 if (before) return before;
-                // Doubled centres of voxels are integers.
-                const ivec3 middle = placed.back(2 * (v + box.low - placed.origin) + 1), voxel = (middle - 1) / 2;
+                const ivec3 voxel = placed.place.grid_voxel(v + box.low);
                 if (!from.solid(voxel)) return {};
                 const VoxelColour rgb = placed.model->colour(from.entry(voxel));
                 return rgb[0] | std::uint32_t{rgb[1]} << 8 | std::uint32_t{rgb[2]} << 16;

@@ -11,6 +11,26 @@ constexpr int kLongestOctants = 512;                          // voxels per side
 
 }  // namespace
 
+WorldBox world_box(const VoxelPlace& place, const VoxelBox& box) {
+  WorldBox world;
+  for (int corner = 0; corner < 8; ++corner) {
+    const ivec3 at(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
+                   corner & 4 ? box.high.z : box.low.z);
+    const dvec3 p = place.world_from_grid * dvec3(at) + place.origin;
+    world = around(world, {p, p});
+  }
+  return world;
+}
+
+WorldBox world_box(const PlacedVoxels& voxels) {
+  WorldBox world;
+  for (const VoxelPlace& place : voxels.places) {
+    const VoxelBox& solid = voxels.models[place.model]->grid().bounds();
+    if (!solid.empty()) world = around(world, world_box(place, solid));
+  }
+  return world;
+}
+
 const VoxelMarchEntry& file_voxel_march(std::string_view name, std::span<const ivec3> sizes) {
   if (!name.empty()) return find_voxel_march(name);
   std::int64_t voxels = 0;

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scarp/base/world_box.h"
 #include "scarp/march/voxel/rounded_voxels.h"
 #include "scarp/scene/voxel_model.h"
 
@@ -27,6 +28,11 @@ struct PlacedVoxels {
   std::vector<VoxelPlace> places{};
   VoxelRounding rounding{};
 };
+
+/// The box around a box of a grid in its place.
+WorldBox world_box(const VoxelPlace& place, const VoxelBox& box);
+/// The box around all solid voxels; empty if there are none.
+WorldBox world_box(const PlacedVoxels& voxels);
 
 /// How readers make models of files.
 struct VoxelFileOptions {

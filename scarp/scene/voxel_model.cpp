@@ -6,6 +6,28 @@
 
 namespace scarp {
 
+std::int64_t accelerator_bytes(VoxelAccelerator accelerator, const ivec3& size) {
+  const std::int64_t voxels = std::int64_t{size.x} * size.y * size.z;
+  const ivec3 sectors = (size + 15) / 16;
+  switch (accelerator) {
+    case VoxelAccelerator::spheres:
+    case VoxelAccelerator::cubes:
+      return voxels;
+    case VoxelAccelerator::octants:
+      return 8 * voxels;
+    case VoxelAccelerator::bricks:
+      return std::int64_t{8} * sectors.x * sectors.y * sectors.z;
+    case VoxelAccelerator::none:
+      return 0;
+  }
+  return 0;
+}
+
+void require_marchable(const VoxelMarchEntry& march, const ivec3& size) {
+  if (march.accelerator != VoxelAccelerator::none && march.accelerator != VoxelAccelerator::bricks)
+    require_accelerable(size, march.name);
+}
+
 VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette, Extent extent)
     : grid_(std::move(grid)), march_(&march), palette_(std::move(palette)), extent_(extent) {
   switch (march.accelerator) {

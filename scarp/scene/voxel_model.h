@@ -21,6 +21,12 @@ using VoxelColour = std::array<std::uint8_t, 3>;
 /// Of voxels without a colour of their own.
 inline constexpr VoxelColour kPlainVoxels{196, 188, 170};
 
+/// Bytes that a march builds for a grid of this size.
+std::int64_t accelerator_bytes(VoxelAccelerator accelerator, const ivec3& size);
+
+/// Throws Error if grids of this size are too large for a march.
+void require_marchable(const VoxelMarchEntry& march, const ivec3& size);
+
 /// Immutable once it is in a scene.
 class VoxelModel {
  public:

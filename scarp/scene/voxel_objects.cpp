@@ -31,17 +31,6 @@ void require_rigid(const glm::dmat3& m, std::size_t place) {
   if (!good) throw Error(fmt::format("voxels: object {}: its matrix must be a rotation times a scale above 0", place));
 }
 
-WorldBox world_box(const VoxelPlace& place, const VoxelBox& box) {
-  WorldBox world;
-  for (int corner = 0; corner < 8; ++corner) {
-    const ivec3 at(corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                   corner & 4 ? box.high.z : box.low.z);
-    const dvec3 p = place.world_from_grid * dvec3(at) + place.origin;
-    world = around(world, {p, p});
-  }
-  return world;
-}
-
 }  // namespace
 
 VoxelObjects::VoxelObjects(PlacedVoxels voxels) : models_(std::move(voxels.models)), rounding_(voxels.rounding) {

@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cstring>
-#include <filesystem>
+#include <fstream>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "scarp/base/error.h"
@@ -18,7 +20,7 @@
 namespace scarp {
 namespace {
 
-constexpr std::string_view kNpy = "npy", kNpyMagic = "\x93NUMPY";
+constexpr std::string_view kNpy = "npy";
 
 bool parse(std::string_view text, VolumeFormat& format) {
   int x = 0;
@@ -49,16 +51,43 @@ void require_length(const VolumeFormat& format, std::uint64_t bytes) {
                           format.offset > 0 ? fmt::format(" at offset {}", format.offset) : "", needed));
 }
 
+template <class Number, bool swapped>
+double number(const char* at) {
+  using Bits =
+      std::conditional_t<sizeof(Number) == 8, std::uint64_t,
+                         std::conditional_t<sizeof(Number) == 4, std::uint32_t,
+                                            std::conditional_t<sizeof(Number) == 2, std::uint16_t, std::uint8_t>>>;
+  Bits bits;
+  std::memcpy(&bits, at, sizeof(bits));
+  if constexpr (swapped) {
+    Bits turned = 0;
+    for (std::size_t i = 0; i < sizeof(bits); ++i)
+      turned = static_cast<Bits>(turned | ((bits >> (8 * i) & 255) << (8 * (sizeof(bits) - 1 - i))));
+    bits = turned;
+  }
+  return static_cast<double>(std::bit_cast<Number>(bits));
+}
+
+// Samples in memory: the first one, and the bytes from one to the next along each axis of a brick.
+struct Samples {
+  const char* first;
+  std::array<std::ptrdiff_t, 3> apart;
+  ivec3 count;
+  bool swapped;
+};
+
 template <class Number>
-double number(std::uint64_t bits) {
-  if constexpr (sizeof(Number) == 8)
-    return static_cast<double>(std::bit_cast<Number>(bits));
-  else if constexpr (sizeof(Number) == 4)
-    return std::bit_cast<Number>(static_cast<std::uint32_t>(bits));
-  else if constexpr (sizeof(Number) == 2)
-    return std::bit_cast<Number>(static_cast<std::uint16_t>(bits));
-  else
-    return std::bit_cast<Number>(static_cast<std::uint8_t>(bits));
+void convert(const Samples& samples, std::span<double, 64> numbers) {
+  const auto all = [&]<bool swapped>() {
+    for (int z = 0; z < samples.count.z; ++z) {
+      for (int y = 0; y < samples.count.y; ++y) {
+        const char* at = samples.first + y * samples.apart[1] + z * samples.apart[2];
+        double* to = numbers.data() + 4 * y + 16 * z;
+        for (int x = 0; x < samples.count.x; ++x) to[x] = number<Number, swapped>(at + x * samples.apart[0]);
+      }
+    }
+  };
+  samples.swapped ? all.template operator()<true>() : all.template operator()<false>();
 }
 
 }  // namespace
@@ -105,43 +134,78 @@ DenseVolume::DenseVolume(const VolumeFormat& format, std::string bytes) : format
 }
 
 double DenseVolume::operator[](const ivec3& voxel) const {
-  const char* at = bytes_.data() + format_.offset + static_cast<std::size_t>(voxel.x) * stride_[0] +
-                   static_cast<std::size_t>(voxel.y) * stride_[1] + static_cast<std::size_t>(voxel.z) * stride_[2];
-  std::uint64_t bits = 0;
-  for (int i = 0; i < format_.bytes; ++i) {
-    const int place = format_.big_endian ? i : format_.bytes - 1 - i;
-    bits = bits << 8 | static_cast<std::uint8_t>(at[place]);
-  }
+  std::array<double, 64> numbers;
+  brick(voxel, {}, ivec3(1), numbers);
+  return numbers[0];
+}
+
+void DenseVolume::brick(const ivec3& from, const std::array<ivec3, 3>& step, const ivec3& count,
+                        std::span<double, 64> numbers) const {
+  const auto bytes_to = [&](const ivec3& v) {
+    std::ptrdiff_t bytes = 0;
+    for (int axis = 0; axis < 3; ++axis)
+      bytes += v[axis] * static_cast<std::ptrdiff_t>(stride_[static_cast<std::size_t>(axis)]);
+    return bytes;
+  };
+  const Samples samples{bytes_.data() + format_.offset + bytes_to(from),
+                        {bytes_to(step[0]), bytes_to(step[1]), bytes_to(step[2])},
+                        count,
+                        format_.bytes > 1 && format_.big_endian != (std::endian::native == std::endian::big)};
   switch (format_.kind == 'f' ? 16 + format_.bytes : format_.kind == 'i' ? 8 + format_.bytes : format_.bytes) {
+    case 1:
+      return convert<std::uint8_t>(samples, numbers);
+    case 2:
+      return convert<std::uint16_t>(samples, numbers);
+    case 4:
+      return convert<std::uint32_t>(samples, numbers);
+    case 8:
+      return convert<std::uint64_t>(samples, numbers);
     case 9:
-      return number<std::int8_t>(bits);
+      return convert<std::int8_t>(samples, numbers);
     case 10:
-      return number<std::int16_t>(bits);
+      return convert<std::int16_t>(samples, numbers);
     case 12:
-      return number<std::int32_t>(bits);
+      return convert<std::int32_t>(samples, numbers);
     case 16:
-      return number<std::int64_t>(bits);
+      return convert<std::int64_t>(samples, numbers);
     case 20:
-      return number<float>(bits);
-    case 24:
-      return number<double>(bits);
+      return convert<float>(samples, numbers);
     default:
-      return static_cast<double>(bits);
+      return convert<double>(samples, numbers);
+  }
+}
+
+VolumeFormat volume_format_of(const std::string& path, const std::string& text) {
+  const std::optional<VolumeFormat> said = text == kNpy ? std::nullopt : std::optional(parse_volume_format(text));
+  try {
+    std::ifstream in(path, std::ios::binary | std::ios::ate);
+    if (!in) throw Error("cannot be opened");
+    const std::streamoff length = in.tellg();
+    if (length < 0) throw Error("cannot be read (is it a file?)");
+    if (said) {
+      require_length(*said, static_cast<std::uint64_t>(length));
+      return *said;
+    }
+    std::string start;
+    const auto read_first = [&](std::uint64_t count) {
+      start.resize(std::min(count, static_cast<std::uint64_t>(length)));
+      in.seekg(0);
+      in.read(start.data(), static_cast<std::streamsize>(start.size()));
+      if (!in) throw Error("cannot be read (is it a file?)");
+    };
+    read_first(kNpyPreambleBytes);
+    read_first(static_cast<std::uint64_t>(npy_data_begin(start)));
+    const VolumeFormat format = npy_volume_format(start);
+    require_length(format, static_cast<std::uint64_t>(length));
+    return format;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path, error.what()));
   }
 }
 
 DenseVolume read_volume(const std::string& path, const std::string& text) {
-  const std::optional<VolumeFormat> said = text == kNpy ? std::nullopt : std::optional(parse_volume_format(text));
+  const VolumeFormat format = volume_format_of(path, text);
   try {
-    if (!said) {
-      std::string bytes = whole_file(path, kNpyMagic);
-      const VolumeFormat format = npy_volume_format(bytes);
-      return {format, std::move(bytes)};
-    }
-    const VolumeFormat& format = *said;
-    std::error_code error;
-    const std::uintmax_t length = std::filesystem::file_size(path, error);
-    if (!error) require_length(format, length);
     return {format, whole_file(path, std::string_view())};
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -43,8 +44,13 @@ class DenseVolume {
   DenseVolume(const VolumeFormat& format, std::string bytes);
 
   const ivec3& size() const { return format_.size; }
+  const VolumeFormat& format() const { return format_; }
   /// The voxel must be inside. 64-bit integers are rounded.
   double operator[](const ivec3& voxel) const;
+  /// Writes the number of voxel from + x * step[0] + y * step[1] + z * step[2] to numbers[x + 4 y + 16 z], for x, y and
+  /// z below `count`, each 0..4. All must be inside.
+  void brick(const ivec3& from, const std::array<ivec3, 3>& step, const ivec3& count,
+             std::span<double, 64> numbers) const;
 
  private:
   VolumeFormat format_;
@@ -52,6 +58,9 @@ class DenseVolume {
   std::string bytes_;
 };
 
+/// Returns the format of a file without its samples. `format`: the text above, or "npy". Throws Error naming the file,
+/// also if it is too short or too long.
+VolumeFormat volume_format_of(const std::string& path, const std::string& format);
 /// `format`: the text above, or "npy". Throws Error naming the file. Allocates only what the file contains.
 DenseVolume read_volume(const std::string& path, const std::string& format);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // MagicaVoxel files through the command line.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -56,6 +57,47 @@ TEST_F(CliVox, InfoSaysWhatIsInTheFile) {
   EXPECT_EQ(json["instances"], 2);
   EXPECT_EQ(json["low"], (std::vector<int>{-1, -1, -1}));
   EXPECT_EQ(json["high"], (std::vector<int>{2, 2, 9}));
+}
+
+TEST_F(CliVox, InfoListsPaletteLayersAndMaterials) {
+  VoxFile file = parse_vox(test::text_of(model_));
+  file.models[0].voxels[0].index = 7;
+  file.layers = {{0, {{"_name", "walls"}, {"_hidden", "1"}}}, {1, {}}};
+  file.materials = {
+      {7, {{"_type", "_glass"}, {"_ior", "0.3"}}}, {8, {{"_type", "_emit"}}}, {216, {{"_type", "_diffuse"}}}};
+  write_vox(model_, file);
+  const auto json = nlohmann::json::parse(run({"info", model_, "--json"}).out);
+  ASSERT_EQ(json["palette"].size(), 2u);
+  EXPECT_EQ(json["palette"][0], (nlohmann::json{{"index", 216}, {"colour", "#ee0000"}, {"voxels", 8}}));
+  ASSERT_EQ(json["materials"].size(), 1u);
+  EXPECT_EQ(json["materials"][0]["type"], "glass");
+  const std::string text = run({"info", model_}).out;
+  for (const char* expected : {"0 'walls', hidden: its objects are left out", "216 #ee0000 8", "7 glass, ior 0.3",
+                               "box          3 x 3 x 1 voxels"})
+    EXPECT_NE(text.find(expected), std::string::npos) << text;
+}
+
+// Two voxels in the corners of each model: their boxes are large, the models are not.
+TEST_F(CliVox, MemoryFollowsTheVoxels) {
+  VoxFile file;
+  file.version = 200;
+  VoxGroup group;
+  constexpr int kModels = 40, kSide = 256;
+  file.nodes = {{0, {}, VoxTransform{1}}, {1, {}, VoxGroup{}}};
+  for (int i = 0; i < kModels; ++i) {
+    file.models.push_back({ivec3(kSide), {{0, 0, 0, 1}, {255, 255, 255, 2}}});
+    const int node = static_cast<int>(file.nodes.size());
+    file.nodes.push_back({node, {}, VoxTransform{node + 1, -1, -1, {{{"_t", fmt::format("{} 0 0", 300 * i)}}}}});
+    file.nodes.push_back({node + 1, {}, VoxShape{{{i, {}}}}});
+    group.children.push_back(node);
+  }
+  file.nodes[1].content = group;
+  write_vox(model_, file);
+  const auto json = nlohmann::json::parse(run({"info", model_, "--json"}).out);
+  // Of 3.3 MB that each would take if all its voxels were stored.
+  EXPECT_LT(json["bytes"].get<int>(), kModels * 60'000);
+  // Octants take 8 bytes per voxel of the boxes.
+  expect_refused({"render", model_, "-o", path("out.png"), "--march", "voxel-octants"}, "1.1 GB of memory");
 }
 
 // The plate moves 8 voxels east in 4 frames. One of its voxels is empty by its palette index.
@@ -158,6 +200,11 @@ TEST_F(CliVox, SaysInOneLineWhatIsWrong) {
   expect_refused({"render", model_, "-o", out}, "truncated");
   scratch_.write("model.vox", "\xff\xd8\xff\xe0, a picture");
   expect_refused({"render", model_, "-o", out}, "ff d8 ff e0");
+  VoxFile empty;
+  empty.models = {{{3, 3, 3}, {}}};
+  write_vox(model_, empty);
+  expect_refused({"render", model_, "-o", out}, model_ + ": no visible voxels");
+  EXPECT_NE(run({"info", model_}).out.find("empty: there is no voxel"), std::string::npos);
 }
 
 // The same plate as a binvox file, an array and bare numbers: the same picture of another colour.
@@ -286,6 +333,10 @@ TEST_F(CliVox, SaysInOneLineWhatDoesNotGo) {
   expect_refused({"render", model_, "-o", out, "--solid-from", "3"}, "--volume");
   expect_refused({"render", model_, "-o", out, "--volume", "3x3:u8"}, "NXxNYxNZ");
   expect_refused({"render", model_, "-o", out, "--volume", "3x3x3:u8"}, "need 27");
+  // The size is known before the file is read.
+  expect_refused({"render", model_, "-o", out, "--volume", "513x1x1:u8+0", "--march", "voxel-octants"}, "513 x 1 x 1");
+  expect_refused({"render", model_, "-o", out, "--volume", "3x3x1:u8+0", "--solid-from", "1e9"},
+                 model_ + ": no voxel is solid: its numbers are ");
   expect_refused({"render", path("dem.tif"), "-o", out, "--rounded", "0.2"}, "applies to voxels only");
   expect_refused({"render", "--function", "elevated", "-o", out, "--normals", "smooth"}, "applies to voxels only");
   expect_refused({"info", path("dem.tif"), "--hidden"}, "applies to voxels only");

@@ -197,6 +197,49 @@ TEST(VoxelGrid, RefusesSizesOutOfRange) {
   EXPECT_THROW(grid.unite(VoxelGrid({4, 4, 5})), Error);
 }
 
+// Memory follows the solid voxels, not the box.
+TEST(VoxelGrid, StoresNoEmptyPages) {
+  VoxelGrid grid({1024, 1024, 1024});
+  EXPECT_LT(grid.bytes(), 2u << 20);
+  grid.set({1023, 1023, 1023}, 7);
+  grid.set({0, 0, 0}, 8);
+  EXPECT_LT(grid.bytes(), 2u << 20);
+  EXPECT_EQ(grid.entry({1023, 1023, 1023}), 7u);
+  EXPECT_EQ(grid.entry({0, 0, 0}), 8u);
+  EXPECT_EQ(grid.bounds(), grid.box());
+  EXPECT_LE(static_cast<std::int64_t>(grid.bytes()), VoxelGrid::bytes_of(grid.size(), 2, 2, 8) + 64);
+}
+
+TEST(VoxelGrid, IsBuiltFromBricksAsByEdits) {
+  const ivec3 size(70, 9, 33);
+  const auto entry_at = [](const ivec3& v) { return (v.x * 7 + v.y * 31 + v.z * 3) % 5 == 0 ? v.x % 9 + 1 : 0; };
+  VoxelGrid edited(size, 5);
+  edited.edit(edited.box(), [&](const ivec3& v, const VoxelGrid::Voxel&) {
+    const int entry = v.x < 40 ? entry_at(v) : 0;
+    return entry > 0 ? VoxelGrid::Voxel(static_cast<std::uint32_t>(entry)) : VoxelGrid::Voxel();
+  });
+  const VoxelGrid built = VoxelGrid::built(size, 5, [&](const ivec3& brick, std::span<std::uint32_t, 64> entries) {
+    std::uint64_t mask = 0;
+    for_each_voxel({4 * brick, 4 * brick + 4}, [&](const ivec3& v) {
+      const auto bit = static_cast<std::size_t>(VoxelGrid::bit_of(v));
+      entries[bit] = static_cast<std::uint32_t>(entry_at(v));
+      if (v.x < 40 && entries[bit] > 0) mask |= std::uint64_t{1} << bit;
+    });
+    return mask;
+  });
+  EXPECT_EQ(built.solid_count(), edited.solid_count());
+  EXPECT_EQ(built.bounds(), edited.bounds());
+  for_each_voxel(edited.box(), [&](const ivec3& v) {
+    ASSERT_EQ(built.solid(v), edited.solid(v));
+    ASSERT_EQ(built.entry(v), edited.entry(v));
+  });
+  const auto too_large = [](const ivec3&, std::span<std::uint32_t, 64> entries) {
+    entries[0] = 32;
+    return std::uint64_t{1};
+  };
+  EXPECT_THROW(VoxelGrid::built(size, 5, too_large), Error);
+}
+
 // The post's object: 32^3, each solid voxel with a colour of its own.
 TEST(VoxelGrid, HoldsTheStandardObjectInFewBytes) {
   VoxelGrid grid({32, 32, 32}, 24);

@@ -303,14 +303,14 @@ TEST(FromVolume, ColoursByNumber) {
   const DenseVolume volume(parse_volume_format("5x1x1:u8"), std::string("\0\12\24\36\31", 5));
   const std::vector<VoxelColour> colours{{1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
   FromVolumeOptions options;
-  const VoxelObjects all(placed_voxels_from(volume, colours, options));
+  const VoxelObjects all(placed_voxels_from(volume, colours, solid_range(volume, options.solid_from), options));
   EXPECT_FALSE(all.colour_at({0.5, 0.5, 0.5}));
   EXPECT_EQ((*all.colour_at({1.5, 0.5, 0.5}))[0], 1);
   EXPECT_EQ((*all.colour_at({2.5, 0.5, 0.5}))[0], 2);
   EXPECT_EQ((*all.colour_at({3.5, 0.5, 0.5}))[0], 3);
   EXPECT_EQ((*all.colour_at({4.5, 0.5, 0.5}))[0], 3);  // 1.5 steps of 10: the nearest above
   options.solid_from = 25;
-  const VoxelObjects some(placed_voxels_from(volume, colours, options));
+  const VoxelObjects some(placed_voxels_from(volume, colours, solid_range(volume, options.solid_from), options));
   EXPECT_FALSE(some.colour_at({2.5, 0.5, 0.5}));
   EXPECT_EQ((*some.colour_at({4.5, 0.5, 0.5}))[0], 1);
 }

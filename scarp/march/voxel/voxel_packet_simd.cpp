@@ -106,6 +106,16 @@ HWY_INLINE VI gather_bytes(const std::uint8_t* bytes, VI offset) {
   return hn::And(hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(bytes), offset), hn::Set(di, 255));
 }
 
+// Masks of bricks, as VoxelGrid::mask().
+HWY_INLINE VI gather_masks(const VoxelGrid& grid, VI brick) {
+  static_assert(VoxelGrid::kPageBricks == 64);
+  const std::uint32_t* first = grid.first_masks().data();
+  const VI page =
+      hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(first), hn::ShiftLeft<2>(hn::ShiftRight<6>(brick)));
+  const VI first_mask = hn::And(page, hn::Set(di, 0xffffffff));
+  return gather_words(grid.masks().data(), hn::Add(first_mask, hn::And(brick, hn::Set(di, 63))));
+}
+
 // One plane at a time.
 struct PlanesLook {
   static constexpr bool kSingle = true;
@@ -114,7 +124,7 @@ struct PlanesLook {
   explicit PlanesLook(const VoxelTarget& target) : grid(*target.grid) {}
   HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
     const VI brick[3] = {hn::ShiftRight<2>(v[0]), hn::ShiftRight<2>(v[1]), hn::ShiftRight<2>(v[2])};
-    const VI mask = gather_words(grid.masks().data(), hn::IfThenElseZero(alive, index_in(brick, grid.bricks())));
+    const VI mask = gather_masks(grid, hn::IfThenElseZero(alive, index_in(brick, grid.bricks())));
     const VI one = hn::Set(di, 1);
     return {hn::Ne(hn::And(shifted(mask, bit_in(v)), one), hn::Zero(di)), {one, one, one}};
   }
@@ -166,9 +176,8 @@ struct BricksLook {
                              hn::Or(hn::And(down[1], hn::Set(di, 128)), hn::And(down[2], hn::Set(di, 256))));
     const VI brick[3] = {hn::ShiftRight<2>(v[0]), hn::ShiftRight<2>(v[1]), hn::ShiftRight<2>(v[2])};
     const VI bit = bit_in(v);
-    const VI mask =
-        hn::And(gather_words(grid.masks().data(), hn::IfThenElseZero(alive, index_in(brick, grid.bricks()))),
-                gather_words(kAhead[0].data(), hn::Or(octant, bit)));
+    const VI mask = hn::And(gather_masks(grid, hn::IfThenElseZero(alive, index_in(brick, grid.bricks()))),
+                            gather_words(kAhead[0].data(), hn::Or(octant, bit)));
     const MI solid = hn::Ne(hn::And(shifted(mask, bit), one), zero);
     VI last = hn::IfThenElseZero(pair_empty(mask, bit), one);  // side of the block - 1
     const MI clear = hn::And(alive, hn::Eq(mask, zero));

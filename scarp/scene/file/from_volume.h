@@ -20,18 +20,24 @@ struct FromVolumeOptions {
   std::optional<double> solid_from;  ///< the least number of a solid voxel; nothing: all above 0 are solid
 };
 
-/// Smallest and largest number of the solid voxels; low > high if there are none.
+/// Smallest and largest number of some voxels; low > high if there are none.
 struct SolidRange {
   double low, high;
 };
+/// Range of the solid voxels.
 SolidRange solid_range(const DenseVolume& volume, std::optional<double> solid_from);
+/// Range of all numbers that are not NaN.
+SolidRange number_range(const DenseVolume& volume);
+
+/// Throws Error if volumes of this size are too large for the march that `options` selects: before they are read.
+void require_marchable(const VolumeFormat& format, const VoxelFileOptions& options);
 
 /// `colour`: of all voxels.
 PlacedVoxels placed_voxels_from(const Binvox& binvox, const VoxelColour& colour, const FromVolumeOptions& options = {});
 
-/// The lowest number of solid_range() has the first of the colours, the highest the last; at most 255 colours, at
-/// least one. NaN is empty. Throws Error when there are more or none.
+/// The lowest number of `range`, solid_range(), has the first of the colours, the highest the last; at most 255
+/// colours, at least one. A single colour needs no range. NaN is empty. Throws Error when there are more or none.
 PlacedVoxels placed_voxels_from(const DenseVolume& volume, std::span<const VoxelColour> colours,
-                                const FromVolumeOptions& options = {});
+                                const SolidRange& range, const FromVolumeOptions& options = {});
 
 }  // namespace scarp

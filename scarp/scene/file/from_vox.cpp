@@ -9,16 +9,16 @@
 #include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/scene/file/voxel_memory.h"
+#include "scarp/scene/lattice_place.h"
 
 namespace scarp {
 namespace {
 
-// What files may ask for before they are refused. Voxels in the boxes of all models, those that lose voxels to others
-// counted once more each: 2 GiB of masks and pages. Pairs of instances that are looked at, and voxels compared where
-// they overlap, each pair as much as some: about a minute each.
-constexpr std::int64_t kMostVoxels = std::int64_t{1} << 34, kMostPairs = std::int64_t{1} << 34,
-                       kMostCompared = std::int64_t{1} << 32, kVoxelsPerPair = 8;
-constexpr std::size_t kPiece = std::size_t{1} << 20;  // voxels put into a grid at once
+// Limits on hostile files. Pairs of instances that are examined, and voxels that are compared where they overlap, each
+// pair as much as some: about a minute each.
+constexpr std::int64_t kMostPairs = std::int64_t{1} << 34, kMostCompared = std::int64_t{1} << 32, kVoxelsPerPair = 8;
+constexpr int kIndexBits = 8;
 
 std::int64_t voxels_in(const VoxelBox& box) {
   const ivec3 size = box.high - box.low;
@@ -27,127 +27,141 @@ std::int64_t voxels_in(const VoxelBox& box) {
 
 ivec3 place_of(const VoxVoxel& v) { return {v.x, v.y, v.z}; }
 
-// A model's voxels in the least box around them: canvases are mostly empty.
+// A model's voxels in the smallest box around them.
 struct Model {
-  VoxelBox box;  // in the canvas
-  VoxelGrid grid{ivec3(1), 8};
+  VoxelBox box;  // in the model of the file
+  std::int64_t bytes = 0;
+  VoxelGrid grid{ivec3(1), kIndexBits};
 };
 
 // The models that are used.
 class Models {
  public:
-  Models(const VoxFile& file, const std::vector<VoxInstance>& instances) {
+  Models(const VoxFile& file, const std::vector<VoxInstance>& instances, VoxelMemory& memory) {
     // Nothing is allocated before all are counted.
     for (const VoxInstance& instance : instances) {
       const auto [at, is_new] = models_.try_emplace(instance.model);
       if (!is_new) continue;
-      for (const VoxVoxel& v : file.models[static_cast<std::size_t>(instance.model)].voxels) {
-        if (v.index > 0) at->second.box = around(at->second.box, {place_of(v), place_of(v) + 1});
-      }
-      count(at->second.box);
+      measure(at->second, file.models[static_cast<std::size_t>(instance.model)].voxels);
+      memory.add(at->second.bytes, "remove stray voxels far from the others");
     }
     for (auto& [index, model] : models_) {
       if (!model.box.empty()) fill(model, file.models[static_cast<std::size_t>(index)].voxels);
     }
   }
 
-  const Model& at(int index) const { return models_.at(index); }
-  // Counts another grid of this box.
-  void count(const VoxelBox& box) {
-    voxels_ += voxels_in(box);
-    if (voxels_ > kMostVoxels) {
-      throw Error(
-          fmt::format("vox scene: the boxes round its models, those that others overlap counted one by one, hold more "
-                      "than {} voxels",
-                      kMostVoxels));
-    }
-  }
+  Model& at(int index) { return models_.at(index); }
 
  private:
-  // Piece by piece, which bounds what is remembered.
+  static void measure(Model& model, const std::vector<VoxVoxel>& voxels) {
+    std::int64_t solid = 0;
+    for (const VoxVoxel& v : voxels) {
+      if (v.index == 0) continue;
+      ++solid;
+      model.box = around(model.box, {place_of(v), place_of(v) + 1});
+    }
+    if (model.box.empty()) return;
+    const ivec3 size = model.box.high - model.box.low, bricks = (size + 3) / 4;
+    std::vector<bool> pages(static_cast<std::size_t>(VoxelGrid::pages_of(size)));
+    for (const VoxVoxel& v : voxels) {
+      if (v.index == 0) continue;
+      const ivec3 brick = (place_of(v) - model.box.low) >> 2;
+      pages[static_cast<std::size_t>((brick.x + bricks.x * (brick.y + bricks.y * brick.z)) / VoxelGrid::kPageBricks)] =
+          true;
+    }
+    model.bytes = VoxelGrid::bytes_of(size, std::count(pages.begin(), pages.end(), true), solid, kIndexBits);
+  }
+  // Piece by piece, which limits the memory in use.
   static void fill(Model& model, const std::vector<VoxVoxel>& voxels) {
-    model.grid = VoxelGrid(model.box.high - model.box.low, 8);
+    model.grid = VoxelGrid(model.box.high - model.box.low, kIndexBits);
     std::vector<VoxelGrid::Placed> placed;
+    placed.reserve(std::min(kVoxelsAtOnce, voxels.size()));
     for (const VoxVoxel& v : voxels) {
       placed.push_back({place_of(v) - model.box.low, v.index > 0 ? VoxelGrid::Voxel(v.index) : VoxelGrid::Voxel()});
-      if (placed.size() < kPiece && &v != &voxels.back()) continue;
+      if (placed.size() < kVoxelsAtOnce && &v != &voxels.back()) continue;
       model.grid.set(placed);
       placed.clear();
     }
   }
 
   std::map<int, Model> models_;
-  std::int64_t voxels_ = 0;
 };
 
 // An instance on the lattice of the world.
-class OnLattice {
- public:
-  // canvas: the sides of the model, as the file has it; they turn about its middle.
-  OnLattice(const VoxInstance& instance, const ivec3& canvas, const Model& model)
-      : grid_(&model.grid),
-        turn_(instance.turn),
-        back_(instance.turn.inverse()),
-        origin_(instance.move - instance.turn(canvas / 2) + instance.turn(model.box.low)) {
-    const VoxelBox& solid = grid_->bounds();
-    if (solid.empty()) return;
-    const ivec3 a = turn_(solid.low) + origin_, b = turn_(solid.high) + origin_;
-    bounds_ = {glm::min(a, b), glm::max(a, b)};
-  }
+struct Placed {
+  const VoxModel* file_model;
+  const Model* model;
+  LatticePlace place;
+  VoxelBox bounds;  // around its solid voxels
 
-  const VoxelBox& bounds() const { return bounds_; }
-  const VoxelGrid& grid() const { return *grid_; }
-  // The voxel of the grid in the cube of the world whose lowest corner this is: their middles are the same.
-  ivec3 grid_voxel(const ivec3& world) const {
-    // Twice the coordinates, so that middles are whole.
-    const ivec3 middle = back_(2 * (world - origin_) + 1);
-    return (middle - 1) / 2;
-  }
+  Placed(const VoxInstance& instance, const VoxModel& from, const Model& of)
+      : file_model(&from),
+        model(&of),
+        // Models turn about their middle.
+        place(instance.turn, instance.move - instance.turn(from.size / 2) + instance.turn(of.box.low)),
+        bounds(place.lattice_box(of.grid.bounds())) {}
+
   bool solid(const ivec3& world) const {
-    const ivec3 v = grid_voxel(world);
-    return grid_->box().contains(v) && grid_->solid(v);
+    const ivec3 v = place.grid_voxel(world);
+    return model->grid.box().contains(v) && model->grid.solid(v);
   }
-  VoxelPlace place(std::uint32_t model) const {
-    VoxelPlace place{model, glm::dmat3(0.0), dvec3(origin_)};
-    for (int i = 0; i < 3; ++i) place.world_from_grid[turn_.axis[i]][i] = turn_.sign[i];
-    return place;
+  VoxelPlace scene_place(std::uint32_t index) const {
+    const LatticeRotation& turn = place.turn();
+    VoxelPlace in_scene{index, glm::dmat3(0.0), dvec3(place.origin())};
+    for (int i = 0; i < 3; ++i) in_scene.world_from_grid[turn.axis[i]][i] = turn.sign[i];
+    return in_scene;
   }
-
- private:
-  const VoxelGrid* grid_;
-  LatticeRotation turn_, back_;
-  ivec3 origin_;
-  VoxelBox bounds_;
 };
 
-// Calls body(a, b) for each pair of boxes that overlap, a before b: of those that overlap along one axis, that along
-// which the fewest do.
+// Calls hide(v) for each voxel v of the lower grid that the upper instance covers. Visits the voxels of the common box
+// or those of the file, whichever are fewer.
+template <class Hide>
+std::int64_t for_each_hidden(const Placed& upper, const Placed& lower, const Hide& hide) {
+  const VoxelBox common = intersection(upper.bounds, lower.bounds);
+  const std::vector<VoxVoxel>& listed = lower.file_model->voxels;
+  const auto in_list = static_cast<std::int64_t>(listed.size());
+  if (in_list < voxels_in(common)) {
+    for (const VoxVoxel& voxel : listed) {
+      if (voxel.index == 0) continue;
+      const ivec3 v = place_of(voxel) - lower.model->box.low, world = lower.place.lattice_voxel(v);
+      if (common.contains(world) && upper.solid(world) && lower.model->grid.solid(v)) hide(v);
+    }
+    return in_list;
+  }
+  for_each_voxel(common, [&](const ivec3& world) {
+    if (upper.solid(world) && lower.solid(world)) hide(lower.place.grid_voxel(world));
+  });
+  return voxels_in(common);
+}
+
+// Calls body(a, b) for each pair of boxes that overlap, a before b. Examines pairs that overlap along one axis, the one
+// along which the fewest do.
 template <class Body>
-void for_each_overlap(const std::vector<OnLattice>& instances, const Body& body) {
+void for_each_overlap(const std::vector<Placed>& instances, const Body& body) {
   std::vector<std::size_t> order, best_order;
   for (std::size_t i = 0; i < instances.size(); ++i) {
-    if (!instances[i].bounds().empty()) order.push_back(i);
+    if (!instances[i].bounds.empty()) order.push_back(i);
   }
   std::int64_t least = std::numeric_limits<std::int64_t>::max();
   int best_axis = 0;
   std::vector<int> lows;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto low = [&](std::size_t i) { return instances[i].bounds().low[axis]; };
+    const auto low = [&](std::size_t i) { return instances[i].bounds.low[axis]; };
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return low(a) < low(b); });
     lows.clear();
     for (const std::size_t i : order) lows.push_back(low(i));
     std::int64_t pairs = 0;
     for (auto at = lows.begin(); at != lows.end(); ++at) {
-      const VoxelBox& box = instances[order[static_cast<std::size_t>(at - lows.begin())]].bounds();
+      const VoxelBox& box = instances[order[static_cast<std::size_t>(at - lows.begin())]].bounds;
       pairs += std::lower_bound(at + 1, lows.end(), box.high[axis]) - (at + 1);
     }
     if (pairs < least) least = pairs, best_axis = axis, best_order = order;
   }
-  if (least > kMostPairs) throw Error("vox scene: more of its models overlap than can be settled");
+  if (least > kMostPairs) throw Error("too many of its models overlap");
   for (std::size_t i = 0; i < best_order.size(); ++i) {
-    const VoxelBox& box = instances[best_order[i]].bounds();
+    const VoxelBox& box = instances[best_order[i]].bounds;
     for (std::size_t j = i + 1; j < best_order.size(); ++j) {
-      const VoxelBox& other = instances[best_order[j]].bounds();
+      const VoxelBox& other = instances[best_order[j]].bounds;
       if (other.low[best_axis] >= box.high[best_axis]) break;
       if (intersection(box, other).empty()) continue;
       body(std::min(best_order[i], best_order[j]), std::max(best_order[i], best_order[j]));
@@ -165,59 +179,62 @@ PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& optio
     palette[i] = {colour[0], colour[1], colour[2]};
   }
 
-  Models grids(file, instances);
-  std::vector<OnLattice> on_lattice;
-  for (const VoxInstance& instance : instances) {
-    const VoxModel& model = file.models[static_cast<std::size_t>(instance.model)];
-    on_lattice.emplace_back(instance, model.size, grids.at(instance.model));
-  }
+  std::int64_t listed = 0;
+  for (const VoxModel& model : file.models) listed += static_cast<std::int64_t>(model.voxels.size());
+  VoxelMemory memory(listed);
+  Models models(file, instances, memory);
+  std::vector<Placed> placed;
+  placed.reserve(instances.size());
+  for (const VoxInstance& instance : instances)
+    placed.emplace_back(instance, file.models[static_cast<std::size_t>(instance.model)], models.at(instance.model));
 
-  // What lies under another instance is taken out of a copy.
+  // What lies under another instance is removed from a copy.
   std::map<std::size_t, VoxelGrid> cut;
   std::int64_t compared = 0;
-  for_each_overlap(on_lattice, [&](std::size_t first, std::size_t last) {
+  for_each_overlap(placed, [&](std::size_t first, std::size_t last) {
     const auto [over, under] = file.version >= 200 ? std::pair(first, last) : std::pair(last, first);
-    const OnLattice &upper = on_lattice[over], &lower = on_lattice[under];
-    const VoxelBox common = intersection(upper.bounds(), lower.bounds());
-    compared += kVoxelsPerPair + voxels_in(common);
-    if (compared > kMostCompared) throw Error("vox scene: larger overlaps of its models than can be settled");
-    // Layer by layer, which bounds what is remembered.
+    const Placed& lower = placed[under];
     std::vector<VoxelGrid::Placed> hidden;
-    for (int z = common.low.z; z < common.high.z; ++z) {
+    const auto remove_hidden = [&, under = under] {
+      if (!cut.contains(under)) {
+        memory.add(lower.model->bytes, "move objects that overlap apart");
+      }
+      cut.try_emplace(under, lower.model->grid).first->second.set(hidden);
       hidden.clear();
-      for_each_voxel({{common.low.x, common.low.y, z}, {common.high.x, common.high.y, z + 1}}, [&](const ivec3& world) {
-        if (upper.solid(world) && lower.solid(world)) hidden.push_back({lower.grid_voxel(world), {}});
-      });
-      if (hidden.empty()) continue;
-      if (!cut.contains(under)) grids.count(lower.grid().box());
-      cut.try_emplace(under, lower.grid()).first->second.set(hidden);
-    }
+    };
+    compared += kVoxelsPerPair + for_each_hidden(placed[over], lower, [&](const ivec3& v) {
+                  hidden.push_back({v, {}});
+                  if (hidden.size() == kVoxelsAtOnce) remove_hidden();
+                });
+    if (compared > kMostCompared) throw Error("its models overlap too much to decide which voxels are shown");
+    if (!hidden.empty()) remove_hidden();
   });
 
-  PlacedVoxels placed{.rounding = options.voxels.rounding};
-  std::vector<VoxelGrid> own_grids;
-  std::vector<ivec3> sizes;
+  // Models that are used as they are, then those that lost voxels.
+  std::vector<std::uint32_t> model_of(instances.size());
   std::map<int, std::uint32_t> shared;
+  std::vector<VoxelGrid*> grids;
   for (std::size_t i = 0; i < instances.size(); ++i) {
-    const int model = instances[i].model;
     const auto own = cut.find(i);
-    const auto known = shared.find(model);
-    auto index = static_cast<std::uint32_t>(own_grids.size());
-    if (own == cut.end() && known != shared.end()) {
-      index = known->second;
-    } else {
-      VoxelGrid grid = own != cut.end() ? std::move(own->second) : grids.at(model).grid;
-      if (options.voxels.surface_colours) grid.drop_hidden_entries();
-      sizes.push_back(grid.size());
-      own_grids.push_back(std::move(grid));
-      if (own == cut.end()) shared.emplace(model, index);
-    }
-    placed.places.push_back(on_lattice[i].place(index));
+    const auto next = static_cast<std::uint32_t>(grids.size());
+    model_of[i] = own != cut.end() ? next : shared.try_emplace(instances[i].model, next).first->second;
+    if (model_of[i] == next) grids.push_back(own != cut.end() ? &own->second : &models.at(instances[i].model).grid);
   }
+  std::vector<ivec3> sizes;
+  for (const VoxelGrid* grid : grids) sizes.push_back(grid->size());
   const VoxelMarchEntry& march = file_voxel_march(options.voxels.march, sizes);
-  for (VoxelGrid& grid : own_grids)
-    placed.models.push_back(std::make_shared<const VoxelModel>(std::move(grid), march, palette));
-  return placed;
+  for (const ivec3& size : sizes) {
+    require_marchable(march, size);
+    memory.add(accelerator_bytes(march.accelerator, size), "choose --march voxel-bricks");
+  }
+
+  PlacedVoxels in_scene{.rounding = options.voxels.rounding};
+  for (std::size_t i = 0; i < instances.size(); ++i) in_scene.places.push_back(placed[i].scene_place(model_of[i]));
+  for (VoxelGrid* grid : grids) {
+    if (options.voxels.surface_colours) grid->drop_hidden_entries();
+    in_scene.models.push_back(std::make_shared<const VoxelModel>(std::move(*grid), march, palette));
+  }
+  return in_scene;
 }
 
 }  // namespace scarp

@@ -12,10 +12,11 @@ struct FromVoxOptions {
   VoxelFileOptions voxels{};
 };
 
-/// Entries are palette indices. Where instances overlap, one voxel is left in each place, that which MagicaVoxel shows:
-/// of the instance that comes first in files from version 200 on, and last in those before. An instance that loses
-/// voxels so has a model of its own. Grids are models cut to the least box around their voxels. Throws Error: no such
-/// march, more overlaps than can be settled, models that together span more than 2^34 voxels.
+/// Entries are palette indices. Where instances overlap, one voxel remains at each position, the one that MagicaVoxel
+/// shows: of the first instance in files from version 200 on, and of the last in those before. An instance that loses
+/// voxels gets a model of its own; all others share the models of the file. Grids are models cut to the smallest box
+/// around their voxels. Throws Error: no such march, too many overlaps, or more than 1 GiB of memory (16 bytes per
+/// voxel of the file if that is more), before it is allocated.
 PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options = {});
 
 }  // namespace scarp

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/scene/combined_voxels.h"
+#include "scarp/scene/file/from_parts.h"
 #include "scarp/scene/file/from_volume.h"
 #include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/file/json_object.h"
@@ -20,9 +22,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-VoxelColour colour_from(const Json& json) {
-  const auto rgb = std::stoul(json.get<std::string>().substr(1), nullptr, 16);
-  return {static_cast<std::uint8_t>(rgb >> 16), static_cast<std::uint8_t>(rgb >> 8), static_cast<std::uint8_t>(rgb)};
+VoxelColour voxel_colour(const vec3& srgb) {
+  const auto byte = [](float share) { return static_cast<std::uint8_t>(std::lround(255 * share)); };
+  return {byte(srgb.x), byte(srgb.y), byte(srgb.z)};
 }
 
 bool is_binvox(const Json& json) { return extension_of(json["file"].get<std::string>()) == ".binvox"; }
@@ -36,9 +38,9 @@ void require_keys_of_format(const Json& json, const std::string& path) {
   };
   const bool volume = json.contains("volume");
   if (!volume) refuse({"solid_from"}, "only valid for volumes");
-  if (volume || is_binvox(json)) {
-    refuse({"frame", "hidden"}, "only valid for MagicaVoxel files");
-  } else {
+  const bool parts = !volume && is_voxel_parts_path(json["file"].get<std::string>());
+  if (volume || parts || is_binvox(json)) refuse({"frame", "hidden"}, "only valid for MagicaVoxel files");
+  if (!volume && !is_binvox(json)) {
     refuse({"up", "colour"}, "only valid for binvox files and volumes");
   }
 }
@@ -48,9 +50,16 @@ PlacedVoxels voxels_of_file(const Json& json, const std::string& file, const Vox
   const FromVolumeOptions volume{
       voxels, json.value("up", "z") == "y" ? UpAxis::y : UpAxis::z,
       json.contains("solid_from") ? std::optional<double>(json["solid_from"].get<double>()) : std::nullopt};
-  const VoxelColour colour = json.contains("colour") ? colour_from(json["colour"]) : kPlainVoxels;
-  if (json.contains("volume"))
-    return placed_voxels_from(read_volume(file, json["volume"]), std::vector{colour}, volume);
+  const VoxelColour colour = json.contains("colour") ? voxel_colour(colour_from_json(json["colour"])) : kPlainVoxels;
+  if (json.contains("volume")) {
+    require_marchable(volume_format_of(file, json["volume"]), voxels);
+    return placed_voxels_from(read_volume(file, json["volume"]), std::vector{colour}, {}, volume);
+  }
+  if (is_voxel_parts_file(file)) {
+    const VoxelParts parts = read_voxel_parts(file);
+    for (const std::string& note : parts.notes) notes.push_back(fmt::format("{}: {}", file, note));
+    return placed_voxels_from(parts, voxels);
+  }
   if (is_binvox(json)) return placed_voxels_from(read_binvox(file), colour, volume);
   const VoxFile document = read_vox(file);
   const VoxSceneOptions scene{json.value("frame", 0), json.value("hidden", false)};
@@ -108,7 +117,10 @@ VoxelsWithPlace placed_voxels_from_json(const Json& json, const std::string& pat
   for (const auto& [name, combination] : kCombinations) {
     if (json.contains(name)) kinds.push_back(name);
   }
-  if (kinds.size() != 1) refuse_json(path, json, "an object with one of file, union, intersection, subtract");
+  if (kinds.size() > 1)
+    throw Error(
+        fmt::format("{}: has both '{}' and '{}' (give one; put the other into its parts)", path, kinds[0], kinds[1]));
+  if (kinds.empty()) refuse_json(path, json, "an object with one of file, union, intersection, subtract");
   VoxelsWithPlace placed;
   if (json.contains("file")) {
     require_keys_of_format(json, path);
@@ -124,7 +136,7 @@ VoxelsWithPlace placed_voxels_from_json(const Json& json, const std::string& pat
     if (json.contains(name)) placed.voxels = combined_from(json, name, combination, path, around, options);
   }
   if (json.value("centred", false)) {
-    const WorldBox box = *scene_voxels(placed.voxels)->box();
+    const WorldBox box = world_box(placed.voxels);
     if (!box.empty()) placed.shift = -dvec3(0.5 * (box.low.x + box.high.x), 0.5 * (box.low.y + box.high.y), box.low.z);
   }
   return placed;

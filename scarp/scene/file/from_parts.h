@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Files of listed voxels as models, one per part, in metres: a voxel 1 m, z up.
+#pragma once
+
+#include "scarp/scene/placed_voxels.h"
+#include "scarp/source/voxel_parts.h"
+
+namespace scarp {
+
+/// Entries are RGB in 24 bits. Grids are parts cut to the smallest box around their voxels; empty parts are omitted.
+/// Throws Error: no such march, or more than 1 GiB of memory (16 bytes per voxel if that is more), before it is
+/// allocated.
+PlacedVoxels placed_voxels_from(const VoxelParts& file, const VoxelFileOptions& options = {});
+
+}  // namespace scarp
