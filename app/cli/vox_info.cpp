@@ -167,7 +167,7 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
   info["kind"] = name_of(InputKind::voxels);
   info["format"] = options.volume.empty() ? input.format : "volume";
   if (input.document) {
-    describe_document(*input.document, options, info);
+    naming(path, [&] { describe_document(*input.document, options, info); });
   } else {
     info["models"] = Json::array();
     for (const auto& model : input.voxels.models) {

@@ -23,18 +23,6 @@ bool is_voxel_path(const std::string& path) {
   return extension_of(path) == ".vox" || extension_of(path) == ".binvox" || is_voxel_parts_path(path);
 }
 
-// What is wrong with a file that has been read names it, too.
-template <class Work>
-auto naming(const std::string& path, const Work& work) {
-  try {
-    return work();
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: {}", path, error.what()));
-  }
-}
-
 void refuse(bool given, const char* option, const char* files) {
   if (given) throw Error(fmt::format("{} applies to {} only", option, files));
 }
@@ -191,9 +179,11 @@ VoxInput read_voxels(const std::string& path, const VoxOptions& options, const V
                      const std::string& ramp) {
   VoxInput input = read_any_voxels(path, options, voxels, ramp);
   if (world_box(input.voxels).empty()) {
-    const bool hidden = input.document && !options.scene.hidden &&
-                        !vox_instances(*input.document, {.frame = options.scene.frame, .hidden = true}).empty() &&
-                        vox_instances(*input.document, options.scene).empty();
+    const bool hidden = naming(path, [&] {
+      return input.document && !options.scene.hidden &&
+             !vox_instances(*input.document, {.frame = options.scene.frame, .hidden = true}).empty() &&
+             vox_instances(*input.document, options.scene).empty();
+    });
     throw Error(fmt::format("{}: no visible voxels{}", path, hidden ? " (all are hidden: --hidden shows them)" : ""));
   }
   return input;

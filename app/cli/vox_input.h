@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/command.h"
+#include "scarp/base/error.h"
 #include "scarp/scene/file/from_volume.h"
 #include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/voxel_shading.h"
@@ -42,6 +43,18 @@ void add_vox_options(Command& command, VoxOptions& options);
 void add_vox_rounding_options(Command& command, VoxLookOptions& options);
 /// Declares --normals, --corner-ao, ...
 void add_vox_look_options(Command& command, VoxLookOptions& options);
+
+/// Calls work(). Errors in the contents of a file name it, too.
+template <class Work>
+auto naming(const std::string& path, const Work& work) {
+  try {
+    return work();
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const Error& error) {
+    throw Error(path + ": " + error.what());
+  }
+}
 
 /// Colours for the numbers of a volume, from the smallest to the largest.
 std::vector<VoxelColour> colours_of(const std::string& ramp);
