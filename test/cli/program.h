@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -84,12 +85,13 @@ class StartAttributes {
 struct Result {
   int status;  ///< exit status, or 1000 + the signal that ended it
   std::string out, err;
+  std::uint64_t peak = 0;  ///< bytes of memory in use at most; 0: not known, of programs that are not forked
 };
 
-inline Result result_of(int status, const Streams& streams) {
+inline Result result_of(int status, const Streams& streams, std::uint64_t peak = 0) {
   // A device, as /dev/full, has no end.
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status),
-          std::filesystem::is_regular_file(streams.out) ? text_of(streams.out) : "", text_of(streams.err)};
+          std::filesystem::is_regular_file(streams.out) ? text_of(streams.out) : "", text_of(streams.err), peak};
 }
 
 /// The built program, running; its output goes into files of a folder of its own.
@@ -132,9 +134,9 @@ class Program {
 enum class Leaks : bool { found, kept };
 
 /// Runs `scarp`. SCARP_STARTER: forked by a process that has loaded it (starts.h); else the built program, which those
-/// tests ask for that are about starts and ends.
+/// tests ask for that are about starts and ends, and then without limits.
 inline Result run(const std::vector<std::string>& arguments, const std::string& in_path = "/dev/null",
-                  Leaks leaks = Leaks::found) {
+                  Leaks leaks = Leaks::found, [[maybe_unused]] const Limits& limits = {}) {
   const bool kept = leaks == Leaks::kept;
   // And of what the driver's compiler frees less is kept, as in the tests that open one themselves
   // (test/CMakeLists.txt).
@@ -148,7 +150,8 @@ inline Result run(const std::vector<std::string>& arguments, const std::string& 
   if (!starters[kept]) starters[kept] = start();
   const Scratch folder;
   const Streams streams{in_path, folder.path("out"), folder.path("err")};
-  Result result = result_of(starters[kept]->run(arguments, streams), streams);
+  const Ended ended = starters[kept]->run(arguments, streams, limits);
+  Result result = result_of(ended.status, streams, ended.peak);
 #else
   Result result = Program(arguments, nullptr, in_path).result();
 #endif

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The other side of starts.h. It does nothing before it forks but load: what `scarp` does when it runs, and all its
 // threads, begin in the process of the call.
+#include <sys/resource.h>
 #include <sys/wait.h>
+
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 
@@ -10,7 +13,10 @@
 
 namespace {
 
+using scarp::test::Ended;
 using scarp::test::kStarterSocket;
+using scarp::test::Limits;
+using scarp::test::receive_bytes;
 using scarp::test::receive_words;
 using scarp::test::send_bytes;
 
@@ -21,9 +27,16 @@ bool open_as(int stream, const std::string& path, int flags) {
   return true;
 }
 
+void limit(decltype(RLIMIT_CPU) resource, std::uint64_t most) {
+  ::rlimit known{};
+  if (most == 0 || ::getrlimit(resource, &known) != 0) return;
+  known.rlim_cur = std::min<::rlim_t>(most, known.rlim_max);
+  ::setrlimit(resource, &known);
+}
+
 // In the new process.
 int call(const std::vector<std::string>& streams, const std::vector<std::string>& settings,
-         std::vector<std::string>& arguments) {
+         std::vector<std::string>& arguments, const Limits& limits) {
   ::close(kStarterSocket);
   constexpr int kWritten = O_WRONLY | O_CREAT | O_TRUNC;
   if (!open_as(STDIN_FILENO, streams[0], O_RDONLY) || !open_as(STDOUT_FILENO, streams[1], kWritten) ||
@@ -31,6 +44,9 @@ int call(const std::vector<std::string>& streams, const std::vector<std::string>
     std::perror("starter");
     std::abort();
   }
+  limit(RLIMIT_CPU, limits.seconds);
+  limit(RLIMIT_DATA, limits.bytes);
+  ::alarm(static_cast<unsigned>(10 * limits.seconds));
   ::clearenv();
   for (const std::string& setting : settings) {
     const std::size_t sign = setting.find('=');
@@ -47,16 +63,18 @@ int call(const std::vector<std::string>& streams, const std::vector<std::string>
 
 int main() {
   std::vector<std::string> streams, settings, arguments;
+  Limits limits;
   while (receive_words(kStarterSocket, streams) && receive_words(kStarterSocket, settings) &&
-         receive_words(kStarterSocket, arguments)) {
+         receive_words(kStarterSocket, arguments) && receive_bytes(kStarterSocket, &limits, sizeof limits)) {
     const ::pid_t pid = ::fork();
     if (pid < 0) return EXIT_FAILURE;
     // Ends as main() of a program does: by exit(), which is where leaks are looked for.
-    if (pid == 0) return call(streams, settings, arguments);
-    int status = 0;
-    if (::waitpid(pid, &status, 0) != pid || !send_bytes(kStarterSocket, &status, sizeof status)) {
-      return EXIT_FAILURE;
-    }
+    if (pid == 0) return call(streams, settings, arguments, limits);
+    Ended ended;
+    ::rusage used{};
+    if (::wait4(pid, &ended.status, 0, &used) != pid) return EXIT_FAILURE;
+    ended.peak = 1024 * static_cast<std::uint64_t>(used.ru_maxrss);
+    if (!send_bytes(kStarterSocket, &ended, sizeof ended)) return EXIT_FAILURE;
   }
   return EXIT_SUCCESS;
 }

@@ -2,7 +2,7 @@
 // Calls `scarp` without starting it: a process that has loaded the command line and its libraries, and no more, forks
 // itself for each call. Most calls of the tests take less time than the system does to load GDAL's hundred libraries.
 //
-// The process (starter.cpp) is spoken to over a socket: a call is a list of words, its answer the status of waitpid().
+// The process (starter.cpp) is spoken to over a socket: a call is lists of words and limits, its answer how it ended.
 #pragma once
 
 #include <fcntl.h>
@@ -25,6 +25,19 @@ constexpr int kStarterSocket = 3;
 /// Files for the standard streams.
 struct Streams {
   std::string in, out, err;
+};
+
+/// What a call may use before a signal ends it or it gets no more memory; 0: no limit. A call that only waits ends
+/// after ten times the seconds.
+struct Limits {
+  std::uint64_t seconds = 0;  ///< of processor time
+  std::uint64_t bytes = 0;    ///< of memory
+};
+
+/// How a call ended.
+struct Ended {
+  int status = 0;          ///< of waitpid()
+  std::uint64_t peak = 0;  ///< bytes of memory in use at most, the loaded libraries included
 };
 
 inline bool send_bytes(int socket, const void* bytes, std::size_t size) {
@@ -88,16 +101,17 @@ class Starter {
   Starter(const Starter&) = delete;
   Starter& operator=(const Starter&) = delete;
 
-  /// Runs `scarp` in the environment of this process; the status of waitpid().
-  int run(const std::vector<std::string>& arguments, const Streams& streams) const {
+  /// Runs `scarp` in the environment of this process.
+  Ended run(const std::vector<std::string>& arguments, const Streams& streams, const Limits& limits = {}) const {
     std::vector<std::string> settings;
     for (char** setting = environ; *setting != nullptr; ++setting) settings.emplace_back(*setting);
-    int status = 0;
+    Ended ended;
     if (!send_words(socket_, {streams.in, streams.out, streams.err}) || !send_words(socket_, settings) ||
-        !send_words(socket_, arguments) || !receive_bytes(socket_, &status, sizeof status)) {
+        !send_words(socket_, arguments) || !send_bytes(socket_, &limits, sizeof limits) ||
+        !receive_bytes(socket_, &ended, sizeof ended)) {
       throw std::runtime_error("the starter of scarp is gone");
     }
-    return status;
+    return ended;
   }
 
  private:
