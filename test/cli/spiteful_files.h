@@ -40,8 +40,6 @@ inline std::string bytes(std::initializer_list<int> values) {
 /// Voxels along x, y and z.
 using Size = std::array<int, 3>;
 
-inline std::int64_t voxels_in(const Size& size) { return std::int64_t{size[0]} * size[1] * size[2]; }
-
 // MagicaVoxel
 
 inline std::string chunk(const std::string& name, const std::string& content, const std::string& children = {}) {

@@ -54,12 +54,12 @@ TEST(SpitefulBinvox, Headers) {
 
 TEST(SpitefulBinvox, Runs) {
   const auto of = [](const std::vector<std::pair<int, int>>& runs) { return binvox("dim 4 4 4\n", runs); };
-  // A floor of 256 x 256 under much air.
-  std::string floor = "#binvox 1\ndim 256 256 256\ndata\n";
-  for (int column = 0; column < 256; ++column) {
-    // y fastest, then z: z = 0 is a row of 256.
-    floor += bytes({1, 255, 1, 1});
-    for (int i = 0; i < 256; ++i) floor += bytes({0, 255});
+  // A floor of 128 x 128 under much air: y fastest, then z. 63 runs of 255 and one of 191 are 127 rows.
+  std::string floor = "#binvox 1\ndim 128 128 128\ndata\n";
+  for (int column = 0; column < 128; ++column) {
+    floor += bytes({1, 128});
+    for (int i = 0; i < 63; ++i) floor += bytes({0, 255});
+    floor += bytes({0, 191});
   }
   check_all(
       {
@@ -74,7 +74,7 @@ TEST(SpitefulBinvox, Runs) {
           {"a line break at the end", of({{1, 64}}) + "\n", either("run", 64)},
           {"nothing solid", of({{0, 64}}), nothing("").trying(kEach)},
           {"64 runs of one", of(std::vector<std::pair<int, int>>(64, {1, 1})), shown(64, kCubeOf4)},
-          {"a floor of 256 x 256 in 256^3", floor, shown(256 * 256, Size{256, 256, 1}).in(256 * 256 * 256)},
+          {"a floor of 128 x 128 in 128^3", floor, shown(128 * 128, Size{128, 128, 1}).in(128 * 128 * 128)},
       },
       "m.binvox");
 }
