@@ -192,7 +192,8 @@ class Render {
       ReplaceFile file(name);
       const int blank_before = blank_.count();
       make(file, name, camera, [](double) { return caught_signal() == 0; });
-      if (!options_.format->layers && blank_.count() == blank_before) tell_if_buried(camera, fmt::format("the eye of '{}'", name));
+      if (!options_.format->layers && blank_.count() == blank_before)
+        tell_if_buried(camera, fmt::format("the eye of '{}'", name));
     });
     tell_notes();
     if (!cameras.empty()) tell_of_contours(cameras.front());
@@ -208,8 +209,13 @@ class Render {
       written_ = {layers.width, layers.height};
       return {};
     }
-    const FigureSubject subject{scene_,      camera,     options_.top, input_.numbers, input_.raster.georeference,
-                                input_.raster.cols, input_.raster.rows};
+    const FigureSubject subject{scene_,
+                                camera,
+                                options_.top,
+                                input_.numbers,
+                                input_.raster.georeference,
+                                input_.raster.cols,
+                                input_.raster.rows};
     std::optional<Figure> figure = figure_of(options_.figure, options_.picture, subject);
     Picture picture = render_picture(scene_, camera, options_.picture, progress);
     // Green throughout is what the look of errors should be.
@@ -217,8 +223,8 @@ class Render {
     add_legend(options_.figure, options_.picture, subject, picture, figure);
     std::optional<MapPlace> place;
     if (options_.format->map) {
-      place = place_of_map(camera, picture.image.width, picture.image.height, input_.raster.georeference, input_.raster.cols,
-                           input_.raster.rows);
+      place = place_of_map(camera, picture.image.width, picture.image.height, input_.raster.georeference,
+                           input_.raster.cols, input_.raster.rows);
     }
     written_ = write_picture(file, name, *options_.format, picture.image, figure, place, options_.figure.dots_per_inch);
     return picture;
