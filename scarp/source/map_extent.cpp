@@ -3,6 +3,7 @@
 
 #include <ogr_spatialref.h>
 
+#include <cmath>
 #include <memory>
 
 #include "scarp/source/gdal_errors.h"
@@ -13,6 +14,11 @@ namespace {
 struct Destroy {
   void operator()(OGRCoordinateTransformation* transform) const { OGRCoordinateTransformation::DestroyCT(transform); }
 };
+
+// Bounds at 0 stay there: rounding moves them by far less than this share of a cell.
+constexpr double kRounding = 1e-9;
+
+double rounded(double bound, double cell) { return std::abs(bound) < kRounding * std::abs(cell) ? 0 : bound; }
 
 std::optional<MapBounds> in_degrees(OGRCoordinateTransformation& transform, const MapBounds& map) {
   constexpr int kPointsPerSide = 21;  // GDAL's recommendation
@@ -31,6 +37,10 @@ MapExtent map_extent(const Georeference& georeference, int cols, int rows) {
   extent.samples = {map[0], map[3] + (rows - 1) * map[5], map[0] + (cols - 1) * map[1], map[3]};
   const MapBounds& s = extent.samples;
   extent.edges = {s.west - map[1] / 2, s.south + map[5] / 2, s.east + map[1] / 2, s.north - map[5] / 2};
+  for (MapBounds* bounds : {&extent.samples, &extent.edges}) {
+    for (double* x : {&bounds->west, &bounds->east}) *x = rounded(*x, map[1]);
+    for (double* y : {&bounds->south, &bounds->north}) *y = rounded(*y, map[5]);
+  }
   if (georeference.crs_wkt.empty()) return extent;
   const GdalSession session;  // silences what cannot be transformed
   OGRSpatialReference crs, lonlat;

@@ -14,6 +14,7 @@
 #include "scarp/render/frame/frame_tile.h"
 #include "scarp/render/frame/middles.h"
 #include "scarp/render/frame/tile_work.h"
+#include "scarp/render/light/light.h"
 #include "scarp/render/look/height_look.h"
 #include "scarp/render/look/hillshade_look.h"
 #include "scarp/render/look/level_look.h"

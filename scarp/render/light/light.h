@@ -8,17 +8,9 @@
 
 #include "scarp/base/vec.h"
 #include "scarp/render/light/sky_model.h"
+#include "scarp/render/light/sun.h"
 
 namespace scarp {
-
-struct SunSettings {
-  double azimuth_deg = 315;  ///< compass azimuth, clockwise from true north; finite
-  double altitude_deg = 45;  ///< of its middle above the horizon; above 0, at most 90
-  double size_deg = 0.533;   ///< apparent diameter, for soft shadows; 0 (a point) to 90
-};
-
-/// Throws Error naming the first setting out of its range.
-void validate(const SunSettings& settings);
 
 class Light {
  public:

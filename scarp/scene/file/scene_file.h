@@ -30,7 +30,7 @@ struct SceneCamera {
   std::optional<double> azimuth_deg, elevation_deg, distance, fov_deg;
 };
 
-/// Sun of a file, as SunSettings of render/light/light.h.
+/// Sun of a file, as SunSettings of render/light/sun.h.
 struct SceneSun {
   std::optional<double> azimuth_deg, altitude_deg, size_deg;
   std::optional<bool> shadows;
