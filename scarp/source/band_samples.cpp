@@ -87,10 +87,11 @@ bool is_clean(const float* line, int samples, std::optional<double> nodata) {
   constexpr double kAround = 1e-5;  // more than the widest tolerance of is_float_nodata()
   const double mark = nodata.value_or(0), width = kAround * std::abs(mark);
   const auto low = static_cast<float>(mark - width), high = static_cast<float>(mark + width);
-  int finite = 0, marked = 0;
-  for (int i = 0; i < samples; ++i) finite += std::abs(line[i]) <= FLT_MAX;
+  constexpr auto kBeyond = static_cast<float>(kBeyondHeights);
+  int plain = 0, marked = 0;
+  for (int i = 0; i < samples; ++i) plain += std::abs(line[i]) < kBeyond;
   for (int i = 0; nodata && i < samples; ++i) marked += (line[i] >= low) & (line[i] <= high);
-  return finite == samples && marked == 0;
+  return plain == samples && marked == 0;
 }
 
 // What samples are in the file.
