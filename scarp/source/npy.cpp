@@ -182,7 +182,8 @@ Raster read_array(const std::string& file, const RasterOptions& options, GdalSes
     throw Error(fmt::format("array of shape {} (two dimensions required: rows, columns)", shape_text(header)));
   const auto [rows, cols] = *shape;
   const RawSampleType type = sample_type(header);
-  if (rows < 1 || cols < 1) throw Error(fmt::format("array of shape {} without samples", shape_text(header)));
+  if (rows < 1 || cols < 1)
+    throw Error(fmt::format("array of shape {} has no samples (save an array that is not empty)", shape_text(header)));
   // GDAL counts the bytes of a line in 32 bits.
   const std::int64_t most = std::numeric_limits<int>::max() / header.bytes;
   if (rows > most || cols > most)

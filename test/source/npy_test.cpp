@@ -129,7 +129,7 @@ TEST_F(Npy, OtherShapesAreRefused) {
     expect_says(read_error(write_npy("a.npy", "<i2", shape, samples)), "two dimensions required",
                 fmt::format("{}", shape));
   }
-  expect_says(read_error(write_npy("a.npy", "<i2", "(0, 6)", samples)), "without samples");
+  expect_says(read_error(write_npy("a.npy", "<i2", "(0, 6)", samples)), "no samples (save");
 }
 
 TEST_F(Npy, OtherTypesAreRefusedByName) {
