@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/base/input_file.h"
 #include "scarp/source/incomplete_file.h"
 
 namespace scarp {
@@ -60,6 +61,7 @@ class ColourReliefReader {
   explicit ColourReliefReader(const std::string& path) : path_(path) {}
 
   RampStops read() {
+    refuse_special_file(path_, path_ + ": ");
     std::ifstream in(path_);
     if (!in) throw Error(fmt::format("{}: cannot be opened", path_));
     std::string text;

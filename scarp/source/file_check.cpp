@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
+#include "scarp/base/input_file.h"
 #include "scarp/source/incomplete_file.h"
 #include "scarp/source/netcdf_size.h"
 #include "scarp/source/raw_band.h"
@@ -42,6 +43,7 @@ std::optional<double> envi_bytes(GDALDataset& dataset) {
 }  // namespace
 
 void check_file(const std::string& path) {
+  refuse_special_file(path);
   VSIStatBufL status;
   if (VSIStatExL(path.c_str(), &status, VSI_STAT_EXISTS_FLAG | VSI_STAT_NATURE_FLAG | VSI_STAT_SIZE_FLAG) != 0) return;
   if (!VSI_ISREG(status.st_mode)) return;

@@ -9,8 +9,8 @@
 
 namespace scarp {
 
-/// Throws Error (without the file's name) if `path` is an empty file, a Git LFS pointer or not readable. Accepts names
-/// that are not files, which may be GDAL's own.
+/// Throws Error (without the file's name) if `path` is a pipe or a device, an empty file, a Git LFS pointer or not
+/// readable. Accepts names that are not files, which may be GDAL's own.
 void check_file(const std::string& path);
 
 /// Throws Error (without the file's name) if the end of a file is missing, as far as its start tells: HDF5 (netCDF-4),

@@ -11,6 +11,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
+#include "scarp/base/input_file.h"
 #include "scarp/source/incomplete_file.h"
 #include "scarp/source/mesh_corners.h"
 
@@ -38,7 +39,8 @@ void require_file(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) refuse_mesh(path, "is a directory");
   if (!std::filesystem::exists(path, error)) refuse_mesh(path, "cannot be opened");
-  // Paths that are not regular files, such as pipes, can be read only once.
+  refuse_special_file(path, path + ": ");
+  // Streams can be read only once.
   if (!std::filesystem::is_regular_file(path, error)) return;
   std::string start(kLfsPointer.size(), '\0');
   std::ifstream(path, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "scarp/base/error.h"
+#include "scarp/base/input_file.h"
 #include "scarp/source/incomplete_file.h"
 
 namespace scarp {
@@ -20,6 +21,7 @@ class CptReader {
   explicit CptReader(const std::string& path) : path_(path) {}
 
   RampStops read() {
+    refuse_special_file(path_, path_ + ": ");
     std::ifstream in(path_);
     if (!in) throw Error(fmt::format("{}: cannot be opened (name a .cpt file, a .png or a built-in ramp)", path_));
     std::string text;

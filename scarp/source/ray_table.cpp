@@ -16,6 +16,7 @@
 #include <span>
 
 #include "scarp/base/error.h"
+#include "scarp/base/input_file.h"
 #include "scarp/source/csv_rows.h"
 #include "scarp/source/incomplete_file.h"
 #include "scarp/source/npy_header.h"
@@ -315,6 +316,7 @@ struct InputCloser {
 std::string bytes_of(const std::string& path) {
   std::error_code ignored;
   if (path != "-" && std::filesystem::is_directory(path, ignored)) throw Error("is a directory (name a file)");
+  if (path != "-") refuse_special_file(path);
   const std::unique_ptr<std::FILE, InputCloser> file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
   if (!file) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
   constexpr std::size_t kPiece = 1 << 20;

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "scarp/base/error.h"
+#include "scarp/base/input_file.h"
 #include "scarp/base/replace_file.h"
 
 namespace scarp {
@@ -20,6 +21,7 @@ constexpr std::uint64_t kFirstBytes = 64;
 
 std::string whole_file(const std::string& path,
                        const std::function<bool(std::string_view first, std::uint64_t size)>& believe) {
+  refuse_special_file(path);
   std::ifstream in(path, std::ios::binary | std::ios::ate);
   if (!in) throw Error("cannot be opened");
   const std::streamoff length = in.tellg();

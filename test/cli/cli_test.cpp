@@ -50,6 +50,13 @@ class Cli : public testing::Test {
     EXPECT_EQ(scratch_.files(), before);
   }
 
+  // Until there is a file beside the one that the test made.
+  void wait_for_output() const {
+    for (int i = 0; i < 2000 && scratch_.files().size() < 2; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_EQ(scratch_.files().size(), 2u) << "the output was never begun";
+  }
+
   test::Scratch scratch_;
 };
 
@@ -547,28 +554,49 @@ TEST_P(Interrupt, LeavesNothing) {
   EXPECT_EQ(scratch_.files(), Names{"good.asc"});
 }
 
-// Waits at a pipe for a scene that nobody writes, and so asks nobody whether there was a signal.
+// A pipe that others can open at once, and whose readers wait until it is closed.
+class OpenPipe {
+ public:
+  explicit OpenPipe(const std::string& path) {
+    if (::mkfifo(path.c_str(), 0600) != 0) throw std::runtime_error("mkfifo failed");
+    file_ = ::open(path.c_str(), O_RDWR | O_CLOEXEC);
+  }
+  ~OpenPipe() { close(); }
+  OpenPipe(const OpenPipe&) = delete;
+  OpenPipe& operator=(const OpenPipe&) = delete;
+
+  void write(std::string_view text) const {
+    EXPECT_EQ(::write(file_, text.data(), text.size()), static_cast<::ssize_t>(text.size()));
+  }
+  void close() {
+    if (file_ >= 0) ::close(file_);
+    file_ = -1;
+  }
+
+ private:
+  int file_ = -1;
+};
+
+// Waits at a pipe for a function that nobody writes, and so asks nobody whether there was a signal.
 TEST_P(Interrupt, EndsWhatDoesNotListen) {
-  const std::string pipe = path("scene.json");
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::string pipe = path("pipe");
+  const OpenPipe kept(pipe);
+  const Names waiting{"render", "--function", "/dev/stdin", "-o", path("out.png")};
   const auto begun = [&](test::Program& program) {
-    for (int i = 0; i < 2000 && scratch_.files().size() < 2; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    ASSERT_EQ(scratch_.files().size(), 2u) << "the output was never begun";
+    wait_for_output();
     ::kill(program.pid(), GetParam());
   };
   {
-    test::Program program({"render", pipe, "-o", path("out.png")});
+    test::Program program(waiting, nullptr, pipe);
     begun(program);
     const auto result = program.result();
     EXPECT_EQ(result.status, 128 + GetParam()) << result.err;
     EXPECT_EQ(result.err, "scarp: interrupted\n");
-    EXPECT_EQ(scratch_.files(), Names{"scene.json"});
+    EXPECT_EQ(scratch_.files(), Names{"pipe"});
   }
   // After the second signal there is no waiting: its number is told, and not the first one's.
   const int second = GetParam() == SIGINT ? SIGTERM : SIGINT;
-  test::Program program({"render", pipe, "-o", path("out.png")});
+  test::Program program(waiting, nullptr, pipe);
   begun(program);
   // Of two that are pending at once the system chooses which comes first.
   const std::string status = fmt::format("/proc/{}/status", program.pid());
@@ -579,25 +607,24 @@ TEST_P(Interrupt, EndsWhatDoesNotListen) {
   const auto result = program.result();
   EXPECT_EQ(result.status, 128 + second) << result.err;
   EXPECT_EQ(result.err, "scarp: interrupted\n");
-  EXPECT_EQ(scratch_.files(), Names{"scene.json"});
+  EXPECT_EQ(scratch_.files(), Names{"pipe"});
 }
 
 INSTANTIATE_TEST_SUITE_P(Signals, Interrupt, testing::Values(SIGINT, SIGTERM, SIGHUP, SIGQUIT));
 
 // As under nohup.
 TEST_F(Cli, ASignalThatIsIgnoredStaysSo) {
-  const std::string pipe = path("scene.json");
-  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const std::string pipe = path("pipe");
+  OpenPipe function(pipe);
   const auto before = std::signal(SIGHUP, SIG_IGN);
-  // Asks whether there was a signal when it has read the scene.
-  test::Program program({"render", pipe, "-o", path("out.png"), "--size", "8x6"}, nullptr, "/dev/null",
+  // Asks whether there was a signal when it has read the function.
+  test::Program program({"render", "--function", "/dev/stdin", "-o", path("out.png"), "--size", "8x6"}, nullptr, pipe,
                         test::Ignored::inherited);
   std::signal(SIGHUP, before);
-  // It has its handlers when it waits at the pipe: this waits for it there.
-  std::ofstream scene(pipe);
+  wait_for_output();
   ::kill(program.pid(), SIGHUP);
-  scene << R"({"objects": [{"shape": {"sphere": {"radius": 3}}}]})";
-  scene.close();
+  function.write(R"({"type": "sines", "waves": [{"amplitude": 3.2, "wavelength": 140, "towards": 70}]})");
+  function.close();
   const auto result = program.result();
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err, "");

@@ -50,11 +50,11 @@ inline SpitefulRasters broken_files(const SpitefulFiles& f) {
   refuse("a folder", f.path("folder.tif"), "folder|directory");
   std::filesystem::create_symlink(f.path("loop.tif"), f.path("loop.tif"));
   refuse("a link to itself", f.path("loop.tif"), "");
-  for (const char* name : {"pipe.tif", "pipe.npy", "pipe.exr", "pipe.asc"}) {
+  for (const char* name : {"pipe.tif", "pipe.npy", "pipe.exr", "pipe.asc", "pipe.vox", "pipe.json"}) {
     ::mkfifo(f.path(name).c_str(), 0600);
-    refuse(fmt::format("a pipe that nobody writes to, {}", name), f.path(name), "", true);
+    refuse(fmt::format("a pipe that nobody writes to, {}", name), f.path(name), "pipe", true);
   }
-  refuse("/dev/null", "/dev/null", "");
+  refuse("/dev/null", "/dev/null", "device");
   refuse("an empty file with a line break in its name", f.bytes("two\nlines.tif", ""), "");
   if (::geteuid() != 0) {
     const std::string secret = f.bytes("secret.tif", whole);

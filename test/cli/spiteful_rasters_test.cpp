@@ -331,6 +331,29 @@ TEST(SpitefulRasters, BrokenFiles) {
   judge(test::broken_files(files));
 }
 
+// Beside inputs: what options name.
+TEST(SpitefulRasters, PipesAreRefusedAsOptions) {
+  const test::SpitefulFiles files;
+  const std::string terrain = files.tiff("hills.tif", GDT_Int16, test::hills());
+  const struct {
+    const char* name;
+    Names words;
+  } cases[] = {{"pipe.csv", {"cast", terrain, "--crs", "local", "--rays"}},
+               {"pipe.cpt", {"render", terrain, "-o", files.path("p.png"), "--ramp"}},
+               {"pipe.txt", {"render", terrain, "-o", files.path("p.png"), "--ramp"}},
+               {"pipe.fn", {"render", "-o", files.path("p.png"), "--function"}}};
+  for (const auto& c : cases) {
+    const std::string pipe = files.path(c.name);
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    Names words = c.words;
+    words.push_back(pipe);
+    const MeasuredResult measured = run_measured(words);
+    EXPECT_FALSE(measured.hung) << c.name;
+    EXPECT_NE(measured.result.err.find(std::string(c.name)), std::string::npos) << measured.result.err;
+    EXPECT_NE(measured.result.err.find("is a pipe"), std::string::npos) << measured.result.err;
+  }
+}
+
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 // Beyond what the program takes for four samples.
 TEST(SpitefulRasters, MemoryIsAtMostFourTimesTheSamples) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scarp/base/error.h"
+#include "scarp/base/input_file.h"
 #include "scarp/scene/file/function_json.h"
 #include "scarp/source/incomplete_file.h"
 
@@ -67,6 +68,7 @@ Function read_function(const std::string& name_or_path) {
   for (const ExampleFunction& example : kExamples) {
     if (example.name == name_or_path) return example_function(name_or_path);
   }
+  refuse_special_file(name_or_path, fmt::format("function '{}': ", name_or_path));
   std::ifstream file(name_or_path, std::ios::binary);
   if (!file) {
     std::string names;

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/base/input_file.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/march/height/queries.h"
 
@@ -85,7 +86,9 @@ bool same_field(const HeightField& a, const HeightField& b) {
 
 class DumpReader {
  public:
-  explicit DumpReader(const std::string& path) : path_(path), in_(path) {
+  explicit DumpReader(const std::string& path) : path_(path) {
+    refuse_special_file(path, fmt::format("'{}': ", path));
+    in_.open(path);
     if (!in_) throw Error(fmt::format("'{}': cannot be opened", path));
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored)) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/base/input_file.h"
 #include "scarp/scene/file/example_functions.h"
 #include "scarp/scene/file/json_object.h"
 #include "scarp/scene/file/scene_parts.h"
@@ -29,6 +30,7 @@ constexpr std::size_t kMostObjects = std::size_t{1} << 20;
 
 std::string text_of(const std::string& path) {
   if (fs::is_directory(path)) throw Error("is a folder; give the file of a scene");
+  refuse_special_file(path);
   std::ifstream file(path, std::ios::binary);
   std::string text{std::istreambuf_iterator<char>(file), {}};
   if (!file && !file.eof()) throw Error("cannot be read; is it there?");
