@@ -292,12 +292,6 @@ std::string finding_of(const Caster& caster, bool any, std::span<const Ray> rays
       below, rays.size());
 }
 
-// Explains why rays cannot hit the terrain.
-void add_notes(const HeightField& field, std::vector<std::string>& notes) {
-  if (!field.has_cells()) notes.emplace_back("a single row or column has no cells: every ray misses");
-  if (field.all_nodata()) notes.emplace_back("all samples are nodata: every ray misses; is the nodata value right?");
-}
-
 void run(CastOptions options, const Command& command) {
   if (options.output == "-") options.output.clear();
   const InputKind kind = kind_of_input(command, options);
@@ -333,7 +327,9 @@ void run(CastOptions options, const Command& command) {
   const Places places = places_of(options, input);
   const CoordinateFrame& frame = places.frame();
   std::vector<Ray> rays = rays_in_local(table, frame);
-  if (kind == InputKind::terrain) add_notes(*input.scene.only_heights(), notes);
+  if (kind == InputKind::terrain) {
+    if (const std::string note = no_ground_note(*input.scene.only_heights()); !note.empty()) notes.push_back(note);
+  }
   stop_if_interrupted();
   const Scene whole = mesh.with_mesh(std::move(input.scene), places);
   notes.insert(notes.end(), mesh.notes().begin(), mesh.notes().end());

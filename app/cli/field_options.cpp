@@ -54,6 +54,14 @@ std::string flatness_note(double relief, double side) {
       metres_text(relief), metres_text(side), chosen_exaggeration(relief, side));
 }
 
+std::string no_ground_note(const HeightField& field) {
+  if (field.has_ground()) return {};
+  if (!field.has_cells()) return "a single row or column has no cells: every ray misses";
+  const double cells = static_cast<double>(field.cell_cols()) * field.cell_rows();
+  return fmt::format(
+      "none of the {:.0f} cells has four valid samples: every ray misses (is the nodata value right? --nodata)", cells);
+}
+
 void add_field_options(Command& command, FieldOptions& options, BeyondBorders borders, Exaggeration* exaggeration) {
   constexpr Inputs kSurfaces{kTerrain, "it shapes the surface between the samples of rasters"};
   const auto add = [&](Binding to, Option option) {

@@ -22,6 +22,9 @@ double chosen_exaggeration(double relief, double side);
 /// Returns what to tell about ground whose relief hardly shows in pictures; empty: it shows.
 std::string flatness_note(double relief, double side);
 
+/// Returns why every ray misses a field; empty: it has ground.
+std::string no_ground_note(const HeightField& field);
+
 /// Declares --exaggeration, --surface, --solid and, except for `none`, --wrap. Without `exaggeration`, the value auto
 /// is refused.
 void add_field_options(Command& command, FieldOptions& options, BeyondBorders borders,

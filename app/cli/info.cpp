@@ -87,7 +87,7 @@ Json describe(const InfoOptions& options) {
   info["slope_bound"] = slope_bound(field);
   info["sample_type"] = name_of(field.sample_type());
   info["bytes_per_sample"] = sample_bytes + static_cast<double>(MaxPyramid(field).bytes()) / samples;
-  if (!field.has_cells()) notes.push_back("a single row or column has no cells: every ray misses");
+  if (const std::string note = no_ground_note(field); !note.empty()) notes.push_back(note);
   info["notes"] = notes;
   return info;
 }

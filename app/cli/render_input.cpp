@@ -71,6 +71,11 @@ void require_ground(const HeightField& field, const std::string& path) {
   }
   if (field.all_nodata())
     throw Error(fmt::format("{}: all samples are nodata (is the nodata value right? --nodata)", path));
+  if (!field.has_ground())
+    throw Error(
+        fmt::format("{}: every cell has a nodata sample at a corner, so there is no ground to show (is the "
+                    "nodata value right? --nodata)",
+                    path));
 }
 
 RenderInput terrain(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {

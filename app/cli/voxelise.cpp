@@ -41,7 +41,7 @@ std::vector<Material> materials_of(const OpenedInput& input, const std::string& 
   if (input.document) return input.document->materials;
   const HeightField* field = input.scene.only_heights();
   if (!field) return {};
-  if (!field->has_cells() || field->all_nodata())
+  if (!field->has_ground())
     throw Error(
         fmt::format("{}: there is no ground between its samples (at least 2 x 2 valid ones are needed)", input.path));
   return {HeightRamp{ramp, field->min_height(), field->max_height()}};

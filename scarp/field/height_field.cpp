@@ -238,6 +238,18 @@ std::optional<HeightField::Place> HeightField::place(double x, double y) const {
   return Place{cell, col - cell.col, row - cell.row};
 }
 
+bool HeightField::has_ground() const {
+  if (!has_cells() || all_nodata()) return false;
+  return visit([](const auto& grid) {
+    for (int row = 0; row < grid.cell_rows; ++row) {
+      for (int col = 0; col < grid.cell_cols; ++col) {
+        if (!grid.is_hole(col, row)) return true;
+      }
+    }
+    return false;
+  });
+}
+
 std::optional<CellHeights> HeightField::cell_heights(Cell cell) const {
   return visit([&](const auto& grid) -> std::optional<CellHeights> {
     if (grid.is_hole(cell.col, cell.row)) return {};

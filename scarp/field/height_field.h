@@ -120,6 +120,9 @@ class HeightField {
   std::int64_t nodata_count() const { return state_->extents.whole().nodata; }
   bool all_nodata() const { return nodata_count() == std::int64_t{cols_} * rows_; }
 
+  /// Whether a cell has four valid samples; otherwise every ray misses. Scans the cells up to the first such one.
+  bool has_ground() const;
+
   /// Minimum and maximum sample, in sample units. Undefined if all_nodata().
   double min_sample() const { return static_cast<double>(state_->extents.whole().min); }
   double max_sample() const { return static_cast<double>(state_->extents.whole().max); }

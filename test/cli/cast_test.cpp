@@ -573,6 +573,17 @@ TEST_F(Cast, AFieldWithoutCellsSaysThatEveryRayMisses) {
   EXPECT_EQ(rows_of(result.out).at(0).at("status"), "miss");
 }
 
+TEST_F(Cast, AFieldWithoutAWholeCellSaysThatEveryRayMisses) {
+  const auto result = run({"cast",
+                           write("board.asc",
+                                 "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\nNODATA_value -9\n"
+                                 "1 -9 1\n-9 1 -9\n1 -9 1\n"),
+                           "--rays", rays("x,y,z,dx,dy,dz\n1,1,9,0,0,-1\n")});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.err.find("none of the 4 cells has four valid samples"), std::string::npos) << result.err;
+  EXPECT_EQ(rows_of(result.out).at(0).at("status"), "miss");
+}
+
 #ifdef SCARP_VULKAN
 // Rows of a device are those of the CPU, but for delta of numerics.md, by which the CPU's rays are raised and lowered:
 // where these three agree, so does the device, and its hits are no farther from the CPU's than theirs.

@@ -299,6 +299,8 @@ void require_visible(const Scene& scene) {
                               field->cols(), field->rows()));
     }
     if (field->all_nodata()) throw Error("picture: all samples of the field are nodata (nothing to see)");
+    if (!field->has_ground())
+      throw Error("picture: every cell of the field has a nodata sample at a corner (nothing to see)");
   }
   if (!scene.endless() && scene.box().empty()) throw Error("picture: nothing in the scene can be seen");
 }
