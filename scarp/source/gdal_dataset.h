@@ -21,7 +21,11 @@ struct StrictReading {
   GdalOption jpeg{"GDAL_ERROR_ON_LIBJPEG_WARNING", "YES"};
 };
 
-/// Opens any raster that GDAL reads. Requires a StrictReading on the stack. Throws Error without the file's name.
+/// Returns whether GDAL reads the dataset as an ESRI ASCII grid.
+bool is_ascii_grid(GDALDataset& dataset);
+
+/// Opens any raster that GDAL reads, ESRI ASCII grids with the type of all their samples. Requires a StrictReading on
+/// the stack. Throws Error without the file's name.
 GDALDatasetUniquePtr open_gdal_raster(const std::string& path, const GdalSession& session);
 
 /// Returns the files of the dataset, including those that a virtual raster names.

@@ -15,6 +15,7 @@
 #include "scarp/source/gdal_errors.h"
 #include "scarp/source/incomplete_file.h"
 #include "scarp/source/raster_name.h"
+#include "scarp/source/text_samples.h"
 #include "scarp/source/zip_archive.h"
 
 namespace scarp {
@@ -88,12 +89,29 @@ std::string examples_in(const std::string& archive) {
 
 }  // namespace
 
+bool is_ascii_grid(GDALDataset& dataset) {
+  return dataset.GetDriver() && EQUAL(dataset.GetDriver()->GetDescription(), "AAIGrid") &&
+         dataset.GetRasterCount() == 1;
+}
+
 GDALDatasetUniquePtr open_gdal_raster(const std::string& path, const GdalSession& session) {
   check_file(path);
-  GDALDatasetUniquePtr dataset(
-      GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  const auto open = [&] {
+    return GDALDatasetUniquePtr(
+        GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
+  };
+  GDALDatasetUniquePtr dataset = open();
   if (!dataset) refuse_unopened(path, session);
   check_length(*dataset);
+  if (is_ascii_grid(*dataset)) {
+    const double count = static_cast<double>(dataset->GetRasterXSize()) * dataset->GetRasterYSize();
+    const bool integers = has_integers_alone(path, count);
+    if (!integers && !GDALDataTypeIsFloating(dataset->GetRasterBand(1)->GetRasterDataType())) {
+      const GdalOption type("AAIGRID_DATATYPE", "Float64");
+      dataset = open();
+      if (!dataset) refuse_unopened(path, session);
+    }
+  }
   return dataset;
 }
 

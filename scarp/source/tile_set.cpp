@@ -30,6 +30,7 @@ struct Tile {
   GDALDataType type = GDT_Unknown;
   std::optional<double> nodata;
   bool masked = false;
+  bool ascii_grid = false;
   double scale = 1, offset = 0;
   std::string unit;
   OGRSpatialReference crs;
@@ -56,6 +57,7 @@ Tile look_at(const std::string& path, const RasterOptions& options, const GdalSe
     throw Error("tiles of signed bytes require GDAL 3.7 (convert it first: gdal_translate -ot Int16 IN OUT.tif)");
   // For colours, a nodata value marks a byte, not a height.
   if (tile.bands == 1) tile.nodata = nodata_of(band);
+  tile.ascii_grid = is_ascii_grid(*dataset);
   tile.masked = tile.bands == 1 && has_own_mask(band);
   tile.scale = band.GetScale();
   tile.offset = band.GetOffset();
@@ -179,12 +181,16 @@ GDALDataType type_with_nan(GDALDataType type) {
 
 // XML elements that map part of a file to part of the dataset.
 std::string source_xml(const Tile& tile, const TileRect& at, int band, std::string_view kind, const std::string& more) {
+  // Opened again when it is read, by GDAL alone.
+  const std::string open_as = tile.ascii_grid ? fmt::format("<OpenOptions><OOI key=\"DATATYPE\">{}</OOI></OpenOptions>",
+                                                            GDALGetDataTypeName(tile.type))
+                                              : "";
   return fmt::format(
-      "<{0}><SourceFilename relativeToVRT=\"0\">{1}</SourceFilename><SourceBand>{2}</SourceBand><SourceProperties "
+      "<{0}><SourceFilename relativeToVRT=\"0\">{1}</SourceFilename>{9}<SourceBand>{2}</SourceBand><SourceProperties "
       "RasterXSize=\"{3}\" RasterYSize=\"{4}\" DataType=\"{5}\"/><SrcRect xOff=\"0\" yOff=\"0\" xSize=\"{3}\" "
       "ySize=\"{4}\"/><DstRect xOff=\"{6}\" yOff=\"{7}\" xSize=\"{3}\" ySize=\"{4}\"/>{8}</{0}>",
       kind, xml_text(full_path(tile.path)), band, tile.cols, tile.rows, GDALGetDataTypeName(tile.type), at.col, at.row,
-      more);
+      more, open_as);
 }
 
 GDALRasterBand& add_band(GDALDataset& dataset, GDALDataType type, const GdalSession& session) {

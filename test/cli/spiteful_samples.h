@@ -57,7 +57,6 @@ inline SpitefulRasters text_grids(const SpitefulFiles& f) {
                  .width_m = 230});
   all.push_back({.kind = "NODATA_value nan, heights in whole metres",
                  .inputs = {f.asc("nans.asc", nan_place, hills_with(kNaN, 3))},
-                 .expected = right_or_refused,
                  .heights = kHills,
                  .width_m = 230});
   const std::string rows = f.asc("whole.asc", kMetres);
@@ -76,8 +75,20 @@ inline SpitefulRasters text_grids(const SpitefulFiles& f) {
   words.replace(words.find(" 80 "), 4, " N/A ");
   all.push_back({.kind = "N/A instead of a sample",
                  .inputs = {f.bytes("words.asc", words)},
-                 .expected = right_or_refused,
-                 .heights = kHills});
+                 .expected = refused,
+                 .words = "'N/A' is not a number"});
+  words.replace(words.find(" N/A "), 5, "  -  ");
+  all.push_back({.kind = "a dash instead of a sample",
+                 .inputs = {f.bytes("dashes.asc", words)},
+                 .expected = refused,
+                 .words = "'-' is not a number"});
+  all.push_back({.kind = "NaN in tiles of whole metres",
+                 .inputs = {f.bytes("west.asc", text_of(f.path("nans.asc"))),
+                            f.asc("east.asc", "xllcorner 500240\nyllcorner 5000000\ncellsize 10\nNODATA_value nan",
+                                  hills_with(kNaN, 3))},
+                 .heights = kHills,
+                 .width_m = 470,
+                 .size = "48x16"});
   all.push_back({.kind = "cellsize 0",
                  .inputs = {f.asc("zero.asc", "xllcorner 0\nyllcorner 0\ncellsize 0")},
                  .expected = refused,
