@@ -189,7 +189,12 @@ Json describe_vox(const std::string& path, const VoxOptions& options) {
 std::string vox_text_of(const Json& info) {
   std::string out;
   const WriteLine line = [&](std::string_view name, const std::string& value) {
+    const std::size_t begin = out.size();
     out += fmt::format("{:<12} {}\n", name, value);
+    // Names in the file may hold codes that terminals obey.
+    std::replace_if(
+        out.begin() + static_cast<std::ptrdiff_t>(begin), out.end() - 1,
+        [](unsigned char c) { return c < ' ' || c == 0x7f; }, '.');
   };
   const auto count = [&](const char* name) { return info[name].get<std::int64_t>(); };
   line("file", info["path"].get<std::string>());

@@ -134,7 +134,8 @@ VoxInput read_volume_voxels(const std::string& path, const VoxOptions& options, 
   VoxInput input{{}, placed_voxels_from(numbers, colours_of(ramp), range, from)};
   if (input.voxels.models[0]->grid().solid_count() == 0) {
     const SolidRange all = number_range(numbers);
-    if (all.low > all.high) throw Error(fmt::format("{}: no voxel is solid: all numbers are NaN", path));
+    if (all.low > all.high)
+      throw Error(fmt::format("{}: no voxel is solid: all numbers are NaN (is --volume right?)", path));
     throw Error(fmt::format("{}: no voxel is solid: its numbers are {} to {} (choose --solid-from in this range)", path,
                             all.low, all.high));
   }
@@ -184,7 +185,8 @@ VoxInput read_voxels(const std::string& path, const VoxOptions& options, const V
              !vox_instances(*input.document, {.frame = options.scene.frame, .hidden = true}).empty() &&
              vox_instances(*input.document, options.scene).empty();
     });
-    throw Error(fmt::format("{}: no visible voxels{}", path, hidden ? " (all are hidden: --hidden shows them)" : ""));
+    throw Error(fmt::format("{}: no visible voxels ({})", path,
+                            hidden ? "all are hidden: --hidden shows them" : "see 'scarp info' for what it contains"));
   }
   return input;
 }

@@ -82,7 +82,8 @@ void run(const VoxeliseOptions& options, const Command& command) {
   keep_inputs(options.output, input.files);
   stop_if_interrupted();
   const double side = side_of(options, kind, input.scene, within);
-  const VoxelLattice lattice = lattice_around(input.scene, side, within);
+  const std::string name = options.inputs.empty() ? "--function" : options.inputs.front();
+  const VoxelLattice lattice = naming(name, [&] { return lattice_around(input.scene, side, within); });
   const VoxelGrid grid = voxelised(input.scene, lattice, voxel_colours(materials), terminal_progress("voxelise"));
   if (grid.solid_count() == 0)
     throw Error(fmt::format("'{}': no voxel of {:.6g} m has its middle inside; take smaller ones",

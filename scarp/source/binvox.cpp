@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "scarp/base/error.h"
+#include "scarp/source/incomplete_file.h"
 #include "scarp/source/vox_bytes.h"
 #include "scarp/source/whole_file.h"
 
@@ -48,10 +49,6 @@ bool says(std::string_view line, std::string_view word) {
 }
 
 Binvox parse_header(std::string_view& bytes) {
-  if (!bytes.starts_with(kMagic)) {
-    throw Error(fmt::format("not a binvox file: begins with {} instead of '#binvox'",
-                            printable(bytes.substr(0, kMagic.size()))));
-  }
   const std::string_view first = take_line(bytes);
   if (first != "#binvox 1")
     throw Error(fmt::format("version {} is not supported (expected '#binvox 1')", printable(first)));
@@ -88,11 +85,7 @@ std::uint64_t volume(const ivec3& size) {
   return static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * static_cast<std::uint64_t>(size.z);
 }
 
-}  // namespace
-
-void Binvox::clear() { bits.assign((volume(size) + 63) / 64, 0); }
-
-Binvox parse_binvox(std::string_view bytes) {
+Binvox parse_content(std::string_view bytes) {
   Binvox binvox = parse_header(bytes);
   const std::uint64_t voxels = volume(binvox.size);
   std::uint64_t counted = 0;
@@ -117,6 +110,18 @@ Binvox parse_binvox(std::string_view bytes) {
     at += count;
   }
   return binvox;
+}
+
+}  // namespace
+
+void Binvox::clear() { bits.assign((volume(size) + 63) / 64, 0); }
+
+Binvox parse_binvox(std::string_view bytes) {
+  if (!bytes.starts_with(kMagic)) {
+    throw Error(fmt::format("not a binvox file: begins with {} instead of '#binvox'",
+                            printable(bytes.substr(0, kMagic.size()))));
+  }
+  return advising("write it again with binvox", [&] { return parse_content(bytes); });
 }
 
 Binvox read_binvox(const std::string& path) {

@@ -2,6 +2,8 @@
 // Message texts for missing and truncated files.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <string_view>
 
 #include "scarp/base/error.h"
@@ -20,6 +22,18 @@ inline constexpr const char* kLfsAdvice = "Git LFS pointer instead of the file (
 /// Throws Error (without the file's name) if a file that begins with `start` is a Git LFS pointer.
 inline void refuse_lfs_pointer(std::string_view start) {
   if (start.starts_with(kLfsPointer)) throw Error(kLfsAdvice);
+}
+
+/// Calls work(). Its errors that end without words in parentheses get this advice.
+template <class Work>
+auto advising(std::string_view advice, const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    const std::string_view text = error.what();
+    if (text.ends_with(')')) throw;
+    throw Error(fmt::format("{} ({})", text, advice));
+  }
 }
 
 }  // namespace scarp

@@ -130,7 +130,7 @@ VoxelParts parse_qubicle(std::string_view file) {
   std::size_t listed = 0;
   for (std::uint32_t i = 0; i < header.matrices; ++i) {
     try {
-      parts.parts.push_back(parse_matrix(header, bytes, listed));
+      parts.parts.push_back(advising("save it again in Qubicle", [&] { return parse_matrix(header, bytes, listed); }));
     } catch (const Error& error) {
       throw Error(fmt::format("matrix {} of {}: {}", i, header.matrices, error.what()));
     }

@@ -15,6 +15,7 @@ namespace {
 constexpr std::string_view kMagic = "VOX ";
 constexpr std::size_t kHeaderBytes = 20;  // up to the children of MAIN
 constexpr int kMaxSide = 256;
+constexpr std::string_view kSaveAgain = "save it again in MagicaVoxel";
 
 VoxModel parse_size(VoxBytes& bytes) {
   VoxModel model;
@@ -159,7 +160,7 @@ int parse_header(std::string_view bytes, std::uint64_t file_bytes) {
   const int version = header.number();
   if (version != 150 && version != 200)
     throw Error(fmt::format("unsupported version {} (supported: 150, 200)", version));
-  if (header.take(4) != "MAIN") throw Error("does not begin with the chunk MAIN");
+  if (header.take(4) != "MAIN") throw Error(fmt::format("does not begin with the chunk MAIN ({})", kSaveAgain));
   const auto content = static_cast<std::uint32_t>(header.number()),
              children = static_cast<std::uint32_t>(header.number());
   if (std::uint64_t{content} + children > file_bytes - kHeaderBytes) {
@@ -213,26 +214,28 @@ VoxFile parse_vox(std::string_view bytes) {
   const auto content = static_cast<std::uint32_t>(header.number()),
              children = static_cast<std::uint32_t>(header.number());
   VoxBytes rest(bytes.substr(kHeaderBytes + content, children));
-  while (rest.left() > 0) {
-    const std::uint64_t at = kHeaderBytes + std::uint64_t{content} + children - rest.left();
-    std::string where = fmt::format("at byte {}", at);
-    try {
-      const std::string_view name = rest.take(4);
-      where = fmt::format("chunk {} {}", printable(name), where);
-      const auto own = static_cast<std::uint32_t>(rest.number()), inner = static_cast<std::uint32_t>(rest.number());
-      VoxBytes chunk(rest.take(own));
-      const std::string_view before = chunk.rest(), below = rest.take(inner);
-      parser.chunk(name, chunk);
-      if (!parser.known()) {
-        parser.file.others.push_back({std::string(name), std::string(before), std::string(below)});
-      } else if (chunk.left() > 0 || !below.empty()) {
-        throw Error(fmt::format("{} bytes too many", chunk.left() + below.size()));
+  advising(kSaveAgain, [&] {
+    while (rest.left() > 0) {
+      const std::uint64_t at = kHeaderBytes + std::uint64_t{content} + children - rest.left();
+      std::string where = fmt::format("at byte {}", at);
+      try {
+        const std::string_view name = rest.take(4);
+        where = fmt::format("chunk {} {}", printable(name), where);
+        const auto own = static_cast<std::uint32_t>(rest.number()), inner = static_cast<std::uint32_t>(rest.number());
+        VoxBytes chunk(rest.take(own));
+        const std::string_view before = chunk.rest(), below = rest.take(inner);
+        parser.chunk(name, chunk);
+        if (!parser.known()) {
+          parser.file.others.push_back({std::string(name), std::string(before), std::string(below)});
+        } else if (chunk.left() > 0 || !below.empty()) {
+          throw Error(fmt::format("{} bytes too many", chunk.left() + below.size()));
+        }
+      } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", where, error.what()));
       }
-    } catch (const Error& error) {
-      throw Error(fmt::format("{}: {}", where, error.what()));
     }
-  }
-  parser.finish();
+    parser.finish();
+  });
   return std::move(parser.file);
 }
 

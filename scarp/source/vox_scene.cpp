@@ -183,7 +183,7 @@ std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOption
   // The total is limited, too.
   for (std::size_t visits = 0; !stack.empty(); ++visits) {
     if (visits >= 8 * kMostInstances || instances.size() >= kMostInstances)
-      throw Error(fmt::format("scene: more than {} model instances", kMostInstances));
+      throw Error(fmt::format("scene: more than {} model instances (use fewer objects)", kMostInstances));
     const Visit visit = stack.back();
     stack.pop_back();
     const VoxNode& node = *nodes.at(visit.node);
@@ -197,10 +197,11 @@ std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOption
       below.place.move += visit.place.turn(own.move);
       const ivec3 away = glm::abs(below.place.move);
       if (std::max({away.x, away.y, away.z}) > kFarthest)
-        throw Error(fmt::format("scene: node {} is more than {} voxels away", node.id, kFarthest));
+        throw Error(fmt::format("scene: node {} is more than {} voxels away (move it closer)", node.id, kFarthest));
       stack.push_back(below);
     } else if (const auto* group = std::get_if<VoxGroup>(&node.content)) {
-      if (group->children.size() > kMostInstances) throw Error("scene: group of more than 2^20 nodes");
+      if (group->children.size() > kMostInstances)
+        throw Error("scene: group of more than 2^20 nodes (use fewer objects)");
       for (auto child = group->children.rbegin(); child != group->children.rend(); ++child)
         stack.push_back({*child, visit.place});
     } else {

@@ -61,6 +61,9 @@ class MapColumns {
     }
   }
 
+  // Bytes after the last column.
+  std::size_t left() const { return bytes_.size(); }
+
  private:
   void need(std::size_t count) {
     if (bytes_.size() < count) throw Error(fmt::format("truncated map, or not one of Voxlap ({})", kFetchAgain));
@@ -84,7 +87,8 @@ class MapColumns {
       const std::size_t words = byte_at(bytes_, 0);
       const int begin = byte_at(bytes_, 1), end = byte_at(bytes_, 2) + 1;
       const auto colours = static_cast<std::size_t>(std::max(0, end - begin));
-      if (begin < next || (words > 0 && words < 1 + colours))
+      // A span without colours ends right above its begin.
+      if (begin < next || end < begin || (words > 0 && words < 1 + colours))
         throw Error(fmt::format("column ({}, {}): inconsistent spans (is it a map of Voxlap?)", x, y));
       const std::size_t length = 4 * (words > 0 ? words : 1 + colours);
       need(length);
@@ -141,11 +145,13 @@ VoxelParts parse_kv6(std::string_view file) {
       const auto column = static_cast<std::size_t>(x) * static_cast<std::size_t>(size.y) + static_cast<std::size_t>(y);
       int above = -1;
       for (int left = short_at(counts, 2 * column); left > 0; --left, ++at) {
-        if (at == count) throw Error(fmt::format("its columns contain more than its {} voxels", count));
+        if (at == count)
+          throw Error(fmt::format("its columns contain more than its {} voxels ({})", count, kFetchAgain));
         const std::string_view voxel = voxels.substr(8 * at, 8);
         const int z = short_at(voxel, 4);
         if (z <= above || z >= size.z)
-          throw Error(fmt::format("column ({}, {}): voxel at z = {} is out of order or outside", x, y, z));
+          throw Error(
+              fmt::format("column ({}, {}): voxel at z = {} is out of order or outside ({})", x, y, z, kFetchAgain));
         part.voxels.push_back(upright({x, y, z}, size, from_bgr(voxel)));
         above = z;
       }
@@ -209,6 +215,9 @@ VoxelParts parse_vxl(std::string_view file) {
   }
   MapColumns map(file, size);
   map.parse();
+  if (const std::size_t behind = map.left(); behind > 0)
+    throw Error(
+        fmt::format("{} bytes follow the last of {} x {} columns (is it a map of Voxlap?)", behind, size.x, size.y));
   size.z = map.depth <= kLeastMapDepth ? kLeastMapDepth : kMapDepth;
   VoxelPart part{ivec3(0), size, std::move(map.voxels)};
   for (ListedVoxel& v : part.voxels) v = upright({v.x, v.y, v.z}, size, v.colour);

@@ -155,7 +155,8 @@ class Look {
     EXPECT_FALSE(has(line, "GDAL")) << "no raster: " << said();
     if (wanted.whole) {
       EXPECT_FALSE(has(line, "copy it again")) << said();
-      EXPECT_TRUE(has(line, ".vox") || has(line, "MagicaVoxel")) << "expected what is read: " << said();
+      EXPECT_TRUE(has(line, ".vox") || has(line, "MagicaVoxel") || has(line, "reads .vxl"))
+          << "expected what is read: " << said();
     }
     EXPECT_EQ(folder_.files(), before_) << "files are left: " << said();
   }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
+#include <tuple>
 #include <utility>
 
 #include "scarp/base/error.h"
@@ -16,8 +18,10 @@ namespace scarp {
 namespace {
 
 // Limits on hostile files. Pairs of instances that are examined, and voxels that are compared where they overlap, each
-// pair as much as some: about a minute each.
-constexpr std::int64_t kMostPairs = std::int64_t{1} << 34, kMostCompared = std::int64_t{1} << 32, kVoxelsPerPair = 8;
+// pair as much as some: about 10 s each.
+constexpr std::int64_t kMostPairs = std::int64_t{1} << 32, kMostCompared = std::int64_t{1} << 29, kVoxelsPerPair = 8;
+constexpr const char* kTooManyOverlaps =
+    "its models overlap too much to decide which voxels are shown (move them apart, or unite them in the editor)";
 constexpr int kIndexBits = 8;
 
 std::int64_t voxels_in(const VoxelBox& box) {
@@ -113,25 +117,29 @@ struct Placed {
   }
 };
 
+// Voxels that for_each_hidden() visits.
+std::int64_t visited(const Placed& upper, const Placed& lower) {
+  return std::min(voxels_in(intersection(upper.bounds, lower.bounds)),
+                  static_cast<std::int64_t>(lower.file_model->voxels.size()));
+}
+
 // Calls hide(v) for each voxel v of the lower grid that the upper instance covers. Visits the voxels of the common box
 // or those of the file, whichever are fewer.
 template <class Hide>
-std::int64_t for_each_hidden(const Placed& upper, const Placed& lower, const Hide& hide) {
+void for_each_hidden(const Placed& upper, const Placed& lower, const Hide& hide) {
   const VoxelBox common = intersection(upper.bounds, lower.bounds);
   const std::vector<VoxVoxel>& listed = lower.file_model->voxels;
-  const auto in_list = static_cast<std::int64_t>(listed.size());
-  if (in_list < voxels_in(common)) {
+  if (visited(upper, lower) < voxels_in(common)) {
     for (const VoxVoxel& voxel : listed) {
       if (voxel.index == 0) continue;
       const ivec3 v = place_of(voxel) - lower.model->box.low, world = lower.place.lattice_voxel(v);
       if (common.contains(world) && upper.solid(world) && lower.model->grid.solid(v)) hide(v);
     }
-    return in_list;
+    return;
   }
   for_each_voxel(common, [&](const ivec3& world) {
     if (upper.solid(world) && lower.solid(world)) hide(lower.place.grid_voxel(world));
   });
-  return voxels_in(common);
 }
 
 // Calls body(a, b) for each pair of boxes that overlap, a before b. Examines pairs that overlap along one axis, the one
@@ -157,7 +165,7 @@ void for_each_overlap(const std::vector<Placed>& instances, const Body& body) {
     }
     if (pairs < least) least = pairs, best_axis = axis, best_order = order;
   }
-  if (least > kMostPairs) throw Error("too many of its models overlap");
+  if (least > kMostPairs) throw Error(kTooManyOverlaps);
   for (std::size_t i = 0; i < best_order.size(); ++i) {
     const VoxelBox& box = instances[best_order[i]].bounds;
     for (std::size_t j = i + 1; j < best_order.size(); ++j) {
@@ -169,10 +177,27 @@ void for_each_overlap(const std::vector<Placed>& instances, const Body& body) {
   }
 }
 
+// Keeps one of several instances of a model that cover one another exactly: the first, or the last.
+std::vector<VoxInstance> different(std::vector<VoxInstance> instances, bool keeps_first) {
+  const auto key = [](const VoxInstance& i) {
+    return std::tuple(i.model, i.move.x, i.move.y, i.move.z, i.turn.axis, i.turn.sign);
+  };
+  std::set<decltype(key(instances[0]))> seen;
+  std::vector<VoxInstance> kept;
+  if (!keeps_first) std::reverse(instances.begin(), instances.end());
+  for (const VoxInstance& instance : instances) {
+    if (seen.insert(key(instance)).second) kept.push_back(instance);
+  }
+  if (!keeps_first) std::reverse(kept.begin(), kept.end());
+  return kept;
+}
+
 }  // namespace
 
 PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options) {
-  const std::vector<VoxInstance> instances = vox_instances(file, options.scene);
+  // The one that is shown where instances overlap.
+  const bool first_wins = file.version >= 200;
+  const std::vector<VoxInstance> instances = different(vox_instances(file, options.scene), first_wins);
   std::vector<VoxelColour> palette(256);
   for (std::size_t i = 1; i < palette.size(); ++i) {
     const VoxColour& colour = file.colours()[i - 1];
@@ -190,23 +215,29 @@ PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& optio
 
   // What lies under another instance is removed from a copy.
   std::map<std::size_t, VoxelGrid> cut;
+  const auto for_each_pair = [&](const auto& body) {
+    for_each_overlap(placed,
+                     [&](std::size_t first, std::size_t last) { first_wins ? body(first, last) : body(last, first); });
+  };
   std::int64_t compared = 0;
-  for_each_overlap(placed, [&](std::size_t first, std::size_t last) {
-    const auto [over, under] = file.version >= 200 ? std::pair(first, last) : std::pair(last, first);
+  for_each_pair([&](std::size_t over, std::size_t under) {
+    compared += kVoxelsPerPair + visited(placed[over], placed[under]);
+    if (compared > kMostCompared) throw Error(kTooManyOverlaps);
+  });
+  for_each_pair([&](std::size_t over, std::size_t under) {
     const Placed& lower = placed[under];
     std::vector<VoxelGrid::Placed> hidden;
-    const auto remove_hidden = [&, under = under] {
+    const auto remove_hidden = [&] {
       if (!cut.contains(under)) {
         memory.add(lower.model->bytes, "move objects that overlap apart");
       }
       cut.try_emplace(under, lower.model->grid).first->second.set(hidden);
       hidden.clear();
     };
-    compared += kVoxelsPerPair + for_each_hidden(placed[over], lower, [&](const ivec3& v) {
-                  hidden.push_back({v, {}});
-                  if (hidden.size() == kVoxelsAtOnce) remove_hidden();
-                });
-    if (compared > kMostCompared) throw Error("its models overlap too much to decide which voxels are shown");
+    for_each_hidden(placed[over], lower, [&](const ivec3& v) {
+      hidden.push_back({v, {}});
+      if (hidden.size() == kVoxelsAtOnce) remove_hidden();
+    });
     if (!hidden.empty()) remove_hidden();
   });
 

@@ -14,9 +14,9 @@ struct FromVoxOptions {
 
 /// Entries are palette indices. Where instances overlap, one voxel remains at each position, the one that MagicaVoxel
 /// shows: of the first instance in files from version 200 on, and of the last in those before. An instance that loses
-/// voxels gets a model of its own; all others share the models of the file. Grids are models cut to the smallest box
-/// around their voxels. Throws Error: no such march, too many overlaps, or more than 1 GiB of memory (16 bytes per
-/// voxel of the file if that is more), before it is allocated.
+/// voxels gets a model of its own; all others share the models of the file. Of instances that cover one another exactly
+/// one remains. Grids are models cut to the smallest box around their voxels. Throws Error: no such march, too many
+/// overlaps, or more than 1 GiB of memory (16 bytes per voxel of the file if that is more), before it is allocated.
 PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options = {});
 
 }  // namespace scarp

@@ -2,6 +2,7 @@
 #include "scarp/scene/file/scene_file.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -265,7 +266,10 @@ SceneFile read_whole(const std::string& path, const Progress& progress) {
                  std::move(whole.notes),
                  std::move(whole.files)};
   if (!file.scene.endless() && file.scene.box().empty())
-    throw Error("/objects: none of them has anything to see: voxels without a solid one, or heights without a cell");
+    throw Error(
+        fmt::format("/objects: nothing to see in any of them: no solid voxel and no cell of heights{} (see 'scarp "
+                    "info' for each file)",
+                    file.files.empty() ? "" : fmt::format(" in {}", fmt::join(file.files, ", "))));
   file.materials = std::move(whole.materials);
   if (json.contains("haze")) file.haze_distance = json["haze"]["distance"].get<double>();
   return file;
