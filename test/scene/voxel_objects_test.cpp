@@ -421,11 +421,16 @@ TEST(FromVox, RefusesWhatWouldTakeForEver) {
   EXPECT_LT(bytes, wide.models.size() * 60'000);
   const std::string refusal = test::refusal([&] { placed_voxels_from(wide, {.voxels = {.march = "voxel-octants"}}); });
   EXPECT_NE(refusal.find("more than 1.1 GB of memory (choose --march voxel-bricks)"), std::string::npos) << refusal;
-  // Models of one voxel in one place, too many pairs of them to compare.
-  VoxFile pile = canvases(12'000, {{0, 0, 0, 1}});
-  for (VoxNode& node : pile.nodes) {
-    if (auto* transform = std::get_if<VoxTransform>(&node.content)) transform->frames = {{}};
+  // 46^3 instances, none of them more than a fifth of its side from another: the pairs of them are too many.
+  constexpr int kAlong = 46;
+  VoxFile pile = canvases(1, {{0, 0, 0, 1}, {255, 255, 255, 1}});
+  VoxGroup all;
+  for (int i = 0; i < kAlong * kAlong * kAlong; ++i) {
+    const std::string move = fmt::format("{} {} {}", i % kAlong, i / kAlong % kAlong, i / (kAlong * kAlong));
+    pile.nodes.push_back({i + 3, {}, VoxTransform{2, -1, -1, {{{"_t", move}}}}});
+    all.children.push_back(i + 3);
   }
+  pile.nodes.front().content = all;
   EXPECT_NE(test::refusal([&] { placed_voxels_from(pile); }).find("models overlap too much"), std::string::npos);
   // 2^18 instances of a voxel in one place, each group twice the next one: one of them remains.
   constexpr int kGroups = 18;
