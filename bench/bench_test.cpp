@@ -214,6 +214,14 @@ TEST(ScarpBench, PyramidWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, VolumesWritesTheDocumentedFields) {
+  const json all = output_of("volumes --side 64 --repeats 1");
+  expect_head(all);
+  EXPECT_EQ(all["rows"].size(), 4u);
+  for (const json& row : all["rows"])
+    expect_fields(row, {"side", "type", "colours", "build_s", "plain_read_s", "ratio"});
+}
+
 TEST(ScarpBench, LeaksFindsNoneAndIsTheSameEachTime) {
   const json all = output_of("leaks --rays 200000 --large 129 --seed 5 --judge-every 64 --dump /nowhere/none");
   expect_head(all);

@@ -141,6 +141,13 @@ struct VoxelModelsOptions {
 };
 void run_voxel_models(const VoxelModelsOptions& options, const ReportOptions& report);
 
+/// `volumes`: from a file of numbers to voxels, beside reading its bytes.
+struct VolumesOptions {
+  int side = 1024;  ///< voxels
+  int repeats = 3;
+};
+void run_volumes(const VolumesOptions& options, const ReportOptions& report);
+
 /// `voxel-leaks`: all voxel marches on very many rays.
 struct VoxelLeaksOptions {
   std::int64_t rays = 10'000'000;

@@ -166,6 +166,16 @@ int run(int argc, char** argv) {
   add_trace_options(*simd_command, simd.trace);
   add_json_option(*simd_command, report);
 
+  VolumesOptions volumes;
+  CLI::App* volumes_command = app.add_subcommand("volumes", "how fast files of numbers become voxels");
+  volumes_command->add_option("--side", volumes.side, "voxels per side")
+      ->check(CLI::Range(8, 2048))
+      ->capture_default_str();
+  volumes_command->add_option("--repeats", volumes.repeats, "counted passes")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  add_json_option(*volumes_command, report);
+
   PyramidOptions pyramid;
   CLI::App* pyramid_command = app.add_subcommand("pyramid", "how fast the pyramid of maxima is built");
   pyramid_command->add_option("--sizes", pyramid.sizes, "samples per side, one or several")
@@ -445,6 +455,7 @@ int run(int argc, char** argv) {
   if (*naive_command) run_naive(naive, report);
   if (*batches_command) run_batches(batches, report);
   if (*simd_command) run_simd(simd, report);
+  if (*volumes_command) run_volumes(volumes, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
 #ifdef SCARP_BENCH_VULKAN
   if (*gpu_command) (gpu.raster ? run_gpu_raster : run_gpu)(gpu, report);

@@ -15,8 +15,9 @@
 namespace scarp::cli {
 namespace {
 
-constexpr double kLeastSeen = 0.005;  // of the pixels
-constexpr double kMostRays = 8192;    // some 40 of them are the least share: its error is a few tenths of it
+constexpr double kLeastSeen = 0.005;     // of the pixels
+constexpr double kLeastContrast = 0.02;  // that is visible through fog; see fog.h
+constexpr double kMostRays = 8192;       // some 40 of them are the least share: its error is a few tenths of it
 
 // Relief of natural ground is a small part of its extent; even a single cliff is hardly four times as high as wide.
 constexpr double kTooSteep = 4;
@@ -31,15 +32,6 @@ bool is_on_scene(const Scene& scene, const Hit& hit) { return hit && !scene.fiel
 // Metres from a point to a box; 0 inside.
 double way_to(const WorldBox& box, const dvec3& p) {
   return length(glm::max(glm::max(box.low - p, p - box.high), dvec3(0.0)));
-}
-
-// Thickness of the fog along a ray, as a multiple of its visibility at the height `base`: the integral in fog.h. At 1,
-// 2 of 100 parts of a contrast are left.
-double fog_along(const FogSettings& fog, const Ray& ray, double t) {
-  if (fog.kind == FogKind::distance) return t / fog.visibility;
-  if (fog.kind != FogKind::height) return 0;
-  const double x = t * ray.direction.z / fog.falloff, mean = x == 0 ? 1 : -std::expm1(-x) / x;
-  return std::exp(-(ray.origin.z - fog.base) / fog.falloff) * mean * t / fog.visibility;
 }
 
 // A box in the picture.
@@ -166,7 +158,7 @@ SeenShares seen_shares(const Scene& scene, const Camera& camera, const PictureSe
     const double t = hits[i].t;
     if (rays[i].at(t).z < water_level) {
       ++under_water;
-    } else if (fog_along(picture.fog, rays[i], t) > 1) {
+    } else if (transmittance(picture.fog, rays[i], t) < kLeastContrast) {
       ++in_fog;
     } else {
       ++surfaces;

@@ -7,14 +7,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include "scarp/base/error.h"
-#include "scarp/base/input_file.h"
-#include "scarp/source/incomplete_file.h"
+#include "scarp/source/text_lines.h"
 
 namespace scarp {
 namespace {
@@ -40,7 +38,7 @@ std::string lower_case(std::string_view text) {
 }
 
 std::vector<std::string_view> fields_of(std::string_view line) {
-  constexpr std::string_view kSeparators = " ,\t:\r";
+  constexpr std::string_view kSeparators = " ,\t:";
   std::vector<std::string_view> fields;
   for (std::size_t begin = 0; (begin = line.find_first_not_of(kSeparators, begin)) != std::string_view::npos;) {
     const std::size_t end = std::min(line.find_first_of(kSeparators, begin), line.size());
@@ -61,16 +59,10 @@ class ColourReliefReader {
   explicit ColourReliefReader(const std::string& path) : path_(path) {}
 
   RampStops read() {
-    refuse_special_file(path_, path_ + ": ");
-    std::ifstream in(path_);
-    if (!in) throw Error(fmt::format("{}: cannot be opened", path_));
-    std::string text;
-    while (std::getline(in, text)) {
-      if (++line_ == 1 && text.starts_with(kLfsPointer)) throw Error(fmt::format("{}: {}", path_, kLfsAdvice));
-      if (line_ == 1 && text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+    for_lines(path_, [&](const std::string& text, int number) {
+      line_ = number;
       take(text);
-    }
-    if (in.bad()) throw Error(fmt::format("{}: cannot be read", path_));
+    });
     if (entries_.empty()) throw Error(fmt::format("{}: no line 'value R G B'", path_));
     return stops();
   }

@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/source/mapped_file.h"
 #include "scarp/source/npy_header.h"
 #include "scarp/source/raw_format.h"
-#include "scarp/source/whole_file.h"
 
 namespace scarp {
 namespace {
@@ -78,16 +78,26 @@ struct Samples {
 
 template <class Number>
 void convert(const Samples& samples, std::span<double, 64> numbers) {
-  const auto all = [&]<bool swapped>() {
+  const auto all = [&]<bool swapped>(auto count, auto apart) {
     for (int z = 0; z < samples.count.z; ++z) {
       for (int y = 0; y < samples.count.y; ++y) {
         const char* at = samples.first + y * samples.apart[1] + z * samples.apart[2];
         double* to = numbers.data() + 4 * y + 16 * z;
-        for (int x = 0; x < samples.count.x; ++x) to[x] = number<Number, swapped>(at + x * samples.apart[0]);
+        for (int x = 0; x < count; ++x) to[x] = number<Number, swapped>(at + x * apart);
       }
     }
   };
-  samples.swapped ? all.template operator()<true>() : all.template operator()<false>();
+  const auto rows = [&]<bool swapped>() {
+    constexpr std::ptrdiff_t kAdjacent = sizeof(Number);
+    // Nearly all rows; with constants the compiler uses vectors.
+    if (samples.count.x == 4 && samples.apart[0] == kAdjacent) {
+      all.template operator()<swapped>(std::integral_constant<int, 4>(),
+                                       std::integral_constant<std::ptrdiff_t, kAdjacent>());
+    } else {
+      all.template operator()<swapped>(samples.count.x, samples.apart[0]);
+    }
+  };
+  samples.swapped ? rows.template operator()<true>() : rows.template operator()<false>();
 }
 
 }  // namespace
@@ -126,11 +136,23 @@ VolumeFormat npy_volume_format(std::string_view bytes) {
           true};
 }
 
-DenseVolume::DenseVolume(const VolumeFormat& format, std::string bytes) : format_(format), bytes_(std::move(bytes)) {
+DenseVolume::DenseVolume(const VolumeFormat& format, std::shared_ptr<const void> owner, std::string_view bytes)
+    : format_(format), owner_(std::move(owner)), bytes_(bytes) {
   require_length(format, bytes_.size());
   const auto x = static_cast<std::size_t>(format.size.x), y = static_cast<std::size_t>(format.size.y),
              z = static_cast<std::size_t>(format.size.z), one = static_cast<std::size_t>(format.bytes);
   stride_ = format.z_fastest ? std::array{one * z * y, one * z, one} : std::array{one, one * x, one * x * y};
+}
+
+DenseVolume::DenseVolume(const VolumeFormat& format, std::string bytes)
+    : DenseVolume(format, std::make_shared<const std::string>(std::move(bytes))) {}
+
+DenseVolume::DenseVolume(const VolumeFormat& format, const std::shared_ptr<const std::string>& bytes)
+    : DenseVolume(format, bytes, *bytes) {}
+
+DenseVolume DenseVolume::in_file(const VolumeFormat& format, const std::string& path) {
+  const auto file = std::make_shared<const MappedFile>(path);
+  return {format, file, file->bytes()};
 }
 
 double DenseVolume::operator[](const ivec3& voxel) const {
@@ -206,7 +228,7 @@ VolumeFormat volume_format_of(const std::string& path, const std::string& text) 
 DenseVolume read_volume(const std::string& path, const std::string& text) {
   const VolumeFormat format = volume_format_of(path, text);
   try {
-    return {format, whole_file(path, std::string_view())};
+    return DenseVolume::in_file(format, path);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));
   }

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -37,11 +38,14 @@ VolumeFormat parse_volume_format(std::string_view text);
 /// a side of 0 or beyond kMaxVolumeSide.
 VolumeFormat npy_volume_format(std::string_view bytes);
 
-/// A volume of numbers in memory.
+/// A volume of numbers, in memory or in a file.
 class DenseVolume {
  public:
   /// `bytes` is a whole file. Throws Error if it is shorter than the format requires, or longer without permission.
   DenseVolume(const VolumeFormat& format, std::string bytes);
+  /// The file's numbers, which are read when they are first used: it must not change meanwhile. Throws Error, without
+  /// the path, as above, or because it cannot be opened.
+  static DenseVolume in_file(const VolumeFormat& format, const std::string& path);
 
   const ivec3& size() const { return format_.size; }
   const VolumeFormat& format() const { return format_; }
@@ -53,15 +57,19 @@ class DenseVolume {
              std::span<double, 64> numbers) const;
 
  private:
+  DenseVolume(const VolumeFormat& format, const std::shared_ptr<const std::string>& bytes);
+  DenseVolume(const VolumeFormat& format, std::shared_ptr<const void> owner, std::string_view bytes);
+
   VolumeFormat format_;
   std::array<std::size_t, 3> stride_;
-  std::string bytes_;
+  std::shared_ptr<const void> owner_;  // of the bytes
+  std::string_view bytes_;
 };
 
 /// Returns the format of a file without its samples. `format`: the text above, or "npy". Throws Error naming the file,
 /// also if it is too short or too long.
 VolumeFormat volume_format_of(const std::string& path, const std::string& format);
-/// `format`: the text above, or "npy". Throws Error naming the file. Allocates only what the file contains.
+/// Opens a volume; see DenseVolume::in_file(). `format`: the text above, or "npy". Throws Error naming the file.
 DenseVolume read_volume(const std::string& path, const std::string& format);
 
 }  // namespace scarp

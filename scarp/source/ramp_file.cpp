@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <string_view>
 
 #include "scarp/base/error.h"
-#include "scarp/base/input_file.h"
-#include "scarp/source/incomplete_file.h"
+#include "scarp/source/text_lines.h"
 
 namespace scarp {
 namespace {
@@ -21,15 +19,10 @@ class CptReader {
   explicit CptReader(const std::string& path) : path_(path) {}
 
   RampStops read() {
-    refuse_special_file(path_, path_ + ": ");
-    std::ifstream in(path_);
-    if (!in) throw Error(fmt::format("{}: cannot be opened (name a .cpt file, a .png or a built-in ramp)", path_));
-    std::string text;
-    while (std::getline(in, text)) {
-      if (++line_ == 1 && text.starts_with(kLfsPointer)) throw Error(fmt::format("{}: {}", path_, kLfsAdvice));
+    for_lines(path_, [&](const std::string& text, int number) {
+      line_ = number;
       take(text);
-    }
-    if (in.bad()) throw Error(fmt::format("{}: cannot be read", path_));
+    });
     if (stops_.slices.empty()) throw Error(fmt::format("{}: no line 'low R G B high R G B'", path_));
     const double low = stops_.slices.front().low, high = stops_.slices.back().high;
     stops_.hinged = hinge_ && low == -1 && high == 1;

@@ -27,7 +27,7 @@ bool is_voxel_parts_file(const std::string& path) {
     });
     return voxlap;
   } catch (const Error&) {
-    return false;  // reported by who reads it
+    return false;  // the reader of .vox files reports it
   }
 }
 

@@ -22,18 +22,8 @@
 
 namespace scarp::test::spite {
 
-#ifdef __has_feature
-#define SCARP_SPITE_SANITIZED __has_feature(address_sanitizer)
-#endif
-#if defined(__SANITIZE_ADDRESS__) || SCARP_SPITE_SANITIZED
-// The sanitizer needs time and memory of its own.
-constexpr bool kMeasured = false;
-#else
-constexpr bool kMeasured = true;
-#endif
-
 // A call takes some hundredths of a second. Nothing here may keep the machine busy, or take its memory.
-constexpr Limits kLimits{kMeasured ? 10 : 100, kMeasured ? std::uint64_t{3} << 29 : 0};
+constexpr Limits kLimits{10, std::uint64_t{3} << 29};
 
 /// Memory: 4 times the file's bytes or voxels, the larger of the two, and what threads and their heaps take. Canvases
 /// beyond 2^26 voxels count as that many: what is not in the file must not be in memory.
@@ -170,7 +160,7 @@ class Look {
   }
 
   void expect_memory(std::uint64_t samples, std::uint64_t least) const {
-    if (!kMeasured || result.peak == 0) return;
+    if (result.peak == 0) return;
     constexpr std::uint64_t kMiB = 1 << 20;
     EXPECT_LE(result.peak, least + kAllowance + 4 * samples)
         << "memory: " << result.peak / kMiB << " MiB, " << least / kMiB << " of them for a single voxel, for "
@@ -264,22 +254,19 @@ inline void check_file(const Scratch& folder, const std::string& file, const Cas
           << "expected a note of '" << wanted.note << "'";
     }
   }
-  // Sanitizers take their time, and what is refused is refused by the same code.
-  if (kMeasured || wanted.how != Wanted::How::refused) {
-    const Look render(folder, file, words({"render", "--size", "96x54"}), "p.png");
-    render.expect_memory(samples, least_of_render);
-    if (judged(render)) {
-      const double share = share_of_objects(read_png(render.out()));
-      if (share < kLeastShare) {
-        EXPECT_TRUE(has(render.result.err, "warning"))
-            << "a picture with " << 100 * share << " % of voxels and no warning: " << render.said();
-      }
-      if (!wanted.tiny) {
-        EXPECT_GE(share, kLeastShare) << "expected to be seen: " << render.said();
-      }
+  const Look render(folder, file, words({"render", "--size", "96x54"}), "p.png");
+  render.expect_memory(samples, least_of_render);
+  if (judged(render)) {
+    const double share = share_of_objects(read_png(render.out()));
+    if (share < kLeastShare) {
+      EXPECT_TRUE(has(render.result.err, "warning"))
+          << "a picture with " << 100 * share << " % of voxels and no warning: " << render.said();
     }
-    std::filesystem::remove(folder.path("p.png"));
+    if (!wanted.tiny) {
+      EXPECT_GE(share, kLeastShare) << "expected to be seen: " << render.said();
+    }
   }
+  std::filesystem::remove(folder.path("p.png"));
   for (const std::string& command : wanted.also) {
     const std::string out = command == "cast" ? "h.csv" : command == "section" ? "s.svg" : "o.vox";
     std::vector<std::string> given{command};

@@ -2,7 +2,6 @@
 // Any bytes as a binvox file: voxels that their own bytes give again, or refused with an Error of one line.
 #include "scarp/source/binvox.h"
 
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -11,9 +10,7 @@
 
 namespace {
 
-void require(bool good) {
-  if (!good) std::abort();
-}
+using scarp::fuzz::require;
 
 void parse(std::string_view bytes) {
   try {
@@ -23,8 +20,7 @@ void parse(std::string_view bytes) {
       require(binvox.size[axis] >= 1 && binvox.size[axis] <= scarp::Binvox::kMaxSide);
     require(binvox.bits.size() <= bytes.size() * 2 + 1);  // a pair of bytes tells 255 voxels at most
   } catch (const scarp::Error& error) {
-    const std::string_view text = error.what();
-    require(!text.empty() && text.find_first_of("\r\n") == std::string_view::npos);
+    scarp::fuzz::expect_line(error);
   }
 }
 

@@ -13,9 +13,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
 namespace scarp::fuzz {
 
-/// Aborts when the message is empty. (Bytes of the input may be in it: the command line makes it one line.)
-inline void expect_message(const std::exception& error) {
-  if (std::string_view(error.what()).empty()) std::abort();
+inline void require(bool good) {
+  if (!good) std::abort();
 }
+
+/// Aborts when the message is not one line.
+inline void expect_line(const std::exception& error) {
+  const std::string_view text = error.what();
+  require(!text.empty() && text.find_first_of("\r\n") == std::string_view::npos);
+}
+
+/// Aborts when the message is empty. (Bytes of the input may be in it: the command line makes it one line.)
+inline void expect_message(const std::exception& error) { require(!std::string_view(error.what()).empty()); }
 
 }  // namespace scarp::fuzz

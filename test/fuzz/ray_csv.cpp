@@ -2,17 +2,15 @@
 // Any bytes as a table of rays in CSV: understood, or refused with an Error of one line.
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <string_view>
 
+#include "fuzz/fuzz.h"
 #include "scarp/base/error.h"
 #include "scarp/source/ray_table.h"
 
 namespace {
 
-void require(bool good) {
-  if (!good) std::abort();
-}
+using scarp::fuzz::require;
 
 bool finite(const scarp::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -28,8 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       require(table.aim == scarp::RayAim::target ? row.aim != row.origin : row.aim != scarp::dvec3(0.0));
     }
   } catch (const scarp::Error& error) {
-    const std::string_view text = error.what();
-    require(!text.empty() && text.find_first_of("\r\n") == std::string_view::npos);
+    scarp::fuzz::expect_line(error);
   }
   return 0;
 }

@@ -2,7 +2,6 @@
 // Any bytes as a .vox file: a document that its own bytes give again, or refused with an Error of one line.
 #include "scarp/source/vox_file.h"
 
-#include <cstdlib>
 #include <string>
 #include <string_view>
 
@@ -13,14 +12,7 @@
 
 namespace {
 
-void require(bool good) {
-  if (!good) std::abort();
-}
-
-void expect_one_line(const scarp::Error& error) {
-  const std::string_view text = error.what();
-  require(!text.empty() && text.find_first_of("\r\n") == std::string_view::npos);
-}
+using scarp::fuzz::require;
 
 void parse(std::string_view bytes) {
   try {
@@ -37,10 +29,10 @@ void parse(std::string_view bytes) {
       }
       require(scarp::vox_animation(file).frames >= 1);
     } catch (const scarp::Error& error) {
-      expect_one_line(error);
+      scarp::fuzz::expect_line(error);
     }
   } catch (const scarp::Error& error) {
-    expect_one_line(error);
+    scarp::fuzz::expect_line(error);
   }
 }
 

@@ -114,7 +114,7 @@ vec3 FrameView::in_air(vec3 colour, const Ray& ray, double t) const {
 }
 
 vec3 FrameView::from_beyond(vec3 light, const Ray& ray) const {
-  return light * static_cast<float>(fog_.transmittance(ray, kInfinity));
+  return light * static_cast<float>(transmittance(fog_.settings(), ray, kInfinity));
 }
 
 vec3 FrameView::earth() const { return linear_from_srgb(kEarth) * wall_light_; }

@@ -32,17 +32,17 @@ void validate(const FogSettings& settings) {
                   "0 to 1");
 }
 
+double transmittance(const FogSettings& settings, const Ray& ray, double t) {
+  const auto kind = static_cast<int>(settings.kind);
+  const double per_metre = kContrastLeft / settings.visibility, z = ray.origin.z, rise = ray.direction.z;
+  if (std::isinf(t)) {
+    return glsl::scarp_fog_transmittance_of_sky(kind, per_metre, settings.base, settings.falloff, z, rise);
+  }
+  return glsl::scarp_fog_transmittance(kind, per_metre, settings.base, settings.falloff, z, rise, t);
+}
+
 Fog::Fog(const FogSettings& settings, const Sky& sky)
     : settings_(settings), per_metre_(kContrastLeft / settings.visibility), sky_(sky) {}
-
-double Fog::transmittance(const Ray& ray, double t) const {
-  const FogSettings& s = settings_;
-  const auto kind = static_cast<int>(s.kind);
-  if (std::isinf(t)) {
-    return glsl::scarp_fog_transmittance_of_sky(kind, per_metre_, s.base, s.falloff, ray.origin.z, ray.direction.z);
-  }
-  return glsl::scarp_fog_transmittance(kind, per_metre_, s.base, s.falloff, ray.origin.z, ray.direction.z, t);
-}
 
 vec3 Fog::colour(const dvec3& direction) const {
   return glsl::scarp_fog_colour(sky_.numbers(), direction, settings_.sun_tint);
@@ -50,7 +50,7 @@ vec3 Fog::colour(const dvec3& direction) const {
 
 vec3 Fog::operator()(const Ray& ray, double t, vec3 behind) const {
   if (settings_.kind == FogKind::none || settings_.kind == FogKind::iterations) return behind;
-  return glsl::scarp_between(colour(ray.direction), behind, transmittance(ray, t));
+  return glsl::scarp_between(colour(ray.direction), behind, transmittance(settings_, ray, t));
 }
 
 vec3 Fog::by_share(const Ray& ray, double share, vec3 behind) const {

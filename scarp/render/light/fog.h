@@ -17,6 +17,8 @@
 
 #include <string_view>
 
+#include "scarp/base/ray.h"
+
 namespace scarp {
 
 enum class FogKind { none, distance, height, iterations };
@@ -36,5 +38,10 @@ struct FogSettings {
 
 /// Throws Error naming the first setting out of its range.
 void validate(const FogSettings& settings);
+
+/// Returns the share of light, 0..1, that comes through from the point `t` metres along the ray, whose direction has
+/// length 1. t may be infinite: 1 for fog by distance, whose colour is that of the sky at the horizon anyway. For
+/// `iterations` it is 1.
+double transmittance(const FogSettings& settings, const Ray& ray, double t);
 
 }  // namespace scarp

@@ -14,10 +14,6 @@ class Fog {
   Fog(const FogSettings& settings, const Sky& sky);
 
   FogKind kind() const { return settings_.kind; }
-  /// The share of light that comes through from the point `t` metres along the ray, whose direction has length 1; 0..1.
-  /// t may be infinite: 1 for fog by distance, whose colour is that of the sky at the horizon anyway. For `iterations`
-  /// it is 1.
-  double transmittance(const Ray& ray, double t) const;
   /// Colour of the fog in linear light along a unit vector.
   vec3 colour(const dvec3& direction) const;
   double per_metre() const { return per_metre_; }
