@@ -8,7 +8,7 @@
 
 namespace scarp {
 
-/// A file mapped for reading. Whoever truncates the file meanwhile ends the program (SIGBUS), as with any mapping.
+/// A file mapped for reading. If the file is truncated meanwhile, the process ends with SIGBUS, as with any mapping.
 class MappedFile {
  public:
   /// Throws Error, without the path: missing, not a file, cannot be mapped.
