@@ -123,7 +123,7 @@ std::string text_of(const Json& info) {
     bounds_lines("outer edges", "edges");
   }
   line("units", fmt::format("{}; metres = sample x {:.10g} + {:.10g}",
-                            text("vertical_unit", "not said, metres assumed"), number("scale"), number("offset")));
+                            text("vertical_unit", "not stated, metres assumed"), number("scale"), number("offset")));
   line("nodata", info["nodata_count"].get<std::int64_t>() == 0
                      ? "no holes"
                      : fmt::format("{} samples ({:.3g} %), marked by {}", info["nodata_count"].get<std::int64_t>(),
