@@ -8,15 +8,9 @@ namespace scarp {
 LiveField::LiveField(HeightField field, const std::optional<SampleRange>& reserve)
     : field_(std::move(field)), pyramid_(field_, reserve) {}
 
-LiveField::Reading::Reading(const LiveField& live) : live_(&live) {
-  const std::scoped_lock in_turn(live.turnstile_);
-  held_ = std::shared_lock(live.held_);
-}
-
 template <class T>
 std::uint64_t LiveField::edit(const SampleRect& rect, const T* samples, std::ptrdiff_t stride) {
-  const std::scoped_lock in_turn(turnstile_);
-  const std::scoped_lock alone(held_);
+  const auto alone = turnstile_.edit();
   pyramid_.update(field_, field_.set_samples(rect, samples, stride));
   return ++epoch_;
 }

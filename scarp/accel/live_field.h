@@ -13,11 +13,11 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <shared_mutex>
 
 #include "scarp/accel/max_pyramid.h"
+#include "scarp/base/turnstile.h"
 #include "scarp/field/height_field.h"
 
 namespace scarp {
@@ -38,7 +38,7 @@ class LiveField {
 
    private:
     friend class LiveField;
-    explicit Reading(const LiveField& live);
+    explicit Reading(const LiveField& live) : live_(&live), held_(live.turnstile_.read()) {}
     const LiveField* live_;
     std::shared_lock<std::shared_mutex> held_;
   };
@@ -55,8 +55,7 @@ class LiveField {
   HeightField field_;
   MaxPyramid pyramid_;
   std::uint64_t epoch_ = 0;
-  mutable std::mutex turnstile_;  // held by an edit from when it starts to wait: later readings queue here
-  mutable std::shared_mutex held_;
+  mutable Turnstile turnstile_;
 };
 
 }  // namespace scarp

@@ -145,6 +145,7 @@ void build_coarser(const std::uint16_t* fine, const MaxPyramid::Level& finer, co
 
 MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange>& reserve)
     : shared_(std::make_shared<Shared>()) {
+  shared_->edits = field.edits();
   levels_ = pyramid_levels(field);
   if (levels_.empty()) return;
   entries_ = static_cast<std::size_t>(levels_.back().begin + 1);
@@ -163,6 +164,7 @@ void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleR
 }
 
 void MaxPyramid::update(const HeightField& field, const CellBox& changed) {
+  shared_->edits = field.edits();
   if (levels_.empty()) return;
   if (!is_in_range(field, shared_->range)) {
     set_range(field, shared_->range);

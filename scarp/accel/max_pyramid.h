@@ -64,6 +64,8 @@ class MaxPyramid {
   /// Upper bound of the height difference within any cell, in code steps; up to 65535 with holes. After edits it may
   /// exceed that of a rebuild.
   int cell_relief() const { return shared_->cell_relief; }
+  /// HeightField::edits() at the last update; while the field has more, queries may miss what is there.
+  std::uint64_t edits() const { return shared_->edits; }
 
  private:
   // State shared by copies.
@@ -71,6 +73,7 @@ class MaxPyramid {
     HeightCode code;
     SampleRange range;  // range of the codes
     int cell_relief = 0;
+    std::uint64_t edits = 0;
     std::unique_ptr<std::uint16_t[]> maxima, minima;
   };
 

@@ -25,4 +25,10 @@ inline WorldBox around(const WorldBox& a, const WorldBox& b) {
   return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
 }
 
+/// Half the surface area; 0 for an empty box.
+inline double half_area(const WorldBox& box) {
+  const dvec3 size = glm::max(box.high - box.low, dvec3(0.0));
+  return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
 }  // namespace scarp

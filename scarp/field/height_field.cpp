@@ -131,8 +131,12 @@ HeightField::HeightField(SampleType type, const void* data, int cols, int rows, 
 
 template <class T>
 HeightField HeightField::view(const T* samples, int cols, int rows, std::ptrdiff_t row_stride,
-                              const HeightFieldSettings& settings) {
-  return HeightField(type_of<T>(), samples, cols, rows, row_stride, settings, nullptr);
+                              const HeightFieldSettings& settings, std::weak_ptr<const void> memory) {
+  HeightField field(type_of<T>(), samples, cols, rows, row_stride, settings, nullptr);
+  // One that was never set to an owner, destroyed or not, is equivalent to an empty one.
+  const std::weak_ptr<const void> none;
+  if (memory.owner_before(none) || none.owner_before(memory)) field.state_->memory = std::move(memory);
+  return field;
 }
 
 template <class T>
@@ -178,6 +182,7 @@ CellBox HeightField::cells_of(const SampleRect& rect) const {
 
 CellBox HeightField::samples_changed(const SampleRect& rect) {
   require_inside(rect);
+  state_->edits.add();  // the caller's memory changed, whether or not it is accepted
   visit_unknown([&](const auto& grid) {
     refuse_infinite(grid, rect);
     require_shared_border(grid, [&](int col, int row) { return grid.at(col, row); });
@@ -212,12 +217,14 @@ CellBox HeightField::set_samples(const SampleRect& rect, const T* samples, std::
     std::copy_n(samples + row * stride, rect.cols, to + (rect.row + row) * row_stride_ + rect.col);
   }
   state_->extents.update(grid, rect);
+  state_->edits.add();
   return cells_of(rect);
 }
 
-#define SCARP_INSTANTIATE(T)                                                                                 \
-  template HeightField HeightField::view<T>(const T*, int, int, std::ptrdiff_t, const HeightFieldSettings&); \
-  template HeightField HeightField::own<T>(std::vector<T>, int, int, const HeightFieldSettings&);            \
+#define SCARP_INSTANTIATE(T)                                                                                \
+  template HeightField HeightField::view<T>(const T*, int, int, std::ptrdiff_t, const HeightFieldSettings&, \
+                                            std::weak_ptr<const void>);                                     \
+  template HeightField HeightField::own<T>(std::vector<T>, int, int, const HeightFieldSettings&);           \
   template CellBox HeightField::set_samples<T>(const SampleRect&, const T*, std::ptrdiff_t);
 SCARP_INSTANTIATE(std::int16_t)
 SCARP_INSTANTIATE(std::uint16_t)

@@ -26,6 +26,7 @@
 #include <utility>
 #include <vector>
 
+#include "scarp/base/edit_count.h"
 #include "scarp/base/ray.h"
 #include "scarp/base/vec.h"
 #include "scarp/field/sample_extent.h"
@@ -100,10 +101,10 @@ class HeightField {
   /// between rows in samples; if it is negative, `samples` points to the northernmost row, which is last in memory.
   /// Throws Error for a null pointer, fewer than 1 column or row, rows that overlap (a stride shorter than a row), a
   /// setting out of range, an infinite sample (with its position), or a shared border whose sides differ (with the
-  /// position).
+  /// position). `memory`, if not empty, is what owns the samples: scenes throw Error once it is destroyed.
   template <class T>
   static HeightField view(const T* samples, int cols, int rows, std::ptrdiff_t row_stride,
-                          const HeightFieldSettings& settings = {});
+                          const HeightFieldSettings& settings = {}, std::weak_ptr<const void> memory = {});
   /// Takes ownership of cols * rows samples, rows from north to south. Throws as view() does.
   template <class T>
   static HeightField own(std::vector<T> samples, int cols, int rows, const HeightFieldSettings& settings = {});
@@ -183,6 +184,10 @@ class HeightField {
   /// inside the field, an infinite sample or a border that is no longer shared; in the last two cases the field must
   /// not be used until another call succeeds.
   CellBox samples_changed(const SampleRect& rect);
+  /// Number of calls of set_samples() that succeeded and of samples_changed(), through all copies.
+  std::uint64_t edits() const { return state_->edits.value(); }
+  /// Returns the owner passed to view(), or null if there is none.
+  const std::weak_ptr<const void>* memory() const { return state_->memory ? &*state_->memory : nullptr; }
 
   /// Calls f with the SampleGrid<T> of the stored type and returns its result.
   template <class F>
@@ -195,6 +200,8 @@ class HeightField {
   struct State {
     std::shared_ptr<void> owner;  // null: caller-owned samples
     TileExtents extents;
+    std::optional<std::weak_ptr<const void>> memory{};  // of the caller
+    EditCount edits{};
   };
 
   template <class T>

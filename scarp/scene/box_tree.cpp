@@ -3,6 +3,7 @@
 
 #include <glm/common.hpp>
 #include <numeric>
+#include <utility>
 
 #include "scarp/scene/box_beam.h"
 
@@ -14,11 +15,6 @@ constexpr int kUnbalanced = 32;  // levels after which ranges are halved
 
 // Roundings in float on the way from a coordinate to a difference: less than 4 units of 2^-24 of the largest one.
 constexpr double kPadding = 0x1p-21;
-
-double half_area(const WorldBox& box) {
-  const dvec3 size = glm::max(box.high - box.low, dvec3(0.0));
-  return size.x * size.y + size.y * size.z + size.z * size.x;
-}
 
 // A beam has one longest axis, along which no ray is much slower than along another, and no wider slopes than this.
 constexpr double kSteepestOfBeam = 4, kWidestBeam = 0.5;
@@ -36,9 +32,7 @@ struct BoxTree::Builder {
 
   std::span<const WorldBox> boxes;
   std::vector<std::uint32_t> order;
-  std::vector<Node>& nodes;
-  dvec3 middle;
-  double padding;
+  BoxTree& tree;
 
   dvec3 centre(std::uint32_t object) const { return 0.5 * (boxes[object].low + boxes[object].high); }
 
@@ -124,34 +118,44 @@ struct BoxTree::Builder {
       parts[largest] = range(part.begin, at);
       parts[count++] = range(at, part.end);
     }
-    const auto index = static_cast<std::uint32_t>(nodes.size());
-    nodes.emplace_back();
+    const auto index = static_cast<std::uint32_t>(tree.nodes_.size());
+    tree.nodes_.emplace_back();
     for (int i = 0; i < kWide; ++i) {
-      Node& node = nodes[index];
-      const bool used = i < count;
-      for (int axis = 0; axis < 3; ++axis) {
-        constexpr float kInfinity = std::numeric_limits<float>::infinity();
-        node.low[axis][i] = used ? static_cast<float>(parts[i].box.low[axis] - middle[axis] - padding) : kInfinity;
-        node.high[axis][i] = used ? static_cast<float>(parts[i].box.high[axis] - middle[axis] + padding) : -kInfinity;
+      Node& node = tree.nodes_[index];
+      if (i >= count) {
+        node.clear(i);
+        continue;
       }
-      if (!used) continue;
+      for (int axis = 0; axis < 3; ++axis) {
+        node.low[axis][i] = tree.rounded_low(parts[i].box, axis);
+        node.high[axis][i] = tree.rounded_high(parts[i].box, axis);
+      }
       const std::uint32_t child = parts[i].count() == 1 ? kLeaf | order[parts[i].begin] : build(parts[i], depth + 1);
-      nodes[index].child[i] = child;
+      tree.nodes_[index].child[i] = child;
     }
     return index;
   }
 };
 
-BoxTree::BoxTree(std::span<const WorldBox> boxes) {
-  if (boxes.empty()) return;
-  for (const WorldBox& box : boxes) box_ = around(box_, box);
+BoxTree::BoxTree(std::span<const WorldBox> boxes)
+    : BoxTree(boxes, [&] {
+        std::vector<std::uint32_t> objects(boxes.size());
+        std::iota(objects.begin(), objects.end(), 0u);
+        return objects;
+      }()) {}
+
+BoxTree::BoxTree(std::span<const WorldBox> boxes, std::vector<std::uint32_t> objects, double reach) {
+  if (objects.empty()) return;
+  Builder builder{boxes, std::move(objects), *this};
+  const auto whole = builder.range(0, static_cast<std::uint32_t>(builder.order.size()));
+  box_ = whole.box;
   middle_ = 0.5 * (box_.low + box_.high);
   const dvec3 half = box_.high - middle_;
-  padding_ = std::max({half.x, half.y, half.z}) * kPadding;
-  Builder builder{boxes, std::vector<std::uint32_t>(boxes.size()), nodes_, middle_, padding_};
-  std::iota(builder.order.begin(), builder.order.end(), 0u);
-  nodes_.reserve(boxes.size() / 2 + 1);
-  builder.build(builder.range(0, static_cast<std::uint32_t>(boxes.size())), 0);
+  const double farthest = std::max({half.x, half.y, half.z}), room = (reach - 1) * farthest;
+  box_ = {box_.low - room, box_.high + room};
+  padding_ = reach * farthest * kPadding;
+  nodes_.reserve(builder.order.size() / 2 + 1);
+  builder.build(whole, 0);
   nodes_.shrink_to_fit();
 }
 

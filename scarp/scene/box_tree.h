@@ -34,6 +34,8 @@ class BoxTree {
   BoxTree() = default;
   /// Boxes must be finite and not empty, fewer than 2^31.
   explicit BoxTree(std::span<const WorldBox> boxes);
+  /// The same over boxes[i] for each i of `objects` alone. box() is `reach` times as wide as the boxes, >= 1.
+  BoxTree(std::span<const WorldBox> boxes, std::vector<std::uint32_t> objects, double reach = 1);
 
   /// Rays side by side, at most Beam::kRays of them; up to 7 numbers beyond them are read, but do not count.
   struct Rays {
@@ -55,6 +57,7 @@ class BoxTree {
   template <class Visit>
   void traverse(const Ray& ray, const Visit& visit) const;
 
+  bool empty() const { return nodes_.empty(); }
   /// Around all boxes.
   const WorldBox& box() const { return box_; }
   std::size_t bytes() const { return sizeof(*this) + nodes_.size() * sizeof(Node); }
@@ -71,13 +74,29 @@ class BoxTree {
   struct Node {
     std::array<Four, 3> low, high;           // per axis; low above high where there is no child
     std::array<std::uint32_t, kWide> child;  // a node, or kLeaf and an object
+
+    void clear(int i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        low[axis][i] = std::numeric_limits<float>::infinity();
+        high[axis][i] = -std::numeric_limits<float>::infinity();
+      }
+    }
   };
+  friend class BoxTreeEditor;  // box_tree_editor.h
   struct Builder;
   struct Entry {
     float t;
     std::uint32_t child;
   };
   using Stack = std::array<Entry, (kWide - 1) * kMaxDepth + kWide>;
+
+  // Sides of a box as nodes have them.
+  float rounded_low(const WorldBox& box, int axis) const {
+    return static_cast<float>(box.low[axis] - middle_[axis] - padding_);
+  }
+  float rounded_high(const WorldBox& box, int axis) const {
+    return static_cast<float>(box.high[axis] - middle_[axis] + padding_);
+  }
 
   // Where a ray comes into the box around everything, and where it leaves it; false: it passes it.
   bool clip(const Ray& ray, double& t_in, double& t_out) const;

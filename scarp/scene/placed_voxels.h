@@ -22,7 +22,8 @@ struct VoxelPlace {
   dvec3 origin{0.0};                ///< metres, of the grid's corner (0, 0, 0)
 };
 
-/// Models are shared with the caller, who must not change them once they are in a scene.
+/// Models are shared with the caller. After an edit of a model, scenes that contain it throw Error until they are built
+/// again; LiveScene (live_scene.h) takes edits.
 struct PlacedVoxels {
   std::vector<std::shared_ptr<const VoxelModel>> models{};
   std::vector<VoxelPlace> places{};

@@ -14,41 +14,15 @@
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/march/height/queries.h"
+#include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
 #include "scarp/scene/scene_limits.h"
 
 namespace scarp {
 namespace {
 
-// So many of the objects that like batches, the largest ones, are asked about all rays; the others are found by the
-// tree.
-constexpr std::size_t kMostBesideTree = 4;
-// How far a turn may be from orthogonal: many roundings, and no shear that could be meant.
-constexpr double kRigid = 1e-9;
-
-bool good(const Placement& p) {
-  if (!(std::isfinite(p.scale) && p.scale > 0 && std::isfinite(p.origin.x + p.origin.y + p.origin.z))) return false;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j <= i; ++j) {
-      if (!(std::abs(dot(p.turn[i], p.turn[j]) - (i == j ? 1 : 0)) <= kRigid)) return false;
-    }
-  }
-  return dot(cross(p.turn[0], p.turn[1]), p.turn[2]) > 0;
-}
-
 // Levels of voxels: a grid of 2,048 is a single one then.
 constexpr int kCoarsest = 11;
-
-WorldBox world_box(const Placement& placement, const WorldBox& box) {
-  WorldBox world;
-  for (int corner = 0; corner < 8; ++corner) {
-    const dvec3 p =
-        placement.world_from_field({corner & 1 ? box.high.x : box.low.x, corner & 2 ? box.high.y : box.low.y,
-                                    corner & 4 ? box.high.z : box.low.z});
-    world = around(world, {p, p});
-  }
-  return world;
-}
 
 void require_same_length(std::size_t rays, std::size_t answers) {
   if (rays != answers) throw Error(fmt::format("batch: {} rays, room for {} answers", rays, answers));
@@ -58,10 +32,18 @@ void require_same_length(std::size_t rays, std::size_t answers) {
 
 Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects)
     : fields_(std::move(fields)), objects_(std::move(objects)) {
-  std::vector<std::optional<WorldBox>> field_boxes;
+  seen_.set(edits_of_all_fields.load(std::memory_order_relaxed));
+  std::vector<std::optional<WorldBox>> field_boxes, field_extents;
   for (const SceneFieldPtr& field : fields_) {
-    if (!field) throw Error(fmt::format("scene: field {} is null", field_boxes.size()));
+    const std::size_t index = field_boxes.size();
+    if (!field) throw Error(fmt::format("scene: field {} is null", index));
+    if (field->outdated()) {
+      throw Error(fmt::format("scene: field {} ({}) was edited after it was built (build the field again)", index,
+                              field->kind()));
+    }
     field_boxes.push_back(field->box());
+    field_extents.push_back(field->extent());
+    watch_field(static_cast<std::uint32_t>(index));
   }
   for (const SceneObject& object : objects_) {
     const auto index = static_cast<std::size_t>(&object - objects_.data());
@@ -69,43 +51,87 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
       throw Error(fmt::format("scene: object {}: its field {} does not exist (there are {})", index, object.field,
                               fields_.size()));
     }
-    if (!good(object.placement))
-      throw Error(
-          fmt::format("scene: object {}: its placement must be a rotation, a scale above 0, a finite place", index));
+    require_placement(object.placement, index);
   }
-  std::vector<WorldBox> boxes;
+  std::vector<WorldBox> boxes(objects_.size());
+  std::vector<std::uint32_t> in_tree;
   std::vector<std::pair<double, std::uint32_t>> batched;  // by how much there is of them
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
-    const std::optional<WorldBox> extent = field_of(i).extent();
-    endless_ = endless_ || !extent;
-    if (extent && !extent->empty()) box_ = around(box_, world_box(objects_[i].placement, *extent));
-    const std::optional<WorldBox>& box = field_boxes[objects_[i].field];
-    if (field_of(i).is_backdrop() && box) walls_end_ = world_box(objects_[i].placement, *box).low.z;
-    if (!box) {
+    const auto& [field, material, placement] = objects_[i];
+    in_place_.push_back(placement.identity());
+    if (field_extents[field]) box_ = around(box_, world_box(placement, *field_extents[field]));
+    if (!field_boxes[field]) {
       beside_tree_.push_back(i);
       continue;
     }
-    if (box->empty()) continue;
-    const WorldBox here = world_box(objects_[i].placement, *box);
-    boxes.push_back(here);
-    in_tree_.push_back(i);
-    const dvec3 size = here.high - here.low;
-    if (field_of(i).likes_batches()) batched.emplace_back(-(size.x * size.y + size.y * size.z + size.z * size.x), i);
+    boxes[i] = world_box(placement, *field_boxes[field]);
+    if (boxes[i].empty()) continue;
+    in_tree.push_back(i);
+    if (field_of(i).likes_batches()) batched.emplace_back(-half_area(boxes[i]), i);
   }
   std::sort(batched.begin(), batched.end());
   batched.resize(std::min(batched.size(), kMostBesideTree));
   for (const auto& [unused, i] : batched) {
     beside_tree_.push_back(i);
-    const auto place = std::find(in_tree_.begin(), in_tree_.end(), i) - in_tree_.begin();
-    in_tree_.erase(in_tree_.begin() + place);
-    boxes.erase(boxes.begin() + place);
+    in_tree.erase(std::find(in_tree.begin(), in_tree.end(), i));
   }
-  tree_ = BoxTree(boxes);
+  tree_ = BoxTree(boxes, std::move(in_tree));
+  find_special();
+}
+
+void Scene::watch_field(std::uint32_t index) {
+  if (const auto edits = fields_[index]->edits()) editable_.push_back({index, *edits});
+  if (fields_[index]->memory()) with_owner_.push_back(index);
+}
+
+void Scene::unwatch_field(std::uint32_t index) {
+  std::erase_if(editable_, [&](const Editable& editable) { return editable.field == index; });
+  std::erase(with_owner_, index);
+}
+
+// Before every ray query.
+inline void Scene::require_current() const {
+  const std::uint64_t edits = edits_of_all_fields.load(std::memory_order_relaxed);
+  if (edits != seen_.value()) compare_edits(edits);
+  if (!with_owner_.empty()) require_memory();
+}
+
+void Scene::compare_edits(std::uint64_t edits) const {
+  for (const Editable& editable : editable_) {
+    const SceneField& field = *fields_[editable.field];
+    if (field.edits() == editable.edits) continue;
+    throw Error(
+        fmt::format("scene: field {} ({}) was edited after the scene was built (build the scene again, or edit in "
+                    "LiveScene::edit())",
+                    editable.field, field.kind()));
+  }
+  seen_.set(edits);
+}
+
+void Scene::require_memory() const {
+  for (const std::uint32_t index : with_owner_) {
+    if (!fields_[index]->memory()->expired()) continue;
+    throw Error(fmt::format("scene: field {} ({}): the memory of its samples was freed (keep it as long as its scenes)",
+                            index, fields_[index]->kind()));
+  }
+}
+
+// What a few objects decide: unbounded ones, backdrops, height fields, and one that is alone.
+void Scene::find_special() {
+  endless_ = wraps_ = false;
+  walls_end_ = -std::numeric_limits<double>::infinity();
+  std::vector<std::uint8_t> endless;
   for (const SceneFieldPtr& field : fields_) {
+    endless.push_back(!field->extent());
     const HeightField* heights = height_field_of(*field);
     wraps_ = wraps_ || (heights && heights->wraps());
   }
-  for (const SceneObject& object : objects_) in_place_.push_back(object.placement.identity());
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+    endless_ = endless_ || endless[objects_[i].field];
+    if (!field_of(i).is_backdrop()) continue;
+    const std::optional<WorldBox> box = field_of(i).box();
+    if (box && !box->empty()) walls_end_ = world_box(objects_[i].placement, *box).low.z;
+  }
   alone_ = objects_.size() == 1 && in_place_[0];
   find_sole();
   find_terrain();
@@ -123,6 +149,7 @@ void Scene::find_sole() {
 
 void Scene::find_terrain() {
   int found = 0;
+  terrain_ = nullptr;
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
     const HeightField* field = height_field_of(field_of(i));
     if (!field || !objects_[i].placement.identity()) continue;
@@ -152,8 +179,8 @@ void Scene::trace(const StartedRay& ray, std::uint32_t object, Hit& best, MarchS
 void Scene::trace_tree(const StartedRay& ray, Hit& best, MarchStats* stats) const {
   Ray reach = ray.ray;
   if (best) reach.t_max = best.t;
-  tree_.traverse(reach, [&](std::uint32_t in_tree) {
-    trace(ray, in_tree_[in_tree], best, stats);
+  tree_.traverse(reach, [&](std::uint32_t object) {
+    trace(ray, object, best, stats);
     if (stats) ++stats->boxes;
     return best ? best.t : ray.ray.t_max;
   });
@@ -168,6 +195,7 @@ Hit Scene::closest(const StartedRay& ray, MarchStats* stats) const {
 }
 
 Hit Scene::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
+  require_current();
   if (back_end_) {
     Hit hit;
     std::uint32_t steps = 0;
@@ -186,14 +214,15 @@ bool Scene::blocks(const StartedRay& ray, std::uint32_t object) const {
 
 bool Scene::tree_blocks(const StartedRay& ray) const {
   bool blocked = false;
-  tree_.traverse(ray.ray, [&](std::uint32_t in_tree) {
-    blocked = blocks(ray, in_tree_[in_tree]);
+  tree_.traverse(ray.ray, [&](std::uint32_t object) {
+    blocked = blocks(ray, object);
     return blocked ? -std::numeric_limits<double>::infinity() : ray.ray.t_max;
   });
   return blocked;
 }
 
 bool Scene::occluded(const Ray& ray, const Hit* from) const {
+  require_current();
   if (back_end_) {
     std::uint8_t blocked = 0;
     occluded_by_back_end({&ray, 1}, {&blocked, 1}, from ? From(&from, 1) : From());
@@ -220,7 +249,7 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
     field_of(object).closest_hits(locals, answers, on_object);
     for (std::size_t i = 0; i < rays.size(); ++i) take_hit(answers[i], object, hits[i]);
   }
-  if (in_tree_.empty()) return;
+  if (tree_.empty()) return;
   for (std::size_t i = 0; i < rays.size(); ++i) trace_tree({rays, from, i}, hits[i], nullptr);
 }
 
@@ -255,6 +284,7 @@ void Scene::occluded_of_piece(std::span<const Ray> rays, From from, std::span<st
 
 void Scene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
                          From from) const {
+  require_current();
   require_same_length(rays.size(), hits.size());
   if (!steps.empty()) require_same_length(rays.size(), steps.size());
   if (!from.empty()) require_same_length(rays.size(), from.size());
@@ -275,6 +305,7 @@ void Scene::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::sp
 }
 
 void Scene::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, From from) const {
+  require_current();
   require_same_length(rays.size(), blocked.size());
   if (!from.empty()) require_same_length(rays.size(), from.size());
   if (back_end_) return occluded_by_back_end(rays, blocked, from);
@@ -399,7 +430,7 @@ Scene Scene::coarser(const SceneDetail& detail) const {
 
 std::size_t Scene::bytes() const {
   return sizeof(*this) - sizeof(tree_) + objects_.size() * sizeof(SceneObject) + tree_.bytes() +
-         (beside_tree_.size() + in_tree_.size()) * sizeof(std::uint32_t) + fields_.size() * sizeof(SceneFieldPtr);
+         beside_tree_.size() * sizeof(std::uint32_t) + fields_.size() * sizeof(SceneFieldPtr);
 }
 
 void validate(const Ray& ray, const Scene& scene) {

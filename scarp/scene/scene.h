@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "scarp/base/edit_count.h"
 #include "scarp/scene/placement.h"
 #include "scarp/scene/scene_back_end.h"
 #include "scarp/scene/scene_field.h"
@@ -59,13 +60,18 @@ struct SceneDetail {
 
 /// Objects with closest-hit and any-hit queries over all of them. Immutable. Thread-safe, except with a back end.
 ///
+/// After an edit of a field (HeightField::set_samples(), VoxelModel::edit(), ...), all ray queries throw Error until
+/// the scene is built again: its boxes are those from before. They also throw after the memory of a field was freed, if
+/// the field knows its owner (HeightField::view()). LiveScene (live_scene.h) takes edits, also during queries.
+///
 /// Ray::start states how a ray starts: `free`, or `on_surface` of the object Ray::start_object. `from` overrides it:
 /// the ray starts on the surface of that hit of this scene. In batches `from` is empty or as long as `rays`; rays whose
 /// entry is null start free. Rays that start on voxels require `from`.
 class Scene {
  public:
-  /// Throws Error if a field is null. Throws Error naming the object if its field does not exist or its placement is
-  /// not a rotation with a finite origin and a scale above 0.
+  /// Throws Error if a field is null, or was edited after it was built (SceneField::outdated()). Throws Error naming
+  /// the object if its field does not exist or its placement is not a rotation with a finite origin and a scale above
+  /// 0.
   Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects);
   /// A scene of one field at the origin. Implicit conversion.
   Scene(SceneFieldPtr field);
@@ -144,6 +150,14 @@ class Scene {
  private:
   using From = std::span<const Hit* const>;
 
+  friend class LiveScene;
+
+  void watch_field(std::uint32_t index);
+  void unwatch_field(std::uint32_t index);
+  void require_current() const;
+  void compare_edits(std::uint64_t edits) const;
+  void require_memory() const;
+  void find_special();
   void find_sole();
   void find_terrain();
   SceneSurface placed_surface(std::uint32_t object, const FieldSurface& own, const dvec3& p,
@@ -184,8 +198,7 @@ class Scene {
   std::vector<SceneObject> objects_;
   std::vector<std::uint8_t> in_place_;      // per object: 1 if its placement is the identity
   std::vector<std::uint32_t> beside_tree_;  // objects that every ray is traced against, before the tree
-  std::vector<std::uint32_t> in_tree_;      // the other objects that are not empty, by index in the tree
-  BoxTree tree_;
+  BoxTree tree_;                            // the other objects that are not empty
   WorldBox box_;
   bool endless_ = false, wraps_ = false;
   // z at which walls of solid ground end: the base of the plinth.
@@ -194,6 +207,15 @@ class Scene {
   bool sole_ = false;   // the same, not counting backdrops, which are visible but block no rays
   std::uint32_t sole_object_ = 0, terrain_object_ = 0;
   const HeightField* terrain_ = nullptr;
+
+  // Fields that can be edited, and their number of edits when the scene was built; those whose memory has an owner.
+  struct Editable {
+    std::uint32_t field;
+    std::uint64_t edits;
+  };
+  std::vector<Editable> editable_;
+  std::vector<std::uint32_t> with_owner_;
+  mutable EditsSeen seen_;
 };
 
 /// Throws Error if a ray is not valid (validate() in march/height/queries.h), if its t_max is infinite and a field

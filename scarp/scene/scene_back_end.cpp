@@ -85,8 +85,8 @@ std::vector<Scene::Pair> Scene::pairs_in_tree(std::span<const Ray> rays, std::sp
   for_each(rays.size(), [&](std::size_t i) {
     Ray reach = rays[i];
     if (!hits.empty() && hits[i]) reach.t_max = hits[i].t;
-    tree_.traverse(reach, [&](std::uint32_t in_tree) {
-      met[i].push_back(in_tree_[in_tree]);
+    tree_.traverse(reach, [&](std::uint32_t object) {
+      met[i].push_back(object);
       return reach.t_max;
     });
   });

@@ -96,6 +96,15 @@ class SceneField {
   /// The same field with the march that judges others: one that passes nothing. Null: there is none beside its own.
   virtual std::shared_ptr<const SceneField> judge() const { return nullptr; }
 
+  /// Number of edits of the samples or voxels of the field so far; nullopt for fields that cannot be edited.
+  virtual std::optional<std::uint64_t> edits() const { return {}; }
+  /// Whether the field was edited after it was built, so that its answers may be wrong.
+  virtual bool outdated() const { return false; }
+  /// Returns the field built again over its samples or voxels as they are now. Null for fields that cannot be edited.
+  virtual std::shared_ptr<const SceneField> rebuilt() const { return nullptr; }
+  /// Owner of caller-owned samples; null if the field has none or does not know it.
+  virtual const std::weak_ptr<const void>* memory() const { return nullptr; }
+
   virtual SceneFieldParts parts() const { return {}; }
   /// The ray as the march takes it: on the surface of `from`, or free when that is null.
   virtual Ray started(const Ray& ray, const Hit* from) const;

@@ -34,6 +34,13 @@ class Heights final : public SceneField {
         answered_by_(AnsweredBy::cpu),
         pyramid_(std::move(pyramid)) {}
 
+  std::optional<std::uint64_t> edits() const override { return field_.edits(); }
+  bool outdated() const override {
+    return (pyramid_ ? pyramid_->edits() : !std::isnan(slope_) ? slope_edits_ : field_.edits()) != field_.edits();
+  }
+  SceneFieldPtr rebuilt() const override { return scene_heights(field_, march_, settings_, answered_by_); }
+  const std::weak_ptr<const void>* memory() const override { return field_.memory(); }
+
   std::string_view kind() const override { return "heights"; }
   std::string_view march() const override { return march_.name; }
   std::string caveat() const override {
@@ -151,6 +158,7 @@ class Heights final : public SceneField {
   AnsweredBy answered_by_;
   std::optional<MaxPyramid> pyramid_;
   double slope_ = std::numeric_limits<double>::quiet_NaN();
+  std::uint64_t slope_edits_ = field_.edits();  // when the slope was taken
 };
 
 }  // namespace

@@ -18,6 +18,10 @@ class PlinthField final : public SceneField {
     return WorldBox{{0, 0, plinth_base(field_)}, {field_.width(), field_.depth(), field_.max_height()}};
   }
   bool is_backdrop() const override { return true; }
+  std::optional<std::uint64_t> edits() const override { return field_.edits(); }
+  bool outdated() const override { return edits_ != field_.edits(); }
+  SceneFieldPtr rebuilt() const override { return scene_plinth(field_); }
+  const std::weak_ptr<const void>* memory() const override { return field_.memory(); }
 
   Hit closest_hit(const Ray& ray, const Hit*, MarchStats* stats) const override {
     if (stats) *stats = {};
@@ -45,6 +49,7 @@ class PlinthField final : public SceneField {
  private:
   HeightField field_;
   Plinth plinth_;
+  std::uint64_t edits_ = field_.edits();  // when the plinth was built
 };
 
 }  // namespace

@@ -77,6 +77,9 @@ class VoxelField final : public SceneField {
     for (const auto& model : objects_.models()) solid += model->grid().solid_count();
     return solid;
   }
+  std::optional<std::uint64_t> edits() const override { return objects_.edits(); }
+  bool outdated() const override { return objects_.edits() != edits_; }
+  SceneFieldPtr rebuilt() const override { return std::make_shared<VoxelField>(objects_.rebuilt(), shading_); }
   SceneFieldPtr judge() const override { return std::make_shared<VoxelField>(objects_.marched_by(kJudge), shading_); }
   SceneFieldPtr coarser(int level) const override {
     return std::make_shared<VoxelField>(objects_.coarser(level), shading_);
@@ -111,6 +114,7 @@ class VoxelField final : public SceneField {
   VoxelObjects objects_;
   std::string march_;
   VoxelShading shading_;
+  std::uint64_t edits_ = objects_.edits();  // when its boxes were taken
 };
 
 }  // namespace

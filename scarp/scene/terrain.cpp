@@ -18,8 +18,9 @@ Terrain::Terrain(HeightField field, Georeference georeference)
 
 template <class T>
 Terrain Terrain::view(const T* samples, int cols, int rows, const HeightFieldSettings& settings,
-                      std::ptrdiff_t row_stride) {
-  return Terrain(HeightField::view(samples, cols, rows, row_stride == 0 ? cols : row_stride, settings));
+                      std::ptrdiff_t row_stride, std::weak_ptr<const void> memory) {
+  return Terrain(
+      HeightField::view(samples, cols, rows, row_stride == 0 ? cols : row_stride, settings, std::move(memory)));
 }
 
 template <class T>
@@ -45,9 +46,10 @@ const MaxPyramid& Terrain::pyramid() const { return state_->pyramid; }
 const Georeference& Terrain::georeference() const { return state_->georeference; }
 const Scene& Terrain::scene() const { return state_->scene; }
 
-#define SCARP_INSTANTIATE(T)                                                                         \
-  template Terrain Terrain::view<T>(const T*, int, int, const HeightFieldSettings&, std::ptrdiff_t); \
-  template Terrain Terrain::own<T>(std::vector<T>, int, int, const HeightFieldSettings&);            \
+#define SCARP_INSTANTIATE(T)                                                                        \
+  template Terrain Terrain::view<T>(const T*, int, int, const HeightFieldSettings&, std::ptrdiff_t, \
+                                    std::weak_ptr<const void>);                                     \
+  template Terrain Terrain::own<T>(std::vector<T>, int, int, const HeightFieldSettings&);           \
   template void Terrain::set_samples<T>(const SampleRect&, const T*, std::ptrdiff_t);
 SCARP_INSTANTIATE(std::int16_t)
 SCARP_INSTANTIATE(std::uint16_t)

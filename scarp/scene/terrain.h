@@ -26,8 +26,8 @@ struct FieldOptions;   // scarp/scene/file/from_raster.h
 struct RasterOptions;  // scarp/source/raster_options.h
 
 /// A height field with its pyramid. Copies are cheap and share their state, edits included. Thread-safe for queries,
-/// but not during set_samples() and samples_changed(); to edit while other threads query, use LiveField
-/// (scarp/accel/live_field.h).
+/// but not during set_samples() and samples_changed(); to edit while other threads query, use LiveScene
+/// (scarp/scene/live_scene.h) or LiveField (scarp/accel/live_field.h).
 class Terrain {
  public:
   /// Reads caller-owned memory without copying it: `rows` rows of `cols` samples (std::int16_t, std::uint16_t or
@@ -38,9 +38,12 @@ class Terrain {
   /// Builds the pyramid on all threads. Throws Error for a null pointer, fewer than 1 x 1 samples, rows that overlap, a
   /// setting out of range, an infinite sample, or a shared border whose sides differ. NaN samples are holes. Unless
   /// it is periodic, a field of one row or column has no cells: every ray misses.
+  ///
+  /// `memory`, if not empty, is what owns the samples: queries throw Error once it is destroyed. The terrain does not
+  /// keep it.
   template <class T>
   static Terrain view(const T* samples, int cols, int rows, const HeightFieldSettings& settings = {},
-                      std::ptrdiff_t row_stride = 0);
+                      std::ptrdiff_t row_stride = 0, std::weak_ptr<const void> memory = {});
   /// Takes ownership of cols * rows samples, in the same order. Throws as view() does.
   template <class T>
   static Terrain own(std::vector<T> samples, int cols, int rows, const HeightFieldSettings& settings = {});
@@ -77,7 +80,8 @@ class Terrain {
   /// Returns the position on Earth; Georeference::present is false if it is unknown.
   const Georeference& georeference() const;
 
-  /// Returns the scene of this field alone. After an edit, combine scenes that contain it again.
+  /// Returns the scene of this field alone. After an edit, other scenes that contain it throw Error until they are
+  /// combined again; a LiveScene takes edits.
   const Scene& scene() const;
   operator const Scene&() const { return scene(); }
 

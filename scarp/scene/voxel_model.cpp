@@ -67,6 +67,7 @@ VoxelColour VoxelModel::colour(std::uint32_t entry) const {
 }
 
 void VoxelModel::update(const VoxelBox& changed) {
+  edits_.add();
   std::visit(
       [&](auto& built) {
         if constexpr (!std::is_same_v<decltype(built), std::monostate&>) built.update(grid_, changed);

@@ -12,6 +12,7 @@
 #include "scarp/accel/empty_cubes.h"
 #include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/octant_cubes.h"
+#include "scarp/base/edit_count.h"
 #include "scarp/march/voxel/voxel_table.h"
 
 namespace scarp {
@@ -27,7 +28,7 @@ std::int64_t accelerator_bytes(VoxelAccelerator accelerator, const ivec3& size);
 /// Throws Error if grids of this size are too large for a march.
 void require_marchable(const VoxelMarchEntry& march, const ivec3& size);
 
-/// Immutable once it is in a scene.
+/// A scene must be built again after edits of its models, or be edited through a LiveScene (live_scene.h).
 class VoxelModel {
  public:
   /// Which part of the grid rays are followed in.
@@ -67,6 +68,9 @@ class VoxelModel {
     update(changed);
   }
 
+  /// Number of edits so far.
+  std::uint64_t edits() const { return edits_.value(); }
+
   /// Memory that it takes, with all that was built.
   std::size_t bytes() const;
 
@@ -78,6 +82,7 @@ class VoxelModel {
   std::vector<VoxelColour> palette_;
   Extent extent_;
   VoxelBox box_;
+  EditCount edits_;
   std::variant<std::monostate, EmptySpheres, EmptyCubes, OctantCubes, BrickMasks> built_;  // what the march needs
 };
 

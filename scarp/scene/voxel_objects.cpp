@@ -224,9 +224,25 @@ VoxelObjects VoxelObjects::marched_by(std::string_view march) const {
   PlacedVoxels placed{.rounding = rounding_};
   for (const auto& model : models_)
     placed.models.push_back(std::make_shared<const VoxelModel>(model->marched_by(entry)));
-  for (const Object& object : objects_)
-    placed.places.push_back({object.model, turns_[object.turn].world_from_grid, object.origin});
+  placed.places = places();
   return VoxelObjects(std::move(placed));
+}
+
+std::vector<VoxelPlace> VoxelObjects::places() const {
+  std::vector<VoxelPlace> places;
+  for (const Object& object : objects_)
+    places.push_back({object.model, turns_[object.turn].world_from_grid, object.origin});
+  return places;
+}
+
+VoxelObjects VoxelObjects::rebuilt() const {
+  return VoxelObjects({.models = models_, .places = places(), .rounding = rounding_});
+}
+
+std::uint64_t VoxelObjects::edits() const {
+  std::uint64_t edits = 0;
+  for (const auto& model : models_) edits += model->edits();
+  return edits;
 }
 
 VoxelColour VoxelObjects::colour(const Hit& hit) const {

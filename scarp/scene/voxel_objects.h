@@ -32,6 +32,10 @@ class VoxelObjects {
 
   /// The same with `level` times 2 x 2 x 2 voxels made one, see coarse_voxels.h.
   VoxelObjects coarser(int level) const;
+  /// The same over the models as they are now, after edits.
+  VoxelObjects rebuilt() const;
+  /// Number of edits of all models so far.
+  std::uint64_t edits() const;
   /// The same with another march, a row of voxel_marches().
   VoxelObjects marched_by(std::string_view march) const;
 
@@ -92,6 +96,7 @@ class VoxelObjects {
   struct Query;
   class PacketQuery;
 
+  std::vector<VoxelPlace> places() const;
   bool begins_into(const Ray& ray, const Hit* from) const;
   bool occluded(const Ray& ray, const Hit* from) const;
   template <class Together, class Alone>

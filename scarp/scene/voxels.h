@@ -28,7 +28,7 @@ struct VoxelSettings {
 };
 
 /// A voxel grid with its accelerator. Copies are cheap and share their state, edits included. Thread-safe for queries,
-/// but not during edit().
+/// but not during edit(); to edit while other threads query, use LiveScene (scarp/scene/live_scene.h).
 class Voxels {
  public:
   /// Copies a volume of palette indices, one byte per voxel: x fastest, then y, then z; 0 is empty. Each side has 1 to
@@ -48,7 +48,8 @@ class Voxels {
   /// Returns the colour of a voxel that was hit.
   VoxelColour colour(const Hit& hit) const;
 
-  /// Returns the scene of these voxels alone. After an edit, combine scenes that contain it again.
+  /// Returns the scene of these voxels alone. After an edit, other scenes that contain them throw Error until they are
+  /// combined again; a LiveScene takes edits.
   const Scene& scene() const;
   operator const Scene&() const { return scene(); }
 

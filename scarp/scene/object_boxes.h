@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// Private to the station: placements of objects and their boxes, for scenes and for edits of scenes.
+#pragma once
+
+#include <cstddef>
+
+#include "scarp/base/world_box.h"
+#include "scarp/scene/placement.h"
+
+namespace scarp {
+
+/// So many of the objects that like batches, those with the largest boxes, are queried for all rays; the tree finds the
+/// others.
+inline constexpr std::size_t kMostBesideTree = 4;
+
+/// Throws Error naming the object unless its placement is a rotation with a finite origin and a scale above 0.
+void require_placement(const Placement& placement, std::size_t object);
+
+/// The box around a field's box in its place; empty if that is.
+WorldBox world_box(const Placement& placement, const WorldBox& box);
+
+}  // namespace scarp
