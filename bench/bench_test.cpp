@@ -257,8 +257,9 @@ TEST(ScarpBench, ScenesWritesTheDocumentedFields) {
   expect_head(all);
   EXPECT_EQ(all["rows"].size(), 2u);
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"objects", "build_s", "bytes_per_object", "rays", "hits", "boxes_per_ray", "steps_per_ray",
-                        "mrays_per_cpu_s"});
+    expect_fields(
+        row, {"objects", "build_s", "bytes_per_object", "rays", "hits", "boxes_per_ray", "steps_per_ray",
+              "mrays_per_cpu_s", "move_us", "move_p99_us", "far_move_us", "worst_move_us", "edited_mrays_per_cpu_s"});
   }
 }
 

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench scenes`: how soon a hierarchy over many objects is built, and how many rays it answers, on one thread:
-// boxes and balls of 1 to 4 m at random in a cube, turned at random.
+// boxes and balls of 1 to 4 m at random in a cube, turned at random. Beside a new scene: edits of a LiveScene, by a
+// step of at most 1 m along each axis, or to any place in the cube.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "bench/commands.h"
 #include "bench/random.h"
 #include "scarp/base/parallel.h"
+#include "scarp/scene/live_scene.h"
 #include "scarp/scene/scene.h"
 
 namespace scarp::bench {
@@ -30,6 +33,30 @@ std::vector<SceneObject> objects_at_random(int count, double side) {
     objects.push_back({static_cast<std::uint32_t>(random.below(2)), 0, placement});
   }
   return objects;
+}
+
+// Microseconds of LiveScene::edit() with one move, from the call to the return, when queries see it.
+struct MoveTimes {
+  double median_us, p99_us, worst_us;
+};
+
+MoveTimes measure_moves(LiveScene& live, const std::vector<SceneObject>& objects, double side, bool near) {
+  constexpr int kMoves = 20000;
+  Random random(3, 0);
+  std::vector<Placement> places;
+  for (const SceneObject& object : objects) places.push_back(object.placement);
+  std::vector<double> us;
+  for (int i = 0; i < kMoves; ++i) {
+    const auto object = static_cast<std::uint32_t>(random.below(static_cast<int>(places.size())));
+    Placement& place = places[object];
+    const auto along = [&](double from) { return near ? from + random.uniform(-1, 1) : random.uniform(0, side); };
+    place.origin = {along(place.origin.x), along(place.origin.y), along(place.origin.z)};
+    const Stopwatch watch;
+    live.edit([&](LiveScene::Editor& editor) { editor.move(object, place); });
+    us.push_back(1e6 * watch.wall_s());
+  }
+  std::sort(us.begin(), us.end());
+  return {us[kMoves / 2], us[kMoves / 100 * 99], us.back()};
 }
 
 Json measure_objects(const ScenesOptions& options, int count) {
@@ -65,6 +92,15 @@ Json measure_objects(const ScenesOptions& options, int count) {
       all.steps += stats.steps, all.boxes += stats.boxes;
     }
   }
+  LiveScene live{Scene(fields, objects)};
+  const MoveTimes near = measure_moves(live, objects, side, true), far = measure_moves(live, objects, side, false);
+  std::vector<double> edited_s;
+  for (int pass = 0; pass < options.repeats; ++pass) {
+    const auto reading = live.read();
+    const Stopwatch trace;
+    reading.scene().closest_hits(rays, hits);
+    edited_s.push_back(trace.cpu_s());
+  }
   const auto per_ray = [&](std::uint32_t sum) { return static_cast<double>(sum) / static_cast<double>(rays.size()); };
   Json row;
   row["objects"] = count;
@@ -75,6 +111,11 @@ Json measure_objects(const ScenesOptions& options, int count) {
   row["boxes_per_ray"] = per_ray(all.boxes);
   row["steps_per_ray"] = per_ray(all.steps);
   row["mrays_per_cpu_s"] = 1e-6 * static_cast<double>(rays.size()) / median(trace_s);
+  row["move_us"] = near.median_us;
+  row["move_p99_us"] = near.p99_us;
+  row["far_move_us"] = far.median_us;
+  row["worst_move_us"] = std::max(near.worst_us, far.worst_us);
+  row["edited_mrays_per_cpu_s"] = 1e-6 * static_cast<double>(rays.size()) / median(edited_s);
   return row;
 }
 
@@ -83,13 +124,15 @@ Json measure_objects(const ScenesOptions& options, int count) {
 void run_scenes(const ScenesOptions& options, const ReportOptions& report) {
   const ThreadLimit limit(1);
   Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{
-      {"objects", "build s", "bytes/object", "hits", "boxes/ray", "steps/ray", "Mrays/s (cpu)"}};
+  std::vector<std::vector<std::string>> lines{{"objects", "build s", "bytes/object", "hits", "boxes/ray", "steps/ray",
+                                               "Mrays/s (cpu)", "move us", "p99", "far us", "worst", "edited Mrays/s"}};
   for (const int count : options.objects) {
     const Json row = measure_objects(options, count);
     lines.push_back({fmt::format("{}", count), short_number(row["build_s"]), short_number(row["bytes_per_object"]),
                      fmt::format("{}", row["hits"].get<std::size_t>()), short_number(row["boxes_per_ray"]),
-                     short_number(row["steps_per_ray"]), short_number(row["mrays_per_cpu_s"])});
+                     short_number(row["steps_per_ray"]), short_number(row["mrays_per_cpu_s"]),
+                     short_number(row["move_us"]), short_number(row["move_p99_us"]), short_number(row["far_move_us"]),
+                     short_number(row["worst_move_us"]), short_number(row["edited_mrays_per_cpu_s"])});
     rows.push_back(row);
   }
   print_table(lines, 0);
