@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "scarp/march/height/rounding.h"
 
 namespace scarp::bench {
 namespace {
@@ -171,7 +174,9 @@ LeakJudge::Piece LeakJudge::piece(const Place& place, Real t, bool south_east) c
 
 // How long the ray has been in the cell (or triangle) at t, or will be; within its own range.
 LeakJudge::Real LeakJudge::time_in_cell(const Place& place, Real t, bool back) const {
-  Real time = back ? t - t0_ : t1_ - t;
+  // Ahead, a cell is followed to its end, wherever the ray ends.
+  const bool moves = dx_ != 0 || dy_ != 0;
+  Real time = back ? t - t0_ : moves ? std::numeric_limits<Real>::infinity() : t1_ - t;
   const auto axis = [&](Real position, Real d) {
     if (d == 0) return;
     const Real way = (d > 0) == back ? position : 1 - position;
@@ -224,6 +229,19 @@ const char* LeakJudge::lost(const Hit& hit, double share) const {
   return c && *c < -under(t) ? "a hit before the one that is told" : nullptr;
 }
 
+// What numerics.md lets a march take for a touch of the line, or of either line of a node.
+Real LeakJudge::bound_at_rim(const Hit& hit, const CellHeights& h, Real t, Real off) const {
+  const double relief = std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
+  const GridRay ray = field_.grid_from_world(ray_);
+  double bound = 0;
+  for (const int axis : {0, 1}) {
+    const double place = axis == 0 ? hit.u : hit.v;
+    if (std::min(place, 1 - place) <= off && ray.direction[axis] != 0)
+      bound = std::max(bound, scarp::rounding_at_rim(field_, ray, static_cast<double>(t), relief, axis, 0));
+  }
+  return bound;
+}
+
 const char* LeakJudge::false_hit(const Hit& hit) const {
   if (!hit) return nullptr;
   const Cell cell = hit.cell;
@@ -235,7 +253,12 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
   const auto place = place_of(hit);
   if (!place) return "in a hole";
   const Real t = hit.t, e = sideways(t), b = bound(t);
-  if (std::abs(x(t) - place->col - hit.u) > e || std::abs(y(t) - place->row - hit.v) > e) return "not where the ray is";
+  // A rim may be touched from beside it.
+  const GridRay ray = field_.grid_from_world(ray_);
+  if (std::abs(x(t) - place->col - hit.u) > std::max<Real>(e, rounding_of_line(field_, ray, 0, 0)) ||
+      std::abs(y(t) - place->row - hit.v) > std::max<Real>(e, rounding_of_line(field_, ray, 1, 0))) {
+    return "not where the ray is";
+  }
   const Real ground =
       triangles_ ? height_of_triangle(place->h, south_east(*place, t), hit.u, hit.v) : height(place->h, hit.u, hit.v);
   const Real c = z(t) - ground;
@@ -245,7 +268,9 @@ const char* LeakJudge::false_hit(const Hit& hit) const {
     const bool at_side = std::min({hit.u, 1 - hit.u, hit.v, 1 - hit.v}) <= e;
     return at_side ? nullptr : "a wall inside the ground";
   }
-  if (std::abs(c) > 2 * b) return "not on the surface";
+  // Rims are touched within a bound of their own.
+  const bool at_rim = std::min({hit.u, 1 - hit.u, hit.v, 1 - hit.v}) <= e;
+  if (std::abs(c) > 2 * (at_rim ? std::max(b, bound_at_rim(hit, place->h, t, e)) : b)) return "not on the surface";
 
   if (on_surface_) {
     // At the start the clearance is zero by definition; there and later it has to fall.
@@ -317,7 +342,7 @@ std::optional<double> LeakJudge::cut_before(const Hit& hit) const {
 
 bool LeakJudge::same(const Hit& a, const Hit& b) const {
   if (a.status != b.status) return false;
-  if (!a) return true;
+  if (!a || (a.t == b.t && a.cell == b.cell)) return true;
   for (int i = 0; i <= kProbes; ++i) {
     const Real t = a.t + (Real{b.t} - a.t) * i / kProbes;
     const auto c = clearance(t);

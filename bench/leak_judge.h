@@ -73,6 +73,7 @@ class LeakJudge {
   Real z(Real t) const { return oz_ + dz_ * t; }
   Real sideways(Real t) const;
   Real bound(Real t) const;
+  Real bound_at_rim(const Hit& hit, const CellHeights& h, Real t, Real off) const;
   Real under(Real t) const;
   void put_on_surface();
   void clip();

@@ -241,8 +241,22 @@ std::optional<HeightField::Place> HeightField::place(double x, double y) const {
   }
   // NaN counts as outside.
   if (!(col >= 0 && col <= cols && row >= 0 && row <= rows)) return {};
-  const Cell cell{std::min(static_cast<int>(col), cols - 1), std::min(static_cast<int>(row), rows - 1)};
-  return Place{cell, col - cell.col, row - cell.row};
+  return ground_at({{std::min(static_cast<int>(col), cols - 1), std::min(static_cast<int>(row), rows - 1)},
+                    col - std::min(std::floor(col), cols - 1.0),
+                    row - std::min(std::floor(row), rows - 1.0)});
+}
+
+HeightField::Place HeightField::ground_at(const Place& place) const {
+  if (nodata_count() == 0 || (place.u != 0 && place.v != 0) || cell_heights(place.cell)) return place;
+  const int cols = cell_cols(), rows = cell_rows();
+  for (const auto& [west, north] : {std::pair(1, 0), {0, 1}, {1, 1}}) {
+    if ((west && place.u != 0) || (north && place.v != 0)) continue;
+    Place before = place;
+    if (west) before.cell.col = wraps() ? (place.cell.col + cols - 1) % cols : place.cell.col - 1, before.u = 1;
+    if (north) before.cell.row = wraps() ? (place.cell.row + rows - 1) % rows : place.cell.row - 1, before.v = 1;
+    if (before.cell.col >= 0 && before.cell.row >= 0 && cell_heights(before.cell)) return before;
+  }
+  return place;
 }
 
 bool HeightField::has_ground() const {

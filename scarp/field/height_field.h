@@ -153,12 +153,15 @@ class HeightField {
   }
 
   /// Returns the cell that contains a world position, [col, col+1) x [row, row+1) with the last column and row closed,
-  /// and the position (u, v) in it. Returns nullopt outside a field without wrap. Does not check for holes.
+  /// and the position (u, v) in it. On the rim of a hole that is a cell with ground; otherwise it may be a hole.
+  /// Returns nullopt outside a field without wrap.
   struct Place {
     Cell cell;
     double u, v;
   };
   std::optional<Place> place(double x, double y) const;
+  /// Returns the same place in a cell with ground, if it is on the rim of its cell, a hole, and that of a cell before.
+  Place ground_at(const Place& place) const;
 
   /// Returns the corner heights of a cell, or nullopt for a hole. The cell must exist.
   std::optional<CellHeights> cell_heights(Cell cell) const;

@@ -21,9 +21,7 @@ struct Scene::StartedRay {
   const Hit* from_on(std::uint32_t object) const { return from && from->object == object ? from : nullptr; }
 };
 
-/// Sets `local` to the ray in the object's space, ending at the best hit so far. A hit at the same t counts if its
-/// object has the lower index: for such objects the ray keeps its end, because rounding may lose a hit at t_max itself,
-/// and answers would depend on the order in which objects are found. Its start is valid if from_on() is
+/// Sets `local` to the ray in the object's space, ending at the best hit so far. Its start is valid if from_on() is
 /// null. Written in place: in batches a copy of each ray would cost as much as the rest.
 inline void Scene::make_local(const StartedRay& started, std::uint32_t object, const Hit& best, Ray& local) const {
   if (in_place_[object]) {
@@ -32,7 +30,12 @@ inline void Scene::make_local(const StartedRay& started, std::uint32_t object, c
     local = objects_[object].placement.field_from_world(started.ray);
   }
   if (!started.own || started.ray.start_object != object) local.start = RayStart::free;
-  if (best && object > best.object) local.t_max = best.t;
+  if (!best) return;
+  local.t_max = best.t;
+  // Hits of a ray from a surface are before t_max: for one at the same t, which counts if its object has the lower
+  // index.
+  if (local.start == RayStart::on_surface)
+    local.t_max = std::nextafter(best.t, std::numeric_limits<double>::infinity());
 }
 
 inline Ray Scene::local(const StartedRay& started, std::uint32_t object, const Hit& best) const {

@@ -18,6 +18,9 @@ namespace scarp {
 namespace {
 
 constexpr std::int64_t kRaysPerCopy = 4096;
+// Neighbours may be placed so far apart or over each other, in cells, and meet without a gap: world coordinates of 2^20
+// cells are doubles to 2^-33 of a cell, and placing a field takes some operations.
+constexpr double kSeam = 0x1p-30;
 
 class Heights final : public SceneField {
  public:
@@ -149,7 +152,7 @@ class Heights final : public SceneField {
   HeightTarget target() const {
     if (answered_by_ == AnsweredBy::back_end)
       throw Error("scene: these heights were made for a back end, and nothing was built for rays on the CPU");
-    return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_};
+    return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_, kSeam};
   }
 
   HeightField field_;

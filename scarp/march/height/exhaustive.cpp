@@ -19,10 +19,10 @@ struct Span {
 
 Span common(Span a, Span b) { return {std::max(a.begin, b.begin), std::min(a.end, b.end)}; }
 
-// When o + d t is in [low, low + size]. Adjacent strips compute their common border alike, so their spans meet exactly.
-// A ray that does not move along the axis belongs to [low, low + size); the last strip is closed.
-Span strip(double o, double d, double low, double size, bool last) {
-  if (d == 0) return o >= low && (o < low + size || (last && o == low + size)) ? Span{} : Span{1, 0};
+// When o + d t is in [low, low + size]. Adjacent strips compute their common border alike, so their spans meet exactly,
+// and a ray along it belongs to both.
+Span strip(double o, double d, double low, double size) {
+  if (d == 0) return o >= low && o <= low + size ? Span{} : Span{kInfinity, -kInfinity};
   const double a = (low - o) / d, b = (low + size - o) / d;
   return {std::min(a, b), std::max(a, b)};
 }
@@ -154,11 +154,21 @@ class Ground {
     return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
-  // All pieces of the ray, in order of t. The range must be finite in a wrapped field.
-  std::vector<Piece> pieces(Span range) const {
+  bool is_ground(double col, double row) const {
+    const int cols = field_.cell_cols(), rows = field_.cell_rows();
+    if (!field_.wraps() && !(col >= 0 && col < cols && row >= 0 && row < rows)) return false;
+    return field_.cell_heights({within(col, cols), within(row, rows)}).has_value();
+  }
+
+  // All pieces of the ray, in order of t. The range must be finite in a wrapped field. A ray along a line belongs to
+  // the cells after it, to those before it where the others are no ground, or to those on the side of `start`, if
+  // given.
+  std::vector<Piece> pieces(Span range, const Cell* start) const {
     std::vector<Piece> found;
     const int cols = field_.cell_cols(), rows = field_.cell_rows();
     const bool wraps = field_.wraps();
+    // Without holes there is ground on every way past a node.
+    const bool has_holes = field_.nodata_count() > 0;
     const auto touched = [&](double o, double d, Span over, int cells) {
       const double from = d == 0 ? o : o + d * over.begin, to = d == 0 ? o : o + d * over.end;
       const double first = std::floor(std::min(from, to)) - 1, last = std::floor(std::max(from, to)) + 1;
@@ -166,13 +176,24 @@ class Ground {
     };
     const Span over_rows = touched(oy_, dy_, range, rows);
     for (double row = over_rows.begin; row <= over_rows.end; ++row) {
-      const Span over_row = common(range, strip(oy_, dy_, row, 1, !wraps && row == rows - 1));
-      if (over_row.empty()) continue;
+      if (start && dy_ == 0 && within(row, rows) != start->row) continue;
+      // Pieces are whole up to the lines that end them, wherever the range ends: a hit does not depend on that.
+      const Span over_row = common({range.begin, kInfinity}, strip(oy_, dy_, row, 1));
+      if (over_row.empty() || over_row.begin > range.end) continue;
       // Columns that the ray can touch in this row, one more on either side for rounding.
-      const Span over_cols = touched(ox_, dx_, over_row, cols);
+      const Span over_cols = touched(ox_, dx_, common(range, over_row), cols);
       for (double col = over_cols.begin; col <= over_cols.end; ++col) {
-        const Span over_cell = common(over_row, strip(ox_, dx_, col, 1, !wraps && col == cols - 1));
-        if (!over_cell.empty()) add_pieces(col, row, over_cell, found);
+        if (start && dx_ == 0 && within(col, cols) != start->col) continue;
+        if (!start && dx_ == 0 && col + 1 == ox_ && is_ground(col + 1, row)) continue;
+        if (!start && dy_ == 0 && row + 1 == oy_ && is_ground(col, row + 1)) continue;
+        Span over_cell = common(over_row, strip(ox_, dx_, col, 1));
+        // Through a node, the ray also touches the two cells beside its way: one may be the only ground there.
+        const double missing = over_cell.begin - over_cell.end;
+        if (has_holes && missing > 0 && missing <= rounding_of_time(over_cell.begin)) {
+          std::swap(over_cell.begin, over_cell.end);
+          over_cell.begin = std::max(over_cell.begin, range.begin);
+        }
+        if (!over_cell.empty() && over_cell.begin <= range.end) add_pieces(col, row, over_cell, found);
       }
     }
     std::stable_sort(found.begin(), found.end(), [](const Piece& p, const Piece& q) {
@@ -181,11 +202,10 @@ class Ground {
     return found;
   }
 
-  // When the ray's line enters the field; -infinity if the field has no border.
-  double border() const {
-    if (field_.wraps()) return -kInfinity;
-    return std::max(strip(ox_, dx_, 0, field_.cell_cols(), true).begin,
-                    strip(oy_, dy_, 0, field_.cell_rows(), true).begin);
+  // When the ray's line is over the field: always, if the field has no border.
+  Span inside_border() const {
+    if (field_.wraps()) return {};
+    return common(strip(ox_, dx_, 0, field_.cell_cols()), strip(oy_, dy_, 0, field_.cell_rows()));
   }
 
   Hit hit(const Piece& piece, double s) const {
@@ -224,10 +244,10 @@ std::optional<double> descent(const Piece& p, std::optional<double> depth) {
   return p.a < 0 ? roots->end : roots->begin;
 }
 
-// Whether a ray that is below at the start of the piece emerges in between.
-bool rises_inside(const Piece& p) {
+// Whether a ray that is below at the start of the piece emerges in between, by more than rounding.
+bool rises_inside(const Piece& p, double rounding) {
   const auto vertex = p.vertex();
-  return vertex && p.a < 0 && (p.a * *vertex + p.b) * *vertex + p.c > 0;
+  return vertex && p.a < 0 && (p.a * *vertex + p.b) * *vertex + p.c > rounding;
 }
 
 // The first s at which such a ray is on or below the surface again, as descent().
@@ -236,13 +256,18 @@ std::optional<double> descent_after_rise(const Piece& p, std::optional<double> d
   return p.roots() ? p.roots()->end : p.length();
 }
 
-// Follows the ray; found(hit) returns whether to continue. Returns below if the ray started so, otherwise miss.
+// Follows the ray; found_in_range(hit) returns whether to continue. Returns below if the ray started so, otherwise
+// miss.
 template <class Found>
-HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, const Found& found) {
+HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, const Found& found_in_range) {
+  // From the surface, the ray is below it only after t.
+  const bool on_surface = ray.start == RayStart::on_surface;
+  const auto found = [&](const Hit& hit) {
+    return (on_surface ? hit.t < ray.t_max : hit.t <= ray.t_max) && found_in_range(hit);
+  };
   HitStatus without = HitStatus::miss;
   if (!field.has_cells()) return without;
   Ground ground(field, ray);
-  const bool on_surface = ray.start == RayStart::on_surface;
   enum class Side { unknown, above, below } side = Side::unknown;
   if (on_surface) {
     const auto start = ground.clearance_at(ray.start_cell, ray.t_min);
@@ -250,9 +275,10 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
     ground.move_height(-*start);
     side = Side::above;
   }
-  const auto pieces = ground.pieces({ray.t_min, ray.t_max});
+  const auto pieces = ground.pieces({ray.t_min, ray.t_max}, on_surface ? &ray.start_cell : nullptr);
   if (stats) stats->steps = stats->cell_tests = static_cast<std::uint32_t>(pieces.size());
-  const double entry = std::max(ray.t_min, ground.border());
+  const Span inside = ground.inside_border();
+  const double entry = std::max(ray.t_min, inside.begin);
   // A ray from the surface may enter its cell a rounding later.
   const double start = on_surface ? ray.t_min + ground.rounding_of_time(ray.t_min) : -kInfinity;
   double reached = start;
@@ -270,36 +296,41 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
       if (last <= 0) side = Side::below;
       continue;
     }
+    // An upright ray through a node: one of the cells there is enough.
+    if (p.length() > 0 && p.span.end <= reached) continue;
     if (p.span.begin > reached) side = Side::unknown;  // a hole in between, or the first piece
     reached = std::max(reached, p.span.end);
     if (side == Side::unknown) {
-      side = p.c < 0 ? Side::below : Side::above;
-      if (side == Side::below && !on_surface && &p == &pieces.front() && p.span.begin <= entry) {
-        without = HitStatus::below;
-      }
       // Through the border or out of a hole, unless it started in this cell.
-      const bool came_in = p.span.begin > ray.t_min || ground.border() >= ray.t_min;
+      const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
+      side = p.c < 0 ? Side::below : Side::above;
       if (side == Side::below && field.settings().solid && came_in) {
         Hit hit = ground.hit(p, 0);
         hit.wall = true;
         if (!found(hit)) return without;
       }
     }
-    if (side == Side::below && p.c > 0) side = Side::above;
-    const auto depth = on_surface ? std::optional(ground.rounding(p.span.begin)) : std::nullopt;
+    // Where it only passes a corner of the ground, into a hole, it does not begin there.
+    const bool begins = p.span.begin <= entry && (p.length() > 0 || inside.end <= entry);
+    if (side == Side::below && !on_surface && begins) without = HitStatus::below;
+    // A ray from below has risen only beyond rounding: otherwise it could be above at one line and, by rounding, not
+    // above at the next.
+    const double rounding = ground.rounding(p.span.begin);
+    if (side == Side::below && p.c > rounding) side = Side::above;
+    const auto depth = on_surface ? std::optional(rounding) : std::nullopt;
     // A ray that reaches the surface has hit it, and may rise and hit it again in the same piece.
     if (side == Side::above && !depth && p.c <= 0) {
       if (!found(ground.hit(p, 0))) return without;
       side = Side::below;
     }
-    const bool rises = side == Side::below && rises_inside(p);
+    const bool rises = side == Side::below && rises_inside(p, rounding);
     const auto s = side == Side::above ? descent(p, depth) : rises ? descent_after_rise(p, depth) : std::nullopt;
     if (rises) side = Side::above;
     if (s) {
       if (!found(ground.hit(p, *s))) return without;
       side = Side::below;
     }
-    if (side == Side::below && (p.last > 0 || (rises && !s))) side = Side::above;
+    if (side == Side::below && (p.last > rounding || (rises && !s))) side = Side::above;
   }
   return without;
 }

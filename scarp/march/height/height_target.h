@@ -16,6 +16,9 @@ struct HeightTarget {
   const MaxPyramid* pyramid = nullptr;  ///< null: only for marches that do not need it
   /// slope_bound(*field), metres per metre; NaN: only for marches that do not need it.
   double slope = std::numeric_limits<double>::quiet_NaN();
+  /// Distance in cells, >= 0, up to which the borders of fields that meet count as one: for max-mip and exhaustive. A
+  /// ray that passes the border or the rim of a hole this near to the surface touches it.
+  double seam = 0;
 };
 
 }  // namespace scarp

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/max_mip_walk.h"
 #include "scarp/march/usual_ray.h"
@@ -16,6 +17,23 @@ using max_mip::kNotClear;
 
 // Beyond this many cells doubles cannot distinguish neighbouring cells.
 constexpr double kFarthestCell = 0x1p51;
+
+// A ray along a grid line belongs to the cells on both sides, where either may be a hole. Their blocks differ, so the
+// pyramid is of no use.
+bool runs_along_line(const GridRay& ray) {
+  const auto along = [&](int axis) {
+    return ray.direction[axis] == 0 && ray.origin[axis] == std::floor(ray.origin[axis]);
+  };
+  return along(0) || along(1);
+}
+
+template <Ask ask>
+Hit march_along_line(const HeightTarget& target, const Ray& ray, MarchStats* stats, std::vector<Hit>* all) {
+  if constexpr (ask != Ask::all) return march_exhaustive(target, ray, {}, stats);
+  Hit hit;
+  hit.status = all_hits_exhaustive(target, ray, *all);
+  return hit;
+}
 
 template <Ask ask>
 Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_clear, MarchStats* stats,
@@ -41,10 +59,12 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_cle
     hit.t = ray.t_min;
     return hit;
   }
+  if (field.nodata_count() > 0 && ray.start == RayStart::free && runs_along_line(local))
+    return march_along_line<ask>(target, ray, stats, all);
   field.visit([&](const auto& grid) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
     const auto run = [&]<bool holes, bool wraps>() {
-      max_mip::Walk<T, holes, wraps, ask> walk(field, grid, *target.pyramid, ray, local, halvings, t_clear, hit, all);
+      max_mip::Walk<T, holes, wraps, ask> walk(target, grid, ray, local, halvings, t_clear, hit, all);
       walk.run();
       if (stats) *stats = walk.stats;
     };
@@ -102,7 +122,7 @@ SurfaceStart start_max_mip(const HeightTarget& target, const Ray& ray) {
     using T = std::remove_cvref_t<decltype(grid.data[0])>;
     const auto first_cell = [&]<bool holes>() {
       using Walk = max_mip::Walk<T, holes, false, Ask::closest>;
-      start = Walk(field, grid, *target.pyramid, ray, local, 0, kNotClear, hit, nullptr).start();
+      start = Walk(target, grid, ray, local, 0, kNotClear, hit, nullptr).start();
     };
     grid.has_holes ? first_cell.template operator()<true>() : first_cell.template operator()<false>();
   });

@@ -14,6 +14,7 @@
 
 #include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/max_mip_resume.h"
+#include "scarp/march/height/rounding.h"
 
 // Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -87,6 +88,7 @@ class VectorWalk {
               std::max(std::abs(low), std::abs(high)) + std::abs(field_.settings().offset) / field_.settings().scale,
           .mask = static_cast<double>(side - 1),
           .from_outside = static_cast<double>(std::max(g_.top - 3, 0)),
+          .seam = target.seam,
           .scales = field_.grid_scales(),
           .last_row = static_cast<double>(field_.rows() - 1),
           .width = field_.wraps() ? -kNever : field_.width(),
@@ -327,7 +329,7 @@ class VectorWalk {
     double t = ray.t_min;
     if (local.direction.z < 0 && local.origin.z + local.direction.z * t > f_.highest) {
       const double quotient = (f_.highest - local.origin.z) / local.direction.z;
-      const double t_top = quotient - 2 * kUnit * std::abs(quotient);
+      const double t_top = quotient + rounding_of_clearance(field_, local, quotient) / local.direction.z;
       if (t_top > ray.t_max) return put_answer(index, {});
       t = std::max(t, t_top);
     }
@@ -477,7 +479,9 @@ class VectorWalk {
       const VD s = hn::Div(hn::IfThenElse(falls, hn::Mul(two, cc), hn::Neg(hn::Add(b, root))),
                            hn::IfThenElse(falls, hn::Sub(root, b), hn::Mul(two, a)));
       const VD in_cell = hn::IfThenElseZero(hn::Ge(s, zero), hn::Min(s, length));
-      const VD time = hn::Min(hn::Max(hn::Add(t_in, in_cell), vt_min), vt_max);
+      // As std::min() and std::max() order zeros of both signs.
+      const VD inside = hn::Add(t_in, in_cell), by_end = hn::IfThenElse(hn::Lt(t_out, inside), t_out, inside);
+      const VD time = hn::IfThenElse(hn::Lt(by_end, vt_min), vt_min, by_end);
       hn::Store(time, dd, t + h);
       hn::Store(r.u(time), dd, u + h), hn::Store(r.v(time), dd, v + h), hn::Store(r.height(time), dd, height + h);
       hn::Store(hn::IfThenElseZero(hit, one), dd, found + h);

@@ -25,6 +25,7 @@ struct FieldFrame {
   double upright;              // see rounding_of_clearance()
   double mask;                 // of mirrored cells: column c is column mask - c
   double from_outside;         // start level of rays from above or outside
+  double seam;                 // HeightTarget::seam
   HeightField::GridScales scales;
   double last_row;      // of samples
   double width, depth;  // metres up to which positions count as inside; unlimited if the ground is wrapped
@@ -74,8 +75,9 @@ struct AxisSpan {
   VD origin, direction, per, enter, exit;
   VD slack;  // rounding error of the border times: larger for slower crossings
   hn::Mask<decltype(dd)> back;
+  hn::Mask<decltype(dd)> beside;  // runs along the border, outside
 };
-HWY_INLINE AxisSpan axis_span(VD o, VD d, VD cells) {
+HWY_INLINE AxisSpan axis_span(VD o, VD d, VD cells, double seam) {
   const VD zero = hn::Zero(dd), far = hn::Set(dd, std::numeric_limits<double>::infinity());
   AxisSpan s;
   s.back = hn::Lt(d, zero);
@@ -84,6 +86,8 @@ HWY_INLINE AxisSpan axis_span(VD o, VD d, VD cells) {
   s.per = hn::Div(hn::Set(dd, 1), s.direction);
   // A ray that does not move along the axis is within the field always or never.
   const auto still = hn::Eq(d, zero), within = hn::And(hn::Ge(o, zero), hn::Le(o, cells));
+  const VD off = hn::Max(hn::Neg(o), hn::Sub(o, cells));
+  s.beside = hn::And(still, hn::AndNot(within, hn::Le(off, hn::Set(dd, seam))));
   s.enter = hn::IfThenElse(still, hn::IfThenElse(within, hn::Neg(far), far), hn::Mul(hn::Neg(s.origin), s.per));
   s.exit = hn::IfThenElse(still, far, hn::Mul(hn::Sub(cells, s.origin), s.per));
   s.slack = hn::Mul(hn::Mul(hn::Set(dd, 8 * kUnit), hn::Add(cells, hn::Abs(o))), s.per);
@@ -99,7 +103,7 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     const VD ox = hn::Load(dd, r.ox + part), oy = hn::Load(dd, r.oy + part), oz = hn::Load(dd, r.oz + part);
     const VD dx = hn::Load(dd, r.dx + part), dy = hn::Load(dd, r.dy + part), dz = hn::Load(dd, r.dz + part);
     const VD t_min = hn::Load(dd, r.t_min + part);
-    const AxisSpan x = axis_span(ox, dx, cols), y = axis_span(oy, dy, rows);
+    const AxisSpan x = axis_span(ox, dx, cols, f.seam), y = axis_span(oy, dy, rows, f.seam);
     const VD longest = hn::Max(x.direction, y.direction), per_longest = hn::Min(x.per, y.per);
     const VD t_border = hn::Max(t_min, hn::Max(x.enter, y.enter));
     const VD t_exit = hn::Min(hn::Load(dd, r.t_max + part), hn::Min(x.exit, y.exit));
@@ -119,10 +123,16 @@ HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
     const auto usual =
         hn::And(hn::And(hn::Gt(longest, hn::Set(dd, 0x1p-300)), hn::Lt(longest, hn::Set(dd, 0x1p300))),
                 hn::And(hn::Lt(hn::Abs(slope), hn::Set(dd, 0x1p30)), hn::Lt(t_far, hn::Set(dd, 0x1p300))));
-    // The borders are accurate to less than a position's rounding, and a sixteenth of a code.
-    const VD slack = hn::Max(x.slack, y.slack), slack_cells = hn::Mul(slack, longest);
-    const auto sound = hn::And(usual, hn::And(hn::Lt(slack_cells, hn::Set(dd, kSideways)),
-                                              hn::Lt(hn::Mul(slack_cells, hn::Abs(slope)), hn::Set(dd, 0x1p-4))));
+    // The borders are accurate to less than a position's rounding, and a sixteenth of a code. A seam widens those that
+    // the ray crosses.
+    const VD per_enter = hn::IfThenElse(hn::Ge(x.enter, y.enter), x.per, y.per);
+    const VD per_exit = hn::IfThenElse(hn::Le(x.exit, y.exit), x.per, y.per);
+    const VD at_seam = hn::Mul(hn::Set(dd, f.seam), hn::Max(per_enter, per_exit));
+    const VD slack = hn::Add(hn::Max(x.slack, y.slack), at_seam), slack_cells = hn::Mul(slack, longest);
+    const auto clear_of_borders = hn::AndNot(hn::Or(x.beside, y.beside), usual);
+    const auto sound =
+        hn::And(clear_of_borders, hn::And(hn::Lt(slack_cells, hn::Set(dd, kSideways)),
+                                          hn::Lt(hn::Mul(slack_cells, hn::Abs(slope)), hn::Set(dd, 0x1p-4))));
     const auto climbs_from_above = hn::AndNot(falls, from_above);
     const auto followed = hn::And(sound, hn::AndNot(climbs_from_above, hn::Lt(t_begin, t_end)));
     // Beside the field, or above all ground from start to end.

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "scarp/march/height/cell_surface.h"
+#include "scarp/march/height/cells_beside.h"
 #include "scarp/march/height/grid_axis.h"
 #include "scarp/march/height/height_target.h"
 #include "scarp/march/height/max_mip_resume.h"
@@ -34,15 +37,16 @@ class Walk {
  public:
   /// `all` receives the hits if all are requested. Up to `t_clear` the ray is known to be above the ground by more than
   /// rounding: the traversal starts in the cell that contains it.
-  Walk(const HeightField& field, const SampleGrid<T>& grid, const MaxPyramid& pyramid, const Ray& ray,
-       const GridRay& local, int halvings, double t_clear, Hit& answer, std::vector<Hit>* all)
-      : field_(field),
+  Walk(const HeightTarget& target, const SampleGrid<T>& grid, const Ray& ray, const GridRay& local, int halvings,
+       double t_clear, Hit& answer, std::vector<Hit>* all)
+      : field_(*target.field),
+        seam_(target.seam),
         grid_(grid),
-        levels_(pyramid.levels().data()),
-        top_(pyramid.top_level()),
-        code_(pyramid.code()),
-        maxima_(pyramid.maxima()),
-        minima_(pyramid.minima()),
+        levels_(target.pyramid->levels().data()),
+        top_(target.pyramid->top_level()),
+        code_(target.pyramid->code()),
+        maxima_(target.pyramid->maxima()),
+        minima_(target.pyramid->minima()),
         x_(local.origin.x, local.direction.x, grid.cell_cols),
         y_(local.origin.y, local.direction.y, grid.cell_rows),
         z_(local.origin.z),
@@ -50,8 +54,8 @@ class Walk {
         t_in_(ray.t_min),
         t_end_(ray.t_max),
         strict_(ray.start == RayStart::on_surface),
-        triangles_(field.settings().surface == Surface::triangles),
-        solid_(field.settings().solid),
+        triangles_(field_.settings().surface == Surface::triangles),
+        solid_(field_.settings().solid),
         halvings_(halvings),
         t_clear_(t_clear),
         ray_(ray),
@@ -63,10 +67,15 @@ class Walk {
       if (!leave_start_cell()) return;
       if (t_clear_ > t_in_ && !skip_on(t_clear_)) return;
     } else {
-      if (!enter()) return;
+      if (!enter()) {
+        if (!Wraps && side_ == Side::above) touch_border_on_exit();
+        return;
+      }
       if (!x_.moves() && !y_.moves()) return vertical();
+      if (Holes && side_ == Side::unknown && grid_.is_hole(col_, row_) && touches(t_in_)) return;
     }
     while (walk()) enter_next_copy();
+    if (!Wraps) touch_border_on_exit();
   }
 
   /// For a ray from the surface: processes the first cell only.
@@ -122,14 +131,17 @@ class Walk {
     if (!Wraps) {
       const double border = std::max(x_.enter_time(), y_.enter_time());
       from_outside_ = border >= t_in_;
-      t_in_ = std::max(t_in_, border);
+      if (from_outside_) {
+        t_in_ = border;
+        through_ = x_.enter_time() == border ? Through::x_line : Through::y_line;
+      }
       // A coarse block may extend beyond the last row or column; the ray's end does not.
       t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
       // A ray parallel to an axis is inside the strip or not; written so that NaN is a miss.
-      if ((!x_.moves() && !(x_.origin >= 0 && x_.origin <= x_.cells)) ||
-          (!y_.moves() && !(y_.origin >= 0 && y_.origin <= y_.cells))) {
-        return false;
-      }
+      const auto beside = [&](const Axis& axis) {
+        return !axis.moves() && !(axis.origin >= -seam_ && axis.origin <= axis.cells + seam_);
+      };
+      if (beside(x_) || beside(y_)) return false;
     }
     if (!(t_in_ <= t_end_)) return false;
     // A ray that starts between the lowest and the highest ground is likely to start near the ground, where long skips
@@ -140,10 +152,10 @@ class Walk {
     double t_begin = t_clear_;
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
-      // Down to the highest sample, minus the two roundings of the quotient.
-      const double quotient = (highest - z_) / dz_, t_top = quotient - 2 * kUnit * std::abs(quotient);
-      if (t_top > t_end_) return false;
       side_ = Side::above;
+      // Down to the highest sample and what rounding may add to it.
+      const double quotient = (highest - z_) / dz_, t_top = quotient + rounding_of_clearance(quotient) / dz_;
+      if (t_top > t_end_) return false;
       level_ = from_outside;
       t_begin = std::max(t_begin, t_top);
     }
@@ -193,19 +205,20 @@ class Walk {
     z_ = surface(h, t_in_) - dz_ * t_in_;
     if (!Wraps) t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
     const double tx = x_.line_time(col_ + x_.ahead), ty = y_.line_time(row_ + y_.ahead);
-    const double t_line = std::min(tx, ty), t_out = std::min(t_line, t_end_);
+    const double t_line = std::min(tx, ty);
     ++stats.cell_tests;
+    cell_end_ = t_line;
     side_ = Side::above;
     if (!x_.moves() && !y_.moves()) {
       // Straight down is below at once; the range may be infinite.
       if (dz_ < 0 && t_end_ > t_in_ && is_hit(dz_ * (t_end_ - t_in_), t_in_)) answer(0.0);
       return false;
     }
-    if (t_out > t_in_) {
+    if (t_line > t_in_) {
       if (triangles_) {
-        const Through exit = t_line > t_end_ ? Through::point : tx <= ty ? Through::x_line : Through::y_line;
-        if (test_triangles(h, clearance(h, exit, true, t_out), t_out)) return false;
-      } else if (falls_from_start(quadratic(h, t_in_), t_out - t_in_)) {
+        const Through exit = tx <= ty ? Through::x_line : Through::y_line;
+        if (test_triangles(h, clearance(h, exit, true, t_line), t_line)) return false;
+      } else if (falls_from_start(quadratic(h, t_in_), t_line - t_in_)) {
         return false;
       }
     }
@@ -271,7 +284,7 @@ class Walk {
       answer_.status = HitStatus::below;
     } else if (above <= 0) {
       answer(0.0);
-    } else if (ray_height(t_end_) <= ground) {
+    } else if (dz_ < 0) {
       answer((ground - z_) / dz_ - t_in_);
     }
   }
@@ -286,18 +299,27 @@ class Walk {
     const double per_step = code_.per_step, highest = field_.max_sample();
     const double farthest = std::max(std::abs(t_in_), std::abs(t_end_));
     const double upright = std::abs(z_) + std::abs(dz_) * farthest + std::abs(code_.base) + std::abs(highest);
-    const double code_z = (z_ - code_.base - kCodeRoundings * kUnit * upright) * per_step, code_dz = dz_ * per_step;
+    const double rounding = kCodeRoundings * kUnit * upright + rounding_of_clearance(farthest);
+    const double code_z = (z_ - code_.base - rounding) * per_step, code_dz = dz_ * per_step;
     const double highest_code = (highest - code_.base) * per_step;
     // A coarse block may extend beyond the last row or column; the traversal does not.
-    const double t_end = Wraps ? std::min({t_end_, x.exit_time(), y.exit_time()}) : t_end_;
+    const double t_exit = std::min(x.exit_time(), y.exit_time()), t_end = Wraps ? std::min(t_end_, t_exit) : t_end_;
     int level = level_, col = col_ >> level, row = row_ >> level;
     double t_in = t_in_, tx = x.line_time((col + x.ahead) << level), ty = y.line_time((row + y.ahead) << level);
+    const double beside_node = Holes ? rounding_of_node() : 0;
+    // Passing the corner of a hole or block does not leave the ground: in over one line, out over the other, and at
+    // once by the axis that does not have the second.
+    const auto cuts_corner = [&](bool out_over_x, double begin, double end) {
+      if (through_ != (out_over_x ? Through::y_line : Through::x_line)) return end <= begin;
+      return (end - begin) * std::abs(out_over_x ? y.direction : x.direction) <= beside_node;
+    };
     std::uint32_t steps = 0, level_changes = 0;
     bool left = false;
     for (;;) {
       const bool through_x = tx <= ty;  // a tie: the line of constant column first
       const double t_line = through_x ? tx : ty;
-      const double t_out = std::min(t_line, t_end);
+      // A hit does not depend on where the ray ends: its whole cell is tested.
+      const double t_out = std::min(t_line, level > 0 ? t_end : t_exit);
       // The ray's height is linear: lowest at one end of the block.
       const double t_lowest = falling ? t_out : t_in, lowest_code = code_z + code_dz * t_lowest;
       ++steps;
@@ -306,11 +328,10 @@ class Walk {
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
         const double maximum = maxima_[entry];
         if (lowest_code > maximum && (side_ != Side::below || risen_above(maxima_[entry], t_lowest))) {
-          // With holes, the last cell may be one: the side is unknown at the next. Passing a block's corner does not
-          // leave the ground.
+          // With holes, the last cell may be one: the side is unknown at the next.
           if (!Holes) {
             side_ = Side::above;
-          } else if (t_out > t_in) {
+          } else if (!cuts_corner(through_x, t_in, t_out)) {
             side_ = Side::unknown;
           }
         } else if (side_ == Side::below && under(ray_height(falling ? t_in : t_out), minima_[entry])) {
@@ -334,8 +355,8 @@ class Walk {
           continue;
         }
       } else if (Holes && grid_.is_hole(col, row)) {
-        // Passing the corner of a hole does not leave the ground.
-        if (t_line > t_in) side_ = Side::unknown;
+        if (begun_ && side_ != Side::below && touches(t_in)) break;
+        if (!cuts_corner(through_x, t_in, t_line)) side_ = Side::unknown;
         if (lost(t_in)) break;
       } else {
         const CellHeights h = grid_.cell(col, row);
@@ -348,10 +369,18 @@ class Walk {
           if (test_cell(h, through_x, t_line, t_out)) break;
         }
       }
-      if (Holes) begun_ = true;
+      if (Holes) {
+        if (side_ != Side::below && t_line <= t_end &&
+            passes_node(through_x ? y.at(t_line) : x.at(t_line), beside_node) && touches(t_line)) {
+          break;
+        }
+        begun_ = true;
+      }
       if (!falling && lowest_code > highest_code) break;
-      if (!(t_line < t_end)) {
-        left = t_end < t_end_;
+      // The range is closed: it may end where the ray comes out of a hole.
+      const bool ends_on_line = Holes && t_line == ray_.t_max && t_line < t_exit;
+      if (!(t_line < t_end) && !ends_on_line) {
+        left = t_end < t_end_ || (Wraps && Holes && t_exit == t_end_);
         // A line of constant column crossed together with the seam of the rows comes first, too.
         const bool another_column =
             static_cast<unsigned>(col + x.step) <= static_cast<unsigned>((x.cells - 1) >> level);
@@ -422,9 +451,11 @@ class Walk {
     return under(height, minimum) && code_.height(minimum) - height > 2 * rounding_of_clearance(t);
   }
 
-  // Tests the surface of the current cell. Returns true if the answer is known; otherwise side_ is that of the exit.
+  // Tests the surface of the current cell, up to the line that ends it, or the border before that. Returns true if the
+  // answer is known; otherwise side_ is that of the exit.
   [[gnu::always_inline]] bool test_cell(const CellHeights& h, bool through_x, double t_line, double t_out) {
     ++stats.cell_tests;
+    cell_end_ = t_out;
     if (strict_) {
       // The ray is in the given start cell; by rounding, surrounding lines may be crossed before it starts, since its
       // place is clamped and its height must not run ahead.
@@ -432,9 +463,63 @@ class Walk {
       t_out = std::max(t_out, ray_.t_min);
     }
     if (side_ == Side::unknown && find_side(h)) return true;
-    const Through exit = t_line > t_end_ ? Through::point : through_x ? Through::x_line : Through::y_line;
+    const Through exit = t_line > t_out ? Through::point : through_x ? Through::x_line : Through::y_line;
     const double out = clearance(h, exit, true, t_out);
     return triangles_ ? test_triangles(h, out, t_out) : test_bilinear(h, out, t_out);
+  }
+
+  double rounding_of_node() const {
+    return std::max(rounding_of_line(field_, grid_ray(), 0, seam_), rounding_of_line(field_, grid_ray(), 1, seam_));
+  }
+
+  // Whether a ray that is not below the ground touches it at t, on a line: in any of the cells there, since rims are
+  // closed. Returns true if that is the answer.
+  [[gnu::noinline]] bool touches(double t) {
+    if (strict_) return false;
+    const GridRay ray = grid_ray();
+    const CellsBeside x(x_, t, rounding_of_line(field_, ray, 0, seam_));
+    const CellsBeside y(y_, t, rounding_of_line(field_, ray, 1, seam_));
+    for (int i = 0; i < x.count * y.count; ++i) {
+      const int west = i % x.count, north = i / x.count, col = x.cell[west], row = y.cell[north];
+      if (!x_.inside(col) || !y_.inside(row) || (Holes && grid_.is_hole(col, row))) continue;
+      const CellHeights h = grid_.cell(col, row);
+      const double u = x.place[west], v = y.place[north];
+      const double above = ray_height(t) - height_in_cell(field_.settings().surface, h, u, v);
+      // Of the cell: less than what a ray from below has to rise.
+      const double rounding = scarp::rounding_of_clearance(field_, ray, t, relief(h));
+      if (std::abs(above) <= rounding) return touch(col, row, t, u, v);
+    }
+    return false;
+  }
+
+  // Records a touch at t, at a given place of a cell, which need not be on the ray's way. Of all hits, those of
+  // neighbours that share the place are one. Returns true if the query is answered.
+  bool touch(int col, int row, double t, double u, double v) {
+    side_ = Side::below;
+    if constexpr (ask == Ask::all) {
+      if (!all_->empty() && t - all_->back().t <= rounding_of_node_time(field_, grid_ray(), seam_)) return false;
+    }
+    const int on_way_col = std::exchange(col_, col), on_way_row = std::exchange(row_, row);
+    const double on_way_t = std::exchange(t_in_, t);
+    const bool answered = answer(0.0);
+    col_ = on_way_col, row_ = on_way_row, t_in_ = on_way_t;
+    if (answer_) answer_.u = u, answer_.v = v;
+    if (ask == Ask::all && answer_ && all_->back().t == answer_.t) all_->back() = answer_;
+    return answered;
+  }
+
+  void touch_border_on_exit() {
+    const double t = std::min(x_.exit_time(), y_.exit_time());
+    if ((ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
+    if (t <= ray_.t_max && t >= ray_.t_min) touches(t);
+  }
+
+  double rounding_at_rim(const CellHeights& h, double t) const {
+    if (through_ == Through::point) return scarp::rounding_of_clearance(field_, grid_ray(), t, relief(h));
+    return scarp::rounding_at_rim(field_, grid_ray(), t, relief(h), through_ == Through::x_line ? 0 : 1, seam_);
+  }
+  static double relief(const CellHeights& h) {
+    return std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
   }
 
   // Determines the side of the ray; returns true if that is the answer. No previous crossing has to agree. A ray that
@@ -442,8 +527,7 @@ class Walk {
   // above on one side, could be below on the other.
   [[gnu::noinline]] bool find_side(const CellHeights& h) {
     const double in = clearance(h, through_, false, t_in_);
-    const double relief = std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
-    const bool on_rim = in <= 0 && -in <= scarp::rounding_of_clearance(field_, grid_ray(), t_in_, relief);
+    const bool on_rim = in <= 0 && -in <= rounding_at_rim(h, t_in_);
     if (on_rim && !strict_) {
       side_ = Side::below;
       return answer(0.0);
@@ -512,7 +596,7 @@ class Walk {
     }
     if (!(out <= 0 && is_hit(out, t_out))) return false;
     side_ = Side::below;
-    if constexpr (ask == Ask::any) return answer(0.0);
+    if (ask == Ask::any && cell_end_ <= ray_.t_max) return answer(0.0);
     const CellPlane f = plane(h, south_east(0.5 * (t_begin + t_out)), t_begin);
     const double s = f.c > 0 ? f.root() : 0.0;
     return answer(t_begin - t_in_ + (s >= 0 ? std::min(s, t_out - t_begin) : t_out - t_begin));
@@ -533,7 +617,7 @@ class Walk {
 
   // The signs imply a hit in the cell; the quadratic only locates it.
   bool hit_in_cell(const CellQuadratic& f, double length) {
-    if constexpr (ask == Ask::any) return answer(0.0);
+    if (ask == Ask::any && cell_end_ <= ray_.t_max) return answer(0.0);
     if constexpr (ask == Ask::bisected) {
       double low = 0, high = length;
       for (int i = 0; i < halvings_; ++i) {
@@ -546,11 +630,13 @@ class Walk {
     return answer(s >= 0 ? std::min(s, length) : 0.0);
   }
 
-  // Records a hit at t_in + s in the current cell; returns true if the query is answered.
+  // Records a hit at t_in + s in the current cell, unless the ray ends before; returns true if the query is answered.
   bool answer(double s, bool wall = false) {
+    const double t = std::max(s > 0 ? std::min(t_in_ + s, cell_end_) : t_in_ + s, ray_.t_min);
+    // From the surface, the ray is below it only after t.
+    if (strict_ ? t >= ray_.t_max : t > ray_.t_max) return ask != Ask::all;
     answer_.status = HitStatus::hit;
     if constexpr (ask == Ask::any) return true;
-    const double t = std::clamp(t_in_ + s, ray_.t_min, ray_.t_max);
     answer_.t = t;
     answer_.cell = {col_, row_};
     answer_.u = x_.place(t, col_);
@@ -574,6 +660,7 @@ class Walk {
   static constexpr double kCodeRoundings = 8;                   // 6 on the way to a code, see numerics.md
 
   const HeightField& field_;
+  double seam_;
   const SampleGrid<T>& grid_;
   const Level* levels_;
   int top_;
@@ -591,8 +678,9 @@ class Walk {
   int level_ = 0;
   Side side_ = Side::unknown;
   Through through_ = Through::point;
-  bool after_x_ = false;       // whether the last line crossed was of constant column
-  bool from_outside_ = false;  // whether the ray entered through the border
+  bool after_x_ = false;                                       // whether the last line crossed was of constant column
+  double cell_end_ = std::numeric_limits<double>::infinity();  // when the ray leaves the current cell
+  bool from_outside_ = false;                                  // whether the ray entered through the border
   // With holes: whether some cell has been left; only in the first cell can the ray start below.
   bool begun_ = false;
   Hit& answer_;

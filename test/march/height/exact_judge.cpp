@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace scarp::test {
 namespace {
@@ -27,6 +28,7 @@ struct Axis {
   Rational cell = 0;
 
   bool moves() const { return direction != 0; }
+  bool exists() const { return wraps || (cell >= 0 && cell < cells); }
   Rational at(const Rational& t) const { return origin + direction * t; }
   int within() const {
     const Rational copy = wraps ? floor_of(cell / cells) * cells : Rational(0);
@@ -67,7 +69,7 @@ class Caster {
           -Rational(ray.direction.y) / Rational(to.cell_y), field.cell_rows(), field.wraps()};
     z_ = (Rational(ray.origin.z) - Rational(to.offset) * Rational(to.exaggeration)) / scale;
     dz_ = Rational(ray.direction.z) / scale;
-    if (std::isfinite(ray.t_max)) t_end_ = Rational(ray.t_max);
+    if (std::isfinite(ray.t_max)) t_max_ = t_end_ = Rational(ray.t_max);
   }
 
   ExactAnswer cast(const Cell& start) {
@@ -95,12 +97,15 @@ class Caster {
       x_.enter(t);
       y_.enter(t);
     }
+    if (!strict_ && !corners()) touch_around(t);
     for (bool first = true;; first = false) {
       const auto tx = x_.next(), ty = y_.next();
       const bool through_x = tx && (!ty || *tx <= *ty);
       const auto line = through_x ? tx : ty;
-      const bool ends = !line || *line >= *t_end_;
-      const Rational out = ends ? *t_end_ : *line;
+      // The range is closed: where it ends on a line, the next cell is touched.
+      const bool ends = !line || *line > *t_end_ || (*line == *t_end_ && (strict_ || t_max_ != line));
+      const Rational out = line ? std::min(*t_end_, *line) : *t_end_;
+      choose_side_of_line();
       if (const auto h = corners()) {
         if (side_ == Side::unknown) find_side(*h, t, first, from_outside);
         if (out > t) {
@@ -109,8 +114,11 @@ class Caster {
       } else if (out > t || !line || *line > t) {
         side_ = Side::unknown;
       }
+      if (side_ == Side::unknown && !strict_ && line && out == *line) touch_around(out);
       if (ends) break;
-      (through_x ? x_ : y_).cell += (through_x ? x_ : y_).direction > 0 ? 1 : -1;
+      Axis& axis = through_x ? x_ : y_;
+      axis.cell += axis.direction > 0 ? 1 : -1;
+      if (!axis.exists()) break;
       t = std::max(t, *line);
     }
     if (!answer_.hits.empty()) answer_.status = HitStatus::hit;
@@ -125,6 +133,47 @@ class Caster {
     if (!h) return {};
     return Corners{Rational(h->h00), Rational(h->h10), Rational(h->h01), Rational(h->h11)};
   }
+  // A ray along a line belongs to the cells on both sides: to one with ground, if there is any.
+  void choose_side_of_line() {
+    const auto sides = [&](Axis& axis) {
+      const bool along = !strict_ && !axis.moves() && floor_of(axis.origin) == axis.origin;
+      std::vector<Rational> cells;
+      for (const int before : {0, 1}) {
+        const Rational cell = axis.origin - before;
+        if (along && (axis.wraps || (cell >= 0 && cell < axis.cells))) cells.push_back(cell);
+      }
+      return along ? cells : std::vector{axis.cell};
+    };
+    for (const Rational& col : sides(x_)) {
+      for (const Rational& row : sides(y_)) {
+        x_.cell = col, y_.cell = row;
+        if (corners()) return;
+      }
+    }
+  }
+
+  // Ground may touch the ray in a node, or where it starts on a rim.
+  void touch_around(const Rational& t) {
+    const Rational x = x_.at(t), y = y_.at(t);
+    const auto beside = [](const Rational& place) {
+      const Rational after = floor_of(place);
+      return after == place ? std::vector<Rational>{after, after - 1} : std::vector{after};
+    };
+    const Axis way_x = x_, way_y = y_;
+    for (const Rational& col : beside(x)) {
+      for (const Rational& row : beside(y)) {
+        x_.cell = col, y_.cell = row;
+        if (!x_.exists() || !y_.exists() || side_ != Side::unknown) continue;
+        const auto h = corners();
+        if (!h) continue;
+        if (clearance(*h, t, south_east(t)) != 0) continue;
+        side_ = Side::below;
+        add({t, t, 0, 0, 0, true, false});
+      }
+    }
+    x_ = way_x, y_ = way_y;
+  }
+
   bool triangles() const { return field_.settings().surface == Surface::triangles; }
   Rational u(const Rational& t) const { return x_.at(t) - x_.cell; }
   Rational v(const Rational& t) const { return y_.at(t) - y_.cell; }
@@ -199,7 +248,7 @@ class Caster {
   bool strict_;
   Axis x_, y_;
   Rational z_, dz_, t_min_;
-  std::optional<Rational> t_end_;
+  std::optional<Rational> t_end_, t_max_;
   Side side_ = Side::unknown;
   ExactAnswer answer_;
 };

@@ -169,6 +169,16 @@ bool RoundingJudge::near(int col, int row, double begin, double end, bool border
   return false;
 }
 
+// Whether a piece of the ray in a hole keeps to the rim of the ground beside it.
+bool RoundingJudge::runs_along_ground(int col, int row, double begin, double end) const {
+  const double e = 2 * std::max(sideways(begin), sideways(end));
+  const auto keeps_to = [&](int axis, double line) {
+    return std::abs(at(axis, begin) - line) <= e && std::abs(at(axis, end) - line) <= e;
+  };
+  return (keeps_to(0, col) && is_ground(col - 1, row)) || (keeps_to(0, col + 1) && is_ground(col + 1, row)) ||
+         (keeps_to(1, row) && is_ground(col, row - 1)) || (keeps_to(1, row + 1) && is_ground(col, row + 1));
+}
+
 void RoundingJudge::add_event(int col, int row, double t, bool enters, double begin, double end) {
   Event event{};
   event.t = t;
@@ -177,6 +187,7 @@ void RoundingJudge::add_event(int col, int row, double t, bool enters, double be
   event.enters = enters;
   event.what = is_ground(col, row) ? Event::ground : Event::hole;
   event.brief = (end - begin) * std::max(std::abs(direction_.x), std::abs(direction_.y)) <= 4 * sideways(end);
+  event.along_ground = event.what == Event::hole && runs_along_ground(col, row, begin, end);
   if (event.what == Event::ground) {
     event.clearance = clearance(col, row, t);
     event.delta = delta(col, row, t);
@@ -215,6 +226,11 @@ RoundingJudge::Beliefs RoundingJudge::follow(double until) const {
     if (event.t > until) break;
     if (event.may_leave) now.gone = true;
     if (event.what == Event::hole) {
+      // Rims are closed: the ray may be taken to be over the ground, on either side of it.
+      if (event.along_ground) {
+        now.unknown = now.above = now.below = true;
+        continue;
+      }
       // One that begins this near to the ground may be taken to begin over it.
       if (!event.brief) {
         now.above = now.below = false;

@@ -46,6 +46,7 @@ class RoundingJudge {
     double clearance, delta;
     bool enters;        // begins a piece of a cell
     bool touches_hole;  // a hole or border is as near as sideways rounding
+    bool along_ground;  // a hole, but the ray runs along its rim
     bool may_leave;     // the ray may be taken to have left the field here
     bool brief;         // a piece no longer than sideways rounding
   };
@@ -67,6 +68,7 @@ class RoundingJudge {
   void add_piece(double begin, double end);
   void add_event(int col, int row, double t, bool enters, double begin, double end);
   bool near(int col, int row, double begin, double end, bool border_only) const;
+  bool runs_along_ground(int col, int row, double begin, double end) const;
   Beliefs follow(double until) const;
 
   const HeightField& field_;
