@@ -241,8 +241,8 @@ void LiveScene::State::update_fields() {
 
 void LiveScene::State::update_boxes(std::uint32_t index) {
   Object& object = objects[index];
-  const auto& [field_index, material, placement] = scene.objects_[index];
-  const Field& field = fields[field_index];
+  const Placement& placement = scene.objects_[index].placement;
+  const Field& field = fields[scene.objects_[index].field];
   scene.in_place_[index] = placement.identity();
 
   const auto in_world = [&](const std::optional<WorldBox>& box) {
