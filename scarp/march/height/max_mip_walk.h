@@ -509,8 +509,8 @@ class Walk {
   }
 
   void touch_border_on_exit() {
-    const double t = std::min(x_.exit_time(), y_.exit_time());
     if ((ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
+    const double t = std::min(x_.exit_time(), y_.exit_time());
     if (t <= ray_.t_max && t >= ray_.t_min) touches(t);
   }
 
