@@ -41,6 +41,7 @@ class Walk {
        double t_clear, Hit& answer, std::vector<Hit>* all)
       : field_(*target.field),
         seam_(target.seam),
+        seam_step_(target.seam_step),
         grid_(grid),
         levels_(target.pyramid->levels().data()),
         top_(target.pyramid->top_level()),
@@ -516,7 +517,8 @@ class Walk {
 
   double rounding_at_rim(const CellHeights& h, double t) const {
     if (through_ == Through::point) return scarp::rounding_of_clearance(field_, grid_ray(), t, relief(h));
-    return scarp::rounding_at_rim(field_, grid_ray(), t, relief(h), through_ == Through::x_line ? 0 : 1, seam_);
+    return seam_step_ +
+           scarp::rounding_at_rim(field_, grid_ray(), t, relief(h), through_ == Through::x_line ? 0 : 1, seam_);
   }
   static double relief(const CellHeights& h) {
     return std::max({h.h00, h.h10, h.h01, h.h11}) - std::min({h.h00, h.h10, h.h01, h.h11});
@@ -660,7 +662,7 @@ class Walk {
   static constexpr double kCodeRoundings = 8;                   // 6 on the way to a code, see numerics.md
 
   const HeightField& field_;
-  double seam_;
+  double seam_, seam_step_;
   const SampleGrid<T>& grid_;
   const Level* levels_;
   int top_;

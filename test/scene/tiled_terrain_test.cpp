@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: MIT
+// Tiles that answer as one field: against one large field, over seams of levels, while tiles come and go; and what is
+// refused. Run under the thread sanitizer, too.
+#include "scarp/scene/tiled_terrain.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <thread>
+#include <vector>
+
+#include "base/refusal.h"
+#include "march/height/spiteful.h"
+#include "scarp/scarp.h"
+
+namespace scarp {
+namespace {
+
+using test::Random;
+using test::refusal;
+using test::uniform;
+using test::whole;
+
+constexpr int kCells = 16, kTiles = 3, kSide = kCells * kTiles + 1;
+
+// Hills with noise, in samples of a whole terrain of tiles.
+std::vector<float> samples(Random& random, double hole_share) {
+  std::vector<float> all;
+  for (int row = 0; row < kSide; ++row) {
+    for (int col = 0; col < kSide; ++col) {
+      all.push_back(static_cast<float>(4 * std::sin(0.31 * col) * std::cos(0.23 * row) + uniform(random, 0, 2)));
+      if (uniform(random, 0, 1) < hole_share) all.back() = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return all;
+}
+
+// A tile of them, at a level.
+HeightField tile(const std::vector<float>& all, TilePlace place, HeightFieldSettings settings, int level = 0) {
+  std::vector<float> own;
+  const int step = 1 << level, side = (kCells >> level) + 1;
+  for (int row = 0; row < side; ++row) {
+    for (int col = 0; col < side; ++col)
+      own.push_back(
+          all[static_cast<std::size_t>((place.row * kCells + row * step) * kSide + place.col * kCells + col * step)]);
+  }
+  settings.cell_x *= step, settings.cell_y *= step;
+  return HeightField::own(std::move(own), side, side, settings);
+}
+
+Ray ray_through(Random& random, const dvec3& box, const std::vector<float>& all, const HeightFieldSettings& settings) {
+  Ray ray;
+  dvec3 aim(uniform(random, 0, box.x), uniform(random, 0, box.y), uniform(random, -4, 6));
+  // At lines where tiles meet, at their corners and at other nodes, often on the ground.
+  const int col = whole(random, 0, 2) ? kCells * whole(random, 0, kTiles) : whole(random, 0, kSide - 1);
+  const int row = whole(random, 0, 2) ? kCells * whole(random, 0, kTiles) : whole(random, 0, kSide - 1);
+  if (whole(random, 0, 3)) aim.x = col * settings.cell_x;
+  if (whole(random, 0, 2)) aim.y = (kSide - 1 - row) * settings.cell_y;
+  const float height = all[static_cast<std::size_t>(row * kSide + col)];
+  if (whole(random, 0, 1) && height == height) aim.z = height;
+  ray.origin = {uniform(random, -10, box.x + 10), uniform(random, -10, box.y + 10), uniform(random, 2, 40)};
+  if (whole(random, 0, 9) == 0) ray.origin.x = aim.x;
+  if (whole(random, 0, 9) == 0) ray.origin.y = aim.y;
+  ray.direction = aim - ray.origin;
+  if (whole(random, 0, 4) == 0) ray.t_max = uniform(random, 0.2, 2);
+  return ray;
+}
+
+// The least distance of a ray up to t from the ground decides whether two engines may differ: here the distance that
+// rounding and the seam can make. A ray that one of them loses must be within it at the other's hit.
+bool is_close_call(const HeightField& field, const Ray& ray, const Hit& hit) {
+  // A hit within rounding: a ray moved up or down by far less than a cell misses or hits.
+  const double by = 1e-7;
+  Ray up = ray, down = ray;
+  up.origin.z += by, down.origin.z -= by;
+  const HeightTarget target{&field};
+  const auto& judge = find_height_march("exhaustive");
+  const Hit a = judge.cpu(target, up, {}, nullptr), b = judge.cpu(target, down, {}, nullptr);
+  return a.status != b.status || !a || std::abs(a.t - b.t) > 1e-3 || std::abs(a.t - hit.t) > 1e-3;
+}
+
+TEST(TiledTerrain, AnswersAsOneField) {
+  int hits = 0, different = 0;
+  for (int round = 0; round < 12; ++round) {
+    Random random(static_cast<unsigned>(round));
+    HeightFieldSettings settings{.cell_x = round % 3 ? 0.3 : 1, .cell_y = round % 2 ? 0.7 : 0.3};
+    if (round % 4 == 1) settings.surface = Surface::triangles;
+    std::vector<float> all = samples(random, round % 2 ? 0.02 : 0);
+    TiledTerrain terrain({kTiles, kTiles, kCells, kCells, settings});
+    terrain.edit([&](auto& editor) {
+      for (int i = 0; i < kTiles * kTiles; ++i) {
+        const TilePlace place{i % kTiles, i / kTiles};
+        if (round % 3 == 2 && i == 4) {
+          // A missing tile is a hole, as are the cells of one without inner samples.
+          for (int row = 1; row < kCells; ++row)
+            for (int col = 1; col < kCells; ++col)
+              all[static_cast<std::size_t>((kCells + row) * kSide + kCells + col)] =
+                  std::numeric_limits<float>::quiet_NaN();
+          continue;
+        }
+        editor.put(place, tile(all, place, settings));
+      }
+    });
+    const HeightField field = HeightField::own(all, kSide, kSide, settings);
+    const Terrain one(field);
+    const TerrainTiles tiles = terrain.read();
+    const dvec3 box(field.width(), field.depth(), 0);
+    for (int i = 0; i < 6000; ++i) {
+      Ray ray = ray_through(random, box, all, settings);
+      const Hit expected = cast(one, ray), hit = cast(tiles, ray);
+      hits += expected.status == HitStatus::hit;
+      ASSERT_EQ(static_cast<bool>(hit), occluded(tiles, ray));
+      const bool same =
+          hit.status == expected.status && (!hit || std::abs(hit.t - expected.t) < 1e-9 * (1 + expected.t));
+      if (!same) {
+        ++different;
+        EXPECT_TRUE(is_close_call(field, ray, hit ? hit : expected))
+            << "round " << round << " ray " << i << " t " << hit.t << " instead of " << expected.t;
+        continue;
+      }
+      if (!hit) continue;
+      const dvec3 p = ray.at(hit.t);
+      EXPECT_NEAR(*tiles.height(p.x, p.y), *field.height(p.x, p.y), 1e-9);
+    }
+  }
+  EXPECT_GT(hits, 30'000);
+  EXPECT_LT(different, 300);
+}
+
+TEST(TiledTerrain, LosesNoRayAtSeamsOfLevels) {
+  for (const auto surface : {Surface::bilinear, Surface::triangles}) {
+    Random random(5);
+    const HeightFieldSettings settings{.cell_x = 0.3, .cell_y = 0.3, .offset = 1000, .surface = surface};
+    const std::vector<float> all = samples(random, 0);
+    TiledTerrain terrain({kTiles, kTiles, kCells, kCells, settings});
+    terrain.edit([&](auto& editor) {
+      for (int i = 0; i < kTiles * kTiles; ++i) {
+        const TilePlace place{i % kTiles, i / kTiles};
+        editor.put(place, tile(all, place, settings, i % 4));
+      }
+    });
+    const TerrainTiles tiles = terrain.read();
+    const double width = kCells * 0.3;
+    int lost = 0;
+    for (int i = 0; i < 60'000; ++i) {
+      // Down through a point of the ground at a seam, from above all ground to below it.
+      const bool along_x = i % 2;
+      double x = width * whole(random, 1, kTiles - 1), y = uniform(random, 0.01, kTiles * width - 0.01);
+      if (i % 16 == 0) y = width * whole(random, 1, kTiles - 1);
+      if (along_x) std::swap(x, y);
+      const auto height = tiles.height(x, y);
+      ASSERT_TRUE(height);
+      const double reach = uniform(random, 0, 3);
+      const dvec3 from(x + uniform(random, -reach, reach), y + uniform(random, -reach, reach), 1020);
+      Ray ray{.origin = from, .direction = dvec3(x, y, *height) - from};
+      lost += !cast(tiles, ray) || !occluded(tiles, ray);
+    }
+    EXPECT_EQ(lost, 0);
+  }
+}
+
+// Rays that start on the ground at a seam start on all tiles there.
+TEST(TiledTerrain, SurfaceStartsAtSeamsAreNotBlockedByTheTileBeside) {
+  const HeightFieldSettings settings{.cell_x = 0.3, .cell_y = 0.3};
+  const std::vector<float> all(kSide * kSide, 5);
+  TiledTerrain terrain({kTiles, kTiles, kCells, kCells, settings});
+  terrain.edit([&](auto& editor) {
+    for (int i = 0; i < kTiles * kTiles; ++i) {
+      const TilePlace place{i % kTiles, i / kTiles};
+      editor.put(place, tile(all, place, settings));
+    }
+  });
+  const TerrainTiles tiles = terrain.read();
+  Random random(3);
+  const double width = kCells * 0.3;
+  for (int i = 0; i < 2000; ++i) {
+    const Ray down{{width * whole(random, 1, 2), i % 4 ? uniform(random, 0, 3 * width) : width, 9}};
+    const Hit hit = cast(tiles, down);
+    ASSERT_TRUE(hit);
+    Ray up{.origin = down.at(hit.t), .direction = {uniform(random, -1, 1), uniform(random, -1, 1), 1e-9}};
+    EXPECT_FALSE(tiles.scene().occluded(up, &hit)) << i;
+    up.start = RayStart::on_surface, up.start_cell = hit.cell;
+    EXPECT_FALSE(tiles.scene().occluded(up)) << i;
+    EXPECT_EQ(tiles.scene().closest_hit(up).status, HitStatus::miss) << i;
+  }
+}
+
+TEST(TiledTerrain, NormalsForShadingAreThoseOfOneField) {
+  Random random(9);
+  const HeightFieldSettings settings{.cell_x = 0.5, .cell_y = 0.25};
+  const std::vector<float> all = samples(random, 0);
+  TiledTerrain terrain({kTiles, kTiles, kCells, kCells, settings});
+  terrain.edit([&](auto& editor) {
+    for (int i = 0; i < kTiles * kTiles; ++i) {
+      const TilePlace place{i % kTiles, i / kTiles};
+      editor.put(place, tile(all, place, settings));
+    }
+  });
+  const TerrainTiles tiles = terrain.read();
+  const Terrain one(HeightField::own(all, kSide, kSide, settings));
+  for (int i = 0; i < 3000; ++i) {
+    const Ray down{{uniform(random, 0, 24), uniform(random, 0, 12), 50}};
+    const SceneSurface here = tiles.scene().surface(down, cast(tiles, down)),
+                       there = one.scene().surface(down, cast(one, down));
+    EXPECT_LT(glm::length(here.shading_normal - there.shading_normal), 1e-9);
+    EXPECT_LT(glm::length(here.normal - there.normal), 1e-9);
+  }
+}
+
+TEST(TiledTerrain, TilesComeAndGoDuringQueries) {
+  const HeightFieldSettings settings{};
+  constexpr int kSteps = 40;
+  TiledTerrain terrain({kTiles, 1, kCells, kCells, settings});
+  const auto level = [&](float height) {
+    return HeightField::own(std::vector<float>((kCells + 1) * (kCells + 1), height), kCells + 1, kCells + 1, settings);
+  };
+  std::atomic<bool> done = false;
+  std::atomic<int> wrong = 0;
+  std::atomic<std::int64_t> asked = 0;
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 3; ++i) {
+    readers.emplace_back([&] {
+      std::uint64_t last = 0;
+      do {
+        const TerrainTiles tiles = terrain.read();
+        // Epoch e: ground at height e, without the tile e % 3.
+        const auto epoch = tiles.epoch();
+        if (epoch < last) ++wrong;
+        last = epoch;
+        for (int col = 0; col < kTiles; ++col) {
+          const Hit hit = cast(tiles, Ray{{kCells * (col + 0.5), 3, 1000}});
+          const bool expected = epoch > 0 && col != static_cast<int>(epoch % kTiles);
+          if (static_cast<bool>(hit) != expected || (expected && hit.height != static_cast<double>(epoch))) ++wrong;
+        }
+        ++asked;
+      } while (!done);
+    });
+  }
+  for (int step = 1; step <= kSteps; ++step) {
+    terrain.edit([&](auto& editor) {
+      for (int col = 0; col < kTiles; ++col) {
+        if (terrain.read().tile({col, 0})) editor.remove({col, 0});
+        if (col != step % kTiles) editor.put({col, 0}, level(static_cast<float>(step)));
+      }
+    });
+  }
+  done = true;
+  for (std::thread& reader : readers) reader.join();
+  EXPECT_EQ(wrong, 0);
+  EXPECT_GT(asked, 0);
+}
+
+TEST(TiledTerrain, KeepsTheMemoryOfViews) {
+  auto owner = std::make_shared<std::vector<float>>((kCells + 1) * (kCells + 1), 3.0f);
+  TiledTerrain terrain({1, 1, kCells, kCells, {}});
+  terrain.edit([&](auto& editor) {
+    editor.put({0, 0}, HeightField::view(owner->data(), kCells + 1, kCells + 1, kCells + 1, {}, owner));
+  });
+  std::weak_ptr<const void> memory = owner;
+  owner.reset();
+  const Ray down{{3, 3, 9}};
+  std::optional<TerrainTiles> tiles = terrain.read();
+  EXPECT_TRUE(cast(*tiles, down));
+  terrain.edit([](auto& editor) { editor.remove({0, 0}); });
+  EXPECT_TRUE(cast(*tiles, down));
+  EXPECT_FALSE(cast(terrain.read(), down));
+  tiles.reset();
+  EXPECT_TRUE(memory.expired());
+}
+
+TEST(TiledTerrain, RefusesTilesThatDoNotFitAndChangesNothing) {
+  Random random(1);
+  const HeightFieldSettings settings{.cell_x = 2, .cell_y = 2};
+  std::vector<float> all = samples(random, 0);
+  TiledTerrain terrain({kTiles, kTiles, kCells, kCells, settings});
+  const auto put = [&](TilePlace place, const HeightField& field) {
+    return refusal([&] { terrain.edit([&](auto& editor) { editor.put(place, field); }); });
+  };
+  EXPECT_EQ(put({1, 1}, tile(all, {1, 1}, settings)), "");
+  EXPECT_EQ(put({1, 1}, tile(all, {1, 1}, settings)), "tiles: (1, 1): there is a tile already (remove it first)");
+  EXPECT_EQ(put({3, 0}, tile(all, {0, 0}, settings)), "tiles: (3, 0): outside the grid of 3 x 3 tiles");
+  EXPECT_EQ(put({0, 1}, tile(all, {0, 1}, {.cell_x = 2, .cell_y = 3})),
+            "tiles: (0, 1): cells of 2 x 3 m; with this many samples they are 2 x 2 m");
+  EXPECT_EQ(put({0, 1}, HeightField::own(std::vector<float>(30), 6, 5, settings)),
+            "tiles: (0, 1): 6 x 5 samples; a tile has 17 x 17, or its cells are 2, 4, 8, ... times as long");
+  HeightFieldSettings other = settings;
+  other.offset = 1;
+  EXPECT_EQ(put({0, 1}, tile(all, {0, 1}, other)), "tiles: (0, 1): its setting 'offset' is not that of the layout");
+  // Another sample at the shared border, at its corner, and where the coarser tile has samples.
+  const auto at = static_cast<std::size_t>((kCells + 4) * kSide + kCells);
+  const float right = std::exchange(all[at], 77.0f);
+  EXPECT_NE(put({0, 1}, tile(all, {0, 1}, settings)).find("(0, 1) and (1, 1) differ at a sample of their border: "),
+            std::string::npos);
+  EXPECT_NE(put({0, 1}, tile(all, {0, 1}, settings, 2)).find("differ at a sample of their border: "),
+            std::string::npos);
+  EXPECT_EQ(put({0, 1}, tile(all, {0, 1}, settings, 3)), "");
+  all[at] = right;
+  all[static_cast<std::size_t>(kCells * kSide + kCells)] = 77;
+  EXPECT_NE(put({0, 0}, tile(all, {0, 0}, settings)).find("differ"), std::string::npos);
+  EXPECT_EQ(refusal([&] { terrain.edit([](auto& editor) {
+                            editor.remove({2, 2});
+                          }); }),
+            "tiles: (2, 2): there is no tile to remove");
+  EXPECT_EQ(terrain.read().epoch(), 2u);
+  EXPECT_FALSE(terrain.read().tile({0, 0}));
+  EXPECT_EQ(refusal([] { TiledTerrain({.cols = 0}); }),
+            "tiles: the number of columns of tiles is 0; it must be 1 to 65536");
+  EXPECT_NE(refusal([] { TiledTerrain({.cols = 60000, .cell_cols = 1000}); }), "");
+  EXPECT_NE(refusal([] { TiledTerrain({.ground = {.wrap = Wrap::periodic}}); }), "");
+  EXPECT_NE(refusal([] { TiledTerrain({.ground = {.solid = true}}); }), "");
+}
+
+}  // namespace
+}  // namespace scarp
