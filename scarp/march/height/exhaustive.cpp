@@ -154,6 +154,20 @@ class Ground {
     return speed > 0 ? 4 * 0x1p-53 * places / speed : 0;
   }
 
+  // How far below the surface a ray may come in over the line at the start of a piece and count as touching it, where
+  // fields that meet are placed apart by rounding (HeightTarget::seam).
+  double seam_height(const Piece& p, const HeightTarget& target) const {
+    const auto time = [&](double o, double d, double near) {
+      return d == 0 ? -kInfinity : (near + (d > 0 ? 0 : 1) - o) / d;
+    };
+    const bool over_column = time(ox_, dx_, p.col) >= time(oy_, dy_, p.row);
+    const double across = std::abs(over_column ? dx_ : dy_), along = std::abs(over_column ? dy_ : dx_);
+    // A ray that almost runs along the line comes in at most a cell later.
+    const double late = std::min(target.seam / across, 1 / along);
+    const double relief = field_.max_sample() - field_.min_sample();
+    return target.seam_step + late * (std::abs(dz_) + along * relief) + target.seam * relief;
+  }
+
   bool is_ground(double col, double row) const {
     const int cols = field_.cell_cols(), rows = field_.cell_rows();
     if (!field_.wraps() && !(col >= 0 && col < cols && row >= 0 && row < rows)) return false;
@@ -259,7 +273,8 @@ std::optional<double> descent_after_rise(const Piece& p, std::optional<double> d
 // Follows the ray; found_in_range(hit) returns whether to continue. Returns below if the ray started so, otherwise
 // miss.
 template <class Found>
-HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, const Found& found_in_range) {
+HitStatus follow(const HeightTarget& target, const Ray& ray, MarchStats* stats, const Found& found_in_range) {
+  const HeightField& field = *target.field;
   // From the surface, the ray is below it only after t.
   const bool on_surface = ray.start == RayStart::on_surface;
   const auto found = [&](const Hit& hit) {
@@ -304,6 +319,10 @@ HitStatus follow(const HeightField& field, const Ray& ray, MarchStats* stats, co
       // Through the border or out of a hole, unless it started in this cell.
       const bool came_in = p.span.begin > ray.t_min || inside.begin >= ray.t_min;
       side = p.c < 0 ? Side::below : Side::above;
+      const bool meets = target.seam > 0 || target.seam_step > 0;
+      if (side == Side::below && meets && came_in && !on_surface && -p.c <= ground.seam_height(p, target)) {
+        if (!found(ground.hit(p, 0))) return without;
+      }
       if (side == Side::below && field.settings().solid && came_in) {
         Hit hit = ground.hit(p, 0);
         hit.wall = true;
@@ -364,7 +383,7 @@ Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSett
   if (stats) *stats = {};
   Hit answer;
   const OfUsualLength usual(ray);
-  const HitStatus without = follow(*target.field, usual.ray(), stats, [&](const Hit& hit) {
+  const HitStatus without = follow(target, usual.ray(), stats, [&](const Hit& hit) {
     answer = usual.in_own_length(hit);
     return false;
   });
@@ -375,7 +394,7 @@ Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSett
 HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
   hits.clear();
   const OfUsualLength usual(ray);
-  const HitStatus without = follow(*target.field, usual.ray(), nullptr, [&](const Hit& hit) {
+  const HitStatus without = follow(target, usual.ray(), nullptr, [&](const Hit& hit) {
     hits.push_back(usual.in_own_length(hit));
     return true;
   });

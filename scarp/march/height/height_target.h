@@ -20,7 +20,8 @@ struct HeightTarget {
   /// ray that passes the border or the rim of a hole this near to the surface touches it.
   double seam = 0;
   /// Sample units, >= 0, by which the border may be below that of a field beside it: a ray that enters through the
-  /// border at most this far below the surface touches it. For max-mip.
+  /// border at most this far below the surface touches it. For max-mip and
+  /// exhaustive.
   double seam_step = 0;
 };
 
