@@ -198,6 +198,15 @@ class Tiles final : public SceneField {
     whole = between(-wide_x, layout_.cols * width + wide_x, o.x, d.x, whole);
     whole = between(-wide_y, layout_.rows * depth + wide_y, o.y, d.y, whole);
     if (whole.empty()) return;
+    // Where the ray comes to the terrain, or starts over it.
+    const Span over =
+        between(0, layout_.rows * depth, o.y, d.y, between(0, layout_.cols * width, o.x, d.x, {ray.t_min, ray.t_max}));
+    const double begin_x = along(o.x, d.x, over.begin), begin_y = along(o.y, d.y, over.begin);
+    const auto begins_in = [&](int col, int north) {
+      const double slack_x = kTileSeam * wide_x, slack_y = kTileSeam * wide_y;
+      return begin_x >= col * width - slack_x && begin_x <= (col + 1) * width + slack_x &&
+             begin_y >= north * depth - slack_y && begin_y <= (north + 1) * depth + slack_y;
+    };
     const auto done = [&](const Span& span) { return span.begin > best.t && best; };
     // The range of tiles between two coordinates, in the order of the ray.
     const auto range = [](double from, double to, double wide, double length, int count, bool forward, int& first,
@@ -226,7 +235,7 @@ class Tiles final : public SceneField {
         const int row = layout_.rows - 1 - north;
         const Tile* tile = map_->find(col, row);
         if (!tile || above(*tile, ray, span)) continue;
-        if (f(*tile, col, row, span.begin <= whole.begin)) return;
+        if (f(*tile, col, row, begins_in(col, north))) return;
       }
     }
   }
