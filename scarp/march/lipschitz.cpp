@@ -71,6 +71,7 @@ std::string lipschitz_caveat(const LipschitzSettings& settings, double slope) {
 }
 
 Hit march_lipschitz(const HeightTarget& target, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
+  require(target, settings.lipschitz.shrink == 0 ? HeightPart::pyramid_and_slope : HeightPart::pyramid);
   const ShrinkFactor shrink = shrink_factor(settings.lipschitz, target.slope);
   return march_over(target, ray, stats, [&](const auto& probe, MarchStats& counted) {
     return march(probe, settings.lipschitz, shrink, counted);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scarp/base/ray.h"
 
@@ -21,13 +22,23 @@ inline bool is_usual(double longest) { return longest > kShortestUsual && longes
 inline bool is_direction(double longest) { return longest > 0 && std::isfinite(longest); }
 
 /// The ray with its direction divided by 2^exponent, and its range multiplied; its t are 2^exponent times those of
-/// `ray`.
+/// `ray`. Its range ends where the t of `ray` are no longer finite: what is farther is missed.
 inline Ray scaled_down(const Ray& ray, int exponent) {
   Ray scaled = ray;
   for (int axis = 0; axis < 3; ++axis) scaled.direction[axis] = std::ldexp(ray.direction[axis], -exponent);
   scaled.t_min = std::ldexp(ray.t_min, exponent);
-  scaled.t_max = std::ldexp(ray.t_max, exponent);
+  scaled.t_max = std::ldexp(std::min(ray.t_max, std::numeric_limits<double>::max()), exponent);
   return scaled;
+}
+
+/// The closest hit of a ray whose longest component is not usual: `march` takes the ray at usual length.
+template <class March>
+Hit at_usual_length(const Ray& ray, double longest, const March& march) {
+  if (!is_direction(longest)) return {};
+  const int exponent = std::ilogb(longest);
+  Hit hit = march(scaled_down(ray, exponent));
+  hit.t = std::ldexp(hit.t, -exponent);
+  return hit;
 }
 
 }  // namespace scarp

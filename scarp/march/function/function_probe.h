@@ -10,6 +10,7 @@
 
 #include "scarp/march/function/function_ray.h"
 #include "scarp/march/sampling.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 
@@ -67,6 +68,10 @@ class FunctionProbe {
 template <class March>
 Hit march_over(const HeightFunction& function, const Ray& ray, FunctionUse use, double reach, MarchStats* stats,
                const March& march) {
+  if (const double longest = longest_of(ray.direction); !is_usual(longest)) [[unlikely]] {
+    return at_usual_length(ray, longest,
+                           [&](const Ray& usual) { return march_over(function, usual, use, reach, stats, march); });
+  }
   MarchStats counted;
   Hit hit;
   const FunctionRay r(function, ray, use, reach);

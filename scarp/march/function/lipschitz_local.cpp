@@ -2,11 +2,16 @@
 #include "scarp/march/function/lipschitz_local.h"
 
 #include "scarp/march/function/lipschitz_local_walk.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 
 Hit march_lipschitz_local(const HeightFunction& function, const Ray& ray, const MarchSettings& settings,
                           MarchStats* stats, FunctionUse use) {
+  if (const double longest = longest_of(ray.direction); !is_usual(longest)) [[unlikely]] {
+    return at_usual_length(
+        ray, longest, [&](const Ray& usual) { return march_lipschitz_local(function, usual, settings, stats, use); });
+  }
   LocalWalk walk(function, ray, use, settings);
   const dvec2 origin(ray.origin), direction(ray.direction);
   while (walk.question() != LocalWalk::Question::done) {

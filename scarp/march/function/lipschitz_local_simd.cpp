@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "scarp/march/function/lipschitz_local.h"
 #include "scarp/march/function/lipschitz_local_walk.h"
+#include "scarp/march/usual_ray.h"
 
 // Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
@@ -193,6 +195,13 @@ HWY_EXPORT(walk);
 void closest_hits_lipschitz_local_simd(const HeightFunction& function, std::span<const Ray> rays, std::span<Hit> hits,
                                        const MarchSettings& settings, std::span<std::uint32_t> steps, FunctionUse use) {
   HWY_DYNAMIC_DISPATCH(walk)(function, rays, hits, settings, steps, use);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (is_usual(longest_of(rays[i].direction))) [[likely]]
+      continue;
+    MarchStats stats;
+    hits[i] = march_lipschitz_local(function, rays[i], settings, &stats, use);
+    if (!steps.empty()) steps[i] = stats.steps + stats.cell_tests;
+  }
 }
 
 }  // namespace scarp

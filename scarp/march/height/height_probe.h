@@ -10,6 +10,7 @@
 #include "scarp/march/height/height_target.h"
 #include "scarp/march/ray_clip.h"
 #include "scarp/march/sampling.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 
@@ -161,6 +162,10 @@ class HeightProbe {
 /// Calls march(probe, counted) where the ray can meet the ground.
 template <class March>
 Hit march_over(const HeightTarget& target, const Ray& ray, MarchStats* stats, const March& march) {
+  require(target, HeightPart::none);
+  if (const double longest = longest_of(ray.direction); !is_usual(longest)) [[unlikely]] {
+    return at_usual_length(ray, longest, [&](const Ray& usual) { return march_over(target, usual, stats, march); });
+  }
   MarchStats counted;
   Hit hit;
   if (target.field->has_cells() && !target.field->all_nodata()) {

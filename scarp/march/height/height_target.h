@@ -25,4 +25,18 @@ struct HeightTarget {
   double seam_step = 0;
 };
 
+/// What a march needs of a target besides the field.
+enum class HeightPart { none, pyramid, slope, pyramid_and_slope };
+
+/// Throws Error naming the part of a target that is missing.
+[[noreturn]] void refuse_target(const HeightTarget& target, HeightPart part);
+
+/// Throws Error if the target lacks what a march needs: a null field or pyramid, a slope that is NaN.
+inline void require(const HeightTarget& target, HeightPart part) {
+  const bool pyramid = part == HeightPart::pyramid || part == HeightPart::pyramid_and_slope;
+  const bool slope = part == HeightPart::slope || part == HeightPart::pyramid_and_slope;
+  if (!target.field || (pyramid && !target.pyramid) || (slope && target.slope != target.slope)) [[unlikely]]
+    refuse_target(target, part);
+}
+
 }  // namespace scarp

@@ -38,6 +38,7 @@ Hit march_along_line(const HeightTarget& target, const Ray& ray, MarchStats* sta
 template <Ask ask>
 Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_clear, MarchStats* stats,
           std::vector<Hit>* all) {
+  require(target, HeightPart::pyramid);
   const HeightField& field = *target.field;
   Hit hit;
   if (stats) *stats = {};
@@ -48,7 +49,7 @@ Hit march(const HeightTarget& target, const Ray& ray, int halvings, double t_cle
     if (!is_direction(longest)) return hit;
     const int exponent = std::ilogb(longest);
     hit = march<ask>(target, scaled_down(ray, exponent), halvings, kNotClear, stats, all);
-    if (hit) hit.t = std::ldexp(hit.t, -exponent);
+    hit.t = std::ldexp(hit.t, -exponent);
     if (all) {
       for (Hit& one : *all) one.t = std::ldexp(one.t, -exponent);
     }
@@ -109,6 +110,7 @@ bool resume_occluded_max_mip(const HeightTarget& target, const Ray& ray, double 
 }
 
 SurfaceStart start_max_mip(const HeightTarget& target, const Ray& ray) {
+  require(target, HeightPart::pyramid);
   const HeightField& field = *target.field;
   const GridRay local = field.grid_from_world(ray);
   SurfaceStart start;

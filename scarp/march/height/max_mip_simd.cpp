@@ -573,6 +573,7 @@ constexpr int kNarrowestCopy = 128;
 // Excludes fields that vector code does not support: those with holes, where a ray above all ground may be below the
 // rim of the next cell, and those beyond 32-bit offsets or floats.
 bool walks_over(const HeightTarget& target) {
+  require(target, HeightPart::pyramid);
   const HeightField& field = *target.field;
   if (!field.has_cells() || field.nodata_count() > 0) return false;
   if (field.wraps() && std::min(field.cols(), field.rows()) < kNarrowestCopy) return false;

@@ -86,6 +86,7 @@ void in_vectors(const HeightField& field, std::span<const Ray> rays, std::span<R
 
 void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                   const HeightMarchEntry& march, const MarchSettings& settings) {
+  require(target, HeightPart::none);
   require_same_length(rays.size(), hits.size());
   if (march.simd && rays.size() >= kFewForVectors) {
     return in_vectors(*target.field, rays, hits, [&](std::span<const Ray> some, std::span<Hit> answers) {
@@ -97,6 +98,7 @@ void closest_hits(const HeightTarget& target, std::span<const Ray> rays, std::sp
 
 void occluded(const HeightTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
               const HeightMarchEntry& march, const MarchSettings& settings) {
+  require(target, HeightPart::none);
   require_same_length(rays.size(), blocked.size());
   if (march.simd && rays.size() >= kFewForVectors) {
     return in_vectors(*target.field, rays, blocked, [&](std::span<const Ray> some, std::span<std::uint8_t> answers) {

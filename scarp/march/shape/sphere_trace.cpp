@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scarp/march/ray_clip.h"
+#include "scarp/march/usual_ray.h"
 
 namespace scarp {
 namespace {
@@ -278,6 +279,10 @@ class Trace {
 }  // namespace
 
 Hit march_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSettings& settings, MarchStats* stats) {
+  if (const double longest = longest_of(ray.direction); !is_usual(longest)) [[unlikely]] {
+    return at_usual_length(ray, longest,
+                           [&](const Ray& usual) { return march_sphere_trace(field, usual, settings, stats); });
+  }
   MarchStats counted;
   const Hit hit = Trace(field, ray, settings.sphere_trace, counted).closest();
   if (stats) *stats = counted;
@@ -285,6 +290,8 @@ Hit march_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSe
 }
 
 bool occluded_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSettings& settings) {
+  if (!is_usual(longest_of(ray.direction))) [[unlikely]]
+    return march_sphere_trace(field, ray, settings, nullptr).status == HitStatus::hit;
   MarchStats counted;
   return Trace(field, ray, settings.sphere_trace, counted).any();
 }
