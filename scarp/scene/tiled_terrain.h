@@ -103,7 +103,7 @@ class TiledTerrain {
   };
 
   /// Calls `change`, then makes its tiles the current ones, all at once, and returns the new epoch. Readers do not
-  /// wait: those who called read() before keep what they have. Builds the pyramids of the tiles that changed and of
+  /// wait, and what read() returned before stays as it is. Builds the pyramids of the tiles that changed and of
   /// finer tiles beside them. Throws Error, changing nothing, if `change` throws or tiles would differ in a sample of
   /// their shared border (compared where the coarser one has samples). Edits wait for one another; `change` must not
   /// call edit(). Thread-safe.

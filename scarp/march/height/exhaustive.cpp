@@ -7,8 +7,6 @@
 #include <optional>
 #include <vector>
 
-#include "scarp/march/usual_ray.h"
-
 namespace scarp {
 namespace {
 
@@ -356,17 +354,30 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, MarchStats* stats, 
   return without;
 }
 
-// Products of the components of a very long or very short direction do not fit a double: beyond 2^128 it is scaled.
-int scale_of(const Ray& ray) {
-  const double longest = longest_of(ray.direction);
-  const int exponent = is_direction(longest) ? std::ilogb(longest) : 0;
-  return std::abs(exponent) < 128 ? 0 : exponent;
-}
+// Products of the components of a very long or very short direction do not fit a double: such a ray is scaled to a
+// length near 1, and t is scaled back. Powers of two avoid rounding.
+class OfUsualLength {
+ public:
+  explicit OfUsualLength(const Ray& ray) : ray_(ray) {
+    const dvec3& d = ray.direction;
+    std::frexp(std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)}), &exponent_);
+    if (std::abs(exponent_) < 128) exponent_ = 0;
+    for (int axis = 0; axis < 3; ++axis) ray_.direction[axis] = std::ldexp(d[axis], -exponent_);
+    ray_.t_min = std::ldexp(ray.t_min, exponent_);
+    // The range ends where the t of the ray are no longer finite.
+    ray_.t_max =
+        exponent_ == 0 ? ray.t_max : std::ldexp(std::min(ray.t_max, std::numeric_limits<double>::max()), exponent_);
+  }
+  const Ray& ray() const { return ray_; }
+  Hit in_own_length(Hit hit) const {
+    hit.t = std::ldexp(hit.t, -exponent_);
+    return hit;
+  }
 
-Hit scaled_back(Hit hit, int exponent) {
-  hit.t = std::ldexp(hit.t, -exponent);
-  return hit;
-}
+ private:
+  Ray ray_;
+  int exponent_ = 0;
+};
 
 }  // namespace
 
@@ -374,9 +385,9 @@ Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSett
   require(target, HeightPart::none);
   if (stats) *stats = {};
   Hit answer;
-  const int exponent = scale_of(ray);
-  const HitStatus without = follow(target, exponent ? scaled_down(ray, exponent) : ray, stats, [&](const Hit& hit) {
-    answer = scaled_back(hit, exponent);
+  const OfUsualLength usual(ray);
+  const HitStatus without = follow(target, usual.ray(), stats, [&](const Hit& hit) {
+    answer = usual.in_own_length(hit);
     return false;
   });
   if (!answer) answer.status = without;
@@ -386,9 +397,9 @@ Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSett
 HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
   require(target, HeightPart::none);
   hits.clear();
-  const int exponent = scale_of(ray);
-  const HitStatus without = follow(target, exponent ? scaled_down(ray, exponent) : ray, nullptr, [&](const Hit& hit) {
-    hits.push_back(scaled_back(hit, exponent));
+  const OfUsualLength usual(ray);
+  const HitStatus without = follow(target, usual.ray(), nullptr, [&](const Hit& hit) {
+    hits.push_back(usual.in_own_length(hit));
     return true;
   });
   return hits.empty() ? without : HitStatus::hit;
