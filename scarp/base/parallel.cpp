@@ -6,10 +6,13 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
+#include <algorithm>
 #include <atomic>
+#include <exception>
 #include <mutex>
 
 #include "scarp/base/error.h"
+#include "scarp/base/executor.h"
 
 #ifdef SCARP_TSAN
 extern "C" void __tsan_acquire(void* address);
@@ -42,6 +45,66 @@ struct HandOver {
 };
 #endif
 
+// A loop's pieces, whichever threads run them: counts what is done for `progress`.
+class Pieces {
+ public:
+  Pieces(std::int64_t count, const std::function<void(std::int64_t, std::int64_t)>& body, const Progress& progress)
+      : count_(count), body_(body), progress_(progress) {}
+
+  /// Returns false when no more pieces need be run.
+  bool run(std::int64_t begin, std::int64_t end) {
+    body_(begin, end);
+    if (!progress_) return true;
+    done_ += end - begin;
+    // A thread that finds another one reporting skips its report instead of waiting. The fraction is read under the
+    // lock; otherwise an older value could follow a newer one.
+    const std::unique_lock<std::mutex> lock(reporting_, std::try_to_lock);
+    if (lock && !progress_(static_cast<double>(done_) / static_cast<double>(count_))) stopped_ = true;
+    return !stopped_;
+  }
+  bool stopped() const { return stopped_; }
+
+ private:
+  std::int64_t count_;
+  const std::function<void(std::int64_t, std::int64_t)>& body_;
+  const Progress& progress_;
+  std::atomic<std::int64_t> done_{0};
+  std::atomic<bool> stopped_{false};
+  std::mutex reporting_;
+};
+
+void run_on_all_threads(std::int64_t count, std::int64_t grain, Pieces& pieces) {
+  tbb::task_group_context context;
+  HandOver hand_over;
+  tbb::parallel_for(
+      tbb::blocked_range<std::int64_t>(0, count, static_cast<std::size_t>(grain)),
+      [&](const tbb::blocked_range<std::int64_t>& range) {
+        hand_over.enter_piece();
+        if (!pieces.run(range.begin(), range.end())) context.cancel_group_execution();
+        hand_over.leave_piece();
+      },
+      tbb::simple_partitioner(), context);
+}
+
+void run_on(Executor& executor, std::int64_t count, std::int64_t grain, Pieces& pieces) {
+  std::atomic<bool> over{false};
+  std::exception_ptr thrown;
+  std::mutex throwing;
+  executor.run((count - 1) / grain + 1, [&](std::int64_t piece) {
+    if (over) return;
+    // Loops within the piece run in its thread.
+    const ExecutorScope own(caller_thread());
+    try {
+      if (!pieces.run(piece * grain, std::min(count, (piece + 1) * grain))) over = true;
+    } catch (...) {
+      const std::scoped_lock lock(throwing);
+      if (!thrown) thrown = std::current_exception();
+      over = true;
+    }
+  });
+  if (thrown) std::rethrow_exception(thrown);
+}
+
 }  // namespace
 
 void parallel_for(std::int64_t count, std::int64_t grain, const std::function<void(std::int64_t, std::int64_t)>& body,
@@ -49,34 +112,16 @@ void parallel_for(std::int64_t count, std::int64_t grain, const std::function<vo
   if (count <= 0) return;
   // A single piece runs here: no other thread need wake.
   if (count <= grain && !progress) return body(0, count);
-  tbb::task_group_context context;
-  std::atomic<std::int64_t> done{0};
-  std::atomic<bool> stopped{false};
-  std::mutex reporting;
-  const auto run_piece = [&](std::int64_t begin, std::int64_t end) {
-    body(begin, end);
-    if (!progress) return;
-    done += end - begin;
-    // A thread that finds another one reporting skips its report instead of waiting. The fraction is read under the
-    // lock; otherwise an older value could follow a newer one.
-    const std::unique_lock<std::mutex> lock(reporting, std::try_to_lock);
-    if (lock && !progress(static_cast<double>(done) / static_cast<double>(count))) {
-      stopped = true;
-      context.cancel_group_execution();
-    }
-  };
-  {
-    HandOver hand_over;
-    tbb::parallel_for(
-        tbb::blocked_range<std::int64_t>(0, count, static_cast<std::size_t>(grain)),
-        [&](const tbb::blocked_range<std::int64_t>& range) {
-          hand_over.enter_piece();
-          run_piece(range.begin(), range.end());
-          hand_over.leave_piece();
-        },
-        tbb::simple_partitioner(), context);
+  Pieces pieces(count, body, progress);
+  Executor* const executor = current_executor();
+  if (executor && count > grain) {
+    run_on(*executor, count, grain, pieces);
+  } else if (executor) {
+    pieces.run(0, count);
+  } else {
+    run_on_all_threads(count, grain, pieces);
   }
-  if (stopped) throw Interrupted();
+  if (pieces.stopped()) throw Interrupted();
   if (progress && !progress(1.0)) throw Interrupted();
 }
 

@@ -6,15 +6,17 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <limits>
 #include <string_view>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/scene/valid_rays.h"
 
 namespace scarp {
 namespace {
 
-constexpr std::int64_t kRaysPerCheck = 8192;
+constexpr std::int64_t kRaysPerCheck = 8192, kPointsPerPiece = 1024;
 
 // True only for rays that validate() accepts: nearly all that it accepts, at a fraction of its cost. Sums of numbers
 // are finite only if the numbers are.
@@ -40,8 +42,10 @@ bool is_valid(const Ray& ray, const Hit* from, const Scene& scene) {
   }
 }
 
-// Throws for the first ray that cannot be followed, whichever the threads find first.
-void require_valid(std::span<const Ray> rays, std::span<const Hit* const> from, const Scene& scene) {
+}  // namespace
+
+void require_valid(std::span<const Ray> rays, std::span<const Hit* const> from, const Scene& scene, std::size_t first,
+                   std::size_t all) {
   if (!from.empty() && from.size() != rays.size())
     throw Error(fmt::format("batch: {} rays, {} hits to start from", rays.size(), from.size()));
   const auto from_of = [&](std::int64_t i) { return from.empty() ? nullptr : from[static_cast<std::size_t>(i)]; };
@@ -61,11 +65,9 @@ void require_valid(std::span<const Ray> rays, std::span<const Hit* const> from, 
   } catch (const Error& error) {
     std::string_view what = error.what();
     if (what.starts_with("ray: ")) what.remove_prefix(5);
-    throw Error(fmt::format("ray {} of {}: {}", first_bad.load(), count, what));
+    throw Error(fmt::format("ray {} of {}: {}", first + static_cast<std::size_t>(first_bad.load()), all, what));
   }
 }
-
-}  // namespace
 
 Hit cast(const Scene& scene, const Ray& ray, const Hit* from) {
   require_valid(ray, from, scene);
@@ -73,7 +75,7 @@ Hit cast(const Scene& scene, const Ray& ray, const Hit* from) {
 }
 
 void cast(const Scene& scene, std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) {
-  require_valid(rays, from, scene);
+  require_valid(rays, from, scene, 0, rays.size());
   scene.closest_hits(rays, hits, {}, from);
 }
 
@@ -84,8 +86,17 @@ bool occluded(const Scene& scene, const Ray& ray, const Hit* from) {
 
 void occluded(const Scene& scene, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
               std::span<const Hit* const> from) {
-  require_valid(rays, from, scene);
+  require_valid(rays, from, scene, 0, rays.size());
   scene.occluded(rays, blocked, from);
+}
+
+void heights_at(const Scene& scene, std::span<const double> xs, std::span<const double> ys, std::span<double> heights) {
+  if (ys.size() != xs.size() || heights.size() != xs.size())
+    throw Error(fmt::format("heights: {} x, {} y, room for {} heights", xs.size(), ys.size(), heights.size()));
+  parallel_for(static_cast<std::int64_t>(xs.size()), kPointsPerPiece, [&](std::int64_t begin, std::int64_t end) {
+    for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+      heights[i] = scene.height(xs[i], ys[i]).value_or(std::numeric_limits<double>::quiet_NaN());
+  });
 }
 
 }  // namespace scarp

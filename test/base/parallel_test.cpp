@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "scarp/base/error.h"
+#include "scarp/base/executor.h"
 
 namespace scarp {
 namespace {
@@ -121,6 +122,89 @@ TEST(ParallelFor, StopsWithInterruptedAtTheVeryLastReport) {
   EXPECT_THROW(parallel_for(
                    10, 1, [](std::int64_t, std::int64_t) {}, [](double share) { return share < 1.0; }),
                Interrupted);
+}
+
+// A pool as an engine has one: threads that are always there, each with every second piece or so.
+class Pool final : public Executor {
+ public:
+  void run(std::int64_t pieces, const std::function<void(std::int64_t)>& piece) override {
+    ++runs;
+    std::atomic<std::int64_t> next{0};
+    const auto work = [&] {
+      in_pool = true;
+      for (std::int64_t i = next++; i < pieces; i = next++) piece(i);
+    };
+    std::thread one(work), two(work);
+    one.join();
+    two.join();
+  }
+  std::atomic<int> runs{0};
+  static thread_local bool in_pool;
+};
+thread_local bool Pool::in_pool = false;
+
+TEST(Executor, RunsEveryPieceOnceAndNowhereElse) {
+  Pool pool;
+  const ExecutorScope scope(pool);
+  std::vector<std::atomic<int>> visits(1009);
+  std::atomic<int> elsewhere{0}, nested{0};
+  parallel_for(1009, 10, [&](std::int64_t begin, std::int64_t end) {
+    elsewhere += !Pool::in_pool;
+    const auto here = std::this_thread::get_id();
+    parallel_for(100, 7, [&](std::int64_t b, std::int64_t e) {
+      elsewhere += std::this_thread::get_id() != here;
+      nested += static_cast<int>(e - b);
+    });
+    for (std::int64_t i = begin; i < end; ++i) ++visits.at(static_cast<std::size_t>(i));
+  });
+  EXPECT_TRUE(std::all_of(visits.begin(), visits.end(), [](const std::atomic<int>& v) { return v == 1; }));
+  EXPECT_EQ(elsewhere, 0);
+  EXPECT_EQ(nested, 101 * 100);
+  EXPECT_EQ(pool.runs, 1);
+}
+
+TEST(Executor, BelongsToTheThreadAndTheScope) {
+  Pool pool;
+  EXPECT_EQ(current_executor(), nullptr);
+  {
+    const ExecutorScope scope(pool);
+    const ExecutorScope inner(caller_thread());
+    EXPECT_EQ(current_executor(), &caller_thread());
+    std::thread([] { EXPECT_EQ(current_executor(), nullptr); }).join();
+    const auto here = std::this_thread::get_id();
+    std::int64_t next = 0;
+    parallel_for(1000, 10, [&](std::int64_t begin, std::int64_t end) {
+      EXPECT_EQ(std::this_thread::get_id(), here);
+      EXPECT_EQ(begin, next);
+      next = end;
+    });
+    EXPECT_EQ(next, 1000);
+  }
+  EXPECT_EQ(current_executor(), nullptr);
+  EXPECT_EQ(pool.runs, 0);
+}
+
+TEST(Executor, LetsExceptionsAndInterruptionsThrough) {
+  Pool pool;
+  const ExecutorScope scope(pool);
+  EXPECT_THROW(parallel_for(1000, 10,
+                            [](std::int64_t begin, std::int64_t) {
+                              if (begin == 500) throw std::out_of_range("piece 500");
+                            }),
+               std::out_of_range);
+  std::atomic<int> pieces{0};
+  EXPECT_THROW(parallel_for(
+                   100000, 1, [&](std::int64_t, std::int64_t) { ++pieces; }, [](double) { return false; }),
+               Interrupted);
+  EXPECT_LT(pieces, 100000);
+  std::vector<double> shares;
+  parallel_for(
+      10, 10, [](std::int64_t, std::int64_t) {},
+      [&](double share) {
+        shares.push_back(share);
+        return true;
+      });
+  EXPECT_EQ(shares.back(), 1.0);
 }
 
 TEST(ThreadLimit, OfOneRunsOnePieceAtATime) {
