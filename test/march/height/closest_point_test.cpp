@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// The closest point of the ground, against the distances to many points of every cell.
+#include "scarp/march/height/closest_point.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "base/refusal.h"
+#include "march/height/spiteful.h"
+
+namespace scarp::test {
+namespace {
+
+// Distance from p to a segment.
+double to_segment(const dvec3& p, const dvec3& a, const dvec3& b) {
+  const double along = std::clamp(dot(p - a, b - a) / dot(b - a, b - a), 0.0, 1.0);
+  return length(a + along * (b - a) - p);
+}
+
+// Distance to a triangle: to its plane where the foot is inside, else to its nearest side.
+double to_triangle(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c) {
+  const dvec3 n = cross(b - a, c - a);
+  const bool inside =
+      dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
+  if (inside) return std::abs(dot(p - a, n)) / length(n);
+  return std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
+}
+
+// Distance to all cells, each split into parts x parts pieces of two triangles.
+double by_force(const HeightField& field, const dvec3& p, int parts) {
+  double best = std::numeric_limits<double>::infinity();
+  for (int row = 0; row < field.cell_rows(); ++row) {
+    for (int col = 0; col < field.cell_cols(); ++col) {
+      const auto h = field.cell_heights({col, row});
+      if (!h) continue;
+      const auto at = [&](int i, int j) {
+        const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
+        return field.world_from_grid(col + u, row + v, height_in_cell(field.settings().surface, *h, u, v));
+      };
+      for (int i = 0; i < parts; ++i) {
+        for (int j = 0; j < parts; ++j)
+          best = std::min({best, to_triangle(p, at(i, j), at(i, j + 1), at(i + 1, j)),
+                           to_triangle(p, at(i + 1, j + 1), at(i + 1, j), at(i, j + 1))});
+      }
+    }
+  }
+  return best;
+}
+
+HeightField rough(Random& random, Surface surface, double hole_share) {
+  const int cols = whole(random, 2, 20), rows = whole(random, 2, 20);
+  std::vector<float> samples;
+  for (int i = 0; i < cols * rows; ++i)
+    samples.push_back(uniform(random, 0, 1) < hole_share ? std::numeric_limits<float>::quiet_NaN()
+                                                         : static_cast<float>(uniform(random, -3, 3)));
+  return HeightField::own(
+      samples, cols, rows,
+      {.cell_x = uniform(random, 0.3, 2), .cell_y = uniform(random, 0.3, 2), .offset = 10, .surface = surface});
+}
+
+TEST(ClosestPoint, IsThatOfAllTriangles) {
+  Random random(2);
+  for (int round = 0; round < 60; ++round) {
+    const HeightField field = rough(random, Surface::triangles, round % 3 ? 0.05 : 0);
+    const MaxPyramid pyramid(field);
+    for (int i = 0; i < 30; ++i) {
+      const dvec3 p(uniform(random, -5, field.width() + 5), uniform(random, -5, field.depth() + 5),
+                    uniform(random, 0, 25));
+      const auto found = closest_point({&field, &pyramid}, p);
+      const double expected = by_force(field, p, 1);
+      ASSERT_EQ(found.has_value(), std::isfinite(expected));
+      if (!found) continue;
+      EXPECT_NEAR(found->distance, expected, 1e-12 * (1 + expected));
+      EXPECT_NEAR(length(found->point - p), found->distance, 1e-12 * (1 + expected));
+      EXPECT_NEAR(field.height_from_sample(
+                      height_in_cell(Surface::triangles, *field.cell_heights(found->cell), found->u, found->v)),
+                  found->point.z, 1e-9);
+      // A limit just below and above.
+      EXPECT_FALSE(closest_point({&field, &pyramid}, p, expected * (1 - 1e-9)));
+      EXPECT_TRUE(closest_point({&field, &pyramid}, p, expected * (1 + 1e-9)));
+    }
+  }
+}
+
+TEST(ClosestPoint, IsWithinItsBoundForBilinearCells) {
+  Random random(3);
+  constexpr int kParts = 16;
+  for (int round = 0; round < 30; ++round) {
+    const HeightField field = rough(random, Surface::bilinear, round % 3 ? 0.05 : 0);
+    const MaxPyramid pyramid(field);
+    // Pieces of a cell are this far from it: a quarter of their twist, which is at most 4 times the relief of 6 m.
+    const double off = 0.25 * 24 / (kParts * kParts),
+                 bound = 0x1p-20 * std::min(field.settings().cell_x, field.settings().cell_y);
+    for (int i = 0; i < 20; ++i) {
+      const dvec3 p(uniform(random, -3, field.width() + 3), uniform(random, -3, field.depth() + 3),
+                    uniform(random, 5, 15));
+      const auto found = closest_point({&field, &pyramid}, p);
+      const double pieces = by_force(field, p, kParts);
+      ASSERT_EQ(found.has_value(), std::isfinite(pieces));
+      if (!found) continue;
+      EXPECT_LE(found->distance, pieces + off + bound);
+      EXPECT_GE(found->distance, pieces - off);
+      EXPECT_EQ(found->distance, length(found->point - p));
+      // On the surface.
+      EXPECT_NEAR(field.height_from_sample(
+                      height_in_cell(Surface::bilinear, *field.cell_heights(found->cell), found->u, found->v)),
+                  found->point.z, 1e-12);
+      // No point of the cell or its neighbours beside it is closer by more than the bound.
+      for (int j = 0; j < 200; ++j) {
+        const double x = found->point.x + uniform(random, -0.01, 0.01),
+                     y = found->point.y + uniform(random, -0.01, 0.01);
+        if (const auto z = field.height(x, y)) {
+          EXPECT_GE(length(dvec3(x, y, *z) - p), found->distance - bound);
+        }
+      }
+    }
+  }
+}
+
+TEST(ClosestPoint, RefusesWhatItCannotAnswer) {
+  const std::vector<float> flat(25, 1.0f);
+  const HeightField wrapped = HeightField::own(flat, 5, 5, {.wrap = Wrap::periodic}),
+                    field = HeightField::own(flat, 5, 5);
+  const MaxPyramid pyramid(wrapped);
+  EXPECT_NE(refusal([&] { closest_point({&wrapped, &pyramid}, dvec3(0.0)); }), "");
+  EXPECT_NE(refusal([&] { closest_point({&field}, dvec3(0.0)); }), "");
+  const HeightField line = HeightField::own(std::vector<float>(5), 5, 1);
+  const MaxPyramid none(line);
+  EXPECT_FALSE(closest_point({&line, &none}, dvec3(0.0)));
+}
+
+}  // namespace
+}  // namespace scarp::test
