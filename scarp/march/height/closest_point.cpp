@@ -12,7 +12,7 @@
 namespace scarp {
 namespace {
 
-// A bilinear cell is split until two triangles are this close to it, as a share of the shorter side of a cell.
+// A bilinear cell is split until two triangles are within half of this of it, as a share of the shorter side of a cell.
 constexpr double kFlat = 0x1p-20;
 
 double square(double x) { return x * x; }
@@ -116,7 +116,8 @@ class Search {
     const bool bilinear = field_.settings().surface == Surface::bilinear;
     // In the middle of the diagonal, where two triangles are farthest from the patch.
     const double off = bilinear ? 0.25 * std::abs(nw.z + se.z - ne.z - sw.z) : 0;
-    const bool flat = off <= kFlat * std::min(cell_x_, cell_y_);
+    // Both the point that is found and the closest one are within that of the triangles.
+    const bool flat = 2 * off <= kFlat * std::min(cell_x_, cell_y_);
     double nearest = std::numeric_limits<double>::infinity();
     for (const auto& [a, b, c] : {std::array{nw, sw, ne}, std::array{se, ne, sw}}) {
       const dvec3 q = closest_of_triangle(p_, a, b, c);

@@ -87,7 +87,7 @@ TEST(ClosestPoint, IsThatOfAllTriangles) {
 
 TEST(ClosestPoint, IsWithinItsBoundForBilinearCells) {
   Random random(3);
-  constexpr int kParts = 16;
+  constexpr int kParts = 6;
   for (int round = 0; round < 30; ++round) {
     const HeightField field = rough(random, Surface::bilinear, round % 3 ? 0.05 : 0);
     const MaxPyramid pyramid(field);
