@@ -28,7 +28,7 @@ struct RayArrays {
   std::span<const std::uint32_t> start_object{};  ///< objects of these cells; empty: object 0
 };
 
-/// What is wanted of the hits: spans as long as the rays, or empty. Where a ray hits nothing, t is infinite, the normal
+/// The members of hits to write: spans as long as the rays, or empty. Without a hit, t is infinite, the normal
 /// zero, and all others are 0, except cells, which are -1.
 struct HitArrays {
   std::span<float> t{};
