@@ -88,7 +88,7 @@ TEST(ClosestPoint, IsThatOfAllTriangles) {
 TEST(ClosestPoint, IsWithinItsBoundForBilinearCells) {
   Random random(3);
   constexpr int kParts = 6;
-  for (int round = 0; round < 30; ++round) {
+  for (int round = 0; round < 12; ++round) {
     const HeightField field = rough(random, Surface::bilinear, round % 3 ? 0.05 : 0);
     const MaxPyramid pyramid(field);
     // Pieces of a cell are this far from it: a quarter of their twist, which is at most 4 times the relief of 6 m.
