@@ -174,6 +174,13 @@ struct ScenesOptions {
   int repeats = 5;
 };
 void run_scenes(const ScenesOptions& options, const ReportOptions& report);
+/// `seams`: rays at the lines where height fields meet.
+struct SeamsOptions {
+  std::int64_t rays = 10'000'000;
+  std::uint64_t seed = 1;
+};
+/// Throws Error, after the report, if a ray is lost.
+void run_seams(const SeamsOptions& options, const ReportOptions& report);
 /// `render`: frames of the look `comanche`.
 struct FramesOptions {
   int period = 1024;  ///< samples from repetition to repetition, even, 64..8192

@@ -340,6 +340,12 @@ int run(int argc, char** argv) {
   scenes_command->add_option("--rays", scenes.rays, "per pass")->check(CLI::Range(1, 1 << 28))->capture_default_str();
   scenes_command->add_option("--repeats", scenes.repeats, "passes")->check(CLI::Range(1, 1000))->capture_default_str();
   add_json_option(*scenes_command, report);
+  SeamsOptions seams;
+  CLI::App* seams_command =
+      app.add_subcommand("seams", "rays at the lines where height fields meet: how many are lost");
+  seams_command->add_option("--rays", seams.rays, "in all")->check(number_in({1, 1e15}))->capture_default_str();
+  seams_command->add_option("--seed", seams.seed, "of terrains and rays")->capture_default_str();
+  add_json_option(*seams_command, report);
   FramesOptions frames;
   CLI::App* frames_command =
       app.add_subcommand("render", "frames of the look comanche over endless ground: milliseconds and wrong pixels");
@@ -467,6 +473,7 @@ int run(int argc, char** argv) {
   if (*pixel_match_command) run_pixel_match(pixel_match, report);
   if (*edits_command) run_edits(edits, report);
   if (*scenes_command) run_scenes(scenes, report);
+  if (*seams_command) run_seams(seams, report);
   if (*frames_command) run_frames(frames, report);
   if (*functions_command) run_functions(functions, report);
   if (*function_leaks_command) run_function_leaks(function_leaks, report);
