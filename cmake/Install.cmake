@@ -16,10 +16,12 @@ add_library(scarp::core ALIAS scarp_core)
 set_target_properties(scarp_core PROPERTIES EXPORT_NAME core)
 target_link_libraries(scarp_core INTERFACE ${core_stations})
 
-add_library(scarp_scarp INTERFACE)
-add_library(scarp::scarp ALIAS scarp_scarp)
-set_target_properties(scarp_scarp PROPERTIES EXPORT_NAME scarp)
-target_link_libraries(scarp_scarp INTERFACE scarp_core ${other_stations})
+if(SCARP_FILES)
+  add_library(scarp_scarp INTERFACE)
+  add_library(scarp::scarp ALIAS scarp_scarp)
+  set_target_properties(scarp_scarp PROPERTIES EXPORT_NAME scarp)
+  target_link_libraries(scarp_scarp INTERFACE scarp_core ${other_stations})
+endif()
 
 # A project that adds Scarp as a subfolder installs its own things, not ours.
 if(NOT PROJECT_IS_TOP_LEVEL)
@@ -27,10 +29,18 @@ if(NOT PROJECT_IS_TOP_LEVEL)
 endif()
 
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/scarp)
-install(TARGETS ${core_stations} scarp_core EXPORT scarp-core FILE_SET HEADERS)
-install(TARGETS ${other_stations} scarp_scarp EXPORT scarp-scarp FILE_SET HEADERS)
+# Components, each installed by itself with cmake --install BUILD --component NAME once its targets are built: core,
+# files (the rest of the library), app (the command line). A component without a file is installed with core.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME core)
+install(TARGETS ${core_stations} scarp_core EXPORT scarp-core FILE_SET HEADERS FILE_SET version)
 install(EXPORT scarp-core FILE scarp-core-targets.cmake NAMESPACE scarp:: DESTINATION ${package_folder})
-install(EXPORT scarp-scarp FILE scarp-scarp-targets.cmake NAMESPACE scarp:: DESTINATION ${package_folder})
+if(SCARP_FILES)
+  install(TARGETS ${other_stations} scarp_scarp EXPORT scarp-scarp FILE_SET HEADERS COMPONENT files
+          ARCHIVE COMPONENT files LIBRARY COMPONENT files)
+  install(EXPORT scarp-scarp FILE scarp-scarp-targets.cmake NAMESPACE scarp:: DESTINATION ${package_folder} COMPONENT files)
+endif()
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+include(PkgConfig)
 
 configure_package_config_file(cmake/scarp-config.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake
                               INSTALL_DESTINATION ${package_folder})
@@ -80,10 +90,10 @@ install(FILES scarp/scene/file/scene.schema.json DESTINATION ${CMAKE_INSTALL_DAT
 # The command line's target comes into being after this file was read.
 function(scarp_install_app)
   if(TARGET scarp)
-    install(TARGETS scarp)
+    install(TARGETS scarp COMPONENT app)
   endif()
   if(TARGET scarp_share)
-    install(DIRECTORY ${PROJECT_BINARY_DIR}/app/cli/share/ DESTINATION ${CMAKE_INSTALL_DATADIR})
+    install(DIRECTORY ${PROJECT_BINARY_DIR}/app/cli/share/ DESTINATION ${CMAKE_INSTALL_DATADIR} COMPONENT app)
   endif()
 endfunction()
 cmake_language(DEFER CALL scarp_install_app)

@@ -62,9 +62,15 @@ endfunction()
 # One library per station of the data's way: target scarp_NAME, exported as scarp::NAME. STATIONS are the stations it may see.
 function(scarp_station name)
   cmake_parse_arguments(arg "" "" "SOURCES;HEADERS;STATIONS;PUBLIC_LIBRARIES;LIBRARIES" ${ARGN})
-  add_library(scarp_${name} STATIC ${arg_SOURCES})
+  add_library(scarp_${name} ${arg_SOURCES})
   add_library(scarp::${name} ALIAS scarp_${name})
-  set_target_properties(scarp_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(scarp_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+                        VISIBILITY_INLINES_HIDDEN ON VERSION ${PROJECT_VERSION}
+                        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  if(NOT BUILD_SHARED_LIBS)
+    # A plug-in that links the archives exports none of their symbols.
+    set_target_properties(scarp_${name} PROPERTIES CXX_VISIBILITY_PRESET hidden)
+  endif()
   target_sources(scarp_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})
   list(TRANSFORM arg_STATIONS PREPEND scarp_)
   target_link_libraries(scarp_${name} PUBLIC ${arg_STATIONS} ${arg_PUBLIC_LIBRARIES} PRIVATE ${arg_LIBRARIES})

@@ -24,6 +24,7 @@
 #include <span>
 #include <vector>
 
+#include "scarp/base/four_floats.h"
 #include "scarp/base/ray.h"
 #include "scarp/base/world_box.h"
 
@@ -68,8 +69,7 @@ class BoxTree {
   // With one level per split, at most 32 of them unbalanced and 32 in halves.
   static constexpr int kMaxDepth = 64;
 
-  // Four numbers in one register: the vectors of GCC and clang, whose operators work number by number.
-  using Four = float __attribute__((vector_size(16)));
+  using Four = FourFloats;
 
   struct Node {
     std::array<Four, 3> low, high;           // per axis; low above high where there is no child
@@ -167,13 +167,13 @@ void BoxTree::traverse(const Beam& beam, const Visit& visit) const {
     for (int i = 0; i < 3; ++i) {
       const Beam::Axis& axis = beam.axes[i];
       const Four up = (node.low[i] - axis.high) * axis.per_up, down = (axis.low - node.high[i]) * axis.per_down;
-      if (axis.way != Beam::Way::down) near = near > up ? near : up;
-      if (axis.way != Beam::Way::up) near = near > down ? near : down;
+      if (axis.way != Beam::Way::down) near = greater_of(near, up);
+      if (axis.way != Beam::Way::up) near = greater_of(near, down);
       if (axis.way == Beam::Way::both) continue;
       const Four out = (axis.way == Beam::Way::up ? node.high[i] - axis.low : axis.high - node.low[i]) * axis.per_least;
-      far = far < out ? far : out;
+      far = lesser_of(far, out);
     }
-    push(node, near <= far, near, stack, size);
+    push(node, not_above(near, far), near, stack, size);
   }
 }
 
@@ -215,10 +215,10 @@ void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
     for (int axis = 0; axis < 3; ++axis) {
       const Four in = ((down[axis] ? node.high : node.low)[axis] - origin[axis]) * inwards[axis];
       const Four out = ((down[axis] ? node.low : node.high)[axis] - origin[axis]) * outwards[axis];
-      near = near > in ? near : in;
-      far = far < out ? far : out;
+      near = greater_of(near, in);
+      far = lesser_of(far, out);
     }
-    push(node, near <= far, near, stack, size);
+    push(node, not_above(near, far), near, stack, size);
   }
 }
 

@@ -9,6 +9,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/prefetch.h"
 #include "scarp/march/height/ground_order.h"
 
 namespace scarp {
@@ -26,9 +27,9 @@ void require_same_length(std::size_t rays, std::size_t answers) {
 
 bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-void prefetch(const Ray& ray) {
-  __builtin_prefetch(&ray);
-  __builtin_prefetch(reinterpret_cast<const char*>(&ray) + 64);  // the next cache line
+void prefetch_ray(const Ray& ray) {
+  prefetch(&ray);
+  prefetch(reinterpret_cast<const char*>(&ray) + 64);  // the next cache line
 }
 
 // Calls body(first, order) for pieces of the rays on all threads: answer those from `first` on, or, where `order` is
@@ -57,7 +58,7 @@ void for_each_ray(const HeightField& field, std::span<const Ray> rays, const Ans
                  [&](std::size_t first, std::size_t count, std::span<const std::uint32_t> order) {
                    for (std::size_t i = 0; i < count; ++i) {
                      // In another order than they lie, rays have to be sent for early.
-                     if (i + kAhead < order.size()) prefetch(rays[first + order[i + kAhead]]);
+                     if (i + kAhead < order.size()) prefetch_ray(rays[first + order[i + kAhead]]);
                      answer(first + (order.empty() ? i : order[i]));
                    }
                  });
@@ -74,7 +75,7 @@ void in_vectors(const HeightField& field, std::span<const Ray> rays, std::span<R
     std::vector<Ray> ordered(count);
     std::vector<Result> answers(count);
     for (std::size_t i = 0; i < count; ++i) {
-      if (i + kAhead < count) prefetch(rays[first + order[i + kAhead]]);
+      if (i + kAhead < count) prefetch_ray(rays[first + order[i + kAhead]]);
       ordered[i] = rays[first + order[i]];
     }
     answer(ordered, answers);
