@@ -26,6 +26,38 @@ outside(core -D CMAKE_DISABLE_FIND_PACKAGE_GDAL=ON -D CMAKE_DISABLE_FIND_PACKAGE
         -D CMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON -D CMAKE_DISABLE_FIND_PACKAGE_Vulkan=ON)
 outside(scarp)
 
+# The same programs by pkg-config.
+find_program(PKG_CONFIG pkg-config)
+if(PKG_CONFIG)
+  file(GLOB_RECURSE pc_file ${WORK}/prefix/*/scarp-core.pc)
+  cmake_path(GET pc_file PARENT_PATH pc_folder)
+  foreach(pair core:scarp-core scarp:scarp)
+    string(REGEX REPLACE ":.*" "" program ${pair})
+    string(REGEX REPLACE ".*:" "" package ${pair})
+    execute_process(COMMAND ${CMAKE_COMMAND} -E env PKG_CONFIG_PATH=${pc_folder} ${PKG_CONFIG} --cflags --libs ${package}
+                    OUTPUT_VARIABLE flags OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+    separate_arguments(flags)
+    run(${CXX} -std=c++20 ${ROOT}/test/house/outside/${program}.cpp -o ${WORK}/by_pkg_config_${program} ${flags})
+  endforeach()
+endif()
+
+# Every installed header, with the warnings that careful programs use, by the compilers that are here.
+file(GLOB_RECURSE installed RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/*.h)
+list(FILTER installed EXCLUDE REGEX "\\.glsl\\.h$|glsl_cpp\\.h$")
+set(every_header "")
+foreach(header IN LISTS installed)
+  string(APPEND every_header "#include \"${header}\"\n")
+endforeach()
+file(WRITE ${WORK}/every_header.cpp "${every_header}")
+foreach(compiler g++ clang++)
+  find_program(${compiler}_PATH ${compiler})
+  if(${compiler}_PATH)
+    # clang counts changes of sign as conversions, g++ does not; indices of type int are many in these headers.
+    run(${${compiler}_PATH} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
+        -I ${WORK}/prefix/include ${WORK}/every_header.cpp)
+  endif()
+endforeach()
+
 # What scarp.h declares and scarp::core lacks is named by the linker.
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/core --target outside_door OUTPUT_VARIABLE output ERROR_VARIABLE output
                 RESULT_VARIABLE status)
