@@ -6,7 +6,7 @@ include(CMakePackageConfigHelpers)
 
 set(core_stations scarp_base scarp_field scarp_accel scarp_march scarp_scene)
 if(SCARP_VULKAN)
-  list(APPEND core_stations scarp_vk)
+  list(INSERT core_stations 1 scarp_vk)  # before those that see it
 endif()
 get_property(other_stations GLOBAL PROPERTY SCARP_STATIONS)
 list(REMOVE_ITEM other_stations ${core_stations})
