@@ -25,6 +25,7 @@ Scene combine(const std::vector<ScenePart>& parts) {
       object.field = place->second;
       object.placement = placed(part.placement, object.placement);
       if (part.material) object.material = *part.material;
+      if (part.mask) object.mask = *part.mask;
       objects.push_back(object);
     }
   }

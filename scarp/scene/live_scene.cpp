@@ -200,6 +200,13 @@ void LiveScene::Editor::move(std::uint32_t object, const Placement& placement) {
   state.change(object);
 }
 
+void LiveScene::Editor::set_mask(std::uint32_t object, std::uint32_t mask) {
+  State& state = *live_.state_;
+  state.require_exists(object);
+  if (mask == 0) throw Error(fmt::format("scene: object {}: its mask is 0, so no query would see it", object));
+  state.scene.objects_[object].mask = mask;
+}
+
 void LiveScene::Editor::remove(std::uint32_t object) {
   State& state = *live_.state_;
   state.require_exists(object);

@@ -75,6 +75,8 @@ class LiveScene {
     std::uint32_t add(const Scene& part, const Placement& placement = {}, std::optional<std::uint32_t> material = {});
     /// Places an object. Throws Error if it does not exist, or for a placement as Scene's constructor does.
     void move(std::uint32_t object, const Placement& placement);
+    /// Sets the mask of an object (SceneObject::mask). Throws Error if it does not exist or the mask is 0.
+    void set_mask(std::uint32_t object, std::uint32_t mask);
     /// Removes an object, and its field unless another object has it. Throws Error if it does not exist.
     void remove(std::uint32_t object);
 

@@ -24,11 +24,20 @@ namespace {
 // Levels of voxels: a grid of 2,048 is a single one then.
 constexpr int kCoarsest = 11;
 
-void require_same_length(std::size_t rays, std::size_t answers) {
-  if (rays != answers) throw Error(fmt::format("batch: {} rays, room for {} answers", rays, answers));
+// Materials of cells and parts count from 1.
+std::uint32_t material_of(const SceneObject& object, int own) {
+  return own > 0 ? static_cast<std::uint32_t>(own - 1) : object.material;
+}
+
+void require_mask(std::uint32_t mask, std::size_t object) {
+  if (mask == 0) throw Error(fmt::format("scene: object {}: its mask is 0, so no query would see it", object));
 }
 
 }  // namespace
+
+void require_same_length(std::size_t rays, std::size_t answers) {
+  if (rays != answers) throw Error(fmt::format("batch: {} rays, room for {} answers", rays, answers));
+}
 
 Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects)
     : fields_(std::move(fields)), objects_(std::move(objects)) {
@@ -52,12 +61,13 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
                               fields_.size()));
     }
     require_placement(object.placement, index);
+    require_mask(object.mask, index);
   }
   std::vector<WorldBox> boxes(objects_.size());
   std::vector<std::uint32_t> in_tree;
   std::vector<std::pair<double, std::uint32_t>> batched;  // by how much there is of them
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
-    const auto& [field, material, placement] = objects_[i];
+    const auto& [field, material, placement, mask] = objects_[i];
     in_place_.push_back(placement.identity());
     if (field_extents[field]) box_ = around(box_, world_box(placement, *field_extents[field]));
     if (!field_boxes[field]) {
@@ -90,7 +100,7 @@ void Scene::unwatch_field(std::uint32_t index) {
 }
 
 // Before every ray query.
-inline void Scene::require_current() const {
+void Scene::require_current() const {
   const std::uint64_t edits = edits_of_all_fields.load(std::memory_order_relaxed);
   if (edits != seen_.value()) compare_edits(edits);
   if (!with_owner_.empty()) require_memory();
@@ -168,8 +178,12 @@ void Scene::take_hit(const Hit& hit, std::uint32_t object, Hit& best) const {
 }
 
 void Scene::trace(const StartedRay& ray, std::uint32_t object, Hit& best, MarchStats* stats) const {
+  if (!sees(ray.rules, objects_[object])) return;
   MarchStats march;
-  take_hit(field_of(object).closest_hit(local(ray, object, best), ray.from_on(object), stats ? &march : nullptr),
+  const Ray own = local(ray, object, best);
+  MarchStats* cost = stats ? &march : nullptr;
+  take_hit(about_hits(ray.rules) ? accepted_hit(ray, object, own, cost)
+                                 : field_of(object).closest_hit(own, ray.from_on(object), cost),
            object, best);
   if (!stats) return;
   stats->steps += march.steps, stats->level_changes += march.level_changes;
@@ -209,7 +223,24 @@ Hit Scene::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const
 }
 
 bool Scene::blocks(const StartedRay& ray, std::uint32_t object) const {
-  return !field_of(object).is_backdrop() && field_of(object).occluded(local(ray, object, {}), ray.from_on(object));
+  if (field_of(object).is_backdrop() || !sees(ray.rules, objects_[object])) return false;
+  const Ray own = local(ray, object, {});
+  if (about_hits(ray.rules)) return static_cast<bool>(accepted_hit(ray, object, own, nullptr));
+  return field_of(object).occluded(own, ray.from_on(object));
+}
+
+// `own` is the ray in the object's space.
+Hit Scene::accepted_hit(const StartedRay& ray, std::uint32_t object, const Ray& own, MarchStats* stats) const {
+  const SceneRules& rules = *ray.rules;
+  const HitFilter accept = [&](Hit hit) {
+    // No hit of the scene: see take_hit().
+    if (hit.wall && hit.height < walls_end_) return true;
+    hit.object = object;
+    return rules.accept(ray.ray, hit);
+  };
+  // A free ray by `own`, as the march of the field has it.
+  return field_of(object).accepted_hit(own, ray.from_on(object), {rules.sides, rules.accept ? &accept : nullptr},
+                                       stats);
 }
 
 bool Scene::tree_blocks(const StartedRay& ray) const {
@@ -228,19 +259,22 @@ bool Scene::occluded(const Ray& ray, const Hit* from) const {
     occluded_by_back_end({&ray, 1}, {&blocked, 1}, from ? From(&from, 1) : From());
     return blocked != 0;
   }
-  if (sole_) return field_of(sole_object_).occluded(ray, from);
-  const StartedRay started(ray, from);
-  return std::any_of(beside_tree_.begin(), beside_tree_.end(),
-                     [&](std::uint32_t object) { return blocks(started, object); }) ||
-         tree_blocks(started);
+  return sole_ ? field_of(sole_object_).occluded(ray, from) : any({ray, from});
 }
 
-void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits) const {
+bool Scene::any(const StartedRay& ray) const {
+  return std::any_of(beside_tree_.begin(), beside_tree_.end(),
+                     [&](std::uint32_t object) { return blocks(ray, object); }) ||
+         tree_blocks(ray);
+}
+
+void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits, const SceneRules* rules) const {
   std::vector<Ray> locals(rays.size());
   std::vector<const Hit*> on_object(from.size());
   std::vector<Hit> answers(rays.size());
   std::fill(hits.begin(), hits.end(), Hit{});
   for (const std::uint32_t object : beside_tree_) {
+    if (!sees(rules, objects_[object])) continue;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const StartedRay ray(rays, from, i);
       make_local(ray, object, hits[i], locals[i]);
@@ -250,21 +284,22 @@ void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit
     for (std::size_t i = 0; i < rays.size(); ++i) take_hit(answers[i], object, hits[i]);
   }
   if (tree_.empty()) return;
-  for (std::size_t i = 0; i < rays.size(); ++i) trace_tree({rays, from, i}, hits[i], nullptr);
+  for (std::size_t i = 0; i < rays.size(); ++i) trace_tree({rays, from, i, rules}, hits[i], nullptr);
 }
 
-void Scene::occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked) const {
+void Scene::occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked,
+                              const SceneRules* rules) const {
   // The tree first: what it blocks need not be followed over the ground.
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    blocked[i] = tree_blocks({rays, from, i});
+    blocked[i] = tree_blocks({rays, from, i, rules});
     if (!blocked[i]) open.push_back(i);
   }
   std::vector<Ray> locals;
   std::vector<const Hit*> on_object;
   std::vector<std::uint8_t> answers;
   for (const std::uint32_t object : beside_tree_) {
-    if (field_of(object).is_backdrop()) continue;
+    if (field_of(object).is_backdrop() || !sees(rules, objects_[object])) continue;
     locals.clear(), on_object.clear();
     for (const std::size_t i : open) {
       const StartedRay ray(rays, from, i);
@@ -325,8 +360,7 @@ SceneSurface Scene::placed_surface(std::uint32_t index, const FieldSurface& own,
   surface.normal = object.placement.world_from_normal(own.normal);
   surface.shading_normal = object.placement.world_from_normal(own.shading_normal);
   surface.object = index;
-  // Materials of parts count from 1.
-  surface.material = own.material > 0 ? static_cast<std::uint32_t>(own.material - 1) : object.material;
+  surface.material = material_of(object, own.material);
   surface.place = in_field;
   surface.colour = own.colour;
   surface.openness = own.openness;
@@ -339,6 +373,11 @@ SceneSurface Scene::placed_surface(std::uint32_t index, const FieldSurface& own,
 SceneSurface Scene::surface(const Ray& ray, const Hit& hit) const {
   const Ray local = objects_[hit.object].placement.field_from_world(ray);
   return placed_surface(hit.object, field_of(hit.object).surface(local, hit), ray.at(hit.t), local.at(hit.t));
+}
+
+std::uint32_t Scene::material(const Ray& ray, const Hit& hit) const {
+  const SceneObject& object = objects_[hit.object];
+  return material_of(object, field_of(hit.object).material(object.placement.field_from_world(ray), hit));
 }
 
 std::optional<SceneSurface> Scene::within(const dvec3& p) const {

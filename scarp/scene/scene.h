@@ -35,7 +35,19 @@ struct SceneObject {
   std::uint32_t field = 0;     ///< index into Scene::fields()
   std::uint32_t material = 0;  ///< returned in SceneSurface; index into PictureSettings::materials
   Placement placement{};
+  std::uint32_t mask = 1;  ///< not 0; queries with a mask (Scene::query()) see the object if both share a bit
 };
+
+/// Which objects and hits count in a query.
+struct SceneRules {
+  std::uint32_t mask = ~std::uint32_t{0};  ///< objects count whose mask shares a bit with it
+  Sides sides = Sides::above;              ///< of height fields and tiles; all other objects are hit from outside
+  /// Returns whether a hit counts; where it does not, the ray goes on. Called with the ray of the query for some or all
+  /// hits on its way, not always in order of t; in batches from many threads at once. Null: all hits count.
+  std::function<bool(const Ray&, const Hit&)> accept{};
+};
+
+class SceneQuery;
 
 /// The surface at a hit, in world space.
 struct SceneSurface {
@@ -43,7 +55,7 @@ struct SceneSurface {
   dvec3 normal{0.0};          ///< unit, outward; zero for a ray that started inside a voxel
   dvec3 shading_normal{0.0};  ///< unit, outward, smooth; zero if `normal` is
   std::uint32_t object = 0;
-  std::uint32_t material = 0;         ///< SceneObject::material, or that of the part of a shape that was hit, less 1
+  std::uint32_t material = 0;         ///< SceneObject::material, or that of the cell or the part that was hit
   dvec3 place{0.0};                   ///< position in the object's own space
   std::optional<VoxelColour> colour;  ///< nullopt if the field has no colours
   double openness = 1;                ///< fraction of the sky that the object itself leaves open, 0..1
@@ -104,8 +116,14 @@ class Scene {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;
 
+  /// Returns the queries by rules: masks, sides, a filter. See scene_query.h.
+  SceneQuery query(SceneRules rules) const;
+
   /// Returns the surface at a hit of this ray: position, normals, material, colour.
   SceneSurface surface(const Ray& ray, const Hit& hit) const;
+
+  /// Returns SceneSurface::material of a hit, alone.
+  std::uint32_t material(const Ray& ray, const Hit& hit) const;
 
   /// Returns the surface of the first object that contains a point; see SceneField::within().
   std::optional<SceneSurface> within(const dvec3& p) const;
@@ -151,6 +169,7 @@ class Scene {
   using From = std::span<const Hit* const>;
 
   friend class LiveScene;
+  friend class SceneQuery;
 
   void watch_field(std::uint32_t index);
   void unwatch_field(std::uint32_t index);
@@ -174,8 +193,12 @@ class Scene {
   bool blocks(const StartedRay& ray, std::uint32_t object) const;
   bool tree_blocks(const StartedRay& ray) const;
   Hit closest(const StartedRay& ray, MarchStats* stats) const;
-  void closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits) const;
-  void occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked) const;
+  Hit accepted_hit(const StartedRay& ray, std::uint32_t object, const Ray& own, MarchStats* stats) const;
+  bool any(const StartedRay& ray) const;
+  void closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits,
+                        const SceneRules* rules = nullptr) const;
+  void occluded_of_piece(std::span<const Ray> rays, From from, std::span<std::uint8_t> blocked,
+                         const SceneRules* rules = nullptr) const;
 
   // One ray to trace against one object, for back ends.
   struct Pair {

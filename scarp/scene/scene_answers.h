@@ -12,14 +12,24 @@ struct Scene::StartedRay {
   const Ray& ray;
   bool own = true;
   const Hit* from = nullptr;
+  const SceneRules* rules = nullptr;  ///< null: all objects and hits count
 
-  StartedRay(const Ray& world_ray, const Hit* hit) : ray(world_ray), own(!hit), from(hit) {}
-  StartedRay(std::span<const Ray> rays, From hits, std::size_t i)
-      : ray(rays[i]), own(hits.empty()), from(own ? nullptr : hits[i]) {}
+  StartedRay(const Ray& world_ray, const Hit* hit, const SceneRules* scene_rules = nullptr)
+      : ray(world_ray), own(!hit), from(hit), rules(scene_rules) {}
+  StartedRay(std::span<const Ray> rays, From hits, std::size_t i, const SceneRules* scene_rules = nullptr)
+      : ray(rays[i]), own(hits.empty()), from(own ? nullptr : hits[i]), rules(scene_rules) {}
 
   /// Returns the hit on this object on which the ray starts, or null.
   const Hit* from_on(std::uint32_t object) const { return from && from->object == object ? from : nullptr; }
 };
+
+/// Whether a query by rules, or without, sees an object.
+inline bool sees(const SceneRules* rules, const SceneObject& object) {
+  return !rules || (rules->mask & object.mask) != 0;
+}
+
+/// Whether rules are about hits, not just about objects.
+inline bool about_hits(const SceneRules* rules) { return rules && (rules->sides != Sides::above || rules->accept); }
 
 /// Sets `local` to the ray in the object's space, ending at the best hit so far. Its start is valid if from_on() is
 /// null. Written in place: in batches a copy of each ray would cost as much as the rest.
@@ -43,6 +53,9 @@ inline Ray Scene::local(const StartedRay& started, std::uint32_t object, const H
   make_local(started, object, best, ray);
   return ray;
 }
+
+/// Throws Error unless the spans of a batch have the same length.
+void require_same_length(std::size_t rays, std::size_t answers);
 
 /// Replaces `best` if `hit` is better: closest hit first, then exhausted, below, miss.
 inline void take(const Hit& hit, std::uint32_t object, Hit& best) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/scene_field.h"
 
+#include <fmt/format.h>
+
+#include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/scene/scene_limits.h"
 
@@ -34,6 +37,15 @@ Ray SceneField::started(const Ray& ray, const Hit* from) const {
   Ray r = ray;
   r.start = from ? RayStart::on_surface : RayStart::free;
   return r;
+}
+
+Hit SceneField::accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const {
+  const Hit hit = closest_hit(ray, from, stats);
+  if (!hit || !rules.accept || (*rules.accept)(hit)) return hit;
+  throw Error(
+      fmt::format("scene: the filter rejected a hit on a {}, behind which {} cannot go on (leave the object out "
+                  "by its mask)",
+                  kind(), march()));
 }
 
 void SceneField::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const {

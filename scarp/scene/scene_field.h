@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "scarp/field/distance_field.h"
 #include "scarp/field/height_function.h"
@@ -31,7 +32,7 @@ struct FieldSurface {
   dvec3 normal{0.0};                    ///< unit, outward; zero for a ray that began inside
   dvec3 shading_normal{0.0};            ///< unit
   std::optional<VoxelColour> colour{};  ///< where the field has colours of its own
-  int material = 0;                     ///< of the part of a shape, as in distance_node.h; 0: that of the object
+  int material = 0;                     ///< of the cell or the part of a shape, plus 1; 0: that of the object
   double openness = 1;                  ///< share of the sky that is open, as far as the field knows by itself
   bool wall = false;                    ///< whether a wall of solid ground or of a plinth was hit
   /// z of the surface, where it is known to more digits than by the ray's point: a sea at 0 is at 0.
@@ -81,7 +82,12 @@ class SceneField {
   /// Whether closest_hit() would return a hit. Exceptions: functions with other octaves for shadows answer for that
   /// surface, and `from` voxels with smooth normals the ray begins above their steps.
   virtual bool occluded(const Ray& ray, const Hit* from) const = 0;
+  /// The closest hit that counts. The filter is called for hits as closest_hit() returns them. Fields other than height
+  /// fields and tiles have one side. By default throws Error if the filter rejects a hit: not every march can go on.
+  virtual Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const;
   virtual FieldSurface surface(const Ray& ray, const Hit& hit) const = 0;
+  /// FieldSurface::material.
+  virtual int material(const Ray& ray, const Hit& hit) const { return surface(ray, hit).material; }
 
   /// The field at a point below the ground, in the shape or in a solid voxel, surface included: normals of the surface
   /// above or nearest. Returns nullopt outside, beside the ground and in its holes.
@@ -127,6 +133,9 @@ class SceneField {
 
 using SceneFieldPtr = std::shared_ptr<const SceneField>;
 
+/// Materials of the cells of a height field, cell_cols() * cell_rows(), rows from north to south.
+using CellMaterials = std::shared_ptr<const std::vector<std::uint8_t>>;
+
 /// The field's height field; null for all other kinds.
 const HeightField* height_field_of(const SceneField& field);
 
@@ -140,8 +149,12 @@ enum class AnsweredBy : std::uint8_t {
 /// t_max. Throws Error for a setting out of its range.
 SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march = find_height_march("max-mip"),
                             const MarchSettings& settings = {}, AnsweredBy answered_by = AnsweredBy::cpu);
-/// The same with the march `max-mip` and the field's pyramid, which exists already; both are shared.
-SceneFieldPtr scene_heights(HeightField field, MaxPyramid pyramid);
+/// The same with the march `max-mip` and the field's pyramid, which exists already; both are shared. `materials` as in
+/// require_materials(), or null: the object's.
+SceneFieldPtr scene_heights(HeightField field, MaxPyramid pyramid, CellMaterials materials = nullptr);
+
+/// Throws Error unless there is one for each cell or the pointer is null.
+void require_materials(const HeightField& field, const CellMaterials& materials);
 
 /// `march` is a row of function_marches(). Throws Error for a setting out of its range.
 SceneFieldPtr scene_function(HeightFunction function,

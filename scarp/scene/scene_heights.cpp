@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Height fields in scenes.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,17 +33,20 @@ class Heights final : public SceneField {
     if (march.needs_pyramid) pyramid_.emplace(field_);
     if (march.needs_slope) slope_ = slope_bound(field_);
   }
-  Heights(HeightField field, MaxPyramid pyramid)
+  Heights(HeightField field, MaxPyramid pyramid, CellMaterials materials)
       : field_(std::move(field)),
         march_(find_height_march("max-mip")),
         answered_by_(AnsweredBy::cpu),
-        pyramid_(std::move(pyramid)) {}
+        pyramid_(std::move(pyramid)),
+        materials_(std::move(materials)) {
+    require_materials(field_, materials_);
+  }
 
   std::optional<std::uint64_t> edits() const override { return field_.edits(); }
   bool outdated() const override {
     return (pyramid_ ? pyramid_->edits() : !std::isnan(slope_) ? slope_edits_ : field_.edits()) != field_.edits();
   }
-  SceneFieldPtr rebuilt() const override { return scene_heights(field_, march_, settings_, answered_by_); }
+  SceneFieldPtr rebuilt() const override { return marched_by(march_); }
   const std::weak_ptr<const void>* memory() const override { return field_.memory(); }
 
   std::string_view kind() const override { return "heights"; }
@@ -63,10 +68,17 @@ class Heights final : public SceneField {
   std::optional<double> height(double x, double y) const override { return field_.height(x, y); }
   std::int64_t elements() const override { return std::int64_t{field_.cols()} * field_.rows(); }
   double cell_side() const override { return std::min(field_.settings().cell_x, field_.settings().cell_y); }
-  SceneFieldPtr judge() const override { return scene_heights(field_, find_height_march("exhaustive")); }
+  SceneFieldPtr judge() const override { return marched_by(find_height_march("exhaustive")); }
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return march_.cpu(target(), from ? started(ray, from) : ray, settings_, stats);
+  }
+  Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
+    if (!march_.by_rules) {
+      throw Error(
+          fmt::format("scene: the march {} has hits from above only, without a filter (use max-mip)", march_.name));
+    }
+    return march_.by_rules(target(), from ? started(ray, from) : ray, rules, stats);
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
     const Ray r = from ? started(ray, from) : ray;
@@ -75,19 +87,23 @@ class Heights final : public SceneField {
   FieldSurface surface(const Ray& ray, const Hit& hit) const override {
     if (hit.wall) {
       const dvec3 normal = wall_normal(ray, hit);
-      return {.normal = normal, .shading_normal = normal, .wall = true};
+      return {.normal = normal, .shading_normal = normal, .material = material(ray, hit), .wall = true};
     }
     return {.normal = field_.normal(hit.cell, hit.u, hit.v),
             .shading_normal = field_.shading_normal(hit.cell, hit.u, hit.v),
+            .material = material(ray, hit),
             .height = height_at(hit)};
   }
+  int material(const Ray&, const Hit& hit) const override { return material_of(hit.cell); }
 
   std::optional<FieldSurface> within(const dvec3& p) const override {
     const auto place = field_.place(p.x, p.y);
     const auto height = field_.height(p.x, p.y);
     if (!place || !height || p.z > *height) return {};
     const auto& [cell, u, v] = *place;
-    return FieldSurface{field_.normal(cell, u, v), field_.shading_normal(cell, u, v)};
+    return FieldSurface{.normal = field_.normal(cell, u, v),
+                        .shading_normal = field_.shading_normal(cell, u, v),
+                        .material = material_of(cell)};
   }
 
   bool likes_batches() const override { return march_.simd; }
@@ -127,6 +143,16 @@ class Heights final : public SceneField {
   }
 
  private:
+  SceneFieldPtr marched_by(const HeightMarchEntry& march) const {
+    auto field = std::make_shared<Heights>(field_, march, settings_, answered_by_);
+    field->materials_ = materials_;
+    return field;
+  }
+  int material_of(Cell cell) const {
+    if (!materials_) return 0;
+    return 1 + (*materials_)[static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(field_.cell_cols()) +
+                             static_cast<std::size_t>(cell.col)];
+  }
   bool nothing() const { return !field_.has_cells() || field_.all_nodata(); }
   WorldBox ground_box() const {
     return {{0, 0, field_.min_height()}, {field_.width(), field_.depth(), field_.max_height()}};
@@ -160,6 +186,7 @@ class Heights final : public SceneField {
   MarchSettings settings_;
   AnsweredBy answered_by_;
   std::optional<MaxPyramid> pyramid_;
+  CellMaterials materials_;  // null: that of the object
   double slope_ = std::numeric_limits<double>::quiet_NaN();
   std::uint64_t slope_edits_ = field_.edits();  // when the slope was taken
 };
@@ -171,8 +198,15 @@ SceneFieldPtr scene_heights(HeightField field, const HeightMarchEntry& march, co
   return std::make_shared<Heights>(std::move(field), march, settings, answered_by);
 }
 
-SceneFieldPtr scene_heights(HeightField field, MaxPyramid pyramid) {
-  return std::make_shared<Heights>(std::move(field), std::move(pyramid));
+SceneFieldPtr scene_heights(HeightField field, MaxPyramid pyramid, CellMaterials materials) {
+  return std::make_shared<Heights>(std::move(field), std::move(pyramid), std::move(materials));
+}
+
+void require_materials(const HeightField& field, const CellMaterials& materials) {
+  const std::int64_t cells = std::int64_t{field.cell_cols()} * field.cell_rows();
+  if (!materials || static_cast<std::int64_t>(materials->size()) == cells) return;
+  throw Error(fmt::format("heights: {} materials for {} x {} cells (one for each cell)", materials->size(),
+                          field.cell_cols(), field.cell_rows()));
 }
 
 }  // namespace scarp

@@ -35,6 +35,11 @@ class PlinthField final : public SceneField {
     hit.height = ray.at(wall->t).z;
     return hit;
   }
+  // A ray through a wall is inside, where it hits none.
+  Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
+    const Hit hit = closest_hit(ray, from, stats);
+    return hit && rules.accept && !(*rules.accept)(hit) ? Hit{} : hit;
+  }
   bool occluded(const Ray&, const Hit*) const override { return false; }
   FieldSurface surface(const Ray&, const Hit& hit) const override {
     const int face = static_cast<int>(hit.face);

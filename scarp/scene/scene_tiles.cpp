@@ -71,45 +71,40 @@ class Tiles final : public SceneField {
   }
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
-    Hit best;
-    if (stats) *stats = {};
-    const Starts starts = find_starts(ray, from);
-    for_each_on_way(ray, best, [&](const Tile& tile, int col, int row, bool first) {
-      Ray own = own_ray(ray, col, row, starts);
-      if (best) own.t_max = starts.count > 0 ? std::nextafter(best.t, std::numeric_limits<double>::infinity()) : best.t;
-      own.t_max = std::min(own.t_max, ray.t_max);
-      MarchStats march;
-      Hit hit = march_.cpu(target(tile), own, {}, stats ? &march : nullptr);
-      if (stats)
-        stats->steps += march.steps, stats->level_changes += march.level_changes, stats->cell_tests += march.cell_tests,
-            ++stats->boxes;
-      hit.part = number(col, row);
-      if (hit) {
-        if (!best || hit.t < best.t || (hit.t == best.t && hit.part < best.part)) best = hit;
-      } else if (hit.status == HitStatus::below && first && !best) {
-        best.status = hit.status;
-      }
-      return false;
+    return closest(ray, from, true, stats, [&](const Tile& tile, std::uint32_t, const Ray& own, MarchStats* march) {
+      return march_.cpu(target(tile), own, {}, march);
     });
-    return best;
+  }
+  Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
+    const bool from_above = rules.sides == Sides::above;
+    return closest(ray, from, from_above, stats,
+                   [&](const Tile& tile, std::uint32_t part, const Ray& own, MarchStats* march) {
+                     const HitFilter accept = [&](Hit hit) {
+                       hit.part = part;
+                       return (*rules.accept)(hit);
+                     };
+                     return march_.by_rules(target(tile), own, {rules.sides, rules.accept ? &accept : nullptr}, march);
+                   });
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
     bool blocked = false;
     const Starts starts = find_starts(ray, from);
-    for_each_on_way(ray, Hit{}, [&](const Tile& tile, int col, int row, bool) {
+    for_each_on_way(ray, Hit{}, true, [&](const Tile& tile, int col, int row, bool) {
       return blocked = march_.occluded(target(tile), own_ray(ray, col, row, starts), {});
     });
     return blocked;
   }
 
-  FieldSurface surface(const Ray&, const Hit& hit) const override {
+  FieldSurface surface(const Ray& ray, const Hit& hit) const override {
+    const Tile& tile = tile_of(hit);
     const int col = static_cast<int>(hit.part % static_cast<std::uint32_t>(layout_.cols)),
               row = static_cast<int>(hit.part / static_cast<std::uint32_t>(layout_.cols));
-    const Tile& tile = *map_->find(col, row);
     return {.normal = tile.ground->field.normal(hit.cell, hit.u, hit.v),
             .shading_normal = shading_normal(tile, col, row, hit.cell, hit.u, hit.v),
+            .material = material(ray, hit),
             .height = hit.height};
   }
+  int material(const Ray&, const Hit& hit) const override { return tile_of(hit).material(hit.cell); }
   std::optional<FieldSurface> within(const dvec3& p) const override {
     std::optional<FieldSurface> found;
     map_->at(p.x, p.y, [&](const Tile& tile, int col, int row, double x, double y) {
@@ -118,7 +113,9 @@ class Tiles final : public SceneField {
       const auto height = field.height(x, y);
       if (!place || !height || p.z > *height) return false;
       const auto& [cell, u, v] = field.ground_at(*place);
-      found = FieldSurface{field.normal(cell, u, v), shading_normal(tile, col, row, cell, u, v)};
+      found = FieldSurface{.normal = field.normal(cell, u, v),
+                           .shading_normal = shading_normal(tile, col, row, cell, u, v),
+                           .material = tile.material(cell)};
       return true;
     });
     return found;
@@ -138,6 +135,10 @@ class Tiles final : public SceneField {
     Cell cell[4];
   };
 
+  const Tile& tile_of(const Hit& hit) const {
+    const auto cols = static_cast<std::uint32_t>(layout_.cols);
+    return *map_->find(static_cast<int>(hit.part % cols), static_cast<int>(hit.part / cols));
+  }
   std::uint32_t number(int col, int row) const {
     return static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(layout_.cols) + static_cast<std::uint32_t>(col);
   }
@@ -171,6 +172,32 @@ class Tiles final : public SceneField {
     return starts;
   }
 
+  // tile_hit(tile, part, ray, stats): the closest hit on one tile.
+  template <class March>
+  Hit closest(const Ray& ray, const Hit* from, bool only_from_above, MarchStats* stats, const March& tile_hit) const {
+    Hit best;
+    if (stats) *stats = {};
+    const Starts starts = find_starts(ray, from);
+    for_each_on_way(ray, best, only_from_above, [&](const Tile& tile, int col, int row, bool first) {
+      Ray own = own_ray(ray, col, row, starts);
+      if (best) own.t_max = starts.count > 0 ? std::nextafter(best.t, std::numeric_limits<double>::infinity()) : best.t;
+      own.t_max = std::min(own.t_max, ray.t_max);
+      MarchStats march;
+      Hit hit = tile_hit(tile, number(col, row), own, stats ? &march : nullptr);
+      if (stats)
+        stats->steps += march.steps, stats->level_changes += march.level_changes, stats->cell_tests += march.cell_tests,
+            ++stats->boxes;
+      hit.part = number(col, row);
+      if (hit) {
+        if (!best || hit.t < best.t || (hit.t == best.t && hit.part < best.part)) best = hit;
+      } else if (hit.status == HitStatus::below && first && !best) {
+        best.status = hit.status;
+      }
+      return false;
+    });
+    return best;
+  }
+
   Ray own_ray(const Ray& ray, int col, int row, const Starts& starts) const {
     Ray own = ray;
     own.origin -= map_->corner(col, row);
@@ -184,9 +211,10 @@ class Tiles final : public SceneField {
   }
 
   // Calls f(tile, col, row, first) for the tiles that the ray may meet before the hit `best`, nearest first within a
-  // cell, until it returns true. `first`: whether the ray is over this tile where it comes to the terrain.
+  // cell, until it returns true. `only_from_above`: not for those whose ground it stays above. `first`: whether the ray
+  // is over this tile where it comes to the terrain.
   template <class F>
-  void for_each_on_way(const Ray& ray, const Hit& best, const F& f) const {
+  void for_each_on_way(const Ray& ray, const Hit& best, bool only_from_above, const F& f) const {
     if (box_.empty()) return;
     const dvec3& o = ray.origin;
     const dvec3& d = ray.direction;
@@ -234,7 +262,7 @@ class Tiles final : public SceneField {
         if (done(span)) break;
         const int row = layout_.rows - 1 - north;
         const Tile* tile = map_->find(col, row);
-        if (!tile || above(*tile, ray, span)) continue;
+        if (!tile || (only_from_above && above(*tile, ray, span))) continue;
         if (f(*tile, col, row, begins_in(col, north))) return;
       }
     }

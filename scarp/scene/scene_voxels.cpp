@@ -35,6 +35,9 @@ class VoxelField final : public SceneField {
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return objects_.closest_hit(ray, from, stats);
   }
+  Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
+    return objects_.closest_hit(ray, from, rules.accept, stats);
+  }
   bool occluded(const Ray& ray, const Hit* from) const override {
     if (!from) return objects_.occluded(ray);
     return shading_.normals == VoxelNormals::smooth ? occluded_above_steps(ray, *from)

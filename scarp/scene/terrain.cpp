@@ -10,6 +10,7 @@ struct Terrain::State {
   HeightField field;
   Georeference georeference;
   MaxPyramid pyramid{field};
+  CellMaterials materials{};
   Scene scene{scene_heights(field, pyramid)};
 };
 
@@ -34,6 +35,14 @@ void Terrain::set_samples(const SampleRect& rect, const T* samples, std::ptrdiff
 }
 
 void Terrain::samples_changed(const SampleRect& rect) { changed(state_->field.samples_changed(rect)); }
+
+void Terrain::set_materials(std::vector<std::uint8_t> materials) {
+  CellMaterials shared;
+  if (!materials.empty()) shared = std::make_shared<const std::vector<std::uint8_t>>(std::move(materials));
+  require_materials(field(), shared);
+  state_->scene = Scene(scene_heights(field(), pyramid(), shared));
+  state_->materials = std::move(shared);
+}
 
 void Terrain::changed(const CellBox& cells) {
   state_->pyramid.update(state_->field, cells);

@@ -28,7 +28,15 @@ struct TileGround {
 struct Tile {
   Tile(HeightField heights, int tile_level) : given(std::move(heights)), level(tile_level) {}
 
+  /// Of a cell, plus 1; 0: that of the object.
+  int material(Cell cell) const {
+    if (!materials) return 0;
+    return 1 + (*materials)[static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(given.cell_cols()) +
+                            static_cast<std::size_t>(cell.col)];
+  }
+
   HeightField given;                         ///< as passed to put()
+  CellMaterials materials;                   ///< null: that of the object
   int level = 0;                             ///< cells are 2^level times those of the layout
   std::shared_ptr<const void> memory;        ///< keeps the samples of a view alive
   std::shared_ptr<const TileGround> ground;  ///< `given`, or a copy with stitched borders

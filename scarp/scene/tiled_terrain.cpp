@@ -164,10 +164,12 @@ TerrainTiles TiledTerrain::read() const {
   return *tiles_;
 }
 
-void TiledTerrain::Editor::put(TilePlace place, const HeightField& field) {
+void TiledTerrain::Editor::put(TilePlace place, const HeightField& field, CellMaterials materials) {
   require_inside(change_.map.layout, place);
   if (change_.map.find(place.col, place.row)) refuse(place, "there is a tile already (remove it first)");
   auto tile = std::make_shared<Tile>(field, require_fitting(change_.map.layout, place, field));
+  require_materials(field, materials);
+  tile->materials = std::move(materials);
   if (const auto* memory = field.memory()) {
     tile->memory = memory->lock();
     if (!tile->memory) refuse(place, "the memory of its samples was freed");

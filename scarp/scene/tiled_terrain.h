@@ -91,7 +91,9 @@ class TiledTerrain {
     /// Adds a tile. The field shares its samples with the caller's: they must not change while it is here. Samples of
     /// HeightField::view() with a known owner are kept alive. Throws Error for a place outside the grid, a tile that is
     /// there already, or a field that does not fit the layout: another number of samples, cell size or setting.
-    void put(TilePlace place, const HeightField& field);
+    ///
+    /// `materials`: of each cell of the field, rows from north to south; null: that of the object.
+    void put(TilePlace place, const HeightField& field, CellMaterials materials = nullptr);
     /// Removes a tile. Throws Error if there is none.
     void remove(TilePlace place);
 

@@ -13,6 +13,7 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/usual_ray.h"
+#include "scarp/march/voxel/voxel_planes.h"
 #include "scarp/scene/coarse_voxels.h"
 
 namespace scarp {
@@ -29,6 +30,13 @@ void require_rigid(const glm::dmat3& m, std::size_t place) {
     for (int j = 0; j <= i; ++j) good = good && std::abs(dot(m[i], m[j]) - (i == j ? square : 0)) <= kRigid * square;
   }
   if (!good) throw Error(fmt::format("voxels: object {}: its matrix must be a rotation times a scale above 0", place));
+}
+
+Hit hit_on(std::uint32_t part, const VoxelHit& found) {
+  Hit hit;
+  hit.status = HitStatus::hit, hit.face = found.face, hit.t = found.t;
+  hit.voxel = found.voxel, hit.part = part;
+  return hit;
 }
 
 }  // namespace
@@ -91,11 +99,12 @@ struct VoxelObjects::Query {
     if (from && from->part == index) local.start_voxel = from->voxel + normal_of(from->face);
     return quantise(local, direction, scene.targets_[scene.objects_[index].model].box);
   }
-  VoxelHit rounded(std::uint32_t index, double t_max, const Hit* from, MarchStats* stats) {
+  VoxelHit rounded(std::uint32_t index, double t_max, const Hit* from, MarchStats* stats,
+                   const VoxelFilter* accept = nullptr) {
     const std::uint32_t model = scene.objects_[index].model;
     const VoxelRay local = in_grid(index, t_max);
     return first_rounded_voxel(scene.targets_[model], scene.models_[model]->march().cpu, local, direction,
-                               scene.rounding_, from && from->part == index ? &from->voxel : nullptr, stats);
+                               scene.rounding_, from && from->part == index ? &from->voxel : nullptr, stats, accept);
   }
 };
 
@@ -105,14 +114,18 @@ bool VoxelObjects::begins_into(const Ray& ray, const Hit* from) const {
   return rounding_ && from && ray.t_min <= ray.t_max && dot(normal(ray.at(ray.t_min), *from), ray.direction) < 0;
 }
 
-Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
+Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, const HitFilter* accept, MarchStats* stats) const {
   if (stats) *stats = {};
   Hit best;
   if (in_tree_.empty()) return best;
   if (const double longest = longest_of(ray.direction); !is_usual(longest)) {
     if (!is_direction(longest)) return best;
     const int exponent = std::ilogb(longest);
-    best = closest_hit(scaled_down(ray, exponent), from, stats);
+    const HitFilter usual = [&](Hit hit) {
+      hit.t = std::ldexp(hit.t, -exponent);
+      return (*accept)(hit);
+    };
+    best = closest_hit(scaled_down(ray, exponent), from, accept ? &usual : nullptr, stats);
     if (best) best.t = std::ldexp(best.t, -exponent);
     return best;
   }
@@ -122,6 +135,7 @@ Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats
     best = *from;
     best.object = 0;
     best.t = t_max = ray.t_min;
+    if (accept && !(*accept)(best)) best = {}, t_max = ray.t_max;
   }
   // Asked even when that is known: of hits at the same t the first object's counts.
   tree_.traverse(ray, [&](std::uint32_t in_tree) {
@@ -129,21 +143,22 @@ Hit VoxelObjects::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats
     const Object& object = objects_[index];
     MarchStats steps;
     VoxelHit hit;
+    const VoxelFilter counts = [&](const VoxelHit& one) { return (*accept)(hit_on(index, one)); };
     if (rounding_) {
-      hit = query.rounded(index, t_max, from, stats ? &steps : nullptr);
+      hit = query.rounded(index, t_max, from, stats ? &steps : nullptr, accept ? &counts : nullptr);
     } else {
       const auto quantised = query.quantised(index, t_max, from);
       if (!quantised) return t_max;
-      hit = models_[object.model]->march().cpu(targets_[object.model], *quantised, stats ? &steps : nullptr);
+      const VoxelTarget& target = targets_[object.model];
+      hit = models_[object.model]->march().cpu(target, *quantised, stats ? &steps : nullptr);
+      if (accept && hit && !counts(hit)) hit = march_voxel_planes_accepted(target, *quantised, counts, &steps);
     }
     if (stats) {
       ++stats->boxes;
       stats->steps += steps.steps;
     }
     if (hit && (!best || hit.t < best.t || index < best.part)) {
-      best = {};
-      best.status = HitStatus::hit, best.face = hit.face, best.t = hit.t;
-      best.voxel = hit.voxel, best.part = index;
+      best = hit_on(index, hit);
       t_max = hit.t;
     }
     return t_max;

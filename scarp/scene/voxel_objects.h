@@ -18,6 +18,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scarp/march/hit_rules.h"
 #include "scarp/scene/box_tree.h"
 #include "scarp/scene/placed_voxels.h"
 
@@ -44,7 +45,11 @@ class VoxelObjects {
   Hit closest_hit(const Ray& ray, MarchStats* stats = nullptr) const { return closest_hit(ray, nullptr, stats); }
   /// The same for a ray that starts on the face that another one hit, when `from` is not null: one that goes into the
   /// solid hits that voxel at t_min, one that leaves it does not hit it again.
-  Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const;
+  Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
+    return closest_hit(ray, from, nullptr, stats);
+  }
+  /// The same for voxels that count; null: all do.
+  Hit closest_hit(const Ray& ray, const Hit* from, const HitFilter* accept, MarchStats* stats) const;
   /// Whether anything is in the way.
   bool occluded(const Ray& ray) const { return occluded(ray, nullptr); }
   /// The same for a ray that starts on the face that another one hit, as closest_hit() with `from`.

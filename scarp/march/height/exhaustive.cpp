@@ -59,14 +59,14 @@ struct Piece {
 
 class Ground {
  public:
-  Ground(const HeightField& field, const Ray& ray) : field_(field) {
+  Ground(const HeightField& field, const Ray& ray, Sides side) : field_(field), up_(side == Sides::below ? -1 : 1) {
     const HeightFieldSettings& to = field.settings();
     ox_ = ray.origin.x / to.cell_x;
     oy_ = field.rows() - 1 - ray.origin.y / to.cell_y;
-    oz_ = (ray.origin.z / to.exaggeration - to.offset) / to.scale;
+    oz_ = up_ * (ray.origin.z / to.exaggeration - to.offset) / to.scale;
     dx_ = ray.direction.x / to.cell_x;
     dy_ = -ray.direction.y / to.cell_y;
-    dz_ = ray.direction.z / (to.exaggeration * to.scale);
+    dz_ = up_ * ray.direction.z / (to.exaggeration * to.scale);
   }
 
   void move_height(double by) { oz_ += by; }
@@ -75,7 +75,7 @@ class Ground {
   // none over a hole.
   void add_pieces(double col, double row, Span span, std::vector<Piece>& to) const {
     const Cell cell{within(col, field_.cell_cols()), within(row, field_.cell_rows())};
-    const auto h = field_.cell_heights(cell);
+    const auto h = heights(cell);
     if (!h) return;
     if (field_.settings().surface == Surface::bilinear) {
       to.push_back(bilinear_piece(*h, cell, col, row, span));
@@ -126,7 +126,7 @@ class Ground {
 
   // The clearance above a point of the cell; nullopt over a hole.
   std::optional<double> clearance_at(Cell cell, double t) const {
-    const auto h = field_.cell_heights(cell);
+    const auto h = heights(cell);
     if (!h) return {};
     const auto copy = [&](double position, int c, int cells) {
       return field_.wraps() ? c + std::round((position - c - 0.5) / cells) * cells : c;
@@ -229,11 +229,17 @@ class Ground {
     hit.cell = piece.cell;
     hit.u = inside(ox_ + dx_ * hit.t - piece.col);
     hit.v = inside(oy_ + dy_ * hit.t - piece.row);
-    hit.height = field_.height_from_sample(oz_ + dz_ * hit.t);
+    hit.height = field_.height_from_sample(up_ * (oz_ + dz_ * hit.t));
     return hit;
   }
 
  private:
+  // Hits from below are those from above where all heights are multiplied by -1.
+  std::optional<CellHeights> heights(Cell cell) const {
+    const auto h = field_.cell_heights(cell);
+    if (!h) return {};
+    return CellHeights{up_ * h->h00, up_ * h->h10, up_ * h->h01, up_ * h->h11};
+  }
   static double inside(double x) { return std::clamp(x, 0.0, 1.0); }
   static int within(double cell, int cells) { return static_cast<int>(cell - std::floor(cell / cells) * cells); }
   static double bilinear(const CellHeights& h, double u, double v) {
@@ -241,6 +247,7 @@ class Ground {
   }
 
   const HeightField& field_;
+  double up_;
   double ox_, oy_, oz_, dx_, dy_, dz_;  // the ray in cells and sample units
 };
 
@@ -273,7 +280,8 @@ std::optional<double> descent_after_rise(const Piece& p, std::optional<double> d
 // Follows the ray; found_in_range(hit) returns whether to continue. Returns below if the ray started so, otherwise
 // miss.
 template <class Found>
-HitStatus follow(const HeightTarget& target, const Ray& ray, MarchStats* stats, const Found& found_in_range) {
+HitStatus follow(const HeightTarget& target, const Ray& ray, Sides from, MarchStats* stats,
+                 const Found& found_in_range) {
   const HeightField& field = *target.field;
   // From the surface, the ray is below it only after t.
   const bool on_surface = ray.start == RayStart::on_surface;
@@ -282,7 +290,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, MarchStats* stats, 
   };
   HitStatus without = HitStatus::miss;
   if (!field.has_cells()) return without;
-  Ground ground(field, ray);
+  Ground ground(field, ray, from);
   enum class Side { unknown, above, below } side = Side::unknown;
   if (on_surface) {
     const auto start = ground.clearance_at(ray.start_cell, ray.t_min);
@@ -323,7 +331,7 @@ HitStatus follow(const HeightTarget& target, const Ray& ray, MarchStats* stats, 
       if (side == Side::below && meets && came_in && !on_surface && -p.c <= ground.seam_height(p, target)) {
         if (!found(ground.hit(p, 0))) return without;
       }
-      if (side == Side::below && field.settings().solid && came_in) {
+      if (side == Side::below && field.settings().solid && from == Sides::above && came_in) {
         Hit hit = ground.hit(p, 0);
         hit.wall = true;
         if (!found(hit)) return without;
@@ -379,6 +387,17 @@ class OfUsualLength {
   int exponent_ = 0;
 };
 
+HitStatus all_hits(const HeightTarget& target, const Ray& ray, Sides side, std::vector<Hit>& hits) {
+  require(target, HeightPart::none);
+  hits.clear();
+  const OfUsualLength usual(ray);
+  const HitStatus without = follow(target, usual.ray(), side, nullptr, [&](const Hit& hit) {
+    hits.push_back(usual.in_own_length(hit));
+    return true;
+  });
+  return hits.empty() ? without : HitStatus::hit;
+}
+
 }  // namespace
 
 Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSettings&, MarchStats* stats) {
@@ -386,7 +405,7 @@ Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSett
   if (stats) *stats = {};
   Hit answer;
   const OfUsualLength usual(ray);
-  const HitStatus without = follow(target, usual.ray(), stats, [&](const Hit& hit) {
+  const HitStatus without = follow(target, usual.ray(), Sides::above, stats, [&](const Hit& hit) {
     answer = usual.in_own_length(hit);
     return false;
   });
@@ -394,15 +413,36 @@ Hit march_exhaustive(const HeightTarget& target, const Ray& ray, const MarchSett
   return answer;
 }
 
-HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
+Hit march_exhaustive_by_rules(const HeightTarget& target, const Ray& ray, const HitRules& rules, MarchStats* stats) {
   require(target, HeightPart::none);
-  hits.clear();
+  if (stats) *stats = {};
+  Hit answer;
   const OfUsualLength usual(ray);
-  const HitStatus without = follow(target, usual.ray(), nullptr, [&](const Hit& hit) {
-    hits.push_back(usual.in_own_length(hit));
-    return true;
-  });
-  return hits.empty() ? without : HitStatus::hit;
+  // A ray that may be on either side of the surface that it starts on does not hit it there.
+  const bool leaves = rules.sides == Sides::both && ray.start == RayStart::on_surface;
+  const double started =
+      leaves
+          ? usual.ray().t_min + 2 * Ground(*target.field, usual.ray(), Sides::above).rounding_of_time(usual.ray().t_min)
+          : -kInfinity;
+  for (const Sides side : {Sides::above, Sides::below}) {
+    if (rules.sides != Sides::both && rules.sides != side) continue;
+    const HitStatus without = follow(target, usual.ray(), side, stats, [&](const Hit& found) {
+      const Hit hit = usual.in_own_length(found);
+      if (found.t <= started || (rules.accept && !(*rules.accept)(hit))) return true;
+      if (!answer || hit.t < answer.t) answer = hit;
+      return false;
+    });
+    if (!answer && side == Sides::above) answer.status = without;
+  }
+  return answer;
+}
+
+HitStatus all_hits_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
+  return all_hits(target, ray, Sides::above, hits);
+}
+
+HitStatus all_hits_from_below_exhaustive(const HeightTarget& target, const Ray& ray, std::vector<Hit>& hits) {
+  return all_hits(target, ray, Sides::below, hits);
 }
 
 }  // namespace scarp

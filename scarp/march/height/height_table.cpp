@@ -47,6 +47,7 @@ constexpr HeightMarchEntry max_mip() {
        .description = "hierarchical walk through a maximum mipmap; closed-form hit in the bilinear cell"},
       true, false);
   entry.own_any_hit = true;
+  entry.by_rules = march_max_mip_by_rules;
   entry.occluded = [](const HeightTarget& target, const Ray& ray, const MarchSettings&) {
     return occluded_max_mip(target, ray);
   };
@@ -58,12 +59,18 @@ constexpr HeightMarchEntry max_mip() {
   return entry;
 }
 
+constexpr HeightMarchEntry exhaustive() {
+  HeightMarchEntry entry = height_march<march_exhaustive>(
+      {.name = "exhaustive",
+       .guarantee = Guarantee::exact,
+       .description = "tests every cell under the ray, in double; the reference for the others; slow"},
+      false, false);
+  entry.by_rules = march_exhaustive_by_rules;
+  return entry;
+}
+
 constexpr std::array kTable = {
-    height_march<march_exhaustive>(
-        {.name = "exhaustive",
-         .guarantee = Guarantee::exact,
-         .description = "tests every cell under the ray, in double; the reference for the others; slow"},
-        false, false),
+    exhaustive(),
     max_mip(),
     height_march<march_max_mip_bisect>(
         {.name = "max-mip-bisect",

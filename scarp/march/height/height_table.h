@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "scarp/march/height/height_target.h"
+#include "scarp/march/hit_rules.h"
 #include "scarp/march/march_entry.h"
 #include "scarp/march/march_settings.h"
 
@@ -25,7 +26,11 @@ using HeightMarchBatch = void (*)(const HeightTarget& target, std::span<const Ra
 using HeightOcclusionBatch = void (*)(const HeightTarget& target, std::span<const Ray> rays,
                                       std::span<std::uint8_t> blocked, const MarchSettings& settings);
 
-/// A row. No function is null: a technique without an any-hit query or a batch query of its own has one made of `cpu`.
+using HeightMarchByRules = Hit (*)(const HeightTarget& target, const Ray& ray, const HitRules& rules,
+                                   MarchStats* stats);
+
+/// A row. No function but `by_rules` is null: a technique without an any-hit query or a batch query of its own has one
+/// made of `cpu`.
 struct HeightMarchEntry : MarchEntry {
   bool needs_pyramid = false;  ///< HeightTarget::pyramid must be given
   bool needs_slope = false;    ///< HeightTarget::slope must be given
@@ -34,6 +39,8 @@ struct HeightMarchEntry : MarchEntry {
   HeightOcclusion occluded = nullptr;
   HeightMarchBatch batch = nullptr;  ///< in vectors if `simd`
   HeightOcclusionBatch occluded_batch = nullptr;
+  /// The closest of the hits that count; null: the march has hits from above only, and takes no filter.
+  HeightMarchByRules by_rules = nullptr;
 };
 
 /// The oracle, `exhaustive`, comes first.

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "scarp/march/height/height_target.h"
+#include "scarp/march/hit_rules.h"
 #include "scarp/march/march_settings.h"
 
 namespace scarp {
@@ -28,6 +29,12 @@ namespace scarp {
 /// Closest hit; conventions as in ray.h. Requires the field's pyramid.
 Hit march_max_mip(const HeightTarget& target, const Ray& ray, const MarchSettings& settings = {},
                   MarchStats* stats = nullptr);
+
+/// Closest of the hits that count. From below the march is the same over the ground upside down (walk_ground.h), with
+/// the same guarantee; solid ground has no walls there. A ray that starts on the surface is on the side that it goes
+/// to if both sides count, and below it by definition if only that one does.
+Hit march_max_mip_by_rules(const HeightTarget& target, const Ray& ray, const HitRules& rules,
+                           MarchStats* stats = nullptr);
 
 /// Closest hit with the refinement of the paper instead of the closed form: where the signs at the ends of a cell
 /// differ, settings.bisect.halvings bisections of the interval. Guarantee: approximate. Misses rays that dip into a

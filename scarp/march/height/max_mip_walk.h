@@ -15,6 +15,8 @@
 #include "scarp/march/height/height_target.h"
 #include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/rounding.h"
+#include "scarp/march/height/walk_ground.h"
+#include "scarp/march/hit_rules.h"
 
 // Internal linkage, although in a header (included by one file), lets the compiler inline single-use functions. Without
 // it the traversal's state spills to memory and rays take 10 % longer. For the same reason the common path through a
@@ -22,8 +24,16 @@
 namespace scarp::max_mip {
 namespace {
 
-/// The query: closest hit in closed form or by bisection, any hit, or all hits.
-enum class Ask { closest, bisected, any, all };
+/// The query: closest hit in closed form or by bisection, any hit, all hits, or the closest one that a filter accepts.
+enum class Ask { closest, bisected, any, all, accepted };
+
+/// What a query needs besides the ray.
+struct Wanted {
+  int halvings = 0;                   ///< of bisected
+  double t_clear = kNotClear;         ///< up to which the ray is known to be above the ground by more than rounding
+  std::vector<Hit>* all = nullptr;    ///< receives all hits
+  const HitFilter* accept = nullptr;  ///< null: the first hit is accepted
+};
 
 // Side of the ray at the entry of the current cell, as far as known. Without holes it is unknown in the first cell
 // only.
@@ -32,48 +42,42 @@ enum class Side { unknown, above, below };
 // How the ray got to its position: through a line of constant column (x) or row (y), or not through a line.
 enum class Through { point, x_line, y_line };
 
-template <class T, bool Holes, bool Wraps, Ask ask>
+template <class T, bool Holes, bool Wraps, Ask ask, bool UpsideDown = false>
 class Walk {
  public:
-  /// `all` receives the hits if all are requested. Up to `t_clear` the ray is known to be above the ground by more than
-  /// rounding: the traversal starts in the cell that contains it.
-  Walk(const HeightTarget& target, const SampleGrid<T>& grid, const Ray& ray, const GridRay& local, int halvings,
-       double t_clear, Hit& answer, std::vector<Hit>* all)
+  /// The traversal starts in the cell that contains Wanted::t_clear.
+  Walk(const HeightTarget& target, const SampleGrid<T>& grid, const Ray& ray, const GridRay& local,
+       const Wanted& wanted, Hit& answer)
       : field_(*target.field),
         seam_(target.seam),
         seam_step_(target.seam_step),
-        grid_(grid),
+        ground_(field_, *target.pyramid, grid),
         levels_(target.pyramid->levels().data()),
         top_(target.pyramid->top_level()),
-        code_(target.pyramid->code()),
-        maxima_(target.pyramid->maxima()),
-        minima_(target.pyramid->minima()),
         x_(local.origin.x, local.direction.x, grid.cell_cols),
         y_(local.origin.y, local.direction.y, grid.cell_rows),
-        z_(local.origin.z),
-        dz_(local.direction.z),
+        z_(UpsideDown ? -local.origin.z : local.origin.z),
+        dz_(UpsideDown ? -local.direction.z : local.direction.z),
         t_in_(ray.t_min),
         t_end_(ray.t_max),
         strict_(ray.start == RayStart::on_surface),
         triangles_(field_.settings().surface == Surface::triangles),
-        solid_(field_.settings().solid),
-        halvings_(halvings),
-        t_clear_(t_clear),
+        solid_(field_.settings().solid && !UpsideDown),
+        wanted_(wanted),
         ray_(ray),
-        answer_(answer),
-        all_(all) {}
+        answer_(answer) {}
 
   void run() {
     if (strict_) {
       if (!leave_start_cell()) return;
-      if (t_clear_ > t_in_ && !skip_on(t_clear_)) return;
+      if (wanted_.t_clear > t_in_ && !skip_on(wanted_.t_clear)) return;
     } else {
       if (!enter()) {
         if (!Wraps && side_ == Side::above) touch_border_on_exit();
         return;
       }
       if (!x_.moves() && !y_.moves()) return vertical();
-      if (Holes && side_ == Side::unknown && grid_.is_hole(col_, row_) && touches(t_in_)) return;
+      if (Holes && side_ == Side::unknown && ground_.is_hole(col_, row_) && touches(t_in_)) return;
     }
     while (walk()) enter_next_copy();
     if (!Wraps) touch_border_on_exit();
@@ -149,8 +153,8 @@ class Walk {
     // are not possible. A ray from outside crosses open air first, though blocks that span the field are rarely free.
     const int from_outside = std::max(top_ - 3, 0);
     level_ = t_in_ == ray_.t_min ? 0 : from_outside;
-    const double highest = field_.max_sample();
-    double t_begin = t_clear_;
+    const double highest = ground_.highest();
+    double t_begin = wanted_.t_clear;
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
       side_ = Side::above;
@@ -161,7 +165,7 @@ class Walk {
       t_begin = std::max(t_begin, t_top);
     }
     if (t_begin > t_in_) {
-      if (t_begin == t_clear_) level_ = 0;
+      if (t_begin == wanted_.t_clear) level_ = 0;
       return skip_to(t_begin);
     }
     col_ = x_.cell_after(t_in_);
@@ -199,10 +203,10 @@ class Walk {
   bool leave_start_cell() {
     col_ = ray_.start_cell.col;
     row_ = ray_.start_cell.row;
-    if (!x_.inside(col_) || !y_.inside(row_) || (Holes && grid_.is_hole(col_, row_))) return false;
+    if (!x_.inside(col_) || !y_.inside(row_) || (Holes && ground_.is_hole(col_, row_))) return false;
     x_.begin_in(col_, t_in_);
     y_.begin_in(row_, t_in_);
-    const CellHeights h = grid_.cell(col_, row_);
+    const CellHeights h = ground_.cell(col_, row_);
     z_ = surface(h, t_in_) - dz_ * t_in_;
     if (!Wraps) t_end_ = std::min({t_end_, x_.exit_time(), y_.exit_time()});
     const double tx = x_.line_time(col_ + x_.ahead), ty = y_.line_time(row_ + y_.ahead);
@@ -255,17 +259,17 @@ class Walk {
   bool goes_under(double t) {
     if (Wraps || top_ < kProbeLevel) return false;
     const Level& at = levels_[kProbeLevel - 1];
-    const double t_last = dz_ > 0 ? std::min(t_end_, (field_.max_sample() - z_) / dz_) : t_end_;
+    const double t_last = dz_ > 0 ? std::min(t_end_, (ground_.highest() - z_) / dz_) : t_end_;
     const double t_per_cell = 1 / std::max(std::abs(x_.direction), std::abs(y_.direction));
     if (!(t_last - t > kShortWay * t_per_cell)) return false;
-    const double code_z = (z_ - code_.base) * code_.per_step, code_dz = dz_ * code_.per_step;
+    const double code_z = (z_ - ground_.base()) * ground_.per_step(), code_dz = dz_ * ground_.per_step();
     double step = kFirstProbe * t_per_cell;
     for (int i = 0; i < kProbes; ++i) {
       t += step;
       step *= kProbeGrowth;
       if (!(t < t_last)) return false;
       const std::ptrdiff_t row = y_.near(y_.at(t)) >> kProbeLevel, col = x_.near(x_.at(t)) >> kProbeLevel;
-      const std::uint16_t minimum = minima_[at.begin + row * at.cols + col];
+      const std::uint16_t minimum = ground_.minimum(at.begin + row * at.cols + col);
       // The position is rounded, too, and that of the next block equally valid: the bound covers it.
       if (code_z + code_dz * t < minimum && falls_under(minimum, t)) {
         answer_.status = HitStatus::hit;
@@ -278,9 +282,9 @@ class Walk {
   // Straight up or down: one cell, one height.
   void vertical() {
     ++stats.steps;
-    if (Holes && grid_.is_hole(col_, row_)) return;
+    if (Holes && ground_.is_hole(col_, row_)) return;
     ++stats.cell_tests;
-    const double ground = surface(grid_.cell(col_, row_), t_in_), above = ray_height(t_in_) - ground;
+    const double ground = surface(ground_.cell(col_, row_), t_in_), above = ray_height(t_in_) - ground;
     if (above < 0 && side_ != Side::above) {
       answer_.status = HitStatus::below;
     } else if (above <= 0) {
@@ -297,12 +301,12 @@ class Walk {
     const bool falling = dz_ < 0;
     const Axis x = x_, y = y_;
     // The ray's height as a code, minus the maximum rounding error: compared with the pyramid without decoding it.
-    const double per_step = code_.per_step, highest = field_.max_sample();
+    const double per_step = ground_.per_step(), highest = ground_.highest(), base = ground_.base();
     const double farthest = std::max(std::abs(t_in_), std::abs(t_end_));
-    const double upright = std::abs(z_) + std::abs(dz_) * farthest + std::abs(code_.base) + std::abs(highest);
+    const double upright = std::abs(z_) + std::abs(dz_) * farthest + std::abs(base) + std::abs(highest);
     const double rounding = kCodeRoundings * kUnit * upright + rounding_of_clearance(farthest);
-    const double code_z = (z_ - code_.base - rounding) * per_step, code_dz = dz_ * per_step;
-    const double highest_code = (highest - code_.base) * per_step;
+    const double code_z = (z_ - base - rounding) * per_step, code_dz = dz_ * per_step;
+    const double highest_code = (highest - base) * per_step;
     // A coarse block may extend beyond the last row or column; the traversal does not.
     const double t_exit = std::min(x.exit_time(), y.exit_time()), t_end = Wraps ? std::min(t_end_, t_exit) : t_end_;
     int level = level_, col = col_ >> level, row = row_ >> level;
@@ -327,18 +331,18 @@ class Walk {
       if (level > 0) {
         const Level& at = levels_[level - 1];
         const std::ptrdiff_t entry = at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col;
-        const double maximum = maxima_[entry];
-        if (lowest_code > maximum && (side_ != Side::below || risen_above(maxima_[entry], t_lowest))) {
+        const std::uint16_t maximum = ground_.maximum(entry);
+        if (lowest_code > maximum && (side_ != Side::below || risen_above(maximum, t_lowest))) {
           // With holes, the last cell may be one: the side is unknown at the next.
           if (!Holes) {
             side_ = Side::above;
           } else if (!cuts_corner(through_x, t_in, t_out)) {
             side_ = Side::unknown;
           }
-        } else if (side_ == Side::below && under(ray_height(falling ? t_in : t_out), minima_[entry])) {
+        } else if (side_ == Side::below && under(ray_height(falling ? t_in : t_out), ground_.minimum(entry))) {
           if (lost(t_out)) break;
         } else {
-          if (ask == Ask::any && falling && side_ == Side::above && falls_under(minima_[entry], t_lowest)) {
+          if (ask == Ask::any && falling && side_ == Side::above && falls_under(ground_.minimum(entry), t_lowest)) {
             answer_.status = HitStatus::hit;
             break;
           }
@@ -355,12 +359,12 @@ class Walk {
           ty = behind_y ? ty : middle_y;
           continue;
         }
-      } else if (Holes && grid_.is_hole(col, row)) {
+      } else if (Holes && ground_.is_hole(col, row)) {
         if (begun_ && side_ != Side::below && touches(t_in)) break;
         if (!cuts_corner(through_x, t_in, t_line)) side_ = Side::unknown;
         if (lost(t_in)) break;
       } else {
-        const CellHeights h = grid_.cell(col, row);
+        const CellHeights h = ground_.cell(col, row);
         const double maximum = std::max(std::max(h.h00, h.h10), std::max(h.h01, h.h11));
         const double lowest = ray_height(t_lowest);
         if (lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_lowest))) {
@@ -437,19 +441,19 @@ class Walk {
 
   // Whether a ray that was below is above a whole block by more than rounding: see test_cell().
   bool risen_above(std::uint16_t maximum, double t_lowest) const {
-    return ray_height(t_lowest) - code_.height(maximum) > rounding_of_clearance(t_lowest);
+    return ray_height(t_lowest) - ground_.height(maximum) > rounding_of_clearance(t_lowest);
   }
 
   // Whether a ray that is below stays below over a whole block, which then has no holes.
   bool under(double highest, std::uint16_t minimum) const {
-    return minimum != MaxPyramid::kNoMinimum && highest < code_.height(minimum);
+    return minimum != MaxPyramid::kNoMinimum && highest < ground_.height(minimum);
   }
 
   // Whether a ray that was above is at t, over a block without holes, below the whole block: it has crossed the
   // surface. By more than rounding, so that closest() finds the hit, too.
   bool falls_under(std::uint16_t minimum, double t) const {
     const double height = ray_height(t);
-    return under(height, minimum) && code_.height(minimum) - height > 2 * rounding_of_clearance(t);
+    return under(height, minimum) && ground_.height(minimum) - height > 2 * rounding_of_clearance(t);
   }
 
   // Tests the surface of the current cell, up to the line that ends it, or the border before that. Returns true if the
@@ -482,30 +486,31 @@ class Walk {
     const CellsBeside y(y_, t, rounding_of_line(field_, ray, 1, seam_));
     for (int i = 0; i < x.count * y.count; ++i) {
       const int west = i % x.count, north = i / x.count, col = x.cell[west], row = y.cell[north];
-      if (!x_.inside(col) || !y_.inside(row) || (Holes && grid_.is_hole(col, row))) continue;
-      const CellHeights h = grid_.cell(col, row);
+      if (!x_.inside(col) || !y_.inside(row) || (Holes && ground_.is_hole(col, row))) continue;
+      const CellHeights h = ground_.cell(col, row);
       const double u = x.place[west], v = y.place[north];
       const double above = ray_height(t) - height_in_cell(field_.settings().surface, h, u, v);
       // Of the cell: less than what a ray from below has to rise.
       const double rounding = scarp::rounding_of_clearance(field_, ray, t, relief(h));
-      if (std::abs(above) <= rounding) return touch(col, row, t, u, v);
+      if (std::abs(above) > rounding) continue;
+      if (touch(col, row, t, {u, v})) return true;
+      if constexpr (ask != Ask::accepted) return false;
     }
     return false;
   }
 
   // Records a touch at t, at a given place of a cell, which need not be on the ray's way. Of all hits, those of
   // neighbours that share the place are one. Returns true if the query is answered.
-  bool touch(int col, int row, double t, double u, double v) {
+  bool touch(int col, int row, double t, const dvec2& place) {
     side_ = Side::below;
     if constexpr (ask == Ask::all) {
-      if (!all_->empty() && t - all_->back().t <= rounding_of_node_time(field_, grid_ray(), seam_)) return false;
+      if (!wanted_.all->empty() && t - wanted_.all->back().t <= rounding_of_node_time(field_, grid_ray(), seam_))
+        return false;
     }
     const int on_way_col = std::exchange(col_, col), on_way_row = std::exchange(row_, row);
     const double on_way_t = std::exchange(t_in_, t);
-    const bool answered = answer(0.0);
+    const bool answered = answer(0.0, false, &place);
     col_ = on_way_col, row_ = on_way_row, t_in_ = on_way_t;
-    if (answer_) answer_.u = u, answer_.v = v;
-    if (ask == Ask::all && answer_ && all_->back().t == answer_.t) all_->back() = answer_;
     return answered;
   }
 
@@ -606,7 +611,7 @@ class Walk {
 
   // Whether a ray that is not above can never hit again: falling, below the lowest ground, with no walls of holes
   // ahead.
-  bool lost(double t) const { return dz_ < 0 && ray_height(t) < field_.min_sample() && !(Holes && solid_); }
+  bool lost(double t) const { return dz_ < 0 && ray_height(t) < ground_.lowest() && !(Holes && solid_); }
 
   // Where a sign alone is not enough: a ray from below has risen only beyond it (otherwise one that rises through a
   // node could be above at one line and, by rounding, not above at the next: a hit from below), a ray from the surface
@@ -622,7 +627,7 @@ class Walk {
     if (ask == Ask::any && cell_end_ <= ray_.t_max) return answer(0.0);
     if constexpr (ask == Ask::bisected) {
       double low = 0, high = length;
-      for (int i = 0; i < halvings_; ++i) {
+      for (int i = 0; i < wanted_.halvings; ++i) {
         const double middle = 0.5 * (low + high);
         (f.at(middle) > 0 ? low : high) = middle;
       }
@@ -633,19 +638,27 @@ class Walk {
   }
 
   // Records a hit at t_in + s in the current cell, unless the ray ends before; returns true if the query is answered.
-  bool answer(double s, bool wall = false) {
+  // `place`: its place in the cell, if not that of the ray.
+  bool answer(double s, bool wall = false, const dvec2* place = nullptr) {
     const double t = std::max(s > 0 ? std::min(t_in_ + s, cell_end_) : t_in_ + s, ray_.t_min);
     // From the surface, the ray is below it only after t.
     if (strict_ ? t >= ray_.t_max : t > ray_.t_max) return ask != Ask::all;
-    answer_.status = HitStatus::hit;
+    const HitStatus before = std::exchange(answer_.status, HitStatus::hit);
     if constexpr (ask == Ask::any) return true;
     answer_.t = t;
     answer_.cell = {col_, row_};
-    answer_.u = x_.place(t, col_);
-    answer_.v = y_.place(t, row_);
-    answer_.height = field_.height_from_sample(ray_height(t));
+    answer_.u = place ? place->x : x_.place(t, col_);
+    answer_.v = place ? place->y : y_.place(t, row_);
+    answer_.height = ground_.metres(ray_height(t));
     answer_.wall = wall;
-    if constexpr (ask == Ask::all) all_->push_back(answer_);
+    if constexpr (ask == Ask::all) wanted_.all->push_back(answer_);
+    if constexpr (ask == Ask::accepted) {
+      if (wanted_.accept && !(*wanted_.accept)(answer_)) {
+        answer_ = {};
+        answer_.status = before;
+        return false;
+      }
+    }
     return ask != Ask::all;
   }
 
@@ -659,21 +672,19 @@ class Walk {
   static constexpr double kFirstProbe = 8, kProbeGrowth = 1.2;  // steps in cells
   static constexpr double kShortWay = 128;                      // cells up to which the traversal is as fast
   static constexpr double kUnit = 0x1p-53;                      // unit roundoff of double
-  static constexpr double kCodeRoundings = 8;                   // 6 on the way to a code, see numerics.md
+  // 6 on the way to a code, 2 more to the base of codes upside down; see numerics.md.
+  static constexpr double kCodeRoundings = UpsideDown ? 12 : 8;
 
   const HeightField& field_;
   double seam_, seam_step_;
-  const SampleGrid<T>& grid_;
+  const WalkGround<T, UpsideDown> ground_;
   const Level* levels_;
   int top_;
-  HeightCode code_;
-  const std::uint16_t *maxima_, *minima_;
   Axis x_, y_;
   double z_, dz_;  // ray height in sample units
   double t_in_, t_end_;
   bool strict_, triangles_, solid_;
-  int halvings_;
-  double t_clear_;
+  const Wanted wanted_;
   const Ray& ray_;
 
   int col_ = 0, row_ = 0;  // the current cell: this is the state, times are derived from it
@@ -686,7 +697,6 @@ class Walk {
   // With holes: whether some cell has been left; only in the first cell can the ray start below.
   bool begun_ = false;
   Hit& answer_;
-  std::vector<Hit>* all_;
 };
 
 }  // namespace

@@ -152,7 +152,7 @@ void validate(const VoxelRounding& rounding) {
 
 VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const VoxelRay& ray,
                              const VoxelDirection& direction, const VoxelRounding& rounding, const ivec3* from,
-                             MarchStats* stats) {
+                             MarchStats* stats, const VoxelFilter* accept) {
   if (stats) *stats = {};
   VoxelRay rest = ray;
   std::optional<VoxelFace> came_by;  // face into rest.start_voxel
@@ -181,7 +181,7 @@ VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const 
       const dvec3 p = ray.origin + hit.t * ray.direction, away = from_inner_box(shape.box_at(p), p);
       if ((later || hit.face != VoxelFace::inside) && length(away) >= rounding.radius - kOffRay)
         hit.face = face_along(away);
-      return hit;
+      if (!accept || (*accept)(hit)) return hit;
     }
     rest.t_min = hit.t;
     go_on_from(hit.voxel);

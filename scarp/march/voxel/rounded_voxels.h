@@ -30,12 +30,13 @@ struct VoxelRounding {
 /// Throws Error naming the setting out of range.
 void validate(const VoxelRounding& rounding);
 
-/// Returns the first rounded voxel, using a march that finds the first solid one. `from`: the voxel on whose surface
+/// Returns the first rounded voxel that counts, using a march that finds the first solid one; without `accept` all
+/// count. `from`: the voxel on whose surface
 /// the ray starts and which it leaves, or null. The face is the one nearest to the surface normal; `inside` for a ray
 /// that starts in the rounded voxel. Overwrites `stats` unless null.
 VoxelHit first_rounded_voxel(const VoxelTarget& target, VoxelMarch march, const VoxelRay& ray,
                              const VoxelDirection& direction, const VoxelRounding& rounding, const ivec3* from,
-                             MarchStats* stats);
+                             MarchStats* stats, const VoxelFilter* accept = nullptr);
 
 /// Returns the outward unit normal at a surface point, in the grid's space; zero for `inside`.
 dvec3 rounded_normal(const VoxelGrid& grid, const ivec3& voxel, VoxelFace face, const dvec3& point,

@@ -19,6 +19,17 @@ VoxelHit march_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray, 
   return first_voxel(target, ray, stats, plane_by_plane(target));
 }
 
+VoxelHit march_voxel_planes_accepted(const VoxelTarget& target, const QuantisedRay& ray, const VoxelFilter& accept,
+                                     MarchStats* stats) {
+  return first_voxel(target, ray, stats, [&](VoxelWalk& walk, const ivec3& voxel, bool& solid) {
+    if (target.grid->solid(voxel)) {
+      const VoxelHit hit = walk.hit(*target.grid);
+      solid = !hit || accept(hit);  // beyond the ray's end the walk is over, too
+    }
+    return !solid && walk.step();
+  });
+}
+
 bool occluded_voxel_planes(const VoxelTarget& target, const QuantisedRay& ray) {
   return any_voxel(target, ray, plane_by_plane(target));
 }

@@ -2,6 +2,8 @@
 // Targets and signatures of voxel marches.
 #pragma once
 
+#include <functional>
+
 #include "scarp/field/voxel_grid.h"
 #include "scarp/march/voxel/voxel_ray.h"
 
@@ -22,6 +24,9 @@ struct VoxelTarget {
   const OctantCubes* octants = nullptr;
   const BrickMasks* bricks = nullptr;
 };
+
+/// Returns whether a voxel counts; a ray goes through one that does not as if it were empty.
+using VoxelFilter = std::function<bool(const VoxelHit&)>;
 
 /// Returns the first solid voxel of the box on a ray quantised for it. Overwrites `stats` unless null.
 using VoxelMarch = VoxelHit (*)(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats);

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -86,24 +87,22 @@ class MeshField final : public SceneField {
   std::optional<WorldBox> box() const override { return box_; }
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
+    return accepted_hit(ray, from, {}, stats);
+  }
+  Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
     if (stats) *stats = {};
     MeshRay local;
     if (!enters(ray, from, local)) return {};
-    Query query(*this, local);
+    const MeshFilter filter{ray, rules.accept};
+    Query query(*this, local, rules.accept ? &filter : nullptr);
     RTCRayHit found{};
     found.ray = embree_ray(local);
     found.hit.geomID = found.hit.primID = kNone;
     rtcIntersect1(scene_.get(), &query, &found);
+    if (query.failure) std::rethrow_exception(query.failure);
     if (stats) stats->steps = stats->cell_tests = query.triangles;
     if (found.hit.geomID == kNone) return {};
-    const TriangleHit at = meets(local, found.hit.primID, static_cast<double>(found.ray.tfar));
-    Hit hit;
-    hit.status = HitStatus::hit;
-    hit.t = at.t;
-    hit.cell = {static_cast<int>(found.hit.primID), 0};
-    hit.u = at.u, hit.v = at.v;
-    hit.height = ray.at(at.t).z;
-    return hit;
+    return hit_on(ray, found.hit.primID, meets(local, found.hit.primID, static_cast<double>(found.ray.tfar)));
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
     MeshRay local;
@@ -140,14 +139,23 @@ class MeshField final : public SceneField {
     vec3 colour;
   };
 
+  // The caller's filter, and the ray that it is asked for.
+  struct MeshFilter {
+    const Ray& ray;
+    const HitFilter* accept;
+  };
+
   // Embree hands its context on to the filter.
   struct Query : RTCIntersectContext {
-    Query(const MeshField& mesh_, const MeshRay& ray_) : RTCIntersectContext{}, mesh(mesh_), ray(ray_) {
+    Query(const MeshField& mesh_, const MeshRay& ray_, const MeshFilter* filter_ = nullptr)
+        : RTCIntersectContext{}, mesh(mesh_), ray(ray_), filter(filter_) {
       rtcInitIntersectContext(this);
     }
 
     const MeshField& mesh;
     const MeshRay& ray;
+    const MeshFilter* filter;
+    std::exception_ptr failure{};  // of the caller's filter: Embree must not be left by an exception
     std::uint32_t triangles = 0;
   };
 
@@ -278,8 +286,26 @@ class MeshField final : public SceneField {
     const std::uint32_t triangle = RTCHitN_primID(arguments->hit, arguments->N, 0);
     ++query.triangles;
     const double found_s = static_cast<double>(RTCRayN_tfar(arguments->ray, arguments->N, 0));
-    const double t = query.mesh.meets(query.ray, triangle, found_s).t;
-    if (triangle == query.ray.passed || !(t >= query.ray.first_t && t <= query.ray.last_t)) arguments->valid[0] = 0;
+    const TriangleHit at = query.mesh.meets(query.ray, triangle, found_s);
+    if (triangle == query.ray.passed || !(at.t >= query.ray.first_t && at.t <= query.ray.last_t)) {
+      arguments->valid[0] = 0;
+    } else if (query.filter && !query.failure) {
+      try {
+        if (!(*query.filter->accept)(hit_on(query.filter->ray, triangle, at))) arguments->valid[0] = 0;
+      } catch (...) {
+        query.failure = std::current_exception();
+      }
+    }
+  }
+
+  static Hit hit_on(const Ray& ray, std::uint32_t triangle, const TriangleHit& at) {
+    Hit hit;
+    hit.status = HitStatus::hit;
+    hit.t = at.t;
+    hit.cell = {static_cast<int>(triangle), 0};
+    hit.u = at.u, hit.v = at.v;
+    hit.height = ray.at(at.t).z;
+    return hit;
   }
 
   static VoxelColour srgb(const dvec3& linear) {

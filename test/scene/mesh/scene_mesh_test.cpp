@@ -12,6 +12,7 @@
 
 #include "base/refusal.h"
 #include "scarp/scene/scene.h"
+#include "scarp/scene/scene_query.h"
 
 namespace scarp {
 namespace {
@@ -348,6 +349,23 @@ TEST(SceneMesh, RefusesWhatIsNoMesh) {
   EXPECT_EQ(test::refusal([&] { scene_mesh(mesh); }), "mesh: its coordinates must be finite numbers");
   mesh.corners[0].position = mesh.corners[1].position = mesh.corners[2].position = dvec3(1);
   EXPECT_EQ(test::refusal([&] { scene_mesh(mesh); }), "mesh: its extent must be finite and above 0");
+}
+
+TEST(SceneMesh, LetsRaysThroughTrianglesThatDoNotCount) {
+  const Scene scene(scene_mesh(cube({0, 0, 0}, {4, 4, 4})));
+  const Ray down{{1, 2, 9}, {0, 0, -1}};
+  const Hit top = scene.closest_hit(down);
+  EXPECT_EQ(top.t, 5);
+  const auto not_top = [&](const Ray& ray, const Hit& hit) {
+    EXPECT_EQ(ray.origin, down.origin);
+    return hit.cell != top.cell;
+  };
+  const SceneQuery query = scene.query({.accept = not_top});
+  EXPECT_EQ(query.closest_hit(down).t, 9);
+  EXPECT_TRUE(query.occluded(down));
+  EXPECT_FALSE(scene.query({.accept = [](const Ray&, const Hit&) { return false; }}).closest_hit(down));
+  const SceneQuery fails = scene.query({.accept = [](const Ray&, const Hit&) -> bool { throw Error("no"); }});
+  EXPECT_EQ(test::refusal([&] { fails.closest_hit(down); }), "no");
 }
 
 }  // namespace

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// The way from a query to the traversal of `max-mip`: directions of any length, fields of any sample type, and rays
+// along lines.
+#pragma once
+
+#include <cmath>
+#include <type_traits>
+#include <vector>
+
+#include "scarp/march/height/exhaustive.h"
+#include "scarp/march/height/max_mip_resume.h"
+#include "scarp/march/height/max_mip_walk.h"
+#include "scarp/march/usual_ray.h"
+
+namespace scarp::max_mip {
+namespace {
+
+// A ray along a grid line belongs to the cells on both sides, where either may be a hole. Their blocks differ, so the
+// pyramid is of no use.
+bool runs_along_line(const GridRay& ray) {
+  const auto along = [&](int axis) {
+    return ray.direction[axis] == 0 && ray.origin[axis] == std::floor(ray.origin[axis]);
+  };
+  return along(0) || along(1);
+}
+
+template <Ask ask, bool upside_down>
+Hit march_along_line(const HeightTarget& target, const Ray& ray, const Wanted& wanted, MarchStats* stats) {
+  if constexpr (ask != Ask::all && ask != Ask::accepted) return march_exhaustive(target, ray, {}, stats);
+  Hit hit;
+  std::vector<Hit> own, &hits = ask == Ask::all ? *wanted.all : own;
+  hit.status = (upside_down ? all_hits_from_below_exhaustive : all_hits_exhaustive)(target, ray, hits);
+  if constexpr (ask == Ask::all) return hit;
+  for (const Hit& one : hits) {
+    if (!wanted.accept || (*wanted.accept)(one)) return one;
+  }
+  if (hit) hit.status = HitStatus::miss;
+  return hit;
+}
+
+template <Ask ask, bool upside_down = false>
+Hit march(const HeightTarget& target, const Ray& ray, const Wanted& wanted, MarchStats* stats) {
+  require(target, HeightPart::pyramid);
+  const HeightField& field = *target.field;
+  Hit hit;
+  if (stats) *stats = {};
+  if (!field.has_cells() || field.all_nodata()) return hit;
+  const GridRay local = field.grid_from_world(ray);
+  const double longest = longest_of(local.direction);
+  if (!is_usual(longest)) {
+    if (!is_direction(longest)) return hit;
+    const int exponent = std::ilogb(longest);
+    const HitFilter accept = [&](Hit one) {
+      one.t = std::ldexp(one.t, -exponent);
+      return (*wanted.accept)(one);
+    };
+    Wanted usual = wanted;
+    usual.t_clear = kNotClear;
+    if (wanted.accept) usual.accept = &accept;
+    hit = march<ask, upside_down>(target, scaled_down(ray, exponent), usual, stats);
+    hit.t = std::ldexp(hit.t, -exponent);
+    if (wanted.all) {
+      for (Hit& one : *wanted.all) one.t = std::ldexp(one.t, -exponent);
+    }
+    return hit;
+  }
+  if (field.wraps() && !countable(local, ray)) {
+    hit.status = HitStatus::exhausted;
+    hit.t = ray.t_min;
+    return hit;
+  }
+  if (field.nodata_count() > 0 && ray.start == RayStart::free && runs_along_line(local))
+    return march_along_line<ask, upside_down>(target, ray, wanted, stats);
+  field.visit([&](const auto& grid) {
+    using T = std::remove_cvref_t<decltype(grid.data[0])>;
+    const auto run = [&]<bool holes, bool wraps>() {
+      Walk<T, holes, wraps, ask, upside_down> walk(target, grid, ray, local, wanted, hit);
+      walk.run();
+      if (stats) *stats = walk.stats;
+    };
+    if (field.wraps()) {
+      grid.has_holes ? run.template operator()<true, true>() : run.template operator()<false, true>();
+    } else {
+      grid.has_holes ? run.template operator()<true, false>() : run.template operator()<false, false>();
+    }
+  });
+  return hit;
+}
+
+}  // namespace
+}  // namespace scarp::max_mip

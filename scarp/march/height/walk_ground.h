@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// The ground as the traversal of `max-mip` meets it: as it is or, for hits from below, upside down. Upside down all
+// heights are multiplied by -1, and maxima become minima: a ray that hits from below hits that ground from above, at
+// the same t, so that what holds for hits from above holds for those from below. A block with a hole has no minimum:
+// upside down its maximum is that of the highest code.
+#pragma once
+
+#include <cstdint>
+
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/field/height_field.h"
+#include "scarp/field/sample_grid.h"
+
+namespace scarp::max_mip {
+
+template <class T, bool UpsideDown>
+class WalkGround {
+ public:
+  WalkGround(const HeightField& field, const MaxPyramid& pyramid, const SampleGrid<T>& grid)
+      : field_(field),
+        grid_(grid),
+        code_(pyramid.code()),
+        maxima_(pyramid.maxima()),
+        minima_(pyramid.minima()),
+        base_(UpsideDown ? -(code_.base + code_.step * kHighestCode) : code_.base) {}
+
+  bool is_hole(int col, int row) const { return grid_.is_hole(col, row); }
+  CellHeights cell(int col, int row) const {
+    const CellHeights h = grid_.cell(col, row);
+    if constexpr (UpsideDown) return {-h.h00, -h.h10, -h.h01, -h.h11};
+    return h;
+  }
+  double highest() const { return UpsideDown ? -field_.min_sample() : field_.max_sample(); }
+  double lowest() const { return UpsideDown ? -field_.max_sample() : field_.min_sample(); }
+  /// Height in metres of the field itself.
+  double metres(double height) const { return field_.height_from_sample(UpsideDown ? -height : height); }
+
+  /// Codes of a block's bounds; minima are kNoMinimum for blocks with a hole.
+  std::uint16_t maximum(std::ptrdiff_t entry) const { return UpsideDown ? other(minima_[entry]) : maxima_[entry]; }
+  std::uint16_t minimum(std::ptrdiff_t entry) const {
+    if constexpr (UpsideDown) {
+      return minima_[entry] == MaxPyramid::kNoMinimum ? MaxPyramid::kNoMinimum : other(maxima_[entry]);
+    }
+    return minima_[entry];
+  }
+  /// Height of a code in sample units, exactly the expression by which it was rounded outwards.
+  double height(std::uint16_t code) const { return UpsideDown ? -code_.height(other(code)) : code_.height(code); }
+  /// Height of code 0, to two roundings, and codes per sample unit.
+  double base() const { return base_; }
+  double per_step() const { return code_.per_step; }
+
+ private:
+  static constexpr int kHighestCode = 65535;
+  static std::uint16_t other(std::uint16_t code) { return static_cast<std::uint16_t>(kHighestCode - code); }
+
+  const HeightField& field_;
+  const SampleGrid<T>& grid_;
+  HeightCode code_;
+  const std::uint16_t *maxima_, *minima_;
+  double base_;
+};
+
+}  // namespace scarp::max_mip
