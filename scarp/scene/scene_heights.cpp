@@ -46,7 +46,7 @@ class Heights final : public SceneField {
   bool outdated() const override {
     return (pyramid_ ? pyramid_->edits() : !std::isnan(slope_) ? slope_edits_ : field_.edits()) != field_.edits();
   }
-  SceneFieldPtr rebuilt() const override { return marched_by(march_); }
+  SceneFieldPtr rebuilt() const override { return marched_by(march_, answered_by_); }
   const std::weak_ptr<const void>* memory() const override { return field_.memory(); }
 
   std::string_view kind() const override { return "heights"; }
@@ -68,7 +68,7 @@ class Heights final : public SceneField {
   std::optional<double> height(double x, double y) const override { return field_.height(x, y); }
   std::int64_t elements() const override { return std::int64_t{field_.cols()} * field_.rows(); }
   double cell_side() const override { return std::min(field_.settings().cell_x, field_.settings().cell_y); }
-  SceneFieldPtr judge() const override { return marched_by(find_height_march("exhaustive")); }
+  SceneFieldPtr judge() const override { return marched_by(find_height_march("exhaustive"), AnsweredBy::cpu); }
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return march_.cpu(target(), from ? started(ray, from) : ray, settings_, stats);
@@ -143,8 +143,8 @@ class Heights final : public SceneField {
   }
 
  private:
-  SceneFieldPtr marched_by(const HeightMarchEntry& march) const {
-    auto field = std::make_shared<Heights>(field_, march, settings_, answered_by_);
+  SceneFieldPtr marched_by(const HeightMarchEntry& march, AnsweredBy answered_by) const {
+    auto field = std::make_shared<Heights>(field_, march, settings_, answered_by);
     field->materials_ = materials_;
     return field;
   }

@@ -13,27 +13,15 @@
 #include "scarp/march/height/cells_beside.h"
 #include "scarp/march/height/grid_axis.h"
 #include "scarp/march/height/height_target.h"
-#include "scarp/march/height/max_mip_resume.h"
 #include "scarp/march/height/rounding.h"
 #include "scarp/march/height/walk_ground.h"
-#include "scarp/march/hit_rules.h"
+#include "scarp/march/height/walk_query.h"
 
 // Internal linkage, although in a header (included by one file), lets the compiler inline single-use functions. Without
 // it the traversal's state spills to memory and rays take 10 % longer. For the same reason the common path through a
 // cell is inlined, and the rare ones are not.
 namespace scarp::max_mip {
 namespace {
-
-/// The query: closest hit in closed form or by bisection, any hit, all hits, or the closest one that a filter accepts.
-enum class Ask { closest, bisected, any, all, accepted };
-
-/// What a query needs besides the ray.
-struct Wanted {
-  int halvings = 0;                   ///< of bisected
-  double t_clear = kNotClear;         ///< up to which the ray is known to be above the ground by more than rounding
-  std::vector<Hit>* all = nullptr;    ///< receives all hits
-  const HitFilter* accept = nullptr;  ///< null: the first hit is accepted
-};
 
 // Side of the ray at the entry of the current cell, as far as known. Without holes it is unknown in the first cell
 // only.

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// What a traversal of `max-mip` is asked for.
+#pragma once
+
+#include <vector>
+
+#include "scarp/march/height/max_mip_resume.h"
+#include "scarp/march/hit_rules.h"
+
+namespace scarp::max_mip {
+
+/// The query: closest hit in closed form or by bisection, any hit, all hits, or the closest one that a filter accepts.
+enum class Ask { closest, bisected, any, all, accepted };
+
+/// What a query needs besides the ray.
+struct Wanted {
+  int halvings = 0;                   ///< of bisected
+  double t_clear = kNotClear;         ///< up to which the ray is known to be above the ground by more than rounding
+  std::vector<Hit>* all = nullptr;    ///< receives all hits
+  const HitFilter* accept = nullptr;  ///< null: the first hit is accepted
+};
+
+}  // namespace scarp::max_mip
