@@ -2,14 +2,12 @@
 // The point of the ground that is closest to a given one: for contacts, clearances and distance checks.
 //
 //            . p          blocks of the pyramid, the nearest first: a block whose box is farther than the best point
-//           /             so far holds nothing closer. A cell's triangles are compared in closed form; a bilinear cell
-//           is
-//   ___    x___           split until it is as flat as two triangles.
+//           /             so far holds nothing closer. A cell's triangles are compared in closed form; a bilinear
+//   ___    x___           cell is split until it is as flat as two triangles (ground_search.h).
 //      \__/
 //
 // Guarantee: exact for `triangles`, to rounding. For `bilinear` the distance is too large by 2^-20 of the shorter side
-// of a cell at most. The closest point of a triangle is that of C. Ericson, Real-Time Collision Detection
-// (2005), 5.1.5. Cost: some blocks per level, and the cells around the point.
+// of a cell at most. Cost: some blocks per level, and the cells around the point.
 #pragma once
 
 #include <limits>

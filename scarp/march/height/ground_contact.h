@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Spheres, capsules and boxes against the ground: the first contact of one that moves, and overlaps.
+//
+// Guarantee: exact to rounding for `triangles` (march/sweep.h). A bilinear surface is taken as triangles that are off
+// it by 2^-21 of the shorter side of a cell at most. Both sides of the surface count; the ground below it does not, nor
+// do walls of solid ground. Cost: some blocks per level and cell on the way, found best first in the pyramid.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <optional>
+
+#include "scarp/march/height/height_target.h"
+#include "scarp/march/sweep.h"
+
+namespace scarp {
+
+struct GroundContact : Contact {
+  Cell cell{};
+};
+
+/// Returns the first contact of a capsule that moves along `motion` in metres. Requires the field's pyramid. Throws
+/// Error without it, for a field that wraps round, and for a capsule or a motion that validate() refuses.
+std::optional<GroundContact> sweep(const HeightTarget& target, const Capsule& capsule, const dvec3& motion);
+
+/// A box in any rotation.
+struct TurnedBox {
+  dvec3 centre{0.0};
+  dvec3 half{0.0};       ///< half of each side, >= 0
+  glm::dmat3 turn{1.0};  ///< a rotation: columns are the directions of the sides
+};
+
+/// Returns whether the surface and the box, both closed, have a point in common. Errors as sweep(), and for a box that
+/// is not finite or has a negative side.
+bool overlaps(const HeightTarget& target, const TurnedBox& box);
+
+}  // namespace scarp
