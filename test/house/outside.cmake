@@ -1,6 +1,7 @@
 # Installs the built tree and builds a project outside of it against what was installed:
 #   cmake -D ROOT=<checkout> -D BUILD=<build folder> -D WORK=<scratch folder>
 #         -D GENERATOR=... -D CXX=<compiler> -D TYPE=<build type> -P outside.cmake
+# With -D PREFIX=<tree> in place of BUILD, takes what is installed there.
 cmake_minimum_required(VERSION 3.25)
 
 function(run)
@@ -14,14 +15,17 @@ endfunction()
 # outside(COMPONENT options...): configures, builds and runs the program that links scarp::COMPONENT.
 function(outside component)
   set(folder ${WORK}/${component})
-  run(${CMAKE_COMMAND} -S ${ROOT}/test/house/outside -B ${folder} -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${WORK}/prefix
+  run(${CMAKE_COMMAND} -S ${ROOT}/test/house/outside -B ${folder} -G ${GENERATOR} -D CMAKE_PREFIX_PATH=${PREFIX}
       -D CMAKE_CXX_COMPILER=${CXX} -D CMAKE_BUILD_TYPE=${TYPE} -D COMPONENT=${component} ${ARGN})
   run(${CMAKE_COMMAND} --build ${folder})
   execute_process(COMMAND ${folder}/outside_${component} WORKING_DIRECTORY ${folder} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
 
 file(REMOVE_RECURSE ${WORK})
-run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
+if(NOT DEFINED PREFIX)
+  set(PREFIX ${WORK}/prefix)
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX})
+endif()
 outside(core -D CMAKE_DISABLE_FIND_PACKAGE_GDAL=ON -D CMAKE_DISABLE_FIND_PACKAGE_PROJ=ON -D CMAKE_DISABLE_FIND_PACKAGE_PNG=ON
         -D CMAKE_DISABLE_FIND_PACKAGE_OpenEXR=ON -D CMAKE_DISABLE_FIND_PACKAGE_Vulkan=ON)
 outside(scarp)
@@ -29,7 +33,7 @@ outside(scarp)
 # The same programs by pkg-config.
 find_program(PKG_CONFIG pkg-config)
 if(PKG_CONFIG)
-  file(GLOB_RECURSE pc_file ${WORK}/prefix/*/scarp-core.pc)
+  file(GLOB_RECURSE pc_file ${PREFIX}/lib/*scarp-core.pc)
   cmake_path(GET pc_file PARENT_PATH pc_folder)
   foreach(pair core:scarp-core scarp:scarp)
     string(REGEX REPLACE ":.*" "" program ${pair})
@@ -42,7 +46,7 @@ if(PKG_CONFIG)
 endif()
 
 # Every installed header, with the warnings that careful programs use, by the compilers that are here.
-file(GLOB_RECURSE installed RELATIVE ${WORK}/prefix/include ${WORK}/prefix/include/*.h)
+file(GLOB_RECURSE installed RELATIVE ${PREFIX}/include ${PREFIX}/include/*.h)
 list(FILTER installed EXCLUDE REGEX "\\.glsl\\.h$|glsl_cpp\\.h$")
 set(every_header "")
 foreach(header IN LISTS installed)
@@ -54,7 +58,7 @@ foreach(compiler g++ clang++)
   if(${compiler}_PATH)
     # clang counts changes of sign as conversions, g++ does not; indices of type int are many in these headers.
     run(${${compiler}_PATH} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror
-        -I ${WORK}/prefix/include ${WORK}/every_header.cpp)
+        -I ${PREFIX}/include ${WORK}/every_header.cpp)
   endif()
 endforeach()
 
@@ -71,10 +75,11 @@ file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${WORK}/core/outside_core RESOLVED_DEP
 if(libraries MATCHES "libgdal|libproj|libpng|libOpenEXR|libvulkan")
   message(FATAL_ERROR "a program that links scarp::core needs ${libraries}")
 endif()
-if(EXISTS ${BUILD}/bin/scarp)
-  run(${WORK}/prefix/bin/scarp --help)
+if(EXISTS ${PREFIX}/bin/scarp)
+  run(${PREFIX}/bin/scarp --help)
   foreach(file bash-completion/completions/scarp zsh/site-functions/_scarp fish/vendor_completions.d/scarp.fish man/man1/scarp-render.1)
-    if(NOT EXISTS ${WORK}/prefix/share/${file})
+    file(GLOB found ${PREFIX}/share/${file}*)  # manuals may be compressed
+    if(NOT found)
       message(FATAL_ERROR "share/${file} is not installed")
     endif()
   endforeach()
