@@ -16,12 +16,14 @@ constexpr double kUnit = 0x1p-53;
 bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // When a point that starts outside, q from the centre, enters a ball or, with q and m square to its axis, a cylinder.
+// By the place where it is closest: the difference of squares of a long way and a small radius has no digits left.
+// Source: E. Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems (2019).
 double enter_round(const dvec3& q, const dvec3& m, double radius) {
-  const double a = dot(m, m), b = dot(q, m), c = dot(q, q) - radius * radius;
-  if (!(b < 0)) return kNever;
-  if (c <= 0) return 0;
-  const double d = b * b - a * c;
-  return d >= 0 ? c / (std::sqrt(d) - b) : kNever;
+  const double square = dot(m, m), closest = -dot(q, m) / square;
+  if (!(closest > 0)) return kNever;  // away from it, or along an axis
+  const double height = length(q + closest * m);
+  if (height > radius) return kNever;
+  return std::max(0.0, closest - std::sqrt((radius - height) * (radius + height) / square));
 }
 
 // A point that moves from p by m, against the parts of the surface of a dilated body, each of which is part of it.
@@ -69,6 +71,12 @@ class MovingPoint {
   double radius_;
   double first_ = kNever;
 };
+
+double to_segment(const dvec3& a, const dvec3& d, const dvec3& p) {
+  const double square = dot(d, d);
+  const double along = square > 0 ? std::clamp(dot(p - a, d) / square, 0.0, 1.0) : 0.0;
+  return length(a + along * d - p);
+}
 
 }  // namespace
 
@@ -145,7 +153,19 @@ double sweep_bound(const Capsule& capsule, const dvec3& motion, const dvec3& low
     const double in = ((m > 0 ? lowest : highest) - a) / m, out = ((m > 0 ? highest : lowest) - a) / m;
     begin = std::max(begin, in), end = std::min(end, out);
   }
-  return begin <= end ? begin : kNever;
+  if (!(begin <= end)) return kNever;
+  // The ball around the box: of a small box far nearer to the truth than a box around the capsule.
+  const dvec3 centre = 0.5 * (low + high), d = capsule.b - capsule.a;
+  const double rounding = 64 * kUnit * (length(capsule.a) + length(d) + length(motion) + length(low) + length(high));
+  const double reach = capsule.radius + 0.5 * length(high - low) + rounding;
+  if (to_segment(capsule.a, d, centre) <= reach) return begin;
+  MovingPoint point(capsule.a, motion, reach);
+  point.corner(centre);
+  if (d != dvec3(0.0)) {
+    point.corner(centre - d);
+    point.edge(centre, -d);
+  }
+  return point.first() <= end ? std::max(begin, point.first()) : kNever;
 }
 
 }  // namespace scarp

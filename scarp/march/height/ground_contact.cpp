@@ -52,32 +52,10 @@ class SweepSearch {
   Cell cell_{};
 };
 
-// Whether a triangle meets a box around the origin with axes x, y, z: no axis separates them. Source: T.
-// Akenine-Möller, "Fast 3D triangle-box overlap testing", JGT 6(1), 2001.
-bool meets_box(const Triangle& t, const dvec3& half) {
-  const auto separates = [&](const dvec3& axis) {
-    const double a = dot(axis, t[0]), b = dot(axis, t[1]), c = dot(axis, t[2]);
-    const double reach = dot(half, abs(axis));
-    return std::min({a, b, c}) > reach || std::max({a, b, c}) < -reach;
-  };
-  const dvec3 sides[3] = {t[1] - t[0], t[2] - t[1], t[0] - t[2]};
-  for (int i = 0; i < 3; ++i) {
-    dvec3 axis(0.0);
-    axis[i] = 1;
-    if (separates(axis)) return false;
-    for (const dvec3& side : sides) {
-      if (separates(cross(axis, side))) return false;
-    }
-  }
-  return !separates(cross(sides[0], sides[1]));
-}
-
 // A query of GroundSearch that ends at the first triangle.
 class BoxSearch {
  public:
-  explicit BoxSearch(const TurnedBox& box)
-      : box_(box),
-        reach_(abs(box.turn[0]) * box.half.x + abs(box.turn[1]) * box.half.y + abs(box.turn[2]) * box.half.z) {}
+  explicit BoxSearch(const TurnedBox& box) : box_(box), reach_(reach_of(box)) {}
 
   double best() const { return found_ ? 0 : kNever; }
   double bound(const WorldBox& ground) const {
@@ -90,11 +68,7 @@ class BoxSearch {
   }
   bool compare(const GroundPart& part, bool flat) {
     if (!flat) return false;
-    for (const Triangle& triangle : part.triangles) {
-      Triangle own;
-      for (std::size_t i = 0; i < 3; ++i) own[i] = (triangle[i] - box_.centre) * box_.turn;
-      found_ = found_ || meets_box(own, box_.half);
-    }
+    for (const Triangle& triangle : part.triangles) found_ = found_ || scarp::overlaps(box_, triangle);
     return true;
   }
   bool found() const { return found_; }
@@ -117,10 +91,7 @@ std::optional<GroundContact> sweep(const HeightTarget& target, const Capsule& ca
 
 bool overlaps(const HeightTarget& target, const TurnedBox& box) {
   require_ground(target);
-  const double sum =
-      length(box.centre) + length(box.half) + length(box.turn[0]) + length(box.turn[1]) + length(box.turn[2]);
-  if (!std::isfinite(sum) || !(box.half.x >= 0 && box.half.y >= 0 && box.half.z >= 0))
-    throw Error("overlap: the box must be finite, and none of its sides negative");
+  validate(box);
   BoxSearch search(box);
   GroundSearch(target, search).run();
   return search.found();

@@ -6,11 +6,11 @@
 // do walls of solid ground. Cost: some blocks per level and cell on the way, found best first in the pyramid.
 #pragma once
 
-#include <glm/mat3x3.hpp>
 #include <optional>
 
 #include "scarp/march/height/height_target.h"
 #include "scarp/march/sweep.h"
+#include "scarp/march/turned_box.h"
 
 namespace scarp {
 
@@ -22,15 +22,8 @@ struct GroundContact : Contact {
 /// Error without it, for a field that wraps round, and for a capsule or a motion that validate() refuses.
 std::optional<GroundContact> sweep(const HeightTarget& target, const Capsule& capsule, const dvec3& motion);
 
-/// A box in any rotation.
-struct TurnedBox {
-  dvec3 centre{0.0};
-  dvec3 half{0.0};       ///< half of each side, >= 0
-  glm::dmat3 turn{1.0};  ///< a rotation: columns are the directions of the sides
-};
-
-/// Returns whether the surface and the box, both closed, have a point in common. Errors as sweep(), and for a box that
-/// is not finite or has a negative side.
+/// Returns whether the surface and the box, both closed, have a point in common. Errors as sweep(), and for a box
+/// that validate() refuses.
 bool overlaps(const HeightTarget& target, const TurnedBox& box);
 
 }  // namespace scarp

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/voxel/voxel_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace scarp {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+// A cube of blocks or voxels that may hold what is looked for.
+struct Block {
+  double bound;
+  ivec3 low;
+  int side;
+};
+
+// Best-first over the blocks that have solid voxels: bound(low, high) is the best that a box can hold, solid(voxel)
+// looks at a solid voxel, best() is what was found.
+template <class Bound, class Solid, class Best>
+void search(const VoxelGrid& grid, const Bound& bound, const Solid& solid, const Best& best) {
+  const VoxelBox& within = grid.bounds();
+  if (within.empty()) return;
+  int side = VoxelGrid::kBrick;
+  while (side < std::max({grid.size().x, grid.size().y, grid.size().z})) side *= 2;
+  const auto later = [](const Block& a, const Block& b) { return a.bound > b.bound; };
+  std::vector<Block> blocks{{0, ivec3(0), side}};  // a heap, the least bound on top
+  while (!blocks.empty()) {
+    std::pop_heap(blocks.begin(), blocks.end(), later);
+    const Block block = blocks.back();
+    blocks.pop_back();
+    if (!(block.bound < best())) break;
+    if (block.side == 1) {
+      solid(block.low, block.bound);
+      continue;
+    }
+    if (block.side == VoxelGrid::kBrick && grid.mask(block.low / VoxelGrid::kBrick) == 0) continue;
+    const int half = block.side / 2;
+    for (int i = 0; i < 8; ++i) {
+      const ivec3 low = block.low + half * ivec3(i & 1, i >> 1 & 1, i >> 2);
+      const ivec3 from = max(low, within.low), to = min(low + half, within.high);
+      if (from.x >= to.x || from.y >= to.y || from.z >= to.z) continue;
+      if (half == 1 && !grid.solid(low)) continue;
+      const double least = bound(dvec3(from), dvec3(to));
+      if (!(least < best())) continue;
+      blocks.push_back({least, low, half});
+      std::push_heap(blocks.begin(), blocks.end(), later);
+    }
+  }
+}
+
+bool is_solid(const VoxelGrid& grid, const ivec3& voxel) { return grid.box().contains(voxel) && grid.solid(voxel); }
+
+std::optional<VoxelContact> starts_inside(const VoxelGrid& grid, const Capsule& capsule) {
+  const dvec3 size(grid.size());
+  for (const dvec3& end : {capsule.a, capsule.b}) {
+    // Compared as they are: too far away for whole numbers.
+    if (!(end.x >= 0 && end.y >= 0 && end.z >= 0 && end.x < size.x && end.y < size.y && end.z < size.z)) continue;
+    const ivec3 voxel(floor(end));
+    if (grid.solid(voxel)) return VoxelContact{{0, end, dvec3(0.0)}, voxel};
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<VoxelContact> sweep(const VoxelGrid& grid, const Capsule& capsule, const dvec3& motion) {
+  validate(capsule, motion);
+  if (const auto inside = starts_inside(grid, capsule)) return inside;
+  double best = kNever;
+  Triangle touched{};
+  ivec3 touched_voxel(-1);
+  const auto reach = [&] { return std::min(best, 1.0); };
+  const auto bound = [&](const dvec3& low, const dvec3& high) {
+    return sweep_bound(capsule, motion, low, high, reach());
+  };
+  const auto solid = [&](const ivec3& voxel, double least) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int side = 0; side < 2; ++side) {
+        ivec3 beside = voxel;
+        beside[axis] += side ? 1 : -1;
+        // Faces that the motion does not go towards are touched where it starts, or after others.
+        if (is_solid(grid, beside) || (least > 0 && (side ? motion[axis] >= 0 : motion[axis] <= 0))) continue;
+        dvec3 corner(voxel), u(0.0), v(0.0);
+        corner[axis] += side;
+        u[(axis + 1) % 3] = 1, v[(axis + 2) % 3] = 1;
+        for (const Triangle& triangle :
+             {Triangle{corner, corner + u, corner + v}, {corner + u + v, corner + v, corner + u}}) {
+          const auto t = sweep_time(capsule, motion, triangle, reach());
+          if (!t || !(*t < best)) continue;
+          best = *t, touched = triangle, touched_voxel = voxel;
+        }
+      }
+    }
+  };
+  search(grid, bound, solid, [&] { return best; });
+  if (best == kNever) return {};
+  return VoxelContact{contact_at(capsule, motion, touched, best), touched_voxel};
+}
+
+bool overlaps(const VoxelGrid& grid, const TurnedBox& box) {
+  bool found = false;
+  const dvec3 reach = reach_of(box) + 16 * 0x1p-53 * (length(box.centre) + length(box.half));
+  const auto bound = [&](const dvec3& low, const dvec3& high) {
+    for (int axis = 0; axis < 3; ++axis) {
+      if (low[axis] > box.centre[axis] + reach[axis] || high[axis] < box.centre[axis] - reach[axis]) return kNever;
+    }
+    return 0.0;
+  };
+  const auto solid = [&](const ivec3& voxel, double) {
+    found = found || overlaps(box, dvec3(voxel), dvec3(voxel) + 1.0);
+  };
+  search(grid, bound, solid, [&] { return found ? 0 : kNever; });
+  return found;
+}
+
+}  // namespace scarp

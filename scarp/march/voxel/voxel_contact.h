@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// Spheres, capsules and boxes against the solid voxels of a grid, in its space, where voxels have side 1: the first
+// contact of one that moves, and overlaps. Voxels are cubes, never rounded. Exact to rounding (march/sweep.h): the
+// faces between solid and empty voxels are swept as two triangles each.
+//
+// Cost: blocks of 2^n voxels on the way, the first to be reached first; those without a solid voxel below 4 x 4 x 4 are
+// left out.
+#pragma once
+
+#include <optional>
+
+#include "scarp/field/voxel_grid.h"
+#include "scarp/march/sweep.h"
+#include "scarp/march/turned_box.h"
+
+namespace scarp {
+
+/// `normal` is zero if an end of the centre line starts in the voxel.
+struct VoxelContact : Contact {
+  ivec3 voxel{-1};
+};
+
+/// Returns the first contact of a capsule that moves along `motion`. Throws Error for a capsule or a motion that
+/// validate() refuses.
+std::optional<VoxelContact> sweep(const VoxelGrid& grid, const Capsule& capsule, const dvec3& motion);
+
+/// Returns whether a solid voxel and the box, both closed, have a point in common.
+bool overlaps(const VoxelGrid& grid, const TurnedBox& box);
+
+}  // namespace scarp

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// Sweeps of spheres and capsules over height fields, and overlaps of boxes, against all triangles.
+#include "scarp/march/height/ground_contact.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/ext/matrix_transform.hpp>
+#include <limits>
+#include <vector>
+
+#include "base/refusal.h"
+#include "bench/sweep_judge.h"
+#include "cases.h"
+#include "march/height/spiteful.h"
+
+namespace scarp::test {
+namespace {
+
+using bench::JudgedSweep;
+using bench::JudgedTriangle;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+HeightField rugged(Random& random, Surface surface, double hole_share) {
+  const int cols = whole(random, 2, 9), rows = whole(random, 2, 9);
+  std::vector<float> samples;
+  for (int i = 0; i < cols * rows; ++i)
+    samples.push_back(uniform(random, 0, 1) < hole_share ? std::numeric_limits<float>::quiet_NaN()
+                                                         : static_cast<float>(uniform(random, -2, 2)));
+  return HeightField::own(samples, cols, rows,
+                          {.cell_x = uniform(random, 0.3, 2), .cell_y = uniform(random, 0.3, 2), .surface = surface});
+}
+
+dvec3 direction(Random& random) {
+  for (;;) {
+    const dvec3 d(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
+    if (const double square = dot(d, d); square > 0.01 && square < 1) return normalize(d);
+  }
+}
+
+struct Moving {
+  Capsule capsule;
+  dvec3 motion;
+};
+
+// From anywhere about the field to anywhere, a part of them aimed at nodes, sides and grazes.
+Moving random_sweep(const HeightField& field, const std::vector<JudgedTriangle>& triangles, Random& random) {
+  const auto about = [&] {
+    return dvec3(uniform(random, -2, field.width() + 2), uniform(random, -2, field.depth() + 2),
+                 uniform(random, -4, 6));
+  };
+  Moving moving{{about(), {}, std::pow(10, uniform(random, -4, 0.3))}, {}};
+  moving.capsule.b = moving.capsule.a;
+  if (whole(random, 0, 1)) moving.capsule.b += uniform(random, 0, 3) * direction(random);
+  moving.motion = about() - moving.capsule.a;
+  const int aim = whole(random, 0, 5);
+  if (triangles.empty() || aim > 2) return moving;
+  const JudgedTriangle& t =
+      triangles[static_cast<std::size_t>(whole(random, 0, static_cast<int>(triangles.size()) - 1))];
+  // A node, a point of a side, or, so that it grazes it, beside a point of a side by the radius.
+  dvec3 target = t[0] + (aim == 0 ? 0.0 : uniform(random, 0, 1)) * (t[1] - t[0]);
+  if (aim == 2) target += moving.capsule.radius * direction(random);
+  moving.motion = (target - moving.capsule.a) * (whole(random, 0, 1) ? 1.0 : uniform(random, 1, 3));
+  return moving;
+}
+
+void expect_no_tunnelling(Surface surface, int parts) {
+  Random random(11);
+  int contacts = 0, starts = 0;
+  // Judging takes as long as there are triangles.
+  const int fewer = parts * parts;
+  for (int round = 0; round < cases(400, 60, 12); ++round) {
+    const HeightField field = rugged(random, surface, round % 3 ? 0 : 0.2);
+    const MaxPyramid pyramid(field);
+    const auto triangles = bench::all_triangles(field, parts);
+    // Both the judge's and the sweep's triangles are off a bilinear surface.
+    const double cell = std::min(field.settings().cell_x, field.settings().cell_y);
+    const double off = parts == 1 ? 0 : 2.0 / (parts * parts) + 0x1p-21 * cell;
+    for (int i = 0; i < cases(400, 100, 40) / fewer; ++i) {
+      const auto [capsule, motion] = random_sweep(field, triangles, random);
+      const auto found = sweep({&field, &pyramid}, capsule, motion);
+      const JudgedSweep judged{capsule.a, capsule.b, capsule.radius, motion};
+      const auto error = bench::judge_sweep(judged, triangles, found.has_value(), found ? found->t : 0, off);
+      ASSERT_EQ(error.tunnelled, 0) << round << ", " << i;
+      ASSERT_EQ(error.untouched, 0) << round << ", " << i;
+      if (!found) continue;
+      ++contacts;
+      starts += found->t == 0;
+      ASSERT_NEAR(length(found->normal), 1, 1e-12);
+      ASSERT_TRUE(field.cell_heights(found->cell));
+      if (found->t == 0) continue;
+      // The point is on the capsule where it is then, and the normal against the motion.
+      ASSERT_NEAR(bench::to_segment(found->point, capsule.a + found->t * motion, capsule.b + found->t * motion),
+                  capsule.radius, 1e-9 + off);
+      if (capsule.radius > 1e-3) {
+        ASSERT_LE(dot(found->normal, motion), 1e-6 * length(motion));
+      }
+    }
+  }
+  EXPECT_GT(contacts, cases(40'000, 1500, 100) / fewer / 2);
+  EXPECT_GT(starts, 0);
+}
+
+TEST(Sweep, NeverTunnelsThroughTriangles) { expect_no_tunnelling(Surface::triangles, 1); }
+TEST(Sweep, NeverTunnelsThroughBilinearCells) { expect_no_tunnelling(Surface::bilinear, 4); }
+
+HeightField plane(int cells, float height) {
+  const auto side = static_cast<std::size_t>(cells + 1);
+  return HeightField::own(std::vector<float>(side * side, height), cells + 1, cells + 1);
+}
+
+TEST(Sweep, StopsAtThePlane) {
+  const HeightField field = plane(8, 1);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  const auto ball = sweep(target, {{4, 4, 5}, {4, 4, 5}, 0.5}, {0, 0, -7});
+  ASSERT_TRUE(ball);
+  EXPECT_DOUBLE_EQ(ball->t, 0.5);
+  EXPECT_EQ(ball->normal, dvec3(0, 0, 1));
+  EXPECT_NEAR(length(ball->point - dvec3(4, 4, 1)), 0, 1e-15);
+  // From below, its lower side.
+  EXPECT_EQ(sweep(target, {{4, 4, -3}, {4, 4, -3}, 1}, {0, 0, 6})->normal, dvec3(0, 0, -1));
+  // An upright capsule, and one that lies.
+  EXPECT_DOUBLE_EQ(sweep(target, {{4, 4, 3}, {4, 4, 9}, 0.5}, {0, 0, -3})->t, 0.5);
+  EXPECT_DOUBLE_EQ(sweep(target, {{2, 4, 3}, {6, 4, 3}, 0.5}, {0, 0, -3})->t, 0.5);
+  // Beside the field, at its border, and too short.
+  EXPECT_FALSE(sweep(target, {{-1, 4, 3}, {-1, 4, 3}, 0.5}, {0, 0, -9}));
+  EXPECT_TRUE(sweep(target, {{-0.4, 4, 3}, {-0.4, 4, 3}, 0.5}, {0, 0, -9}));
+  EXPECT_FALSE(sweep(target, {{4, 4, 3}, {4, 4, 3}, 0.5}, {0, 0, -1.4}));
+  // It rests, and does not move.
+  EXPECT_EQ(sweep(target, {{4, 4, 1.5}, {4, 4, 1.5}, 0.5}, {1, 0, 0})->t, 0);
+  EXPECT_EQ(sweep(target, {{4, 4, 1.2}, {4, 4, 1.2}, 0.5}, dvec3(0.0))->t, 0);
+  EXPECT_FALSE(sweep(target, {{4, 4, 2}, {4, 4, 2}, 0.5}, dvec3(0.0)));
+}
+
+TEST(Sweep, OfAPointIsARay) {
+  const HeightField field = plane(8, 1);
+  const MaxPyramid pyramid(field);
+  const auto hit = sweep({&field, &pyramid}, {{3.2, 3.7, 4}, {3.2, 3.7, 4}, 0}, {0.5, 0.25, -6});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->t, 0.5, 1e-15);
+}
+
+TEST(Sweep, KeepsItsDigitsOverLongWays) {
+  const HeightField field = plane(8, 0);
+  const MaxPyramid pyramid(field);
+  const dvec3 from(4 + 3e6, 4 - 2e6, 1e6), motion = 2.0 * (dvec3(4, 4, 0) - from);
+  const auto hit = sweep({&field, &pyramid}, {from, from, 0.25}, motion);
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR((from + hit->t * motion).z, 0.25, 1e-8);
+}
+
+// The part of a triangle in a box: cut by one side after the other.
+bool cut_by_box(const JudgedTriangle& triangle, const TurnedBox& box, double wider) {
+  std::vector<dvec3> part;
+  for (const dvec3& corner : triangle) part.push_back(glm::transpose(box.turn) * (corner - box.centre));
+  for (int side = 0; side < 6; ++side) {
+    const double sign = side % 2 ? 1 : -1;
+    const auto outside = [&](const dvec3& p) { return sign * p[side / 2] - (box.half[side / 2] + wider); };
+    std::vector<dvec3> rest;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const dvec3 &p = part[i], &q = part[(i + 1) % part.size()];
+      const double at_p = outside(p), at_q = outside(q);
+      if (at_p <= 0) rest.push_back(p);
+      if ((at_p < 0) != (at_q < 0) && at_p != at_q) rest.push_back(p + at_p / (at_p - at_q) * (q - p));
+    }
+    part = rest;
+    if (part.empty()) return false;
+  }
+  return true;
+}
+
+TEST(Overlap, IsThatOfSomeTriangle) {
+  Random random(12);
+  int yes = 0, no = 0;
+  for (int round = 0; round < cases(600, 60, 12); ++round) {
+    const HeightField field = rugged(random, Surface::triangles, round % 3 ? 0 : 0.2);
+    const MaxPyramid pyramid(field);
+    const auto triangles = bench::all_triangles(field, 1);
+    for (int i = 0; i < 100; ++i) {
+      TurnedBox box{
+          {uniform(random, -1, field.width() + 1), uniform(random, -1, field.depth() + 1), uniform(random, -3, 3)},
+          {uniform(random, 0, 0.6), uniform(random, 0, 0.6), uniform(random, 0, 0.6)}};
+      box.turn = glm::dmat3(glm::rotate(glm::dmat4(1), uniform(random, 0, 6), direction(random)));
+      const bool found = overlaps({&field, &pyramid}, box);
+      const auto some = [&](double wider) {
+        return std::any_of(triangles.begin(), triangles.end(),
+                           [&](const JudgedTriangle& t) { return cut_by_box(t, box, wider); });
+      };
+      const double rounding = 1e-13 * (length(box.centre) + 1);
+      ASSERT_TRUE(found || !some(-rounding)) << round << ", " << i;
+      ASSERT_TRUE(!found || some(rounding)) << round << ", " << i;
+      ++(found ? yes : no);
+    }
+  }
+  EXPECT_GT(yes, cases(5000, 500, 100));
+  EXPECT_GT(no, cases(5000, 500, 100));
+}
+
+TEST(Overlap, KnowsBoxesThatTouch) {
+  const HeightField field = plane(8, 1);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  EXPECT_TRUE(overlaps(target, {{4, 4, 2}, {1, 1, 1}}));
+  EXPECT_FALSE(overlaps(target, {{4, 4, 2.5}, {1, 1, 1}}));
+  EXPECT_FALSE(overlaps(target, {{4, 4, -4}, {1, 1, 1}}));
+  EXPECT_TRUE(overlaps(target, {{4, 4, 1}, {0, 0, 0}}));
+}
+
+TEST(Sweep, RefusesWhatIsNoCapsule) {
+  const HeightField field = plane(8, 1);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_NE(refusal([&] { sweep({&field}, {}, dvec3(1.0)); }), "");
+  EXPECT_NE(refusal([&] { sweep(target, {{nan, 0, 0}, {}, 1}, dvec3(1.0)); }), "");
+  EXPECT_NE(refusal([&] { sweep(target, {{}, {}, -1}, dvec3(1.0)); }), "");
+  EXPECT_NE(refusal([&] { sweep(target, {{}, {}, kInfinity}, dvec3(1.0)); }), "");
+  EXPECT_NE(refusal([&] { sweep(target, {{}, {}, 1}, dvec3(kInfinity)); }), "");
+  EXPECT_NE(refusal([&] { overlaps(target, {{}, {1, -1, 1}}); }), "");
+  EXPECT_NE(refusal([&] { overlaps(target, {{}, {1, 1, 1}, glm::dmat3(2.0)}); }), "");
+  const HeightField wrapped = HeightField::own(std::vector<float>(16), 4, 4, {.wrap = Wrap::periodic});
+  const MaxPyramid other(wrapped);
+  EXPECT_NE(refusal([&] { sweep({&wrapped, &other}, {}, dvec3(1.0)); }), "");
+}
+
+}  // namespace
+}  // namespace scarp::test
