@@ -181,6 +181,16 @@ struct SeamsOptions {
 };
 /// Throws Error, after the report, if a ray is lost.
 void run_seams(const SeamsOptions& options, const ReportOptions& report);
+/// `sweeps`: spheres and capsules that move over ground, beside Bullet and before a judge.
+struct SweepsOptions {
+  int size = 1025;      ///< samples per side of the field, >= 1025
+  int sweeps = 20'000;  ///< of each class beside Bullet; 0: none
+  int repeats = 5;
+  std::int64_t judged = 100'000;  ///< random ones over small fields and voxels
+  std::uint64_t seed = 1;
+};
+/// Throws Error, after the report, if a capsule tunnelled or a contact is none.
+void run_sweeps(const SweepsOptions& options, const ReportOptions& report);
 /// `render`: frames of the look `comanche`.
 struct FramesOptions {
   int period = 1024;  ///< samples from repetition to repetition, even, 64..8192

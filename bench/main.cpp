@@ -346,6 +346,24 @@ int run(int argc, char** argv) {
   seams_command->add_option("--rays", seams.rays, "in all")->check(number_in({1, 1e15}))->capture_default_str();
   seams_command->add_option("--seed", seams.seed, "of terrains and rays")->capture_default_str();
   add_json_option(*seams_command, report);
+
+  SweepsOptions sweeps;
+  CLI::App* sweeps_command = app.add_subcommand(
+      "sweeps", "spheres and capsules that move over ground, beside Bullet; random ones, judged by all triangles");
+  sweeps_command->add_option("--size", sweeps.size, "samples per side of the field")
+      ->check(number_in({1025, 16385}))
+      ->capture_default_str();
+  sweeps_command->add_option("--sweeps", sweeps.sweeps, "of each class beside Bullet; 0: none")
+      ->check(number_in({0, 1e8}))
+      ->capture_default_str();
+  sweeps_command->add_option("--repeats", sweeps.repeats, "timed passes; the median counts")
+      ->check(number_in({1, 1000}))
+      ->capture_default_str();
+  sweeps_command->add_option("--judged", sweeps.judged, "random sweeps before the judge")
+      ->check(number_in({0, 1e12}))
+      ->capture_default_str();
+  sweeps_command->add_option("--seed", sweeps.seed, "of the sweeps")->capture_default_str();
+  add_json_option(*sweeps_command, report);
   FramesOptions frames;
   CLI::App* frames_command =
       app.add_subcommand("render", "frames of the look comanche over endless ground: milliseconds and wrong pixels");
@@ -474,6 +492,7 @@ int run(int argc, char** argv) {
   if (*edits_command) run_edits(edits, report);
   if (*scenes_command) run_scenes(scenes, report);
   if (*seams_command) run_seams(seams, report);
+  if (*sweeps_command) run_sweeps(sweeps, report);
   if (*frames_command) run_frames(frames, report);
   if (*functions_command) run_functions(functions, report);
   if (*function_leaks_command) run_function_leaks(function_leaks, report);

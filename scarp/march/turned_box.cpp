@@ -19,10 +19,6 @@ void validate(const TurnedBox& box) {
   if (!good) throw Error("overlap: a box is finite, with sides that are not negative and a rotation");
 }
 
-dvec3 reach_of(const TurnedBox& box) {
-  return abs(box.turn[0]) * box.half.x + abs(box.turn[1]) * box.half.y + abs(box.turn[2]) * box.half.z;
-}
-
 bool overlaps(const TurnedBox& box, const Triangle& triangle) {
   // In the box's own space, where it is upright.
   Triangle t;

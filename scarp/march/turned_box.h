@@ -19,11 +19,8 @@ struct TurnedBox {
 /// Throws Error unless a box is finite, none of its sides is negative and `turn` is a rotation.
 void validate(const TurnedBox& box);
 
-/// Half of the extents of the upright box around it.
-dvec3 reach_of(const TurnedBox& box);
-
+/// Returns whether a box and a triangle, or an upright box, both closed, have a point in common.
 bool overlaps(const TurnedBox& box, const Triangle& triangle);
-/// An upright box.
 bool overlaps(const TurnedBox& box, const dvec3& low, const dvec3& high);
 
 }  // namespace scarp

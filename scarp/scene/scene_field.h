@@ -21,7 +21,9 @@
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/height/height_table.h"
 #include "scarp/march/shape/shape_table.h"
+#include "scarp/march/turned_box.h"
 #include "scarp/scene/box_tree.h"
+#include "scarp/scene/field_contact.h"
 #include "scarp/scene/placed_voxels.h"
 #include "scarp/scene/voxel_shading.h"
 
@@ -88,6 +90,12 @@ class SceneField {
   virtual FieldSurface surface(const Ray& ray, const Hit& hit) const = 0;
   /// FieldSurface::material.
   virtual int material(const Ray& ray, const Hit& hit) const { return surface(ray, hit).material; }
+
+  /// The first contact of a capsule that moves, in the field's space, by its surface alone; whether a box meets it; and
+  /// its closest point. By default throw Error.
+  virtual std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const;
+  virtual bool overlaps(const TurnedBox& box) const;
+  virtual std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const;
 
   /// The field at a point below the ground, in the shape or in a solid voxel, surface included: normals of the surface
   /// above or nearest. Returns nullopt outside, beside the ground and in its holes.

@@ -11,6 +11,8 @@
 #include "scarp/accel/slope_bound.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/march/height/closest_point.h"
+#include "scarp/march/height/ground_contact.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/march/height/wall.h"
 #include "scarp/march/lipschitz.h"
@@ -94,6 +96,17 @@ class Heights final : public SceneField {
             .material = material(ray, hit),
             .height = height_at(hit)};
   }
+  std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const override {
+    const auto found = scarp::sweep(with_pyramid(), capsule, motion);
+    if (!found) return {};
+    return FieldContact{*found, {.cell = found->cell}};
+  }
+  bool overlaps(const TurnedBox& box) const override { return scarp::overlaps(with_pyramid(), box); }
+  std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const override {
+    const auto found = scarp::closest_point(with_pyramid(), p, max_distance);
+    if (!found) return {};
+    return FieldPoint{found->point, found->normal, found->distance, {.cell = found->cell}};
+  }
   int material(const Ray&, const Hit& hit) const override { return material_of(hit.cell); }
 
   std::optional<FieldSurface> within(const dvec3& p) const override {
@@ -174,6 +187,10 @@ class Heights final : public SceneField {
         r[i] = started(rays[i], from[i]);
     });
     return r;
+  }
+  HeightTarget with_pyramid() const {
+    if (!pyramid_) throw Error(fmt::format("scene: contacts need the march max-mip, not {}", march_.name));
+    return target();
   }
   HeightTarget target() const {
     if (answered_by_ == AnsweredBy::back_end)

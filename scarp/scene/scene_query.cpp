@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <glm/matrix.hpp>
 #include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
 #include "scarp/scene/scene_limits.h"
 
@@ -59,6 +61,63 @@ void SceneQuery::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blo
     }
     for (std::size_t i = first; i < first + count; ++i) blocked[i] = scene_.any({rays, from, i, &rules_});
   });
+}
+
+// f(object, field, box) for the objects that the mask selects; the box is around the object.
+template <class F>
+void SceneQuery::for_each_in_contact(const F& f) const {
+  scene_.require_current();
+  for (std::uint32_t i = 0; i < scene_.objects().size(); ++i) {
+    const SceneField& field = scene_.field_of(i);
+    if (!sees(&rules_, scene_.objects()[i]) || field.is_backdrop()) continue;
+    const std::optional<WorldBox> box = field.extent();
+    f(i, field, box ? std::optional(world_box(scene_.objects()[i].placement, *box)) : std::nullopt);
+  }
+}
+
+std::optional<SceneContact> SceneQuery::sweep(const Capsule& capsule, const dvec3& motion) const {
+  validate(capsule, motion);
+  std::optional<SceneContact> best;
+  for_each_in_contact([&](std::uint32_t object, const SceneField& field, const std::optional<WorldBox>& box) {
+    const double last = best ? best->t : 1;
+    if (box && (box->empty() || sweep_bound(capsule, motion, box->low, box->high, last) > last)) return;
+    const Placement& to = scene_.objects()[object].placement;
+    const auto found =
+        field.sweep({to.field_from_world(capsule.a), to.field_from_world(capsule.b), capsule.radius / to.scale},
+                    to.field_from_world(Ray{.direction = motion}).direction);
+    if (!found || (best && found->t >= best->t)) return;
+    best = SceneContact{*found, object};
+    best->point = to.world_from_field(found->point);
+    best->normal = to.world_from_normal(found->normal);
+  });
+  return best;
+}
+
+bool SceneQuery::overlaps(const TurnedBox& box) const {
+  validate(box);
+  bool found = false;
+  for_each_in_contact([&](std::uint32_t object, const SceneField& field, const std::optional<WorldBox>& around) {
+    if (found || (around && (around->empty() || !scarp::overlaps(box, around->low, around->high)))) return;
+    const Placement& to = scene_.objects()[object].placement;
+    found = field.overlaps({to.field_from_world(box.centre), box.half / to.scale, transpose(to.turn) * box.turn});
+  });
+  return found;
+}
+
+std::optional<ScenePoint> SceneQuery::closest_point(const dvec3& p, double max_distance) const {
+  std::optional<ScenePoint> best;
+  for_each_in_contact([&](std::uint32_t object, const SceneField& field, const std::optional<WorldBox>& box) {
+    const double most = best ? best->distance : max_distance;
+    if (box && (box->empty() || length(min(max(p, box->low), box->high) - p) > most * (1 + 0x1p-40))) return;
+    const Placement& to = scene_.objects()[object].placement;
+    const auto found = field.closest_point(to.field_from_world(p), most / to.scale);
+    if (!found || (best && found->distance * to.scale >= best->distance)) return;
+    best = ScenePoint{*found, object};
+    best->distance = found->distance * to.scale;
+    best->point = to.world_from_field(found->point);
+    best->normal = to.world_from_normal(found->normal);
+  });
+  return best;
 }
 
 }  // namespace scarp

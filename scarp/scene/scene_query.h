@@ -13,11 +13,21 @@
 // a hit on one throws Error.
 #pragma once
 
+#include <limits>
+#include <optional>
 #include <span>
 
 #include "scarp/scene/scene.h"
 
 namespace scarp {
+
+/// A contact or a closest point, in world space; `place` as in Hit.
+struct SceneContact : FieldContact {
+  std::uint32_t object = 0;
+};
+struct ScenePoint : FieldPoint {
+  std::uint32_t object = 0;
+};
 
 /// Returned by Scene::query(). Refers to the scene, which must outlive it; of a LiveScene, its Reading. Thread-safe if
 /// the filter is.
@@ -36,9 +46,24 @@ class SceneQuery {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;
 
+  /// Returns the first contact of a sphere or capsule that moves along `motion`; nullopt if there is none. Of two at
+  /// the same time that of the object with the lower number. The mask counts, sides and filter do not: height fields
+  /// and tiles are touched from both sides. Throws Error for a capsule or a motion that validate() refuses, and where
+  /// the mask selects a function, a shape, a mesh, or heights that wrap round or are not marched by max-mip.
+  std::optional<SceneContact> sweep(const Capsule& capsule, const dvec3& motion) const;
+  /// Returns whether a box, closed, meets a height field's surface or a solid voxel. Errors as for sweep().
+  bool overlaps(const TurnedBox& box) const;
+  /// Returns the point closest to p of all surfaces of height fields and of all solid voxels, within `max_distance`
+  /// metres. Errors as for sweep().
+  std::optional<ScenePoint> closest_point(const dvec3& p,
+                                          double max_distance = std::numeric_limits<double>::infinity()) const;
+
   const SceneRules& rules() const { return rules_; }
 
  private:
+  template <class F>
+  void for_each_in_contact(const F& f) const;
+
   const Scene& scene_;
   SceneRules rules_;
 };

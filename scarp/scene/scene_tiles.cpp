@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "scarp/march/height/closest_point.h"
+#include "scarp/march/height/ground_contact.h"
 #include "scarp/march/height/queries.h"
 #include "scarp/scene/scene_field.h"
 #include "scarp/scene/tile_map.h"
@@ -38,9 +40,7 @@ class Tiles final : public SceneField {
         const HeightField& field = tile->ground->field;
         elements_ += std::int64_t{field.cols()} * field.rows();
         if (field.all_nodata()) continue;
-        const dvec3 low = map_->corner(col, row);
-        box_ = around(box_, WorldBox{{low.x, low.y, field.min_height()},
-                                     {low.x + field.width(), low.y + field.depth(), field.max_height()}});
+        box_ = around(box_, box_of(*tile, col, row));
       }
     }
   }
@@ -104,6 +104,42 @@ class Tiles final : public SceneField {
             .material = material(ray, hit),
             .height = hit.height};
   }
+  std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const override {
+    std::optional<FieldContact> best;
+    for_each_tile([&](const Tile& tile, int col, int row, const WorldBox& box) {
+      const dvec3 corner = map_->corner(col, row);
+      const double last = best ? best->t : 1;
+      if (sweep_bound(capsule, motion, box.low, box.high, last) > last) return;
+      const auto found = scarp::sweep(target(tile), {capsule.a - corner, capsule.b - corner, capsule.radius}, motion);
+      if (!found || (best && found->t >= best->t)) return;
+      best = FieldContact{*found, {.cell = found->cell, .part = number(col, row)}};
+      best->point += corner;
+    });
+    return best;
+  }
+  bool overlaps(const TurnedBox& box) const override {
+    bool found = false;
+    for_each_tile([&](const Tile& tile, int col, int row, const WorldBox& ground) {
+      if (found || !scarp::overlaps(box, ground.low, ground.high)) return;
+      TurnedBox own = box;
+      own.centre -= map_->corner(col, row);
+      found = scarp::overlaps(target(tile), own);
+    });
+    return found;
+  }
+  std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const override {
+    std::optional<FieldPoint> best;
+    for_each_tile([&](const Tile& tile, int col, int row, const WorldBox& box) {
+      const dvec3 corner = map_->corner(col, row);
+      const double most = best ? best->distance : max_distance;
+      if (length(min(max(p, box.low), box.high) - p) > most) return;
+      const auto found = scarp::closest_point(target(tile), p - corner, most);
+      if (!found || (best && found->distance >= best->distance)) return;
+      best = FieldPoint{
+          found->point + corner, found->normal, found->distance, {.cell = found->cell, .part = number(col, row)}};
+    });
+    return best;
+  }
   int material(const Ray&, const Hit& hit) const override { return tile_of(hit).material(hit.cell); }
   std::optional<FieldSurface> within(const dvec3& p) const override {
     std::optional<FieldSurface> found;
@@ -134,6 +170,22 @@ class Tiles final : public SceneField {
     std::uint32_t part[4];
     Cell cell[4];
   };
+
+  // f(tile, col, row, box) for the tiles that have ground.
+  template <class F>
+  void for_each_tile(const F& f) const {
+    for (int row = 0; row < layout_.rows; ++row) {
+      for (int col = 0; col < layout_.cols; ++col) {
+        const Tile* tile = map_->find(col, row);
+        if (tile && !tile->ground->field.all_nodata()) f(*tile, col, row, box_of(*tile, col, row));
+      }
+    }
+  }
+  WorldBox box_of(const Tile& tile, int col, int row) const {
+    const HeightField& field = tile.ground->field;
+    const dvec3 low = map_->corner(col, row);
+    return {{low.x, low.y, field.min_height()}, {low.x + field.width(), low.y + field.depth(), field.max_height()}};
+  }
 
   const Tile& tile_of(const Hit& hit) const {
     const auto cols = static_cast<std::uint32_t>(layout_.cols);

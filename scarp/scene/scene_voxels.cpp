@@ -62,6 +62,13 @@ class VoxelField final : public SceneField {
       surface.openness = corner_openness(objects_.grid(hit), hit.voxel, hit.face, objects_.place_in_grid(hit, p));
     return surface;
   }
+  std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const override {
+    return objects_.sweep(capsule, motion);
+  }
+  bool overlaps(const TurnedBox& box) const override { return objects_.overlaps(box); }
+  std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const override {
+    return objects_.closest_point(p, max_distance);
+  }
   SceneFieldParts parts() const override { return {}; }
   std::size_t bytes() const override {
     std::size_t bytes = objects_.bytes();

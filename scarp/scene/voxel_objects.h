@@ -19,7 +19,9 @@
 #include <vector>
 
 #include "scarp/march/hit_rules.h"
+#include "scarp/march/turned_box.h"
 #include "scarp/scene/box_tree.h"
+#include "scarp/scene/field_contact.h"
 #include "scarp/scene/placed_voxels.h"
 
 namespace scarp {
@@ -70,6 +72,11 @@ class VoxelObjects {
   dvec3 normal(const dvec3& p, const Hit& hit) const;
   VoxelColour colour(const Hit& hit) const;
 
+  /// Contacts, overlaps and closest points with the cubes of the voxels, whatever their rounding; SceneField has them.
+  std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const;
+  bool overlaps(const TurnedBox& box) const;
+  std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const;
+
   const VoxelGrid& grid(const Hit& hit) const { return models_[objects_[hit.part].model]->grid(); }
   /// A point of the world in the space of the object's grid.
   dvec3 place_in_grid(const Hit& hit, const dvec3& p) const;
@@ -102,6 +109,7 @@ class VoxelObjects {
   class PacketQuery;
 
   std::vector<VoxelPlace> places() const;
+  WorldBox box_of(const Object& object) const;
   bool begins_into(const Ray& ray, const Hit* from) const;
   bool occluded(const Ray& ray, const Hit* from) const;
   template <class Together, class Alone>

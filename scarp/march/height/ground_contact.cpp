@@ -55,16 +55,12 @@ class SweepSearch {
 // A query of GroundSearch that ends at the first triangle.
 class BoxSearch {
  public:
-  explicit BoxSearch(const TurnedBox& box) : box_(box), reach_(reach_of(box)) {}
+  explicit BoxSearch(const TurnedBox& box) : box_(box) {}
 
   double best() const { return found_ ? 0 : kNever; }
   double bound(const WorldBox& ground) const {
-    const double wide = 16 * 0x1p-53 * (length(box_.centre) + length(reach_));
-    for (int axis = 0; axis < 3; ++axis) {
-      const double low = box_.centre[axis] - reach_[axis] - wide, high = box_.centre[axis] + reach_[axis] + wide;
-      if (ground.low[axis] > high || ground.high[axis] < low) return kNever;
-    }
-    return 0;
+    const double wide = 16 * 0x1p-53 * (length(box_.centre) + length(box_.half));
+    return scarp::overlaps(box_, ground.low - wide, ground.high + wide) ? 0 : kNever;
   }
   bool compare(const GroundPart& part, bool flat) {
     if (!flat) return false;
@@ -75,7 +71,6 @@ class BoxSearch {
 
  private:
   const TurnedBox& box_;
-  dvec3 reach_;
   bool found_ = false;
 };
 

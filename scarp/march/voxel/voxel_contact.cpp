@@ -101,18 +101,26 @@ std::optional<VoxelContact> sweep(const VoxelGrid& grid, const Capsule& capsule,
   return VoxelContact{contact_at(capsule, motion, touched, best), touched_voxel};
 }
 
+std::optional<VoxelPoint> closest_point(const VoxelGrid& grid, const dvec3& p, double max_distance) {
+  if (!(max_distance >= 0)) return {};
+  VoxelPoint best;
+  best.distance = std::nextafter(max_distance, kNever);
+  const auto closest = [&](const dvec3& low, const dvec3& high) { return min(max(p, low), high); };
+  const auto bound = [&](const dvec3& low, const dvec3& high) { return length(closest(low, high) - p); };
+  const auto solid = [&](const ivec3& voxel, double distance) {
+    const dvec3 q = closest(dvec3(voxel), dvec3(voxel) + 1.0);
+    best = {q, distance > 0 ? (p - q) / distance : dvec3(0.0), distance, voxel};
+  };
+  search(grid, bound, solid, [&] { return best.distance; });
+  if (best.voxel == ivec3(-1)) return {};
+  return best;
+}
+
 bool overlaps(const VoxelGrid& grid, const TurnedBox& box) {
   bool found = false;
-  const dvec3 reach = reach_of(box) + 16 * 0x1p-53 * (length(box.centre) + length(box.half));
-  const auto bound = [&](const dvec3& low, const dvec3& high) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (low[axis] > box.centre[axis] + reach[axis] || high[axis] < box.centre[axis] - reach[axis]) return kNever;
-    }
-    return 0.0;
-  };
-  const auto solid = [&](const ivec3& voxel, double) {
-    found = found || overlaps(box, dvec3(voxel), dvec3(voxel) + 1.0);
-  };
+  const auto bound = [&](const dvec3& low, const dvec3& high) { return overlaps(box, low, high) ? 0 : kNever; };
+  // Its bound was that of the voxel.
+  const auto solid = [&](const ivec3&, double) { found = true; };
   search(grid, bound, solid, [&] { return found ? 0 : kNever; });
   return found;
 }

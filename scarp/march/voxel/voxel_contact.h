@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Spheres, capsules and boxes against the solid voxels of a grid, in its space, where voxels have side 1: the first
-// contact of one that moves, and overlaps. Voxels are cubes, never rounded. Exact to rounding (march/sweep.h): the
-// faces between solid and empty voxels are swept as two triangles each.
+// contact of one that moves, overlaps, and closest points. Voxels are cubes, never rounded. Exact to rounding
+// (march/sweep.h): the faces between solid and empty voxels are swept as two triangles each.
 //
 // Cost: blocks of 2^n voxels on the way, the first to be reached first; those without a solid voxel below 4 x 4 x 4 are
 // left out.
 #pragma once
 
+#include <limits>
 #include <optional>
 
 #include "scarp/field/voxel_grid.h"
@@ -23,6 +24,17 @@ struct VoxelContact : Contact {
 /// Returns the first contact of a capsule that moves along `motion`. Throws Error for a capsule or a motion that
 /// validate() refuses.
 std::optional<VoxelContact> sweep(const VoxelGrid& grid, const Capsule& capsule, const dvec3& motion);
+
+struct VoxelPoint {
+  dvec3 point{0.0};
+  dvec3 normal{0.0};    ///< unit, from the point towards p; zero if p is in the voxel
+  double distance = 0;  ///< in voxel sides
+  ivec3 voxel{-1};
+};
+
+/// Returns the point of the solid voxels that is closest to p, within `max_distance`; p itself if it is in one.
+std::optional<VoxelPoint> closest_point(const VoxelGrid& grid, const dvec3& p,
+                                        double max_distance = std::numeric_limits<double>::infinity());
 
 /// Returns whether a solid voxel and the box, both closed, have a point in common.
 bool overlaps(const VoxelGrid& grid, const TurnedBox& box);

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+// `scarp-bench sweeps`: spheres and capsules that move over a height field, beside Bullet, and random ones over rugged
+// small fields and voxels before a judge of all triangles.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/bullet_sweep.h"
+#include "bench/commands.h"
+#include "bench/fields.h"
+#include "bench/protocol.h"
+#include "bench/random.h"
+#include "bench/sweep_judge.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/march/height/ground_contact.h"
+#include "scarp/march/voxel/voxel_contact.h"
+
+namespace scarp::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Moving {
+  Capsule capsule;
+  dvec3 motion;
+};
+
+HeightField as_triangles(const HeightField& field) {
+  std::vector<float> samples;
+  field.visit([&](const auto& grid) {
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int col = 0; col < grid.cols; ++col)
+        samples.push_back(static_cast<float>(field.height_from_sample(static_cast<double>(grid.at(col, row)))));
+    }
+  });
+  return HeightField::own(std::move(samples), field.cols(), field.rows(), {.surface = Surface::triangles});
+}
+
+struct Class {
+  std::string name;
+  double radius, height, least, most;  // metres, of capsules the length of the segment; of the motion
+  bool along;                          // over the ground, not through the air
+  int fewer;                           // one in so many: Bullet looks at all triangles of a box around the motion
+};
+const std::vector<Class> kClasses = {{"sphere, step along the ground", 0.5, 0, 0.1, 0.5, true, 1},
+                                     {"capsule, step along the ground", 0.4, 1, 0.1, 0.5, true, 1},
+                                     {"sphere, thrown 20 m", 0.5, 0, 20, 20, false, 4},
+                                     {"sphere, shot 200 m", 0.1, 0, 200, 200, false, 100},
+                                     {"capsule, falls 50 m", 0.4, 1, 50, 50, false, 1}};
+
+// On the ground by a hair, or in the air above it.
+std::vector<Moving> sweeps_of(const Class& kind, const HeightField& field, int count, std::uint64_t seed) {
+  std::vector<Moving> all;
+  for (int i = 0; i < count; ++i) {
+    Random random(seed, static_cast<std::uint64_t>(i));
+    const double x = random.uniform(300, field.width() - 300), y = random.uniform(300, field.depth() - 300);
+    const double reach = random.uniform(kind.least, kind.most), angle = random.uniform(0, 6.283185307);
+    Moving moving{{{x, y, 0}, {}, kind.radius}, {}};
+    if (kind.along) {
+      moving.capsule.a.z = *field.height(x, y) + 1.6 * kind.radius;
+      moving.motion = reach * dvec3(std::cos(angle), std::sin(angle), -0.3);
+    } else if (kind.height > 0) {
+      moving.capsule.a.z = *field.height(x, y) + random.uniform(5, 45);
+      moving.motion = {0, 0, -reach};
+    } else {
+      moving.capsule.a.z = *field.height(x, y) + random.uniform(0.02, 0.3) * reach + 1;
+      const double down = random.uniform(-0.8, -0.1), flat = std::sqrt(1 - down * down);
+      moving.motion = reach * dvec3(flat * std::cos(angle), flat * std::sin(angle), down);
+    }
+    moving.capsule.b = moving.capsule.a + dvec3(0, 0, kind.height);
+    all.push_back(moving);
+  }
+  return all;
+}
+
+struct Timed {
+  double us = 0;
+  std::vector<double> t;  // above 1: no contact
+};
+
+template <class Sweep>
+void time_pass(const std::vector<Moving>& sweeps, const Sweep& sweep, std::vector<double>& us, Timed& to) {
+  to.t.clear();
+  const Stopwatch watch;
+  for (const Moving& moving : sweeps) to.t.push_back(sweep(moving).value_or(2));
+  us.push_back(1e6 * watch.cpu_s() / static_cast<double>(sweeps.size()));
+}
+
+void measure_beside_bullet(const SweepsOptions& options, Json& rows) {
+  FieldOptions ground;
+  ground.size = options.size;
+  const HeightField field = as_triangles(load_field(ground).field);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  const BulletSweeper peer(field);
+  std::vector<std::vector<std::string>> lines{
+      {"", "sweeps", "Scarp us", "Bullet us", "Bullet / Scarp", "contacts", "Bullet's", "t differs by 0.01"}};
+  for (const Class& kind : kClasses) {
+    const std::vector<Moving> sweeps = sweeps_of(kind, field, std::max(1, options.sweeps / kind.fewer), options.seed);
+    Timed own, other;
+    std::vector<double> own_us, other_us;
+    for (int i = 0; i <= options.repeats; ++i) {
+      time_pass(
+          sweeps,
+          [&](const Moving& moving) -> std::optional<double> {
+            const auto hit = sweep(target, moving.capsule, moving.motion);
+            return hit ? std::optional(hit->t) : std::nullopt;
+          },
+          own_us, own);
+      time_pass(
+          sweeps, [&](const Moving& moving) { return peer.sweep(moving.capsule, moving.motion); }, other_us, other);
+    }
+    // The first pass warms up.
+    own.us = median({own_us.begin() + 1, own_us.end()}), other.us = median({other_us.begin() + 1, other_us.end()});
+    const auto is_contact = [](double t) { return t <= 1; };
+    Json row;
+    row["class"] = kind.name;
+    row["sweeps"] = sweeps.size();
+    row["scarp_us"] = own.us;
+    row["bullet_us"] = other.us;
+    row["ratio"] = other.us / own.us;
+    row["contacts"] = std::count_if(own.t.begin(), own.t.end(), is_contact);
+    row["bullet_contacts"] = std::count_if(other.t.begin(), other.t.end(), is_contact);
+    std::int64_t differ = 0;
+    for (std::size_t i = 0; i < own.t.size(); ++i) differ += std::abs(own.t[i] - other.t[i]) > 0.01;
+    row["differ"] = differ;
+    rows.push_back(row);
+    lines.push_back({kind.name, short_number(row["sweeps"], 9), short_number(row["scarp_us"]),
+                     short_number(row["bullet_us"]), short_number(row["ratio"]), short_number(row["contacts"], 9),
+                     short_number(row["bullet_contacts"], 9), short_number(row["differ"], 9)});
+  }
+  fmt::print("{} x {} samples, triangles; processor time of one thread per sweep, median of {}\n", options.size,
+             options.size, options.repeats);
+  print_table(lines, 1);
+}
+
+dvec3 direction(Random& random) {
+  for (;;) {
+    const dvec3 d(random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1));
+    if (const double square = dot(d, d); square > 0.01 && square < 1) return normalize(d);
+  }
+}
+
+// From anywhere to anywhere; half of them at corners, sides, or past a side by the radius.
+Moving random_sweep(const dvec3& size, const std::vector<JudgedTriangle>& triangles, Random& random) {
+  const auto about = [&] {
+    return dvec3(random.uniform(-0.4, 1.4), random.uniform(-0.4, 1.4), random.uniform(-0.4, 1.4)) * size;
+  };
+  Moving moving{{about(), {}, std::pow(10, random.uniform(-4, 0.3))}, {}};
+  moving.capsule.b = moving.capsule.a;
+  if (random.below(2)) moving.capsule.b += random.uniform(0, 3) * direction(random);
+  moving.motion = about() - moving.capsule.a;
+  const int aim = random.below(6);
+  if (triangles.empty() || aim > 2) return moving;
+  const JudgedTriangle& t = triangles[static_cast<std::size_t>(random.below(static_cast<int>(triangles.size())))];
+  dvec3 target = t[0] + (aim == 0 ? 0.0 : random.uniform()) * (t[1] - t[0]);
+  if (aim == 2) target += moving.capsule.radius * direction(random);
+  moving.motion = (target - moving.capsule.a) * (random.below(2) ? 1.0 : random.uniform(1, 3));
+  return moving;
+}
+
+constexpr std::int64_t kPerField = 500;
+
+struct Count {
+  std::atomic<std::int64_t> sweeps{0}, contacts{0}, tunnelled{0}, untouched{0};
+  void add(const Moving& moving, const std::vector<JudgedTriangle>& triangles, const std::optional<double>& t) {
+    const JudgedSweep judged{moving.capsule.a, moving.capsule.b, moving.capsule.radius, moving.motion};
+    const SweepError error = judge_sweep(judged, triangles, t.has_value(), t.value_or(0), 0);
+    ++sweeps;
+    contacts += t.has_value();
+    tunnelled += error.tunnelled > 0;
+    untouched += error.untouched > 0;
+  }
+};
+
+void judge_field(std::uint64_t seed, std::uint64_t number, std::int64_t count, Count& to) {
+  Random random(seed, number);
+  const int cols = 2 + random.below(7), rows = 2 + random.below(7);
+  const bool holes = random.below(3) == 0;
+  std::vector<float> samples;
+  for (int i = 0; i < cols * rows; ++i)
+    samples.push_back(holes && random.below(5) == 0 ? std::nanf("") : static_cast<float>(random.uniform(-2, 2)));
+  const HeightField field = HeightField::own(
+      std::move(samples), cols, rows,
+      {.cell_x = random.uniform(0.3, 2), .cell_y = random.uniform(0.3, 2), .surface = Surface::triangles});
+  const MaxPyramid pyramid(field);
+  const auto triangles = all_triangles(field, 1);
+  for (std::int64_t i = 0; i < count; ++i) {
+    Moving moving = random_sweep({field.width(), field.depth(), 4}, triangles, random);
+    moving.capsule.a.z -= 2, moving.capsule.b.z -= 2;
+    const auto hit = sweep({&field, &pyramid}, moving.capsule, moving.motion);
+    to.add(moving, triangles, hit ? std::optional(hit->t) : std::nullopt);
+  }
+}
+
+void judge_voxels(std::uint64_t seed, std::uint64_t number, std::int64_t count, Count& to) {
+  Random random(seed, number);
+  const ivec3 size(1 + random.below(6), 1 + random.below(6), 1 + random.below(6));
+  const double share = random.uniform() * random.uniform();
+  const VoxelGrid grid = VoxelGrid::built(size, 8, [&](const ivec3& brick, std::span<std::uint32_t, 64>) {
+    Random own(seed + 1, number * 64 + static_cast<std::uint64_t>(brick.x + 2 * brick.y + 4 * brick.z));
+    std::uint64_t mask = 0;
+    for (int i = 0; i < 64; ++i) mask |= std::uint64_t{own.uniform() < share} << i;
+    return mask;
+  });
+  std::vector<JudgedTriangle> triangles;
+  for (int z = 0; z < size.z; ++z) {
+    for (int y = 0; y < size.y; ++y) {
+      for (int x = 0; x < size.x; ++x) {
+        if (!grid.solid({x, y, z})) continue;
+        for (int face = 0; face < 6; ++face) {
+          dvec3 corner(x, y, z), u(0.0), v(0.0);
+          corner[face / 2] += face % 2;
+          u[(face / 2 + 1) % 3] = 1, v[(face / 2 + 2) % 3] = 1;
+          triangles.push_back({corner, corner + u, corner + v});
+          triangles.push_back({corner + u + v, corner + u, corner + v});
+        }
+      }
+    }
+  }
+  for (std::int64_t i = 0; i < count; ++i) {
+    const Moving moving = random_sweep(dvec3(size), triangles, random);
+    const auto hit = sweep(grid, moving.capsule, moving.motion);
+    // Starts within a voxel are contacts at once, however far its faces are.
+    if (hit && hit->normal == dvec3(0.0)) {
+      ++to.sweeps, ++to.contacts;
+      continue;
+    }
+    to.add(moving, triangles, hit ? std::optional(hit->t) : std::nullopt);
+  }
+}
+
+// Returns the number of wrong answers.
+std::int64_t judge_random(const SweepsOptions& options, Json& rows) {
+  if (options.judged == 0) return 0;
+  Count heights, voxels;
+  const Stopwatch watch;
+  const std::int64_t pieces = (options.judged + kPerField - 1) / kPerField;
+  parallel_for(pieces, 1, [&](std::int64_t begin, std::int64_t end) {
+    for (std::int64_t piece = begin; piece < end; ++piece) {
+      const std::int64_t count = std::min(kPerField, options.judged - piece * kPerField);
+      const auto number = static_cast<std::uint64_t>(piece);
+      piece % 4 == 3 ? judge_voxels(options.seed, number, count, voxels)
+                     : judge_field(options.seed, number, count, heights);
+    }
+  });
+  std::vector<std::vector<std::string>> lines{{"judged", "sweeps", "contacts", "tunnelled", "without a touch"}};
+  std::int64_t wrong = 0;
+  for (const auto& [name, count] :
+       {std::pair<const char*, const Count&>{"height fields, triangles", heights}, {"voxels", voxels}}) {
+    Json row;
+    row["class"] = fmt::format("judged: {}", name);
+    row["sweeps"] = count.sweeps.load();
+    row["contacts"] = count.contacts.load();
+    row["tunnelled"] = count.tunnelled.load();
+    row["untouched"] = count.untouched.load();
+    row["seed"] = options.seed;
+    wrong += count.tunnelled + count.untouched;
+    lines.push_back({name, short_number(row["sweeps"], 9), short_number(row["contacts"], 9),
+                     short_number(row["tunnelled"], 9), short_number(row["untouched"], 9)});
+    rows.push_back(row);
+  }
+  print_table(lines, 1);
+  fmt::print("{:.0f} s\n", watch.wall_s());
+  return wrong;
+}
+
+}  // namespace
+
+void run_sweeps(const SweepsOptions& options, const ReportOptions& report) {
+  Json rows = Json::array();
+  if (options.sweeps > 0) measure_beside_bullet(options, rows);
+  const std::int64_t wrong = judge_random(options, rows);
+  write_json(report, rows);
+  if (wrong > 0) throw Error(fmt::format("sweeps: {} of {} are wrong", wrong, options.judged));
+}
+
+}  // namespace scarp::bench
