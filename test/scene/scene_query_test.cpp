@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <glm/ext/matrix_transform.hpp>
 #include <memory>
 #include <span>
 #include <string>
@@ -247,6 +248,108 @@ TEST(CellMaterials, StayInALiveScene) {
   const auto reading = live.read();
   EXPECT_TRUE(reading.scene().query({.mask = 4}).closest_hit(ray));
   EXPECT_NE(refusal([&] { reading.scene().query({.mask = 1}); }), "");
+}
+
+TEST_F(TowerOnGround, IsTouchedBySweeps) {
+  const SceneQuery all = scene_.query({});
+  const Capsule ball{{8, 8, 10}, {8, 8, 10}, 0.5};
+  const auto on_tower = all.sweep(ball, {0, 0, -10});
+  ASSERT_TRUE(on_tower);
+  EXPECT_DOUBLE_EQ(on_tower->t, 0.55);
+  EXPECT_EQ(on_tower->object, 1u);
+  EXPECT_EQ(on_tower->place.voxel.z, 3);
+  EXPECT_EQ(on_tower->normal, dvec3(0, 0, 1));
+  const auto on_ground = scene_.query({.mask = kGround}).sweep(ball, {0, 0, -10});
+  ASSERT_TRUE(on_ground);
+  EXPECT_DOUBLE_EQ(on_ground->t, 0.95);
+  EXPECT_EQ(on_ground->object, 0u);
+  EXPECT_FALSE(all.sweep(ball, {0, 0, -5}));
+}
+
+TEST_F(TowerOnGround, IsMetByBoxesAndClosestPoints) {
+  const SceneQuery all = scene_.query({});
+  EXPECT_TRUE(all.overlaps({{8, 8, 4.5}, {1, 1, 1}}));
+  EXPECT_FALSE(all.overlaps({{8, 8, 6}, {1, 1, 1}}));
+  EXPECT_TRUE(scene_.query({.mask = kTower}).overlaps({{8, 8, 1}, {0.1, 0.1, 0.1}}));
+  EXPECT_FALSE(scene_.query({.mask = kGround}).overlaps({{8, 8, 1}, {0.1, 0.1, 0.1}}));
+  const auto top = all.closest_point({8.3, 8.4, 6});
+  ASSERT_TRUE(top);
+  EXPECT_EQ(top->distance, 2);
+  EXPECT_EQ(top->point, dvec3(8.3, 8.4, 4));
+  EXPECT_EQ(top->object, 1u);
+  EXPECT_EQ(all.closest_point({1, 1, 0.5})->object, 0u);
+  EXPECT_FALSE(all.closest_point({8.3, 8.4, 6}, 1.9));
+  EXPECT_EQ(all.closest_point({8.3, 8.4, 2})->distance, 0);
+}
+
+// Contacts do not depend on where the whole scene stands.
+TEST(Contacts, MoveWithTheScene) {
+  const HeightField hills =
+      HeightField::own(std::vector<float>{0, 1, 0, 2, 3, 1, 0, 0, 1}, 3, 3, {.surface = Surface::triangles});
+  const Scene still{scene_heights(hills)};
+  const Placement place{glm::dmat3(glm::rotate(glm::dmat4(1), 0.7, dvec3(1, 2, 3))), 2.5, {10, -20, 30}};
+  const Scene moved = combine({{still, place}});
+  int contacts = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const dvec3 a(1 + 2 * std::sin(i), 1 + 2 * std::cos(2.3 * i), 3 + std::sin(3.1 * i)),
+        to(1 + std::sin(1.7 * i), 1 + std::sin(0.3 * i), 0.5);
+    const Capsule own{a, a + dvec3(0.3, 0.1, 0.2), 0.05 + 0.04 * std::sin(i)};
+    const Capsule placed_capsule{place.world_from_field(own.a), place.world_from_field(own.b), 2.5 * own.radius};
+    const auto expected = still.query({}).sweep(own, to - a);
+    const auto found = moved.query({}).sweep(placed_capsule, place.world_from_field(to) - place.world_from_field(a));
+    ASSERT_EQ(found.has_value(), expected.has_value()) << i;
+    if (!found) continue;
+    ++contacts;
+    ASSERT_NEAR(found->t, expected->t, 1e-9);
+    ASSERT_NEAR(length(found->point - place.world_from_field(expected->point)), 0, 1e-6);
+    const TurnedBox box{a, {0.4, 0.3, 0.9}};
+    ASSERT_EQ(moved.query({}).overlaps({place.world_from_field(a), 2.5 * box.half, place.turn}),
+              still.query({}).overlaps(box));
+  }
+  EXPECT_GT(contacts, 300);
+}
+
+TEST(Contacts, AreThoseOfOneFieldOnTiles) {
+  TiledTerrain terrain(
+      {.cols = 3, .rows = 2, .cell_cols = 4, .cell_rows = 4, .ground = {.surface = Surface::triangles}});
+  const auto height = [](int col, int row) { return static_cast<float>((col * 7 + row * 5) % 4); };
+  const auto field_from = [&](int col, int row, int cols, int rows) {
+    std::vector<float> samples;
+    for (int r = row; r < row + rows; ++r) {
+      for (int c = col; c < col + cols; ++c) samples.push_back(height(c, r));
+    }
+    return HeightField::own(std::move(samples), cols, rows, {.surface = Surface::triangles});
+  };
+  terrain.edit([&](TiledTerrain::Editor& editor) {
+    for (int i = 0; i < 6; ++i) editor.put({i % 3, i / 3}, field_from(i % 3 * 4, i / 3 * 4, 5, 5));
+  });
+  const TerrainTiles tiles = terrain.read();
+  const Scene whole{scene_heights(field_from(0, 0, 13, 9))};
+  for (int i = 0; i < 2000; ++i) {
+    const dvec3 a(6 + 5 * std::sin(i), 4 + 3 * std::cos(2.3 * i), 6),
+        b(6 + 5 * std::sin(1.3 * i), 4 + 3 * std::cos(0.7 * i), 0);
+    const Capsule ball{a, a, 0.3};
+    const auto found = tiles.scene().query({}).sweep(ball, b - a), expected = whole.query({}).sweep(ball, b - a);
+    ASSERT_EQ(found.has_value(), expected.has_value());
+    if (found) {
+      ASSERT_NEAR(found->t, expected->t, 1e-12);
+    }
+    ASSERT_NEAR(tiles.scene().query({}).closest_point(a)->distance, whole.query({}).closest_point(a)->distance, 1e-12);
+    ASSERT_EQ(tiles.scene().query({}).overlaps({b, {0.5, 0.5, 1}}), whole.query({}).overlaps({b, {0.5, 0.5, 1}}));
+  }
+}
+
+TEST(Contacts, AreRefusedWhereTheyAreNotKnown) {
+  const Scene mixed = combine(
+      {{Terrain(flat(4, 0))}, {Scene(scene_shape(DistanceField(make_shape(shape::Sphere{.radius = 9})))), {}, {}, 2}});
+  const Capsule ball{{2, 2, 2}, {2, 2, 2}, 1};
+  EXPECT_EQ(
+      refusal([&] {
+        mixed.query({}).sweep(ball, {0, 0, -3});
+      }),
+      "scene: contacts are those with height fields, tiles and voxels, not with a shape (leave it out by its mask)");
+  EXPECT_TRUE(mixed.query({.mask = 1}).sweep(ball, {0, 0, -3}));
+  EXPECT_NE(refusal([&] { mixed.query({.mask = 1}).overlaps({{}, {-1, 1, 1}}); }), "");
 }
 
 }  // namespace
