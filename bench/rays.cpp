@@ -12,6 +12,7 @@
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/two_floats.h"
 #include "scarp/march/height/max_mip.h"
 
 namespace scarp::bench {
@@ -45,8 +46,8 @@ dvec3 direction_to(double azimuth, double altitude) {
 // The beginning of a ray from the surface near (x, y): in float numbers, kLift above both surfaces there.
 dvec3 lifted(const HeightField& field, double x, double y) {
   // Rounding to float may leave the field by a hair.
-  const double fx = std::min(static_cast<double>(static_cast<float>(x)), field.width());
-  const double fy = std::min(static_cast<double>(static_cast<float>(y)), field.depth());
+  const double fx = std::min(as_float(x), field.width());
+  const double fy = std::min(as_float(y), field.depth());
   const double z = std::max(field.height(fx, fy).value(), triangle_height(field, fx, fy).value()) + kLift;
   float fz = static_cast<float>(z);
   if (fz < z) fz = std::nextafter(fz, kInfinity);
@@ -230,7 +231,13 @@ PinholeCamera primary_camera(const HeightField& field, int width, int height, co
                      field.min_height() + view.target.z * (field.max_height() - field.min_height()));
   const dvec3 forward = normalize(target - eye), right = normalize(cross(forward, dvec3(0, 0, 1)));
   const double half_height = std::tan(45.0 / 2 * kPi / 180);
-  return {width,      height, dvec3(vec3(eye)), right, cross(right, forward), forward, half_height * width / height,
+  return {width,
+          height,
+          dvec3(as_float(eye.x), as_float(eye.y), as_float(eye.z)),
+          right,
+          cross(right, forward),
+          forward,
+          half_height * width / height,
           half_height};
 }
 

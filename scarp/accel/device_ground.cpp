@@ -11,6 +11,7 @@
 #include "scarp/accel/max_pyramid.glsl.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/base/two_floats.h"
 
 namespace scarp {
 namespace {
@@ -54,11 +55,6 @@ std::uint32_t word_of(const SampleGrid<T>& grid, int word, int row) {
   const std::uint32_t first = static_cast<std::uint16_t>(grid.at(col, row));
   const std::uint32_t second = col + 1 < grid.cols ? static_cast<std::uint16_t>(grid.at(col + 1, row)) : 0;
   return first | second << 16;
-}
-
-void split(double value, float& high, float& low) {
-  high = static_cast<float>(value);
-  low = static_cast<float>(value - static_cast<double>(high));
 }
 
 }  // namespace

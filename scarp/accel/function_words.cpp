@@ -4,17 +4,10 @@
 #include <cmath>
 
 #include "scarp/base/error.h"
+#include "scarp/base/two_floats.h"
 #include "scarp/field/function_single.h"
 
 namespace scarp {
-namespace {
-
-void split(double value, float& high, float& low) {
-  high = static_cast<float>(value);
-  low = static_cast<float>(value - static_cast<double>(high));
-}
-
-}  // namespace
 
 std::vector<glsl::ScarpInstruction> function_words(const FunctionProgram& program) {
   std::vector<glsl::ScarpInstruction> words;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/march/device_function_ray.h"
+#include "scarp/base/two_floats.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,10 +15,7 @@ namespace {
 constexpr double kPair = 0x1p-43;
 
 void split(const dvec3& value, glsl::vec3& high, glsl::vec3& low) {
-  for (int axis = 0; axis < 3; ++axis) {
-    high[axis] = static_cast<float>(value[axis]);
-    low[axis] = static_cast<float>(value[axis] - static_cast<double>(high[axis]));
-  }
+  for (int axis = 0; axis < 3; ++axis) scarp::split(value[axis], high[axis], low[axis]);
 }
 
 // The part of a ray from t_enter to t_exit, times counting in lengths of 1 to 2 metres.

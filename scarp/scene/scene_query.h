@@ -46,10 +46,11 @@ class SceneQuery {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from = {}) const;
 
-  /// Returns the first contact of a sphere or capsule that moves along `motion`; nullopt if there is none. Of two at
-  /// the same time that of the object with the lower number. The mask counts, sides and filter do not: height fields
-  /// and tiles are touched from both sides. Throws Error for a capsule or a motion that validate() refuses, and where
-  /// the mask selects a function, a shape, a mesh, or heights that wrap round or are not marched by max-mip.
+  /// Returns the first contact of a sphere or capsule that moves along `motion`; nullopt if there is none. If it
+  /// touches several objects at once, the one with the lowest index counts. The mask counts, sides and filter do not:
+  /// height fields and tiles are touched from both sides. Throws Error for a capsule or a motion that validate()
+  /// refuses, and where the mask selects a function, a shape, a mesh, or heights that wrap round or are not marched by
+  /// max-mip.
   std::optional<SceneContact> sweep(const Capsule& capsule, const dvec3& motion) const;
   /// Returns whether a box, closed, meets a height field's surface or a solid voxel. Errors as for sweep().
   bool overlaps(const TurnedBox& box) const;

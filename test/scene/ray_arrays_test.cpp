@@ -14,6 +14,7 @@
 #include "base/refusal.h"
 #include "march/height/spiteful.h"
 #include "scarp/base/executor.h"
+#include "scarp/base/two_floats.h"
 #include "scarp/field/ground_points.h"
 #include "scarp/scarp.h"
 
@@ -30,9 +31,7 @@ struct Rays {
     Random random(4);
     for (int i = 0; i < count; ++i) {
       Ray ray;
-      const auto number = [&](double low, double high) {
-        return static_cast<double>(static_cast<float>(uniform(random, low, high)));
-      };
+      const auto number = [&](double low, double high) { return as_float(uniform(random, low, high)); };
       ray.origin = {number(0, 60), number(0, 60), number(-2, 40)};
       ray.direction = {number(-1, 1), number(-1, 1), number(-1, 0.2)};
       ray.t_min = number(0, 2), ray.t_max = i % 3 ? std::numeric_limits<double>::infinity() : number(5, 30);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/march/height/device_ray.h"
+#include "scarp/base/two_floats.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +24,9 @@ struct TwoFloats {
 };
 
 TwoFloats two_floats(double x) {
-  const auto high = static_cast<float>(x);
-  return {high, static_cast<float>(x - static_cast<double>(high))};
+  TwoFloats sum{};
+  split(x, sum.high, sum.low);
+  return sum;
 }
 
 bool inside(double o, int cells) { return o >= 0 && o <= cells; }

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "scarp/base/error.h"
+#include "scarp/base/two_floats.h"
 #include "scarp/march/height/device_ray.h"
 #include "scarp/render/frame/frame_view.h"
 #include "scarp/render/frame/terrain_frame.glsl.h"
@@ -34,16 +35,10 @@ constexpr std::uint32_t kWords[] = {
 };
 
 void split(const dvec3& value, vec3& high, vec3& low) {
-  high = vec3(value);
-  low = vec3(value - dvec3(high));
+  for (int axis = 0; axis < 3; ++axis) scarp::split(value[axis], high[axis], low[axis]);
 }
 void split(const dvec2& value, glm::vec2& high, glm::vec2& low) {
-  high = glm::vec2(value);
-  low = glm::vec2(value - dvec2(high));
-}
-void split(double value, float& high, float& low) {
-  high = static_cast<float>(value);
-  low = static_cast<float>(value - static_cast<double>(high));
+  for (int axis = 0; axis < 2; ++axis) scarp::split(value[axis], high[axis], low[axis]);
 }
 float never_if_infinite(double value) { return std::isinf(value) ? glsl::kScarpNever : static_cast<float>(value); }
 
@@ -96,7 +91,7 @@ void set_field(glsl::FrameSettings& s, const HeightField& field, const std::opti
       static_cast<float>(field.height_from_sample(static_cast<double>(s.base_of_heights)) - zero_of_heights);
   s.last_row = static_cast<float>(field.rows() - 1);
   s.plinth = plinth.has_value();
-  if (plinth) split(plinth->base_sample(), s.base_sample, s.base_sample_low);
+  if (plinth) scarp::split(plinth->base_sample(), s.base_sample, s.base_sample_low);
 }
 
 void set_steps(glsl::FrameSettings& s, const Scene& scene, const Camera& camera, const PictureSettings& settings) {
@@ -134,8 +129,8 @@ void set_water(glsl::FrameSettings& s, const HeightField& field, const Water* wa
   if (!water) return;
   const HeightFieldSettings& settings = field.settings();
   s.level = static_cast<float>(water->level() - zero_of_heights);
-  split((water->level() / settings.exaggeration - settings.offset) / settings.scale, s.level_sample,
-        s.level_sample_low);
+  scarp::split((water->level() / settings.exaggeration - settings.offset) / settings.scale, s.level_sample,
+               s.level_sample_low);
   const std::optional<float> sea = sea_sample(field, water->level());
   s.has_sea = sea.has_value();
   s.sea_sample = sea.value_or(0.0f);

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Doubles as the sum of two floats.
+#pragma once
+
+namespace scarp {
+
+/// A double rounded to float, as a double. It goes through memory: where g++ 12 converts two doubles at once (-O2 and
+/// above), it takes the way to float and back for nothing and drops it.
+inline double as_float(double value) {
+  const volatile float rounded = static_cast<float>(value);
+  return static_cast<double>(rounded);
+}
+
+/// Sets high + low to the value, rounded to 48 bits or more.
+inline void split(double value, float& high, float& low) {
+  const double rounded = as_float(value);
+  high = static_cast<float>(rounded);
+  low = static_cast<float>(value - rounded);
+}
+
+}  // namespace scarp
