@@ -26,6 +26,13 @@ class Search {
                      square(std::max({box.low.z - p_.z, p_.z - box.high.z, 0.0})));
   }
 
+  double bound(const GroundPart& part) const {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Triangle& triangle : part.triangles)
+      nearest = std::min(nearest, length(closest_of_triangle(p_, triangle) - p_));
+    return std::max(0.0, nearest - part.off);
+  }
+
   // Returns whether the quarters of the part have nothing better. Both the point that is found and the closest one are
   // within GroundPart::off of the triangles.
   bool compare(const GroundPart& part, bool flat) {

@@ -27,6 +27,13 @@ class SweepSearch {
   double bound(const WorldBox& box) const {
     return sweep_bound(capsule_, motion_, box.low, box.high, std::min(best_, 1.0));
   }
+  double bound(const GroundPart& part) const {
+    const Capsule wider{capsule_.a, capsule_.b, capsule_.radius + part.off};
+    double first = kNever;
+    for (const Triangle& triangle : part.triangles)
+      first = std::min(first, sweep_time(wider, motion_, triangle, std::min(best_, 1.0)).value_or(kNever));
+    return first;
+  }
   bool compare(const GroundPart& part, bool flat) {
     if (!flat) return false;
     for (const Triangle& triangle : part.triangles) {
@@ -61,6 +68,12 @@ class BoxSearch {
   double bound(const WorldBox& ground) const {
     const double wide = 16 * 0x1p-53 * (length(box_.centre) + length(box_.half));
     return scarp::overlaps(box_, ground.low - wide, ground.high + wide) ? 0 : kNever;
+  }
+  double bound(const GroundPart& part) const {
+    TurnedBox wider = box_;
+    wider.half += part.off;
+    const auto& [north_west, south_east] = part.triangles;
+    return scarp::overlaps(wider, north_west) || scarp::overlaps(wider, south_east) ? 0 : kNever;
   }
   bool compare(const GroundPart& part, bool flat) {
     if (!flat) return false;

@@ -3,6 +3,7 @@
 // two triangles are as good as the part.
 //
 //   query.bound(box)          the best that the ground in a box can be: a distance, a time; infinity for nothing
+//   query.bound(part)         the same of a part, by its triangles and how far it may be off them
 //   query.best()              what was found so far: boxes that cannot be better are left out
 //   query.compare(part, flat) looks at the two triangles of a part; if it is not `flat`, its quarters follow
 #pragma once
@@ -94,23 +95,31 @@ class GroundSearch {
     const auto [z00, z10, z01, z11] = corners(h, u, v, side);
     const WorldBox box{world(col + u, row + v + side, std::min({z00, z10, z01, z11})),
                        world(col + u + side, row + v, std::max({z00, z10, z01, z11}))};
-    push({query_.bound(box), 0, col, row, u, v, side});
+    double bound = query_.bound(box);
+    if (!(bound < query_.best())) return;
+    const GroundPart part = part_at(h, col, row, u, v, side);
+    // Of a curved part the triangles say more than the box: they are off by the square of its size.
+    if (part.off > 0) bound = std::max(bound, query_.bound(part));
+    push({bound, 0, col, row, u, v, side});
   }
 
   void open(const Node& node) {
     const CellHeights h = field_.cell_heights({node.col, node.row}).value();
-    const auto [z00, z10, z01, z11] = corners(h, node.u, node.v, node.side);
-    const double col = node.col + node.u, row = node.row + node.v, side = node.side;
+    const GroundPart part = part_at(h, node.col, node.row, node.u, node.v, node.side);
+    if (query_.compare(part, 2 * part.off <= flat_)) return;
+    const double half = 0.5 * node.side;
+    for (int i = 0; i < 4; ++i) push_part(h, node.col, node.row, node.u + i % 2 * half, node.v + i / 2 * half, half);
+  }
+
+  GroundPart part_at(const CellHeights& h, int cell_col, int cell_row, double u, double v, double side) const {
+    const auto [z00, z10, z01, z11] = corners(h, u, v, side);
+    const double col = cell_col + u, row = cell_row + v;
     const dvec3 nw = world(col, row, z00), ne = world(col + side, row, z10), sw = world(col, row + side, z01),
                 se = world(col + side, row + side, z11);
     // In the middle of the diagonal two triangles are farthest from a bilinear patch.
     const bool bilinear = field_.settings().surface == Surface::bilinear;
     const double off = bilinear ? 0.25 * std::abs(nw.z + se.z - ne.z - sw.z) : 0;
-    const bool flat = 2 * off <= flat_;
-    const GroundPart part{{node.col, node.row}, h, node.u, node.v, side, {Triangle{nw, sw, ne}, {se, ne, sw}}, off};
-    if (query_.compare(part, flat)) return;
-    for (int i = 0; i < 4; ++i)
-      push_part(h, node.col, node.row, node.u + i % 2 * 0.5 * side, node.v + i / 2 * 0.5 * side, 0.5 * side);
+    return {{cell_col, cell_row}, h, u, v, side, {Triangle{nw, sw, ne}, {se, ne, sw}}, off};
   }
 
   // Samples at the corners of a part.
