@@ -438,6 +438,35 @@ TEST(ScarpBench, TheDrawnGridHasTheDepthsOfTheRays) {
 }
 #endif
 
+TEST(ScarpBench, SeamsLoseNoRay) {
+  const json all = output_of("seams --rays 200000");
+  expect_head(all);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"terrain", "aim", "rays", "lost", "any_hit_lost", "seed"});
+    EXPECT_EQ(row["lost"], 0) << row;
+    EXPECT_EQ(row["any_hit_lost"], 0) << row;
+  }
+}
+
+TEST(ScarpBench, SweepsAgreeWithBulletAndNoneTunnels) {
+  const json all = output_of("sweeps --sweeps 500 --repeats 1 --judged 20000");
+  expect_head(all);
+  int judged = 0;
+  for (const json& row : all["rows"]) {
+    if (row.contains("tunnelled")) {
+      ++judged;
+      expect_fields(row, {"class", "sweeps", "contacts", "tunnelled", "untouched", "seed"});
+      EXPECT_EQ(row["tunnelled"], 0) << row;
+      EXPECT_EQ(row["untouched"], 0) << row;
+      continue;
+    }
+    expect_fields(row, {"class", "sweeps", "scarp_us", "bullet_us", "ratio", "contacts", "bullet_contacts", "differ"});
+    // Bullet computes in float: it may see a touch otherwise.
+    EXPECT_LE(row["differ"].get<int>(), row["sweeps"].get<int>() / 50 + 1) << row;
+  }
+  EXPECT_EQ(judged, 2);
+}
+
 TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   const auto fails = [](const std::string& arguments) {
     return std::system(fmt::format("'{}' {} > /dev/null 2>&1", SCARP_BENCH_PROGRAM, arguments).c_str()) != 0;
