@@ -41,12 +41,13 @@ struct ClosestPair {
 
 /// The closest points of the segments p + s d and q + t e, s and t from 0 to 1. Either may be a point.
 inline ClosestPair closest_of_segments(const dvec3& p, const dvec3& d, const dvec3& q, const dvec3& e) {
-  const dvec3 r = p - q;
+  const dvec3 r = p - q, n = cross(d, e);
   const double dd = dot(d, d), ee = dot(e, e), de = dot(d, e), dr = dot(d, r), er = dot(e, r);
-  const double parallel = dd * ee - de * de;
-  double s = dd > 0 && parallel > 0 ? std::clamp((de * er - dr * ee) / parallel, 0.0, 1.0) : 0.0;
+  // By the cross product: the difference dd ee - de de has no digits left where the segments are almost parallel.
+  const double square = dot(n, n);
+  double s = square > 0 ? std::clamp(dot(cross(e, r), n) / square, 0.0, 1.0) : 0.0;
   double t = ee > 0 ? (de * s + er) / ee : 0.0;
-  if (!(t >= 0 && t <= 1) || !(parallel > 0)) {
+  if (!(t >= 0 && t <= 1) || !(square > 0)) {
     t = std::clamp(t, 0.0, 1.0);
     s = dd > 0 ? std::clamp((de * t - dr) / dd, 0.0, 1.0) : 0.0;
     if (ee > 0) t = std::clamp((de * s + er) / ee, 0.0, 1.0);

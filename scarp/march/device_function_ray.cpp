@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/march/device_function_ray.h"
-#include "scarp/base/two_floats.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "scarp/base/two_floats.h"
 #include "scarp/march/function/function_ray.h"
 #include "scarp/march/ray_clip.h"
 

@@ -16,10 +16,8 @@ std::span<const Hit* const> part(std::span<const Hit* const> from, std::size_t f
 }
 
 [[noreturn]] void refuse_contacts(const SceneField& field) {
-  throw Error(
-      fmt::format("scene: contacts are those with height fields, tiles and voxels, not with a {} (leave it out "
-                  "by its mask)",
-                  field.kind()));
+  throw Error(fmt::format("scene: contacts support height fields, tiles and voxels, not a {} (exclude it by its mask)",
+                          field.kind()));
 }
 
 // piece(first, count) on all threads.
@@ -49,10 +47,9 @@ Ray SceneField::started(const Ray& ray, const Hit* from) const {
 Hit SceneField::accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const {
   const Hit hit = closest_hit(ray, from, stats);
   if (!hit || !rules.accept || (*rules.accept)(hit)) return hit;
-  throw Error(
-      fmt::format("scene: the filter rejected a hit on a {}, behind which {} cannot go on (leave the object out "
-                  "by its mask)",
-                  kind(), march()));
+  throw Error(fmt::format(
+      "scene: the filter rejected a hit on a {}; {} cannot continue behind it (exclude the object by its mask)", kind(),
+      march()));
 }
 
 std::optional<FieldContact> SceneField::sweep(const Capsule&, const dvec3&) const { refuse_contacts(*this); }

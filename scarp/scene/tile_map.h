@@ -28,7 +28,7 @@ struct TileGround {
 struct Tile {
   Tile(HeightField heights, int tile_level) : given(std::move(heights)), level(tile_level) {}
 
-  /// Of a cell, plus 1; 0: that of the object.
+  /// Returns the material of a cell plus 1, or 0 if the tile has no materials.
   int material(Cell cell) const {
     if (!materials) return 0;
     return 1 + (*materials)[static_cast<std::size_t>(cell.row) * static_cast<std::size_t>(given.cell_cols()) +

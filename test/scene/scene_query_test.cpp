@@ -343,11 +343,10 @@ TEST(Contacts, AreRefusedWhereTheyAreNotKnown) {
   const Scene mixed = combine(
       {{Terrain(flat(4, 0))}, {Scene(scene_shape(DistanceField(make_shape(shape::Sphere{.radius = 9})))), {}, {}, 2}});
   const Capsule ball{{2, 2, 2}, {2, 2, 2}, 1};
-  EXPECT_EQ(
-      refusal([&] {
-        mixed.query({}).sweep(ball, {0, 0, -3});
-      }),
-      "scene: contacts are those with height fields, tiles and voxels, not with a shape (leave it out by its mask)");
+  EXPECT_EQ(refusal([&] {
+              mixed.query({}).sweep(ball, {0, 0, -3});
+            }),
+            "scene: contacts support height fields, tiles and voxels, not a shape (exclude it by its mask)");
   EXPECT_TRUE(mixed.query({.mask = 1}).sweep(ball, {0, 0, -3}));
   EXPECT_NE(refusal([&] { mixed.query({.mask = 1}).overlaps({{}, {-1, 1, 1}}); }), "");
 }

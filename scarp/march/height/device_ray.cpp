@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/march/height/device_ray.h"
-#include "scarp/base/two_floats.h"
 
 #include <algorithm>
 #include <cmath>
 
+#include "scarp/base/two_floats.h"
 #include "scarp/march/height/grid_axis.h"
 #include "scarp/march/ray_clip.h"
 
