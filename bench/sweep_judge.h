@@ -73,7 +73,7 @@ struct JudgedSweep {
   double deepest(const JudgedTriangle& t, double end) const {
     const dvec3 middle = (t[0] + t[1] + t[2]) / 3.0;
     const double size = std::max({length(t[0] - middle), length(t[1] - middle), length(t[2] - middle)}) + length(b - a);
-    if (out_of_reach(t, end) || to_segment(middle, a, a + end * motion) > 1.001 * (size + radius) + 1e-9)
+    if (out_of_reach(t, end) || to_segment(middle, a, a + end * motion) > size + radius + kMargin)
       return std::numeric_limits<double>::infinity();
     constexpr double kGolden = 0.6180339887498949;
     double low = 0, high = end;
@@ -96,9 +96,13 @@ struct JudgedSweep {
   double rounding() const { return 64 * 0x1p-53 * (length(a) + length(b) + length(motion) + radius); }
 
  private:
+  // Metres by which triangles are out of reach before they are left out: far more than rounding over the few metres of
+  // judged fields.
+  static constexpr double kMargin = 0x1p-20;
+
   bool out_of_reach(const JudgedTriangle& t, double end) const {
     for (int axis = 0; axis < 3; ++axis) {
-      const double to = end * motion[axis], wide = radius + 1e-6 * (1 + std::abs(to));
+      const double to = end * motion[axis], wide = radius + kMargin;
       const double low = std::min(a[axis], b[axis]) + std::min(0.0, to) - wide;
       const double high = std::max(a[axis], b[axis]) + std::max(0.0, to) + wide;
       if (std::min({t[0][axis], t[1][axis], t[2][axis]}) > high) return true;

@@ -4,49 +4,23 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "base/refusal.h"
+#include "bench/sweep_judge.h"
 #include "march/height/spiteful.h"
 
 namespace scarp::test {
 namespace {
 
-// Distance from p to a segment.
-double to_segment(const dvec3& p, const dvec3& a, const dvec3& b) {
-  const double along = std::clamp(dot(p - a, b - a) / dot(b - a, b - a), 0.0, 1.0);
-  return length(a + along * (b - a) - p);
-}
-
-// Distance to a triangle: to its plane where the foot is inside, else to its nearest side.
-double to_triangle(const dvec3& p, const dvec3& a, const dvec3& b, const dvec3& c) {
-  const dvec3 n = cross(b - a, c - a);
-  const bool inside =
-      dot(cross(b - a, p - a), n) >= 0 && dot(cross(c - b, p - b), n) >= 0 && dot(cross(a - c, p - c), n) >= 0;
-  if (inside) return std::abs(dot(p - a, n)) / length(n);
-  return std::min({to_segment(p, a, b), to_segment(p, b, c), to_segment(p, c, a)});
-}
-
 // Distance to all cells, each split into parts x parts pieces of two triangles.
 double by_force(const HeightField& field, const dvec3& p, int parts) {
   double best = std::numeric_limits<double>::infinity();
-  for (int row = 0; row < field.cell_rows(); ++row) {
-    for (int col = 0; col < field.cell_cols(); ++col) {
-      const auto h = field.cell_heights({col, row});
-      if (!h) continue;
-      const auto at = [&](int i, int j) {
-        const double u = static_cast<double>(i) / parts, v = static_cast<double>(j) / parts;
-        return field.world_from_grid(col + u, row + v, height_in_cell(field.settings().surface, *h, u, v));
-      };
-      for (int i = 0; i < parts; ++i) {
-        for (int j = 0; j < parts; ++j)
-          best = std::min({best, to_triangle(p, at(i, j), at(i, j + 1), at(i + 1, j)),
-                           to_triangle(p, at(i + 1, j + 1), at(i + 1, j), at(i, j + 1))});
-      }
-    }
-  }
+  for (const bench::JudgedTriangle& triangle : bench::all_triangles(field, parts))
+    best = std::min(best, bench::to_triangle(p, triangle));
   return best;
 }
 
