@@ -14,6 +14,8 @@ namespace {
 
 constexpr int kSide = 65;
 constexpr double kRadius = 0.4, kHeight = 1.0, kGap = 0.01;
+// Metres: far more than doubles lose over a world of 64 m, far less than anyone sees.
+constexpr double kRounding = 1e-9;
 
 scarp::Scene world() {
   std::vector<float> samples;
@@ -32,7 +34,7 @@ scarp::Scene world() {
 // Moves up to the first contact, then along it, at most three times. Returns the number of contacts with the tower.
 int step(const scarp::SceneQuery& query, scarp::Capsule& walker, scarp::dvec3 motion) {
   int towers = 0;
-  for (int i = 0; i < 3 && length(motion) > 1e-6; ++i) {
+  for (int i = 0; i < 3 && length(motion) > kGap; ++i) {
     const auto contact = query.sweep(walker, motion);
     // It stops a little before what it touches, so that it does not touch it where the next step starts.
     const double t = contact ? std::max(0.0, contact->t - kGap / length(motion)) : 1;
@@ -56,7 +58,7 @@ int main() {
     towers += step(query, walker, {0.1, 0, 0}) > 0;
     step(query, walker, {0, 0, -0.2});
     const auto closest = query.closest_point(walker.a);
-    sunk += closest && closest->distance < kRadius - 1e-9;
+    sunk += closest && closest->distance < kRadius - kRounding;
   }
   std::printf("walked to x = %.1f, y = %.1f; steps along the tower: %s; steps below ground: %d\n", walker.a.x,
               walker.a.y, towers > 10 ? "many" : "few", sunk);

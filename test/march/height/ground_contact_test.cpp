@@ -20,6 +20,8 @@ namespace {
 using bench::JudgedSweep;
 using bench::JudgedTriangle;
 
+// Of numbers up to 8: some units in the last place.
+constexpr double kRounding = 0x1p-48;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 HeightField rugged(Random& random, Surface surface, double hole_share) {
@@ -87,7 +89,7 @@ void expect_no_tunnelling(Surface surface, int parts) {
       if (!found) continue;
       ++contacts;
       starts += found->t == 0;
-      ASSERT_NEAR(length(found->normal), 1, 1e-12);
+      ASSERT_NEAR(length(found->normal), 1, kRounding);
       ASSERT_TRUE(field.cell_heights(found->cell));
       if (found->t == 0) continue;
       // The point is on the capsule where it is then, and the normal against the motion.
@@ -120,7 +122,7 @@ TEST(Sweep, StopsAtThePlane) {
   ASSERT_TRUE(ball);
   EXPECT_DOUBLE_EQ(ball->t, 0.5);
   EXPECT_EQ(ball->normal, dvec3(0, 0, 1));
-  EXPECT_NEAR(length(ball->point - dvec3(4, 4, 1)), 0, 1e-15);
+  EXPECT_NEAR(length(ball->point - dvec3(4, 4, 1)), 0, kRounding);
   // From below, its lower side.
   EXPECT_EQ(sweep(target, {{4, 4, -3}, {4, 4, -3}, 1}, {0, 0, 6})->normal, dvec3(0, 0, -1));
   // An upright capsule, and one that lies.
@@ -141,7 +143,7 @@ TEST(Sweep, OfAPointIsARay) {
   const MaxPyramid pyramid(field);
   const auto hit = sweep({&field, &pyramid}, {{3.2, 3.7, 4}, {3.2, 3.7, 4}, 0}, {0.5, 0.25, -6});
   ASSERT_TRUE(hit);
-  EXPECT_NEAR(hit->t, 0.5, 1e-15);
+  EXPECT_NEAR(hit->t, 0.5, kRounding);
 }
 
 TEST(ClosestOf, KnowsSegmentsThatAreAlmostParallel) {
@@ -171,7 +173,8 @@ TEST(Sweep, KeepsItsDigitsOverLongWays) {
   const dvec3 from(4 + 3e6, 4 - 2e6, 1e6), motion = 2.0 * (dvec3(4, 4, 0) - from);
   const auto hit = sweep({&field, &pyramid}, {from, from, 0.25}, motion);
   ASSERT_TRUE(hit);
-  EXPECT_NEAR((from + hit->t * motion).z, 0.25, 1e-8);
+  const JudgedSweep judged{from, from, 0.25, motion};
+  EXPECT_NEAR((from + hit->t * motion).z, 0.25, judged.rounding());
 }
 
 // The part of a triangle in a box: cut by one side after the other.
