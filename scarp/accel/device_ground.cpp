@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstddef>
 #include <cstring>
 
 #include "scarp/accel/code_tables.h"
@@ -42,6 +43,18 @@ std::uint64_t entry_bytes(const std::vector<PyramidLevel>& levels) {
   return 4 * static_cast<std::uint64_t>(levels.back().begin + 1);
 }
 
+std::uint32_t quad_stride(const std::vector<PyramidLevel>& levels) {
+  return glsl::ground_quad_stride(static_cast<std::uint32_t>(levels.front().cols),
+                                  static_cast<std::uint32_t>(levels.size()));
+}
+
+std::uint64_t quad_bytes(const std::vector<PyramidLevel>& levels) {
+  if (levels.empty()) return 8;
+  const std::uint64_t rows = static_cast<std::uint64_t>(levels.front().rows) +
+                             (levels.size() > 1 ? static_cast<std::uint64_t>(levels[1].rows) : 0);
+  return 8 * rows * quad_stride(levels);
+}
+
 std::uint32_t bits_of(const SampleGrid<float>& grid, int col, int row) {
   const float sample = grid.at(col, row);
   return grid.is_nodata(sample) ? kHole : std::bit_cast<std::uint32_t>(sample);
@@ -63,6 +76,7 @@ DeviceGround::DeviceGround(const Device& device, const HeightField& field, const
     : levels_(pyramid_levels(field)),
       samples_(device, sample_bytes(field), "samples"),
       pyramid_(device, entry_bytes(levels_), "the pyramid"),
+      quads_(device, quad_bytes(levels_), "the quads"),
       header_(device, sizeof(glsl::GroundBuffers), "the ground's layout"),
       passes_(device),
       commands_(device) {
@@ -111,6 +125,7 @@ void DeviceGround::build(const HeightField& field, const CellBox& changed) {
   glsl::GroundBuffers& ground = layout_;
   ground.samples = samples_.address();
   ground.pyramid = pyramid_.address();
+  ground.quads = quads_.address();
   ground.cols = static_cast<std::uint32_t>(field.cols());
   ground.rows = static_cast<std::uint32_t>(field.rows());
   ground.cell_cols = static_cast<std::uint32_t>(field.cell_cols());
@@ -143,6 +158,7 @@ void DeviceGround::build(const HeightField& field, const CellBox& changed) {
   if (levels_.empty()) return;
   passes_.record(commands_, address(), codes_ ? codes_->address() : 0, field, changed);
   commands_.run();
+  download(header_, offsetof(glsl::GroundBuffers, cell_relief), &ground.cell_relief, sizeof ground.cell_relief);
 }
 
 void DeviceGround::update(const HeightField& field, const CellBox& changed) {
@@ -153,11 +169,12 @@ void DeviceGround::update(const HeightField& field, const CellBox& changed) {
   copy_samples(field, rect);
   if (is_in_range(field, range_)) return build(field, changed);
   set_range(code_range(field, range_), field.sample_type());
+  layout_.cell_relief = 0;
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
 }
 
 std::uint64_t DeviceGround::bytes() const {
-  return samples_.bytes() + pyramid_.bytes() + header_.bytes() + (codes_ ? codes_->bytes() : 0);
+  return samples_.bytes() + pyramid_.bytes() + quads_.bytes() + header_.bytes() + (codes_ ? codes_->bytes() : 0);
 }
 
 std::vector<std::uint32_t> DeviceGround::read_pyramid() const {

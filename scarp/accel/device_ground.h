@@ -6,7 +6,8 @@
 //   push.ground = ground.address();               // Address in the push constants of the shader
 //   Ground(push.ground) ... ground_cell(...)      // in GLSL
 //
-// Memory: the samples (odd rows of 16-bit samples are padded) and 4/3 bytes per cell. The samples must fit in one
+// Memory: the samples (odd rows of 16-bit samples are padded), 4/3 bytes per cell for the pyramid and 3 for the maxima
+// in the order in which shaders walk (quads). The samples must fit in one
 // allocation of the device, and in 2^31 - 1 words.
 #pragma once
 
@@ -58,7 +59,7 @@ class DeviceGround {
   SampleRange range_;
   HeightCode code_;
   glsl::GroundBuffers layout_{};
-  DeviceBuffer samples_, pyramid_, header_;
+  DeviceBuffer samples_, pyramid_, quads_, header_;
   std::optional<DeviceBuffer> codes_;  // float samples only
   PyramidPasses passes_;
   Commands commands_;

@@ -3,11 +3,11 @@
 // shaders. Everything is reached from the address of a GroundBuffers:
 //
 //   GroundBuffers ──samples──▶ words, rows from north to south, sample_words per row; a word is one float32 sample or
-//   two
-//         │                    16-bit samples, the lower half first; the last half of an odd row is undefined
-//         └──pyramid──▶ one word per block: maximum code | minimum code << 16; the entry of block (col, row) of a level
-//         is
-//                       levels[level - 1].begin + row * cols + col, level 1 .. top_level, as in MaxPyramid
+//         │                    two 16-bit samples, the lower half first; the last half of an odd row is
+//         │                    undefined
+//         ├──pyramid──▶ one word per block: maximum code | minimum code << 16; the entry of block (col, row) of a level
+//         │             is levels[level - 1].begin + row * cols + col, level 1 .. top_level, as in MaxPyramid
+//         └──quads────▶ two words per block: the maximum codes of its 2 x 2 children, see ground_quad()
 //
 // Codes equal those of MaxPyramid bit for bit: height = base + step * code, maxima rounded up, minima down. Minimum 0
 // means none (a hole, or the lowest code). For 16-bit samples base (-32768 or 0) and step (1) are exact. If has_holes,
@@ -46,6 +46,7 @@ struct GroundLevel {
 struct GroundBuffers {
   Address samples;
   Address pyramid;
+  Address quads;
   uint cols;  // samples
   uint rows;
   uint cell_cols;  // cols - 1, or cols if the last column is followed by the first
@@ -67,15 +68,28 @@ struct GroundBuffers {
   float code_per_step;  // 1 / step, rounded
   float min_sample;     // of the current samples; undefined if all samples are nodata
   float max_sample;
-  float cell_x;  // metres, rounded
+  float cell_relief;  // upper bound of the height difference within a cell, in sample units
+  float cell_x;       // metres, rounded
   float cell_y;
   float metres_per_sample;  // scale * exaggeration, rounded
   float metres_at_zero;     // world z of sample value 0, rounded
   GroundLevel levels[kGroundMaxLevels];
 };
 
+// Quads lie in rows of ground_quad_stride() quads: level 1 on top, below it the other levels side by side.
+SCARP_FN uint ground_quad_stride(uint level_1_cols, uint top_level) { return level_1_cols + top_level; }
+
+/// Index of the quad of block (col, row) of a level, 1 .. top_level. The level begins where no coarser one can reach:
+/// level l has at most (level_1_cols >> (l - 1)) + 1 columns.
+SCARP_FN uint ground_quad(uint level_1_cols, uint level_1_rows, uint stride, uint level, uint col, uint row) {
+  if (level == 1u) return row * stride + col;
+  uint begin = level_1_cols - (level_1_cols >> (level - 2u)) + (level - 2u);
+  return (level_1_rows + row) * stride + begin + col;
+}
+
 #ifndef __cplusplus
 
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer GroundQuads { uvec2 of[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GroundWords { uint words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Ground { GroundBuffers is; };
 

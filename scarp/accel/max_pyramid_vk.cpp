@@ -2,14 +2,20 @@
 #include "scarp/accel/max_pyramid_vk.h"
 
 #include <algorithm>
+#include <cstddef>
 
+#include "scarp/accel/ground_buffers.glsl.h"
 #include "scarp/accel/max_pyramid.glsl.h"
+#include "scarp/accel/max_quads.glsl.h"
 
 namespace scarp {
 namespace {
 
-constexpr std::uint32_t kShader[] = {
+constexpr std::uint32_t kEntries[] = {
 #include "scarp/accel/max_pyramid.comp.inc"
+};
+constexpr std::uint32_t kQuads[] = {
+#include "scarp/accel/max_quads.comp.inc"
 };
 
 // Limits that every device supports: workgroups along one side of a dispatch, and invocations per workgroup.
@@ -19,7 +25,8 @@ static_assert(glsl::kPyramidGroupCols * glsl::kPyramidGroupRows <= 128);
 }  // namespace
 
 PyramidPasses::PyramidPasses(const Device& device)
-    : pipeline_(device, kShader, "max_pyramid", sizeof(glsl::PyramidPush)) {}
+    : entries_(device, kEntries, "max_pyramid", sizeof(glsl::PyramidPush)),
+      quads_(device, kQuads, "max_quads", sizeof(glsl::QuadsPush)) {}
 
 void PyramidPasses::record(Commands& commands, std::uint64_t ground, std::uint64_t codes, const HeightField& field,
                            const CellBox& changed) const {
@@ -35,16 +42,16 @@ void PyramidPasses::record(Commands& commands, std::uint64_t ground, std::uint64
         for (int col = part.col_begin; col < part.col_end; col += kMaxGroups * kGroupCols) {
           const int cols = std::min(part.col_end - col, kMaxGroups * kGroupCols);
           const int rows = std::min(part.row_end - row, kMaxGroups * kGroupRows);
-          const glsl::PyramidPush push{ground,
-                                       codes,
-                                       static_cast<std::uint32_t>(l + 1),
-                                       static_cast<std::uint32_t>(col),
-                                       static_cast<std::uint32_t>(row),
-                                       static_cast<std::uint32_t>(col + cols),
-                                       static_cast<std::uint32_t>(row + rows)};
-          commands.dispatch(pipeline_, push,
-                            {static_cast<std::uint32_t>((cols + kGroupCols - 1) / kGroupCols),
-                             static_cast<std::uint32_t>((rows + kGroupRows - 1) / kGroupRows), 1});
+          const Commands::Groups groups{static_cast<std::uint32_t>((cols + kGroupCols - 1) / kGroupCols),
+                                        static_cast<std::uint32_t>((rows + kGroupRows - 1) / kGroupRows), 1};
+          const auto level = static_cast<std::uint32_t>(l + 1);
+          const auto col_begin = static_cast<std::uint32_t>(col), row_begin = static_cast<std::uint32_t>(row);
+          const auto col_end = static_cast<std::uint32_t>(col + cols), row_end = static_cast<std::uint32_t>(row + rows);
+          commands.dispatch(entries_, glsl::PyramidPush{ground, codes, level, col_begin, row_begin, col_end, row_end},
+                            groups);
+          const std::uint64_t relief = ground + offsetof(glsl::GroundBuffers, cell_relief);
+          commands.dispatch(quads_, glsl::QuadsPush{ground, relief, level, col_begin, row_begin, col_end, row_end},
+                            groups);
         }
       }
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Builds the maximum and minimum pyramid on a Vulkan device: one pass of max_pyramid.comp per level. Entries equal
-// those of MaxPyramid bit for bit, at any size and after any edit. Used by DeviceGround.
+// Builds the maximum and minimum pyramid on a Vulkan device, and the quads: one pass of max_pyramid.comp and one of
+// max_quads.comp per level. Entries equal those of MaxPyramid bit for bit, at any size and after any edit. Used by
+// DeviceGround.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +22,12 @@ class PyramidPasses {
 
   /// Records the passes that recompute all entries over `changed`, finer levels first, with barriers before and
   /// between. `ground` is the address of the field's GroundBuffers, `codes` that of the tables for float samples.
+  /// Raises cell_relief on the device.
   void record(Commands& commands, std::uint64_t ground, std::uint64_t codes, const HeightField& field,
               const CellBox& changed) const;
 
  private:
-  ComputePipeline pipeline_;
+  ComputePipeline entries_, quads_;
 };
 
 }  // namespace scarp

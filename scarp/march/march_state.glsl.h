@@ -14,6 +14,7 @@ const int kScarpHit = 1;
 const int kScarpBelow = 2;      ///< started or entered below the surface, and hit nothing
 const int kScarpExhausted = 3;  ///< a limit was reached: nothing is known beyond the time
 const int kScarpWall = 4;       ///< a hit, of the wall under a border or a hole's rim
+const int kScarpDoubtful = -1;  ///< of a first pass: to be marched by the second
 
 /// Later than any time.
 const float kScarpNever = 1.0e30f;

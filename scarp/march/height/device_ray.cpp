@@ -165,6 +165,8 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
     result.code_base = base.high;
     result.code_base_low = base.low;
     result.code_step = static_cast<float>(pyramid->code().step);
+    result.code_per_step = static_cast<float>(pyramid->code().per_step);
+    result.cell_relief = static_cast<float>(pyramid->cell_relief() * pyramid->code().step);
   }
   return result;
 }

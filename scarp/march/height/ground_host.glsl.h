@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the marches ask of their host (cell_surface.glsl.h, max_mip.glsl.h), answered from accel/ground_buffers.glsl.h.
-// GLSL. Who includes it calls open_ground() before a march: what is the same for all samples is read once.
+// GLSL. Includers call open_ground() before a march: what is the same for all samples is read once. Those that know
+// the type of samples as a constant define SCARP_GROUND_TYPE.
 #ifndef SCARP_MARCH_GROUND_HOST_GLSL_H
 #define SCARP_MARCH_GROUND_HOST_GLSL_H
 
@@ -9,8 +10,14 @@
 
 Ground opened;
 GroundWords opened_samples, opened_pyramid;
+GroundQuads opened_quads;
 uint opened_words, opened_type;
+uint opened_quad_cols, opened_quad_rows, opened_quad_stride;
 float opened_hole;
+
+#ifndef SCARP_GROUND_TYPE
+#define SCARP_GROUND_TYPE opened_type
+#endif
 
 /// The ground at an address, as the marches want to know it.
 ScarpField open_ground(Address address) {
@@ -18,6 +25,10 @@ ScarpField open_ground(Address address) {
   opened = ground;
   opened_samples = GroundWords(ground.is.samples);
   opened_pyramid = GroundWords(ground.is.pyramid);
+  opened_quads = GroundQuads(ground.is.quads);
+  opened_quad_cols = (ground.is.cell_cols + 1u) / 2u;
+  opened_quad_rows = (ground.is.cell_rows + 1u) / 2u;
+  opened_quad_stride = ground_quad_stride(opened_quad_cols, ground.is.top_level);
   opened_words = ground.is.sample_words;
   opened_type = ground.is.sample_type;
   opened_hole = ground_sample_value(ground, ground.is.hole);
@@ -30,6 +41,8 @@ ScarpField open_ground(Address address) {
   field.code_base = ground.is.code_base;
   field.code_base_low = ground.is.code_base_low;
   field.code_step = ground.is.code_step;
+  field.code_per_step = ground.is.code_per_step;
+  field.cell_relief = ground.is.cell_relief;
   field.lowest = ground.is.min_sample;
   field.highest = ground.is.max_sample;
   return field;
@@ -37,15 +50,15 @@ ScarpField open_ground(Address address) {
 
 float scarp_sample(int col, int row) {
   uint begin = uint(row) * opened_words;
-  if (opened_type == kGroundFloat32) return uintBitsToFloat(opened_samples.words[begin + uint(col)]);
+  if (SCARP_GROUND_TYPE == kGroundFloat32) return uintBitsToFloat(opened_samples.words[begin + uint(col)]);
   uint word = opened_samples.words[begin + (uint(col) >> 1)];
-  if (opened_type == kGroundInt16) return float(bitfieldExtract(int(word), (col & 1) << 4, 16));
+  if (SCARP_GROUND_TYPE == kGroundInt16) return float(bitfieldExtract(int(word), (col & 1) << 4, 16));
   return float(bitfieldExtract(word, (col & 1) << 4, 16));
 }
 
 // All nodata floats are stored as one NaN, which is known by its bits: comparisons of NaN are the compiler's.
 bool scarp_is_nodata(float value) {
-  if (opened_type == kGroundFloat32) return (floatBitsToUint(value) & 0x7fffffffu) > 0x7f800000u;
+  if (SCARP_GROUND_TYPE == kGroundFloat32) return (floatBitsToUint(value) & 0x7fffffffu) > 0x7f800000u;
   return value == opened_hole;
 }
 
@@ -54,6 +67,10 @@ uint pyramid_entry(int level, int col, int row) {
   return opened_pyramid.words[at.begin + uint(row) * at.cols + uint(col)];
 }
 float scarp_maximum(int level, int col, int row) { return float(ground_maximum(pyramid_entry(level, col, row))); }
+uvec2 scarp_quad(int level, int col, int row) {
+  return opened_quads
+      .of[ground_quad(opened_quad_cols, opened_quad_rows, opened_quad_stride, uint(level), uint(col), uint(row))];
+}
 float scarp_minimum(int level, int col, int row) { return float(ground_minimum(pyramid_entry(level, col, row))); }
 
 #endif

@@ -14,13 +14,13 @@
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (!batch_asks(i)) return;
-  ScarpField field = open_ground(batch.ground);
+  ScarpField field = batch_ground();
   ScarpRay ray = BatchRays(batch.rays).rays[i];
   ScarpSampling settings = batch.settings;
   settings.march = batch_march;
   ScarpHit hit = scarp_no_hit();
   ScarpMarchState state = scarp_sampled_begin(field, ray, settings);
-  if (batch.resume != 0u) {
+  if (batch.resume == kBatchResume) {
     hit = BatchMarches(batch.states).of[i].hit;
     state = BatchMarches(batch.states).of[i].state;
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `max-mip` for a batch of rays, one invocation per ray.
+// `max-mip` for a batch of rays, one invocation per ray. Rays that floats are not sure of are left to
+// max_mip_exact.comp.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -8,29 +9,16 @@
 
 #include "scarp/march/height/ray_batch.glsl.h"
 // The march reads its ground through the batch.
-#include "scarp/march/height/batch_states.glsl.h"
+#include "scarp/march/height/max_mip_lean.glsl.h"
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  if (!batch_asks(i)) return;
-  ScarpField field = open_ground(batch.ground);
-  ScarpRay ray = BatchRays(batch.rays).rays[i];
+  if (i >= batch.count) return;
+  ScarpField field = batch_ground();
   ScarpHit hit = scarp_no_hit();
-  ScarpWalk walk;
-  bool done = false;
-  if (batch.resume == 0u) {
-    done = !scarp_begin_walk(field, ray, walk, hit);
-  } else {
-    hit = BatchWalks(batch.states).of[i].hit;
-    walk = BatchWalks(batch.states).of[i].walk;
-    ray.z = BatchWalks(batch.states).of[i].z;
-    ray.z_low = BatchWalks(batch.states).of[i].z_low;
+  ScarpLean at = scarp_lean_begin(BatchRays(batch.rays).rays[i]);
+  // The ray is read again for each frame: in registers it would be in the way of the walk.
+  while (!scarp_lean_on(field, BatchRays(batch.rays).rays[i], batch_any, at, hit)) {
   }
-  if (!done) done = scarp_go_on(field, ray, batch_any, batch.turns, walk, hit);
-  if (done) {
-    batch_answer(i, hit);
-    return;
-  }
-  BatchWalks(batch.states).of[i] = BatchWalk(hit, walk, ray.z, ray.z_low);
-  batch_interrupt(i);
+  batch_answer(i, hit);
 }

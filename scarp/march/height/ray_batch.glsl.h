@@ -9,7 +9,8 @@
 //       └────ground──▶ GroundBuffers
 //
 // A march is interrupted after some turns of its loop (vk/loop_turns.glsl.h) and goes on in the next run, which is the
-// same with `resume`.
+// same with `resume`. `max-mip` has two shaders: max_mip.comp answers nearly all rays, and max_mip_exact.comp those
+// that it leaves under way.
 #ifndef SCARP_MARCH_RAY_BATCH_GLSL_H
 #define SCARP_MARCH_RAY_BATCH_GLSL_H
 
@@ -25,6 +26,14 @@ const uint kBatchThreads = 0u;     // of a workgroup
 const uint kBatchAny = 1u;         // whether anything is hit, instead of what first: max-mip only
 const uint kBatchStatistics = 2u;  // whether steps and fetches are told, or zeros
 const uint kBatchMarch = 3u;       // ScarpSampling::march
+const uint kBatchField = 4u;       // ScarpField::flags
+const uint kBatchSamples = 5u;     // GroundBuffers::sample_type
+const uint kBatchConstants = 6u;
+
+// Values of RayBatch::resume.
+const uint kBatchBegin = 0u;   // march all rays
+const uint kBatchResume = 1u;  // go on with those that have been interrupted
+const uint kBatchSecond = 2u;  // march those that the first pass has left
 
 /// The push constants of all marches.
 struct RayBatch {
@@ -34,12 +43,12 @@ struct RayBatch {
   uint count;
   ScarpSampling settings;  ///< of all but max-mip
   int turns;               ///< of a march's loop in one run
-  uint resume;             ///< 1: marches that have been interrupted go on; the others are answered
+  uint resume;             ///< kBatchBegin and so on
   Address states;
 };
 
-/// The status of a march that goes on in the next run; no ScarpHit's own.
-const int kBatchUnderWay = -1;
+/// The status of a march that goes on in the next run.
+const int kBatchUnderWay = kScarpDoubtful;
 
 #ifndef __cplusplus
 
@@ -47,17 +56,27 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool batch_any = false;
 layout(constant_id = 2) const bool batch_statistics = false;
 layout(constant_id = 3) const uint batch_march = kScarpNaive;
+layout(constant_id = 4) const uint batch_field = 0u;
+layout(constant_id = 5) const uint batch_samples = kGroundFloat32;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRays { ScarpRay rays[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHits { ScarpHit hits[]; };
 layout(push_constant, scalar) uniform Push { RayBatch batch; };
 
+#define SCARP_GROUND_TYPE batch_samples
 #include "scarp/march/height/ground_host.glsl.h"
+
+// The ground, with what the pipeline was made for as constants.
+ScarpField batch_ground() {
+  ScarpField field = open_ground(batch.ground);
+  field.flags = batch_field;
+  return field;
+}
 
 // Whether this run is to march ray i.
 bool batch_asks(uint i) {
   if (i >= batch.count) return false;
-  return batch.resume == 0u || BatchHits(batch.hits).hits[i].status == kBatchUnderWay;
+  return batch.resume == kBatchBegin || BatchHits(batch.hits).hits[i].status == kBatchUnderWay;
 }
 
 // The march of ray i has not come to its end.
@@ -68,6 +87,13 @@ void batch_answer(uint i, ScarpHit hit) {
   if (!batch_statistics) {
     hit.steps = 0u;
     hit.fetches = 0u;
+  }
+  if (batch_any) {
+    BatchHits(batch.hits).hits[i].status = hit.status;
+    if (!batch_statistics) return;
+    BatchHits(batch.hits).hits[i].steps = hit.steps;
+    BatchHits(batch.hits).hits[i].fetches = hit.fetches;
+    return;
   }
   BatchHits(batch.hits).hits[i] = hit;
 }

@@ -26,6 +26,7 @@ const uint kScarpTriangles = 1u;  ///< two triangles per cell instead of a bilin
 const uint kScarpHoles = 2u;      ///< some samples are nodata
 const uint kScarpWraps = 4u;      ///< the field goes on with itself
 const uint kScarpSolid = 8u;      ///< there is rock under the sheet
+const uint kScarpStarts = 16u;    ///< some rays may begin on the surface (max_mip_lean.glsl.h)
 
 /// What a march has to know of a height field besides its samples and bounds. All in sample units.
 struct ScarpField {
@@ -36,6 +37,8 @@ struct ScarpField {
   float code_base;      ///< height of a pyramid entry: code_base + code_base_low + code_step * code
   float code_base_low;  ///< what a float of the base leaves
   float code_step;      ///< height of one code
+  float code_per_step;  ///< 1 / code_step
+  float cell_relief;    ///< upper bound of the height difference within a cell
   float lowest;         ///< sample
   float highest;        ///< sample
 };
