@@ -5,7 +5,8 @@
 //
 //   RayBatch ──rays──▶ ScarpRay ScarpRay ...     one invocation each
 //       │  ├──hits───▶ ScarpHit ScarpHit ...     the answers, in the same order
-//       │  └──states─▶ batch_states.glsl.h       where marches stand that are not done
+//       │  ├──states─▶ batch_states.glsl.h       where marches stand that are not done
+//       │  └──under_way─▶ a word                 1 if there are such; who begins a run clears it
 //       └────ground──▶ GroundBuffers
 //
 // A march is interrupted after some turns of its loop (vk/loop_turns.glsl.h) and goes on in the next run, which is the
@@ -25,6 +26,9 @@ const uint kBatchThreads = 0u;     // of a workgroup
 const uint kBatchAny = 1u;         // whether anything is hit, instead of what first: max-mip only
 const uint kBatchStatistics = 2u;  // whether steps and fetches are told, or zeros
 const uint kBatchMarch = 3u;       // ScarpSampling::march
+const uint kBatchField = 4u;       // ScarpField::flags, or kBatchAnyField: those of the ground
+
+const uint kBatchAnyField = 0xffffffffu;
 
 /// The push constants of all marches.
 struct RayBatch {
@@ -36,6 +40,7 @@ struct RayBatch {
   int turns;               ///< of a march's loop in one run
   uint resume;             ///< 1: marches that have been interrupted go on; the others are answered
   Address states;
+  Address under_way;
 };
 
 /// The status of a march that goes on in the next run; no ScarpHit's own.
@@ -47,9 +52,11 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool batch_any = false;
 layout(constant_id = 2) const bool batch_statistics = false;
 layout(constant_id = 3) const uint batch_march = kScarpNaive;
+layout(constant_id = 4) const uint batch_field_flags = kBatchAnyField;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRays { ScarpRay rays[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHits { ScarpHit hits[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer BatchWord { uint word; };
 layout(push_constant, scalar) uniform Push { RayBatch batch; };
 
 #include "scarp/march/height/ground_host.glsl.h"
@@ -60,8 +67,19 @@ bool batch_asks(uint i) {
   return batch.resume == 0u || BatchHits(batch.hits).hits[i].status == kBatchUnderWay;
 }
 
+// The ground as a ray has it.
+ScarpField batch_field(ScarpRay ray) {
+  ScarpField field = open_ground(batch.ground);
+  if (batch_field_flags != kBatchAnyField) field.flags = batch_field_flags;
+  if ((ray.flags & kScarpThroughWalls) != 0u) field.flags &= ~kScarpSolid;
+  return field;
+}
+
 // The march of ray i has not come to its end.
-void batch_interrupt(uint i) { BatchHits(batch.hits).hits[i].status = kBatchUnderWay; }
+void batch_interrupt(uint i) {
+  BatchHits(batch.hits).hits[i].status = kBatchUnderWay;
+  BatchWord(batch.under_way).word = 1u;
+}
 
 // Writes the answer to ray i.
 void batch_answer(uint i, ScarpHit hit) {

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/height/device_march_vk.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <span>
+
+#include "scarp/base/error.h"
+#include "scarp/march/height/batch_states.glsl.h"
+#include "scarp/march/ray_runs_vk.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::uint32_t kThreads = 64;  // of a workgroup
+
+constexpr std::uint32_t kMaxMipWords[] = {
+#include "scarp/march/height/max_mip.comp.inc"
+};
+constexpr std::uint32_t kHeightMarchesWords[] = {
+#include "scarp/march/height/height_marches.comp.inc"
+};
+
+}  // namespace
+
+struct DeviceHeightMarch::Row {
+  std::string_view name;
+  std::span<const std::uint32_t> words;
+  bool has_any;             // whether it can be asked for any hit
+  std::uint32_t choice;     // ScarpSampling::march
+  std::size_t state_bytes;  // of a march that has been interrupted
+
+  static constexpr Row sampling(std::string_view name, std::uint32_t choice) {
+    return {name, kHeightMarchesWords, false, choice, sizeof(glsl::BatchMarch)};
+  }
+  static const std::array<Row, 5> kAll;
+};
+
+constexpr std::array<DeviceHeightMarch::Row, 5> DeviceHeightMarch::Row::kAll = {
+    Row{"max-mip", kMaxMipWords, true, 0, sizeof(glsl::BatchWalk)},
+    sampling("naive", glsl::kScarpNaive),
+    sampling("fixed-step", glsl::kScarpFixedStep),
+    sampling("relaxed", glsl::kScarpRelaxed),
+    sampling("lipschitz", glsl::kScarpLipschitz),
+};
+
+std::string DeviceHeightMarch::names() { return names_of(Row::kAll); }
+
+const DeviceHeightMarch::Row& DeviceHeightMarch::find(std::string_view march) {
+  for (const Row& row : Row::kAll) {
+    if (row.name == march) return row;
+  }
+  throw Error(fmt::format("march '{}': does not run on Vulkan devices (available: {})", march, names()));
+}
+
+std::size_t DeviceHeightMarch::state_bytes(std::string_view march) { return find(march).state_bytes; }
+
+DeviceHeightMarch::DeviceHeightMarch(const Device& device, std::string_view march, const Settings& settings)
+    : device_(device),
+      march_(find(march)),
+      settings_(settings),
+      states_(device, settings.rays_at_once * std::uint64_t{march_.state_bytes}, "states of rays"),
+      under_way_(device, sizeof interrupted_, "a mark of interrupted marches") {}
+
+const ComputePipeline& DeviceHeightMarch::pipeline(const DeviceRayQuery& query) {
+  const bool any = query.any && march_.has_any;
+  const auto made = pipelines_.find({any, query.field_flags});
+  if (made != pipelines_.end()) return made->second;
+  const std::uint32_t constants[] = {kThreads, any, settings_.statistics, march_.choice, query.field_flags};
+  return pipelines_
+      .try_emplace({any, query.field_flags}, device_, march_.words, std::string(march_.name) + (any ? ", any" : ""),
+                   std::uint32_t{sizeof(glsl::RayBatch)}, constants)
+      .first->second;
+}
+
+void DeviceHeightMarch::begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query) {
+  running_ = &pipeline(query);
+  batch_ = {.ground = rays.ground,
+            .rays = rays.rays,
+            .hits = rays.hits,
+            .count = rays.count,
+            .settings = query.sampling,
+            .turns = settings_.turns_at_once,
+            .resume = 0,
+            .states = states_.address(),
+            .under_way = under_way_.address()};
+  record(commands);
+}
+
+bool DeviceHeightMarch::go_on(Commands& commands) {
+  if (interrupted_ == 0) return false;
+  batch_.resume = 1;
+  record(commands);
+  return true;
+}
+
+void DeviceHeightMarch::record(Commands& commands) {
+  commands.fill(under_way_, 0, sizeof interrupted_, 0);
+  commands.barrier();
+  commands.dispatch(*running_, batch_, {(batch_.count + kThreads - 1) / kThreads, 1, 1});
+  commands.barrier();
+  commands.read(under_way_, 0, sizeof interrupted_, &interrupted_);
+}
+
+}  // namespace scarp
