@@ -56,34 +56,42 @@ const DeviceHeightMarch::Row& DeviceHeightMarch::find(std::string_view march) {
 
 std::size_t DeviceHeightMarch::state_bytes(std::string_view march) { return find(march).state_bytes; }
 
-DeviceHeightMarch::DeviceHeightMarch(const Device& device, std::string_view march, const Settings& settings)
+DeviceHeightMarch::DeviceHeightMarch(const Device& device, std::string_view march, int turns_at_once)
     : device_(device),
       march_(find(march)),
-      settings_(settings),
-      states_(device, settings.rays_at_once * std::uint64_t{march_.state_bytes}, "states of rays"),
+      turns_at_once_(turns_at_once),
       under_way_(device, sizeof interrupted_, "a mark of interrupted marches") {}
+
+void DeviceHeightMarch::reserve(std::uint32_t rays) {
+  const std::uint64_t bytes = rays * std::uint64_t{march_.state_bytes};
+  if (states_ && states_->bytes() >= bytes) return;
+  states_.reset();
+  states_.emplace(device_, bytes, "states of rays");
+}
 
 const ComputePipeline& DeviceHeightMarch::pipeline(const DeviceRayQuery& query) {
   const bool any = query.any && march_.has_any;
-  const auto made = pipelines_.find({any, query.field_flags});
+  const std::tuple key(any, query.statistics, query.field_flags);
+  const auto made = pipelines_.find(key);
   if (made != pipelines_.end()) return made->second;
-  const std::uint32_t constants[] = {kThreads, any, settings_.statistics, march_.choice, query.field_flags};
+  const std::uint32_t constants[] = {kThreads, any, query.statistics, march_.choice, query.field_flags};
   return pipelines_
-      .try_emplace({any, query.field_flags}, device_, march_.words, std::string(march_.name) + (any ? ", any" : ""),
+      .try_emplace(key, device_, march_.words, std::string(march_.name) + (any ? ", any" : ""),
                    std::uint32_t{sizeof(glsl::RayBatch)}, constants)
       .first->second;
 }
 
 void DeviceHeightMarch::begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query) {
+  reserve(rays.count);
   running_ = &pipeline(query);
   batch_ = {.ground = rays.ground,
             .rays = rays.rays,
             .hits = rays.hits,
             .count = rays.count,
             .settings = query.sampling,
-            .turns = settings_.turns_at_once,
+            .turns = turns_at_once_,
             .resume = 0,
-            .states = states_.address(),
+            .states = states_->address(),
             .under_way = under_way_.address()};
   record(commands);
 }

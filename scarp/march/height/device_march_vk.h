@@ -11,9 +11,10 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
+#include <tuple>
 
 #include "scarp/march/height/march_host.h"
 #include "scarp/march/height/ray_batch.glsl.h"
@@ -31,12 +32,13 @@ struct DeviceRays {
   std::uint64_t ground = 0;  ///< DeviceGround::address()
   std::uint64_t rays = 0;    ///< ScarpRay, `count` of them
   std::uint64_t hits = 0;    ///< ScarpHit, room for as many; by any hit only the status is defined
-  std::uint32_t count = 0;   ///< 1 to Settings::rays_at_once of the march
+  std::uint32_t count = 0;   ///< 1 to DeviceHeightMarch::kMostRaysAtOnce
 };
 
 /// What is asked of rays.
 struct DeviceRayQuery {
-  bool any = false;  ///< any hit; marches that have no such query answer with the closest
+  bool any = false;         ///< any hit; marches that have no such query answer with the closest
+  bool statistics = false;  ///< whether steps and fetches are told, or zeros
   /// ScarpField::flags of the ground, which make a smaller shader; kBatchAnyField: as the ground says.
   std::uint32_t field_flags = glsl::kBatchAnyField;
   glsl::ScarpSampling sampling{};  ///< of all marches but max-mip
@@ -45,20 +47,18 @@ struct DeviceRayQuery {
 /// Not thread-safe.
 class DeviceHeightMarch {
  public:
-  struct Settings {
-    std::uint32_t rays_at_once = 1 << 18;       ///< the largest batch; 1 to kMostRaysAtOnce
-    int turns_at_once = glsl::kScarpLoopTurns;  ///< of a march's loop in one run; 1 to kScarpLoopTurns
-    bool statistics = false;                    ///< whether steps and fetches are told, or zeros
-  };
+  /// `turns_at_once`: of a march's loop in one run, 1 to kScarpLoopTurns. Throws Error if the march does not run on
+  /// devices, listing those that do, or if the device lacks memory.
+  DeviceHeightMarch(const Device& device, std::string_view march, int turns_at_once = glsl::kScarpLoopTurns);
 
-  /// Throws Error if the march does not run on devices, listing those that do, or if the device lacks memory.
-  DeviceHeightMarch(const Device& device, std::string_view march, const Settings& settings);
-
+  /// Makes room for batches of so many rays; begin() does so for a batch that is larger. Throws Error if the device
+  /// lacks memory.
+  void reserve(std::uint32_t rays);
   /// Makes the shader of a query now instead of on first use. Throws Error if the driver rejects it.
   void prepare(const DeviceRayQuery& query) { pipeline(query); }
 
-  /// Records the first run of a batch. It sees what was written before commands.barrier(). Its buffers must stay until
-  /// go_on() returns false.
+  /// Records the first run of a batch, one batch at a time. It sees what was written before commands.barrier(). Its
+  /// buffers must stay until go_on() returns false.
   void begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query);
   /// Call after commands.run(). Returns false if all rays of the batch have their answers; otherwise records the next
   /// run.
@@ -79,9 +79,10 @@ class DeviceHeightMarch {
 
   Device device_;
   const Row& march_;
-  Settings settings_;
-  DeviceBuffer states_, under_way_;
-  std::map<std::pair<bool, std::uint32_t>, ComputePipeline> pipelines_;  // by any and field_flags
+  int turns_at_once_;
+  std::optional<DeviceBuffer> states_;
+  DeviceBuffer under_way_;
+  std::map<std::tuple<bool, bool, std::uint32_t>, ComputePipeline> pipelines_;  // by any, statistics and field_flags
   // Of the batch.
   const ComputePipeline* running_ = nullptr;
   glsl::RayBatch batch_{};

@@ -43,8 +43,10 @@ struct DeviceQueries::Impl {
       : name(entry.name),
         march_settings(march_settings_),
         runs(device, settings.rays_at_once),
-        march(device, name, {settings.rays_at_once, checked_turns(settings.turns_at_once), settings.statistics}) {
-    for (const bool any : {false, true}) march.prepare({any});
+        statistics(settings.statistics),
+        march(device, name, checked_turns(settings.turns_at_once)) {
+    march.reserve(settings.rays_at_once);
+    for (const bool any : {false, true}) march.prepare({any, statistics});
   }
 
   // Calls answer(i, prepared, hit) for each ray, on all threads.
@@ -52,7 +54,7 @@ struct DeviceQueries::Impl {
   void ask(const DeviceTarget& target, bool any, std::span<const Ray> asked, std::span<DeviceRayCost> costs,
            const Answer& answer) {
     const bool exact = name == "max-mip";
-    DeviceRayQuery query{any};
+    DeviceRayQuery query{any, statistics};
     if (!exact) query.sampling = sampling_of(name, march_settings, target);
     runs.ask_there(
         [&](Commands& commands, std::uint64_t rays, std::uint64_t hits, std::uint32_t count) {
@@ -72,6 +74,7 @@ struct DeviceQueries::Impl {
   std::string_view name;
   MarchSettings march_settings;
   RayRuns<HeightRays> runs;
+  bool statistics;
   DeviceHeightMarch march;
 };
 
