@@ -34,8 +34,8 @@ std::string names_of(const Table& table) {
 }
 
 /// What a kind of ray is on the host (Prepared), on the device (Ray), and its answer (Hit). A march that is interrupted
-/// is `under_way`. Its state either stays on the device, where `Batch::resume` continues it, or comes back with the
-/// answer and goes out again with the ray (`go_on`).
+/// either keeps its state on the device (ask_there()), or is `under_way`: its state comes back with the answer and goes
+/// out again with the ray (`go_on`).
 template <class Kind>
 class RayRuns {
  public:
@@ -59,27 +59,27 @@ class RayRuns {
            const Answer& answer) {
     batch.rays = rays_.address();
     batch.hits = answers_.address();
-    passes_.clear();
-    for (std::size_t first = 0; first < count; first += slice_) {
-      const std::size_t some = std::min<std::size_t>(slice_, count - first);
-      prepared_.resize(some);
-      packed_.resize(some);
-      found_.assign(some, Kind::none());
-      std::atomic<bool> any = false;
-      for_each(some, [&](std::size_t i) {
-        prepared_[i] = prepare(first + i);
-        packed_[i] = prepared_[i].ray;
-        if (prepared_[i].marches && !any.load(std::memory_order_relaxed)) any.store(true, std::memory_order_relaxed);
-      });
-      if (any) march(pipeline, batch);
-      for_each(some, [&](std::size_t i) { answer(first + i, prepared_[i], found_[i]); });
-    }
+    ask_in_slices(count, prepare, answer, [&] { march(pipeline, batch); });
+  }
+  /// The same by a march that keeps its states: begin(commands, rays, hits, count) records its first run on buffers of
+  /// these addresses, go_on(commands) the next one, or returns false if there is none.
+  template <class Begin, class GoOn, class Prepare, class Answer>
+  void ask_there(const Begin& begin, const GoOn& go_on, std::size_t count, const Prepare& prepare,
+                 const Answer& answer) {
+    ask_in_slices(count, prepare, answer, [&] {
+      // Each ray keeps its place. Those that do not march end at once.
+      upload(rays_, 0, packed_.data(), packed_.size() * sizeof(Ray));
+      begin(commands_, rays_.address(), answers_.address(), static_cast<std::uint32_t>(packed_.size()));
+      do run();
+      while (go_on(commands_));
+      download(answers_, 0, found_.data(), found_.size() * sizeof(Hit));
+    });
   }
 
   const std::vector<PassTime>& passes() const { return passes_; }
 
  private:
-  static constexpr std::uint32_t kMostRaysAtOnce = 4'000'000;  // 65,535 workgroups
+  static constexpr std::uint32_t kMostRaysAtOnce = 4'000'000;  // 65,535 workgroups at most
   static constexpr std::int64_t kRaysPerPiece = 1024;
 
   static std::uint32_t checked(std::uint32_t rays) {
@@ -94,50 +94,58 @@ class RayRuns {
     });
   }
 
-  template <class Batch>
-  void march(const ComputePipeline& pipeline, Batch& batch) {
-    if constexpr (requires { batch.resume; }) {
-      // Each ray keeps its place. Those that do not march end at once.
-      upload(rays_, 0, packed_.data(), packed_.size() * sizeof(Ray));
-      batch.resume = 0;
-      do {
-        run(pipeline, batch, found_);
-        batch.resume = 1;
-      } while (std::any_of(found_.begin(), found_.end(), Kind::under_way));
-    } else {
-      // A run has the rays that are under way only.
-      open_.clear();
-      for (std::size_t i = 0; i < packed_.size(); ++i) {
-        if (!prepared_[i].marches) continue;
-        packed_[open_.size()] = packed_[i];
-        open_.push_back(i);
-      }
-      while (!open_.empty()) {
-        upload(rays_, 0, packed_.data(), open_.size() * sizeof(Ray));
-        answered_.resize(open_.size());
-        run(pipeline, batch, answered_);
-        std::size_t left = 0;
-        for (std::size_t i = 0; i < answered_.size(); ++i) {
-          Hit& hit = found_[open_[i]];
-          Kind::add(answered_[i], hit);
-          if (!Kind::under_way(hit)) continue;
-          packed_[left] = packed_[i];
-          Kind::go_on(packed_[left], hit);
-          open_[left++] = open_[i];
-        }
-        open_.resize(left);
-      }
+  // `march` sets found_ from packed_ and prepared_.
+  template <class Prepare, class Answer, class March>
+  void ask_in_slices(std::size_t count, const Prepare& prepare, const Answer& answer, const March& march) {
+    passes_.clear();
+    for (std::size_t first = 0; first < count; first += slice_) {
+      const std::size_t some = std::min<std::size_t>(slice_, count - first);
+      prepared_.resize(some);
+      packed_.resize(some);
+      found_.assign(some, Kind::none());
+      std::atomic<bool> any = false;
+      for_each(some, [&](std::size_t i) {
+        prepared_[i] = prepare(first + i);
+        packed_[i] = prepared_[i].ray;
+        if (prepared_[i].marches && !any.load(std::memory_order_relaxed)) any.store(true, std::memory_order_relaxed);
+      });
+      if (any) march();
+      for_each(some, [&](std::size_t i) { answer(first + i, prepared_[i], found_[i]); });
     }
   }
 
-  // One invocation for each answer.
+  // A run has the rays that are under way only.
   template <class Batch>
-  void run(const ComputePipeline& pipeline, Batch& batch, std::vector<Hit>& answers) {
-    batch.count = static_cast<std::uint32_t>(answers.size());
-    commands_.dispatch(pipeline, batch, {(batch.count + kThreads - 1) / kThreads, 1, 1});
+  void march(const ComputePipeline& pipeline, Batch& batch) {
+    open_.clear();
+    for (std::size_t i = 0; i < packed_.size(); ++i) {
+      if (!prepared_[i].marches) continue;
+      packed_[open_.size()] = packed_[i];
+      open_.push_back(i);
+    }
+    while (!open_.empty()) {
+      upload(rays_, 0, packed_.data(), open_.size() * sizeof(Ray));
+      answered_.resize(open_.size());
+      batch.count = static_cast<std::uint32_t>(open_.size());
+      commands_.dispatch(pipeline, batch, {(batch.count + kThreads - 1) / kThreads, 1, 1});
+      run();
+      download(answers_, 0, answered_.data(), answered_.size() * sizeof(Hit));
+      std::size_t left = 0;
+      for (std::size_t i = 0; i < answered_.size(); ++i) {
+        Hit& hit = found_[open_[i]];
+        Kind::add(answered_[i], hit);
+        if (!Kind::under_way(hit)) continue;
+        packed_[left] = packed_[i];
+        Kind::go_on(packed_[left], hit);
+        open_[left++] = open_[i];
+      }
+      open_.resize(left);
+    }
+  }
+
+  void run() {
     commands_.run();
     passes_.insert(passes_.end(), commands_.passes().begin(), commands_.passes().end());
-    download(answers_, 0, answers.data(), answers.size() * sizeof(Hit));
   }
 
   std::uint32_t slice_;

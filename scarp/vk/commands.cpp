@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <cstring>
+
 #include "scarp/vk/raii.h"
+#include "scarp/vk/staging.h"
 #include "scarp/vk/timestamps.h"
 
 namespace scarp {
@@ -36,6 +39,52 @@ void require_fits(const RasterTarget::Impl& target, const DrawCall& call) {
 
 }  // namespace
 
+// Host memory for the reads of a run, one behind the other.
+class HostReads {
+ public:
+  explicit HostReads(const Device::Impl& device)
+      : buffer_(device.device,
+                vk::BufferCreateInfo({}, Commands::kMaxReadBytes, vk::BufferUsageFlagBits::eTransferDst)),
+        memory_(host_memory(device, buffer_)),
+        bytes_(static_cast<const std::byte*>(memory_.mapMemory(0, Commands::kMaxReadBytes))) {}
+
+  std::uint64_t room() const { return Commands::kMaxReadBytes - used_; }
+
+  void record(const vk::raii::CommandBuffer& commands, const DeviceBuffer::Impl& from, std::uint64_t offset,
+              std::uint64_t bytes, void* to) {
+    commands.copyBuffer(*from.buffer, *buffer_, vk::BufferCopy(offset, used_, bytes));
+    reads_.push_back({used_, bytes, to});
+    used_ += bytes;
+  }
+  // After the last read of a run.
+  void close(const vk::raii::CommandBuffer& commands) const {
+    if (reads_.empty()) return;
+    const vk::MemoryBarrier to_host(vk::AccessFlagBits::eTransferWrite, vk::AccessFlagBits::eHostRead);
+    commands.pipelineBarrier(vk::PipelineStageFlagBits::eTransfer, vk::PipelineStageFlagBits::eHost, {}, to_host, {},
+                             {});
+  }
+  // After the run.
+  void deliver() {
+    for (const Read& read : reads_) std::memcpy(read.to, bytes_ + read.begin, read.bytes);
+    forget();
+  }
+  void forget() {
+    reads_.clear();
+    used_ = 0;
+  }
+
+ private:
+  struct Read {
+    std::uint64_t begin, bytes;
+    void* to;
+  };
+  vk::raii::Buffer buffer_;
+  vk::raii::DeviceMemory memory_;
+  const std::byte* bytes_;
+  std::vector<Read> reads_;
+  std::uint64_t used_ = 0;
+};
+
 struct Commands::Impl {
   explicit Impl(const std::shared_ptr<Device::Impl>& open)
       : device(open), commands(make_commands(*open)), fence(open->device, vk::FenceCreateInfo()), timestamps(open) {}
@@ -49,6 +98,7 @@ struct Commands::Impl {
     timestamps.reset(commands);
     recording = true;
     passes.clear();
+    if (reads) reads->forget();
   }
 
   void finish() {
@@ -62,6 +112,7 @@ struct Commands::Impl {
   vk::raii::Fence fence;
   Timestamps timestamps;
   std::vector<PassTime> passes;
+  std::optional<HostReads> reads;  // made on first use
   bool recording = false, running = false;
 };
 
@@ -170,6 +221,22 @@ void Commands::fill(const DeviceBuffer& buffer, std::uint64_t offset, std::uint6
   });
 }
 
+void Commands::read(const DeviceBuffer& from, std::uint64_t offset, std::uint64_t bytes, void* to) {
+  const DeviceBuffer::Impl& buffer = from.impl();
+  guarded(impl_->device->name(), "recording", [&] {
+    impl_->begin();
+    if (!impl_->reads) impl_->reads.emplace(*impl_->device);
+    if (offset % 4 != 0 || bytes % 4 != 0 || bytes == 0 || offset > buffer.bytes || bytes > buffer.bytes - offset ||
+        bytes > impl_->reads->room()) {
+      throw Error(
+          fmt::format("device buffer '{}': reading bytes {} to {} of {} (must be multiples of 4 within the "
+                      "buffer, at most {} in a run)",
+                      buffer.name, offset, offset + bytes, buffer.bytes, kMaxReadBytes));
+    }
+    impl_->reads->record(impl_->commands, buffer, offset, bytes, to);
+  });
+}
+
 void Commands::barrier() {
   guarded(impl_->device->name(), "recording", [&] {
     impl_->begin();
@@ -181,6 +248,7 @@ void Commands::run() {
   Impl& all = *impl_;
   guarded(all.device->name(), "computing", [&] {
     all.begin();
+    if (all.reads) all.reads->close(all.commands);
     all.commands.end();
     all.recording = false;
     all.device->submit(all.commands, all.fence);
@@ -188,6 +256,7 @@ void Commands::run() {
     all.finish();
     const auto times = all.timestamps.read(all.passes.size());
     for (std::size_t i = 0; i < times.size(); ++i) all.passes[i].nanoseconds = times[i];
+    if (all.reads) all.reads->deliver();
   });
 }
 

@@ -52,6 +52,10 @@ class Commands {
   void copy(const RasterTarget& from, std::uint32_t image, const DeviceBuffer& to);
   /// Fills part of a buffer with a 32-bit word; offset and size as for upload().
   void fill(const DeviceBuffer& buffer, std::uint64_t offset, std::uint64_t bytes, std::uint32_t word);
+  /// Copies part of a buffer to `to` by the time run() returns; offset and size as for download(). For counters: all
+  /// reads of a run have at most kMaxReadBytes together. Sees the writes of earlier passes only after a barrier().
+  void read(const DeviceBuffer& from, std::uint64_t offset, std::uint64_t bytes, void* to);
+  static constexpr std::uint64_t kMaxReadBytes = 256;
   /// Full barrier: earlier commands finish, and their writes are visible, before later ones begin.
   void barrier();
 

@@ -8,17 +8,6 @@ namespace {
 
 constexpr std::uint64_t kHalves = 2;
 
-vk::raii::DeviceMemory host_memory(const Device::Impl& device, const vk::raii::Buffer& buffer) {
-  using Flag = vk::MemoryPropertyFlagBits;
-  const vk::MemoryRequirements needs = buffer.getMemoryRequirements();
-  // Cached memory is far faster to read; every device has coherent memory.
-  auto type = device.memory_type(needs.memoryTypeBits, Flag::eHostVisible | Flag::eHostCoherent | Flag::eHostCached);
-  if (!type) type = device.memory_type(needs.memoryTypeBits, Flag::eHostVisible | Flag::eHostCoherent);
-  vk::raii::DeviceMemory memory(device.device, vk::MemoryAllocateInfo(needs.size, type.value()));
-  buffer.bindMemory(*memory, 0);
-  return memory;
-}
-
 // Copies that scatter bytes [first, first + size) of the concatenated rows to their rows.
 std::vector<vk::BufferCopy> copies_of(const BufferRows& rows, std::uint64_t half_begin, std::uint64_t first,
                                       std::uint64_t size) {
@@ -34,6 +23,17 @@ std::vector<vk::BufferCopy> copies_of(const BufferRows& rows, std::uint64_t half
 }
 
 }  // namespace
+
+vk::raii::DeviceMemory host_memory(const Device::Impl& device, const vk::raii::Buffer& buffer) {
+  using Flag = vk::MemoryPropertyFlagBits;
+  const vk::MemoryRequirements needs = buffer.getMemoryRequirements();
+  // Cached memory is far faster to read; every device has coherent memory.
+  auto type = device.memory_type(needs.memoryTypeBits, Flag::eHostVisible | Flag::eHostCoherent | Flag::eHostCached);
+  if (!type) type = device.memory_type(needs.memoryTypeBits, Flag::eHostVisible | Flag::eHostCoherent);
+  vk::raii::DeviceMemory memory(device.device, vk::MemoryAllocateInfo(needs.size, type.value()));
+  buffer.bindMemory(*memory, 0);
+  return memory;
+}
 
 StagingRing::StagingRing(Device::Impl& device)
     : device_(device),

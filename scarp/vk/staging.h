@@ -8,6 +8,9 @@
 
 namespace scarp {
 
+/// Returns memory bound to a buffer that the host reads and writes without flushes.
+vk::raii::DeviceMemory host_memory(const Device::Impl& device, const vk::raii::Buffer& buffer);
+
 class StagingRing {
  public:
   static constexpr std::uint64_t kPieceBytes = 16 << 20;

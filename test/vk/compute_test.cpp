@@ -77,6 +77,27 @@ TEST_F(Compute, PassesSeeOneAnotherThroughBarriers) {
   }
 }
 
+TEST_F(Compute, ARunDeliversItsReads) {
+  const Words words = numbers(64);
+  DeviceBuffer from(device(), 4 * words.size(), "from"), to(device(), 4 * words.size(), "to");
+  upload(from, 0, words.data(), from.bytes());
+  const ComputePipeline pipeline = twice();
+  Commands commands(device());
+  for (const std::uint32_t count : {64u, 32u}) {
+    std::uint32_t first = 0, others[2] = {};
+    commands.fill(to, 0, to.bytes(), 3);
+    commands.barrier();
+    commands.dispatch(pipeline, glsl::TwicePush{from.address(), to.address(), count, 1}, {1, 1, 1});
+    commands.barrier();
+    commands.read(to, 0, 4, &first);
+    commands.read(to, 4 * 40, 8, others);
+    EXPECT_EQ(first, 0u);
+    commands.run();
+    EXPECT_EQ(first, glsl::twice(words[0]));
+    EXPECT_EQ(others[1], count == 64 ? glsl::twice(words[41]) : 3u);
+  }
+}
+
 TEST_F(Compute, CopiesMoreThanTheRingHolds) {
   // Three pieces of the ring and a bit, at an offset.
   const Words words = numbers((48 << 18) + 12345);
@@ -131,6 +152,14 @@ TEST_F(Compute, WhatDoesNotFitIsRefused) {
               commands.dispatch(pipeline, glsl::TwicePush{}, {70000, 1, 1});
             }),
             "shader 'twice': 70000 workgroups along one side (1 to 65535 allowed)");
+  EXPECT_NE(refusal([&] { commands.read(buffer, 2, 4, words); }), "");
+  EXPECT_NE(refusal([&] { commands.read(buffer, 396, 8, words); }), "");
+  EXPECT_EQ(refusal([&] {
+              commands.read(buffer, 0, 200, words);
+              commands.read(buffer, 200, 60, words + 50);
+            }),
+            "device buffer 'small': reading bytes 200 to 260 of 400 (must be multiples of 4 within the buffer, at most "
+            "256 in a run)");
   EXPECT_EQ(refusal([&] { ComputePipeline(device(), kTwice, "twice", 132); }),
             "shader 'twice': 132 bytes of push constants (must be a multiple of 4, at most 128)");
 }

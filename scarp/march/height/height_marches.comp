@@ -14,8 +14,8 @@
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (!batch_asks(i)) return;
-  ScarpField field = batch_ground();
   ScarpRay ray = BatchRays(batch.rays).rays[i];
+  ScarpField field = batch_field(ray);
   ScarpSampling settings = batch.settings;
   settings.march = batch_march;
   ScarpHit hit = scarp_no_hit();

@@ -13,8 +13,8 @@
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (!batch_asks(i)) return;
-  ScarpField field = batch_ground();
   ScarpRay ray = BatchRays(batch.rays).rays[i];
+  ScarpField field = batch_field(ray);
   ScarpHit hit = scarp_no_hit();
   ScarpWalk walk;
   bool done = false;

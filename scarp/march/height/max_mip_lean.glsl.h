@@ -40,6 +40,9 @@ const float kScarpSteepest = 1.0e15f;
 /// Codes above or below the lowest one at which a ray may begin.
 const float kScarpFarthestCode = 1.0e6f;
 
+/// Relief of a field beyond which floats could overflow.
+const float kScarpMostRelief = 1.0e30f;
+
 /// State of a ray between two frames.
 struct ScarpLean {
   float s0;   ///< time at which the next frame begins; 0: it is the ray's first
@@ -136,6 +139,7 @@ SCARP_FN float scarp_fall_of(ScarpPiece piece, bool strict) {
 /// call again. With `any`, only the status is defined. `field.top_level` must be at least 1.
 SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOUT(ScarpLean) at,
                             SCARP_INOUT(ScarpHit) hit) {
+  if (!(ray.end >= at.s0)) return true;
   bool strict = (field.flags & kScarpStarts) != 0u && (ray.flags & kScarpOnSurface) != 0u;
   bool wraps = (field.flags & kScarpWraps) != 0u;
   bool triangles = (field.flags & kScarpTriangles) != 0u;
@@ -175,7 +179,9 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   float code_spread = spread * field.code_per_step;
   float code_dz = dz * field.code_per_step;
   float code_z = ((base - field.code_base) + (height.low - field.code_base_low)) * field.code_per_step;
-  if (!(abs(code_dz) < kScarpSteepest && abs(code_z) < kScarpFarthestCode) || (ray.flags & kScarpUpright) != 0u) {
+  bool usual = abs(code_dz) < kScarpSteepest && abs(code_z) < kScarpFarthestCode &&
+               field.highest - field.lowest < kScarpMostRelief;
+  if (!usual || (ray.flags & kScarpUpright) != 0u) {
     hit.status = kScarpDoubtful;
     return true;
   }

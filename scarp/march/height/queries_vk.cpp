@@ -3,26 +3,19 @@
 
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
+
 #include <string>
+#include <string_view>
 
 #include "scarp/base/error.h"
 #include "scarp/march/device_sampling.h"
-#include "scarp/march/height/batch_states.glsl.h"
+#include "scarp/march/height/device_march_vk.h"
 #include "scarp/march/height/device_ray.h"
-#include "scarp/march/height/ray_batch.glsl.h"
 #include "scarp/march/ray_runs_vk.h"
-#include "scarp/vk/loop_turns.glsl.h"
 
 namespace scarp {
 namespace {
-
-constexpr std::uint32_t kMaxMipWords[] = {
-#include "scarp/march/height/max_mip.comp.inc"
-};
-constexpr std::uint32_t kHeightMarchesWords[] = {
-#include "scarp/march/height/height_marches.comp.inc"
-};
 
 // The states of interrupted marches stay on the device.
 struct HeightRays {
@@ -30,41 +23,17 @@ struct HeightRays {
   using Ray = glsl::ScarpRay;
   using Hit = glsl::ScarpHit;
   static Hit none() { return {}; }
-  static bool under_way(const Hit& hit) { return hit.status == glsl::kBatchUnderWay; }
 };
-
-struct DeviceMarch {
-  std::string_view name;
-  std::span<const std::uint32_t> words;
-  DeviceRay (*ray)(const HeightField& field, const Ray& ray);
-  bool has_any;             // whether it can be asked for any hit
-  std::uint32_t choice;     // ScarpSampling::march
-  std::size_t state_bytes;  // of a march that has been interrupted
-};
-
-constexpr DeviceMarch sampling_march(std::string_view name, std::uint32_t choice) {
-  return {name, kHeightMarchesWords, sampled_device_ray, false, choice, sizeof(glsl::BatchMarch)};
-}
-
-constexpr std::array kDeviceMarches = {
-    DeviceMarch{"max-mip", kMaxMipWords, device_ray, true, 0, sizeof(glsl::BatchWalk)},
-    sampling_march("naive", glsl::kScarpNaive),
-    sampling_march("fixed-step", glsl::kScarpFixedStep),
-    sampling_march("relaxed", glsl::kScarpRelaxed),
-    sampling_march("lipschitz", glsl::kScarpLipschitz),
-};
-
-const DeviceMarch& device_march(const HeightMarchEntry& march) {
-  for (const DeviceMarch& candidate : kDeviceMarches) {
-    if (candidate.name == march.name) return candidate;
-  }
-  throw Error(
-      fmt::format("march '{}': does not run on Vulkan devices (available: {})", march.name, device_march_names()));
-}
 
 glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, const DeviceTarget& target) {
   const HeightFieldSettings& field = target.field->settings();
   return device_sampling(march, settings, target.slope, 0, field.scale * field.exaggeration);
+}
+
+// What a shader for the target is made for.
+std::uint32_t ground_kind(const DeviceTarget& target, bool starts) {
+  return glsl::batch_ground_kind(device_field(*target.field, nullptr).flags | (starts ? glsl::kScarpStarts : 0),
+                                 target.ground->layout().sample_type);
 }
 
 int checked_turns(int turns) {
@@ -74,37 +43,36 @@ int checked_turns(int turns) {
 
 }  // namespace
 
-std::string device_march_names() { return names_of(kDeviceMarches); }
+std::string device_march_names() { return DeviceHeightMarch::names(); }
 
 struct DeviceQueries::Impl {
   Impl(const Device& device, const HeightMarchEntry& entry, const MarchSettings& march_settings_,
        const DeviceQuerySettings& settings)
-      : march(device_march(entry)),
+      : name(entry.name),
         march_settings(march_settings_),
-        turns(checked_turns(settings.turns_at_once)),
-        statistics(settings.statistics),
-        closest(pipeline(device, false)),
-        any(pipeline(device, march.has_any)),
         runs(device, settings.rays_at_once),
-        states(device, settings.rays_at_once * std::uint64_t{march.state_bytes}, "states of rays") {}
-
-  ComputePipeline pipeline(const Device& device, bool asks_any) const {
-    const std::uint32_t constants[] = {RayRuns<HeightRays>::kThreads, asks_any, statistics, march.choice};
-    return {device, march.words, std::string(march.name) + (asks_any ? ", any" : ""), sizeof(glsl::RayBatch),
-            constants};
+        statistics(settings.statistics),
+        march(device, name, checked_turns(settings.turns_at_once)) {
+    march.reserve(settings.rays_at_once);
   }
 
   // Calls answer(i, prepared, hit) for each ray, on all threads.
   template <class Answer>
-  void ask(const DeviceTarget& target, const ComputePipeline& pipeline, std::span<const Ray> asked,
-           std::span<DeviceRayCost> costs, const Answer& answer) {
-    glsl::RayBatch batch{};
-    if (march.name != "max-mip") batch.settings = sampling_of(march.name, march_settings, target);
-    batch.ground = target.ground->address();
-    batch.states = states.address();
-    batch.turns = turns;
-    runs.ask(
-        pipeline, batch, asked.size(), [&](std::size_t i) { return march.ray(*target.field, asked[i]); },
+  void ask(const DeviceTarget& target, bool any, std::span<const Ray> asked, std::span<DeviceRayCost> costs,
+           const Answer& answer) {
+    const bool exact = name == "max-mip";
+    const bool starts = exact && std::any_of(asked.begin(), asked.end(),
+                                             [](const Ray& ray) { return ray.start == RayStart::on_surface; });
+    DeviceRayQuery query{any, statistics, ground_kind(target, starts)};
+    if (!exact) query.sampling = sampling_of(name, march_settings, target);
+    runs.ask_there(
+        [&](Commands& commands, std::uint64_t rays, std::uint64_t hits, std::uint32_t count) {
+          march.begin(commands, {target.ground->address(), rays, hits, count}, query);
+        },
+        [&](Commands& commands) { return march.go_on(commands); }, asked.size(),
+        [&](std::size_t i) {
+          return exact ? device_ray(*target.field, asked[i]) : sampled_device_ray(*target.field, asked[i]);
+        },
         [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& hit) {
           answer(i, prepared, hit);
           // The shader counts a step for a ray that does not march, too.
@@ -112,13 +80,11 @@ struct DeviceQueries::Impl {
         });
   }
 
-  const DeviceMarch& march;
+  std::string_view name;
   MarchSettings march_settings;
-  int turns;
-  bool statistics;
-  ComputePipeline closest, any;
   RayRuns<HeightRays> runs;
-  DeviceBuffer states;
+  bool statistics;
+  DeviceHeightMarch march;
 };
 
 DeviceQueries::DeviceQueries(const Device& device, const HeightMarchEntry& march, const MarchSettings& march_settings,
@@ -138,19 +104,17 @@ void DeviceQueries::set_march_settings(const MarchSettings& march_settings) {
 void DeviceQueries::closest_hits(const DeviceTarget& target, std::span<const Ray> rays, std::span<Hit> hits,
                                  std::span<DeviceRayCost> costs) {
   require_room(rays.size(), hits.size(), costs.size());
-  impl_->ask(target, impl_->closest, rays, costs,
-             [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
-               hits[i] = hit_from_device(rays[i], prepared, answer);
-             });
+  impl_->ask(target, false, rays, costs, [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
+    hits[i] = hit_from_device(rays[i], prepared, answer);
+  });
 }
 
 void DeviceQueries::occluded(const DeviceTarget& target, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                              std::span<DeviceRayCost> costs) {
   require_room(rays.size(), blocked.size(), costs.size());
-  impl_->ask(target, impl_->any, rays, costs,
-             [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
-               blocked[i] = prepared.marches && (answer.status == glsl::kScarpHit || answer.status == glsl::kScarpWall);
-             });
+  impl_->ask(target, true, rays, costs, [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& answer) {
+    blocked[i] = prepared.marches && (answer.status == glsl::kScarpHit || answer.status == glsl::kScarpWall);
+  });
 }
 
 const std::vector<PassTime>& DeviceQueries::passes() const { return impl_->runs.passes(); }

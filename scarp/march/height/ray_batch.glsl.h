@@ -5,7 +5,8 @@
 //
 //   RayBatch ──rays──▶ ScarpRay ScarpRay ...     one invocation each
 //       │  ├──hits───▶ ScarpHit ScarpHit ...     the answers, in the same order
-//       │  └──states─▶ batch_states.glsl.h       where marches stand that are not done
+//       │  ├──states─▶ batch_states.glsl.h       where marches stand that are not done
+//       │  └──under_way─▶ a word                 1 if there are such; who begins a run clears it
 //       └────ground──▶ GroundBuffers
 //
 // A march is interrupted after some turns of its loop (vk/loop_turns.glsl.h) and goes on in the next run, which is the
@@ -26,9 +27,12 @@ const uint kBatchThreads = 0u;     // of a workgroup
 const uint kBatchAny = 1u;         // whether anything is hit, instead of what first: max-mip only
 const uint kBatchStatistics = 2u;  // whether steps and fetches are told, or zeros
 const uint kBatchMarch = 3u;       // ScarpSampling::march
-const uint kBatchField = 4u;       // ScarpField::flags
-const uint kBatchSamples = 5u;     // GroundBuffers::sample_type
-const uint kBatchConstants = 6u;
+const uint kBatchGround = 4u;      // batch_ground_kind(), or kBatchAnyGround: read from the ground
+
+const uint kBatchAnyGround = 0xffffffffu;
+const uint kBatchSamplesShift = 16u;
+/// What a shader can be made for: ScarpField::flags and GroundBuffers::sample_type.
+SCARP_FN uint batch_ground_kind(uint flags, uint sample_type) { return flags | (sample_type << kBatchSamplesShift); }
 
 // Values of RayBatch::resume.
 const uint kBatchBegin = 0u;   // march all rays
@@ -45,6 +49,7 @@ struct RayBatch {
   int turns;               ///< of a march's loop in one run
   uint resume;             ///< kBatchBegin and so on
   Address states;
+  Address under_way;
 };
 
 /// The status of a march that goes on in the next run.
@@ -56,22 +61,15 @@ layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool batch_any = false;
 layout(constant_id = 2) const bool batch_statistics = false;
 layout(constant_id = 3) const uint batch_march = kScarpNaive;
-layout(constant_id = 4) const uint batch_field = 0u;
-layout(constant_id = 5) const uint batch_samples = kGroundFloat32;
+layout(constant_id = 4) const uint batch_ground = kBatchAnyGround;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRays { ScarpRay rays[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHits { ScarpHit hits[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer BatchWord { uint word; };
 layout(push_constant, scalar) uniform Push { RayBatch batch; };
 
-#define SCARP_GROUND_TYPE batch_samples
+#define SCARP_GROUND_TYPE (batch_ground == kBatchAnyGround ? opened_type : batch_ground >> kBatchSamplesShift)
 #include "scarp/march/height/ground_host.glsl.h"
-
-// The ground, with what the pipeline was made for as constants.
-ScarpField batch_ground() {
-  ScarpField field = open_ground(batch.ground);
-  field.flags = batch_field;
-  return field;
-}
 
 // Whether this run is to march ray i.
 bool batch_asks(uint i) {
@@ -79,8 +77,19 @@ bool batch_asks(uint i) {
   return batch.resume == kBatchBegin || BatchHits(batch.hits).hits[i].status == kBatchUnderWay;
 }
 
+// The ground as a ray has it.
+ScarpField batch_field(ScarpRay ray) {
+  ScarpField field = open_ground(batch.ground);
+  field.flags = batch_ground == kBatchAnyGround ? field.flags | kScarpStarts : batch_ground & 0xffffu;
+  if ((ray.flags & kScarpThroughWalls) != 0u) field.flags &= ~kScarpSolid;
+  return field;
+}
+
 // The march of ray i has not come to its end.
-void batch_interrupt(uint i) { BatchHits(batch.hits).hits[i].status = kBatchUnderWay; }
+void batch_interrupt(uint i) {
+  BatchHits(batch.hits).hits[i].status = kBatchUnderWay;
+  BatchWord(batch.under_way).word = 1u;
+}
 
 // Writes the answer to ray i.
 void batch_answer(uint i, ScarpHit hit) {

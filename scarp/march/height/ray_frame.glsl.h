@@ -43,10 +43,11 @@ struct ScarpField {
   float highest;        ///< sample
 };
 
-const uint kScarpOnSurface = 1u;    ///< begins on the surface of its cell: above it by definition, z is not read
-const uint kScarpFromOutside = 2u;  ///< comes in through the border
-const uint kScarpAbove = 4u;        ///< begins no lower than the highest sample
-const uint kScarpUpright = 8u;      ///< straight up or down: direction.x and .y are 0
+const uint kScarpOnSurface = 1u;      ///< begins on the surface of its cell: above it by definition, z is not read
+const uint kScarpFromOutside = 2u;    ///< comes in through the border
+const uint kScarpAbove = 4u;          ///< begins no lower than the highest sample
+const uint kScarpUpright = 8u;        ///< straight up or down: direction.x and .y are 0
+const uint kScarpThroughWalls = 16u;  ///< meets no walls of solid ground; read by batches (ray_batch.glsl.h)
 
 /// A ray that begins over the field. Whoever has doubles gives all numbers as two floats (march/height/device_ray.h);
 /// the low parts may be zero.

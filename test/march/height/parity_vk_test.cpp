@@ -330,9 +330,10 @@ TEST(BatchLayout, IsThatOfTheShaders) {
                                    offsetof(ScarpHit, time), offsetof(ScarpHit, time_low), offsetof(ScarpHit, steps),
                                    offsetof(ScarpHit, fetches)}));
   EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpHit)));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(RayBatch, ground), offsetof(RayBatch, rays), offsetof(RayBatch, hits),
-                                   offsetof(RayBatch, count), offsetof(RayBatch, settings), offsetof(RayBatch, turns),
-                                   offsetof(RayBatch, resume), offsetof(RayBatch, states)}));
+  EXPECT_TRUE(
+      has_struct(kShader, {offsetof(RayBatch, ground), offsetof(RayBatch, rays), offsetof(RayBatch, hits),
+                           offsetof(RayBatch, count), offsetof(RayBatch, settings), offsetof(RayBatch, turns),
+                           offsetof(RayBatch, resume), offsetof(RayBatch, states), offsetof(RayBatch, under_way)}));
   using glsl::BatchMarch, glsl::BatchWalk, glsl::ScarpWalk;
   EXPECT_TRUE(has_struct(kShader, {offsetof(BatchWalk, hit), offsetof(BatchWalk, walk), offsetof(BatchWalk, z),
                                    offsetof(BatchWalk, z_low)}));

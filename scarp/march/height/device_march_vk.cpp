@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/march/height/device_march_vk.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <span>
+
+#include "scarp/base/error.h"
+#include "scarp/march/height/batch_states.glsl.h"
+#include "scarp/march/ray_runs_vk.h"
+
+namespace scarp {
+namespace {
+
+constexpr std::uint32_t kThreads = 64;  // of a workgroup
+
+constexpr std::uint32_t kMaxMipWords[] = {
+#include "scarp/march/height/max_mip.comp.inc"
+};
+constexpr std::uint32_t kMaxMipExactWords[] = {
+#include "scarp/march/height/max_mip_exact.comp.inc"
+};
+constexpr std::uint32_t kHeightMarchesWords[] = {
+#include "scarp/march/height/height_marches.comp.inc"
+};
+
+}  // namespace
+
+struct DeviceHeightMarch::Row {
+  std::string_view name;
+  std::span<const std::uint32_t> words;
+  std::span<const std::uint32_t> second;  // for rays that `words` leaves; empty: it leaves none
+  bool has_any;             // whether it can be asked for any hit
+  std::uint32_t choice;     // ScarpSampling::march
+  std::size_t state_bytes;  // of a march that has been interrupted
+
+  static constexpr Row sampling(std::string_view name, std::uint32_t choice) {
+    return {name, kHeightMarchesWords, {}, false, choice, sizeof(glsl::BatchMarch)};
+  }
+  static const std::array<Row, 5> kAll;
+};
+
+constexpr std::array<DeviceHeightMarch::Row, 5> DeviceHeightMarch::Row::kAll = {
+    Row{"max-mip", kMaxMipWords, kMaxMipExactWords, true, 0, sizeof(glsl::BatchWalk)},
+    sampling("naive", glsl::kScarpNaive),
+    sampling("fixed-step", glsl::kScarpFixedStep),
+    sampling("relaxed", glsl::kScarpRelaxed),
+    sampling("lipschitz", glsl::kScarpLipschitz),
+};
+
+std::string DeviceHeightMarch::names() { return names_of(Row::kAll); }
+
+const DeviceHeightMarch::Row& DeviceHeightMarch::find(std::string_view march) {
+  for (const Row& row : Row::kAll) {
+    if (row.name == march) return row;
+  }
+  throw Error(fmt::format("march '{}': does not run on Vulkan devices (available: {})", march, names()));
+}
+
+std::size_t DeviceHeightMarch::state_bytes(std::string_view march) { return find(march).state_bytes; }
+
+DeviceHeightMarch::DeviceHeightMarch(const Device& device, std::string_view march, int turns_at_once)
+    : device_(device),
+      march_(find(march)),
+      turns_at_once_(turns_at_once),
+      under_way_(device, sizeof interrupted_, "a mark of interrupted marches") {}
+
+void DeviceHeightMarch::reserve(std::uint32_t rays) {
+  const std::uint64_t bytes = rays * std::uint64_t{march_.state_bytes};
+  if (states_ && states_->bytes() >= bytes) return;
+  states_.reset();
+  states_.emplace(device_, bytes, "states of rays");
+}
+
+const ComputePipeline& DeviceHeightMarch::pipeline(const DeviceRayQuery& query, bool second) {
+  const bool any = query.any && march_.has_any;
+  const std::tuple key(second, any, query.statistics, query.ground_kind);
+  const auto made = pipelines_.find(key);
+  if (made != pipelines_.end()) return made->second;
+  const std::uint32_t constants[] = {kThreads, any, query.statistics, march_.choice, query.ground_kind};
+  const std::string name = std::string(march_.name) + (any ? ", any" : "") + (second ? ", second pass" : "");
+  return pipelines_
+      .try_emplace(key, device_, second ? march_.second : march_.words, name, std::uint32_t{sizeof(glsl::RayBatch)},
+                   constants)
+      .first->second;
+}
+
+void DeviceHeightMarch::begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query) {
+  reserve(rays.count);
+  query_ = query;
+  running_ = &pipeline(query, false);
+  batch_ = {.ground = rays.ground,
+            .rays = rays.rays,
+            .hits = rays.hits,
+            .count = rays.count,
+            .settings = query.sampling,
+            .turns = turns_at_once_,
+            .resume = glsl::kBatchBegin,
+            .states = states_->address(),
+            .under_way = under_way_.address()};
+  record(commands);
+}
+
+bool DeviceHeightMarch::go_on(Commands& commands) {
+  if (interrupted_ == 0) return false;
+  const bool second = batch_.resume == glsl::kBatchBegin && !march_.second.empty();
+  if (second) running_ = &pipeline(query_, true);
+  batch_.resume = second ? glsl::kBatchSecond : glsl::kBatchResume;
+  record(commands);
+  return true;
+}
+
+void DeviceHeightMarch::record(Commands& commands) {
+  commands.fill(under_way_, 0, sizeof interrupted_, 0);
+  commands.barrier();
+  commands.dispatch(*running_, batch_, {(batch_.count + kThreads - 1) / kThreads, 1, 1});
+  commands.barrier();
+  commands.read(under_way_, 0, sizeof interrupted_, &interrupted_);
+}
+
+}  // namespace scarp

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Private to the library: one march of height fields for rays that are on a Vulkan device already. Nothing passes
+// through the host but whether marches are under way.
+//
+//   march.begin(commands, {ground, rays, hits, count}, query);
+//   do commands.run();
+//   while (march.go_on(commands));    marches of many turns take several runs (vk/loop_turns.glsl.h), and rays that the
+//                                     first pass of max-mip is not sure of take another one
+//
+// DeviceQueries (queries_vk.h) marches rays of the host with it, whole pictures those of their shaders.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <tuple>
+
+#include "scarp/march/height/march_host.h"
+#include "scarp/march/height/ray_batch.glsl.h"
+#include "scarp/march/sampling.glsl.h"
+#include "scarp/vk/commands.h"
+#include "scarp/vk/device.h"
+#include "scarp/vk/loop_turns.glsl.h"
+#include "scarp/vk/memory.h"
+#include "scarp/vk/pipeline.h"
+
+namespace scarp {
+
+/// Rays on a device, by the addresses of buffers.
+struct DeviceRays {
+  std::uint64_t ground = 0;  ///< DeviceGround::address()
+  std::uint64_t rays = 0;    ///< ScarpRay, `count` of them
+  std::uint64_t hits = 0;    ///< ScarpHit, room for as many; by any hit only the status is defined
+  std::uint32_t count = 0;   ///< 1 to DeviceHeightMarch::kMostRaysAtOnce
+};
+
+/// What is asked of rays.
+struct DeviceRayQuery {
+  bool any = false;         ///< any hit; marches that have no such query answer with the closest
+  bool statistics = false;  ///< whether steps and fetches are told, or zeros
+  /// batch_ground_kind() of the ground makes a smaller shader; kBatchAnyGround: as the ground says. kScarpStarts among
+  /// its flags: rays may start on the surface.
+  std::uint32_t ground_kind = glsl::kBatchAnyGround;
+  glsl::ScarpSampling sampling{};  ///< of all marches but max-mip
+};
+
+/// Not thread-safe.
+class DeviceHeightMarch {
+ public:
+  /// `turns_at_once`: of a march's loop in one run, 1 to kScarpLoopTurns. Throws Error if the march does not run on
+  /// devices, listing those that do, or if the device lacks memory.
+  DeviceHeightMarch(const Device& device, std::string_view march, int turns_at_once = glsl::kScarpLoopTurns);
+
+  /// Makes room for batches of so many rays; begin() does so for a batch that is larger. Throws Error if the device
+  /// lacks memory.
+  void reserve(std::uint32_t rays);
+  /// Records the first run of a batch, one batch at a time. It sees what was written before commands.barrier(). Its
+  /// buffers must stay until go_on() returns false.
+  void begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query);
+  /// Call after commands.run(). Returns false if all rays of the batch have their answers; otherwise records the next
+  /// run.
+  bool go_on(Commands& commands);
+
+  /// Returns the memory that a march takes on the device per ray of a batch, besides the ray and its hit.
+  static std::size_t state_bytes(std::string_view march);
+  /// Returns the names of the marches that run on devices, separated by commas.
+  static std::string names();
+
+  static constexpr std::uint32_t kMostRaysAtOnce = 4'000'000;  ///< 62,500 workgroups
+
+ private:
+  struct Row;  // of the table of marches
+  static const Row& find(std::string_view march);
+  const ComputePipeline& pipeline(const DeviceRayQuery& query, bool second);
+  void record(Commands& commands);
+
+  Device device_;
+  const Row& march_;
+  int turns_at_once_;
+  std::optional<DeviceBuffer> states_;
+  DeviceBuffer under_way_;
+  // By second pass, any, statistics and ground_kind.
+  std::map<std::tuple<bool, bool, bool, std::uint32_t>, ComputePipeline> pipelines_;
+  // Of the batch.
+  const ComputePipeline* running_ = nullptr;
+  glsl::RayBatch batch_{};
+  DeviceRayQuery query_{};
+  std::uint32_t interrupted_ = 0;  // after the last run: 1 if a march is under way
+};
+
+}  // namespace scarp

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Batches of rays that stay on a Vulkan device: shaders made for one kind of field answer as those for any, in one run
+// or in many, and rays through walls as over ground that is not solid.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "march/height/spiteful.h"
+#include "march/height/spiteful_text.h"
+#include "scarp/accel/device_ground.h"
+#include "scarp/march/height/device_march_vk.h"
+#include "scarp/march/height/device_ray.h"
+#include "scarp/vk/commands.h"
+#include "scarp/vk/memory.h"
+#include "vk/device_under_test.h"
+
+namespace scarp::test {
+namespace {
+
+constexpr int kRaysOfAKind = 5;
+constexpr std::size_t kKindsOfField = 4;
+
+class BatchesOnDevice : public OnDevice {
+ protected:
+  // The answers to rays, in so many runs.
+  struct Marched {
+    std::vector<glsl::ScarpHit> hits;
+    int runs = 0;
+  };
+  Marched march(DeviceHeightMarch& march, const DeviceGround& ground, const std::vector<glsl::ScarpRay>& rays,
+                const DeviceRayQuery& query) {
+    Marched marched;
+    marched.hits.resize(rays.size());
+    DeviceBuffer there(device(), rays.size() * sizeof(glsl::ScarpRay), "rays"),
+        hits(device(), rays.size() * sizeof(glsl::ScarpHit), "hits");
+    upload(there, 0, rays.data(), there.bytes());
+    Commands commands(device());
+    march.begin(commands, {ground.address(), there.address(), hits.address(), static_cast<std::uint32_t>(rays.size())},
+                query);
+    do {
+      commands.run();
+      ++marched.runs;
+    } while (march.go_on(commands));
+    download(hits, 0, marched.hits.data(), hits.bytes());
+    return marched;
+  }
+
+  static std::vector<glsl::ScarpRay> rays_over(const FieldKind& fields, const HeightField& field, Random& random) {
+    std::vector<glsl::ScarpRay> rays;
+    for (const RayKind& kind : spiteful_rays()) {
+      if ((fields.has & kind.aims_at) != kind.aims_at) continue;
+      for (int i = 0; i < kRaysOfAKind; ++i) rays.push_back(device_ray(field, kind.make(field, random)).ray);
+    }
+    return rays;
+  }
+};
+
+TEST_F(BatchesOnDevice, AreTheSameForOneKindOfField) {
+  DeviceHeightMarch any_field(device(), "max-mip"), in_pieces(device(), "max-mip", 5);
+  Random random(3);
+  int runs = 0;
+  // One field each of different flags: compiling a march for lavapipe takes longer than running it.
+  std::vector<std::uint32_t> seen;
+  for (const FieldKind& fields : spiteful_fields()) {
+    const HeightField field = fields.make(random);
+    const std::uint32_t flags = device_field(field, nullptr).flags;
+    if (seen.size() == kKindsOfField || std::ranges::find(seen, flags) != seen.end()) continue;
+    seen.push_back(flags);
+    const DeviceGround ground(device(), field);
+    const std::vector<glsl::ScarpRay> rays = rays_over(fields, field, random);
+    const Marched expected = march(any_field, ground, rays, {.statistics = true});
+    EXPECT_EQ(expected.runs, 1);
+    const Marched found = march(in_pieces, ground, rays, {.statistics = true, .ground_kind = flags});
+    runs = std::max(runs, found.runs);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_EQ(std::memcmp(&expected.hits[i], &found.hits[i], sizeof(glsl::ScarpHit)), 0)
+          << fields.name << ", ray " << i << ": " << expected.hits[i].status << " and " << found.hits[i].status;
+    }
+  }
+  EXPECT_EQ(seen.size(), kKindsOfField);
+  EXPECT_GT(runs, 1);
+}
+
+TEST_F(BatchesOnDevice, RaysMayPassThroughWalls) {
+  DeviceHeightMarch max_mip(device(), "max-mip");
+  Random random(4);
+  int walls = 0;
+  for (const FieldKind& fields : spiteful_fields()) {
+    const HeightField field = fields.make(random);
+    const DeviceGround ground(device(), field);
+    const std::uint32_t flags = device_field(field, nullptr).flags;
+    // Limits of such marches differ.
+    if ((flags & glsl::kScarpWraps) != 0 || (flags & glsl::kScarpTriangles) != 0) continue;
+    std::vector<glsl::ScarpRay> rays = rays_over(fields, field, random);
+    const Marched open = march(max_mip, ground, rays, {.ground_kind = flags & ~glsl::kScarpSolid});
+    const Marched solid = march(max_mip, ground, rays, {.ground_kind = flags | glsl::kScarpSolid});
+    for (const glsl::ScarpHit& hit : solid.hits) walls += hit.status == glsl::kScarpWall;
+    for (glsl::ScarpRay& ray : rays) ray.flags |= glsl::kScarpThroughWalls;
+    const Marched through = march(max_mip, ground, rays, {.ground_kind = flags | glsl::kScarpSolid});
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      ASSERT_EQ(std::memcmp(&through.hits[i], &open.hits[i], sizeof(glsl::ScarpHit)), 0)
+          << fields.name << ", ray " << i << ": " << open.hits[i].status << " and " << through.hits[i].status;
+    }
+  }
+  EXPECT_GT(walls, 10);
+}
+
+}  // namespace
+}  // namespace scarp::test
