@@ -31,9 +31,9 @@ struct DeviceHeightMarch::Row {
   std::string_view name;
   std::span<const std::uint32_t> words;
   std::span<const std::uint32_t> second;  // for rays that `words` leaves; empty: it leaves none
-  bool has_any;             // whether it can be asked for any hit
-  std::uint32_t choice;     // ScarpSampling::march
-  std::size_t state_bytes;  // of a march that has been interrupted
+  bool has_any;                           // whether it can be asked for any hit
+  std::uint32_t choice;                   // ScarpSampling::march
+  std::size_t state_bytes;                // of a march that has been interrupted
 
   static constexpr Row sampling(std::string_view name, std::uint32_t choice) {
     return {name, kHeightMarchesWords, {}, false, choice, sizeof(glsl::BatchMarch)};

@@ -169,8 +169,10 @@ TEST_F(QueriesOnDevice, SlicesDoNotShow) {
   DeviceQueries sliced(device(), find_height_march("max-mip"), {}, {.rays_at_once = 77});
   whole.closest_hits({&field, &ground}, rays, hits, costs);
   sliced.closest_hits({&field, &ground}, rays, other, none);
-  EXPECT_EQ(whole.passes().size(), 1u);
-  EXPECT_EQ(sliced.passes().size(), 13u);
+  // 13 slices; a second pass each, if rays in it begin below the ground.
+  EXPECT_LE(whole.passes().size(), 2u);
+  EXPECT_GE(sliced.passes().size(), 13u);
+  EXPECT_LE(sliced.passes().size(), 26u);
   std::uint64_t steps = 0, hit_count = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(hits[i].status, other[i].status);
@@ -217,7 +219,8 @@ TEST_F(QueriesOnDevice, InterruptionsDoNotShow) {
     for (auto& [march, whole] : at_once) {
       DeviceQueries& in_pieces = interrupted.at(march);
       whole.closest_hits(target, rays, hits, costs);
-      EXPECT_LE(whole.passes().size(), 1u);
+      // Two where a ray was left to the second pass.
+      EXPECT_LE(whole.passes().size(), march == "max-mip" ? 2u : 1u);
       in_pieces.closest_hits(target, rays, other, other_costs);
       more_runs += in_pieces.passes().size() > 1;
       whole.occluded(target, rays, blocked);
@@ -313,6 +316,9 @@ TEST(Marches, ThoseOfTheTableRunOnDevices) {
 constexpr std::uint32_t kShader[] = {
 #include "scarp/march/height/max_mip.comp.inc"
 };
+constexpr std::uint32_t kExactShader[] = {
+#include "scarp/march/height/max_mip_exact.comp.inc"
+};
 constexpr std::uint32_t kSamplingShader[] = {
 #include "scarp/march/height/height_marches.comp.inc"
 };
@@ -335,13 +341,14 @@ TEST(BatchLayout, IsThatOfTheShaders) {
                            offsetof(RayBatch, count), offsetof(RayBatch, settings), offsetof(RayBatch, turns),
                            offsetof(RayBatch, resume), offsetof(RayBatch, states), offsetof(RayBatch, under_way)}));
   using glsl::BatchMarch, glsl::BatchWalk, glsl::ScarpWalk;
-  EXPECT_TRUE(has_struct(kShader, {offsetof(BatchWalk, hit), offsetof(BatchWalk, walk), offsetof(BatchWalk, z),
-                                   offsetof(BatchWalk, z_low)}));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpWalk, frame), offsetof(ScarpWalk, level), offsetof(ScarpWalk, col),
-                                   offsetof(ScarpWalk, row), offsetof(ScarpWalk, t_in), offsetof(ScarpWalk, side),
-                                   offsetof(ScarpWalk, through), offsetof(ScarpWalk, begun), offsetof(ScarpWalk, start),
-                                   offsetof(ScarpWalk, relief)}));
-  EXPECT_TRUE(is_laid_out_like<BatchWalk>(kShader));
+  EXPECT_TRUE(has_struct(kExactShader, {offsetof(BatchWalk, hit), offsetof(BatchWalk, walk), offsetof(BatchWalk, z),
+                                        offsetof(BatchWalk, z_low)}));
+  EXPECT_TRUE(has_struct(
+      kExactShader,
+      {offsetof(ScarpWalk, frame), offsetof(ScarpWalk, level), offsetof(ScarpWalk, col), offsetof(ScarpWalk, row),
+       offsetof(ScarpWalk, t_in), offsetof(ScarpWalk, side), offsetof(ScarpWalk, through), offsetof(ScarpWalk, begun),
+       offsetof(ScarpWalk, start), offsetof(ScarpWalk, relief)}));
+  EXPECT_TRUE(is_laid_out_like<BatchWalk>(kExactShader));
   EXPECT_TRUE(is_laid_out_like<BatchMarch>(kSamplingShader));
 }
 
