@@ -126,6 +126,11 @@ void DeviceGround::build(const HeightField& field, const CellBox& changed) {
   ground.samples = samples_.address();
   ground.pyramid = pyramid_.address();
   ground.quads = quads_.address();
+  if (!levels_.empty()) {
+    ground.quad_cols = static_cast<std::uint32_t>(levels_.front().cols);
+    ground.quad_rows = static_cast<std::uint32_t>(levels_.front().rows);
+    ground.quad_stride = quad_stride(levels_);
+  }
   ground.cols = static_cast<std::uint32_t>(field.cols());
   ground.rows = static_cast<std::uint32_t>(field.rows());
   ground.cell_cols = static_cast<std::uint32_t>(field.cell_cols());
@@ -144,6 +149,7 @@ void DeviceGround::build(const HeightField& field, const CellBox& changed) {
   split(code_.base, ground.code_base, ground.code_base_low);
   split(code_.step, ground.code_step, ground.code_step_low);
   ground.code_per_step = static_cast<float>(code_.per_step);
+  ground.code_over = code_.code_over(field.max_sample());
   ground.min_sample = static_cast<float>(field.min_sample());
   ground.max_sample = static_cast<float>(field.max_sample());
   ground.cell_x = static_cast<float>(settings.cell_x);
@@ -158,7 +164,7 @@ void DeviceGround::build(const HeightField& field, const CellBox& changed) {
   if (levels_.empty()) return;
   passes_.record(commands_, address(), codes_ ? codes_->address() : 0, field, changed);
   commands_.run();
-  download(header_, offsetof(glsl::GroundBuffers, cell_relief), &ground.cell_relief, sizeof ground.cell_relief);
+  download(header_, offsetof(glsl::GroundBuffers, spread), &ground.spread, sizeof ground.spread);
 }
 
 void DeviceGround::update(const HeightField& field, const CellBox& changed) {
@@ -169,7 +175,7 @@ void DeviceGround::update(const HeightField& field, const CellBox& changed) {
   copy_samples(field, rect);
   if (is_in_range(field, range_)) return build(field, changed);
   set_range(code_range(field, range_), field.sample_type());
-  layout_.cell_relief = 0;
+  layout_.spread = 0;
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
 }
 

@@ -32,6 +32,10 @@ const uint kGroundWrapNone = 0u;
 const uint kGroundWrapPeriodic = 1u;
 const uint kGroundWrapSharedBorder = 2u;
 
+// What floats that walk a ray are off sideways, as a height per height difference within a cell (doc/dev/numerics.md,
+// "The lean pass"): 2^-19.
+const float kGroundSpread = 1.9073486328125e-6f;
+
 // Levels of the largest field that 31 bits can index.
 const uint kGroundMaxLevels = 31u;
 
@@ -47,6 +51,9 @@ struct GroundBuffers {
   Address samples;
   Address pyramid;
   Address quads;
+  uint quad_cols;  // of level 1
+  uint quad_rows;
+  uint quad_stride;
   uint cols;  // samples
   uint rows;
   uint cell_cols;  // cols - 1, or cols if the last column is followed by the first
@@ -66,10 +73,11 @@ struct GroundBuffers {
   float code_step;
   float code_step_low;
   float code_per_step;  // 1 / step, rounded
+  float code_over;      // code higher than the highest sample
   float min_sample;     // of the current samples; undefined if all samples are nodata
   float max_sample;
-  float cell_relief;  // upper bound of the height difference within a cell, in sample units
-  float cell_x;       // metres, rounded
+  float spread;  // kGroundSpread times the largest height difference within a cell, rounded up
+  float cell_x;  // metres, rounded
   float cell_y;
   float metres_per_sample;  // scale * exaggeration, rounded
   float metres_at_zero;     // world z of sample value 0, rounded
@@ -82,9 +90,8 @@ SCARP_FN uint ground_quad_stride(uint level_1_cols, uint top_level) { return lev
 /// Index of the quad of block (col, row) of a level, 1 .. top_level. The level begins where no coarser one can reach:
 /// level l has at most (level_1_cols >> (l - 1)) + 1 columns.
 SCARP_FN uint ground_quad(uint level_1_cols, uint level_1_rows, uint stride, uint level, uint col, uint row) {
-  if (level == 1u) return row * stride + col;
-  uint begin = level_1_cols - (level_1_cols >> (level - 2u)) + (level - 2u);
-  return (level_1_rows + row) * stride + begin + col;
+  uint begin = level_1_rows * stride + level_1_cols - (level_1_cols >> (level - 2u)) + (level - 2u);
+  return row * stride + col + (level == 1u ? 0u : begin);
 }
 
 #ifndef __cplusplus

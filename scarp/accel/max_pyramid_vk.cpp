@@ -49,8 +49,8 @@ void PyramidPasses::record(Commands& commands, std::uint64_t ground, std::uint64
           const auto col_end = static_cast<std::uint32_t>(col + cols), row_end = static_cast<std::uint32_t>(row + rows);
           commands.dispatch(entries_, glsl::PyramidPush{ground, codes, level, col_begin, row_begin, col_end, row_end},
                             groups);
-          const std::uint64_t relief = ground + offsetof(glsl::GroundBuffers, cell_relief);
-          commands.dispatch(quads_, glsl::QuadsPush{ground, relief, level, col_begin, row_begin, col_end, row_end},
+          const std::uint64_t spread = ground + offsetof(glsl::GroundBuffers, spread);
+          commands.dispatch(quads_, glsl::QuadsPush{ground, spread, level, col_begin, row_begin, col_end, row_end},
                             groups);
         }
       }

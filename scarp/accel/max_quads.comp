@@ -16,7 +16,7 @@
 layout(local_size_x = kPyramidGroupCols, local_size_y = kPyramidGroupRows) in;
 layout(push_constant, scalar) uniform Push { QuadsPush push; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer Quads { uvec2 of[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Relief { uint bits; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Spread { uint bits; };
 
 // Returns the maximum code of a cell, 0 outside the field. Raises `relief` to its height difference.
 uint cell_code(Ground ground, uvec2 at, inout float relief) {
@@ -45,8 +45,7 @@ void main() {
   uvec2 at = uvec2(push.col_begin, push.row_begin) + gl_GlobalInvocationID.xy;
   if (at.x >= push.col_end || at.y >= push.row_end) return;
   Ground ground = Ground(push.ground);
-  uint cols = (ground.is.cell_cols + 1u) / 2u, rows = (ground.is.cell_rows + 1u) / 2u;
-  uint stride = ground_quad_stride(cols, ground.is.top_level);
+  uint cols = ground.is.quad_cols, rows = ground.is.quad_rows, stride = ground.is.quad_stride;
   uvec4 codes;
   float relief = 0.0;
   for (uint child = 0u; child < 4u; ++child) {
@@ -65,5 +64,5 @@ void main() {
   Quads(ground.is.quads).of[ground_quad(cols, rows, stride, push.level, at.x, at.y)] =
       uvec2(codes.x | codes.y << 16, codes.z | codes.w << 16);
   // Floats of one sign are in the order of their bits.
-  if (relief > 0.0) atomicMax(Relief(push.relief).bits, floatBitsToUint(relief));
+  if (relief > 0.0) atomicMax(Spread(push.spread).bits, floatBitsToUint(kGroundSpread * relief));
 }

@@ -10,7 +10,7 @@ SCARP_GLSL_BEGIN
 /// Push constants of max_quads.comp.
 struct QuadsPush {
   Address ground;  // GroundBuffers
-  Address relief;  // of its cell_relief
+  Address spread;  // of its spread
   uint level;      // level to build; 1 reads the samples, others the next finer level
   uint col_begin;  // quads [col_begin, col_end) x [row_begin, row_end)
   uint row_begin;

@@ -32,6 +32,8 @@ using glm::uvec2, glm::uvec3, glm::uvec4;
 using glm::vec2, glm::vec3, glm::vec4;
 using std::abs, std::ceil, std::clamp, std::floor, std::max, std::min, std::sqrt;
 
+// Rounds twice, as devices may.
+inline float fma(float a, float b, float c) { return a * b + c; }
 inline uint floatBitsToUint(float value) { return std::bit_cast<uint>(value); }
 inline float uintBitsToFloat(uint bits) { return std::bit_cast<float>(bits); }
 

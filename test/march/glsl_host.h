@@ -21,6 +21,10 @@ inline thread_local const MaxPyramid* host_pyramid = nullptr;
 inline float scarp_sample(int col, int row) {
   return host_field->visit([&](const auto& grid) { return static_cast<float>(grid.at(col, row)); });
 }
+inline vec4 scarp_corners(int col, int row) {
+  return {scarp_sample(col, row), scarp_sample(col + 1, row), scarp_sample(col, row + 1),
+          scarp_sample(col + 1, row + 1)};
+}
 inline bool scarp_is_nodata(float sample) {
   return std::isnan(sample) || static_cast<double>(sample) == host_field->settings().nodata;
 }

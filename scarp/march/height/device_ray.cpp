@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scarp/accel/ground_buffers.glsl.h"
 #include "scarp/base/two_floats.h"
 #include "scarp/march/height/grid_axis.h"
 #include "scarp/march/ray_clip.h"
@@ -33,6 +34,11 @@ bool inside(double o, int cells) { return o >= 0 && o <= cells; }
 
 // A ray as two floats per number. Times beyond kScarpNever are told as that.
 void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec3& direction, double length) {
+  // A ray that does not move along an axis stays in its cell.
+  constexpr double kInCell = 1 - 0x1p-24;
+  for (int axis = 0; axis < 2; ++axis) {
+    if (direction[axis] == 0) place[axis] = std::min(place[axis], kInCell);
+  }
   const TwoFloats u = two_floats(place.x), v = two_floats(place.y), z = two_floats(height);
   out.cell = {cell.col, cell.row};
   out.place = {u.high, v.high};
@@ -41,9 +47,10 @@ void pack(glsl::ScarpRay& out, Cell cell, dvec2 place, double height, const dvec
     const TwoFloats d = two_floats(direction[axis]);
     out.direction[axis] = d.high;
     out.direction_low[axis] = d.low;
-    if (axis < 2 && direction[axis] != 0) {
+    if (axis < 2) {
       const double never{glsl::kScarpNever};
-      out.per_direction[axis] = static_cast<float>(std::clamp(1 / direction[axis], -never, never));
+      out.per_direction[axis] =
+          static_cast<float>(direction[axis] == 0 ? never : std::clamp(1 / direction[axis], -never, never));
     }
   }
   const TwoFloats end = two_floats(std::min(length, double{glsl::kScarpNever}));
@@ -68,6 +75,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   result.per_time = std::ldexp(1.0, -exponent);
   const bool strict = ray.start == RayStart::on_surface;
   glsl::ScarpRay& out = result.ray;
+  std::uint32_t flags = 0;
 
   if constexpr (Wraps) {
     for (int axis = 0; axis < 2; ++axis) {
@@ -87,7 +95,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   if (strict) {
     x.begin_in(cell.col, begin);
     y.begin_in(cell.row, begin);
-    out.flags |= glsl::kScarpOnSurface;
+    flags |= glsl::kScarpOnSurface;
   }
   if constexpr (!Wraps) {
     if ((!x.moves() && !inside(local.origin.x, x.cells)) || (!y.moves() && !inside(local.origin.y, y.cells)))
@@ -95,7 +103,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
     const double border = std::max(x.enter_time(), y.enter_time());
     way = std::min({last, x.exit_time(), y.exit_time()});
     if (!strict) {
-      if (border >= begin) out.flags |= glsl::kScarpFromOutside;
+      if (border >= begin) flags |= glsl::kScarpFromOutside;
       begin = std::max(begin, border);
       if (!(begin <= way)) return result;
     }
@@ -107,7 +115,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
     if (!(dz < 0)) return result;
     const double quotient = (highest - z) / dz, top = quotient - 2 * kUnit * std::abs(quotient);
     if (top > way) return result;
-    out.flags |= glsl::kScarpAbove;
+    flags |= glsl::kScarpAbove;
     before = top > begin;
     begin = std::max(begin, top);
   }
@@ -133,7 +141,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
   if (direction.y == 0 && y.moves() && !Wraps) end = std::min(end, y.exit_time());
   double length = std::max(end - begin, 0.0);
   if ((direction.x == 0 && direction.y == 0) || std::abs(dz) > kSteepest) {
-    out.flags |= glsl::kScarpUpright;
+    flags |= glsl::kScarpUpright;
     const int upright = dz == 0 ? 0 : std::ilogb(dz);
     direction = {0, 0, std::ldexp(dz, -upright)};
     length = std::ldexp(std::min(end, exit) - begin, upright);
@@ -141,6 +149,7 @@ DeviceRay on_grid(const HeightField& field, const Ray& ray) {
     result.per_time = std::ldexp(result.per_time, -upright);
   }
 
+  out.flags = flags;
   pack(out, cell, {u, v}, height, direction, length);
   result.begin = begin;
   result.marches = true;
@@ -166,7 +175,8 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
     result.code_base_low = base.low;
     result.code_step = static_cast<float>(pyramid->code().step);
     result.code_per_step = static_cast<float>(pyramid->code().per_step);
-    result.cell_relief = static_cast<float>(pyramid->cell_relief() * pyramid->code().step);
+    result.code_over = pyramid->code().code_over(field.max_sample());
+    result.spread = glsl::kGroundSpread * static_cast<float>(pyramid->cell_relief() * pyramid->code().step);
   }
   return result;
 }
@@ -210,6 +220,7 @@ DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray) {
     place[axis] = position - cell[axis];
   }
   glsl::ScarpRay& out = result.ray;
+  out.flags = 0;
   if (ray.start == RayStart::on_surface)
     out.flags |= glsl::kScarpOnSurface;
   else if (border >= first)

@@ -18,7 +18,10 @@ glsl::ScarpField device_field(const HeightField& field, const MaxPyramid* pyrami
 
 /// A ray on its way to a march in single precision.
 struct DeviceRay {
-  DeviceRay() { ray.exit = -1; }
+  DeviceRay() {
+    ray.exit = -1;
+    ray.flags = glsl::kScarpAbove;
+  }
 
   glsl::ScarpRay ray{};  ///< ends before it begins, unless it marches
   double begin = 0;      ///< t = (begin + time) * per_time for a time that the march tells

@@ -32,8 +32,9 @@ SCARP_FN ScarpRay scarp_ray(ivec2 cell, vec2 place, float z, vec3 direction, flo
   ray.place_low = vec2(0.0f, 0.0f);
   ray.direction = vec3(direction.x / speed, direction.y / speed, direction.z / speed);
   ray.direction_low = vec3(0.0f, 0.0f, 0.0f);
-  ray.per_direction = vec2(ray.direction.x == 0.0f ? 0.0f : clamp(1.0f / ray.direction.x, -kScarpNever, kScarpNever),
-                           ray.direction.y == 0.0f ? 0.0f : clamp(1.0f / ray.direction.y, -kScarpNever, kScarpNever));
+  ray.per_direction =
+      vec2(ray.direction.x == 0.0f ? kScarpNever : clamp(1.0f / ray.direction.x, -kScarpNever, kScarpNever),
+           ray.direction.y == 0.0f ? kScarpNever : clamp(1.0f / ray.direction.y, -kScarpNever, kScarpNever));
   ray.z = z;
   ray.z_low = 0.0f;
   ray.end = end;
@@ -86,7 +87,9 @@ SCARP_FN bool scarp_ray_from(ScarpField field, vec3 origin, vec3 direction, floa
   vec2 at = vec2(origin.x + ray.direction.x * begin, origin.y + ray.direction.y * begin);
   vec2 corner = vec2(floor(at.x), floor(at.y));
   if (!wraps) corner = vec2(clamp(corner.x, 0.0f, size.x - 1.0f), clamp(corner.y, 0.0f, size.y - 1.0f));
-  ray.place = vec2(clamp(at.x - corner.x, 0.0f, 1.0f), clamp(at.y - corner.y, 0.0f, 1.0f));
+  // A ray that does not move along an axis stays in its cell.
+  ray.place = vec2(clamp(at.x - corner.x, 0.0f, ray.direction.x == 0.0f ? 1.0f - kScarpUnit : 1.0f),
+                   clamp(at.y - corner.y, 0.0f, ray.direction.y == 0.0f ? 1.0f - kScarpUnit : 1.0f));
   if (wraps) corner = vec2(corner.x - floor(corner.x / size.x) * size.x, corner.y - floor(corner.y / size.y) * size.y);
   ray.cell = ivec2(min(int(corner.x), field.cells.x - 1), min(int(corner.y), field.cells.y - 1));
   ray.z = origin.z + ray.direction.z * begin;

@@ -10,9 +10,7 @@
 
 Ground opened;
 GroundWords opened_samples, opened_pyramid;
-GroundQuads opened_quads;
 uint opened_words, opened_type;
-uint opened_quad_cols, opened_quad_rows, opened_quad_stride;
 float opened_hole;
 
 #ifndef SCARP_GROUND_TYPE
@@ -25,10 +23,6 @@ ScarpField open_ground(Address address) {
   opened = ground;
   opened_samples = GroundWords(ground.is.samples);
   opened_pyramid = GroundWords(ground.is.pyramid);
-  opened_quads = GroundQuads(ground.is.quads);
-  opened_quad_cols = (ground.is.cell_cols + 1u) / 2u;
-  opened_quad_rows = (ground.is.cell_rows + 1u) / 2u;
-  opened_quad_stride = ground_quad_stride(opened_quad_cols, ground.is.top_level);
   opened_words = ground.is.sample_words;
   opened_type = ground.is.sample_type;
   opened_hole = ground_sample_value(ground, ground.is.hole);
@@ -42,7 +36,8 @@ ScarpField open_ground(Address address) {
   field.code_base_low = ground.is.code_base_low;
   field.code_step = ground.is.code_step;
   field.code_per_step = ground.is.code_per_step;
-  field.cell_relief = ground.is.cell_relief;
+  field.code_over = ground.is.code_over;
+  field.spread = ground.is.spread;
   field.lowest = ground.is.min_sample;
   field.highest = ground.is.max_sample;
   return field;
@@ -54,6 +49,25 @@ float scarp_sample(int col, int row) {
   uint word = opened_samples.words[begin + (uint(col) >> 1)];
   if (SCARP_GROUND_TYPE == kGroundInt16) return float(bitfieldExtract(int(word), (col & 1) << 4, 16));
   return float(bitfieldExtract(word, (col & 1) << 4, 16));
+}
+
+// Two words of memory: one load, where two indices would make two.
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer GroundPair { uvec2 words; };
+// The address of word `index`, or with shift 3 of pair `index`.
+uvec2 ground_address(Address begin, uint index, uint shift) {
+  uint low = begin.x + (index << shift);
+  return uvec2(low, begin.y + (index >> (32u - shift)) + (low < begin.x ? 1u : 0u));
+}
+
+/// The samples of a cell, by rows.
+vec4 scarp_corners(int col, int row) {
+  if (SCARP_GROUND_TYPE != kGroundFloat32) {
+    return vec4(scarp_sample(col, row), scarp_sample(col + 1, row), scarp_sample(col, row + 1),
+                scarp_sample(col + 1, row + 1));
+  }
+  uvec2 north = ground_address(opened.is.samples, uint(row) * opened_words + uint(col), 2u);
+  uvec2 south = ground_address(north, opened_words, 2u);
+  return uintBitsToFloat(uvec4(GroundPair(north).words, GroundPair(south).words));
 }
 
 // All nodata floats are stored as one NaN, which is known by its bits: comparisons of NaN are the compiler's.
@@ -68,8 +82,9 @@ uint pyramid_entry(int level, int col, int row) {
 }
 float scarp_maximum(int level, int col, int row) { return float(ground_maximum(pyramid_entry(level, col, row))); }
 uvec2 scarp_quad(int level, int col, int row) {
-  return opened_quads
-      .of[ground_quad(opened_quad_cols, opened_quad_rows, opened_quad_stride, uint(level), uint(col), uint(row))];
+  uint index =
+      ground_quad(opened.is.quad_cols, opened.is.quad_rows, opened.is.quad_stride, uint(level), uint(col), uint(row));
+  return GroundPair(ground_address(opened.is.quads, index, 3u)).words;
 }
 float scarp_minimum(int level, int col, int row) { return float(ground_minimum(pyramid_entry(level, col, row))); }
 

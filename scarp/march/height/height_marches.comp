@@ -14,7 +14,7 @@
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (!batch_asks(i)) return;
-  ScarpRay ray = BatchRays(batch.rays).rays[i];
+  ScarpRay ray = batch_ray(i).is;
   ScarpField field = batch_field(ray);
   ScarpSampling settings = batch.settings;
   settings.march = batch_march;

@@ -3,9 +3,12 @@
 // functions: what the text asks of its host is declared, and nowhere defined.
 #pragma once
 
+#include "scarp/vk/glsl_cpp.h"
+
 namespace scarp::glsl {
 
 float scarp_sample(int col, int row);
+vec4 scarp_corners(int col, int row);
 bool scarp_is_nodata(float value);
 float scarp_maximum(int level, int col, int row);
 float scarp_minimum(int level, int col, int row);

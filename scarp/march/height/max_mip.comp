@@ -14,14 +14,12 @@
 void main() {
   uint i = gl_GlobalInvocationID.x;
   if (i >= batch.count) return;
-  ScarpField field = batch_field(BatchRays(batch.rays).rays[i]);
-  ScarpHit hit = scarp_no_hit();
-  ScarpLean at = scarp_lean_begin(BatchRays(batch.rays).rays[i]);
+  ScarpField field = batch_field(batch_ray(i).is);
+  ScarpHit hit;
+  ScarpLean at = scarp_lean_begin();
   // The ray is read again for each frame: in registers it would be in the way of the walk.
-  while (!scarp_lean_on(field, BatchRays(batch.rays).rays[i], batch_any, at, hit)) {
+  while (!scarp_lean_on(field, batch_ray(i).is, batch_any, at, hit)) {
   }
-  if (hit.status == kScarpDoubtful)
-    batch_interrupt(i);
-  else
-    batch_answer(i, hit);
+  batch_answer(i, hit);
+  if (hit.status == kScarpDoubtful) batch_mark();
 }

@@ -18,6 +18,8 @@
 // derives ("The lean pass"); closest and any hit agree. Source: see max_mip.h.
 //
 // Compiles as C++ and GLSL. The including file defines scarp_sample and scarp_is_nodata (cell_surface.glsl.h), and
+//   vec4 scarp_corners(int col, int row)            the samples at (col, row), (col + 1, row), (col, row + 1) and
+//                                                   (col + 1, row + 1), of fields that do not wrap
 //   uvec2 scarp_quad(int level, int col, int row)   codes of the 2 x 2 children of a block, level 1 and up:
 //                                                   .x: (0, 0) | (1, 0) << 16, .y: (0, 1) | (1, 1) << 16
 #ifndef SCARP_MARCH_MAX_MIP_LEAN_GLSL_H
@@ -31,43 +33,51 @@ SCARP_GLSL_BEGIN
 
 /// Local time up to which signs decide. At most twice as many cells.
 const float kScarpFreshTime = 4.0f;
+/// Frames begin at multiples of this time, except over fields that wrap: s0 then has at most 16 significant bits, up to
+/// 2^14 cells.
+const float kScarpFrameQuantum = 0.25f;
 /// Blocks and cells after which a ray is left to the second pass, which can be interrupted.
 const int kScarpLeanTurns = 16384;
 /// Height of a block's code that floats may be off, in codes (numerics.md counts 0.27).
 const float kScarpCodeRounding = 0.5f;
-/// Codes per time beyond which floats could overflow.
-const float kScarpSteepest = 1.0e15f;
-/// Codes above or below the lowest one at which a ray may begin.
-const float kScarpFarthestCode = 1.0e6f;
 
-/// Relief of a field beyond which floats could overflow.
-const float kScarpMostRelief = 1.0e30f;
+/// The status of a ray that goes on in a new frame.
+const int kScarpFrame = -2;
 
 /// State of a ray between two frames.
 struct ScarpLean {
-  float s0;   ///< time at which the next frame begins; 0: it is the ray's first
-  int above;  ///< 1: the ray is known to be above the surface at s0
-  int turns;  ///< so far
+  float s0;      ///< time at which the next frame begins; 0: it is the ray's first
+  int above;     ///< over fields that wrap, 1: the ray is known to be above the surface at s0
+  int turns;     ///< blocks so far
+  uint fetches;  ///< so far
 };
 
-/// Code of one of the four children in a quad.
-SCARP_FN float scarp_code_of(uvec2 quad, int child) {
-  uint word = (child & 2) != 0 ? quad.y : quad.x;
-  return float((word >> ((child & 1) << 4)) & 0xffffu);
-}
-
 /// The state before the first frame.
-SCARP_FN ScarpLean scarp_lean_begin(ScarpRay ray) {
+SCARP_FN ScarpLean scarp_lean_begin() {
   ScarpLean at;
   at.s0 = 0.0f;
-  at.above = (ray.flags & (kScarpAbove | kScarpOnSurface)) != 0u ? 1 : 0;
+  at.above = 0;
   at.turns = 0;
+  at.fetches = 0u;
   return at;
 }
 
-/// Frames begin at multiples of this time, except over fields that wrap: s0 then has at most 16 significant bits, up to
-/// 2^14 cells.
-const float kScarpFrameQuantum = 0.25f;
+/// The ray in a frame. Mirrored cell numbers are those of the grid or, where the ray goes back, their complements, so
+/// that it always goes forwards, and blocks are the same.
+struct ScarpLeanFrame {
+  int mirror_x, mirror_y;  ///< 0, or -1 where the ray goes back
+  int begin_x, begin_y;    ///< the cell in which the frame begins, mirrored
+  float ox, oy;            ///< where in it, 0..1 in the ray's direction
+  float dx, dy;            ///< not negative
+  int last_x, last_y;      ///< the last cell of the grid ahead, mirrored
+  int col, row;            ///< the first cell in the grid's numbers
+  float place_x, place_y;  ///< where in it, 0..1 in the grid's direction
+  float per_x, per_y;      ///< 1 / dx, 1 / dy; kScarpNever for 0
+  float base;              ///< heights count from it
+  float z, dz;             ///< of the ray, from the base
+  float end;               ///< of the ray, local time
+  float start_relief;      ///< height difference in the start cell of a ray from the surface
+};
 
 /// a * s0 as two floats, to 2^-32 of itself. For a multiple of the quantum the high 8 bits of `a` give an exact
 /// product.
@@ -80,7 +90,7 @@ SCARP_FN ScarpTwoFloat scarp_lean_product(float a, float s0, bool wraps) {
   return product;
 }
 
-/// A place along an axis: a cell of the grid, and 0..1 from where the ray enters that cell's column or row.
+/// A place along an axis: a cell of the grid, and 0..1 in it.
 struct ScarpLeanAxis {
   int cell;
   float place;
@@ -89,30 +99,76 @@ struct ScarpLeanAxis {
 /// Where the ray is at time s0.
 SCARP_FN ScarpLeanAxis scarp_lean_axis(int cell, float place, float place_low, float direction, float direction_low,
                                        float s0, int cells, bool wraps) {
-  ScarpTwoFloat product = scarp_lean_product(direction, s0, wraps);
-  float way = product.high;
-  float way_low = product.low;
-  float whole = floor(way);
-  float whole_low = floor(way_low);
-  SCARP_PRECISE float rest = (way - whole) + (way_low - whole_low) + (place + (direction_low * s0 + place_low));
-  // A ray that begins on a line, or follows one, belongs to the cell that it is given in.
-  float carry = s0 == 0.0f || direction == 0.0f ? 0.0f : floor(rest);
+  ScarpTwoFloat way = scarp_lean_product(direction, s0, wraps);
+  float whole = floor(way.high);
+  SCARP_PRECISE float rest = (way.high - whole) + (way.low + (place + (direction_low * s0 + place_low)));
+  // A ray that begins on a line belongs to the cell that it is given in.
+  float carry = s0 == 0.0f ? 0.0f : floor(rest);
   ScarpLeanAxis found;
-  found.cell = cell + int(whole) + int(whole_low) + int(carry);
+  found.cell = cell + int(whole) + int(carry);
   found.place = clamp(rest - carry, 0.0f, 1.0f);
   if (wraps) {
+    // The border ahead is ahead, so that what lies before it is tested; except for rays that begin on it.
+    if (s0 > 0.0f) found.place = clamp(found.place, kScarpUnit, 1.0f - kScarpUnit);
     found.cell -= int(floor(float(found.cell) / float(cells))) * cells;
     // The quotient is rounded.
     if (found.cell < 0) found.cell += cells;
     if (found.cell >= cells) found.cell -= cells;
-  } else {
-    found.cell = clamp(found.cell, 0, cells - 1);
   }
-  if (direction < 0.0f) found.place = 1.0f - found.place;
-  // The line ahead is ahead, so that what lies before it is tested; except for rays that begin on it.
-  if (s0 > 0.0f || direction == 0.0f) found.place = min(found.place, 1.0f - kScarpUnit);
   return found;
 }
+
+/// The frame that begins at time s0.
+SCARP_FN ScarpLeanFrame scarp_lean_frame(ScarpField field, ScarpRay ray, float s0, bool strict) {
+  bool wraps = (field.flags & kScarpWraps) != 0u;
+  ScarpLeanFrame frame;
+  float z = ray.z;
+  float z_low = ray.z_low;
+  frame.start_relief = 0.0f;
+  if (strict) {
+    ScarpCell cell = scarp_cell(field, ray.cell.x, ray.cell.y, 0.0f);
+    ScarpCell above_node = scarp_cell(field, ray.cell.x, ray.cell.y, cell.h00);
+    frame.start_relief = scarp_highest(above_node) - scarp_lowest(above_node);
+    z = cell.h00;
+    z_low = scarp_surface(field, above_node, ray.place.x, ray.place.y);
+  }
+  ScarpLeanAxis x = scarp_lean_axis(ray.cell.x, ray.place.x, ray.place_low.x, ray.direction.x, ray.direction_low.x, s0,
+                                    field.cells.x, wraps);
+  ScarpLeanAxis y = scarp_lean_axis(ray.cell.y, ray.place.y, ray.place_low.y, ray.direction.y, ray.direction_low.y, s0,
+                                    field.cells.y, wraps);
+  ScarpTwoFloat rise = scarp_lean_product(ray.direction.z, s0, wraps);
+  ScarpTwoFloat high = scarp_two_sum(z, rise.high);
+  SCARP_PRECISE float low = high.low + (rise.low + (ray.direction_low.z * s0 + z_low));
+  SCARP_PRECISE float base = high.high + low;
+  SCARP_PRECISE float left = low - (base - high.high);
+  frame.base = base;
+  frame.z = left;
+  frame.dz = ray.direction.z;
+  frame.mirror_x = ray.direction.x < 0.0f ? -1 : 0;
+  frame.mirror_y = ray.direction.y < 0.0f ? -1 : 0;
+  frame.last_x = frame.mirror_x == 0 ? field.cells.x - 1 : -1;
+  frame.last_y = frame.mirror_y == 0 ? field.cells.y - 1 : -1;
+  // By rounding the ray could be beyond the border.
+  frame.begin_x = min(x.cell ^ frame.mirror_x, frame.last_x);
+  frame.begin_y = min(y.cell ^ frame.mirror_y, frame.last_y);
+  frame.col = frame.begin_x ^ frame.mirror_x;
+  frame.row = frame.begin_y ^ frame.mirror_y;
+  frame.place_x = x.place;
+  frame.place_y = y.place;
+  frame.ox = frame.mirror_x == 0 ? x.place : 1.0f - x.place;
+  frame.oy = frame.mirror_y == 0 ? y.place : 1.0f - y.place;
+  frame.dx = abs(ray.direction.x);
+  frame.dy = abs(ray.direction.y);
+  frame.per_x = abs(ray.per_direction.x);
+  frame.per_y = abs(ray.per_direction.y);
+  SCARP_PRECISE float end = (ray.end - s0) + ray.end_low;
+  frame.end = end;
+  return frame;
+}
+
+/// When the ray crosses a line, by ONE expression for all blocks; `cells` counts from the frame's first cell, `origin`
+/// is place * per.
+SCARP_FN float scarp_lean_line(float cells, float per, float origin) { return fma(cells, per, -origin); }
 
 /// The clearance of a ray over a piece of a cell: above + (chord - bend) s + bend s^2, s from 0 to 1.
 struct ScarpPiece {
@@ -127,282 +183,262 @@ struct ScarpPiece {
 SCARP_FN float scarp_fall_of(ScarpPiece piece, bool strict) {
   float slope = piece.chord - piece.bend;
   float root = sqrt(max(0.0f, slope * slope - 4.0f * piece.bend * piece.above));
-  float s = 1.0f;
-  if (slope < 0.0f)
-    s = 2.0f * piece.above / (root - slope);
-  else if (piece.bend < 0.0f)
-    s = -(slope + root) / (2.0f * piece.bend);
+  bool falls = slope < 0.0f;
+  float sum = -0.5f * (slope + (falls ? -root : root));
+  float s = (falls ? piece.above : sum) / (falls ? sum : piece.bend);
   return piece.above > 0.0f || strict ? clamp(s, 0.0f, 1.0f) : 0.0f;
+}
+
+/// A cell under the ray.
+struct ScarpLeanCell {
+  bool hole;
+  float above;       ///< clearance where the ray enters it
+  float least;       ///< the lowest clearance
+  float margin;      ///< error of both
+  float limit;       ///< lower than this: a hit
+  ScarpPiece piece;  ///< in which the clearance falls
+};
+
+/// The cell (col, row) of the grid, from time `begin` to `end`.
+SCARP_FN ScarpLeanCell scarp_lean_cell(ScarpField field, ScarpLeanFrame frame, vec3 direction, int col, int row,
+                                       float begin, float end, bool strict) {
+  bool triangles = (field.flags & kScarpTriangles) != 0u;
+  bool wraps = (field.flags & kScarpWraps) != 0u;
+  vec2 north;
+  vec2 south;
+  if (wraps) {
+    int next_col = col + 1 < field.samples.x ? col + 1 : 0;
+    int next_row = row + 1 < field.samples.y ? row + 1 : 0;
+    north = vec2(scarp_sample(col, row), scarp_sample(next_col, row));
+    south = vec2(scarp_sample(col, next_row), scarp_sample(next_col, next_row));
+  } else {
+    vec4 corners = scarp_corners(col, row);
+    north = vec2(corners.x, corners.y);
+    south = vec2(corners.z, corners.w);
+  }
+  ScarpLeanCell found;
+  found.hole = (field.flags & kScarpHoles) != 0u && (scarp_is_nodata(north.x) || scarp_is_nodata(north.y) ||
+                                                     scarp_is_nodata(south.x) || scarp_is_nodata(south.y));
+  ScarpCell h;
+  h.hole = found.hole;
+  h.h00 = north.x - frame.base;
+  h.h10 = north.y - frame.base;
+  h.h01 = south.x - frame.base;
+  h.h11 = south.y - frame.base;
+  float z0 = frame.z + frame.dz * begin;
+  float z1 = frame.z + frame.dz * end;
+  float size = abs(frame.z) + abs(frame.dz * end) + max(max(abs(h.h00), abs(h.h10)), max(abs(h.h01), abs(h.h11)));
+  found.margin = 16.0f * kScarpUnit * (size + frame.start_relief) + (field.spread + field.spread * end);
+  bool fresh = begin <= kScarpFreshTime;
+  found.limit = fresh ? 0.0f : found.margin;
+  if (fresh && strict) {
+    // Strictly below, by more than rounding: that of this cell, and of the start's.
+    float relief = max(scarp_highest(h) - scarp_lowest(h), frame.start_relief);
+    found.limit = -16.0f * kScarpUnit * (size + (1.0f + 2.0f * end) * relief);
+  }
+  float ux = frame.place_x - float(col - frame.col);
+  float uy = frame.place_y - float(row - frame.row);
+  float u0 = clamp(ux + direction.x * begin, 0.0f, 1.0f);
+  float v0 = clamp(uy + direction.y * begin, 0.0f, 1.0f);
+  float u1 = clamp(ux + direction.x * end, 0.0f, 1.0f);
+  float v1 = clamp(uy + direction.y * end, 0.0f, 1.0f);
+  found.piece.begin = begin;
+  found.piece.end = end;
+  if (triangles) {
+    float beyond0 = (u0 + v0) - 1.0f;
+    float beyond1 = (u1 + v1) - 1.0f;
+    found.above = z0 - scarp_triangle(h, beyond0 > 0.0f, u0, v0);
+    float end_above = z1 - scarp_triangle(h, beyond1 > 0.0f, u1, v1);
+    found.least = min(found.above, end_above);
+    found.piece.above = found.above;
+    if ((beyond0 < 0.0f && beyond1 > 0.0f) || (beyond0 > 0.0f && beyond1 < 0.0f)) {
+      float share = beyond0 / (beyond0 - beyond1);
+      float above_diagonal = z0 + share * (z1 - z0) - (h.h10 + (v0 + share * (v1 - v0)) * (h.h01 - h.h10));
+      float t_diagonal = begin + share * (end - begin);
+      // Linear on either side: the fall is before the diagonal if the ray is below there.
+      if (min(found.above, above_diagonal) > found.limit) {
+        found.piece.begin = t_diagonal;
+        found.piece.above = above_diagonal;
+      } else {
+        found.piece.end = t_diagonal;
+        end_above = above_diagonal;
+      }
+      found.least = min(found.least, above_diagonal);
+    }
+    found.piece.chord = end_above - found.piece.above;
+    found.piece.bend = 0.0f;
+    return found;
+  }
+  float along_x = h.h10 - h.h00;
+  float along_y = h.h01 - h.h00;
+  float twist = (h.h11 - h.h01) - along_x;
+  found.above = z0 - (h.h00 + (u0 * along_x + v0 * (along_y + u0 * twist)));
+  float end_above = z1 - (h.h00 + (u1 * along_x + v1 * (along_y + u1 * twist)));
+  found.piece.above = found.above;
+  found.piece.chord = end_above - found.above;
+  found.piece.bend = twist * (u1 - u0) * (v0 - v1);
+  // A parabola that opens upwards has its lowest point in between if it falls at one end and rises at the other.
+  float down = found.piece.chord - found.piece.bend;
+  float lowest = found.above - down * down / (4.0f * found.piece.bend);
+  found.least = found.piece.bend > abs(found.piece.chord) ? lowest : min(found.above, end_above);
+  return found;
 }
 
 /// Follows the ray through one frame. Returns true if `hit` is the answer; its status may be kScarpDoubtful. Otherwise
 /// call again. With `any`, only the status is defined. `field.top_level` must be at least 1.
 SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOUT(ScarpLean) at,
-                            SCARP_INOUT(ScarpHit) hit) {
-  if (!(ray.end >= at.s0)) return true;
+                            SCARP_OUT(ScarpHit) hit) {
   bool strict = (field.flags & kScarpStarts) != 0u && (ray.flags & kScarpOnSurface) != 0u;
   bool wraps = (field.flags & kScarpWraps) != 0u;
   bool triangles = (field.flags & kScarpTriangles) != 0u;
-  // The frame.
-  float z = ray.z;
-  float z_low = ray.z_low;
-  float start_relief = 0.0f;
-  if (strict) {
-    ScarpCell cell = scarp_cell(field, ray.cell.x, ray.cell.y, 0.0f);
-    ScarpCell above_node = scarp_cell(field, ray.cell.x, ray.cell.y, cell.h00);
-    start_relief = scarp_highest(above_node) - scarp_lowest(above_node);
-    z = cell.h00;
-    z_low = scarp_surface(field, above_node, ray.place.x, ray.place.y);
-  }
-  ScarpLeanAxis x = scarp_lean_axis(ray.cell.x, ray.place.x, ray.place_low.x, ray.direction.x, ray.direction_low.x,
-                                    at.s0, field.cells.x, wraps);
-  ScarpLeanAxis y = scarp_lean_axis(ray.cell.y, ray.place.y, ray.place_low.y, ray.direction.y, ray.direction_low.y,
-                                    at.s0, field.cells.y, wraps);
-  float dz = ray.direction.z;
-  ScarpTwoFloat rise = scarp_lean_product(dz, at.s0, wraps);
-  ScarpTwoFloat risen = scarp_two_sum(z, rise.high);
-  SCARP_PRECISE float risen_low = risen.low + (rise.low + (ray.direction_low.z * at.s0 + z_low));
-  ScarpTwoFloat height = scarp_two_sum(risen.high, risen_low);
-  int mirror_x = ray.direction.x < 0.0f ? -1 : 0;
-  int mirror_y = ray.direction.y < 0.0f ? -1 : 0;
-  int begin_x = x.cell ^ mirror_x;
-  int begin_y = y.cell ^ mirror_y;
-  float ox = x.place;
-  float oy = y.place;
-  float dx = abs(ray.direction.x);
-  float dy = abs(ray.direction.y);
-  float per_x = dx == 0.0f ? kScarpNever : abs(ray.per_direction.x);
-  float per_y = dy == 0.0f ? kScarpNever : abs(ray.per_direction.y);
-  float base = height.high;
-  // In codes, less the margin m(t) = rounding + spread (1 + t).
-  float spread = 32.0f * kScarpUnit * field.cell_relief;
-  float code_spread = spread * field.code_per_step;
-  float code_dz = dz * field.code_per_step;
-  float code_z = ((base - field.code_base) + (height.low - field.code_base_low)) * field.code_per_step;
-  bool usual = abs(code_dz) < kScarpSteepest && abs(code_z) < kScarpFarthestCode &&
-               field.highest - field.lowest < kScarpMostRelief;
-  if (!usual || (ray.flags & kScarpUpright) != 0u) {
-    hit.status = kScarpDoubtful;
-    return true;
-  }
-  code_z -= kScarpCodeRounding + code_spread;
-  code_dz -= code_spread;
+  ScarpLeanFrame frame = scarp_lean_frame(field, ray, at.s0, strict);
+  // Heights in codes, less the margin m(t) = rounding + spread (1 + t).
+  float code_spread = field.spread * field.code_per_step;
+  float code_z = ((frame.base - field.code_base) + (frame.z - field.code_base_low)) * field.code_per_step -
+                 (kScarpCodeRounding + code_spread);
+  float code_dz = frame.dz * field.code_per_step - code_spread;
+  float origin_x = frame.ox * frame.per_x;
+  float origin_y = frame.oy * frame.per_y;
   // Up to the border, the ray's end, and where it rises above all ground.
-  float border_x = (float((mirror_x == 0 ? field.cells.x : 0) - begin_x) - ox) * per_x;
-  float border_y = (float((mirror_y == 0 ? field.cells.y : 0) - begin_y) - oy) * per_y;
+  float border_x = scarp_lean_line(float(frame.last_x + 1 - frame.begin_x), frame.per_x, origin_x);
+  float border_y = scarp_lean_line(float(frame.last_y + 1 - frame.begin_y), frame.per_y, origin_y);
   float border = min(border_x, border_y);
-  SCARP_PRECISE float end = (ray.end - at.s0) + ray.end_low;
-  float over = (field.highest - field.code_base) * field.code_per_step + 1.0f;
-  if (code_dz > 0.0f) end = min(end, max(0.0f, (over - code_z) / code_dz));
+  float end = frame.end;
+  if (code_dz > 0.0f) end = min(end, (field.code_over - code_z) / code_dz);
   float last = min(end, border);
 
-  int swap = (mirror_x & 1) | (mirror_y & 2);
-  int cx = begin_x;
-  int cy = begin_y;
-  int top = field.top_level;
-  int level = (at.above != 0 && !strict) || (ray.flags & kScarpFromOutside) != 0u ? max(top - 3, 1) : 1;
-  if (at.s0 > 0.0f) level = 1;
+  bool back_x = frame.mirror_x != 0;
+  bool back_y = frame.mirror_y != 0;
+  int status = kScarpMiss;
+  int x = frame.begin_x;
+  int y = frame.begin_y;
+  bool from_afar = (ray.flags & (kScarpAbove | kScarpFromOutside)) != 0u && at.s0 == 0.0f;
+  int level = from_afar ? max(field.top_level - 3, 1) : 1;
   float t = 0.0f;
-  bool above = at.above != 0;
-  bool found = false;
-  bool candidate = false;
+  // Only the border of a copy ends a frame in which the ray is not known to be above.
+  bool above = at.s0 > 0.0f ? !wraps || at.above != 0 : (ray.flags & (kScarpAbove | kScarpOnSurface)) != 0u;
+  int turn = at.turns;
+  int hit_col = 0;
+  int hit_row = 0;
   ScarpPiece piece;
   piece.begin = 0.0f;
   piece.end = 0.0f;
   piece.above = 0.0f;
   piece.chord = 0.0f;
   piece.bend = 0.0f;
-  int turn = at.turns;
   do {
+    // The block's lines ahead, and those in its middle.
     int half_side = 1 << (level - 1);
-    int line_x = (cx | (2 * half_side - 1)) + 1;
-    int line_y = (cy | (2 * half_side - 1)) + 1;
+    int inside = 2 * half_side - 1;
+    int line_x = (x | inside) + 1;
+    int line_y = (y | inside) + 1;
     int middle_x = line_x - half_side;
     int middle_y = line_y - half_side;
-    SCARP_PRECISE float tx = (float(line_x - begin_x) - ox) * per_x;
-    SCARP_PRECISE float ty = (float(line_y - begin_y) - oy) * per_y;
-    SCARP_PRECISE float tx_middle = (float(middle_x - begin_x) - ox) * per_x;
-    SCARP_PRECISE float ty_middle = (float(middle_y - begin_y) - oy) * per_y;
-    uvec2 quad = scarp_quad(level, (cx ^ mirror_x) >> level, (cy ^ mirror_y) >> level);
-    hit.steps += 1u;
-    hit.fetches += 1u;
-    bool far_x = cx >= middle_x;
-    bool far_y = cy >= middle_y;
-    // The ray passes three children: from t to t1, to t2, to t3.
+    float cells_x = float(line_x - frame.begin_x);
+    float cells_y = float(line_y - frame.begin_y);
+    float half_cells = float(half_side);
+    float tx = scarp_lean_line(cells_x, frame.per_x, origin_x);
+    float ty = scarp_lean_line(cells_y, frame.per_y, origin_y);
+    float tx_middle = scarp_lean_line(cells_x - half_cells, frame.per_x, origin_x);
+    float ty_middle = scarp_lean_line(cells_y - half_cells, frame.per_y, origin_y);
+    uvec2 quad = scarp_quad(level, (x ^ frame.mirror_x) >> level, (y ^ frame.mirror_y) >> level);
+    at.fetches += 1u;
+    // The codes of its children: near and far along x, then y.
+    uint near_row = back_y ? quad.y : quad.x;
+    uint far_row = back_y ? quad.x : quad.y;
+    float near_west = float(near_row & 0xffffu);
+    float near_east = float(near_row >> 16);
+    float far_west = float(far_row & 0xffffu);
+    float far_east = float(far_row >> 16);
+    float code_nn = back_x ? near_east : near_west;
+    float code_fn = back_x ? near_west : near_east;
+    float code_nf = back_x ? far_east : far_west;
+    float code_ff = back_x ? far_west : far_east;
+    // The ray passes three of them, from t to t1, to t2, to t3; less where it enters beyond a middle line.
+    bool far_x = x >= middle_x;
+    bool far_y = y >= middle_y;
     float t3 = max(t, min(min(tx, ty), last));
     float to_x = far_x ? t3 : clamp(tx_middle, t, t3);
     float to_y = far_y ? t3 : clamp(ty_middle, t, t3);
     bool x_first = to_x <= to_y;
     float t1 = min(to_x, to_y);
     float t2 = max(to_x, to_y);
-    bool far_x1 = far_x || x_first;
-    bool far_y1 = far_y || !x_first;
+    float code_x = far_y ? code_ff : code_fn;
+    float code_y = far_x ? code_ff : code_nf;
+    float code0 = far_x ? code_x : (far_y ? code_nf : code_nn);
+    float code1 = x_first ? code_x : code_y;
     float z0 = code_z + code_dz * t;
     float z1 = code_z + code_dz * t1;
     float z2 = code_z + code_dz * t2;
     float z3 = code_z + code_dz * t3;
-    int child0 = ((far_x ? 1 : 0) | (far_y ? 2 : 0)) ^ swap;
-    int child1 = ((far_x1 ? 1 : 0) | (far_y1 ? 2 : 0)) ^ swap;
-    int child2 = 3 ^ swap;
-    float code0 = scarp_code_of(quad, child0);
-    float code1 = scarp_code_of(quad, child1);
-    float code2 = scarp_code_of(quad, child2);
     bool clear0 = min(z0, z1) > code0;
     above = above || clear0;
     bool free0 = clear0 || (above && t1 <= t);
     bool free1 = min(z1, z2) > code1 || t2 <= t1;
-    bool free2 = min(z2, z3) > code2 || t3 <= t2;
+    bool free2 = min(z2, z3) > code_ff || t3 <= t2;
     bool all_free = free0 && free1 && free2;
-    float next = !free0 ? t : !free1 ? t1 : !free2 ? t2 : t3;
-    if (level == 1 && !all_free) {
-      // The cell of that child.
-      float leave = !free0 ? t1 : !free1 ? t2 : t3;
-      int cell_x = middle_x - ((free0 ? (free1 || far_x1) : far_x) ? 0 : 1);
-      int cell_y = middle_y - ((free0 ? (free1 || far_y1) : far_y) ? 0 : 1);
-      // Corners in the ray's direction; over triangles in the grid's, which has the diagonal.
-      int col = cell_x ^ mirror_x;
-      int row = cell_y ^ mirror_y;
-      int next_col = col + 1 < field.samples.x ? col + 1 : 0;
-      int next_row = row + 1 < field.samples.y ? row + 1 : 0;
-      bool back_x = mirror_x != 0;
-      bool back_y = mirror_y != 0;
-      bool turned_x = back_x && !triangles;
-      bool turned_y = back_y && !triangles;
-      float s00 = scarp_sample(turned_x ? next_col : col, turned_y ? next_row : row);
-      float s10 = scarp_sample(turned_x ? col : next_col, turned_y ? next_row : row);
-      float s01 = scarp_sample(turned_x ? next_col : col, turned_y ? row : next_row);
-      float s11 = scarp_sample(turned_x ? col : next_col, turned_y ? row : next_row);
-      hit.fetches += 4u;
-      bool hole = (field.flags & kScarpHoles) != 0u &&
-                  (scarp_is_nodata(s00) || scarp_is_nodata(s10) || scarp_is_nodata(s01) || scarp_is_nodata(s11));
-      ScarpCell h;
-      h.hole = hole;
-      h.h00 = s00 - base;
-      h.h10 = s10 - base;
-      h.h01 = s01 - base;
-      h.h11 = s11 - base;
-      float ux = ox - float(cell_x - begin_x);
-      float uy = oy - float(cell_y - begin_y);
-      float u0 = clamp(ux + dx * next, 0.0f, 1.0f);
-      float v0 = clamp(uy + dy * next, 0.0f, 1.0f);
-      float u1 = clamp(ux + dx * leave, 0.0f, 1.0f);
-      float v1 = clamp(uy + dy * leave, 0.0f, 1.0f);
-      float height0 = height.low + dz * next;
-      float height1 = height.low + dz * leave;
-      piece.begin = next;
-      piece.end = leave;
-      float size = abs(height.low) + abs(dz) * leave + max(max(abs(h.h00), abs(h.h10)), max(abs(h.h01), abs(h.h11)));
-      float margin = 16.0f * kScarpUnit * (size + start_relief) + spread * (1.0f + leave);
-      bool fresh = next <= kScarpFreshTime;
-      float limit = fresh ? 0.0f : margin;
-      if (fresh && strict) {
-        // Strictly below, by more than rounding: that of this cell, and of the start's.
-        float relief = max(scarp_highest(h) - scarp_lowest(h), start_relief);
-        limit = -16.0f * kScarpUnit * (size + (1.0f + 2.0f * leave) * relief);
-      }
-      float above0;
-      float least;
-      if (triangles) {
-        u0 = back_x ? 1.0f - u0 : u0;
-        v0 = back_y ? 1.0f - v0 : v0;
-        u1 = back_x ? 1.0f - u1 : u1;
-        v1 = back_y ? 1.0f - v1 : v1;
-        float beyond0 = (u0 + v0) - 1.0f;
-        float beyond1 = (u1 + v1) - 1.0f;
-        above0 = height0 - scarp_triangle(h, beyond0 > 0.0f, u0, v0);
-        piece.above = above0;
-        float end_above = height1 - scarp_triangle(h, beyond1 > 0.0f, u1, v1);
-        least = min(piece.above, end_above);
-        if ((beyond0 < 0.0f && beyond1 > 0.0f) || (beyond0 > 0.0f && beyond1 < 0.0f)) {
-          float share = beyond0 / (beyond0 - beyond1);
-          float above_diagonal =
-              height0 + share * (height1 - height0) - (h.h10 + (v0 + share * (v1 - v0)) * (h.h01 - h.h10));
-          least = min(least, above_diagonal);
-          float t_diagonal = next + share * (leave - next);
-          // Linear on either side: the fall is before the diagonal if the ray is below there.
-          if (min(above0, above_diagonal) > limit) {
-            piece.begin = t_diagonal;
-            piece.above = above_diagonal;
-          } else {
-            piece.end = t_diagonal;
-            end_above = above_diagonal;
-          }
-        }
-        piece.chord = end_above - piece.above;
-        piece.bend = 0.0f;
-      } else {
-        float along_x = h.h10 - h.h00;
-        float along_y = h.h01 - h.h00;
-        float twist = (h.h11 - h.h01) - along_x;
-        above0 = height0 - (h.h00 + (u0 * along_x + v0 * (along_y + u0 * twist)));
-        piece.above = above0;
-        float end_above = height1 - (h.h00 + (u1 * along_x + v1 * (along_y + u1 * twist)));
-        piece.chord = end_above - piece.above;
-        piece.bend = -twist * (u1 - u0) * (v1 - v0);
-        least = min(piece.above, end_above);
-        if (piece.bend > abs(piece.chord)) {
-          float down = piece.chord - piece.bend;
-          least = piece.above - down * down / (4.0f * piece.bend);
-        }
-      }
-      if (hole) {
-        above = false;
-      } else if (!above && !(above0 > margin)) {
-        hit.status = kScarpDoubtful;
-        return true;
-      } else if (!(least > limit || (strict && least == limit))) {
-        found = fresh || (any && least < -2.0f * margin);
-        candidate = true;
-        cx = cell_x;
-        cy = cell_y;
-        break;
-      } else {
-        above = true;
-      }
-      next = leave;
+    float next = free0 ? (free1 ? (free2 ? t3 : t2) : t1) : t;
+    bool tests = level == 1 && !all_free;
+    bool hole = false;
+    if (tests) {
+      // The first cell that it may meet.
+      float leave = free0 ? (free1 ? t3 : t2) : t1;
+      int cell_x = far_x || tx_middle <= next ? middle_x : middle_x - 1;
+      int cell_y = far_y || ty_middle <= next ? middle_y : middle_y - 1;
+      hit_col = cell_x ^ frame.mirror_x;
+      hit_row = cell_y ^ frame.mirror_y;
+      ScarpLeanCell cell = scarp_lean_cell(field, frame, ray.direction, hit_col, hit_row, next, leave, strict);
+      at.fetches += 4u;
+      bool clear = cell.least > cell.limit || (strict && cell.least == cell.limit);
+      bool under = !above && !(cell.above > cell.margin);
+      if (under && !cell.hole)
+        status = kScarpDoubtful;
+      else if (!clear && !cell.hole)
+        status = next <= kScarpFreshTime || (any && cell.least < -2.0f * cell.margin) ? kScarpHit : kScarpFrame;
+      hole = cell.hole;
+      piece = cell.piece;
+      if (status == kScarpMiss)
+        next = leave;
+      else
+        last = -1.0f;
     }
+    above = (above || tests) && !hole;
     // Into the block at `next`: never back, and across the lines that have been crossed.
-    bool past_x = far_x || tx_middle <= next;
-    bool past_y = far_y || ty_middle <= next;
-    int low_x = past_x ? max(middle_x, cx) : cx;
-    int low_y = past_y ? max(middle_y, cy) : cy;
-    cx = tx <= next ? line_x : clamp(begin_x + int(ox + dx * next), low_x, low_x | (half_side - 1));
-    cy = ty <= next ? line_y : clamp(begin_y + int(oy + dy * next), low_y, low_y | (half_side - 1));
+    int past_x = tx <= next ? line_x : (tx_middle <= next ? middle_x : x);
+    int past_y = ty <= next ? line_y : (ty_middle <= next ? middle_y : y);
+    int at_x = frame.begin_x + int(frame.ox + frame.dx * next);
+    int at_y = frame.begin_y + int(frame.oy + frame.dy * next);
+    x = min(max(max(at_x, past_x), x), frame.last_x);
+    y = min(max(max(at_y, past_y), y), frame.last_y);
     t = next;
-    level = all_free ? min(level + 1, top) : max(level - 1, 1);
-    ++turn;
+    level = all_free ? min(level + 1, field.top_level) : max(level - 1, 1);
+    turn += 1;
   } while (t < last && turn < kScarpLeanTurns);
-  at.turns = turn + 1;
+  at.turns = turn;
   at.above = above ? 1 : 0;
-  if (turn >= kScarpLeanTurns) {
-    hit.status = kScarpDoubtful;
-    return true;
-  }
-  if (found) {
-    float t_hit = piece.begin + scarp_fall_of(piece, strict) * (piece.end - piece.begin);
-    float u = clamp((ox - float(cx - begin_x)) + dx * t_hit, 0.0f, 1.0f);
-    float v = clamp((oy - float(cy - begin_y)) + dy * t_hit, 0.0f, 1.0f);
-    hit.status = kScarpHit;
-    hit.cell = ivec2(cx ^ mirror_x, cy ^ mirror_y);
-    hit.place = vec2(mirror_x == 0 ? u : 1.0f - u, mirror_y == 0 ? v : 1.0f - v);
-    hit.time = at.s0;
-    hit.time_low = t_hit;
-    return true;
-  }
-  if (candidate) {
-    at.s0 += wraps ? piece.begin : floor(piece.begin * (1.0f / kScarpFrameQuantum)) * kScarpFrameQuantum;
-    return false;
-  }
-  if (wraps && border < end) {
+  if (turn >= kScarpLeanTurns) status = kScarpDoubtful;
+  float s0 = at.s0;
+  if (wraps && status == kScarpMiss && border < end) {
     // On into the next copy, by more than times are rounded.
-    at.s0 = (at.s0 + border) * (1.0f + 4.0f * kScarpUnit);
-    if (!(at.s0 < float(kScarpFarthestCell))) {
-      hit.status = kScarpDoubtful;
-      return true;
-    }
-    return false;
+    at.s0 = (s0 + border) * (1.0f + 4.0f * kScarpUnit);
+    status = at.s0 < float(kScarpFarthestCell) ? kScarpFrame : kScarpDoubtful;
+  } else if (status == kScarpFrame) {
+    // What it may meet is decided in a frame that begins there.
+    at.s0 = s0 + (wraps ? t : floor(t * (1.0f / kScarpFrameQuantum)) * kScarpFrameQuantum);
   }
-  return true;
+  hit.status = status;
+  hit.steps = uint(turn);
+  hit.fetches = at.fetches;
+  float from = triangles ? piece.begin : t;
+  float t_hit = from + scarp_fall_of(piece, strict) * (piece.end - from);
+  hit.cell = ivec2(hit_col, hit_row);
+  // Named: of both in one vector lavapipe (Mesa 22.3) makes zeros.
+  float place_x = (frame.place_x - float(hit_col - frame.col)) + ray.direction.x * t_hit;
+  float place_y = (frame.place_y - float(hit_row - frame.row)) + ray.direction.y * t_hit;
+  hit.place = vec2(clamp(place_x, 0.0f, 1.0f), clamp(place_y, 0.0f, 1.0f));
+  hit.time = s0;
+  hit.time_low = t_hit;
+  return status != kScarpFrame;
 }
 
 SCARP_GLSL_END

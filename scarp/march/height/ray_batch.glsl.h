@@ -52,10 +52,18 @@ struct RayBatch {
   Address under_way;
 };
 
+/// Sizes of ScarpRay and ScarpHit.
+const uint kBatchRayBytes = 92u;
+const uint kBatchHitBytes = 36u;
+
 /// The status of a march that goes on in the next run.
 const int kBatchUnderWay = kScarpDoubtful;
 
-#ifndef __cplusplus
+#ifdef __cplusplus
+
+static_assert(sizeof(ScarpRay) == kBatchRayBytes && sizeof(ScarpHit) == kBatchHitBytes);
+
+#else
 
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const bool batch_any = false;
@@ -63,18 +71,26 @@ layout(constant_id = 2) const bool batch_statistics = false;
 layout(constant_id = 3) const uint batch_march = kScarpNaive;
 layout(constant_id = 4) const uint batch_ground = kBatchAnyGround;
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRays { ScarpRay rays[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHits { ScarpHit hits[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRay { ScarpRay is; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHit { ScarpHit is; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer BatchWord { uint word; };
 layout(push_constant, scalar) uniform Push { RayBatch batch; };
 
 #define SCARP_GROUND_TYPE (batch_ground == kBatchAnyGround ? opened_type : batch_ground >> kBatchSamplesShift)
 #include "scarp/march/height/ground_host.glsl.h"
 
+// The ray and the hit of an invocation, by 32 bits: batches have less than 2^32 bytes.
+Address batch_address(Address begin, uint offset) {
+  uint low = begin.x + offset;
+  return Address(low, begin.y + (low < begin.x ? 1u : 0u));
+}
+BatchRay batch_ray(uint i) { return BatchRay(batch_address(batch.rays, i * kBatchRayBytes)); }
+BatchHit batch_hit(uint i) { return BatchHit(batch_address(batch.hits, i * kBatchHitBytes)); }
+
 // Whether this run is to march ray i.
 bool batch_asks(uint i) {
   if (i >= batch.count) return false;
-  return batch.resume == kBatchBegin || BatchHits(batch.hits).hits[i].status == kBatchUnderWay;
+  return batch.resume == kBatchBegin || batch_hit(i).is.status == kBatchUnderWay;
 }
 
 // The ground as a ray has it.
@@ -85,10 +101,12 @@ ScarpField batch_field(ScarpRay ray) {
   return field;
 }
 
-// The march of ray i has not come to its end.
+// Some march has not come to its end.
+void batch_mark() { BatchWord(batch.under_way).word = 1u; }
+// That of ray i has not.
 void batch_interrupt(uint i) {
-  BatchHits(batch.hits).hits[i].status = kBatchUnderWay;
-  BatchWord(batch.under_way).word = 1u;
+  batch_hit(i).is.status = kBatchUnderWay;
+  batch_mark();
 }
 
 // Writes the answer to ray i.
@@ -98,13 +116,13 @@ void batch_answer(uint i, ScarpHit hit) {
     hit.fetches = 0u;
   }
   if (batch_any) {
-    BatchHits(batch.hits).hits[i].status = hit.status;
+    batch_hit(i).is.status = hit.status;
     if (!batch_statistics) return;
-    BatchHits(batch.hits).hits[i].steps = hit.steps;
-    BatchHits(batch.hits).hits[i].fetches = hit.fetches;
+    batch_hit(i).is.steps = hit.steps;
+    batch_hit(i).is.fetches = hit.fetches;
     return;
   }
-  BatchHits(batch.hits).hits[i] = hit;
+  batch_hit(i).is = hit;
 }
 
 #endif

@@ -38,7 +38,8 @@ struct ScarpField {
   float code_base_low;  ///< what a float of the base leaves
   float code_step;      ///< height of one code
   float code_per_step;  ///< 1 / code_step
-  float cell_relief;    ///< upper bound of the height difference within a cell
+  float code_over;      ///< higher than the highest sample
+  float spread;         ///< kGroundSpread (ground_buffers.glsl.h) times the largest height difference within a cell
   float lowest;         ///< sample
   float highest;        ///< sample
 };
@@ -57,7 +58,7 @@ struct ScarpRay {
   vec2 place_low;      ///< what floats of it leave, here and below
   vec3 direction;      ///< the larger of abs x, abs y is 1 to 2, unless it is upright: then abs z is
   vec3 direction_low;  ///< likewise
-  vec2 per_direction;  ///< 1 / direction; anything where that is 0
+  vec2 per_direction;  ///< 1 / direction; kScarpNever where that is 0
   float z;             ///< at its begin
   float z_low;         ///< likewise
   float end;           ///< the last time, included; at most kScarpNever

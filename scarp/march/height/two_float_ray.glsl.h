@@ -262,8 +262,8 @@ SCARP_FN ScarpSent scarp_send(ScarpField field, ScarpLine line, ScarpTwoFloat be
   float per = scarp_per_power_below(speed);
   ray.direction = vec3(d.x * per, d.y * per, d.z * per);
   ray.direction_low = vec3(d_low.x * per, d_low.y * per, d_low.z * per);
-  ray.per_direction = vec2(d.x == 0.0f ? 0.0f : clamp(1.0f / ray.direction.x, -kScarpNever, kScarpNever),
-                           d.y == 0.0f ? 0.0f : clamp(1.0f / ray.direction.y, -kScarpNever, kScarpNever));
+  ray.per_direction = vec2(d.x == 0.0f ? kScarpNever : clamp(1.0f / ray.direction.x, -kScarpNever, kScarpNever),
+                           d.y == 0.0f ? kScarpNever : clamp(1.0f / ray.direction.y, -kScarpNever, kScarpNever));
   ray.z = height.high;
   ray.z_low = height.low;
   ray.end = clamp(rest.high * power, 0.0f, kScarpNever);

@@ -35,7 +35,7 @@ glsl::ScarpHit march_lean(const glsl::ScarpField& ground, const glsl::ScarpRay& 
   glsl::ScarpField field = ground;
   field.flags |= glsl::kScarpStarts;
   glsl::ScarpHit hit = glsl::scarp_no_hit();
-  glsl::ScarpLean at = glsl::scarp_lean_begin(ray);
+  glsl::ScarpLean at = glsl::scarp_lean_begin();
   while (!glsl::scarp_lean_on(field, ray, any, at, hit)) {
   }
   ++lean_rays;
