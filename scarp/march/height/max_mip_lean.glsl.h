@@ -291,6 +291,7 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   bool strict = (field.flags & kScarpStarts) != 0u && (ray.flags & kScarpOnSurface) != 0u;
   bool wraps = (field.flags & kScarpWraps) != 0u;
   bool triangles = (field.flags & kScarpTriangles) != 0u;
+  vec3 direction = ray.direction;
   ScarpLeanFrame frame = scarp_lean_frame(field, ray, at.s0, strict);
   // Heights in codes, less the margin m(t) = rounding + spread (1 + t).
   float code_spread = field.spread * field.code_per_step;
@@ -387,7 +388,7 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
       int cell_y = far_y || ty_middle <= next ? middle_y : middle_y - 1;
       hit_col = cell_x ^ frame.mirror_x;
       hit_row = cell_y ^ frame.mirror_y;
-      ScarpLeanCell cell = scarp_lean_cell(field, frame, ray.direction, hit_col, hit_row, next, leave, strict);
+      ScarpLeanCell cell = scarp_lean_cell(field, frame, direction, hit_col, hit_row, next, leave, strict);
       at.fetches += 4u;
       bool clear = cell.least > cell.limit || (strict && cell.least == cell.limit);
       bool under = !above && !(cell.above > cell.margin);
@@ -432,10 +433,8 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   float from = triangles ? piece.begin : t;
   float t_hit = from + scarp_fall_of(piece, strict) * (piece.end - from);
   hit.cell = ivec2(hit_col, hit_row);
-  // Named: of both in one vector lavapipe (Mesa 22.3) makes zeros.
-  float place_x = (frame.place_x - float(hit_col - frame.col)) + ray.direction.x * t_hit;
-  float place_y = (frame.place_y - float(hit_row - frame.row)) + ray.direction.y * t_hit;
-  hit.place = vec2(clamp(place_x, 0.0f, 1.0f), clamp(place_y, 0.0f, 1.0f));
+  hit.place = vec2(clamp((frame.place_x - float(hit_col - frame.col)) + direction.x * t_hit, 0.0f, 1.0f),
+                   clamp((frame.place_y - float(hit_row - frame.row)) + direction.y * t_hit, 0.0f, 1.0f));
   hit.time = s0;
   hit.time_low = t_hit;
   return status != kScarpFrame;
