@@ -58,6 +58,13 @@ const DeviceHeightMarch::Row& DeviceHeightMarch::find(std::string_view march) {
   throw Error(fmt::format("march '{}': does not run on Vulkan devices (available: {})", march, names()));
 }
 
+bool leaves_first_pass(const HeightField& field) {
+  constexpr int kMostCells = 1 << 17;
+  constexpr double kMostRelief = 0x1p100;
+  return field.cell_cols() >= kMostCells || field.cell_rows() >= kMostCells ||
+         !(field.max_sample() - field.min_sample() < kMostRelief);
+}
+
 std::size_t DeviceHeightMarch::state_bytes(std::string_view march) { return find(march).state_bytes; }
 
 DeviceHeightMarch::DeviceHeightMarch(const Device& device, std::string_view march, int turns_at_once)
@@ -89,7 +96,8 @@ const ComputePipeline& DeviceHeightMarch::pipeline(const DeviceRayQuery& query, 
 void DeviceHeightMarch::begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query) {
   reserve(rays.count);
   query_ = query;
-  running_ = &pipeline(query, false);
+  second_ = query.exact_only && !march_.second.empty();
+  running_ = &pipeline(query, second_);
   batch_ = {.ground = rays.ground,
             .rays = rays.rays,
             .hits = rays.hits,
@@ -104,9 +112,10 @@ void DeviceHeightMarch::begin(Commands& commands, const DeviceRays& rays, const 
 
 bool DeviceHeightMarch::go_on(Commands& commands) {
   if (interrupted_ == 0) return false;
-  const bool second = batch_.resume == glsl::kBatchBegin && !march_.second.empty();
-  if (second) running_ = &pipeline(query_, true);
-  batch_.resume = second ? glsl::kBatchSecond : glsl::kBatchResume;
+  const bool begins_second = !second_ && !march_.second.empty();
+  if (begins_second) running_ = &pipeline(query_, true);
+  second_ = second_ || begins_second;
+  batch_.resume = begins_second ? glsl::kBatchSecond : glsl::kBatchResume;
   record(commands);
   return true;
 }

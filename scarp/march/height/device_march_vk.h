@@ -17,6 +17,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "scarp/field/height_field.h"
 #include "scarp/march/height/march_host.h"
 #include "scarp/march/height/ray_batch.glsl.h"
 #include "scarp/march/sampling.glsl.h"
@@ -44,7 +45,11 @@ struct DeviceRayQuery {
   /// its flags: rays may start on the surface.
   std::uint32_t ground_kind = glsl::kBatchAnyGround;
   glsl::ScarpSampling sampling{};  ///< of all marches but max-mip
+  bool exact_only = false;         ///< without the first pass of max-mip, see leaves_first_pass()
 };
+
+/// Whether a field is beyond what the first pass of max-mip computes with (max_mip_lean.glsl.h).
+bool leaves_first_pass(const HeightField& field);
 
 /// Not thread-safe.
 class DeviceHeightMarch {
@@ -87,6 +92,7 @@ class DeviceHeightMarch {
   const ComputePipeline* running_ = nullptr;
   glsl::RayBatch batch_{};
   DeviceRayQuery query_{};
+  bool second_ = false;            // whether the second pass has begun
   std::uint32_t interrupted_ = 0;  // after the last run: 1 if a march is under way
 };
 

@@ -15,7 +15,8 @@
 // (max_mip.glsl.h) in a second pass: the status is then kScarpDoubtful.
 //
 // Guarantee: decisions are those of a surface and a ray displaced by at most the bound that doc/dev/numerics.md
-// derives ("The lean pass"); closest and any hit agree. Source: see max_mip.h.
+// derives ("The lean pass"); closest and any hit agree. For fields of less than 2^17 cells a side whose heights differ
+// by less than 2^100. Source: see max_mip.h.
 //
 // Compiles as C++ and GLSL. The including file defines scarp_sample and scarp_is_nodata (cell_surface.glsl.h), and
 //   vec4 scarp_corners(int col, int row)            the samples at (col, row), (col + 1, row), (col, row + 1) and
@@ -33,9 +34,9 @@ SCARP_GLSL_BEGIN
 
 /// Local time up to which signs decide. At most twice as many cells.
 const float kScarpFreshTime = 4.0f;
-/// Frames begin at multiples of this time, except over fields that wrap: s0 then has at most 16 significant bits, up to
-/// 2^14 cells.
-const float kScarpFrameQuantum = 0.25f;
+/// Bits of a frame's time, except over fields that wrap: the high 16. Times are below 2^17, so that the rest is less
+/// than 2.
+const uint kScarpFrameBits = 0xffffff00u;
 /// Blocks and cells after which a ray is left to the second pass, which can be interrupted.
 const int kScarpLeanTurns = 16384;
 /// Height of a block's code that floats may be off, in codes (numerics.md counts 0.27).
@@ -79,8 +80,7 @@ struct ScarpLeanFrame {
   float start_relief;      ///< height difference in the start cell of a ray from the surface
 };
 
-/// a * s0 as two floats, to 2^-32 of itself. For a multiple of the quantum the high 8 bits of `a` give an exact
-/// product.
+/// a * s0 as two floats, to 2^-31 of itself: s0 has 16 bits, so that its product with the high 8 bits of `a` is exact.
 SCARP_FN ScarpTwoFloat scarp_lean_product(float a, float s0, bool wraps) {
   if (wraps) return scarp_two_product(a, s0);
   float high = uintBitsToFloat(floatBitsToUint(a) & 0xffff0000u);
@@ -425,7 +425,9 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
     status = at.s0 < float(kScarpFarthestCell) ? kScarpFrame : kScarpDoubtful;
   } else if (status == kScarpFrame) {
     // What it may meet is decided in a frame that begins there.
-    at.s0 = s0 + (wraps ? t : floor(t * (1.0f / kScarpFrameQuantum)) * kScarpFrameQuantum);
+    at.s0 = s0 + t;
+    // Rounded down, to no later than the sum.
+    if (!wraps) at.s0 = uintBitsToFloat((floatBitsToUint(at.s0) - 1u) & kScarpFrameBits);
   }
   hit.status = status;
   hit.steps = uint(turn);

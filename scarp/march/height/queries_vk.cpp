@@ -64,6 +64,7 @@ struct DeviceQueries::Impl {
     const bool starts = exact && std::any_of(asked.begin(), asked.end(),
                                              [](const Ray& ray) { return ray.start == RayStart::on_surface; });
     DeviceRayQuery query{any, statistics, ground_kind(target, starts)};
+    query.exact_only = leaves_first_pass(*target.field);
     if (!exact) query.sampling = sampling_of(name, march_settings, target);
     runs.ask_there(
         [&](Commands& commands, std::uint64_t rays, std::uint64_t hits, std::uint32_t count) {
