@@ -17,8 +17,8 @@ void refuse_target(const HeightTarget& target, HeightPart part) {
 void require_field(const HeightField& field, HeightFields fields, std::string_view march) {
   if (takes(fields, field)) return;
   const char* has = field.wraps() ? "wraps" : field.nodata_count() > 0 ? "has holes" : "consists of triangles";
-  throw Error(fmt::format("march: {} takes only bilinear ground without holes or wrap, and this ground {} (use max-mip)",
-                          march, has));
+  throw Error(fmt::format(
+      "march: {} takes only bilinear ground without holes or wrap, and this ground {} (use max-mip)", march, has));
 }
 
 }  // namespace scarp

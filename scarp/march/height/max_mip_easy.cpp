@@ -15,8 +15,8 @@ struct Part {
   GridRay ray;
   double begin = 0, end = 0;  // times; the longest component of ray.direction is 1 to 2
   int exponent = 0;           // t = ldexp(time, -exponent)
-  bool from_border = false;  // begins at the border ...
-  bool from_top = false;     // ... or where the ray descends to the highest sample
+  bool from_border = false;   // begins at the border ...
+  bool from_top = false;      // ... or where the ray descends to the highest sample
 };
 
 Part part_over(const HeightField& field, const Ray& ray) {
@@ -59,11 +59,13 @@ Hit march_max_mip_easy(const HeightTarget& target, const Ray& ray, const MarchSe
   if (on_surface) {
     easy::Ground::EasyHit from{};
     from.cell = {ray.start_cell.col, ray.start_cell.row};
-    from.place = {std::clamp(begin.x - ray.start_cell.col, 0.0, 1.0), std::clamp(begin.y - ray.start_cell.row, 0.0, 1.0)};
+    from.place = {std::clamp(begin.x - ray.start_cell.col, 0.0, 1.0),
+                  std::clamp(begin.y - ray.start_cell.row, 0.0, 1.0)};
     from.position = {begin.x, begin.y, 0};
     begin = ground.easy_above(from);
   }
-  const easy::Ground::EasyHit found = ground.max_mip_easy(begin, part.ray.direction, static_cast<float>(part.end - part.begin), false);
+  const easy::Ground::EasyHit found =
+      ground.max_mip_easy(begin, part.ray.direction, static_cast<float>(part.end - part.begin), false);
   if (stats) *stats = {.steps = static_cast<std::uint32_t>(found.steps)};
   if (!found.hit) return hit;
   hit.t = std::ldexp(part.begin + static_cast<double>(found.t), -part.exponent);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// max-mip-easy: the hit of a ray with a height field. One text to paste into a shader: WebGL 2 (GLSL ES 3.00), GLSL 3.30
-// and later, Shadertoy. No extensions, no buffers, no doubles.
+// max-mip-easy: the hit of a ray with a height field. One text to paste into a shader: WebGL 2 (GLSL ES 3.00),
+// GLSL 3.30 and later, Shadertoy. No extensions, no buffers, no doubles.
 //
 //   level 2:  [        ]   lowest ray height over the block > its maximum: on to the next block
 //   level 1:  [   ][   ]   otherwise: down one level
@@ -17,8 +17,8 @@
 // anywhere. Coordinates, the direction's components and heights are limited to 1e6 (the longest component at least
 // 1e-6), t_max to 1e12. `precision highp float; precision highp int;` is required in GLSL ES.
 //
-// The ground is a solid body: a ray that starts below it, or enters it through the border, hits there at once (`below`).
-// For a shadow ray, start at easy_above(hit): a hit itself may be below the ground by rounding.
+// The ground is a solid body: a ray that starts below it, or enters it through the border, hits there at once
+// (`below`). For a shadow ray, start at easy_above(hit): a hit itself may be below the ground by rounding.
 //
 // No hit is lost between cells. The ray is cut into pieces, one for each block or cell, without gaps: each piece begins
 // at the time at which the last one ended. A block is skipped only if the ray is above its maximum all along the piece,
@@ -139,7 +139,7 @@ EasyHit max_mip_easy(vec3 origin, vec3 direction, float t_max, bool any_hit) {
   float t_end = t_out - t_in;
   float t = 0.0f;
   ivec2 cell = first;
-  int level = any_hit ? 0 : max(top - 2, 0);
+  int level = top / 2;
   // Each turn goes on by a column or a row, or down a level; and up at most as often as on.
   int turns = 2 * (cells.x + cells.y) + top;
   for (int turn = 0; turn < turns; ++turn) {
@@ -179,16 +179,15 @@ EasyHit max_mip_easy(vec3 origin, vec3 direction, float t_max, bool any_hit) {
       }
       free = true;
     }
-    // On to the block behind the nearer line, or down. Into the next parent block: up.
+    // On to the block behind the nearer line, and up if it has another parent; or down.
     bool over_x = t_line.x <= t_line.y;
-    bool over_y = !over_x || t_line.y <= t_line.x;
     ivec2 next = clamp(first + ivec2(place + speed * t_to), cell, line - 1);
-    next = ivec2(over_x ? line.x : next.x, over_y ? line.y : next.y);
+    next = over_x ? ivec2(line.x, next.y) : ivec2(next.x, line.y);
     if (free && (t_to >= t_end || next.x >= border.x || next.y >= border.y)) return hit;
-    bool up = (over_x && ((line.x >> level) & 1) == 0) || (over_y && ((line.y >> level) & 1) == 0);
+    bool up = (((over_x ? line.x : line.y) >> level) & 1) == 0 && level < top;
     t = free ? t_to : t;
     cell = free ? next : cell;
-    level = free ? (up ? min(level + 1, top) : level) : level - 1;
+    level += free ? (up ? 1 : 0) : -1;
   }
   return hit;
 }

@@ -38,9 +38,8 @@ class Ground {
     }
     const double maximum = pyramid_.maximum(level, block.x, block.y);
     const float rounded = static_cast<float>(maximum);
-    return static_cast<double>(rounded) < maximum
-               ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
-               : rounded;
+    return static_cast<double>(rounded) < maximum ? std::nextafter(rounded, std::numeric_limits<float>::infinity())
+                                                  : rounded;
   }
 
 // The text defines a struct, constants and functions.

@@ -13,6 +13,8 @@ namespace {
 
 // The factors of numerics.md: sideways per cell, vertically per unit of height.
 constexpr double kSideways = 0x1p-21, kVertically = 0x1p-20;
+// The judge's own, in doubles, and that of what clipped the ray.
+constexpr double kDoubles = 32 * 0x1p-53;
 // Times are rounded this often.
 constexpr double kTimes = 8 * 0x1p-24;
 
@@ -22,11 +24,11 @@ EasyJudge::EasyJudge(const HeightField& field, const GridRay& ray, double t_max,
     : field_(field), ray_(ray), cells_{field.cell_cols(), field.cell_rows()}, t_max_(t_max) {
   if (!field.has_cells()) return;
   double begin = 0, end = t_max;
-  for (int axis = 0; axis < 2; ++axis) clip_to_range(0, cells_[axis], ray.origin[axis], ray.direction[axis], begin, end);
+  for (int axis = 0; axis < 2; ++axis)
+    clip_to_range(0, cells_[axis], ray.origin[axis], ray.direction[axis], begin, end);
   t_in_ = begin;
   const dvec3 &o = ray.origin, &d = ray.direction;
-  if (o.z + d.z * begin > field.max_sample() && d.z < 0)
-    t_in_ = std::max(t_in_, (field.max_sample() - o.z) / d.z);
+  if (o.z + d.z * begin > field.max_sample() && d.z < 0) t_in_ = std::max(t_in_, (field.max_sample() - o.z) / d.z);
   t_out_ = end;
   origin_ = clipped ? std::max(cells_[0], cells_[1]) : std::max(std::abs(o.x), std::abs(o.y));
   height_ = clipped ? std::abs(o.z + d.z * t_in_) : std::abs(o.z) + std::abs(d.z * t_in_);
@@ -51,7 +53,8 @@ EasyJudge::EasyJudge(const HeightField& field, const GridRay& ray, double t_max,
 
 Cell EasyJudge::cell_at(double t) const {
   const auto cell = [&](int axis) {
-    return std::clamp(static_cast<int>(std::floor(std::clamp(at(axis, t), -1.0, cells_[axis] + 1.0))), 0, cells_[axis] - 1);
+    return std::clamp(static_cast<int>(std::floor(std::clamp(at(axis, t), -1.0, cells_[axis] + 1.0))), 0,
+                      cells_[axis] - 1);
   };
   return {cell(0), cell(1)};
 }
@@ -63,7 +66,8 @@ double EasyJudge::clearance(Cell cell, double t) const {
 
 double EasyJudge::sideways(double t) const {
   const double speed = std::max(std::abs(ray_.direction.x), std::abs(ray_.direction.y));
-  return kSideways * (std::max(cells_[0], cells_[1]) + origin_ + speed * (t - t_in_) + 1);
+  return kSideways * (std::max(cells_[0], cells_[1]) + origin_ + speed * (t - t_in_) + 1) +
+         kDoubles * (std::max(std::abs(ray_.origin.x), std::abs(ray_.origin.y)) + speed * t);
 }
 
 double EasyJudge::delta(double t) const {
@@ -78,7 +82,8 @@ double EasyJudge::delta(double t) const {
       highest = std::max({highest, std::abs(high), std::abs(low)});
     }
   }
-  return kVertically * (height_ + std::abs(ray_.direction.z) * (t - t_in_) + highest) + 2 * sideways(t) * relief;
+  return kVertically * (height_ + std::abs(ray_.direction.z) * (t - t_in_) + highest) + 2 * sideways(t) * relief +
+         kDoubles * (std::abs(ray_.origin.z) + std::abs(ray_.direction.z) * t);
 }
 
 // The least clearance in a piece, in shares of delta.
@@ -109,6 +114,8 @@ double EasyJudge::passes_by(double until) const {
   return least;
 }
 
+bool EasyJudge::may_begin_below() const { return over_field_ && clearance(cell_at(t_in_), t_in_) <= delta(t_in_); }
+
 std::string EasyJudge::objection(const EasyAnswer& answer) const {
   if (!answer.hit) {
     const double least = over_field_ ? passes_by(HUGE_VAL) : HUGE_VAL;
@@ -129,7 +136,8 @@ std::string EasyJudge::objection(const EasyAnswer& answer) const {
       return fmt::format("axis {}: at {}, not {}, bound {}", axis, at(axis, t), places[axis], e);
   }
   const double f = clearance(cell_at(t), t) / delta(t);
-  const bool starts = t <= t_in_ + slack + e / std::max({std::abs(ray_.direction.x), std::abs(ray_.direction.y), 1e-300});
+  const bool starts =
+      t <= t_in_ + slack + e / std::max({std::abs(ray_.direction.x), std::abs(ray_.direction.y), 1e-300});
   worst_ = std::max(worst_, starts ? f : std::abs(f));
   if (f > 1) return fmt::format("hits {} delta above the ground", f);
   if (f < -1 && !starts) return fmt::format("hits {} delta below the ground", -f);

@@ -26,6 +26,8 @@ class EasyJudge {
 
   /// Empty if a march may answer so, else why not.
   std::string objection(const EasyAnswer& answer) const;
+  /// Whether a march may take the ray to begin below the ground.
+  bool may_begin_below() const;
   /// Greatest error of the answers that were judged, as a share of delta.
   double worst() const { return worst_; }
 
