@@ -64,6 +64,7 @@ struct EasyHit {
 };
 
 const float kEasyUnit = 5.9604645e-8f;   // rounding unit of floats, 2^-24
+const float kEasyLeast = 1.0e-30f;       // above ground at height 0
 const float kEasyFarthest = 1.0e12f;     // no time is later
 const float kEasySlowest = 1.0e-25f;     // a ray slower than this along an axis does not move on it
 const float kEasyBelowOne = 0.9999999f;  // place of nodes on the last line in the last cell ...
@@ -207,5 +208,5 @@ vec3 easy_above(EasyHit hit) {
   float low = min(min(corners.x, corners.y), min(corners.z, corners.w));
   float high = max(max(corners.x, corners.y), max(corners.z, corners.w));
   float lift = 32.0f * kEasyUnit * (max(abs(low), abs(high)) + float(max(cells.x, cells.y) + 1) * (high - low));
-  return vec3(hit.position.x, hit.position.y, (corners.x + easy_rise(corners, hit.place)) + lift);
+  return vec3(hit.position.x, hit.position.y, (corners.x + easy_rise(corners, hit.place)) + max(lift, kEasyLeast));
 }
