@@ -127,10 +127,10 @@ TEST(MaxMipEasy, TheMarchOfTheTableDoes) {
                    v = std::clamp(local.origin.y - ray.start_cell.row, 0.0, 1.0);
       const double high = std::max({h.h00, h.h10, h.h01, h.h11}), low = std::min({h.h00, h.h10, h.h01, h.h11});
       const int cells = std::max(field.cell_cols(), field.cell_rows());
-      local.origin.z = height_in_cell(Surface::bilinear, h, u, v) +
-                       0x1p-19 * (std::max(std::abs(high), std::abs(low)) + (cells + 1) * (high - low));
+      const double lift = 0x1p-19 * (std::max(std::abs(high), std::abs(low)) + (cells + 1) * (high - low));
+      local.origin.z = height_in_cell(Surface::bilinear, h, u, v) + std::max(lift, 1e-30);
     }
-    const EasyJudge judge(field, local, std::ldexp(ray.t_max - ray.t_min, exponent), true);
+    const EasyJudge judge(field, local, std::ldexp(ray.t_max - ray.t_min, exponent), ray.start == RayStart::free);
     if (hit.status == HitStatus::below) {
       ASSERT_TRUE(judge.may_begin_below() && ray.start == RayStart::free) << words;
       return;
