@@ -201,12 +201,12 @@ vec3 easy_normal(EasyHit hit) {
   return vec3((corners.x - corners.y) - twist * hit.place.y, (corners.x - corners.z) - twist * hit.place.x, 1.0f);
 }
 
-// Start for rays from a hit: a point above the surface by delta, so that the ray does not hit where it starts.
+// Start for rays from a hit: a point above the surface by more than rounding, so that no ray hits where it starts.
 vec3 easy_above(EasyHit hit) {
   vec4 corners = easy_corners(hit.cell, ivec2(1));
   ivec2 cells = easy_cells();
   float low = min(min(corners.x, corners.y), min(corners.z, corners.w));
   float high = max(max(corners.x, corners.y), max(corners.z, corners.w));
-  float lift = 32.0f * kEasyUnit * (max(abs(low), abs(high)) + float(max(cells.x, cells.y) + 1) * (high - low));
+  float lift = 64.0f * kEasyUnit * (max(abs(low), abs(high)) + float(max(cells.x, cells.y) + 1) * (high - low));
   return vec3(hit.position.x, hit.position.y, (corners.x + easy_rise(corners, hit.place)) + max(lift, kEasyLeast));
 }

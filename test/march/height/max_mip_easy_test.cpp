@@ -17,6 +17,7 @@
 #include "march/height/spiteful.h"
 #include "march/height/spiteful_text.h"
 #include "scarp/march/height/height_table.h"
+#include "scarp/march/height/max_mip.h"
 #include "scarp/march/height/max_mip_easy_ground.h"
 #include "scarp/scene/scene_field.h"
 
@@ -127,7 +128,7 @@ TEST(MaxMipEasy, TheMarchOfTheTableDoes) {
                    v = std::clamp(local.origin.y - ray.start_cell.row, 0.0, 1.0);
       const double high = std::max({h.h00, h.h10, h.h01, h.h11}), low = std::min({h.h00, h.h10, h.h01, h.h11});
       const int cells = std::max(field.cell_cols(), field.cell_rows());
-      const double lift = 0x1p-19 * (std::max(std::abs(high), std::abs(low)) + (cells + 1) * (high - low));
+      const double lift = 0x1p-18 * (std::max(std::abs(high), std::abs(low)) + (cells + 1) * (high - low));
       local.origin.z = height_in_cell(Surface::bilinear, h, u, v) + std::max(lift, 1e-30);
     }
     const EasyJudge judge(field, local, std::ldexp(ray.t_max - ray.t_min, exponent), ray.start == RayStart::free);
@@ -222,6 +223,24 @@ TEST(MaxMipEasy, NoRayHitsWhereItStarts) {
     }
     EXPECT_EQ(hits, 0) << a << ", " << b;
   }
+}
+
+TEST(MaxMipEasy, ExaminesAsFewBlocksAsMaxMip) {
+  const HeightField field = hills(1000, 1500, Surface::bilinear);
+  const MaxPyramid pyramid(field);
+  const HeightTarget target{&field, &pyramid};
+  Random random(8);
+  std::uint64_t easy_steps = 0, steps = 0;
+  for (int i = 0; i < 2000; ++i) {
+    MarchStats stats;
+    const Ray ray = along_hills(field, random, false);
+    const Hit hit = easy_march().cpu(target, ray, {}, &stats);
+    if (hit.status == HitStatus::below) continue;
+    easy_steps += stats.steps;
+    EXPECT_EQ(march_max_mip(target, ray, {}, &stats).status, hit.status) << text(ray);
+    steps += stats.steps;
+  }
+  EXPECT_LT(static_cast<double>(easy_steps), 1.1 * static_cast<double>(steps));
 }
 
 TEST(MaxMipEasy, NormalsAreThoseOfTheSurface) {
