@@ -8,7 +8,7 @@
 //
 // Guarantee: conservative up to the rounding of floats. Never passes a point that is below the ground by more than the
 // bound of doc/dev/numerics.md ("The easy text"), and reports no hit that is farther above it. Source: see max_mip.h.
-// Cost: about 10 to 30 blocks per ray on mountains, 1 or 2 cells.
+// Cost: that of max-mip in blocks and cells.
 #pragma once
 
 #include "scarp/march/height/height_target.h"
