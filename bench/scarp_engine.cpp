@@ -91,7 +91,7 @@ Engine ScarpGround::vectors(const std::string& mode, const VectorOptions& option
 std::vector<Engine> ScarpGround::engines() const {
   std::vector<Engine> engines;
   for (const HeightMarchEntry& march : height_marches()) {
-    if (march.name == "exhaustive") continue;
+    if (march.name == "exhaustive" || !takes(march.fields, field_)) continue;
     engines.push_back(engine(march));
     if (march.simd) engines.push_back(vectors(std::string(march.name) + "-simd"));
     // What an any-hit query of its own gains.

@@ -57,7 +57,7 @@ set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/ground_buffers.glsl.h scarp/acc
     scarp/accel/shape_buffers.glsl.h)
 foreach(name ${marches_as_text} ${function_marches_as_text} naive fixed_step relaxed lipschitz
         march_state sampling sampling_marches two_float ray_states height/ray_frame height/float_ray height/two_float_ray
-        height/cell_surface height/surface_normal height/height_probe height/textures function/noise function/function_heights
+        height/cell_surface height/surface_normal height/height_probe height/max_mip_easy height/textures function/noise function/function_heights
         function/function_bounds function/function_frame shape/shape_distance shape/shape_grounds)
   list(APPEND shader_texts scarp/march/${name}.glsl.h)
 endforeach()
@@ -67,7 +67,7 @@ foreach(text IN LISTS shader_texts)
 endforeach()
 set(flat_texts "")
 list(TRANSFORM shader_texts PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE all_texts)
-foreach(name IN LISTS marches_as_text function_marches_as_text ITEMS height/textures)
+foreach(name IN LISTS marches_as_text function_marches_as_text ITEMS height/max_mip_easy height/textures)
   set(files ${PROJECT_SOURCE_DIR}/scarp/march/${name}.glsl.h)
   if(name IN_LIST marches_as_text)
     string(PREPEND files ${PROJECT_SOURCE_DIR}/scarp/march/height/float_ray.glsl.h,)

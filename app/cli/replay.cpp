@@ -35,7 +35,9 @@ class Replay {
       : dump_(dump), pyramid_(dump.field), target_{&dump.field, &pyramid_, slope_bound(dump.field)} {
     lines_.push_back({"march", "guarantee", "status", "t", "cell", "u", "v", "clearance", "any", "hits", ""});
     judge_ = march_exhaustive(target_, dump.ray);
-    for (const HeightMarchEntry& march : height_marches()) add(march);
+    for (const HeightMarchEntry& march : height_marches()) {
+      if (takes(march.fields, dump.field)) add(march);
+    }
   }
 
   bool agrees() const { return agrees_; }

@@ -31,6 +31,7 @@ class Heights final : public SceneField {
   Heights(HeightField field, const HeightMarchEntry& march, const MarchSettings& settings, AnsweredBy answered_by)
       : field_(std::move(field)), march_(march), settings_(settings), answered_by_(answered_by) {
     validate(settings_);
+    require_field(field_, march.fields, march.name);
     if (answered_by == AnsweredBy::back_end) return;
     if (march.needs_pyramid) pyramid_.emplace(field_);
     if (march.needs_slope) slope_ = slope_bound(field_);

@@ -111,7 +111,8 @@ TEST_F(Cli, RenderWritesAPictureAndOneLine) {
 
 TEST_F(Cli, EveryLookAndMarchRuns) {
   good();
-  for (const std::string march : {"exhaustive", "naive", "relaxed", "lipschitz", "max-mip", "max-mip-bisect"}) {
+  for (const std::string march :
+       {"exhaustive", "naive", "relaxed", "lipschitz", "max-mip", "max-mip-bisect", "max-mip-easy"}) {
     for (const std::string look : {"shaded", "height", "steps", "error"}) {
       const auto result =
           run({"render", path("good.asc"), "-o", path("out.png"), "--size", "32x24", "--march", march, "--look", look});
@@ -519,7 +520,8 @@ TEST_F(Cli, MarchesAreListedOnceEach) {
   const auto plain = run({"marches"}), markdown = run({"marches", "--markdown"});
   EXPECT_EQ(plain.status, 0);
   EXPECT_EQ(markdown.status, 0);
-  for (const char* name : {"exhaustive", "naive", "relaxed", "lipschitz", "max-mip", "max-mip-bisect"}) {
+  for (const char* name :
+       {"exhaustive", "naive", "relaxed", "lipschitz", "max-mip", "max-mip-bisect", "max-mip-easy"}) {
     EXPECT_NE(plain.out.find(fmt::format("\n{} ", name)), std::string::npos) << plain.out;
     EXPECT_NE(markdown.out.find(fmt::format("\n| `{}` |", name)), std::string::npos) << markdown.out;
   }

@@ -7,6 +7,7 @@
 #include "scarp/march/fixed_step.h"
 #include "scarp/march/height/exhaustive.h"
 #include "scarp/march/height/max_mip.h"
+#include "scarp/march/height/max_mip_easy.h"
 #include "scarp/march/height/max_mip_simd.h"
 #include "scarp/march/lipschitz.h"
 #include "scarp/march/naive.h"
@@ -59,6 +60,17 @@ constexpr HeightMarchEntry max_mip() {
   return entry;
 }
 
+constexpr HeightMarchEntry max_mip_easy() {
+  HeightMarchEntry entry = height_march<march_max_mip_easy>(
+      {.name = "max-mip-easy",
+       .guarantee = Guarantee::conservative,
+       .description = "max-mip as a short text to paste into shaders; bilinear ground without holes or wrap; floats"},
+      true, false);
+  entry.fields = HeightFields::plain;
+  entry.follows_below = false;
+  return entry;
+}
+
 constexpr HeightMarchEntry exhaustive() {
   HeightMarchEntry entry = height_march<march_exhaustive>(
       {.name = "exhaustive",
@@ -79,6 +91,7 @@ constexpr std::array kTable = {
          .description =
              "the same walk with the paper's binary search in the cell; misses rays that only dip into a cell"},
         true, false),
+    max_mip_easy(),
     height_march<march_naive>(kNaiveEntry, false, false),
     height_march<march_fixed_step>(kFixedStepEntry, false, false),
     height_march<march_relaxed>(kRelaxedEntry, false, false),

@@ -32,10 +32,13 @@ using HeightMarchByRules = Hit (*)(const HeightTarget& target, const Ray& ray, c
 /// A row. No function but `by_rules` is null: a technique without an any-hit query or a batch query of its own has one
 /// made of `cpu`.
 struct HeightMarchEntry : MarchEntry {
-  bool needs_pyramid = false;  ///< HeightTarget::pyramid must be given
-  bool needs_slope = false;    ///< HeightTarget::slope must be given
-  bool own_any_hit = false;    ///< `occluded` is not made of `cpu`
-  HeightMarch cpu = nullptr;   ///< scalar C++
+  bool needs_pyramid = false;               ///< HeightTarget::pyramid must be given
+  bool needs_slope = false;                 ///< HeightTarget::slope must be given
+  bool own_any_hit = false;                 ///< `occluded` is not made of `cpu`
+  HeightFields fields = HeightFields::all;  ///< others are refused by require_field()
+  /// Whether a ray that starts or enters below the ground is followed to later hits; otherwise it is `below` at once.
+  bool follows_below = true;
+  HeightMarch cpu = nullptr;  ///< scalar C++
   HeightOcclusion occluded = nullptr;
   HeightMarchBatch batch = nullptr;  ///< in vectors if `simd`
   HeightOcclusionBatch occluded_batch = nullptr;

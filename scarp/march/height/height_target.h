@@ -2,7 +2,9 @@
 // What the marches of height fields take.
 #pragma once
 
+#include <cstdint>
 #include <limits>
+#include <string_view>
 
 #include "scarp/accel/max_pyramid.h"
 #include "scarp/base/ray.h"
@@ -38,5 +40,20 @@ inline void require(const HeightTarget& target, HeightPart part) {
   if (!target.field || (pyramid && !target.pyramid) || (slope && target.slope != target.slope)) [[unlikely]]
     refuse_target(target, part);
 }
+
+/// The fields that a march takes.
+enum class HeightFields : std::uint8_t {
+  all,
+  plain,  ///< bilinear, without holes and without wrap
+};
+
+/// Returns whether a march that takes `fields` takes this one.
+inline bool takes(HeightFields fields, const HeightField& field) {
+  return fields == HeightFields::all ||
+         (field.settings().surface == Surface::bilinear && field.nodata_count() == 0 && !field.wraps());
+}
+
+/// Throws Error if a march does not take a field, naming both.
+void require_field(const HeightField& field, HeightFields fields, std::string_view march);
 
 }  // namespace scarp

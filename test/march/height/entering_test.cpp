@@ -19,6 +19,12 @@ namespace {
 
 class EnteringRays : public testing::TestWithParam<HeightMarchEntry> {};
 
+std::vector<HeightMarchEntry> marches_that_go_on() {
+  std::vector<HeightMarchEntry> marches(height_marches().begin(), height_marches().end());
+  std::erase_if(marches, [](const HeightMarchEntry& march) { return !march.follows_below; });
+  return marches;
+}
+
 TEST_P(EnteringRays, GoOn) {
   expect_entering_rays_go_on(GetParam(),
                              [](const HeightField& field, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
@@ -32,7 +38,7 @@ TEST_P(EnteringRays, GoOn) {
                              });
 }
 
-INSTANTIATE_TEST_SUITE_P(Marches, EnteringRays, testing::ValuesIn(height_marches().begin(), height_marches().end()),
+INSTANTIATE_TEST_SUITE_P(Marches, EnteringRays, testing::ValuesIn(marches_that_go_on()),
                          [](const auto& of) { return test_name(std::string(of.param.name)); });
 
 // The shaders' text, as C++.
@@ -63,7 +69,7 @@ TEST(EnteringRays, GoOnFromFarAway) {
   ASSERT_TRUE(judge);
   MarchSettings settings;
   settings.naive.min_step = 1e-7;  // of a million metres
-  for (const HeightMarchEntry& march : height_marches()) {
+  for (const HeightMarchEntry& march : marches_that_go_on()) {
     const Hit hit = march.cpu(target, ray, settings, nullptr);
     EXPECT_TRUE(hit) << march.name;
     EXPECT_GT(hit.t, 1e6 + 10) << march.name;
@@ -81,7 +87,7 @@ TEST(EnteringRays, ThatBeginUnderTheGroundKeepTheirAnswers) {
     const Hit hit = march.cpu(target, ray, {}, nullptr);
     if (march.name == "naive") {
       EXPECT_EQ(hit.t, 0);
-    } else if (march.name == "relaxed" || march.name == "lipschitz") {
+    } else if (march.name == "relaxed" || march.name == "lipschitz" || !march.follows_below) {
       EXPECT_EQ(hit.status, HitStatus::below) << march.name;
     } else {
       EXPECT_NEAR(hit.t, march_exhaustive(target, ray).t, 0.5) << march.name;

@@ -41,6 +41,7 @@ TEST(Queries, ABatchAnswersAsItsRaysDo) {
       for (const RayKind& kind : spiteful_rays()) rays.push_back(kind.make(field, random));
     }
     for (const HeightMarchEntry& march : height_marches()) {
+      if (!takes(march.fields, field)) continue;
       std::vector<Hit> hits(rays.size());
       std::vector<std::uint8_t> blocked(rays.size(), 7);
       closest_hits(target, rays, hits, march);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is in the two textures of scarp/march/height/textures.glsl.h, level by level, rows one after the other.
+// What is in the textures of scarp/march/height/textures.glsl.h and max_mip_easy.glsl.h, level by level, rows one after
+// the other.
 #pragma once
 
 #include <algorithm>
@@ -44,6 +45,36 @@ inline std::vector<TextureLevel> bounds_of(const MaxPyramid& pyramid) {
     levels.push_back(std::move(level));
     cols = std::max(cols / 2, 1U);
     rows = std::max(rows / 2, 1U);
+  }
+  return levels;
+}
+
+/// The mip levels of easy_maxima (max_mip_easy.glsl.h).
+inline std::vector<TextureLevel> maxima_of(const HeightField& field) {
+  const TextureLevel heights = heights_of(field)[0];
+  const std::uint32_t cols = heights.cols - 1, rows = heights.rows - 1;
+  std::vector<TextureLevel> levels = {{std::bit_ceil(cols), std::bit_ceil(rows), {}}};
+  levels[0].texels.resize(std::size_t{levels[0].cols} * levels[0].rows);
+  for (std::uint32_t row = 0; row < rows; ++row) {
+    for (std::uint32_t col = 0; col < cols; ++col) {
+      const float* north = &heights.texels[std::size_t{row} * heights.cols + col];
+      const float* south = north + heights.cols;
+      levels[0].texels[std::size_t{row} * levels[0].cols + col] = std::max({north[0], north[1], south[0], south[1]});
+    }
+  }
+  while (levels.back().texels.size() > 1) {
+    const TextureLevel& fine = levels.back();
+    TextureLevel coarse{std::max(fine.cols / 2, 1U), std::max(fine.rows / 2, 1U), {}};
+    for (std::uint32_t row = 0; row < coarse.rows; ++row) {
+      for (std::uint32_t col = 0; col < coarse.cols; ++col) {
+        const auto texel = [&](std::uint32_t c, std::uint32_t r) {
+          return fine.texels[std::size_t{std::min(r, fine.rows - 1)} * fine.cols + std::min(c, fine.cols - 1)];
+        };
+        coarse.texels.push_back(std::max({texel(2 * col, 2 * row), texel(2 * col + 1, 2 * row),
+                                          texel(2 * col, 2 * row + 1), texel(2 * col + 1, 2 * row + 1)}));
+      }
+    }
+    levels.push_back(std::move(coarse));
   }
   return levels;
 }
