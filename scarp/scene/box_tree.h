@@ -103,11 +103,11 @@ class BoxTree {
 
   // The nearest child is to be on top.
   template <class Met>
-  static void push(const Node& node, const Met& met, const Four& near, Stack& stack, int& size) {
-    const int first = size;
-    for (int i = 0; i < kWide; ++i) {
+  static void push(const Node& node, const Met& met, const Four& near, Stack& stack, std::size_t& size) {
+    const std::size_t first = size;
+    for (std::size_t i = 0; i < kWide; ++i) {
       if (!met[i]) continue;
-      int at = size++;
+      std::size_t at = size++;
       for (; at > first && stack[at - 1].t < near[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {near[i], node.child[i]};
     }
@@ -152,7 +152,7 @@ void BoxTree::traverse(const Beam& beam, const Visit& visit) const {
   if (nodes_.empty() || beam.inside == 0) return;
   float end = beam.end;
   Stack stack;
-  int size = 0;
+  std::size_t size = 0;
   stack[size++] = {0, 0};
   while (size > 0) {
     const Entry entry = stack[--size];
@@ -164,7 +164,7 @@ void BoxTree::traverse(const Beam& beam, const Visit& visit) const {
     }
     const Node& node = nodes_[entry.child];
     Four near{}, far = near + end;
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       const Beam::Axis& axis = beam.axes[i];
       const Four up = (node.low[i] - axis.high) * axis.per_up, down = (axis.low - node.high[i]) * axis.per_down;
       if (axis.way != Beam::Way::down) near = greater_of(near, up);
@@ -182,26 +182,26 @@ void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
   if (nodes_.empty()) return;
   double t_in, t_out;
   if (!clip(ray, t_in, t_out)) return;
-  double longest = 0;
-  for (int axis = 0; axis < 3; ++axis) longest = std::max(longest, std::abs(ray.direction[axis]));
-  const dvec3 from = ray.origin + t_in * ray.direction - middle_;
+  const dvec3 &d = ray.direction, start = ray.origin + t_in * d - middle_;
+  const std::array<double, 3> direction{d.x, d.y, d.z}, from{start.x, start.y, start.z};
+  const double longest = std::max({0.0, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
 
   // From here on in float, the longest component of the direction being 1, t counting from the border.
   std::array<float, 3> origin, inwards, outwards;
   std::array<bool, 3> down;
   const double per_longest = 1 / longest;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     origin[axis] = static_cast<float>(from[axis]);
-    const auto direction = static_cast<float>(ray.direction[axis] * per_longest);
-    inwards[axis] = std::abs(direction) * kSteepest < 1 ? std::copysign(kSteepest, direction) : 1 / direction;
+    const auto slope = static_cast<float>(direction[axis] * per_longest);
+    inwards[axis] = std::abs(slope) * kSteepest < 1 ? std::copysign(kSteepest, slope) : 1 / slope;
     outwards[axis] = inwards[axis] * kRounding;
-    down[axis] = std::signbit(direction);
+    down[axis] = std::signbit(slope);
   }
   const auto end_of = [&](double t) { return static_cast<float>((t - t_in) * longest) * kRounding; };
   float end = end_of(t_out);
 
   Stack stack;
-  int size = 0;
+  std::size_t size = 0;
   stack[size++] = {0, 0};
   while (size > 0) {
     const Entry entry = stack[--size];
@@ -212,7 +212,7 @@ void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
     }
     const Node& node = nodes_[entry.child];
     Four near{}, far = near + end;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       const Four in = ((down[axis] ? node.high : node.low)[axis] - origin[axis]) * inwards[axis];
       const Four out = ((down[axis] ? node.low : node.high)[axis] - origin[axis]) * outwards[axis];
       near = greater_of(near, in);
