@@ -171,6 +171,7 @@ void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& repo
 struct ScenesOptions {
   std::vector<int> objects{1000, 10000, 100000};
   int rays = 100000;
+  int contacts = 10000;  // queries of each kind
   int repeats = 5;
 };
 void run_scenes(const ScenesOptions& options, const ReportOptions& report);

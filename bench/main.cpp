@@ -338,6 +338,9 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(1, 1 << 24))
       ->capture_default_str();
   scenes_command->add_option("--rays", scenes.rays, "per pass")->check(CLI::Range(1, 1 << 28))->capture_default_str();
+  scenes_command->add_option("--contacts", scenes.contacts, "sweeps, overlaps and closest points per pass")
+      ->check(CLI::Range(1, 1 << 24))
+      ->capture_default_str();
   scenes_command->add_option("--repeats", scenes.repeats, "passes")->check(CLI::Range(1, 1000))->capture_default_str();
   add_json_option(*scenes_command, report);
   SeamsOptions seams;

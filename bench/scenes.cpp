@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench scenes`: how soon a hierarchy over many objects is built, and how many rays it answers, on one thread:
 // boxes and balls of 1 to 4 m at random in a cube, turned at random. Beside a new scene: edits of a LiveScene, by a
-// step of at most 1 m along each axis, or to any place in the cube.
+// step of at most 1 m along each axis, or to any place in the cube. Then contacts with voxels and heights in the places
+// of the objects (scene_contacts.h).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 
 #include "bench/commands.h"
 #include "bench/random.h"
+#include "bench/scene_contacts.h"
 #include "scarp/base/parallel.h"
 #include "scarp/scene/live_scene.h"
 #include "scarp/scene/scene.h"
@@ -116,6 +118,7 @@ Json measure_objects(const ScenesOptions& options, int count) {
   row["far_move_us"] = far.median_us;
   row["worst_move_us"] = std::max(near.worst_us, far.worst_us);
   row["edited_mrays_per_cpu_s"] = 1e-6 * static_cast<double>(rays.size()) / median(edited_s);
+  row.update(measure_contacts(objects, side, options.contacts, options.repeats));
   return row;
 }
 
@@ -126,6 +129,8 @@ void run_scenes(const ScenesOptions& options, const ReportOptions& report) {
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{{"objects", "build s", "bytes/object", "hits", "boxes/ray", "steps/ray",
                                                "Mrays/s (cpu)", "move us", "p99", "far us", "worst", "edited Mrays/s"}};
+  std::vector<std::vector<std::string>> contacts{
+      {"objects", "sweep us", "touch", "overlap us", "overlap", "closest us", "queries"}};
   for (const int count : options.objects) {
     const Json row = measure_objects(options, count);
     lines.push_back({fmt::format("{}", count), short_number(row["build_s"]), short_number(row["bytes_per_object"]),
@@ -133,9 +138,13 @@ void run_scenes(const ScenesOptions& options, const ReportOptions& report) {
                      short_number(row["steps_per_ray"]), short_number(row["mrays_per_cpu_s"]),
                      short_number(row["move_us"]), short_number(row["move_p99_us"]), short_number(row["far_move_us"]),
                      short_number(row["worst_move_us"]), short_number(row["edited_mrays_per_cpu_s"])});
+    contacts.push_back({fmt::format("{}", count), short_number(row["sweep_us"]), short_number(row["sweeps_touch"], 9),
+                        short_number(row["overlap_us"]), short_number(row["boxes_overlap"], 9),
+                        short_number(row["closest_us"]), short_number(row["contact_queries"], 9)});
     rows.push_back(row);
   }
   print_table(lines, 0);
+  print_table(contacts, 0);
   write_json(report, rows);
 }
 

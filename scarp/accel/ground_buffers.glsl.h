@@ -2,11 +2,10 @@
 // Layout of a height field and its pyramid in device memory, written by DeviceGround (device_ground.h) and read by
 // shaders. Everything is reached from the address of a GroundBuffers:
 //
-//   GroundBuffers ──samples──▶ words, rows from north to south, sample_words per row; a word is one float32 sample or
-//         │                    two 16-bit samples, the lower half first; the last half of an odd row is
-//         │                    undefined
-//         ├──pyramid──▶ one word per block: maximum code | minimum code << 16; the entry of block (col, row) of a level
-//         │             is levels[level - 1].begin + row * cols + col, level 1 .. top_level, as in MaxPyramid
+//   GroundBuffers ──samples──▶ words, rows from north to south, sample_words per row; a word is one float32 sample
+//         │                    or two 16-bit samples, the lower half first; the last half of an odd row is undefined
+//         ├──pyramid──▶ one word per block: maximum code | minimum code << 16; the entry of block (col, row) of a
+//         │             level is levels[level - 1].begin + row * cols + col, level 1 .. top_level, as in MaxPyramid
 //         └──quads────▶ two words per block: the maximum codes of its 2 x 2 children, see ground_quad()
 //
 // Codes equal those of MaxPyramid bit for bit: height = base + step * code, maxima rounded up, minima down. Minimum 0

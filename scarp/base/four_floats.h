@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace scarp {
 
@@ -21,8 +22,8 @@ inline auto not_above(const FourFloats& a, const FourFloats& b) { return a <= b;
 struct alignas(16) FourFloats {
   float v[4];
 
-  float& operator[](int i) { return v[i]; }
-  float operator[](int i) const { return v[i]; }
+  float& operator[](std::size_t i) { return v[i]; }
+  float operator[](std::size_t i) const { return v[i]; }
 };
 
 template <class Operation>

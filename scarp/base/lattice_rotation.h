@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "scarp/base/vec.h"
 
@@ -22,12 +23,15 @@ struct LatticeRotation {
 
   LatticeRotation inverse() const {
     LatticeRotation back;
-    for (int i = 0; i < 3; ++i) {
-      back.axis[axis[i]] = i;
-      back.sign[axis[i]] = sign[i];
+    for (std::size_t i = 0; i < 3; ++i) {
+      back.axis[source(i)] = static_cast<int>(i);
+      back.sign[source(i)] = sign[i];
     }
     return back;
   }
+
+  /// axis[i] as an index.
+  std::size_t source(std::size_t i) const { return static_cast<std::size_t>(axis[i]); }
 
   /// Returns 1 for rotations, -1 for reflections.
   int determinant() const {
@@ -41,9 +45,9 @@ struct LatticeRotation {
 /// Returns the composition that applies b first, then a.
 inline LatticeRotation operator*(const LatticeRotation& a, const LatticeRotation& b) {
   LatticeRotation both;
-  for (int i = 0; i < 3; ++i) {
-    both.axis[i] = b.axis[a.axis[i]];
-    both.sign[i] = a.sign[i] * b.sign[a.axis[i]];
+  for (std::size_t i = 0; i < 3; ++i) {
+    both.axis[i] = b.axis[a.source(i)];
+    both.sign[i] = a.sign[i] * b.sign[a.source(i)];
   }
   return both;
 }

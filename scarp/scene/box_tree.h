@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A hierarchy of boxes: which of many objects a ray may meet, about from the nearest on.
+// A hierarchy of boxes: which of many objects a ray may meet, or which may be nearest to anything else, about from the
+// nearest on.
 //
 // Four children to a node, so that one test looks at four boxes. Boxes are kept in float, relative to the middle of all
 // and larger than they are by more than what is rounded on the way: a ray is never kept from a box that it touches.
@@ -58,6 +59,12 @@ class BoxTree {
   template <class Visit>
   void traverse(const Ray& ray, const Visit& visit) const;
 
+  /// Calls visit(object) for each object whose box may hold something no worse than `end`, about from the best on.
+  /// bound(box) returns the best that a box can hold: a time, a distance, >= 0; infinity for nothing. visit returns
+  /// `end` from then on, no larger than before, or a negative number: here and now.
+  template <class Bound, class Visit>
+  void search(double end, const Bound& bound, const Visit& visit) const;
+
   bool empty() const { return nodes_.empty(); }
   /// Around all boxes.
   const WorldBox& box() const { return box_; }
@@ -84,11 +91,14 @@ class BoxTree {
   };
   friend class BoxTreeEditor;  // box_tree_editor.h
   struct Builder;
+  template <class Number>
   struct Entry {
-    float t;
+    Number bound;
     std::uint32_t child;
   };
-  using Stack = std::array<Entry, (kWide - 1) * kMaxDepth + kWide>;
+  template <class Number>
+  using StackOf = std::array<Entry<Number>, (kWide - 1) * kMaxDepth + kWide>;
+  using Stack = StackOf<float>;
 
   // Sides of a box as nodes have them.
   float rounded_low(const WorldBox& box, int axis) const {
@@ -102,17 +112,19 @@ class BoxTree {
   bool clip(const Ray& ray, double& t_in, double& t_out) const;
 
   // The nearest child is to be on top.
-  template <class Met>
-  static void push(const Node& node, const Met& met, const Four& near, Stack& stack, int& size) {
-    const int first = size;
-    for (int i = 0; i < kWide; ++i) {
+  template <class Met, class Near, class Number>
+  static void push(const Node& node, const Met& met, const Near& near, StackOf<Number>& stack, std::size_t& size) {
+    const std::size_t first = size;
+    for (std::size_t i = 0; i < kWide; ++i) {
       if (!met[i]) continue;
-      int at = size++;
-      for (; at > first && stack[at - 1].t < near[i]; --at) stack[at] = stack[at - 1];
+      std::size_t at = size++;
+      for (; at > first && stack[at - 1].bound < near[i]; --at) stack[at] = stack[at - 1];
       stack[at] = {near[i], node.child[i]};
     }
   }
 
+  // Trees with more padding may have numbers that are infinite in float.
+  static constexpr double kMostPadding = 0x1p100;
   // What a product and a difference in float round, with room: Ize has 2 * 3 units for a factor.
   static constexpr float kRounding = 1 + 0x1p-20f;
   // Steeper than any direction that can be told from one along a side.
@@ -152,11 +164,11 @@ void BoxTree::traverse(const Beam& beam, const Visit& visit) const {
   if (nodes_.empty() || beam.inside == 0) return;
   float end = beam.end;
   Stack stack;
-  int size = 0;
+  std::size_t size = 0;
   stack[size++] = {0, 0};
   while (size > 0) {
-    const Entry entry = stack[--size];
-    if (entry.t > end) continue;
+    const Entry<float> entry = stack[--size];
+    if (entry.bound > end) continue;
     if (entry.child & kLeaf) {
       end = std::min(end, visit(entry.child & ~kLeaf));
       if (end < 0) return;
@@ -164,7 +176,7 @@ void BoxTree::traverse(const Beam& beam, const Visit& visit) const {
     }
     const Node& node = nodes_[entry.child];
     Four near{}, far = near + end;
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       const Beam::Axis& axis = beam.axes[i];
       const Four up = (node.low[i] - axis.high) * axis.per_up, down = (axis.low - node.high[i]) * axis.per_down;
       if (axis.way != Beam::Way::down) near = greater_of(near, up);
@@ -182,43 +194,73 @@ void BoxTree::traverse(const Ray& ray, const Visit& visit) const {
   if (nodes_.empty()) return;
   double t_in, t_out;
   if (!clip(ray, t_in, t_out)) return;
-  double longest = 0;
-  for (int axis = 0; axis < 3; ++axis) longest = std::max(longest, std::abs(ray.direction[axis]));
-  const dvec3 from = ray.origin + t_in * ray.direction - middle_;
+  const dvec3 &d = ray.direction, start = ray.origin + t_in * d - middle_;
+  const std::array<double, 3> direction{d.x, d.y, d.z}, from{start.x, start.y, start.z};
+  const double longest = std::max({0.0, std::abs(d.x), std::abs(d.y), std::abs(d.z)});
 
   // From here on in float, the longest component of the direction being 1, t counting from the border.
   std::array<float, 3> origin, inwards, outwards;
   std::array<bool, 3> down;
   const double per_longest = 1 / longest;
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     origin[axis] = static_cast<float>(from[axis]);
-    const auto direction = static_cast<float>(ray.direction[axis] * per_longest);
-    inwards[axis] = std::abs(direction) * kSteepest < 1 ? std::copysign(kSteepest, direction) : 1 / direction;
+    const auto slope = static_cast<float>(direction[axis] * per_longest);
+    inwards[axis] = std::abs(slope) * kSteepest < 1 ? std::copysign(kSteepest, slope) : 1 / slope;
     outwards[axis] = inwards[axis] * kRounding;
-    down[axis] = std::signbit(direction);
+    down[axis] = std::signbit(slope);
   }
   const auto end_of = [&](double t) { return static_cast<float>((t - t_in) * longest) * kRounding; };
   float end = end_of(t_out);
 
   Stack stack;
-  int size = 0;
+  std::size_t size = 0;
   stack[size++] = {0, 0};
   while (size > 0) {
-    const Entry entry = stack[--size];
-    if (entry.t > end) continue;
+    const Entry<float> entry = stack[--size];
+    if (entry.bound > end) continue;
     if (entry.child & kLeaf) {
       end = std::min(end, end_of(visit(entry.child & ~kLeaf)));
       continue;
     }
     const Node& node = nodes_[entry.child];
     Four near{}, far = near + end;
-    for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       const Four in = ((down[axis] ? node.high : node.low)[axis] - origin[axis]) * inwards[axis];
       const Four out = ((down[axis] ? node.low : node.high)[axis] - origin[axis]) * outwards[axis];
       near = greater_of(near, in);
       far = lesser_of(far, out);
     }
     push(node, not_above(near, far), near, stack, size);
+  }
+}
+
+template <class Bound, class Visit>
+void BoxTree::search(double end, const Bound& bound, const Visit& visit) const {
+  if (nodes_.empty()) return;
+  StackOf<double> stack;
+  std::size_t size = 0;
+  stack[size++] = {0, 0};
+  while (size > 0) {
+    const Entry<double> entry = stack[--size];
+    if (entry.bound > end) continue;
+    if (entry.child & kLeaf) {
+      end = std::min(end, visit(entry.child & ~kLeaf));
+      if (end < 0) return;
+      continue;
+    }
+    const Node& node = nodes_[entry.child];
+    std::array<double, kWide> near{};
+    std::array<bool, kWide> met{};
+    for (std::size_t i = 0; i < kWide; ++i) {
+      if (!(node.low[0][i] <= node.high[0][i])) continue;
+      // No smaller than the box: padded, and rounding is monotone.
+      near[i] = padding_ > kMostPadding
+                    ? 0
+                    : bound(WorldBox{middle_ + dvec3(node.low[0][i], node.low[1][i], node.low[2][i]),
+                                     middle_ + dvec3(node.high[0][i], node.high[1][i], node.high[2][i])});
+      met[i] = near[i] <= end;
+    }
+    push(node, met, near, stack, size);
   }
 }
 

@@ -92,11 +92,13 @@ Scene::Scene(std::vector<SceneFieldPtr> fields, std::vector<SceneObject> objects
 void Scene::watch_field(std::uint32_t index) {
   if (const auto edits = fields_[index]->edits()) editable_.push_back({index, *edits});
   if (fields_[index]->memory()) with_owner_.push_back(index);
+  if (!fields_[index]->no_contacts().empty()) without_contacts_.push_back(index);
 }
 
 void Scene::unwatch_field(std::uint32_t index) {
   std::erase_if(editable_, [&](const Editable& editable) { return editable.field == index; });
   std::erase(with_owner_, index);
+  std::erase(without_contacts_, index);
 }
 
 // Before every ray query.

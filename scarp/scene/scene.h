@@ -231,13 +231,15 @@ class Scene {
   std::uint32_t sole_object_ = 0, terrain_object_ = 0;
   const HeightField* terrain_ = nullptr;
 
-  // Fields that can be edited, and their number of edits when the scene was built; those whose memory has an owner.
+  // Fields that can be edited, and their number of edits when the scene was built; those whose memory has an owner;
+  // those that have no contacts.
   struct Editable {
     std::uint32_t field;
     std::uint64_t edits;
   };
   std::vector<Editable> editable_;
   std::vector<std::uint32_t> with_owner_;
+  std::vector<std::uint32_t> without_contacts_;
   mutable EditsSeen seen_;
 };
 

@@ -15,11 +15,6 @@ std::span<const Hit* const> part(std::span<const Hit* const> from, std::size_t f
   return from.empty() ? from : from.subspan(first, count);
 }
 
-[[noreturn]] void refuse_contacts(const SceneField& field) {
-  throw Error(fmt::format("scene: contacts support height fields, tiles and voxels, not a {} (exclude it by its mask)",
-                          field.kind()));
-}
-
 // piece(first, count) on all threads.
 template <class Piece>
 void for_each_piece(std::size_t rays, const Piece& piece) {
@@ -52,9 +47,13 @@ Hit SceneField::accepted_hit(const Ray& ray, const Hit* from, const HitRules& ru
       march()));
 }
 
-std::optional<FieldContact> SceneField::sweep(const Capsule&, const dvec3&) const { refuse_contacts(*this); }
-bool SceneField::overlaps(const TurnedBox&) const { refuse_contacts(*this); }
-std::optional<FieldPoint> SceneField::closest_point(const dvec3&, double) const { refuse_contacts(*this); }
+std::string SceneField::no_contacts() const {
+  return fmt::format("scene: contacts support height fields, tiles and voxels, not a {} (exclude it by its mask)",
+                     kind());
+}
+std::optional<FieldContact> SceneField::sweep(const Capsule&, const dvec3&) const { throw Error(no_contacts()); }
+bool SceneField::overlaps(const TurnedBox&) const { throw Error(no_contacts()); }
+std::optional<FieldPoint> SceneField::closest_point(const dvec3&, double) const { throw Error(no_contacts()); }
 
 void SceneField::closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const {
   for (std::size_t i = 0; i < rays.size(); ++i) {

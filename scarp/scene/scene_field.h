@@ -91,8 +91,10 @@ class SceneField {
   /// FieldSurface::material.
   virtual int material(const Ray& ray, const Hit& hit) const { return surface(ray, hit).material; }
 
+  /// Returns why the field has no contacts, overlaps and closest points; empty if it has.
+  virtual std::string no_contacts() const;
   /// The first contact of a capsule that moves, in the field's space, by its surface alone; whether a box meets it; and
-  /// its closest point. By default throw Error.
+  /// its closest point. Throw Error if no_contacts() has a reason.
   virtual std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const;
   virtual bool overlaps(const TurnedBox& box) const;
   virtual std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const;

@@ -25,6 +25,8 @@ constexpr std::int64_t kRaysPerCopy = 4096;
 // Neighbours may be placed so far apart or over each other, in cells, and meet without a gap: world coordinates of 2^20
 // cells are doubles to 2^-33 of a cell, and placing a field takes some operations.
 constexpr double kSeam = 0x1p-30;
+constexpr const char* kNotOnCpu =
+    "scene: these heights were made for a back end, and nothing was built for rays on the CPU";
 
 class Heights final : public SceneField {
  public:
@@ -96,6 +98,11 @@ class Heights final : public SceneField {
             .shading_normal = field_.shading_normal(hit.cell, hit.u, hit.v),
             .material = material(ray, hit),
             .height = height_at(hit)};
+  }
+  std::string no_contacts() const override {
+    if (answered_by_ == AnsweredBy::back_end) return kNotOnCpu;
+    if (!pyramid_) return fmt::format("scene: contacts need the march max-mip, not {}", march_.name);
+    return field_.wraps() ? "scene: contacts need heights that do not wrap round (exclude them by their mask)" : "";
   }
   std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const override {
     const auto found = scarp::sweep(with_pyramid(), capsule, motion);
@@ -190,12 +197,11 @@ class Heights final : public SceneField {
     return r;
   }
   HeightTarget with_pyramid() const {
-    if (!pyramid_) throw Error(fmt::format("scene: contacts need the march max-mip, not {}", march_.name));
+    if (const std::string why = no_contacts(); !why.empty()) throw Error(why);
     return target();
   }
   HeightTarget target() const {
-    if (answered_by_ == AnsweredBy::back_end)
-      throw Error("scene: these heights were made for a back end, and nothing was built for rays on the CPU");
+    if (answered_by_ == AnsweredBy::back_end) throw Error(kNotOnCpu);
     return {&field_, pyramid_ ? &*pyramid_ : nullptr, slope_, kSeam};
   }
 

@@ -3,16 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/scene/contact_search.h"
 #include "scarp/scene/object_boxes.h"
 #include "scarp/scene/scene_answers.h"
 #include "scarp/scene/scene_limits.h"
 
 namespace scarp {
+namespace {
+
+// As world_box(), and no smaller than rounding might have made it.
+WorldBox padded_box(const Placement& to, const WorldBox& box) {
+  const WorldBox world = world_box(to, box);
+  const double room = kPlacing * (length(to.origin) + to.scale * (length(box.low) + length(box.high)));
+  return {world.low - room, world.high + room};
+}
+
+}  // namespace
 
 SceneQuery Scene::query(SceneRules rules) const { return {*this, std::move(rules)}; }
 
@@ -20,8 +32,9 @@ SceneQuery::SceneQuery(const Scene& scene, SceneRules rules) : scene_(scene), ru
   if (scene.on_device()) throw Error("scene: masks, sides and filters are for rays on the CPU (query another scene)");
   std::uint32_t masks = 0;
   for (const SceneObject& object : scene.objects()) masks |= object.mask;
-  if (scene.objects().empty() || (masks & rules_.mask) != 0) return;
-  throw Error(fmt::format("scene: mask {:#x} is that of no object (together they have {:#x})", rules_.mask, masks));
+  if (!scene.objects().empty() && (masks & rules_.mask) == 0)
+    throw Error(fmt::format("scene: mask {:#x} is that of no object (together they have {:#x})", rules_.mask, masks));
+  find_no_contacts();
 }
 
 Hit SceneQuery::closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const {
@@ -63,32 +76,50 @@ void SceneQuery::occluded(std::span<const Ray> rays, std::span<std::uint8_t> blo
   });
 }
 
-// f(object, field, box) for the objects that the mask selects; the box is around the object.
-template <class F>
-void SceneQuery::for_each_in_contact(const F& f) const {
-  scene_.require_current();
-  for (std::uint32_t i = 0; i < scene_.objects().size(); ++i) {
+void SceneQuery::find_no_contacts() {
+  if (scene_.without_contacts_.empty()) return;
+  for (std::uint32_t i = 0; i < scene_.objects().size() && no_contacts_.empty(); ++i) {
     const SceneField& field = scene_.field_of(i);
-    if (!sees(&rules_, scene_.objects()[i]) || field.is_backdrop()) continue;
-    const std::optional<WorldBox> box = field.extent();
-    f(i, field, box ? std::optional(world_box(scene_.objects()[i].placement, *box)) : std::nullopt);
+    if (sees(&rules_, scene_.objects()[i]) && !field.is_backdrop()) no_contacts_ = field.no_contacts();
   }
+}
+
+// Calls visit(object, field) for the objects that the mask selects and that may hold something no worse than `end`. The
+// bound of a box and what visit returns are those of BoxTree::search().
+template <class Bound, class Visit>
+void SceneQuery::search(double end, const Bound& bound, const Visit& visit) const {
+  scene_.require_current();
+  if (!no_contacts_.empty()) throw Error(no_contacts_);
+  const auto visit_seen = [&](std::uint32_t object) {
+    const SceneField& field = scene_.field_of(object);
+    if (sees(&rules_, scene_.objects()[object]) && !field.is_backdrop()) end = visit(object, field);
+    return end;
+  };
+  for (const std::uint32_t object : scene_.beside_tree_) {
+    if (const std::optional<WorldBox> extent = scene_.field_of(object).extent()) {
+      if (extent->empty() || !(bound(padded_box(scene_.objects()[object].placement, *extent)) <= end)) continue;
+    }
+    if (visit_seen(object) < 0) return;
+  }
+  scene_.tree_.search(end, bound, visit_seen);
 }
 
 std::optional<SceneContact> SceneQuery::sweep(const Capsule& capsule, const dvec3& motion) const {
   validate(capsule, motion);
   std::optional<SceneContact> best;
-  for_each_in_contact([&](std::uint32_t object, const SceneField& field, const std::optional<WorldBox>& box) {
-    const double last = best ? best->t : 1;
-    if (box && (box->empty() || sweep_bound(capsule, motion, box->low, box->high, last) > last)) return;
+  const auto last = [&] { return best ? best->t : 1; };
+  const auto bound = [&](const WorldBox& box) { return sweep_bound(capsule, motion, box.low, box.high, last()); };
+  search(1, bound, [&](std::uint32_t object, const SceneField& field) {
     const Placement& to = scene_.objects()[object].placement;
     const auto found =
         field.sweep({to.field_from_world(capsule.a), to.field_from_world(capsule.b), capsule.radius / to.scale},
                     to.field_from_world(Ray{.direction = motion}).direction);
-    if (!found || (best && found->t >= best->t)) return;
-    best = SceneContact{*found, object};
-    best->point = to.world_from_field(found->point);
-    best->normal = to.world_from_normal(found->normal);
+    if (found && (!best || is_before(found->t, object, best->t, best->object))) {
+      best = SceneContact{*found, object};
+      best->point = to.world_from_field(found->point);
+      best->normal = to.world_from_normal(found->normal);
+    }
+    return last();
   });
   return best;
 }
@@ -96,26 +127,31 @@ std::optional<SceneContact> SceneQuery::sweep(const Capsule& capsule, const dvec
 bool SceneQuery::overlaps(const TurnedBox& box) const {
   validate(box);
   bool found = false;
-  for_each_in_contact([&](std::uint32_t object, const SceneField& field, const std::optional<WorldBox>& around) {
-    if (found || (around && (around->empty() || !scarp::overlaps(box, around->low, around->high)))) return;
+  const auto bound = [&](const WorldBox& other) { return overlap_bound(box, other); };
+  search(0, bound, [&](std::uint32_t object, const SceneField& field) {
     const Placement& to = scene_.objects()[object].placement;
     found = field.overlaps({to.field_from_world(box.centre), box.half / to.scale, transpose(to.turn) * box.turn});
+    return found ? -1.0 : 0.0;
   });
   return found;
 }
 
 std::optional<ScenePoint> SceneQuery::closest_point(const dvec3& p, double max_distance) const {
   std::optional<ScenePoint> best;
-  for_each_in_contact([&](std::uint32_t object, const SceneField& field, const std::optional<WorldBox>& box) {
-    const double most = best ? best->distance : max_distance;
-    if (box && (box->empty() || length(min(max(p, box->low), box->high) - p) > most * (1 + 0x1p-40))) return;
+  const auto distance = [&] { return best ? std::optional(best->distance) : std::nullopt; };
+  const auto bound = [&](const WorldBox& box) { return distance_bound(p, box); };
+  search(reach_of(p, max_distance), bound, [&](std::uint32_t object, const SceneField& field) {
     const Placement& to = scene_.objects()[object].placement;
-    const auto found = field.closest_point(to.field_from_world(p), most / to.scale);
-    if (!found || (best && found->distance * to.scale >= best->distance)) return;
-    best = ScenePoint{*found, object};
-    best->distance = found->distance * to.scale;
-    best->point = to.world_from_field(found->point);
-    best->normal = to.world_from_normal(found->normal);
+    const auto found = closest_of_object(p, max_distance, distance(), [&](double most) {
+      return field.closest_point(to.field_from_world(p), most / to.scale);
+    });
+    if (found && (!best || is_before(found->distance * to.scale, object, best->distance, best->object))) {
+      best = ScenePoint{*found, object};
+      best->distance = found->distance * to.scale;
+      best->point = to.world_from_field(found->point);
+      best->normal = to.world_from_normal(found->normal);
+    }
+    return reach_of(p, distance().value_or(max_distance));
   });
   return best;
 }

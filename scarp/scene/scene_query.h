@@ -16,6 +16,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "scarp/scene/scene.h"
 
@@ -48,25 +49,27 @@ class SceneQuery {
 
   /// Returns the first contact of a sphere or capsule that moves along `motion`; nullopt if there is none. If it
   /// touches several objects at once, the one with the lowest index counts. The mask counts, sides and filter do not:
-  /// height fields and tiles are touched from both sides. Throws Error for a capsule or a motion that validate()
-  /// refuses, and where the mask selects a function, a shape, a mesh, or heights that wrap round or are not marched by
-  /// max-mip.
+  /// height fields and tiles are touched from both sides. The hierarchy of the scene finds the objects on the way.
+  /// Throws Error for a capsule or a motion that validate() refuses, and where the mask selects a function, a shape, a
+  /// mesh, or heights that wrap round or are not marched by max-mip.
   std::optional<SceneContact> sweep(const Capsule& capsule, const dvec3& motion) const;
   /// Returns whether a box, closed, meets a height field's surface or a solid voxel. Errors as for sweep().
   bool overlaps(const TurnedBox& box) const;
   /// Returns the point closest to p of all surfaces of height fields and of all solid voxels, within `max_distance`
-  /// metres. Errors as for sweep().
+  /// metres; of objects at the same distance, that with the lowest index. Errors as for sweep().
   std::optional<ScenePoint> closest_point(const dvec3& p,
                                           double max_distance = std::numeric_limits<double>::infinity()) const;
 
   const SceneRules& rules() const { return rules_; }
 
  private:
-  template <class F>
-  void for_each_in_contact(const F& f) const;
+  void find_no_contacts();
+  template <class Bound, class Visit>
+  void search(double end, const Bound& bound, const Visit& visit) const;
 
   const Scene& scene_;
   SceneRules rules_;
+  std::string no_contacts_;  // why contacts are refused; empty: they are not
 };
 
 }  // namespace scarp

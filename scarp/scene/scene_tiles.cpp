@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "scarp/march/height/closest_point.h"
@@ -104,6 +105,7 @@ class Tiles final : public SceneField {
             .material = material(ray, hit),
             .height = hit.height};
   }
+  std::string no_contacts() const override { return {}; }
   std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const override {
     std::optional<FieldContact> best;
     for_each_tile([&](const Tile& tile, int col, int row, const WorldBox& box) {

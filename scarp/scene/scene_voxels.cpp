@@ -62,6 +62,7 @@ class VoxelField final : public SceneField {
       surface.openness = corner_openness(objects_.grid(hit), hit.voxel, hit.face, objects_.place_in_grid(hit, p));
     return surface;
   }
+  std::string no_contacts() const override { return {}; }
   std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const override {
     return objects_.sweep(capsule, motion);
   }

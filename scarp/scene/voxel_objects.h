@@ -109,7 +109,6 @@ class VoxelObjects {
   class PacketQuery;
 
   std::vector<VoxelPlace> places() const;
-  WorldBox box_of(const Object& object) const;
   bool begins_into(const Ray& ray, const Hit* from) const;
   bool occluded(const Ray& ray, const Hit* from) const;
   template <class Together, class Alone>

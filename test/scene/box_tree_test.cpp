@@ -139,6 +139,39 @@ TEST(BoxTree, TakesManyBoxesInOnePlace) {
   BoxTree().traverse(ray, [&](std::uint32_t) { return ADD_FAILURE(), 0.0; });
 }
 
+// What is nearest to a point, from anywhere, in worlds of any size.
+TEST(BoxTree, SearchLosesNoBox) {
+  Random random(5);
+  std::size_t visits = 0, possible = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const double spread = std::pow(10.0, i % 10 == 0 ? uniform(random, 30, 60) : uniform(random, -3, 6));
+    const auto boxes = random_boxes(random, static_cast<int>(uniform(random, 1, 60)), spread, spread * 0.1);
+    const dvec3 p = i % 3 == 0 ? boxes[0].low : point(random, 2 * spread);
+    const auto distance = [&](const WorldBox& box) { return length(glm::clamp(p, box.low, box.high) - p); };
+    double least = std::numeric_limits<double>::infinity();
+    for (const WorldBox& box : boxes) least = std::min(least, distance(box));
+    std::set<std::uint32_t> visited;
+    double end = std::numeric_limits<double>::infinity();
+    BoxTree(boxes).search(end, distance, [&](std::uint32_t object) {
+      EXPECT_TRUE(visited.insert(object).second);
+      return end = std::min(end, distance(boxes[object]));
+    });
+    EXPECT_EQ(end, least);
+    for (std::uint32_t b = 0; b < boxes.size(); ++b) {
+      if (distance(boxes[b]) == least) {
+        EXPECT_TRUE(visited.contains(b)) << "round " << i << ", box " << b;
+      }
+    }
+    if (spread < 1e30) visits += visited.size(), possible += boxes.size();
+  }
+  EXPECT_LT(visits, possible / 3);
+  int visits_to_end = 0;
+  BoxTree(std::vector<WorldBox>(100, WorldBox{dvec3(1.0), dvec3(2.0)}))
+      .search(
+          0, [](const WorldBox&) { return 0; }, [&](std::uint32_t) { return ++visits_to_end < 3 ? 0.0 : -1.0; });
+  EXPECT_EQ(visits_to_end, 3);
+}
+
 TEST(BoxTree, BeamsLoseNoBox) {
   Random random(3);
   int beams = 0, met = 0;

@@ -91,7 +91,8 @@ struct QuantisedRay {
 
   /// Returns t of the crossing with a plane of an axis at a distance in 2^-20 voxel.
   double t_at(int axis, std::int64_t distance) const {
-    return t + static_cast<double>(distance) / static_cast<double>(direction.speed[axis]) * direction.t_per_s;
+    return t + static_cast<double>(distance) / static_cast<double>(direction.speed[static_cast<std::size_t>(axis)]) *
+                   direction.t_per_s;
   }
 };
 

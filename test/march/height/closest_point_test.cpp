@@ -24,21 +24,11 @@ double by_force(const HeightField& field, const dvec3& p, int parts) {
   return best;
 }
 
-HeightField rough(Random& random, Surface surface, double hole_share) {
-  const int cols = whole(random, 2, 20), rows = whole(random, 2, 20);
-  std::vector<float> samples;
-  for (int i = 0; i < cols * rows; ++i)
-    samples.push_back(uniform(random, 0, 1) < hole_share ? std::numeric_limits<float>::quiet_NaN()
-                                                         : static_cast<float>(uniform(random, -3, 3)));
-  return HeightField::own(
-      samples, cols, rows,
-      {.cell_x = uniform(random, 0.3, 2), .cell_y = uniform(random, 0.3, 2), .offset = 10, .surface = surface});
-}
-
 TEST(ClosestPoint, IsThatOfAllTriangles) {
   Random random(2);
   for (int round = 0; round < 60; ++round) {
-    const HeightField field = rough(random, Surface::triangles, round % 3 ? 0.05 : 0);
+    const HeightField field =
+        rugged(random, 20, 3, round % 3 ? 0.05 : 0, {.offset = 10, .surface = Surface::triangles});
     const MaxPyramid pyramid(field);
     for (int i = 0; i < 30; ++i) {
       const dvec3 p(uniform(random, -5, field.width() + 5), uniform(random, -5, field.depth() + 5),
@@ -63,7 +53,7 @@ TEST(ClosestPoint, IsWithinItsBoundForBilinearCells) {
   Random random(3);
   constexpr int kParts = 6;
   for (int round = 0; round < 12; ++round) {
-    const HeightField field = rough(random, Surface::bilinear, round % 3 ? 0.05 : 0);
+    const HeightField field = rugged(random, 20, 3, round % 3 ? 0.05 : 0, {.offset = 10});
     const MaxPyramid pyramid(field);
     // Pieces of a cell are this far from it: a quarter of their twist, which is at most 4 times the relief of 6 m.
     const double off = 0.25 * 24 / (kParts * kParts),

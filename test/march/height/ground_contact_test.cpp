@@ -24,16 +24,6 @@ using bench::JudgedTriangle;
 constexpr double kRounding = 0x1p-48;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-HeightField rugged(Random& random, Surface surface, double hole_share) {
-  const int cols = whole(random, 2, 9), rows = whole(random, 2, 9);
-  std::vector<float> samples;
-  for (int i = 0; i < cols * rows; ++i)
-    samples.push_back(uniform(random, 0, 1) < hole_share ? std::numeric_limits<float>::quiet_NaN()
-                                                         : static_cast<float>(uniform(random, -2, 2)));
-  return HeightField::own(samples, cols, rows,
-                          {.cell_x = uniform(random, 0.3, 2), .cell_y = uniform(random, 0.3, 2), .surface = surface});
-}
-
 dvec3 direction(Random& random) {
   for (;;) {
     const dvec3 d(uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1));
@@ -73,7 +63,7 @@ void expect_no_tunnelling(Surface surface, int parts) {
   // Judging takes as long as there are triangles.
   const int fewer = parts * parts;
   for (int round = 0; round < cases(400, 60, 12); ++round) {
-    const HeightField field = rugged(random, surface, round % 3 ? 0 : 0.2);
+    const HeightField field = rugged(random, 9, 2, round % 3 ? 0 : 0.2, {.surface = surface});
     const MaxPyramid pyramid(field);
     const auto triangles = bench::all_triangles(field, parts);
     // Both the judge's and the sweep's triangles are off a bilinear surface.
@@ -201,7 +191,7 @@ TEST(Overlap, IsThatOfSomeTriangle) {
   Random random(12);
   int yes = 0, no = 0;
   for (int round = 0; round < cases(600, 60, 12); ++round) {
-    const HeightField field = rugged(random, Surface::triangles, round % 3 ? 0 : 0.2);
+    const HeightField field = rugged(random, 9, 2, round % 3 ? 0 : 0.2, {.surface = Surface::triangles});
     const MaxPyramid pyramid(field);
     const auto triangles = bench::all_triangles(field, 1);
     for (int i = 0; i < 100; ++i) {

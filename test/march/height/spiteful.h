@@ -40,6 +40,10 @@ const std::vector<RayKind>& spiteful_rays();
 /// Rays over wide fields: long ways, through nodes and along lines where tiles meet.
 const std::vector<RayKind>& rays_across_tiles();
 
+/// Heights at random up to `most` above or below 0, in 2 to most_side samples per side and cells of 0.3 to 2 m; a share
+/// of the samples are holes. `settings` but for the cells.
+HeightField rugged(Random& random, int most_side, double most, double hole_share, HeightFieldSettings settings);
+
 /// Hills of several widths: rays along the ground go far before they are stopped, and any-hit looks ahead.
 HeightField hills(int cols, int rows, Surface surface);
 /// A ray along them, from their surface or from some metres about it.

@@ -261,6 +261,17 @@ const std::vector<FieldKind>& wide_fields() {
   return kinds;
 }
 
+HeightField rugged(Random& random, int most_side, double most, double hole_share, HeightFieldSettings settings) {
+  const int cols = whole(random, 2, most_side), rows = whole(random, 2, most_side);
+  std::vector<float> samples;
+  for (int i = 0; i < cols * rows; ++i)
+    samples.push_back(uniform(random, 0, 1) < hole_share ? std::numeric_limits<float>::quiet_NaN()
+                                                         : static_cast<float>(uniform(random, -most, most)));
+  settings.cell_x = uniform(random, 0.3, 2);
+  settings.cell_y = uniform(random, 0.3, 2);
+  return HeightField::own(std::move(samples), cols, rows, settings);
+}
+
 HeightField hills(int cols, int rows, Surface surface) {
   std::vector<float> samples;
   samples.reserve(static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows));

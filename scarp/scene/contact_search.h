@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Private to the station: sweeps, overlaps and closest points over many objects, for BoxTree::search(). Answers do not
+// depend on the order of the search: they are those of each object alone.
+#pragma once
+
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <optional>
+
+#include "scarp/base/world_box.h"
+#include "scarp/march/turned_box.h"
+
+namespace scarp {
+
+/// What placing points and boxes rounds, relative to their coordinates, with room.
+inline constexpr double kPlacing = 0x1p-47;
+
+/// Of two objects at the same time or distance that with the lower index counts.
+inline bool is_before(double a, std::uint32_t a_object, double b, std::uint32_t b_object) {
+  return a < b || (a == b && a_object < b_object);
+}
+
+/// 0 if something in `other` may overlap the box, else infinity.
+inline double overlap_bound(const TurnedBox& box, const WorldBox& other) {
+  const double wide = kPlacing * (length(box.centre) + length(box.half) + length(other.low) + length(other.high));
+  return overlaps(box, other.low - wide, other.high + wide) ? 0 : std::numeric_limits<double>::infinity();
+}
+
+/// The distance of p from a box, and how far boxes may be that hold something at a distance.
+inline double distance_bound(const dvec3& p, const WorldBox& box) { return length(min(max(p, box.low), box.high) - p); }
+inline double reach_of(const dvec3& p, double distance) { return distance + kPlacing * (distance + length(p)); }
+
+/// within(most) returns the point of an object that is closest to p, if it is within `most`; this returns
+/// within(max_distance), or nullopt if `best` is closer. Which of equally close points an object finds depends on how
+/// far it looks, so the limit is always the same.
+template <class Within>
+auto closest_of_object(const dvec3& p, double max_distance, const std::optional<double>& best, const Within& within)
+    -> decltype(within(max_distance)) {
+  if (best && !within(reach_of(p, *best))) return {};
+  return within(max_distance);
+}
+
+}  // namespace scarp
