@@ -37,8 +37,14 @@ constexpr int kRounding = 1;
 constexpr int kWidth = 64, kHeight = 48;
 constexpr double kFov = 60;
 
-constexpr std::uint32_t kShader[] = {
-#include "scarp/render/frame/terrain_frame.comp.inc"
+constexpr std::uint32_t kRaysShader[] = {
+#include "scarp/render/frame/terrain_frame_rays.comp.inc"
+};
+constexpr std::uint32_t kPaintShader[] = {
+#include "scarp/render/frame/terrain_frame_paint.comp.inc"
+};
+constexpr std::uint32_t kResolveShader[] = {
+#include "scarp/render/frame/terrain_frame_resolve.comp.inc"
 };
 
 enum class Holes { none, one, many };
@@ -409,7 +415,7 @@ INSTANTIATE_TEST_SUITE_P(All, TerrainFrames, testing::ValuesIn(tried_rows()),
 
 class TerrainFrame : public OnDevice {};
 
-// 65,536 steps are more than a run takes, three rays of each of nine points more than its rounds.
+// 65,536 steps are more than a run takes.
 TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
   Row row = rows()[1];
   for (const bool stepped : {true, false}) {
@@ -516,24 +522,27 @@ TEST_F(TerrainFrame, LeavesTheRestToTheRounds) {
   EXPECT_THROW(render_picture(on_device(ends, "fixed-step"), far_away, settings), Error);
 }
 
-TEST(TerrainFrameLayout, IsThatOfTheShader) {
+TEST(TerrainFrameLayout, IsThatOfTheShaders) {
   using glsl::FramePush, glsl::FrameSight, glsl::FrameWave, glsl::FramePatch, glsl::FrameRampPiece;
-  EXPECT_TRUE(
-      has_struct(kShader, {offsetof(FramePush, settings), offsetof(FramePush, ground), offsetof(FramePush, pixels),
-                           offsetof(FramePush, states), offsetof(FramePush, sights), offsetof(FramePush, first),
-                           offsetof(FramePush, count), offsetof(FramePush, resume), offsetof(FramePush, tell_sights)}));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(FrameSight, kind), offsetof(FrameSight, t), offsetof(FrameSight, cell),
-                                   offsetof(FrameSight, steps)}));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(FrameWave, along), offsetof(FrameWave, turns),
-                                   offsetof(FrameWave, turns_low), offsetof(FrameWave, metres)}));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(FramePatch, along), offsetof(FramePatch, along_low),
-                                   offsetof(FramePatch, across), offsetof(FramePatch, across_low)}));
-  EXPECT_TRUE(is_laid_out_like<FrameRampPiece>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::FrameSettings>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::FrameState>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::FrameSeen>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::FrameWater>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::ScarpSent>(kShader));
+  EXPECT_TRUE(has_struct(kRaysShader,
+                         {offsetof(FramePush, settings), offsetof(FramePush, ground), offsetof(FramePush, seens),
+                          offsetof(FramePush, waters), offsetof(FramePush, rays), offsetof(FramePush, hits),
+                          offsetof(FramePush, owners), offsetof(FramePush, grounds), offsetof(FramePush, counters),
+                          offsetof(FramePush, sums), offsetof(FramePush, pixels), offsetof(FramePush, sights),
+                          offsetof(FramePush, first), offsetof(FramePush, count), offsetof(FramePush, threads),
+                          offsetof(FramePush, point), offsetof(FramePush, light), offsetof(FramePush, tell_sights)}));
+  EXPECT_TRUE(has_struct(kResolveShader, {offsetof(FrameSight, kind), offsetof(FrameSight, t),
+                                          offsetof(FrameSight, cell), offsetof(FrameSight, steps)}));
+  EXPECT_TRUE(has_struct(kRaysShader, {offsetof(FrameWave, along), offsetof(FrameWave, turns),
+                                       offsetof(FrameWave, turns_low), offsetof(FrameWave, metres)}));
+  EXPECT_TRUE(has_struct(kRaysShader, {offsetof(FramePatch, along), offsetof(FramePatch, along_low),
+                                       offsetof(FramePatch, across), offsetof(FramePatch, across_low)}));
+  EXPECT_TRUE(is_laid_out_like<FrameRampPiece>(kPaintShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameSettings>(kRaysShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameSeen>(kRaysShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameWater>(kRaysShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::ScarpRay>(kRaysShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameSum>(kResolveShader));
 }
 
 }  // namespace
