@@ -444,6 +444,72 @@ TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
   }
 }
 
+// Wherever it ends, nothing of it is left in the next picture, which is larger and gets other memory.
+TEST_F(TerrainFrame, MayBeInterrupted) {
+  Row row = rows()[6];
+  const HeightField field = hills(row.field);
+  PictureSettings settings = settings_of(row);
+  settings.shadows = true;
+  const Scene cpu = scene_of(row, field), on_device = scene_on(device(), cpu);
+  const auto made = [&](int size, const Progress& progress) {
+    settings.width = settings.height = size;
+    Camera camera = Camera::look_at({10.3, 7.1, 12.9}, {20, 40, 4}, kFov, size, size);
+    camera.set_reach(100);
+    return render_picture(on_device, camera, settings, progress).image;
+  };
+  int calls = 0;
+  double before = 0;
+  made(8, [&](double done) {
+    ++calls;
+    EXPECT_GE(done, before);
+    before = done;
+    return true;
+  });
+  EXPECT_EQ(before, 1);
+  ASSERT_GT(calls, 6) << "after each stage that is waited for";
+  for (int last = 1; last <= calls; ++last) {
+    int left = last;
+    EXPECT_THROW(made(8 + 2 * last, [&](double) { return --left > 0; }), Interrupted);
+    made(9 + 2 * last, {});
+  }
+  const Image after = made(kHeight, {});
+  const Scene fresh = scene_on(device(), cpu);
+  Camera camera = Camera::look_at({10.3, 7.1, 12.9}, {20, 40, 4}, kFov, kHeight, kHeight);
+  camera.set_reach(100);
+  EXPECT_EQ(render_picture(fresh, camera, settings).image.rgb, after.rgb);
+}
+
+// More pixels than there are on the device at once.
+TEST_F(TerrainFrame, IsMadeInParts) {
+  if (test::cases(1, 1, 0) == 0) GTEST_SKIP() << "takes a minute under sanitizers";
+  constexpr int kWide = 700, kHigh = 460, kEvery = 101;
+  const HeightField field = hills({}, Holes::none);
+  const Scene cpu = test::terrain(field, "max-mip");
+  PictureSettings settings;
+  settings.look = Look::shaded;
+  settings.width = kWide, settings.height = kHigh;
+  settings.aa = 1;
+  settings.shadows = false;
+  const Camera camera = Camera::top({{0, 0, 0}, {field.width(), field.depth(), 10}}, kWide, kHigh);
+  FrameReport report{.tells_sightings = true};
+  const Image image = render_whole_frame(scene_on(device(), cpu), camera, settings, {}, &report);
+  const Image expected = render_picture(cpu, camera, settings).image;
+  int unlike = 0, ground = 0;
+  for (int i = 0; i < kWide * kHigh; ++i) {
+    for (std::size_t c = 3 * static_cast<std::size_t>(i); c < 3 * static_cast<std::size_t>(i) + 3; ++c)
+      unlike += std::abs(image.rgb[c] - expected.rgb[c]) > kRounding;
+    if (i % kEvery != 0) continue;
+    const FrameSighting& found = report.sightings[static_cast<std::size_t>(i)];
+    const Hit hit = cpu.closest_hit(camera.ray(i % kWide + 0.5, i / kWide + 0.5));
+    ASSERT_EQ(found.kind == FrameSighting::Kind::ground, static_cast<bool>(hit)) << i;
+    if (!hit) continue;
+    ++ground;
+    EXPECT_NEAR(found.t, hit.t, 0.01) << i;
+  }
+  EXPECT_LE(unlike, 3) << "at edges";
+  EXPECT_GT(ground, 1000);
+}
+
 TEST_F(TerrainFrame, TellsWhatItsRaysHaveMet) {
   const Row row = rows()[6];
   const HeightField field = hills(row.field);
