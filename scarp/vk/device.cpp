@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <exception>
+#include <span>
 
+#include "scarp/vk/pipeline_cache.h"
 #include "scarp/vk/raii.h"
 #include "scarp/vk/staging.h"
 
@@ -67,10 +70,36 @@ Device::Impl::Impl(const DeviceSettings& chosen_settings, VulkanInstance opened)
       queue(device, queue_family, 0),
       pool(device, {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, queue_family}) {
   timestamp_bits = physical.getQueueFamilyProperties()[queue_family].timestampValidBits;
-  timestamp_period_ns = static_cast<double>(physical.getProperties().limits.timestampPeriod);
+  const vk::PhysicalDeviceProperties properties = physical.getProperties();
+  timestamp_period_ns = static_cast<double>(properties.limits.timestampPeriod);
+  std::vector<std::byte> kept;
+  const std::string folder = settings.keep_pipelines ? user_cache_folder() : "";
+  if (!folder.empty()) {
+    const PipelineCacheKey key{properties.vendorID, properties.deviceID, properties.driverVersion,
+                               properties.pipelineCacheUUID};
+    pipelines_path = folder + "/" + pipeline_cache_name(key);
+    kept = read_pipeline_cache(pipelines_path, key);
+    pipelines_on_file = kept.size();
+  }
+  try {
+    pipelines = vk::raii::PipelineCache(device, vk::PipelineCacheCreateInfo({}, kept.size(), kept.data()));
+  } catch (const vk::SystemError&) {
+    pipelines_on_file = 0;
+    pipelines = vk::raii::PipelineCache(device, vk::PipelineCacheCreateInfo());
+  }
 }
 
-Device::Impl::~Impl() = default;
+Device::Impl::~Impl() { save_pipelines(); }
+
+void Device::Impl::save_pipelines() noexcept {
+  if (pipelines_path.empty()) return;
+  try {
+    const std::vector<std::uint8_t> data = pipelines.getData();
+    if (data.size() == pipelines_on_file) return;  // pipelines are only added
+    write_pipeline_cache(pipelines_path, std::as_bytes(std::span(data)));
+  } catch (const std::exception&) {  // device lost, or out of memory
+  }
+}
 
 void Device::Impl::submit(const vk::raii::CommandBuffer& commands, const vk::raii::Fence& fence) {
   const vk::CommandBuffer buffer = *commands;

@@ -80,6 +80,8 @@ struct DeviceSettings {
   bool validation =
       false;  ///< enables the Khronos validation layer with synchronisation validation and collects its messages
   double timeout_s = 600;  ///< time limit of one run of commands, > 0
+  /// Whether compiled pipelines are kept in the user's cache folder, from process to process (doc/user/devices.md).
+  bool keep_pipelines = true;
 };
 
 /// Returns the index of the chosen device. Throws Error if none matches (listing all), or if those that match lack a

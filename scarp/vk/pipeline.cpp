@@ -21,7 +21,7 @@ vk::raii::Pipeline make_pipeline(const Device::Impl& device, const vk::raii::Pip
   std::vector<vk::SpecializationMapEntry> entries;
   const vk::SpecializationInfo special = specialisation(constants, entries);
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &special);
-  return {device.device, nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout)};
+  return {device.device, device.pipelines, vk::ComputePipelineCreateInfo({}, stage, *layout)};
 }
 
 }  // namespace

@@ -79,6 +79,8 @@ struct Device::Impl {
   const std::string& name() const { return description.name; }
   /// Returns the first memory type for a buffer that has all `flags`.
   std::optional<std::uint32_t> memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags flags) const;
+  /// Writes the pipelines to the user's cache folder if there are new ones.
+  void save_pipelines() noexcept;
 
   DeviceSettings settings;
   DeviceDescription description;
@@ -91,6 +93,9 @@ struct Device::Impl {
   vk::raii::Device device;
   vk::raii::Queue queue;
   vk::raii::CommandPool pool;
+  std::string pipelines_path;         // empty: they are not kept
+  std::size_t pipelines_on_file = 0;  // bytes
+  vk::raii::PipelineCache pipelines = nullptr;
   std::unique_ptr<StagingRing> staging;  // made on first use
 };
 

@@ -129,7 +129,7 @@ vk::raii::Pipeline make_pipeline(const Device::Impl& device, const vk::raii::Pip
   const vk::PipelineDynamicStateCreateInfo sized_by_target({}, dynamic);
   const vk::GraphicsPipelineCreateInfo create({}, stages, &no_vertices, &triangles, nullptr, &one_viewport, &fill,
                                               &one_sample, &depth, &blend, &sized_by_target, *layout, *pass);
-  return {device.device, nullptr, create};
+  return {device.device, device.pipelines, create};
 }
 
 }  // namespace

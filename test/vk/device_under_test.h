@@ -30,7 +30,7 @@ inline const DeviceUnderTest& device_under_test() {
     bool usable = false;
     for (const DeviceDescription& device : list.devices) usable |= device.usable();
     if (usable) {
-      found.device.emplace(DeviceSettings{.validation = true});
+      found.device.emplace(DeviceSettings{.validation = true, .keep_pipelines = false});
     } else {
       found.why_none = list.devices.empty() ? list.why_none : "no usable Vulkan device";
     }

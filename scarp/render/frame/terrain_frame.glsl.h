@@ -1,36 +1,39 @@
 // SPDX-License-Identifier: MIT
-// A picture of a height field made on a device: what the compute shader terrain_frame.comp and the C++ that calls it
+// A picture of a height field made on a device: what the compute shaders of its stages and the C++ that runs them
 // (terrain_frame_vk.h) agree upon.
+//
+//   rays ──▶ march ──▶ take ──▶ water ──▶ march ──▶ take ──▶ light ──▶ march ──▶ take ──▶ ... ──▶ paint ──▶ resolve
+//   of the             what is  only if there is:            a ray to sun or sky for each       ground     pixels
+//   camera             met      mirrored, to the bottom      ground that is seen
 //
 //   FramePush ──settings──▶ FrameSettings ──ramp──▶ pieces and colours of a ramp;  ──drape──▶ a picture on the ground
 //       │  ├──ground────▶ GroundBuffers
-//       │  ├──pixels────▶ a word per pixel: red | green << 8 | blue << 16 | opacity << 24; 0: not done
-//       │  ├──states────▶ FrameState, of each invocation
+//       │  ├──seens─────▶ FrameSeen, the camera's of all pixels; then mirrored ones, then those to the water's bottom
+//       │  ├──waters────▶ FrameWater of each pixel, if there is water
+//       │  ├──rays──────▶ ScarpRay for the march, one after another, whatever they are for;  ──hits──▶ its answers
+//       │  ├──owners────▶ of each ray the index of its FrameSeen
+//       │  ├──grounds───▶ indices of those that see ground, which is to be lit and painted
+//       │  ├──counters──▶ FrameCounters: how many rays and grounds there are
+//       │  ├──sums──────▶ FrameSum of each pixel, over its points
+//       │  ├──pixels────▶ a word per pixel: red | green << 8 | blue << 16 | opacity << 24
 //       │  └──sights────▶ FrameSight per pixel, for those who ask what rays have found
-//       └─ which pixels; whether they go on from their states
+//       └─ which pixels, and which of their points
 //
-// One invocation makes one pixel, its rays one after another: the camera's, the mirrored one, the one to the water's
-// bottom, those to sun and sky from where these end. It is interrupted after kFrameRounds rays, or kFrameTurns turns of
-// a march: that keeps a run short (vk/loop_turns.glsl.h says why). Its neighbours in a vector wait for the slowest, so
-// what counts is the sum over rays of the most turns of any.
+// All pixels of a part of the picture go from stage to stage together, point by point. A ray that has nothing to march
+// takes no place in the list, so a march has as many invocations as there are rays.
 #ifndef SCARP_RENDER_TERRAIN_FRAME_GLSL_H
 #define SCARP_RENDER_TERRAIN_FRAME_GLSL_H
 
-#ifdef __cplusplus
-#include "scarp/march/height/march_host.h"
-#endif
-#include "scarp/march/height/max_mip.glsl.h"
 #include "scarp/march/height/two_float_ray.glsl.h"
-#include "scarp/march/sampling.glsl.h"
 #include "scarp/render/light/air.glsl.h"
 #include "scarp/render/surface/water.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN
 
-// Specialisation constants: threads of a workgroup; whether rays are stepped (fixed-step) or exact (max-mip); what the
-// picture has (kFrameHas...) and what the field is (ScarpField::flags), so that a shader is made of what it needs:
-// drivers take seconds for all of it.
+// Specialisation constants of all stages: threads of a workgroup; whether rays are stepped (fixed-step) or exact
+// (max-mip); what the picture has (kFrameHas...) and what the field is (ScarpField::flags), so that a shader is made of
+// what it needs: drivers take seconds for all of it. Of `take` another one: whether rays are those of light.
 const uint kFrameHasWater = 1u;
 const uint kFrameHasShadows = 2u;
 const uint kFrameHasPatches = 4u;  ///< detail by noise, or natural ground
@@ -44,15 +47,11 @@ const uint kFrameHasRims = 256u;
 const uint kFrameHasScattering = 512u;  ///< sky
 const uint kFrameHasTexture = 1024u;    ///< detail by an image
 
-const int kFrameRounds = 16;
-const int kFrameTurns = 3000;
-
 // Rays of a point of the picture, and what they have seen.
 const int kFrameCamera = 0;
 const int kFrameMirror = 1;
 const int kFrameBottom = 2;
 const int kFrameSeens = 3;
-const int kFrameTasks = 6;  ///< and one each for its light
 
 /// A wave of the water.
 struct FrameWave {
@@ -186,13 +185,33 @@ struct FrameSettings {
 struct FramePush {
   Address settings;
   Address ground;
+  Address seens;
+  Address waters;
+  Address rays;
+  Address hits;
+  Address owners;
+  Address grounds;
+  Address counters;
+  Address sums;
   Address pixels;
-  Address states;
   Address sights;
-  uint first;  ///< pixel
-  uint count;
-  uint resume;       ///< 1: go on from the states
+  uint first;        ///< pixel
+  uint count;        ///< pixels
+  uint threads;      ///< pixels, rays or grounds that the stage is for
+  int point;         ///< of the pixels
+  int light;         ///< which of the rays to sun and sky
   uint tell_sights;  ///< 1
+};
+
+struct FrameCounters {
+  uint rays;
+  uint grounds;
+};
+
+/// Over the points of a pixel that show something.
+struct FrameSum {
+  vec3 colour;
+  int shown;
 };
 
 const int kFrameNothing = 0;
@@ -211,15 +230,17 @@ struct FrameSight {
 /// A ray and what it has met.
 struct FrameSeen {
   ScarpLine line;
-  float metres;  ///< per time
-  int asked;
-  int kind;         ///< kFrameNothing, kFrameGround, kFrameWall
-  ScarpTwoFloat t;  ///< time
-  ScarpTwoFloat end;
-  ivec2 cell;
+  float metres;       ///< per time
+  int asked;          ///< 0: there is no such ray
+  int kind;           ///< kFrameNothing, kFrameGround, kFrameWall
+  ScarpTwoFloat t;    ///< time; of a ray that marches when it begins
+  float per_time;     ///< of ScarpSent
+  ScarpTwoFloat end;  ///< time; kept of rays from the water
+  ivec2 cell;         ///< of ground and walls
   vec2 place;
-  float sun_cosine;  ///< what is seen of the sun: the sum over its rays, then their mean
-  float sky;         ///< what is seen of the sky: its rays that nothing is in the way of, then their share
+  float sun_cosine;  ///< what is seen of the sun: the sum over its rays
+  float sky;         ///< what is seen of the sky: its rays that nothing is in the way of
+  float weight;      ///< of the ray of light that is under way
   vec3 normal;       ///< of ground, for shading
   vec3 light;        ///< of ground, before the air between
   uint steps;
@@ -237,27 +258,8 @@ struct FrameWater {
   vec3 glitter;
 };
 
-/// The fourth byte of a finished pixel: 255 times the share of its points in the mean. 0 marks a pixel that is not
-/// done, so 1 stands for 0.
-SCARP_FN uint scarp_frame_opacity(float share) { return max(uint(floor(255.0f * share + 0.5f)), 1u); }
-
-struct FrameState {
-  int point;      ///< of the pixel
-  int task;       ///< -1: the point has not been begun
-  int under_way;  ///< 1: the ray of the task is
-  int light;      ///< of a point's rays to sun and sky, which
-  float weight;
-  int walls;  ///< 1: the ray sees those at rims
-  vec3 sum;
-  int shown;  ///< points in the sum
-  FrameSeen seen[kFrameSeens];
-  FrameWater water;
-  ScarpSent sent;
-  ScarpHit hit;
-  ScarpWalk walk;
-  ScarpMarchState looks;
-  ScarpSampling step;
-};
+/// The fourth byte of a pixel: 255 times the share of its points in the mean.
+SCARP_FN uint scarp_frame_opacity(float share) { return uint(floor(255.0f * share + 0.5f)); }
 
 SCARP_GLSL_END
 

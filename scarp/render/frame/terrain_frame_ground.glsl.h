@@ -1,31 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Places, normals and colours of the ground for terrain_frame.comp, which includes this. GLSL.
+// Colours of the ground, for the stage that paints it and includes this. GLSL.
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Settings { FrameSettings is; };
+#include "scarp/render/frame/terrain_frame_place.glsl.h"
+
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RampPieces { FrameRampPiece pieces[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RampColours { vec3 colours[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Drape { uint texels[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Texture { float texels[]; };
-
-Settings settings() { return Settings(push.settings); }
-
-/// Metres of the world, x east and y north.
-struct ScarpPaintPlace {
-  ScarpTwoFloat x, y;
-};
-
-ScarpTwoFloat two(float high, float low) { return ScarpTwoFloat(high, low); }
-
-ScarpPaintPlace paint_place(ScarpLine line, ScarpTwoFloat t) {
-  Settings s = settings();
-  ScarpTwoFloat north = scarp_two_add(scarp_two(s.is.last_row), scarp_two_negate(scarp_line_row(line, t)));
-  return ScarpPaintPlace(scarp_two_multiply(scarp_line_col(line, t), two(s.is.cell.x, s.is.cell_low.x)),
-                         scarp_two_multiply(north, two(s.is.cell.y, s.is.cell_low.y)));
-}
-
-ScarpTwoFloat weighed(ScarpPaintPlace place, vec2 high, vec2 low) {
-  return scarp_two_combine(two(high.x, low.x), place.x, two(high.y, low.y), place.y, scarp_two(0.0));
-}
 
 float scarp_paint_noise(ScarpPaintPlace place, int set, int octave, float size) {
   FramePatch of = settings().is.patches[set * kFrameOctaves + octave];
@@ -41,27 +22,6 @@ float scarp_texel(ScarpTexels texels, int index) { return Texture(texels.at).tex
 
 #include "scarp/render/surface/detail_texture.glsl.h"
 #include "scarp/render/surface/ground_paint.glsl.h"
-
-// Between unit vectors of the world and directions of the grid.
-vec3 world_direction(vec3 grid) {
-  Settings s = settings();
-  return vec3(grid.x * s.is.cell.x, -grid.y * s.is.cell.y, grid.z * s.is.metres_per_sample);
-}
-vec3 grid_direction(vec3 world) {
-  Settings s = settings();
-  return vec3(world.x * s.is.per_cell.x, -world.y * s.is.per_cell.y, world.z * s.is.per_metre);
-}
-// Unit normal of a surface with this slope per column and row.
-vec3 normal_of(vec2 slope) {
-  Settings s = settings();
-  vec2 metres = slope * s.is.metres_per_sample * s.is.per_cell;
-  return normalize(vec3(-metres.x, metres.y, 1.0));
-}
-
-float height_of(float sample_height) {
-  Settings s = settings();
-  return (sample_height - s.is.base_of_heights) * s.is.metres_per_sample + s.is.metres_at_base;
-}
 
 vec3 ramp_colour(float height) {
   Settings s = settings();
@@ -119,7 +79,7 @@ float texture_detail(ScarpPaintPlace place, float footprint) {
   return scarp_texture_detail(ScarpTexels(s.is.texture), s.is.texture_size, at, footprint * s.is.texels_per_metre);
 }
 
-vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction, vec3 shading_normal) {
+vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction) {
   Settings s = settings();
   float metres = seen.t.high * seen.metres;
   vec3 normal = normal_of(scarp_slope(field, seen.cell, seen.place));
@@ -140,7 +100,7 @@ vec3 ground_colour(ScarpField field, FrameSeen seen, vec3 direction, vec3 shadin
   }
   vec3 colour;
   if (has_patches && s.is.natural != 0)
-    colour = scarp_natural((height - s.is.low) * s.is.per_relief, shading_normal, s.is.from_sun, s.is.snow_share,
+    colour = scarp_natural((height - s.is.low) * s.is.per_relief, seen.normal, s.is.from_sun, s.is.snow_share,
                            patches.y, patches.z);
   else
     colour = ramp_colour(height);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Walls of the plinth for terrain_frame.comp, which includes this: Plinth (plinth.h). GLSL.
+// Walls of the plinth, for the stages that include this: Plinth (plinth.h). GLSL.
 //
 // Without holes they stand at the border alone, and a ray is told there. With holes the march finds them: it takes the
 // ground for solid, on that part of the way that is above the base.
@@ -69,9 +69,15 @@ bool hidden_by_plinth(ScarpField field, inout ScarpTwoFloat begin, inout ScarpTw
   return true;
 }
 
-// Whether a ray sees walls at rims: not one that begins in the rock.
-bool meets_rims(ScarpField field, ScarpRay ray) {
-  if ((ray.flags & (kScarpFromOutside | kScarpAbove)) != 0u) return true;
+// The field as a ray has it that may meet walls at rims.
+ScarpField walled(ScarpField field) {
+  if (has_rims) field.flags |= kScarpSolid;
+  return field;
+}
+
+// Whether a ray sees walls: not those at rims if it begins in the rock.
+bool meets_walls(ScarpField field, ScarpRay ray) {
+  if (!has_rims || (ray.flags & (kScarpFromOutside | kScarpAbove)) != 0u) return true;
   ScarpCell ground = scarp_cell(field, ray.cell.x, ray.cell.y, ray.z);
   return ground.hole || ray.z_low >= scarp_surface(field, ground, ray.place.x, ray.place.y);
 }

@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
-#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,26 +11,19 @@
 #include "scarp/base/error.h"
 #include "scarp/base/two_floats.h"
 #include "scarp/march/height/device_ray.h"
+#include "scarp/render/frame/frame_stages_vk.h"
 #include "scarp/render/frame/frame_view.h"
+#include "scarp/render/frame/kept_buffer_vk.h"
 #include "scarp/render/frame/terrain_frame.glsl.h"
 #include "scarp/render/light/sample_directions.h"
 #include "scarp/scene/plinth.h"
 #include "scarp/scene/scene_vk.h"
-#include "scarp/vk/commands.h"
 #include "scarp/vk/memory.h"
-#include "scarp/vk/pipeline.h"
 
 namespace scarp {
 namespace {
 
-constexpr std::uint32_t kThreads = 64;
-// What is on the device together: so that states of interrupted invocations have some 100 MB at most.
-constexpr std::int64_t kPixelsAtOnce = 1 << 17;
 constexpr double kFarthestCell = 0x1p22;
-
-constexpr std::uint32_t kWords[] = {
-#include "scarp/render/frame/terrain_frame.comp.inc"
-};
 
 void split(const dvec3& value, vec3& high, vec3& low) {
   for (int axis = 0; axis < 3; ++axis) scarp::split(value[axis], high[axis], low[axis]);
@@ -204,35 +195,26 @@ void set_ground(glsl::FrameSettings& s, const HeightField& field, const GroundPa
   }
 }
 
-// A buffer that is made again when it is too small, and written when what is to be in it has changed.
-class KeptBuffer {
- public:
-  explicit KeptBuffer(const char* name) : name_(name) {}
-
-  /// At least so large; contents are lost when it grows.
-  const DeviceBuffer& reserve(const Device& device, std::uint64_t bytes) {
-    if (!buffer_ || buffer_->bytes() < bytes) {
-      buffer_.reset();
-      kept_.clear();
-      buffer_.emplace(device, bytes, name_);
-    }
-    return *buffer_;
-  }
-  template <class T>
-  std::uint64_t keep(const Device& device, std::span<const T> values) {
-    const std::span<const std::byte> bytes = std::as_bytes(values);
-    if (buffer_ && std::equal(bytes.begin(), bytes.end(), kept_.begin(), kept_.end())) return buffer_->address();
-    reserve(device, bytes.size());
-    upload(*buffer_, 0, bytes.data(), bytes.size());
-    kept_.assign(bytes.begin(), bytes.end());
-    return buffer_->address();
-  }
-
- private:
-  const char* name_;
-  std::optional<DeviceBuffer> buffer_;
-  std::vector<std::byte> kept_;
-};
+// What the picture has: drivers compile shaders of these parts only.
+std::uint32_t parts_of(const glsl::FrameSettings& s, bool stepped, std::uint32_t field_flags) {
+  const bool plinth = s.plinth != 0 && !stepped;  // steps do not see it
+  const bool rims = (field_flags & (glsl::kScarpHoles | glsl::kScarpSolid)) == glsl::kScarpHoles;
+  const bool lit = s.unlit == 0, soft = s.samples > 0 && s.sun_rays + s.sky_rays > 0;
+  std::uint32_t parts = 0;
+  const auto add = [&](bool has, std::uint32_t part) { parts |= has ? part : 0; };
+  add(s.water != 0, glsl::kFrameHasWater);
+  add(lit && s.shadows != 0, glsl::kFrameHasShadows);
+  add(s.natural != 0 || (s.detail > 0 && s.texture_size.x == 0), glsl::kFrameHasPatches);
+  add(s.drape_width > 0, glsl::kFrameHasDrape);
+  add(s.contours > 0, glsl::kFrameHasContours);
+  add(s.fog != glsl::kScarpNoFog, glsl::kFrameHasFog);
+  add(s.sky.scattering != 0, glsl::kFrameHasScattering);
+  add(lit && soft, glsl::kFrameHasSamples);
+  add(plinth, glsl::kFrameHasPlinth);
+  add(plinth && rims, glsl::kFrameHasRims);
+  add(s.texture_size.x > 0, glsl::kFrameHasTexture);
+  return parts;
+}
 
 class FrameMaker {
  public:
@@ -241,7 +223,7 @@ class FrameMaker {
       : device_(scene.device_terrain()->device),
         stepped_(scene.marches() == "fixed-step"),
         flags_(device_field((*scene.only_heights()), nullptr).flags),
-        commands_(device_) {}
+        stages_(device_, stepped_) {}
 
   Image make(const Scene& scene, const glsl::FrameSettings& numbers, const GroundPaint& paint, double zero_of_heights,
              const Progress& progress, FrameReport& report) {
@@ -249,71 +231,32 @@ class FrameMaker {
     set_ramp(s, paint.ramp(), zero_of_heights);
     if (const Drape* drape = paint.settings().drape.get()) set_drape(s, *drape);
     if (paint.settings().detail > 0 && paint.settings().detail_texture) set_texture(s, paint);
-    const ComputePipeline& pipeline = pipeline_for(s);
-    Image image(s.width, s.height);
-    const std::int64_t pixels = std::int64_t{s.width} * s.height, most = std::min(pixels, kPixelsAtOnce);
-    const DeviceBuffer& words = pixels_.reserve(device_, 4 * static_cast<std::uint64_t>(most));
-    glsl::FramePush push{};
-    push.settings = settings_.keep(device_, std::span<const glsl::FrameSettings>(&s, 1));
-    push.ground = scene.device_terrain()->ground.address();
-    push.pixels = words.address();
-    push.states = states_.reserve(device_, static_cast<std::uint64_t>(most) * sizeof(glsl::FrameState)).address();
-    const DeviceBuffer* sights = nullptr;
+    FrameWork work;
+    work.numbers = &s;
+    work.settings = settings_.keep(device_, std::span<const glsl::FrameSettings>(&s, 1));
+    work.ground = scene.device_terrain()->ground.address();
+    work.parts = parts_of(s, stepped_, flags_);
+    work.field_flags = flags_;
     if (report.tells_sightings) {
-      report.sightings.resize(static_cast<std::size_t>(pixels));
-      sights = &sights_.reserve(device_, static_cast<std::uint64_t>(pixels) * sizeof(glsl::FrameSight));
-      push.sights = sights->address();
-      push.tell_sights = 1;
+      report.sightings.resize(static_cast<std::size_t>(s.width) * s.height);
+      work.sights = sights_.reserve(device_, report.sightings.size() * sizeof(glsl::FrameSight)).address();
     }
-    for (std::int64_t first = 0; first < pixels; first += most) {
-      push.first = static_cast<std::uint32_t>(first);
-      push.count = static_cast<std::uint32_t>(std::min(most, pixels - first));
-      found_.resize(push.count);
-      push.resume = 0;
-      do {
-        if (progress && !progress(static_cast<double>(first) / static_cast<double>(pixels))) throw Interrupted();
-        commands_.dispatch(pipeline, push, {(push.count + kThreads - 1) / kThreads, 1, 1});
-        commands_.run();
-        for (const PassTime& pass : commands_.passes()) {
-          if (pass.nanoseconds) report.device_s = report.device_s.value_or(0) + 1e-9 * *pass.nanoseconds;
-        }
-        download(words, 0, found_.data(), 4 * std::uint64_t{push.count});
-        push.resume = 1;
-      } while (std::find(found_.begin(), found_.end(), 0u) != found_.end());
+    Image image(s.width, s.height);
+    report.device_s = stages_.run(work, progress, [&](std::int64_t first, std::span<const std::uint32_t> words) {
       std::uint8_t* rgb = image.rgb.data() + 3 * first;
-      for (const std::uint32_t word : found_) {
+      for (const std::uint32_t word : words) {
         *rgb++ = static_cast<std::uint8_t>(word);
         *rgb++ = static_cast<std::uint8_t>(word >> 8);
         *rgb++ = static_cast<std::uint8_t>(word >> 16);
+        if (s.alpha != 0) image.alpha.push_back(static_cast<std::uint8_t>(word >> 24));
       }
-      if (s.alpha == 0) continue;
-      for (const std::uint32_t word : found_)
-        image.alpha.push_back(word >> 24 == 1 ? std::uint8_t{0} : static_cast<std::uint8_t>(word >> 24));
-    }
-    if (sights) take_sights(*sights, report.sightings);
+    });
+    if (work.sights != 0) take_sights(sights_.buffer(), report.sightings);
     if (progress && !progress(1.0)) throw Interrupted();
     return image;
   }
 
  private:
-  const ComputePipeline& pipeline_for(const glsl::FrameSettings& s) {
-    const bool plinth = s.plinth != 0 && !stepped_;  // steps do not see it
-    const bool rims = (flags_ & (glsl::kScarpHoles | glsl::kScarpSolid)) == glsl::kScarpHoles;
-    const std::uint32_t parts =
-        (s.water != 0 ? glsl::kFrameHasWater : 0) | (s.shadows != 0 ? glsl::kFrameHasShadows : 0) |
-        (s.natural != 0 || (s.detail > 0 && s.texture_size.x == 0) ? glsl::kFrameHasPatches : 0) |
-        (s.drape_width > 0 ? glsl::kFrameHasDrape : 0) | (s.contours > 0 ? glsl::kFrameHasContours : 0) |
-        (s.fog != glsl::kScarpNoFog ? glsl::kFrameHasFog : 0) | (s.sky.scattering ? glsl::kFrameHasScattering : 0) |
-        (s.samples > 0 ? glsl::kFrameHasSamples : 0) | (plinth ? glsl::kFrameHasPlinth : 0) |
-        (plinth && rims ? glsl::kFrameHasRims : 0) | (s.texture_size.x > 0 ? glsl::kFrameHasTexture : 0);
-    const auto found = pipelines_.find(parts);
-    if (found != pipelines_.end()) return found->second;
-    const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
-    return pipelines_
-        .emplace(parts, ComputePipeline(device_, kWords, "terrain frame", sizeof(glsl::FramePush), constants))
-        .first->second;
-  }
-
   void set_ramp(glsl::FrameSettings& s, const Ramp& ramp, double zero_of_heights) {
     std::vector<glsl::FrameRampPiece> pieces;
     std::vector<vec3> colours;
@@ -362,11 +305,9 @@ class FrameMaker {
   Device device_;
   bool stepped_;
   std::uint32_t flags_;
-  std::map<std::uint32_t, ComputePipeline> pipelines_;  // by what the picture has
-  Commands commands_;
+  FrameStages stages_;
   KeptBuffer settings_{"a frame's settings"}, pieces_{"a ramp"}, colours_{"a ramp's colours"}, drape_{"an overlay"},
-      texture_{"a detail texture"}, pixels_{"pixels"}, states_{"a frame's states"}, sights_{"a frame's sights"};
-  std::vector<std::uint32_t> found_;
+      texture_{"a detail texture"}, sights_{"a frame's sights"};
 };
 
 }  // namespace
@@ -404,7 +345,6 @@ Image render_whole_frame(const Scene& scene, const Camera& camera, const Picture
   set_ground(numbers, field, view.paint(), zero);
   FrameReport unasked;
   FrameReport& found = report ? *report : unasked;
-  found.device_s.reset();
   return static_cast<FrameMaker*>(terrain.kept.get())->make(scene, numbers, view.paint(), zero, progress, found);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Pictures of one terrain on a Vulkan device, made there as a whole: a dispatch makes all rays, follows them and
-// paints what they meet, and only the pixels come back.
+// Pictures of one terrain on a Vulkan device, made there as a whole: stages make rays, march them and paint what they
+// meet (terrain_frame.glsl.h), and only the pixels come back.
 //
-//   camera, settings ──▶ some hundred numbers ──▶ terrain_frame.comp, a pixel per invocation ──▶ Image
+//   camera, settings ──▶ some hundred numbers ──▶ stages: rays, march, take, water, light, paint, resolve ──▶ Image
 //
 // Formulas are those of the CPU, from one text (sky.glsl.h, air.glsl.h, water.glsl.h, ground_paint.glsl.h,
 // detail_texture.glsl.h, colour.glsl.h, sample_pattern.glsl.h, sample_directions.glsl.h), in single precision; rays are

@@ -37,8 +37,14 @@ constexpr int kRounding = 1;
 constexpr int kWidth = 64, kHeight = 48;
 constexpr double kFov = 60;
 
-constexpr std::uint32_t kShader[] = {
-#include "scarp/render/frame/terrain_frame.comp.inc"
+constexpr std::uint32_t kRaysShader[] = {
+#include "scarp/render/frame/terrain_frame_rays.comp.inc"
+};
+constexpr std::uint32_t kPaintShader[] = {
+#include "scarp/render/frame/terrain_frame_paint.comp.inc"
+};
+constexpr std::uint32_t kResolveShader[] = {
+#include "scarp/render/frame/terrain_frame_resolve.comp.inc"
 };
 
 enum class Holes { none, one, many };
@@ -409,7 +415,7 @@ INSTANTIATE_TEST_SUITE_P(All, TerrainFrames, testing::ValuesIn(tried_rows()),
 
 class TerrainFrame : public OnDevice {};
 
-// 65,536 steps are more than a run takes, three rays of each of nine points more than its rounds.
+// 65,536 steps are more than a run takes.
 TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
   Row row = rows()[1];
   for (const bool stepped : {true, false}) {
@@ -436,6 +442,72 @@ TEST_F(TerrainFrame, GoesOnWhereItWasInterrupted) {
     const std::set<std::uint8_t> opacities(a.alpha.begin(), a.alpha.end());
     EXPECT_EQ(opacities.size() > 2 && opacities.contains(0), settings.alpha) << "sky, crests and ground";
   }
+}
+
+// Wherever it ends, nothing of it is left in the next picture, which is larger and gets other memory.
+TEST_F(TerrainFrame, MayBeInterrupted) {
+  Row row = rows()[6];
+  const HeightField field = hills(row.field);
+  PictureSettings settings = settings_of(row);
+  settings.shadows = true;
+  const Scene cpu = scene_of(row, field), on_device = scene_on(device(), cpu);
+  const auto made = [&](int size, const Progress& progress) {
+    settings.width = settings.height = size;
+    Camera camera = Camera::look_at({10.3, 7.1, 12.9}, {20, 40, 4}, kFov, size, size);
+    camera.set_reach(100);
+    return render_picture(on_device, camera, settings, progress).image;
+  };
+  int calls = 0;
+  double before = 0;
+  made(8, [&](double done) {
+    ++calls;
+    EXPECT_GE(done, before);
+    before = done;
+    return true;
+  });
+  EXPECT_EQ(before, 1);
+  ASSERT_GT(calls, 6) << "after each stage that is waited for";
+  for (int last = 1; last <= calls; ++last) {
+    int left = last;
+    EXPECT_THROW(made(8 + 2 * last, [&](double) { return --left > 0; }), Interrupted);
+    made(9 + 2 * last, {});
+  }
+  const Image after = made(kHeight, {});
+  const Scene fresh = scene_on(device(), cpu);
+  Camera camera = Camera::look_at({10.3, 7.1, 12.9}, {20, 40, 4}, kFov, kHeight, kHeight);
+  camera.set_reach(100);
+  EXPECT_EQ(render_picture(fresh, camera, settings).image.rgb, after.rgb);
+}
+
+// More pixels than there are on the device at once.
+TEST_F(TerrainFrame, IsMadeInParts) {
+  if (test::cases(1, 1, 0) == 0) GTEST_SKIP() << "takes a minute under sanitizers";
+  constexpr int kWide = 700, kHigh = 460, kEvery = 101;
+  const HeightField field = hills({}, Holes::none);
+  const Scene cpu = test::terrain(field, "max-mip");
+  PictureSettings settings;
+  settings.look = Look::shaded;
+  settings.width = kWide, settings.height = kHigh;
+  settings.aa = 1;
+  settings.shadows = false;
+  const Camera camera = Camera::top({{0, 0, 0}, {field.width(), field.depth(), 10}}, kWide, kHigh);
+  FrameReport report{.tells_sightings = true};
+  const Image image = render_whole_frame(scene_on(device(), cpu), camera, settings, {}, &report);
+  const Image expected = render_picture(cpu, camera, settings).image;
+  int unlike = 0, ground = 0;
+  for (int i = 0; i < kWide * kHigh; ++i) {
+    for (std::size_t c = 3 * static_cast<std::size_t>(i); c < 3 * static_cast<std::size_t>(i) + 3; ++c)
+      unlike += std::abs(image.rgb[c] - expected.rgb[c]) > kRounding;
+    if (i % kEvery != 0) continue;
+    const FrameSighting& found = report.sightings[static_cast<std::size_t>(i)];
+    const Hit hit = cpu.closest_hit(camera.ray(i % kWide + 0.5, i / kWide + 0.5));
+    ASSERT_EQ(found.kind == FrameSighting::Kind::ground, static_cast<bool>(hit)) << i;
+    if (!hit) continue;
+    ++ground;
+    EXPECT_NEAR(found.t, hit.t, 0.01) << i;
+  }
+  EXPECT_LE(unlike, 3) << "at edges";
+  EXPECT_GT(ground, 1000);
 }
 
 TEST_F(TerrainFrame, TellsWhatItsRaysHaveMet) {
@@ -516,24 +588,27 @@ TEST_F(TerrainFrame, LeavesTheRestToTheRounds) {
   EXPECT_THROW(render_picture(on_device(ends, "fixed-step"), far_away, settings), Error);
 }
 
-TEST(TerrainFrameLayout, IsThatOfTheShader) {
+TEST(TerrainFrameLayout, IsThatOfTheShaders) {
   using glsl::FramePush, glsl::FrameSight, glsl::FrameWave, glsl::FramePatch, glsl::FrameRampPiece;
-  EXPECT_TRUE(
-      has_struct(kShader, {offsetof(FramePush, settings), offsetof(FramePush, ground), offsetof(FramePush, pixels),
-                           offsetof(FramePush, states), offsetof(FramePush, sights), offsetof(FramePush, first),
-                           offsetof(FramePush, count), offsetof(FramePush, resume), offsetof(FramePush, tell_sights)}));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(FrameSight, kind), offsetof(FrameSight, t), offsetof(FrameSight, cell),
-                                   offsetof(FrameSight, steps)}));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(FrameWave, along), offsetof(FrameWave, turns),
-                                   offsetof(FrameWave, turns_low), offsetof(FrameWave, metres)}));
-  EXPECT_TRUE(has_struct(kShader, {offsetof(FramePatch, along), offsetof(FramePatch, along_low),
-                                   offsetof(FramePatch, across), offsetof(FramePatch, across_low)}));
-  EXPECT_TRUE(is_laid_out_like<FrameRampPiece>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::FrameSettings>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::FrameState>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::FrameSeen>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::FrameWater>(kShader));
-  EXPECT_TRUE(is_laid_out_like<glsl::ScarpSent>(kShader));
+  EXPECT_TRUE(has_struct(kRaysShader,
+                         {offsetof(FramePush, settings), offsetof(FramePush, ground), offsetof(FramePush, seens),
+                          offsetof(FramePush, waters), offsetof(FramePush, rays), offsetof(FramePush, hits),
+                          offsetof(FramePush, owners), offsetof(FramePush, grounds), offsetof(FramePush, counters),
+                          offsetof(FramePush, sums), offsetof(FramePush, pixels), offsetof(FramePush, sights),
+                          offsetof(FramePush, first), offsetof(FramePush, count), offsetof(FramePush, threads),
+                          offsetof(FramePush, point), offsetof(FramePush, light), offsetof(FramePush, tell_sights)}));
+  EXPECT_TRUE(has_struct(kResolveShader, {offsetof(FrameSight, kind), offsetof(FrameSight, t),
+                                          offsetof(FrameSight, cell), offsetof(FrameSight, steps)}));
+  EXPECT_TRUE(has_struct(kRaysShader, {offsetof(FrameWave, along), offsetof(FrameWave, turns),
+                                       offsetof(FrameWave, turns_low), offsetof(FrameWave, metres)}));
+  EXPECT_TRUE(has_struct(kRaysShader, {offsetof(FramePatch, along), offsetof(FramePatch, along_low),
+                                       offsetof(FramePatch, across), offsetof(FramePatch, across_low)}));
+  EXPECT_TRUE(is_laid_out_like<FrameRampPiece>(kPaintShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameSettings>(kRaysShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameSeen>(kRaysShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameWater>(kRaysShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::ScarpRay>(kRaysShader));
+  EXPECT_TRUE(is_laid_out_like<glsl::FrameSum>(kResolveShader));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where rays meet water, for terrain_frame.comp, which includes this: Water::meets() and so on. GLSL.
+// Where rays meet water, for the stages that include this: Water::meets(). GLSL.
 
 // Whether a cell is flat ground at the water's level.
 bool is_sea(ScarpField field, ivec2 cell) {
@@ -79,34 +79,4 @@ FrameWater water_on(ScarpField field, ScarpLine line, ScarpTwoFloat end) {
   found.normal = through_x ? vec3(line.direction.x > 0.0 ? -1.0 : 1.0, 0.0, 0.0)
                            : vec3(0.0, line.direction.y > 0.0 ? 1.0 : -1.0, 0.0);
   return found;
-}
-
-// Unit normal of the water with its waves.
-vec3 water_normal(ScarpPaintPlace place, float footprint) {
-  Settings s = settings();
-  vec2 tilt = vec2(0.0);
-  if (s.is.waves == 0.0) return vec3(0.0, 0.0, 1.0);
-  for (int i = 0; i < kScarpWaves; ++i) {
-    FrameWave wave = s.is.wave[i];
-    float seen = scarp_wave_seen(wave.metres, footprint);
-    if (seen == 0.0) break;
-    ScarpTwoFloat turns = weighed(place, wave.turns, wave.turns_low);
-    tilt += seen * scarp_wave_slope(i, (turns.high - floor(turns.high)) + turns.low, s.is.waves) * wave.along;
-  }
-  return normalize(vec3(-tilt.x, -tilt.y, 1.0));
-}
-
-// Mean square of the wave slopes that water_normal() omits.
-float water_roughness(float footprint) {
-  Settings s = settings();
-  float roughness = 0.0;
-  for (int i = 0; i < kScarpWaves; ++i)
-    roughness += scarp_wave_roughness(scarp_wave_seen(s.is.wave[i].metres, footprint), s.is.waves);
-  return roughness;
-}
-
-// Metres to where a ray in the water comes out at a side of the field; kScarpNever where it has none.
-float leaves_water(ScarpField field, ScarpLine line) {
-  if ((field.flags & kScarpWraps) != 0u) return kScarpNever;
-  return min(scarp_span_x(field, line).end.high, scarp_span_y(field, line).end.high);
 }

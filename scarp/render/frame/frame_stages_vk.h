@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// Private to the station: runs the stages of a picture of a height field on its device (terrain_frame.glsl.h).
+//
+//   a part of the picture ──▶ rays, march, take, water, ..., resolve, point by point ──▶ its pixels ──▶ the next part
+//
+// Between stages only counts come back. A part has as many pixels as take kMemory together: 428 bytes each, or 1,032
+// with water, whose pixels may have two rays at once.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "scarp/base/progress.h"
+#include "scarp/march/height/device_march_vk.h"
+#include "scarp/render/frame/kept_buffer_vk.h"
+#include "scarp/render/frame/terrain_frame.glsl.h"
+#include "scarp/vk/commands.h"
+#include "scarp/vk/device.h"
+#include "scarp/vk/pipeline.h"
+
+namespace scarp {
+
+/// A picture, as the stages need it.
+struct FrameWork {
+  const glsl::FrameSettings* numbers = nullptr;
+  std::uint64_t settings = 0;  ///< address of the numbers
+  std::uint64_t ground = 0;    ///< address
+  std::uint64_t sights = 0;    ///< address of a FrameSight per pixel; 0: not asked for
+  std::uint32_t parts = 0;     ///< kFrameHas...
+  std::uint32_t field_flags = 0;
+};
+
+/// For pictures of one march. Keeps shaders and memory from picture to picture. Not thread-safe.
+class FrameStages {
+ public:
+  /// `stepped`: fixed-step instead of max-mip.
+  FrameStages(const Device& device, bool stepped);
+
+  /// Calls take(first, words) with the words of all pixels, part by part. Returns the seconds by the device's clock, if
+  /// it has one. Throws Error: no memory on the device, the device is lost; Interrupted when progress asks for it.
+  std::optional<double> run(const FrameWork& work, const Progress& progress,
+                            const std::function<void(std::int64_t first, std::span<const std::uint32_t> words)>& take);
+
+ private:
+  static constexpr std::uint64_t kMemory = 128 << 20;
+
+  struct Stage;
+  enum class Take : std::uint8_t { sights, sights_and_grounds, light };
+  void reserve(std::uint32_t pixels);
+  void make_point(int point);
+  void see_through_water();
+  void light_grounds();
+  const ComputePipeline& pipeline(const Stage& stage, Take take);
+  void record(const Stage& stage, std::uint32_t threads, Take take = Take::sights);
+  void clear(std::uint64_t offset, std::uint64_t bytes);
+  void submit();
+  void march(const DeviceRayQuery& query);
+
+  using PipelineKey = std::array<std::uint32_t, 4>;  // stage, take, parts, field flags
+  Device device_;
+  bool stepped_;
+  DeviceHeightMarch march_;
+  Commands commands_;
+  std::map<PipelineKey, ComputePipeline> pipelines_;
+  KeptBuffer seens_{"what rays see"}, waters_{"where pixels see water"}, rays_{"rays"}, hits_{"hits"},
+      owners_{"owners of rays"}, grounds_{"grounds in sight"}, counters_{"counts of rays"}, sums_{"sums of pixels"},
+      pixels_{"pixels"};
+  std::vector<std::uint32_t> words_;
+  // Of the picture.
+  const FrameWork* work_ = nullptr;
+  const Progress* progress_ = nullptr;
+  double done_ = 0;  // share of the picture
+  std::optional<double> device_s_;
+  glsl::FramePush push_{};
+  glsl::FrameCounters counts_{};  // as of the last submit()
+  DeviceRayQuery sight_, light_;
+};
+
+}  // namespace scarp
