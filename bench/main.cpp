@@ -73,6 +73,7 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
 
 void add_json_option(CLI::App& command, ReportOptions& report) {
   command.add_option("--json", report.json, "file to write {machine, command, date, rows} to");
+  command.add_option("--csv", report.csv, "file to write the rows to, as in bench/results");
 }
 
 int run(int argc, char** argv) {

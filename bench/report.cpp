@@ -3,6 +3,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/utsname.h>
 
 #include <algorithm>
@@ -37,20 +38,59 @@ std::string machine() {
                      system.sysname, system.release, __VERSION__, EmbreePeer::version());
 }
 
-void write_json(const ReportOptions& options, const nlohmann::ordered_json& rows) {
-  if (options.json.empty()) return;
-  const auto now = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
-  nlohmann::ordered_json all;
-  all["machine"] = machine();
-  all["command"] = options.command;
-  all["date"] = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
-  all["rows"] = rows;
-  ReplaceFile file(options.json);
+namespace {
+
+// Numbers and words as JSON has them, without quotes where no comma needs them; null is empty.
+std::string csv_cell(const nlohmann::ordered_json& value) {
+  if (value.is_null()) return "";
+  if (!value.is_string()) return value.dump();
+  const auto text = value.get<std::string>();
+  return text.find_first_of(",\"") == std::string::npos ? text : value.dump();
+}
+
+// The columns are those of all rows, in the order in which they come first.
+std::string csv_of(const nlohmann::ordered_json& rows) {
+  std::vector<std::string> columns;
+  for (const auto& row : rows) {
+    for (const auto& [name, value] : row.items()) {
+      if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
+    }
+  }
+  std::string text = fmt::format("{}\n", fmt::join(columns, ","));
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      text += (i == 0 ? "" : ",") + csv_cell(row.value(columns[i], nlohmann::ordered_json()));
+    text += '\n';
+  }
+  return text;
+}
+
+void write_file(const std::string& name, const std::string& text) {
+  ReplaceFile file(name);
   std::ofstream out(file.temporary_path());
-  out << all.dump(1) << '\n';
+  out << text;
   out.close();
-  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", options.json));
+  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", name));
   file.commit();
+}
+
+}  // namespace
+
+void write_json(const ReportOptions& options, const nlohmann::ordered_json& rows) {
+  const auto now = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
+  const std::string date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+  if (!options.json.empty()) {
+    nlohmann::ordered_json all;
+    all["machine"] = machine();
+    all["command"] = options.command;
+    all["date"] = date;
+    all["rows"] = rows;
+    write_file(options.json, all.dump(1) + '\n');
+  }
+  if (!options.csv.empty()) {
+    write_file(options.csv, fmt::format("# machine: \"{}\"\n# command: {}\n# date: {}\n{}", machine(), options.command,
+                                        date, csv_of(rows)));
+  }
 }
 
 std::string short_number(const nlohmann::ordered_json& value, int digits) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Results for programs and for people: the JSON of all commands, and plain tables.
+// Results for programs and for people: the JSON and CSV of all commands, and plain tables.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -12,9 +12,11 @@ namespace scarp::bench {
 struct ReportOptions {
   std::string command;  ///< as typed
   std::string json;     ///< a file to write; empty: none
+  std::string csv;      ///< likewise
 };
 
-/// {machine, command, date, rows}. Throws Error when the file cannot be written; then no file is left or changed.
+/// Writes the files of `options`: JSON is {machine, command, date, rows}; CSV has the first three as comments, and the
+/// rows as bench/results keeps them. Throws Error if a file cannot be written; it is then not left or changed.
 void write_json(const ReportOptions& options, const nlohmann::ordered_json& rows);
 
 /// A number with so many significant digits, in as few characters as that takes; "-" for null.

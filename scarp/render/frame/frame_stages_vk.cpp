@@ -196,11 +196,22 @@ std::optional<double> FrameStages::run(
   device_s_.reset();
   const bool tells_steps = s.iterations != 0 || s.fog == glsl::kScarpFogByIterations || work.sights != 0;
   const std::uint32_t walls = (work.parts & glsl::kFrameHasRims) != 0 ? glsl::kScarpSolid : 0;
-  sight_ = {false, tells_steps, work.field_flags | walls, samples(s.interpolate, s.steps + 1)};
-  // Steps do not tell any hit from the closest: one shader for both.
-  light_ = {true, stepped_ && tells_steps, work.field_flags, samples(s.sun_interpolate, s.sun_steps)};
-
   const bool water = (work.parts & glsl::kFrameHasWater) != 0;
+  const auto kind = [&](std::uint32_t more_flags) {
+    return glsl::batch_ground_kind(work.field_flags | more_flags, work.sample_type);
+  };
+  // Rays that the sea reflects start on the ground where that is the sea's floor.
+  sight_ = {.statistics = tells_steps,
+            .ground_kind = kind(walls | (water ? glsl::kScarpStarts : 0)),
+            .sampling = samples(s.interpolate, s.steps + 1),
+            .exact_only = work.exact_only};
+  // Steps do not tell any hit from the closest: one shader for both.
+  light_ = {.any = true,
+            .statistics = stepped_ && tells_steps,
+            .ground_kind = kind(glsl::kScarpStarts),
+            .sampling = samples(s.sun_interpolate, s.sun_steps),
+            .exact_only = work.exact_only};
+
   const std::int64_t pixels = std::int64_t{s.width} * s.height;
   const auto most = static_cast<std::int64_t>(kMemory / bytes_per_pixel(water, march_name(stepped_)));
   push_ = {};

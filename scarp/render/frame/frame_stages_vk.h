@@ -34,6 +34,8 @@ struct FrameWork {
   std::uint64_t sights = 0;    ///< address of a FrameSight per pixel; 0: not asked for
   std::uint32_t parts = 0;     ///< kFrameHas...
   std::uint32_t field_flags = 0;
+  std::uint32_t sample_type = 0;  ///< GroundBuffers::sample_type
+  bool exact_only = false;        ///< leaves_first_pass() of the field
 };
 
 /// For pictures of one march. Keeps shaders and memory from picture to picture. Not thread-safe.

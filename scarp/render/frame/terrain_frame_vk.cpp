@@ -237,6 +237,8 @@ class FrameMaker {
     work.ground = scene.device_terrain()->ground.address();
     work.parts = parts_of(s, stepped_, flags_);
     work.field_flags = flags_;
+    work.sample_type = scene.device_terrain()->ground.layout().sample_type;
+    work.exact_only = leaves_first_pass(*scene.only_heights());
     if (report.tells_sightings) {
       report.sightings.resize(static_cast<std::size_t>(s.width) * s.height);
       work.sights = sights_.reserve(device_, report.sightings.size() * sizeof(glsl::FrameSight)).address();
