@@ -57,6 +57,8 @@ class DeviceHeightMarch {
   /// `turns_at_once`: of a march's loop in one run, 1 to kScarpLoopTurns. Throws Error if the march does not run on
   /// devices, listing those that do, or if the device lacks memory.
   DeviceHeightMarch(const Device& device, std::string_view march, int turns_at_once = glsl::kScarpLoopTurns);
+  DeviceHeightMarch(const DeviceHeightMarch&) = delete;
+  DeviceHeightMarch& operator=(const DeviceHeightMarch&) = delete;
 
   /// Makes room for batches of so many rays; begin() does so for a batch that is larger. Throws Error if the device
   /// lacks memory.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "scarp/base/error.h"
 #include "scarp/march/fixed_step.glsl.h"
 #include "scarp/vk/memory.h"
 
@@ -70,17 +71,20 @@ struct FrameStages::Stage {
 };
 
 const FrameStages::Stage FrameStages::Stage::kRays{
-    0, "frame, rays", kRaysWords, glsl::kFrameHasWater | glsl::kFrameHasPlinth | glsl::kFrameHasRims, true},
-    FrameStages::Stage::kTake{1, "frame, take", kTakeWords, glsl::kFrameHasShadows | glsl::kFrameHasSamples, true},
-    FrameStages::Stage::kWater{2, "frame, water", kWaterWords,
-                               glsl::kFrameHasWater | glsl::kFrameHasRims | glsl::kFrameHasScattering, true},
-    FrameStages::Stage::kLight{3, "frame, light", kLightWords, glsl::kFrameHasShadows | glsl::kFrameHasSamples, true},
-    FrameStages::Stage::kPaint{4, "frame, paint", kPaintWords,
-                               glsl::kFrameHasPatches | glsl::kFrameHasDrape | glsl::kFrameHasContours |
-                                   glsl::kFrameHasTexture | glsl::kFrameHasShadows | glsl::kFrameHasSamples,
-                               true},
-    FrameStages::Stage::kResolve{5, "frame, resolve", kResolveWords,
-                                 glsl::kFrameHasWater | glsl::kFrameHasFog | glsl::kFrameHasScattering, false};
+    0, "frame, rays", kRaysWords, glsl::kFrameHasWater | glsl::kFrameHasPlinth | glsl::kFrameHasRims, true};
+const FrameStages::Stage FrameStages::Stage::kTake{1, "frame, take", kTakeWords,
+                                                   glsl::kFrameHasShadows | glsl::kFrameHasSamples, true};
+const FrameStages::Stage FrameStages::Stage::kWater{
+    2, "frame, water", kWaterWords, glsl::kFrameHasWater | glsl::kFrameHasRims | glsl::kFrameHasScattering, true};
+const FrameStages::Stage FrameStages::Stage::kLight{3, "frame, light", kLightWords,
+                                                    glsl::kFrameHasShadows | glsl::kFrameHasSamples, true};
+const FrameStages::Stage FrameStages::Stage::kPaint{4, "frame, paint", kPaintWords,
+                                                    glsl::kFrameHasPatches | glsl::kFrameHasDrape |
+                                                        glsl::kFrameHasContours | glsl::kFrameHasTexture |
+                                                        glsl::kFrameHasShadows | glsl::kFrameHasSamples,
+                                                    true};
+const FrameStages::Stage FrameStages::Stage::kResolve{
+    5, "frame, resolve", kResolveWords, glsl::kFrameHasWater | glsl::kFrameHasFog | glsl::kFrameHasScattering, false};
 
 FrameStages::FrameStages(const Device& device, bool stepped)
     : device_(device), stepped_(stepped), march_(device, march_name(stepped)), commands_(device) {}

@@ -43,6 +43,8 @@ class FrameStages {
  public:
   /// `stepped`: fixed-step instead of max-mip.
   FrameStages(const Device& device, bool stepped);
+  FrameStages(const FrameStages&) = delete;
+  FrameStages& operator=(const FrameStages&) = delete;
 
   /// Calls take(first, words) with the words of all pixels, part by part. Returns the seconds by the device's clock, if
   /// it has one. Throws Error: no memory on the device, the device is lost; Interrupted when progress asks for it.
