@@ -18,8 +18,11 @@ static_assert(glsl::kPyramidGroupCols * glsl::kPyramidGroupRows <= 128);
 
 }  // namespace
 
-PyramidPasses::PyramidPasses(const Device& device)
-    : pipeline_(device, kShader, "max_pyramid", sizeof(glsl::PyramidPush)) {}
+std::vector<ShaderProgram> pyramid_shaders() {
+  return {{"scarp/accel/max_pyramid.comp", "", kShader, sizeof(glsl::PyramidPush)}};
+}
+
+PyramidPasses::PyramidPasses(const Device& device) : pipeline_(device, pyramid_shaders()[0], "max_pyramid") {}
 
 void PyramidPasses::record(Commands& commands, std::uint64_t ground, std::uint64_t codes, const HeightField& field,
                            const CellBox& changed) const {

@@ -35,6 +35,7 @@ struct HeightRays {
 
 struct DeviceMarch {
   std::string_view name;
+  std::string_view file;  // of the shader
   std::span<const std::uint32_t> words;
   DeviceRay (*ray)(const HeightField& field, const Ray& ray);
   bool has_any;             // whether it can be asked for any hit
@@ -43,11 +44,18 @@ struct DeviceMarch {
 };
 
 constexpr DeviceMarch sampling_march(std::string_view name, std::uint32_t choice) {
-  return {name, kHeightMarchesWords, sampled_device_ray, false, choice, sizeof(glsl::BatchMarch)};
+  return {name,
+          "scarp/march/height/height_marches.comp",
+          kHeightMarchesWords,
+          sampled_device_ray,
+          false,
+          choice,
+          sizeof(glsl::BatchMarch)};
 }
 
 constexpr std::array kDeviceMarches = {
-    DeviceMarch{"max-mip", kMaxMipWords, device_ray, true, 0, sizeof(glsl::BatchWalk)},
+    DeviceMarch{"max-mip", "scarp/march/height/max_mip.comp", kMaxMipWords, device_ray, true, 0,
+                sizeof(glsl::BatchWalk)},
     sampling_march("naive", glsl::kScarpNaive),
     sampling_march("fixed-step", glsl::kScarpFixedStep),
     sampling_march("relaxed", glsl::kScarpRelaxed),
@@ -60,6 +68,14 @@ const DeviceMarch& device_march(const HeightMarchEntry& march) {
   }
   throw Error(
       fmt::format("march '{}': does not run on Vulkan devices (available: {})", march.name, device_march_names()));
+}
+
+ShaderProgram program_of(const DeviceMarch& march, bool asks_any, bool statistics) {
+  return {march.file,
+          std::string(march.name) + (asks_any ? " any" : ""),
+          march.words,
+          sizeof(glsl::RayBatch),
+          {RayRuns<HeightRays>::kThreads, asks_any, statistics, march.choice}};
 }
 
 glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, const DeviceTarget& target) {
@@ -76,6 +92,15 @@ int checked_turns(int turns) {
 
 std::string device_march_names() { return names_of(kDeviceMarches); }
 
+std::vector<ShaderProgram> height_query_shaders() {
+  std::vector<ShaderProgram> all;
+  for (const DeviceMarch& march : kDeviceMarches) {
+    all.push_back(program_of(march, false, false));
+    if (march.has_any) all.push_back(program_of(march, true, false));
+  }
+  return all;
+}
+
 struct DeviceQueries::Impl {
   Impl(const Device& device, const HeightMarchEntry& entry, const MarchSettings& march_settings_,
        const DeviceQuerySettings& settings)
@@ -89,9 +114,8 @@ struct DeviceQueries::Impl {
         states(device, settings.rays_at_once * std::uint64_t{march.state_bytes}, "states of rays") {}
 
   ComputePipeline pipeline(const Device& device, bool asks_any) const {
-    const std::uint32_t constants[] = {RayRuns<HeightRays>::kThreads, asks_any, statistics, march.choice};
-    return {device, march.words, std::string(march.name) + (asks_any ? ", any" : ""), sizeof(glsl::RayBatch),
-            constants};
+    const ShaderProgram program = program_of(march, asks_any, statistics);
+    return {device, program, program.variant};
   }
 
   // Calls answer(i, prepared, hit) for each ray, on all threads.

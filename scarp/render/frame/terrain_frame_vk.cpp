@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "scarp/base/error.h"
 #include "scarp/base/two_floats.h"
@@ -33,6 +34,15 @@ constexpr double kFarthestCell = 0x1p22;
 constexpr std::uint32_t kWords[] = {
 #include "scarp/render/frame/terrain_frame.comp.inc"
 };
+
+// `parts`: kFrameHas..., `flags`: ScarpField::flags; `contents` names both.
+ShaderProgram program_of(bool stepped, std::uint32_t parts, std::uint32_t flags, const char* contents) {
+  return {"scarp/render/frame/terrain_frame.comp",
+          std::string(stepped ? "fixed-step " : "max-mip ") + contents,
+          kWords,
+          sizeof(glsl::FramePush),
+          {kThreads, stepped, parts, flags}};
+}
 
 void split(const dvec3& value, vec3& high, vec3& low) {
   for (int axis = 0; axis < 3; ++axis) scarp::split(value[axis], high[axis], low[axis]);
@@ -308,9 +318,7 @@ class FrameMaker {
         (plinth && rims ? glsl::kFrameHasRims : 0) | (s.texture_size.x > 0 ? glsl::kFrameHasTexture : 0);
     const auto found = pipelines_.find(parts);
     if (found != pipelines_.end()) return found->second;
-    const std::uint32_t constants[] = {kThreads, stepped_, parts, flags_};
-    return pipelines_
-        .emplace(parts, ComputePipeline(device_, kWords, "terrain frame", sizeof(glsl::FramePush), constants))
+    return pipelines_.emplace(parts, ComputePipeline(device_, program_of(stepped_, parts, flags_, ""), "terrain frame"))
         .first->second;
   }
 
@@ -406,6 +414,15 @@ Image render_whole_frame(const Scene& scene, const Camera& camera, const Picture
   FrameReport& found = report ? *report : unasked;
   found.device_s.reset();
   return static_cast<FrameMaker*>(terrain.kept.get())->make(scene, numbers, view.paint(), zero, progress, found);
+}
+
+std::vector<ShaderProgram> terrain_frame_shaders() {
+  constexpr std::uint32_t kShadows = glsl::kFrameHasShadows;
+  return {program_of(false, kShadows, 0, "shadows"),
+          program_of(false, kShadows | glsl::kFrameHasSamples, 0, "shadows samples"),
+          program_of(false, kShadows | glsl::kFrameHasPlinth, 0, "shadows plinth"),
+          program_of(false, kShadows | glsl::kFrameHasWater, 0, "shadows water"),
+          program_of(true, kShadows, glsl::kScarpWraps, "shadows wrapped")};
 }
 
 }  // namespace scarp
