@@ -235,8 +235,11 @@ int run(int argc, char** argv) {
   shaders_command->add_option("--families", shaders.families, "of cards as RADV names them, one or several")
       ->delimiter(',')
       ->capture_default_str();
-  shaders_command->add_option("--update", shaders.update,
-                              "table to rewrite with these figures: bench/shader_statistics.csv, with navi21 alone");
+  CLI::Option* only = shaders_command->add_option("--shader", shaders.shader, "only those whose path contains this");
+  shaders_command
+      ->add_option("--update", shaders.update,
+                   "table to rewrite with these figures: bench/shader_statistics.csv, with navi21 alone")
+      ->excludes(only);
   add_json_option(*shaders_command, report);
 #endif
 

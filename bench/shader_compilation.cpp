@@ -91,11 +91,10 @@ std::string shader_compilers(const std::string& family) {
   return fmt::format("{}, {}", ShaderCompiler().driver(), SCARP_BENCH_GLSLC);
 }
 
-ShaderTable compile_shaders(const std::vector<std::string>& families) {
+ShaderTable compile_shaders(const std::vector<ShaderProgram>& programs, const std::vector<std::string>& families) {
   ShaderTable table;
   // All of them before there are threads, because a process is forked.
   for (const std::string& family : families) table.compilers = shader_compilers(family);
-  const std::vector<ShaderProgram> programs = library_shaders();
   table.rows.resize(programs.size() * families.size());
   for (std::size_t f = 0; f < families.size(); ++f) {
     use_radv(families[f]);

@@ -21,8 +21,8 @@ std::vector<ShaderProgram> library_shaders();
 /// family.
 std::string shader_compilers(const std::string& family);
 
-/// Compiles library_shaders() on all threads, without shader caches; rows by shader, then by family. The
+/// Compiles shaders on all threads, without shader caches; rows by shader, then by family. The
 /// environment and errors are as for shader_compilers().
-ShaderTable compile_shaders(const std::vector<std::string>& families);
+ShaderTable compile_shaders(const std::vector<ShaderProgram>& programs, const std::vector<std::string>& families);
 
 }  // namespace scarp::bench

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: MIT
 // `scarp-bench shaders`: what a driver's compiler makes of each shader, without a card.
+#include <fmt/format.h>
+
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "bench/commands.h"
 #include "bench/shader_compilation.h"
 #include "bench/shader_table.h"
+#include "scarp/base/error.h"
 
 namespace scarp::bench {
 
 void run_shaders(const ShadersOptions& options, const ReportOptions& report) {
-  const ShaderTable table = compile_shaders(options.families);
+  std::vector<ShaderProgram> programs = library_shaders();
+  std::erase_if(programs, [&](const ShaderProgram& program) {
+    return program.file.find(options.shader) == std::string_view::npos;
+  });
+  if (programs.empty()) throw Error(fmt::format("--shader '{}': no shader has this in its path", options.shader));
+  const ShaderTable table = compile_shaders(programs, options.families);
   std::printf("%s\n", table.compilers.c_str());
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   std::vector<std::vector<std::string>> lines{{"shader", "specialisation", "family", "instr.", "VGPRs", "SGPRs",

@@ -5,9 +5,10 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <nlohmann/json.hpp>
 #include <set>
 
+#include "bench/commands.h"
 #include "bench/shader_compilation.h"
 #include "bench/shader_table.h"
 #include "scarp/base/error.h"
@@ -79,21 +80,64 @@ TEST(ShaderTable, IsReadAsWritten) {
   std::filesystem::remove(file);
 }
 
-TEST(Shaders, AreNoLargerThanTheTable) {
+class WithRadv : public testing::Test {
+ protected:
+  void SetUp() override {
+    try {
+      compilers_ = shader_compilers("navi21");
+    } catch (const Error& error) {
+      GTEST_SKIP() << error.what();
+    }
+  }
+  std::string compilers_;
+};
+
+TEST_F(WithRadv, TheCommandWritesTheDocumentedFields) {
+  const auto folder = std::filesystem::temp_directory_path();
+  const std::string json = folder / ("scarp-shaders-" + std::to_string(::getpid()) + ".json");
+  run_shaders({.families = {"vega10", "navi21"}, .shader = "max_pyramid"}, {"scarp-bench shaders", json});
+  std::ifstream in(json);
+  const nlohmann::json all = nlohmann::json::parse(in);
+  std::filesystem::remove(json);
+  ASSERT_EQ(all["rows"].size(), 2u);
+  for (const nlohmann::json& row : all["rows"]) {
+    EXPECT_EQ(row["shader"], "scarp/accel/max_pyramid.comp");
+    EXPECT_EQ(row["specialisation"], "");
+    EXPECT_EQ(row["compilers"], compilers_);
+    for (const ShaderFigure& figure : kShaderFigures) {
+      EXPECT_TRUE(row.at(std::string(figure.name)).is_number()) << figure.name;
+    }
+    EXPECT_GT(row["instructions"], 100);
+    EXPECT_GT(row["vgprs"], 8);
+  }
+  EXPECT_EQ(all["rows"][0]["family"], "vega10");
+  EXPECT_EQ(all["rows"][1]["family"], "navi21");
+  EXPECT_NE(all["rows"][0]["code_bytes"], all["rows"][1]["code_bytes"]);
+}
+
+TEST_F(WithRadv, NamesWhatIsUnknown) {
+  const auto why = [](const ShadersOptions& options) {
+    try {
+      run_shaders(options, {});
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_NE(why({.families = {"navi21", "no-card"}}).find("'no-card'"), std::string::npos);
+  EXPECT_NE(why({.shader = "no_shader"}).find("'no_shader'"), std::string::npos);
+}
+
+TEST_F(WithRadv, NoShaderIsLargerThanInTheTable) {
   const ShaderTable kept = read_shader_table(kTable);
   std::set<std::string> families;
   for (const ShaderRow& row : kept.rows) families.insert(row.family);
   ASSERT_FALSE(families.empty());
-  std::string compilers;
-  try {
-    compilers = shader_compilers(*families.begin());
-  } catch (const Error& error) {
-    GTEST_SKIP() << error.what();
+  if (compilers_ != kept.compilers) {
+    GTEST_SKIP() << "the table is of other compilers: " << kept.compilers << "; these are " << compilers_;
   }
-  if (compilers != kept.compilers) {
-    GTEST_SKIP() << "the table is of other compilers: " << kept.compilers << "; these are " << compilers;
-  }
-  for (const std::string& breach : shader_breaches(kept, compile_shaders({families.begin(), families.end()}))) {
+  for (const std::string& breach :
+       shader_breaches(kept, compile_shaders(library_shaders(), {families.begin(), families.end()}))) {
     ADD_FAILURE() << breach << " (if that is meant: " << kRewrite << ")";
   }
 }
