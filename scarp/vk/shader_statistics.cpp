@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
 #include "scarp/vk/raii.h"
 
 namespace scarp {
