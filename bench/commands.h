@@ -94,6 +94,15 @@ struct GpuOptions {
 void run_gpu_raster(const GpuOptions& options, const ReportOptions& report);
 void run_gpu(const GpuOptions& options, const ReportOptions& report);
 
+/// `shaders`: what RADV's compiler makes of each shader, for cards that need not be there.
+struct ShadersOptions {
+  std::vector<std::string> families{"polaris10", "vega10", "navi10", "navi21", "gfx1100"};  ///< of AMD cards
+  std::string shader{};  ///< only shaders whose path contains it
+  std::string update{};  ///< a table of shader_table.h to write; empty: none
+};
+/// Throws Error if RADV is missing or does not know a family, or if no shader has the name.
+void run_shaders(const ShadersOptions& options, const ReportOptions& report);
+
 /// `leaks`: rays aimed at what engines lose, each judged.
 struct LeaksOptions {
   std::int64_t rays = 10'000'000;

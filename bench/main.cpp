@@ -229,6 +229,19 @@ int run(int argc, char** argv) {
   gpu_command->add_flag("--raster", gpu.raster,
                         "instead: primary rays beside the same grid drawn as two triangles per cell");
   add_json_option(*gpu_command, report);
+
+  ShadersOptions shaders;
+  CLI::App* shaders_command = app.add_subcommand(
+      "shaders", "each shader compiled for AMD cards that need not be there: size, registers, spills");
+  shaders_command->add_option("--families", shaders.families, "of cards as RADV names them, one or several")
+      ->delimiter(',')
+      ->capture_default_str();
+  CLI::Option* only = shaders_command->add_option("--shader", shaders.shader, "only those whose path contains this");
+  shaders_command
+      ->add_option("--update", shaders.update,
+                   "table to rewrite with these figures: bench/shader_statistics.csv, with navi21 alone")
+      ->excludes(only);
+  add_json_option(*shaders_command, report);
 #endif
 
   LeaksOptions leaks;
@@ -487,6 +500,7 @@ int run(int argc, char** argv) {
   if (*pyramid_command) run_pyramid(pyramid, report);
 #ifdef SCARP_BENCH_VULKAN
   if (*gpu_command) (gpu.raster ? run_gpu_raster : run_gpu)(gpu, report);
+  if (*shaders_command) run_shaders(shaders, report);
 #endif
   if (*leaks_command) run_leaks(leaks, report);
   if (*voxels_command) run_voxels(voxels, report);

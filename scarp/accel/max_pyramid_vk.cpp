@@ -24,9 +24,13 @@ static_assert(glsl::kPyramidGroupCols * glsl::kPyramidGroupRows <= 128);
 
 }  // namespace
 
+std::vector<ShaderProgram> pyramid_shaders() {
+  return {{"scarp/accel/max_pyramid.comp", "", kEntries, sizeof(glsl::PyramidPush)},
+          {"scarp/accel/max_quads.comp", "", kQuads, sizeof(glsl::QuadsPush)}};
+}
+
 PyramidPasses::PyramidPasses(const Device& device)
-    : entries_(device, kEntries, "max_pyramid", sizeof(glsl::PyramidPush)),
-      quads_(device, kQuads, "max_quads", sizeof(glsl::QuadsPush)) {}
+    : entries_(device, pyramid_shaders()[0], "max_pyramid"), quads_(device, pyramid_shaders()[1], "max_quads") {}
 
 void PyramidPasses::record(Commands& commands, std::uint64_t ground, std::uint64_t codes, const HeightField& field,
                            const CellBox& changed) const {

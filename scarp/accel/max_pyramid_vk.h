@@ -12,8 +12,12 @@
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
 #include "scarp/vk/pipeline.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
+
+/// The shader that builds pyramids.
+std::vector<ShaderProgram> pyramid_shaders();
 
 /// The compute passes that build a pyramid.
 class PyramidPasses {

@@ -6,25 +6,24 @@
 #include "scarp/vk/raii.h"
 
 namespace scarp {
-namespace {
 
-vk::raii::PipelineLayout make_layout(const Device::Impl& device, std::uint32_t push_bytes) {
+vk::raii::PipelineLayout compute_layout(const vk::raii::Device& device, std::uint32_t push_bytes) {
   const vk::PushConstantRange push(vk::ShaderStageFlagBits::eCompute, 0, push_bytes);
   vk::PipelineLayoutCreateInfo create;
   if (push_bytes > 0) create.setPushConstantRanges(push);
-  return {device.device, create};
+  return {device, create};
 }
 
-vk::raii::Pipeline make_pipeline(const Device::Impl& device, const vk::raii::PipelineLayout& layout,
-                                 std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> constants) {
-  const vk::raii::ShaderModule module(device.device, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
+vk::raii::Pipeline compute_pipeline(const vk::raii::Device& device, const vk::raii::PipelineLayout& layout,
+                                    std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> constants,
+                                    vk::PipelineCreateFlags flags,
+                                    const vk::Optional<const vk::raii::PipelineCache>& cache) {
+  const vk::raii::ShaderModule module(device, vk::ShaderModuleCreateInfo({}, spirv.size_bytes(), spirv.data()));
   std::vector<vk::SpecializationMapEntry> entries;
   const vk::SpecializationInfo special = specialisation(constants, entries);
   const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &special);
-  return {device.device, device.pipelines, vk::ComputePipelineCreateInfo({}, stage, *layout)};
+  return {device, cache, vk::ComputePipelineCreateInfo(flags, stage, *layout)};
 }
-
-}  // namespace
 
 vk::SpecializationInfo specialisation(std::span<const std::uint32_t> constants,
                                       std::vector<vk::SpecializationMapEntry>& entries) {
@@ -40,11 +39,13 @@ ComputePipeline::ComputePipeline(const Device& device, std::span<const std::uint
                             push_bytes, kMaxPushBytes));
   }
   guarded(open->name(), "making the shader '" + name + "'", [&] {
-    vk::raii::PipelineLayout layout = make_layout(*open, push_bytes);
-    vk::raii::Pipeline pipeline = make_pipeline(*open, layout, spirv, constants);
+    vk::raii::PipelineLayout layout = compute_layout(open->device, push_bytes);
+    vk::raii::Pipeline pipeline = compute_pipeline(open->device, layout, spirv, constants, {}, open->pipelines);
     impl_.reset(new Impl{open, name, push_bytes, std::move(layout), std::move(pipeline)});
   });
 }
+ComputePipeline::ComputePipeline(const Device& device, const ShaderProgram& program, const std::string& name)
+    : ComputePipeline(device, program.spirv, name, program.push_bytes, program.constants) {}
 ComputePipeline::ComputePipeline(ComputePipeline&&) noexcept = default;
 ComputePipeline& ComputePipeline::operator=(ComputePipeline&&) noexcept = default;
 ComputePipeline::~ComputePipeline() = default;

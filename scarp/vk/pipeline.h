@@ -8,6 +8,7 @@
 #include <string>
 
 #include "scarp/vk/device.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 
@@ -22,6 +23,7 @@ class ComputePipeline {
   /// Throws Error if the driver rejects the shader.
   ComputePipeline(const Device& device, std::span<const std::uint32_t> spirv, const std::string& name,
                   std::uint32_t push_bytes, std::span<const std::uint32_t> constants = {});
+  ComputePipeline(const Device& device, const ShaderProgram& program, const std::string& name);
   ComputePipeline(ComputePipeline&&) noexcept;
   ComputePipeline& operator=(ComputePipeline&&) noexcept;
   ~ComputePipeline();

@@ -144,6 +144,13 @@ struct RasterPipeline::Impl {
 vk::SpecializationInfo specialisation(std::span<const std::uint32_t> constants,
                                       std::vector<vk::SpecializationMapEntry>& entries);
 
+vk::raii::PipelineLayout compute_layout(const vk::raii::Device& device, std::uint32_t push_bytes);
+/// Compiles a shader whose entry point is main; `constants` as for specialisation().
+vk::raii::Pipeline compute_pipeline(const vk::raii::Device& device, const vk::raii::PipelineLayout& layout,
+                                    std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> constants,
+                                    vk::PipelineCreateFlags flags,
+                                    const vk::Optional<const vk::raii::PipelineCache>& cache);
+
 /// Earlier commands finish, and their writes are visible, before later ones begin.
 void full_barrier(const vk::raii::CommandBuffer& commands);
 

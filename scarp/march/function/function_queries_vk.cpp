@@ -7,9 +7,9 @@
 #include <array>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "scarp/base/error.h"
+#include "scarp/field/function_node.h"
 #include "scarp/march/device_function_ray.h"
 #include "scarp/march/device_sampling.h"
 #include "scarp/march/function/function_batch.glsl.h"
@@ -27,17 +27,23 @@ constexpr std::uint32_t kLipschitzLocalWords[] = {
 
 struct DeviceMarch {
   std::string_view name;
+  std::string_view file;  // of the shader
   std::span<const std::uint32_t> words;
   std::uint32_t choice;  // the shader's
   bool has_any;          // whether it supports any hit, as the next choice
   int evaluations;       // maximum evaluations of the program per step
 };
+
+constexpr DeviceMarch sampling_march(std::string_view name, std::uint32_t choice) {
+  return {name, "scarp/march/function/function_marches.comp", kFunctionMarchesWords, choice, false, 1};
+}
+
 constexpr std::array kDeviceMarches = {
-    DeviceMarch{"naive", kFunctionMarchesWords, glsl::kScarpNaive, false, 1},
-    DeviceMarch{"fixed-step", kFunctionMarchesWords, glsl::kScarpFixedStep, false, 1},
-    DeviceMarch{"relaxed", kFunctionMarchesWords, glsl::kScarpRelaxed, false, 1},
-    DeviceMarch{"lipschitz", kFunctionMarchesWords, glsl::kScarpLipschitz, false, 1},
-    DeviceMarch{"lipschitz-local", kLipschitzLocalWords, 0, true, 2},
+    sampling_march("naive", glsl::kScarpNaive),
+    sampling_march("fixed-step", glsl::kScarpFixedStep),
+    sampling_march("relaxed", glsl::kScarpRelaxed),
+    sampling_march("lipschitz", glsl::kScarpLipschitz),
+    DeviceMarch{"lipschitz-local", "scarp/march/function/lipschitz_local.comp", kLipschitzLocalWords, 0, true, 2},
 };
 
 const DeviceMarch& device_march(const FunctionMarchEntry& march) {
@@ -46,6 +52,16 @@ const DeviceMarch& device_march(const FunctionMarchEntry& march) {
   }
   throw Error(fmt::format("march '{}': does not run over functions on Vulkan devices (available: {})", march.name,
                           names_of(kDeviceMarches)));
+}
+
+// `parts`: function_parts(); `contents` names them.
+ShaderProgram program_of(const DeviceMarch& march, bool any, std::uint32_t parts, std::string_view contents) {
+  const bool asks_any = any && march.has_any;
+  return {march.file,
+          fmt::format("{}{}{}", march.name, asks_any ? " any" : "", contents),
+          march.words,
+          sizeof(glsl::FunctionBatch),
+          {RayRuns<FunctionRays>::kThreads, march.choice + (asks_any ? 1 : 0), parts}};
 }
 
 glsl::ScarpSampling sampling_of(std::string_view march, const MarchSettings& settings, double slope) {
@@ -88,13 +104,10 @@ struct DeviceFunctionQueries::Impl {
 
   // Specialised for the contents of the program, on first use.
   const ComputePipeline& pipeline(const FunctionProgram& program, bool any) {
-    const std::uint32_t choice = march.choice + (any && march.has_any ? 1 : 0), parts = function_parts(program);
-    const auto made = pipelines.find({choice, parts});
+    const ShaderProgram shader = program_of(march, any, function_parts(program), "");
+    const auto made = pipelines.find(shader.constants);
     if (made != pipelines.end()) return made->second;
-    const std::uint32_t constants[] = {RayRuns<FunctionRays>::kThreads, choice, parts};
-    return pipelines
-        .try_emplace({choice, parts}, device, march.words, std::string(march.name) + " over functions",
-                     std::uint32_t{sizeof(glsl::FunctionBatch)}, constants)
+    return pipelines.try_emplace(shader.constants, device, shader, std::string(march.name) + " over functions")
         .first->second;
   }
 
@@ -121,7 +134,7 @@ struct DeviceFunctionQueries::Impl {
   MarchSettings march_settings;
   Device device;
   RayRuns<FunctionRays> runs;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, ComputePipeline> pipelines;  // by choice and contents
+  std::map<std::vector<std::uint32_t>, ComputePipeline> pipelines;  // by specialisation
 };
 
 DeviceFunctionQueries::DeviceFunctionQueries(const Device& device, const FunctionMarchEntry& march,
@@ -158,5 +171,18 @@ void DeviceFunctionQueries::occluded(const DeviceFunctionTarget& target, std::sp
 }
 
 const std::vector<PassTime>& DeviceFunctionQueries::passes() const { return impl_->runs.passes(); }
+
+std::vector<ShaderProgram> function_query_shaders() {
+  const HeightFunction fractal(make_function(Fractal{}));
+  std::vector<ShaderProgram> all;
+  for (const DeviceMarch& march : kDeviceMarches) {
+    for (const bool any : {false, true}) {
+      if (any && !march.has_any) continue;
+      all.push_back(program_of(march, any, function_parts(fractal.program(FunctionUse::march)), " fractal"));
+      all.push_back(program_of(march, any, ~0u, " all"));
+    }
+  }
+  return all;
+}
 
 }  // namespace scarp

@@ -19,6 +19,7 @@
 #include "scarp/march/height/queries_vk.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 
@@ -58,5 +59,8 @@ class DeviceFunctionQueries {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The shaders of these marches, as specialised for a fractal and for a function of all operations.
+std::vector<ShaderProgram> function_query_shaders();
 
 }  // namespace scarp

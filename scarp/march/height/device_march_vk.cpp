@@ -29,20 +29,30 @@ constexpr std::uint32_t kHeightMarchesWords[] = {
 
 struct DeviceHeightMarch::Row {
   std::string_view name;
+  std::string_view file;  // of the shader
   std::span<const std::uint32_t> words;
+  std::string_view second_file;
   std::span<const std::uint32_t> second;  // for rays that `words` leaves; empty: it leaves none
   bool has_any;                           // whether it can be asked for any hit
   std::uint32_t choice;                   // ScarpSampling::march
   std::size_t state_bytes;                // of a march that has been interrupted
 
   static constexpr Row sampling(std::string_view name, std::uint32_t choice) {
-    return {name, kHeightMarchesWords, {}, false, choice, sizeof(glsl::BatchMarch)};
+    return {name,
+            "scarp/march/height/height_marches.comp",
+            kHeightMarchesWords,
+            {},
+            {},
+            false,
+            choice,
+            sizeof(glsl::BatchMarch)};
   }
   static const std::array<Row, 5> kAll;
 };
 
 constexpr std::array<DeviceHeightMarch::Row, 5> DeviceHeightMarch::Row::kAll = {
-    Row{"max-mip", kMaxMipWords, kMaxMipExactWords, true, 0, sizeof(glsl::BatchWalk)},
+    Row{"max-mip", "scarp/march/height/max_mip.comp", kMaxMipWords, "scarp/march/height/max_mip_exact.comp",
+        kMaxMipExactWords, true, 0, sizeof(glsl::BatchWalk)},
     sampling("naive", glsl::kScarpNaive),
     sampling("fixed-step", glsl::kScarpFixedStep),
     sampling("relaxed", glsl::kScarpRelaxed),
@@ -80,17 +90,43 @@ void DeviceHeightMarch::reserve(std::uint32_t rays) {
   states_.emplace(device_, bytes, "states of rays");
 }
 
+ShaderProgram DeviceHeightMarch::program_of(const Row& row, const DeviceRayQuery& query, bool second) {
+  const bool any = query.any && row.has_any;
+  return {second ? row.second_file : row.file,
+          std::string(row.name) + (any ? " any" : ""),
+          second ? row.second : row.words,
+          sizeof(glsl::RayBatch),
+          {kThreads, any, query.statistics, row.choice, query.ground_kind}};
+}
+
+std::vector<ShaderProgram> DeviceHeightMarch::shaders() {
+  std::vector<ShaderProgram> all;
+  const auto add = [&](const Row& row, bool any, std::uint32_t flags, bool second, const char* name) {
+    const DeviceRayQuery query{.any = any, .ground_kind = glsl::batch_ground_kind(flags, glsl::kGroundFloat32)};
+    all.push_back(program_of(row, query, second));
+    all.back().variant += name;
+  };
+  for (const Row& row : Row::kAll) {
+    for (const bool any : {false, true}) {
+      if (any && !row.has_any) continue;
+      add(row, any, 0, false, "");
+      if (row.second.empty()) continue;
+      add(row, any, glsl::kScarpStarts, false, " from the surface");
+      add(row, any, glsl::kScarpHoles, false, " holes");
+      add(row, any, glsl::kScarpTriangles, false, " triangles");
+      add(row, any, glsl::kScarpWraps, false, " wrap");
+      add(row, any, 0, true, "");
+    }
+  }
+  return all;
+}
+
 const ComputePipeline& DeviceHeightMarch::pipeline(const DeviceRayQuery& query, bool second) {
-  const bool any = query.any && march_.has_any;
-  const std::tuple key(second, any, query.statistics, query.ground_kind);
+  const ShaderProgram program = program_of(march_, query, second);
+  const PipelineKey key(second, program.constants);
   const auto made = pipelines_.find(key);
   if (made != pipelines_.end()) return made->second;
-  const std::uint32_t constants[] = {kThreads, any, query.statistics, march_.choice, query.ground_kind};
-  const std::string name = std::string(march_.name) + (any ? ", any" : "") + (second ? ", second pass" : "");
-  return pipelines_
-      .try_emplace(key, device_, second ? march_.second : march_.words, name, std::uint32_t{sizeof(glsl::RayBatch)},
-                   constants)
-      .first->second;
+  return pipelines_.try_emplace(key, device_, program, program.variant + (second ? ", second pass" : "")).first->second;
 }
 
 void DeviceHeightMarch::begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query) {

@@ -15,7 +15,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "scarp/field/height_field.h"
 #include "scarp/march/height/march_host.h"
@@ -26,6 +27,7 @@
 #include "scarp/vk/loop_turns.glsl.h"
 #include "scarp/vk/memory.h"
 #include "scarp/vk/pipeline.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 
@@ -72,6 +74,8 @@ class DeviceHeightMarch {
 
   /// Returns the memory that a march takes on the device per ray of a batch, besides the ray and its hit.
   static std::size_t state_bytes(std::string_view march);
+  /// Returns the shaders of all marches, for bilinear float32 fields; those of max-mip for other fields, too.
+  static std::vector<ShaderProgram> shaders();
   /// Returns the names of the marches that run on devices, separated by commas.
   static std::string names();
 
@@ -80,6 +84,8 @@ class DeviceHeightMarch {
  private:
   struct Row;  // of the table of marches
   static const Row& find(std::string_view march);
+  using PipelineKey = std::pair<bool, std::vector<std::uint32_t>>;  // second pass, constants
+  static ShaderProgram program_of(const Row& row, const DeviceRayQuery& query, bool second);
   const ComputePipeline& pipeline(const DeviceRayQuery& query, bool second);
   void record(Commands& commands);
 
@@ -88,8 +94,7 @@ class DeviceHeightMarch {
   int turns_at_once_;
   std::optional<DeviceBuffer> states_;
   DeviceBuffer under_way_;
-  // By second pass, any, statistics and ground_kind.
-  std::map<std::tuple<bool, bool, bool, std::uint32_t>, ComputePipeline> pipelines_;
+  std::map<PipelineKey, ComputePipeline> pipelines_;
   // Of the batch.
   const ComputePipeline* running_ = nullptr;
   glsl::RayBatch batch_{};

@@ -45,6 +45,8 @@ int checked_turns(int turns) {
 
 std::string device_march_names() { return DeviceHeightMarch::names(); }
 
+std::vector<ShaderProgram> height_query_shaders() { return DeviceHeightMarch::shaders(); }
+
 struct DeviceQueries::Impl {
   Impl(const Device& device, const HeightMarchEntry& entry, const MarchSettings& march_settings_,
        const DeviceQuerySettings& settings)

@@ -18,6 +18,7 @@
 #include "scarp/march/height/height_table.h"
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 
@@ -74,5 +75,8 @@ class DeviceQueries {
 
 /// Returns the names of the marches that run on devices, separated by commas.
 std::string device_march_names();
+
+/// The shaders of these marches, as queries without statistics specialise them.
+std::vector<ShaderProgram> height_query_shaders();
 
 }  // namespace scarp

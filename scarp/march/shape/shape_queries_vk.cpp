@@ -4,10 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <string>
-#include <utility>
 
 #include "scarp/base/error.h"
 #include "scarp/march/device_function_ray.h"
@@ -47,6 +45,15 @@ std::size_t turns_of(const DistanceProgram& program) {
                     turns, kMost));
   }
   return turns;
+}
+
+// `parts`: shape_parts(), `functions`: shape_function_parts(); `contents` names both.
+ShaderProgram program_of(bool any, std::uint32_t parts, std::uint32_t functions, std::string_view contents) {
+  return {"scarp/march/shape/sphere_trace.comp",
+          fmt::format("sphere-trace{}{}", any ? " any" : "", contents),
+          kSphereTraceWords,
+          sizeof(glsl::ShapeBatch),
+          {RayRuns<FunctionRays>::kThreads, any, parts, functions}};
 }
 
 DeviceBuffer filled(const Device& device, const void* from, std::uint64_t bytes, const std::string& name) {
@@ -99,14 +106,10 @@ struct DeviceShapeQueries::Impl {
 
   // Specialised for the contents of the program, on first use.
   const ComputePipeline& pipeline(const DistanceProgram& program, bool any) {
-    const std::uint32_t choice = any, parts = shape_parts(program), functions = shape_function_parts(program);
-    const auto made = pipelines.find({choice, parts, functions});
+    const ShaderProgram shader = program_of(any, shape_parts(program), shape_function_parts(program), "");
+    const auto made = pipelines.find(shader.constants);
     if (made != pipelines.end()) return made->second;
-    const std::uint32_t constants[] = {RayRuns<FunctionRays>::kThreads, choice, parts, functions};
-    return pipelines
-        .try_emplace({choice, parts, functions}, device, kSphereTraceWords, "sphere-trace",
-                     std::uint32_t{sizeof(glsl::ShapeBatch)}, constants)
-        .first->second;
+    return pipelines.try_emplace(shader.constants, device, shader, "sphere-trace").first->second;
   }
 
   template <class Answer>
@@ -129,8 +132,7 @@ struct DeviceShapeQueries::Impl {
   MarchSettings march_settings;
   Device device;
   RayRuns<FunctionRays> runs;
-  std::map<std::array<std::uint32_t, 3>, ComputePipeline>
-      pipelines;  // by choice, contents, and contents of its functions
+  std::map<std::vector<std::uint32_t>, ComputePipeline> pipelines;  // by specialisation
 };
 
 DeviceShapeQueries::DeviceShapeQueries(const Device& device, const ShapeMarchEntry& march,
@@ -168,6 +170,19 @@ void DeviceShapeQueries::occluded(const DeviceShapeTarget& target, std::span<con
              [&](std::size_t i, const DeviceFunctionRay& prepared, const glsl::ScarpFunctionHit& answer) {
                blocked[i] = FunctionRays::is_hit(prepared, answer);
              });
+}
+
+std::vector<ShaderProgram> shape_query_shaders() {
+  constexpr std::uint32_t kFields = 1u << glsl::kScarpShapeFieldGround,
+                          kGrounds = kFields | 1u << glsl::kScarpShapeFunctionGround;
+  std::vector<ShaderProgram> all;
+  for (const bool any : {false, true}) {
+    all.push_back(program_of(any, 1u << glsl::kScarpShapeSphere, 0, " sphere"));
+    all.push_back(program_of(any, ~kGrounds, 0, " solids"));
+    all.push_back(program_of(any, kFields, 0, " field"));
+    all.push_back(program_of(any, ~0u, ~0u, " all"));
+  }
+  return all;
 }
 
 }  // namespace scarp

@@ -18,6 +18,7 @@
 #include "scarp/march/shape/shape_table.h"
 #include "scarp/vk/device.h"
 #include "scarp/vk/memory.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 
@@ -76,5 +77,8 @@ class DeviceShapeQueries {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// The shader of this march, as specialised for a sphere, for a solid of all operations, and with grounds.
+std::vector<ShaderProgram> shape_query_shaders();
 
 }  // namespace scarp

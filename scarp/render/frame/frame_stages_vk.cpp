@@ -63,6 +63,7 @@ glsl::ScarpSampling samples(int interpolate, int max_steps) {
 struct FrameStages::Stage {
   std::uint32_t number;
   std::string_view name;
+  std::string_view file;
   std::span<const std::uint32_t> words;
   std::uint32_t parts;  // that it reads: pictures that differ in others share its shader
   bool reads_field;
@@ -70,40 +71,89 @@ struct FrameStages::Stage {
   static const Stage kRays, kTake, kWater, kLight, kPaint, kResolve;
 };
 
-const FrameStages::Stage FrameStages::Stage::kRays{
-    0, "frame, rays", kRaysWords, glsl::kFrameHasWater | glsl::kFrameHasPlinth | glsl::kFrameHasRims, true};
-const FrameStages::Stage FrameStages::Stage::kTake{1, "frame, take", kTakeWords,
-                                                   glsl::kFrameHasShadows | glsl::kFrameHasSamples, true};
+const FrameStages::Stage FrameStages::Stage::kRays{0,
+                                                   "frame, rays",
+                                                   "scarp/render/frame/terrain_frame_rays.comp",
+                                                   kRaysWords,
+                                                   glsl::kFrameHasWater | glsl::kFrameHasPlinth | glsl::kFrameHasRims,
+                                                   true};
+const FrameStages::Stage FrameStages::Stage::kTake{1,
+                                                   "frame, take",
+                                                   "scarp/render/frame/terrain_frame_take.comp",
+                                                   kTakeWords,
+                                                   glsl::kFrameHasShadows | glsl::kFrameHasSamples,
+                                                   true};
 const FrameStages::Stage FrameStages::Stage::kWater{
-    2, "frame, water", kWaterWords, glsl::kFrameHasWater | glsl::kFrameHasRims | glsl::kFrameHasScattering, true};
-const FrameStages::Stage FrameStages::Stage::kLight{3, "frame, light", kLightWords,
-                                                    glsl::kFrameHasShadows | glsl::kFrameHasSamples, true};
-const FrameStages::Stage FrameStages::Stage::kPaint{4, "frame, paint", kPaintWords,
+    2,
+    "frame, water",
+    "scarp/render/frame/terrain_frame_water.comp",
+    kWaterWords,
+    glsl::kFrameHasWater | glsl::kFrameHasRims | glsl::kFrameHasScattering,
+    true};
+const FrameStages::Stage FrameStages::Stage::kLight{3,
+                                                    "frame, light",
+                                                    "scarp/render/frame/terrain_frame_light.comp",
+                                                    kLightWords,
+                                                    glsl::kFrameHasShadows | glsl::kFrameHasSamples,
+                                                    true};
+const FrameStages::Stage FrameStages::Stage::kPaint{4,
+                                                    "frame, paint",
+                                                    "scarp/render/frame/terrain_frame_paint.comp",
+                                                    kPaintWords,
                                                     glsl::kFrameHasPatches | glsl::kFrameHasDrape |
                                                         glsl::kFrameHasContours | glsl::kFrameHasTexture |
                                                         glsl::kFrameHasShadows | glsl::kFrameHasSamples,
                                                     true};
 const FrameStages::Stage FrameStages::Stage::kResolve{
-    5, "frame, resolve", kResolveWords, glsl::kFrameHasWater | glsl::kFrameHasFog | glsl::kFrameHasScattering, false};
+    5,
+    "frame, resolve",
+    "scarp/render/frame/terrain_frame_resolve.comp",
+    kResolveWords,
+    glsl::kFrameHasWater | glsl::kFrameHasFog | glsl::kFrameHasScattering,
+    false};
 
 FrameStages::FrameStages(const Device& device, bool stepped)
     : device_(device), stepped_(stepped), march_(device, march_name(stepped)), commands_(device) {}
 
-const ComputePipeline& FrameStages::pipeline(const Stage& stage, Take take) {
-  std::uint32_t parts = work_->parts & stage.parts;
+ShaderProgram FrameStages::program_of(const Stage& stage, Take take, bool stepped, std::uint32_t parts,
+                                      std::uint32_t field_flags) {
+  parts &= stage.parts;
   // What rays have met is told by what they are sent for.
   if (stage.number == Stage::kTake.number && take != Take::light) parts = 0;
-  const std::uint32_t flags = stage.reads_field ? work_->field_flags : 0;
-  const PipelineKey key{stage.number, static_cast<std::uint32_t>(take), parts, flags};
+  // Constants that a shader does not have are ignored.
+  return {stage.file,
+          stepped ? "fixed-step" : "max-mip",
+          stage.words,
+          sizeof(glsl::FramePush),
+          {kThreads, stepped, parts, stage.reads_field ? field_flags : 0, take == Take::light,
+           take == Take::sights_and_grounds}};
+}
+
+std::vector<ShaderProgram> FrameStages::shaders() {
+  std::vector<ShaderProgram> all;
+  const auto add = [&](const Stage& stage, Take take, std::uint32_t parts, const char* name) {
+    all.push_back(program_of(stage, take, false, parts, 0));
+    all.back().variant = name;
+  };
+  constexpr std::uint32_t kLake = glsl::kFrameHasShadows | glsl::kFrameHasWater | glsl::kFrameHasFog;
+  add(Stage::kRays, Take::sights, glsl::kFrameHasShadows, "shadows");
+  add(Stage::kRays, Take::sights, kLake, "water");
+  add(Stage::kTake, Take::sights_and_grounds, 0, "sights");
+  add(Stage::kTake, Take::light, glsl::kFrameHasShadows, "light");
+  add(Stage::kWater, Take::sights, kLake, "water");
+  add(Stage::kLight, Take::sights, glsl::kFrameHasShadows, "shadows");
+  add(Stage::kPaint, Take::sights, glsl::kFrameHasShadows, "shadows");
+  add(Stage::kResolve, Take::sights, glsl::kFrameHasShadows, "shadows");
+  add(Stage::kResolve, Take::sights, kLake, "water and fog");
+  return all;
+}
+
+const ComputePipeline& FrameStages::pipeline(const Stage& stage, Take take) {
+  const ShaderProgram program = program_of(stage, take, stepped_, work_->parts, work_->field_flags);
+  const PipelineKey key{stage.number, program.constants};
   const auto found = pipelines_.find(key);
   if (found != pipelines_.end()) return found->second;
-  const std::uint32_t constants[] = {
-      kThreads, stepped_, parts, flags, take == Take::light, take == Take::sights_and_grounds};
-  // Constants that a shader does not have are ignored.
-  return pipelines_
-      .try_emplace(key, device_, stage.words, std::string(stage.name), std::uint32_t{sizeof(glsl::FramePush)},
-                   constants)
-      .first->second;
+  return pipelines_.try_emplace(key, device_, program, std::string(stage.name)).first->second;
 }
 
 void FrameStages::reserve(std::uint32_t pixels) {

@@ -7,13 +7,13 @@
 // with water, whose pixels may have two rays at once.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "scarp/base/progress.h"
@@ -23,6 +23,7 @@
 #include "scarp/vk/commands.h"
 #include "scarp/vk/device.h"
 #include "scarp/vk/pipeline.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 
@@ -51,6 +52,9 @@ class FrameStages {
   std::optional<double> run(const FrameWork& work, const Progress& progress,
                             const std::function<void(std::int64_t first, std::span<const std::uint32_t> words)>& take);
 
+  /// Returns the shaders of the stages, as specialised for a picture with shadows, and for one with water and fog.
+  static std::vector<ShaderProgram> shaders();
+
  private:
   static constexpr std::uint64_t kMemory = 128 << 20;
 
@@ -60,13 +64,15 @@ class FrameStages {
   void make_point(int point);
   void see_through_water();
   void light_grounds();
+  static ShaderProgram program_of(const Stage& stage, Take take, bool stepped, std::uint32_t parts,
+                                  std::uint32_t field_flags);
   const ComputePipeline& pipeline(const Stage& stage, Take take);
   void record(const Stage& stage, std::uint32_t threads, Take take = Take::sights);
   void clear(std::uint64_t offset, std::uint64_t bytes);
   void submit();
   void march(const DeviceRayQuery& query);
 
-  using PipelineKey = std::array<std::uint32_t, 4>;  // stage, take, parts, field flags
+  using PipelineKey = std::pair<std::uint32_t, std::vector<std::uint32_t>>;  // stage, constants
   Device device_;
   bool stepped_;
   DeviceHeightMarch march_;

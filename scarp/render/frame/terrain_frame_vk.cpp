@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "scarp/base/error.h"
 #include "scarp/base/two_floats.h"
@@ -349,5 +350,7 @@ Image render_whole_frame(const Scene& scene, const Camera& camera, const Picture
   FrameReport& found = report ? *report : unasked;
   return static_cast<FrameMaker*>(terrain.kept.get())->make(scene, numbers, view.paint(), zero, progress, found);
 }
+
+std::vector<ShaderProgram> terrain_frame_shaders() { return FrameStages::shaders(); }
 
 }  // namespace scarp

@@ -17,6 +17,7 @@
 #include "scarp/base/progress.h"
 #include "scarp/render/frame/picture.h"
 #include "scarp/scene/scene.h"
+#include "scarp/vk/shader_program.h"
 
 namespace scarp {
 
@@ -43,5 +44,8 @@ struct FrameReport {
 /// memory on the device, the device is lost, the eye is under the water; Interrupted when progress asks for it.
 Image render_whole_frame(const Scene& scene, const Camera& camera, const PictureSettings& settings,
                          const Progress& progress = {}, FrameReport* report = nullptr);
+
+/// The shaders of frames, as specialised for usual pictures.
+std::vector<ShaderProgram> terrain_frame_shaders();
 
 }  // namespace scarp

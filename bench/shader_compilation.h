@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Compiles Scarp's shaders for graphics cards that need not be there, with Mesa's RADV: its null device compiles for
+// any AMD card and has no memory.
+//
+//   library_shaders() ──SPIR-V, specialisation──▶ RADV, one family of cards after another ──▶ rows of a ShaderTable
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bench/shader_table.h"
+#include "scarp/vk/shader_program.h"
+
+namespace scarp::bench {
+
+/// Every shader of the library, as its owners list them.
+std::vector<ShaderProgram> library_shaders();
+
+/// Returns the compilers of SPIR-V and of RADV for a family of cards ("navi21"), with their versions. Changes
+/// environment variables of Vulkan drivers and leaves them so. Throws Error if RADV is missing or does not know the
+/// family.
+std::string shader_compilers(const std::string& family);
+
+/// Compiles shaders on all threads, without shader caches; rows by shader, then by family. The
+/// environment and errors are as for shader_compilers().
+ShaderTable compile_shaders(const std::vector<ShaderProgram>& programs, const std::vector<std::string>& families);
+
+}  // namespace scarp::bench

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// A compute shader in one specialisation: everything that a pipeline is made of. The code that owns a shader states it
+// in one function, which serves pipelines and the list for `scarp-bench shaders` alike.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scarp {
+
+struct ShaderProgram {
+  std::string_view file;                   ///< path of its text: "scarp/march/height/max_mip.comp"
+  std::string variant;                     ///< the specialisation in words, "any"; empty if there is only one
+  std::span<const std::uint32_t> spirv;    ///< entry point main, no bindings
+  std::uint32_t push_bytes = 0;            ///< size of its push constants
+  std::vector<std::uint32_t> constants{};  ///< specialisation constants 0, 1, 2, ...; floats by bit_cast
+};
+
+}  // namespace scarp

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/vk/shader_statistics.h"
+
+#include <fmt/format.h>
+
+#include "scarp/vk/raii.h"
+
+namespace scarp {
+namespace {
+
+bool reports_statistics(const vk::raii::PhysicalDevice& device) {
+  const auto extensions = device.enumerateDeviceExtensionProperties();
+  return std::any_of(extensions.begin(), extensions.end(), [](const vk::ExtensionProperties& extension) {
+    return std::string_view(extension.extensionName.data()) == VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+  });
+}
+
+vk::raii::PhysicalDevice first_with_statistics(const VulkanInstance& instance) {
+  std::string names;
+  for (vk::raii::PhysicalDevice& device : instance.physical_devices()) {
+    if (reports_statistics(device)) return std::move(device);
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", describe(device).name);
+  }
+  if (names.empty()) throw Error(no_driver());
+  throw Error(fmt::format("Vulkan: no driver reports statistics of shaders (available: {})", names));
+}
+
+// Like the devices that compute, as far as this one goes: a driver may compile for a device that could not run
+// anything.
+vk::raii::Device open_to_compile(const vk::raii::PhysicalDevice& physical, const DeviceAbilities& abilities) {
+  const float priority = 1;
+  const vk::DeviceQueueCreateInfo queue({}, compute_family(physical.getQueueFamilyProperties()).value_or(0), 1,
+                                        &priority);
+  const char* extension = VK_KHR_PIPELINE_EXECUTABLE_PROPERTIES_EXTENSION_NAME;
+  vk::StructureChain<vk::DeviceCreateInfo, vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
+                     vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR>
+      create;
+  create.get<vk::DeviceCreateInfo>().setQueueCreateInfos(queue).setPEnabledExtensionNames(extension);
+  create.get<vk::PhysicalDeviceFeatures2>()
+      .features.setShaderFloat64(abilities.float64)
+      .setShaderInt64(abilities.int64);
+  create.get<vk::PhysicalDeviceVulkan12Features>()
+      .setScalarBlockLayout(abilities.scalar_block_layout)
+      .setBufferDeviceAddress(abilities.buffer_device_address);
+  create.get<vk::PhysicalDevicePipelineExecutablePropertiesFeaturesKHR>().setPipelineExecutableInfo(true);
+  return {physical, create.get<vk::DeviceCreateInfo>()};
+}
+
+double number(const vk::PipelineExecutableStatisticKHR& statistic) {
+  switch (statistic.format) {
+    case vk::PipelineExecutableStatisticFormatKHR::eBool32:
+      return statistic.value.b32 ? 1 : 0;
+    case vk::PipelineExecutableStatisticFormatKHR::eInt64:
+      return static_cast<double>(statistic.value.i64);
+    case vk::PipelineExecutableStatisticFormatKHR::eUint64:
+      return static_cast<double>(statistic.value.u64);
+    case vk::PipelineExecutableStatisticFormatKHR::eFloat64:
+      break;
+  }
+  return statistic.value.f64;
+}
+
+}  // namespace
+
+struct ShaderCompiler::Impl {
+  Impl()
+      : instance(false),
+        physical(first_with_statistics(instance)),
+        description(describe(physical)),
+        device(open_to_compile(physical, description.abilities)) {}
+
+  VulkanInstance instance;
+  vk::raii::PhysicalDevice physical;
+  DeviceDescription description;
+  vk::raii::Device device;
+};
+
+ShaderCompiler::ShaderCompiler() {
+  guarded("", "opening a device to compile shaders", [&] { impl_ = std::make_unique<Impl>(); });
+}
+ShaderCompiler::ShaderCompiler(ShaderCompiler&&) noexcept = default;
+ShaderCompiler& ShaderCompiler::operator=(ShaderCompiler&&) noexcept = default;
+ShaderCompiler::~ShaderCompiler() = default;
+
+const std::string& ShaderCompiler::device_name() const { return impl_->description.name; }
+const std::string& ShaderCompiler::driver() const { return impl_->description.driver; }
+
+std::vector<ShaderStatistic> ShaderCompiler::statistics(const ShaderProgram& program) const {
+  return guarded(device_name(), fmt::format("compiling the shader '{}'", program.file), [&] {
+    const vk::raii::Device& device = impl_->device;
+    const vk::raii::PipelineLayout layout = compute_layout(device, program.push_bytes);
+    const vk::raii::Pipeline pipeline = compute_pipeline(device, layout, program.spirv, program.constants,
+                                                         vk::PipelineCreateFlagBits::eCaptureStatisticsKHR, nullptr);
+    std::vector<ShaderStatistic> all;
+    // A compute shader is one executable.
+    for (const auto& statistic : device.getPipelineExecutableStatisticsKHR({*pipeline, 0})) {
+      all.push_back({std::string(statistic.name.data()), number(statistic)});
+    }
+    return all;
+  });
+}
+
+}  // namespace scarp

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// What a driver's compiler makes of a compute shader: instructions, registers, spills. Nothing runs and nothing is
+// allocated, so a device without memory will do, such as the null device of Mesa's RADV:
+//
+//   ShaderCompiler compiler;                            the first device whose driver reports statistics
+//   for (const auto& [name, value] : compiler.statistics(program)) ...
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scarp/vk/shader_program.h"
+
+namespace scarp {
+
+/// One figure of a compiled shader, by the driver's name for it, such as "VGPRs" or "Code size".
+struct ShaderStatistic {
+  std::string name;
+  double value = 0;
+};
+
+/// The compiler of a Vulkan driver. Drivers are found anew for each object, so the environment may change in between.
+class ShaderCompiler {
+ public:
+  /// Throws Error if there is no loader, no device, or none whose driver reports statistics
+  /// (VK_KHR_pipeline_executable_properties).
+  ShaderCompiler();
+  ShaderCompiler(ShaderCompiler&&) noexcept;
+  ShaderCompiler& operator=(ShaderCompiler&&) noexcept;
+  ~ShaderCompiler();
+
+  const std::string& device_name() const;
+  /// Returns the driver's name and version.
+  const std::string& driver() const;
+
+  /// Compiles the program and returns the statistics in the driver's order. Throws Error if the driver rejects it.
+  std::vector<ShaderStatistic> statistics(const ShaderProgram& program) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace scarp
