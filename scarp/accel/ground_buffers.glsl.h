@@ -31,8 +31,8 @@ const uint kGroundWrapNone = 0u;
 const uint kGroundWrapPeriodic = 1u;
 const uint kGroundWrapSharedBorder = 2u;
 
-// What floats that walk a ray are off sideways, as a height per height difference within a cell (doc/dev/numerics.md,
-// "The lean pass"): 2^-19.
+// Height that the sideways error of a walk in floats is worth, per height difference within a cell
+// (doc/dev/numerics.md, "The lean pass"): 2^-19.
 const float kGroundSpread = 1.9073486328125e-6f;
 
 // Levels of the largest field that 31 bits can index.

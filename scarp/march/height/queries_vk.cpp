@@ -54,6 +54,7 @@ struct DeviceQueries::Impl {
         march_settings(march_settings_),
         runs(device, settings.rays_at_once),
         statistics(settings.statistics),
+        exact_only(settings.exact_only),
         march(device, name, checked_turns(settings.turns_at_once)) {
     march.reserve(settings.rays_at_once);
   }
@@ -66,7 +67,7 @@ struct DeviceQueries::Impl {
     const bool starts = exact && std::any_of(asked.begin(), asked.end(),
                                              [](const Ray& ray) { return ray.start == RayStart::on_surface; });
     DeviceRayQuery query{any, statistics, ground_kind(target, starts)};
-    query.exact_only = leaves_first_pass(*target.field);
+    query.exact_only = exact_only || leaves_first_pass(*target.field);
     if (!exact) query.sampling = sampling_of(name, march_settings, target);
     runs.ask_there(
         [&](Commands& commands, std::uint64_t rays, std::uint64_t hits, std::uint32_t count) {
@@ -86,7 +87,7 @@ struct DeviceQueries::Impl {
   std::string_view name;
   MarchSettings march_settings;
   RayRuns<HeightRays> runs;
-  bool statistics;
+  bool statistics, exact_only;
   DeviceHeightMarch march;
 };
 

@@ -33,6 +33,7 @@ struct DeviceQuerySettings {
   std::uint32_t rays_at_once = 1 << 18;  ///< size of a slice: rays on the device at once, 1 to 4,000,000
   int turns_at_once =
       60'000;  ///< maximum loop iterations per ray in one run, 1 to 60,000; longer marches continue in the next run
+  bool exact_only = false;  ///< max-mip without its first pass: as shaders that have no buffers march, and slower
 };
 
 /// A height field on a device.

@@ -331,11 +331,9 @@ TEST(BatchLayout, IsThatOfTheShaders) {
                 offsetof(ScarpRay, z), offsetof(ScarpRay, z_low), offsetof(ScarpRay, end), offsetof(ScarpRay, end_low),
                 offsetof(ScarpRay, flags), offsetof(ScarpRay, travelled), offsetof(ScarpRay, exit),
                 offsetof(ScarpRay, per_height), offsetof(ScarpRay, cell_time)}));
-  EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpRay)));
   EXPECT_TRUE(has_struct(kShader, {offsetof(ScarpHit, status), offsetof(ScarpHit, cell), offsetof(ScarpHit, place),
                                    offsetof(ScarpHit, time), offsetof(ScarpHit, time_low), offsetof(ScarpHit, steps),
                                    offsetof(ScarpHit, fetches)}));
-  EXPECT_TRUE(has_array_stride(kShader, sizeof(ScarpHit)));
   EXPECT_TRUE(
       has_struct(kShader, {offsetof(RayBatch, ground), offsetof(RayBatch, rays), offsetof(RayBatch, hits),
                            offsetof(RayBatch, count), offsetof(RayBatch, settings), offsetof(RayBatch, turns),
