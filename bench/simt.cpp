@@ -152,8 +152,9 @@ class Comparison {
       if (!row["min_step"].is_null()) continue;
       shares.push_back(head);
       for (const std::string_view block : kSimtBlockNames) {
-        const double part = row["instructions_by_block"].value(std::string(block), 0.0);
-        shares.back().push_back(fmt::format("{:.0f}", 100 * part / row["instructions"].get<double>()));
+        const Json& part = row[fmt::format("{}_instructions", block)];
+        const double whole = row["instructions"];
+        shares.back().push_back(part.is_null() ? "-" : fmt::format("{:.0f}", 100 * part.get<double>() / whole));
       }
     }
     print_table(lines, 3);
@@ -217,13 +218,6 @@ class Comparison {
         return static_cast<double>(a) / static_cast<double>(of);
       };
       const auto turn = static_cast<std::size_t>(contender.naive ? SimtBlock::probe : SimtBlock::walk);
-      Json runs, instructions;
-      for (std::size_t block = 0; block < kSimtBlocks; ++block) {
-        if (bundle.runs[block] == 0) continue;
-        const std::string name(kSimtBlockNames[block]);
-        runs[name] = per_bundle(bundle.runs[block]);
-        instructions[name] = per_bundle(bundle.runs[block]) * shader.costs[block].instructions;
-      }
       Json row;
       row["size"] = field.field.cols();
       row["class"] = name_of(set.ray_class);
@@ -231,8 +225,13 @@ class Comparison {
       row["bundle"] = kBundles[b];
       row["turns"] = per_bundle(bundle.runs[turn]);
       row["turns_per_ray"] = static_cast<double>(bundle.lanes[turn]) / static_cast<double>(set.size());
-      row["runs"] = runs;
-      row["instructions_by_block"] = instructions;
+      for (std::size_t block = 0; block < kSimtBlocks; ++block) {
+        const auto& name = kSimtBlockNames[block];
+        const bool has = bundle.runs[block] > 0;
+        const double runs = per_bundle(bundle.runs[block]);
+        row[fmt::format("{}_runs", name)] = has ? Json(runs) : Json();
+        row[fmt::format("{}_instructions", name)] = has ? Json(runs * shader.costs[block].instructions) : Json();
+      }
       row["instructions"] = per_bundle(sum.instructions);
       row["vector_instructions"] = per_bundle(sum.vector);
       row["memory_instructions"] = per_bundle(sum.memory);
