@@ -12,7 +12,7 @@ namespace scarp::bench {
 struct ReportOptions {
   std::string command;  ///< as typed
   std::string json;     ///< a file to write; empty: none
-  std::string csv;      ///< likewise
+  std::string csv{};    ///< likewise
 };
 
 /// Writes the files of `options`: JSON is {machine, command, date, rows}; CSV has the first three as comments, and the
