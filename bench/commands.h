@@ -111,10 +111,11 @@ struct SimtOptions {
   RayCounts rays;
   std::int64_t groups = 512;  ///< of 64 successive rays, spread evenly over each class; all are judged
   std::uint64_t ray_seed = 1;
-  double wrong_limit = 0.001;         ///< share of rays that naive may get wrong
-  std::string blocks;                 ///< table of instructions by block; empty: bench/simt_blocks.csv of the sources
-  std::vector<std::string> assembly;  ///< "SHADER=FILE": count the blocks of a shader in RADV's disassembly
-  std::string update;                 ///< a file to write the table to, instead of tracing rays
+  double wrong_limit = 0.001;  ///< share of rays that naive may get wrong
+  std::string blocks;          ///< table of instructions by block; empty: bench/simt_blocks.csv of the sources
+  bool recount = false;        ///< with Vulkan: by the blocks as this build compiles them (simt_recount.h)
+  std::string disassembly{};   ///< a folder for the disassemblies that are counted; empty: none
+  std::string update{};        ///< a file to write the recounted table to, instead of tracing rays
 };
 void run_simt(const SimtOptions& options, const ReportOptions& report);
 

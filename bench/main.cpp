@@ -277,11 +277,13 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   simt_command->add_option("--blocks", simt.blocks,
                            "table of instructions by block (bench/simt_blocks.csv of the sources)");
-  simt_command
-      ->add_option("--assembly", simt.assembly,
-                   "SHADER=FILE, one or several: counts blocks in RADV's disassembly instead of the table")
-      ->delimiter(',');
-  simt_command->add_option("--update", simt.update, "file to write the table of blocks to; traces no rays");
+#ifdef SCARP_BENCH_VULKAN
+  simt_command->add_flag("--recount", simt.recount,
+                         "count the instructions by RADV, as this build compiles the shaders");
+  simt_command->add_option("--disassembly", simt.disassembly, "folder for what --recount counts")->needs("--recount");
+  simt_command->add_option("--update", simt.update, "table to write after --recount; traces no rays")
+      ->needs("--recount");
+#endif
   add_json_option(*simt_command, report);
 
   LeaksOptions leaks;

@@ -7,9 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -19,6 +17,9 @@
 #include "bench/judge.h"
 #include "bench/naive_search.h"
 #include "bench/random.h"
+#ifdef SCARP_BENCH_VULKAN
+#include "bench/simt_recount.h"
+#endif
 #include "bench/simt_trace.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -281,27 +282,18 @@ class Comparison {
   Json rows_ = Json::array();
 };
 
-std::string text_of(const std::string& file) {
-  std::ifstream in(file);
-  if (!in) throw Error(fmt::format("'{}': cannot be read", file));
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 }  // namespace
 
 void run_simt(const SimtOptions& options, const ReportOptions& report) {
   SimtShaders shaders =
       read_simt_shaders(options.blocks.empty() ? SCARP_SOURCE_DIR "/bench/simt_blocks.csv" : options.blocks);
-  for (const std::string& assembly : options.assembly) {
-    const std::size_t equals = assembly.find('=');
-    if (equals == std::string::npos) throw Error(fmt::format("--assembly '{}': expected SHADER=FILE", assembly));
-    SimtShader& shader = shaders.find(assembly.substr(0, equals));
-    shader = count_blocks(shader, text_of(assembly.substr(equals + 1)));
-  }
+#ifdef SCARP_BENCH_VULKAN
+  if (options.recount) shaders = recount(shaders, options.disassembly);
   if (!options.update.empty()) {
     write_simt_shaders(options.update, shaders);
     return;
   }
+#endif
   fmt::print("instructions by {}\n", shaders.compilers);
   Comparison comparison(options, std::move(shaders));
   for (const int size : options.sizes) {

@@ -57,6 +57,8 @@ struct SimtCost {
   int instructions = 0;  ///< all, memory instructions included
   int vector = 0;        ///< arithmetic of the rays' own values
   int memory = 0;        ///< loads and stores of the rays' own addresses
+
+  bool operator==(const SimtCost&) const = default;
 };
 
 /// The blocks of one shader in one specialisation.

@@ -8,6 +8,10 @@
 
 #include "bench/fields.h"
 #include "bench/rays.h"
+#ifdef SCARP_BENCH_VULKAN
+#include "bench/shader_compilation.h"
+#include "bench/simt_recount.h"
+#endif
 #include "bench/simt_trace.h"
 #include "scarp/base/error.h"
 #include "scarp/march/height/max_mip.h"
@@ -146,6 +150,26 @@ TEST(SimtBlocks, AreReadAsWritten) {
   EXPECT_THROW(read_simt_shaders(file), Error);
   std::filesystem::remove(file);
 }
+
+#ifdef SCARP_BENCH_VULKAN
+TEST(SimtBlocks, AreThoseOfTheShaders) {
+  const SimtShaders kept = read_simt_shaders(kTable);
+  std::string compilers;
+  try {
+    compilers = shader_compilers("navi21");
+  } catch (const Error& error) {
+    GTEST_SKIP() << error.what();
+  }
+  if (compilers != kept.compilers) GTEST_SKIP() << "the table is of other compilers: " << kept.compilers;
+  constexpr const char* kRewrite = "scarp-bench simt --recount --update bench/simt_blocks.csv";
+  const SimtShaders found = recount(kept);
+  for (std::size_t i = 0; i < kept.shaders.size(); ++i) {
+    for (std::size_t block = 0; block < kSimtBlocks; ++block)
+      EXPECT_EQ(found.shaders[i].costs[block], kept.shaders[i].costs[block])
+          << kept.shaders[i].name << ", " << kSimtBlockNames[block] << " (rewrite the table: " << kRewrite << ")";
+  }
+}
+#endif
 
 struct SimtTraces : testing::Test {
   static BenchField small_field() {
