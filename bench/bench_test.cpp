@@ -438,6 +438,70 @@ TEST(ScarpBench, TheDrawnGridHasTheDepthsOfTheRays) {
 }
 #endif
 
+TEST(ScarpBench, SimtComparesBundlesAtEqualError) {
+  const std::string command = "simt --sizes 129 --rays small --groups 8 --classes chunk,primary --wrong-limit 0.01";
+  const json all = output_of(command);
+  expect_head(all);
+  std::multiset<std::string> modes;
+  std::map<std::string, double> turns_of_32;
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"size",
+                        "class",
+                        "mode",
+                        "bundle",
+                        "turns",
+                        "turns_per_ray",
+                        "walk_runs",
+                        "walk_instructions",
+                        "instructions",
+                        "vector_instructions",
+                        "memory_instructions",
+                        "fetches",
+                        "lines_128",
+                        "lines_64",
+                        "max_mip_instructions",
+                        "max_mip_memory",
+                        "max_mip_lines_128",
+                        "max_mip_lines_64",
+                        "wrong_rate",
+                        "judged",
+                        "second_pass_rate",
+                        "step_factor",
+                        "min_step",
+                        "field",
+                        "relief",
+                        "mean_slope_deg",
+                        "compilers"});
+    SCOPED_TRACE(row.dump());
+    const std::string mode = row["mode"];
+    modes.insert(mode);
+    EXPECT_EQ(row["judged"], 8 * 64);
+    EXPECT_LE(row["wrong_rate"], 0.01);
+    EXPECT_GE(row["turns"], row["turns_per_ray"]);
+    double sum = 0;
+    for (const auto& [name, value] : row.items()) {
+      if (name.ends_with("_instructions") && !value.is_null() && row.contains(name.substr(0, name.find('_')) + "_runs"))
+        sum += value.get<double>();
+    }
+    EXPECT_NEAR(sum, row["instructions"].get<double>(), 1e-6 * sum);
+    EXPECT_GE(row["lines_64"], row["lines_128"]);
+    EXPECT_GE(row["lines_128"], row["fetches"]);
+    if (mode == "max-mip") {
+      EXPECT_EQ(row["max_mip_instructions"], 1.0);
+      EXPECT_EQ(row["wrong_rate"], 0.0);
+      EXPECT_EQ(row["second_pass_rate"], 0.0);
+    }
+    // More rays wait for one another.
+    const std::string key = row["class"].get<std::string>() + mode;
+    if (row["bundle"] == 32)
+      turns_of_32[key] = row["turns"];
+    else
+      EXPECT_GE(row["turns"], turns_of_32.at(key));
+  }
+  for (const char* mode : {"max-mip", "naive", "naive-clipped"}) EXPECT_EQ(modes.count(mode), 4u) << mode;
+  EXPECT_EQ(output_of(command)["rows"], all["rows"]);
+}
+
 TEST(ScarpBench, SeamsLoseNoRay) {
   const json all = output_of("seams --rays 200000");
   expect_head(all);

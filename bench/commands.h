@@ -103,6 +103,22 @@ struct ShadersOptions {
 /// Throws Error if RADV is missing or does not know a family, or if no shader has the name.
 void run_shaders(const ShadersOptions& options, const ReportOptions& report);
 
+/// `simt`: rays in lockstep, by the shaders' text on the CPU: what bundles pay with max-mip and with naive.
+struct SimtOptions {
+  FieldOptions field;
+  std::vector<int> sizes{1025, 4097};
+  std::vector<std::string> classes{"chunk", "primary", "shadow", "grazing", "ao"};
+  RayCounts rays;
+  std::int64_t groups = 512;  ///< of 64 successive rays, spread evenly over each class; all are judged
+  std::uint64_t ray_seed = 1;
+  double wrong_limit = 0.001;  ///< share of rays that naive may get wrong
+  std::string blocks;          ///< table of instructions by block; empty: bench/simt_blocks.csv of the sources
+  bool recount = false;        ///< with Vulkan: by the blocks as this build compiles them (simt_recount.h)
+  std::string disassembly{};   ///< a folder for the disassemblies that are counted; empty: none
+  std::string update{};        ///< a file to write the recounted table to, instead of tracing rays
+};
+void run_simt(const SimtOptions& options, const ReportOptions& report);
+
 /// `leaks`: rays aimed at what engines lose, each judged.
 struct LeaksOptions {
   std::int64_t rays = 10'000'000;

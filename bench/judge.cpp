@@ -79,6 +79,7 @@ Judgement Judge::score(const std::vector<Answer>& answers) const {
   result.wrong_rate = share(missed + invented, result.judged);
   result.late_rate = share(late, hits);
   result.early_rate = share(early, hits);
+  result.off_rate = share(missed + invented + late + early, result.judged);
   result.exhausted = share(exhausted, result.judged);
   result.steps = steps / static_cast<double>(result.judged);
   result.cell_tests = cell_tests / static_cast<double>(result.judged);

@@ -24,6 +24,7 @@ struct Judgement {
   double late_rate =
       0;  ///< share of the judge's hits that are reported, but more than kNear behind: the first hit was lost
   double early_rate = 0;  ///< the same before it
+  double off_rate = 0;    ///< share of all rays that are wrong, late or early
   double exhausted = 0;   ///< share of rays that the engine gave up; they count as not reported
   double steps = 0;       ///< mean positions looked at per ray, MarchStats::steps
   double cell_tests = 0;  ///< mean cells intersected per ray

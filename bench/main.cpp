@@ -244,6 +244,48 @@ int run(int argc, char** argv) {
   add_json_option(*shaders_command, report);
 #endif
 
+  SimtOptions simt;
+  CLI::App* simt_command = app.add_subcommand(
+      "simt", "what bundles of rays in lockstep pay with max-mip and with naive, counted on the CPU");
+  simt_command->add_option("--sizes", simt.sizes, "samples per side of the procedural DEM, one or several")
+      ->delimiter(',')
+      ->check(CLI::Range(kLeastSize, kMostSize))
+      ->capture_default_str();
+  simt_command->add_option("--kind", simt.field.kind, "procedural DEM")
+      ->check(CLI::IsMember({"ridged", "fbm"}))
+      ->capture_default_str();
+  simt_command->add_option("--seed", simt.field.seed, "of the procedural DEM")->capture_default_str();
+  simt_command->add_option("--classes", simt.classes, "of rays")
+      ->delimiter(',')
+      ->check(CLI::IsMember(simt.classes))
+      ->capture_default_str();
+  simt_command->add_option("--groups", simt.groups, "of 64 successive rays, spread evenly over each class")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1} << 20))
+      ->capture_default_str();
+  simt_command->add_option("--ray-seed", simt.ray_seed, "of the rays")->capture_default_str();
+  simt_command
+      ->add_option_function<std::string>(
+          "--rays",
+          [&simt](const std::string& size) {
+            if (size == "small") simt.rays = {160, 88, 4096, 4096, 64};
+          },
+          "full: groups of 1920 x 1080 pixels and 2^20 rays for each other class; small: of 160 x 88 and 2^12, to see "
+          "that all works")
+      ->check(CLI::IsMember({"full", "small"}));
+  simt_command->add_option("--wrong-limit", simt.wrong_limit, "share of rays that naive may get wrong")
+      ->check(number_in({0, 1}))
+      ->capture_default_str();
+  simt_command->add_option("--blocks", simt.blocks,
+                           "table of instructions by block (bench/simt_blocks.csv of the sources)");
+#ifdef SCARP_BENCH_VULKAN
+  simt_command->add_flag("--recount", simt.recount,
+                         "count the instructions by RADV, as this build compiles the shaders");
+  simt_command->add_option("--disassembly", simt.disassembly, "folder for what --recount counts")->needs("--recount");
+  simt_command->add_option("--update", simt.update, "table to write after --recount; traces no rays")
+      ->needs("--recount");
+#endif
+  add_json_option(*simt_command, report);
+
   LeaksOptions leaks;
   CLI::App* leaks_command =
       app.add_subcommand("leaks", "very many rays at what engines lose; fails when Scarp loses one");
@@ -502,6 +544,7 @@ int run(int argc, char** argv) {
   if (*gpu_command) (gpu.raster ? run_gpu_raster : run_gpu)(gpu, report);
   if (*shaders_command) run_shaders(shaders, report);
 #endif
+  if (*simt_command) run_simt(simt, report);
   if (*leaks_command) run_leaks(leaks, report);
   if (*voxels_command) run_voxels(voxels, report);
   if (*voxel_models_command) run_voxel_models(voxel_models, report);

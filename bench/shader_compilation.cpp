@@ -91,6 +91,11 @@ std::string shader_compilers(const std::string& family) {
   return fmt::format("{}, {}", ShaderCompiler().driver(), SCARP_BENCH_GLSLC);
 }
 
+std::string shader_disassembly(const ShaderProgram& program, const std::string& family) {
+  require_family(family);
+  return ShaderCompiler().disassembly(program);
+}
+
 ShaderTable compile_shaders(const std::vector<ShaderProgram>& programs, const std::vector<std::string>& families) {
   ShaderTable table;
   // All of them before there are threads, because a process is forked.

@@ -21,6 +21,10 @@ std::vector<ShaderProgram> library_shaders();
 /// family.
 std::string shader_compilers(const std::string& family);
 
+/// Returns RADV's machine code of a shader for a family of cards, as text. The environment and errors are as for
+/// shader_compilers().
+std::string shader_disassembly(const ShaderProgram& program, const std::string& family);
+
 /// Compiles shaders on all threads, without shader caches; rows by shader, then by family. The
 /// environment and errors are as for shader_compilers().
 ShaderTable compile_shaders(const std::vector<ShaderProgram>& programs, const std::vector<std::string>& families);

@@ -72,4 +72,9 @@ struct Address {
 
 #endif
 
+// Marks the begin of a block of a shader for `scarp-bench simt`, which counts them; nothing in all other builds.
+#ifndef SCARP_COUNT
+#define SCARP_COUNT(block)
+#endif
+
 #endif

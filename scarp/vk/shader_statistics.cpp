@@ -100,4 +100,33 @@ std::vector<ShaderStatistic> ShaderCompiler::statistics(const ShaderProgram& pro
   });
 }
 
+std::string ShaderCompiler::disassembly(const ShaderProgram& program) const {
+  return guarded(device_name(), fmt::format("compiling the shader '{}'", program.file), [&] {
+    const vk::raii::Device& device = impl_->device;
+    const vk::raii::PipelineLayout layout = compute_layout(device, program.push_bytes);
+    const vk::raii::Pipeline pipeline =
+        compute_pipeline(device, layout, program.spirv, program.constants,
+                         vk::PipelineCreateFlagBits::eCaptureInternalRepresentationsKHR, nullptr);
+    const vk::PipelineExecutableInfoKHR executable(*pipeline, 0);
+    // Sizes first, then all texts by a second call, for which Vulkan-Hpp has no other form.
+    auto all = device.getPipelineExecutableInternalRepresentationsKHR(executable);
+    std::vector<std::string> texts(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      texts[i].resize(all[i].dataSize);
+      all[i].pData = texts[i].data();
+    }
+    auto count = static_cast<std::uint32_t>(all.size());
+    const auto result =
+        static_cast<vk::Result>(device.getDispatcher()->vkGetPipelineExecutableInternalRepresentationsKHR(
+            static_cast<VkDevice>(*device), reinterpret_cast<const VkPipelineExecutableInfoKHR*>(&executable), &count,
+            reinterpret_cast<VkPipelineExecutableInternalRepresentationKHR*>(all.data())));
+    vk::resultCheck(result, "vkGetPipelineExecutableInternalRepresentationsKHR");
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      // Texts end with a zero.
+      if (std::string_view(all[i].name.data()) == "Assembly") return texts[i].substr(0, texts[i].find('\0'));
+    }
+    throw Error(fmt::format("device '{}': reports no machine code of shaders", device_name()));
+  });
+}
+
 }  // namespace scarp

@@ -36,6 +36,9 @@ class ShaderCompiler {
 
   /// Compiles the program and returns the statistics in the driver's order. Throws Error if the driver rejects it.
   std::vector<ShaderStatistic> statistics(const ShaderProgram& program) const;
+  /// Compiles the program and returns its machine code as text, which RADV reports. Throws Error if the driver rejects
+  /// the program or does not report the text.
+  std::string disassembly(const ShaderProgram& program) const;
 
  private:
   struct Impl;

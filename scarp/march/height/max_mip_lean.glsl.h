@@ -288,6 +288,7 @@ SCARP_FN ScarpLeanCell scarp_lean_cell(ScarpField field, ScarpLeanFrame frame, v
 /// call again. With `any`, only the status is defined. `field.top_level` must be at least 1.
 SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOUT(ScarpLean) at,
                             SCARP_OUT(ScarpHit) hit) {
+  SCARP_COUNT(frame);
   bool strict = (field.flags & kScarpStarts) != 0u && (ray.flags & kScarpOnSurface) != 0u;
   bool wraps = (field.flags & kScarpWraps) != 0u;
   bool triangles = (field.flags & kScarpTriangles) != 0u;
@@ -328,6 +329,7 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   piece.chord = 0.0f;
   piece.bend = 0.0f;
   do {
+    SCARP_COUNT(walk);
     // The block's lines ahead, and those in its middle.
     int half_side = 1 << (level - 1);
     int inside = 2 * half_side - 1;
@@ -382,6 +384,7 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
     bool tests = level == 1 && !all_free;
     bool hole = false;
     if (tests) {
+      SCARP_COUNT(cell);
       // The first cell that it may meet.
       float leave = free0 ? (free1 ? t3 : t2) : t1;
       int cell_x = far_x || tx_middle <= next ? middle_x : middle_x - 1;

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Blocks of the marches' shaders, as SCARP_COUNT (vk/glsl_cpp.h) names them in the text, and what a bundle of rays pays
+// for each: instructions of the compiled shader.
+//
+// bench/simt_blocks.csv keeps the counts: Mesa's RADV for navi21, rays in wavefronts of 64, float32 samples, no holes,
+// walls, wraps or triangles. A row is one block of one shader, with the basic blocks of the disassembly that belong to
+// it. Every basic block belongs to one block, so the counts add up to the shader's instructions. A basic block is
+// counted with the block of the text whose lanes execute it; what joins two branches counts with the block around them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace scarp::bench {
+
+enum class SimtBlock : std::uint8_t {
+  begin,   ///< once: what is the same for all rays
+  frame,   ///< the ray is read, and begins anew where it has come to; the end of that as well, after the inner loop
+  walk,    ///< max-mip: a turn of the walk
+  cell,    ///< the surface in a cell
+  probe,   ///< marches that sample: a turn
+  hit,     ///< where a march ends at a point
+  end,     ///< once: the answers
+  unused,  ///< code for settings that are not counted
+};
+inline constexpr std::size_t kSimtBlocks = 8;
+inline constexpr std::array<std::string_view, kSimtBlocks> kSimtBlockNames = {"begin", "frame", "walk", "cell",
+                                                                              "probe", "hit",   "end",  "unused"};
+
+/// Loops around a block, and whether it is the first block of the innermost one.
+struct SimtNesting {
+  int depth;
+  bool head;
+};
+constexpr SimtNesting nesting(SimtBlock block) {
+  switch (block) {
+    case SimtBlock::frame:
+      return {1, true};
+    case SimtBlock::hit:
+      return {1, false};
+    case SimtBlock::walk:
+    case SimtBlock::probe:
+      return {2, true};
+    case SimtBlock::cell:
+      return {2, false};
+    default:
+      return {0, false};
+  }
+}
+
+/// What a bundle pays each time that one of its rays enters the block.
+struct SimtCost {
+  int instructions = 0;  ///< all, memory instructions included
+  int vector = 0;        ///< arithmetic of the rays' own values
+  int memory = 0;        ///< loads and stores of the rays' own addresses
+
+  bool operator==(const SimtCost&) const = default;
+};
+
+/// The blocks of one shader in one specialisation.
+struct SimtShader {
+  std::string name;  ///< "max-mip", "max-mip any", "naive"
+  int instructions;  ///< of the whole shader, as the driver reports it
+  std::array<SimtCost, kSimtBlocks> costs{};
+  /// Numbers in the disassembly, "5 24-35"; empty: the shader has no such block.
+  std::array<std::string, kSimtBlocks> basic_blocks{};
+
+  const SimtCost& operator[](SimtBlock block) const { return costs[static_cast<std::size_t>(block)]; }
+};
+
+struct SimtShaders {
+  std::string compilers;  ///< with versions
+  std::vector<SimtShader> shaders;
+
+  /// Throws Error if there is none of this name.
+  SimtShader& find(std::string_view name);
+};
+
+/// Reads a table as write_simt_shaders() writes it. Throws Error if it cannot be read, or if the blocks of a shader do
+/// not add up to its instructions.
+SimtShaders read_simt_shaders(const std::string& file);
+/// Throws Error if the file cannot be written.
+void write_simt_shaders(const std::string& file, const SimtShaders& shaders);
+
+/// Counts the blocks of a shader anew, by its basic blocks, in RADV's disassembly of it. Throws Error that names the
+/// basic blocks that belong to none or to several blocks, or to one that the disassembly lacks.
+SimtShader count_blocks(const SimtShader& shader, std::string_view disassembly);
+
+}  // namespace scarp::bench

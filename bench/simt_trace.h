@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// The shader text of max-mip and naive, run on the CPU one ray at a time, with a record of what each ray does.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "bench/judge.h"
+#include "bench/simt_bundle.h"
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/field/height_field.h"
+#include "scarp/march/march_settings.h"
+
+namespace scarp::bench {
+
+/// A field in the layout that it has in device memory (accel/ground_buffers.glsl.h). float32 samples without holes;
+/// neither copied nor owned.
+class SimtGround {
+ public:
+  /// Builds the quads, on all threads. Throws Error for a field that the counted shaders are not compiled for.
+  SimtGround(const HeightField& field, const MaxPyramid& pyramid);
+  ~SimtGround();
+
+  struct Impl;
+  const Impl& impl() const { return *impl_; }
+
+ private:
+  std::unique_ptr<Impl> impl_;
+};
+
+/// What a ray met, and whether max-mip left it to its second pass.
+struct SimtAnswer {
+  Judge::Answer answer;
+  bool second_pass = false;
+};
+
+/// Both passes of max-mip on devices; traces the first. `trace` may be null.
+SimtAnswer trace_max_mip(const SimtGround& ground, const Ray& ray, bool any, SimtTrace* trace);
+
+struct SimtNaive {
+  NaiveSettings settings;
+  bool clipped;  ///< whether rays begin and end no higher than the field's highest sample
+};
+SimtAnswer trace_naive(const SimtGround& ground, const Ray& ray, bool any, const SimtNaive& naive, SimtTrace* trace);
+
+}  // namespace scarp::bench
