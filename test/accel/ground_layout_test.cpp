@@ -21,6 +21,8 @@ constexpr std::uint32_t kShader[] = {
 TEST(GroundLayout, IsThatOfTheShaders) {
   EXPECT_TRUE(
       test::has_struct(kShader, {offsetof(GroundBuffers, samples),        offsetof(GroundBuffers, pyramid),
+                                 offsetof(GroundBuffers, quads),          offsetof(GroundBuffers, quad_cols),
+                                 offsetof(GroundBuffers, quad_rows),      offsetof(GroundBuffers, quad_stride),
                                  offsetof(GroundBuffers, cols),           offsetof(GroundBuffers, rows),
                                  offsetof(GroundBuffers, cell_cols),      offsetof(GroundBuffers, cell_rows),
                                  offsetof(GroundBuffers, sample_words),   offsetof(GroundBuffers, sample_type),
@@ -29,8 +31,9 @@ TEST(GroundLayout, IsThatOfTheShaders) {
                                  offsetof(GroundBuffers, solid),          offsetof(GroundBuffers, top_level),
                                  offsetof(GroundBuffers, code_base),      offsetof(GroundBuffers, code_base_low),
                                  offsetof(GroundBuffers, code_step),      offsetof(GroundBuffers, code_step_low),
-                                 offsetof(GroundBuffers, code_per_step),  offsetof(GroundBuffers, min_sample),
-                                 offsetof(GroundBuffers, max_sample),     offsetof(GroundBuffers, cell_x),
+                                 offsetof(GroundBuffers, code_per_step),  offsetof(GroundBuffers, code_over),
+                                 offsetof(GroundBuffers, min_sample),     offsetof(GroundBuffers, max_sample),
+                                 offsetof(GroundBuffers, spread),         offsetof(GroundBuffers, cell_x),
                                  offsetof(GroundBuffers, cell_y),         offsetof(GroundBuffers, metres_per_sample),
                                  offsetof(GroundBuffers, metres_at_zero), offsetof(GroundBuffers, levels)}));
   EXPECT_TRUE(test::has_struct(
