@@ -101,7 +101,11 @@ struct Found {
 
 void expect_contacts_of_each_alone(const Scene& scene, std::uint32_t mask, const Asked& asked, Found& count) {
   const SceneQuery query = scene.query({.mask = mask});
-  const auto& [capsule, motion, box, max_distance] = asked;
+  // Names of a binding cannot be captured by lambdas (C++20 by clang 14).
+  const Capsule& capsule = asked.capsule;
+  const dvec3& motion = asked.motion;
+  const TurnedBox& box = asked.box;
+  const double max_distance = asked.max_distance;
   const auto touch = first_of<FieldContact>(
       scene, mask,
       [&](const SceneField& field, const Placement& to) {

@@ -34,7 +34,9 @@ layout(location = 0) out vec4 told;
 layout(location = 1) out vec4 place;
 layout(location = 2) out vec4 begin;
 void main() {
-  ScarpField field = ScarpField(cells, samples, top_level, flags, code_base, code_base_low, code_step, lowest, highest);
+  // The lean pass, which reads the three zeros, is not for textures.
+  ScarpField field = ScarpField(cells, samples, top_level, flags, code_base, code_base_low, code_step, 0.0, 0.0, 0.0,
+                                lowest, highest);
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec4 direction = texelFetch(directions, at, 0);
   ScarpRay ray;
