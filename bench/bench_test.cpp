@@ -405,10 +405,13 @@ TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {
       EXPECT_EQ(row["wrong_rate"], 0.0);
       EXPECT_GT(row["fetch_ratio"], 1.0);
     }
+    if (mode.starts_with("naive-0.1%")) {
+      EXPECT_LE(row["wrong_rate"], 0.001);
+    }
   }
   EXPECT_EQ(classes, (std::set<std::string>{"build", "chunk", "primary", "shadow", "grazing", "ao"}));
-  for (const char* mode :
-       {"pyramid", "max-mip", "naive-default", "naive-fair", "naive-right", "naive-equal", "relaxed", "lipschitz"})
+  for (const char* mode : {"pyramid", "max-mip", "naive-default", "naive-fair", "naive-right", "naive-equal",
+                           "naive-0.1%", "naive-0.1%-clipped", "relaxed", "lipschitz"})
     EXPECT_TRUE(modes.contains(mode)) << mode;
 }
 #endif

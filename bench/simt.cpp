@@ -199,7 +199,7 @@ class Comparison {
         fmt::print("{}, {} rays: no settings make {}\n", name_of(set.ray_class), set.size(), mode);
         return;
       }
-      Contender contender{mode, "naive", SimtNaive{*settings, clipped}};
+      Contender contender{mode, set.any_hit ? "naive any" : "naive", SimtNaive{*settings, clipped}};
       count(march_of(ground, set, contender), set, judge, contender);
       contenders.push_back(std::move(contender));
     };
@@ -245,7 +245,7 @@ class Comparison {
         row[fmt::format("max_mip_lines_{}", kCacheLines[k])] = ratio(max_mip.bundles[b].lines[k], bundle.lines[k]);
       row["wrong_rate"] = contender.judged.off_rate;
       row["judged"] = contender.judged.judged;
-      row["second_pass_rate"] = contender.naive ? Json() : Json(contender.second_pass);
+      row["second_pass_rate"] = contender.second_pass;
       row["step_factor"] = contender.naive ? Json(contender.naive->settings.step_factor) : Json();
       row["min_step"] = contender.naive ? Json(contender.naive->settings.min_step) : Json();
       row["field"] = field.name;

@@ -111,7 +111,7 @@ float scarp_minimum(int level, int col, int row) {
 
 SCARP_GLSL_END
 
-#include "scarp/march/height/height_marches.glsl.h"
+#include "scarp/march/height/height_marches_lean.glsl.h"
 #include "scarp/march/height/max_mip.glsl.h"
 #include "scarp/march/height/max_mip_lean.glsl.h"
 
@@ -230,8 +230,20 @@ SimtAnswer trace_naive(const SimtGround& on, const Ray& ray, bool any, const Sim
   settings.naive = naive.settings;
   const HeightFieldSettings& scales = field.settings();
   const glsl::ScarpSampling sampling = device_sampling("naive", settings, 0, 0, scales.scale * scales.exaggeration);
+  const glsl::ScarpField& shader_field = on.impl().shader_field;
   const Hosted hosted(on, trace);
-  return answer_of(marched, prepared, glsl::scarp_sampled(on.impl().shader_field, prepared.ray, sampling), any);
+  glsl::ScarpHit hit = glsl::scarp_no_hit();
+  glsl::ScarpStretch at = glsl::scarp_stretch_begin(shader_field, prepared.ray, sampling);
+  while (!glsl::scarp_stretch_on(shader_field, prepared.ray, sampling, any, at, hit)) {
+  }
+  const bool second = hit.status == glsl::kScarpDoubtful;
+  if (second) {
+    noted = nullptr;
+    hit = glsl::scarp_sampled(shader_field, prepared.ray, sampling);
+  }
+  SimtAnswer result = answer_of(marched, prepared, hit, any);
+  result.second_pass = second;
+  return result;
 }
 
 }  // namespace scarp::bench

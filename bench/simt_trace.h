@@ -29,13 +29,13 @@ class SimtGround {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What a ray met, and whether max-mip left it to its second pass.
+/// What a ray met, and whether the first pass left it to the second.
 struct SimtAnswer {
   Judge::Answer answer;
   bool second_pass = false;
 };
 
-/// Both passes of max-mip on devices; traces the first. `trace` may be null.
+/// Both passes on devices; traces the first. `trace` may be null.
 SimtAnswer trace_max_mip(const SimtGround& ground, const Ray& ray, bool any, SimtTrace* trace);
 
 struct SimtNaive {

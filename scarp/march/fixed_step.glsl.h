@@ -17,12 +17,12 @@ SCARP_FN ScarpSampling scarp_fixed_step(float step, uint refinement, int max_ste
   return scarp_sampling(kScarpFixedStep, step, 0.0f, 0.0f, max_steps, refinement);
 }
 
-/// The time of point number state.steps; the last point is at the exit. Counted, not summed up, while steps are equal.
+/// The time of point number state.steps; the last point is at way.last. Counted, not summed up, while steps are equal.
 SCARP_FN float scarp_fixed_step_time(ScarpWay way, ScarpSampling settings, ScarpMarchState state) {
   float s = float(state.steps) * way.stride;
   if (settings.least > 0.0f && state.steps > 0)
     s = state.before + max(way.stride, settings.least * (state.before + way.travelled));
-  return min(s, way.exit);
+  return min(s, way.last);
 }
 
 /// Starts at the first point, or at the second from the surface.
@@ -60,7 +60,7 @@ SCARP_FN int scarp_fixed_step_turn(ScarpWay way, ScarpSampling settings, bool va
     state.phase &= ~kScarpWasAbove;
   }
   if (status == kScarpMiss) {
-    bool ends = !(state.s < way.exit);
+    bool ends = !(state.s < way.last);
     scarp_step_to(state.s, valid, clearance, state);
     state.s = ends ? kScarpNever : scarp_fixed_step_time(way, settings, state);
   }

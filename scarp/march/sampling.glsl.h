@@ -60,7 +60,8 @@ SCARP_FN ScarpSampling scarp_sampling(uint march, float factor, float least, flo
 
 /// A ray as the marches see it; all members are times, except as noted. Clearances are in the field's own unit.
 struct ScarpWay {
-  float exit;           ///< the last time, included
+  float exit;           ///< when it leaves the field or its range ends: naive's least step is a share of it
+  float last;           ///< of the last point, included: exit, or before, where nothing more is to be met
   float travelled;      ///< from the start of the ray's range to time 0
   float per_clearance;  ///< time in which the ray goes as far as a unit of clearance is high
   float rounding;       ///< error bound of clearances, in their unit

@@ -17,6 +17,7 @@ SCARP_GLSL_BEGIN
 SCARP_FN ScarpWay scarp_way(ScarpFunctionRay ray, ScarpSampling settings) {
   ScarpWay way;
   way.exit = ray.exit;
+  way.last = ray.exit;
   way.travelled = ray.travelled;
   way.per_clearance = 1.0f / ray.speed;
   way.rounding = ray.rounding;

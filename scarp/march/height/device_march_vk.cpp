@@ -24,6 +24,9 @@ constexpr std::uint32_t kMaxMipExactWords[] = {
 constexpr std::uint32_t kHeightMarchesWords[] = {
 #include "scarp/march/height/height_marches.comp.inc"
 };
+constexpr std::uint32_t kHeightMarchesSecondWords[] = {
+#include "scarp/march/height/height_marches_second.comp.inc"
+};
 
 }  // namespace
 
@@ -32,8 +35,8 @@ struct DeviceHeightMarch::Row {
   std::string_view file;  // of the shader
   std::span<const std::uint32_t> words;
   std::string_view second_file;
-  std::span<const std::uint32_t> second;  // for rays that `words` leaves; empty: it leaves none
-  bool has_any;                           // whether it can be asked for any hit
+  std::span<const std::uint32_t> second;  // for rays that `words` leaves
+  bool second_has_any;                    // whether it can be asked for any hit
   std::uint32_t choice;                   // ScarpSampling::march
   std::size_t state_bytes;                // of a march that has been interrupted
 
@@ -41,8 +44,8 @@ struct DeviceHeightMarch::Row {
     return {name,
             "scarp/march/height/height_marches.comp",
             kHeightMarchesWords,
-            {},
-            {},
+            "scarp/march/height/height_marches_second.comp",
+            kHeightMarchesSecondWords,
             false,
             choice,
             sizeof(glsl::BatchMarch)};
@@ -91,31 +94,33 @@ void DeviceHeightMarch::reserve(std::uint32_t rays) {
 }
 
 ShaderProgram DeviceHeightMarch::program_of(const Row& row, const DeviceRayQuery& query, bool second) {
-  const bool any = query.any && row.has_any;
+  const bool any = query.any && (!second || row.second_has_any);
+  // The second pass reads it from the settings.
+  const std::uint32_t refinement = second || any ? glsl::kScarpRefineNone : query.sampling.refinement;
   return {second ? row.second_file : row.file,
           std::string(row.name) + (any ? " any" : ""),
           second ? row.second : row.words,
           sizeof(glsl::RayBatch),
-          {kThreads, any, query.statistics, row.choice, query.ground_kind}};
+          {kThreads, any, query.statistics, row.choice, query.ground_kind, refinement}};
 }
 
 std::vector<ShaderProgram> DeviceHeightMarch::shaders() {
   std::vector<ShaderProgram> all;
   const auto add = [&](const Row& row, bool any, std::uint32_t flags, bool second, const char* name) {
-    const DeviceRayQuery query{.any = any, .ground_kind = glsl::batch_ground_kind(flags, glsl::kGroundFloat32)};
+    DeviceRayQuery query{.any = any, .ground_kind = glsl::batch_ground_kind(flags, glsl::kGroundFloat32)};
+    // The default of fixed-step (refinement_of_fixed_step()).
+    if (row.choice == glsl::kScarpFixedStep) query.sampling.refinement = glsl::kScarpRefineSecant;
     all.push_back(program_of(row, query, second));
     all.back().variant += name;
   };
   for (const Row& row : Row::kAll) {
     for (const bool any : {false, true}) {
-      if (any && !row.has_any) continue;
       add(row, any, 0, false, "");
-      if (row.second.empty()) continue;
       add(row, any, glsl::kScarpStarts, false, " from the surface");
       add(row, any, glsl::kScarpHoles, false, " holes");
       add(row, any, glsl::kScarpTriangles, false, " triangles");
       add(row, any, glsl::kScarpWraps, false, " wrap");
-      add(row, any, 0, true, "");
+      if (!any || row.second_has_any) add(row, any, 0, true, "");
     }
   }
   return all;
@@ -132,7 +137,7 @@ const ComputePipeline& DeviceHeightMarch::pipeline(const DeviceRayQuery& query, 
 void DeviceHeightMarch::begin(Commands& commands, const DeviceRays& rays, const DeviceRayQuery& query) {
   reserve(rays.count);
   query_ = query;
-  second_ = query.exact_only && !march_.second.empty();
+  second_ = query.exact_only;
   running_ = &pipeline(query, second_);
   batch_ = {.ground = rays.ground,
             .rays = rays.rays,
@@ -148,10 +153,9 @@ void DeviceHeightMarch::begin(Commands& commands, const DeviceRays& rays, const 
 
 bool DeviceHeightMarch::go_on(Commands& commands) {
   if (interrupted_ == 0) return false;
-  const bool begins_second = !second_ && !march_.second.empty();
-  if (begins_second) running_ = &pipeline(query_, true);
-  second_ = second_ || begins_second;
-  batch_.resume = begins_second ? glsl::kBatchSecond : glsl::kBatchResume;
+  batch_.resume = second_ ? glsl::kBatchResume : glsl::kBatchSecond;
+  if (!second_) running_ = &pipeline(query_, true);
+  second_ = true;
   record(commands);
   return true;
 }

@@ -4,8 +4,9 @@
 //
 //   march.begin(commands, {ground, rays, hits, count}, query);
 //   do commands.run();
-//   while (march.go_on(commands));    marches of many turns take several runs (vk/loop_turns.glsl.h), and rays that the
-//                                     first pass of max-mip is not sure of take another one
+//   while (march.go_on(commands));    rays that the first, lean pass leaves take a second one, and marches of many
+//   turns
+//                                     several runs of it (vk/loop_turns.glsl.h)
 //
 // DeviceQueries (queries_vk.h) marches rays of the host with it, whole pictures those of their shaders.
 #pragma once
@@ -41,16 +42,16 @@ struct DeviceRays {
 
 /// What is asked of rays.
 struct DeviceRayQuery {
-  bool any = false;         ///< any hit; marches that have no such query answer with the closest
+  bool any = false;         ///< any hit: only the status is told
   bool statistics = false;  ///< whether steps and fetches are told, or zeros
   /// batch_ground_kind() of the ground makes a smaller shader; kBatchAnyGround: as the ground says. kScarpStarts among
   /// its flags: rays may start on the surface.
   std::uint32_t ground_kind = glsl::kBatchAnyGround;
   glsl::ScarpSampling sampling{};  ///< of all marches but max-mip
-  bool exact_only = false;         ///< without the first pass of max-mip, see leaves_first_pass()
+  bool exact_only = false;         ///< without the first pass, see leaves_first_pass()
 };
 
-/// Whether a field is beyond what the first pass of max-mip computes with (max_mip_lean.glsl.h).
+/// Whether a field is beyond what first passes compute with (max_mip_lean.glsl.h).
 bool leaves_first_pass(const HeightField& field);
 
 /// Not thread-safe.
@@ -74,7 +75,7 @@ class DeviceHeightMarch {
 
   /// Returns the memory that a march takes on the device per ray of a batch, besides the ray and its hit.
   static std::size_t state_bytes(std::string_view march);
-  /// Returns the shaders of all marches, for bilinear float32 fields; those of max-mip for other fields, too.
+  /// Returns the shaders of all marches, for float32 fields.
   static std::vector<ShaderProgram> shaders();
   /// Returns the names of the marches that run on devices, separated by commas.
   static std::string names();

@@ -186,7 +186,7 @@ DeviceRay device_ray(const HeightField& field, const Ray& ray) {
   return field.wraps() ? on_grid<true>(field, ray) : on_grid<false>(field, ray);
 }
 
-DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray) {
+DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray, bool clip_at_top) {
   DeviceRay result;
   if (!field.has_cells() || field.all_nodata()) return result;
   GridRay local = field.grid_from_world(ray);
@@ -210,6 +210,13 @@ DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray) {
   if (std::isinf(end))
     clip_to_range(field.min_sample(), field.max_sample(), local.origin.z, local.direction.z, begin, end);
   if (!(begin <= end) || std::isinf(end)) return result;
+  double last = end;
+  if (clip_at_top && !(local.direction.z < 0)) {
+    const double rise = field.max_sample() - (local.origin.z + local.direction.z * begin);
+    if (rise < 0) return result;
+    // No earlier by rounding.
+    if (local.direction.z > 0) last = std::min(end, begin + rise / local.direction.z * (1 + 4 * kUnit));
+  }
   int cell[2];
   double place[2];
   for (int axis = 0; axis < 2; ++axis) {
@@ -226,7 +233,7 @@ DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray) {
   else if (border >= first)
     out.flags |= glsl::kScarpFromOutside;
   pack(out, {cell[0], cell[1]}, {place[0], place[1]}, local.origin.z + local.direction.z * begin, local.direction,
-       end - begin);
+       last - begin);
   const HeightFieldSettings& settings = field.settings();
   const double speed = length(world);
   out.travelled = static_cast<float>(begin - first);

@@ -33,7 +33,8 @@ struct DeviceRay {
 /// For max-mip, clipped to the highest sample, too. `ray` must be valid (validate() of march/height/queries.h).
 DeviceRay device_ray(const HeightField& field, const Ray& ray);
 /// For the marches that take samples along the ray: it begins where they do, at the border or where its range begins.
-DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray);
+/// `clip_at_top`: it ends where it rises above the highest sample, which changes no other point.
+DeviceRay sampled_device_ray(const HeightField& field, const Ray& ray, bool clip_at_top = false);
 
 /// The answer that belongs to a ray.
 Hit hit_from_device(const Ray& ray, const DeviceRay& prepared, const glsl::ScarpHit& answer);

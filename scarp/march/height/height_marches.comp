@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `naive`, `fixed-step`, `relaxed` or `lipschitz` on a batch of rays, one invocation per ray.
+// `naive`, `fixed-step`, `relaxed` or `lipschitz` for a batch of rays, one invocation per ray. Rays below the ground
+// are left to height_marches_second.comp.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
@@ -7,27 +8,34 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 #include "scarp/march/height/ray_batch.glsl.h"
-// The march asks the batch for its ground.
-#include "scarp/march/height/batch_states.glsl.h"
-#include "scarp/march/height/height_marches.glsl.h"
+// The march reads its ground through the batch.
+#include "scarp/march/height/height_marches_lean.glsl.h"
+#include "scarp/march/height/max_mip.glsl.h"
+
+// Ray i as shaders for this kind of ground know it.
+ScarpRay known_ray(uint i) {
+  ScarpRay ray = batch_ray(i).is;
+  if (batch_ground != kBatchAnyGround && (batch_ground & kScarpStarts) == 0u) ray.flags &= ~kScarpOnSurface;
+  return ray;
+}
 
 void main() {
   uint i = gl_GlobalInvocationID.x;
-  if (!batch_asks(i)) return;
-  ScarpRay ray = batch_ray(i).is;
-  ScarpField field = batch_field(ray);
+  if (i >= batch.count) return;
+  ScarpField field = batch_field(known_ray(i));
   ScarpSampling settings = batch.settings;
   settings.march = batch_march;
+  settings.refinement = batch_refinement;
   ScarpHit hit = scarp_no_hit();
-  ScarpMarchState state = scarp_sampled_begin(field, ray, settings);
-  if (batch.resume == kBatchResume) {
-    hit = BatchMarches(batch.states).of[i].hit;
-    state = BatchMarches(batch.states).of[i].state;
-  }
-  if (scarp_sampled_on(field, ray, settings, batch.turns, state, hit)) {
+  ScarpStretch at = scarp_stretch_begin(field, known_ray(i), settings);
+  for (;;) {
+    // The ray is read again for each stretch: in registers it would be in the way of the turns. What is added to i is
+    // 0, which compilers do not know: they would keep the ray.
+    ScarpRay ray = known_ray(i + (uint(at.stretches) >> 30));
+    if (!scarp_stretch_on(field, ray, settings, batch_any, at, hit)) continue;
+    // In the loop, for lavapipe: vk/loop_turns.glsl.h.
     batch_answer(i, hit);
-    return;
+    if (hit.status == kScarpDoubtful) batch_mark();
+    break;
   }
-  BatchMarches(batch.states).of[i] = BatchMarch(hit, state);
-  batch_interrupt(i);
 }

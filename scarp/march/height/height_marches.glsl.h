@@ -17,6 +17,7 @@ SCARP_GLSL_BEGIN
 SCARP_FN ScarpWay scarp_way(ScarpField field, ScarpRay ray, ScarpSampling settings) {
   ScarpWay way;
   way.exit = ray.exit;
+  way.last = min(ray.exit, ray.end);
   way.travelled = ray.travelled;
   way.per_clearance = ray.per_height;
   way.rounding = 0.0f;
@@ -75,12 +76,11 @@ SCARP_FN void scarp_tell_refined(ScarpField field, ScarpRay ray, ScarpWay way, S
 /// all the levels that it may climb: invocations in a vector wait for one another, whichever climbs.
 SCARP_FN bool scarp_sampled_on(ScarpField field, ScarpRay ray, ScarpSampling settings, int turns,
                                SCARP_INOUT(ScarpMarchState) state, SCARP_INOUT(ScarpHit) hit) {
-  SCARP_COUNT(frame);
   ScarpWay way = scarp_way(field, ray, settings);
   bool climbs = settings.march == kScarpLipschitz && (field.flags & kScarpHoles) != 0u;
   int turns_of_step = climbs ? 2 + 2 * field.top_level : 2;
   for (int turn = 0; turn < turns; turn += turns_of_step) {
-    if (!(state.s <= ray.exit)) {
+    if (!(state.s <= way.last)) {
       hit.status = scarp_sampling_missed(state);
       return true;
     }
@@ -90,14 +90,12 @@ SCARP_FN bool scarp_sampled_on(ScarpField field, ScarpRay ray, ScarpSampling set
       hit.time_low = 0.0f;
       return true;
     }
-    SCARP_COUNT(probe);
     hit.steps += 1u;
     hit.fetches += 4u;
     ScarpPoint point = scarp_point(field, ray, state.s);
     float until = climbs ? scarp_bounded_until(field, ray, point, state.s, hit.fetches) : kScarpNever;
     int status = scarp_sampling_turn(way, settings, point.valid, point.clearance, until, state);
     if (status == kScarpMiss) continue;
-    SCARP_COUNT(hit);
     if (status == kScarpHit && scarp_sampling_refines(settings, state))
       scarp_tell_refined(field, ray, way, settings, point, state, hit);
     else

@@ -27,6 +27,7 @@
 #define SCARP_MARCH_MAX_MIP_LEAN_GLSL_H
 
 #include "scarp/march/height/cell_surface.glsl.h"
+#include "scarp/march/height/lean_place.glsl.h"
 #include "scarp/march/height/ray_frame.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
@@ -34,9 +35,6 @@ SCARP_GLSL_BEGIN
 
 /// Local time up to which signs decide. At most twice as many cells.
 const float kScarpFreshTime = 4.0f;
-/// Bits of a frame's time, except over fields that wrap: the high 16. Times are below 2^17, so that the rest is less
-/// than 2.
-const uint kScarpFrameBits = 0xffffff00u;
 /// Blocks and cells after which a ray is left to the second pass, which can be interrupted.
 const int kScarpLeanTurns = 16384;
 /// Height of a block's code that floats may be off, in codes (numerics.md counts 0.27).
@@ -80,44 +78,6 @@ struct ScarpLeanFrame {
   float start_relief;      ///< height difference in the start cell of a ray from the surface
 };
 
-/// a * s0 as two floats, to 2^-31 of itself: s0 has 16 bits, so that its product with the high 8 bits of `a` is exact.
-SCARP_FN ScarpTwoFloat scarp_lean_product(float a, float s0, bool wraps) {
-  if (wraps) return scarp_two_product(a, s0);
-  float high = uintBitsToFloat(floatBitsToUint(a) & 0xffff0000u);
-  ScarpTwoFloat product;
-  product.high = high * s0;
-  product.low = (a - high) * s0;
-  return product;
-}
-
-/// A place along an axis: a cell of the grid, and 0..1 in it.
-struct ScarpLeanAxis {
-  int cell;
-  float place;
-};
-
-/// Where the ray is at time s0.
-SCARP_FN ScarpLeanAxis scarp_lean_axis(int cell, float place, float place_low, float direction, float direction_low,
-                                       float s0, int cells, bool wraps) {
-  ScarpTwoFloat way = scarp_lean_product(direction, s0, wraps);
-  float whole = floor(way.high);
-  SCARP_PRECISE float rest = (way.high - whole) + (way.low + (place + (direction_low * s0 + place_low)));
-  // A ray that begins on a line belongs to the cell that it is given in.
-  float carry = s0 == 0.0f ? 0.0f : floor(rest);
-  ScarpLeanAxis found;
-  found.cell = cell + int(whole) + int(carry);
-  found.place = clamp(rest - carry, 0.0f, 1.0f);
-  if (wraps) {
-    // The border ahead is ahead, so that what lies before it is tested; except for rays that begin on it.
-    if (s0 > 0.0f) found.place = clamp(found.place, kScarpUnit, 1.0f - kScarpUnit);
-    found.cell -= int(floor(float(found.cell) / float(cells))) * cells;
-    // The quotient is rounded.
-    if (found.cell < 0) found.cell += cells;
-    if (found.cell >= cells) found.cell -= cells;
-  }
-  return found;
-}
-
 /// The frame that begins at time s0.
 SCARP_FN ScarpLeanFrame scarp_lean_frame(ScarpField field, ScarpRay ray, float s0, bool strict) {
   bool wraps = (field.flags & kScarpWraps) != 0u;
@@ -136,13 +96,9 @@ SCARP_FN ScarpLeanFrame scarp_lean_frame(ScarpField field, ScarpRay ray, float s
                                     field.cells.x, wraps);
   ScarpLeanAxis y = scarp_lean_axis(ray.cell.y, ray.place.y, ray.place_low.y, ray.direction.y, ray.direction_low.y, s0,
                                     field.cells.y, wraps);
-  ScarpTwoFloat rise = scarp_lean_product(ray.direction.z, s0, wraps);
-  ScarpTwoFloat high = scarp_two_sum(z, rise.high);
-  SCARP_PRECISE float low = high.low + (rise.low + (ray.direction_low.z * s0 + z_low));
-  SCARP_PRECISE float base = high.high + low;
-  SCARP_PRECISE float left = low - (base - high.high);
-  frame.base = base;
-  frame.z = left;
+  ScarpTwoFloat height = scarp_lean_height(z, z_low, ray.direction.z, ray.direction_low.z, s0, wraps);
+  frame.base = height.high;
+  frame.z = height.low;
   frame.dz = ray.direction.z;
   frame.mirror_x = ray.direction.x < 0.0f ? -1 : 0;
   frame.mirror_y = ray.direction.y < 0.0f ? -1 : 0;

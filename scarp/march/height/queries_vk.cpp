@@ -55,6 +55,7 @@ struct DeviceQueries::Impl {
         runs(device, settings.rays_at_once),
         statistics(settings.statistics),
         exact_only(settings.exact_only),
+        clip_at_top(settings.clip_at_top),
         march(device, name, checked_turns(settings.turns_at_once)) {
     march.reserve(settings.rays_at_once);
   }
@@ -64,8 +65,8 @@ struct DeviceQueries::Impl {
   void ask(const DeviceTarget& target, bool any, std::span<const Ray> asked, std::span<DeviceRayCost> costs,
            const Answer& answer) {
     const bool exact = name == "max-mip";
-    const bool starts = exact && std::any_of(asked.begin(), asked.end(),
-                                             [](const Ray& ray) { return ray.start == RayStart::on_surface; });
+    const bool starts =
+        std::any_of(asked.begin(), asked.end(), [](const Ray& ray) { return ray.start == RayStart::on_surface; });
     DeviceRayQuery query{any, statistics, ground_kind(target, starts)};
     query.exact_only = exact_only || leaves_first_pass(*target.field);
     if (!exact) query.sampling = sampling_of(name, march_settings, target);
@@ -75,7 +76,7 @@ struct DeviceQueries::Impl {
         },
         [&](Commands& commands) { return march.go_on(commands); }, asked.size(),
         [&](std::size_t i) {
-          return exact ? device_ray(*target.field, asked[i]) : sampled_device_ray(*target.field, asked[i]);
+          return exact ? device_ray(*target.field, asked[i]) : sampled_device_ray(*target.field, asked[i], clip_at_top);
         },
         [&](std::size_t i, const DeviceRay& prepared, const glsl::ScarpHit& hit) {
           answer(i, prepared, hit);
@@ -87,7 +88,7 @@ struct DeviceQueries::Impl {
   std::string_view name;
   MarchSettings march_settings;
   RayRuns<HeightRays> runs;
-  bool statistics, exact_only;
+  bool statistics, exact_only, clip_at_top;
   DeviceHeightMarch march;
 };
 

@@ -33,7 +33,11 @@ struct DeviceQuerySettings {
   std::uint32_t rays_at_once = 1 << 18;  ///< size of a slice: rays on the device at once, 1 to 4,000,000
   int turns_at_once =
       60'000;  ///< maximum loop iterations per ray in one run, 1 to 60,000; longer marches continue in the next run
-  bool exact_only = false;  ///< max-mip without its first pass: as shaders that have no buffers march, and slower
+  bool exact_only = false;  ///< without the lean first pass: as shaders that have no buffers march, and slower
+  /// Whether naive, fixed-step, relaxed and lipschitz over height fields end where a ray rises above the highest
+  /// sample, as max-mip does. Points before that are the same. Hits beyond, above all ground but within a march's
+  /// tolerance, are then lost.
+  bool clip_at_top = false;
 };
 
 /// A height field on a device.

@@ -28,6 +28,7 @@ const uint kBatchAny = 1u;         // whether anything is hit, instead of what f
 const uint kBatchStatistics = 2u;  // whether steps and fetches are told, or zeros
 const uint kBatchMarch = 3u;       // ScarpSampling::march
 const uint kBatchGround = 4u;      // batch_ground_kind(), or kBatchAnyGround: read from the ground
+const uint kBatchRefinement = 5u;  // ScarpSampling::refinement, for the first pass
 
 const uint kBatchAnyGround = 0xffffffffu;
 const uint kBatchSamplesShift = 16u;
@@ -70,6 +71,7 @@ layout(constant_id = 1) const bool batch_any = false;
 layout(constant_id = 2) const bool batch_statistics = false;
 layout(constant_id = 3) const uint batch_march = kScarpNaive;
 layout(constant_id = 4) const uint batch_ground = kBatchAnyGround;
+layout(constant_id = 5) const uint batch_refinement = kScarpRefineNone;
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer BatchRay { ScarpRay is; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer BatchHit { ScarpHit is; };

@@ -66,7 +66,7 @@ struct ScarpRay {
   uint flags;          ///< kScarpOnSurface and so on
   // For the marches that take samples along the ray (height_probe.glsl.h).
   float travelled;   ///< time from the begin of the ray's range to this ray's
-  float exit;        ///< when it leaves the field or its range ends
+  float exit;        ///< when it leaves the field or its range ends; `end` may be before
   float per_height;  ///< time in which the ray goes as far as one sample unit is high
   float cell_time;   ///< time in which it goes as far as a cell is long, its shorter side
 };

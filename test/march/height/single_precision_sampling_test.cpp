@@ -15,7 +15,7 @@
 #include "scarp/accel/slope_bound.h"
 #include "scarp/march/device_sampling.h"
 #include "scarp/march/height/device_ray.h"
-#include "scarp/march/height/height_marches.glsl.h"
+#include "scarp/march/height/height_marches_lean.glsl.h"
 
 namespace scarp::test {
 namespace {
@@ -28,46 +28,164 @@ struct Marched {
   MarchSettings settings;
 };
 
-class SinglePrecisionSampling : public testing::TestWithParam<std::string> {};
+// The answer of the first pass; its status may be kScarpDoubtful.
+glsl::ScarpHit lean(const glsl::ScarpField& field, const glsl::ScarpRay& ray, const glsl::ScarpSampling& settings,
+                    bool any) {
+  glsl::ScarpHit hit = glsl::scarp_no_hit();
+  glsl::ScarpStretch at = glsl::scarp_stretch_begin(field, ray, settings);
+  while (!glsl::scarp_stretch_on(field, ray, settings, any, at, hit)) {
+  }
+  return hit;
+}
 
-TEST_P(SinglePrecisionSampling, KeepsItsRule) {
-  Marched marched{GetParam(), {}};
-  if (marched.march == "fixed-step, plain") {
+struct Counts {
+  int hits = 0, asked = 0, doubtful = 0;
+};
+
+// Casts rays of a kind over a field of a kind, by both passes.
+void check(const Marched& marched, const FieldKind& fields, const RayKind& rays, Random& random, Counts& counts) {
+  const HeightField field = fields.make(random);
+  const MaxPyramid pyramid(field);
+  const double slope = slope_bound(field);
+  glsl::host_field = &field;
+  glsl::host_pyramid = &pyramid;
+  const glsl::ScarpSampling settings = device_sampling(marched.march, marched.settings, slope, 0, 1);
+  for (int j = 0; j < kRaysPerField; ++j) {
+    const Ray ray = rays.make(field, random);
+    const DeviceRay prepared = sampled_device_ray(field, ray);
+    if (!prepared.marches) continue;
+    glsl::ScarpField on_device = device_field(field, &pyramid);
+    on_device.flags |= glsl::kScarpStarts;
+    const RoundingJudge judge(field, ray);
+    const auto check_answer = [&](const char* pass, const glsl::ScarpHit& answer) {
+      const Hit hit = hit_from_device(ray, prepared, answer);
+      const std::string objection = sampling_objection(marched.march, marched.settings, field, slope, ray, judge, hit);
+      ASSERT_EQ(objection, "") << pass << " pass, " << fields.name << ", " << rays.name << ": " << text(ray) << "\n  "
+                               << text(hit);
+      counts.hits += static_cast<bool>(hit);
+    };
+    ++counts.asked;
+    check_answer("second", glsl::scarp_sampled(on_device, prepared.ray, settings));
+    const glsl::ScarpHit first = lean(on_device, prepared.ray, settings, false);
+    ASSERT_EQ(lean(on_device, prepared.ray, settings, true).status, first.status);
+    if (first.status == glsl::kScarpDoubtful)
+      ++counts.doubtful;
+    else
+      check_answer("first", first);
+  }
+}
+
+Marched marched_as(std::string_view name) {
+  Marched marched{name, {}};
+  if (name == "fixed-step, plain") {
     marched.march = "fixed-step";
     marched.settings.fixed_step.interpolate = false;
   }
-  int hits = 0;
+  return marched;
+}
+
+class SinglePrecisionSampling : public testing::TestWithParam<std::string> {};
+
+TEST_P(SinglePrecisionSampling, KeepsItsRule) {
+  Counts counts;
   for (const Pair& pair : pairs()) {
-    const FieldKind& fields = spiteful_fields()[pair.field];
-    const RayKind& rays = spiteful_rays()[pair.ray];
     Random random(1000 * pair.field + pair.ray);
-    for (int i = 0; i < kFieldsPerPair; ++i) {
-      const HeightField field = fields.make(random);
-      const MaxPyramid pyramid(field);
-      const double slope = slope_bound(field);
-      glsl::host_field = &field;
-      glsl::host_pyramid = &pyramid;
-      for (int j = 0; j < kRaysPerField; ++j) {
-        const Ray ray = rays.make(field, random);
-        const DeviceRay prepared = sampled_device_ray(field, ray);
-        glsl::ScarpHit answer{};
-        if (prepared.marches)
-          answer = glsl::scarp_sampled(device_field(field, &pyramid), prepared.ray,
-                                       device_sampling(marched.march, marched.settings, slope, 0, 1));
-        const Hit hit = hit_from_device(ray, prepared, answer);
-        hits += static_cast<bool>(hit);
-        const std::string objection =
-            sampling_objection(marched.march, marched.settings, field, slope, ray, RoundingJudge(field, ray), hit);
-        ASSERT_EQ(objection, "") << fields.name << ", " << rays.name << ": " << text(ray) << "\n  " << text(hit);
-      }
+    for (int i = 0; i < kFieldsPerPair; ++i)
+      check(marched_as(GetParam()), spiteful_fields()[pair.field], spiteful_rays()[pair.ray], random, counts);
+  }
+  EXPECT_GT(counts.hits, 100 * kRaysPerField);
+  // Those that start or come in below the ground.
+  EXPECT_LT(counts.doubtful, counts.asked / 2);
+}
+
+// Over several stretches.
+TEST_P(SinglePrecisionSampling, KeepsItsRuleOnLongWays) {
+  Counts counts;
+  Random random(7);
+  for (const FieldKind& fields : wide_fields()) {
+    for (const RayKind& rays : rays_across_tiles()) {
+      for (int i = 0; i < kFieldsPerPair; ++i) check(marched_as(GetParam()), fields, rays, random, counts);
     }
   }
-  EXPECT_GT(hits, 100 * kRaysPerField);
+  EXPECT_GT(counts.hits, 10 * kRaysPerField);
+  EXPECT_LT(counts.doubtful, counts.asked / 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(Marches, SinglePrecisionSampling,
                          testing::Values("naive", "relaxed", "lipschitz", "fixed-step", "fixed-step, plain"),
                          [](const auto& of) { return test_name(of.param); });
+
+// In a stretch that begins anywhere on a ray, points are where numerics.md says.
+TEST(SinglePrecisionSampling, StretchesBeginAnew) {
+  constexpr int kCols = 131'000, kRays = 4000;
+  constexpr double kUnit = 0x1p-24;
+  const HeightField field = HeightField::own(std::vector<float>(kCols * 3, 0.0F), kCols, 3);
+  const MaxPyramid pyramid(field);
+  glsl::host_field = &field;
+  glsl::host_pyramid = &pyramid;
+  const glsl::ScarpField on_device = device_field(field, &pyramid);
+  const glsl::ScarpSampling settings = device_sampling("naive", {}, 0, 0, 1);
+  Random random(12);
+  int far = 0;
+  for (int i = 0; i < kRays; ++i) {
+    Ray ray;
+    ray.origin = {uniform(random, 0, kCols - 1), uniform(random, 0, 2), 100};
+    ray.direction = {uniform(random, -1, 1), uniform(random, -1e-5, 1e-5), uniform(random, -1e-3, 1e-3)};
+    const DeviceRay prepared = sampled_device_ray(field, ray);
+    ASSERT_TRUE(prepared.marches);
+    const glsl::ScarpRay& r = prepared.ray;
+    glsl::ScarpStretch at = glsl::scarp_stretch_begin(on_device, r, settings);
+    at.t = static_cast<float>(uniform(random, 0, 1)) * r.exit;
+    glsl::scarp_stretch_to(at);
+    const float last = std::min((r.end - at.s0) + r.end_low, glsl::kScarpStretch);
+    const glsl::ScarpStretchFrame frame =
+        glsl::scarp_stretch_frame(on_device, r, glsl::scarp_way(on_device, r, settings), settings, at.s0, last);
+    const float t = at.t + static_cast<float>(uniform(random, 0, 1)) * (last - at.t);
+    const glsl::ScarpStretchPoint point = glsl::scarp_stretch_point(on_device, frame, false, t);
+    const double s = double{at.s0} + double{t};
+    const auto along = [&](int axis) { return (double{r.direction[axis]} + double{r.direction_low[axis]}) * s; };
+    for (int axis = 0; axis < 2; ++axis) {
+      const double expected = r.cell[axis] + double{r.place[axis]} + double{r.place_low[axis]} + along(axis);
+      const double found = (axis == 0 ? frame.x.cell + double{point.col} + double{point.u}
+                                      : frame.y.cell + double{point.row} + double{point.v});
+      const double way = std::abs(double{r.direction[axis]});
+      const double roundings = last < glsl::kScarpStretch ? 12 : 3;  // the border changes the ray
+      EXPECT_NEAR(found, expected, kUnit * (roundings * way * double{t} + 1) + 0x1p-29 * way * double{at.s0} + 0x1p-21)
+          << text(ray);
+    }
+    const double above = ray.origin.z + along(2), rise = std::abs(double{r.direction.z});
+    EXPECT_NEAR(double{point.clearance}, above,
+                4 * kUnit * (std::abs(above) + rise * double{t}) + 0x1p-29 * rise * double{at.s0})
+        << text(ray);
+    far += at.s0 > 1e4F;
+  }
+  EXPECT_GT(far, kRays / 4);
+}
+
+// `lipschitz` without a tolerance stops before rounding could take a point below the ground.
+TEST(SinglePrecisionSampling, LipschitzStopsAboveTheGround) {
+  constexpr int kRays = 2000;
+  const HeightField field = hills(1025, 65, Surface::bilinear);
+  const MaxPyramid pyramid(field);
+  glsl::host_field = &field;
+  glsl::host_pyramid = &pyramid;
+  MarchSettings all;
+  all.lipschitz = {.tolerance = 0, .max_steps = 100'000};
+  const glsl::ScarpSampling settings = device_sampling("lipschitz", all, slope_bound(field), 0, 1);
+  Random random(13);
+  int hits = 0;
+  for (int i = 0; i < kRays; ++i) {
+    Ray ray;
+    ray.origin = {uniform(random, 0, 100), uniform(random, 0, 64), field.max_sample() + 1};
+    ray.direction = {1, uniform(random, -0.03, 0.03), -uniform(random, 0.02, 0.2)};
+    const DeviceRay prepared = sampled_device_ray(field, ray);
+    ASSERT_TRUE(prepared.marches);
+    const glsl::ScarpHit hit = lean(device_field(field, &pyramid), prepared.ray, settings, false);
+    EXPECT_NE(hit.status, glsl::kScarpExhausted) << text(ray);
+    hits += hit.status == glsl::kScarpHit;
+  }
+  EXPECT_GT(hits, kRays / 2);
+}
 
 // `lipschitz` over holes: else it would take another step in a block that it has left.
 TEST(SinglePrecisionSampling, LeavesBlocks) {
