@@ -182,10 +182,11 @@ class Comparison {
     const auto judged_with = [&](const NaiveSettings& settings, double limit) {
       const std::pair key(settings.step_factor, settings.min_step);
       const auto known = tried.find(key);
-      if (known != tried.end()) return known->second;
+      if (known != tried.end() && (known->second.judged == set.size() || known->second.off_rate > kBeyondDoubt * limit))
+        return known->second;
       const March march = march_of(ground, set, {"", "", SimtNaive{settings, clipped}});
       const Judgement first = rough.score(answers_of(march, set, rough));
-      if (first.off_rate > kBeyondDoubt * limit) return first;
+      if (first.off_rate > kBeyondDoubt * limit) return tried[key] = first;
       return tried[key] = judge.score(answers_of(march, set, judge));
     };
     const auto add = [&](const std::string& mode, double limit) {

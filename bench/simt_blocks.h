@@ -24,12 +24,13 @@ enum class SimtBlock : std::uint8_t {
   cell,    ///< the surface in a cell
   probe,   ///< marches that sample: a turn
   hit,     ///< where a march ends at a point
-  end,     ///< once: the answers
-  unused,  ///< code for settings that are not counted
+  answer,  ///< the answer is written: in the shader's main, which is not text of C++
+  end,     ///< once
+  unused,  ///< code for settings that are not counted, and for rays that are left to the second pass
 };
-inline constexpr std::size_t kSimtBlocks = 8;
-inline constexpr std::array<std::string_view, kSimtBlocks> kSimtBlockNames = {"begin", "frame", "walk", "cell",
-                                                                              "probe", "hit",   "end",  "unused"};
+inline constexpr std::size_t kSimtBlocks = 9;
+inline constexpr std::array<std::string_view, kSimtBlocks> kSimtBlockNames = {
+    "begin", "frame", "walk", "cell", "probe", "hit", "answer", "end", "unused"};
 
 /// Loops around a block, and whether it is the first block of the innermost one.
 struct SimtNesting {
@@ -41,6 +42,7 @@ constexpr SimtNesting nesting(SimtBlock block) {
     case SimtBlock::frame:
       return {1, true};
     case SimtBlock::hit:
+    case SimtBlock::answer:
       return {1, false};
     case SimtBlock::walk:
     case SimtBlock::probe:

@@ -209,6 +209,7 @@ TEST_F(SimtTraces, AnswerAsMaxMipDoesAndTellWhatTheyRead) {
       hits += answer.answer.hit;
       const SimtBundle bundle = replay(std::span(&trace, 1));
       EXPECT_EQ(bundle.of(Block::walk), answer.answer.stats.steps);
+      EXPECT_EQ(bundle.of(Block::answer), 1u);
       EXPECT_EQ(bundle.fetches, bundle.of(Block::walk) + 2 * bundle.of(Block::cell));
       EXPECT_GE(bundle.lines[0], bundle.fetches);
       expect_priced(trace, set.any_hit ? "max-mip any" : "max-mip");

@@ -212,6 +212,7 @@ SimtAnswer trace_max_mip(const SimtGround& on, const Ray& ray, bool any, SimtTra
   glsl::ScarpLean at = glsl::scarp_lean_begin();
   while (!glsl::scarp_lean_on(field, prepared.ray, any, at, hit)) {
   }
+  SCARP_COUNT(answer);
   const bool second = hit.status == glsl::kScarpDoubtful;
   if (second) {
     noted = nullptr;
@@ -236,6 +237,7 @@ SimtAnswer trace_naive(const SimtGround& on, const Ray& ray, bool any, const Sim
   glsl::ScarpStretch at = glsl::scarp_stretch_begin(shader_field, prepared.ray, sampling);
   while (!glsl::scarp_stretch_on(shader_field, prepared.ray, sampling, any, at, hit)) {
   }
+  SCARP_COUNT(answer);
   const bool second = hit.status == glsl::kScarpDoubtful;
   if (second) {
     noted = nullptr;
