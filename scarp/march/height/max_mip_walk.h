@@ -58,6 +58,7 @@ class Walk {
   void run() {
     if (strict_) {
       if (!leave_start_cell()) return;
+      bound_rounding();
       if (wanted_.t_clear > t_in_ && !skip_on(wanted_.t_clear)) return;
     } else {
       if (!enter()) {
@@ -137,6 +138,7 @@ class Walk {
       if (beside(x_) || beside(y_)) return false;
     }
     if (!(t_in_ <= t_end_)) return false;
+    bound_rounding();
     // A ray that starts between the lowest and the highest ground is likely to start near the ground, where long skips
     // are not possible. A ray from outside crosses open air first, though blocks that span the field are rarely free.
     const int from_outside = std::max(top_ - 3, 0);
@@ -146,8 +148,9 @@ class Walk {
     if (ray_height(t_in_) > highest) {
       if (!(dz_ < 0)) return false;
       side_ = Side::above;
-      // Down to the highest sample and what rounding may add to it.
-      const double quotient = (highest - z_) / dz_, t_top = quotient + rounding_of_clearance(quotient) / dz_;
+      // Down to the highest sample and what rounding may add to it. Not finite for a ray straight down without an end,
+      // which has one cell.
+      const double t_top = (highest - z_ + rounding_) / dz_;
       if (t_top > t_end_) return false;
       level_ = from_outside;
       t_begin = std::max(t_begin, t_top);
@@ -292,7 +295,7 @@ class Walk {
     const double per_step = ground_.per_step(), highest = ground_.highest(), base = ground_.base();
     const double farthest = std::max(std::abs(t_in_), std::abs(t_end_));
     const double upright = std::abs(z_) + std::abs(dz_) * farthest + std::abs(base) + std::abs(highest);
-    const double rounding = kCodeRoundings * kUnit * upright + rounding_of_clearance(farthest);
+    const double rounding = kCodeRoundings * kUnit * upright + rounding_;
     const double code_z = (z_ - base - rounding) * per_step, code_dz = dz_ * per_step;
     const double highest_code = (highest - base) * per_step;
     // A coarse block may extend beyond the last row or column; the traversal does not.
@@ -311,8 +314,7 @@ class Walk {
     for (;;) {
       const bool through_x = tx <= ty;  // a tie: the line of constant column first
       const double t_line = through_x ? tx : ty;
-      // A hit does not depend on where the ray ends: its whole cell is tested.
-      const double t_out = std::min(t_line, level > 0 ? t_end : t_exit);
+      const double t_out = std::min(t_line, t_end);
       // The ray's height is linear: lowest at one end of the block.
       const double t_lowest = falling ? t_out : t_in, lowest_code = code_z + code_dz * t_lowest;
       ++steps;
@@ -354,12 +356,13 @@ class Walk {
       } else {
         const CellHeights h = ground_.cell(col, row);
         const double maximum = std::max(std::max(h.h00, h.h10), std::max(h.h01, h.h11));
-        const double lowest = ray_height(t_lowest);
-        if (lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_lowest))) {
+        // A hit does not depend on where the ray ends: its whole cell is tested.
+        const double t_leave = std::min(t_line, t_exit), t_low = falling ? t_leave : t_in, lowest = ray_height(t_low);
+        if (lowest > maximum && (side_ != Side::below || lowest - maximum > rounding_of_clearance(t_low))) {
           side_ = Side::above;
         } else {
           col_ = col, row_ = row, t_in_ = t_in;
-          if (test_cell(h, through_x, t_line, t_out)) break;
+          if (test_cell(h, through_x, t_line, t_leave)) break;
         }
       }
       if (Holes) {
@@ -505,7 +508,10 @@ class Walk {
   void touch_border_on_exit() {
     if ((ask != Ask::all && answer_) || side_ == Side::below || (side_ == Side::unknown && !begun_)) return;
     const double t = std::min(x_.exit_time(), y_.exit_time());
-    if (t <= ray_.t_max && t >= ray_.t_min) touches(t);
+    if (!(t <= ray_.t_max && t >= ray_.t_min)) return;
+    // Most rays leave above all ground; what rounding adds to the highest sample of a cell is part of this one's.
+    if (ray_height(t) - ground_.highest() > 2 * rounding_) return;
+    touches(t);
   }
 
   double rounding_at_rim(const CellHeights& h, double t) const {
@@ -605,6 +611,8 @@ class Walk {
   // node could be above at one line and, by rounding, not above at the next: a hit from below), a ray from the surface
   // is strictly below only beyond it, and so is a ray under a block.
   double rounding_of_clearance(double t) const { return scarp::rounding_of_clearance(field_, grid_ray(), t); }
+  // That of the whole way, from t_in_ on.
+  void bound_rounding() { rounding_ = rounding_of_clearance(std::max(std::abs(t_in_), std::abs(t_end_))); }
   GridRay grid_ray() const { return {{x_.origin, y_.origin, z_}, {x_.direction, y_.direction, dz_}}; }
 
   // A clearance <= 0 is a hit; rays that start on the surface require < -rounding.
@@ -671,6 +679,7 @@ class Walk {
   Axis x_, y_;
   double z_, dz_;  // ray height in sample units
   double t_in_, t_end_;
+  double rounding_ = 0;  // of the clearance: bound_rounding()
   bool strict_, triangles_, solid_;
   const Wanted wanted_;
   const Ray& ray_;
