@@ -42,9 +42,10 @@ Ray SceneField::started(const Ray& ray, const Hit* from) const {
 Hit SceneField::accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const {
   const Hit hit = closest_hit(ray, from, stats);
   if (!hit || !rules.accept || (*rules.accept)(hit)) return hit;
-  throw Error(fmt::format(
-      "scene: the filter rejected a hit on a {}; {} cannot continue behind it (exclude the object by its mask)", kind(),
-      march()));
+  throw Error(
+      fmt::format("scene: the filter rejected a hit on a {}; {} cannot continue behind it (use another march, or "
+                  "exclude the object by its mask)",
+                  kind(), march()));
 }
 
 std::string SceneField::no_contacts() const {

@@ -2,9 +2,12 @@
 // Terrain functions in scenes. What is seen, what throws shadows on it, and what it is shaded by may have different
 // octaves (FunctionUse).
 #include <algorithm>
+#include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "scarp/march/function/lipschitz_local_rules.h"
 #include "scarp/march/lipschitz.h"
 #include "scarp/scene/function_shadow.h"
 #include "scarp/scene/scene_field.h"
@@ -33,6 +36,10 @@ class FunctionField final : public SceneField {
 
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return march_.cpu(function_, from ? started(ray, from) : ray, settings_, stats, FunctionUse::march);
+  }
+  Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
+    if (!rules.accept || !march_.filtered) return SceneField::accepted_hit(ray, from, rules, stats);
+    return march_.filtered(function_, below(), from ? started(ray, from) : ray, *rules.accept, settings_, stats);
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
     const Ray r = on_shadow_surface(function_, from ? started(ray, from) : ray);
@@ -76,9 +83,17 @@ class FunctionField final : public SceneField {
   SceneFieldParts parts() const override { return {SceneFieldParts::Function{&function_, &march_, &settings_}}; }
 
  private:
+  // Compiled for the first ray with a filter.
+  const HeightFunction& below() const {
+    std::call_once(below_made_, [&] { below_.emplace(upside_down(function_)); });
+    return *below_;
+  }
+
   HeightFunction function_;
   const FunctionMarchEntry& march_;
   MarchSettings settings_;
+  mutable std::once_flag below_made_;
+  mutable std::optional<HeightFunction> below_;
 };
 
 }  // namespace

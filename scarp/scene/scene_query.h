@@ -7,10 +7,11 @@
 //     return scene.material(ray, hit) != kWater;
 //   }});
 //
-// A ray goes on behind a hit that the filter rejects as if there were a hole: through that voxel, that triangle, or the
-// ground, which it can leave elsewhere. It is never started anew, so no other hit is lost and none found twice. Height
-// fields with the march max-mip or exhaustive, tiles, voxels and meshes go on; functions and shapes cannot: to reject
-// a hit on one throws Error.
+// A ray goes on behind a hit that the filter rejects as if there were a hole: through that voxel, that triangle, that
+// solid, or the ground, which it can leave elsewhere. Over height fields with the march max-mip or exhaustive, tiles,
+// voxels and meshes it is never started anew, so no other hit is lost and none found twice. Over functions with the
+// march lipschitz-local, and shapes, it goes on from the surface by the rule of its march, which may pass the same hit
+// to the filter twice, within its tolerance. To reject a hit with another march of functions throws Error.
 #pragma once
 
 #include <limits>

@@ -29,6 +29,10 @@ class ShapeField final : public SceneField {
   Hit closest_hit(const Ray& ray, const Hit* from, MarchStats* stats) const override {
     return march_.cpu(shape_, from ? started(ray, from) : ray, settings_, stats);
   }
+  Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
+    if (!rules.accept) return closest_hit(ray, from, stats);
+    return march_.filtered(shape_, from ? started(ray, from) : ray, *rules.accept, settings_, stats);
+  }
   bool occluded(const Ray& ray, const Hit* from) const override {
     return march_.occluded(shape_, from ? started(ray, from) : ray, settings_);
   }

@@ -6,6 +6,7 @@
 #include "scarp/march/find_entry.h"
 #include "scarp/march/fixed_step.h"
 #include "scarp/march/function/lipschitz_local.h"
+#include "scarp/march/function/lipschitz_local_rules.h"
 #include "scarp/march/function/lipschitz_local_simd.h"
 #include "scarp/march/lipschitz.h"
 #include "scarp/march/naive.h"
@@ -41,6 +42,7 @@ constexpr FunctionMarchEntry lipschitz_local() {
        .description =
            "bounds the ground on each segment of the ray; never passes through; long steps over gentle ground"});
   entry.batch = closest_hits_lipschitz_local_simd;
+  entry.filtered = march_lipschitz_local_filtered;
   return entry;
 }
 

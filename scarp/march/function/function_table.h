@@ -8,6 +8,7 @@
 
 #include "scarp/base/ray.h"
 #include "scarp/field/height_function.h"
+#include "scarp/march/hit_rules.h"
 #include "scarp/march/march_entry.h"
 #include "scarp/march/march_settings.h"
 
@@ -22,10 +23,16 @@ using FunctionMarch = Hit (*)(const HeightFunction& function, const Ray& ray, co
 using FunctionMarchBatch = void (*)(const HeightFunction& function, std::span<const Ray> rays, std::span<Hit> hits,
                                     const MarchSettings& settings, std::span<std::uint32_t> steps, FunctionUse use);
 
-/// A row. No function is null: a technique without a batch query of its own has one made of `cpu`.
+/// The closest hit that the filter accepts; see lipschitz_local_rules.h.
+using FunctionMarchFiltered = Hit (*)(const HeightFunction& function, const HeightFunction& below, const Ray& ray,
+                                      const HitFilter& accept, const MarchSettings& settings, MarchStats* stats);
+
+/// A row. No function but `filtered` is null: a technique without a batch query of its own has one made of `cpu`.
 struct FunctionMarchEntry : MarchEntry {
   FunctionMarch cpu = nullptr;         ///< scalar C++
   FunctionMarchBatch batch = nullptr;  ///< in vectors if `simd`
+  /// Null: the march cannot go on behind a rejected hit.
+  FunctionMarchFiltered filtered = nullptr;
 };
 
 std::span<const FunctionMarchEntry> function_marches();

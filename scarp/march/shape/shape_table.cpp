@@ -18,7 +18,8 @@ constexpr std::array kTable = {
          .description =
              "steps by the distance to the nearest surface, converges by bounds of segments; never passes through"},
         march_sphere_trace,
-        occluded_sphere_trace},
+        occluded_sphere_trace,
+        march_sphere_trace_filtered},
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "scarp/base/ray.h"
 #include "scarp/field/distance_field.h"
+#include "scarp/march/hit_rules.h"
 #include "scarp/march/march_entry.h"
 #include "scarp/march/march_settings.h"
 
@@ -18,10 +19,15 @@ using ShapeMarch = Hit (*)(const DistanceField& shape, const Ray& ray, const Mar
 /// Whether the closest hit is a hit.
 using ShapeOcclusion = bool (*)(const DistanceField& shape, const Ray& ray, const MarchSettings& settings);
 
+/// The closest hit that the filter accepts.
+using ShapeMarchFiltered = Hit (*)(const DistanceField& shape, const Ray& ray, const HitFilter& accept,
+                                   const MarchSettings& settings, MarchStats* stats);
+
 /// A row. No function is null.
 struct ShapeMarchEntry : MarchEntry {
   ShapeMarch cpu = nullptr;  ///< scalar C++
   ShapeOcclusion occluded = nullptr;
+  ShapeMarchFiltered filtered = nullptr;
 };
 
 std::span<const ShapeMarchEntry> shape_marches();

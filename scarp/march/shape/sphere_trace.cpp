@@ -62,12 +62,16 @@ class Trace {
 
   Hit closest() {
     Hit hit;
-    double t = t_enter_;
-    if (!first_outside(t, hit)) return hit;
-    const WalkEnd walk = follow(t, Medium::outside);
-    if (walk.ended == Ended::crossing) return hit_at(walk.beyond > walk.t ? crossing(walk.t, walk.beyond) : walk.t);
-    if (walk.ended == Ended::exhausted) return exhausted(walk.t);
-    hit.status = began_inside_ ? HitStatus::below : HitStatus::miss;
+    double t = behind_ = t_enter_;
+    return first_outside(t, hit) ? closest_from_outside(t) : hit;
+  }
+
+  // The closest hit behind the one that was returned last.
+  Hit next() {
+    Hit hit;
+    double t = behind_;
+    if (emerge(t, hit)) return closest_from_outside(t);
+    if (hit.status == HitStatus::below && !began_inside_) hit.status = HitStatus::miss;
     return hit;
   }
 
@@ -113,6 +117,16 @@ class Trace {
     return hit;
   }
 
+  Hit closest_from_outside(double t) {
+    const WalkEnd walk = follow(t, Medium::outside);
+    behind_ = walk.beyond;
+    if (walk.ended == Ended::crossing) return hit_at(walk.beyond > walk.t ? crossing(walk.t, walk.beyond) : walk.t);
+    if (walk.ended == Ended::exhausted) return exhausted(walk.t);
+    Hit hit;
+    hit.status = began_inside_ ? HitStatus::below : HitStatus::miss;
+    return hit;
+  }
+
   // Moves t to where the ray is outside for the first time. Returns false if it is decided before, in `hit`.
   bool first_outside(double& t, Hit& hit) {
     if (!crosses()) return false;
@@ -124,6 +138,11 @@ class Trace {
       return false;
     }
     began_inside_ = true;
+    return emerge(t, hit);
+  }
+
+  // From inside: moves t to where the ray is outside. Returns false if it is not before it ends, in `hit`.
+  bool emerge(double& t, Hit& hit) {
     for (;;) {
       hit = Hit{};
       hit.status = HitStatus::below;
@@ -274,6 +293,7 @@ class Trace {
   double speed_;
   double from_ = 0, shortest_ = 0;
   bool began_inside_ = false;
+  double behind_ = 0;  // the hit that was returned last: on the surface or inside
 };
 
 }  // namespace
@@ -285,6 +305,25 @@ Hit march_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSe
   }
   MarchStats counted;
   const Hit hit = Trace(field, ray, settings.sphere_trace, counted).closest();
+  if (stats) *stats = counted;
+  return hit;
+}
+
+Hit march_sphere_trace_filtered(const DistanceField& field, const Ray& ray, const HitFilter& accept,
+                                const MarchSettings& settings, MarchStats* stats) {
+  if (const double longest = longest_of(ray.direction); !is_usual(longest)) [[unlikely]] {
+    return at_usual_length(ray, longest, [&](const Ray& usual) {
+      const HitFilter accept_usual = [&](Hit hit) {
+        hit.t = std::ldexp(hit.t, -std::ilogb(longest));
+        return accept(hit);
+      };
+      return march_sphere_trace_filtered(field, usual, accept_usual, settings, stats);
+    });
+  }
+  MarchStats counted;
+  Trace trace(field, ray, settings.sphere_trace, counted);
+  Hit hit = trace.closest();
+  while (hit && !accept(hit)) hit = trace.next();
   if (stats) *stats = counted;
   return hit;
 }

@@ -22,6 +22,7 @@
 
 #include "scarp/base/ray.h"
 #include "scarp/field/distance_field.h"
+#include "scarp/march/hit_rules.h"
 #include "scarp/march/march_settings.h"
 
 namespace scarp {
@@ -30,6 +31,10 @@ namespace scarp {
 /// cell_tests bounds of segments; both count towards the step limit.
 Hit march_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSettings& settings = {},
                        MarchStats* stats = nullptr);
+/// Closest hit that the filter accepts. Behind a rejected one the ray goes on through the solid until it comes out, as
+/// one that starts inside. Two hits within the tolerance may be one for the filter, or one may be passed to it twice.
+Hit march_sphere_trace_filtered(const DistanceField& field, const Ray& ray, const HitFilter& accept,
+                                const MarchSettings& settings = {}, MarchStats* stats = nullptr);
 /// Any hit; does not refine the crossing.
 bool occluded_sphere_trace(const DistanceField& field, const Ray& ray, const MarchSettings& settings = {});
 
