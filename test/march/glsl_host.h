@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "scarp/accel/max_pyramid.h"
@@ -19,6 +20,8 @@ inline thread_local const HeightField* host_field = nullptr;
 inline thread_local const MaxPyramid* host_pyramid = nullptr;
 
 inline float scarp_sample(int col, int row) {
+  if (col < 0 || row < 0 || col >= host_field->cols() || row >= host_field->rows())
+    throw std::out_of_range("a sample outside the field");
   return host_field->visit([&](const auto& grid) { return static_cast<float>(grid.at(col, row)); });
 }
 inline vec4 scarp_corners(int col, int row) {

@@ -90,8 +90,7 @@ SCARP_FN ScarpStretchAxis scarp_stretch_axis(ScarpLeanAxis begin, float directio
   axis.o = begin.place;
   axis.d = direction;
   if (!wraps) {
-    axis.cell = clamp(begin.cell, 0, cells - 1);
-    axis.o = clamp(begin.place + float(begin.cell - axis.cell), 0.0f, 1.0f - kScarpUnit);
+    axis.o = min(begin.place, 1.0f - kScarpUnit);
     SCARP_PRECISE float end = fma(direction, last, axis.o);
     float inside = clamp(end, float(-axis.cell), float(cells - axis.cell) * (1.0f - kScarpUnit));
     if (inside != end) axis.d = (inside - axis.o) / last * (1.0f - 4.0f * kScarpUnit);

@@ -37,12 +37,14 @@ SCARP_FN ScarpLeanAxis scarp_lean_axis(int cell, float place, float place_low, f
                                        float s0, int cells, bool wraps) {
   ScarpTwoFloat way = scarp_lean_product(direction, s0, wraps);
   float whole = floor(way.high);
-  SCARP_PRECISE float rest = (way.high - whole) + (way.low + (place + (direction_low * s0 + place_low)));
-  // A ray that begins on a line belongs to the cell that it is given in.
-  float carry = s0 == 0.0f ? 0.0f : floor(rest);
   ScarpLeanAxis found;
-  found.cell = cell + int(whole) + int(carry);
-  found.place = clamp(rest - carry, 0.0f, 1.0f);
+  SCARP_PRECISE float rest = (way.high - whole) + (way.low + (place + (direction_low * s0 + place_low)));
+  int from = cell + int(whole);
+  // A ray that begins on a line belongs to the cell that it is given in.
+  int to = s0 == 0.0f ? from : from + int(floor(rest));
+  // Times are rounded: a ray at the border could be beyond it.
+  found.cell = wraps ? to : clamp(to, 0, cells - 1);
+  found.place = clamp(rest - float(found.cell - from), 0.0f, 1.0f);
   if (wraps) {
     // The border ahead is ahead, so that what lies before it is tested; except for rays that begin on it.
     if (s0 > 0.0f) found.place = clamp(found.place, kScarpUnit, 1.0f - kScarpUnit);

@@ -104,11 +104,10 @@ SCARP_FN ScarpLeanFrame scarp_lean_frame(ScarpField field, ScarpRay ray, float s
   frame.mirror_y = ray.direction.y < 0.0f ? -1 : 0;
   frame.last_x = frame.mirror_x == 0 ? field.cells.x - 1 : -1;
   frame.last_y = frame.mirror_y == 0 ? field.cells.y - 1 : -1;
-  // By rounding the ray could be beyond the border.
-  frame.begin_x = min(x.cell ^ frame.mirror_x, frame.last_x);
-  frame.begin_y = min(y.cell ^ frame.mirror_y, frame.last_y);
-  frame.col = frame.begin_x ^ frame.mirror_x;
-  frame.row = frame.begin_y ^ frame.mirror_y;
+  frame.begin_x = x.cell ^ frame.mirror_x;
+  frame.begin_y = y.cell ^ frame.mirror_y;
+  frame.col = x.cell;
+  frame.row = y.cell;
   frame.place_x = x.place;
   frame.place_y = y.place;
   frame.ox = frame.mirror_x == 0 ? x.place : 1.0f - x.place;
@@ -286,20 +285,20 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   piece.bend = 0.0f;
   do {
     SCARP_COUNT(walk);
-    // The block's lines ahead, and those in its middle.
-    int half_side = 1 << (level - 1);
-    int inside = 2 * half_side - 1;
-    int line_x = (x | inside) + 1;
-    int line_y = (y | inside) + 1;
-    int middle_x = line_x - half_side;
-    int middle_y = line_y - half_side;
+    // The block's lines ahead, and those in its middle. The negative side is also the mask of blocks of that size.
+    int negative_side = -1 << level;
+    int negative_half = negative_side >> 1;
+    int line_x = (x & negative_side) - negative_side;
+    int line_y = (y & negative_side) - negative_side;
+    int middle_x = line_x + negative_half;
+    int middle_y = line_y + negative_half;
     float cells_x = float(line_x - frame.begin_x);
     float cells_y = float(line_y - frame.begin_y);
-    float half_cells = float(half_side);
+    float negative_half_cells = float(negative_half);
     float tx = scarp_lean_line(cells_x, frame.per_x, origin_x);
     float ty = scarp_lean_line(cells_y, frame.per_y, origin_y);
-    float tx_middle = scarp_lean_line(cells_x - half_cells, frame.per_x, origin_x);
-    float ty_middle = scarp_lean_line(cells_y - half_cells, frame.per_y, origin_y);
+    float tx_middle = scarp_lean_line(cells_x + negative_half_cells, frame.per_x, origin_x);
+    float ty_middle = scarp_lean_line(cells_y + negative_half_cells, frame.per_y, origin_y);
     uvec2 quad = scarp_quad(level, (x ^ frame.mirror_x) >> level, (y ^ frame.mirror_y) >> level);
     at.fetches += 1u;
     // The codes of its children: near and far along x, then y.
@@ -341,10 +340,11 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
     bool hole = false;
     if (tests) {
       SCARP_COUNT(cell);
-      // The first cell that it may meet.
+      // The first cell that it may meet: beyond a middle line if it leaves the cell after it. That line may be the
+      // field's border, which no ray passes.
       float leave = free0 ? (free1 ? t3 : t2) : t1;
-      int cell_x = far_x || tx_middle <= next ? middle_x : middle_x - 1;
-      int cell_y = far_y || ty_middle <= next ? middle_y : middle_y - 1;
+      int cell_x = tx_middle < leave ? middle_x : x;
+      int cell_y = ty_middle < leave ? middle_y : y;
       hit_col = cell_x ^ frame.mirror_x;
       hit_row = cell_y ^ frame.mirror_y;
       ScarpLeanCell cell = scarp_lean_cell(field, frame, direction, hit_col, hit_row, next, leave, strict);
@@ -371,7 +371,7 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
     x = min(max(max(at_x, past_x), x), frame.last_x);
     y = min(max(max(at_y, past_y), y), frame.last_y);
     t = next;
-    level = all_free ? min(level + 1, field.top_level) : max(level - 1, 1);
+    level = clamp(level + (all_free ? 1 : -1), 1, field.top_level);
     turn += 1;
   } while (t < last && turn < kScarpLeanTurns);
   at.turns = turn;

@@ -178,11 +178,12 @@ MarchSettings march_settings() {
   return settings;
 }
 
+DeviceRay sampled(const HeightField& field, const Ray& ray) { return sampled_device_ray(field, ray); }
+
 std::vector<Realisation> realisations(double slope) {
   std::vector<Realisation> all = {{"max-mip", glsl::kTexturesMaxMip, device_ray, {}}};
   for (const std::string_view name : {"naive", "fixed-step", "relaxed", "lipschitz"}) {
-    all.push_back(
-        {name, glsl::kTexturesSampled, sampled_device_ray, device_sampling(name, march_settings(), slope, 0, 1)});
+    all.push_back({name, glsl::kTexturesSampled, sampled, device_sampling(name, march_settings(), slope, 0, 1)});
   }
   return all;
 }
