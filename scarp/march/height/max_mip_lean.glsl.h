@@ -285,7 +285,7 @@ SCARP_FN bool scarp_lean_on(ScarpField field, ScarpRay ray, bool any, SCARP_INOU
   piece.bend = 0.0f;
   do {
     SCARP_COUNT(walk);
-    // The block's lines ahead, and those in its middle. The negative side is also the mask of blocks of that size.
+    // The block's lines ahead, and those in its middle. The negative side is also the mask of such blocks.
     int negative_side = -1 << level;
     int negative_half = negative_side >> 1;
     int line_x = (x & negative_side) - negative_side;
