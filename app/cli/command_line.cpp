@@ -36,6 +36,7 @@ void add_commands(Program& program) {
   add_render(program);
   add_cast(program);
   add_composite(program);
+  add_los(program);
   add_info(program);
   add_generate(program);
   add_marches(program);

@@ -10,6 +10,7 @@ void add_render(Program& program);
 void add_cast(Program& program);
 void add_composite(Program& program);
 void add_info(Program& program);
+void add_los(Program& program);
 void add_generate(Program& program);
 void add_marches(Program& program);
 void add_replay(Program& program);

@@ -50,6 +50,9 @@ struct Node {
   friend bool operator==(const Node&, const Node&) = default;
 };
 
+/// What a height counts from.
+enum class HeightDatum : std::uint8_t { ground, sea };
+
 /// Curvature of the Earth and refraction of light.
 struct SightCurvature {
   double coefficient = 6.0 / 7;    ///< 1 - refraction coefficient, 0..1; 0: flat Earth; 6/7: visible light

@@ -75,9 +75,6 @@ std::vector<Seen> viewshed(const HeightField& field, Node observer, const Viewsh
 std::vector<double> least_visible(const HeightField& field, Node observer, const ViewshedSettings& settings = {},
                                   const Progress& progress = {});
 
-/// What heights of targets count from.
-enum class HeightDatum : std::uint8_t { sea, ground };
-
 /// Converts one result of least_visible(): the least height of a visible target above sea (at least the ground) or
 /// above ground (at least 0), in metres. NaN stays NaN.
 float least_height(const SightGround& ground, Node node, double least_visible, HeightDatum datum);
