@@ -37,6 +37,7 @@ void add_commands(Program& program) {
   add_cast(program);
   add_composite(program);
   add_los(program);
+  add_profile(program);
   add_info(program);
   add_generate(program);
   add_marches(program);

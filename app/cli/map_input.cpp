@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -90,7 +91,7 @@ std::string MapInput::curvature_text() const {
   return fmt::format("curvature coefficient {:.6g}, diameter {:.0f} m", used.coefficient, used.diameter);
 }
 
-dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view what) const {
+dvec2 MapInput::position_of(const TablePlace& place, bool lonlat, std::string_view what) const {
   if (lonlat && !lonlat_)
     throw Error(fmt::format("{}: {}: longitude and latitude need a raster with a CRS (--raster-crs)", path_, what));
   std::array points{dvec3(place.x, place.y, 0)};
@@ -99,16 +100,26 @@ dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view w
   return {points[0].x / georeference_.cell_x_m, field_.rows() - 1 - points[0].y / georeference_.cell_y_m};
 }
 
+void MapInput::refuse_outside(const TablePlace& place, std::string_view what, double beyond) const {
+  const dvec2 low = place_of(-beyond, field_.rows() - 1 + beyond), high = place_of(field_.cols() - 1 + beyond, -beyond);
+  throw Error(fmt::format("{}: {:.10g},{:.10g} is outside {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g} (--crs)", what,
+                          place.x, place.y, path_, low.x, high.x, low.y, high.y));
+}
+
+dvec2 MapInput::grid_of(const TablePlace& place, bool lonlat, std::string_view what) const {
+  dvec2 at = position_of(place, lonlat, what);
+  // Places on the border may be a rounding outside.
+  const double last_col = field_.cols() - 1, last_row = field_.rows() - 1, rounding = 0.5 / kSubcells;
+  if (!(at.x >= -rounding && at.y >= -rounding && at.x <= last_col + rounding && at.y <= last_row + rounding))
+    refuse_outside(place, what, 0);
+  return {std::clamp(at.x, 0.0, last_col), std::clamp(at.y, 0.0, last_row)};
+}
+
 Node MapInput::node_of(const TablePlace& place, bool lonlat, std::string_view what) const {
-  const dvec2 at = grid_of(place, lonlat, what);
+  const dvec2 at = position_of(place, lonlat, what);
   // Pixels are half open, as GDAL has them.
   const double col = std::floor(at.x + 0.5), row = std::floor(at.y + 0.5);
-  if (!(col >= 0 && row >= 0 && col < field_.cols() && row < field_.rows())) {
-    const dvec2 low = place_of(-0.5, field_.rows() - 0.5), high = place_of(field_.cols() - 0.5, -0.5);
-    throw Error(
-        fmt::format("{}: ({:.10g}, {:.10g}) is outside the raster {}: x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", what,
-                    place.x, place.y, path_, low.x, high.x, low.y, high.y));
-  }
+  if (!(col >= 0 && row >= 0 && col < field_.cols() && row < field_.rows())) refuse_outside(place, what, 0.5);
   return {static_cast<int>(col), static_cast<int>(row)};
 }
 

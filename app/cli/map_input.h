@@ -66,6 +66,8 @@ class MapInput {
   double grid_north_at(double col, double row, double reach);
 
  private:
+  dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  [[noreturn]] void refuse_outside(const TablePlace& place, std::string_view what, double beyond) const;
   const MetricPlane& plane_at(double col, double row, double reach);
 
   const MapOptions& options_;
