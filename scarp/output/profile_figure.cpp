@@ -42,7 +42,7 @@ class Drawing {
     low_ -= margin, high_ += margin;
     end_ = std::max(figure.points.back().distance, kLeast);
     const double line = pen_.line_height();
-    box_ = {5 * kText, 2.6 * line, figure.width - 6.5 * kText, figure.height - 6.4 * line};
+    box_ = {5 * kText, 2.6 * line, figure.width - 6.5 * kText, figure.height - 7.6 * line};
   }
 
   void draw() const {
@@ -98,19 +98,19 @@ class Drawing {
   void ground() const {
     const auto& points = figure_.points;
     const double floor = box_.y + box_.height;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      const auto &a = points[i - 1], &b = points[i];
-      if (!std::isfinite(a.ground) || !std::isfinite(b.ground)) continue;
-      colour(kGround);
-      cairo_move_to(cr_, x(a.distance), floor);
-      cairo_line_to(cr_, x(a.distance), y(a.ground));
-      cairo_line_to(cr_, x(b.distance), y(b.ground));
-      cairo_line_to(cr_, x(b.distance), floor);
-      cairo_close_path(cr_);
-      cairo_fill_preserve(cr_);
-      // Hides the seam between neighbours.
-      cairo_set_line_width(cr_, 0.5);
-      cairo_stroke(cr_);
+    // One polygon for each run without holes: neighbouring polygons would leave seams.
+    colour(kGround);
+    for (std::size_t begin = 0; begin < points.size();) {
+      std::size_t end = begin;
+      while (end < points.size() && std::isfinite(points[end].ground)) ++end;
+      if (end > begin) {
+        cairo_move_to(cr_, x(points[begin].distance), floor);
+        for (std::size_t i = begin; i < end; ++i) cairo_line_to(cr_, x(points[i].distance), y(points[i].ground));
+        cairo_line_to(cr_, x(points[end - 1].distance), floor);
+        cairo_close_path(cr_);
+        cairo_fill(cr_);
+      }
+      begin = end + 1;
     }
     for (std::size_t i = 1; i < points.size(); ++i) {
       const auto &a = points[i - 1], &b = points[i];
