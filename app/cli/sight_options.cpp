@@ -7,14 +7,10 @@
 #include "scarp/base/error.h"
 
 namespace scarp::cli {
-namespace {
-
-TablePlace place_from(const std::string& text, std::string_view option) {
+TablePlace typed_height_place(const std::string& text, std::string_view option) {
   const auto n = numbers_from(text, ',', 2, 3, option, "X,Y or X,Y,HEIGHT, for example 692000,5143000,2");
   return {n[0], n[1], n.size() > 2 ? std::optional(n[2]) : std::nullopt};
 }
-
-}  // namespace
 
 void add_sight_heights(Command& command, SightHeights& heights) {
   command.add(&heights.observer, {.names = "--observer-height",
@@ -36,12 +32,17 @@ void add_sight_heights(Command& command, SightHeights& heights) {
 }
 
 void add_sight_places(Command& command, SightPlaces& places) {
-  command.add(&places.from,
-              {.names = "--from", .value = "X,Y[,H]", .help = "observer", .note = "repeatable", .common = true});
+  command.add(&places.from, {.names = "--from",
+                             .value = "X,Y[,H]",
+                             .help = "observer",
+                             .note = "repeatable",
+                             .repeats = true,
+                             .common = true});
   command.add(&places.to, {.names = "--to",
                            .value = "X,Y[,H]",
                            .help = "target",
                            .note = "repeatable: every observer looks at every target",
+                           .repeats = true,
                            .common = true});
   command.add(&places.lines, {.names = "--lines",
                               .value = "FILE",
@@ -58,7 +59,7 @@ PlaceTable sight_places(const SightPlaces& places) {
   PlaceTable table;
   for (const std::string& from : places.from)
     for (const std::string& to : places.to)
-      table.rows.push_back({place_from(from, "--from"), place_from(to, "--to"), 0});
+      table.rows.push_back({typed_height_place(from, "--from"), typed_height_place(to, "--to"), 0});
   return table;
 }
 

@@ -20,6 +20,9 @@ struct SightHeights {
 /// Declares --observer-height, --target-height and --heights.
 void add_sight_heights(Command& command, SightHeights& heights);
 
+/// Parses X,Y or X,Y,HEIGHT. Throws Error "OPTION 'TEXT': expected ...".
+TablePlace typed_height_place(const std::string& text, std::string_view option);
+
 /// Lines between places.
 struct SightPlaces {
   std::vector<std::string> from, to;  ///< X,Y[,H]
