@@ -66,7 +66,7 @@ LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const 
       if ((!result.obstruction || at.along() < result.obstruction->along) && sign_of(at.terms) > 0) {
         const double along = at.along(), col = line.col(along), row = line.row(along);
         result.visible = false;
-        result.obstruction = {along, col, row, at.ground() + line.ground().drop(col, row)};
+        result.obstruction = {along, col, row, at.ground() + at.drop(line.ground())};
       }
       return true;
     });

@@ -18,6 +18,11 @@ struct SightCrossing {
 
   double along() const { return static_cast<double>(at.steps) / static_cast<double>(at.length); }
   double ground() const { return (terms.g0 * terms.w0 + terms.g1 * terms.w1) / (terms.w0 + terms.w1); }  ///< lowered
+  /// Metres by which the ground there appears lower, interpolated as its height is.
+  double drop(const SightGround& heights) const {
+    const auto of = [&](Node node) { return heights.drop(node.col, node.row); };
+    return (of(at.first) * terms.w0 + of(at.second) * terms.w1) / (terms.w0 + terms.w1);
+  }
   double ray() const { return (terms.e * terms.v0 + terms.r * terms.v1) / (terms.v0 + terms.v1); }
 };
 

@@ -62,25 +62,28 @@ Shade shade(const SightGround& ground, const SunRay& sun, Node node) {
   if (!height) return Shade::hole;
   const HeightField& field = ground.field();
   const GridLine line{node.col, node.row, sun.col, sun.row, 1};
-  bool at_first = true;
+  const double highest = field.max_height();
+  bool blocked = false, at_first = true;
   const auto clears = [&](const Crossing& at) {
-    auto terms = ground_terms(ground, at);
-    if (terms) {
+    const double w = static_cast<double>(at.length), steps = static_cast<double>(at.steps);
+    if (auto terms = ground_terms(ground, at)) {
       terms->e = *height;
-      terms->v0 = static_cast<double>(at.length);
+      terms->v0 = w;
       terms->r = sun.rise;
-      terms->v1 = static_cast<double>(at.steps);
-      if (sign_of(*terms) > 0) return false;
+      terms->v1 = steps;
+      blocked = sign_of(*terms) > 0;
     }
+    if (blocked) return false;
     at_first = false;
-    return true;
+    // The ray rises: once above all ground it is free.
+    return sign_of({highest, w, 0, 0, *height, w, sun.rise, steps}) > 0;
   };
   // The first line of the larger axis is the first of both.
   const int larger = std::abs(sun.col) >= std::abs(sun.row) ? 0 : 1;
-  if (!visit_crossings(line, larger, field.cols(), field.rows(), false, clears))
-    return at_first ? Shade::self_shaded : Shade::cast_shadow;
-  if (!visit_crossings(line, 1 - larger, field.cols(), field.rows(), false, clears)) return Shade::cast_shadow;
-  return Shade::lit;
+  visit_crossings(line, larger, field.cols(), field.rows(), false, clears);
+  if (blocked) return at_first ? Shade::self_shaded : Shade::cast_shadow;
+  visit_crossings(line, 1 - larger, field.cols(), field.rows(), false, clears);
+  return blocked ? Shade::cast_shadow : Shade::lit;
 }
 
 }  // namespace scarp
