@@ -15,6 +15,7 @@
 #include "app/cli/shared_options.h"
 #include "app/cli/sight_options.h"
 #include "scarp/analysis/line_of_sight.h"
+#include "scarp/analysis/node_maxima.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
@@ -141,9 +142,9 @@ void run(LosOptions options, const Command& command) {
   std::vector<Answer> answers(table.rows.size());
   for (std::size_t i = 0; i < answers.size(); ++i) answers[i].ends = sight_ends(input, table, i, options.heights);
   const SightCurvature curvature = input.curvature();
-  const auto answer = [&](std::size_t i, const HeightField& field) {
+  const auto answer = [&](std::size_t i, const HeightField& field, const NodeMaxima* maxima) {
     try {
-      answers[i].line = line_of_sight(field, answers[i].ends.from, answers[i].ends.to, curvature);
+      answers[i].line = line_of_sight(field, answers[i].ends.from, answers[i].ends.to, curvature, maxima);
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", table.rows[i].line > 0 ? table.where(i) : input.path(), error.what()));
     }
@@ -155,16 +156,17 @@ void run(LosOptions options, const Command& command) {
       const auto& [from, to] = answers[i].ends;
       const double reach = std::hypot((to.col - from.col) * input.field().settings().cell_x,
                                       (to.row - from.row) * input.field().settings().cell_y);
-      answer(i, input.field_at(from.col, from.row, reach));
+      answer(i, input.field_at(from.col, from.row, reach), nullptr);
       if (!progress(static_cast<double>(i + 1) / static_cast<double>(answers.size()))) throw Interrupted();
     }
   } else {
+    const NodeMaxima maxima(input.field());
     constexpr std::int64_t kGrain = 64;
     parallel_for(
         static_cast<std::int64_t>(answers.size()), kGrain,
         [&](std::int64_t begin, std::int64_t end) {
           for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            answer(i, input.field());
+            answer(i, input.field(), &maxima);
         },
         progress);
   }

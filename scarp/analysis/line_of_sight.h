@@ -62,8 +62,11 @@ struct LineOfSight {
   double clearance_along = 0;  ///< where that is
 };
 
-/// Answers one query. Throws as SightLine does.
+class NodeMaxima;
+
+/// Answers one query. Throws as SightLine does. `maxima`, those of the same field, give the same answer sooner where a
+/// field has many lines; without them every crossing is visited.
 LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
-                          const SightCurvature& curvature = {});
+                          const SightCurvature& curvature = {}, const NodeMaxima* maxima = nullptr);
 
 }  // namespace scarp

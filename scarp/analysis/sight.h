@@ -81,7 +81,8 @@ class SightGround {
     return x * x + y * y;
   }
   /// Metres by which a place appears lower.
-  double drop(double col, double row) const { return per_square_metre_ * square_distance(col, row); }
+  double drop(double col, double row) const { return drop_at(square_distance(col, row)); }
+  double drop_at(double square_distance) const { return per_square_metre_ * square_distance; }
   /// Returns the lowered height of a place whose height is known.
   double lowered(double height, double col, double row) const { return height - drop(col, row); }
 

@@ -28,22 +28,25 @@ struct SightCrossing {
 
 /// Calls visit(crossing) for the crossings of one axis that count, outwards from the start, until it returns false.
 template <class Visit>
-void visit_sight(const SightLine& line, int axis, const Visit& visit) {
+void visit_sight(const SightLine& line, int axis, const Visit& visit, const LineRange& range = {}) {
   const auto steps = [](double cells) { return std::llround(cells * static_cast<double>(kSubcells)); };
   const std::int64_t x = steps(line.from().col), y = steps(line.from().row);
   const GridLine grid{x, y, steps(line.to().col) - x, steps(line.to().row) - y, kSubcells};
   const HeightField& field = line.ground().field();
-  visit_crossings(grid, axis, field.cols(), field.rows(), true, [&](const Crossing& at) {
-    const auto first = line.ground().lowered(at.first);
-    if (!first) return true;
-    const auto second = at.w1 > 0 ? line.ground().lowered(at.second) : first;
-    if (!second) return true;
-    const CrossingTerms terms{*first,        static_cast<double>(at.w0),
-                              *second,       static_cast<double>(at.w1),
-                              line.eye(),    static_cast<double>(kSubcells * (at.length - at.steps)),
-                              line.target(), static_cast<double>(kSubcells * at.steps)};
-    return visit(SightCrossing{at, terms});
-  });
+  visit_crossings(
+      grid, axis, field.cols(), field.rows(), true,
+      [&](const Crossing& at) {
+        const auto first = line.ground().lowered(at.first);
+        if (!first) return true;
+        const auto second = at.w1 > 0 ? line.ground().lowered(at.second) : first;
+        if (!second) return true;
+        const CrossingTerms terms{*first,        static_cast<double>(at.w0),
+                                  *second,       static_cast<double>(at.w1),
+                                  line.eye(),    static_cast<double>(kSubcells * (at.length - at.steps)),
+                                  line.target(), static_cast<double>(kSubcells * at.steps)};
+        return visit(SightCrossing{at, terms});
+      },
+      range);
 }
 
 }  // namespace scarp

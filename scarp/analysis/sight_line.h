@@ -9,6 +9,7 @@
 // and row lines likewise. numerics.md ("Maps") bounds the integers.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 
@@ -31,11 +32,17 @@ struct GridLine {
   std::int64_t x, y, a, b, scale;
 };
 
-/// Calls visit(crossing) for the column lines (axis 0) or row lines (axis 1) that `line` crosses with 0 < tau, and with
-/// tau < 1 if `ends`, inside the field, outwards from the start. Stops if visit returns false. A line that runs along
-/// grid lines of one axis crosses only those of the other. Returns whether visit never returned false.
+/// Grid lines of one axis by index, both included.
+struct LineRange {
+  std::int64_t first = 0, last = kMaxSightSide;
+};
+
+/// Calls visit(crossing) for the column lines (axis 0) or row lines (axis 1) of `range` that `line` crosses with
+/// 0 < tau, and with tau < 1 if `ends`, inside the field, outwards from the start. Stops if visit returns false. A line
+/// that runs along grid lines of one axis crosses only those of the other. Returns whether visit never returned false.
 template <class Visit>
-bool visit_crossings(const GridLine& line, int axis, int cols, int rows, bool ends, const Visit& visit) {
+bool visit_crossings(const GridLine& line, int axis, int cols, int rows, bool ends, const Visit& visit,
+                     const LineRange& range = {}) {
   const std::int64_t x = axis == 0 ? line.x : line.y, y = axis == 0 ? line.y : line.x;
   const std::int64_t a = axis == 0 ? line.a : line.b, b = axis == 0 ? line.b : line.a;
   const std::int64_t lines = axis == 0 ? cols : rows, across = axis == 0 ? rows : cols;
@@ -44,7 +51,9 @@ bool visit_crossings(const GridLine& line, int axis, int cols, int rows, bool en
   // The first line strictly after the start: x may lie between lines.
   const std::int64_t floor = x / line.scale;
   std::int64_t k = sign > 0 ? floor + 1 : (floor * line.scale == x ? floor - 1 : floor);
-  for (; k >= 0 && k < lines; k += sign) {
+  const std::int64_t low_line = std::max<std::int64_t>(range.first, 0), high_line = std::min(range.last, lines - 1);
+  if (sign > 0 ? k < low_line : k > high_line) k = sign > 0 ? low_line : high_line;
+  for (; k >= low_line && k <= high_line; k += sign) {
     const std::int64_t steps = std::abs(k * line.scale - x);
     if (ends && steps >= length) break;
     const std::int64_t place = y * length + b * steps;

@@ -12,6 +12,7 @@
 #include "analysis/slow_judge.h"
 #include "cases.h"
 #include "scarp/analysis/line_of_sight.h"
+#include "scarp/analysis/node_maxima.h"
 #include "scarp/analysis/profile.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -65,6 +66,40 @@ TEST(LineOfSight, EqualsTheJudgeEverywhere) {
     }
   EXPECT_GT(visible, 100);
   EXPECT_GT(blocked, 100);
+}
+
+// Skipping changes nothing, on fields of several blocks and with holes.
+TEST(LineOfSight, IsTheSameWithMaxima) {
+  std::mt19937 random(3);
+  const auto ridges = [](int col, int row) {
+    return 30 * std::sin(0.11 * col) * std::cos(0.07 * row) + (col * row) % 3;
+  };
+  for (const bool holes : {false, true}) {
+    const auto field = field_of(300, 290, 10, [&](int col, int row) {
+      return holes && (col * 7 + row * 3) % 5 == 0 ? std::nan("") : ridges(col, row);
+    });
+    const NodeMaxima maxima(field);
+    int visible = 0, blocked = 0;
+    for (int i = 0; i < cases(20000, 2000, 300); ++i) {
+      SightEnd from = random_end(field, random), to = random_end(field, random);
+      from.height = i % 3 * 20;
+      to.height = i % 5 * 10;
+      const SightCurvature curvature{.coefficient = 1, .diameter = i % 2 ? 1.3e7 : 1e5};
+      try {
+        const LineOfSight slow = line_of_sight(field, from, to, curvature);
+        const LineOfSight fast = line_of_sight(field, from, to, curvature, &maxima);
+        ASSERT_EQ(slow.visible, fast.visible);
+        ASSERT_EQ(slow.clearance, fast.clearance);
+        if (slow.obstruction) {
+          ASSERT_EQ(slow.obstruction->along, fast.obstruction->along);
+        }
+        ++(slow.visible ? visible : blocked);
+      } catch (const Error&) {
+      }
+    }
+    EXPECT_GT(visible, 20);
+    EXPECT_GT(blocked, 20);
+  }
 }
 
 TEST(LineOfSight, IsReciprocal) {
