@@ -36,6 +36,7 @@ struct FieldSurface {
   std::optional<VoxelColour> colour{};  ///< where the field has colours of its own
   int material = 0;                     ///< of the cell or the part of a shape, plus 1; 0: that of the object
   double openness = 1;                  ///< share of the sky that is open, as far as the field knows by itself
+  VoxelMaterial light{};                ///< what the surface emits and mirrors
   bool wall = false;                    ///< whether a wall of solid ground or of a plinth was hit
   /// z of the surface, where it is known to more digits than by the ray's point: a sea at 0 is at 0.
   std::optional<double> height{};
@@ -75,6 +76,8 @@ class SceneField {
   virtual std::optional<WorldBox> extent() const { return box(); }
   /// Whether the field is only seen: it throws no shadow and is no ground.
   virtual bool is_backdrop() const { return false; }
+  /// Whether any of its surfaces may mirror.
+  virtual bool mirrors() const { return false; }
   /// Returns the height of the ground at (x, y); nullopt beside the ground, in its holes, and for fields that are not
   /// ground.
   virtual std::optional<double> height(double x, double y) const;

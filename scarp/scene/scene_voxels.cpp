@@ -44,6 +44,7 @@ class VoxelField final : public SceneField {
                                                     : objects_.occluded_from(*from, ray);
   }
   bool likes_batches() const override { return true; }
+  bool mirrors() const override { return objects_.mirrors(); }
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const override {
     objects_.closest_hits(rays, hits, from);
   }
@@ -58,6 +59,7 @@ class VoxelField final : public SceneField {
     surface.normal = objects_.normal(p, hit);
     surface.shading_normal = shading_normal(hit, p, surface.normal);
     surface.colour = objects_.colour(hit);
+    surface.light = objects_.material(hit);
     if (shading_.corner_ao)
       surface.openness = corner_openness(objects_.grid(hit), hit.voxel, hit.face, objects_.place_in_grid(hit, p));
     return surface;

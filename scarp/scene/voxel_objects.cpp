@@ -265,6 +265,15 @@ VoxelColour VoxelObjects::colour(const Hit& hit) const {
   return model.colour(model.grid().entry(hit.voxel));
 }
 
+VoxelMaterial VoxelObjects::material(const Hit& hit) const {
+  const VoxelModel& model = *models_[objects_[hit.part].model];
+  return model.material(model.grid().entry(hit.voxel));
+}
+
+bool VoxelObjects::mirrors() const {
+  return std::any_of(models_.begin(), models_.end(), [](const auto& model) { return model->mirrors(); });
+}
+
 std::size_t VoxelObjects::bytes() const {
   return sizeof(*this) - sizeof(tree_) + objects_.size() * sizeof(Object) + turns_.size() * sizeof(Turn) +
          in_tree_.size() * sizeof(std::uint32_t) + targets_.size() * sizeof(VoxelTarget) + tree_.bytes();

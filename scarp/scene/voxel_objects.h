@@ -71,6 +71,9 @@ class VoxelObjects {
   /// The same by the point that was hit.
   dvec3 normal(const dvec3& p, const Hit& hit) const;
   VoxelColour colour(const Hit& hit) const;
+  VoxelMaterial material(const Hit& hit) const;
+  /// Whether any of its voxels may mirror.
+  bool mirrors() const;
 
   /// Contacts, overlaps and closest points with the cubes of the voxels, whatever their rounding; SceneField has them.
   std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const;
