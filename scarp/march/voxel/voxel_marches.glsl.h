@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The loop of all voxel marches in shaders, and their numbers. Text of C++ and of GLSL. The host defines what the
+// The loop of all voxel marches in shaders. Text of C++ and of GLSL. The host defines what the
 // marches ask for (voxel_planes.glsl.h, voxel_cubes.glsl.h, voxel_bricks.glsl.h).
 #ifndef SCARP_MARCH_VOXEL_MARCHES_GLSL_H
 #define SCARP_MARCH_VOXEL_MARCHES_GLSL_H
 
+#include "scarp/accel/voxel_buffers.glsl.h"
 #include "scarp/march/voxel/voxel_bricks.glsl.h"
 #include "scarp/march/voxel/voxel_cubes.glsl.h"
 #include "scarp/march/voxel/voxel_planes.glsl.h"
 #include "scarp/march/voxel/voxel_spheres.glsl.h"
 
 SCARP_GLSL_BEGIN
-
-const uint kScarpVoxelPlanes = 0u;
-const uint kScarpVoxelSpheres = 1u;
-const uint kScarpVoxelCubes = 2u;
-const uint kScarpVoxelOctants = 3u;
-const uint kScarpVoxelBricks = 4u;
 
 /// Follows a ray to the first solid voxel. Returns false if there is none in the box, or `turns` steps do not reach it;
 /// counts these down.
