@@ -14,7 +14,7 @@
 SCARP_GLSL_BEGIN
 
 // Specialisation constants: threads per workgroup; any hit or closest hit; the march, or kScarpVoxelMarches if grids
-// have several; places of the stack; whether 64-bit integers are two words; whether hits have their entry.
+// have several; levels of the hierarchy; whether 64-bit integers are two words; whether hits have their entry.
 
 /// A ray in world space, whose numbers are usual (voxel_queries_vk.cpp).
 struct ScarpVoxelRay {
@@ -49,6 +49,7 @@ struct VoxelBatch {
   Address objects;
   Address rays;
   Address hits;
+  Address directions;  ///< room for a ScarpVoxelDirection per ray
   uint count;
   int turns;  ///< steps and nodes of a ray
 };
@@ -58,7 +59,7 @@ struct VoxelBatch {
 layout(local_size_x_id = 0) in;
 layout(constant_id = 1) const uint batch_any = 0;
 layout(constant_id = 2) const uint batch_march = kScarpVoxelMarches;
-layout(constant_id = 3) const uint batch_stack = 32;
+layout(constant_id = 3) const uint batch_levels = 32;
 layout(constant_id = 4) const uint batch_words = 0;
 layout(constant_id = 5) const uint batch_entries = 0;
 
@@ -67,6 +68,10 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Vox
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer VoxelNodes { ScarpBoxNode of[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelObjects { ScarpVoxelObjects is; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelRays { ScarpVoxelRay rays[]; };
+// The same, read again rather than kept.
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly volatile buffer VoxelRaysAgain {
+  ScarpVoxelRay rays[];
+};
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer VoxelHits { ScarpVoxelHit hits[]; };
 layout(push_constant, scalar) uniform Push { VoxelBatch batch; };
 

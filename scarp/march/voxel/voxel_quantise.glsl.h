@@ -21,6 +21,7 @@ struct ScarpVoxelDirection {
   uvec3 speed;
   uint back;
   double t_per_s;
+  double t;  ///< room for the time where the ray comes into a box
 };
 
 SCARP_FN double scarp_magnitude(double x) { return x < double(0.0f) ? -x : x; }
@@ -42,6 +43,7 @@ SCARP_FN ScarpVoxelDirection scarp_voxel_direction(dvec3 given) {
     d.speed[axis] = share <= double(1.0f) ? uint(units) : 0u;
   }
   d.t_per_s = double(256.0f) * per_longest;
+  d.t = double(0.0f);
   return d;
 }
 

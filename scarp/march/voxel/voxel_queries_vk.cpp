@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 #include <string_view>
@@ -15,6 +16,7 @@
 #include "scarp/march/ray_runs_vk.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/voxel_batch.glsl.h"
+#include "scarp/march/voxel/voxel_quantise.glsl.h"
 #include "scarp/vk/loop_turns.glsl.h"
 
 namespace scarp {
@@ -78,13 +80,13 @@ VoxelRays::Prepared prepared_ray(const Ray& given, const Hit* from) {
   return prepared;
 }
 
-ShaderProgram program_of(bool any, std::uint32_t march, std::uint32_t waiting, bool words, bool int64, bool entries) {
+ShaderProgram program_of(bool any, std::uint32_t march, std::uint32_t levels, bool words, bool int64, bool entries) {
   const bool mixed = march == glsl::kScarpVoxelMarches;
   return {int64 ? "scarp/march/voxel/voxel_marches.comp" : "scarp/march/voxel/voxel_marches_words.comp",
           fmt::format("{}{}", mixed ? "several" : kNames[march], any ? " any" : ""),
           int64 ? std::span<const std::uint32_t>(kMarchesWords) : kMarchesWordsWords,
           sizeof(glsl::VoxelBatch),
-          {RayRuns<VoxelRays>::kThreads, any, march, waiting, words, entries}};
+          {RayRuns<VoxelRays>::kThreads, any, march, levels, words, entries}};
 }
 
 void require_doubles(const Device& device) {
@@ -113,6 +115,8 @@ DeviceBuffer filled(const Device& device, std::span<const T> from, const std::st
   return buffer;
 }
 
+constexpr std::size_t kMaxNodes = std::size_t{1} << 28;  // a word of the stack holds a node and four bits
+
 constexpr glsl::ScarpVoxelTurn kNoTurn{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
 // One box around a grid. Its sides are whole numbers, which are exact in float; half a voxel is more than what is
@@ -120,8 +124,9 @@ constexpr glsl::ScarpVoxelTurn kNoTurn{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 glsl::ScarpBoxNode node_around(const glsl::ScarpVoxelGrid& grid) {
   constexpr float kRoom = 0.5f;
   glsl::ScarpBoxNode node;
-  node.low_x = node.low_y = node.low_z = glsl::vec4(1);  // the others are empty
-  node.high_x = node.high_y = node.high_z = glsl::vec4(-1);
+  constexpr float kEndless = std::numeric_limits<float>::infinity();
+  node.low_x = node.low_y = node.low_z = glsl::vec4(kEndless);  // the others are empty
+  node.high_x = node.high_y = node.high_z = glsl::vec4(-kEndless);
   node.low_x.x = static_cast<float>(grid.low.x) - kRoom;
   node.low_y.x = static_cast<float>(grid.low.y) - kRoom;
   node.low_z.x = static_cast<float>(grid.low.z) - kRoom;
@@ -142,12 +147,15 @@ DeviceVoxelObjects::DeviceVoxelObjects(const Device& device, const DeviceVoxels&
                                        std::span<const glsl::ScarpVoxelObject> objects,
                                        std::span<const glsl::ScarpVoxelTurn> turns, const DeviceBoxes& boxes)
     : march_(march_of_all(grids, objects)),
-      most_waiting_(boxes.most_waiting),
+      levels_(boxes.levels),
       objects_(filled(device, objects, "voxel objects")),
       turns_(filled(device, turns, "turns of voxel objects")),
       nodes_(filled(device, boxes.nodes, "boxes of voxel objects")),
       header_(device, sizeof(glsl::ScarpVoxelObjects), "the voxel objects' layout") {
   require_doubles(device);
+  if (boxes.levels > DeviceBoxes::kMaxLevels || boxes.nodes.size() >= kMaxNodes)
+    throw Error(fmt::format("voxels: a hierarchy of {} boxes on {} levels (devices take {} and {}): use the CPU",
+                            boxes.nodes.size(), boxes.levels, kMaxNodes, DeviceBoxes::kMaxLevels));
   for (const glsl::ScarpVoxelObject& object : objects) {
     const glsl::ScarpVoxelTurn& turn = turns[object.turn];
     if (are_numbers_of_devices(object.origin) && are_numbers_of_devices(turn.x) && are_numbers_of_devices(turn.y) &&
@@ -164,16 +172,20 @@ DeviceVoxelObjects::DeviceVoxelObjects(const Device& device, const DeviceVoxels&
     : DeviceVoxelObjects(device, grids, std::array{glsl::ScarpVoxelObject{dvec3(0.0), grid, 0, 0, 0}},
                          std::array{kNoTurn},
                          {std::array{node_around(grids.layout()[grid])}, dvec3(0.0),
-                          dvec3(grids.layout()[grid].low) - 1.0, dvec3(grids.layout()[grid].high) + 1.0, 4}) {}
+                          dvec3(grids.layout()[grid].low) - 1.0, dvec3(grids.layout()[grid].high) + 1.0, 1}) {}
 
 struct DeviceVoxelQueries::Impl {
   Impl(const Device& device_, const DeviceVoxelSettings& settings_)
-      : device(device_), settings(settings_), runs(device_, settings_.rays_at_once) {}
+      : device(device_),
+        settings(settings_),
+        runs(device_, settings_.rays_at_once),
+        directions(device_, std::uint64_t{settings_.rays_at_once} * sizeof(glsl::ScarpVoxelDirection),
+                   "directions of rays") {}
 
   // Specialised on first use.
   const ComputePipeline& pipeline(const DeviceVoxelObjects& objects, bool any, bool entries) {
     const bool int64 = device.description().abilities.int64;
-    const ShaderProgram program = program_of(any, objects.march(), std::bit_ceil(objects.most_waiting()),
+    const ShaderProgram program = program_of(any, objects.march(), std::bit_ceil(objects.levels()),
                                              settings.words, int64, entries);
     const auto made = pipelines.find(program.constants);
     if (made != pipelines.end()) return made->second;
@@ -186,6 +198,7 @@ struct DeviceVoxelQueries::Impl {
                                std::span<const Hit* const> from, const Answer& answer) {
     glsl::VoxelBatch batch{};
     batch.objects = objects.address();
+    batch.directions = directions.address();
     batch.turns = glsl::kScarpLoopTurns;
     std::vector<std::uint8_t> left(asked.size());
     runs.ask(
@@ -205,6 +218,7 @@ struct DeviceVoxelQueries::Impl {
   Device device;
   DeviceVoxelSettings settings;
   RayRuns<VoxelRays> runs;
+  DeviceBuffer directions;
   std::map<std::vector<std::uint32_t>, ComputePipeline> pipelines;  // by specialisation
 };
 
@@ -250,14 +264,14 @@ std::vector<std::size_t> DeviceVoxelQueries::occluded(const DeviceVoxelObjects& 
 const std::vector<PassTime>& DeviceVoxelQueries::passes() const { return impl_->runs.passes(); }
 
 std::vector<ShaderProgram> voxel_query_shaders() {
-  constexpr std::uint32_t kWaiting = 32;
+  constexpr std::uint32_t kLevels = 16;  // a million objects
   std::vector<ShaderProgram> all;
   for (const bool any : {false, true}) {
     for (std::uint32_t march = 0; march <= glsl::kScarpVoxelMarches; ++march)
-      all.push_back(program_of(any, march, kWaiting, false, true, false));
+      all.push_back(program_of(any, march, kLevels, false, true, false));
   }
   for (std::uint32_t march = 0; march < glsl::kScarpVoxelMarches; ++march)
-    all.push_back(program_of(false, march, kWaiting, true, false, false));
+    all.push_back(program_of(false, march, kLevels, true, false, false));
   return all;
 }
 

@@ -32,7 +32,8 @@ struct DeviceBoxes {
   std::span<const glsl::ScarpBoxNode> nodes;
   dvec3 middle{0.0};                ///< nodes are relative to it
   dvec3 low{0.0}, high{0.0};        ///< the padded box around everything
-  std::uint32_t most_waiting = 4;  ///< children that a ray may have put by
+  std::uint32_t levels = 1;         ///< of the hierarchy, at most kMaxLevels
+  static constexpr std::uint32_t kMaxLevels = 64;
 };
 
 /// Grids in their places on a device. The grids must live as long.
@@ -48,11 +49,12 @@ class DeviceVoxelObjects {
   std::uint64_t address() const { return header_.address(); }
   /// The march of all grids, or kScarpVoxelMarches if they have several.
   std::uint32_t march() const { return march_; }
-  std::uint32_t most_waiting() const { return most_waiting_; }
+  /// Of the hierarchy.
+  std::uint32_t levels() const { return levels_; }
   std::uint64_t bytes() const { return objects_.bytes() + turns_.bytes() + nodes_.bytes() + header_.bytes(); }
 
  private:
-  std::uint32_t march_, most_waiting_;
+  std::uint32_t march_, levels_;
   DeviceBuffer objects_, turns_, nodes_, header_;
 };
 
