@@ -75,7 +75,7 @@ uint nearest_child(ScarpBoxNode node, BoxRay boxes, float end, inout uint rest) 
   for (uint k = 0u; k < 4u; ++k) {
     if ((rest >> k & 1u) == 0u || !met[k]) continue;
     left |= 1u << k;
-    if (found != kScarpNoChild && near[k] >= nearest) continue;
+    if (found != kScarpNoChild && near[k] > nearest) continue;  // of those as near the last, as BoxTree has it
     found = node.child[k];
     own = 1u << k;
     nearest = near[k];
