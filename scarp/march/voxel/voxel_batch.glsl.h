@@ -31,7 +31,7 @@ const uint kScarpVoxelMiss = 0u;
 const uint kScarpVoxelHit = 1u;
 const uint kScarpVoxelUnfinished = 2u;  ///< it took more turns than there are
 
-/// The answer; for misses only status, steps and boxes mean something.
+/// The answer; for misses only status and steps mean something.
 struct ScarpVoxelHit {
   double t;
   ivec3 voxel;
@@ -39,9 +39,21 @@ struct ScarpVoxelHit {
   uint face;
   uint status;
   uint steps;
-  uint boxes;
   uint entry;
-  uint none;
+};
+
+/// What a ray has in memory between and during marches.
+struct ScarpVoxelScratch {
+  dvec3 given;    ///< its direction in the grid of the object at hand
+  dvec3 inverse;  ///< 1 / given
+  dvec3 origin;   ///< in that grid
+  double t_per_s;
+  double t;      ///< where it comes into the object's box
+  double t_in;   ///< where it comes into the box around everything
+  uvec3 speed;
+  uint back;
+  uint entered;  ///< face of the object's box
+  float longest;
 };
 
 /// Push constants.
@@ -49,7 +61,7 @@ struct VoxelBatch {
   Address objects;
   Address rays;
   Address hits;
-  Address directions;  ///< room for a ScarpVoxelDirection per ray
+  Address scratch;  ///< a ScarpVoxelScratch per ray
   uint count;
   int turns;  ///< steps and nodes of a ray
 };

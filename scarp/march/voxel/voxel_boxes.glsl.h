@@ -14,71 +14,76 @@
 const float kSteepest = 1152921504606846976.0;
 const float kRounding = 1.0 + 1.0 / 524288.0;
 
-// A ray relative to the middle of the hierarchy, in units of its longest component.
-struct BoxRay {
-  vec3 origin;
-  vec3 inwards;
-  double t_in;
-  float longest;
-};
+// What a ray has in memory; read again rather than kept.
+layout(buffer_reference, scalar, buffer_reference_align = 8) volatile buffer VoxelScratch { ScarpVoxelScratch of[]; };
 
-float box_end(BoxRay ray, double t) { return float((t - ray.t_in) * double(ray.longest)) * kRounding; }
+// In shared memory per invocation, so that marches have the registers: nodes with children yet to visit, 4 bits each,
+// one per level; and the ray relative to the middle of the hierarchy, in units of its longest component.
+shared uint waiting[batch_levels * gl_WorkGroupSize.x];
+shared vec3 box_origin[gl_WorkGroupSize.x];
+shared vec3 box_inwards[gl_WorkGroupSize.x];
+
+// The end of a ray in that unit.
+float box_end(uint i, double t) {
+  VoxelScratch scratch = VoxelScratch(batch.scratch);
+  return float((t - scratch.of[i].t_in) * double(scratch.of[i].longest)) * kRounding;
+}
 
 // Returns false for a ray that passes the box around everything.
-bool enter_boxes(ScarpVoxelRay ray, VoxelObjects scene, out BoxRay boxes, out float end) {
-  double t_in = ray.t_min, t_out = ray.t_max;
-  for (int axis = 0; axis < 3; ++axis) {
-    double d = ray.direction[axis], low = scene.is.low[axis], high = scene.is.high[axis];
+bool enter_boxes(uint i, VoxelObjects scene, out float end) {
+  VoxelRays rays = VoxelRays(batch.rays);
+  double t_in = rays.rays[i].t_min, t_out = rays.rays[i].t_max, longest = 0.0lf;
+  [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
+    double d = rays.rays[i].direction[axis], origin = rays.rays[i].origin[axis];
+    double low = scene.is.low[axis], high = scene.is.high[axis];
+    longest = max(longest, abs(d));
     if (d == 0.0lf) {
-      if (ray.origin[axis] < low || ray.origin[axis] > high) return false;
+      if (origin < low || origin > high) return false;
       continue;
     }
-    double inverse = 1.0lf / d, a = (low - ray.origin[axis]) * inverse, b = (high - ray.origin[axis]) * inverse;
+    double inverse = 1.0lf / d, a = (low - origin) * inverse, b = (high - origin) * inverse;
     t_in = max(t_in, min(a, b));
     t_out = min(t_out, max(a, b));
   }
   if (!(t_in <= t_out)) return false;
-  double longest = max(max(abs(ray.direction.x), abs(ray.direction.y)), abs(ray.direction.z));
   double per_longest = 1.0lf / longest;
-  for (int axis = 0; axis < 3; ++axis) {
-    boxes.origin[axis] = float(ray.origin[axis] + t_in * ray.direction[axis] - scene.is.middle[axis]);
-    float slope = float(ray.direction[axis] * per_longest);
-    boxes.inwards[axis] = abs(slope) * kSteepest < 1.0 ? (slope < 0.0 ? -kSteepest : kSteepest) : 1.0 / slope;
+  [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
+    double d = rays.rays[i].direction[axis];
+    float slope = float(d * per_longest);
+    box_origin[gl_LocalInvocationIndex][axis] = float(rays.rays[i].origin[axis] + t_in * d - scene.is.middle[axis]);
+    box_inwards[gl_LocalInvocationIndex][axis] =
+        abs(slope) * kSteepest < 1.0 ? (slope < 0.0 ? -kSteepest : kSteepest) : 1.0 / slope;
   }
-  boxes.t_in = t_in;
-  boxes.longest = float(longest);
-  end = box_end(boxes, t_out);
+  VoxelScratch scratch = VoxelScratch(batch.scratch);
+  scratch.of[i].t_in = t_in;
+  scratch.of[i].longest = float(longest);
+  end = box_end(i, t_out);
   return true;
 }
-
-// Nodes with children yet to visit, 4 bits each, one per level.
-shared uint waiting[batch_levels * gl_WorkGroupSize.x];
 
 // No child is as large.
 const uint kScarpNoChild = 0xffffffffu;
 
 // Returns the child of a node to visit next: the nearest of those in `rest` that the ray meets before `end`, or
 // kScarpNoChild. Leaves the others in `rest`.
-uint nearest_child(ScarpBoxNode node, BoxRay boxes, float end, inout uint rest) {
-  vec4 near = vec4(0.0), far = vec4(end);
-  bvec3 down = lessThan(boxes.inwards, vec3(0.0));
-  vec3 outwards = boxes.inwards * kRounding;
-  near = max(near, ((down.x ? node.high_x : node.low_x) - boxes.origin.x) * boxes.inwards.x);
-  near = max(near, ((down.y ? node.high_y : node.low_y) - boxes.origin.y) * boxes.inwards.y);
-  near = max(near, ((down.z ? node.high_z : node.low_z) - boxes.origin.z) * boxes.inwards.z);
-  far = min(far, ((down.x ? node.low_x : node.high_x) - boxes.origin.x) * outwards.x);
-  far = min(far, ((down.y ? node.low_y : node.high_y) - boxes.origin.y) * outwards.y);
-  far = min(far, ((down.z ? node.low_z : node.high_z) - boxes.origin.z) * outwards.z);
-  bvec4 met = lessThanEqual(near, far);
+uint nearest_child(VoxelNodes nodes, uint node, float end, inout uint rest) {
+  vec3 origin = box_origin[gl_LocalInvocationIndex], inwards = box_inwards[gl_LocalInvocationIndex];
   uint found = kScarpNoChild, left = 0u, own = 0u;
   float nearest = 0.0;
-  for (uint k = 0u; k < 4u; ++k) {
-    if ((rest >> k & 1u) == 0u || !met[k]) continue;
+  [[dont_unroll]] for (uint k = 0u; k < 4u; ++k) {
+    vec3 low = vec3(nodes.of[node].low_x[k], nodes.of[node].low_y[k], nodes.of[node].low_z[k]);
+    vec3 high = vec3(nodes.of[node].high_x[k], nodes.of[node].high_y[k], nodes.of[node].high_z[k]);
+    bvec3 down = lessThan(inwards, vec3(0.0));
+    vec3 into = (mix(low, high, down) - origin) * inwards;
+    vec3 out_of = (mix(high, low, down) - origin) * (inwards * kRounding);
+    float near = max(max(into.x, into.y), max(into.z, 0.0));
+    if (!(near <= min(min(out_of.x, out_of.y), min(out_of.z, end))) || (rest >> k & 1u) == 0u) continue;
     left |= 1u << k;
-    if (found != kScarpNoChild && near[k] > nearest) continue;  // of those as near the last, as BoxTree has it
-    found = node.child[k];
+    // Of those as near the last, as BoxTree has it.
+    if (found != kScarpNoChild && near > nearest) continue;
+    found = nodes.of[node].child[k];
     own = 1u << k;
-    nearest = near[k];
+    nearest = near;
   }
   rest = left & ~own;
   return found;

@@ -16,7 +16,6 @@
 #include "scarp/march/ray_runs_vk.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/voxel_batch.glsl.h"
-#include "scarp/march/voxel/voxel_quantise.glsl.h"
 #include "scarp/vk/loop_turns.glsl.h"
 
 namespace scarp {
@@ -179,8 +178,7 @@ struct DeviceVoxelQueries::Impl {
       : device(device_),
         settings(settings_),
         runs(device_, settings_.rays_at_once),
-        directions(device_, std::uint64_t{settings_.rays_at_once} * sizeof(glsl::ScarpVoxelDirection),
-                   "directions of rays") {}
+        scratch(device_, std::uint64_t{settings_.rays_at_once} * sizeof(glsl::ScarpVoxelScratch), "scratch of rays") {}
 
   // Specialised on first use.
   const ComputePipeline& pipeline(const DeviceVoxelObjects& objects, bool any, bool entries) {
@@ -198,7 +196,7 @@ struct DeviceVoxelQueries::Impl {
                                std::span<const Hit* const> from, const Answer& answer) {
     glsl::VoxelBatch batch{};
     batch.objects = objects.address();
-    batch.directions = directions.address();
+    batch.scratch = scratch.address();
     batch.turns = glsl::kScarpLoopTurns;
     std::vector<std::uint8_t> left(asked.size());
     runs.ask(
@@ -218,7 +216,7 @@ struct DeviceVoxelQueries::Impl {
   Device device;
   DeviceVoxelSettings settings;
   RayRuns<VoxelRays> runs;
-  DeviceBuffer directions;
+  DeviceBuffer scratch;
   std::map<std::vector<std::uint32_t>, ComputePipeline> pipelines;  // by specialisation
 };
 

@@ -17,10 +17,7 @@ struct ScarpVoxelWalk {
   uvec3 next;  ///< distance to the next plane in 2^-20 voxel; any positive number if speed is 0
   uvec3 speed;
   uint back;
-  int axis;       ///< crossed last; -1: none
-  uint entered;   ///< VoxelFace by which it came into the box
-  double t;       ///< at the entry
-  double t_per_s;
+  int axis;  ///< crossed last; -1: none
 };
 
 SCARP_FN int scarp_voxel_step(uint back, int axis) { return (back >> uint(axis) & 1u) != 0u ? -1 : 1; }
@@ -91,17 +88,17 @@ SCARP_FN bool scarp_voxel_travel(SCARP_INOUT(ScarpVoxelWalk) walk, uint voxels, 
 /// Distance of the last plane crossed along walk.axis, which must not be -1.
 SCARP_FN uint scarp_voxel_distance(ScarpVoxelWalk walk) { return walk.next[walk.axis] - kScarpVoxelPlaces; }
 
-/// The time at the current voxel.
-SCARP_FN double scarp_voxel_time(ScarpVoxelWalk walk) {
-  if (walk.axis < 0) return walk.t;
+/// The time at the current voxel, given that at the entry into the box.
+SCARP_FN double scarp_voxel_time(ScarpVoxelWalk walk, double t_entered, double t_per_s) {
+  if (walk.axis < 0) return t_entered;
   double ratio = scarp_exact_ratio(scarp_voxel_distance(walk), walk.speed[walk.axis]);
-  SCARP_PRECISE double later = ratio * walk.t_per_s;
-  SCARP_PRECISE double t = walk.t + later;
+  SCARP_PRECISE double later = ratio * t_per_s;
+  SCARP_PRECISE double t = t_entered + later;
   return t;
 }
-/// The face by which the current voxel was entered.
-SCARP_FN uint scarp_voxel_face(ScarpVoxelWalk walk) {
-  return walk.axis < 0 ? walk.entered : 2u * uint(walk.axis) + (walk.back >> uint(walk.axis) & 1u);
+/// The face by which the current voxel was entered, given that by which the box was.
+SCARP_FN uint scarp_voxel_face(ScarpVoxelWalk walk, uint entered) {
+  return walk.axis < 0 ? entered : 2u * uint(walk.axis) + (walk.back >> uint(walk.axis) & 1u);
 }
 
 SCARP_GLSL_END

@@ -14,8 +14,12 @@
 
 #include "scarp/vk/glsl_cpp.h"
 
+// A loop that is run as such takes fewer registers and instructions. Shaders enable GL_EXT_control_flow_attributes.
 #ifdef __cplusplus
 #define SCARP_INT64
+#define SCARP_DONT_UNROLL
+#else
+#define SCARP_DONT_UNROLL [[dont_unroll]]
 #endif
 
 SCARP_GLSL_BEGIN
@@ -125,7 +129,7 @@ SCARP_FN double scarp_next_double(double x, bool away) {
 
 /// Returns a / b for a, b > 0, given a quotient that is off by at most 3 units.
 SCARP_FN double scarp_corrected_ratio(double ratio, uint a, uint b) {
-  for (int turn = 0; turn < 4; ++turn) {
+  SCARP_DONT_UNROLL for (int turn = 0; turn < 4; ++turn) {
     // ratio = mantissa 2^-shift; the remainder a 2^shift - mantissa b fits in a word.
     uvec2 words = unpackDouble2x32(ratio);
     uint shift = 1075u - (words.y >> 20);
@@ -143,7 +147,7 @@ SCARP_FN double scarp_corrected_inverse(double inverse, double x) {
   uint divisor_high = (of.y & 0xfffffu) | 0x100000u;
   // Half the mantissa of x, rounded down.
   uvec2 least = uvec2(of.x >> 1 | divisor_high << 31, divisor_high >> 1);
-  for (int turn = 0; turn < 4; ++turn) {
+  SCARP_DONT_UNROLL for (int turn = 0; turn < 4; ++turn) {
     // The remainder 2^k - mantissa mantissa_x fits in two words, and 2^k leaves nothing there.
     uvec2 words = unpackDouble2x32(inverse);
     uint mantissa_high = (words.y & 0xfffffu) | 0x100000u;
