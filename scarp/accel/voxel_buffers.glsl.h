@@ -58,11 +58,9 @@ struct ScarpVoxelObject {
   uint none;
 };
 
-/// Columns of grid_from_world.
+/// Rows of grid_from_world.
 struct ScarpVoxelTurn {
-  dvec3 x;
-  dvec3 y;
-  dvec3 z;
+  dvec3 rows[3];
 };
 
 /// A node of the hierarchy over the objects, as BoxTree has it: four boxes relative to the middle of all, and their

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <glm/matrix.hpp>
 #include <utility>
 #include <vector>
 
@@ -33,7 +34,10 @@ DeviceVoxelObjects placed_on(const Device& device, const DeviceVoxels& grids, co
   for (const VoxelObjects::Placed& placed : voxels.placed())
     objects.push_back({placed.origin, placed.model, placed.turn, placed.part, 0});
   std::vector<glsl::ScarpVoxelTurn> turns;
-  for (const glm::dmat3& turn : voxels.turns()) turns.push_back({turn[0], turn[1], turn[2]});
+  for (const glm::dmat3& turn : voxels.turns()) {
+    const glm::dmat3 rows = transpose(turn);
+    turns.push_back({{rows[0], rows[1], rows[2]}});
+  }
   const BoxTree::Parts tree = voxels.tree().parts();
   std::vector<glsl::ScarpBoxNode> nodes(tree.nodes.size() / sizeof(glsl::ScarpBoxNode));
   if (!nodes.empty()) std::memcpy(nodes.data(), tree.nodes.data(), tree.nodes.size());

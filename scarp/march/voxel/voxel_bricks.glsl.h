@@ -21,8 +21,9 @@ SCARP_FN uvec2 scarp_ahead(ivec3 from, uint back) {
   layer = (layer & row * 0x1111u) * 0x10001u;
   // The second layer of a word.
   uint part = 0xffff0000u;
-  if ((back & 4u) != 0u) return uvec2(z == 0u ? layer & ~part : layer, z < 2u ? 0u : z == 2u ? layer & ~part : layer);
-  return uvec2(z == 0u ? layer : z == 1u ? layer & part : 0u, z == 3u ? layer & part : layer);
+  uvec2 up = uvec2(z == 0u ? layer : z == 1u ? layer & part : 0u, z == 3u ? layer & part : layer);
+  uvec2 down = uvec2(z == 0u ? layer & ~part : layer, z < 2u ? 0u : z == 2u ? layer & ~part : layer);
+  return (back & 4u) != 0u ? down : up;
 }
 
 /// Whether the block of 2 x 2 x 2 around a bit is empty.
@@ -48,7 +49,6 @@ SCARP_FN bool scarp_bricks_turn(SCARP_INOUT(ScarpVoxelWalk) walk, SCARP_OUT(bool
   mask = uvec2(mask.x & ahead.x, mask.y & ahead.y);
   int level = 0;
   solid = scarp_mask_has(mask, bit);
-  if (solid) return false;
   if ((mask.x | mask.y) != 0u) {
     level = scarp_pair_empty(mask, bit) ? 1 : 0;
   } else {
@@ -61,7 +61,13 @@ SCARP_FN bool scarp_bricks_turn(SCARP_INOUT(ScarpVoxelWalk) walk, SCARP_OUT(bool
     uint others = brick_bit < 32u ? (sector.x & ~own) | sector.y : sector.x | (sector.y & ~own);
     level = others == 0u ? 4 : scarp_pair_empty(sector, brick_bit) ? 3 : 2;
   }
-  return level == 0 ? scarp_voxel_cross(walk) : scarp_voxel_leave(walk, scarp_planes_of_block(walk, level));
+  bool inside = false;
+  if (level > 0) {
+    inside = scarp_voxel_leave(walk, scarp_planes_of_block(walk, level));
+  } else if (!solid) {
+    inside = scarp_voxel_cross(walk);
+  }
+  return inside;
 }
 
 SCARP_GLSL_END

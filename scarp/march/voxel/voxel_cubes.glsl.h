@@ -17,8 +17,13 @@ uint scarp_voxel_byte(const ivec3& voxel, uint octant);
 SCARP_FN bool scarp_cubes_turn(SCARP_INOUT(ScarpVoxelWalk) walk, SCARP_OUT(bool) solid) {
   int side = int(scarp_voxel_byte(walk.voxel, walk.back));
   solid = side == 0;
-  if (solid) return false;
-  return side == 1 ? scarp_voxel_cross(walk) : scarp_voxel_leave(walk, ivec3(side));
+  bool inside = false;
+  if (side == 1) {
+    inside = scarp_voxel_cross(walk);
+  } else if (!solid) {
+    inside = scarp_voxel_leave(walk, ivec3(side));
+  }
+  return inside;
 }
 
 SCARP_GLSL_END

@@ -5,7 +5,8 @@
 // at the same t that of the first object counts.
 //
 // A march has few registers if little else is alive meanwhile. What a ray needs between objects alone, its numbers and
-// its best hit, is therefore kept in memory and read again.
+// its best hit, is therefore kept in memory and read again. No function here or below returns in its middle: compilers
+// would keep all that it computes from one object to the next.
 #ifndef SCARP_MARCH_VOXEL_OBJECTS_GLSL_H
 #define SCARP_MARCH_VOXEL_OBJECTS_GLSL_H
 
@@ -23,12 +24,12 @@ struct VoxelQuery {
   int turns;  // left
 };
 
-// A component of grid_from_world * v.
-double scarp_turned(ScarpVoxelTurn turn, int axis, dvec3 v) {
-  precise double x = turn.x[axis] * v.x;
-  precise double y = turn.y[axis] * v.y;
-  precise double z = turn.z[axis] * v.z;
+// A component of grid_from_world * v, given its row.
+double scarp_turned(dvec3 row, dvec3 v) {
+  precise double x = row.x * v.x;
+  precise double y = row.y * v.y;
   precise double xy = x + y;
+  precise double z = row.z * v.z;
   precise double sum = xy + z;
   return sum;
 }
@@ -39,7 +40,7 @@ void scarp_turn_ray(uint ray, uint turn, VoxelTurns turns) {
   double per_longest = 0.0lf;
   uint back = 0u;
   [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
-    double given = scarp_turned(turns.of[turn], axis, VoxelRaysAgain(batch.rays).rays[ray].direction);
+    double given = scarp_turned(turns.of[turn].rows[axis], VoxelRaysAgain(batch.rays).rays[ray].direction);
     if (given < 0.0lf) back |= 1u << uint(axis);
     double inverse = scarp_exact_inverse(given), size = scarp_magnitude(inverse);
     if (axis == 0 || size < per_longest) per_longest = size;
@@ -63,29 +64,32 @@ bool scarp_quantise(VoxelQuery query, VoxelObjectList objects, uint index, Voxel
   bool met = true;
   [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
     precise dvec3 away = rays.rays[ray].origin - objects.of[index].origin;
-    double origin = scarp_turned(turns.of[query.turn], axis, away);
+    double origin = scarp_turned(turns.of[query.turn].rows[axis], away);
     scratch.of[ray].origin[axis] = origin;
-    met = met && scarp_voxel_clip(axis, origin, scratch.of[ray].given[axis], scratch.of[ray].inverse[axis],
-                                  grids.grids[grid].low[axis], grids.grids[grid].high[axis], has_start,
-                                  rays.rays[ray].start[axis], clip);
+    met = scarp_voxel_clip(axis, origin, scratch.of[ray].given[axis], scratch.of[ray].inverse[axis],
+                           grids.grids[grid].low[axis], grids.grids[grid].high[axis], has_start,
+                           rays.rays[ray].start[axis], clip) &&
+          met;
   }
-  if (!met || !(clip.t <= clip.t_out)) return false;
-  [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
-    ScarpVoxelPlace at;
-    met = met && scarp_voxel_place(axis, scratch.of[ray].origin[axis], scratch.of[ray].given[axis],
-                                   scratch.of[ray].speed[axis], grids.grids[grid].low[axis],
-                                   grids.grids[grid].high[axis], has_start, rays.rays[ray].start[axis], clip, at);
-    walk.voxel[axis] = at.voxel;
-    walk.left[axis] = at.left;
-    walk.next[axis] = at.next;
+  met = met && clip.t <= clip.t_out;
+  if (met) {
+    [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
+      ScarpVoxelPlace at;
+      met = scarp_voxel_place(axis, scratch.of[ray].origin[axis], scratch.of[ray].given[axis],
+                              scratch.of[ray].speed[axis], grids.grids[grid].low[axis], grids.grids[grid].high[axis],
+                              has_start, rays.rays[ray].start[axis], clip, at) &&
+            met;
+      walk.voxel[axis] = at.voxel;
+      walk.left[axis] = at.left;
+      walk.next[axis] = at.next;
+    }
+    walk.speed = scratch.of[ray].speed;
+    walk.back = scratch.of[ray].back;
+    walk.axis = -1;
+    scratch.of[ray].t = clip.t;
+    scratch.of[ray].entered = scarp_voxel_entered(clip, walk.back);
   }
-  if (!met) return false;
-  walk.speed = scratch.of[ray].speed;
-  walk.back = scratch.of[ray].back;
-  walk.axis = -1;
-  scratch.of[ray].t = clip.t;
-  scratch.of[ray].entered = scarp_voxel_entered(clip, walk.back);
-  return true;
+  return met;
 }
 
 // Looks for a hit in an object that is better than the one so far. Returns whether there is one, which is written.
@@ -98,24 +102,28 @@ bool scarp_ask_object(VoxelObjects scene, uint index, inout VoxelQuery query) {
     scarp_turn_ray(query.ray, turn, turns);
   }
   VoxelGrids grids = VoxelGrids(scene.is.grids);
-  // Or compilers keep those of the last object until here.
   ScarpVoxelWalk walk = ScarpVoxelWalk(ivec3(0), ivec3(0), uvec3(0u), uvec3(0u), 0u, 0);
-  if (!scarp_quantise(query, objects, index, turns, grids, walk)) return false;
-  voxel_grid = grids.grids[objects.of[index].grid];
-  uint march = batch_march == kScarpVoxelMarches ? voxel_grid.march : batch_march;
-  if (!scarp_first_voxel(march, walk, query.turns)) return false;
-  VoxelScratch scratch = VoxelScratch(batch.scratch);
-  double t = scarp_voxel_time(walk, scratch.of[query.ray].t, scratch.of[query.ray].t_per_s);
-  uint part = objects.of[index].part;
-  if (t > query.t_max || (t == query.t_max && part > query.part)) return false;
-  query.t_max = t;
-  query.part = part;
-  VoxelHits hits = VoxelHits(batch.hits);
-  hits.hits[query.ray].t = t;
-  hits.hits[query.ray].voxel = walk.voxel;
-  hits.hits[query.ray].face = scarp_voxel_face(walk, scratch.of[query.ray].entered);
-  if (batch_entries != 0u) hits.hits[query.ray].entry = voxel_entry(voxel_grid, walk.voxel);
-  return true;
+  bool better = false;
+  if (scarp_quantise(query, objects, index, turns, grids, walk)) {
+    voxel_grid = grids.grids[objects.of[index].grid];
+    uint march = batch_march == kScarpVoxelMarches ? voxel_grid.march : batch_march;
+    if (scarp_first_voxel(march, walk, query.turns)) {
+      VoxelScratch scratch = VoxelScratch(batch.scratch);
+      double t = scarp_voxel_time(walk, scratch.of[query.ray].t, scratch.of[query.ray].t_per_s);
+      uint part = objects.of[index].part;
+      better = t < query.t_max || (t == query.t_max && part <= query.part);
+      if (better) {
+        query.t_max = t;
+        query.part = part;
+        VoxelHits hits = VoxelHits(batch.hits);
+        hits.hits[query.ray].t = t;
+        hits.hits[query.ray].voxel = walk.voxel;
+        hits.hits[query.ray].face = scarp_voxel_face(walk, scratch.of[query.ray].entered);
+        if (batch_entries != 0u) hits.hits[query.ray].entry = voxel_entry(voxel_grid, walk.voxel);
+      }
+    }
+  }
+  return better;
 }
 
 // Answers a ray; writes the answer to the hits.

@@ -24,7 +24,9 @@ SCARP_FN bool scarp_mask_has(uvec2 mask, uint bit) {
 SCARP_FN bool scarp_planes_turn(SCARP_INOUT(ScarpVoxelWalk) walk, SCARP_OUT(bool) solid) {
   ivec3 brick = ivec3(walk.voxel.x >> 2, walk.voxel.y >> 2, walk.voxel.z >> 2);
   solid = scarp_mask_has(scarp_voxel_mask(brick), scarp_voxel_bit(walk.voxel));
-  return !solid && scarp_voxel_cross(walk);
+  bool inside = false;
+  if (!solid) inside = scarp_voxel_cross(walk);
+  return inside;
 }
 
 SCARP_GLSL_END

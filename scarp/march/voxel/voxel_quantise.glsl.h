@@ -39,22 +39,23 @@ SCARP_FN bool scarp_voxel_clip(int axis, double origin, double given, double inv
                                int start, SCARP_INOUT(ScarpVoxelClip) clip) {
   bool up = !(given < double(0.0f));
   double from = double(up ? low : high), to = double(up ? high : low);
-  if (given == double(0.0f)) return origin >= from && origin < to;
-  SCARP_PRECISE double before = from - origin;
-  SCARP_PRECISE double t_near = before * inverse;
-  SCARP_PRECISE double behind = to - origin;
-  SCARP_PRECISE double t_far = behind * inverse;
-  bool outside = false;
-  if (has_start) {
-    if (up ? start >= high : start < low) return false;
-    outside = up ? start < low : start >= high;
+  bool met = true;
+  if (given == double(0.0f)) {
+    met = origin >= from && origin < to;
+  } else {
+    SCARP_PRECISE double before = from - origin;
+    SCARP_PRECISE double t_near = before * inverse;
+    SCARP_PRECISE double behind = to - origin;
+    SCARP_PRECISE double t_far = behind * inverse;
+    bool outside = has_start && (up ? start < low : start >= high);
+    met = !has_start || (up ? start < high : start >= low);
+    if (outside || t_near >= clip.t) {
+      clip.t = clip.t < t_near ? t_near : clip.t;
+      clip.entered = axis;
+    }
+    clip.t_out = t_far < clip.t_out ? t_far : clip.t_out;
   }
-  if (outside || t_near >= clip.t) {
-    clip.t = clip.t < t_near ? t_near : clip.t;
-    clip.entered = axis;
-  }
-  clip.t_out = t_far < clip.t_out ? t_far : clip.t_out;
-  return true;
+  return met;
 }
 
 /// The face by which it comes in.
@@ -87,7 +88,7 @@ SCARP_FN bool scarp_voxel_place(int axis, double origin, double given, uint spee
     at.voxel = int(place);
     if (!up && double(at.voxel) == place) at.voxel -= 1;
   }
-  SCARP_PRECISE double distance = up ? double(at.voxel + 1) - place : place - double(at.voxel);
+  SCARP_PRECISE double distance = up ? (double(at.voxel) + double(1.0f)) - place : place - double(at.voxel);
   SCARP_PRECISE double units = distance * double(1048576.0f) + double(0.5f);
   // A start voxel may be far from the place.
   units = units > double(0.0f) ? units : double(0.0f);

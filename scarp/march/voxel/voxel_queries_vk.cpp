@@ -116,7 +116,7 @@ DeviceBuffer filled(const Device& device, std::span<const T> from, const std::st
 
 constexpr std::size_t kMaxNodes = std::size_t{1} << 28;  // a word of the stack holds a node and four bits
 
-constexpr glsl::ScarpVoxelTurn kNoTurn{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+constexpr glsl::ScarpVoxelTurn kNoTurn{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 // One box around a grid. Its sides are whole numbers, which are exact in float; half a voxel is more than what is
 // rounded on the way.
@@ -157,8 +157,8 @@ DeviceVoxelObjects::DeviceVoxelObjects(const Device& device, const DeviceVoxels&
                             boxes.nodes.size(), boxes.levels, kMaxNodes, DeviceBoxes::kMaxLevels));
   for (const glsl::ScarpVoxelObject& object : objects) {
     const glsl::ScarpVoxelTurn& turn = turns[object.turn];
-    if (are_numbers_of_devices(object.origin) && are_numbers_of_devices(turn.x) && are_numbers_of_devices(turn.y) &&
-        are_numbers_of_devices(turn.z))
+    if (are_numbers_of_devices(object.origin) && are_numbers_of_devices(turn.rows[0]) &&
+        are_numbers_of_devices(turn.rows[1]) && are_numbers_of_devices(turn.rows[2]))
       continue;
     throw Error(fmt::format("voxels: object {}: its place has numbers beyond 2^-200 or 2^200: use the CPU", object.part));
   }

@@ -13,7 +13,9 @@ const uint kScarpSolidSphere = 255u;  ///< EmptySpheres::kSolid
 SCARP_FN bool scarp_spheres_turn(SCARP_INOUT(ScarpVoxelWalk) walk, uint travel_per_voxel, SCARP_OUT(bool) solid) {
   uint radius = scarp_voxel_byte(walk.voxel, walk.back);
   solid = radius == kScarpSolidSphere;
-  return !solid && scarp_voxel_travel(walk, radius, travel_per_voxel);
+  bool inside = false;
+  if (!solid) inside = scarp_voxel_travel(walk, radius, travel_per_voxel);
+  return inside;
 }
 
 SCARP_GLSL_END

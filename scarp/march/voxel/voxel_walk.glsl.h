@@ -75,12 +75,13 @@ SCARP_FN bool scarp_voxel_travel(SCARP_INOUT(ScarpVoxelWalk) walk, uint voxels, 
   walk.axis = axis;
   scarp_voxel_advance(walk, axis, 1u);
   bool inside = walk.left[axis] > 0;
-  if (!inside || voxels == 0u) return inside;
-  uint until = scarp_travelled(distance, speed, 1.0f / float(speed)) + voxels * travel_per_voxel;
-  for (int i = 0; i < 3; ++i) {
-    if (walk.speed[i] == 0u) continue;
-    scarp_voxel_advance(walk, i, scarp_planes_before(until, walk.next[i], walk.speed[i]));
-    inside = inside && walk.left[i] > 0;
+  if (inside && voxels > 0u) {
+    uint until = scarp_travelled(distance, speed, 1.0f / float(speed)) + voxels * travel_per_voxel;
+    for (int i = 0; i < 3; ++i) {
+      // None at speed 0.
+      scarp_voxel_advance(walk, i, scarp_planes_before(until, walk.next[i], walk.speed[i]));
+      inside = inside && walk.left[i] > 0;
+    }
   }
   return inside;
 }
@@ -90,10 +91,12 @@ SCARP_FN uint scarp_voxel_distance(ScarpVoxelWalk walk) { return walk.next[walk.
 
 /// The time at the current voxel, given that at the entry into the box.
 SCARP_FN double scarp_voxel_time(ScarpVoxelWalk walk, double t_entered, double t_per_s) {
-  if (walk.axis < 0) return t_entered;
-  double ratio = scarp_exact_ratio(scarp_voxel_distance(walk), walk.speed[walk.axis]);
-  SCARP_PRECISE double later = ratio * t_per_s;
-  SCARP_PRECISE double t = t_entered + later;
+  SCARP_PRECISE double t = t_entered;
+  if (walk.axis >= 0) {
+    double ratio = scarp_exact_ratio(scarp_voxel_distance(walk), walk.speed[walk.axis]);
+    SCARP_PRECISE double later = ratio * t_per_s;
+    t = t_entered + later;
+  }
   return t;
 }
 /// The face by which the current voxel was entered, given that by which the box was.

@@ -65,13 +65,13 @@ SCARP_FN bool scarp_plane_before(uint distance_a, uint speed_a, uint distance_b,
 SCARP_FN uint scarp_planes_until(uint distance, uint speed, float slowness, uint next, uint other, uint after) {
   // (distance other - next speed - after) / 2^20, rounded down: below 2^40.
   uint low = 0u, high = 0u;
-  bool words = true;
+  bool any = false, words = true;
 #ifdef SCARP_INT64
   words = scarp_voxel_words();
   if (!words) {
     int64_t ahead = int64_t(uint64_t(distance) * uint64_t(other)) - int64_t(uint64_t(next) * uint64_t(speed)) -
                     int64_t(after);
-    if (ahead < int64_t(0)) return 0u;
+    any = ahead >= int64_t(0);
     low = uint(ahead >> 20);
     high = uint(ahead >> 52);
   }
@@ -79,14 +79,15 @@ SCARP_FN uint scarp_planes_until(uint distance, uint speed, float slowness, uint
   if (words) {
     uvec2 ahead = scarp_words_minus(
         scarp_words_minus(scarp_words_product(distance, other), scarp_words_product(next, speed)), uvec2(after, 0u));
-    if (int(ahead.y) < 0) return 0u;
+    any = int(ahead.y) >= 0;
     low = ahead.x >> 20 | ahead.y << 12;
     high = ahead.y >> 20;
   }
   // The quotient is below 2^12 and off by less than 2^12 * 2^-21, so the remainder fits in one word.
-  uint planes = uint((float(high) * 4294967296.0f + float(low)) * slowness);
+  uint planes = uint(any ? (float(high) * 4294967296.0f + float(low)) * slowness : 0.0f);
   int rest = int(low - planes * speed);
-  return planes + 1u - (rest < 0 ? 1u : 0u) + (rest >= int(speed) ? 1u : 0u);
+  planes += 1u - (rest < 0 ? 1u : 0u) + (rest >= int(speed) ? 1u : 0u);
+  return any ? planes : 0u;
 }
 
 /// Returns distance * 2^28 / speed, rounded down, if that is below 2^32.

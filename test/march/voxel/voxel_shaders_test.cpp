@@ -64,24 +64,58 @@ bool is_usual(const VoxelRay& ray) {
   return true;
 }
 
-bool quantised(const VoxelRay& ray, const VoxelBox& box, glsl::ScarpVoxelWalk& walk) {
-  return glsl::scarp_voxel_quantise(ray.origin, ray.t_min, ray.t_max, glsl::scarp_voxel_direction(ray.direction),
-                                    box.low, box.high, ray.start_voxel.has_value(), ray.start_voxel.value_or(ivec3(0)),
-                                    walk);
-}
+// A ray as voxel_objects.glsl.h has it in memory.
+struct ShaderRay {
+  glsl::ScarpVoxelWalk walk{};
+  double t = 0, t_per_s = 0;
+  std::uint32_t entered = 0;
+  bool met = true;
 
-VoxelHit marched(glsl::ScarpVoxelWalk walk, const VoxelRay& ray, std::uint32_t& steps) {
+  ShaderRay(const VoxelRay& ray, const VoxelBox& box) {
+    dvec3 inverse;
+    for (int axis = 0; axis < 3; ++axis) inverse[axis] = glsl::scarp_exact_inverse(ray.direction[axis]);
+    const double per_longest = std::min({std::abs(inverse.x), std::abs(inverse.y), std::abs(inverse.z)});
+    const bool has_start = ray.start_voxel.has_value();
+    const ivec3 start = ray.start_voxel.value_or(ivec3(0));
+    glsl::ScarpVoxelClip clip{ray.t_min, ray.t_max, -1};
+    for (int axis = 0; axis < 3; ++axis) {
+      met = glsl::scarp_voxel_clip(axis, ray.origin[axis], ray.direction[axis], inverse[axis], box.low[axis],
+                                   box.high[axis], has_start, start[axis], clip) &&
+            met;
+    }
+    met = met && clip.t <= clip.t_out;
+    if (!met) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      walk.speed[axis] = glsl::scarp_voxel_speed(ray.direction[axis], per_longest);
+      glsl::ScarpVoxelPlace at;
+      met = glsl::scarp_voxel_place(axis, ray.origin[axis], ray.direction[axis], walk.speed[axis], box.low[axis],
+                                    box.high[axis], has_start, start[axis], clip, at) &&
+            met;
+      walk.voxel[axis] = at.voxel;
+      walk.left[axis] = at.left;
+      walk.next[axis] = at.next;
+      if (ray.direction[axis] < 0) walk.back |= 1u << axis;
+    }
+    walk.axis = -1;
+    t = clip.t;
+    t_per_s = glsl::scarp_voxel_t_per_s(per_longest);
+    entered = glsl::scarp_voxel_entered(clip, walk.back);
+  }
+};
+
+VoxelHit marched(const ShaderRay& begin, const VoxelRay& ray, std::uint32_t& steps) {
   constexpr int kTurns = 10'000;
   int turns = kTurns;
   VoxelHit hit;
+  glsl::ScarpVoxelWalk walk = begin.walk;
   const bool found = glsl::scarp_first_voxel(glsl::host_march, walk, turns);
   steps = static_cast<std::uint32_t>(kTurns - turns);
   if (!found) return hit;
-  const double t = glsl::scarp_voxel_time(walk);
+  const double t = glsl::scarp_voxel_time(walk, begin.t, begin.t_per_s);
   if (t > ray.t_max) return hit;
   hit.status = HitStatus::hit;
   hit.t = t;
-  hit.face = static_cast<VoxelFace>(glsl::scarp_voxel_face(walk));
+  hit.face = static_cast<VoxelFace>(glsl::scarp_voxel_face(walk, begin.entered));
   hit.voxel = walk.voxel;
   hit.entry = glsl::host_target->grid->entry(walk.voxel);
   return hit;
@@ -119,8 +153,8 @@ TEST_P(VoxelShaders, AgreeWithTheCpu) {
       if (!is_usual(ray) || target.box.empty()) continue;
       const std::optional<QuantisedRay> expected_ray = quantise(ray, target.box);
       glsl::host_words = i % 2 == 1;
-      glsl::ScarpVoxelWalk walk;
-      ASSERT_EQ(quantised(ray, target.box, walk), expected_ray.has_value()) << rays.name;
+      const ShaderRay there(ray, target.box);
+      ASSERT_EQ(there.met, expected_ray.has_value()) << rays.name;
       if (!expected_ray) continue;
       for (const Marched& march : kMarches) {
         const VoxelMarchEntry& entry = find_voxel_march(march.name);
@@ -128,7 +162,7 @@ TEST_P(VoxelShaders, AgreeWithTheCpu) {
         const VoxelHit expected = entry.cpu(target, *expected_ray, &stats);
         glsl::host_march = march.number;
         std::uint32_t steps = 0;
-        const VoxelHit hit = marched(walk, ray, steps);
+        const VoxelHit hit = marched(there, ray, steps);
         hits += static_cast<bool>(expected);
         // Spheres may travel a little less far.
         const bool same_steps = steps == stats.steps || march.number == glsl::kScarpVoxelSpheres;
@@ -182,12 +216,12 @@ TEST(VoxelShaders, AgreeAtTheLargestSize) {
     for (const Marched& march : {kMarches[0], kMarches[4]}) {
       glsl::host_march = march.number;
       glsl::host_words = i % 4 < 2;
-      glsl::ScarpVoxelWalk walk;
-      ASSERT_EQ(quantised(ray, target.box, walk), expected_ray.has_value());
+      const ShaderRay there(ray, target.box);
+      ASSERT_EQ(there.met, expected_ray.has_value());
       if (!expected_ray) continue;
       std::uint32_t steps = 0;
       const VoxelHit expected = find_voxel_march(march.name).cpu(target, *expected_ray, nullptr);
-      ASSERT_EQ(marched(walk, ray, steps), expected) << march.name << ", ray " << i;
+      ASSERT_EQ(marched(there, ray, steps), expected) << march.name << ", ray " << i;
       hits += static_cast<bool>(expected);
     }
   }

@@ -199,7 +199,14 @@ TEST(VoxelBatchLayout, IsThatOfTheShaders) {
   EXPECT_TRUE(has_struct(
       kVoxelShader, {offsetof(ScarpVoxelHit, t), offsetof(ScarpVoxelHit, voxel), offsetof(ScarpVoxelHit, part),
                      offsetof(ScarpVoxelHit, face), offsetof(ScarpVoxelHit, status), offsetof(ScarpVoxelHit, steps),
-                     offsetof(ScarpVoxelHit, boxes), offsetof(ScarpVoxelHit, entry), offsetof(ScarpVoxelHit, none)}));
+                     offsetof(ScarpVoxelHit, entry)}));
+  using glsl::ScarpVoxelScratch;
+  EXPECT_TRUE(has_struct(
+      kVoxelShader,
+      {offsetof(ScarpVoxelScratch, given), offsetof(ScarpVoxelScratch, inverse), offsetof(ScarpVoxelScratch, origin),
+       offsetof(ScarpVoxelScratch, t_per_s), offsetof(ScarpVoxelScratch, t), offsetof(ScarpVoxelScratch, t_in),
+       offsetof(ScarpVoxelScratch, speed), offsetof(ScarpVoxelScratch, back), offsetof(ScarpVoxelScratch, entered),
+       offsetof(ScarpVoxelScratch, longest)}));
   EXPECT_TRUE(has_struct(
       kVoxelShader,
       {offsetof(ScarpVoxelGrid, first_masks), offsetof(ScarpVoxelGrid, masks), offsetof(ScarpVoxelGrid, coloured),
@@ -211,6 +218,7 @@ TEST(VoxelBatchLayout, IsThatOfTheShaders) {
                                         offsetof(ScarpVoxelObject, turn), offsetof(ScarpVoxelObject, part),
                                         offsetof(ScarpVoxelObject, none)}));
   for (const std::size_t stride : {sizeof(ScarpVoxelRay), sizeof(ScarpVoxelHit), sizeof(ScarpVoxelGrid),
+                                   sizeof(ScarpVoxelScratch),
                                    sizeof(ScarpVoxelObject), sizeof(glsl::ScarpVoxelTurn), sizeof(glsl::ScarpBoxNode),
                                    sizeof(glsl::ScarpVoxelPage)})
     EXPECT_TRUE(has_array_stride(kVoxelShader, static_cast<std::uint32_t>(stride))) << stride;
