@@ -100,8 +100,8 @@ struct DeviceVoxels::Image {
 
 DeviceVoxels::DeviceVoxels(const Device& device, std::span<const VoxelParts> grids)
     : device_(device), grids_(grids.size()), layout_(grids.size()) {
-  header_ = std::make_unique<DeviceBuffer>(device, std::max<std::size_t>(grids.size(), 1) * sizeof(glsl::ScarpVoxelGrid),
-                                           "the voxels' layout");
+  header_ = std::make_unique<DeviceBuffer>(
+      device, std::max<std::size_t>(grids.size(), 1) * sizeof(glsl::ScarpVoxelGrid), "the voxels' layout");
   // As many grids at a time as fit in one buffer.
   std::vector<Image> images;
   std::uint64_t bytes = 0;
@@ -136,7 +136,8 @@ void DeviceVoxels::copy_all(std::span<Image> images) {
       for (const Copy& copy : copies) {
         const std::uint64_t begin = std::max(first, copy.offset),
                             end = std::min(first + piece.size(), copy.offset + copy.from.size());
-        if (begin < end) std::memcpy(piece.data() + (begin - first), copy.from.data() + (begin - copy.offset), end - begin);
+        if (begin < end)
+          std::memcpy(piece.data() + (begin - first), copy.from.data() + (begin - copy.offset), end - begin);
       }
     });
     copies.clear();
@@ -224,7 +225,8 @@ void DeviceVoxels::update(std::size_t index, const VoxelParts& parts, const Voxe
   if (!fits) {
     place(index, parts);
   } else {
-    const auto upload_block = [&](Block block, std::span<const std::byte> data, std::uint64_t begin, std::uint64_t end) {
+    const auto upload_block = [&](Block block, std::span<const std::byte> data, std::uint64_t begin,
+                                  std::uint64_t end) {
       const Place& place = grid.places[block];
       upload_part(*place.buffer, place.offset, data, begin, end);
     };

@@ -79,8 +79,7 @@ class HeightsOnDevice final : public FieldOnDevice {
     queries(!steps.empty()).closest_hits(target(), rays, hits, costs);
     for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = costs[i].steps;
   }
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-                std::span<const Hit* const>) override {
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, std::span<const Hit* const>) override {
     queries(false).occluded(target(), rays, blocked);
   }
   const DeviceTerrain* terrain() const override { return &terrain_; }
@@ -107,8 +106,7 @@ class FunctionOnDevice final : public FieldOnDevice {
                     std::span<const Hit* const>) override {
     queries().closest_hits({parts_.field, &device_, FunctionUse::march}, rays, hits, steps);
   }
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-                std::span<const Hit* const>) override {
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, std::span<const Hit* const>) override {
     std::vector<Ray> begun(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) begun[i] = on_shadow_surface(*parts_.field, rays[i]);
     queries().occluded({parts_.field, &device_, FunctionUse::shadow}, begun, blocked);
@@ -133,8 +131,7 @@ class ShapeOnDevice final : public FieldOnDevice {
                     std::span<const Hit* const>) override {
     queries().closest_hits({parts_.field, &device_}, rays, hits, steps);
   }
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-                std::span<const Hit* const>) override {
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, std::span<const Hit* const>) override {
     queries().occluded({parts_.field, &device_}, rays, blocked);
   }
 

@@ -68,8 +68,7 @@ class VoxelsOnDevice final : public FieldOnDevice {
     });
   }
 
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked,
-                std::span<const Hit* const> from) override {
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, std::span<const Hit* const> from) override {
     if (parts_.objects->tree().empty()) return std::fill(blocked.begin(), blocked.end(), 0);
     if (parts_.shadow_ray && !from.empty()) {
       std::vector<Ray> begun(rays.begin(), rays.end());

@@ -124,7 +124,8 @@ TEST_F(ScenesOnDevice, TheCpuAnswersOtherFields) {
     return (v.x + v.y + v.z) % 2 == 0 ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
   });
   const auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
-  const Scene cpu({scene_shape(DistanceField(make_shape(shape::Sphere{2}))), scene_voxels({{model}, {VoxelPlace{}}, {.radius = 0.2}}),
+  const Scene cpu({scene_shape(DistanceField(make_shape(shape::Sphere{2}))),
+                   scene_voxels({{model}, {VoxelPlace{}}, {.radius = 0.2}}),
                    scene_function(HeightFunction(make_function(Plane{})))},
                   {{0, 0, {.origin = {0, 0, 20}}}, {1, 0, {.scale = 2, .origin = {-4, -4, 4}}}, {2, 0, {}}});
   const Scene on_device = scene_on(device(), cpu);

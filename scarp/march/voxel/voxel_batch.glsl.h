@@ -22,8 +22,8 @@ struct ScarpVoxelRay {
   dvec3 direction;
   double t_min;
   double t_max;
-  uint part;        ///< the object whose voxel it begins beside; kScarpNoPart: none
-  ivec3 start;      ///< that voxel
+  uint part;    ///< the object whose voxel it begins beside; kScarpNoPart: none
+  ivec3 start;  ///< that voxel
 };
 const uint kScarpNoPart = 0xffffffffu;
 
@@ -48,8 +48,8 @@ struct ScarpVoxelScratch {
   dvec3 inverse;  ///< 1 / given
   dvec3 origin;   ///< in that grid
   double t_per_s;
-  double t;      ///< where it comes into the object's box
-  double t_in;   ///< where it comes into the box around everything
+  double t;     ///< where it comes into the object's box
+  double t_in;  ///< where it comes into the box around everything
   uvec3 speed;
   uint back;
   uint entered;  ///< face of the object's box

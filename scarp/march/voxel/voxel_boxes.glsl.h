@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays through the hierarchy over voxel objects, which is that of BoxTree, in single precision: boxes are padded by more
-// than what is rounded on the way. GLSL with float64, in which the ray is brought to the box around everything.
+// Rays through the hierarchy over voxel objects, which is that of BoxTree, in single precision: boxes are padded by
+// more than what is rounded on the way. GLSL with float64, in which the ray is brought to the box around everything.
 //
 // Instead of all children that are still to be visited, the stack holds one word per level: a node, and which of its
 // children are left. The nearest of them is found again on the way back.
@@ -79,7 +79,7 @@ uint nearest_child(VoxelNodes nodes, uint node, float end, inout uint rest) {
     float near = max(max(into.x, into.y), max(into.z, 0.0));
     if (!(near <= min(min(out_of.x, out_of.y), min(out_of.z, end))) || (rest >> k & 1u) == 0u) continue;
     left |= 1u << k;
-    // Of those as near the last, as BoxTree has it.
+    // The last one of equally near children, like BoxTree: steps then equal the CPU's.
     if (found != kScarpNoChild && near > nearest) continue;
     found = nodes.of[node].child[k];
     own = 1u << k;

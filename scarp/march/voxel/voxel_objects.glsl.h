@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Rays through voxel objects: VoxelObjects::closest_hit() and occluded() in a shader. GLSL with float64.
 //
-// Objects are answered in double and integers as on the CPU, so the order in which they are met does not matter: of hits
-// at the same t that of the first object counts.
+// Objects are answered in double and integers as on the CPU, so the order in which they are met does not matter: of
+// hits at the same t that of the first object counts.
 //
 // A march has few registers if little else is alive meanwhile. What a ray needs between objects alone, its numbers and
 // its best hit, is therefore kept in memory and read again. No function here or below returns in its middle: compilers
@@ -47,8 +47,8 @@ void scarp_turn_ray(uint ray, uint turn, VoxelTurns turns) {
     scratch.of[ray].given[axis] = given;
     scratch.of[ray].inverse[axis] = inverse;
   }
-  [[dont_unroll]] for (int axis = 0; axis < 3; ++axis)
-    scratch.of[ray].speed[axis] = scarp_voxel_speed(scratch.of[ray].given[axis], per_longest);
+  [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) scratch.of[ray].speed[axis] =
+      scarp_voxel_speed(scratch.of[ray].given[axis], per_longest);
   scratch.of[ray].back = back;
   scratch.of[ray].t_per_s = scarp_voxel_t_per_s(per_longest);
 }

@@ -16,9 +16,7 @@ uvec2 scarp_voxel_mask(const ivec3& brick);
 SCARP_FN uint scarp_voxel_bit(ivec3 voxel) {
   return uint(voxel.x & 3) | uint(voxel.y & 3) << 2 | uint(voxel.z & 3) << 4;
 }
-SCARP_FN bool scarp_mask_has(uvec2 mask, uint bit) {
-  return ((bit < 32u ? mask.x : mask.y) >> (bit & 31u) & 1u) != 0u;
-}
+SCARP_FN bool scarp_mask_has(uvec2 mask, uint bit) { return ((bit < 32u ? mask.x : mask.y) >> (bit & 31u) & 1u) != 0u; }
 
 /// Advances by one step and returns whether the ray is still in the box, or sets `solid`.
 SCARP_FN bool scarp_planes_turn(SCARP_INOUT(ScarpVoxelWalk) walk, SCARP_OUT(bool) solid) {

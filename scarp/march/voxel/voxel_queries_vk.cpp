@@ -29,9 +29,8 @@ constexpr std::uint32_t kMarchesWordsWords[] = {
 };
 
 // By number.
-constexpr std::array<std::string_view, glsl::kScarpVoxelMarches> kNames = {"voxel-planes", "voxel-spheres",
-                                                                          "voxel-cubes", "voxel-octants",
-                                                                          "voxel-bricks"};
+constexpr std::array<std::string_view, glsl::kScarpVoxelMarches> kNames = {
+    "voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-octants", "voxel-bricks"};
 
 // Drivers may take numbers for zero that are too small for normal doubles. Those of quantised rays are products of a
 // few of these, and of differences 2^-53 of them.
@@ -160,7 +159,8 @@ DeviceVoxelObjects::DeviceVoxelObjects(const Device& device, const DeviceVoxels&
     if (are_numbers_of_devices(object.origin) && are_numbers_of_devices(turn.rows[0]) &&
         are_numbers_of_devices(turn.rows[1]) && are_numbers_of_devices(turn.rows[2]))
       continue;
-    throw Error(fmt::format("voxels: object {}: its place has numbers beyond 2^-200 or 2^200: use the CPU", object.part));
+    throw Error(
+        fmt::format("voxels: object {}: its place has numbers beyond 2^-200 or 2^200: use the CPU", object.part));
   }
   const glsl::ScarpVoxelObjects header{grids.address(), objects_.address(), turns_.address(), nodes_.address(),
                                        boxes.middle,    boxes.low,          boxes.high};
@@ -183,8 +183,8 @@ struct DeviceVoxelQueries::Impl {
   // Specialised on first use.
   const ComputePipeline& pipeline(const DeviceVoxelObjects& objects, bool any, bool entries) {
     const bool int64 = device.description().abilities.int64;
-    const ShaderProgram program = program_of(any, objects.march(), std::bit_ceil(objects.levels()),
-                                             settings.words, int64, entries);
+    const ShaderProgram program =
+        program_of(any, objects.march(), std::bit_ceil(objects.levels()), settings.words, int64, entries);
     const auto made = pipelines.find(program.constants);
     if (made != pipelines.end()) return made->second;
     return pipelines.try_emplace(program.constants, device, program, program.variant).first->second;
@@ -262,7 +262,7 @@ std::vector<std::size_t> DeviceVoxelQueries::occluded(const DeviceVoxelObjects& 
 const std::vector<PassTime>& DeviceVoxelQueries::passes() const { return impl_->runs.passes(); }
 
 std::vector<ShaderProgram> voxel_query_shaders() {
-  constexpr std::uint32_t kLevels = 16;  // a million objects
+  constexpr std::uint32_t kLevels = 16;
   std::vector<ShaderProgram> all;
   for (const bool any : {false, true}) {
     for (std::uint32_t march = 0; march <= glsl::kScarpVoxelMarches; ++march)

@@ -30,9 +30,9 @@ bool runs_on_devices(const VoxelMarchEntry& march);
 /// Nodes over the boxes of objects, as scene/box_tree.h makes them.
 struct DeviceBoxes {
   std::span<const glsl::ScarpBoxNode> nodes;
-  dvec3 middle{0.0};                ///< nodes are relative to it
-  dvec3 low{0.0}, high{0.0};        ///< the padded box around everything
-  std::uint32_t levels = 1;         ///< of the hierarchy, at most kMaxLevels
+  dvec3 middle{0.0};          ///< nodes are relative to it
+  dvec3 low{0.0}, high{0.0};  ///< the padded box around everything
+  std::uint32_t levels = 1;   ///< of the hierarchy, at most kMaxLevels
   static constexpr std::uint32_t kMaxLevels = 64;
 };
 

@@ -53,8 +53,7 @@ SCARP_FN bool scarp_voxel_leave(SCARP_INOUT(ScarpVoxelWalk) walk, ivec3 part) {
   uint distance = out_at[axis], speed = walk.speed[axis];
   float slowness = 1.0f / float(speed);
   for (int i = 0; i < 3; ++i) {
-    uint planes =
-        scarp_planes_until(distance, speed, slowness, walk.next[i], walk.speed[i], i > axis ? 1u : 0u);
+    uint planes = scarp_planes_until(distance, speed, slowness, walk.next[i], walk.speed[i], i > axis ? 1u : 0u);
     scarp_voxel_advance(walk, i, planes);
   }
   walk.axis = axis;
@@ -64,7 +63,8 @@ SCARP_FN bool scarp_voxel_leave(SCARP_INOUT(ScarpVoxelWalk) walk, ivec3 part) {
 /// Travel along the ray's longest axis, in 2^-20 voxel, per voxel of distance: no more than it is, by 16 units of
 /// single precision, of which its computation takes less than half.
 SCARP_FN uint scarp_travel_per_voxel(uvec3 speed) {
-  float x = float(speed.x) * 3.7252902984619140625e-9f, y = float(speed.y) * 3.7252902984619140625e-9f, z = float(speed.z) * 3.7252902984619140625e-9f;
+  float x = float(speed.x) * 3.7252902984619140625e-9f, y = float(speed.y) * 3.7252902984619140625e-9f,
+        z = float(speed.z) * 3.7252902984619140625e-9f;
   return uint((1048576.0f - 1.0f) / sqrt(x * x + y * y + z * z));
 }
 

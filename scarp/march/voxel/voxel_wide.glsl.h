@@ -69,8 +69,8 @@ SCARP_FN uint scarp_planes_until(uint distance, uint speed, float slowness, uint
 #ifdef SCARP_INT64
   words = scarp_voxel_words();
   if (!words) {
-    int64_t ahead = int64_t(uint64_t(distance) * uint64_t(other)) - int64_t(uint64_t(next) * uint64_t(speed)) -
-                    int64_t(after);
+    int64_t ahead =
+        int64_t(uint64_t(distance) * uint64_t(other)) - int64_t(uint64_t(next) * uint64_t(speed)) - int64_t(after);
     any = ahead >= int64_t(0);
     low = uint(ahead >> 20);
     high = uint(ahead >> 52);

@@ -209,7 +209,8 @@ TEST(VoxelShaders, AgreeAtTheLargestSize) {
     // Nearly level rays have planes that are crossed far away.
     VoxelRay ray;
     const dvec3 to(uniform(random, 2000, 2048), uniform(random, 2000, 2048), uniform(random, 0, 2048));
-    const dvec3 from(uniform(random, -50, 10), uniform(random, -50, 10), to.z + std::ldexp(uniform(random, -1, 1), -i % 24));
+    const dvec3 from(uniform(random, -50, 10), uniform(random, -50, 10),
+                     to.z + std::ldexp(uniform(random, -1, 1), -i % 24));
     ray.origin = i % 2 ? from : to;
     ray.direction = i % 2 ? to - from : from - to;
     const std::optional<QuantisedRay> expected_ray = quantise(ray, target.box);

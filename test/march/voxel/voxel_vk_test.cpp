@@ -22,7 +22,7 @@
 namespace scarp::test {
 namespace {
 
-const int kGrids = cases(40, 8, 2);      // of a kind
+const int kGrids = cases(40, 8, 2);          // of a kind
 const int kRaysOfKind = cases(200, 40, 10);  // per grid
 
 // A grid with all accelerators, of which one march uses one.
@@ -77,9 +77,10 @@ struct Asked {
     const int exponent = is_usual(longest) ? 0 : std::ilogb(longest);
     const Ray usual = exponent == 0 ? ray : scaled_down(ray, exponent);
     VoxelHit hit;
-    const auto quantised = quantise(
-        VoxelRay{usual.origin, usual.direction, usual.t_min, usual.t_max, given.start_voxel}, model.box);
-    if (quantised && is_direction(longest)) hit = find_voxel_march("voxel-planes").cpu(model.target(), *quantised, nullptr);
+    const auto quantised =
+        quantise(VoxelRay{usual.origin, usual.direction, usual.t_min, usual.t_max, given.start_voxel}, model.box);
+    if (quantised && is_direction(longest))
+      hit = find_voxel_march("voxel-planes").cpu(model.target(), *quantised, nullptr);
     if (hit) hit.t = std::ldexp(hit.t, -exponent);
     rays.push_back(ray);
     Hit start;
@@ -96,8 +97,9 @@ int judge(DeviceVoxelQueries& queries, const DeviceVoxelObjects& objects, const 
   std::vector<Hit> hits(asked.rays.size());
   std::vector<std::uint32_t> entries(any ? 0 : hits.size());
   std::vector<std::uint8_t> blocked(hits.size());
-  const std::vector<std::size_t> left = any ? queries.occluded(objects, asked.rays, asked.from, blocked)
-                                            : queries.closest_hits(objects, asked.rays, asked.from, hits, {{}, entries});
+  const std::vector<std::size_t> left =
+      any ? queries.occluded(objects, asked.rays, asked.from, blocked)
+          : queries.closest_hits(objects, asked.rays, asked.from, hits, {{}, entries});
   EXPECT_LT(left.size(), hits.size() / 20) << what;
   int failures = 0;
   std::size_t next_left = 0;
@@ -201,12 +203,11 @@ TEST(VoxelBatchLayout, IsThatOfTheShaders) {
                      offsetof(ScarpVoxelHit, face), offsetof(ScarpVoxelHit, status), offsetof(ScarpVoxelHit, steps),
                      offsetof(ScarpVoxelHit, entry)}));
   using glsl::ScarpVoxelScratch;
-  EXPECT_TRUE(has_struct(
-      kVoxelShader,
-      {offsetof(ScarpVoxelScratch, given), offsetof(ScarpVoxelScratch, inverse), offsetof(ScarpVoxelScratch, origin),
-       offsetof(ScarpVoxelScratch, t_per_s), offsetof(ScarpVoxelScratch, t), offsetof(ScarpVoxelScratch, t_in),
-       offsetof(ScarpVoxelScratch, speed), offsetof(ScarpVoxelScratch, back), offsetof(ScarpVoxelScratch, entered),
-       offsetof(ScarpVoxelScratch, longest)}));
+  EXPECT_TRUE(has_struct(kVoxelShader, {offsetof(ScarpVoxelScratch, given), offsetof(ScarpVoxelScratch, inverse),
+                                        offsetof(ScarpVoxelScratch, origin), offsetof(ScarpVoxelScratch, t_per_s),
+                                        offsetof(ScarpVoxelScratch, t), offsetof(ScarpVoxelScratch, t_in),
+                                        offsetof(ScarpVoxelScratch, speed), offsetof(ScarpVoxelScratch, back),
+                                        offsetof(ScarpVoxelScratch, entered), offsetof(ScarpVoxelScratch, longest)}));
   EXPECT_TRUE(has_struct(
       kVoxelShader,
       {offsetof(ScarpVoxelGrid, first_masks), offsetof(ScarpVoxelGrid, masks), offsetof(ScarpVoxelGrid, coloured),
@@ -218,9 +219,8 @@ TEST(VoxelBatchLayout, IsThatOfTheShaders) {
                                         offsetof(ScarpVoxelObject, turn), offsetof(ScarpVoxelObject, part),
                                         offsetof(ScarpVoxelObject, none)}));
   for (const std::size_t stride : {sizeof(ScarpVoxelRay), sizeof(ScarpVoxelHit), sizeof(ScarpVoxelGrid),
-                                   sizeof(ScarpVoxelScratch),
-                                   sizeof(ScarpVoxelObject), sizeof(glsl::ScarpVoxelTurn), sizeof(glsl::ScarpBoxNode),
-                                   sizeof(glsl::ScarpVoxelPage)})
+                                   sizeof(ScarpVoxelScratch), sizeof(ScarpVoxelObject), sizeof(glsl::ScarpVoxelTurn),
+                                   sizeof(glsl::ScarpBoxNode), sizeof(glsl::ScarpVoxelPage)})
     EXPECT_TRUE(has_array_stride(kVoxelShader, static_cast<std::uint32_t>(stride))) << stride;
 }
 
