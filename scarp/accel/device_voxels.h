@@ -6,8 +6,8 @@
 //   push.grids = voxels.address();                     // Address in the push constants of the shader
 //   VoxelGrids(push.grids).grids[i] ... voxel_mask(...) // in GLSL
 //
-// Grids lie side by side in a few large buffers, since drivers limit the number of allocations. What is larger than
-// that gets a buffer of its own. Memory: as on the CPU.
+// Grids share a few large buffers, because drivers limit the number of allocations; blocks that are larger than one
+// buffer may be are rejected. A grid takes as much memory as on the CPU.
 #pragma once
 
 #include <array>

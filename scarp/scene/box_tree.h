@@ -66,8 +66,8 @@ class BoxTree {
   void search(double end, const Bound& bound, const Visit& visit) const;
 
   bool empty() const { return nodes_.empty(); }
-  /// What a device needs to walk it: nodes of 112 bytes, four boxes (low x, y, z, high x, y, z: four floats each,
-  /// relative to `middle`) and their children, the box around everything as it is padded, and the number of levels.
+  /// The tree as devices read it. A node has 112 bytes: four boxes (low x, y, z, high x, y, z; four floats each,
+  /// relative to `middle`) and their children. `box` is the padded box around everything.
   struct Parts {
     std::span<const std::byte> nodes;
     dvec3 middle;

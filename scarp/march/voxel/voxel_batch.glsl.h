@@ -42,7 +42,7 @@ struct ScarpVoxelHit {
   uint entry;
 };
 
-/// What a ray has in memory between and during marches.
+/// Numbers of a ray that stay in memory during marches.
 struct ScarpVoxelScratch {
   dvec3 given;    ///< its direction in the grid of the object at hand
   dvec3 inverse;  ///< 1 / given

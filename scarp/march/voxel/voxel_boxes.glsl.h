@@ -9,12 +9,12 @@
 
 #include "scarp/march/voxel/voxel_batch.glsl.h"
 
-// Steeper than any direction that can be told from one along a side, and the factor of BoxTree, doubled: quotients of
-// devices are off by 2.5 units instead of one half.
+// The largest inverse of a direction, and the factor of BoxTree, doubled: quotients of devices are off by 2.5 units
+// instead of one half.
 const float kSteepest = 1152921504606846976.0;
 const float kRounding = 1.0 + 1.0 / 524288.0;
 
-// What a ray has in memory; read again rather than kept.
+// Numbers of rays in memory, which are read again instead of kept in registers.
 layout(buffer_reference, scalar, buffer_reference_align = 8) volatile buffer VoxelScratch { ScarpVoxelScratch of[]; };
 
 // In shared memory per invocation, so that marches have the registers: nodes with children yet to visit, 4 bits each,

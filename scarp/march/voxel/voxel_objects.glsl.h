@@ -4,9 +4,9 @@
 // Objects are answered in double and integers as on the CPU, so the order in which they are met does not matter: of
 // hits at the same t that of the first object counts.
 //
-// A march has few registers if little else is alive meanwhile. What a ray needs between objects alone, its numbers and
-// its best hit, is therefore kept in memory and read again. No function here or below returns in its middle: compilers
-// would keep all that it computes from one object to the next.
+// Registers are for the march. Numbers that are used between objects only, and the best hit, stay in memory and are
+// read again. Functions have one return, at their end: otherwise compilers keep their variables from one object to the
+// next.
 #ifndef SCARP_MARCH_VOXEL_OBJECTS_GLSL_H
 #define SCARP_MARCH_VOXEL_OBJECTS_GLSL_H
 

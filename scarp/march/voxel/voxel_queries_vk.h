@@ -49,7 +49,7 @@ class DeviceVoxelObjects {
   std::uint64_t address() const { return header_.address(); }
   /// The march of all grids, or kScarpVoxelMarches if they have several.
   std::uint32_t march() const { return march_; }
-  /// Of the hierarchy.
+  /// Returns the levels of the hierarchy.
   std::uint32_t levels() const { return levels_; }
   std::uint64_t bytes() const { return objects_.bytes() + turns_.bytes() + nodes_.bytes() + header_.bytes(); }
 
@@ -63,7 +63,7 @@ struct DeviceVoxelSettings {
   bool words = false;                    ///< two 32-bit words instead of 64-bit integers, for tests
 };
 
-/// What else is told of each ray, unless empty.
+/// More results per ray; empty spans are not filled.
 struct DeviceVoxelDetails {
   std::span<std::uint32_t> steps{};    ///< of its marches
   std::span<std::uint32_t> entries{};  ///< VoxelGrid::entry() of hits
