@@ -31,7 +31,7 @@ glsl::ScarpVoxelPage page_of(const VoxelGrid::PackedEntries& entries, std::uint3
   return page;
 }
 
-std::uint32_t march_of(const VoxelParts& parts) {
+std::uint32_t march_of(const MarchedGrid& parts) {
   if (parts.spheres) return glsl::kScarpVoxelSpheres;
   if (parts.cubes) return glsl::kScarpVoxelCubes;
   if (parts.octants) return glsl::kScarpVoxelOctants;
@@ -39,7 +39,7 @@ std::uint32_t march_of(const VoxelParts& parts) {
 }
 
 // The accelerator as it is on the CPU.
-std::span<const std::byte> marks_of(const VoxelParts& parts) {
+std::span<const std::byte> marks_of(const MarchedGrid& parts) {
   const auto bytes_of = [](const VoxelBytes& of) {
     const ivec3& size = of.size();
     return std::as_bytes(std::span(of.data(), static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
@@ -72,7 +72,7 @@ struct DeviceVoxels::Image {
   std::vector<std::uint32_t> entry_data;
   std::array<std::span<const std::byte>, kBlocks> blocks;
 
-  Image(std::size_t index, Grid& to, const VoxelParts& parts) : grid(index) {
+  Image(std::size_t index, Grid& to, const MarchedGrid& parts) : grid(index) {
     const VoxelGrid& voxels = *parts.grid;
     const std::size_t stored = voxels.masks().size() / VoxelGrid::kPageBricks;
     to.slots.clear();
@@ -98,7 +98,7 @@ struct DeviceVoxels::Image {
   }
 };
 
-DeviceVoxels::DeviceVoxels(const Device& device, std::span<const VoxelParts> grids)
+DeviceVoxels::DeviceVoxels(const Device& device, std::span<const MarchedGrid> grids)
     : device_(device), grids_(grids.size()), layout_(grids.size()) {
   header_ = std::make_unique<DeviceBuffer>(
       device, std::max<std::size_t>(grids.size(), 1) * sizeof(glsl::ScarpVoxelGrid), "the voxels' layout");
@@ -161,7 +161,7 @@ void DeviceVoxels::copy_all(std::span<Image> images) {
   flush();
 }
 
-void DeviceVoxels::set_layout(std::size_t index, const VoxelParts& parts) {
+void DeviceVoxels::set_layout(std::size_t index, const MarchedGrid& parts) {
   const Grid& grid = grids_[index];
   const VoxelGrid& voxels = *parts.grid;
   const auto address = [&](Block block) -> glsl::Address {
@@ -185,13 +185,13 @@ void DeviceVoxels::set_layout(std::size_t index, const VoxelParts& parts) {
   to.none = 0;
 }
 
-void DeviceVoxels::place(std::size_t index, const VoxelParts& parts) {
+void DeviceVoxels::place(std::size_t index, const MarchedGrid& parts) {
   Image image(index, grids_[index], parts);
   copy_all({&image, 1});
 }
 
 // Finds room for a page's entries; false: there is none.
-bool DeviceVoxels::grow(Grid& grid, const VoxelParts& parts, std::size_t stored) {
+bool DeviceVoxels::grow(Grid& grid, const MarchedGrid& parts, std::size_t stored) {
   const std::uint32_t needs = slot_words(parts.grid->packed_entries(stored).words.size());
   if (stored >= grid.slots.size()) grid.slots.resize(stored + 1);
   Slot& slot = grid.slots[stored];
@@ -202,7 +202,8 @@ bool DeviceVoxels::grow(Grid& grid, const VoxelParts& parts, std::size_t stored)
   return true;
 }
 
-void DeviceVoxels::update(std::size_t index, const VoxelParts& parts, const VoxelBox& changed, const VoxelBox& region) {
+void DeviceVoxels::update(std::size_t index, const MarchedGrid& parts, const VoxelBox& changed,
+                          const VoxelBox& region) {
   Grid& grid = grids_[index];
   const VoxelGrid& voxels = *parts.grid;
   const VoxelBox inside = intersection(changed, voxels.box());

@@ -29,7 +29,7 @@
 namespace scarp {
 
 /// A grid with the accelerator of its march: at most one; without it, the march is voxel-planes.
-struct VoxelParts {
+struct MarchedGrid {
   const VoxelGrid* grid = nullptr;
   VoxelBox box;  ///< in which rays are followed
   const EmptySpheres* spheres = nullptr;
@@ -42,11 +42,11 @@ struct VoxelParts {
 class DeviceVoxels {
  public:
   /// Copies the grids. Throws Error if the device lacks memory (stating the needed and the available size).
-  DeviceVoxels(const Device& device, std::span<const VoxelParts> grids);
+  DeviceVoxels(const Device& device, std::span<const MarchedGrid> grids);
 
   /// Updates grid `index` after an edit that returned `changed`; the accelerator may have changed in `marks`. Copies
   /// that part of it alone, unless pages outgrow their places.
-  void update(std::size_t index, const VoxelParts& parts, const VoxelBox& changed, const VoxelBox& marks);
+  void update(std::size_t index, const MarchedGrid& parts, const VoxelBox& changed, const VoxelBox& marks);
 
   /// Address of the array of ScarpVoxelGrid.
   std::uint64_t address() const { return header_->address(); }
@@ -71,10 +71,10 @@ class DeviceVoxels {
   };
   struct Image;
 
-  void place(std::size_t index, const VoxelParts& parts);
+  void place(std::size_t index, const MarchedGrid& parts);
   void copy_all(std::span<Image> images);
-  void set_layout(std::size_t index, const VoxelParts& parts);
-  bool grow(Grid& grid, const VoxelParts& parts, std::size_t stored);
+  void set_layout(std::size_t index, const MarchedGrid& parts);
+  bool grow(Grid& grid, const MarchedGrid& parts, std::size_t stored);
 
   Device device_;
   std::vector<Grid> grids_;

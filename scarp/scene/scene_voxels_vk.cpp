@@ -16,8 +16,8 @@
 namespace scarp {
 namespace {
 
-std::vector<VoxelParts> parts_of(const VoxelObjects& objects) {
-  std::vector<VoxelParts> parts;
+std::vector<MarchedGrid> parts_of(const VoxelObjects& objects) {
+  std::vector<MarchedGrid> parts;
   for (const auto& model : objects.models()) {
     if (!runs_on_devices(model->march())) {
       throw Error(fmt::format("march '{}': does not run on Vulkan devices (available: all other voxel marches)",

@@ -37,8 +37,8 @@ struct Model {
   explicit Model(VoxelGrid made, bool tight) : grid(std::move(made)), box(tight ? grid.bounds() : grid.box()) {}
 
   VoxelTarget target() const { return {&grid, box, &spheres, &cubes, &octants, &bricks}; }
-  VoxelParts parts(const VoxelMarchEntry& march) const {
-    VoxelParts parts{&grid, box};
+  MarchedGrid parts(const VoxelMarchEntry& march) const {
+    MarchedGrid parts{&grid, box};
     if (march.accelerator == VoxelAccelerator::spheres) parts.spheres = &spheres;
     if (march.accelerator == VoxelAccelerator::cubes) parts.cubes = &cubes;
     if (march.accelerator == VoxelAccelerator::octants) parts.octants = &octants;
@@ -145,7 +145,7 @@ TEST_F(VoxelsOnDevice, AnswerAsTheCpuDoes) {
     }
     for (const VoxelMarchEntry& march : voxel_marches()) {
       if (!runs_on_devices(march)) continue;
-      std::vector<VoxelParts> parts;
+      std::vector<MarchedGrid> parts;
       for (const auto& model : models) parts.push_back(model->parts(march));
       const DeviceVoxels grids(device(), parts);
       for (std::uint32_t i = 0; i < parts.size() && failures < 6; ++i) {
