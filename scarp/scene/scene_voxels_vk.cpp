@@ -19,7 +19,7 @@ namespace {
 std::vector<MarchedGrid> parts_of(const VoxelObjects& objects) {
   std::vector<MarchedGrid> parts;
   for (const auto& model : objects.models()) {
-    if (!runs_on_devices(model->march())) {
+    if (!model->march().gpu) {
       throw Error(fmt::format("march '{}': does not run on Vulkan devices (available: all other voxel marches)",
                               model->march().name));
     }

@@ -137,10 +137,6 @@ glsl::ScarpBoxNode node_around(const glsl::ScarpVoxelGrid& grid) {
 
 }  // namespace
 
-bool runs_on_devices(const VoxelMarchEntry& march) {
-  return std::find(kNames.begin(), kNames.end(), march.name) != kNames.end();
-}
-
 DeviceVoxelObjects::DeviceVoxelObjects(const Device& device, const DeviceVoxels& grids,
                                        std::span<const glsl::ScarpVoxelObject> objects,
                                        std::span<const glsl::ScarpVoxelTurn> turns, const DeviceBoxes& boxes)

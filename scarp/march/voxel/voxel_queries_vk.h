@@ -24,9 +24,6 @@
 
 namespace scarp {
 
-/// Whether a march runs on devices: all but voxel-exhaustive.
-bool runs_on_devices(const VoxelMarchEntry& march);
-
 /// Nodes over the boxes of objects, as scene/box_tree.h makes them.
 struct DeviceBoxes {
   std::span<const glsl::ScarpBoxNode> nodes;

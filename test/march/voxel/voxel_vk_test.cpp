@@ -144,7 +144,7 @@ TEST_F(VoxelsOnDevice, AnswerAsTheCpuDoes) {
       hits += asked.back().hits;
     }
     for (const VoxelMarchEntry& march : voxel_marches()) {
-      if (!runs_on_devices(march)) continue;
+      if (!march.gpu) continue;
       std::vector<MarchedGrid> parts;
       for (const auto& model : models) parts.push_back(model->parts(march));
       const DeviceVoxels grids(device(), parts);
