@@ -23,7 +23,7 @@ void add_device_option(Command& command, std::string& device) {
        .note = "see 'scarp devices'",
        .fallback = "none: the CPU",
        .common = true,
-       .inputs = {kTerrain | kScene | kFunction, "voxels and meshes are traced on the CPU"}});
+       .inputs = {kTerrain | kVoxels | kScene | kFunction, "meshes are traced on the CPU"}});
 }
 
 void require_device_march(const std::string& device, const HeightMarchEntry& march) {

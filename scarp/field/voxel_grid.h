@@ -69,6 +69,15 @@ class VoxelGrid {
   std::span<const std::uint64_t> masks() const { return masks_; }
   /// An index of masks() per page, then one more that is readable.
   std::span<const std::uint32_t> first_masks() const { return first_mask_; }
+  /// Masks of the voxels with an entry, as masks(); the same memory if no entry was dropped.
+  std::span<const std::uint64_t> coloured_masks() const { return entry_masks(); }
+  /// Entries of a page as they are stored, for shaders: entry_bits() each from the lowest bit on, and how many come
+  /// before each 4 bricks. `stored` is the page's index in masks(), in pages.
+  struct PackedEntries {
+    std::span<const std::uint64_t> words;
+    std::span<const std::uint16_t> rank_from;
+  };
+  PackedEntries packed_entries(std::size_t stored) const { return {pages_[stored].words, pages_[stored].rank_from}; }
   /// Calls body(brick, mask) for each brick with solid voxels, in the order of brick_index().
   template <class Body>
   void for_each_solid_brick(const Body& body) const {

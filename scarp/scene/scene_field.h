@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -28,6 +29,8 @@
 #include "scarp/scene/voxel_shading.h"
 
 namespace scarp {
+
+class VoxelObjects;  // voxel_objects.h
 
 /// What is at a hit, in the field's space.
 struct FieldSurface {
@@ -54,7 +57,13 @@ struct SceneFieldParts {
   using Function = Marched<HeightFunction, FunctionMarchEntry>;
   using Shape = Marched<DistanceField, ShapeMarchEntry>;
 
-  std::variant<std::monostate, Heights, Function, Shape> of{};  ///< monostate: none of these
+  struct Voxels {
+    const VoxelObjects* objects;
+    /// Where a shadow ray begins that begins on a voxel; null: beside that voxel.
+    std::function<Ray(const Ray& ray, const Hit& from)> shadow_ray;
+  };
+
+  std::variant<std::monostate, Heights, Function, Shape, Voxels> of{};  ///< monostate: none of these
 };
 
 /// Immutable; may be queried from many threads at once.

@@ -243,6 +243,19 @@ VoxelObjects VoxelObjects::marched_by(std::string_view march) const {
   return VoxelObjects(std::move(placed));
 }
 
+std::vector<VoxelObjects::Placed> VoxelObjects::placed() const {
+  std::vector<Placed> placed;
+  for (const std::uint32_t index : in_tree_)
+    placed.push_back({objects_[index].origin, objects_[index].model, objects_[index].turn, index});
+  return placed;
+}
+
+std::vector<glm::dmat3> VoxelObjects::turns() const {
+  std::vector<glm::dmat3> turns;
+  for (const Turn& turn : turns_) turns.push_back(turn.grid_from_world);
+  return turns;
+}
+
 std::vector<VoxelPlace> VoxelObjects::places() const {
   std::vector<VoxelPlace> places;
   for (const Object& object : objects_)

@@ -99,6 +99,18 @@ class VoxelObjects {
   /// Of the objects and the hierarchy over them, without the models.
   std::size_t bytes() const;
 
+  /// An object as back ends read it; `part` is the index of its place.
+  struct Placed {
+    dvec3 origin;
+    std::uint32_t model, turn, part;
+  };
+  /// Returns the objects in the order of the tree's numbers.
+  std::vector<Placed> placed() const;
+  /// Returns grid_from_world of each turn.
+  std::vector<glm::dmat3> turns() const;
+  const BoxTree& tree() const { return tree_; }
+  const VoxelRounding& rounding() const { return rounding_; }
+
  private:
   // An object; turns are shared by all that have the same one.
   struct Object {

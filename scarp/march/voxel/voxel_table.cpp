@@ -16,7 +16,11 @@ namespace {
 
 constexpr VoxelMarchEntry voxel_march(std::string_view name, VoxelAccelerator accelerator, VoxelMarch cpu,
                                       VoxelOcclusion occluded, VoxelPacketMarch packet, std::string_view description) {
-  return {{.name = name, .guarantee = Guarantee::exact, .simd = packet != nullptr, .description = description},
+  return {{.name = name,
+           .guarantee = Guarantee::exact,
+           .simd = packet != nullptr,
+           .gpu = cpu != march_voxel_exhaustive,
+           .description = description},
           accelerator,
           cpu,
           occluded,
