@@ -32,6 +32,7 @@ class EmptySpheres {
 
   /// Returns kSolid for solid voxels.
   int distance(const ivec3& voxel) const { return distances_[voxel]; }
+  const VoxelBytes& distances() const { return distances_; }
   std::size_t bytes() const { return sizeof(*this) + distances_.bytes(); }
   friend bool operator==(const EmptySpheres& a, const EmptySpheres& b) { return a.distances_ == b.distances_; }
 
