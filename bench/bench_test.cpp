@@ -252,6 +252,16 @@ TEST(ScarpBench, EditsWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, VoxelEditsWritesTheDocumentedFields) {
+  const json all = output_of("voxel-edits --side 40 --radius 4 --edits 3");
+  expect_head(all);
+  EXPECT_EQ(all["rows"].size(), 9u);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"scene", "accelerator", "side", "radius", "add_ms", "add_worst_ms", "remove_ms",
+                        "remove_worst_ms", "rebuild_ms"});
+  }
+}
+
 TEST(ScarpBench, ScenesWritesTheDocumentedFields) {
   const json all = output_of("scenes --objects 100,1000 --rays 1000 --repeats 1");
   expect_head(all);

@@ -158,6 +158,14 @@ struct VoxelsOptions {
 };
 void run_voxels(const VoxelsOptions& options, const ReportOptions& report);
 
+/// `voxel-edits`: how long accelerators of voxels take to follow an edit.
+struct VoxelEditsOptions {
+  int side = 256;     ///< voxels
+  double radius = 8;  ///< of the sphere that is added and removed, in voxels
+  int edits = 40;
+};
+void run_voxel_edits(const VoxelEditsOptions& options, const ReportOptions& report);
+
 /// `voxel-models`: all voxel marches over the models of files.
 struct VoxelModelsOptions {
   std::vector<std::string> files;  ///< .vox and .binvox

@@ -359,6 +359,21 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*voxels_command, report);
 
+  VoxelEditsOptions voxel_edits;
+  CLI::App* voxel_edits_command =
+      app.add_subcommand("voxel-edits", "how long accelerators of voxels take to follow an edit");
+  voxel_edits_command->add_option("--side", voxel_edits.side, "voxels per side")
+      ->check(CLI::Range(16, 512))
+      ->capture_default_str();
+  voxel_edits_command
+      ->add_option("--radius", voxel_edits.radius, "of the spheres that are added and removed, in voxels")
+      ->check(number_in(kAboveZero))
+      ->capture_default_str();
+  voxel_edits_command->add_option("--edits", voxel_edits.edits, "spheres")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  add_json_option(*voxel_edits_command, report);
+
   VoxelModelsOptions voxel_models;
   CLI::App* voxel_models_command =
       app.add_subcommand("voxel-models", "all voxel marches over the models of files: building, memory, speed");
@@ -547,6 +562,7 @@ int run(int argc, char** argv) {
   if (*simt_command) run_simt(simt, report);
   if (*leaks_command) run_leaks(leaks, report);
   if (*voxels_command) run_voxels(voxels, report);
+  if (*voxel_edits_command) run_voxel_edits(voxel_edits, report);
   if (*voxel_models_command) run_voxel_models(voxel_models, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*pixel_match_command) run_pixel_match(pixel_match, report);

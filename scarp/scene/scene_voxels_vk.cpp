@@ -20,8 +20,12 @@ std::vector<MarchedGrid> parts_of(const VoxelObjects& objects) {
   std::vector<MarchedGrid> parts;
   for (const auto& model : objects.models()) {
     if (!model->march().gpu) {
-      throw Error(fmt::format("march '{}': does not run on Vulkan devices (available: all other voxel marches)",
-                              model->march().name));
+      std::vector<std::string_view> available;
+      for (const VoxelMarchEntry& march : voxel_marches()) {
+        if (march.gpu) available.push_back(march.name);
+      }
+      throw Error(fmt::format("march '{}': does not run on Vulkan devices (available: {})", model->march().name,
+                              fmt::join(available, ", ")));
     }
     const VoxelTarget target = model->target();
     parts.push_back({target.grid, target.box, target.spheres, target.cubes, target.octants, target.bricks});

@@ -6,6 +6,7 @@
 
 #include "scarp/accel/brick_masks.h"
 #include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/octant_cubes.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/voxel_ahead.h"
@@ -118,7 +119,7 @@ HWY_INLINE VI gather_masks(const VoxelGrid& grid, VI brick) {
 
 // One plane at a time.
 struct PlanesLook {
-  static constexpr bool kSingle = true;
+  static constexpr bool kSingle = true, kTravels = false;
   const VoxelGrid& grid;
 
   explicit PlanesLook(const VoxelTarget& target) : grid(*target.grid) {}
@@ -132,7 +133,7 @@ struct PlanesLook {
 
 // Cubes around voxels, or ahead of them: a byte each.
 struct CubesLook {
-  static constexpr bool kSingle = false;
+  static constexpr bool kSingle = false, kTravels = false;
   const VoxelBytes& bytes;
 
   explicit CubesLook(const VoxelTarget& target) : bytes(target.cubes->distances()) {}
@@ -143,8 +144,33 @@ struct CubesLook {
   }
 };
 
+// One plane, then all planes within `planes[0]` voxels of travel: a byte each.
+struct SpheresLook {
+  static constexpr bool kSingle = true, kTravels = true;
+  const VoxelBytes& bytes;
+
+  explicit SpheresLook(const VoxelTarget& target) : bytes(target.spheres->distances()) {}
+  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
+    const VI index = hn::IfThenElseZero(alive, index_in(v, bytes.size()));
+    const VI distance = gather_bytes(bytes.data(), index);
+    return {hn::Eq(distance, hn::Set(di, EmptySpheres::kSolid)), {distance, distance, distance}};
+  }
+};
+
+struct CubesJumpLook {
+  static constexpr bool kSingle = true, kTravels = true;
+  CubesLook cubes;
+
+  explicit CubesJumpLook(const VoxelTarget& target) : cubes(target) {}
+  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive) const {
+    LookResult seen = cubes(v, at, down, alive);
+    seen.planes[0] = hn::Sub(seen.planes[0], hn::Set(di, 1));
+    return seen;
+  }
+};
+
 struct OctantsLook {
-  static constexpr bool kSingle = false;
+  static constexpr bool kSingle = false, kTravels = false;
   const VoxelBytes& bytes;
   ivec3 size;
 
@@ -161,7 +187,7 @@ struct OctantsLook {
 
 // Blocks of 2^level voxels, as in voxel_bricks.cpp.
 struct BricksLook {
-  static constexpr bool kSingle = false;
+  static constexpr bool kSingle = false, kTravels = false;
   const VoxelGrid& grid;
   const BrickMasks& bricks;
 
@@ -207,6 +233,7 @@ struct LaneWalk {
   alignas(64) Numbers next[3], at[3], end[3], speed[3], down[3];
   // crossed: the axis of the last plane crossed; before the first step, kEntered and the axis of entry.
   alignas(64) Numbers crossed, ray;
+  // 1 / speed, or for looks that travel: in [0], the travel per voxel, as voxel_travel.h has it.
   alignas(64) VoxelPacket::Lanes<double> slowness[3];
   std::size_t lanes = 0;               // in use
   std::uint64_t alive[kVectors] = {};  // lanes of each vector
@@ -248,7 +275,17 @@ HWY_INLINE VD slowness_of(VI speed) {
   return hn::PromoteTo(dd, hn::Div(hn::Set(df_part, 1.0f), single));
 }
 
+// The same operations as in voxel_travel.h.
+HWY_INLINE VD travel_per_voxel(const VI (&speed)[3]) {
+  VD square = hn::Zero(dd);
+  for (int i = 0; i < 3; ++i) square = hn::Add(square, hn::Mul(as_double(speed[i]), as_double(speed[i])));
+  const VD length = hn::Add(hn::Trunc(hn::Sqrt(square)), hn::Set(dd, 2.0));
+  // No quotient is so near to an integer that it would be rounded to it.
+  return hn::Trunc(hn::Div(hn::Set(dd, 0x1p48), length));
+}
+
 // quantise() of voxel_ray.cpp, the same operations in the same order. Starts rays that enter the box, and returns them.
+template <class Look>
 HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& packet, std::size_t o, MI rays,
                     LaneWalk& walk) {
   const VD zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
@@ -306,7 +343,12 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     chosen.append(end, walk.end[i] + to);
     chosen.append(speed, walk.speed[i] + to);
     chosen.append(side, walk.down[i] + to);
-    chosen.append(slowness_of(speed), walk.slowness[i] + to);
+    if constexpr (!Look::kSingle) chosen.append(slowness_of(speed), walk.slowness[i] + to);
+  }
+  if constexpr (Look::kTravels) {
+    const VI speed[3] = {hn::Load(di, packet.speed[0] + o), hn::Load(di, packet.speed[1] + o),
+                         hn::Load(di, packet.speed[2] + o)};
+    chosen.append(travel_per_voxel(speed), walk.slowness[0] + to);
   }
   chosen.append(entered, walk.crossed + to);
   chosen.append(hn::Iota(di, static_cast<std::int64_t>(o)), walk.ray + to);
@@ -393,6 +435,26 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
   VI crossed[3];
   if constexpr (Look::kSingle) {
     for (int i = 0; i < 3; ++i) crossed[i] = hn::IfThenElseZero(hn::Eq(axis, hn::Set(di, i)), one);
+    if constexpr (Look::kTravels) {
+      distance = hn::IfThenElse(z_first, out[2], distance), pace = hn::IfThenElse(z_first, speed[2], pace);
+      MI travels = hn::And(alive, hn::Gt(seen.planes[0], zero));
+      for (int i = 0; i < 3; ++i) travels = hn::And(travels, hn::Lt(hn::Add(at[i], crossed[i]), end[i]));
+      // VoxelWalk::step_and_travel(): s in 2^-28, rounded down. The nearest quotient may be one more.
+      const VI dividend = hn::ShiftLeft<kDirectionBits>(distance);
+      const VI quotient =
+          truncated(hn::Div(hn::Mul(as_double(distance), hn::Set(dd, static_cast<double>(1 << kDirectionBits))),
+                            as_double(hn::IfThenElse(travels, pace, one))));
+      const VI from = hn::Add(quotient, hn::BroadcastSignBit(hn::Sub(dividend, product(quotient, pace))));
+      const VI travel = truncated(hn::Load(dd, walk.slowness[0] + o));
+      const VI until = hn::Add(from, product(seen.planes[0], travel));
+      for (int i = 0; i < 3; ++i) {
+        const VI plane = hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(crossed[i]));
+        const VI ahead = hn::Sub(hn::Sub(product(until, speed[i]), hn::ShiftLeft<kDirectionBits>(plane)), one);
+        const VI planes =
+            hn::Add(hn::BitCast(di, hn::ShiftRight<kDirectionBits + kPlaceBits>(hn::BitCast(du, ahead))), one);
+        crossed[i] = hn::Add(crossed[i], hn::IfThenElseZero(hn::AndNot(hn::Lt(ahead, zero), travels), planes));
+      }
+    }
   } else {
     distance = hn::IfThenElse(z_first, out[2], distance), pace = hn::IfThenElse(z_first, speed[2], pace);
     VD slowness = hn::Load(dd, walk.slowness[0] + o);
@@ -459,7 +521,7 @@ std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPac
   packet.hits = 0;
   for (std::size_t o = 0; o < packet.count; o += N) {
     if ((rays >> o & ((std::uint64_t{1} << N) - 1)) == 0) continue;
-    met |= bits_of(enter(target.box, stand, packet, o, lanes_of(rays >> o), walk)) << o;
+    met |= bits_of(enter<Look>(target.box, stand, packet, o, lanes_of(rays >> o), walk)) << o;
   }
   wake(walk);
   for (std::size_t live = walk.lanes; live > 0;) {
@@ -526,6 +588,14 @@ std::uint64_t march_planes(const VoxelTarget& target, const VoxelStand& stand, V
 std::uint64_t march_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
   return march<CubesLook>(target, stand, packet, rays);
 }
+std::uint64_t march_spheres(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                            std::uint64_t rays) {
+  return march<SpheresLook>(target, stand, packet, rays);
+}
+std::uint64_t march_cubes_jump(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                               std::uint64_t rays) {
+  return march<CubesJumpLook>(target, stand, packet, rays);
+}
 std::uint64_t march_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                             std::uint64_t rays) {
   return march<OctantsLook>(target, stand, packet, rays);
@@ -548,6 +618,8 @@ HWY_EXPORT(load);
 HWY_EXPORT(aim);
 HWY_EXPORT(march_planes);
 HWY_EXPORT(march_cubes);
+HWY_EXPORT(march_spheres);
+HWY_EXPORT(march_cubes_jump);
 HWY_EXPORT(march_octants);
 HWY_EXPORT(march_bricks);
 
@@ -569,6 +641,16 @@ std::uint64_t march_packet_voxel_cubes(const VoxelTarget& target, const VoxelSta
                                        std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_cubes)(target, stand, packet, rays);
 }
+std::uint64_t march_packet_voxel_spheres(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                         std::uint64_t rays) {
+  return HWY_DYNAMIC_DISPATCH(march_spheres)(target, stand, packet, rays);
+}
+
+std::uint64_t march_packet_voxel_cubes_jump(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                            std::uint64_t rays) {
+  return HWY_DYNAMIC_DISPATCH(march_cubes_jump)(target, stand, packet, rays);
+}
+
 std::uint64_t march_packet_voxel_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                          std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_octants)(target, stand, packet, rays);
