@@ -125,6 +125,7 @@ struct DeviceImage {
 struct RasterTarget::Impl {
   std::shared_ptr<Device::Impl> device;
   std::uint32_t width, height;
+  RasterColours of;
   std::vector<DeviceImage> images;  // colours, then depth
   vk::raii::RenderPass pass;
   vk::raii::Framebuffer framebuffer;
@@ -136,6 +137,7 @@ struct RasterPipeline::Impl {
   std::shared_ptr<Device::Impl> device;
   std::string name;
   std::uint32_t push_bytes, colours;
+  RasterColours of;
   vk::raii::PipelineLayout layout;
   vk::raii::Pipeline pipeline;
 };
