@@ -48,11 +48,7 @@ class VoxelsOnDevice final : public FieldOnDevice {
  public:
   VoxelsOnDevice(const Device& device, std::shared_ptr<DeviceVoxelQueries> queries, const SceneField& field,
                  SceneFieldParts::Voxels parts)
-      : queries_(std::move(queries)),
-        field_(field),
-        parts_(std::move(parts)),
-        grids_(device, parts_of(*parts_.objects)),
-        objects_(placed_on(device, grids_, *parts_.objects)) {}
+      : queries_(std::move(queries)), field_(field), parts_(std::move(parts)), there_(device, *parts_.objects) {}
 
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
                     std::span<const Hit* const> from) override {
@@ -60,7 +56,7 @@ class VoxelsOnDevice final : public FieldOnDevice {
       std::fill(hits.begin(), hits.end(), Hit{});
       return std::fill(steps.begin(), steps.end(), 0);
     }
-    const auto left = queries_->closest_hits(objects_, rays, from, hits, {steps, {}});
+    const auto left = queries_->closest_hits(there_.objects, rays, from, hits, {steps, {}});
     for_each(left, [&](std::size_t i) {
       MarchStats stats;
       hits[i] = field_.closest_hit(rays[i], from.empty() ? nullptr : from[i], &stats);
@@ -84,7 +80,7 @@ class VoxelsOnDevice final : public FieldOnDevice {
 
  private:
   void ask_occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, std::span<const Hit* const> from) {
-    const auto left = queries_->occluded(objects_, rays, from, blocked);
+    const auto left = queries_->occluded(there_.objects, rays, from, blocked);
     for_each(left, [&](std::size_t i) {
       blocked[i] = from.empty() || !from[i] ? parts_.objects->occluded(rays[i])
                                             : parts_.objects->occluded_from(*from[i], rays[i]);
@@ -101,11 +97,13 @@ class VoxelsOnDevice final : public FieldOnDevice {
   std::shared_ptr<DeviceVoxelQueries> queries_;
   const SceneField& field_;
   SceneFieldParts::Voxels parts_;
-  DeviceVoxels grids_;
-  DeviceVoxelObjects objects_;
+  ObjectsOnDevice there_;
 };
 
 }  // namespace
+
+ObjectsOnDevice::ObjectsOnDevice(const Device& device, const VoxelObjects& voxels)
+    : grids(device, parts_of(voxels)), objects(placed_on(device, grids, voxels)) {}
 
 std::unique_ptr<FieldOnDevice> voxels_on_device(const Device& device,
                                                 const std::shared_ptr<DeviceVoxelQueries>& queries,

@@ -4,11 +4,22 @@
 
 #include <memory>
 
+#include "scarp/accel/device_voxels.h"
 #include "scarp/march/voxel/voxel_queries_vk.h"
 #include "scarp/scene/field_on_device.h"
 #include "scarp/scene/scene_field.h"
 
 namespace scarp {
+
+/// Models, and the objects that they are placed as.
+struct ObjectsOnDevice {
+  /// Throws Error for a march that does not run on devices, or if the device lacks memory or 64-bit floating point
+  /// numbers.
+  ObjectsOnDevice(const Device& device, const VoxelObjects& voxels);
+
+  DeviceVoxels grids;
+  DeviceVoxelObjects objects;
+};
 
 /// Returns null for rounded voxels, which the CPU answers. Throws Error for a march that does not run on devices, or if
 /// the device lacks memory or 64-bit floating point numbers.
