@@ -153,6 +153,14 @@ vk::raii::Pipeline compute_pipeline(const vk::raii::Device& device, const vk::ra
                                     vk::PipelineCreateFlags flags,
                                     const vk::Optional<const vk::raii::PipelineCache>& cache);
 
+vk::raii::PipelineLayout raster_layout(const vk::raii::Device& device, std::uint32_t push_bytes);
+/// Links a vertex and a fragment shader; as for compute_pipeline().
+vk::raii::Pipeline raster_pipeline(const vk::raii::Device& device, const vk::raii::PipelineLayout& layout,
+                                   std::span<const std::uint32_t> vertex, std::span<const std::uint32_t> fragment,
+                                   const RasterSettings& settings, std::span<const std::uint32_t> constants,
+                                   vk::PipelineCreateFlags flags,
+                                   const vk::Optional<const vk::raii::PipelineCache>& cache);
+
 /// Earlier commands finish, and their writes are visible, before later ones begin.
 void full_barrier(const vk::raii::CommandBuffer& commands);
 
