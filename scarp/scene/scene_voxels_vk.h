@@ -8,6 +8,7 @@
 #include "scarp/march/voxel/voxel_queries_vk.h"
 #include "scarp/scene/field_on_device.h"
 #include "scarp/scene/scene_field.h"
+#include "scarp/scene/voxel_sight_vk.h"
 
 namespace scarp {
 
@@ -21,10 +22,11 @@ struct ObjectsOnDevice {
   DeviceVoxelObjects objects;
 };
 
-/// Returns null for rounded voxels, which the CPU answers. Throws Error for a march that does not run on devices, or if
-/// the device lacks memory or 64-bit floating point numbers.
+/// `sight` may be null. Returns null for rounded voxels, which the CPU answers. Throws Error for a march that does not
+/// run on devices, or if the device lacks memory or 64-bit floating point numbers.
 std::unique_ptr<FieldOnDevice> voxels_on_device(const Device& device,
                                                 const std::shared_ptr<DeviceVoxelQueries>& queries,
-                                                const SceneField& field, const SceneFieldParts::Voxels& parts);
+                                                const std::shared_ptr<VoxelSight>& sight, const SceneField& field,
+                                                const SceneFieldParts::Voxels& parts);
 
 }  // namespace scarp

@@ -14,6 +14,7 @@
 #include "base/refusal.h"
 #include "cases.h"
 #include "scarp/march/voxel/voxel_proxies.glsl.h"
+#include "scarp/scene/scene_vk.h"
 #include "vk/device_under_test.h"
 
 namespace scarp::glsl {
@@ -209,6 +210,49 @@ TEST_F(VoxelCameraOnDevice, TellsObjectsAtOneDepthApart) {
   VoxelCamera other(device(), alone, {.rays_at_once = 8192});
   expect_same(alone, other, looking({0.3, 0.7, 6}, {0.02, 0.01, -1}, 0.002), "one face");
   EXPECT_LT(other.tied(), 100U);
+}
+
+// A batch of the camera's rays in any order, with others among them, is answered as the CPU does; those of the camera
+// by drawing.
+TEST_F(VoxelCameraOnDevice, FindsTheRaysOfACameraInBatches) {
+  const Scene scene = crowd();
+  const auto sight = std::make_shared<VoxelSight>(VoxelSight{VoxelDrawing::proxies});
+  const Scene there = scene_on(device(), scene, sight);
+  std::mt19937_64 engine(7);
+  for (const VoxelPicture& picture :
+       {looking({5.1, -4.3, 6.7}, {-5, 4, -6}), along({4, 5, 6}, {-1, -1.2, -1.4}, 0.05)}) {
+    sight->picture = picture;
+    sight->drawn = 0;
+    std::vector<Ray> rays = rays_of(picture, 0.45);
+    if (!picture.parallel()) {
+      for (Ray& ray : rays) ray.direction = normalize(ray.direction);
+    }
+    const std::size_t of_camera = rays.size();
+    // Of a pixel that has one already, from elsewhere, and behind the camera.
+    for (std::size_t i = 0; i < of_camera; i += 7) {
+      rays.push_back(rays[i]);
+      if (i % 3 == 1) rays.back().origin += 0.1;
+      if (i % 3 == 2) rays.back().direction = -rays.back().direction;
+    }
+    std::shuffle(rays.begin(), rays.end(), engine);
+    std::vector<Hit> expected(rays.size()), hits(rays.size());
+    scene.closest_hits(rays, expected);
+    there.closest_hits(rays, hits);
+    EXPECT_EQ(sight->drawn, of_camera);
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i)
+      wrong += !(hits[i].status == expected[i].status && hits[i].voxel == expected[i].voxel &&
+                 hits[i].part == expected[i].part && hits[i].face == expected[i].face &&
+                 (!expected[i] || hits[i].t == expected[i].t));
+    EXPECT_EQ(wrong, 0U);
+  }
+  // Few rays are not worth drawing.
+  sight->drawn = 0;
+  const std::vector<Ray> all = rays_of(sight->picture);
+  const std::vector<Ray> corners{all.front(), all.back()};
+  std::vector<Hit> hits(2);
+  there.closest_hits(corners, hits);
+  EXPECT_EQ(sight->drawn, 0U);
 }
 
 TEST_F(VoxelCameraOnDevice, RefusesWhatItCannotDraw) {

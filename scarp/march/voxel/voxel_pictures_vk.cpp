@@ -91,7 +91,9 @@ ShaderProgram fragments_of(std::uint32_t march, bool words, bool int64, bool ent
           march == glsl::kScarpVoxelMarches ? "several" : std::string(voxel_march_name(march)),
           int64 ? std::span<const std::uint32_t>(kFragmentWords) : kFragmentOfWordsWords,
           sizeof(glsl::VoxelProxies),
-          {march, words, entries}};
+          {march, words, entries},
+          kVertexWords,
+          2};
 }
 ShaderProgram hits_of(std::uint32_t levels) {
   return {"scarp/march/voxel/voxel_proxies.comp", "", kHitsWords, sizeof(glsl::VoxelProxies), {kThreads, levels}};
@@ -112,9 +114,10 @@ struct DeviceVoxelPictures::Impl {
     const ShaderProgram program = fragments_of(march, words, device.description().abilities.int64, entries);
     const auto made = box_pipelines.find(program.constants);
     if (made != box_pipelines.end()) return made->second;
-    const RasterSettings settings{.push_bytes = program.push_bytes, .colours = 2, .of = RasterColours::words};
+    const RasterSettings settings{
+        .push_bytes = program.push_bytes, .colours = program.colours, .of = RasterColours::words};
     return box_pipelines
-        .try_emplace(program.constants, device, kVertexWords, program.spirv, "boxes " + program.variant, settings,
+        .try_emplace(program.constants, device, program.vertex, program.spirv, "boxes " + program.variant, settings,
                      program.constants)
         .first->second;
   }
@@ -231,6 +234,13 @@ std::size_t DeviceVoxelPictures::tied() const { return impl_->tied; }
 const std::vector<PassTime>& DeviceVoxelPictures::passes() const { return impl_->passes; }
 std::uint64_t DeviceVoxelPictures::bytes() const { return impl_->memory ? impl_->memory->bytes() : 0; }
 
-std::vector<ShaderProgram> voxel_picture_shaders() { return {hits_of(16)}; }
+std::vector<ShaderProgram> voxel_picture_shaders() {
+  std::vector<ShaderProgram> all{hits_of(16)};
+  for (std::uint32_t march = 0; march <= glsl::kScarpVoxelMarches; ++march)
+    all.push_back(fragments_of(march, false, true, false));
+  for (std::uint32_t march = 0; march < glsl::kScarpVoxelMarches; ++march)
+    all.push_back(fragments_of(march, true, false, false));
+  return all;
+}
 
 }  // namespace scarp
