@@ -155,8 +155,11 @@ struct VoxelsOptions {
   int block = 8;                               ///< objects per side of the larger one of these grids
   int repeats = 3;
   double pass_limit_s = 10;  ///< a slower technique traces part of the rays
+  std::string device;        ///< instead: both ways of drawing of a Vulkan device
+  int height = 1080;         ///< of its pictures, 16 : 9
 };
 void run_voxels(const VoxelsOptions& options, const ReportOptions& report);
+void run_device_voxels(const VoxelsOptions& options, const ReportOptions& report);  // with SCARP_VULKAN
 
 /// `voxel-edits`: how long accelerators of voxels take to follow an edit.
 struct VoxelEditsOptions {
@@ -196,6 +199,7 @@ struct PixelMatchOptions {
   std::vector<std::string> marches{"voxel-bricks"};
   std::string cameras = "all";  ///< or "post"
   int width = 1920, height = 1080;
+  std::string device;  ///< both ways of drawing of a Vulkan device; empty: the CPU
 };
 /// Throws Error, after the report, when a pixel differs.
 void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& report);

@@ -357,6 +357,14 @@ int run(int argc, char** argv) {
                    "seconds; a technique that takes longer traces part of the rays")
       ->check(number_in(kAboveZero))
       ->capture_default_str();
+#ifdef SCARP_BENCH_VULKAN
+  voxels_command->add_option("--device", voxels.device,
+                             "instead: both ways of drawing of a Vulkan device, and its triangles: cpu, gpu, auto or "
+                             "part of a name");
+  voxels_command->add_option("--height", voxels.height, "pixels of the pictures of --device, 16 : 9")
+      ->check(CLI::Range(9, 1080))
+      ->capture_default_str();
+#endif
   add_json_option(*voxels_command, report);
 
   VoxelEditsOptions voxel_edits;
@@ -535,6 +543,11 @@ int run(int argc, char** argv) {
   pixel_match_command->add_option("--height", pixel_match.height, "pixels")
       ->check(CLI::Range(2, 2048))
       ->capture_default_str();
+#ifdef SCARP_BENCH_VULKAN
+  pixel_match_command->add_option("--device", pixel_match.device,
+                                  "both ways of drawing of a Vulkan device instead of the CPU, and its triangles: cpu, "
+                                  "gpu, auto or part of a name");
+#endif
   add_json_option(*pixel_match_command, report);
 
   try {
@@ -558,10 +571,11 @@ int run(int argc, char** argv) {
 #ifdef SCARP_BENCH_VULKAN
   if (*gpu_command) (gpu.raster ? run_gpu_raster : run_gpu)(gpu, report);
   if (*shaders_command) run_shaders(shaders, report);
+  if (*voxels_command && !voxels.device.empty()) run_device_voxels(voxels, report);
 #endif
+  if (*voxels_command && voxels.device.empty()) run_voxels(voxels, report);
   if (*simt_command) run_simt(simt, report);
   if (*leaks_command) run_leaks(leaks, report);
-  if (*voxels_command) run_voxels(voxels, report);
   if (*voxel_edits_command) run_voxel_edits(voxel_edits, report);
   if (*voxel_models_command) run_voxel_models(voxel_models, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);

@@ -93,6 +93,10 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Vox
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelMasks { uvec2 masks[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer VoxelPages { ScarpVoxelPage pages[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer VoxelGrids { ScarpVoxelGrid grids[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelObjectList { ScarpVoxelObject of[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelTurns { ScarpVoxelTurn of[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer VoxelNodes { ScarpBoxNode of[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelObjects { ScarpVoxelObjects is; };
 
 // The index of a brick's mask.
 uint voxel_mask_index(ScarpVoxelGrid grid, ivec3 brick) {

@@ -145,7 +145,8 @@ class ShapeOnDevice final : public FieldOnDevice {
 
 class OnDevice final : public SceneBackEnd {
  public:
-  OnDevice(const Device& device, const std::vector<SceneFieldPtr>& fields) : marches_(device), fields_(fields) {
+  OnDevice(const Device& device, const std::vector<SceneFieldPtr>& fields, std::shared_ptr<VoxelSight> sight)
+      : marches_(device), sight_(std::move(sight)), fields_(fields) {
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       try {
         on_device_.push_back(made(*fields_[i]));
@@ -188,7 +189,7 @@ class OnDevice final : public SceneBackEnd {
     if (const auto* shape = std::get_if<SceneFieldParts::Shape>(&parts.of))
       return std::make_unique<ShapeOnDevice>(marches_, *shape);
     if (const auto* voxels = std::get_if<SceneFieldParts::Voxels>(&parts.of))
-      return voxels_on_device(marches_.device(), marches_.voxels(), field, *voxels);
+      return voxels_on_device(marches_.device(), marches_.voxels(), sight_, field, *voxels);
     return nullptr;
   }
   std::vector<Ray> started(std::uint32_t field, std::span<const Ray> rays, std::span<const Hit* const> from) const {
@@ -198,14 +199,15 @@ class OnDevice final : public SceneBackEnd {
   }
 
   Marches marches_;
+  std::shared_ptr<VoxelSight> sight_;
   std::vector<SceneFieldPtr> fields_;
   std::vector<std::unique_ptr<FieldOnDevice>> on_device_;  // null: the CPU answers
 };
 
 }  // namespace
 
-Scene scene_on(const Device& device, const Scene& scene) {
-  return scene.answered_by(std::make_shared<OnDevice>(device, scene.fields()));
+Scene scene_on(const Device& device, const Scene& scene, std::shared_ptr<VoxelSight> sight) {
+  return scene.answered_by(std::make_shared<OnDevice>(device, scene.fields(), std::move(sight)));
 }
 
 }  // namespace scarp

@@ -2,14 +2,18 @@
 #include "scarp/scene/scene_voxels_vk.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstring>
 #include <glm/matrix.hpp>
+#include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/scene/camera_batch.h"
 #include "scarp/scene/scene_limits.h"
 #include "scarp/scene/voxel_objects.h"
 
@@ -50,13 +54,14 @@ DeviceVoxelObjects placed_on(const Device& device, const DeviceVoxels& grids, co
 
 class VoxelsOnDevice final : public FieldOnDevice {
  public:
-  VoxelsOnDevice(const Device& device, std::shared_ptr<DeviceVoxelQueries> queries, const SceneField& field,
-                 SceneFieldParts::Voxels parts)
+  VoxelsOnDevice(const Device& device, std::shared_ptr<DeviceVoxelQueries> queries, std::shared_ptr<VoxelSight> sight,
+                 const SceneField& field, SceneFieldParts::Voxels parts)
       : queries_(std::move(queries)),
+        sight_(std::move(sight)),
+        device_(device),
         field_(field),
         parts_(std::move(parts)),
-        grids_(device, parts_of(*parts_.objects)),
-        objects_(placed_on(device, grids_, *parts_.objects)) {}
+        there_(device, *parts_.objects) {}
 
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
                     std::span<const Hit* const> from) override {
@@ -64,7 +69,8 @@ class VoxelsOnDevice final : public FieldOnDevice {
       std::fill(hits.begin(), hits.end(), Hit{});
       return std::fill(steps.begin(), steps.end(), 0);
     }
-    const auto left = queries_->closest_hits(objects_, rays, from, hits, {steps, {}});
+    const auto left =
+        draws(steps, from) ? draw(rays, hits) : queries_->closest_hits(there_.objects, rays, from, hits, {steps, {}});
     for_each(left, [&](std::size_t i) {
       MarchStats stats;
       hits[i] = field_.closest_hit(rays[i], from.empty() ? nullptr : from[i], &stats);
@@ -87,8 +93,48 @@ class VoxelsOnDevice final : public FieldOnDevice {
   }
 
  private:
+  // Steps of a drawing are not those of the whole ray.
+  bool draws(std::span<const std::uint32_t> steps, std::span<const Hit* const> from) const {
+    return sight_ && sight_->drawing == VoxelDrawing::proxies && steps.empty() && from.empty();
+  }
+
+  // As queries_->closest_hits().
+  std::vector<std::size_t> draw(std::span<const Ray> rays, std::span<Hit> hits) {
+    const std::optional<CameraBatch> batch = camera_batch(sight_->picture, rays);
+    if (!batch) return queries_->closest_hits(there_.objects, rays, {}, hits);
+    // Pixels without a ray have one without any t.
+    Ray none;
+    none.t_min = 1, none.t_max = 0;
+    const std::size_t pixels = batch->ray.size();
+    std::vector<Ray> asked(pixels, none);
+    std::vector<Hit> answers(pixels);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      if (batch->ray[i] != CameraBatch::kNone) asked[i] = rays[batch->ray[i]];
+    }
+    std::vector<std::size_t> left;
+    for (const std::size_t i : sight_pictures().draw(there_.objects, batch->picture, asked, answers))
+      left.push_back(batch->ray[i]);
+    for (std::size_t i = 0; i < pixels; ++i) {
+      if (batch->ray[i] != CameraBatch::kNone) hits[batch->ray[i]] = answers[i];
+    }
+    sight_->drawn += rays.size() - batch->others.size();
+    if (batch->others.empty()) return left;
+    asked.clear();
+    for (const std::size_t i : batch->others) asked.push_back(rays[i]);
+    answers.resize(asked.size());
+    for (const std::size_t i : queries_->closest_hits(there_.objects, asked, {}, answers))
+      left.push_back(batch->others[i]);
+    for (std::size_t i = 0; i < asked.size(); ++i) hits[batch->others[i]] = answers[i];
+    return left;
+  }
+  // Made on first use: compute does without graphics.
+  DeviceVoxelPictures& sight_pictures() {
+    if (!pictures_) pictures_.emplace(device_, queries_);
+    return *pictures_;
+  }
+
   void ask_occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, std::span<const Hit* const> from) {
-    const auto left = queries_->occluded(objects_, rays, from, blocked);
+    const auto left = queries_->occluded(there_.objects, rays, from, blocked);
     for_each(left, [&](std::size_t i) {
       blocked[i] = from.empty() || !from[i] ? parts_.objects->occluded(rays[i])
                                             : parts_.objects->occluded_from(*from[i], rays[i]);
@@ -103,19 +149,25 @@ class VoxelsOnDevice final : public FieldOnDevice {
   }
 
   std::shared_ptr<DeviceVoxelQueries> queries_;
+  std::shared_ptr<VoxelSight> sight_;  // may be null
+  Device device_;
+  std::optional<DeviceVoxelPictures> pictures_;
   const SceneField& field_;
   SceneFieldParts::Voxels parts_;
-  DeviceVoxels grids_;
-  DeviceVoxelObjects objects_;
+  ObjectsOnDevice there_;
 };
 
 }  // namespace
 
+ObjectsOnDevice::ObjectsOnDevice(const Device& device, const VoxelObjects& voxels)
+    : grids(device, parts_of(voxels)), objects(placed_on(device, grids, voxels)) {}
+
 std::unique_ptr<FieldOnDevice> voxels_on_device(const Device& device,
                                                 const std::shared_ptr<DeviceVoxelQueries>& queries,
-                                                const SceneField& field, const SceneFieldParts::Voxels& parts) {
+                                                const std::shared_ptr<VoxelSight>& sight, const SceneField& field,
+                                                const SceneFieldParts::Voxels& parts) {
   if (parts.objects->rounding()) return nullptr;
-  return std::make_unique<VoxelsOnDevice>(device, queries, field, parts);
+  return std::make_unique<VoxelsOnDevice>(device, queries, sight, field, parts);
 }
 
 }  // namespace scarp

@@ -128,6 +128,25 @@ TEST_F(RenderOnDevice, MakesTheSamePicturesOfVoxels) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     on_both(arguments, picture_, there);
   }
+  // The camera's rays by drawing boxes, all others by compute; in perspective and without.
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--corner-ao"}, {"--top"}, {"--look", "normals"}}) {
+    std::vector<std::string> arguments = render;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), {"-o", picture_});
+    ASSERT_EQ(run(arguments).status, 0);
+    arguments.back() = there;
+    arguments.insert(arguments.end(), {"--device", "auto", "--voxel-drawing", "proxies"});
+    const Result drawn = run_on_device(arguments);
+    ASSERT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_EQ(text_of(picture_), text_of(there)) << more[0];
+    EXPECT_NE(drawn.out.find(more[0] == "--look" ? ", 2400 rays by drawing" : ", 9600 rays by drawing"),
+              std::string::npos)
+        << drawn.out;
+  }
+  const Result alone = run({"render", model, "-o", there, "--voxel-drawing", "proxies"});
+  EXPECT_NE(alone.status, 0);
+  EXPECT_NE(alone.err.find("--voxel-drawing"), std::string::npos) << alone.err;
   std::string table = "x,y,z,tx,ty,tz\n";
   for (int i = 0; i < 60; ++i)
     table += fmt::format("{},{},{},{},{},{}\n", i % 7, i % 5, 90 - i, 30 - i % 11, i % 13, i % 3);

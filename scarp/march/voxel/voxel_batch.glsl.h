@@ -9,38 +9,13 @@
 #define SCARP_MARCH_VOXEL_BATCH_GLSL_H
 
 #include "scarp/accel/voxel_buffers.glsl.h"
+#include "scarp/march/voxel/voxel_rays.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 SCARP_GLSL_BEGIN
 
 // Specialisation constants: threads per workgroup; any hit or closest hit; the march, or kScarpVoxelMarches if grids
 // have several; levels of the hierarchy; whether 64-bit integers are two words; whether hits have their entry.
-
-/// A ray in world space, whose numbers are usual (voxel_queries_vk.cpp).
-struct ScarpVoxelRay {
-  dvec3 origin;
-  dvec3 direction;
-  double t_min;
-  double t_max;
-  uint part;    ///< the object whose voxel it begins beside; kScarpNoPart: none
-  ivec3 start;  ///< that voxel
-};
-const uint kScarpNoPart = 0xffffffffu;
-
-const uint kScarpVoxelMiss = 0u;
-const uint kScarpVoxelHit = 1u;
-const uint kScarpVoxelUnfinished = 2u;  ///< it took more turns than there are
-
-/// The answer; for misses only status and steps mean something.
-struct ScarpVoxelHit {
-  double t;
-  ivec3 voxel;
-  uint part;
-  uint face;
-  uint status;
-  uint steps;
-  uint entry;
-};
 
 /// Numbers of a ray that stay in memory during marches.
 struct ScarpVoxelScratch {
@@ -75,16 +50,10 @@ layout(constant_id = 3) const uint batch_levels = 32;
 layout(constant_id = 4) const uint batch_words = 0;
 layout(constant_id = 5) const uint batch_entries = 0;
 
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelObjectList { ScarpVoxelObject of[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelTurns { ScarpVoxelTurn of[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer VoxelNodes { ScarpBoxNode of[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelObjects { ScarpVoxelObjects is; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelRays { ScarpVoxelRay rays[]; };
 // The same, read again rather than kept.
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly volatile buffer VoxelRaysAgain {
   ScarpVoxelRay rays[];
 };
-layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer VoxelHits { ScarpVoxelHit hits[]; };
 layout(push_constant, scalar) uniform Push { VoxelBatch batch; };
 
 // The grid that is marched.

@@ -24,16 +24,6 @@ struct VoxelQuery {
   int turns;  // left
 };
 
-// A component of grid_from_world * v, given its row.
-double scarp_turned(dvec3 row, dvec3 v) {
-  precise double x = row.x * v.x;
-  precise double y = row.y * v.y;
-  precise double xy = x + y;
-  precise double z = row.z * v.z;
-  precise double sum = xy + z;
-  return sum;
-}
-
 // VoxelDirection of a ray, into memory.
 void scarp_turn_ray(uint ray, uint turn, VoxelTurns turns) {
   VoxelScratch scratch = VoxelScratch(batch.scratch);

@@ -18,6 +18,16 @@ SCARP_GLSL_BEGIN
 
 SCARP_FN double scarp_magnitude(double x) { return x < double(0.0f) ? -x : x; }
 
+/// A component of grid_from_world * v, given its row.
+SCARP_FN double scarp_turned(dvec3 row, dvec3 v) {
+  SCARP_PRECISE double x = row.x * v.x;
+  SCARP_PRECISE double y = row.y * v.y;
+  SCARP_PRECISE double xy = x + y;
+  SCARP_PRECISE double z = row.z * v.z;
+  SCARP_PRECISE double sum = xy + z;
+  return sum;
+}
+
 /// A component of the direction in 2^-28 of the longest one, given the least magnitude of inverse components.
 SCARP_FN uint scarp_voxel_speed(double given, double per_longest) {
   SCARP_PRECISE double share = scarp_magnitude(given) * per_longest;

@@ -14,8 +14,8 @@
 
 #include "scarp/base/error.h"
 #include "scarp/march/ray_runs_vk.h"
-#include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/voxel_batch.glsl.h"
+#include "scarp/march/voxel/voxel_ray_vk.h"
 #include "scarp/vk/loop_turns.glsl.h"
 
 namespace scarp {
@@ -28,27 +28,8 @@ constexpr std::uint32_t kMarchesWordsWords[] = {
 #include "scarp/march/voxel/voxel_marches_words.comp.inc"
 };
 
-// By number.
-constexpr std::array<std::string_view, glsl::kScarpVoxelMarches> kNames = {
-    "voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-octants", "voxel-bricks"};
-
-// Drivers may take numbers for zero that are too small for normal doubles. Those of quantised rays are products of a
-// few of these, and of differences 2^-53 of them.
-bool is_number_of_devices(double x) { return x == 0 || (std::abs(x) > 0x1p-200 && std::abs(x) < 0x1p200); }
-// The end of a range is compared alone.
-bool is_end_of_devices(double t) { return t >= 0x1p200 || is_number_of_devices(t); }
-// Directions whose lengths are those of floats, too, for the hierarchy.
-bool is_length_of_devices(double longest) { return longest > 0x1p-60 && longest < 0x1p60; }
-bool are_numbers_of_devices(const dvec3& v) {
-  return is_number_of_devices(v.x) && is_number_of_devices(v.y) && is_number_of_devices(v.z);
-}
-
 struct VoxelRays {
-  struct Prepared {
-    glsl::ScarpVoxelRay ray{};
-    int exponent = 0;  // its t are 2^exponent times those of the caller
-    bool marches = false, left = false;
-  };
+  using Prepared = PreparedVoxelRay;
   using Ray = glsl::ScarpVoxelRay;
   using Hit = glsl::ScarpVoxelHit;
   static Hit none() { return {}; }
@@ -57,31 +38,10 @@ struct VoxelRays {
   static void go_on(Ray&, const Hit&) {}
 };
 
-VoxelRays::Prepared prepared_ray(const Ray& given, const Hit* from) {
-  VoxelRays::Prepared prepared;
-  Ray ray = given;
-  const double longest = longest_of(ray.direction);
-  if (!is_direction(longest)) return prepared;
-  // By a power of two, which changes no answer.
-  if (!is_length_of_devices(longest)) {
-    prepared.exponent = std::ilogb(longest);
-    ray = scaled_down(ray, prepared.exponent);
-  }
-  prepared.marches = are_numbers_of_devices(ray.origin) && are_numbers_of_devices(ray.direction) &&
-                     is_number_of_devices(ray.t_min) && is_end_of_devices(ray.t_max);
-  prepared.left = !prepared.marches;
-  prepared.ray = {ray.origin, ray.direction, ray.t_min, ray.t_max, glsl::kScarpNoPart, {}};
-  if (from) {
-    prepared.ray.part = from->part;
-    prepared.ray.start = from->voxel + normal_of(from->face);
-  }
-  return prepared;
-}
-
 ShaderProgram program_of(bool any, std::uint32_t march, std::uint32_t levels, bool words, bool int64, bool entries) {
   const bool mixed = march == glsl::kScarpVoxelMarches;
   return {int64 ? "scarp/march/voxel/voxel_marches.comp" : "scarp/march/voxel/voxel_marches_words.comp",
-          fmt::format("{}{}", mixed ? "several" : kNames[march], any ? " any" : ""),
+          fmt::format("{}{}", mixed ? "several" : voxel_march_name(march), any ? " any" : ""),
           int64 ? std::span<const std::uint32_t>(kMarchesWords) : kMarchesWordsWords,
           sizeof(glsl::VoxelBatch),
           {RayRuns<VoxelRays>::kThreads, any, march, levels, words, entries}};
@@ -142,6 +102,7 @@ DeviceVoxelObjects::DeviceVoxelObjects(const Device& device, const DeviceVoxels&
                                        std::span<const glsl::ScarpVoxelTurn> turns, const DeviceBoxes& boxes)
     : march_(march_of_all(grids, objects)),
       levels_(boxes.levels),
+      count_(static_cast<std::uint32_t>(objects.size())),
       objects_(filled(device, objects, "voxel objects")),
       turns_(filled(device, turns, "turns of voxel objects")),
       nodes_(filled(device, boxes.nodes, "boxes of voxel objects")),
@@ -152,6 +113,7 @@ DeviceVoxelObjects::DeviceVoxelObjects(const Device& device, const DeviceVoxels&
                             boxes.nodes.size(), boxes.levels, kMaxNodes, DeviceBoxes::kMaxLevels));
   for (const glsl::ScarpVoxelObject& object : objects) {
     const glsl::ScarpVoxelTurn& turn = turns[object.turn];
+    voxel_side_ = std::max(voxel_side_, 1 / length(turn.rows[0]));
     if (are_numbers_of_devices(object.origin) && are_numbers_of_devices(turn.rows[0]) &&
         are_numbers_of_devices(turn.rows[1]) && are_numbers_of_devices(turn.rows[2]))
       continue;
@@ -197,7 +159,7 @@ struct DeviceVoxelQueries::Impl {
     std::vector<std::uint8_t> left(asked.size());
     runs.ask(
         pipeline(objects, any, entries), batch, asked.size(),
-        [&](std::size_t i) { return prepared_ray(asked[i], from.empty() ? nullptr : from[i]); },
+        [&](std::size_t i) { return prepared_voxel_ray(asked[i], from.empty() ? nullptr : from[i]); },
         [&](std::size_t i, const VoxelRays::Prepared& prepared, const glsl::ScarpVoxelHit& hit) {
           left[i] = prepared.left || hit.status == glsl::kScarpVoxelUnfinished;
           answer(i, hit, std::ldexp(hit.t, -prepared.exponent));
@@ -232,15 +194,7 @@ std::vector<std::size_t> DeviceVoxelQueries::closest_hits(const DeviceVoxelObjec
   require_room(rays.size(), rays.size(), details.entries.size());
   return impl_->ask(objects, false, !details.entries.empty(), rays, from,
                     [&](std::size_t i, const glsl::ScarpVoxelHit& found, double t) {
-                      Hit hit;
-                      if (found.status == glsl::kScarpVoxelHit) {
-                        hit.status = HitStatus::hit;
-                        hit.face = static_cast<VoxelFace>(found.face);
-                        hit.t = t;
-                        hit.voxel = found.voxel;
-                        hit.part = found.part;
-                      }
-                      hits[i] = hit;
+                      hits[i] = hit_of(found, t);
                       if (!details.steps.empty()) details.steps[i] = found.steps;
                       if (!details.entries.empty()) details.entries[i] = found.entry;
                     });

@@ -48,10 +48,14 @@ class DeviceVoxelObjects {
   std::uint32_t march() const { return march_; }
   /// Returns the levels of the hierarchy.
   std::uint32_t levels() const { return levels_; }
+  std::uint32_t count() const { return count_; }
+  /// Returns the largest side of a voxel of all objects, in metres.
+  double voxel_side() const { return voxel_side_; }
   std::uint64_t bytes() const { return objects_.bytes() + turns_.bytes() + nodes_.bytes() + header_.bytes(); }
 
  private:
-  std::uint32_t march_, levels_;
+  std::uint32_t march_, levels_, count_;
+  double voxel_side_ = 0;
   DeviceBuffer objects_, turns_, nodes_, header_;
 };
 
