@@ -24,7 +24,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_NAME libscarp-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(dev_depends libfmt-dev libglm-dev libtbb-dev libhwy-dev libpng-dev)
 foreach(pair SCARP_GDAL:libgdal-dev SCARP_GDAL:libproj-dev SCARP_OPENEXR:libopenexr-dev SCARP_CAIRO:libcairo2-dev
-             SCARP_CAIRO:pkg-config SCARP_MESH:libtinyobjloader-dev SCARP_MESH:libtinygltf-dev SCARP_EMBREE:libembree-dev)
+             SCARP_CAIRO:pkg-config SCARP_ERFA:liberfa-dev SCARP_ERFA:pkg-config SCARP_MESH:libtinyobjloader-dev SCARP_MESH:libtinygltf-dev SCARP_EMBREE:libembree-dev)
   string(REPLACE ":" ";" pair ${pair})
   list(GET pair 0 option)
   if(${option})

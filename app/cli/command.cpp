@@ -11,6 +11,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/cli/gdal_words.h"
 #include "app/cli/help.h"
 
 namespace scarp::cli {
@@ -229,14 +230,19 @@ void Program::run(int argc, char** argv) {
     for (const Declared& one : command.options()) {
       const std::string& names = one.option.names;
       CLI::Option* option = one.flag() ? sub->add_flag(names, kNoText) : sub->add_option(names, CLI::callback_t());
-      if (std::holds_alternative<std::vector<std::string>*>(one.to))
+      if (one.option.repeats)
+        option->expected(1)->take_all();
+      else if (std::holds_alternative<std::vector<std::string>*>(one.to))
         option->expected(1, CLI::detail::expected_max_vector_size)->allow_extra_args();
       parsed.options.emplace_back(option, &one);
     }
   }
   std::string wrong;
   try {
-    app.parse(argc, argv);
+    std::vector<std::string> words(argv + 1, argv + argc);
+    if (!words.empty() && (words[0] == "viewshed" || words[0] == "shadow")) words = without_gdal_words(words);
+    std::reverse(words.begin(), words.end());  // as CLI11 takes them
+    app.parse(std::move(words));
   } catch (const CLI::ParseError& error) {
     const auto subs = app.get_subcommands();
     wrong = what_is_wrong(error, app, subs.empty() ? nullptr : subs.front());

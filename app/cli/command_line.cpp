@@ -36,6 +36,10 @@ void add_commands(Program& program) {
   add_render(program);
   add_cast(program);
   add_composite(program);
+  add_viewshed(program);
+  add_shadow(program);
+  add_los(program);
+  add_profile(program);
   add_info(program);
   add_generate(program);
   add_marches(program);

@@ -10,10 +10,14 @@ void add_render(Program& program);
 void add_cast(Program& program);
 void add_composite(Program& program);
 void add_info(Program& program);
+void add_los(Program& program);
 void add_generate(Program& program);
 void add_marches(Program& program);
+void add_profile(Program& program);
 void add_replay(Program& program);
 void add_section(Program& program);
+void add_shadow(Program& program);
+void add_viewshed(Program& program);
 void add_voxelise(Program& program);
 void add_devices(Program& program);  // with SCARP_VULKAN
 

@@ -94,6 +94,7 @@ struct Option {
   bool unlisted = false;                ///< `choices` are too many for the help; completion has them
   std::string files{};                  ///< extensions of files for completion, "png exr"; "*": any file
   std::string note{};                   ///< what else to know: "0: none"
+  bool repeats = false;                 ///< of several values: one after each mention; otherwise any number
   std::string fallback{};               ///< the default in words; empty: the value of the variable
   Topic topic = Topic::general;         //
   bool common = false;                  ///< shown by a plain `--help`

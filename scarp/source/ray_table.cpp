@@ -6,20 +6,13 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <cerrno>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <memory>
 #include <span>
 
 #include "scarp/base/error.h"
-#include "scarp/base/input_file.h"
 #include "scarp/source/csv_rows.h"
-#include "scarp/source/incomplete_file.h"
 #include "scarp/source/npy_header.h"
+#include "scarp/source/table_file.h"
 
 namespace scarp {
 namespace {
@@ -35,23 +28,6 @@ constexpr std::array<std::string_view, column_count> kNames = {
 
 std::string place_of(std::int64_t line, std::size_t row) {
   return line > 0 ? fmt::format("line {} (ray {})", line, row) : fmt::format("ray {}", row);
-}
-
-// A field in a form that fits in a one-line message.
-std::string shown(std::string_view text) {
-  constexpr std::size_t kLongest = 40;
-  std::string result(text.substr(0, kLongest));
-  std::replace_if(
-      result.begin(), result.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, '?');
-  return text.size() > kLongest ? result + "..." : result;
-}
-
-template <class Number>
-bool parse(std::string_view text, Number& number) {
-  // std::from_chars accepts no plus sign.
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
-  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && rest == text.data() + text.size() && !text.empty();
 }
 
 // Checks a row from any source; calls `place` only for errors.
@@ -150,8 +126,8 @@ class CsvRow {
   double number(Column column) const {
     double value = 0;
     if (text(column).empty()) refuse(fmt::format("column '{}' is empty (expected a number)", kNames[column]));
-    if (!parse(text(column), value)) {
-      refuse(fmt::format("'{}' in column '{}' is not a number", shown(text(column)), kNames[column]));
+    if (!parse_field(text(column), value)) {
+      refuse(fmt::format("'{}' in column '{}' is not a number", shown_field(text(column)), kNames[column]));
     }
     return value;
   }
@@ -161,8 +137,8 @@ class CsvRow {
   }
   int whole(Column column) const {
     int value = 0;
-    if (!parse(text(column), value)) {
-      refuse(fmt::format("'{}' in column '{}' is not an integer", shown(text(column)), kNames[column]));
+    if (!parse_field(text(column), value)) {
+      refuse(fmt::format("'{}' in column '{}' is not an integer", shown_field(text(column)), kNames[column]));
     }
     return value;
   }
@@ -307,31 +283,6 @@ RayTable parse_plain(const NpyHeader& header, const char* data, std::size_t rays
   return table;
 }
 
-struct InputCloser {
-  void operator()(std::FILE* file) const {
-    if (file != stdin) std::fclose(file);
-  }
-};
-
-std::string bytes_of(const std::string& path) {
-  std::error_code ignored;
-  if (path != "-" && std::filesystem::is_directory(path, ignored)) throw Error("is a directory (name a file)");
-  if (path != "-") refuse_special_file(path);
-  const std::unique_ptr<std::FILE, InputCloser> file(path == "-" ? stdin : std::fopen(path.c_str(), "rb"));
-  if (!file) throw Error(fmt::format("cannot be opened: {}", std::strerror(errno)));
-  constexpr std::size_t kPiece = 1 << 20;
-  std::string bytes;
-  for (;;) {
-    const std::size_t size = bytes.size();
-    bytes.resize(size + kPiece);
-    const std::size_t got = std::fread(bytes.data() + size, 1, kPiece, file.get());
-    bytes.resize(size + got);
-    if (got < kPiece) break;
-  }
-  if (std::ferror(file.get())) throw Error(fmt::format("cannot be read: {}", std::strerror(errno)));
-  return bytes;
-}
-
 }  // namespace
 
 std::string RayTable::where(std::size_t row) const {
@@ -342,7 +293,7 @@ RayTable parse_ray_csv(std::string_view bytes, RayHeights heights) {
   if (bytes.starts_with("\xFF\xFE") || bytes.starts_with("\xFE\xFF")) throw Error("UTF-16 text (save it as UTF-8)");
   CsvRows rows(bytes);
   if (!rows.next()) throw Error(fmt::format("empty file, no header ({})", needed(heights)));
-  if (double number = 0; parse(trimmed(rows.fields().front()), number)) {
+  if (double number = 0; parse_field(trimmed(rows.fields().front()), number)) {
     throw Error(fmt::format("first line contains numbers instead of a header ({})", needed(heights)));
   }
   const CsvHeader header(rows.fields(), heights);
@@ -377,8 +328,7 @@ RayTable parse_ray_npy(std::string_view bytes, RayHeights heights) {
 
 RayTable read_rays(const std::string& path, RayHeights heights) {
   try {
-    const std::string bytes = bytes_of(path);
-    refuse_lfs_pointer(bytes);
+    const std::string bytes = table_bytes(path);
     const bool npy = bytes.starts_with("\x93NUMPY") || (path.ends_with(".npy") && !bytes.empty());
     RayTable table = npy ? parse_ray_npy(bytes, heights) : parse_ray_csv(bytes, heights);
     table.path = path;

@@ -21,10 +21,11 @@ set(sees_scene base vk field accel march scene)
 set(sees_scene_mesh base vk source field accel march scene scene_mesh)
 set(sees_scene_file base vk source field accel march scene scene_mesh scene_file)
 set(sees_render base vk source field accel march scene scene_mesh scene_file render)
+set(sees_analysis base vk source field accel march scene scene_mesh scene_file analysis)
 set(sees_output base output)
 # Files directly in scarp/: scarp.h and what it declares.
-set(sees_door base source field accel march scene scene_file render output door)
-set(stations base vk source field accel march scene scene_mesh scene_file render output door)
+set(sees_door base source field accel march scene scene_file analysis render output door)
+set(stations base vk source field accel march scene scene_mesh scene_file analysis render output door)
 set(core_stations base vk field accel march scene)
 # scarp.h and all that it includes.
 set(door_stations base field accel march scene door)

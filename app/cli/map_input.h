@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// The input of subcommands that compute maps: one elevation model, places on it, and a plane in metres around a place.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/command.h"
+#include "app/cli/places.h"
+#include "scarp/analysis/sight.h"
+#include "scarp/base/georeference.h"
+#include "scarp/field/height_field.h"
+#include "scarp/source/metric_plane.h"
+#include "scarp/source/place_table.h"
+#include "scarp/source/raster_options.h"
+
+namespace scarp::cli {
+
+/// Options as typed.
+struct MapOptions {
+  std::vector<std::string> inputs;
+  RasterOptions raster;
+  std::string coordinates;          ///< of places; empty: map, or local without a georeference
+  std::optional<double> curvature;  ///< coefficient; empty: by the body
+  double plane_error = 0.1;         ///< cells
+  int threads = 0;
+  std::string output;
+  std::vector<std::string> typed;
+};
+
+/// Declares IN, --crs, --plane-error, --threads and the raster options.
+void add_map_options(Command& command, MapOptions& options);
+/// Declares --cc.
+void add_curvature_option(Command& command, std::optional<double>& coefficient);
+
+class MapInput {
+ public:
+  /// Reads the raster. Throws Error naming the file.
+  explicit MapInput(const MapOptions& options);
+
+  const HeightField& field() const { return field_; }
+  const Georeference& georeference() const { return georeference_; }
+  const std::string& path() const { return path_; }
+  const std::vector<std::string>& files() const { return files_; }
+  /// Lines for people, printed last.
+  std::vector<std::string> notes;
+
+  /// The coefficient of --cc, else 6/7 on Earth and 1 elsewhere.
+  SightCurvature curvature() const;
+  std::string curvature_text() const;
+
+  /// Position in columns and rows. `what` begins messages. Throws Error for a place outside the samples.
+  dvec2 grid_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  /// The sample nearest to a place, in the same way; a place up to half a cell beyond the border counts.
+  Node node_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  /// Map coordinates, degrees or metres of a position in columns and rows, as --crs has it.
+  dvec2 place_of(double col, double row) const;
+  /// Longitude and latitude in degrees; nullopt without a CRS.
+  std::optional<dvec2> lonlat_of(double col, double row) const;
+
+  /// The field with the lengths of its cells at a place. Geographic rasters only; others keep those of their centre.
+  /// Throws Error if samples within `reach` metres are farther off than --plane-error allows.
+  HeightField field_at(double col, double row, double reach);
+  /// Azimuth of grid north at that place, radians.
+  double grid_north_at(double col, double row, double reach);
+
+ private:
+  dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  [[noreturn]] void refuse_outside(const TablePlace& place, std::string_view what, double beyond) const;
+  const MetricPlane& plane_at(double col, double row, double reach);
+
+  const MapOptions& options_;
+  HeightField field_;
+  Georeference georeference_;
+  std::string path_;
+  std::vector<std::string> files_;
+  Body body_;
+  bool geographic_ = false;
+  std::optional<CoordinateFrame> frame_, lonlat_;
+  struct Plane {
+    double col, row, reach;
+    MetricPlane plane;
+  };
+  std::optional<Plane> last_;  // places that follow one another often have one observer
+  double worst_ = 0;           // error told so far
+};
+
+}  // namespace scarp::cli

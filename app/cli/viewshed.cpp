@@ -1,0 +1,362 @@
+// SPDX-License-Identifier: MIT
+// `scarp viewshed`: what one or many observers see of an elevation model, as a raster.
+#include "scarp/analysis/viewshed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "app/cli/commands.h"
+#include "app/cli/kept_inputs.h"
+#include "app/cli/map_input.h"
+#include "app/cli/progress.h"
+#include "app/cli/raster_output.h"
+#include "app/cli/shared_options.h"
+#include "app/cli/sight_options.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+
+namespace scarp::cli {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr int kNodata = 255;
+constexpr const char* kMethod =
+    "exact lines of sight; ground linear at crossings of grid lines; grazing is visible (scarp viewshed)";
+
+constexpr const char* kFooter = R"(Modes:
+  visible  1 where an observer sees the target, 0 where none does (--visible-value, --hidden-value)
+  count    number of observers that see the target
+  dem      least height above sea at which a target is visible, metres
+  ground   the same above ground: 0 where the ground itself is visible
+Pixels without a sample, or outside every observer's limits, are nodata.
+
+Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a_nodata -b -co -of
+-f -q, with the output as last word.)";
+
+struct ViewshedOptions : MapOptions {
+  std::vector<std::string> observers;
+  std::string observers_file, mode = "visible", azimuth, pitch;
+  SightHeights heights;
+  double min_distance = 0;
+  std::optional<double> max_distance, nodata;
+  int visible = 1, hidden = 0;
+  std::optional<double> out_of_range;
+  RasterOutput raster_output;
+};
+
+// One observer, with its own plane if the raster is in degrees.
+struct Observer {
+  Node node;
+  ViewshedSettings settings;
+  HeightField field;
+  dvec2 at;
+};
+
+PlaceTable observer_table(const ViewshedOptions& options) {
+  if (!options.observers_file.empty()) return read_places(options.observers_file, PlaceKind::points);
+  if (options.observers.empty()) throw Error("no observer: give --observer X,Y or --observers FILE");
+  PlaceTable table;
+  for (const std::string& text : options.observers)
+    table.rows.push_back({typed_height_place(text, "--observer"), {}, 0});
+  return table;
+}
+
+// Compass degrees from true north to radians from grid north.
+double grid_azimuth(double degrees, double grid_north) {
+  const double turn = 2 * std::numbers::pi, angle = std::remainder(degrees / kDegrees - grid_north, turn);
+  return angle < 0 ? angle + turn : angle;
+}
+
+void set_limits(ViewshedSettings& settings, const ViewshedOptions& options, double grid_north) {
+  settings.min_distance = options.min_distance;
+  settings.max_distance = options.max_distance.value_or(std::numeric_limits<double>::infinity());
+  if (settings.max_distance < settings.min_distance)
+    throw Error(
+        fmt::format("--max-distance {}: is below --min-distance {}", settings.max_distance, settings.min_distance));
+  if (!options.azimuth.empty()) {
+    const auto n =
+        numbers_from(options.azimuth, ',', 2, 2, "--azimuth", "FROM,TO in degrees clockwise from north, 0 to 360");
+    for (const double degrees : n)
+      if (!(degrees >= 0 && degrees <= 360))
+        throw Error(
+            fmt::format("--azimuth '{}': expected FROM,TO in degrees clockwise from north, 0 to 360", options.azimuth));
+    if (n[1] - n[0] < 360) {
+      settings.first_azimuth = grid_azimuth(n[0], grid_north);
+      settings.last_azimuth = grid_azimuth(n[1], grid_north);
+    }
+  }
+  if (!options.pitch.empty()) {
+    const auto n = numbers_from(options.pitch, ',', 2, 2, "--pitch", "LOW,HIGH in degrees above horizontal, -90 to 90");
+    if (!(n[0] >= -90 && n[0] <= n[1] && n[1] <= 90))
+      throw Error(fmt::format("--pitch '{}': expected LOW,HIGH in degrees above horizontal, -90 to 90", options.pitch));
+    settings.low_pitch = n[0] / kDegrees;
+    settings.high_pitch = n[1] / kDegrees;
+  }
+}
+
+std::vector<Observer> observers_of(MapInput& input, const ViewshedOptions& options) {
+  const PlaceTable table = observer_table(options);
+  std::vector<Observer> observers;
+  double farthest = 0;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const PlaceRow& row = table.rows[i];
+    const std::string what = row.line > 0 ? table.where(i) : "--observer";
+    const Node node = input.node_of(row.from, table.lonlat, what);
+    const dvec2 snapped = input.place_of(node.col, node.row);
+    ViewshedSettings settings;
+    settings.curvature = input.curvature();
+    settings.target_height = options.heights.target;
+    if (row.from.z && options.heights.datum == "sea") {
+      settings.observer_z = row.from.z;
+    } else {
+      settings.observer_height = row.from.z.value_or(options.heights.observer);
+    }
+    const double reach = options.max_distance.value_or(std::numeric_limits<double>::infinity());
+    set_limits(settings, options, options.azimuth.empty() ? 0 : input.grid_north_at(node.col, node.row, reach));
+    observers.push_back({node, settings, input.field_at(node.col, node.row, reach), snapped});
+    try {
+      const Viewpoint checked(observers.back().field, node, settings);
+    } catch (const Error& error) {
+      throw Error(fmt::format("{}: {}", what, error.what()));
+    }
+    if (!table.lonlat) farthest = std::max(farthest, std::hypot(snapped.x - row.from.x, snapped.y - row.from.y));
+  }
+  if (farthest > 0)
+    input.notes.push_back(
+        fmt::format("observers stand on the nearest sample, up to {:.3g} units of --crs away", farthest));
+  return observers;
+}
+
+using Codes = std::vector<std::uint8_t>;
+
+// Pixels of `visible`: the best that any observer has of a node.
+Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptions& options, const Progress& progress) {
+  const auto out = static_cast<std::uint8_t>(options.out_of_range.value_or(options.nodata.value_or(kNodata)));
+  const auto hole = static_cast<std::uint8_t>(options.nodata.value_or(kNodata));
+  const std::uint8_t value_of[] = {static_cast<std::uint8_t>(options.hidden),
+                                   static_cast<std::uint8_t>(options.visible), out, hole};
+  Codes pixels;
+  std::vector<Seen> best;
+  for (const Observer& one : observers) {
+    auto codes = viewshed(one.field, one.node, one.settings, progress);
+    if (best.empty()) {
+      best = std::move(codes);
+      continue;
+    }
+    for (std::size_t i = 0; i < best.size(); ++i)
+      if (codes[i] == Seen::visible || (codes[i] == Seen::hidden && best[i] == Seen::out_of_range)) best[i] = codes[i];
+  }
+  pixels.reserve(best.size());
+  for (const Seen code : best) pixels.push_back(value_of[static_cast<std::size_t>(code)]);
+  return pixels;
+}
+
+constexpr std::uint16_t kNoCount = 65535;
+
+std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers, const Progress& progress) {
+  std::vector<std::uint16_t> counts;
+  for (const Observer& one : observers) {
+    const auto codes = viewshed(one.field, one.node, one.settings, progress);
+    if (counts.empty()) counts.assign(codes.size(), kNoCount);
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+      if (codes[i] == Seen::hole || codes[i] == Seen::out_of_range) continue;
+      if (counts[i] == kNoCount) counts[i] = 0;
+      counts[i] = static_cast<std::uint16_t>(counts[i] + (codes[i] == Seen::visible));
+    }
+  }
+  return counts;
+}
+
+std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDatum datum, float nodata,
+                                const Progress& progress) {
+  std::vector<float> pixels;
+  for (const Observer& one : observers) {
+    const auto least = least_visible(one.field, one.node, one.settings, progress);
+    const Viewpoint view(one.field, one.node, one.settings);
+    if (pixels.empty()) pixels.assign(least.size(), nodata);
+    const int cols = one.field.cols();
+    parallel_for(one.field.rows(), 16, [&](std::int64_t begin, std::int64_t end) {
+      for (auto i = static_cast<std::size_t>(begin) * cols; i < static_cast<std::size_t>(end) * cols; ++i) {
+        const Node node{static_cast<int>(i % cols), static_cast<int>(i / cols)};
+        const float height = least_height(view.ground(), node, least[i], datum);
+        if (!std::isnan(height)) pixels[i] = pixels[i] == nodata ? height : std::min(pixels[i], height);
+      }
+    });
+  }
+  return pixels;
+}
+
+std::string mode_of(const std::string& typed) {
+  // As gdal_viewshed has them.
+  if (typed == "NORMAL") return "visible";
+  if (typed == "DEM") return "dem";
+  if (typed == "GROUND") return "ground";
+  if (typed == "ACCUM") return "count";
+  return typed;
+}
+
+double share_of(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
+
+void run(ViewshedOptions options, const Command& command) {
+  command.require_effect({});
+  options.mode = mode_of(options.mode);
+  settle_driver(options.raster_output, options.output);
+  keep_inputs(options.output, options.typed);
+  const ThreadLimit limit(options.threads);
+  const auto begin = std::chrono::steady_clock::now();
+  MapInput input(options);
+  keep_inputs(options.output, input.files());
+  const std::vector<Observer> observers = observers_of(input, options);
+  if (options.mode == "count" && observers.size() >= kNoCount)
+    throw Error(fmt::format("--mode count: {} observers (limit: {})", observers.size(), kNoCount - 1));
+
+  const double nodes = static_cast<double>(input.field().cols()) * input.field().rows();
+  if (options.raster_output.dry_run) {
+    // One line of sight per node, of a third of the longer side on average.
+    constexpr double kCrossing_s = 4e-9;
+    const double length = std::max(input.field().cols(), input.field().rows());
+    print_dry_run(input, options.output, options.mode == "dem" || options.mode == "ground" ? 12 : 3,
+                  static_cast<double>(observers.size()) * nodes * length * kCrossing_s);
+    return;
+  }
+  std::string places;
+  for (const Observer& one : observers) {
+    constexpr std::size_t kListed = 20;
+    if (&one - observers.data() >= static_cast<std::ptrdiff_t>(kListed)) {
+      places += "; ...";
+      break;
+    }
+    places +=
+        fmt::format("{}{:.10g},{:.10g} {}", places.empty() ? "" : "; ", one.at.x, one.at.y,
+                    one.settings.observer_z ? fmt::format("{:.10g} m above sea", *one.settings.observer_z)
+                                            : fmt::format("{:.10g} m above ground", one.settings.observer_height));
+  }
+  const SightCurvature curvature = input.curvature();
+  RasterMap map = map_of(input, options.raster_output, kMethod,
+                         {{"MODE", options.mode},
+                          {"OBSERVERS", places},
+                          {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)},
+                          {"CURVATURE_COEFFICIENT", fmt::format("{:.10g}", curvature.coefficient)},
+                          {"DIAMETER", fmt::format("{:.10g} m", curvature.diameter)}});
+  const Progress progress = terminal_progress("viewshed");
+  Codes codes;
+  std::vector<std::uint16_t> counts;
+  std::vector<float> heights;
+  std::string what;
+  if (options.mode == "visible") {
+    codes = visible_pixels(observers, options, progress);
+    const int nodata = static_cast<int>(options.nodata.value_or(kNodata));
+    map.bands.push_back({"visible",
+                         "",
+                         std::span<const std::uint8_t>(codes),
+                         nodata,
+                         {{options.hidden, "hidden", {205, 205, 205, 255}},
+                          {options.visible, "visible", {44, 150, 60, 255}},
+                          {nodata, "no sample or out of range", {255, 255, 255, 0}}}});
+    what = fmt::format("{:.3g} % visible",
+                       share_of(static_cast<double>(std::count(codes.begin(), codes.end(), options.visible)), nodes));
+  } else if (options.mode == "count") {
+    counts = counted_pixels(observers, progress);
+    map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kNoCount});
+    what = fmt::format("{} observers", observers.size());
+  } else {
+    const bool dem = options.mode == "dem";
+    const double nodata = options.nodata.value_or(-9999);
+    heights =
+        least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, static_cast<float>(nodata), progress);
+    map.bands.push_back({dem ? "least visible height above sea" : "least visible height above ground", "m",
+                         std::span<const float>(heights), nodata});
+    what = "least visible heights";
+  }
+  write_raster_map(options.output, map, terminal_progress("write"));
+  print_map_summary(input, options.raster_output, options.output, fmt::format("{}; {}", what, input.curvature_text()),
+                    begin);
+}
+
+}  // namespace
+
+void add_viewshed(Program& program) {
+  Command& command = program.add("viewshed", "Map what observers see of an elevation model");
+  const auto options = std::make_shared<ViewshedOptions>();
+  ViewshedOptions& o = *options;
+  command.add(&o.observers, {.names = "--observer",
+                             .value = "X,Y[,H]",
+                             .help = "observer",
+                             .note = "repeatable",
+                             .repeats = true,
+                             .common = true});
+  command.add(&o.observers_file, {.names = "--observers",
+                                  .value = "FILE",
+                                  .help = "observers: CSV (x,y[,z]) or a vector file of points",
+                                  .files = "csv geojson gpkg shp",
+                                  .note = "-: CSV from standard input",
+                                  .common = true,
+                                  .excludes = {"--observer"}});
+  add_output_option(command, o.output, "raster to write", "tif tiff img asc");
+  command.add(&o.mode, {.names = "--mode",
+                        .value = "MODE",
+                        .help = "what pixels hold",
+                        .choices = {"visible", "count", "dem", "ground", "NORMAL", "ACCUM", "DEM", "GROUND"},
+                        .closed = true,
+                        .common = true});
+  add_sight_heights(command, o.heights);
+  command.add(&o.max_distance, {.names = "--max-distance",
+                                .help = "largest distance of targets",
+                                .unit = "metres",
+                                .range = {0, kMostOfGround},
+                                .fallback = "unlimited",
+                                .common = true});
+  command.add(&o.min_distance, {.names = "--min-distance",
+                                .help = "least distance of targets",
+                                .unit = "metres",
+                                .range = {0, kMostOfGround},
+                                .common = true});
+  command.add(&o.azimuth, {.names = "--azimuth",
+                           .value = "FROM,TO",
+                           .help = "field of view in degrees clockwise from true north",
+                           .fallback = "all around",
+                           .common = true});
+  command.add(&o.pitch, {.names = "--pitch",
+                         .value = "LOW,HIGH",
+                         .help = "field of view in degrees above horizontal",
+                         .fallback = "-90,90",
+                         .common = true});
+  add_curvature_option(command, o.curvature);
+  const Rule codes = needs("--mode visible", [&o] { return mode_of(o.mode) == "visible"; });
+  command.add(
+      &o.visible,
+      {.names = "--visible-value", .help = "pixel value of visible targets", .range = {0, 255}, .rules = {codes}});
+  command.add(
+      &o.hidden,
+      {.names = "--hidden-value", .help = "pixel value of hidden targets", .range = {0, 255}, .rules = {codes}});
+  command.add(&o.out_of_range, {.names = "--out-of-range-value",
+                                .help = "pixel value outside the limits",
+                                .range = {0, 255},
+                                .fallback = "nodata",
+                                .rules = {codes}});
+  const Rule marked = needs("--mode visible, dem or ground", [&o] { return mode_of(o.mode) != "count"; });
+  command.add(&o.nodata, {.names = "--nodata-value",
+                          .help = "pixel value without a sample",
+                          .range = {-1e30, 1e30},
+                          .fallback = "255; heights: -9999",
+                          .rules = {marked}});
+  add_raster_output_options(command, o.raster_output);
+  add_map_options(command, o);
+  command.footer(kFooter);
+  command.example("scarp viewshed dem.tif --observer 692000,5143000,2 -o seen.tif");
+  command.example("scarp viewshed dem.tif --observers towers.csv --mode count -o count.tif");
+  command.example("scarp viewshed -ox 692000 -oy 5143000 -md 20000 dem.tif seen.tif");
+  command.runs([options, &command] {
+    options->typed = command.typed_values();
+    run(*options, command);
+  });
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/analysis/line_of_sight.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scarp/analysis/node_maxima.h"
+#include "scarp/analysis/sight_crossings.h"
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+SightEnd rounded(const HeightField& field, SightEnd end, std::string_view name) {
+  const double last_col = field.cols() - 1, last_row = field.rows() - 1;
+  constexpr auto kSteps = static_cast<double>(kSubcells);
+  end.col = std::round(end.col * kSteps) / kSteps;
+  end.row = std::round(end.row * kSteps) / kSteps;
+  if (!(end.col >= 0 && end.row >= 0 && end.col <= last_col && end.row <= last_row))
+    throw Error(fmt::format("{}: column {:.10g}, row {:.10g} is outside the raster (columns 0 to {}, rows 0 to {})",
+                            name, end.col, end.row, last_col, last_row));
+  if (!std::isfinite(end.height) || (end.datum == HeightDatum::ground && end.height < 0))
+    throw Error(fmt::format("{}: height {} m (must be 0 or more above ground)", name, end.height));
+  return end;
+}
+
+// Metres above sea of an end; `ground` becomes the ground below it.
+double height_of(const SightGround& heights, const SightEnd& end, std::string_view name, double& ground) {
+  const auto found = heights.height_at(end.col, end.row);
+  ground = found.value_or(std::numeric_limits<double>::quiet_NaN());
+  if (!found && end.datum == HeightDatum::ground)
+    throw Error(fmt::format("{}: column {:.10g}, row {:.10g} is on nodata (give its height above sea)", name, end.col,
+                            end.row));
+  const double height = end.datum == HeightDatum::sea ? end.height : *found + end.height;
+  if (found && height < *found)
+    throw Error(fmt::format("{}: height {:.10g} m is below the ground at {:.10g} m", name, height, *found));
+  return height;
+}
+
+}  // namespace
+
+SightLine::SightLine(const HeightField& field, const SightEnd& from, const SightEnd& to,
+                     const SightCurvature& curvature)
+    : from_(rounded(field, from, "observer")),
+      to_(rounded(field, to, "target")),
+      ground_(field, from_.col, from_.row, curvature) {
+  eye_ = height_of(ground_, from_, "observer", eye_ground_);
+  target_ = ground_.lowered(height_of(ground_, to_, "target", target_ground_), to_.col, to_.row);
+  distance_ = std::sqrt(ground_.square_distance(to_.col, to_.row));
+}
+
+namespace {
+
+// Looks for the obstruction and the least clearance, piece by piece along the line, outwards. Pieces are skipped if the
+// line passes above all their nodes by more than the least clearance so far: what is there can neither block the line
+// nor be nearer to it.
+class Search {
+ public:
+  Search(const SightLine& line, const NodeMaxima* maxima) : line_(line), maxima_(maxima) {
+    const double cols = line.to().col - line.from().col, rows = line.to().row - line.from().row;
+    length_ = std::abs(cols) >= std::abs(rows) ? cols : rows;
+    const auto& cell = line.ground().field().settings();
+    diagonal_ = std::hypot(cell.cell_x, cell.cell_y);
+    largest_ = std::abs(line.eye()) + std::abs(line.target());
+  }
+
+  LineOfSight run() {
+    result_.distance = line_.distance();
+    result_.eye = line_.eye();
+    result_.target = line_.target() + line_.ground().drop(line_.to().col, line_.to().row);
+    if (!maxima_) {
+      for (int axis = 0; axis < 2; ++axis) visit(axis, {});
+    } else if (length_ != 0) {
+      pieces(0, std::abs(length_), NodeMaxima::kCoarse);
+    }
+    return result_;
+  }
+
+ private:
+  // The line from `begin` to `end`, in cells along its larger axis.
+  void pieces(double begin, double end, int side) {
+    for (double at = begin; at < end; at += side) {
+      const double to = std::min(at + side, end);
+      const Box box = box_of(at, to);
+      if (passes(box, at, to, side)) continue;
+      if (side == NodeMaxima::kCoarse) {
+        pieces(at, to, NodeMaxima::kFine);
+      } else {
+        visit(0, {box.low[0], box.high[0]});
+        visit(1, {box.low[1], box.high[1]});
+      }
+    }
+  }
+
+  // The nodes beside a piece; also the grid lines that it may cross.
+  struct Box {
+    int low[2], high[2];
+  };
+  Box box_of(double at, double to) const {
+    constexpr double kRounding = 1e-6;  // cells; positions are below 2^20, rounded to 2^-32
+    const int sides[2] = {line_.ground().field().cols(), line_.ground().field().rows()};
+    Box box{};
+    for (int axis = 0; axis < 2; ++axis) {
+      const auto place = [&](double cells) {
+        const double along = cells / std::abs(length_);
+        return axis == 0 ? line_.col(along) : line_.row(along);
+      };
+      const double a = place(at), b = place(to);
+      box.low[axis] = std::max(static_cast<int>(std::floor(std::min(a, b) - kRounding)), 0);
+      box.high[axis] = std::min(static_cast<int>(std::ceil(std::max(a, b) + kRounding)), sides[axis] - 1);
+    }
+    return box;
+  }
+
+  bool passes(const Box& box, double at, double to, int side) const {
+    const double top = maxima_->highest(side, box.low[0], box.low[1], box.high[0], box.high[1]);
+    if (top == -std::numeric_limits<double>::infinity()) return true;
+    const double near = at / std::abs(length_), far = to / std::abs(length_);
+    const auto ray = [&](double along) { return line_.eye() + along * (line_.target() - line_.eye()); };
+    // The nodes of a side that the line crosses are at most a diagonal nearer to the eye than the crossing.
+    const double reach = std::max(near * line_.distance() - diagonal_, 0.0);
+    const double drop = line_.ground().drop_at(reach * reach);
+    const double rounding = 16 * kSumRounding * (largest_ + std::abs(top) + drop);
+    // Pieces share grid lines at their ends: the obstruction so far may lie beyond this piece.
+    const bool first_is_known = !result_.visible && result_.obstruction->along <= near;
+    return std::min(ray(near), ray(far)) - (top - drop) - rounding >=
+           (first_is_known ? result_.clearance : std::max(result_.clearance, 0.0));
+  }
+
+  void visit(int axis, const LineRange& range) {
+    visit_sight(
+        line_, axis,
+        [&](const SightCrossing& at) {
+          const double clearance = at.ray() - at.ground(), along = at.along();
+          if (clearance < result_.clearance) {
+            result_.clearance = clearance;
+            result_.clearance_along = along;
+          }
+          if ((result_.visible || along < result_.obstruction->along) && sign_of(at.terms) > 0) {
+            result_.visible = false;
+            result_.obstruction = {along, line_.col(along), line_.row(along), at.ground() + at.drop(line_.ground())};
+          }
+          return true;
+        },
+        range);
+  }
+
+  const SightLine& line_;
+  const NodeMaxima* maxima_;
+  double length_ = 0, diagonal_ = 0, largest_ = 0;
+  LineOfSight result_;
+};
+
+}  // namespace
+
+LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
+                          const SightCurvature& curvature, const NodeMaxima* maxima) {
+  return Search(SightLine(field, from, to, curvature), maxima).run();
+}
+
+}  // namespace scarp

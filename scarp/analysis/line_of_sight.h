@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Line of sight between two places of a field. sight.h defines what blocks it.
+//
+//   const auto line = scarp::line_of_sight(field, {.col = 10, .row = 20, .height = 2}, {.col = 400, .row = 90});
+//   if (!line.visible) std::printf("blocked after %g m\n", line.obstruction->along * line.distance);
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include "scarp/analysis/sight.h"
+
+namespace scarp {
+
+/// One end of a line of sight.
+struct SightEnd {
+  double col = 0, row = 0;                  ///< rounded to 1/kSubcells of a cell
+  double height = 0;                        ///< metres; >= 0 above ground
+  HeightDatum datum = HeightDatum::ground;  ///< what `height` counts from
+};
+
+/// Two ends of a line, ready for queries: checked, rounded, with heights.
+class SightLine {
+ public:
+  /// Throws Error for an end outside the field, on a hole with its height above ground, a height below the ground or
+  /// not finite; and for a curvature out of range.
+  SightLine(const HeightField& field, const SightEnd& from, const SightEnd& to, const SightCurvature& curvature);
+
+  const SightGround& ground() const { return ground_; }
+  double col(double along) const { return from_.col + along * (to_.col - from_.col); }
+  double row(double along) const { return from_.row + along * (to_.row - from_.row); }
+  const SightEnd& from() const { return from_; }
+  const SightEnd& to() const { return to_; }
+  double distance() const { return distance_; }  ///< metres, horizontal
+  double eye() const { return eye_; }            ///< metres above sea
+  double target() const { return target_; }      ///< metres, lowered
+  /// Heights of the ground at the ends in metres above sea; NaN on a hole.
+  double ground_at_eye() const { return eye_ground_; }
+  double ground_at_target() const { return target_ground_; }
+
+ private:
+  SightEnd from_, to_;
+  SightGround ground_;
+  double distance_, eye_, target_, eye_ground_, target_ground_;
+};
+
+/// The crossing that blocks a line of sight nearest to its start.
+struct Obstruction {
+  double along = 0;         ///< 0 at the start, 1 at the end
+  double col = 0, row = 0;  ///< its place
+  double height = 0;        ///< of the ground there, metres above sea
+};
+
+/// Result of line_of_sight(). Numbers are rounded; `visible` is exact.
+struct LineOfSight {
+  bool visible = true;
+  std::optional<Obstruction> obstruction{};  ///< set if not visible
+  double distance = 0;                       ///< metres, horizontal
+  double eye = 0, target = 0;                ///< metres above sea
+  /// Least height of the line above the ground at crossings in metres, negative if blocked; infinity without crossings.
+  double clearance = std::numeric_limits<double>::infinity();
+  double clearance_along = 0;  ///< where that is
+};
+
+class NodeMaxima;
+
+/// Answers one query. Throws as SightLine does. `maxima`, those of the same field, give the same answer sooner where a
+/// field has many lines; without them every crossing is visited.
+LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
+                          const SightCurvature& curvature = {}, const NodeMaxima* maxima = nullptr);
+
+}  // namespace scarp

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/analysis/sight.h"
+
+#include <fmt/format.h>
+
+#include "scarp/base/error.h"
+#include "scarp/base/setting.h"
+
+namespace scarp {
+
+void validate(const SightCurvature& curvature) {
+  require_setting("line of sight", curvature.coefficient >= 0 && curvature.coefficient <= 1, "curvature coefficient",
+                  curvature.coefficient, "0..1");
+  require_setting("line of sight", curvature.diameter > 0 && std::isfinite(curvature.diameter), "diameter",
+                  curvature.diameter, "> 0");
+}
+
+SightGround::SightGround(const HeightField& field) : field_(&field) {
+  if (field.wraps()) throw Error("line of sight: wrapped fields have no border (use a field without wrap)");
+  if (field.cols() > kMaxSightSide || field.rows() > kMaxSightSide)
+    throw Error(fmt::format("line of sight: {} x {} samples are too many (limit: {} per side)", field.cols(),
+                            field.rows(), kMaxSightSide));
+}
+
+SightGround::SightGround(const HeightField& field, double observer_col, double observer_row,
+                         const SightCurvature& curvature)
+    : SightGround(field) {
+  validate(curvature);
+  col_ = observer_col;
+  row_ = observer_row;
+  per_square_metre_ = curvature.per_square_metre();
+}
+
+std::optional<double> SightGround::height(Node node) const {
+  return field_->visit([&](const auto& grid) -> std::optional<double> {
+    const auto sample = grid.at(node.col, node.row);
+    if (grid.is_nodata(sample)) return std::nullopt;
+    return field_->height_from_sample(static_cast<double>(sample));
+  });
+}
+
+std::optional<double> SightGround::lowered(Node node) const {
+  const auto h = height(node);
+  return h ? std::optional(lowered(*h, node.col, node.row)) : std::nullopt;
+}
+
+std::optional<double> SightGround::height_at(double col, double row) const {
+  if (!(col >= 0 && row >= 0 && col <= field_->cols() - 1 && row <= field_->rows() - 1)) return std::nullopt;
+  const int c = static_cast<int>(col), r = static_cast<int>(row);
+  const double u = col - c, v = row - r;
+  // Samples with weight 0 do not count: they may be holes or outside.
+  double sum = 0;
+  for (int south = 0; south <= (v > 0); ++south)
+    for (int east = 0; east <= (u > 0); ++east) {
+      const auto h = height({c + east, r + south});
+      if (!h) return std::nullopt;
+      sum += *h * (east ? u : 1 - u) * (south ? v : 1 - v);
+    }
+  return sum;
+}
+
+}  // namespace scarp

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// The definition of every map of this station: what blocks a line of sight or a sun ray. Engines and the slow judge
+// (test/analysis/slow_judge.h) give the same answer for every cell, to the last bit.
+//
+//        row line                      o  node: a sample; a map has one pixel per node
+//   o-------x------o                   x  crossing of the line of sight with a grid line
+//   |     /        |
+//   |   /          | column line       Height of the ground at a crossing: linear between the two samples at the ends
+//   x/             |                   of that side. Nothing lies between crossings.
+//   o--------------o
+//
+// Surface `crossings`
+// - A *height* is HeightField::height_from_sample(): metres, a double. Seen from an observer it is *lowered* by
+//   curvature and refraction: lowered() below, rounded to double. From here on all arithmetic is exact.
+// - A crossing blocks if the ground there is strictly above the ray. A ray that grazes the ground passes.
+// - Crossings count strictly between the two ends of a line of sight, and strictly after the start of a sun ray. The
+//   cells around an end therefore never block by themselves, and neighbouring samples always see one another.
+// - Holes: a crossing at a node counts if the node has a sample; any other crossing counts if both ends of its side
+//   have one. Rays pass where a crossing does not count. The field's outermost lines are grid lines like all others.
+//   Beyond them there is nothing: a sun ray that leaves the field is not blocked.
+//
+// Ends
+// - Observers and targets of viewsheds are nodes. Ends of single lines of sight are anywhere in the field, rounded to
+//   1/kSubcells of a cell. The ground at an end is bilinear between the samples around it: one at a node, two on a grid
+//   line, four elsewhere. It is a hole if one of them is missing.
+// - The eye is at ground + observer height, or at a height above sea. The target is at lowered ground + target height.
+//   Heights above ground are >= 0.
+// - An end outside the field, on a hole (unless its height is above sea), or an eye below the ground is an error.
+// - Distances are horizontal: sqrt(dx^2 + dy^2) of metres. Limits choose targets; ground at any distance blocks.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+
+#include "scarp/field/height_field.h"
+
+namespace scarp {
+
+/// Steps per cell to which ends of lines of sight are rounded. Weights of crossings are then integers below 2^53.
+inline constexpr std::int64_t kSubcells = 1024;
+/// Largest number of columns or rows of a field that this station takes.
+inline constexpr int kMaxSightSide = 1 << 20;
+
+/// A node of a field.
+struct Node {
+  int col = 0;
+  int row = 0;
+  friend bool operator==(const Node&, const Node&) = default;
+};
+
+/// What a height counts from.
+enum class HeightDatum : std::uint8_t { ground, sea };
+
+/// Curvature of the Earth and refraction of light.
+struct SightCurvature {
+  double coefficient = 6.0 / 7;    ///< 1 - refraction coefficient, 0..1; 0: flat Earth; 6/7: visible light
+  double diameter = 2 * 6378137.;  ///< of the body, metres, > 0
+  /// Metres by which a point at this squared distance (m^2) appears lower.
+  double per_square_metre() const { return coefficient / diameter; }
+};
+
+/// Throws Error if a member is out of range.
+void validate(const SightCurvature& curvature);
+
+/// The heights of a field's nodes, as one observer sees them. `col` and `row` of the observer may lie between nodes.
+/// A plain view: the field must outlive it.
+class SightGround {
+ public:
+  /// Throws Error for a wrapped field, a side above kMaxSightSide, or a curvature out of range.
+  SightGround(const HeightField& field, double observer_col, double observer_row, const SightCurvature& curvature);
+  /// Without curvature: heights as they are.
+  explicit SightGround(const HeightField& field);
+
+  const HeightField& field() const { return *field_; }
+
+  /// Horizontal distance from the observer to a place, squared, in m^2.
+  double square_distance(double col, double row) const {
+    const double x = (col - col_) * field_->settings().cell_x, y = (row - row_) * field_->settings().cell_y;
+    return x * x + y * y;
+  }
+  /// Metres by which a place appears lower.
+  double drop(double col, double row) const { return drop_at(square_distance(col, row)); }
+  double drop_at(double square_distance) const { return per_square_metre_ * square_distance; }
+  /// Returns the lowered height of a place whose height is known.
+  double lowered(double height, double col, double row) const { return height - drop(col, row); }
+
+  /// Returns the height of a node in metres, or nullopt on a hole. The node must exist.
+  std::optional<double> height(Node node) const;
+  /// Returns the lowered height of a node, or nullopt on a hole. The node must exist.
+  std::optional<double> lowered(Node node) const;
+  /// Returns the bilinear height at a place, or nullopt outside and on holes.
+  std::optional<double> height_at(double col, double row) const;
+
+ private:
+  const HeightField* field_;
+  double col_ = 0, row_ = 0;
+  double per_square_metre_ = 0;
+};
+
+/// Compass azimuth from one place to another relative to grid north, in radians, 0..2pi; 0 if they are one place.
+/// `east` and `north` in metres.
+inline double compass_azimuth(double east, double north) {
+  const double azimuth = std::atan2(east, north);
+  return azimuth < 0 ? azimuth + 2 * std::numbers::pi : azimuth;
+}
+
+}  // namespace scarp

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// The crossings of a line of sight that count, with the heights there.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "scarp/analysis/crossing_sign.h"
+#include "scarp/analysis/line_of_sight.h"
+#include "scarp/analysis/sight_line.h"
+
+namespace scarp {
+
+/// A crossing between the ends with ground on it.
+struct SightCrossing {
+  Crossing at;
+  CrossingTerms terms;
+
+  double along() const { return static_cast<double>(at.steps) / static_cast<double>(at.length); }
+  double ground() const { return (terms.g0 * terms.w0 + terms.g1 * terms.w1) / (terms.w0 + terms.w1); }  ///< lowered
+  /// Metres by which the ground there appears lower, interpolated as its height is.
+  double drop(const SightGround& heights) const {
+    const auto of = [&](Node node) { return heights.drop(node.col, node.row); };
+    return (of(at.first) * terms.w0 + of(at.second) * terms.w1) / (terms.w0 + terms.w1);
+  }
+  double ray() const { return (terms.e * terms.v0 + terms.r * terms.v1) / (terms.v0 + terms.v1); }
+};
+
+/// Calls visit(crossing) for the crossings of one axis that count, outwards from the start, until it returns false.
+template <class Visit>
+void visit_sight(const SightLine& line, int axis, const Visit& visit, const LineRange& range = {}) {
+  const auto steps = [](double cells) { return std::llround(cells * static_cast<double>(kSubcells)); };
+  const std::int64_t x = steps(line.from().col), y = steps(line.from().row);
+  const GridLine grid{x, y, steps(line.to().col) - x, steps(line.to().row) - y, kSubcells};
+  const HeightField& field = line.ground().field();
+  visit_crossings(
+      grid, axis, field.cols(), field.rows(), true,
+      [&](const Crossing& at) {
+        const auto first = line.ground().lowered(at.first);
+        if (!first) return true;
+        const auto second = at.w1 > 0 ? line.ground().lowered(at.second) : first;
+        if (!second) return true;
+        const CrossingTerms terms{*first,        static_cast<double>(at.w0),
+                                  *second,       static_cast<double>(at.w1),
+                                  line.eye(),    static_cast<double>(kSubcells * (at.length - at.steps)),
+                                  line.target(), static_cast<double>(kSubcells * at.steps)};
+        return visit(SightCrossing{at, terms});
+      },
+      range);
+}
+
+}  // namespace scarp

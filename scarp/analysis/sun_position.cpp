@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/analysis/sun_position.h"
+
+#include <erfa.h>
+#include <erfam.h>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "scarp/base/error.h"
+
+namespace scarp {
+namespace {
+
+constexpr int kFirstYear = 1900, kLastYear = 2100;
+
+[[noreturn]] void refuse(const std::string& text, std::string_view what) {
+  throw Error(fmt::format("time '{}': {}", text, what));
+}
+
+// Minutes east of Greenwich of "Z", "+HH", "+HHMM" or "+HH:MM".
+int offset_from(const std::string& text, const char* rest) {
+  if (std::string_view(rest) == "Z" || std::string_view(rest) == "z") return 0;
+  int hours = 0, minutes = 0, used = 0;
+  const int sign = *rest == '-' ? -1 : 1;
+  const bool signs = *rest == '+' || *rest == '-';
+  const std::string_view digits = signs ? rest + 1 : "";
+  const bool good = (digits.size() == 2 && std::sscanf(digits.data(), "%2d%n", &hours, &used) == 1) ||
+                    (digits.size() == 4 && std::sscanf(digits.data(), "%2d%2d%n", &hours, &minutes, &used) == 2) ||
+                    (digits.size() == 5 && std::sscanf(digits.data(), "%2d:%2d%n", &hours, &minutes, &used) == 2);
+  if (!good || static_cast<std::size_t>(used) != digits.size() || hours > 14 || minutes > 59 || hours < 0 ||
+      minutes < 0)
+    refuse(text, "expected a UTC offset at its end, for example 2026-06-21T09:00+02:00 or ...T07:00Z");
+  return sign * (60 * hours + minutes);
+}
+
+}  // namespace
+
+UtcTime parse_time(const std::string& text) {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0, used = 0;
+  if (std::sscanf(text.c_str(), "%4d-%2d-%2d%*1[Tt ]%2d:%2d%n", &year, &month, &day, &hour, &minute, &used) != 5 ||
+      used != 16)
+    refuse(text, "expected YYYY-MM-DDTHH:MM[:SS] and an offset, for example 2026-06-21T09:00+02:00");
+  const char* rest = text.c_str() + used;
+  double seconds = 0;
+  if (*rest == ':') {
+    int digits = 0;
+    if (std::sscanf(rest, ":%lf%n", &seconds, &digits) != 1 || rest[1] < '0' || rest[1] > '9' || !(seconds < 61))
+      refuse(text, "expected seconds from 0 to 60");
+    rest += digits;
+  }
+  const int offset = offset_from(text, rest);
+  if (year < kFirstYear || year > kLastYear) refuse(text, fmt::format("year outside {} to {}", kFirstYear, kLastYear));
+  UtcTime time;
+  if (eraDtf2d("UTC", year, month, day, hour, minute, seconds, &time.day, &time.fraction) < 0)
+    refuse(text, "no such date or time");
+  constexpr double kMinutesPerDay = 1440;
+  time.fraction -= offset / kMinutesPerDay;
+  return time;
+}
+
+SunPosition sun_position(const UtcTime& time, const EarthPlace& place, bool refraction) {
+  // Standard atmosphere: pressure falls by e in 8.4 km.
+  constexpr double kSeaPressure = 1013.25, kScaleHeight = 8434.5, kCelsius = 10, kHumidity = 0.5, kMicrometres = 0.55;
+  const double pressure = refraction ? kSeaPressure * std::exp(-place.height / kScaleHeight) : 0;
+  eraASTROM astrom;
+  double origins = 0;
+  // Polar motion is below 0.0002 degree, UT1 - UTC: see the header.
+  if (eraApco13(time.day, time.fraction, 0, place.longitude, place.latitude, place.height, 0, 0, pressure, kCelsius,
+                kHumidity, kMicrometres, &astrom, &origins) < 0)
+    throw Error("sun: the time is out of range");
+  // From the observer to the sun; the sun hardly moves while its light is under way.
+  double sun[3];
+  eraSxp(-1, astrom.eh, sun);
+  double proper[3], from_pole[3], longitude = 0, latitude = 0;
+  eraAb(sun, astrom.v, astrom.em, astrom.bm1, proper);
+  eraRxp(astrom.bpn, proper, from_pole);
+  eraC2s(from_pole, &longitude, &latitude);
+  double azimuth = 0, zenith = 0, hour_angle = 0, declination = 0, ascension = 0;
+  eraAtioq(eraAnp(longitude), latitude, &astrom, &azimuth, &zenith, &hour_angle, &declination, &ascension);
+  return {azimuth, ERFA_DPI / 2 - zenith};
+}
+
+}  // namespace scarp

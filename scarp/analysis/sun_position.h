@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// The sun's place in the sky. Requires a build with ERFA (SCARP_ERFA).
+//
+// The centre of the sun's disc as seen from the ground: ERFA's Earth ephemeris (epv00), precession and nutation
+// IAU 2006/2000A, aberration, parallax and the Earth's rotation. Error below 0.001 degree from 1900 to 2100 without
+// refraction, except for UT1 - UTC, which is taken as 0: at most 0.9 s, 0.004 degree.
+#pragma once
+
+#include <string>
+
+namespace scarp {
+
+/// A time in UTC as a Julian date in two parts, ERFA's quasi-JD.
+struct UtcTime {
+  double day = 0, fraction = 0;
+};
+
+/// Parses "2026-06-21T09:00+02:00": ISO 8601 with date, time and offset (Z, +HH, +HH:MM); seconds optional, with
+/// fractions. Throws Error: another form, a date that does not exist, a year outside 1900..2100.
+UtcTime parse_time(const std::string& text);
+
+/// A place on Earth, WGS 84.
+struct EarthPlace {
+  double longitude = 0, latitude = 0;  ///< radians, east and north positive
+  double height = 0;                   ///< metres
+};
+
+struct SunPosition {
+  double azimuth = 0;   ///< radians clockwise from true north, 0..2pi
+  double altitude = 0;  ///< radians above the horizon; negative at night
+};
+
+/// `refraction`: of a standard atmosphere at this height, 10 degrees Celsius; lifts the sun by 0.5 degree at the
+/// horizon. Below about 1 degree of altitude refraction is uncertain by more than 0.01 degree.
+SunPosition sun_position(const UtcTime& time, const EarthPlace& place, bool refraction = false);
+
+}  // namespace scarp

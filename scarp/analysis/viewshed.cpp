@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: MIT
+#include "scarp/analysis/viewshed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scarp/analysis/sight_rays.h"
+#include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
+#include "scarp/base/setting.h"
+
+namespace scarp {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+bool is_azimuth(double a) { return a >= 0 && a <= 2 * kPi; }
+bool is_pitch(double a) { return a >= -kPi / 2 && a <= kPi / 2; }
+
+// Calls body(node, lowered height, index) for every node with a sample, in rows.
+template <class Body>
+void for_each_node(const Viewpoint& view, const Progress& progress, const Body& body) {
+  const HeightField& field = view.ground().field();
+  parallel_for(
+      field.rows(), 1,
+      [&](std::int64_t begin, std::int64_t end) {
+        for (auto row = static_cast<int>(begin); row < end; ++row)
+          for (int col = 0; col < field.cols(); ++col)
+            if (const auto lowered = view.ground().lowered(Node{col, row}))
+              body(Node{col, row}, *lowered, static_cast<std::size_t>(row) * field.cols() + col);
+      },
+      progress);
+}
+
+}  // namespace
+
+void validate(const ViewshedSettings& s) {
+  const auto require = [](bool good, std::string_view what, double value, std::string_view range) {
+    require_setting("viewshed", good, what, value, range);
+  };
+  require(s.observer_height >= 0 && std::isfinite(s.observer_height), "observer height", s.observer_height, ">= 0");
+  require(!s.observer_z || std::isfinite(*s.observer_z), "observer height above sea", s.observer_z.value_or(0),
+          "finite");
+  require(s.target_height >= 0 && std::isfinite(s.target_height), "target height", s.target_height, ">= 0");
+  validate(s.curvature);
+  require(s.min_distance >= 0 && std::isfinite(s.min_distance), "minimum distance", s.min_distance, ">= 0");
+  require(s.max_distance >= s.min_distance, "maximum distance", s.max_distance, ">= the minimum");
+  require(is_azimuth(s.first_azimuth), "first azimuth", s.first_azimuth, "0..2pi");
+  require(is_azimuth(s.last_azimuth), "last azimuth", s.last_azimuth, "0..2pi");
+  require(is_pitch(s.low_pitch), "low pitch", s.low_pitch, "-pi/2..pi/2");
+  require(is_pitch(s.high_pitch) && s.high_pitch >= s.low_pitch, "high pitch", s.high_pitch, "low pitch..pi/2");
+}
+
+Viewpoint::Viewpoint(const HeightField& field, Node observer, const ViewshedSettings& settings)
+    : settings_(settings), observer_(observer), ground_(field, observer.col, observer.row, settings.curvature) {
+  validate(settings);
+  if (observer.col < 0 || observer.row < 0 || observer.col >= field.cols() || observer.row >= field.rows())
+    throw Error(fmt::format("viewshed: observer at column {}, row {} is outside the field of {} x {} samples",
+                            observer.col, observer.row, field.cols(), field.rows()));
+  const auto height = ground_.height(observer);
+  if (!height && !settings.observer_z)
+    throw Error(fmt::format("viewshed: observer at column {}, row {} is on nodata (give its height above sea)",
+                            observer.col, observer.row));
+  eye_ = settings.observer_z ? *settings.observer_z : *height + settings.observer_height;
+  if (height && eye_ < *height)
+    throw Error(fmt::format("viewshed: observer at {} m is below the ground at {} m", eye_, *height));
+  limits_distance_ = settings.min_distance > 0 || std::isfinite(settings.max_distance);
+  limits_azimuth_ = settings.first_azimuth > 0 || settings.last_azimuth < 2 * kPi;
+  limits_pitch_ = settings.low_pitch > -kPi / 2 || settings.high_pitch < kPi / 2;
+}
+
+bool Viewpoint::in_range(Node node, double target) const {
+  if (!limits_distance_ && !limits_azimuth_ && !limits_pitch_) return true;
+  const double square = ground_.square_distance(node.col, node.row);
+  if (limits_distance_ && (square < settings_.min_distance * settings_.min_distance ||
+                           square > settings_.max_distance * settings_.max_distance))
+    return false;
+  // The observer's own node lies in every direction.
+  if (node == observer_) return true;
+  if (limits_azimuth_) {
+    const auto& cell = ground_.field().settings();
+    const double azimuth =
+        compass_azimuth((node.col - observer_.col) * cell.cell_x, (observer_.row - node.row) * cell.cell_y);
+    const double first = settings_.first_azimuth, last = settings_.last_azimuth;
+    if (first <= last ? azimuth < first || azimuth > last : azimuth < first && azimuth > last) return false;
+  }
+  if (limits_pitch_) {
+    const double pitch = std::atan2(target - eye_, std::sqrt(square));
+    if (pitch < settings_.low_pitch || pitch > settings_.high_pitch) return false;
+  }
+  return true;
+}
+
+std::vector<Seen> viewshed(const HeightField& field, Node observer, const ViewshedSettings& settings,
+                           const Progress& progress) {
+  const Viewpoint view(field, observer, settings);
+  std::vector<Seen> codes(static_cast<std::size_t>(field.cols()) * field.rows(), Seen::hole);
+  for_each_node(view, progress, [&](Node node, double lowered, std::size_t i) {
+    const double target = view.target(lowered);
+    codes[i] = !view.in_range(node, target)                              ? Seen::out_of_range
+               : sees(view.ground(), observer, view.eye(), node, target) ? Seen::visible
+                                                                         : Seen::hidden;
+  });
+  return codes;
+}
+
+std::vector<double> least_visible(const HeightField& field, Node observer, const ViewshedSettings& settings,
+                                  const Progress& progress) {
+  const Viewpoint view(field, observer, settings);
+  std::vector<double> least(static_cast<std::size_t>(field.cols()) * field.rows(), kNan);
+  for_each_node(view, progress, [&](Node node, double lowered, std::size_t i) {
+    if (view.in_range(node, view.target(lowered))) least[i] = least_visible(view.ground(), observer, view.eye(), node);
+  });
+  return least;
+}
+
+float least_height(const SightGround& ground, Node node, double least_visible, HeightDatum datum) {
+  const auto height = ground.height(node);
+  if (!height || std::isnan(least_visible)) return std::numeric_limits<float>::quiet_NaN();
+  const double lowered = ground.lowered(*height, node.col, node.row);
+  if (datum == HeightDatum::ground) return static_cast<float>(std::max(0.0, least_visible - lowered));
+  return static_cast<float>(least_visible <= lowered ? *height : least_visible + ground.drop(node.col, node.row));
+}
+
+}  // namespace scarp

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Draws a terrain profile with a line of sight, as SVG or PNG. Requires a build with Cairo (SCARP_CAIRO).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scarp/base/replace_file.h"
+
+namespace scarp {
+
+/// One point along the profile.
+struct ProfileFigurePoint {
+  double distance = 0;  ///< metres
+  double ground = 0;    ///< metres above sea; NaN: a hole
+  double sight = 0;     ///< line of sight, metres above sea
+  bool visible = true;  ///< whether the observer sees the ground here
+};
+
+struct ProfileFigure {
+  std::vector<ProfileFigurePoint> points;  ///< at least 2, by distance
+  std::string title{};
+  std::string remark{};  ///< below the title: method, curvature
+  bool blocked = false;  ///< the line of sight is blocked at `block`
+  ProfileFigurePoint block{};
+  int width = 1200, height = 480;  ///< pixels
+};
+
+/// Writes the temporary file of `file` as SVG or PNG, by the extension of `path`, and commits it. Throws Error naming
+/// `path` if writing fails (disk full), or for another extension.
+void write_profile_figure(ReplaceFile& file, const std::string& path, const ProfileFigure& figure);
+
+}  // namespace scarp

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Writes computed maps as rasters in any format that GDAL can write. Requires a build with GDAL (SCARP_GDAL).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "scarp/base/progress.h"
+#include "scarp/output/geotiff.h"
+
+namespace scarp {
+
+/// A class of a band of codes.
+struct MapClass {
+  int code = 0;
+  std::string name;                      ///< "visible"
+  std::array<std::uint8_t, 4> colour{};  ///< red, green, blue, opacity
+};
+
+/// One band, rows from north to south. The samples must outlive write_raster_map().
+struct MapBand {
+  std::string name;  ///< band description
+  std::string unit;  ///< "m"; empty: none
+  std::variant<std::span<const std::uint8_t>, std::span<const std::uint16_t>, std::span<const float>> samples;
+  std::optional<double> nodata{};
+  std::vector<MapClass> classes{};  ///< colour table of Byte bands; empty: none
+};
+
+/// A map and how to write it.
+struct RasterMap {
+  int cols = 0, rows = 0;
+  std::vector<MapBand> bands;  ///< at least one
+  std::optional<MapPlace> place{};
+  std::vector<std::pair<std::string, std::string>> metadata{};  ///< of the dataset
+  std::string driver = "GTiff";                                 ///< GDAL's short name
+  std::vector<std::string> creation_options{};                  ///< NAME=VALUE; override the defaults
+};
+
+/// Throws Error "--of 'NAME': ..." if GDAL has no such driver, or it cannot write rasters.
+void require_raster_driver(const std::string& driver);
+
+/// Returns the driver for a file name: GTiff for .tif, else by extension. Throws Error naming the file if there is
+/// none.
+std::string raster_driver_of(const std::string& path);
+
+/// Writes the map to `path`, whole or not at all, with all files that the format needs. GTiff and COG files are tiled
+/// and compressed (DEFLATE) unless options say otherwise. Throws Error naming the file: a bad option, a format that
+/// cannot hold the map, writing fails (disk full).
+void write_raster_map(const std::string& path, const RasterMap& map, const Progress& progress = {});
+
+}  // namespace scarp

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// Viewsheds, least visible heights and shadows against the slow judge, cell by cell.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analysis/map_fields.h"
+#include "analysis/slow_judge.h"
+#include "cases.h"
+#include "scarp/analysis/crossing_sign.h"
+#include "scarp/base/error.h"
+
+namespace scarp::test {
+namespace {
+
+std::string place(const MapField& kind, std::size_t i) {
+  const auto cols = static_cast<std::size_t>(kind.field.cols());
+  return kind.name + ", column " + std::to_string(i % cols) + ", row " + std::to_string(i / cols);
+}
+
+// A share of the observers, others for each field.
+std::vector<Node> some_observers(const HeightField& field) {
+  static std::size_t turn = 0;
+  const auto all = map_observers(field);
+  std::vector<Node> some;
+  for (int i = 0; i < cases(6, 2, 1) && some.size() < all.size(); ++i) some.push_back(all[turn++ % all.size()]);
+  return some;
+}
+
+TEST(Maps, ThereAreAtLeastSixtyFields) { EXPECT_GE(map_fields().size(), 60u); }
+
+TEST(Maps, ViewshedsEqualTheJudge) {
+  std::size_t visible = 0, hidden = 0;
+  unsigned turn = 0;
+  for (const MapField& kind : map_fields())
+    for (const Node observer : some_observers(kind.field)) {
+      // One set of settings per observer, in turn: all meet all shapes.
+      const auto settings = map_settings();
+      const auto& chosen = settings[turn++ % settings.size()];
+      const auto judged = judge_viewshed(kind.field, observer, chosen);
+      const auto codes = viewshed(kind.field, observer, chosen);
+      ASSERT_EQ(codes.size(), judged.size());
+      for (std::size_t i = 0; i < codes.size(); ++i) {
+        ASSERT_EQ(codes[i], judged[i]) << place(kind, i) << " from " << observer.col << ", " << observer.row;
+        visible += codes[i] == Seen::visible;
+        hidden += codes[i] == Seen::hidden;
+      }
+    }
+  EXPECT_GT(visible, 1000u);
+  EXPECT_GT(hidden, 1000u);
+}
+
+TEST(Maps, LeastVisibleHeightsEqualTheJudge) {
+  unsigned turn = 0;
+  for (const MapField& kind : map_fields())
+    for (const Node observer : some_observers(kind.field)) {
+      const auto settings = map_settings();
+      const Viewpoint view(kind.field, observer, settings[turn++ % settings.size()]);
+      const auto least = least_visible(kind.field, observer, view.settings());
+      for (std::size_t i = 0; i < least.size(); ++i) {
+        const int col = static_cast<int>(i) % kind.field.cols(), row = static_cast<int>(i) / kind.field.cols();
+        const double judged = judge_least_visible(view, {col, row});
+        ASSERT_TRUE(least[i] == judged || (std::isnan(least[i]) && std::isnan(judged)))
+            << place(kind, i) << ": " << least[i] << ", not " << judged;
+      }
+    }
+}
+
+TEST(Maps, ShadowsEqualTheJudge) {
+  std::size_t counts[4] = {};
+  const auto suns = map_suns();
+  const auto turns = static_cast<std::size_t>(cases(static_cast<int>(suns.size()), 5, 2));
+  std::size_t turn = 0;
+  for (const MapField& kind : map_fields())
+    for (std::size_t k = 0; k < turns; ++k) {
+      const SunDirection& sun = suns[turn++ % suns.size()];
+      const auto codes = shadow(kind.field, sun), judged = judge_shadow(kind.field, sun);
+      for (std::size_t i = 0; i < codes.size(); ++i) {
+        ASSERT_EQ(codes[i], judged[i]) << place(kind, i) << ", sun " << sun.azimuth << ", " << sun.altitude;
+        ++counts[static_cast<int>(codes[i])];
+      }
+    }
+  for (const std::size_t count : counts) EXPECT_GT(count, 100u);
+}
+
+// Terms that the filter cannot decide.
+TEST(CrossingSign, IsExact) {
+  const double tiny = 0x1p-40;
+  EXPECT_EQ(sign_of({1, 3, 1, 5, 1, 6, 1, 2}), 0);
+  EXPECT_EQ(sign_of({1e15, 3, 1, 1, 1e15, 3, 1, 1}), 0);
+  EXPECT_EQ(sign_of({1e15, 3, 1 + tiny, 1, 1e15, 3, 1, 1}), 1);
+  EXPECT_EQ(sign_of({1e15, 3, 1, 1, 1e15, 3, 1 + tiny, 1}), -1);
+  // 0.1 * 3 is not 0.3: the products are exact, not rounded.
+  EXPECT_EQ(sign_of({0.1, 3, 0, 0, 0.3, 1, 0, 1}), 1);
+}
+
+TEST(Viewshed, RejectsBadInput) {
+  const auto field = HeightField::own(std::vector<float>{1, 2, 3, std::nanf("")}, 2, 2);
+  EXPECT_THROW(viewshed(field, {2, 0}), Error);
+  EXPECT_THROW(viewshed(field, {1, 1}), Error);
+  EXPECT_NO_THROW(viewshed(field, {1, 1}, {.observer_z = 5}));
+  EXPECT_THROW(viewshed(field, {0, 0}, {.observer_z = 0.5}), Error);
+  EXPECT_THROW(viewshed(field, {0, 0}, {.observer_height = -1}), Error);
+  EXPECT_THROW(viewshed(field, {0, 0}, {.target_height = std::nan("")}), Error);
+  EXPECT_THROW(viewshed(field, {0, 0}, {.curvature = {.coefficient = 2}}), Error);
+  EXPECT_THROW(viewshed(field, {0, 0}, {.min_distance = 5, .max_distance = 1}), Error);
+  EXPECT_THROW(viewshed(field, {0, 0}, {.first_azimuth = 7}), Error);
+  EXPECT_THROW(shadow(field, {.altitude = 0}), Error);
+  EXPECT_THROW(shadow(field, {.altitude = 2}), Error);
+  const auto wrapped = HeightField::own(std::vector<float>{1, 2, 3, 4}, 2, 2, {.wrap = Wrap::periodic});
+  EXPECT_THROW(viewshed(wrapped, {0, 0}), Error);
+  EXPECT_THROW(shadow(wrapped, {.altitude = 1}), Error);
+}
+
+}  // namespace
+}  // namespace scarp::test
