@@ -28,6 +28,9 @@ HorizonEnvelope::HorizonEnvelope(const HorizonJudge& judge) : judge_(judge) {
 
 std::size_t HorizonEnvelope::find(double u, std::size_t hint) const {
   // Callers move on by few pieces at a time.
+  for (int i = 0; i < 4; ++i, ++hint) {
+    if (hint + 1 >= pieces_.size() || pieces_[hint + 1].begin > u) return hint;
+  }
   std::size_t step = 1, low = hint;
   while (low + step < pieces_.size() && pieces_[low + step].begin <= u) {
     low += step;
@@ -196,23 +199,33 @@ void HorizonEnvelope::merge(const std::vector<HorizonSegment>& segments) {
                    pieces_.begin() + static_cast<std::ptrdiff_t>(last + 1));
     i = last;
   };
-  for (const HorizonSegment& segment : segments) {
+  for (std::size_t n = 0; n < segments.size(); ++n) {
+    const HorizonSegment& segment = segments[n];
     if (!(segment.begin < segment.end)) continue;
     const std::size_t first = find(segment.begin, i);
-    if (first > i) {
+    // A piece that begins where the segment does is put with it.
+    const std::size_t copied = pieces_[first].begin == segment.begin ? first - 1 : first;
+    if (copied > i) {
       // Not copied but put: the piece before may be the same edge, or have no width.
       put_old(i + 1, pieces_[i + 1].begin, 0);
       ++i;
-      copy_to(first);
+      copy_to(copied);
     }
-    for (double begin = segment.begin;;) {
-      const double end = std::min(segment.end, pieces_[i + 1].begin);
-      resolve(segment, i, begin, end);
-      if (end == segment.end) break;
-      begin = end;
-      ++i;
+    i = first;
+    if (segment.clear) {
+      put_new(segment, i, segment.begin, 0);
+      while (pieces_[i + 1].begin < segment.end) ++i;
+    } else {
+      for (double begin = segment.begin;;) {
+        const double end = std::min(segment.end, pieces_[i + 1].begin);
+        resolve(segment, i, begin, end);
+        if (end == segment.end) break;
+        begin = end;
+        ++i;
+      }
     }
-    if (segment.end < pieces_[i + 1].begin) put_old(i, segment.end, 0);
+    const bool goes_on = n + 1 < segments.size() && segments[n + 1].begin == segment.end;
+    if (!goes_on && segment.end < pieces_[i + 1].begin) put_old(i, segment.end, 0);
   }
   if (i + 1 < pieces_.size()) {
     put_old(i + 1, pieces_[i + 1].begin, 0);

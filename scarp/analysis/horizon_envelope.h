@@ -52,6 +52,7 @@ struct HorizonSegment {
   HorizonSample first, last;  ///< the samples at both ends, where it is not cut
   bool begin_cut = false;
   bool end_cut = false;
+  bool clear = false;  ///< certainly above the envelope from end to end
   HorizonLine line;
 };
 

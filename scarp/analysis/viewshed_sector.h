@@ -11,7 +11,7 @@ namespace scarp {
 /// Samples of a sector with low <= u < high, or <= high where high is the sector's end. Diagonals belong to the sectors
 /// to the east and west.
 struct SectorPart {
-  SectorDirection direction = SectorDirection::east;
+  SweepDirection direction = SweepDirection::east;
   double low = -1;  ///< a multiple of 1/16, as `high`
   double high = 1;
 };

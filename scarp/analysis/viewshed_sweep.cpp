@@ -24,7 +24,7 @@ SweepStatistics sweep(const Viewpoint& view, const SectorMaps& maps, const Progr
       [&](std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) {
           SectorPart part;
-          part.direction = static_cast<SectorDirection>(i / kParts);
+          part.direction = static_cast<SweepDirection>(i / kParts);
           part.low = -1 + 2.0 * static_cast<double>(i % kParts) / kParts;
           part.high = part.low + 2.0 / kParts;
           const SweepStatistics counts = sweep_sector(view, part, maps);
