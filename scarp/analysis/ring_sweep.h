@@ -46,7 +46,9 @@ struct RingLine {
 ///   height(sample value, node)      what heights of the sweep are, in metres
 ///   begin_ring(ring)                chooses the ring for all that follows
 ///   sides_of(ring)                  samples of the part, and one beyond to each side
-///   u(side), s(height), s_previous(height)
+///   u(side), s(height), s_previous(height), s_error(s)
+///   height_of_slack(slack)
+///   may_skip(first ring)
 ///   first_side_from(u)              about the first side at or after u
 ///   ring_line(line, error)
 ///   ring_edge(side), spoke(side)    edges as lines; fill_spoke(side, segment): their ends, false if there is none
@@ -139,8 +141,7 @@ class RingSweep {
     for (int block = range.begin / kStrip; block * kStrip < range.end; ++block) {
       if (may_skip && self().is_below(bins_, first, last, block)) continue;
       // Edges to the next block's first sample lie in both.
-      const SideRange active{std::max(block * kStrip - 1, range.begin),
-                             std::min((block + 1) * kStrip + 1, range.end)};
+      const SideRange active{std::max(block * kStrip - 1, range.begin), std::min((block + 1) * kStrip + 1, range.end)};
       if (!active_.empty() && active_.back().end >= active.begin) {
         active_.back().end = active.end;
       } else {
@@ -256,7 +257,7 @@ class RingSweep {
   bool clears_before(std::size_t i, int side) const {
     const HorizonEnvelope::Piece& before = horizon_.pieces()[i - 1];
     const double s = self().s(now_[side]);
-    return s - kSweepRounding * std::abs(s) > before.line.at(self().u(side)) + before.error + before.slack;
+    return s - self().s_error(s) > before.line.at(self().u(side)) + before.error + before.slack;
   }
 
   void note(int side) {
@@ -270,10 +271,11 @@ class RingSweep {
     joined_ = last_above_ == side - 1;
     if (joined_ && right > kNoGround) {
       const double u0 = self().u(side - 1), slope = (right - left) / (self().u(side) - u0);
-      const double error = kSweepRounding * (std::abs(left) + std::abs(right));
+      const double error =
+          self().s_error(left) + self().s_error(right) + kSweepRounding * (std::abs(right - left) + std::abs(slope));
       for (std::size_t v = i + 1; v <= j && joined_; ++v) {
         const auto &before = horizon_.pieces()[v - 1], &after = horizon_.pieces()[v];
-        const double at = left + slope * (after.begin - u0) - error - self().error_of_edge(side - 1);
+        const double at = left + slope * (after.begin - u0) - error;
         joined_ = at > before.line.at(after.begin) + before.error + before.slack &&
                   at > after.line.at(after.begin) + after.error + after.slack;
       }
@@ -286,7 +288,7 @@ class RingSweep {
     if (self().has_previous()) {
       top = std::max(top, std::max(self().s_previous(previous_[side - 1]), self().s_previous(previous_[side])));
     }
-    top += kSweepRounding * std::abs(top);
+    top += self().s_error(top);
     for (std::size_t v = i + 1; v <= j; ++v) {
       const auto &before = horizon_.pieces()[v - 1], &after = horizon_.pieces()[v];
       const double at = std::min(before.line.at(after.begin) - before.error, after.line.at(after.begin) - after.error);

@@ -48,6 +48,7 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
   double u(int side) const { return frame_.y(side) / x_; }
   double s(double height) const { return height / x_; }
   double s_previous(double height) const { return x_previous_ > 0 ? height / x_previous_ : kNoGround; }
+  double s_error(double s) const { return kSweepRounding * std::abs(s); }
   int first_side_from(double u) const { return static_cast<int>(std::ceil(u * x_)) + frame_.side(0); }
   bool has_previous() const { return true; }
   bool spoke_is_right(int side) const { return frame_.y(side) > 0; }
@@ -55,10 +56,10 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
   // The margin is the piece's error with room for the operations here.
   RingLine ring_line(const HorizonLine& line, double error) const {
     if (!line.is_ground()) return {kNoGround, 0, 0};
-    return {(line.s0 - line.slope * line.u0) * x_, line.slope, 4 * x_ * (error + kSweepRounding * std::abs(line.slope))};
+    return {(line.s0 - line.slope * line.u0) * x_, line.slope,
+            4 * x_ * (error + kSweepRounding * std::abs(line.slope))};
   }
   double height_of_slack(double slack) const { return 2 * slack * x_; }
-  double error_of_edge(int side) const { return kSweepRounding * std::abs(now_[side + 1] - now_[side]); }
 
   // From the sample (ring, side) to the next one.
   HorizonLine ring_edge(int side) const {
@@ -74,8 +75,8 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
     line.to = {ring_, side + 1};
     return line;
   }
-  // From the sample (ring, side) towards the observer, to the previous ring. There s = inner / x, or, where that ring is
-  // the observer's, the line is that of the plane through the observer and both samples.
+  // From the sample (ring, side) towards the observer, to the previous ring. There s = inner / x, or, where that ring
+  // is the observer's, the line is that of the plane through the observer and both samples.
   HorizonLine spoke(int side) const {
     const double y = frame_.y(side), outer = now_[side], inner = previous_[side], rise = outer - inner;
     HorizonLine line;

@@ -29,10 +29,7 @@ SweepStatistics sweep(const Viewpoint& view, const SectorMaps& maps, const Progr
           part.high = part.low + 2.0 / kParts;
           const SweepStatistics counts = sweep_sector(view, part, maps);
           const std::lock_guard lock(mutex);
-          all.samples += counts.samples;
-          all.skipped += counts.skipped;
-          all.careful += counts.careful;
-          all.walked += counts.walked;
+          all.add(counts);
         }
       },
       progress);

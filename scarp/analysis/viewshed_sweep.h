@@ -30,6 +30,13 @@ struct SweepStatistics {
   std::int64_t skipped = 0;  ///< in blocks below the horizon
   std::int64_t careful = 0;  ///< not certainly below the horizon
   std::int64_t walked = 0;   ///< left to a ray
+
+  void add(const SweepStatistics& other) {
+    samples += other.samples;
+    skipped += other.skipped;
+    careful += other.careful;
+    walked += other.walked;
+  }
 };
 
 /// Writes the code of every node, rows from north to south.
