@@ -322,8 +322,9 @@ TEST(ScarpBench, PixelMatchFindsNoDifference) {
   expect_head(all);
   EXPECT_EQ(all["rows"].size(), 2U);
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"set", "objects", "camera", "march", "width", "height", "hits", "near_edges", "differ",
-                        "near_edge_wrong", "ray_pixels", "t_error"});
+    expect_fields(row, {"set", "objects", "camera", "march", "way", "width", "height", "hits", "near_edges", "differ",
+                        "near_edge_wrong", "triangles_differ", "triangles_beside", "ray_pixels", "t_error"});
+    EXPECT_EQ(row["way"], "cpu");
     EXPECT_EQ(row["differ"], 0);
     EXPECT_EQ(row["near_edge_wrong"], 0);
     EXPECT_LT(row["ray_pixels"], 1e-3);
@@ -366,6 +367,28 @@ TEST(ScarpBench, RenderOnADeviceStandsBesideTheCpu) {
     // Steps are the CPU's, and so are their mistakes.
     EXPECT_NEAR(device["wrong_percent"].get<double>(), cpu["wrong_percent"].get<double>(), 0.3);
   }
+}
+
+TEST(ScarpBench, VoxelsOnADeviceAreThoseOfTheCpu) {
+  const std::string command =
+      fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
+  if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
+  const json all = output_of("voxels --device auto --sets degenerate --thousands 1 --height 36 --repeats 1");
+  expect_head(all);
+  std::map<std::string, int> ways;
+  for (const json& row : all["rows"]) {
+    SCOPED_TRACE(row.dump());
+    ++ways[row["engine"] == "triangles" ? "triangles" : row["way"].get<std::string>()];
+    EXPECT_GT(row["ms"], 0.0);
+    EXPECT_LT(row["device_mib"], 2.0);
+    if (row["engine"] == "triangles") continue;
+    expect_fields(row, {"table", "set", "objects", "height", "engine", "way", "box", "ms", "steps_per_ray",
+                        "boxes_per_ray", "again_per_million", "hit_share", "wrong", "device_mib", "mib_per_1k_distinct",
+                        "picture_mib", "device", "driver"});
+    EXPECT_EQ(row["wrong"], 0);
+  }
+  // Five marches in grids and in bounds.
+  EXPECT_EQ(ways, (std::map<std::string, int>{{"compute", 10}, {"proxies", 10}, {"triangles", 1}}));
 }
 
 TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {

@@ -59,7 +59,8 @@ void require_device_march(const std::string& device, const HeightMarchEntry& mar
 #endif
 }
 
-SceneOnDevice scene_on_device(const std::string& device, const Scene& scene, const std::string& drawing) {
+SceneOnDevice scene_on_device(const std::string& device, const Scene& scene,
+                              [[maybe_unused]] const std::string& drawing) {
   if (device.empty()) return {scene, {}};
 #ifdef SCARP_VULKAN
   const Device opened({.choice = device});

@@ -33,7 +33,7 @@ class VoxelCamera {
 
   /// Returns the times of the last picture's passes.
   const std::vector<PassTime>& passes() const;
-  /// Pixels of the last picture by proxies that were asked again by compute.
+  /// Pixels of the last picture by proxies that compute answered.
   std::size_t tied() const;
   /// Size on the device: the grids with their accelerators; the objects and the hierarchy; pictures.
   struct Bytes {

@@ -22,7 +22,7 @@
 
 namespace scarp {
 
-/// What a colour image has per pixel: four 32-bit numbers.
+/// A pixel of a colour image has four 32-bit numbers, of one of these types.
 enum class RasterColours : std::uint8_t { floats, words };
 
 /// Images of one size: colours, all alike, and one depth image.

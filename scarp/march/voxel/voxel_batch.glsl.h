@@ -50,10 +50,6 @@ layout(constant_id = 3) const uint batch_levels = 32;
 layout(constant_id = 4) const uint batch_words = 0;
 layout(constant_id = 5) const uint batch_entries = 0;
 
-// The same, read again rather than kept.
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly volatile buffer VoxelRaysAgain {
-  ScarpVoxelRay rays[];
-};
 layout(push_constant, scalar) uniform Push { VoxelBatch batch; };
 
 // The grid that is marched.

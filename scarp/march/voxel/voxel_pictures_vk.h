@@ -11,7 +11,7 @@
 //   boxes are drawn a little larger; a camera in a box draws all sides of it   voxel_proxies.vert
 //   the depth of the hit is written, not that of the box; as the hit is behind the nearest corner of the box, fragments
 //   behind what is there already need not march (depth_less)
-//   where two objects may have hits of the same depth, the ray is asked again by compute   voxel_proxies.comp
+//   where two objects may have hits of the same depth, compute answers the ray   voxel_proxies.comp
 #pragma once
 
 #include <array>
@@ -68,9 +68,9 @@ class DeviceVoxelPictures {
   std::vector<std::size_t> draw(const DeviceVoxelObjects& objects, const VoxelPicture& picture,
                                 std::span<const Ray> rays, std::span<Hit> hits, const DeviceVoxelDetails& details = {});
 
-  /// Pixels of the last picture that were asked again because objects may have been at the same depth.
+  /// Pixels of the last picture that compute answered, because objects may have been at the same depth.
   std::size_t tied() const;
-  /// Returns the times of the last picture: the boxes, their hits, and what was asked again.
+  /// Returns the times of the last picture: the boxes, their hits, and the pixels that compute answered.
   const std::vector<PassTime>& passes() const;
   /// Size on the device, of the largest picture so far.
   std::uint64_t bytes() const;

@@ -8,7 +8,7 @@
 //
 // The depth of a hit has 24 bits, its t 53. Two objects may therefore have hits of one depth, of which the first that
 // is drawn stays and the nearer one may be lost. The last shader finds all pixels where that is possible: those whose
-// ray, in the part that has this depth, comes to another box. They are asked again, by compute.
+// ray, in the part that has this depth, comes to another box. Compute answers these.
 #ifndef SCARP_MARCH_VOXEL_PROXIES_GLSL_H
 #define SCARP_MARCH_VOXEL_PROXIES_GLSL_H
 
@@ -17,7 +17,7 @@
 
 SCARP_GLSL_BEGIN
 
-/// Where the rays of a picture are. Of a point p: (x, y, w) = rows (p - origin) + (parallel: (-1, -1, 1)), x / w and y
+/// Where the rays of a picture are. A point p has (x, y, w) = rows (p - origin) + (parallel: (-1, -1, 1)), x / w and y
 /// / w from -1 to 1 from left to right and from top to bottom of the picture, and hits at p have t >= depth (p -
 /// origin).
 struct ScarpVoxelView {

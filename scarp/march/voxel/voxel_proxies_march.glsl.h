@@ -7,7 +7,7 @@
 #ifndef SCARP_MARCH_VOXEL_PROXIES_MARCH_GLSL_H
 #define SCARP_MARCH_VOXEL_PROXIES_MARCH_GLSL_H
 
-// What the marches ask for.
+// The marches call these.
 bool scarp_voxel_words();
 uvec2 scarp_voxel_mask(ivec3 brick);
 uvec2 scarp_voxel_sector(ivec3 sector);
@@ -42,36 +42,40 @@ struct ProxyEntry {
   uint face;
 };
 
-// Returns false if the ray misses the box.
-bool scarp_enter_proxy(VoxelRays rays, uint pixel, VoxelObjects scene, uint object, out ScarpVoxelWalk walk,
-                       out ProxyEntry entry) {
+// The ray in the grid of the object, one axis of it.
+void scarp_proxy_axis(uint pixel, VoxelObjects scene, uint object, int axis, out double origin, out double given) {
+  // Read again rather than kept: there is one axis at a time in registers.
+  VoxelRaysAgain rays = VoxelRaysAgain(push.rays);
   VoxelObjectList objects = VoxelObjectList(scene.is.objects);
-  VoxelTurns turns = VoxelTurns(scene.is.turns);
-  uint turn = objects.of[object].turn;
-  dvec3 given, origin;
-  double per_longest = 0.0lf;
+  dvec3 row = VoxelTurns(scene.is.turns).of[objects.of[object].turn].rows[axis];
+  given = scarp_turned(row, rays.rays[pixel].direction);
+  precise dvec3 away = rays.rays[pixel].origin - objects.of[object].origin;
+  origin = scarp_turned(row, away);
+}
+
+// Returns false if the ray misses the box.
+bool scarp_enter_proxy(uint pixel, VoxelObjects scene, uint object, out ScarpVoxelWalk walk, out ProxyEntry entry) {
+  VoxelRays rays = VoxelRays(push.rays);
+  double per_longest = 0.0lf, origin, given;
   uint back = 0u;
   ScarpVoxelClip clip = ScarpVoxelClip(rays.rays[pixel].t_min, rays.rays[pixel].t_max, -1);
   bool met = true;
   for (int axis = 0; axis < 3; ++axis) {
-    dvec3 row = turns.of[turn].rows[axis];
-    given[axis] = scarp_turned(row, rays.rays[pixel].direction);
-    precise dvec3 away = rays.rays[pixel].origin - objects.of[object].origin;
-    origin[axis] = scarp_turned(row, away);
-    if (given[axis] < 0.0lf) back |= 1u << uint(axis);
-    double inverse = scarp_exact_inverse(given[axis]), size = scarp_magnitude(inverse);
+    scarp_proxy_axis(pixel, scene, object, axis, origin, given);
+    if (given < 0.0lf) back |= 1u << uint(axis);
+    double inverse = scarp_exact_inverse(given), size = scarp_magnitude(inverse);
     if (axis == 0 || size < per_longest) per_longest = size;
-    met = scarp_voxel_clip(axis, origin[axis], given[axis], inverse, voxel_grid.low[axis], voxel_grid.high[axis], false,
-                           0, clip) &&
+    met = scarp_voxel_clip(axis, origin, given, inverse, voxel_grid.low[axis], voxel_grid.high[axis], false, 0, clip) &&
           met;
   }
   met = met && clip.t <= clip.t_out;
   if (met) {
     for (int axis = 0; axis < 3; ++axis) {
-      walk.speed[axis] = scarp_voxel_speed(given[axis], per_longest);
+      scarp_proxy_axis(pixel, scene, object, axis, origin, given);
+      walk.speed[axis] = scarp_voxel_speed(given, per_longest);
       ScarpVoxelPlace at;
-      met = scarp_voxel_place(axis, origin[axis], given[axis], walk.speed[axis], voxel_grid.low[axis],
-                              voxel_grid.high[axis], false, 0, clip, at) &&
+      met = scarp_voxel_place(axis, origin, given, walk.speed[axis], voxel_grid.low[axis], voxel_grid.high[axis], false,
+                              0, clip, at) &&
             met;
       walk.voxel[axis] = at.voxel;
       walk.left[axis] = at.left;
@@ -91,7 +95,7 @@ void scarp_march_proxy() {
   voxel_grid = VoxelGrids(scene.is.grids).grids[VoxelObjectList(scene.is.objects).of[proxy_object].grid];
   ScarpVoxelWalk walk;
   ProxyEntry entry;
-  if (!scarp_enter_proxy(rays, pixel, scene, proxy_object, walk, entry)) discard;
+  if (!scarp_enter_proxy(pixel, scene, proxy_object, walk, entry)) discard;
   int turns = push.turns;
   bool solid = scarp_first_voxel(proxy_march == kScarpVoxelMarches ? voxel_grid.march : proxy_march, walk, turns);
   // A march that takes too long may hit as soon as where it begins.

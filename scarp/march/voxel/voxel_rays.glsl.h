@@ -38,6 +38,10 @@ struct ScarpVoxelHit {
 #ifndef __cplusplus
 
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer VoxelRays { ScarpVoxelRay rays[]; };
+// The same, read again rather than kept.
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly volatile buffer VoxelRaysAgain {
+  ScarpVoxelRay rays[];
+};
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer VoxelHits { ScarpVoxelHit hits[]; };
 
 #endif

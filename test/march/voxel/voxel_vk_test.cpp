@@ -15,6 +15,7 @@
 #include "scarp/base/error.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/voxel_batch.glsl.h"
+#include "scarp/march/voxel/voxel_proxies.glsl.h"
 #include "scarp/march/voxel/voxel_queries_vk.h"
 #include "vk/device_under_test.h"
 #include "vk/spirv_layout.h"
@@ -192,6 +193,24 @@ TEST_F(VoxelsOnDevice, TakeEdits) {
 constexpr std::uint32_t kVoxelShader[] = {
 #include "scarp/march/voxel/voxel_marches.comp.inc"
 };
+
+constexpr std::uint32_t kBoxShader[] = {
+#include "scarp/march/voxel/voxel_proxies.vert.inc"
+};
+
+TEST(VoxelProxiesLayout, IsThatOfTheShaders) {
+  using glsl::ScarpVoxelView, glsl::VoxelProxies;
+  EXPECT_TRUE(has_struct(
+      kBoxShader,
+      {offsetof(ScarpVoxelView, origin), offsetof(ScarpVoxelView, x), offsetof(ScarpVoxelView, y),
+       offsetof(ScarpVoxelView, w), offsetof(ScarpVoxelView, depth), offsetof(ScarpVoxelView, direction),
+       offsetof(ScarpVoxelView, margin), offsetof(ScarpVoxelView, parallel), offsetof(ScarpVoxelView, none)}));
+  EXPECT_TRUE(has_struct(kBoxShader,
+                         {offsetof(VoxelProxies, objects), offsetof(VoxelProxies, rays), offsetof(VoxelProxies, view),
+                          offsetof(VoxelProxies, first), offsetof(VoxelProxies, second), offsetof(VoxelProxies, hits),
+                          offsetof(VoxelProxies, width), offsetof(VoxelProxies, count), offsetof(VoxelProxies, turns),
+                          offsetof(VoxelProxies, room)}));
+}
 
 TEST(VoxelBatchLayout, IsThatOfTheShaders) {
   using glsl::ScarpVoxelRay, glsl::ScarpVoxelHit, glsl::ScarpVoxelGrid, glsl::ScarpVoxelObject;
