@@ -15,7 +15,7 @@ VoxelNearness::Sides ahead_of(int octant) { return {.lower = (octant & 1) != 0, 
 
 OctantCubes::OctantCubes(const VoxelGrid& grid)
     : sides_(glm::min(grid.size(), kMaxAcceleratedSide) * ivec3(1, 1, 8), 0) {
-  require_accelerable(grid.size(), "octant cubes");
+  require_accelerable(grid.size(), "octant cubes", 8);
   VoxelNearness up(grid, grid.box()), down = up;
   up.along_x(ahead_of(0));
   down.along_x(ahead_of(1));

@@ -26,7 +26,7 @@ std::int64_t accelerator_bytes(VoxelAccelerator accelerator, const ivec3& size) 
 
 void require_marchable(const VoxelMarchEntry& march, const ivec3& size) {
   if (march.accelerator != VoxelAccelerator::none && march.accelerator != VoxelAccelerator::bricks)
-    require_accelerable(size, march.name);
+    require_accelerable(size, march.name, march.accelerator == VoxelAccelerator::octants ? 8 : 1);
 }
 
 VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette, Extent extent,

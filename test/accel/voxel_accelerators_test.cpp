@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "cases.h"
 #include "march/instruction_sets.h"
@@ -226,11 +227,50 @@ TEST(VoxelAccelerators, CountNoFartherThanAByte) {
   EXPECT_EQ(OctantCubes(grid).side({200, 1, 1}, 1), 255);
 }
 
+// Levels above sectors tell what the cells below contain, before and after edits.
+TEST(VoxelAccelerators, OfLargeGridsHaveLevels) {
+  Random random(16);
+  for (const ivec3& size : {ivec3(520, 7, 30), ivec3(3, 1100, 18), ivec3(600, 70, 4200)}) {
+    VoxelGrid grid(size, 1);
+    BrickMasks bricks(grid);
+    EXPECT_GE(bricks.levels().size(), 3u);
+    for (int edit = 0; edit < 12; ++edit) {
+      const ivec3 at(uniform(random, 0, size.x), uniform(random, 0, size.y), uniform(random, 0, size.z));
+      const VoxelBox box{at, at + ivec3(uniform(random, 1, 90))};
+      bricks.update(grid, edit % 3 == 2 ? grid.clear(box) : grid.fill(box, 1));
+      ASSERT_TRUE(bricks == BrickMasks(grid));
+      int side = 4;  // voxels of the cells below
+      for (const BrickMasks::Level& level : bricks.levels()) {
+        for_each_voxel({ivec3(0), glm::min(level.size, 4)}, [&](const ivec3& cell) {
+          for (int i = 0; i < 64; ++i) {
+            const ivec3 child = 4 * cell + ivec3(i & 3, i >> 2 & 3, i >> 4);
+            const VoxelBox voxels = intersection({side * child, side * child + side}, grid.box());
+            if (voxels.empty() || side > 64) continue;
+            bool any = false;
+            for_each_voxel({voxels.low >> 2, (voxels.high + 3) >> 2},
+                           [&](const ivec3& brick) { any = any || grid.mask(brick) != 0; });
+            ASSERT_EQ(level.mask(cell) >> i & 1, any ? 1u : 0u);
+          }
+        });
+        side *= 4;
+      }
+    }
+  }
+}
+
 TEST(VoxelAccelerators, RefuseGridsThatAreTooLarge) {
   const VoxelGrid grid({513, 1, 1}, 1);
   EXPECT_THROW((EmptyCubes(grid)), Error);
   EXPECT_THROW((EmptySpheres(grid)), Error);
-  EXPECT_THROW((OctantCubes(grid)), Error);
+  try {
+    OctantCubes{VoxelGrid({4096, 4096, 4096}, 1)};
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(
+        std::string(error.what()),
+        "octant cubes: 4096 x 4096 x 4096 voxels would take 549755813888 bytes (limited to 512 voxels per side; use "
+        "voxel-bricks)");
+  }
   EXPECT_NO_THROW((BrickMasks(grid)));
 }
 
