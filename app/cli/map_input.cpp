@@ -140,11 +140,15 @@ const MetricPlane& MapInput::plane_at(double col, double row, double reach) {
   if (last_ && last_->col == col && last_->row == row && last_->reach >= reach) return last_->plane;
   last_ = Plane{col, row, reach, metric_plane(georeference_, field_.cols(), field_.rows(), col, row, reach)};
   const double error = last_->plane.error_cells;
-  if (error > options_.plane_error)
+  if (error > options_.plane_error) {
+    const dvec2 at = lonlat_of(col, row).value_or(dvec2(0, 0));
+    const int zone = std::clamp(static_cast<int>((at.x + 180) / 6) + 1, 1, 60);
     throw Error(
-        fmt::format("{}: degrees: samples are up to {:.2g} cells off the metric plane (limit {}; warp it first: "
-                    "gdalwarp -t_srs EPSG:..., or set a distance limit, or raise --plane-error)",
-                    path_, error, options_.plane_error));
+        fmt::format("{}: degrees: samples are up to {:.2g} cells off the metric plane, limit {} (first: gdalwarp "
+                    "-t_srs EPSG:{}{:02} "
+                    "-r bilinear {} utm.tif; or set a distance limit; or raise --plane-error)",
+                    path_, error, options_.plane_error, at.y < 0 ? 327 : 326, zone, path_));
+  }
   if (error > worst_) worst_ = error;
   return last_->plane;
 }

@@ -52,7 +52,9 @@ class MapInput {
 
   /// Position in columns and rows. `what` begins messages. Throws Error for a place outside the samples.
   dvec2 grid_of(const TablePlace& place, bool lonlat, std::string_view what) const;
-  /// The sample nearest to a place, in the same way; a place up to half a cell beyond the border counts.
+  /// Position in columns and rows of a place that may lie outside.
+  dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
+  /// The sample nearest to a place, as grid_of(); a place up to half a cell beyond the border counts.
   Node node_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   /// Map coordinates, degrees or metres of a position in columns and rows, as --crs has it.
   dvec2 place_of(double col, double row) const;
@@ -66,7 +68,6 @@ class MapInput {
   double grid_north_at(double col, double row, double reach);
 
  private:
-  dvec2 position_of(const TablePlace& place, bool lonlat, std::string_view what) const;
   [[noreturn]] void refuse_outside(const TablePlace& place, std::string_view what, double beyond) const;
   const MetricPlane& plane_at(double col, double row, double reach);
 

@@ -27,7 +27,7 @@ void add_raster_output_options(Command& command, RasterOutput& options) {
 
 void settle_driver(RasterOutput& options, const std::string& output) {
   if (options.driver.empty()) options.driver = raster_driver_of(output);
-  require_raster_driver(options.driver);
+  require_raster_driver(options.driver, options.creation);
 }
 
 RasterMap map_of(const MapInput& input, const RasterOutput& options, const std::string& method,

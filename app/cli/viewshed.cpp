@@ -126,11 +126,13 @@ std::vector<Observer> observers_of(MapInput& input, const ViewshedOptions& optio
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", what, error.what()));
     }
-    if (!table.lonlat) farthest = std::max(farthest, std::hypot(snapped.x - row.from.x, snapped.y - row.from.y));
+    // In samples: degrees and metres are read alike.
+    const dvec2 typed = input.position_of(row.from, table.lonlat, what);
+    farthest = std::max(farthest, std::hypot(typed.x - node.col, typed.y - node.row));
   }
-  if (farthest > 0)
-    input.notes.push_back(
-        fmt::format("observers stand on the nearest sample, up to {:.3g} units of --crs away", farthest));
+  constexpr double kNoticed = 0.01;  // of a sample
+  if (farthest > kNoticed)
+    input.notes.push_back(fmt::format("observers stand on the nearest sample, up to {:.2g} samples away", farthest));
   return observers;
 }
 

@@ -20,6 +20,13 @@ SightGround::SightGround(const HeightField& field) : field_(&field) {
   if (field.cols() > kMaxSightSide || field.rows() > kMaxSightSide)
     throw Error(fmt::format("line of sight: {} x {} samples are too many (limit: {} per side)", field.cols(),
                             field.rows(), kMaxSightSide));
+  field.visit([&](const auto& grid) {
+    samples_ = grid.data;
+    row_stride_ = grid.row_stride;
+    has_holes_ = grid.has_holes;
+    nodata_ = static_cast<double>(grid.nodata);
+  });
+  type_ = field.sample_type();
 }
 
 SightGround::SightGround(const HeightField& field, double observer_col, double observer_row,
@@ -29,19 +36,6 @@ SightGround::SightGround(const HeightField& field, double observer_col, double o
   col_ = observer_col;
   row_ = observer_row;
   per_square_metre_ = curvature.per_square_metre();
-}
-
-std::optional<double> SightGround::height(Node node) const {
-  return field_->visit([&](const auto& grid) -> std::optional<double> {
-    const auto sample = grid.at(node.col, node.row);
-    if (grid.is_nodata(sample)) return std::nullopt;
-    return field_->height_from_sample(static_cast<double>(sample));
-  });
-}
-
-std::optional<double> SightGround::lowered(Node node) const {
-  const auto h = height(node);
-  return h ? std::optional(lowered(*h, node.col, node.row)) : std::nullopt;
 }
 
 std::optional<double> SightGround::height_at(double col, double row) const {

@@ -30,6 +30,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <optional>
@@ -65,7 +66,7 @@ struct SightCurvature {
 void validate(const SightCurvature& curvature);
 
 /// The heights of a field's nodes, as one observer sees them. `col` and `row` of the observer may lie between nodes.
-/// A plain view: the field must outlive it.
+/// A plain view: the field must outlive it, without edits.
 class SightGround {
  public:
   /// Throws Error for a wrapped field, a side above kMaxSightSide, or a curvature out of range.
@@ -87,9 +88,28 @@ class SightGround {
   double lowered(double height, double col, double row) const { return height - drop(col, row); }
 
   /// Returns the height of a node in metres, or nullopt on a hole. The node must exist.
-  std::optional<double> height(Node node) const;
+  std::optional<double> height(Node node) const {
+    const std::ptrdiff_t at = node.row * row_stride_ + node.col;
+    double sample = 0;
+    switch (type_) {
+      case SampleType::int16:
+        sample = static_cast<const std::int16_t*>(samples_)[at];
+        break;
+      case SampleType::uint16:
+        sample = static_cast<const std::uint16_t*>(samples_)[at];
+        break;
+      case SampleType::float32:
+        sample = static_cast<double>(static_cast<const float*>(samples_)[at]);
+        break;
+    }
+    if (has_holes_ && (sample == nodata_ || std::isnan(sample))) return std::nullopt;
+    return field_->height_from_sample(sample);
+  }
   /// Returns the lowered height of a node, or nullopt on a hole. The node must exist.
-  std::optional<double> lowered(Node node) const;
+  std::optional<double> lowered(Node node) const {
+    const auto h = height(node);
+    return h ? std::optional(lowered(*h, node.col, node.row)) : std::nullopt;
+  }
   /// Returns the bilinear height at a place, or nullopt outside and on holes.
   std::optional<double> height_at(double col, double row) const;
 
@@ -97,6 +117,12 @@ class SightGround {
   const HeightField* field_;
   double col_ = 0, row_ = 0;
   double per_square_metre_ = 0;
+  // Of the field: lines of sight read too few samples for HeightField::visit() to pay off.
+  const void* samples_ = nullptr;
+  std::ptrdiff_t row_stride_ = 0;
+  SampleType type_ = SampleType::float32;
+  bool has_holes_ = false;
+  double nodata_ = 0;
 };
 
 /// Compass azimuth from one place to another relative to grid north, in radians, 0..2pi; 0 if they are one place.

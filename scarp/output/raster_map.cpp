@@ -66,6 +66,13 @@ GDALDatasetUniquePtr dataset_of(const RasterMap& map, const std::string& path) {
   return dataset;
 }
 
+std::string name_of_option(const std::string& option) {
+  const auto equals = option.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw Error(fmt::format("creation option '{}': expected NAME=VALUE", option));
+  return option.substr(0, equals);
+}
+
 CPLStringList options_of(const RasterMap& map) {
   CPLStringList options;
   const bool floats = std::holds_alternative<std::span<const float>>(map.bands[0].samples);
@@ -80,12 +87,10 @@ CPLStringList options_of(const RasterMap& map) {
     options.SetNameValue("RESAMPLING", map.bands[0].classes.empty() ? "AVERAGE" : "NEAREST");
   }
   for (const std::string& option : map.creation_options) {
-    const auto equals = option.find('=');
-    if (equals == std::string::npos || equals == 0) throw Error(fmt::format("-co '{}': expected NAME=VALUE", option));
-    const std::string name = option.substr(0, equals);
+    const std::string name = name_of_option(option);
     // A predictor fits few of the other compressions.
     if (EQUAL(name.c_str(), "COMPRESS")) options.SetNameValue("PREDICTOR", nullptr);
-    options.SetNameValue(name.c_str(), option.c_str() + equals + 1);
+    options.SetNameValue(name.c_str(), option.c_str() + name.size() + 1);
   }
   return options;
 }
@@ -131,14 +136,27 @@ class SideFiles {
 
 }  // namespace
 
-void require_raster_driver(const std::string& driver) {
+void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options) {
   const GdalWriting writing;
   GDALDriver* found = GetGDALDriverManager()->GetDriverByName(driver.c_str());
-  if (!found) throw Error(fmt::format("--of '{}': unknown format (see gdalinfo --formats)", driver));
+  if (!found) throw Error(fmt::format("format '{}': unknown (see gdalinfo --formats)", driver));
   const bool raster = CPLFetchBool(found->GetMetadata(), GDAL_DCAP_RASTER, false);
   const bool writes = CPLFetchBool(found->GetMetadata(), GDAL_DCAP_CREATECOPY, false) ||
                       CPLFetchBool(found->GetMetadata(), GDAL_DCAP_CREATE, false);
-  if (!raster || !writes) throw Error(fmt::format("--of '{}': GDAL cannot write this format as a raster", driver));
+  if (!raster || !writes) throw Error(fmt::format("format '{}': GDAL cannot write it as a raster", driver));
+  CPLStringList options;
+  for (const std::string& option : creation_options)
+    options.SetNameValue(name_of_option(option).c_str(), option.c_str() + option.find('=') + 1);
+  std::string reason;
+  CPLPushErrorHandlerEx(
+      [](CPLErr, CPLErrorNum, const char* text) {
+        auto& first = *static_cast<std::string*>(CPLGetErrorHandlerUserData());
+        if (first.empty()) first = text;
+      },
+      &reason);
+  const bool valid = GDALValidateCreationOptions(found, options.List()) != 0;
+  CPLPopErrorHandler();
+  if (!valid) throw Error(fmt::format("creation option: {} (see gdalinfo --format {})", reason, driver));
 }
 
 std::string raster_driver_of(const std::string& path) {
@@ -166,11 +184,6 @@ void write_raster_map(const std::string& path, const RasterMap& map, const Progr
   const CPLStringList options = options_of(map);
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(map.driver.c_str());
   if (!driver) throw Error(fmt::format("{}: GDAL has no driver '{}'", path, map.driver));
-  if (!GDALValidateCreationOptions(driver, options.List())) {
-    writing.require_good(path);
-    throw Error(fmt::format("{}: {} does not take one of the creation options -co (see gdalinfo --format {})", path,
-                            map.driver, map.driver));
-  }
   const GDALDatasetUniquePtr source = dataset_of(map, path);
   SideFiles beside(file.temporary_path(), path);
   bool stopped = false;

@@ -42,8 +42,9 @@ struct RasterMap {
   std::vector<std::string> creation_options{};                  ///< NAME=VALUE; override the defaults
 };
 
-/// Throws Error "--of 'NAME': ..." if GDAL has no such driver, or it cannot write rasters.
-void require_raster_driver(const std::string& driver);
+/// Throws Error without a file's name if GDAL has no such driver, it cannot write rasters, or it does not take one of
+/// the creation options NAME=VALUE. For programs that compute for long before they write.
+void require_raster_driver(const std::string& driver, const std::vector<std::string>& creation_options = {});
 
 /// Returns the driver for a file name: GTiff for .tif, else by extension. Throws Error naming the file if there is
 /// none.

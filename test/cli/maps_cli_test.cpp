@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: MIT
+// `scarp viewshed`, `shadow`, `los` and `profile`: what they write, and what they refuse in one line.
+#include <fmt/format.h>
+#include <gdal_priv.h>
+#include <gtest/gtest.h>
+#include <ogr_spatialref.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/program.h"
+
+namespace scarp::test {
+namespace {
+
+namespace fs = std::filesystem;
+using Names = std::vector<std::string>;
+
+Names operator+(Names a, const Names& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+class MapsCli : public testing::Test {
+ protected:
+  // 30 x 20 samples of 10 m, a wall 50 m high at column 20, a hole in the north-west corner. The south-west sample is
+  // at (500005, 5000005) of UTM zone 33.
+  MapsCli() {
+    std::string text = "ncols 30\nnrows 20\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\nNODATA_value -1\n";
+    for (int row = 0; row < 20; ++row) {
+      for (int col = 0; col < 30; ++col) text += fmt::format("{} ", col + row == 0 ? -1 : col == 20 ? 50 : 0);
+      text += '\n';
+    }
+    dem_ = scratch_.write("dem.asc", text);
+  }
+  std::string path(const std::string& name) const { return scratch_.path(name); }
+  Names on_dem(const std::string& command) const { return {command, dem_, "--raster-crs", "EPSG:32633"}; }
+
+  void expect_refused(const Names& arguments, const std::string& what) const {
+    const auto before = scratch_.files();
+    const auto result = run(arguments);
+    EXPECT_NE(result.status, 0);
+    EXPECT_EQ(lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(what), std::string::npos) << result.err;
+    EXPECT_EQ(scratch_.files(), before);
+  }
+
+  struct Pixels {
+    int cols, rows;
+    std::vector<float> samples;
+    float at(int col, int row) const { return samples[static_cast<std::size_t>(row * cols + col)]; }
+  };
+  static Pixels pixels_of(GDALDataset& dataset, int band = 1) {
+    Pixels pixels{dataset.GetRasterXSize(), dataset.GetRasterYSize(), {}};
+    pixels.samples.resize(static_cast<std::size_t>(pixels.cols) * pixels.rows);
+    EXPECT_EQ(dataset.GetRasterBand(band)->RasterIO(GF_Read, 0, 0, pixels.cols, pixels.rows, pixels.samples.data(),
+                                                    pixels.cols, pixels.rows, GDT_Float32, 0, 0, nullptr),
+              CE_None);
+    return pixels;
+  }
+  static GDALDatasetUniquePtr open(const std::string& name) {
+    GDALAllRegister();
+    return GDALDatasetUniquePtr(GDALDataset::Open(name.c_str(), GDAL_OF_RASTER));
+  }
+
+  Scratch scratch_;
+  std::string dem_;
+};
+
+TEST_F(MapsCli, ViewshedIsAGeoreferencedRaster) {
+  const auto result = run(on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("seen.tif")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(lines(result.out), 1) << result.out;
+  const auto dataset = open(path("seen.tif"));
+  ASSERT_TRUE(dataset);
+  double map[6];
+  ASSERT_EQ(dataset->GetGeoTransform(map), CE_None);
+  EXPECT_EQ(map[0], 500000);
+  EXPECT_EQ(map[3], 5000200);
+  EXPECT_EQ(map[1], 10);
+  EXPECT_EQ(map[5], -10);
+  ASSERT_NE(dataset->GetSpatialRef(), nullptr);
+  EXPECT_STREQ(dataset->GetSpatialRef()->GetAuthorityCode(nullptr), "32633");
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  EXPECT_EQ(band.GetNoDataValue(), 255);
+  ASSERT_NE(band.GetColorTable(), nullptr);
+  EXPECT_NE(std::string(dataset->GetMetadataItem("METHOD")).find("exact"), std::string::npos);
+  int block[2];
+  band.GetBlockSize(&block[0], &block[1]);
+  EXPECT_EQ(block[0], 256);
+  const Pixels seen = pixels_of(*dataset);
+  EXPECT_EQ(seen.at(0, 0), 255);
+  EXPECT_EQ(seen.at(5, 5), 1);
+  EXPECT_EQ(seen.at(20, 9), 1);  // the wall
+  EXPECT_EQ(seen.at(25, 9), 0);  // behind it
+  EXPECT_EQ(scratch_.files(), (Names{"dem.asc", "seen.tif"}));
+}
+
+TEST_F(MapsCli, TakesTheFlagsOfGdalViewshed) {
+  const auto ours =
+      run(on_dem("viewshed") + Names{"--observer", "500105,5000105", "--observer-height", "3", "--max-distance", "150",
+                                     "--visible-value", "255", "-o", path("a.tif")});
+  const auto theirs = run({"viewshed", "-ox",          "500105",       "-oy",        "5000105", "-oz",        "3",
+                           "-md",      "150",          "-vv",          "255",        "-iv",     "0",          "-q",
+                           "-co",      "COMPRESS=LZW", "--raster-crs", "EPSG:32633", dem_,      path("b.tif")});
+  ASSERT_EQ(ours.status, 0) << ours.err;
+  ASSERT_EQ(theirs.status, 0) << theirs.err;
+  EXPECT_EQ(theirs.out, "");
+  const auto a = open(path("a.tif")), b = open(path("b.tif"));
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(pixels_of(*a).samples, pixels_of(*b).samples);
+  EXPECT_STREQ(b->GetMetadataItem("COMPRESSION", "IMAGE_STRUCTURE"), "LZW");
+  expect_refused({"viewshed", "-ox", "500105", dem_, path("c.tif")}, "give both");
+}
+
+TEST_F(MapsCli, CountsObserversAndFindsLeastHeights) {
+  const std::string table = scratch_.write("towers.csv", "name,x,y,z\na,500105,5000105,2\nb,500285,5000105,2\n");
+  ASSERT_EQ(run(on_dem("viewshed") + Names{"--observers", table, "--mode", "count", "-o", path("count.tif")}).status,
+            0);
+  const auto count = pixels_of(*open(path("count.tif")));
+  EXPECT_EQ(count.at(10, 9), 1);
+  EXPECT_EQ(count.at(20, 9), 2);
+  ASSERT_EQ(run(on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "--cc", "0", "--mode", "ground", "--of",
+                                           "COG", "-o", path("ground.tif")})
+                .status,
+            0);
+  const auto dataset = open(path("ground.tif"));
+  EXPECT_STREQ(dataset->GetMetadataItem("LAYOUT", "IMAGE_STRUCTURE"), "COG");
+  const auto ground = pixels_of(*dataset);
+  EXPECT_EQ(ground.at(15, 10), 0);
+  // Row 9.5 from the south: the observer is at column 10. Over the wall, 48 m higher in 10 cells: at column 25 72 + 2
+  // m.
+  EXPECT_FLOAT_EQ(ground.at(25, 9), 48 * 1.5 + 2);
+  EXPECT_EQ(ground.at(0, 0), -9999);
+}
+
+TEST_F(MapsCli, ShadowHasABandPerSunAndCodes) {
+  ASSERT_EQ(run(on_dem("shadow") + Names{"--sun", "90,45", "--sun", "270,45", "-o", path("sun.tif")}).status, 0);
+  const auto dataset = open(path("sun.tif"));
+  ASSERT_EQ(dataset->GetRasterCount(), 2);
+  const auto east = pixels_of(*dataset, 1), west = pixels_of(*dataset, 2);
+  // Grid north is true north within 0.001 degrees here; the wall is 5 cells high.
+  EXPECT_EQ(east.at(21, 9), 0);
+  EXPECT_EQ(east.at(19, 9), 1);
+  EXPECT_EQ(east.at(17, 9), 2);
+  EXPECT_EQ(east.at(13, 9), 0);
+  EXPECT_EQ(west.at(21, 9), 1);
+  EXPECT_EQ(west.at(0, 0), 255);
+  ASSERT_EQ(run(on_dem("shadow") + Names{"--sun", "90,45", "--fraction", "-o", path("part.tif")}).status, 0);
+  const auto part = pixels_of(*open(path("part.tif")));
+  EXPECT_NEAR(part.at(21, 9), 1, 1e-6);
+  EXPECT_NEAR(part.at(17, 9), 0, 1e-6);
+}
+
+TEST_F(MapsCli, ShadowTakesTimes) {
+  const auto result = run(on_dem("shadow") + Names{"--time", "2026-06-21T12:00+02:00", "-o", path("noon.tif")});
+  if (result.err.find("SCARP_ERFA") != std::string::npos) GTEST_SKIP() << "built without ERFA";
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("altitude 6"), std::string::npos) << result.out;  // 45 degrees north at midsummer
+  expect_refused(on_dem("shadow") + Names{"--time", "2026-06-21T01:00+02:00", "-o", path("x.tif")},
+                 "below the horizon");
+  expect_refused(on_dem("shadow") + Names{"--time", "21.6.2026 12:00", "-o", path("x.tif")}, "2026-06-21T09:00+02:00");
+  expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", "-o", path("x.tif")}, "CRS");
+}
+
+TEST_F(MapsCli, LosAnswersInCsvAndGeoJson) {
+  const Names places{"--from", "500105,5000105,2", "--to", "500185,5000105", "--to", "500285,5000105,5", "--cc", "0"};
+  const auto csv = run(on_dem("los") + places);
+  ASSERT_EQ(csv.status, 0) << csv.err;
+  EXPECT_EQ(lines(csv.out), 3);
+  EXPECT_NE(csv.out.find("\n1,1,"), std::string::npos) << csv.out;
+  EXPECT_NE(csv.out.find("\n2,0,"), std::string::npos) << csv.out;
+  ASSERT_EQ(run(on_dem("los") + places + Names{"--parts", "-o", path("l.geojson")}).status, 0);
+  const auto json = nlohmann::json::parse(text_of(path("l.geojson")));
+  ASSERT_EQ(json["features"].size(), 3u);
+  EXPECT_EQ(json["features"][1]["properties"]["part"], "visible");
+  EXPECT_EQ(json["features"][2]["properties"]["part"], "blocked");
+  EXPECT_EQ(json["features"][1]["geometry"]["coordinates"][1], json["features"][2]["geometry"]["coordinates"][0]);
+  EXPECT_NEAR(json["features"][0]["geometry"]["coordinates"][0][0].get<double>(), 15, 0.01);
+  // Its own output is a table of lines.
+  ASSERT_EQ(run(on_dem("los") + places + Names{"-o", path("l.geojson")}).status, 0);
+  const auto again = run(on_dem("los") + Names{"--lines", path("l.geojson"), "--heights", "sea", "--cc", "0"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(lines(again.out), 3);
+}
+
+TEST_F(MapsCli, ProfileIsATableOrAFigure) {
+  const Names line = on_dem("profile") + Names{"--from", "500105,5000105,2", "--to", "500285,5000105,5"};
+  const auto csv = run(line);
+  ASSERT_EQ(csv.status, 0) << csv.err;
+  EXPECT_EQ(lines(csv.out), 1 + 19);
+#ifdef SCARP_CAIRO
+  ASSERT_EQ(run(line + Names{"-o", path("p.svg")}).status, 0);
+  EXPECT_NE(text_of(path("p.svg")).find("<svg"), std::string::npos);
+  ASSERT_EQ(run(line + Names{"-o", path("p.png"), "--size", "400x300"}).status, 0);
+  EXPECT_EQ(text_of(path("p.png")).substr(1, 3), "PNG");
+#endif
+  expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg or .png");
+}
+
+TEST_F(MapsCli, BadInputIsOneLineAndNothingIsWritten) {
+  const std::string out = path("x.tif");
+  const Names view = on_dem("viewshed") + Names{"-o", out};
+  expect_refused(view, "no observer");
+  expect_refused(view + Names{"--observer", "500305,5000105"}, "is outside");
+  expect_refused(view + Names{"--observer", "500005,5000195"}, "on nodata");
+  expect_refused(view + Names{"--observer", "here"}, "expected X,Y");
+  expect_refused(view + Names{"--observer", "500105,5000105,-3"}, "observer height");
+  expect_refused(view + Names{"--observer", "500105,5000105", "--cc", "7"}, "--cc");
+  expect_refused(view + Names{"--observer", "500105,5000105", "--min-distance", "9", "--max-distance", "5"},
+                 "--max-distance");
+  expect_refused(view + Names{"--observer", "500105,5000105", "--azimuth", "1,2,3"}, "--azimuth");
+  expect_refused(view + Names{"--observer", "500105,5000105", "--pitch", "9,-9"}, "--pitch");
+  expect_refused(view + Names{"--observer", "500105,5000105", "--of", "NOSUCH"}, "format 'NOSUCH': unknown");
+  expect_refused(view + Names{"--observer", "500105,5000105", "--co", "tiled"}, "NAME=VALUE");
+  expect_refused(view + Names{"--observer", "500105,5000105", "--co", "COMPRESS=HUGE"}, "COMPRESS");
+  expect_refused(view + Names{"--observers", scratch_.write("names.csv", "name,height\na,1\n")},
+                 "no columns with places");
+  expect_refused(view + Names{"--observers", scratch_.write("bad.csv", "x,y\n1,2\n3,four\n")}, "line 3");
+  expect_refused(view + Names{"--observers", scratch_.write("none.csv", "x,y\n")}, "contains no points");
+  expect_refused(on_dem("viewshed") + Names{"-o", dem_, "--of", "GTiff", "--observer", "500105,5000105"},
+                 "is the input");
+  expect_refused(on_dem("viewshed") + Names{"-o", path("x.nosuch"), "--observer", "500105,5000105"},
+                 "no raster format");
+  expect_refused(on_dem("shadow") + Names{"-o", out}, "no sun");
+  expect_refused(on_dem("shadow") + Names{"-o", out, "--sun", "90,-1"}, "--sun");
+  expect_refused(on_dem("shadow") + Names{"-o", out, "--sun", "90"}, "--sun");
+  expect_refused(on_dem("los") + Names{"--from", "500105,5000105"}, "--to");
+  expect_refused(on_dem("los") + Names{"--from", "500105,5000105", "--to", "499999,5000105"},
+                 "--to: 499999,5000105 is outside");
+  expect_refused(on_dem("los") + Names{"--lines", path("missing.csv")}, "missing.csv");
+  expect_refused(on_dem("los") + Names{"--lines", dem_}, "dem.asc");
+}
+
+TEST_F(MapsCli, DryRunWritesNothing) {
+  const auto result = run(on_dem("viewshed") + Names{"--observer", "500105,5000105", "-o", path("x.tif"), "--dry-run"});
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("30 x 20"), std::string::npos);
+  EXPECT_FALSE(fs::exists(path("x.tif")));
+}
+
+// A degree has another length in the north of a large raster than in its south.
+TEST_F(MapsCli, DegreesAreRefusedWherePlaneIsWrong) {
+  std::string text = "ncols 200\nnrows 200\nxllcorner 10\nyllcorner 45\ncellsize 0.01\n";
+  for (int i = 0; i < 200 * 200; ++i) text += "1 ";
+  const std::string dem = scratch_.write("degrees.asc", text);
+  const Names view{"viewshed", dem, "--raster-crs", "EPSG:4326", "--observer", "11.005,46.005", "-o", path("x.tif")};
+  expect_refused(view, "gdalwarp -t_srs EPSG:32632");
+  const auto near = run(view + Names{"--max-distance", "2000"});
+  EXPECT_EQ(near.status, 0) << near.err;
+  EXPECT_NE(near.err.find("metric plane"), std::string::npos) << near.err;
+  EXPECT_EQ(run(view + Names{"--plane-error", "9"}).status, 0);
+}
+
+}  // namespace
+}  // namespace scarp::test
