@@ -214,6 +214,16 @@ TEST(ScarpBench, PyramidWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, MapsWritesTheDocumentedFields) {
+  const json all = output_of("maps --sizes 65 --repeats 1 --judged 100");
+  expect_head(all);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"size", "map", "threads", "seconds", "ns_per_node", "cpu_ns_per_node", "skipped", "careful",
+                        "walked", "positive", "judged", "wrong"});
+    EXPECT_EQ(row["wrong"], 0);
+  }
+}
+
 TEST(ScarpBench, VolumesWritesTheDocumentedFields) {
   const json all = output_of("volumes --side 64 --repeats 1");
   expect_head(all);

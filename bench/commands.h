@@ -76,6 +76,19 @@ struct PyramidOptions {
 };
 void run_pyramid(const PyramidOptions& options, const ReportOptions& report);
 
+/// `maps`: viewsheds, shadows and least visible heights of all nodes of procedural DEMs.
+struct MapsOptions {
+  std::vector<int> sizes{1024, 2048, 4096};
+  std::string kind = "fbm";  ///< or "ridged"
+  std::uint64_t seed = 1;
+  int observer_height = 2;                   ///< metres; the observer stands in the middle
+  int azimuth_deg = 135, altitude_deg = 20;  ///< of the sun
+  int repeats = 3;
+  std::int64_t judged = 2000;  ///< nodes per map that a ray answers, too
+};
+/// Throws Error, after the report, if a node differs from its ray.
+void run_maps(const MapsOptions& options, const ReportOptions& report);
+
 /// `gpu`: the marches on a Vulkan device, and the article's comparison there.
 struct GpuOptions {
   FieldOptions field;

@@ -188,6 +188,33 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*pyramid_command, report);
 
+  MapsOptions maps;
+  CLI::App* maps_command = app.add_subcommand("maps", "viewsheds and shadows of all nodes");
+  maps_command->add_option("--sizes", maps.sizes, "samples per side, one or several")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 32768))
+      ->capture_default_str();
+  maps_command->add_option("--kind", maps.kind, "procedural DEM")
+      ->check(CLI::IsMember({"fbm", "ridged"}))
+      ->capture_default_str();
+  maps_command->add_option("--seed", maps.seed, "of the DEM")->capture_default_str();
+  maps_command->add_option("--observer-height", maps.observer_height, "metres above ground")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  maps_command->add_option("--sun-azimuth", maps.azimuth_deg, "degrees")
+      ->check(CLI::Range(0, 360))
+      ->capture_default_str();
+  maps_command->add_option("--sun-altitude", maps.altitude_deg, "degrees")
+      ->check(CLI::Range(1, 90))
+      ->capture_default_str();
+  maps_command->add_option("--repeats", maps.repeats, "counted passes")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  maps_command->add_option("--judged", maps.judged, "nodes per map that a ray answers, too")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  add_json_option(*maps_command, report);
+
 #ifdef SCARP_BENCH_VULKAN
   GpuOptions gpu;
   CLI::App* gpu_command =
@@ -568,6 +595,7 @@ int run(int argc, char** argv) {
   if (*simd_command) run_simd(simd, report);
   if (*volumes_command) run_volumes(volumes, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
+  if (*maps_command) run_maps(maps, report);
 #ifdef SCARP_BENCH_VULKAN
   if (*gpu_command) (gpu.raster ? run_gpu_raster : run_gpu)(gpu, report);
   if (*shaders_command) run_shaders(shaders, report);

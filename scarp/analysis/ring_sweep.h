@@ -24,6 +24,7 @@
 #include "scarp/analysis/horizon_envelope.h"
 #include "scarp/analysis/ring_frame.h"
 #include "scarp/analysis/viewshed_sweep.h"
+#include "scarp/base/prefetch.h"
 #include "scarp/field/sample_grid.h"
 
 namespace scarp {
@@ -49,7 +50,8 @@ struct RingLine {
 ///   u(side), s(height), s_previous(height), s_error(s)
 ///   height_of_slack(slack)
 ///   may_skip(first ring)
-///   first_side_from(u)              about the first side at or after u
+///   about_side(u)                   about the first side at or after u, by one or two
+///   sides_per_u()
 ///   ring_line(line, error)
 ///   ring_edge(side), spoke(side)    edges as lines; fill_spoke(side, segment): their ends, false if there is none
 ///   spoke_is_right(side)            whether the spoke runs from the outer sample to larger u
@@ -77,6 +79,7 @@ class RingSweep {
   }
 
  protected:
+  static constexpr int kLine = 64 / sizeof(double);  // of the cache
   static constexpr int kStrip = BlockMaxima::kSide;  // rings loaded together: a line of the cache if they are columns
 
   /// [low, high]: the part of the horizon that counts. `target_raise`: height of targets above samples.
@@ -89,7 +92,8 @@ class RingSweep {
         target_raise_(target_raise),
         horizon_(judge),
         bins_(low, high),
-        heights_(static_cast<std::size_t>(kStrip + 1) * static_cast<std::size_t>(frame.sides())),
+        stride_(((frame.sides() + kLine - 1) / kLine | 1) * kLine),
+        heights_(static_cast<std::size_t>(kStrip + 1) * static_cast<std::size_t>(stride_)),
         clear_(static_cast<std::size_t>(frame.sides())) {}
 
   const SampleGrid<T>& grid_;
@@ -108,7 +112,7 @@ class RingSweep {
  private:
   Projection& self() { return static_cast<Projection&>(*this); }
   const Projection& self() const { return static_cast<const Projection&>(*this); }
-  double* ring_heights(int slot) { return heights_.data() + static_cast<std::ptrdiff_t>(slot) * frame_.sides(); }
+  double* ring_heights(int slot) { return heights_.data() + slot * stride_; }
 
   void sweep_strip(int first, int last) {
     const int before = first - frame_.sign(), count = std::abs(last - first) + 1;
@@ -161,7 +165,10 @@ class RingSweep {
     const int first_slot = before >= 0 && before < frame_.rings() ? 0 : 1;
     if (frame_.along_cols()) {
       // Rows of the field lie across the rings.
+      constexpr int kAhead = 8;  // rows that are fetched before they are needed
+      const int lowest = std::max(std::min(before, before + count * frame_.sign()), 0);
       for (int side = begin; side < end; ++side) {
+        if (side + kAhead < end) prefetch(grid_.row(side + kAhead) + lowest);
         for (int slot = first_slot; slot <= count; ++slot) {
           ring_heights(slot)[side] = height(before + slot * frame_.sign(), side);
         }
@@ -197,37 +204,40 @@ class RingSweep {
 
   // Tests the samples against the horizon and notes those that may rise above it.
   void test_samples(const SideRange& range) {
-    std::size_t i = horizon_.find(self().u(range.begin));
     int side = range.begin;
+    double at = self().u(side);
+    const double last = self().u(range.end - 1);
+    std::size_t i = horizon_.find(at);
     joined_ = false;
     for (;;) {
       // Samples before the next vertex.
       const double next = horizon_.pieces()[i + 1].begin;
+      const bool on_vertex = at == horizon_.pieces()[i].begin;
       int end = range.end;
-      if (next <= self().u(end - 1)) {
-        end = std::clamp(self().first_side_from(next), side + 1, range.end);
-        while (end > side + 1 && self().u(end - 1) >= next) --end;
-        while (end < range.end && self().u(end) < next) ++end;
+      if (next <= last) {
+        end = std::clamp(self().about_side(next), side + 1, range.end - 1);
+        at = self().u(end);
+        while (end > side + 1 && self().u(end - 1) >= next) at = self().u(--end);
+        while (at < next) at = self().u(++end);
       }
-      test_under(i, side, end);
+      test_under(i, side, end, on_vertex);
       side = end;
       if (side == range.end) return;
-      const std::size_t j = horizon_.find(self().u(side), i);
+      const std::size_t j = horizon_.find(at, i);
       pass_vertices(i, j, side);
       i = j;
     }
   }
 
   // Compares samples with one piece of the horizon.
-  void test_under(std::size_t i, int begin, int end) {
+  // `on_vertex`: the first is where the piece begins, and the piece before counts there as well.
+  void test_under(std::size_t i, int begin, int end, bool on_vertex) {
     const HorizonEnvelope::Piece& piece = horizon_.pieces()[i];
     const RingLine line = self().ring_line(piece.line, piece.error);
     const double low = line.level - line.margin;
     const double high = line.level + line.margin + self().height_of_slack(piece.slack);
     const double low_target = low - target_raise_ - kSweepRounding * target_raise_;
     const int y = frame_.y(0);
-    // A drop at the very first sample: the piece before counts there as well.
-    bool on_vertex = self().u(begin) == piece.begin;
     for (int side = begin; side < end; ++side) {
       if constexpr (Projection::kTestsAll) self().test_all(i, side);
       const double over = now_[side] - line.slope * (y + side);
@@ -270,7 +280,7 @@ class RingSweep {
     const double left = self().s(now_[side - 1]), right = self().s(now_[side]);
     joined_ = last_above_ == side - 1;
     if (joined_ && right > kNoGround) {
-      const double u0 = self().u(side - 1), slope = (right - left) / (self().u(side) - u0);
+      const double u0 = self().u(side - 1), slope = (right - left) * self().sides_per_u();
       const double error =
           self().s_error(left) + self().s_error(right) + kSweepRounding * (std::abs(right - left) + std::abs(slope));
       for (std::size_t v = i + 1; v <= j && joined_; ++v) {
@@ -395,6 +405,7 @@ class RingSweep {
 
   HorizonBins bins_;
   std::vector<SideRange> active_;  // samples of the strip that are not skipped
+  std::ptrdiff_t stride_;          // an odd number of lines of the cache: rings do not displace one another
   std::vector<double> heights_;    // of the strip and the ring before it
   std::vector<int> risen_;         // samples of the ring that may be above the horizon, in order
   std::vector<char> clear_;        // for those: whether the whole edge to the next sample is above the horizon

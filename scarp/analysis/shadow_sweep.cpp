@@ -59,7 +59,8 @@ class ShadowStrip : public RingSweep<ShadowStrip<T>, T> {
   double s(double height) const { return height + s_of_ring_; }
   double s_previous(double height) const { return height + (s_of_ring_ - rise_); }
   double s_error(double s) const { return kSweepRounding * (std::abs(s) + s_of_ring_); }
-  int first_side_from(double u) const { return static_cast<int>(std::ceil((u - u_of_ring_) / kUnit)); }
+  int about_side(double u) const { return static_cast<int>((u - u_of_ring_) / kUnit); }
+  double sides_per_u() const { return 1 / kUnit; }
   bool has_previous() const { return x_ > 1; }
   // Through the previous ring's edge on the spoke's side, which lies in the part, too.
   bool is_inner_known(int side) const { return across_ > 0 ? side + 1 < frame_.sides() : side > 0; }

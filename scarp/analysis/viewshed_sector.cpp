@@ -49,7 +49,8 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
   double s(double height) const { return height / x_; }
   double s_previous(double height) const { return x_previous_ > 0 ? height / x_previous_ : kNoGround; }
   double s_error(double s) const { return kSweepRounding * std::abs(s); }
-  int first_side_from(double u) const { return static_cast<int>(std::ceil(u * x_)) + frame_.side(0); }
+  int about_side(double u) const { return static_cast<int>(u * x_) + frame_.side(0); }
+  double sides_per_u() const { return x_; }
   bool has_previous() const { return true; }
   bool spoke_is_right(int side) const { return frame_.y(side) > 0; }
 
