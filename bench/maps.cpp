@@ -32,7 +32,7 @@ std::int64_t wrong_nodes(const HeightField& field, std::int64_t judged, const Ju
   Random random(1, 0);
   std::int64_t wrong = 0;
   for (std::int64_t n = 0; n < judged; ++n) {
-    const Node node{random.below(field.cols()), random.below(field.rows())};
+    const scarp::Node node{random.below(field.cols()), random.below(field.rows())};
     wrong += !is_right(node, static_cast<std::size_t>(node.row) * static_cast<std::size_t>(field.cols()) +
                                  static_cast<std::size_t>(node.col));
   }
@@ -86,20 +86,22 @@ std::vector<Json> measure_maps(const MapsOptions& options, const HeightField& fi
   std::vector<Seen> seen(nodes);
   Json row =
       measure_map(field, "viewshed", threads, options.repeats, [&] { return sweep_viewshed(view, seen.data()); });
-  add(std::move(row), share(seen, Seen::visible), wrong_nodes(field, options.judged, [&](Node node, std::size_t i) {
+  add(std::move(row), share(seen, Seen::visible),
+      wrong_nodes(field, options.judged, [&](scarp::Node node, std::size_t i) {
         const double target = view.target(*view.ground().lowered(node));
         return sees(view.ground(), view.observer(), view.eye(), node, target) == (seen[i] == Seen::visible);
       }));
   std::vector<Shade> shades(nodes);
   row =
       measure_map(field, "shadow", threads, options.repeats, [&] { return sweep_shadow(ground, sun, shades.data()); });
-  add(std::move(row), share(shades, Shade::lit), wrong_nodes(field, options.judged, [&](Node node, std::size_t i) {
-        return shade(ground, sun, node) == shades[i];
-      }));
+  add(std::move(row), share(shades, Shade::lit),
+      wrong_nodes(field, options.judged,
+                  [&](scarp::Node node, std::size_t i) { return shade(ground, sun, node) == shades[i]; }));
   std::vector<double> least(nodes);
   row = measure_map(field, "least height", threads, options.repeats,
                     [&] { return sweep_least_visible(view, least.data()); });
-  add(std::move(row), share(seen, Seen::visible), wrong_nodes(field, options.judged, [&](Node node, std::size_t i) {
+  add(std::move(row), share(seen, Seen::visible),
+      wrong_nodes(field, options.judged, [&](scarp::Node node, std::size_t i) {
         return least_visible(view.ground(), view.observer(), view.eye(), node) == least[i];
       }));
   return rows;
