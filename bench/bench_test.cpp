@@ -214,6 +214,16 @@ TEST(ScarpBench, PyramidWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, MapsWritesTheDocumentedFields) {
+  const json all = output_of("maps --sizes 65 --repeats 1 --judged 100");
+  expect_head(all);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"size", "map", "threads", "seconds", "ns_per_node", "cpu_ns_per_node", "skipped", "careful",
+                        "walked", "positive", "judged", "wrong"});
+    EXPECT_EQ(row["wrong"], 0);
+  }
+}
+
 TEST(ScarpBench, VolumesWritesTheDocumentedFields) {
   const json all = output_of("volumes --side 64 --repeats 1");
   expect_head(all);
@@ -249,6 +259,16 @@ TEST(ScarpBench, EditsWritesTheDocumentedFields) {
   EXPECT_EQ(all["rows"].size(), 2u);
   for (const json& row : all["rows"]) {
     expect_fields(row, {"size", "rect", "sample_type", "edits", "median_us", "p99_us", "rebuild_us"});
+  }
+}
+
+TEST(ScarpBench, VoxelEditsWritesTheDocumentedFields) {
+  const json all = output_of("voxel-edits --side 40 --radius 4 --edits 3");
+  expect_head(all);
+  EXPECT_EQ(all["rows"].size(), 9u);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"scene", "accelerator", "side", "radius", "add_ms", "add_worst_ms", "remove_ms",
+                        "remove_worst_ms", "rebuild_ms"});
   }
 }
 
@@ -312,8 +332,9 @@ TEST(ScarpBench, PixelMatchFindsNoDifference) {
   expect_head(all);
   EXPECT_EQ(all["rows"].size(), 2U);
   for (const json& row : all["rows"]) {
-    expect_fields(row, {"set", "objects", "camera", "march", "width", "height", "hits", "near_edges", "differ",
-                        "near_edge_wrong", "ray_pixels", "t_error"});
+    expect_fields(row, {"set", "objects", "camera", "march", "way", "width", "height", "hits", "near_edges", "differ",
+                        "near_edge_wrong", "triangles_differ", "triangles_beside", "ray_pixels", "t_error"});
+    EXPECT_EQ(row["way"], "cpu");
     EXPECT_EQ(row["differ"], 0);
     EXPECT_EQ(row["near_edge_wrong"], 0);
     EXPECT_LT(row["ray_pixels"], 1e-3);
@@ -356,6 +377,28 @@ TEST(ScarpBench, RenderOnADeviceStandsBesideTheCpu) {
     // Steps are the CPU's, and so are their mistakes.
     EXPECT_NEAR(device["wrong_percent"].get<double>(), cpu["wrong_percent"].get<double>(), 0.3);
   }
+}
+
+TEST(ScarpBench, VoxelsOnADeviceAreThoseOfTheCpu) {
+  const std::string command =
+      fmt::format("'{}' gpu --device none-of-that-name 2>&1 | grep -q 'Vulkan: no'", SCARP_BENCH_PROGRAM);
+  if (std::system(command.c_str()) == 0) GTEST_SKIP() << "no Vulkan device";
+  const json all = output_of("voxels --device auto --sets degenerate --thousands 1 --height 36 --repeats 1");
+  expect_head(all);
+  std::map<std::string, int> ways;
+  for (const json& row : all["rows"]) {
+    SCOPED_TRACE(row.dump());
+    ++ways[row["engine"] == "triangles" ? "triangles" : row["way"].get<std::string>()];
+    EXPECT_GT(row["ms"], 0.0);
+    EXPECT_LT(row["device_mib"], 2.0);
+    if (row["engine"] == "triangles") continue;
+    expect_fields(row, {"table", "set", "objects", "height", "engine", "way", "box", "ms", "steps_per_ray",
+                        "boxes_per_ray", "again_per_million", "hit_share", "wrong", "device_mib", "mib_per_1k_distinct",
+                        "picture_mib", "device", "driver"});
+    EXPECT_EQ(row["wrong"], 0);
+  }
+  // Five marches in grids and in bounds.
+  EXPECT_EQ(ways, (std::map<std::string, int>{{"compute", 10}, {"proxies", 10}, {"triangles", 1}}));
 }
 
 TEST(ScarpBench, GpuWritesTheDocumentedFieldsAndMaxMipIsRight) {

@@ -76,6 +76,19 @@ struct PyramidOptions {
 };
 void run_pyramid(const PyramidOptions& options, const ReportOptions& report);
 
+/// `maps`: viewsheds, shadows and least visible heights of all nodes of procedural DEMs.
+struct MapsOptions {
+  std::vector<int> sizes{1024, 2048, 4096};
+  std::string kind = "fbm";  ///< or "ridged"
+  std::uint64_t seed = 1;
+  int observer_height = 2;                   ///< metres; the observer stands in the middle
+  int azimuth_deg = 135, altitude_deg = 20;  ///< of the sun
+  int repeats = 3;
+  std::int64_t judged = 2000;  ///< nodes per map that a ray answers, too
+};
+/// Throws Error, after the report, if a node differs from its ray.
+void run_maps(const MapsOptions& options, const ReportOptions& report);
+
 /// `gpu`: the marches on a Vulkan device, and the article's comparison there.
 struct GpuOptions {
   FieldOptions field;
@@ -155,8 +168,19 @@ struct VoxelsOptions {
   int block = 8;                               ///< objects per side of the larger one of these grids
   int repeats = 3;
   double pass_limit_s = 10;  ///< a slower technique traces part of the rays
+  std::string device;        ///< instead: both ways of drawing of a Vulkan device
+  int height = 1080;         ///< of its pictures, 16 : 9
 };
 void run_voxels(const VoxelsOptions& options, const ReportOptions& report);
+void run_device_voxels(const VoxelsOptions& options, const ReportOptions& report);  // with SCARP_VULKAN
+
+/// `voxel-edits`: how long accelerators of voxels take to follow an edit.
+struct VoxelEditsOptions {
+  int side = 256;     ///< voxels
+  double radius = 8;  ///< of the sphere that is added and removed, in voxels
+  int edits = 40;
+};
+void run_voxel_edits(const VoxelEditsOptions& options, const ReportOptions& report);
 
 /// `voxel-models`: all voxel marches over the models of files.
 struct VoxelModelsOptions {
@@ -188,6 +212,7 @@ struct PixelMatchOptions {
   std::vector<std::string> marches{"voxel-bricks"};
   std::string cameras = "all";  ///< or "post"
   int width = 1920, height = 1080;
+  std::string device;  ///< both ways of drawing of a Vulkan device; empty: the CPU
 };
 /// Throws Error, after the report, when a pixel differs.
 void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& report);

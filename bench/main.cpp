@@ -188,6 +188,33 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*pyramid_command, report);
 
+  MapsOptions maps;
+  CLI::App* maps_command = app.add_subcommand("maps", "viewsheds and shadows of all nodes");
+  maps_command->add_option("--sizes", maps.sizes, "samples per side, one or several")
+      ->delimiter(',')
+      ->check(CLI::Range(2, 32768))
+      ->capture_default_str();
+  maps_command->add_option("--kind", maps.kind, "procedural DEM")
+      ->check(CLI::IsMember({"fbm", "ridged"}))
+      ->capture_default_str();
+  maps_command->add_option("--seed", maps.seed, "of the DEM")->capture_default_str();
+  maps_command->add_option("--observer-height", maps.observer_height, "metres above ground")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  maps_command->add_option("--sun-azimuth", maps.azimuth_deg, "degrees")
+      ->check(CLI::Range(0, 360))
+      ->capture_default_str();
+  maps_command->add_option("--sun-altitude", maps.altitude_deg, "degrees")
+      ->check(CLI::Range(1, 90))
+      ->capture_default_str();
+  maps_command->add_option("--repeats", maps.repeats, "counted passes")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  maps_command->add_option("--judged", maps.judged, "nodes per map that a ray answers, too")
+      ->check(CLI::Range(0, 1'000'000))
+      ->capture_default_str();
+  add_json_option(*maps_command, report);
+
 #ifdef SCARP_BENCH_VULKAN
   GpuOptions gpu;
   CLI::App* gpu_command =
@@ -357,7 +384,30 @@ int run(int argc, char** argv) {
                    "seconds; a technique that takes longer traces part of the rays")
       ->check(number_in(kAboveZero))
       ->capture_default_str();
+#ifdef SCARP_BENCH_VULKAN
+  voxels_command->add_option("--device", voxels.device,
+                             "instead: both ways of drawing of a Vulkan device, and its triangles: cpu, gpu, auto or "
+                             "part of a name");
+  voxels_command->add_option("--height", voxels.height, "pixels of the pictures of --device, 16 : 9")
+      ->check(CLI::Range(9, 1080))
+      ->capture_default_str();
+#endif
   add_json_option(*voxels_command, report);
+
+  VoxelEditsOptions voxel_edits;
+  CLI::App* voxel_edits_command =
+      app.add_subcommand("voxel-edits", "how long accelerators of voxels take to follow an edit");
+  voxel_edits_command->add_option("--side", voxel_edits.side, "voxels per side")
+      ->check(CLI::Range(16, 512))
+      ->capture_default_str();
+  voxel_edits_command
+      ->add_option("--radius", voxel_edits.radius, "of the spheres that are added and removed, in voxels")
+      ->check(number_in(kAboveZero))
+      ->capture_default_str();
+  voxel_edits_command->add_option("--edits", voxel_edits.edits, "spheres")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  add_json_option(*voxel_edits_command, report);
 
   VoxelModelsOptions voxel_models;
   CLI::App* voxel_models_command =
@@ -520,6 +570,11 @@ int run(int argc, char** argv) {
   pixel_match_command->add_option("--height", pixel_match.height, "pixels")
       ->check(CLI::Range(2, 2048))
       ->capture_default_str();
+#ifdef SCARP_BENCH_VULKAN
+  pixel_match_command->add_option("--device", pixel_match.device,
+                                  "both ways of drawing of a Vulkan device instead of the CPU, and its triangles: cpu, "
+                                  "gpu, auto or part of a name");
+#endif
   add_json_option(*pixel_match_command, report);
 
   try {
@@ -540,13 +595,16 @@ int run(int argc, char** argv) {
   if (*simd_command) run_simd(simd, report);
   if (*volumes_command) run_volumes(volumes, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
+  if (*maps_command) run_maps(maps, report);
 #ifdef SCARP_BENCH_VULKAN
   if (*gpu_command) (gpu.raster ? run_gpu_raster : run_gpu)(gpu, report);
   if (*shaders_command) run_shaders(shaders, report);
+  if (*voxels_command && !voxels.device.empty()) run_device_voxels(voxels, report);
 #endif
+  if (*voxels_command && voxels.device.empty()) run_voxels(voxels, report);
   if (*simt_command) run_simt(simt, report);
   if (*leaks_command) run_leaks(leaks, report);
-  if (*voxels_command) run_voxels(voxels, report);
+  if (*voxel_edits_command) run_voxel_edits(voxel_edits, report);
   if (*voxel_models_command) run_voxel_models(voxel_models, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*pixel_match_command) run_pixel_match(pixel_match, report);

@@ -24,8 +24,8 @@ std::string text_of(const FaceOf& face) {
 // Compares a row of pixels; `near` are the faces near edges of its pixels.
 class Rows {
  public:
-  Rows(const RasterPicture& quads, const Scene& scene, const PictureFrame& frame, double off)
-      : quads_(quads), scene_(scene), frame_(frame), off_(off) {}
+  Rows(const RasterPicture& quads, std::span<const Hit> hits, const PictureFrame& frame, double off)
+      : quads_(quads), hits_(hits), frame_(frame), off_(off) {}
 
   void compare(int row) {
     const auto first = static_cast<std::size_t>(row) * static_cast<std::size_t>(frame_.width);
@@ -35,16 +35,15 @@ class Rows {
       const std::size_t pixel = first + static_cast<std::size_t>(col);
       auto end = near;
       while (end != quads_.near_edges.end() && end->pixel == pixel) ++end;
-      compare(col, row, quads_.seen[pixel], {near, end});
+      compare(col, row, hits_[pixel], quads_.seen[pixel], {near, end});
       near = end;
     }
   }
   const PixelMatch& found() const { return found_; }
 
  private:
-  void compare(int col, int row, const SeenFace& seen, std::span<const NearEdge> near) {
+  void compare(int col, int row, const Hit& hit, const SeenFace& seen, std::span<const NearEdge> near) {
     const Ray ray = frame_.ray(col, row);
-    const Hit hit = scene_.closest_hit(ray);
     const FaceOf face{hit.part, hit.voxel, hit.face};
     const bool covered = std::isfinite(seen.t);
     ++found_.pixels;
@@ -73,7 +72,7 @@ class Rows {
   }
 
   const RasterPicture& quads_;
-  const Scene& scene_;
+  std::span<const Hit> hits_;
   const PictureFrame& frame_;
   double off_;
   PixelMatch found_;
@@ -88,7 +87,23 @@ void add(PixelMatch& to, const PixelMatch& part) {
 
 }  // namespace
 
-PixelMatch compare_with_quads(const RasterPicture& quads, const Scene& scene, const VoxelGrid& grid, double side,
+std::vector<Ray> rays_of(const PictureFrame& frame) {
+  std::vector<Ray> rays;
+  rays.reserve(static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
+  for (int row = 0; row < frame.height; ++row) {
+    for (int col = 0; col < frame.width; ++col) rays.push_back(frame.ray(col, row));
+  }
+  return rays;
+}
+
+std::vector<Hit> hits_of(const Scene& scene, const PictureFrame& frame) {
+  const std::vector<Ray> rays = rays_of(frame);
+  std::vector<Hit> hits(rays.size());
+  scene.closest_hits(rays, hits);
+  return hits;
+}
+
+PixelMatch compare_with_quads(const RasterPicture& quads, std::span<const Hit> hits, const VoxelGrid& grid, double side,
                               const PictureFrame& frame) {
   const ivec3 size = grid.bounds().high - grid.bounds().low;
   const double longest = std::max({size.x, size.y, size.z});
@@ -105,7 +120,7 @@ PixelMatch compare_with_quads(const RasterPicture& quads, const Scene& scene, co
                     match.ray_pixels, kPixelMargin));
   std::mutex mutex;
   parallel_for(frame.height, 8, [&](std::int64_t begin, std::int64_t end) {
-    Rows rows(quads, scene, frame, off);
+    Rows rows(quads, hits, frame, off);
     for (std::int64_t row = begin; row < end; ++row) rows.compare(static_cast<int>(row));
     const std::lock_guard lock(mutex);
     add(match, rows.found());

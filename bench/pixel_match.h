@@ -13,6 +13,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,12 @@ struct PixelMatch {
   std::string first;                 ///< pixel that differs
 };
 
-/// `scene`: one with the same objects. Throws Error when rays may be off by more than the margin.
-PixelMatch compare_with_quads(const RasterPicture& quads, const Scene& scene, const VoxelGrid& grid, double side,
+/// The rays of all pixels, row by row, and what they hit.
+std::vector<Ray> rays_of(const PictureFrame& frame);
+std::vector<Hit> hits_of(const Scene& scene, const PictureFrame& frame);
+
+/// `hits`: of rays_of(frame) in the same objects. Throws Error when rays may be off by more than the margin.
+PixelMatch compare_with_quads(const RasterPicture& quads, std::span<const Hit> hits, const VoxelGrid& grid, double side,
                               const PictureFrame& frame);
 
 struct NamedFrame {

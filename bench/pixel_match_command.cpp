@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench pixel-match`: the founding post's demand, that every technique matches its quads pixel by pixel.
+// `scarp-bench pixel-match`: the founding post's demand, that every technique matches its quads pixel by pixel. With a
+// device, also that both of its ways of drawing match triangles that the same device has drawn.
 #include "bench/pixel_match.h"
 
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "bench/commands.h"
 #include "bench/voxel_sets.h"
 #include "scarp/base/error.h"
+#ifdef SCARP_BENCH_VULKAN
+#include "bench/voxel_triangles.h"
+#include "scarp/scene/voxel_camera_vk.h"
+#endif
 
 namespace scarp::bench {
 namespace {
@@ -17,53 +23,140 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kOtherThousands = 4;  // of objects, for all cameras but the post's
 
-}  // namespace
+// A picture's hits, in one way.
+struct Look {
+  std::string way;
+  std::vector<Hit> hits;
+};
 
-void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& report) {
-  Json rows = Json::array();
-  std::vector<std::vector<std::string>> lines{
-      {"set", "objects", "camera", "march", "hits", "near edges", "differ", "wrong near edges", "ray px", "t error"}};
-  std::int64_t wrong = 0;
-  std::string first;
-  const auto match = [&](const std::string& set, int thousands, const NamedFrame& view) {
+class Matches {
+ public:
+  explicit Matches(const PixelMatchOptions& options) : options_(options) {
+#ifdef SCARP_BENCH_VULKAN
+    if (!options.device.empty()) device_.emplace(DeviceSettings{.choice = options.device, .validation = true});
+#endif
+  }
+
+  void match(const std::string& set, int thousands, const NamedFrame& view) {
     const VoxelGrid grid = voxel_object(set);
     const std::vector<VoxelPlace> places = object_places(thousands);
     const RasterPicture quads = rasterise(grid, places, view.frame, kPixelMargin);
-    for (const std::string& name : options.marches) {
+    draw(grid, places, view.frame);
+    for (const std::string& name : options_.marches) {
       const auto model = std::make_shared<const VoxelModel>(grid, find_voxel_march(name));
       const Scene scene(scene_voxels({{model}, places}));
-      const PixelMatch found = compare_with_quads(quads, scene, grid, places[0].world_from_grid[0][0], view.frame);
-      wrong += found.differ + found.near_edge_wrong;
-      if (first.empty() && !found.first.empty())
-        first = fmt::format("{}, {}k, {}, {}: {}", set, thousands, view.name, name, found.first);
-      rows.push_back({{"set", set},
-                      {"objects", places.size()},
-                      {"camera", view.name},
-                      {"march", name},
-                      {"width", view.frame.width},
-                      {"height", view.frame.height},
-                      {"hits", found.hits},
-                      {"near_edges", found.near_edges},
-                      {"differ", found.differ},
-                      {"near_edge_wrong", found.near_edge_wrong},
-                      {"ray_pixels", found.ray_pixels},
-                      {"t_error", found.t_error}});
-      lines.push_back({set, short_number(places.size()), view.name, name, short_number(found.hits, 7),
-                       short_number(found.near_edges, 7), short_number(found.differ),
-                       short_number(found.near_edge_wrong), short_number(found.ray_pixels),
-                       short_number(found.t_error)});
-    }
-  };
-  const std::vector<NamedFrame> frames = pixel_match_frames(options.width, options.height);
-  for (const std::string& set : options.sets) {
-    for (const int n : options.thousands) match(set, n, frames[0]);
-    if (options.cameras == "all") {
-      for (std::size_t i = 1; i < frames.size(); ++i) match(set, kOtherThousands, frames[i]);
+      for (const Look& look : looks(scene, view.frame)) {
+        const PixelMatch found =
+            compare_with_quads(quads, look.hits, grid, places[0].world_from_grid[0][0], view.frame);
+        add(set, places.size(), view, name, look, found);
+      }
     }
   }
-  print_table(lines, 4);
-  write_json(report, rows);
-  if (wrong > 0) throw Error(fmt::format("pixel-match: {} pixels differ; the first: {}", wrong, first));
+
+  // Throws Error when a pixel differs.
+  void report(const ReportOptions& report) {
+    print_table(lines_, 5);
+    write_json(report, rows_);
+#ifdef SCARP_BENCH_VULKAN
+    if (device_) {
+      const auto messages = device_->validation_messages();
+      if (!messages.empty()) throw Error("pixel-match: " + messages.front());
+    }
+#endif
+    if (wrong_ > 0) throw Error(fmt::format("pixel-match: {} pixels differ; the first: {}", wrong_, first_));
+  }
+
+ private:
+  std::vector<Look> looks(const Scene& scene, const PictureFrame& frame) {
+    std::vector<Look> looks;
+#ifdef SCARP_BENCH_VULKAN
+    if (device_) {
+      const std::vector<Ray> rays = rays_of(frame);
+      VoxelCamera camera(*device_, scene);
+      for (const VoxelDrawingName& way : kVoxelDrawings) {
+        looks.push_back({std::string(way.name), std::vector<Hit>(rays.size())});
+        camera.look(way.drawing, picture_of(frame), rays, looks.back().hits);
+      }
+      return looks;
+    }
+#endif
+    looks.push_back({"cpu", hits_of(scene, frame)});
+    return looks;
+  }
+
+  void draw([[maybe_unused]] const VoxelGrid& grid, [[maybe_unused]] std::span<const VoxelPlace> places,
+            [[maybe_unused]] const PictureFrame& frame) {
+#ifdef SCARP_BENCH_VULKAN
+    if (!device_) return;
+    VoxelTriangles triangles(*device_, grid, places);
+    triangles.draw(frame);
+    drawn_ = triangles.drawn();
+    snapped_ = rasterise(grid, places, frame, triangles.snap(frame));
+#endif
+  }
+
+  void add(const std::string& set, std::size_t objects, const NamedFrame& view, const std::string& march,
+           const Look& look, const PixelMatch& found) {
+    wrong_ += found.differ + found.near_edge_wrong;
+    std::string first = found.first;
+    Json triangles, beside;
+#ifdef SCARP_BENCH_VULKAN
+    if (device_) {
+      const TrianglesMatch match = compare_with_triangles(snapped_, drawn_, look.hits, view.frame);
+      triangles = match.differ, beside = match.other;
+      wrong_ += match.differ;
+      if (first.empty()) first = match.first;
+    }
+#endif
+    if (first_.empty() && !first.empty())
+      first_ = fmt::format("{}, {} objects, {}, {}, {}: {}", set, objects, view.name, march, look.way, first);
+    rows_.push_back({{"set", set},
+                     {"objects", objects},
+                     {"camera", view.name},
+                     {"march", march},
+                     {"way", look.way},
+                     {"width", view.frame.width},
+                     {"height", view.frame.height},
+                     {"hits", found.hits},
+                     {"near_edges", found.near_edges},
+                     {"differ", found.differ},
+                     {"near_edge_wrong", found.near_edge_wrong},
+                     {"triangles_differ", triangles},
+                     {"triangles_beside", beside},
+                     {"ray_pixels", found.ray_pixels},
+                     {"t_error", found.t_error}});
+    lines_.push_back({set, short_number(objects), view.name, march, look.way, short_number(found.hits, 7),
+                      short_number(found.near_edges, 7), short_number(found.differ),
+                      short_number(found.near_edge_wrong), short_number(triangles), short_number(beside),
+                      short_number(found.ray_pixels), short_number(found.t_error)});
+  }
+
+  const PixelMatchOptions& options_;
+  Json rows_ = Json::array();
+  std::vector<std::vector<std::string>> lines_{{"set", "objects", "camera", "march", "way", "hits", "near edges",
+                                                "differ", "wrong near edges", "triangles differ", "beside", "ray px",
+                                                "t error"}};
+  std::int64_t wrong_ = 0;
+  std::string first_;
+#ifdef SCARP_BENCH_VULKAN
+  std::optional<Device> device_;
+  std::vector<Hit> drawn_;
+  RasterPicture snapped_;
+#endif
+};
+
+}  // namespace
+
+void run_pixel_match(const PixelMatchOptions& options, const ReportOptions& report) {
+  Matches matches(options);
+  const std::vector<NamedFrame> frames = pixel_match_frames(options.width, options.height);
+  for (const std::string& set : options.sets) {
+    for (const int n : options.thousands) matches.match(set, n, frames[0]);
+    if (options.cameras == "all") {
+      for (std::size_t i = 1; i < frames.size(); ++i) matches.match(set, kOtherThousands, frames[i]);
+    }
+  }
+  matches.report(report);
 }
 
 }  // namespace scarp::bench

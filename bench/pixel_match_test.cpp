@@ -20,7 +20,8 @@ PixelMatch expect_match(std::string_view set, int thousands, const NamedFrame& v
   const VoxelGrid grid = voxel_object(set);
   const std::vector<VoxelPlace> places = object_places(thousands);
   const RasterPicture quads = rasterise(grid, places, view.frame, kPixelMargin);
-  const PixelMatch match = compare_with_quads(quads, scene_of(grid, places), grid, 0.25, view.frame);
+  const PixelMatch match =
+      compare_with_quads(quads, hits_of(scene_of(grid, places), view.frame), grid, 0.25, view.frame);
   EXPECT_EQ(match.differ, 0) << set << ' ' << thousands << ' ' << view.name << ": " << match.first;
   EXPECT_EQ(match.near_edge_wrong, 0) << set << ' ' << thousands << ' ' << view.name << ": " << match.first;
   EXPECT_EQ(match.pixels, view.frame.width * view.frame.height);
@@ -89,7 +90,7 @@ TEST(PixelMatch, TellsAVoxelThatIsNotThere) {
   const PictureFrame frame = pixel_match_frames(160, 90)[0].frame;
   const RasterPicture quads = rasterise(grid, places, frame, kPixelMargin);
   for (int y = 0; y < 32; ++y) grid.clear(ivec3(3, y, 12));
-  EXPECT_GT(compare_with_quads(quads, scene_of(grid, places), grid, 0.25, frame).differ, 0);
+  EXPECT_GT(compare_with_quads(quads, hits_of(scene_of(grid, places), frame), grid, 0.25, frame).differ, 0);
 }
 
 TEST(PixelMatch, RefusesACameraThatIsTooClose) {
@@ -98,7 +99,7 @@ TEST(PixelMatch, RefusesACameraThatIsTooClose) {
   const std::vector<VoxelPlace> places{VoxelPlace{}};
   const PictureFrame frame = frame_looking({-0.01, 3.3, 3.3}, {0, 3.3, 3.3}, {0, 0, 1}, 0.8, 1080, 1080);
   const RasterPicture quads = rasterise(grid, places, frame, kPixelMargin);
-  EXPECT_THROW(compare_with_quads(quads, scene_of(grid, places), grid, 1, frame), Error);
+  EXPECT_THROW(compare_with_quads(quads, hits_of(scene_of(grid, places), frame), grid, 1, frame), Error);
 }
 
 }  // namespace

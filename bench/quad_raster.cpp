@@ -16,25 +16,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kStripRows = 32;
 
-struct Face {
-  ivec3 voxel;
-  VoxelFace face;
-};
-
-// All faces between a solid and an empty voxel.
-std::vector<Face> faces_of(const VoxelGrid& grid) {
-  std::vector<Face> faces;
-  for_each_voxel(grid.bounds(), [&](const ivec3& voxel) {
-    if (!grid.solid(voxel)) return;
-    for (int face = 0; face < 6; ++face) {
-      ivec3 beyond = voxel;
-      beyond[face / 2] += face % 2 ? 1 : -1;
-      if (!grid.box().contains(beyond) || !grid.solid(beyond)) faces.push_back({voxel, static_cast<VoxelFace>(face)});
-    }
-  });
-  return faces;
-}
-
 // Homogeneous picture coordinates are linear in those of a grid.
 struct Projection {
   dvec3 origin;               // of the grid's corner
@@ -92,10 +73,10 @@ class Strip {
   Strip(const PictureFrame& frame, double margin, int row_begin, int row_end, RasterPicture& picture)
       : frame_(frame), margin_(margin), row_begin_(row_begin), row_end_(row_end), picture_(picture) {}
 
-  void draw(const VoxelPlace& place, std::uint32_t object, const Projection& to, std::span<const Face> faces) {
+  void draw(const VoxelPlace& place, std::uint32_t object, const Projection& to, std::span<const VoxelFaceAt> faces) {
     const double side = place.world_from_grid[0][0];
     const dvec3 eye = (frame_.eye - place.origin) / side;
-    for (const Face& face : faces) {
+    for (const VoxelFaceAt& face : faces) {
       const int axis = static_cast<int>(face.face) / 2, out = static_cast<int>(face.face) % 2 ? 1 : -1;
       const int plane = face.voxel[axis] + (out > 0 ? 1 : 0);
       // Seen from behind or along.
@@ -213,6 +194,19 @@ std::pair<int, int> rows_of(const PictureFrame& frame, const Projection& to, con
 
 }  // namespace
 
+std::vector<VoxelFaceAt> faces_of(const VoxelGrid& grid) {
+  std::vector<VoxelFaceAt> faces;
+  for_each_voxel(grid.bounds(), [&](const ivec3& voxel) {
+    if (!grid.solid(voxel)) return;
+    for (int face = 0; face < 6; ++face) {
+      ivec3 beyond = voxel;
+      beyond[face / 2] += face % 2 ? 1 : -1;
+      if (!grid.box().contains(beyond) || !grid.solid(beyond)) faces.push_back({voxel, static_cast<VoxelFace>(face)});
+    }
+  });
+  return faces;
+}
+
 Ray PictureFrame::ray(int col, int row) const {
   const dvec2 p = place(col, row) * pixel;
   Ray ray;
@@ -238,7 +232,7 @@ RasterPicture rasterise(const VoxelGrid& grid, std::span<const VoxelPlace> place
     if (place.world_from_grid != glm::dmat3(place.world_from_grid[0][0]))
       throw Error("rasterise: objects must not be turned");
   }
-  const std::vector<Face> faces = faces_of(grid);
+  const std::vector<VoxelFaceAt> faces = faces_of(grid);
   std::vector<Projection> to;
   std::vector<std::pair<int, int>> rows;
   for (const VoxelPlace& place : places) {

@@ -52,6 +52,14 @@ struct FaceOf {
   friend bool operator==(const FaceOf&, const FaceOf&) = default;
 };
 
+/// A face between a solid and an empty voxel of a grid.
+struct VoxelFaceAt {
+  ivec3 voxel;
+  VoxelFace face;
+};
+/// All of them.
+std::vector<VoxelFaceAt> faces_of(const VoxelGrid& grid);
+
 struct SeenFace {
   double t = std::numeric_limits<double>::infinity();  ///< of PictureFrame::ray(); infinity: nothing is seen
   FaceOf face;

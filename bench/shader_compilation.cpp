@@ -16,6 +16,8 @@
 #include "scarp/march/function/function_queries_vk.h"
 #include "scarp/march/height/queries_vk.h"
 #include "scarp/march/shape/shape_queries_vk.h"
+#include "scarp/march/voxel/voxel_pictures_vk.h"
+#include "scarp/march/voxel/voxel_queries_vk.h"
 #include "scarp/render/frame/terrain_frame_vk.h"
 #include "scarp/vk/shader_statistics.h"
 
@@ -80,7 +82,7 @@ void require_family(const std::string& family) {
 std::vector<ShaderProgram> library_shaders() {
   std::vector<ShaderProgram> all;
   for (const auto& some : {pyramid_shaders(), height_query_shaders(), function_query_shaders(), shape_query_shaders(),
-                           terrain_frame_shaders()}) {
+                           voxel_query_shaders(), voxel_picture_shaders(), terrain_frame_shaders()}) {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;

@@ -23,7 +23,8 @@ TEST(Shaders, AreAllListed) {
   const std::filesystem::path root = SCARP_SOURCE_DIR;
   std::set<std::string> files, listed;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(root / "scarp")) {
-    if (entry.path().extension() == ".comp") files.insert(entry.path().lexically_relative(root).string());
+    const std::filesystem::path kind = entry.path().extension();
+    if (kind == ".comp" || kind == ".frag") files.insert(entry.path().lexically_relative(root).string());
   }
   for (const ShaderProgram& program : library_shaders()) listed.emplace(program.file);
   EXPECT_EQ(listed, files) << "a shader's owner lists it for library_shaders() of bench/shader_compilation.cpp";

@@ -336,7 +336,9 @@ void run(CastOptions options, const Command& command) {
   check(table, rays, whole);
   stop_if_interrupted();
 
-  const auto [scene, device] = scene_on_device(options.device, whole);
+  const SceneOnDevice there = scene_on_device(options.device, whole);
+  const Scene& scene = there.scene;
+  const std::string& device = there.device;
   Caster caster(all, scene, input.document ? input.document->materials.size() : 0, frame, table, out);
   const Progress progress = terminal_progress("cast");
   for (std::size_t first = 0; first < rays.size(); first += kPiece) {

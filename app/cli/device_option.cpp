@@ -11,6 +11,14 @@
 
 namespace scarp::cli {
 
+#ifdef SCARP_VULKAN
+struct DeviceSight {
+  VoxelSight voxels;
+};
+#else
+struct DeviceSight {};
+#endif
+
 void add_device_option(Command& command, std::string& device) {
   command.add(
       [&device](const std::string& text) {
@@ -23,7 +31,18 @@ void add_device_option(Command& command, std::string& device) {
        .note = "see 'scarp devices'",
        .fallback = "none: the CPU",
        .common = true,
-       .inputs = {kTerrain | kScene | kFunction, "voxels and meshes are traced on the CPU"}});
+       .inputs = {kTerrain | kVoxels | kScene | kFunction, "meshes are traced on the CPU"}});
+}
+
+void add_voxel_drawing_option(Command& command, std::string& drawing, const std::string& device) {
+  command.add(&drawing, {.names = "--voxel-drawing",
+                         .value = "WAY",
+                         .help = "how the device answers the camera's rays over voxels, with the same picture: by a "
+                                 "hierarchy of boxes, or by drawing the boxes as triangles",
+                         .choices = {"compute", "proxies"},
+                         .closed = true,
+                         .inputs = {kVoxels | kScene, "only voxels are drawn"},
+                         .rules = {needs("--device NAME", [&device] { return !device.empty(); })}});
 }
 
 void require_device_march(const std::string& device, const HeightMarchEntry& march) {
@@ -40,14 +59,40 @@ void require_device_march(const std::string& device, const HeightMarchEntry& mar
 #endif
 }
 
-SceneOnDevice scene_on_device(const std::string& device, const Scene& scene) {
+SceneOnDevice scene_on_device(const std::string& device, const Scene& scene,
+                              [[maybe_unused]] const std::string& drawing) {
   if (device.empty()) return {scene, {}};
 #ifdef SCARP_VULKAN
   const Device opened({.choice = device});
-  return {scene_on(opened, scene), opened.description().name};
+  const auto sight = std::make_shared<DeviceSight>();
+  for (const VoxelDrawingName& way : kVoxelDrawings) {
+    if (way.name == drawing) sight->voxels.drawing = way.drawing;
+  }
+  return {scene_on(opened, scene, {sight, &sight->voxels}), opened.description().name, sight};
 #else
   throw Error(fmt::format("--device {}: this scarp was built without Vulkan (SCARP_VULKAN=OFF)", device));
 #endif
 }
+
+#ifdef SCARP_VULKAN
+void look_through(const SceneOnDevice& there, const Camera& camera, int aa) {
+  if (!there.sight) return;
+  const Camera::PixelRays rays = camera.pixel_rays();
+  const dvec2 size = camera.size() * static_cast<double>(aa);
+  // A pixel per sample.
+  there.sight->voxels.picture = {
+      static_cast<std::uint32_t>(size.x),          static_cast<std::uint32_t>(size.y),         rays.origin,
+      rays.origin_right / static_cast<double>(aa), rays.origin_down / static_cast<double>(aa), rays.direction,
+      rays.right / static_cast<double>(aa),        rays.down / static_cast<double>(aa)};
+}
+
+std::string drawn_by(const SceneOnDevice& there) {
+  if (!there.sight || there.sight->voxels.drawing != VoxelDrawing::proxies) return {};
+  return fmt::format("{} rays by drawing", there.sight->voxels.drawn);
+}
+#else
+void look_through(const SceneOnDevice&, const Camera&, int) {}
+std::string drawn_by(const SceneOnDevice&) { return {}; }
+#endif
 
 }  // namespace scarp::cli

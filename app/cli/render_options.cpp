@@ -244,6 +244,7 @@ Command& declare_render(Program& program, RenderOptions& o) {
   add_raster_inputs(command, o.inputs, kEveryFile, false);
   add_output_option(command, o.output, picture_help(), picture_extensions());
   add_device_option(command, o.device);
+  add_voxel_drawing_option(command, o.voxel_drawing, o.device);
   add_threads_option(command, o.threads);
   add_picture_options(command, o);
   add_light_options(command, o);

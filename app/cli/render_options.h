@@ -28,6 +28,7 @@ struct RenderOptions : InputOptions {
   DepthOptions depth;
   FigureOptions figure;
   std::string size, look = "shaded", steps_range, sun, sky, view, eye, target, coordinates = "local";
+  std::string voxel_drawing = "compute";
   std::optional<double> eye_above;
   const PictureFormat* format = nullptr;  ///< of the output
   double fov_deg = ViewSettings{}.fov_deg, error_tolerance = ErrorSettings{}.tolerance;

@@ -72,7 +72,7 @@ class Render {
     if (!blank_.tell()) tell_if_buried(camera, "the eye");
     fmt::print("{}: {} x {} pixels; {}read {:.2f} s, build {:.2f} s, render {:.2f} s{}\n", options_.output,
                written_.width, written_.height, input_.march.empty() ? "" : input_.march + "; ", read_s_, build_s_,
-               render_s, device_.empty() ? "" : ", on " + device_);
+               render_s, on_device());
     print_findings(picture);
   }
 
@@ -100,9 +100,15 @@ class Render {
   }
 
   void put_on_device(const Scene& scene) {
-    SceneOnDevice there = scene_on_device(options_.device, scene);
-    scene_ = std::move(there.scene);
-    device_ = std::move(there.device);
+    there_ = scene_on_device(options_.device, scene, options_.voxel_drawing);
+    scene_ = there_.scene;
+  }
+
+  // ", on NAME", and what it drew.
+  std::string on_device() const {
+    if (there_.device.empty()) return {};
+    const std::string drawn = drawn_by(there_);
+    return fmt::format(", on {}{}{}", there_.device, drawn.empty() ? "" : ", ", drawn);
   }
 
   // Where nothing has an end, a point: the middle of what the picture is about.
@@ -202,6 +208,8 @@ class Render {
 
   // Renders and writes one picture. What was found is returned; layers have no findings.
   Picture make(ReplaceFile& file, const std::string& name, const Camera& camera, const Progress& progress) {
+    look_through(there_, camera,
+                 options_.picture.look == Look::shaded || options_.format->layers ? options_.picture.aa : 1);
     if (options_.format->layers) {
       const PictureLayers layers = render_layers(scene_, camera, options_.picture, progress);
       look_if_blank(name, camera, has_one_colour(layers));
@@ -279,7 +287,7 @@ class Render {
   RenderInput input_{Scene({}, {})};
   std::optional<Places> places_;
   Scene scene_{{}, {}};
-  std::string device_;
+  SceneOnDevice there_{Scene({}, {}), {}};
   Watch watch_;
   double read_s_ = 0, build_s_ = 0;
   WrittenSize written_;

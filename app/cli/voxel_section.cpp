@@ -158,7 +158,7 @@ void add_section(Program& program) {
                         .closed = true});
   command.add(&o.at, {.names = "--at",
                       .help = "index of the layer in the box around the voxels",
-                      .range = {0, VoxelGrid::kMaxSide - 1},
+                      .range = {0, VoxelGrid::kMaxModelSide - 1},
                       .fallback = "the middle"});
   command.add(&o.model, {.names = "--model", .help = "index of the model in the file", .range = {0, 1 << 20}});
   command.add(

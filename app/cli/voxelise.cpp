@@ -124,7 +124,7 @@ void add_voxelise(Program& program) {
                          .fallback = "derived from --count; 1 for voxels"});
   command.add(&o.count, {.names = "--count",
                          .help = "voxels along the longest side",
-                         .range = {2, VoxelGrid::kMaxSide},
+                         .range = {2, VoxelGrid::kMaxModelSide},
                          .fallback = fmt::format("{}", kUsualCount),
                          .excludes = {"--voxel"}});
   command.add(&o.within, {.names = "--within",

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Occupancy of bricks: a 64-bit mask per sector of 4 x 4 x 4 bricks (16 x 16 x 16 voxels), bit x + 4 y + 16 z as in the
-// bricks themselves. Cost: 8 bytes per sector, 1/64 of the grid's masks.
+// bricks themselves. Grids with a side above kOneLevel also have coarser levels, a mask per 4 x 4 x 4 cells of the
+// level below, up to a single cell: a tree with 64 children per node, by coordinates instead of pointers. Cost: 8 bytes
+// per sector, 1/64 of the grid's masks; in grids of more than 2^33 voxels only where something is solid.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "scarp/field/sparse_table.h"
 #include "scarp/field/voxel_grid.h"
 
 namespace scarp {
@@ -21,23 +24,38 @@ class BrickMasks {
   void update(const VoxelGrid& grid, const VoxelBox& changed);
 
   /// Mask of the sector with these coordinates, which must exist.
-  std::uint64_t sector(const ivec3& sector) const { return masks_[index(sector)]; }
-  /// Sectors per axis, and all masks, x fastest.
-  const ivec3& sectors() const { return sectors_; }
-  std::span<const std::uint64_t> masks() const { return masks_; }
-  std::size_t bytes() const { return sizeof(*this) + masks_.size() * sizeof(std::uint64_t); }
+  std::uint64_t sector(const ivec3& sector) const { return levels_[0].mask(sector); }
+  /// Sectors per axis, and all masks, x fastest; of grids with more than 2^33 voxels in chunks (Level::masks).
+  const ivec3& sectors() const { return levels_[0].size; }
+  std::span<const std::uint64_t> masks() const { return levels_[0].masks.values().first(levels_[0].masks.size()); }
+
+  /// The largest side of grids that have sectors only.
+  static constexpr int kOneLevel = 512;
+  /// Cells of 16 * 4^level voxels a side. Bit i of a mask: whether the cell i of the level below has solid voxels.
+  struct Level {
+    ivec3 size;
+    SparseTable<std::uint64_t> masks;
+
+    explicit Level(const ivec3& cells)
+        : size(cells),
+          masks(static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y) *
+                static_cast<std::size_t>(cells.z)) {}
+    std::size_t index(const ivec3& cell) const {
+      return static_cast<std::size_t>(cell.x) +
+             static_cast<std::size_t>(size.x) * (static_cast<std::size_t>(cell.y) +
+                                                 static_cast<std::size_t>(size.y) * static_cast<std::size_t>(cell.z));
+    }
+    std::uint64_t mask(const ivec3& cell) const { return masks[index(cell)]; }
+    friend bool operator==(const Level&, const Level&) = default;
+  };
+  /// Sectors, then coarser levels.
+  std::span<const Level> levels() const { return levels_; }
+
+  std::size_t bytes() const;
   friend bool operator==(const BrickMasks&, const BrickMasks&) = default;
 
  private:
-  std::size_t index(const ivec3& sector) const {
-    return static_cast<std::size_t>(sector.x) +
-           static_cast<std::size_t>(sectors_.x) *
-               (static_cast<std::size_t>(sector.y) +
-                static_cast<std::size_t>(sectors_.y) * static_cast<std::size_t>(sector.z));
-  }
-
-  ivec3 sectors_;
-  std::vector<std::uint64_t> masks_;
+  std::vector<Level> levels_;
 };
 
 }  // namespace scarp

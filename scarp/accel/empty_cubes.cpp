@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 
+#include "scarp/accel/cube_edit.h"
 #include "scarp/accel/voxel_nearness.h"
 #include "scarp/accel/voxel_rows.h"
 
@@ -29,7 +30,7 @@ EmptyCubes::EmptyCubes(const VoxelGrid& grid, CubeBuilder builder)
   if (grid.solid_count() == 0) return;
   switch (builder) {
     case CubeBuilder::rows:
-      rows(grid, grid.box());
+      rows(grid);
       break;
     case CubeBuilder::bit_parallel:
       bit_parallel(grid);
@@ -41,44 +42,14 @@ EmptyCubes::EmptyCubes(const VoxelGrid& grid, CubeBuilder builder)
 }
 
 void EmptyCubes::update(const VoxelGrid& grid, const VoxelBox& changed) {
-  if (changed.empty()) return;
-  // A voxel changes if its nearest solid voxel was in the box, or is there now and is nearer than before: at most its
-  // previous distance away. If everything around the box is nearer to other solid voxels, that bounds the region.
-  int reach = 1;
-  for (;; reach *= 2) {
-    const VoxelBox region = intersection(changed.grown(reach), grid.box());
-    if (region == grid.box() || reach >= kFarthest) break;
-    // The outermost voxels of the region: none of them may be as far from solid voxels as from the edit.
-    bool nearer = true;
-    for (int axis = 0; axis < 3 && nearer; ++axis) {
-      for (const bool up : {false, true}) {
-        VoxelBox side = region;
-        (up ? side.low : side.high)[axis] = up ? region.high[axis] - 1 : region.low[axis] + 1;
-        const int away = up ? side.low[axis] - (changed.high[axis] - 1) : changed.low[axis] - side.low[axis];
-        // There is nothing beyond the border of the grid.
-        if (up ? region.high[axis] == grid.size()[axis] : region.low[axis] == 0) continue;
-        for_each_voxel(side, [&](const ivec3& v) { nearer = nearer && distances_[v] < away; });
-      }
-    }
-    if (nearer) break;
-  }
-  rows(grid, intersection(changed.grown(std::min(reach, kFarthest)), grid.box()));
+  const VoxelBox box = intersection(changed, grid.box());
+  if (!box.empty()) update_cubes(VoxelNearness(grid, box), box, distances_);
 }
 
-void EmptyCubes::rows(const VoxelGrid& grid, const VoxelBox& region) {
-  const VoxelBox seen = intersection(region.grown(1), grid.box());
-  VoxelNearness near(grid, seen);
-  // Distances beyond the region's border are known.
-  for_each_row(seen, [&](int y, int z) {
-    std::uint8_t* const row = near.row(y - seen.low.y, z - seen.low.z);
-    const bool inner = y >= region.low.y && y < region.high.y && z >= region.low.z && z < region.high.z;
-    for (int x = seen.low.x; x < seen.high.x; ++x) {
-      if (inner && x == region.low.x) x = region.high.x;
-      if (x < seen.high.x) row[x - seen.low.x] = static_cast<std::uint8_t>(kFarthest - distances_[{x, y, z}]);
-    }
-  });
+void EmptyCubes::rows(const VoxelGrid& grid) {
+  VoxelNearness near(grid, grid.box());
   near.spread();
-  near.write_far(region, kFarthest, distances_);
+  near.write_far(grid.box(), kFarthest, distances_);
 }
 
 void EmptyCubes::bit_parallel(const VoxelGrid& grid) {

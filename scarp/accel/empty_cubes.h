@@ -29,8 +29,8 @@ class EmptyCubes {
   /// Throws Error for grids larger than kMaxAcceleratedSide.
   explicit EmptyCubes(const VoxelGrid& grid, CubeBuilder builder = CubeBuilder::rows);
 
-  /// Updates the distances after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits voxels
-  /// up to the largest previous distance from the box.
+  /// Updates the distances after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits the
+  /// voxels that were at least as far from solid ones as from the box (cube_edit.h).
   void update(const VoxelGrid& grid, const VoxelBox& changed);
 
   int distance(const ivec3& voxel) const { return distances_[voxel]; }
@@ -39,7 +39,7 @@ class EmptyCubes {
   friend bool operator==(const EmptyCubes& a, const EmptyCubes& b) { return a.distances_ == b.distances_; }
 
  private:
-  void rows(const VoxelGrid& grid, const VoxelBox& region);
+  void rows(const VoxelGrid& grid);
   void bit_parallel(const VoxelGrid& grid);
   void summed_area(const VoxelGrid& grid);
 

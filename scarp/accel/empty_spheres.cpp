@@ -1,34 +1,54 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/accel/empty_spheres.h"
 
-#include <algorithm>
-
 #include "scarp/accel/sphere_rows.h"
 
 namespace scarp {
+namespace {
+
+// Whether a solid voxel of the box has become empty.
+bool any_removed(const VoxelNearness& solid, const VoxelBox& box, const VoxelBytes& distances) {
+  unsigned removed = 0;
+  for_each_row(box, [&](int y, int z) {
+    const std::uint8_t* const now = solid.row(y - box.low.y, z - box.low.z);
+    const std::uint8_t* const before = distances.at({box.low.x, y, z});
+    for (int x = 0; x < box.high.x - box.low.x; ++x) removed |= before[x] == EmptySpheres::kSolid && now[x] == 0;
+  });
+  return removed != 0;
+}
+
+}  // namespace
 
 EmptySpheres::EmptySpheres(const VoxelGrid& grid) : distances_(glm::min(grid.size(), kMaxAcceleratedSide), kFarthest) {
   require_accelerable(grid.size(), "empty spheres");
-  build(grid, grid.box());
+  if (grid.solid_count() > 0) build(grid, {grid.box(), grid.box()});
 }
 
 void EmptySpheres::update(const VoxelGrid& grid, const VoxelBox& changed) {
-  if (changed.empty()) return;
-  // Distances between boxes are rounded down, and one voxel less than those between coordinates.
-  build(grid, intersection(changed.grown(largest_ + 2), grid.box()));
-}
-
-void EmptySpheres::build(const VoxelGrid& grid, const VoxelBox& region) {
+  const VoxelBox box = intersection(changed, grid.box());
+  if (box.empty()) return;
   if (grid.solid_count() == 0) {
     distances_ = VoxelBytes(distances_.size(), kFarthest);
-    largest_ = kFarthest;
     return;
   }
-  // Voxels farther away do not count.
-  const VoxelBox window = intersection(region.grown(kFarthest + 2), grid.box());
-  VoxelNearness near(grid, window);
+  const SphereEdit edit = find_spheres(box, distances_);
+  if (!any_removed(VoxelNearness(grid, box), box, distances_)) {
+    // Distances only become smaller, by voxels of the box, which count as dilated by one.
+    VoxelBox rows = intersection(box.grown(1), grid.box());
+    rows.low.x = edit.region.low.x, rows.high.x = edit.region.high.x;
+    build(grid, {rows, edit.region, &box, true});
+    return;
+  }
+  // In a window that is too small, nothing is found nearer than it is: the results bound the window that is enough.
+  const auto window = [&](int farthest) { return intersection(edit.region.grown(farthest + 2), grid.box()); };
+  const int found = build(grid, {window(edit.most), edit.region, &box});
+  if (found > edit.most) build(grid, {window(found), edit.region, &box});
+}
+
+int EmptySpheres::build(const VoxelGrid& grid, const SphereRows& rows) {
+  VoxelNearness near(grid, rows.window);
   near.along_x({});
-  largest_ = std::max(largest_, build_spheres(near, window, region, distances_));
+  return build_spheres(near, rows, distances_);
 }
 
 }  // namespace scarp

@@ -15,6 +15,8 @@
 
 namespace scarp {
 
+struct SphereRows;
+
 /// Euclidean distances of a voxel grid.
 class EmptySpheres {
  public:
@@ -24,20 +26,20 @@ class EmptySpheres {
   /// Throws Error for grids larger than kMaxAcceleratedSide.
   explicit EmptySpheres(const VoxelGrid& grid);
 
-  /// Updates the distances after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits voxels
-  /// up to the largest previous distance from the box.
+  /// Updates the distances after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits the
+  /// voxels that were at least as far from solid ones as from the box (sphere_rows.h).
   void update(const VoxelGrid& grid, const VoxelBox& changed);
 
   /// Returns kSolid for solid voxels.
   int distance(const ivec3& voxel) const { return distances_[voxel]; }
+  const VoxelBytes& distances() const { return distances_; }
   std::size_t bytes() const { return sizeof(*this) + distances_.bytes(); }
   friend bool operator==(const EmptySpheres& a, const EmptySpheres& b) { return a.distances_ == b.distances_; }
 
  private:
-  void build(const VoxelGrid& grid, const VoxelBox& region);
+  int build(const VoxelGrid& grid, const SphereRows& rows);
 
   VoxelBytes distances_;
-  int largest_ = 0;  // upper bound of all distances
 };
 
 }  // namespace scarp

@@ -22,8 +22,8 @@ class OctantCubes {
   /// Throws Error for grids larger than kMaxAcceleratedSide.
   explicit OctantCubes(const VoxelGrid& grid);
 
-  /// Updates the sides after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits voxels
-  /// behind the box up to the largest previous cube.
+  /// Updates the sides after an edit of the same grid that returned `changed`. Equal to a rebuild. Revisits only
+  /// voxels whose sides change (octant_edit.h); octants in parallel.
   void update(const VoxelGrid& grid, const VoxelBox& changed);
 
   int side(const ivec3& voxel, int octant) const { return sides_[in_plane(voxel, octant)]; }
@@ -38,7 +38,6 @@ class OctantCubes {
   }
 
   VoxelBytes sides_;
-  int largest_ = 0;  // upper bound of all sides
 };
 
 }  // namespace scarp

@@ -21,7 +21,7 @@ struct OctantRows {
 };
 
 /// Writes the sides of the voxels of `region`; sides ahead of the region must be known. `sides` stacks one grid per
-/// octant along z. Returns the largest side written.
-int build_octants(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides);
+/// octant along z.
+void build_octants(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides);
 
 }  // namespace scarp

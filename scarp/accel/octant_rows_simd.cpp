@@ -150,13 +150,12 @@ void along_y(const Octant& octant, const Row& rows, const VoxelNearness& along_x
   }
 }
 
-// From slab to slab. `flat` has been processed along y. Returns the largest side.
+// From slab to slab. `flat` has been processed along y.
 template <bool kWhole>
-int along_z(const Octant& flat, const Octant& octant, const Row& rows) {
+void along_z(const Octant& flat, const Octant& octant, const Row& rows) {
   const V one = hn::Set(d8, 1), all = hn::Set(d8, 255);
   const std::ptrdiff_t next = rows.next(), to_next = octant.to_next_row(), to_ahead = -octant.to_next_slab();
   const int count = octant.count(1);
-  V largest = hn::Zero(d8);
   for (int z = 0; z < octant.count(2); ++z) {
     const std::uint8_t* const flat_row = flat.row(0, flat.down(2) == octant.down(2) ? z : octant.count(2) - 1 - z);
     std::uint8_t* const row = octant.row(0, z);
@@ -164,7 +163,6 @@ int along_z(const Octant& flat, const Octant& octant, const Row& rows) {
     rows.for_each_block([&](const typename Row::Block& block) {
       const std::uint8_t* from = flat_row + block.x;
       std::uint8_t* to = row + block.x;
-      V most = largest;
       V before = ahead && octant.known_ahead(1) ? least(to + to_ahead - to_next, next, block.edge) : all;
       for (int y = 0; y < count; ++y, from += to_next, to += to_next) {
         V side = hn::LoadU(d8, from);
@@ -173,28 +171,23 @@ int along_z(const Octant& flat, const Octant& octant, const Row& rows) {
           side = hn::Min(side, hn::SaturatedAdd(hn::Min(before, beside), one));
           before = beside;
         }
-        most = hn::Max(most, kWhole ? side : hn::And(side, block.in));
         store<kWhole>(side, block.size, to);
       }
-      largest = most;
     });
   }
-  alignas(64) std::array<std::uint8_t, N> lanes;
-  hn::Store(largest, d8, lanes.data());
-  return *std::max_element(lanes.begin(), lanes.end());
 }
 
 template <bool kWhole>
-int build_rows(const OctantRows& which, const VoxelBox& region, const Row& rows, VoxelBytes& sides) {
+void build_rows(const OctantRows& which, const VoxelBox& region, const Row& rows, VoxelBytes& sides) {
   const Octant octant(which.octant, region, sides);
   along_y<kWhole>(octant, rows, *which.along_x);
-  const int opposite = which.and_opposite ? along_z<kWhole>(octant, {which.octant ^ 4, region, sides}, rows) : 0;
-  return std::max(opposite, along_z<kWhole>(octant, octant, rows));
+  if (which.and_opposite) along_z<kWhole>(octant, {which.octant ^ 4, region, sides}, rows);
+  along_z<kWhole>(octant, octant, rows);
 }
 
-int build(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides) {
+void build(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides) {
   const Row rows(region, sides.size(), which.octant & 1);
-  return rows.whole() ? build_rows<true>(which, region, rows, sides) : build_rows<false>(which, region, rows, sides);
+  rows.whole() ? build_rows<true>(which, region, rows, sides) : build_rows<false>(which, region, rows, sides);
 }
 
 }  // namespace
@@ -210,8 +203,8 @@ HWY_EXPORT(build);
 
 }  // namespace
 
-int build_octants(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides) {
-  return HWY_DYNAMIC_DISPATCH(build)(which, region, sides);
+void build_octants(const OctantRows& which, const VoxelBox& region, VoxelBytes& sides) {
+  HWY_DYNAMIC_DISPATCH(build)(which, region, sides);
 }
 
 }  // namespace scarp

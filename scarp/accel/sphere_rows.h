@@ -6,10 +6,14 @@
 //   along y   minimum over the rows of a slab of their square plus the square of their distance, searched outwards
 //   along z   the same with slabs; the root, rounded down
 //
-// The search ends when the squared distance of the next rows exceeds the result in each lane, so the work depends on
-// the distances found, not on the side of the grid. Exact in 16-bit integers. Source: T. Saito, J. Toriwaki, "New
-// algorithms for Euclidean distance transformation of an n-dimensional digitized picture with applications", Pattern
-// Recognition 1994.
+// Rows and slabs without a solid voxel are left out. A search ends when the squared distance of the next row, plus the
+// least square of all, exceeds the result in each lane: the work depends on the distances found, not on the side of the
+// grid. Exact in 16-bit integers. Source: T. Saito, J. Toriwaki, "New algorithms for Euclidean distance transformation
+// of an n-dimensional digitized picture with applications", Pattern Recognition 1994.
+//
+// After an edit, a distance changes only if the box of the edit is at most as far away as the nearest solid voxel was.
+// On the way towards the box both decrease together, within the rounding of distances and places: slabs are searched
+// from the box outwards, and in them the rows next to those found.
 #pragma once
 
 #include "scarp/accel/voxel_bytes.h"
@@ -17,9 +21,27 @@
 
 namespace scarp {
 
-/// Writes the distances of the voxels of `region`: at most EmptySpheres::kFarthest, and kSolid for solid ones.
-/// `along_x` holds the rows of `window`, spread along x from both sides; the window must include everything nearer than
-/// kFarthest. Returns the largest distance written to empty voxels.
-int build_spheres(const VoxelNearness& along_x, const VoxelBox& window, const VoxelBox& region, VoxelBytes& distances);
+/// Voxels that an edit may change.
+struct SphereEdit {
+  VoxelBox region;  ///< box around them
+  int most = 0;     ///< their largest distance
+};
+
+/// Returns the voxels whose distances an edit in the box `changed` of the grid may change.
+SphereEdit find_spheres(const VoxelBox& changed, const VoxelBytes& distances);
+
+/// What build_spheres() writes, and what it looks at.
+struct SphereRows {
+  VoxelBox window;                    ///< solid voxels that count; includes the region along x
+  VoxelBox region;                    ///< voxels to write
+  const VoxelBox* changed = nullptr;  ///< leaves voxels that an edit in this box does not change; null: writes all
+  bool only_added = false;            ///< the edit removed nothing: distances do not become larger
+};
+
+/// Writes distances: at most EmptySpheres::kFarthest, and kSolid for solid voxels. `along_x` holds the rows of the
+/// window, spread along x from both sides. Results are exact up to the distance by which the window exceeds the region,
+/// or for `only_added` if it includes the box of the edit, grown by one; others may be too large. Returns the largest
+/// one written.
+int build_spheres(const VoxelNearness& along_x, const SphereRows& rows, VoxelBytes& distances);
 
 }  // namespace scarp

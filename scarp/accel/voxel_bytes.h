@@ -14,8 +14,8 @@ namespace scarp {
 /// Maximum grid side for accelerators with bytes per voxel.
 constexpr int kMaxAcceleratedSide = 512;
 
-/// Throws Error naming `what` if a grid of this size is larger.
-void require_accelerable(const ivec3& size, std::string_view what);
+/// Throws Error naming `what` and its bytes if a grid of this size is larger.
+void require_accelerable(const ivec3& size, std::string_view what, int bytes_per_voxel = 1);
 
 /// Bytes of a grid, x fastest.
 class VoxelBytes {

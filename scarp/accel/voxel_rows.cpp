@@ -10,10 +10,11 @@
 
 namespace scarp {
 
-void require_accelerable(const ivec3& size, std::string_view what) {
+void require_accelerable(const ivec3& size, std::string_view what, int bytes_per_voxel) {
   if (std::max({size.x, size.y, size.z}) <= kMaxAcceleratedSide) return;
-  throw Error(fmt::format("{}: {} x {} x {} voxels, limited to {} per side (use voxel-bricks for larger grids)", what,
-                          size.x, size.y, size.z, kMaxAcceleratedSide));
+  throw Error(fmt::format(
+      "{}: {} x {} x {} voxels would take {} bytes (limited to {} voxels per side; use voxel-bricks)", what, size.x,
+      size.y, size.z, std::int64_t{bytes_per_voxel} * size.x * size.y * size.z, kMaxAcceleratedSide));
 }
 
 VoxelRows::VoxelRows(const VoxelGrid& grid)

@@ -47,8 +47,28 @@ int exact_sign(const CrossingTerms& t) {
   return sum.sign();
 }
 
+namespace {
+
+// least_clearing() in long doubles. Returns false if their rounding may change the answer: always where they are
+// doubles.
+bool quick_clearing(const CrossingTerms& t, double& least) {
+  // Each difference, product, sum and quotient is off by half a unit; terms are taken from e, where they are small.
+  constexpr long double kRounding = 4 * std::numeric_limits<long double>::epsilon();
+  if (t.w0 + t.w1 != t.v0 + t.v1) return false;
+  const long double a = (static_cast<long double>(t.g0) - t.e) * t.w0,
+                    b = (static_cast<long double>(t.g1) - t.e) * t.w1;
+  const long double r = t.e + (a + b) / t.v1;
+  const long double error = kRounding * ((std::abs(a) + std::abs(b)) / t.v1 + std::abs(r));
+  least = static_cast<double>(r);
+  if (least < r) least = std::nextafter(least, std::numeric_limits<double>::infinity());
+  return r + error <= least && r - error > std::nextafter(least, -std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+
 double least_clearing(CrossingTerms t) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (double least; quick_clearing(t, least)) return least;
   t.r = (t.g0 * t.w0 + t.g1 * t.w1 - t.e * t.v0) / t.v1;
   // The quotient is a few units off; cancellation can make it more, so steps double until they bracket the answer.
   if (sign_of(t) > 0) {

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scarp/analysis/sight_rays.h"
-#include "scarp/base/parallel.h"
+#include "scarp/analysis/shadow_sweep.h"
 #include "scarp/base/setting.h"
 
 namespace scarp {
@@ -27,15 +26,8 @@ SunRay sun_ray(const HeightField& field, const SunDirection& sun) {
 std::vector<Shade> shadow(const HeightField& field, const SunDirection& sun, const Progress& progress) {
   const SightGround ground(field);
   const SunRay ray = sun_ray(field, sun);
-  std::vector<Shade> codes(static_cast<std::size_t>(field.cols()) * field.rows());
-  parallel_for(
-      field.rows(), 1,
-      [&](std::int64_t begin, std::int64_t end) {
-        for (auto row = static_cast<int>(begin); row < end; ++row)
-          for (int col = 0; col < field.cols(); ++col)
-            codes[static_cast<std::size_t>(row) * field.cols() + col] = shade(ground, ray, {col, row});
-      },
-      progress);
+  std::vector<Shade> codes(static_cast<std::size_t>(field.cols()) * static_cast<std::size_t>(field.rows()));
+  sweep_shadow(ground, ray, codes.data(), progress);
   return codes;
 }
 

@@ -6,34 +6,17 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/analysis/sight_rays.h"
+#include "scarp/analysis/viewshed_sweep.h"
 #include "scarp/base/error.h"
-#include "scarp/base/parallel.h"
 #include "scarp/base/setting.h"
 
 namespace scarp {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 bool is_azimuth(double a) { return a >= 0 && a <= 2 * kPi; }
 bool is_pitch(double a) { return a >= -kPi / 2 && a <= kPi / 2; }
-
-// Calls body(node, lowered height, index) for every node with a sample, in rows.
-template <class Body>
-void for_each_node(const Viewpoint& view, const Progress& progress, const Body& body) {
-  const HeightField& field = view.ground().field();
-  parallel_for(
-      field.rows(), 1,
-      [&](std::int64_t begin, std::int64_t end) {
-        for (auto row = static_cast<int>(begin); row < end; ++row)
-          for (int col = 0; col < field.cols(); ++col)
-            if (const auto lowered = view.ground().lowered(Node{col, row}))
-              body(Node{col, row}, *lowered, static_cast<std::size_t>(row) * field.cols() + col);
-      },
-      progress);
-}
 
 }  // namespace
 
@@ -73,7 +56,7 @@ Viewpoint::Viewpoint(const HeightField& field, Node observer, const ViewshedSett
 }
 
 bool Viewpoint::in_range(Node node, double target) const {
-  if (!limits_distance_ && !limits_azimuth_ && !limits_pitch_) return true;
+  if (!has_limits()) return true;
   const double square = ground_.square_distance(node.col, node.row);
   if (limits_distance_ && (square < settings_.min_distance * settings_.min_distance ||
                            square > settings_.max_distance * settings_.max_distance))
@@ -97,23 +80,16 @@ bool Viewpoint::in_range(Node node, double target) const {
 std::vector<Seen> viewshed(const HeightField& field, Node observer, const ViewshedSettings& settings,
                            const Progress& progress) {
   const Viewpoint view(field, observer, settings);
-  std::vector<Seen> codes(static_cast<std::size_t>(field.cols()) * field.rows(), Seen::hole);
-  for_each_node(view, progress, [&](Node node, double lowered, std::size_t i) {
-    const double target = view.target(lowered);
-    codes[i] = !view.in_range(node, target)                              ? Seen::out_of_range
-               : sees(view.ground(), observer, view.eye(), node, target) ? Seen::visible
-                                                                         : Seen::hidden;
-  });
+  std::vector<Seen> codes(static_cast<std::size_t>(field.cols()) * static_cast<std::size_t>(field.rows()));
+  sweep_viewshed(view, codes.data(), progress);
   return codes;
 }
 
 std::vector<double> least_visible(const HeightField& field, Node observer, const ViewshedSettings& settings,
                                   const Progress& progress) {
   const Viewpoint view(field, observer, settings);
-  std::vector<double> least(static_cast<std::size_t>(field.cols()) * field.rows(), kNan);
-  for_each_node(view, progress, [&](Node node, double lowered, std::size_t i) {
-    if (view.in_range(node, view.target(lowered))) least[i] = least_visible(view.ground(), observer, view.eye(), node);
-  });
+  std::vector<double> least(static_cast<std::size_t>(field.cols()) * static_cast<std::size_t>(field.rows()));
+  sweep_least_visible(view, least.data(), progress);
   return least;
 }
 

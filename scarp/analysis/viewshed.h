@@ -53,6 +53,8 @@ class Viewpoint {
 
   /// Height of the target over a node with this lowered height.
   double target(double lowered) const { return lowered + settings_.target_height; }
+  /// Whether any node may be out of range.
+  bool has_limits() const { return limits_distance_ || limits_azimuth_ || limits_pitch_; }
   /// Whether a node is within the limits; `target` is its target's height, lowered.
   bool in_range(Node node, double target) const;
 

@@ -65,7 +65,7 @@ VoxelGrid::VoxelGrid(const ivec3& size, int entry_bits)
   if (entry_bits < 1 || entry_bits > kMaxEntryBits) {
     throw Error(fmt::format("voxel grid: {} bits per entry (must be 1 to {})", entry_bits, kMaxEntryBits));
   }
-  first_mask_.resize(static_cast<std::size_t>(pages_of(size)) + 1);
+  first_mask_ = SparseTable<std::uint32_t>(static_cast<std::size_t>(pages_of(size)));
   empty_pages_ = page_count();
   masks_.resize(kPageBricks);
   pages_.resize(1);
@@ -84,8 +84,7 @@ std::int64_t VoxelGrid::bytes_of(const ivec3& size, std::int64_t pages, std::int
 }
 
 std::size_t VoxelGrid::bytes() const {
-  std::size_t sum = sizeof(*this) + first_mask_.size() * sizeof(std::uint32_t) +
-                    (masks_.size() + coloured_.size()) * sizeof(std::uint64_t);
+  std::size_t sum = sizeof(*this) + first_mask_.bytes() + (masks_.size() + coloured_.size()) * sizeof(std::uint64_t);
   for (const Page& page : pages_) sum += sizeof(page) + page.words.size() * sizeof(std::uint64_t);
   return sum;
 }
@@ -142,20 +141,29 @@ VoxelGrid::Page VoxelGrid::packed_page(std::span<const std::uint64_t> coloured,
   return page;
 }
 
-// Returns the index of a page's first mask; a page that was empty gets its own.
-std::size_t VoxelGrid::stored(std::size_t page) {
-  if (!is_empty(page)) return first_mask_[page];
-  if (empty_pages_ == 1) {
-    empty_pages_ = 0;
-    return 0;
-  }
+// Returns the index of its first mask.
+std::uint32_t VoxelGrid::add_page() {
   const std::size_t first = masks_.size();
   // If one of these throws, the others have more pages than are used.
   pages_.resize(first / kPageBricks + 1);
   if (!coloured_.empty()) coloured_.resize(first + kPageBricks);
   masks_.resize(first + kPageBricks);
-  first_mask_[page] = static_cast<std::uint32_t>(first);
-  --empty_pages_;
+  return static_cast<std::uint32_t>(first);
+}
+
+// Returns the index of a page's first mask; a page that was empty or full gets its own.
+std::size_t VoxelGrid::stored(std::size_t page) {
+  const bool empty = is_empty(page), full = is_full(page);
+  if (!empty && !full) return first_mask_[page];
+  if (empty && empty_pages_ == 1) {
+    empty_pages_ = 0;
+    return 0;
+  }
+  std::uint32_t& of_page = first_mask_.at(page);
+  const std::uint32_t first = add_page();
+  if (full) std::fill_n(masks_.begin() + first, kPageBricks, ~std::uint64_t{0});
+  of_page = first;
+  if (empty) --empty_pages_;
   return first;
 }
 
@@ -260,23 +268,28 @@ VoxelBox VoxelGrid::set(std::span<const Placed> voxels) {
   for (const Placed& placed : voxels) {
     if (placed.value) require_entry(*placed.value);
   }
-  // Counting sort by page, so that each is unpacked once: counts before each page, then the next index of each.
   const auto page_of = [&](const Placed& placed) { return brick_index(placed.voxel >> 2) / kPageBricks; };
   std::size_t low = page_count(), high = 0;
+  std::vector<const Placed*> order;
   for (const Placed& placed : voxels) {
     if (!box().contains(placed.voxel)) continue;
     low = std::min(low, page_of(placed));
     high = std::max(high, page_of(placed));
+    order.push_back(&placed);
   }
-  if (low > high) return {};
-  std::vector<std::size_t> begin(high - low + 2);
-  for (const Placed& placed : voxels) {
-    if (box().contains(placed.voxel)) ++begin[page_of(placed) - low + 1];
-  }
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<const Placed*> order(begin.back());
-  for (const Placed& placed : voxels) {
-    if (box().contains(placed.voxel)) order[begin[page_of(placed) - low]++] = &placed;
+  if (order.empty()) return {};
+  // Each page is unpacked once. Few voxels in many pages are sorted; otherwise they are counted.
+  if ((high - low) / 64 > order.size()) {
+    std::stable_sort(order.begin(), order.end(),
+                     [&](const Placed* a, const Placed* b) { return page_of(*a) < page_of(*b); });
+  } else {
+    // Counts before each page, then the next index of each.
+    std::vector<std::size_t> begin(high - low + 2);
+    for (const Placed* placed : order) ++begin[page_of(*placed) - low + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<const Placed*> sorted(order.size());
+    for (const Placed* placed : order) sorted[begin[page_of(*placed) - low]++] = placed;
+    order = std::move(sorted);
   }
   Editing editing(*this);
   for (const Placed* placed : order) {
@@ -370,41 +383,86 @@ VoxelBox VoxelGrid::subtract(const VoxelGrid& other) {
   return combine(other, [](std::uint64_t a, std::uint64_t b) { return a & ~b; });
 }
 
+VoxelBox VoxelGrid::page_box(std::size_t page) const {
+  const ivec3 first = brick_at(page * kPageBricks), last = brick_at(page * kPageBricks + kPageBricks - 1);
+  VoxelBox bricks{first, last + 1};
+  // Of a page that goes on in the next row or slab, all rows or slabs.
+  if (first.y != last.y || first.z != last.z) bricks.low.x = 0, bricks.high.x = bricks_.x;
+  if (first.z != last.z) bricks.low.y = 0, bricks.high.y = bricks_.y;
+  return {4 * bricks.low, 4 * bricks.high};
+}
+
 VoxelGrid VoxelGrid::built(const ivec3& size, int entry_bits, const FillBrick& fill) {
+  return built(size, entry_bits, Source{{}, [&](const ivec3& brick, std::span<std::uint32_t, kVoxelsPerBrick> entries) {
+                                          const std::uint64_t mask = fill(brick, entries);
+                                          return Brick{mask, mask};
+                                        }});
+}
+
+VoxelGrid VoxelGrid::built(const ivec3& size, int entry_bits, const Source& source) {
   VoxelGrid grid(size, entry_bits);
   struct Stored {
-    std::array<std::uint64_t, kPageBricks> masks{};
+    std::array<std::uint64_t, kPageBricks> solid{}, coloured{};
     Page page;
+    bool full = false;
   };
-  std::vector<std::unique_ptr<Stored>> pages(grid.page_count());
   const std::size_t bricks = grid.brick_index(grid.bricks_ - 1) + 1;
-  constexpr int kGrain = 64;  // pages: some milliseconds
-  parallel_for(static_cast<std::int64_t>(pages.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {
-    std::vector<std::uint32_t> entries(kPageBricks * kVoxelsPerBrick);
-    for (auto page = static_cast<std::size_t>(begin); page < static_cast<std::size_t>(end); ++page) {
-      std::array<std::uint64_t, kPageBricks> masks{};
-      std::uint64_t any = 0;
-      for (std::size_t i = 0; i < kPageBricks && page * kPageBricks + i < bricks; ++i) {
-        const ivec3 brick = grid.brick_at(page * kPageBricks + i);
+  // Returns null for an empty page.
+  const auto build = [&](std::size_t page, std::vector<std::uint32_t>& entries) -> std::unique_ptr<Stored> {
+    const Contents contents = source.contents ? source.contents(grid.page_box(page)) : Contents::mixed;
+    if (contents == Contents::empty) return {};
+    Stored stored;
+    std::uint64_t any = 0, all = ~std::uint64_t{0}, coloured = 0;
+    for (std::size_t i = 0; i < kPageBricks; ++i) {
+      Brick brick;
+      if (page * kPageBricks + i < bricks) {
+        const ivec3 at = grid.brick_at(page * kPageBricks + i);
         const std::span<std::uint32_t, kVoxelsPerBrick> own(&entries[i * kVoxelsPerBrick], kVoxelsPerBrick);
-        masks[i] = fill(brick, own) & mask_inside(size - 4 * brick);
-        any |= masks[i];
-        for (std::uint64_t rest = masks[i]; rest != 0; rest &= rest - 1)
+        brick = contents == Contents::full ? Brick{~std::uint64_t{0}, 0} : source.fill(at, own);
+        brick.solid &= mask_inside(size - 4 * at);
+        brick.coloured &= brick.solid;
+        for (std::uint64_t rest = brick.coloured; rest != 0; rest &= rest - 1)
           grid.require_entry(own[static_cast<std::size_t>(std::countr_zero(rest))]);
       }
-      if (any != 0) pages[page] = std::make_unique<Stored>(Stored{masks, grid.packed_page(masks, entries)});
+      stored.solid[i] = brick.solid, stored.coloured[i] = brick.coloured;
+      any |= brick.solid, all &= brick.solid, coloured |= brick.coloured;
     }
-  });
-  const auto count = static_cast<std::size_t>(pages.size() - std::count(pages.begin(), pages.end(), nullptr));
-  grid.masks_.reserve((count + 1) * kPageBricks);
-  grid.pages_.reserve(count + 1);
-  for (std::size_t page = 0; page < pages.size(); ++page) {
-    if (!pages[page]) continue;
-    const std::size_t first = grid.stored(page);
-    std::copy(pages[page]->masks.begin(), pages[page]->masks.end(), &grid.masks_[first]);
-    for (const std::uint64_t mask : pages[page]->masks) grid.solid_count_ += bits_set(mask);
-    grid.pages_[first / kPageBricks] = std::move(pages[page]->page);
-    pages[page].reset();
+    if (any == 0) return {};
+    stored.full = ~all == 0 && coloured == 0;
+    if (!stored.full) stored.page = grid.packed_page(stored.coloured, entries);
+    return std::make_unique<Stored>(std::move(stored));
+  };
+
+  constexpr std::size_t kAtOnce = std::size_t{1} << 18;  // pages, so that not all are in memory twice
+  constexpr int kGrain = 64;                             // pages: some milliseconds
+  for (std::size_t begin = 0; begin < grid.page_count(); begin += kAtOnce) {
+    std::vector<std::unique_ptr<Stored>> pages(std::min(kAtOnce, grid.page_count() - begin));
+    parallel_for(static_cast<std::int64_t>(pages.size()), kGrain, [&](std::int64_t first, std::int64_t last) {
+      std::vector<std::uint32_t> entries(kPageBricks * kVoxelsPerBrick);
+      for (auto i = static_cast<std::size_t>(first); i < static_cast<std::size_t>(last); ++i)
+        pages[i] = build(begin + i, entries);
+    });
+    for (std::size_t i = 0; i < pages.size(); ++i) {
+      if (!pages[i]) continue;
+      Stored& stored = *pages[i];
+      if (stored.solid != stored.coloured && grid.coloured_.empty()) grid.coloured_ = grid.masks_;
+      if (stored.full) {
+        if (grid.full_ == 0) {
+          grid.full_ = grid.add_page();
+          std::fill_n(grid.masks_.begin() + grid.full_, kPageBricks, ~std::uint64_t{0});
+        }
+        grid.first_mask_.at(begin + i) = grid.full_;
+        --grid.empty_pages_;
+        grid.solid_count_ += kPageBricks * kVoxelsPerBrick;
+        continue;
+      }
+      const std::size_t at = grid.stored(begin + i);
+      std::copy(stored.solid.begin(), stored.solid.end(), &grid.masks_[at]);
+      if (!grid.coloured_.empty()) std::copy(stored.coloured.begin(), stored.coloured.end(), &grid.coloured_[at]);
+      for (const std::uint64_t mask : stored.solid) grid.solid_count_ += bits_set(mask);
+      grid.pages_[at / kPageBricks] = std::move(stored.page);
+      pages[i].reset();
+    }
   }
   grid.bounds_ = grid.scan_bounds();
   return grid;
@@ -429,8 +487,8 @@ void VoxelGrid::drop_hidden_entries() {
   });
   // If nothing is hidden, there is no need to store which voxels have an entry.
   if (seen == masks_) return;
-  for (std::size_t page = 0; page < page_count(); ++page) {
-    if (is_empty(page)) continue;
+  for (std::size_t page = first_mask_.next(0); page < page_count(); page = first_mask_.next(page + 1)) {
+    if (is_empty(page) || is_full(page)) continue;
     const std::size_t first = first_mask_[page];
     PageVoxels voxels = unpack(page);
     for (std::size_t brick = 0; brick < kPageBricks; ++brick) voxels.coloured[brick] &= seen[first + brick];

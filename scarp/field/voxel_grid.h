@@ -10,8 +10,9 @@
 // outside the grid is empty.
 //
 // Bricks are stored in pages of 64, each with the entries of its own voxels: an edit repacks only the pages that it
-// touches. Pages without solid voxels are not stored. Cost: 1/128 byte per voxel of the box, 1.6 bits per voxel of a
-// stored page, and entry_bits per solid voxel.
+// touches. Pages without solid voxels are not stored, and those that are solid throughout and have no entries share
+// one. Cost: 1/1024 byte per voxel of the box (with more than 2^33 voxels: only where something is stored), 1.2 bits
+// per voxel of a stored page, 2.2 if hidden voxels have no entry, and entry_bits per solid voxel that has one.
 #pragma once
 
 #include <array>
@@ -22,6 +23,7 @@
 #include <span>
 #include <vector>
 
+#include "scarp/field/sparse_table.h"
 #include "scarp/field/voxel_box.h"
 
 namespace scarp {
@@ -29,7 +31,9 @@ namespace scarp {
 /// A voxel grid.
 class VoxelGrid {
  public:
-  static constexpr int kMaxSide = 2048;
+  static constexpr int kMaxSide = 16384;
+  /// Limit of what makes or reads grids voxel by voxel.
+  static constexpr int kMaxModelSide = 2048;
   static constexpr int kBrick = 4;
   static constexpr int kMaxEntryBits = 24;
 
@@ -41,6 +45,19 @@ class VoxelGrid {
   /// Builds a grid brick by brick, on all threads; faster than edit(). `fill` is called once per brick, concurrently;
   /// voxels outside the grid are ignored. Throws Error as the constructor, or if an entry does not fit.
   static VoxelGrid built(const ivec3& size, int entry_bits, const FillBrick& fill);
+
+  /// What is known of a box of voxels without looking at each. `full`: all are solid, and none has an entry.
+  enum class Contents { empty, full, mixed };
+  struct Brick {
+    std::uint64_t solid = 0, coloured = 0;  ///< masks; coloured: those of the solid voxels that have an entry
+  };
+  /// Source of a world. Called concurrently.
+  struct Source {
+    std::function<Contents(const VoxelBox& page)> contents;  ///< may extend beyond the grid
+    std::function<Brick(const ivec3& brick, std::span<std::uint32_t, 64> entries)> fill;  ///< of mixed pages
+  };
+  /// The same for large grids, page by page.
+  static VoxelGrid built(const ivec3& size, int entry_bits, const Source& source);
 
   const ivec3& size() const { return size_; }
   VoxelBox box() const { return {ivec3(0), size_}; }
@@ -68,11 +85,22 @@ class VoxelGrid {
   /// kPageBricks. All empty pages share one.
   std::span<const std::uint64_t> masks() const { return masks_; }
   /// An index of masks() per page, then one more that is readable.
-  std::span<const std::uint32_t> first_masks() const { return first_mask_; }
+  std::span<const std::uint32_t> first_masks() const { return first_mask_.values(); }
+  /// first_masks() as a table: of grids with more than 2^33 voxels it is in chunks.
+  const SparseTable<std::uint32_t>& page_table() const { return first_mask_; }
+  /// Masks of the voxels with an entry, as masks(); the same memory if no entry was dropped.
+  std::span<const std::uint64_t> coloured_masks() const { return entry_masks(); }
+  /// Entries of a page as they are stored, for shaders: entry_bits() each from the lowest bit on, and how many come
+  /// before each 4 bricks. `stored` is the page's index in masks(), in pages.
+  struct PackedEntries {
+    std::span<const std::uint64_t> words;
+    std::span<const std::uint16_t> rank_from;
+  };
+  PackedEntries packed_entries(std::size_t stored) const { return {pages_[stored].words, pages_[stored].rank_from}; }
   /// Calls body(brick, mask) for each brick with solid voxels, in the order of brick_index().
   template <class Body>
   void for_each_solid_brick(const Body& body) const {
-    for (std::size_t page = 0; page + 1 < first_mask_.size(); ++page) {
+    for (std::size_t page = first_mask_.next(0); page < page_count(); page = first_mask_.next(page + 1)) {
       if (is_empty(page)) continue;
       for (std::size_t i = 0; i < kPageBricks; ++i) {
         if (const std::uint64_t mask = masks_[first_mask_[page] + i]; mask != 0)
@@ -149,11 +177,14 @@ class VoxelGrid {
 
   std::span<const std::uint64_t> entry_masks() const { return coloured_.empty() ? masks_ : coloured_; }
   bool is_empty(std::size_t page) const { return first_mask_[page] == 0 && empty_pages_ > 0; }
-  std::size_t page_count() const { return first_mask_.size() - 1; }
+  bool is_full(std::size_t page) const { return full_ != 0 && first_mask_[page] == full_; }
+  std::size_t page_count() const { return first_mask_.size(); }
   ivec3 brick_at(std::size_t index) const {
-    const auto i = static_cast<int>(index);
-    return {i % bricks_.x, i / bricks_.x % bricks_.y, i / bricks_.x / bricks_.y};
+    const auto x = static_cast<std::size_t>(bricks_.x), y = static_cast<std::size_t>(bricks_.y);
+    return {index % x, index / x % y, index / x / y};
   }
+  VoxelBox page_box(std::size_t page) const;
+  std::uint32_t add_page();
   Page packed_page(std::span<const std::uint64_t> coloured, std::span<const std::uint32_t> entries) const;
   std::size_t stored(std::size_t page);
   PageVoxels unpack(std::size_t page) const;
@@ -164,7 +195,8 @@ class VoxelGrid {
 
   ivec3 size_, bricks_;
   int entry_bits_;
-  std::vector<std::uint32_t> first_mask_;
+  SparseTable<std::uint32_t> first_mask_;
+  std::uint32_t full_ = 0;               // the masks that full pages share; 0: none
   std::size_t empty_pages_;              // they share the first masks; the last of them to be filled takes these
   std::vector<std::uint64_t> masks_;     // page by page
   std::vector<std::uint64_t> coloured_;  // voxels with an entry, likewise; empty: all solid ones

@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "scarp/scene/box_beam.h"
 
@@ -157,6 +158,23 @@ BoxTree::BoxTree(std::span<const WorldBox> boxes, std::vector<std::uint32_t> obj
   nodes_.reserve(builder.order.size() / 2 + 1);
   builder.build(whole, 0);
   nodes_.shrink_to_fit();
+}
+
+BoxTree::Parts BoxTree::parts() const {
+  static_assert(sizeof(Node) == 112 && kLeaf == 0x80000000);
+  std::uint32_t levels = 0;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> open;  // nodes and their levels
+  if (!nodes_.empty()) open.push_back({0, 1});
+  while (!open.empty()) {
+    const auto [node, level] = open.back();
+    open.pop_back();
+    levels = std::max(levels, level);
+    for (int i = 0; i < kWide; ++i) {
+      const Node& at = nodes_[node];
+      if (at.low[0][i] <= at.high[0][i] && !(at.child[i] & kLeaf)) open.push_back({at.child[i], level + 1});
+    }
+  }
+  return {std::as_bytes(std::span(nodes_)), middle_, {box_.low - padding_, box_.high + padding_}, levels};
 }
 
 bool BoxTree::clip(const Ray& ray, double& t_in, double& t_out) const {

@@ -66,6 +66,15 @@ class BoxTree {
   void search(double end, const Bound& bound, const Visit& visit) const;
 
   bool empty() const { return nodes_.empty(); }
+  /// The tree as devices read it. A node has 112 bytes: four boxes (low x, y, z, high x, y, z; four floats each,
+  /// relative to `middle`) and their children. `box` is the padded box around everything.
+  struct Parts {
+    std::span<const std::byte> nodes;
+    dvec3 middle;
+    WorldBox box;
+    std::uint32_t levels;
+  };
+  Parts parts() const;
   /// Around all boxes.
   const WorldBox& box() const { return box_; }
   std::size_t bytes() const { return sizeof(*this) + nodes_.size() * sizeof(Node); }

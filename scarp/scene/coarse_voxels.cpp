@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "scarp/scene/ordered_pattern.h"
+
 namespace scarp {
 namespace {
 
@@ -19,17 +21,6 @@ int columns(unsigned children, int axis) {
 }
 
 int covered(unsigned children) { return std::max({columns(children, 0), columns(children, 1), columns(children, 2)}); }
-
-// 0 to 3, each once in every run of four blocks along an axis that begins at a multiple of 4.
-int rank(const ivec3& block) {
-  const ivec3 of = block >> 2;
-  std::uint32_t moved = static_cast<std::uint32_t>(of.x) * 0x9E3779B1U ^
-                        static_cast<std::uint32_t>(of.y) * 0x85EBCA77U ^ static_cast<std::uint32_t>(of.z) * 0xC2B2AE3DU;
-  moved = (moved ^ moved >> 15) * 0x2C1B3C6DU;
-  const int odd = (block.x + block.y + block.z) & 1;
-  const int second = ((block.x >> 1) + (block.y >> 1) + (block.z >> 1)) & 1;
-  return static_cast<int>((static_cast<std::uint32_t>(2 * odd + second) + (moved >> 20)) & 3);
-}
 
 bool open(const VoxelGrid& grid, const ivec3& voxel) {
   for (int axis = 0; axis < 3; ++axis) {
@@ -58,8 +49,8 @@ class Mean {
     for (std::size_t i = 0; i < 256; ++i) linear_[i] = linear(static_cast<std::uint8_t>(i));
   }
   void clear() { sum_ = dvec3(0.0), count_ = 0; }
-  void add(const VoxelColour& colour) {
-    sum_ += dvec3(linear_[colour[0]], linear_[colour[1]], linear_[colour[2]]);
+  void add(const VoxelColour& colour, double emission) {
+    sum_ += (1 + emission) * dvec3(linear_[colour[0]], linear_[colour[1]], linear_[colour[2]]);
     ++count_;
   }
   bool empty() const { return count_ == 0; }
@@ -86,12 +77,14 @@ VoxelGrid halved(const VoxelModel& model) {
       child = 2 * block + ivec3(i & 1, i >> 1 & 1, i >> 2);
       if (fine.box().contains(child) && fine.solid(child)) solid |= 1U << i;
     }
-    if (covered(solid) <= rank(block)) return VoxelGrid::Voxel();
+    if (covered(solid) <= ordered_rank(block)) return VoxelGrid::Voxel();
     mean.clear();
     for (const bool all : {false, true}) {
       if (!mean.empty()) break;
       for (std::size_t i = 0; i < 8; ++i) {
-        if ((solid >> i & 1) != 0 && (all || open(fine, children[i]))) mean.add(model.colour(fine.entry(children[i])));
+        if ((solid >> i & 1) == 0 || !(all || open(fine, children[i]))) continue;
+        const std::uint32_t entry = fine.entry(children[i]);
+        mean.add(model.colour(entry), model.material(entry).emission);
       }
     }
     return VoxelGrid::Voxel(mean.rgb());

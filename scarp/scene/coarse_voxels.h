@@ -5,10 +5,10 @@
 // cover all 4 are solid: walls stay closed, however thin. Of the others as large a share is solid as they cover: of a
 // row of single voxels every second block, of points scattered about a quarter. So what a model covers of a picture
 // stays the same from level to level, where a vote of the 8 would lose what is thin and "any of 8" would fatten it.
-// Which blocks those are: in each run of 4 blocks along an axis 1, 2 or 3, by an ordered pattern moved at random from
-// 4 x 4 x 4 to 4 x 4 x 4. (Ordered dithering after B. Bayer, 1973, in space.)
+// Which blocks those are: in each run of 4 blocks along an axis 1, 2 or 3, by an ordered pattern (ordered_pattern.h).
 //
-// A block's colour is the mean, in linear light, of its voxels with an open face; of all when none has one.
+// A block's colour is the mean, in linear light, of its voxels with an open face; of all when none has one. Light
+// that they emit brightens it; coarse voxels mirror nothing.
 #pragma once
 
 #include <memory>

@@ -124,9 +124,9 @@ PlacedVoxels combined_voxels(VoxelCombination combination, std::span<const Place
   }
   if (box.empty()) return combined;
   const ivec3 size = box.high - box.low;
-  if (std::max({size.x, size.y, size.z}) > VoxelGrid::kMaxSide) {
+  if (std::max({size.x, size.y, size.z}) > VoxelGrid::kMaxModelSide) {
     throw Error(fmt::format("{} x {} x {} combined voxels (each side is limited to {})", size.x, size.y, size.z,
-                            VoxelGrid::kMaxSide));
+                            VoxelGrid::kMaxModelSide));
   }
 
   VoxelGrid grid = grid_of(placed[0], box);

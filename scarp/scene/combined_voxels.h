@@ -19,7 +19,7 @@ enum class VoxelCombination {
 /// other places must be offset by whole voxels and rotated by quarter turns, with voxels of the same size, within 10^-6
 /// of a voxel. Where parts overlap, colours are those of the first part that is solid
 /// there. An empty result has no places. Throws Error naming the part that is not on the lattice, or if a side of the
-/// result is longer than VoxelGrid::kMaxSide.
+/// result is longer than VoxelGrid::kMaxModelSide.
 PlacedVoxels combined_voxels(VoxelCombination combination, std::span<const PlacedVoxels> parts,
                              const VoxelFileOptions& options = {});
 

@@ -366,6 +366,7 @@ SceneSurface Scene::placed_surface(std::uint32_t index, const FieldSurface& own,
   surface.place = in_field;
   surface.colour = own.colour;
   surface.openness = own.openness;
+  surface.light = own.light;
   surface.wall = own.wall;
   if (own.height && object.placement.upright())
     surface.height = object.placement.world_from_field({in_field.x, in_field.y, *own.height}).z;

@@ -59,6 +59,7 @@ struct SceneSurface {
   dvec3 place{0.0};                   ///< position in the object's own space
   std::optional<VoxelColour> colour;  ///< nullopt if the field has no colours
   double openness = 1;                ///< fraction of the sky that the object itself leaves open, 0..1
+  VoxelMaterial light{};              ///< what it emits and mirrors
   bool wall = false;                  ///< whether a wall of solid ground or of a plinth was hit
   std::optional<double> height;       ///< z of the surface, if known more precisely than by `position`
 };

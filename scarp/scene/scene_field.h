@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,6 +30,8 @@
 
 namespace scarp {
 
+class VoxelObjects;  // voxel_objects.h
+
 /// What is at a hit, in the field's space.
 struct FieldSurface {
   dvec3 normal{0.0};                    ///< unit, outward; zero for a ray that began inside
@@ -36,6 +39,7 @@ struct FieldSurface {
   std::optional<VoxelColour> colour{};  ///< where the field has colours of its own
   int material = 0;                     ///< of the cell or the part of a shape, plus 1; 0: that of the object
   double openness = 1;                  ///< share of the sky that is open, as far as the field knows by itself
+  VoxelMaterial light{};                ///< what the surface emits and mirrors
   bool wall = false;                    ///< whether a wall of solid ground or of a plinth was hit
   /// z of the surface, where it is known to more digits than by the ray's point: a sea at 0 is at 0.
   std::optional<double> height{};
@@ -53,7 +57,13 @@ struct SceneFieldParts {
   using Function = Marched<HeightFunction, FunctionMarchEntry>;
   using Shape = Marched<DistanceField, ShapeMarchEntry>;
 
-  std::variant<std::monostate, Heights, Function, Shape> of{};  ///< monostate: none of these
+  struct Voxels {
+    const VoxelObjects* objects;
+    /// Where a shadow ray begins that begins on a voxel; null: beside that voxel.
+    std::function<Ray(const Ray& ray, const Hit& from)> shadow_ray;
+  };
+
+  std::variant<std::monostate, Heights, Function, Shape, Voxels> of{};  ///< monostate: none of these
 };
 
 /// Immutable; may be queried from many threads at once.
@@ -75,6 +85,8 @@ class SceneField {
   virtual std::optional<WorldBox> extent() const { return box(); }
   /// Whether the field is only seen: it throws no shadow and is no ground.
   virtual bool is_backdrop() const { return false; }
+  /// Whether any of its surfaces may mirror.
+  virtual bool mirrors() const { return false; }
   /// Returns the height of the ground at (x, y); nullopt beside the ground, in its holes, and for fields that are not
   /// ground.
   virtual std::optional<double> height(double x, double y) const;

@@ -17,19 +17,12 @@
 #include "scarp/march/function/function_queries_vk.h"
 #include "scarp/march/height/queries_vk.h"
 #include "scarp/march/shape/shape_queries_vk.h"
+#include "scarp/scene/field_on_device.h"
 #include "scarp/scene/function_shadow.h"
+#include "scarp/scene/scene_voxels_vk.h"
 
 namespace scarp {
 namespace {
-
-// One field.
-class FieldOnDevice {
- public:
-  virtual ~FieldOnDevice() = default;
-  virtual void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) = 0;
-  virtual void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) = 0;
-  virtual const DeviceTerrain* terrain() const { return nullptr; }
-};
 
 // Marches ready to run, one for all fields that have it: making one takes longer than most of its calls.
 class Marches {
@@ -55,6 +48,10 @@ class Marches {
     queries->set_march_settings(settings);
     return *queries;
   }
+  const std::shared_ptr<DeviceVoxelQueries>& voxels() {
+    if (!voxels_) voxels_ = std::make_shared<DeviceVoxelQueries>(device_);
+    return voxels_;
+  }
 
  private:
   Device device_;
@@ -62,6 +59,7 @@ class Marches {
       heights_;  // bool: whether it counts
   std::map<const FunctionMarchEntry*, std::unique_ptr<DeviceFunctionQueries>> functions_;
   std::map<const ShapeMarchEntry*, std::unique_ptr<DeviceShapeQueries>> shapes_;
+  std::shared_ptr<DeviceVoxelQueries> voxels_;
 };
 
 class HeightsOnDevice final : public FieldOnDevice {
@@ -75,12 +73,13 @@ class HeightsOnDevice final : public FieldOnDevice {
     queries(false);
   }
 
-  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                    std::span<const Hit* const>) override {
     std::vector<DeviceRayCost> costs(steps.size());
     queries(!steps.empty()).closest_hits(target(), rays, hits, costs);
     for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = costs[i].steps;
   }
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, std::span<const Hit* const>) override {
     queries(false).occluded(target(), rays, blocked);
   }
   const DeviceTerrain* terrain() const override { return &terrain_; }
@@ -103,10 +102,11 @@ class FunctionOnDevice final : public FieldOnDevice {
     queries();
   }
 
-  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                    std::span<const Hit* const>) override {
     queries().closest_hits({parts_.field, &device_, FunctionUse::march}, rays, hits, steps);
   }
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, std::span<const Hit* const>) override {
     std::vector<Ray> begun(rays.size());
     for (std::size_t i = 0; i < rays.size(); ++i) begun[i] = on_shadow_surface(*parts_.field, rays[i]);
     queries().occluded({parts_.field, &device_, FunctionUse::shadow}, begun, blocked);
@@ -127,10 +127,11 @@ class ShapeOnDevice final : public FieldOnDevice {
     queries();
   }
 
-  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps) override {
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
+                    std::span<const Hit* const>) override {
     queries().closest_hits({parts_.field, &device_}, rays, hits, steps);
   }
-  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) override {
+  void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked, std::span<const Hit* const>) override {
     queries().occluded({parts_.field, &device_}, rays, blocked);
   }
 
@@ -144,7 +145,8 @@ class ShapeOnDevice final : public FieldOnDevice {
 
 class OnDevice final : public SceneBackEnd {
  public:
-  OnDevice(const Device& device, const std::vector<SceneFieldPtr>& fields) : marches_(device), fields_(fields) {
+  OnDevice(const Device& device, const std::vector<SceneFieldPtr>& fields, std::shared_ptr<VoxelSight> sight)
+      : marches_(device), sight_(std::move(sight)), fields_(fields) {
     for (std::size_t i = 0; i < fields_.size(); ++i) {
       try {
         on_device_.push_back(made(*fields_[i]));
@@ -154,8 +156,8 @@ class OnDevice final : public SceneBackEnd {
     }
     if (!fields_.empty() && std::all_of(on_device_.begin(), on_device_.end(), [](const auto& made) { return !made; })) {
       throw Error(
-          fmt::format("scene: field 0 ({}): does not run on Vulkan devices; heights, functions and shapes do: "
-                      "use the CPU",
+          fmt::format("scene: field 0 ({}): does not run on Vulkan devices; heights, functions, shapes and voxels that "
+                      "are not rounded do: use the CPU",
                       fields_[0]->kind()));
     }
   }
@@ -163,14 +165,14 @@ class OnDevice final : public SceneBackEnd {
   void closest_hits(std::uint32_t field, std::span<const Ray> rays, std::span<Hit> hits, std::span<std::uint32_t> steps,
                     std::span<const Hit* const> from) override {
     if (!on_device_[field]) return fields_[field]->closest_hits_on_all_threads(rays, hits, steps, from);
-    if (from.empty()) return on_device_[field]->closest_hits(rays, hits, steps);
-    on_device_[field]->closest_hits(started(field, rays, from), hits, steps);
+    if (from.empty()) return on_device_[field]->closest_hits(rays, hits, steps, from);
+    on_device_[field]->closest_hits(started(field, rays, from), hits, steps, from);
   }
   void occluded(std::uint32_t field, std::span<const Ray> rays, std::span<std::uint8_t> blocked,
                 std::span<const Hit* const> from) override {
     if (!on_device_[field]) return fields_[field]->occluded_on_all_threads(rays, blocked, from);
-    if (from.empty()) return on_device_[field]->occluded(rays, blocked);
-    on_device_[field]->occluded(started(field, rays, from), blocked);
+    if (from.empty()) return on_device_[field]->occluded(rays, blocked, from);
+    on_device_[field]->occluded(started(field, rays, from), blocked, from);
   }
   const DeviceTerrain* terrain(std::uint32_t field) const override {
     return on_device_[field] ? on_device_[field]->terrain() : nullptr;
@@ -186,6 +188,8 @@ class OnDevice final : public SceneBackEnd {
       return std::make_unique<FunctionOnDevice>(marches_, *function);
     if (const auto* shape = std::get_if<SceneFieldParts::Shape>(&parts.of))
       return std::make_unique<ShapeOnDevice>(marches_, *shape);
+    if (const auto* voxels = std::get_if<SceneFieldParts::Voxels>(&parts.of))
+      return voxels_on_device(marches_.device(), marches_.voxels(), sight_, field, *voxels);
     return nullptr;
   }
   std::vector<Ray> started(std::uint32_t field, std::span<const Ray> rays, std::span<const Hit* const> from) const {
@@ -195,14 +199,15 @@ class OnDevice final : public SceneBackEnd {
   }
 
   Marches marches_;
+  std::shared_ptr<VoxelSight> sight_;
   std::vector<SceneFieldPtr> fields_;
   std::vector<std::unique_ptr<FieldOnDevice>> on_device_;  // null: the CPU answers
 };
 
 }  // namespace
 
-Scene scene_on(const Device& device, const Scene& scene) {
-  return scene.answered_by(std::make_shared<OnDevice>(device, scene.fields()));
+Scene scene_on(const Device& device, const Scene& scene, std::shared_ptr<VoxelSight> sight) {
+  return scene.answered_by(std::make_shared<OnDevice>(device, scene.fields(), std::move(sight)));
 }
 
 }  // namespace scarp

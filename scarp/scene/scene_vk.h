@@ -13,6 +13,7 @@
 
 #include "scarp/accel/device_ground.h"
 #include "scarp/scene/scene.h"
+#include "scarp/scene/voxel_sight_vk.h"
 #include "scarp/vk/device.h"
 
 namespace scarp {
@@ -23,7 +24,9 @@ namespace scarp {
 /// march/function/function_queries_vk.h and march/shape/shape_queries_vk.h document the accuracy of results.
 ///
 /// Fields made by scene_heights() with AnsweredBy::back_end build no acceleration structure for the CPU.
-Scene scene_on(const Device& device, const Scene& scene);
+///
+/// `sight`: how voxels are drawn (voxel_sight_vk.h); null: by compute.
+Scene scene_on(const Device& device, const Scene& scene, std::shared_ptr<VoxelSight> sight = nullptr);
 
 /// A height field on its device, returned by Scene::device_terrain().
 struct DeviceTerrain {

@@ -40,10 +40,11 @@ class VoxelField final : public SceneField {
   }
   bool occluded(const Ray& ray, const Hit* from) const override {
     if (!from) return objects_.occluded(ray);
-    return shading_.normals == VoxelNormals::smooth ? occluded_above_steps(ray, *from)
+    return shading_.normals == VoxelNormals::smooth ? objects_.occluded(above_steps(ray, *from))
                                                     : objects_.occluded_from(*from, ray);
   }
   bool likes_batches() const override { return true; }
+  bool mirrors() const override { return objects_.mirrors(); }
   void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const> from) const override {
     objects_.closest_hits(rays, hits, from);
   }
@@ -58,6 +59,7 @@ class VoxelField final : public SceneField {
     surface.normal = objects_.normal(p, hit);
     surface.shading_normal = shading_normal(hit, p, surface.normal);
     surface.colour = objects_.colour(hit);
+    surface.light = objects_.material(hit);
     if (shading_.corner_ao)
       surface.openness = corner_openness(objects_.grid(hit), hit.voxel, hit.face, objects_.place_in_grid(hit, p));
     return surface;
@@ -70,7 +72,12 @@ class VoxelField final : public SceneField {
   std::optional<FieldPoint> closest_point(const dvec3& p, double max_distance) const override {
     return objects_.closest_point(p, max_distance);
   }
-  SceneFieldParts parts() const override { return {}; }
+  SceneFieldParts parts() const override {
+    SceneFieldParts::Voxels voxels{&objects_, {}};
+    if (shading_.normals == VoxelNormals::smooth)
+      voxels.shadow_ray = [this](const Ray& ray, const Hit& from) { return above_steps(ray, from); };
+    return {voxels};
+  }
   std::size_t bytes() const override {
     std::size_t bytes = objects_.bytes();
     for (const auto& model : objects_.models()) bytes += model->bytes();
@@ -99,11 +106,11 @@ class VoxelField final : public SceneField {
  private:
   // A surface that is shaded as a smooth one is not shaded by its own steps. Voxels with their middles below a plane
   // have corners up to sqrt(3) / 2 voxel above it, and faces as far below: above all of them the ray begins free.
-  bool occluded_above_steps(const Ray& ray, const Hit& from) const {
+  Ray above_steps(const Ray& ray, const Hit& from) const {
     const dvec3 p = ray.at(ray.t_min), normal = objects_.normal(p, from);
     Ray above = ray;
     above.origin += std::sqrt(3.0) * objects_.voxel_side(from) * shading_normal(from, p, normal);
-    return objects_.occluded(above);
+    return above;
   }
 
   dvec3 shading_normal(const Hit& hit, const dvec3& p, const dvec3& normal) const {

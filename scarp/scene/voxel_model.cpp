@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/scene/voxel_model.h"
 
+#include <algorithm>
 #include <type_traits>
 #include <utility>
 
@@ -25,11 +26,16 @@ std::int64_t accelerator_bytes(VoxelAccelerator accelerator, const ivec3& size) 
 
 void require_marchable(const VoxelMarchEntry& march, const ivec3& size) {
   if (march.accelerator != VoxelAccelerator::none && march.accelerator != VoxelAccelerator::bricks)
-    require_accelerable(size, march.name);
+    require_accelerable(size, march.name, march.accelerator == VoxelAccelerator::octants ? 8 : 1);
 }
 
-VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette, Extent extent)
-    : grid_(std::move(grid)), march_(&march), palette_(std::move(palette)), extent_(extent) {
+VoxelModel::VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette, Extent extent,
+                       std::vector<VoxelMaterial> materials)
+    : grid_(std::move(grid)),
+      march_(&march),
+      palette_(std::move(palette)),
+      materials_(std::move(materials)),
+      extent_(extent) {
   switch (march.accelerator) {
     case VoxelAccelerator::spheres:
       built_.emplace<EmptySpheres>(grid_);
@@ -66,6 +72,10 @@ VoxelColour VoxelModel::colour(std::uint32_t entry) const {
   return entry < palette_.size() ? palette_[entry] : VoxelColour{};
 }
 
+bool VoxelModel::mirrors() const {
+  return std::any_of(materials_.begin(), materials_.end(), [](const VoxelMaterial& of) { return of.mirror > 0; });
+}
+
 void VoxelModel::update(const VoxelBox& changed) {
   edits_.add();
   std::visit(
@@ -84,7 +94,8 @@ std::size_t VoxelModel::bytes() const {
         return bytes;
       },
       built_);
-  return sizeof(*this) - sizeof(grid_) + grid_.bytes() + palette_.size() * sizeof(VoxelColour) + heap;
+  return sizeof(*this) - sizeof(grid_) + grid_.bytes() + palette_.size() * sizeof(VoxelColour) +
+         materials_.size() * sizeof(VoxelMaterial) + heap;
 }
 
 }  // namespace scarp

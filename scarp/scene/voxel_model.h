@@ -14,6 +14,7 @@
 #include "scarp/accel/octant_cubes.h"
 #include "scarp/base/edit_count.h"
 #include "scarp/march/voxel/voxel_table.h"
+#include "scarp/scene/voxel_material.h"
 
 namespace scarp {
 
@@ -38,12 +39,13 @@ class VoxelModel {
   };
 
   /// Builds what the march, a row of voxel_marches(), needs. Without a palette the entries are RGB, red in the lowest
-  /// 8 bits. Throws Error when the grid is too large for the march.
+  /// 8 bits. `materials` are those of the palette's entries; voxels of entries beyond them are plain. Throws Error when
+  /// the grid is too large for the march.
   VoxelModel(VoxelGrid grid, const VoxelMarchEntry& march, std::vector<VoxelColour> palette = {},
-             Extent extent = Extent::bounds);
+             Extent extent = Extent::bounds, std::vector<VoxelMaterial> materials = {});
 
-  /// The same grid and colours with another march.
-  VoxelModel marched_by(const VoxelMarchEntry& march) const { return {grid_, march, palette_, extent_}; }
+  /// The same grid, colours and materials with another march.
+  VoxelModel marched_by(const VoxelMarchEntry& march) const { return {grid_, march, palette_, extent_, materials_}; }
 
   const VoxelGrid& grid() const { return grid_; }
   const VoxelMarchEntry& march() const { return *march_; }
@@ -53,6 +55,11 @@ class VoxelModel {
 
   /// Black for entries beyond the palette.
   VoxelColour colour(std::uint32_t entry) const;
+  VoxelMaterial material(std::uint32_t entry) const {
+    return entry < materials_.size() ? materials_[entry] : VoxelMaterial{};
+  }
+  /// Whether any of its materials mirrors.
+  bool mirrors() const;
 
   /// Changes the grid and what was built from it. `edit(grid)` returns the dirty box; when it throws, all is built
   /// again over what it left.
@@ -80,6 +87,7 @@ class VoxelModel {
   VoxelGrid grid_;
   const VoxelMarchEntry* march_;
   std::vector<VoxelColour> palette_;
+  std::vector<VoxelMaterial> materials_;
   Extent extent_;
   VoxelBox box_;
   EditCount edits_;

@@ -243,6 +243,19 @@ VoxelObjects VoxelObjects::marched_by(std::string_view march) const {
   return VoxelObjects(std::move(placed));
 }
 
+std::vector<VoxelObjects::Placed> VoxelObjects::placed() const {
+  std::vector<Placed> placed;
+  for (const std::uint32_t index : in_tree_)
+    placed.push_back({objects_[index].origin, objects_[index].model, objects_[index].turn, index});
+  return placed;
+}
+
+std::vector<glm::dmat3> VoxelObjects::turns() const {
+  std::vector<glm::dmat3> turns;
+  for (const Turn& turn : turns_) turns.push_back(turn.grid_from_world);
+  return turns;
+}
+
 std::vector<VoxelPlace> VoxelObjects::places() const {
   std::vector<VoxelPlace> places;
   for (const Object& object : objects_)
@@ -263,6 +276,15 @@ std::uint64_t VoxelObjects::edits() const {
 VoxelColour VoxelObjects::colour(const Hit& hit) const {
   const VoxelModel& model = *models_[objects_[hit.part].model];
   return model.colour(model.grid().entry(hit.voxel));
+}
+
+VoxelMaterial VoxelObjects::material(const Hit& hit) const {
+  const VoxelModel& model = *models_[objects_[hit.part].model];
+  return model.material(model.grid().entry(hit.voxel));
+}
+
+bool VoxelObjects::mirrors() const {
+  return std::any_of(models_.begin(), models_.end(), [](const auto& model) { return model->mirrors(); });
 }
 
 std::size_t VoxelObjects::bytes() const {

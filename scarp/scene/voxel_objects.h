@@ -71,6 +71,9 @@ class VoxelObjects {
   /// The same by the point that was hit.
   dvec3 normal(const dvec3& p, const Hit& hit) const;
   VoxelColour colour(const Hit& hit) const;
+  VoxelMaterial material(const Hit& hit) const;
+  /// Whether any of its voxels may mirror.
+  bool mirrors() const;
 
   /// Contacts, overlaps and closest points with the cubes of the voxels, whatever their rounding; SceneField has them.
   std::optional<FieldContact> sweep(const Capsule& capsule, const dvec3& motion) const;
@@ -95,6 +98,18 @@ class VoxelObjects {
   const std::vector<std::shared_ptr<const VoxelModel>>& models() const { return models_; }
   /// Of the objects and the hierarchy over them, without the models.
   std::size_t bytes() const;
+
+  /// An object as back ends read it; `part` is the index of its place.
+  struct Placed {
+    dvec3 origin;
+    std::uint32_t model, turn, part;
+  };
+  /// Returns the objects in the order of the tree's numbers.
+  std::vector<Placed> placed() const;
+  /// Returns grid_from_world of each turn.
+  std::vector<glm::dmat3> turns() const;
+  const BoxTree& tree() const { return tree_; }
+  const VoxelRounding& rounding() const { return rounding_; }
 
  private:
   // An object; turns are shared by all that have the same one.

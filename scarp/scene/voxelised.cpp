@@ -33,9 +33,9 @@ VoxelLattice lattice_around(const Scene& scene, double side, const std::optional
   VoxelLattice lattice{side, {}};
   for (int axis = 0; axis < 3; ++axis) {
     const double low = std::floor(box.low[axis] / side), high = std::max(low + 1, std::ceil(box.high[axis] / side));
-    if (high - low > VoxelGrid::kMaxSide) {
+    if (high - low > VoxelGrid::kMaxModelSide) {
       throw Error(fmt::format("voxels of {} m: {} along {} (limited to {}; choose larger voxels)", side, high - low,
-                              "xyz"[axis], VoxelGrid::kMaxSide));
+                              "xyz"[axis], VoxelGrid::kMaxModelSide));
     }
     if (!(std::abs(low) <= kFarthest && std::abs(high) <= kFarthest))
       throw Error(fmt::format("voxels of {} m: {} of them from the origin (limited to 2^24)", side,

@@ -21,8 +21,8 @@ struct VoxelLattice {
 };
 
 /// Around the scene, or around the part of it within `within` (where it has no end, needed). Sides are counted from the
-/// world's origin. Throws Error: a side that is not above 0, nothing that has an end, more than VoxelGrid::kMaxSide
-/// voxels along an axis, places beyond 2^24 voxels.
+/// world's origin. Throws Error: a side that is not above 0, nothing that has an end, more than
+/// VoxelGrid::kMaxModelSide voxels along an axis, places beyond 2^24 voxels.
 VoxelLattice lattice_around(const Scene& scene, double side, const std::optional<WorldBox>& within = {});
 
 /// The grid begins at lattice.box.low. `entry`: of a solid voxel, 24 bits, asked on one thread; the surface is what

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <glm/common.hpp>
 #include <unordered_map>
@@ -11,6 +12,7 @@
 #include "scarp/base/error.h"
 #include "scarp/source/vox_animation.h"
 #include "scarp/source/vox_bytes.h"
+#include "scarp/source/vox_material.h"
 
 namespace scarp {
 namespace {
@@ -228,6 +230,16 @@ std::vector<std::string> vox_notes(const VoxFile& file, const VoxSceneOptions& o
     empty += static_cast<std::size_t>(std::count_if(model.voxels.begin(), model.voxels.end(),
                                                     [](const VoxVoxel& voxel) { return voxel.index == 0; }));
   if (empty > 0) notes.push_back(fmt::format("voxels with palette index 0, treated as empty: {}", empty));
+  std::array<bool, 256> glass{};
+  for (const VoxMaterial& material : file.materials) {
+    if (material.id > 0 && material.id < 256 && is_vox_glass(material))
+      glass[static_cast<std::size_t>(material.id)] = true;
+  }
+  const bool shows_glass = std::any_of(file.models.begin(), file.models.end(), [&](const VoxModel& model) {
+    return std::any_of(model.voxels.begin(), model.voxels.end(),
+                       [&](const VoxVoxel& voxel) { return glass[voxel.index]; });
+  });
+  if (shows_glass) notes.push_back("glass is shown opaque");
   return notes;
 }
 

@@ -41,7 +41,8 @@ struct VoxSceneOptions {
 /// instances, or positions beyond 2^24 voxels.
 std::vector<VoxInstance> vox_instances(const VoxFile& file, const VoxSceneOptions& options = {});
 
-/// Returns notes for users, one line each: a frame beyond the end, voxels with palette index 0.
+/// Returns notes for users, one line each: a frame beyond the end, voxels with palette index 0,
+/// glass.
 std::vector<std::string> vox_notes(const VoxFile& file, const VoxSceneOptions& options = {});
 
 /// Throws Error in one line if the scene is invalid: see parse_vox().

@@ -31,6 +31,11 @@ void require_fits(const RasterTarget::Impl& target, const DrawCall& call) {
     throw Error(fmt::format("shader '{}': writes {} colours, but its target has {}", shader.name, shader.colours,
                             target.colours()));
   }
+  if (shader.colours > 0 && shader.of != target.of) {
+    const auto name = [](RasterColours of) { return of == RasterColours::words ? "words" : "floats"; };
+    throw Error(
+        fmt::format("shader '{}': writes {}, but its target has {}", shader.name, name(shader.of), name(target.of)));
+  }
   if (call.indices && std::uint64_t{call.count} * 4 > call.indices->bytes()) {
     throw Error(fmt::format("shader '{}': {} indices, but the buffer '{}' holds {}", shader.name, call.count,
                             call.indices->impl().name, call.indices->bytes() / 4));

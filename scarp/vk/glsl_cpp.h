@@ -8,7 +8,8 @@
 //   SCARP_FN uint entry_of(Level level, uint col, uint row) { return level.begin + row * level.cols + col; }
 //   SCARP_GLSL_END
 //
-// Structs contain float, int, uint, vectors of these and Address; no bool, no matrices, no 64-bit types. In C++
+// Structs contain float, int, uint, vectors of these and Address; no bool, no matrices, no 64-bit types
+// (doubles in accel/voxel_buffers.glsl.h, for shaders that need float64). In C++
 // everything is in namespace scarp::glsl. Functions that also run in C++ use no swizzles. Shaders that include such a
 // file enable GL_GOOGLE_include_directive, and GL_EXT_scalar_block_layout for their blocks.
 #ifndef SCARP_VK_GLSL_CPP_H

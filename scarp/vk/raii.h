@@ -125,6 +125,7 @@ struct DeviceImage {
 struct RasterTarget::Impl {
   std::shared_ptr<Device::Impl> device;
   std::uint32_t width, height;
+  RasterColours of;
   std::vector<DeviceImage> images;  // colours, then depth
   vk::raii::RenderPass pass;
   vk::raii::Framebuffer framebuffer;
@@ -136,6 +137,7 @@ struct RasterPipeline::Impl {
   std::shared_ptr<Device::Impl> device;
   std::string name;
   std::uint32_t push_bytes, colours;
+  RasterColours of;
   vk::raii::PipelineLayout layout;
   vk::raii::Pipeline pipeline;
 };
@@ -150,6 +152,14 @@ vk::raii::Pipeline compute_pipeline(const vk::raii::Device& device, const vk::ra
                                     std::span<const std::uint32_t> spirv, std::span<const std::uint32_t> constants,
                                     vk::PipelineCreateFlags flags,
                                     const vk::Optional<const vk::raii::PipelineCache>& cache);
+
+vk::raii::PipelineLayout raster_layout(const vk::raii::Device& device, std::uint32_t push_bytes);
+/// Links a vertex and a fragment shader; as for compute_pipeline().
+vk::raii::Pipeline raster_pipeline(const vk::raii::Device& device, const vk::raii::PipelineLayout& layout,
+                                   std::span<const std::uint32_t> vertex, std::span<const std::uint32_t> fragment,
+                                   const RasterSettings& settings, std::span<const std::uint32_t> constants,
+                                   vk::PipelineCreateFlags flags,
+                                   const vk::Optional<const vk::raii::PipelineCache>& cache);
 
 /// Earlier commands finish, and their writes are visible, before later ones begin.
 void full_barrier(const vk::raii::CommandBuffer& commands);

@@ -10,7 +10,12 @@
 namespace scarp {
 namespace {
 
-constexpr vk::Format kColour = vk::Format::eR32G32B32A32Sfloat, kDepth = vk::Format::eD32Sfloat;
+constexpr vk::Format kDepth = vk::Format::eD32Sfloat;
+
+// Every device draws into both.
+vk::Format format_of(RasterColours colours) {
+  return colours == RasterColours::words ? vk::Format::eR32G32B32A32Uint : vk::Format::eR32G32B32A32Sfloat;
+}
 
 // Colours are written in one stage, depths in two.
 constexpr auto kDrawing = vk::PipelineStageFlagBits::eColorAttachmentOutput |
@@ -31,9 +36,9 @@ void require_draws(const Device& device) {
   }
 }
 
-DeviceImage make_image(const Device::Impl& device, std::uint32_t width, std::uint32_t height, bool depth) {
+DeviceImage make_image(const Device::Impl& device, std::uint32_t width, std::uint32_t height, vk::Format format) {
   using Usage = vk::ImageUsageFlagBits;
-  const vk::Format format = depth ? kDepth : kColour;
+  const bool depth = format == kDepth;
   vk::raii::Image image(
       device.device,
       vk::ImageCreateInfo({}, vk::ImageType::e2D, format, {width, height, 1}, 1, 1, vk::SampleCountFlagBits::e1,
@@ -52,13 +57,13 @@ DeviceImage make_image(const Device::Impl& device, std::uint32_t width, std::uin
   return {std::move(image), std::move(memory), std::move(view)};
 }
 
-// Clears, draws, then makes the images ready for copying. Pipelines fit passes with the same number of colours.
-vk::raii::RenderPass make_pass(const Device::Impl& device, std::uint32_t colours) {
+// Clears, draws, then makes the images ready for copying. Pipelines fit passes with the same colours.
+vk::raii::RenderPass make_pass(const vk::raii::Device& device, std::uint32_t colours, RasterColours of) {
   std::vector<vk::AttachmentDescription> attachments;
   std::vector<vk::AttachmentReference> references;
   for (std::uint32_t i = 0; i <= colours; ++i) {
     attachments.push_back({{},
-                           i == colours ? kDepth : kColour,
+                           i == colours ? kDepth : format_of(of),
                            vk::SampleCountFlagBits::e1,
                            vk::AttachmentLoadOp::eClear,
                            vk::AttachmentStoreOp::eStore,
@@ -77,7 +82,7 @@ vk::raii::RenderPass make_pass(const Device::Impl& device, std::uint32_t colours
                             Access::eMemoryWrite, kDrawn | Access::eDepthStencilAttachmentRead),
       vk::SubpassDependency(0, VK_SUBPASS_EXTERNAL, kDrawing, vk::PipelineStageFlagBits::eTransfer, kDrawn,
                             Access::eTransferRead)};
-  return {device.device, vk::RenderPassCreateInfo({}, attachments, subpass, dependencies)};
+  return {device, vk::RenderPassCreateInfo({}, attachments, subpass, dependencies)};
 }
 
 vk::raii::Framebuffer make_framebuffer(const Device::Impl& device, const vk::raii::RenderPass& pass,
@@ -88,25 +93,29 @@ vk::raii::Framebuffer make_framebuffer(const Device::Impl& device, const vk::rai
   return {device.device, vk::FramebufferCreateInfo({}, *pass, views, width, height, 1)};
 }
 
-vk::raii::PipelineLayout make_drawing_layout(const Device::Impl& device, std::uint32_t push_bytes) {
+}  // namespace
+
+vk::raii::PipelineLayout raster_layout(const vk::raii::Device& device, std::uint32_t push_bytes) {
   const vk::PushConstantRange push(vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment, 0,
                                    push_bytes);
   vk::PipelineLayoutCreateInfo create;
   if (push_bytes > 0) create.setPushConstantRanges(push);
-  return {device.device, create};
+  return {device, create};
 }
 
-vk::raii::Pipeline make_pipeline(const Device::Impl& device, const vk::raii::PipelineLayout& layout,
-                                 std::span<const std::uint32_t> vertex, std::span<const std::uint32_t> fragment,
-                                 const RasterSettings& settings, std::span<const std::uint32_t> constants) {
-  const vk::raii::RenderPass pass = make_pass(device, settings.colours);
+vk::raii::Pipeline raster_pipeline(const vk::raii::Device& device, const vk::raii::PipelineLayout& layout,
+                                   std::span<const std::uint32_t> vertex, std::span<const std::uint32_t> fragment,
+                                   const RasterSettings& settings, std::span<const std::uint32_t> constants,
+                                   vk::PipelineCreateFlags flags,
+                                   const vk::Optional<const vk::raii::PipelineCache>& cache) {
+  const vk::raii::RenderPass pass = make_pass(device, settings.colours, settings.of);
   std::vector<vk::SpecializationMapEntry> entries;
   const vk::SpecializationInfo special = specialisation(constants, entries);
   std::vector<vk::raii::ShaderModule> modules;
   std::vector<vk::PipelineShaderStageCreateInfo> stages;
   const auto add = [&](vk::ShaderStageFlagBits stage, std::span<const std::uint32_t> words) {
     if (words.empty()) return;
-    modules.emplace_back(device.device, vk::ShaderModuleCreateInfo({}, words.size_bytes(), words.data()));
+    modules.emplace_back(device, vk::ShaderModuleCreateInfo({}, words.size_bytes(), words.data()));
     stages.push_back({{}, stage, *modules.back(), "main", &special});
   };
   add(vk::ShaderStageFlagBits::eVertex, vertex);
@@ -127,12 +136,10 @@ vk::raii::Pipeline make_pipeline(const Device::Impl& device, const vk::raii::Pip
   blend.setAttachments(opaques);
   const std::array dynamic = {vk::DynamicState::eViewport, vk::DynamicState::eScissor};
   const vk::PipelineDynamicStateCreateInfo sized_by_target({}, dynamic);
-  const vk::GraphicsPipelineCreateInfo create({}, stages, &no_vertices, &triangles, nullptr, &one_viewport, &fill,
+  const vk::GraphicsPipelineCreateInfo create(flags, stages, &no_vertices, &triangles, nullptr, &one_viewport, &fill,
                                               &one_sample, &depth, &blend, &sized_by_target, *layout, *pass);
-  return {device.device, device.pipelines, create};
+  return {device, cache, create};
 }
-
-}  // namespace
 
 RasterLimits raster_limits(const Device& device) {
   const vk::PhysicalDeviceLimits limits = device.impl()->physical.getProperties().limits;
@@ -140,7 +147,8 @@ RasterLimits raster_limits(const Device& device) {
           limits.subPixelPrecisionBits};
 }
 
-RasterTarget::RasterTarget(const Device& device, std::uint32_t width, std::uint32_t height, std::uint32_t colours) {
+RasterTarget::RasterTarget(const Device& device, std::uint32_t width, std::uint32_t height, std::uint32_t colours,
+                           RasterColours of) {
   require_draws(device);
   const std::uint32_t most = raster_limits(device).most_pixels;
   if (width < 1 || height < 1 || width > most || height > most) {
@@ -150,10 +158,11 @@ RasterTarget::RasterTarget(const Device& device, std::uint32_t width, std::uint3
   const std::shared_ptr<Device::Impl>& open = device.impl();
   guarded(open->name(), fmt::format("making images of {} x {} pixels", width, height), [&] {
     std::vector<DeviceImage> images;
-    for (std::uint32_t i = 0; i <= colours; ++i) images.push_back(make_image(*open, width, height, i == colours));
-    vk::raii::RenderPass pass = make_pass(*open, colours);
+    for (std::uint32_t i = 0; i <= colours; ++i)
+      images.push_back(make_image(*open, width, height, i == colours ? kDepth : format_of(of)));
+    vk::raii::RenderPass pass = make_pass(open->device, colours, of);
     vk::raii::Framebuffer framebuffer = make_framebuffer(*open, pass, images, width, height);
-    impl_.reset(new Impl{open, width, height, std::move(images), std::move(pass), std::move(framebuffer)});
+    impl_.reset(new Impl{open, width, height, of, std::move(images), std::move(pass), std::move(framebuffer)});
   });
 }
 RasterTarget::RasterTarget(RasterTarget&&) noexcept = default;
@@ -173,9 +182,11 @@ RasterPipeline::RasterPipeline(const Device& device, std::span<const std::uint32
   }
   const std::shared_ptr<Device::Impl>& open = device.impl();
   guarded(open->name(), "making the shader '" + name + "'", [&] {
-    vk::raii::PipelineLayout layout = make_drawing_layout(*open, settings.push_bytes);
-    vk::raii::Pipeline pipeline = make_pipeline(*open, layout, vertex, fragment, settings, constants);
-    impl_.reset(new Impl{open, name, settings.push_bytes, settings.colours, std::move(layout), std::move(pipeline)});
+    vk::raii::PipelineLayout layout = raster_layout(open->device, settings.push_bytes);
+    vk::raii::Pipeline pipeline =
+        raster_pipeline(open->device, layout, vertex, fragment, settings, constants, {}, open->pipelines);
+    impl_.reset(new Impl{open, name, settings.push_bytes, settings.colours, settings.of, std::move(layout),
+                         std::move(pipeline)});
   });
 }
 RasterPipeline::RasterPipeline(RasterPipeline&&) noexcept = default;

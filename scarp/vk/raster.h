@@ -22,11 +22,15 @@
 
 namespace scarp {
 
-/// Images of one size: colours of four 32-bit floats, and one depth image.
+/// A pixel of a colour image has four 32-bit numbers, of one of these types.
+enum class RasterColours : std::uint8_t { floats, words };
+
+/// Images of one size: colours, all alike, and one depth image.
 class RasterTarget {
  public:
   /// Throws Error if the device does not support graphics or this size (each side at least 1 pixel), or lacks memory.
-  RasterTarget(const Device& device, std::uint32_t width, std::uint32_t height, std::uint32_t colours);
+  RasterTarget(const Device& device, std::uint32_t width, std::uint32_t height, std::uint32_t colours,
+               RasterColours of = RasterColours::floats);
   RasterTarget(RasterTarget&&) noexcept;
   RasterTarget& operator=(RasterTarget&&) noexcept;
   ~RasterTarget();
@@ -54,6 +58,7 @@ struct RasterSettings {
   std::uint32_t push_bytes = 0;  ///< size of the block shared by both shaders; a multiple of 4, at most kMaxPushBytes
   std::uint32_t colours = 1;     ///< number of colour images of the target
   bool depth_test = true;        ///< false: draws every fragment and writes its depth
+  RasterColours of = RasterColours::floats;  ///< as of the target
 };
 
 /// Vertex and fragment shader with their layout.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A compute shader in one specialisation: everything that a pipeline is made of. The code that owns a shader states it
+// A shader in one specialisation: everything that a pipeline is made of. The code that owns a shader states it
 // in one function, which serves pipelines and the list for `scarp-bench shaders` alike.
 #pragma once
 
@@ -17,6 +17,10 @@ struct ShaderProgram {
   std::span<const std::uint32_t> spirv;    ///< entry point main, no bindings
   std::uint32_t push_bytes = 0;            ///< size of its push constants
   std::vector<std::uint32_t> constants{};  ///< specialisation constants 0, 1, 2, ...; floats by bit_cast
+  /// Empty for a compute shader. Otherwise this is a fragment shader, which writes words into so many colours, behind
+  /// this vertex shader.
+  std::span<const std::uint32_t> vertex{};
+  std::uint32_t colours = 0;
 };
 
 }  // namespace scarp

@@ -72,6 +72,32 @@ struct ShaderCompiler::Impl {
   VulkanInstance instance;
   vk::raii::PhysicalDevice physical;
   DeviceDescription description;
+  // The executable of the program itself, and the pipeline that it is part of.
+  struct Compiled {
+    vk::raii::PipelineLayout layout;
+    vk::raii::Pipeline pipeline;
+    vk::PipelineExecutableInfoKHR executable;
+  };
+  Compiled compile(const ShaderProgram& program, vk::PipelineCreateFlags flags) const {
+    if (program.vertex.empty()) {
+      vk::raii::PipelineLayout layout = compute_layout(device, program.push_bytes);
+      vk::raii::Pipeline pipeline = compute_pipeline(device, layout, program.spirv, program.constants, flags, nullptr);
+      const vk::PipelineExecutableInfoKHR whole(*pipeline, 0);
+      return {std::move(layout), std::move(pipeline), whole};
+    }
+    const RasterSettings settings{
+        .push_bytes = program.push_bytes, .colours = program.colours, .of = RasterColours::words};
+    vk::raii::PipelineLayout layout = raster_layout(device, program.push_bytes);
+    vk::raii::Pipeline pipeline =
+        raster_pipeline(device, layout, program.vertex, program.spirv, settings, program.constants, flags, nullptr);
+    vk::PipelineExecutableInfoKHR fragments(*pipeline, 0);
+    for (const auto& of : device.getPipelineExecutablePropertiesKHR(*pipeline)) {
+      if (of.stages & vk::ShaderStageFlagBits::eFragment) break;
+      ++fragments.executableIndex;
+    }
+    return {std::move(layout), std::move(pipeline), fragments};
+  }
+
   vk::raii::Device device;
 };
 
@@ -88,12 +114,9 @@ const std::string& ShaderCompiler::driver() const { return impl_->description.dr
 std::vector<ShaderStatistic> ShaderCompiler::statistics(const ShaderProgram& program) const {
   return guarded(device_name(), fmt::format("compiling the shader '{}'", program.file), [&] {
     const vk::raii::Device& device = impl_->device;
-    const vk::raii::PipelineLayout layout = compute_layout(device, program.push_bytes);
-    const vk::raii::Pipeline pipeline = compute_pipeline(device, layout, program.spirv, program.constants,
-                                                         vk::PipelineCreateFlagBits::eCaptureStatisticsKHR, nullptr);
+    const Impl::Compiled compiled = impl_->compile(program, vk::PipelineCreateFlagBits::eCaptureStatisticsKHR);
     std::vector<ShaderStatistic> all;
-    // A compute shader is one executable.
-    for (const auto& statistic : device.getPipelineExecutableStatisticsKHR({*pipeline, 0})) {
+    for (const auto& statistic : device.getPipelineExecutableStatisticsKHR(compiled.executable)) {
       all.push_back({std::string(statistic.name.data()), number(statistic)});
     }
     return all;
@@ -103,11 +126,9 @@ std::vector<ShaderStatistic> ShaderCompiler::statistics(const ShaderProgram& pro
 std::string ShaderCompiler::disassembly(const ShaderProgram& program) const {
   return guarded(device_name(), fmt::format("compiling the shader '{}'", program.file), [&] {
     const vk::raii::Device& device = impl_->device;
-    const vk::raii::PipelineLayout layout = compute_layout(device, program.push_bytes);
-    const vk::raii::Pipeline pipeline =
-        compute_pipeline(device, layout, program.spirv, program.constants,
-                         vk::PipelineCreateFlagBits::eCaptureInternalRepresentationsKHR, nullptr);
-    const vk::PipelineExecutableInfoKHR executable(*pipeline, 0);
+    const Impl::Compiled compiled =
+        impl_->compile(program, vk::PipelineCreateFlagBits::eCaptureInternalRepresentationsKHR);
+    const vk::PipelineExecutableInfoKHR& executable = compiled.executable;
     // Sizes first, then all texts by a second call, for which Vulkan-Hpp has no other form.
     auto all = device.getPipelineExecutableInternalRepresentationsKHR(executable);
     std::vector<std::string> texts(all.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a driver's compiler makes of a compute shader: instructions, registers, spills. Nothing runs and nothing is
-// allocated, so a device without memory will do, such as the null device of Mesa's RADV:
+// What a driver's compiler makes of a compute or fragment shader: instructions, registers, spills. Nothing runs and
+// nothing is allocated, so a device without memory will do, such as the null device of Mesa's RADV:
 //
 //   ShaderCompiler compiler;                            the first device whose driver reports statistics
 //   for (const auto& [name, value] : compiler.statistics(program)) ...

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "cases.h"
 #include "march/instruction_sets.h"
@@ -163,6 +164,52 @@ TEST(VoxelAccelerators, OfRowsOfAllLengthsAreWhatTheirDefinitionsSay) {
   }
 }
 
+// What edits alter may be far away, beyond another solid voxel, on all sides or on one; they add and remove at once,
+// and report more than they change.
+TEST(VoxelAccelerators, FollowSpitefulEdits) {
+  Random random(15);
+  for (const ivec3& size : {ivec3(70, 31, 43), ivec3(129, 23, 20), ivec3(31, 90, 24)}) {
+    for (const int scene : {0, 1, 2, 3}) {
+      VoxelGrid grid(size, 1);
+      if (scene == 1) grid.set(size - 1, 1);
+      if (scene == 2) grid.fill({ivec3(0), {size.x, size.y, 2}}, 1);
+      if (scene == 3) {
+        for (int i = 0; i < 40; ++i)
+          grid.set(ivec3(uniform(random, 0, size.x), uniform(random, 0, size.y), uniform(random, 0, size.z)), 1);
+      }
+      Built built(grid);
+      for (int edit = 0; edit < cases(8, 8, 4); ++edit) {
+        const dvec3 at(uniform(random, -2, size.x + 2), uniform(random, -2, size.y + 2),
+                       uniform(random, -2, size.z + 2));
+        const double radius = uniform(random, 0, 9);
+        const ivec3 low(at), high = low + ivec3(uniform(random, 1, 12), uniform(random, 1, 12), uniform(random, 1, 12));
+        VoxelBox changed;
+        if (edit % 4 == 0) changed = grid.fill_sphere(at, radius, 1);
+        if (edit % 4 == 1) changed = grid.clear_sphere(at + 1.5, radius);
+        if (edit % 4 == 2) {
+          // Some voxels come, some go.
+          changed = grid.edit({low, high}, [&](const ivec3&, const VoxelGrid::Voxel&) {
+            return uniform(random, 0, 1) < 0.3 ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
+          });
+        }
+        if (edit % 4 == 3) {
+          grid.clear(VoxelBox{low, high});
+          changed = VoxelBox{low, high}.grown(3);
+        }
+        const Built before = built, anew(grid);
+        for (const std::int64_t set : instruction_sets()) {
+          const InstructionSet chosen(set);
+          built = before;
+          built.update(grid, changed);
+          ASSERT_TRUE(built.cubes == anew.cubes) << scene << " " << edit;
+          ASSERT_TRUE(built.spheres == anew.spheres) << scene << " " << edit;
+          ASSERT_TRUE(built.octants == anew.octants) << scene << " " << edit;
+        }
+      }
+    }
+  }
+}
+
 TEST(VoxelAccelerators, CountNoFartherThanAByte) {
   VoxelGrid grid({400, 3, 3}, 1);
   EXPECT_EQ(EmptyCubes(grid).distance({200, 1, 1}), 255);
@@ -180,11 +227,50 @@ TEST(VoxelAccelerators, CountNoFartherThanAByte) {
   EXPECT_EQ(OctantCubes(grid).side({200, 1, 1}, 1), 255);
 }
 
+// Levels above sectors tell what the cells below contain, before and after edits.
+TEST(VoxelAccelerators, OfLargeGridsHaveLevels) {
+  Random random(16);
+  for (const ivec3& size : {ivec3(520, 7, 30), ivec3(3, 1100, 18), ivec3(600, 70, 4200)}) {
+    VoxelGrid grid(size, 1);
+    BrickMasks bricks(grid);
+    EXPECT_GE(bricks.levels().size(), 3u);
+    for (int edit = 0; edit < 12; ++edit) {
+      const ivec3 at(uniform(random, 0, size.x), uniform(random, 0, size.y), uniform(random, 0, size.z));
+      const VoxelBox box{at, at + whole(random, 1, 90)};
+      bricks.update(grid, edit % 3 == 2 ? grid.clear(box) : grid.fill(box, 1));
+      ASSERT_TRUE(bricks == BrickMasks(grid));
+      int side = 4;  // voxels of the cells below
+      for (const BrickMasks::Level& level : bricks.levels()) {
+        for_each_voxel({ivec3(0), glm::min(level.size, 4)}, [&](const ivec3& cell) {
+          for (int i = 0; i < 64; ++i) {
+            const ivec3 child = 4 * cell + ivec3(i & 3, i >> 2 & 3, i >> 4);
+            const VoxelBox voxels = intersection({side * child, side * child + side}, grid.box());
+            if (voxels.empty() || side > 64) continue;
+            bool any = false;
+            for_each_voxel({voxels.low >> 2, (voxels.high + 3) >> 2},
+                           [&](const ivec3& brick) { any = any || grid.mask(brick) != 0; });
+            ASSERT_EQ(level.mask(cell) >> i & 1, any ? 1u : 0u);
+          }
+        });
+        side *= 4;
+      }
+    }
+  }
+}
+
 TEST(VoxelAccelerators, RefuseGridsThatAreTooLarge) {
   const VoxelGrid grid({513, 1, 1}, 1);
   EXPECT_THROW((EmptyCubes(grid)), Error);
   EXPECT_THROW((EmptySpheres(grid)), Error);
-  EXPECT_THROW((OctantCubes(grid)), Error);
+  try {
+    OctantCubes{VoxelGrid({4096, 4096, 4096}, 1)};
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(
+        std::string(error.what()),
+        "octant cubes: 4096 x 4096 x 4096 voxels would take 549755813888 bytes (limited to 512 voxels per side; use "
+        "voxel-bricks)");
+  }
   EXPECT_NO_THROW((BrickMasks(grid)));
 }
 

@@ -228,7 +228,6 @@ TEST_F(WithoutEffect, IsRefusedOfVoxels) {
   expect_refused(info, {"--extent", "5"}, "applies to functions only");
   expect_refused(make, {"--ramp", "grey"}, "terrain");
   expect_refused(render, {"--no-plinth"}, "applies to terrain only");
-  expect_refused(render, {"--device", "cpu"}, "applies to terrain, scenes and functions only");
   expect_refused(render, {"--function-step", "5"}, "applies to functions only");
   expect_refused(render, {"--ramp", "viridis"}, "--volume or --look steps");
   expect_refused(render, {"--normal-radius", "4"}, "--normals voxel or smooth");

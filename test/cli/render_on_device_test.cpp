@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `scarp render --device`: a picture on whatever device there is, and what is refused.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -98,6 +99,71 @@ TEST_F(RenderOnDevice, MakesPicturesOfFunctionsAndScenes) {
     }
     EXPECT_LE(unlike, 60 * 40 / 100);
     EXPECT_EQ(fs::remove(picture_), true);
+  }
+}
+
+// Hits on voxels are those of the CPU to the bit, so pictures and tables are.
+TEST_F(RenderOnDevice, MakesTheSamePicturesOfVoxels) {
+  const auto devices = nlohmann::json::parse(run_on_device({"devices", "--json"}).out);
+  if (devices["devices"].empty()) GTEST_SKIP() << std::string(devices["why_none"]);
+  const std::string model = scratch_.path("hills.vox"), there = scratch_.path("there.png");
+  ASSERT_EQ(run({"voxelise", dem_, "-o", model, "--count", "24"}).status, 0);
+  const auto on_both = [&](std::vector<std::string> arguments, const std::string& cpu, const std::string& device) {
+    arguments.insert(arguments.end(), {"-o", cpu});
+    const Result first = run(arguments);
+    ASSERT_EQ(first.status, 0) << first.err;
+    arguments.back() = device;
+    arguments.insert(arguments.end(), {"--device", "auto"});
+    const Result second = run_on_device(arguments);
+    ASSERT_EQ(second.status, 0) << second.err;
+    EXPECT_EQ(text_of(cpu), text_of(device)) << arguments[4];
+  };
+  const std::vector<std::string> render{"render", model, "--size", "60x40"};
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--march", "voxel-planes"},
+                                               {"--march", "voxel-spheres", "--look", "hillshade"},
+                                               {"--look", "steps"},
+                                               {"--normals", "smooth", "--samples", "2"},
+                                               {"--march", "voxel-bricks", "--corner-ao"}}) {
+    std::vector<std::string> arguments = render;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    on_both(arguments, picture_, there);
+  }
+  // The camera's rays by drawing boxes, all others by compute; in perspective and without.
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--corner-ao"}, {"--top"}, {"--look", "hillshade"}}) {
+    std::vector<std::string> arguments = render;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), {"-o", picture_});
+    ASSERT_EQ(run(arguments).status, 0);
+    arguments.back() = there;
+    arguments.insert(arguments.end(), {"--device", "auto", "--voxel-drawing", "proxies"});
+    const Result drawn = run_on_device(arguments);
+    ASSERT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_EQ(text_of(picture_), text_of(there)) << more[0];
+    const std::size_t end = drawn.out.rfind(" rays by drawing\n");
+    ASSERT_NE(end, std::string::npos) << drawn.out;
+    // All samples of the picture, at least.
+    const std::size_t begin = drawn.out.rfind(' ', end - 1) + 1;
+    EXPECT_GE(std::stoi(drawn.out.substr(begin, end - begin)), more[0] == "--look" ? 2400 : 9600) << drawn.out;
+  }
+  const Result alone = run({"render", model, "-o", there, "--voxel-drawing", "proxies"});
+  EXPECT_NE(alone.status, 0);
+  EXPECT_NE(alone.err.find("--voxel-drawing"), std::string::npos) << alone.err;
+  std::string table = "x,y,z,tx,ty,tz\n";
+  for (int i = 0; i < 60; ++i)
+    table += fmt::format("{},{},{},{},{},{}\n", i % 7, i % 5, 90 - i, 30 - i % 11, i % 13, i % 3);
+  const std::string rays = scratch_.write("rays.csv", table);
+  on_both({"cast", model, "--rays", rays}, scratch_.path("a.csv"), scratch_.path("b.csv"));
+  EXPECT_NE(text_of(scratch_.path("a.csv")).find("hit"), std::string::npos);
+  for (const std::vector<std::string>& refused :
+       {std::vector<std::string>{"--march", "voxel-exhaustive"}, {"--rounded", "0.2"}}) {
+    std::vector<std::string> arguments{"render", model, "-o", scratch_.path("none.png"), "--device", "auto"};
+    arguments.insert(arguments.end(), refused.begin(), refused.end());
+    const Result result = run_on_device(arguments);
+    EXPECT_NE(result.status, 0);
+    EXPECT_EQ(lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find("does not run on Vulkan devices"), std::string::npos) << result.err;
+    EXPECT_FALSE(fs::exists(scratch_.path("none.png")));
   }
 }
 

@@ -170,8 +170,8 @@ TEST_F(CliVox, TurnsAndFliesRound) {
 // The default palette's entry 216 is a pure red; from above, in full sun, it stays what it is.
 TEST_F(CliVox, AllMarchesRenderTheSamePicture) {
   std::string first;
-  for (const char* march :
-       {"voxel-exhaustive", "voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-octants", "voxel-bricks"}) {
+  for (const char* march : {"voxel-exhaustive", "voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-cubes-jump",
+                            "voxel-octants", "voxel-bricks"}) {
     const std::string out = path(std::string(march) + ".png");
     const auto result = run({"render", model_, "-o", out, "--top", "--size", "30x30", "--march", march});
     ASSERT_EQ(result.status, 0) << result.err;

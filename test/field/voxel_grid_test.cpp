@@ -189,12 +189,70 @@ TEST(VoxelGrid, IsWholeAfterAnEditThatThrows) {
 
 TEST(VoxelGrid, RefusesSizesOutOfRange) {
   EXPECT_THROW(VoxelGrid({0, 1, 1}), Error);
-  EXPECT_THROW(VoxelGrid({1, 2049, 1}), Error);
+  EXPECT_THROW(VoxelGrid({1, 16385, 1}), Error);
   EXPECT_THROW(VoxelGrid({1, 1, 1}, 0), Error);
   EXPECT_THROW(VoxelGrid({1, 1, 1}, 25), Error);
-  EXPECT_NO_THROW(VoxelGrid({2048, 1, 1}));
+  EXPECT_THROW(VoxelGrid({65536, 32768, 32768}), Error);  // 2^46 voxels
+  EXPECT_NO_THROW(VoxelGrid({16384, 1, 1}));
   VoxelGrid grid({4, 4, 4});
   EXPECT_THROW(grid.unite(VoxelGrid({4, 4, 5})), Error);
+}
+
+// Pages that the source knows, and full ones that share their masks, hold what voxels one by one would; also after
+// edits.
+TEST(VoxelGrid, BuildsWorldsPageByPage) {
+  for (const ivec3& size : {ivec3(300, 20, 24), ivec3(256, 16, 20), ivec3(70, 33, 50)}) {
+    const auto height = [](int x, int y) { return 12 + (x / 40 + y / 5) % 4 - (y >= 4 && y < 8 ? 9 : 0); };
+    const auto hidden = [&](const ivec3& v) { return v.z < height(v.x, v.y) - 3; };
+    const VoxelGrid::Source source = {
+        [&](const VoxelBox& page) {
+          if (page.low.z >= 16) return VoxelGrid::Contents::empty;
+          return (page.low.y >= 8 || page.high.y <= 4) && page.high.z <= 8 ? VoxelGrid::Contents::full
+                                                                           : VoxelGrid::Contents::mixed;
+        },
+        [&](const ivec3& brick, std::span<std::uint32_t, 64> entries) {
+          VoxelGrid::Brick filled;
+          for_each_voxel({4 * brick, 4 * brick + 4}, [&](const ivec3& v) {
+            if (v.z >= height(v.x, v.y)) return;
+            const std::uint64_t bit = std::uint64_t{1} << VoxelGrid::bit_of(v);
+            filled.solid |= bit;
+            if (hidden(v)) return;
+            filled.coloured |= bit;
+            entries[static_cast<std::size_t>(VoxelGrid::bit_of(v))] = static_cast<std::uint32_t>(1 + v.x % 100);
+          });
+          return filled;
+        }};
+    VoxelGrid grid = VoxelGrid::built(size, 8, source);
+    std::int64_t solid = 0;
+    const auto expect = [&](const ivec3& v, bool filled) {
+      const bool is = v.z < height(v.x, v.y) || filled;
+      solid += is ? 1 : 0;
+      ASSERT_EQ(grid.solid(v), is);
+      if (is && !filled) {
+        ASSERT_EQ(grid.entry(v), hidden(v) ? 0u : static_cast<std::uint32_t>(1 + v.x % 100));
+      }
+    };
+    for_each_voxel(grid.box(), [&](const ivec3& v) { expect(v, false); });
+    EXPECT_EQ(grid.solid_count(), solid);
+    // In a page that is full, and in one that is empty.
+    const VoxelBox cut{ivec3(size.x - 2, 9, 1), ivec3(size.x - 1, 11, 3)}, put{ivec3(1, 1, 18), ivec3(3, 2, 19)};
+    EXPECT_EQ(grid.clear(cut), cut);
+    EXPECT_EQ(grid.fill(put, 9), put);
+    solid = 0;
+    for_each_voxel(grid.box(), [&](const ivec3& v) {
+      if (cut.contains(v)) {
+        ASSERT_FALSE(grid.solid(v));
+      } else {
+        expect(v, put.contains(v));
+      }
+    });
+    EXPECT_EQ(grid.solid_count(), solid);
+    EXPECT_EQ(grid.entry({1, 1, 18}), 9u);
+    VoxelGrid dropped = grid;
+    dropped.drop_hidden_entries();
+    EXPECT_EQ(dropped.solid_count(), grid.solid_count());
+    EXPECT_EQ(dropped.entry({1, 1, 18}), 9u);
+  }
 }
 
 // Memory follows the solid voxels, not the box.

@@ -105,25 +105,27 @@ TEST_F(ScenesOnDevice, TellTheNearestHit) {
 
 TEST_F(ScenesOnDevice, RefuseWhatDoesNotRunThere) {
   const auto model = std::make_shared<const VoxelModel>(VoxelGrid(ivec3(2), 8), find_voxel_march("voxel-bricks"));
-  const Scene scene(scene_voxels({{model}, {VoxelPlace{}}}));
+  const Scene scene(scene_voxels({{model}, {VoxelPlace{}}, {.radius = 0.2}}));
   try {
     scene_on(device(), scene);
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(
         error.what(),
-        "scene: field 0 (voxels): does not run on Vulkan devices; heights, functions and shapes do: use the CPU");
+        "scene: field 0 (voxels): does not run on Vulkan devices; heights, functions, shapes and voxels that are not "
+        "rounded do: use the CPU");
   }
 }
 
-// Voxels between a ball and a floor that the device answers.
+// Rounded voxels between a ball and a floor that the device answers.
 TEST_F(ScenesOnDevice, TheCpuAnswersOtherFields) {
   VoxelGrid grid(ivec3(4), 8);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {
     return (v.x + v.y + v.z) % 2 == 0 ? VoxelGrid::Voxel(1) : VoxelGrid::Voxel();
   });
   const auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
-  const Scene cpu({scene_shape(DistanceField(make_shape(shape::Sphere{2}))), scene_voxels({{model}, {VoxelPlace{}}}),
+  const Scene cpu({scene_shape(DistanceField(make_shape(shape::Sphere{2}))),
+                   scene_voxels({{model}, {VoxelPlace{}}, {.radius = 0.2}}),
                    scene_function(HeightFunction(make_function(Plane{})))},
                   {{0, 0, {.origin = {0, 0, 20}}}, {1, 0, {.scale = 2, .origin = {-4, -4, 4}}}, {2, 0, {}}});
   const Scene on_device = scene_on(device(), cpu);

@@ -267,6 +267,43 @@ TEST(ToVox, KeepsPlacesAndColours) {
   });
 }
 
+// 12^3 voxels of one colour with an alpha.
+std::int64_t solid_of(std::uint8_t alpha) {
+  VoxFile file;
+  file.palette.emplace();
+  (*file.palette)[4] = {9, 9, 9, alpha};
+  VoxModel model{ivec3(12), {}};
+  for_each_voxel({ivec3(0), ivec3(12)}, [&](const ivec3& v) {
+    model.voxels.push_back(
+        {static_cast<std::uint8_t>(v.x), static_cast<std::uint8_t>(v.y), static_cast<std::uint8_t>(v.z), 5});
+  });
+  file.models = {std::move(model)};
+  return placed_voxels_from(file).models.at(0)->grid().solid_count();
+}
+
+TEST(FromVox, AlphaIsTheShareOfSolidVoxels) {
+  constexpr std::int64_t kAll = 12 * 12 * 12;
+  EXPECT_EQ(solid_of(255), kAll);
+  EXPECT_EQ(solid_of(0), kAll);  // left out
+  EXPECT_EQ(solid_of(191), kAll * 3 / 4);
+  EXPECT_EQ(solid_of(128), kAll / 2);
+  EXPECT_EQ(solid_of(64), kAll / 4);
+  EXPECT_EQ(solid_of(1), kAll / 4);
+}
+
+TEST(FromVox, ReadsMaterials) {
+  VoxFile file;
+  file.models = {{ivec3(2, 1, 1), {{0, 0, 0, 1}, {1, 0, 0, 2}}}};
+  file.materials = {{2, {{"_type", "_metal"}, {"_metal", "0.5"}}}, {3, {{"_type", "_emit"}, {"_emit", "1"}}}};
+  const PlacedVoxels placed = placed_voxels_from(file);
+  const VoxelModel& model = *placed.models.at(0);
+  EXPECT_TRUE(model.mirrors());
+  EXPECT_EQ(model.material(1).mirror, 0);
+  EXPECT_EQ(model.material(2).mirror, 0.5f);
+  EXPECT_EQ(model.material(3).emission, 1);
+  EXPECT_EQ(model.material(300).emission, 0);
+}
+
 TEST(ToVox, TakesTheNearestOfFewerColours) {
   VoxelGrid grid(ivec3(16), 24);
   grid.edit(grid.box(), [](const ivec3& v, const VoxelGrid::Voxel&) {

@@ -11,6 +11,7 @@
 #include "base/refusal.h"
 #include "scarp/base/error.h"
 #include "scarp/source/vox_animation.h"
+#include "scarp/source/vox_material.h"
 #include "scarp/source/vox_scene.h"
 
 namespace scarp {
@@ -267,6 +268,30 @@ TEST(VoxFile, ReadsRealFiles) {
     EXPECT_EQ(vox_bytes(file), bytes) << entry.path();
     EXPECT_GE(vox_instances(file).size(), 1u);
   }
+}
+
+TEST(VoxMaterial, IsReadAsLight) {
+  const auto of = [](VoxAttributes attributes) { return VoxMaterial{1, std::move(attributes)}; };
+  EXPECT_EQ(vox_emission(of({{"_type", "_emit"}, {"_emit", "0.5"}})), 0.5f);
+  EXPECT_EQ(vox_emission(of({{"_type", "_emit"}, {"_emit", "0.5"}, {"_flux", "3"}})), 4.0f);
+  EXPECT_EQ(vox_emission(of({{"_type", "_emit"}, {"_weight", "0.25"}})), 0.25f);
+  EXPECT_EQ(vox_emission(of({{"_type", "_diffuse"}, {"_emit", "0.5"}})), 0.0f);
+  EXPECT_EQ(vox_emission(of({{"_type", "_emit"}, {"_emit", "nan"}})), 0.0f);
+  EXPECT_EQ(vox_emission(of({{"_type", "_emit"}, {"_emit", "1e9"}, {"_flux", "1e9"}})), 1024.0f);
+  EXPECT_EQ(vox_mirror(of({{"_type", "_metal"}, {"_metal", "1"}, {"_rough", "0.25"}})), 0.75f);
+  EXPECT_EQ(vox_mirror(of({{"_type", "_metal"}, {"_weight", "0.5"}})), 0.5f);
+  EXPECT_EQ(vox_mirror(of({{"_type", "_glass"}, {"_metal", "1"}})), 0.0f);
+  EXPECT_EQ(vox_mirror(of({})), 0.0f);
+  EXPECT_TRUE(is_vox_glass(of({{"_type", "_glass"}})));
+  EXPECT_FALSE(is_vox_glass(of({{"_type", "_blend"}, {"_metal", "1"}})));
+}
+
+TEST(VoxNotes, SayThatGlassIsShownOpaque) {
+  VoxFile file = cube_file();
+  file.materials = {{7, {{"_type", "_glass"}}}};
+  EXPECT_TRUE(vox_notes(file).empty());  // no voxel has this colour
+  file.materials[0].id = 255;
+  EXPECT_EQ(vox_notes(file), std::vector<std::string>{"glass is shown opaque"});
 }
 
 }  // namespace

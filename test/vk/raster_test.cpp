@@ -159,6 +159,9 @@ TEST_F(Drawing, BadRequestsAreRefused) {
             "shader 'corners': 4 bytes of push constants instead of 28");
   EXPECT_EQ(refusal([&] { commands.draw(coloured, {draw_call(red, push, 30, 1, &small)}); }),
             "shader 'corners': 30 indices, but the buffer 'small' holds 16");
+  const RasterTarget words(device(), kWidth, kHeight, 1, RasterColours::words);
+  EXPECT_EQ(refusal([&] { commands.draw(words, {draw_call(red, push, 3)}); }),
+            "shader 'corners': writes floats, but its target has words");
   EXPECT_EQ(refusal([&] { commands.copy(target, 0, small); }),
             "device buffer 'small': image 0 of 1 (8192 bytes) does not fit into 64 bytes");
 }

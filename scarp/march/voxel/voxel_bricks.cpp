@@ -32,11 +32,18 @@ auto brick_by_brick(const VoxelTarget& target, const QuantisedRay& ray) {
       if (solid) return false;
       return pair_empty(mask, bit) ? walk.leave(block(voxel, 1)) : walk.step();
     }
-    const int brick_bit = VoxelGrid::bit_of(brick);
-    const std::uint64_t sector = bricks.sector(brick >> 2) & ahead[brick_bit];
-    // The brick's own bit may be set by voxels behind the ray.
-    if ((sector & ~(std::uint64_t{1} << brick_bit)) == 0) return walk.leave(block(voxel, 4));
-    return walk.leave(block(voxel, pair_empty(sector, brick_bit) ? 3 : 2));
+    // The block that is left: from level to level, while nothing in the cell around it is ahead of the ray.
+    int side = 2;  // as a power of 2
+    for (const BrickMasks::Level& level : bricks.levels()) {
+      const ivec3 cell = voxel >> side;
+      const int cell_bit = VoxelGrid::bit_of(cell);
+      const std::uint64_t cells = level.mask(cell >> 2) & ahead[cell_bit];
+      // The cell's own bit may be set by voxels behind the ray.
+      if ((cells & ~(std::uint64_t{1} << cell_bit)) != 0)
+        return walk.leave(block(voxel, pair_empty(cells, cell_bit) ? side + 1 : side));
+      side += 2;
+    }
+    return walk.leave(block(voxel, side));
   };
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Batches of rays against one voxel grid, in vector lanes: voxel-planes, -cubes, -octants and -bricks.
+// Batches of rays against one voxel grid, in vector lanes: voxel-planes, -spheres, -cubes, -cubes-jump,
+// -octants and -bricks.
 //
 //   lanes   r0 r1 r2 ... r7     each is clipped to the box and quantised there, as in voxel_ray.h, then advances from
 //           |  |  |      |      event to event, as in voxel_walk.h: integers of 32 bits, products of 64 bits
@@ -65,8 +66,12 @@ using VoxelPacketMarch = std::uint64_t (*)(const VoxelTarget& target, const Voxe
 
 std::uint64_t march_packet_voxel_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                         std::uint64_t rays);
+std::uint64_t march_packet_voxel_spheres(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                         std::uint64_t rays);
 std::uint64_t march_packet_voxel_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                        std::uint64_t rays);
+std::uint64_t march_packet_voxel_cubes_jump(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                            std::uint64_t rays);
 std::uint64_t march_packet_voxel_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                          std::uint64_t rays);
 std::uint64_t march_packet_voxel_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,

@@ -6,6 +6,7 @@
 
 #include "scarp/accel/brick_masks.h"
 #include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/octant_cubes.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/voxel_ahead.h"
@@ -45,7 +46,7 @@ constexpr double kOnes = 0x1p52;
 
 // Integers in 64 bits whose upper halves are 0.
 #if HWY_TARGET == HWY_SCALAR
-HWY_INLINE VI product(VI a, VI b) { return hn::Set(di, hn::GetLane(a) * hn::GetLane(b)); }
+HWY_INLINE VI product(VI a, VI b) { return hn::Set(di, (hn::GetLane(a) & 0xffffffff) * (hn::GetLane(b) & 0xffffffff)); }
 HWY_INLINE VI lesser(VI a, VI b) { return hn::Min(a, b); }
 #else
 constexpr hn::Repartition<std::uint32_t, decltype(dd)> du32;
@@ -53,6 +54,16 @@ constexpr hn::Repartition<std::int32_t, decltype(dd)> di32;
 HWY_INLINE VI product(VI a, VI b) { return hn::BitCast(di, hn::MulEven(hn::BitCast(du32, a), hn::BitCast(du32, b))); }
 HWY_INLINE VI lesser(VI a, VI b) { return hn::BitCast(di, hn::Min(hn::BitCast(di32, a), hn::BitCast(di32, b))); }
 #endif
+// A distance times a speed, in boxes with a side above 2,048: 34 by 29 bits.
+HWY_INLINE VI wide_product(VI distance, VI speed) {
+  const VI upper = hn::BitCast(di, hn::ShiftRight<32>(hn::BitCast(du, distance)));
+  return hn::Add(product(distance, speed), hn::ShiftLeft<32>(product(upper, speed)));
+}
+template <class Look>
+HWY_INLINE VI times(VI distance, VI speed) {
+  if constexpr (Look::kWide) return wide_product(distance, speed);
+  return product(distance, speed);
+}
 // 0 <= a < 2^52.
 HWY_INLINE VD as_double(VI a) {
   const VI ones = hn::BitCast(di, hn::Set(dd, kOnes));
@@ -106,19 +117,31 @@ HWY_INLINE VI gather_bytes(const std::uint8_t* bytes, VI offset) {
   return hn::And(hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(bytes), offset), hn::Set(di, 255));
 }
 
+HWY_INLINE VI gather_ints(const std::uint32_t* ints, VI index) {
+  const VI found = hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(ints), hn::ShiftLeft<2>(index));
+  return hn::And(found, hn::Set(di, 0xffffffff));
+}
+// The place of an entry among the values of a table.
+template <class T>
+HWY_INLINE VI place_in(const SparseTable<T>& table, VI index) {
+  if (table.flat()) return index;
+  constexpr int kBits = SparseTable<T>::kChunkBits;
+  const VI chunk = gather_ints(table.chunks().data(), hn::ShiftRight<kBits>(index));
+  return hn::Add(chunk, hn::And(index, hn::Set(di, (1 << kBits) - 1)));
+}
+
 // Masks of bricks, as VoxelGrid::mask().
 HWY_INLINE VI gather_masks(const VoxelGrid& grid, VI brick) {
   static_assert(VoxelGrid::kPageBricks == 64);
-  const std::uint32_t* first = grid.first_masks().data();
-  const VI page =
-      hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(first), hn::ShiftLeft<2>(hn::ShiftRight<6>(brick)));
-  const VI first_mask = hn::And(page, hn::Set(di, 0xffffffff));
+  const VI page = place_in(grid.page_table(), hn::ShiftRight<6>(brick));
+  const VI first_mask = gather_ints(grid.first_masks().data(), page);
   return gather_words(grid.masks().data(), hn::Add(first_mask, hn::And(brick, hn::Set(di, 63))));
 }
 
 // One plane at a time.
+template <bool kWideBox>
 struct PlanesLook {
-  static constexpr bool kSingle = true;
+  static constexpr bool kSingle = true, kTravels = false, kWide = kWideBox;
   const VoxelGrid& grid;
 
   explicit PlanesLook(const VoxelTarget& target) : grid(*target.grid) {}
@@ -132,7 +155,7 @@ struct PlanesLook {
 
 // Cubes around voxels, or ahead of them: a byte each.
 struct CubesLook {
-  static constexpr bool kSingle = false;
+  static constexpr bool kSingle = false, kTravels = false, kWide = false;
   const VoxelBytes& bytes;
 
   explicit CubesLook(const VoxelTarget& target) : bytes(target.cubes->distances()) {}
@@ -143,8 +166,33 @@ struct CubesLook {
   }
 };
 
+// One plane, then all planes within `planes[0]` voxels of travel: a byte each.
+struct SpheresLook {
+  static constexpr bool kSingle = true, kTravels = true, kWide = false;
+  const VoxelBytes& bytes;
+
+  explicit SpheresLook(const VoxelTarget& target) : bytes(target.spheres->distances()) {}
+  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
+    const VI index = hn::IfThenElseZero(alive, index_in(v, bytes.size()));
+    const VI distance = gather_bytes(bytes.data(), index);
+    return {hn::Eq(distance, hn::Set(di, EmptySpheres::kSolid)), {distance, distance, distance}};
+  }
+};
+
+struct CubesJumpLook {
+  static constexpr bool kSingle = true, kTravels = true, kWide = false;
+  CubesLook cubes;
+
+  explicit CubesJumpLook(const VoxelTarget& target) : cubes(target) {}
+  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive) const {
+    LookResult seen = cubes(v, at, down, alive);
+    seen.planes[0] = hn::Sub(seen.planes[0], hn::Set(di, 1));
+    return seen;
+  }
+};
+
 struct OctantsLook {
-  static constexpr bool kSingle = false;
+  static constexpr bool kSingle = false, kTravels = false, kWide = false;
   const VoxelBytes& bytes;
   ivec3 size;
 
@@ -160,8 +208,9 @@ struct OctantsLook {
 };
 
 // Blocks of 2^level voxels, as in voxel_bricks.cpp.
+template <bool kWideBox>
 struct BricksLook {
-  static constexpr bool kSingle = false;
+  static constexpr bool kSingle = false, kTravels = false, kWide = kWideBox;
   const VoxelGrid& grid;
   const BrickMasks& bricks;
 
@@ -180,17 +229,21 @@ struct BricksLook {
                             gather_words(kAhead[0].data(), hn::Or(octant, bit)));
     const MI solid = hn::Ne(hn::And(shifted(mask, bit), one), zero);
     VI last = hn::IfThenElseZero(pair_empty(mask, bit), one);  // side of the block - 1
-    const MI clear = hn::And(alive, hn::Eq(mask, zero));
-    if (!hn::AllFalse(di, clear)) {
-      const VI sector[3] = {hn::ShiftRight<2>(brick[0]), hn::ShiftRight<2>(brick[1]), hn::ShiftRight<2>(brick[2])};
-      const VI brick_bit = bit_in(brick),
-               own = hn::BitCast(di, hn::Shl(hn::BitCast(du, one), hn::BitCast(du, brick_bit)));
-      const VI bricks_of =
-          hn::And(gather_words(bricks.masks().data(), hn::IfThenElseZero(clear, index_in(sector, bricks.sectors()))),
-                  gather_words(kAhead[0].data(), hn::Or(octant, brick_bit)));
-      const VI small = hn::IfThenElse(pair_empty(bricks_of, brick_bit), hn::Set(di, 7), hn::Set(di, 3));
-      const MI all = hn::Eq(hn::AndNot(own, bricks_of), zero);
-      last = hn::IfThenElse(clear, hn::IfThenElse(all, hn::Set(di, 15), small), last);
+    // From level to level, those around whose cell nothing is ahead.
+    MI clear = hn::And(alive, hn::Eq(mask, zero));
+    VI cell[3] = {brick[0], brick[1], brick[2]}, cell_last = hn::Set(di, 3);
+    for (const BrickMasks::Level& level : bricks.levels()) {
+      if (hn::AllFalse(di, clear)) break;
+      const VI cell_bit = bit_in(cell), own = hn::BitCast(di, hn::Shl(hn::BitCast(du, one), hn::BitCast(du, cell_bit)));
+      for (VI& c : cell) c = hn::ShiftRight<2>(c);
+      const VI index = hn::IfThenElseZero(clear, index_in(cell, level.size));
+      const VI cells = hn::And(gather_words(level.masks.values().data(), place_in(level.masks, index)),
+                               gather_words(kAhead[0].data(), hn::Or(octant, cell_bit)));
+      const VI twice = hn::Add(hn::Add(cell_last, cell_last), one);
+      last = hn::IfThenElse(clear, hn::IfThenElse(pair_empty(cells, cell_bit), twice, cell_last), last);
+      clear = hn::And(clear, hn::Eq(hn::AndNot(own, cells), zero));
+      cell_last = hn::Add(hn::Add(twice, twice), one);
+      last = hn::IfThenElse(clear, cell_last, last);
     }
     // From a voxel, counted along the ray, to the end of its block.
     const VI side = hn::Add(last, one);
@@ -207,6 +260,7 @@ struct LaneWalk {
   alignas(64) Numbers next[3], at[3], end[3], speed[3], down[3];
   // crossed: the axis of the last plane crossed; before the first step, kEntered and the axis of entry.
   alignas(64) Numbers crossed, ray;
+  // 1 / speed, or for looks that travel: in [0], the travel per voxel, as voxel_travel.h has it.
   alignas(64) VoxelPacket::Lanes<double> slowness[3];
   std::size_t lanes = 0;               // in use
   std::uint64_t alive[kVectors] = {};  // lanes of each vector
@@ -241,14 +295,24 @@ class Chosen {
   decltype(hn::SetTableIndices(di, kOrders[0].data())) order_;
 };
 
-// 1 / speed, to a relative 2^-23: enough to separate quotients of up to 2,048 by less than a half, and faster than in
+// 1 / speed, to a relative 2^-23: enough to separate quotients of up to 16,384 by less than a half, and faster than in
 // double.
 HWY_INLINE VD slowness_of(VI speed) {
   const auto single = hn::DemoteTo(df_part, as_double(speed));
   return hn::PromoteTo(dd, hn::Div(hn::Set(df_part, 1.0f), single));
 }
 
+// The same operations as in voxel_travel.h.
+HWY_INLINE VD travel_per_voxel(const VI (&speed)[3]) {
+  VD square = hn::Zero(dd);
+  for (int i = 0; i < 3; ++i) square = hn::Add(square, hn::Mul(as_double(speed[i]), as_double(speed[i])));
+  const VD length = hn::Add(hn::Trunc(hn::Sqrt(square)), hn::Set(dd, 2.0));
+  // No quotient is so near to an integer that it would be rounded to it.
+  return hn::Trunc(hn::Div(hn::Set(dd, 0x1p48), length));
+}
+
 // quantise() of voxel_ray.cpp, the same operations in the same order. Starts rays that enter the box, and returns them.
+template <class Look>
 HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& packet, std::size_t o, MI rays,
                     LaneWalk& walk) {
   const VD zero = hn::Zero(dd), one = hn::Set(dd, 1.0);
@@ -306,7 +370,12 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
     chosen.append(end, walk.end[i] + to);
     chosen.append(speed, walk.speed[i] + to);
     chosen.append(side, walk.down[i] + to);
-    chosen.append(slowness_of(speed), walk.slowness[i] + to);
+    if constexpr (!Look::kSingle) chosen.append(slowness_of(speed), walk.slowness[i] + to);
+  }
+  if constexpr (Look::kTravels) {
+    const VI speed[3] = {hn::Load(di, packet.speed[0] + o), hn::Load(di, packet.speed[1] + o),
+                         hn::Load(di, packet.speed[2] + o)};
+    chosen.append(travel_per_voxel(speed), walk.slowness[0] + to);
   }
   chosen.append(entered, walk.crossed + to);
   chosen.append(hn::Iota(di, static_cast<std::int64_t>(o)), walk.ray + to);
@@ -385,21 +454,41 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
       out[i] = hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(hn::Sub(planes, one)));
     }
   }
-  const MI y_first = hn::Lt(product(out[1], speed[0]), product(out[0], speed[1]));
+  const MI y_first = hn::Lt(times<Look>(out[1], speed[0]), times<Look>(out[0], speed[1]));
   VI distance = hn::IfThenElse(y_first, out[1], out[0]), pace = hn::IfThenElse(y_first, speed[1], speed[0]);
-  const MI z_first = hn::Lt(product(out[2], pace), product(distance, speed[2]));
+  const MI z_first = hn::Lt(times<Look>(out[2], pace), times<Look>(distance, speed[2]));
   const VI axis = hn::IfThenElse(z_first, hn::Set(di, 2), hn::IfThenElseZero(y_first, one));
 
   VI crossed[3];
   if constexpr (Look::kSingle) {
     for (int i = 0; i < 3; ++i) crossed[i] = hn::IfThenElseZero(hn::Eq(axis, hn::Set(di, i)), one);
+    if constexpr (Look::kTravels) {
+      distance = hn::IfThenElse(z_first, out[2], distance), pace = hn::IfThenElse(z_first, speed[2], pace);
+      MI travels = hn::And(alive, hn::Gt(seen.planes[0], zero));
+      for (int i = 0; i < 3; ++i) travels = hn::And(travels, hn::Lt(hn::Add(at[i], crossed[i]), end[i]));
+      // VoxelWalk::step_and_travel(): s in 2^-28, rounded down. The nearest quotient may be one more.
+      const VI dividend = hn::ShiftLeft<kDirectionBits>(distance);
+      const VI quotient =
+          truncated(hn::Div(hn::Mul(as_double(distance), hn::Set(dd, static_cast<double>(1 << kDirectionBits))),
+                            as_double(hn::IfThenElse(travels, pace, one))));
+      const VI from = hn::Add(quotient, hn::BroadcastSignBit(hn::Sub(dividend, product(quotient, pace))));
+      const VI travel = truncated(hn::Load(dd, walk.slowness[0] + o));
+      const VI until = hn::Add(from, product(seen.planes[0], travel));
+      for (int i = 0; i < 3; ++i) {
+        const VI plane = hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(crossed[i]));
+        const VI ahead = hn::Sub(hn::Sub(product(until, speed[i]), hn::ShiftLeft<kDirectionBits>(plane)), one);
+        const VI planes =
+            hn::Add(hn::BitCast(di, hn::ShiftRight<kDirectionBits + kPlaceBits>(hn::BitCast(du, ahead))), one);
+        crossed[i] = hn::Add(crossed[i], hn::IfThenElseZero(hn::AndNot(hn::Lt(ahead, zero), travels), planes));
+      }
+    }
   } else {
     distance = hn::IfThenElse(z_first, out[2], distance), pace = hn::IfThenElse(z_first, speed[2], pace);
     VD slowness = hn::Load(dd, walk.slowness[0] + o);
     slowness = hn::IfThenElse(hn::RebindMask(dd, y_first), hn::Load(dd, walk.slowness[1] + o), slowness);
     slowness = hn::IfThenElse(hn::RebindMask(dd, z_first), hn::Load(dd, walk.slowness[2] + o), slowness);
     for (int i = 0; i < 3; ++i) {
-      VI ahead = hn::Sub(product(distance, speed[i]), product(next[i], pace));
+      VI ahead = hn::Sub(times<Look>(distance, speed[i]), times<Look>(next[i], pace));
       // At the same s as the last plane, a higher axis comes after it.
       if (i > 0) ahead = hn::IfThenElse(hn::Lt(axis, hn::Set(di, i)), hn::Sub(ahead, one), ahead);
       const VI a = hn::BitCast(di, hn::ShiftRight<kPlaceBits>(hn::BitCast(du, ahead)));
@@ -459,7 +548,7 @@ std::uint64_t march(const VoxelTarget& target, const VoxelStand& stand, VoxelPac
   packet.hits = 0;
   for (std::size_t o = 0; o < packet.count; o += N) {
     if ((rays >> o & ((std::uint64_t{1} << N) - 1)) == 0) continue;
-    met |= bits_of(enter(target.box, stand, packet, o, lanes_of(rays >> o), walk)) << o;
+    met |= bits_of(enter<Look>(target.box, stand, packet, o, lanes_of(rays >> o), walk)) << o;
   }
   wake(walk);
   for (std::size_t live = walk.lanes; live > 0;) {
@@ -519,12 +608,28 @@ void aim(VoxelPacket& packet, const glm::dmat3& grid_from_world) {
   }
 }
 
+// Up to this side of the box, distances have 32 bits.
+constexpr int kNarrow = 2048;
+bool is_wide(const VoxelBox& box) {
+  const ivec3 size = box.high - box.low;
+  return std::max({size.x, size.y, size.z}) > kNarrow;
+}
+
 std::uint64_t march_planes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                            std::uint64_t rays) {
-  return march<PlanesLook>(target, stand, packet, rays);
+  return is_wide(target.box) ? march<PlanesLook<true>>(target, stand, packet, rays)
+                             : march<PlanesLook<false>>(target, stand, packet, rays);
 }
 std::uint64_t march_cubes(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet, std::uint64_t rays) {
   return march<CubesLook>(target, stand, packet, rays);
+}
+std::uint64_t march_spheres(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                            std::uint64_t rays) {
+  return march<SpheresLook>(target, stand, packet, rays);
+}
+std::uint64_t march_cubes_jump(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                               std::uint64_t rays) {
+  return march<CubesJumpLook>(target, stand, packet, rays);
 }
 std::uint64_t march_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                             std::uint64_t rays) {
@@ -532,7 +637,8 @@ std::uint64_t march_octants(const VoxelTarget& target, const VoxelStand& stand, 
 }
 std::uint64_t march_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                            std::uint64_t rays) {
-  return march<BricksLook>(target, stand, packet, rays);
+  return is_wide(target.box) ? march<BricksLook<true>>(target, stand, packet, rays)
+                             : march<BricksLook<false>>(target, stand, packet, rays);
 }
 
 }  // namespace
@@ -548,6 +654,8 @@ HWY_EXPORT(load);
 HWY_EXPORT(aim);
 HWY_EXPORT(march_planes);
 HWY_EXPORT(march_cubes);
+HWY_EXPORT(march_spheres);
+HWY_EXPORT(march_cubes_jump);
 HWY_EXPORT(march_octants);
 HWY_EXPORT(march_bricks);
 
@@ -569,6 +677,16 @@ std::uint64_t march_packet_voxel_cubes(const VoxelTarget& target, const VoxelSta
                                        std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_cubes)(target, stand, packet, rays);
 }
+std::uint64_t march_packet_voxel_spheres(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                         std::uint64_t rays) {
+  return HWY_DYNAMIC_DISPATCH(march_spheres)(target, stand, packet, rays);
+}
+
+std::uint64_t march_packet_voxel_cubes_jump(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
+                                            std::uint64_t rays) {
+  return HWY_DYNAMIC_DISPATCH(march_cubes_jump)(target, stand, packet, rays);
+}
+
 std::uint64_t march_packet_voxel_octants(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                                          std::uint64_t rays) {
   return HWY_DYNAMIC_DISPATCH(march_octants)(target, stand, packet, rays);

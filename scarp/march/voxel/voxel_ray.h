@@ -4,14 +4,14 @@
 // A ray that hits a box of voxels is quantised there, once: its entry point to multiples of 2^-20 voxel, its direction
 // to multiples of 2^-28 of its longest component. From then on the ray crosses planes between voxels at
 //
-//   s = n / d      n: distance along an axis to the plane in 2^-20 voxel, at most 2^31 (2,048 voxels)
+//   s = n / d      n: distance along an axis to the plane in 2^-20 voxel, at most 2^34 + 2^20 (16,384 voxels)
 //                  d: the direction's component in 2^-28, at most 2^28
 //
-// and the order of two planes is n_a d_b < n_b d_a: 59 bits, exact in 64. Nothing accumulates, nothing is offset, and
-// every march visits the same voxels on all machines.
+// and the order of two planes is n_a d_b < n_b d_a: below 2^63, exact in 64 bits. Nothing accumulates, nothing is
+// offset, and every march visits the same voxels on all machines.
 //
-// The quantised ray stays within 2^-21 + 2^-29 * 2048 < 2^-17 voxel of the ray along every axis. Its first voxel is
-// that of the ray itself.
+// The quantised ray stays within 2^-21 + 2^-29 * 16384 < 2^-14 voxel (2^-17 in boxes of 2,048) of the ray along every
+// axis. Its first voxel is that of the ray itself.
 //
 // Ties: planes crossed at the same s are crossed in the order x, y, z. Steps go through faces, so a ray through an edge
 // or a corner visits the voxels between, with zero length: solid voxels that touch at an edge let nothing pass. A point
@@ -96,7 +96,7 @@ struct QuantisedRay {
   }
 };
 
-/// Returns nullopt if the ray misses the box within its range. The box's sides are at most 2,048.
+/// Returns nullopt if the ray misses the box within its range. The box's sides are at most 16,384.
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelDirection& direction, const VoxelBox& box);
 std::optional<QuantisedRay> quantise(const VoxelRay& ray, const VoxelBox& box);
 

@@ -6,6 +6,7 @@
 #include "scarp/march/find_entry.h"
 #include "scarp/march/voxel/voxel_bricks.h"
 #include "scarp/march/voxel/voxel_cubes.h"
+#include "scarp/march/voxel/voxel_cubes_jump.h"
 #include "scarp/march/voxel/voxel_exhaustive.h"
 #include "scarp/march/voxel/voxel_octants.h"
 #include "scarp/march/voxel/voxel_planes.h"
@@ -16,7 +17,11 @@ namespace {
 
 constexpr VoxelMarchEntry voxel_march(std::string_view name, VoxelAccelerator accelerator, VoxelMarch cpu,
                                       VoxelOcclusion occluded, VoxelPacketMarch packet, std::string_view description) {
-  return {{.name = name, .guarantee = Guarantee::exact, .simd = packet != nullptr, .description = description},
+  return {{.name = name,
+           .guarantee = Guarantee::exact,
+           .simd = packet != nullptr,
+           .gpu = cpu != march_voxel_exhaustive && cpu != march_voxel_cubes_jump,
+           .description = description},
           accelerator,
           cpu,
           occluded,
@@ -32,10 +37,13 @@ constexpr std::array kTable = {
                 "tests solid voxels one by one, in exact arithmetic; the reference for voxel marches; slow"),
     voxel_march("voxel-planes", VoxelAccelerator::none, march_voxel_planes, occluded_voxel_planes,
                 march_packet_voxel_planes, "steps from voxel to voxel"),
-    voxel_march("voxel-spheres", VoxelAccelerator::spheres, march_voxel_spheres, occluded_voxel_spheres, nullptr,
-                "skips the empty sphere around each voxel"),
+    voxel_march("voxel-spheres", VoxelAccelerator::spheres, march_voxel_spheres, occluded_voxel_spheres,
+                march_packet_voxel_spheres, "skips the empty sphere around each voxel"),
     voxel_march("voxel-cubes", VoxelAccelerator::cubes, march_voxel_cubes, occluded_voxel_cubes,
                 march_packet_voxel_cubes, "skips the largest empty cube around each voxel"),
+    voxel_march("voxel-cubes-jump", VoxelAccelerator::cubes, march_voxel_cubes_jump, occluded_voxel_cubes_jump,
+                march_packet_voxel_cubes_jump,
+                "travels the radius of the empty cube around each voxel, as published; baseline for voxel-cubes"),
     voxel_march("voxel-octants", VoxelAccelerator::octants, march_voxel_octants, occluded_voxel_octants,
                 march_packet_voxel_octants,
                 "skips the largest empty cube ahead of each voxel, one for each octant of directions"),

@@ -93,7 +93,7 @@ class VoxelWalk {
   bool in_range() const { return t() <= ray_.t_max; }
 
  private:
-  // Axis of the smallest distance. If speed is 0 the distance is at least 2^32, and comes last.
+  // Axis of the smallest distance. If speed is 0 the distance is not, and comes last.
   int first(const std::array<std::int64_t, 3>& distance) const {
     const bool y_first = distance[1] * speed_[0] < distance[0] * speed_[1];
     const int axis = y_first ? 1 : 0;

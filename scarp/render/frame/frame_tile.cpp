@@ -24,6 +24,7 @@ constexpr double kCoincident = 0x1p-20;
 }  // namespace
 
 std::size_t most_rays_of(const FrameView& view) {
+  // A point is water, which sends two rays on, or a surface, which sends one at most.
   const std::size_t per_point = std::max<std::size_t>(view.water() ? 2 : 1, view.lighting().most_rays());
   return std::min(kMostRaysOfRound, kMostPointsOfTile * per_point);
 }
@@ -45,11 +46,11 @@ bool FrameTile::next(RayRound& round) {
   if (stage_ == Stage::look) {
     if (!asked_ && look(round)) return true;
     take_look(round);
-    stage_ = Stage::water;
-    if (ask_water(round)) return true;
+    stage_ = Stage::sent;
+    if (ask_sent(round)) return true;
   }
-  if (stage_ == Stage::water) {
-    take_water(round);
+  if (stage_ == Stage::sent) {
+    take_sent(round);
     stage_ = Stage::light;
     return ask_light(round);
   }
@@ -100,6 +101,7 @@ void FrameTile::take_look(const RayRound& round) {
     }
   }
   if (view_.water() && !shows_steps()) find_water();
+  if (view_.mirrors() && !shows_steps()) find_mirrors();
 }
 
 std::optional<Water::Meeting> FrameTile::water_of(const Ray& ray, const Hit& hit) const {
@@ -134,6 +136,28 @@ void FrameTile::find_water() {
   }
 }
 
+void FrameTile::find_mirrors() {
+  std::vector<bool> under_water(seen_.size());
+  for (const WaterPoint& found : water_) under_water[found.point] = true;
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const Seen& seen = seen_[i];
+    if (!seen.hit || under_water[i]) continue;
+    const SceneSurface surface = view_.scene().surface(seen.ray, seen.hit);
+    if (surface.light.mirror <= 0 || !FrameView::is_lit(surface)) continue;
+    // Smooth normals could mirror the ray into the surface.
+    dvec3 direction = reflected(seen.ray.direction, surface.shading_normal);
+    if (dot(direction, surface.normal) <= 0) direction = reflected(seen.ray.direction, surface.normal);
+    Ray ray;
+    ray.origin = seen.ray.at(seen.hit.t);
+    ray.direction = direction;
+    ray.t_max = view_.camera().reach();
+    mirrors_.push_back({i, surface.light.mirror, view_.surface_colour(seen.ray, seen.hit, surface), sent_.size()});
+    add(sent_, i, ray);
+    sent_from_.resize(sent_.size(), nullptr);
+    sent_from_.back() = &seen.hit;
+  }
+}
+
 std::size_t FrameTile::send(std::size_t point, const Water::Meeting& meeting, const dvec3& direction, double t_max) {
   Ray ray;
   ray.origin = seen_[point].ray.at(meeting.t);
@@ -144,8 +168,8 @@ std::size_t FrameTile::send(std::size_t point, const Water::Meeting& meeting, co
     ray.start_cell = meeting.sea->cell;
     ray.start_object = meeting.sea->object;
   }
-  add(water_rays_, point, ray);
-  return water_rays_.size() - 1;
+  add(sent_, point, ray);
+  return sent_.size() - 1;
 }
 
 void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting, bool deep) {
@@ -172,19 +196,19 @@ void FrameTile::add_water(std::size_t point, const Water::Meeting& meeting, bool
   found.mirror = send(point, meeting, mirrored, water.settings().reflection ? reach : 0);
   // Above what lies in the plane of the water, too.
   if (const double margin = coincidence(meeting.t); meeting.normal.z > 0 && margin > 0)
-    water_rays_.back().ray.origin.z = water.level() + margin;
+    sent_.back().ray.origin.z = water.level() + margin;
   if (deep && water.settings().refraction && !meeting.sea) {
     found.bottom = send(point, meeting, refracted(ray.direction, normal), reach);
-    Ray& sent = water_rays_.back().ray;
+    Ray& sent = sent_.back().ray;
     sent.t_max = std::min(sent.t_max, water.leaves(sent));
   }
   water_.push_back(found);
 }
 
-bool FrameTile::ask_water(RayRound& round) {
-  if (water_rays_.empty()) return false;
+bool FrameTile::ask_sent(RayRound& round) {
+  if (sent_.empty()) return false;
   if (const StepMarch* march = view_.step_march()) {
-    for (Seen& seen : water_rays_) {
+    for (Seen& seen : sent_) {
       if (seen.ray.t_max > 0) seen.hit = march->march(seen.ray);
     }
     return false;
@@ -192,13 +216,14 @@ bool FrameTile::ask_water(RayRound& round) {
   round.question = RayRound::Question::closest;
   round.rays.clear();
   round.from.clear();
-  for (const Seen& seen : water_rays_) round.rays.push_back(seen.ray);
+  for (const Seen& seen : sent_) round.rays.push_back(seen.ray);
+  round.from = sent_from_;
   return true;
 }
 
-void FrameTile::take_water(const RayRound& round) {
-  for (std::size_t i = 0; i < water_rays_.size(); ++i) {
-    if (!view_.step_march()) water_rays_[i].hit = round.hits[i];
+void FrameTile::take_sent(const RayRound& round) {
+  for (std::size_t i = 0; i < sent_.size(); ++i) {
+    if (!view_.step_march()) sent_[i].hit = round.hits[i];
   }
 }
 
@@ -210,9 +235,9 @@ bool FrameTile::ask_light(RayRound& round) {
   round.question = RayRound::Question::any;
   round.rays.clear();
   round.from.clear();
-  for (; asked_points_ < seen_.size() + water_rays_.size(); ++asked_points_) {
+  for (; asked_points_ < seen_.size() + sent_.size(); ++asked_points_) {
     if (round.rays.size() + lighting.most_rays() > kMostRaysOfRound) return true;
-    Seen& seen = asked_points_ < seen_.size() ? seen_[asked_points_] : water_rays_[asked_points_ - seen_.size()];
+    Seen& seen = asked_points_ < seen_.size() ? seen_[asked_points_] : sent_[asked_points_ - seen_.size()];
     const SceneSurface surface = seen.hit ? view_.scene().surface(seen.ray, seen.hit) : SceneSurface{};
     seen.lit = seen.hit && FrameView::is_lit(surface);
     if (!seen.lit) {
@@ -252,7 +277,7 @@ vec3 FrameTile::water_colour(const WaterPoint& found) const {
   const Water& water = *view_.water();
   vec3 body = water.deep();
   if (found.bottom) {
-    const Seen& bottom = water_rays_[*found.bottom];
+    const Seen& bottom = sent_[*found.bottom];
     if (bottom.hit) {
       // Walls below the surface are dark.
       const vec3 ground = bottom.lit ? bottom.colour : vec3(0.0f);
@@ -263,7 +288,7 @@ vec3 FrameTile::water_colour(const WaterPoint& found) const {
     }
   }
   const auto reflectance = static_cast<float>(found.reflectance);
-  const Seen& mirror = water_rays_[found.mirror];
+  const Seen& mirror = sent_[found.mirror];
   vec3 colour = colour_of(mirror) * reflectance + body * (1 - reflectance);
   if (!mirror.hit) colour += view_.from_beyond(found.glitter, mirror.ray);
   return colour;
@@ -286,6 +311,11 @@ std::vector<vec3> FrameTile::colours() const {
     return colours;
   }
   for (std::size_t i = 0; i < seen_.size(); ++i) colours[i] = colour_of(seen_[i]);
+  for (const MirrorPoint& found : mirrors_) {
+    const Seen& seen = seen_[found.point];
+    const vec3 mixed = seen.colour * (1 - found.share) + colour_of(sent_[found.mirror]) * found.tint * found.share;
+    colours[found.point] = view_.in_air(mixed, seen.ray, seen.hit.t);
+  }
   for (const WaterPoint& found : water_)
     colours[found.point] = view_.in_air(water_colour(found), seen_[found.point].ray, found.t);
   if (view_.fog().kind() == FogKind::iterations) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The colours of a tile's points, in rounds of rays:
 //
-//   camera rays ──▶ rays that water reflects and refracts ──▶ rays from all surfaces met to sun and sky, in as many
-//   rounds as these need
+//   camera rays ──▶ rays that water and metal send on ──▶ rays from all surfaces met to sun and sky, in as many rounds
+//   as these need
 #pragma once
 
 #include <optional>
@@ -37,10 +37,17 @@ class FrameTile {
     double t;
     double reflectance;
     vec3 glitter;                       // of the sun, where the mirrored ray meets nothing
-    std::size_t mirror;                 // in water_rays_
+    std::size_t mirror;                 // in sent_
     std::optional<std::size_t> bottom;  // likewise
   };
-  // What a ray of the camera, or one that water sent on, has met. There are many: they hold no surfaces.
+  // A surface that mirrors, met by a ray of the camera.
+  struct MirrorPoint {
+    std::size_t point;
+    float share;  // of the light of `mirror`, tinted; the rest is the surface's own
+    vec3 tint;
+    std::size_t mirror;  // in sent_
+  };
+  // What a ray of the camera, or one that was sent on, has met. There are many: they hold no surfaces.
   struct Seen {
     Ray ray;
     Hit hit;
@@ -55,17 +62,18 @@ class FrameTile {
     SceneSurface surface;
     LightRays asked;
   };
-  enum class Stage { look, water, light };
+  enum class Stage { look, sent, light };
 
   // Pictures of iterations: there are no colours.
   bool shows_steps() const;
   bool look(RayRound& round);
   void take_look(const RayRound& round);
-  bool ask_water(RayRound& round);
-  void take_water(const RayRound& round);
+  bool ask_sent(RayRound& round);
+  void take_sent(const RayRound& round);
   bool ask_light(RayRound& round);
   void take_light(const RayRound& round);
   void find_water();
+  void find_mirrors();
   // `deep`: whether there may be a bottom below it.
   void add_water(std::size_t point, const Water::Meeting& meeting, bool deep = true);
   // Distance within which a surface is in the plane of the water.
@@ -82,8 +90,10 @@ class FrameTile {
   const FrameView& view_;
   int aa_;
   std::vector<PicturePoint> points_;
-  std::vector<Seen> seen_, water_rays_;
+  std::vector<Seen> seen_, sent_;
   std::vector<WaterPoint> water_;
+  std::vector<MirrorPoint> mirrors_;
+  std::vector<const Hit*> sent_from_;                    // surfaces on which rays of sent_ begin; null: those of water
   std::vector<std::optional<Water::Meeting>> meetings_;  // by point; empty without water
   Stage stage_ = Stage::look;
   bool asked_ = false;

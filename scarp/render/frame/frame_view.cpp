@@ -73,6 +73,8 @@ FrameView::FrameView(const Scene& scene, const Camera& camera, const PictureSett
       step_march_(step_march_of(scene, camera, settings)) {
   for (const SceneObject& object : scene.objects())
     ramped_.push_back(is_ramped(*scene.fields()[object.field], settings));
+  mirrors_ = !settings.unlit && std::any_of(scene.fields().begin(), scene.fields().end(),
+                                            [](const SceneFieldPtr& field) { return field->mirrors(); });
   if (settings.water) {
     water_.emplace(*settings.water, scene);
     if (camera.eye().z <= water_->level()) {
@@ -94,7 +96,9 @@ vec3 FrameView::surface_colour(const Ray& ray, const Hit& hit, const SceneSurfac
 
 vec3 FrameView::lit(const Ray& ray, const Hit& hit, const SceneSurface& surface, const LightRays& asked,
                     std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const {
-  return surface_colour(ray, hit, surface) * lighting_.on(light_point(surface, hit), asked, rays, blocked);
+  vec3 light = lighting_.on(light_point(surface, hit), asked, rays, blocked);
+  if (!settings_.unlit) light += surface.light.emission;
+  return surface_colour(ray, hit, surface) * light;
 }
 
 vec3 FrameView::unlit(const Ray& ray, const Hit& hit, const SceneSurface& surface) const {

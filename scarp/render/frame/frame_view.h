@@ -48,6 +48,8 @@ class FrameView {
   const GroundPaint& paint() const { return paint_; }
   /// Null without water.
   const Water* water() const { return water_ ? &*water_ : nullptr; }
+  /// Whether a surface of the scene may mirror.
+  bool mirrors() const { return mirrors_; }
   /// Null without a stepped march; see step_march_of().
   const StepMarch* step_march() const { return step_march_ ? &*step_march_ : nullptr; }
   /// Height above which nothing is met, metres of world z; nothing if the scene has no such height.
@@ -59,7 +61,8 @@ class FrameView {
   static bool is_lit(const SceneSurface& surface) { return !surface.wall && surface.normal != dvec3(0.0); }
   /// The surface's colour without light.
   vec3 surface_colour(const Ray& ray, const Hit& hit, const SceneSurface& surface) const;
-  /// The surface's colour in its light. `rays` and `blocked` are those that `asked` refers to.
+  /// The surface's colour in its light and in that which it emits. `rays` and `blocked` are those that `asked` refers
+  /// to.
   vec3 lit(const Ray& ray, const Hit& hit, const SceneSurface& surface, const LightRays& asked,
            std::span<const Ray> rays, std::span<const std::uint8_t> blocked) const;
   /// The colour of what is not lit by rays: walls, the inside of voxels, the sky. `surface` is that of the hit.
@@ -89,6 +92,7 @@ class FrameView {
   std::optional<Water> water_;
   std::optional<StepMarch> step_march_;
   std::vector<bool> ramped_;  // by object: whether it is_ramped()
+  bool mirrors_ = false;
 };
 
 }  // namespace scarp

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <map>
 #include <set>
@@ -13,6 +14,8 @@
 #include "scarp/base/error.h"
 #include "scarp/scene/file/voxel_memory.h"
 #include "scarp/scene/lattice_place.h"
+#include "scarp/scene/ordered_pattern.h"
+#include "scarp/source/vox_material.h"
 
 namespace scarp {
 namespace {
@@ -38,10 +41,37 @@ struct Model {
   VoxelGrid grid{ivec3(1), kIndexBits};
 };
 
+// Which voxels of a file are solid.
+class Solid {
+ public:
+  explicit Solid(const VoxPalette& palette) {
+    for (std::size_t i = 1; i < ranks_.size(); ++i) ranks_[i] = ranks_of(palette[i - 1][3]);
+  }
+  bool operator()(const VoxVoxel& v) const { return ordered_rank(place_of(v)) < ranks_[v.index]; }
+
+ private:
+  // The nearest number of ranks out of four; none that is seen at all vanishes.
+  static int ranks_of(int alpha) { return alpha == 0 ? 4 : std::max(1, (4 * alpha + 127) / 255); }
+
+  std::array<int, 256> ranks_{};  // by palette index; 0: none
+};
+
+// Materials by palette index; empty if all are plain.
+std::vector<VoxelMaterial> materials_of(const VoxFile& file) {
+  std::vector<VoxelMaterial> materials;
+  for (const VoxMaterial& of : file.materials) {
+    const VoxelMaterial material{vox_emission(of), vox_mirror(of)};
+    if (material.plain() || of.id < 1 || of.id > 255) continue;
+    materials.resize(256);
+    materials[static_cast<std::size_t>(of.id)] = material;
+  }
+  return materials;
+}
+
 // The models that are used.
 class Models {
  public:
-  Models(const VoxFile& file, const std::vector<VoxInstance>& instances, VoxelMemory& memory) {
+  Models(const VoxFile& file, const std::vector<VoxInstance>& instances, VoxelMemory& memory) : solid_(file.colours()) {
     // Nothing is allocated before all are counted.
     for (const VoxInstance& instance : instances) {
       const auto [at, is_new] = models_.try_emplace(instance.model);
@@ -57,10 +87,10 @@ class Models {
   Model& at(int index) { return models_.at(index); }
 
  private:
-  static void measure(Model& model, const std::vector<VoxVoxel>& voxels) {
+  void measure(Model& model, const std::vector<VoxVoxel>& voxels) const {
     std::int64_t solid = 0;
     for (const VoxVoxel& v : voxels) {
-      if (v.index == 0) continue;
+      if (!solid_(v)) continue;
       ++solid;
       model.box = around(model.box, {place_of(v), place_of(v) + 1});
     }
@@ -68,7 +98,7 @@ class Models {
     const ivec3 size = model.box.high - model.box.low, bricks = (size + 3) / 4;
     std::vector<bool> pages(static_cast<std::size_t>(VoxelGrid::pages_of(size)));
     for (const VoxVoxel& v : voxels) {
-      if (v.index == 0) continue;
+      if (!solid_(v)) continue;
       const ivec3 brick = (place_of(v) - model.box.low) >> 2;
       pages[static_cast<std::size_t>((brick.x + bricks.x * (brick.y + bricks.y * brick.z)) / VoxelGrid::kPageBricks)] =
           true;
@@ -76,18 +106,19 @@ class Models {
     model.bytes = VoxelGrid::bytes_of(size, std::count(pages.begin(), pages.end(), true), solid, kIndexBits);
   }
   // Piece by piece, which limits the memory in use.
-  static void fill(Model& model, const std::vector<VoxVoxel>& voxels) {
+  void fill(Model& model, const std::vector<VoxVoxel>& voxels) const {
     model.grid = VoxelGrid(model.box.high - model.box.low, kIndexBits);
     std::vector<VoxelGrid::Placed> placed;
     placed.reserve(std::min(kVoxelsAtOnce, voxels.size()));
     for (const VoxVoxel& v : voxels) {
-      placed.push_back({place_of(v) - model.box.low, v.index > 0 ? VoxelGrid::Voxel(v.index) : VoxelGrid::Voxel()});
+      placed.push_back({place_of(v) - model.box.low, solid_(v) ? VoxelGrid::Voxel(v.index) : VoxelGrid::Voxel()});
       if (placed.size() < kVoxelsAtOnce && &v != &voxels.back()) continue;
       model.grid.set(placed);
       placed.clear();
     }
   }
 
+  Solid solid_;
   std::map<int, Model> models_;
 };
 
@@ -204,6 +235,8 @@ PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& optio
     palette[i] = {colour[0], colour[1], colour[2]};
   }
 
+  const std::vector<VoxelMaterial> materials = materials_of(file);
+
   std::int64_t listed = 0;
   for (const VoxModel& model : file.models) listed += static_cast<std::int64_t>(model.voxels.size());
   VoxelMemory memory(listed);
@@ -263,7 +296,8 @@ PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& optio
   for (std::size_t i = 0; i < instances.size(); ++i) in_scene.places.push_back(placed[i].scene_place(model_of[i]));
   for (VoxelGrid* grid : grids) {
     if (options.voxels.surface_colours) grid->drop_hidden_entries();
-    in_scene.models.push_back(std::make_shared<const VoxelModel>(std::move(*grid), march, palette));
+    in_scene.models.push_back(
+        std::make_shared<const VoxelModel>(std::move(*grid), march, palette, VoxelModel::Extent::bounds, materials));
   }
   return in_scene;
 }

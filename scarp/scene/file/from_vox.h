@@ -12,7 +12,10 @@ struct FromVoxOptions {
   VoxelFileOptions voxels{};
 };
 
-/// Entries are palette indices. Where instances overlap, one voxel remains at each position, the one that MagicaVoxel
+/// Entries are palette indices. Materials of the file: colours that emit (_emit, doubled by each step of _flux) and
+/// metals (_metal, the less the rougher) become VoxelMaterial; all others, glass included, are opaque. A colour with an
+/// alpha of 1 to 254 is solid in as large a share of its voxels, by ordered_pattern.h; 0 means opaque, as many programs
+/// leave it out. Where instances overlap, one voxel remains at each position, the one that MagicaVoxel
 /// shows: of the first instance in files from version 200 on, and of the last in those before. An instance that loses
 /// voxels gets a model of its own; all others share the models of the file. Of instances that cover one another exactly
 /// one remains. Grids are models cut to the smallest box around their voxels. Throws Error: no such march, too many

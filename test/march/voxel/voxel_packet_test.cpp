@@ -14,6 +14,7 @@
 #include "march/voxel/spiteful_voxels.h"
 #include "scarp/accel/brick_masks.h"
 #include "scarp/accel/empty_cubes.h"
+#include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/octant_cubes.h"
 #include "scarp/march/usual_ray.h"
 #include "scarp/march/voxel/voxel_table.h"
@@ -39,10 +40,11 @@ TEST_P(VoxelPacketOf, AnswersAsSingleRaysDo) {
     for (const VoxelRayKind& kind : spiteful_voxel_rays()) {
       for (int round = 0; round < kPackets; ++round) {
         const VoxelGrid grid = GetParam().make(random);
+        const EmptySpheres spheres(grid);
         const EmptyCubes cubes(grid);
         const OctantCubes octants(grid);
         const BrickMasks bricks(grid);
-        const VoxelTarget target{&grid, round % 2 ? grid.box() : grid.bounds(), nullptr, &cubes, &octants, &bricks};
+        const VoxelTarget target{&grid, round % 2 ? grid.box() : grid.bounds(), &spheres, &cubes, &octants, &bricks};
         if (target.box.empty()) continue;
         VoxelStand stand;
         if (round % 3 == 2) {

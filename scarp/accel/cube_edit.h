@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Updates empty cubes after an edit, row by row, where distances may change.
+//
+// A distance changes only if the box of the edit is at most as far away as the nearest solid voxel was. These voxels
+// are searched from the box outwards: a step towards it lowers both distances by one, so that one beyond another that
+// keeps its distance keeps its own. They begin anew at 255; one pass with rising and one with falling coordinates then
+// spread distances among them and from their neighbours. Source of the passes: A. Rosenfeld, J. Pfaltz, "Distance
+// functions on digital pictures", Pattern Recognition 1968. Cost: the rows of these voxels, whatever the grid contains.
+#pragma once
+
+#include "scarp/accel/voxel_bytes.h"
+#include "scarp/accel/voxel_nearness.h"
+
+namespace scarp {
+
+/// `solid` covers `changed`, a box in the grid, and has not been spread.
+void update_cubes(const VoxelNearness& solid, const VoxelBox& changed, VoxelBytes& distances);
+
+}  // namespace scarp

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// One part of a sector of a viewshed: see viewshed_sweep.h.
+#pragma once
+
+#include "scarp/analysis/block_maxima.h"
+#include "scarp/analysis/sight_edges.h"
+#include "scarp/analysis/viewshed_sweep.h"
+
+namespace scarp {
+
+/// Samples of a sector with low <= u < high, or <= high where high is the sector's end. Diagonals belong to the sectors
+/// to the east and west.
+struct SectorPart {
+  SweepDirection direction = SweepDirection::east;
+  double low = -1;  ///< a multiple of 1/16, as `high`
+  double high = 1;
+};
+
+/// What a sweep reads and writes. One of the maps is not null.
+struct SectorMaps {
+  Seen* codes = nullptr;                ///< nodes that are visible, if they are `hidden` before
+  double* least = nullptr;              ///< nodes that are not NaN before: their least visible height
+  const BlockMaxima* maxima = nullptr;  ///< of the field, for `codes`; null: no block is skipped
+};
+
+SweepStatistics sweep_sector(const Viewpoint& view, const SectorPart& part, const SectorMaps& maps);
+
+}  // namespace scarp

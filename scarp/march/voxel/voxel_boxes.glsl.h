@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Rays through the hierarchy over voxel objects, which is that of BoxTree, in single precision: boxes are padded by
+// more than what is rounded on the way. GLSL with float64, in which the ray is brought to the box around everything.
+//
+// Instead of all children that are still to be visited, the stack holds one word per level: a node, and which of its
+// children are left. The nearest of them is found again on the way back.
+#ifndef SCARP_MARCH_VOXEL_BOXES_GLSL_H
+#define SCARP_MARCH_VOXEL_BOXES_GLSL_H
+
+#include "scarp/march/voxel/voxel_batch.glsl.h"
+
+// The largest inverse of a direction, and the factor of BoxTree, doubled: quotients of devices are off by 2.5 units
+// instead of one half.
+const float kSteepest = 1152921504606846976.0;
+const float kRounding = 1.0 + 1.0 / 524288.0;
+
+// Numbers of rays in memory, which are read again instead of kept in registers.
+layout(buffer_reference, scalar, buffer_reference_align = 8) volatile buffer VoxelScratch { ScarpVoxelScratch of[]; };
+
+// In shared memory per invocation, so that marches have the registers: nodes with children yet to visit, 4 bits each,
+// one per level; and the ray relative to the middle of the hierarchy, in units of its longest component.
+shared uint waiting[batch_levels * gl_WorkGroupSize.x];
+shared vec3 box_origin[gl_WorkGroupSize.x];
+shared vec3 box_inwards[gl_WorkGroupSize.x];
+
+// The end of a ray in that unit.
+float box_end(uint i, double t) {
+  VoxelScratch scratch = VoxelScratch(batch.scratch);
+  return float((t - scratch.of[i].t_in) * double(scratch.of[i].longest)) * kRounding;
+}
+
+// Returns false for a ray that passes the box around everything.
+bool enter_boxes(uint i, VoxelObjects scene, out float end) {
+  VoxelRays rays = VoxelRays(batch.rays);
+  double t_in = rays.rays[i].t_min, t_out = rays.rays[i].t_max, longest = 0.0lf;
+  [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
+    double d = rays.rays[i].direction[axis], origin = rays.rays[i].origin[axis];
+    double low = scene.is.low[axis], high = scene.is.high[axis];
+    longest = max(longest, abs(d));
+    if (d == 0.0lf) {
+      if (origin < low || origin > high) return false;
+      continue;
+    }
+    double inverse = 1.0lf / d, a = (low - origin) * inverse, b = (high - origin) * inverse;
+    t_in = max(t_in, min(a, b));
+    t_out = min(t_out, max(a, b));
+  }
+  if (!(t_in <= t_out)) return false;
+  double per_longest = 1.0lf / longest;
+  [[dont_unroll]] for (int axis = 0; axis < 3; ++axis) {
+    double d = rays.rays[i].direction[axis];
+    float slope = float(d * per_longest);
+    box_origin[gl_LocalInvocationIndex][axis] = float(rays.rays[i].origin[axis] + t_in * d - scene.is.middle[axis]);
+    box_inwards[gl_LocalInvocationIndex][axis] =
+        abs(slope) * kSteepest < 1.0 ? (slope < 0.0 ? -kSteepest : kSteepest) : 1.0 / slope;
+  }
+  VoxelScratch scratch = VoxelScratch(batch.scratch);
+  scratch.of[i].t_in = t_in;
+  scratch.of[i].longest = float(longest);
+  end = box_end(i, t_out);
+  return true;
+}
+
+// No child is as large.
+const uint kScarpNoChild = 0xffffffffu;
+
+// Returns the child of a node to visit next: the nearest of those in `rest` that the ray meets before `end`, or
+// kScarpNoChild. Leaves the others in `rest`.
+uint nearest_child(VoxelNodes nodes, uint node, float end, inout uint rest) {
+  vec3 origin = box_origin[gl_LocalInvocationIndex], inwards = box_inwards[gl_LocalInvocationIndex];
+  uint found = kScarpNoChild, left = 0u, own = 0u;
+  float nearest = 0.0;
+  [[dont_unroll]] for (uint k = 0u; k < 4u; ++k) {
+    vec3 low = vec3(nodes.of[node].low_x[k], nodes.of[node].low_y[k], nodes.of[node].low_z[k]);
+    vec3 high = vec3(nodes.of[node].high_x[k], nodes.of[node].high_y[k], nodes.of[node].high_z[k]);
+    bvec3 down = lessThan(inwards, vec3(0.0));
+    vec3 into = (mix(low, high, down) - origin) * inwards;
+    vec3 out_of = (mix(high, low, down) - origin) * (inwards * kRounding);
+    float near = max(max(into.x, into.y), max(into.z, 0.0));
+    if (!(near <= min(min(out_of.x, out_of.y), min(out_of.z, end))) || (rest >> k & 1u) == 0u) continue;
+    left |= 1u << k;
+    // The last one of equally near children, like BoxTree: steps then equal the CPU's.
+    if (found != kScarpNoChild && near > nearest) continue;
+    found = nodes.of[node].child[k];
+    own = 1u << k;
+    nearest = near;
+  }
+  rest = left & ~own;
+  return found;
+}
+
+#endif

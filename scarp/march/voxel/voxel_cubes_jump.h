@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+// `voxel-cubes-jump`: the cube march as its author has it, the baseline for voxel-cubes.
+//
+//   +---+---+---+---+---+
+//   |   |   |   |   |###|     D = 2: the ray leaves the voxel and travels D - 1 along its own direction; where it is
+//   +---+---+---+---+---+     oblique, that ends up to sqrt(3) short of the border of the empty cube
+//   |   | v |-,-x |   |
+//   +---+---+---+---+---+
+//
+// Guarantee: exact, unlike there, because the end of the travel is found in integers, as that of voxel-spheres is.
+// Requires EmptyCubes. Source: C. Leak, "Raymarching voxel rendering". Cost: a step per jump, a quarter to a third more
+// than voxel-cubes.
+#pragma once
+
+#include "scarp/march/voxel/voxel_target.h"
+
+namespace scarp {
+
+VoxelHit march_voxel_cubes_jump(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats = nullptr);
+bool occluded_voxel_cubes_jump(const VoxelTarget& target, const QuantisedRay& ray);
+
+}  // namespace scarp

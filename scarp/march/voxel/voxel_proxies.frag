@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// A fragment of a voxel object's box.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#define SCARP_INT64
+
+#include "scarp/march/voxel/voxel_proxies_march.glsl.h"
+
+void main() { scarp_march_proxy(); }

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// Private to the station: rays as devices take them, and the hits that they give.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string_view>
+
+#include "scarp/base/ray.h"
+#include "scarp/march/usual_ray.h"
+#include "scarp/march/voxel/voxel_rays.glsl.h"
+
+namespace scarp {
+
+/// The name of a march by the number that shaders have for it.
+constexpr std::string_view voxel_march_name(std::uint32_t march) {
+  constexpr std::array<std::string_view, glsl::kScarpVoxelMarches> kNames = {
+      "voxel-planes", "voxel-spheres", "voxel-cubes", "voxel-octants", "voxel-bricks"};
+  return kNames[march];
+}
+
+// Drivers may take numbers for zero that are too small for normal doubles. Those of quantised rays are products of a
+// few of these, and of differences 2^-53 of them.
+inline bool is_number_of_devices(double x) { return x == 0 || (std::abs(x) > 0x1p-200 && std::abs(x) < 0x1p200); }
+// The end of a range is compared alone.
+inline bool is_end_of_devices(double t) { return t >= 0x1p200 || is_number_of_devices(t); }
+// Directions whose lengths are those of floats, too, for the hierarchy.
+inline bool is_length_of_devices(double longest) { return longest > 0x1p-60 && longest < 0x1p60; }
+inline bool are_numbers_of_devices(const dvec3& v) {
+  return is_number_of_devices(v.x) && is_number_of_devices(v.y) && is_number_of_devices(v.z);
+}
+
+struct PreparedVoxelRay {
+  glsl::ScarpVoxelRay ray{};
+  int exponent = 0;  ///< its t are 2^exponent times those of the caller
+  bool marches = false, left = false;
+};
+
+/// `from`: the hit beside whose voxel it begins, or null.
+inline PreparedVoxelRay prepared_voxel_ray(const Ray& given, const Hit* from) {
+  PreparedVoxelRay prepared;
+  Ray ray = given;
+  const double longest = longest_of(ray.direction);
+  if (!is_direction(longest)) return prepared;
+  // By a power of two, which changes no answer.
+  if (!is_length_of_devices(longest)) {
+    prepared.exponent = std::ilogb(longest);
+    ray = scaled_down(ray, prepared.exponent);
+  }
+  prepared.marches = are_numbers_of_devices(ray.origin) && are_numbers_of_devices(ray.direction) &&
+                     is_number_of_devices(ray.t_min) && is_end_of_devices(ray.t_max);
+  prepared.left = !prepared.marches;
+  prepared.ray = {ray.origin, ray.direction, ray.t_min, ray.t_max, glsl::kScarpNoPart, {}};
+  if (from) {
+    prepared.ray.part = from->part;
+    prepared.ray.start = from->voxel + normal_of(from->face);
+  }
+  return prepared;
+}
+
+/// `t`: that of the caller.
+inline Hit hit_of(const glsl::ScarpVoxelHit& found, double t) {
+  Hit hit;
+  if (found.status == glsl::kScarpVoxelHit) {
+    hit.status = HitStatus::hit;
+    hit.face = static_cast<VoxelFace>(found.face);
+    hit.t = t;
+    hit.voxel = found.voxel;
+    hit.part = found.part;
+  }
+  return hit;
+}
+
+}  // namespace scarp

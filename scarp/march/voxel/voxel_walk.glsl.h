@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// The path of a quantised ray from voxel to voxel in shaders: voxel_walk.h with the same integers, which gives the same
+// voxels. Text of C++ and of GLSL.
+//
+// Instead of comparing voxels with the box, it counts how many planes of each axis are left until the ray leaves it.
+#ifndef SCARP_MARCH_VOXEL_WALK_GLSL_H
+#define SCARP_MARCH_VOXEL_WALK_GLSL_H
+
+#include "scarp/march/voxel/voxel_wide.glsl.h"
+
+SCARP_GLSL_BEGIN
+
+/// A quantised ray in a box. `back` has a bit per axis that it travels in the negative direction.
+struct ScarpVoxelWalk {
+  ivec3 voxel;
+  ivec3 left;  ///< planes to cross until it leaves the box, the last one included; 0 or less outside
+  uvec3 next;  ///< distance to the next plane in 2^-20 voxel; any positive number if speed is 0
+  uvec3 speed;
+  uint back;
+  int axis;  ///< crossed last; -1: none
+};
+
+SCARP_FN int scarp_voxel_step(uint back, int axis) { return (back >> uint(axis) & 1u) != 0u ? -1 : 1; }
+
+/// Returns the axis of the first of three planes; of those at the same place the lowest one.
+SCARP_FN int scarp_first_plane(uvec3 distance, uvec3 speed) {
+  bool y_first = scarp_plane_before(distance.y, speed.y, distance.x, speed.x);
+  uint d = y_first ? distance.y : distance.x, v = y_first ? speed.y : speed.x;
+  return scarp_plane_before(distance.z, speed.z, d, v) ? 2 : y_first ? 1 : 0;
+}
+
+SCARP_FN void scarp_voxel_advance(SCARP_INOUT(ScarpVoxelWalk) walk, int axis, uint planes) {
+  walk.next[axis] += planes << 20;
+  walk.voxel[axis] += scarp_voxel_step(walk.back, axis) * int(planes);
+  walk.left[axis] -= int(planes);
+}
+
+/// Crosses the next plane. Returns false if that leaves the box.
+SCARP_FN bool scarp_voxel_cross(SCARP_INOUT(ScarpVoxelWalk) walk) {
+  walk.axis = scarp_first_plane(walk.next, walk.speed);
+  scarp_voxel_advance(walk, walk.axis, 1u);
+  return walk.left[walk.axis] > 0;
+}
+
+/// Crosses planes until one axis has crossed as many as `part` has for it: those out of a box around the voxel. Returns
+/// false if that leaves the box of the walk; `part` may extend beyond it.
+SCARP_FN bool scarp_voxel_leave(SCARP_INOUT(ScarpVoxelWalk) walk, ivec3 part) {
+  uvec3 out_at;
+  out_at.x = walk.next.x + (uint(min(part.x, walk.left.x) - 1) << 20);
+  out_at.y = walk.next.y + (uint(min(part.y, walk.left.y) - 1) << 20);
+  out_at.z = walk.next.z + (uint(min(part.z, walk.left.z) - 1) << 20);
+  int axis = scarp_first_plane(out_at, walk.speed);
+  uint distance = out_at[axis], speed = walk.speed[axis];
+  float slowness = 1.0f / float(speed);
+  for (int i = 0; i < 3; ++i) {
+    uint planes = scarp_planes_until(distance, speed, slowness, walk.next[i], walk.speed[i], i > axis ? 1u : 0u);
+    scarp_voxel_advance(walk, i, planes);
+  }
+  walk.axis = axis;
+  return walk.left[axis] > 0;
+}
+
+/// Travel along the ray's longest axis, in 2^-20 voxel, per voxel of distance: no more than it is, by 16 units of
+/// single precision, of which its computation takes less than half.
+SCARP_FN uint scarp_travel_per_voxel(uvec3 speed) {
+  float x = float(speed.x) * 3.7252902984619140625e-9f, y = float(speed.y) * 3.7252902984619140625e-9f,
+        z = float(speed.z) * 3.7252902984619140625e-9f;
+  return uint((1048576.0f - 1.0f) / sqrt(x * x + y * y + z * z));
+}
+
+/// Crosses the next plane, then all planes within `voxels` further travel. Returns false if that leaves the box.
+SCARP_FN bool scarp_voxel_travel(SCARP_INOUT(ScarpVoxelWalk) walk, uint voxels, uint travel_per_voxel) {
+  int axis = scarp_first_plane(walk.next, walk.speed);
+  uint distance = walk.next[axis], speed = walk.speed[axis];
+  walk.axis = axis;
+  scarp_voxel_advance(walk, axis, 1u);
+  bool inside = walk.left[axis] > 0;
+  if (inside && voxels > 0u) {
+    uint until = scarp_travelled(distance, speed, 1.0f / float(speed)) + voxels * travel_per_voxel;
+    for (int i = 0; i < 3; ++i) {
+      // None at speed 0.
+      scarp_voxel_advance(walk, i, scarp_planes_before(until, walk.next[i], walk.speed[i]));
+      inside = inside && walk.left[i] > 0;
+    }
+  }
+  return inside;
+}
+
+/// Distance of the last plane crossed along walk.axis, which must not be -1.
+SCARP_FN uint scarp_voxel_distance(ScarpVoxelWalk walk) { return walk.next[walk.axis] - kScarpVoxelPlaces; }
+
+/// The time at the current voxel, given that at the entry into the box.
+SCARP_FN double scarp_voxel_time(ScarpVoxelWalk walk, double t_entered, double t_per_s) {
+  SCARP_PRECISE double t = t_entered;
+  if (walk.axis >= 0) {
+    double ratio = scarp_exact_ratio(scarp_voxel_distance(walk), walk.speed[walk.axis]);
+    SCARP_PRECISE double later = ratio * t_per_s;
+    t = t_entered + later;
+  }
+  return t;
+}
+/// The face by which the current voxel was entered, given that by which the box was.
+SCARP_FN uint scarp_voxel_face(ScarpVoxelWalk walk, uint entered) {
+  return walk.axis < 0 ? entered : 2u * uint(walk.axis) + (walk.back >> uint(walk.axis) & 1u);
+}
+
+SCARP_GLSL_END
+
+#endif
