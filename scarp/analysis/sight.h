@@ -51,7 +51,7 @@ struct Node {
   friend bool operator==(const Node&, const Node&) = default;
 };
 
-/// What a height counts from.
+/// Reference of a height.
 enum class HeightDatum : std::uint8_t { ground, sea };
 
 /// Curvature of the Earth and refraction of light.
@@ -117,7 +117,7 @@ class SightGround {
   const HeightField* field_;
   double col_ = 0, row_ = 0;
   double per_square_metre_ = 0;
-  // Of the field: lines of sight read too few samples for HeightField::visit() to pay off.
+  // Copies from the field: lines of sight read too few samples for HeightField::visit() to pay off.
   const void* samples_ = nullptr;
   std::ptrdiff_t row_stride_ = 0;
   SampleType type_ = SampleType::float32;

@@ -15,7 +15,7 @@
 
 namespace scarp {
 
-/// What an observer has of a node.
+/// Visibility of a node.
 enum class Seen : std::uint8_t {
   hidden,        ///< ground blocks the line of sight
   visible,       ///< nothing blocks it; also the observer's own node

@@ -6,7 +6,7 @@ cmake_minimum_required(VERSION 3.25)
 
 set(documents README.md CHANGELOG.md bench/README.md doc/user/*.md doc/library/*.md doc/dev/*.md)
 # folders whose *.h are checked, subfolders included, for example scarp/vk
-set(header_folders scarp/accel scarp/base scarp/field scarp/march/shape scarp/march/voxel scarp/output scarp/source scarp/vk)
+set(header_folders scarp/accel scarp/analysis scarp/base scarp/field scarp/march/shape scarp/march/voxel scarp/output scarp/source scarp/vk)
 # single headers, besides those of the folders and the common ones (doc/api/common_headers.txt)
 set(headers scarp/march/height/queries.h scarp/march/height/queries_vk.h scarp/scene/placement.h)
 set(help_calls)      # calls of the program whose output is checked, for example "render --help"
