@@ -46,6 +46,7 @@ struct RingLine {
 /// `Projection` derives from it and has
 ///   height(sample value, node)      what heights of the sweep are, in metres
 ///   begin_ring(ring)                chooses the ring for all that follows
+///   is_beyond(ring)                 whether no node from this ring on matters
 ///   sides_of(ring)                  samples of the part, and one beyond to each side
 ///   u(side), s(height), s_previous(height), s_error(s)
 ///   height_of_slack(slack)
@@ -68,7 +69,7 @@ class RingSweep {
  public:
   SweepStatistics run() {
     int ring = frame_.ring(1);
-    while (ring >= 0 && ring < frame_.rings()) {
+    while (ring >= 0 && ring < frame_.rings() && !self().is_beyond(ring)) {
       // To the end of the block of kStrip rings.
       const int block = ring / kStrip * kStrip;
       const int last = frame_.sign() > 0 ? std::min(block + kStrip, frame_.rings()) - 1 : block;

@@ -49,6 +49,7 @@ class ShadowStrip : public RingSweep<ShadowStrip<T>, T> {
     u_of_ring_ = x_ * across_;
     s_of_ring_ = x_ * rise_;
   }
+  bool is_beyond(int) const { return false; }
   SideRange sides_of(int ring) const {
     const double start = frame_.x(ring) * across_;
     const double low = std::ceil((low_ - start) / kUnit) - 1, high = std::floor((high_ - start) / kUnit) + 1;

@@ -39,6 +39,12 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
     x_ = frame_.x(ring);
     x_previous_ = x_ - 1;
   }
+  // By the distance of the node straight ahead: rounding keeps the order of distances.
+  bool is_beyond(int ring) const {
+    const Node ahead = frame_.node(ring, frame_.side(0));
+    const double limit = view_.settings().max_distance;
+    return view_.ground().square_distance(ahead.col, ahead.row) > limit * limit;
+  }
   SideRange sides_of(int ring) const {
     const int x = frame_.x(ring);
     const double low = std::ceil(low_ * x) - 1, high = std::floor(high_ * x) + 1;

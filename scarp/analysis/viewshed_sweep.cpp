@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <mutex>
+#include <optional>
 
 #include "scarp/analysis/viewshed_sector.h"
 #include "scarp/base/parallel.h"
@@ -62,7 +63,8 @@ void for_each_node(const Viewpoint& view, const Progress& progress, const Body& 
 
 }  // namespace
 
-SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progress& progress) {
+SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progress& progress,
+                               const BlockMaxima* maxima) {
   const HeightField& field = view.ground().field();
   if (!view.has_limits() && field.nodata_count() == 0) {
     std::fill(codes, codes + static_cast<std::ptrdiff_t>(field.cols()) * field.rows(), Seen::hidden);
@@ -73,10 +75,11 @@ SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progres
                                                                      : Seen::out_of_range;
     });
   }
-  const BlockMaxima maxima(field);
+  std::optional<BlockMaxima> own_maxima;
+  if (maxima == nullptr) maxima = &own_maxima.emplace(field);
   Seen& own = codes[static_cast<std::ptrdiff_t>(view.observer().row) * field.cols() + view.observer().col];
   if (own == Seen::hidden) own = Seen::visible;
-  return sweep(view, {codes, nullptr, &maxima}, progress);
+  return sweep(view, {codes, nullptr, maxima}, progress);
 }
 
 SweepStatistics sweep_least_visible(const Viewpoint& view, double* least, const Progress& progress) {

@@ -19,6 +19,7 @@
 
 #include <cstdint>
 
+#include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/viewshed.h"
 #include "scarp/base/progress.h"
 
@@ -39,8 +40,10 @@ struct SweepStatistics {
   }
 };
 
-/// Writes the code of every node, rows from north to south.
-SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progress& progress = {});
+/// Writes the code of every node, rows from north to south. `maxima`: of the view's field, for callers with many
+/// observers; null: made here.
+SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progress& progress = {},
+                               const BlockMaxima* maxima = nullptr);
 
 /// Writes the least visible height of every node (least_visible() in viewshed.h).
 SweepStatistics sweep_least_visible(const Viewpoint& view, double* least, const Progress& progress = {});
