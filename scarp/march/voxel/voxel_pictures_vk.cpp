@@ -35,8 +35,9 @@ constexpr std::uint32_t kHitsWords[] = {
 #include "scarp/march/voxel/voxel_proxies.comp.inc"
 };
 
-constexpr std::uint32_t kThreads = 64;  // of a workgroup
-constexpr std::uint32_t kCorners = 36;  // vertices of a box
+constexpr std::uint32_t kThreads = 64;        // of a workgroup
+constexpr std::uint32_t kRowOfGroups = 1024;  // a dispatch has at most 65,535 along one side
+constexpr std::uint32_t kCorners = 36;        // vertices of a box
 constexpr std::int64_t kRaysPerPiece = 4096;
 constexpr double kRoomOfVoxel = 0x1p-14;  // as in voxel_proxies.vert
 
@@ -149,9 +150,8 @@ struct DeviceVoxelPictures::Impl {
     commands.copy(memory->target, 0, memory->first);
     commands.copy(memory->target, 1, memory->second);
     commands.barrier();
-    // Workgroups of a picture that is larger than this would be more than a dispatch has.
-    const std::uint32_t groups = (push.count + kThreads - 1) / kThreads;
-    commands.dispatch(hits(std::bit_ceil(objects.levels())), push, {groups, 1, 1});
+    const std::uint32_t groups = (push.count + kThreads - 1) / kThreads, row = std::min(groups, kRowOfGroups);
+    commands.dispatch(hits(std::bit_ceil(objects.levels())), push, {row, (groups + row - 1) / row, 1});
     commands.run();
     found.resize(rays.size());
     download(memory->hits, 0, found.data(), memory->hits.bytes());
