@@ -107,8 +107,7 @@ struct DeviceVoxelPictures::Impl {
       : device(device_),
         queries(std::move(queries_)),
         words(words_),
-        view(device_, sizeof(glsl::ScarpVoxelView), "view of a picture"),
-        commands(device_) {}
+        view(device_, sizeof(glsl::ScarpVoxelView), "view of a picture") {}
 
   // Specialised on first use.
   const RasterPipeline& boxes(std::uint32_t march, bool entries) {
@@ -162,10 +161,10 @@ struct DeviceVoxelPictures::Impl {
   std::shared_ptr<DeviceVoxelQueries> queries;
   bool words;
   DeviceBuffer view;
-  Commands commands;
   std::map<std::vector<std::uint32_t>, RasterPipeline> box_pipelines;  // by specialisation
   std::map<std::uint32_t, ComputePipeline> hit_pipelines;              // by levels
   std::optional<PictureMemory> memory;
+  Commands commands{device};  // after what its runs use: it waits for them
   std::vector<glsl::ScarpVoxelRay> rays;
   std::vector<glsl::ScarpVoxelHit> found;
   std::vector<PassTime> passes;
