@@ -48,7 +48,6 @@ struct VoxelTriangles::Impl {
                  {.push_bytes = sizeof(glsl::VoxelTrianglesPush), .colours = 1, .of = RasterColours::words}),
         faces(device_, 4 * words.size(), "faces"),
         objects(device_, sizeof(glsl::vec3) * places.size(), "objects"),
-        commands(device_),
         solid(grid.solid_count() > 0) {
     upload(faces, 0, words.data(), faces.bytes());
   }
@@ -58,10 +57,10 @@ struct VoxelTriangles::Impl {
   std::vector<VoxelPlace> places;
   RasterPipeline pipeline;
   DeviceBuffer faces, objects;
-  Commands commands;
   bool solid;
   std::optional<RasterTarget> target;
   std::optional<DeviceBuffer> pixels;
+  Commands commands{device};  // after what its runs use: it waits for them
 };
 
 VoxelTriangles::VoxelTriangles(const Device& device, const VoxelGrid& grid, std::span<const VoxelPlace> places)

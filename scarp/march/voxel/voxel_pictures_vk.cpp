@@ -35,8 +35,9 @@ constexpr std::uint32_t kHitsWords[] = {
 #include "scarp/march/voxel/voxel_proxies.comp.inc"
 };
 
-constexpr std::uint32_t kThreads = 64;  // of a workgroup
-constexpr std::uint32_t kCorners = 36;  // vertices of a box
+constexpr std::uint32_t kThreads = 64;        // of a workgroup
+constexpr std::uint32_t kRowOfGroups = 1024;  // a dispatch has at most 65,535 along one side
+constexpr std::uint32_t kCorners = 36;        // vertices of a box
 constexpr std::int64_t kRaysPerPiece = 4096;
 constexpr double kRoomOfVoxel = 0x1p-14;  // as in voxel_proxies.vert
 
@@ -106,8 +107,7 @@ struct DeviceVoxelPictures::Impl {
       : device(device_),
         queries(std::move(queries_)),
         words(words_),
-        view(device_, sizeof(glsl::ScarpVoxelView), "view of a picture"),
-        commands(device_) {}
+        view(device_, sizeof(glsl::ScarpVoxelView), "view of a picture") {}
 
   // Specialised on first use.
   const RasterPipeline& boxes(std::uint32_t march, bool entries) {
@@ -149,9 +149,8 @@ struct DeviceVoxelPictures::Impl {
     commands.copy(memory->target, 0, memory->first);
     commands.copy(memory->target, 1, memory->second);
     commands.barrier();
-    // Workgroups of a picture that is larger than this would be more than a dispatch has.
-    const std::uint32_t groups = (push.count + kThreads - 1) / kThreads;
-    commands.dispatch(hits(std::bit_ceil(objects.levels())), push, {groups, 1, 1});
+    const std::uint32_t groups = (push.count + kThreads - 1) / kThreads, row = std::min(groups, kRowOfGroups);
+    commands.dispatch(hits(std::bit_ceil(objects.levels())), push, {row, (groups + row - 1) / row, 1});
     commands.run();
     found.resize(rays.size());
     download(memory->hits, 0, found.data(), memory->hits.bytes());
@@ -162,10 +161,10 @@ struct DeviceVoxelPictures::Impl {
   std::shared_ptr<DeviceVoxelQueries> queries;
   bool words;
   DeviceBuffer view;
-  Commands commands;
   std::map<std::vector<std::uint32_t>, RasterPipeline> box_pipelines;  // by specialisation
   std::map<std::uint32_t, ComputePipeline> hit_pipelines;              // by levels
   std::optional<PictureMemory> memory;
+  Commands commands{device};  // after what its runs use: it waits for them
   std::vector<glsl::ScarpVoxelRay> rays;
   std::vector<glsl::ScarpVoxelHit> found;
   std::vector<PassTime> passes;

@@ -62,7 +62,8 @@ bool tied(VoxelObjects scene, uint pixel, uint object, double t) {
 }
 
 void main() {
-  uint pixel = gl_GlobalInvocationID.x;
+  uint group = gl_WorkGroupID.x + gl_NumWorkGroups.x * gl_WorkGroupID.y;
+  uint pixel = group * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
   if (pixel >= push.count) return;
   VoxelHits hits = VoxelHits(push.hits);
   uvec4 first = VoxelPixels(push.first).of[pixel];
