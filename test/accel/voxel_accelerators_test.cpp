@@ -236,7 +236,7 @@ TEST(VoxelAccelerators, OfLargeGridsHaveLevels) {
     EXPECT_GE(bricks.levels().size(), 3u);
     for (int edit = 0; edit < 12; ++edit) {
       const ivec3 at(uniform(random, 0, size.x), uniform(random, 0, size.y), uniform(random, 0, size.z));
-      const VoxelBox box{at, at + ivec3(uniform(random, 1, 90))};
+      const VoxelBox box{at, at + whole(random, 1, 90)};
       bricks.update(grid, edit % 3 == 2 ? grid.clear(box) : grid.fill(box, 1));
       ASSERT_TRUE(bricks == BrickMasks(grid));
       int side = 4;  // voxels of the cells below
