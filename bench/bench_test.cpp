@@ -272,6 +272,20 @@ TEST(ScarpBench, VoxelEditsWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, VoxelWorldsWritesTheDocumentedFieldsAndMarchesAgree) {
+  const json all = output_of("voxel-worlds --side 600 --width 16 --repeats 1 --planes");
+  expect_head(all);
+  EXPECT_GE(all["rows"].size(), 4u);
+  for (const json& row : all["rows"]) {
+    expect_fields(row, {"side", "solid", "engine", "mode", "mrays_per_cpu_s", "hit_share", "other_ppm", "mib", "grid_mib",
+                        "build_s", "build_peak_mib"});
+    if (row["engine"] != "nanovdb-hdda") {
+      EXPECT_EQ(row["other_ppm"], 0);
+      EXPECT_GT(row["hit_share"], 0.5);
+    }
+  }
+}
+
 TEST(ScarpBench, ScenesWritesTheDocumentedFields) {
   const json all = output_of("scenes --objects 100,1000 --rays 1000 --repeats 1");
   expect_head(all);

@@ -182,6 +182,16 @@ struct VoxelEditsOptions {
 };
 void run_voxel_edits(const VoxelEditsOptions& options, const ReportOptions& report);
 
+/// `voxel-worlds`: procedural ground as voxels, thousands a side.
+struct VoxelWorldsOptions {
+  int side = 4096;  ///< voxels
+  int width = 256;  ///< pixels per side of the pictures, from four corners, a multiple of 8
+  int repeats = 3;
+  bool planes = false;  ///< also voxel-planes, which visits every voxel
+  bool nanovdb = true;  ///< also NanoVDB, where installed
+};
+void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& report);
+
 /// `voxel-models`: all voxel marches over the models of files.
 struct VoxelModelsOptions {
   std::vector<std::string> files;  ///< .vox and .binvox

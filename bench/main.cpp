@@ -409,6 +409,21 @@ int run(int argc, char** argv) {
       ->capture_default_str();
   add_json_option(*voxel_edits_command, report);
 
+  VoxelWorldsOptions voxel_worlds;
+  CLI::App* voxel_worlds_command = app.add_subcommand("voxel-worlds", "ground of voxels, thousands a side");
+  voxel_worlds_command->add_option("--side", voxel_worlds.side, "voxels per side")
+      ->check(CLI::Range(33, 16384))
+      ->capture_default_str();
+  voxel_worlds_command->add_option("--width", voxel_worlds.width, "pixels per side of the pictures, a multiple of 8")
+      ->check(CLI::Range(8, 2048))
+      ->capture_default_str();
+  voxel_worlds_command->add_option("--repeats", voxel_worlds.repeats, "counted passes")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  voxel_worlds_command->add_flag("--planes", voxel_worlds.planes, "also voxel-planes, which visits every voxel");
+  voxel_worlds_command->add_flag("!--no-nanovdb", voxel_worlds.nanovdb, "without NanoVDB");
+  add_json_option(*voxel_worlds_command, report);
+
   VoxelModelsOptions voxel_models;
   CLI::App* voxel_models_command =
       app.add_subcommand("voxel-models", "all voxel marches over the models of files: building, memory, speed");
@@ -605,6 +620,7 @@ int run(int argc, char** argv) {
   if (*simt_command) run_simt(simt, report);
   if (*leaks_command) run_leaks(leaks, report);
   if (*voxel_edits_command) run_voxel_edits(voxel_edits, report);
+  if (*voxel_worlds_command) run_voxel_worlds(voxel_worlds, report);
   if (*voxel_models_command) run_voxel_models(voxel_models, report);
   if (*voxel_leaks_command) run_voxel_leaks(voxel_leaks, report);
   if (*pixel_match_command) run_pixel_match(pixel_match, report);

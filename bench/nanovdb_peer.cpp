@@ -18,12 +18,17 @@ struct NanovdbPeer::Tree {
   nanovdb::GridHandle<> handle;
 };
 
-NanovdbPeer::NanovdbPeer(const VoxelGrid& grid) : tree_(std::make_unique<Tree>()) {
+NanovdbPeer::NanovdbPeer(const VoxelGrid& grid)
+    : NanovdbPeer([&](const Set& set) {
+        for_each_voxel(grid.bounds(), [&](const ivec3& v) {
+          if (grid.solid(v)) set(v, static_cast<float>(grid.entry(v)));
+        });
+      }) {}
+
+NanovdbPeer::NanovdbPeer(const std::function<void(const Set&)>& fill) : tree_(std::make_unique<Tree>()) {
   nanovdb::GridBuilder<float> builder(0.0f);
   auto to = builder.getAccessor();
-  for_each_voxel(grid.bounds(), [&](const ivec3& v) {
-    if (grid.solid(v)) to.setValue(nanovdb::Coord(v.x, v.y, v.z), static_cast<float>(grid.entry(v)));
-  });
+  fill([&](const ivec3& v, float value) { to.setValue(nanovdb::Coord(v.x, v.y, v.z), value); });
   tree_->handle = builder.getHandle<>();
 }
 NanovdbPeer::NanovdbPeer(NanovdbPeer&&) noexcept = default;

@@ -3,6 +3,7 @@
 // from active node to active voxel, one ray at a time, in float as its documentation has it.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -14,6 +15,9 @@ namespace scarp::bench {
 class NanovdbPeer {
  public:
   explicit NanovdbPeer(const VoxelGrid& grid);
+  /// Sets a solid voxel. `fill` calls it for each.
+  using Set = std::function<void(const ivec3& voxel, float value)>;
+  explicit NanovdbPeer(const std::function<void(const Set&)>& fill);
   NanovdbPeer(NanovdbPeer&&) noexcept;
   ~NanovdbPeer();
 

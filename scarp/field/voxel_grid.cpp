@@ -56,8 +56,7 @@ struct VoxelGrid::PageVoxels {
   std::vector<std::uint32_t> entries = std::vector<std::uint32_t>(kPageBricks * kVoxelsPerBrick);
 };
 
-VoxelGrid::VoxelGrid(const ivec3& size, int entry_bits)
-    : size_(size), bricks_((size + 3) / 4), entry_bits_(entry_bits) {
+void VoxelGrid::require_size(const ivec3& size, int entry_bits) {
   if (!valid_side(size.x) || !valid_side(size.y) || !valid_side(size.z)) {
     throw Error(
         fmt::format("voxel grid: {} x {} x {} voxels (each side must be 1 to {})", size.x, size.y, size.z, kMaxSide));
@@ -65,6 +64,11 @@ VoxelGrid::VoxelGrid(const ivec3& size, int entry_bits)
   if (entry_bits < 1 || entry_bits > kMaxEntryBits) {
     throw Error(fmt::format("voxel grid: {} bits per entry (must be 1 to {})", entry_bits, kMaxEntryBits));
   }
+}
+
+VoxelGrid::VoxelGrid(const ivec3& size, int entry_bits)
+    : size_(size), bricks_((size + 3) / 4), entry_bits_(entry_bits) {
+  require_size(size, entry_bits);
   first_mask_ = SparseTable<std::uint32_t>(static_cast<std::size_t>(pages_of(size)));
   empty_pages_ = page_count();
   masks_.resize(kPageBricks);

@@ -40,6 +40,9 @@ class VoxelGrid {
   /// An empty grid. Each side 1 to kMaxSide, entry_bits 1 to kMaxEntryBits; throws Error otherwise.
   explicit VoxelGrid(const ivec3& size, int entry_bits = 8);
 
+  /// Throws Error as the constructor does.
+  static void require_size(const ivec3& size, int entry_bits);
+
   /// Fills a brick: sets the entries of its solid voxels, by bit_of(), and returns its mask.
   using FillBrick = std::function<std::uint64_t(const ivec3& brick, std::span<std::uint32_t, 64> entries)>;
   /// Builds a grid brick by brick, on all threads; faster than edit(). `fill` is called once per brick, concurrently;

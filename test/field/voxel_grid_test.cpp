@@ -9,6 +9,7 @@
 
 #include "march/voxel/spiteful_voxels.h"
 #include "scarp/base/error.h"
+#include "scarp/field/ground_voxels.h"
 #include "scarp/field/rotate_voxels.h"
 
 namespace scarp::test {
@@ -253,6 +254,31 @@ TEST(VoxelGrid, BuildsWorldsPageByPage) {
     EXPECT_EQ(dropped.solid_count(), grid.solid_count());
     EXPECT_EQ(dropped.entry({1, 1, 18}), 9u);
   }
+}
+
+TEST(VoxelGrid, GroundIsSolidBelowItsTops) {
+  for (const ivec3& size : {ivec3(300, 21, 60), ivec3(256, 32, 64), ivec3(5, 7, 40)}) {
+    std::vector<std::int32_t> tops;
+    for (int y = 0; y < size.y; ++y) {
+      for (int x = 0; x < size.x; ++x) tops.push_back((x * x / 90 + 3 * y) % (size.z + 1));
+    }
+    const auto top = [&](int x, int y) {
+      return x < 0 || y < 0 || x >= size.x || y >= size.y ? 0 : tops[static_cast<std::size_t>(x + size.x * y)];
+    };
+    const VoxelGrid grid = ground_voxels(size, tops, 8, [](const ivec3& v) { return 1 + (v.x + v.y + v.z) % 250; });
+    for_each_voxel(grid.box(), [&](const ivec3& v) {
+      ASSERT_EQ(grid.solid(v), v.z < top(v.x, v.y));
+      if (!grid.solid(v)) return;
+      const bool seen = v.z + 1 == top(v.x, v.y) || v.z >= top(v.x - 1, v.y) || v.z >= top(v.x + 1, v.y) ||
+                        v.z >= top(v.x, v.y - 1) || v.z >= top(v.x, v.y + 1);
+      ASSERT_EQ(grid.entry(v), seen ? static_cast<std::uint32_t>(1 + (v.x + v.y + v.z) % 250) : 0u);
+    });
+  }
+  const std::vector<std::int32_t> tops = {1, 2, 3, 9};
+  const auto none = [](const ivec3&) { return 0u; };
+  EXPECT_THROW(ground_voxels({2, 2, 8}, tops, 8, none), Error);
+  EXPECT_THROW(ground_voxels({2, 3, 9}, tops, 8, none), Error);
+  EXPECT_THROW(ground_voxels({65536, 32768, 32768}, tops, 8, none), Error);
 }
 
 // Memory follows the solid voxels, not the box.

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Ground made of voxels, column by column: large grids without a look at each voxel.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+
+#include "scarp/field/voxel_grid.h"
+
+namespace scarp {
+
+/// Returns a grid in which column (x, y) is solid below tops[x + size.x * y], in voxels: 0 for none, at most size.z.
+/// Voxels that can be seen from above or from the side have entries, the others 0: `entry` is called for the former,
+/// concurrently. Throws Error as VoxelGrid does, for another number of columns, or for a top out of range.
+VoxelGrid ground_voxels(const ivec3& size, std::span<const std::int32_t> tops, int entry_bits,
+                        const std::function<std::uint32_t(const ivec3&)>& entry);
+
+}  // namespace scarp
