@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench voxel-worlds`: procedural ground as voxels, thousands a side: how long it takes to build, memory, and the
-// rays of pictures in it, one at a time and in batches; beside NanoVDB over the voxels that can be seen.
+// `scarp-bench voxel-worlds`: procedural ground as voxels, thousands a side: how long it takes to build, memory, and
+// the rays of pictures in it, one at a time and in batches; beside NanoVDB over the voxels that can be seen.
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -51,7 +51,8 @@ std::vector<Ray> world_rays(int side, double highest, int width) {
     for (int top = 0; top < width; top += kTile) {
       for (int left = 0; left < width; left += kTile) {
         for (int pixel = 0; pixel < kTile * kTile; ++pixel) {
-          const double x = 2 * (left + pixel % kTile + 0.5) / width - 1, y = 1 - 2 * (top + pixel / kTile + 0.5) / width;
+          const double x = 2 * (left + pixel % kTile + 0.5) / width - 1,
+                       y = 1 - 2 * (top + pixel / kTile + 0.5) / width;
           Ray ray;
           ray.origin = dvec3(glm::vec3(eye));
           ray.direction = dvec3(glm::vec3(normalize(forward + 0.5 * x * right + 0.35 * y * up)));
@@ -72,7 +73,9 @@ double peak_mib() {
 }  // namespace
 
 void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& report) {
-  const BenchField ground = load_field({.size = std::max(options.side, 33)});
+  FieldOptions ground_options;
+  ground_options.size = std::max(options.side, 33);
+  const BenchField ground = load_field(ground_options);
   const std::vector<std::int32_t> tops = tops_of(ground.field, options.side);
   const double highest = *std::max_element(tops.begin(), tops.end());
 
@@ -104,7 +107,8 @@ void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& re
     const auto top = [&](int x, int y) {
       return x < 0 || y < 0 || x >= options.side || y >= options.side
                  ? 0
-                 : tops[static_cast<std::size_t>(x) + static_cast<std::size_t>(options.side) * static_cast<std::size_t>(y)];
+                 : tops[static_cast<std::size_t>(x) +
+                        static_cast<std::size_t>(options.side) * static_cast<std::size_t>(y)];
     };
     nanovdb = std::make_unique<NanovdbPeer>([&](const NanovdbPeer::Set& set) {
       for (int y = 0; y < options.side; ++y) {

@@ -4,13 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 
 namespace scarp::cli {
 namespace {
 
 constexpr std::size_t kWidth = 100, kLargestIndent = 30;
-// Subcommands with fewer options show all of them.
-constexpr std::size_t kFew = 40;
+// Lines of help that fit on a screen: subcommands with more options show the common ones.
+constexpr std::ptrdiff_t kScreen = 60;
 
 struct HelpRow {
   std::string left, right;
@@ -120,31 +121,31 @@ std::string help_text(const Program& program) {
 
 std::string help_text(const Command& command, const std::string& topic) {
   const std::vector<TopicOptions> topics = options_by_topic(command);
-  std::string out = fmt::format("{}\nUsage: {}\n", command.summary(), usage_of(command));
-  if (topic.empty() && command.options().size() > kFew) {
-    std::vector<const Declared*> common;
-    for (const auto& [of, options] : topics) {
-      for (const Declared* one : options) {
-        if (one->option.common || one->option.required) common.push_back(one);
-      }
-    }
-    out += "\nCommon options:\n" + table_of(common);
-    out += "\n" + wrapped(fmt::format("More options: 'scarp {} --help TOPIC'; topics: {}.", command.name(),
-                                      topics_of(command)));
-    return out + examples_of(command) + (command.footer().empty() ? "" : "\n" + command.footer() + "\n");
-  }
+  const std::string head = fmt::format("{}\nUsage: {}\n", command.summary(), usage_of(command));
+  const std::string tail = examples_of(command) + (command.footer().empty() ? "" : "\n" + command.footer() + "\n");
+  std::string listed;
   bool found = false;
   for (const auto& [of, options] : topics) {
     if (!topic.empty() && topic != "all" && topic != name_of(of)) continue;
     found = true;
-    out += fmt::format("\n{}:\n{}", heading_of(of), table_of(options));
+    listed += fmt::format("\n{}:\n{}", heading_of(of), table_of(options));
   }
   if (!found && !topics.empty()) {
     throw WrongUsage(fmt::format("--help '{}': unknown topic of 'scarp {}' (topics: {})", topic, command.name(),
                                  topics_of(command)));
   }
-  if (!topic.empty() && topic != "all") return out;
-  return out + examples_of(command) + (command.footer().empty() ? "" : "\n" + command.footer() + "\n");
+  if (!topic.empty() && topic != "all") return head + listed;
+  const std::string all = head + listed + tail;
+  if (topic == "all" || std::count(all.begin(), all.end(), '\n') <= kScreen) return all;
+  std::vector<const Declared*> common;
+  for (const auto& [of, options] : topics) {
+    for (const Declared* one : options) {
+      if (one->option.common || one->option.required) common.push_back(one);
+    }
+  }
+  const std::string more =
+      fmt::format("More options: 'scarp {} --help TOPIC'; topics: {}.", command.name(), topics_of(command));
+  return head + "\nCommon options:\n" + table_of(common) + "\n" + wrapped(more) + tail;
 }
 
 }  // namespace scarp::cli

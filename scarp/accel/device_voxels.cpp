@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/accel/device_voxels.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cstring>
 #include <set>
 #include <utility>
+
+#include "scarp/base/error.h"
 
 namespace scarp {
 namespace {
@@ -100,6 +104,13 @@ struct DeviceVoxels::Image {
 
 DeviceVoxels::DeviceVoxels(const Device& device, std::span<const MarchedGrid> grids)
     : device_(device), grids_(grids.size()), layout_(grids.size()) {
+  for (const MarchedGrid& of : grids) {
+    const ivec3& size = of.grid->size();
+    if (std::max({size.x, size.y, size.z}) > glsl::kScarpMostVoxels) {
+      throw Error(fmt::format("voxels: {} x {} x {}, limited to {} per side on Vulkan devices (use the CPU)", size.x,
+                              size.y, size.z, glsl::kScarpMostVoxels));
+    }
+  }
   header_ = std::make_unique<DeviceBuffer>(
       device, std::max<std::size_t>(grids.size(), 1) * sizeof(glsl::ScarpVoxelGrid), "the voxels' layout");
   // As many grids at a time as fit in one buffer.

@@ -41,7 +41,8 @@ struct MarchedGrid {
 /// Voxel grids in device memory.
 class DeviceVoxels {
  public:
-  /// Copies the grids. Throws Error if the device lacks memory (stating the needed and the available size).
+  /// Copies the grids. Throws Error if a side is longer than glsl::kScarpMostVoxels, or if the device lacks memory
+  /// (stating the needed and the available size).
   DeviceVoxels(const Device& device, std::span<const MarchedGrid> grids);
 
   /// Updates grid `index` after an edit that returned `changed`; the accelerator may have changed in `marks`. Copies

@@ -30,7 +30,7 @@ struct SphereEdit {
 /// Returns the voxels whose distances an edit in the box `changed` of the grid may change.
 SphereEdit find_spheres(const VoxelBox& changed, const VoxelBytes& distances);
 
-/// What build_spheres() writes, and what it looks at.
+/// The voxels that build_spheres() writes, and those that it reads.
 struct SphereRows {
   VoxelBox window;                    ///< solid voxels that count; includes the region along x
   VoxelBox region;                    ///< voxels to write

@@ -26,6 +26,9 @@ const uint kScarpVoxelOctants = 3u;
 const uint kScarpVoxelBricks = 4u;
 const uint kScarpVoxelMarches = 5u;  ///< their number
 
+/// Voxels per side of the largest grids: distances fit in 32 bits (voxel_wide.glsl.h).
+const int kScarpMostVoxels = 2048;
+
 /// Entries of a page of 64 bricks.
 struct ScarpVoxelPage {
   uint first_word;  ///< of the entries

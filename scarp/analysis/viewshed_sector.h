@@ -16,7 +16,7 @@ struct SectorPart {
   double high = 1;
 };
 
-/// What a sweep reads and writes. One of the maps is not null.
+/// Maps that a sweep writes, and maxima that it reads. One of the maps is not null.
 struct SectorMaps {
   Seen* codes = nullptr;                ///< nodes that are visible, if they are `hidden` before
   double* least = nullptr;              ///< nodes that are not NaN before: their least visible height

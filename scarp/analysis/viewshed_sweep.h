@@ -25,7 +25,7 @@
 
 namespace scarp {
 
-/// What a sweep did.
+/// Counts of a sweep.
 struct SweepStatistics {
   std::int64_t samples = 0;  ///< of all rings, those beside a part of a sector included
   std::int64_t skipped = 0;  ///< in blocks below the horizon

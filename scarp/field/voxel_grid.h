@@ -49,7 +49,7 @@ class VoxelGrid {
   /// voxels outside the grid are ignored. Throws Error as the constructor, or if an entry does not fit.
   static VoxelGrid built(const ivec3& size, int entry_bits, const FillBrick& fill);
 
-  /// What is known of a box of voxels without looking at each. `full`: all are solid, and none has an entry.
+  /// State of a box of voxels. `full`: all are solid, and none has an entry.
   enum class Contents { empty, full, mixed };
   struct Brick {
     std::uint64_t solid = 0, coloured = 0;  ///< masks; coloured: those of the solid voxels that have an entry

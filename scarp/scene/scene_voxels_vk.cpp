@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cstring>
 #include <glm/matrix.hpp>
 #include <optional>
@@ -21,9 +20,6 @@
 namespace scarp {
 namespace {
 
-// Voxels per side: distances fit in 32 bits there (voxel_wide.glsl.h).
-constexpr int kMostDeviceVoxels = 2048;
-
 std::vector<MarchedGrid> parts_of(const VoxelObjects& objects) {
   std::vector<MarchedGrid> parts;
   for (const auto& model : objects.models()) {
@@ -34,11 +30,6 @@ std::vector<MarchedGrid> parts_of(const VoxelObjects& objects) {
       }
       throw Error(fmt::format("march '{}': does not run on Vulkan devices (available: {})", model->march().name,
                               fmt::join(available, ", ")));
-    }
-    const ivec3& size = model->grid().size();
-    if (std::max({size.x, size.y, size.z}) > kMostDeviceVoxels) {
-      throw Error(fmt::format("voxels: {} x {} x {}, limited to {} per side on Vulkan devices (use the CPU)", size.x,
-                              size.y, size.z, kMostDeviceVoxels));
     }
     const VoxelTarget target = model->target();
     parts.push_back({target.grid, target.box, target.spheres, target.cubes, target.octants, target.bricks});

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cases.h"
+#include "scarp/accel/voxel_buffers.glsl.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/scene_vk.h"
 #include "vk/device_under_test.h"
@@ -162,14 +163,28 @@ TEST_F(SceneVoxelsOnDevice, EmptyOnesAreMissed) {
   }
 }
 
+TEST_F(SceneVoxelsOnDevice, RefuseGridsThatAreTooLarge) {
+  VoxelGrid grid({glsl::kScarpMostVoxels + 1, 1, 1}, 1);
+  grid.set({0, 0, 0}, 1);
+  const auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
+  try {
+    scene_on(device(), Scene(scene_voxels({{model}, {VoxelPlace{}}})));
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "scene: field 0 (voxels): voxels: 2049 x 1 x 1, limited to 2048 per side on Vulkan devices (use the "
+                 "CPU)");
+  }
+}
+
 TEST_F(SceneVoxelsOnDevice, RefuseTheExhaustiveMarch) {
   try {
     scene_on(device(), Scene(scene_voxels(crowd_of(random, 3, "voxel-exhaustive"))));
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
-                 "scene: field 0 (voxels): march 'voxel-exhaustive': does not run on Vulkan devices (available: all "
-                 "other voxel marches)");
+                 "scene: field 0 (voxels): march 'voxel-exhaustive': does not run on Vulkan devices (available: "
+                 "voxel-planes, voxel-spheres, voxel-cubes, voxel-octants, voxel-bricks)");
   }
 }
 

@@ -193,9 +193,9 @@ TEST(VoxelShaders, KnowWhatIsAhead) {
   }
 }
 
-// A long way through the largest grid that there is: the widest products.
+// A long way through the largest grid of devices: the widest products.
 TEST(VoxelShaders, AgreeAtTheLargestSize) {
-  VoxelGrid grid(ivec3(VoxelGrid::kMaxSide), 1);
+  VoxelGrid grid(ivec3(glsl::kScarpMostVoxels), 1);
   const ivec3 last = grid.size() - 1;
   grid.fill({{last.x - 40, last.y - 40, 0}, last + 1}, 1);
   grid.fill({{0, 0, last.z - 4}, {40, 40, last.z}}, 1);
