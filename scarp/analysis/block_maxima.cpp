@@ -9,8 +9,6 @@
 namespace scarp {
 namespace {
 
-constexpr int kSide = BlockMaxima::kSide;
-
 // Writes the maximum of each column over rows [begin, end); `none` for holes alone.
 template <class T>
 void column_maxima(const SampleGrid<T>& grid, int begin, int end, T none, T* out) {
