@@ -65,9 +65,8 @@ class Column {
     places_ = &lines.places;
     squares_.resize(N * places_->size());
     V least = hn::Set(d16, 65535);
-    const std::uint16_t* from = lines.squares.data() + at;
-    for (std::size_t i = 0; i < squares_.size(); i += N, from += lines.stride) {
-      const V square = hn::LoadU(d16, from);
+    for (std::size_t i = 0; i < squares_.size(); i += N, at += lines.stride) {
+      const V square = hn::LoadU(d16, lines.squares.data() + at);
       least = hn::Min(least, square);
       hn::StoreU(square, d16, squares_.data() + i);
     }

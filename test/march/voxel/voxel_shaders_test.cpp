@@ -173,7 +173,8 @@ TEST_P(VoxelShaders, AgreeWithTheCpu) {
       }
     }
   }
-  if (GetParam().name != "empty or full") {
+  // A single grid of a kind may have nothing to hit.
+  if (GetParam().name != "empty or full" && kRaysPerPair > 2 * kRaysPerGrid) {
     EXPECT_GT(hits, kRaysPerPair / 10) << "rays are aimed at something";
   }
 }
