@@ -221,11 +221,10 @@ void run(ViewshedOptions options, const Command& command) {
 
   const double nodes = static_cast<double>(input.field().cols()) * input.field().rows();
   if (options.raster_output.dry_run) {
-    // One line of sight per node, of a third of the longer side on average.
-    constexpr double kCrossing_s = 4e-9;
-    const double length = std::max(input.field().cols(), input.field().rows());
+    // One sweep per observer, on one thread.
+    constexpr double kNode_s = 6e-8;
     print_dry_run(input, options.output, options.mode == "dem" || options.mode == "ground" ? 12 : 3,
-                  static_cast<double>(observers.size()) * nodes * length * kCrossing_s);
+                  static_cast<double>(observers.size()) * nodes * kNode_s);
     return;
   }
   std::string places;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sweeps over rings of samples, outwards from an observer or from the sun, with a horizon that rises: what viewsheds
-// (viewshed_sector.cpp) and shadows (shadow_strip.cpp) share. They differ in the projection of samples to (u, s).
+// (viewshed_sector.cpp) and shadows (shadow_sweep.cpp) share. They differ in the projection of samples to (u, s).
 //
 //      previous ring    Q ----- o ----- o       s = f(height, ring), u = g(side, ring), both linear along an edge
 //                       |       |       |
@@ -49,20 +49,21 @@ struct RingLine {
 ///   is_beyond(ring)                 whether no node from this ring on matters
 ///   sides_of(ring)                  samples of the part, and one beyond to each side
 ///   u(side), s(height), s_previous(height), s_error(s)
-///   height_of_slack(slack)
-///   may_skip(first ring)
+///   height_of_slack(slack)          a bound of HorizonEnvelope's slack, in heights of the ring
 ///   about_side(u)                   about the first side at or after u, by one or two
-///   sides_per_u()
-///   ring_line(line, error)
-///   ring_edge(side), spoke(side)    edges as lines; fill_spoke(side, segment): their ends, false if there is none
+///   sides_per_u()                   along a ring
+///   ring_line(line, error)          a line of the horizon in heights of the ring
+///   ring_edge(side)                 the edge from a sample to the next one
+///   fill_spoke(side, segment)       the edge to the previous ring; returns whether there is one
 ///   spoke_is_right(side)            whether the spoke runs from the outer sample to larger u
-///   has_previous()
+///   has_previous()                  whether there is a ring before this one
 ///   is_inner_known(side)            whether the horizon is not below the spoke's inner end, if the field has no holes
 ///   find_more_spokes(range)         more samples whose spoke may be above the horizon
-///   is_below(bins, first, last, block)
-///   is_above(side)                  the sample is above the horizon
-///   test(piece, side)               it may be
-///   test_all(piece, side)           if kTestsAll: each sample
+///   may_skip(ring), is_below(bins, first ring, last ring, block)
+///                                   whether all samples and edges of a block are below the horizon
+///   is_above(side)                  called for each sample that is certainly above the horizon,
+///   test(piece, side)               and for each that may be;
+///   test_all(piece, side)           instead of both, for each sample, if kTestsAll
 ///   edges()                         exact comparisons
 template <class Projection, class T>
 class RingSweep {
