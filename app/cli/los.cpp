@@ -14,8 +14,8 @@
 #include "app/cli/progress.h"
 #include "app/cli/shared_options.h"
 #include "app/cli/sight_options.h"
+#include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/line_of_sight.h"
-#include "scarp/analysis/node_maxima.h"
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
 #include "scarp/base/parallel.h"
@@ -142,7 +142,7 @@ void run(LosOptions options, const Command& command) {
   std::vector<Answer> answers(table.rows.size());
   for (std::size_t i = 0; i < answers.size(); ++i) answers[i].ends = sight_ends(input, table, i, options.heights);
   const SightCurvature curvature = input.curvature();
-  const auto answer = [&](std::size_t i, const HeightField& field, const NodeMaxima* maxima) {
+  const auto answer = [&](std::size_t i, const HeightField& field, const BlockMaxima* maxima) {
     try {
       answers[i].line = line_of_sight(field, answers[i].ends.from, answers[i].ends.to, curvature, maxima);
     } catch (const Error& error) {
@@ -160,7 +160,7 @@ void run(LosOptions options, const Command& command) {
       if (!progress(static_cast<double>(i + 1) / static_cast<double>(answers.size()))) throw Interrupted();
     }
   } else {
-    const NodeMaxima maxima(input.field());
+    const BlockMaxima maxima(input.field());
     constexpr std::int64_t kGrain = 64;
     parallel_for(
         static_cast<std::int64_t>(answers.size()), kGrain,

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/analysis/node_maxima.h"
+#include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/sight_crossings.h"
 #include "scarp/base/error.h"
 
@@ -58,7 +58,7 @@ namespace {
 // nor be nearer to it.
 class Search {
  public:
-  Search(const SightLine& line, const NodeMaxima* maxima) : line_(line), maxima_(maxima) {
+  Search(const SightLine& line, const BlockMaxima* maxima) : line_(line), maxima_(maxima) {
     const double cols = line.to().col - line.from().col, rows = line.to().row - line.from().row;
     length_ = std::abs(cols) >= std::abs(rows) ? cols : rows;
     const auto& cell = line.ground().field().settings();
@@ -73,7 +73,7 @@ class Search {
     if (!maxima_) {
       for (int axis = 0; axis < 2; ++axis) visit(axis, {});
     } else if (length_ != 0) {
-      pieces(0, std::abs(length_), NodeMaxima::kCoarse);
+      pieces(0, std::abs(length_), BlockMaxima::kCoarse);
     }
     return result_;
   }
@@ -85,8 +85,8 @@ class Search {
       const double to = std::min(at + side, end);
       const Box box = box_of(at, to);
       if (passes(box, at, to, side)) continue;
-      if (side == NodeMaxima::kCoarse) {
-        pieces(at, to, NodeMaxima::kFine);
+      if (side == BlockMaxima::kCoarse) {
+        pieces(at, to, BlockMaxima::kSide);
       } else {
         visit(0, {box.low[0], box.high[0]});
         visit(1, {box.low[1], box.high[1]});
@@ -148,7 +148,7 @@ class Search {
   }
 
   const SightLine& line_;
-  const NodeMaxima* maxima_;
+  const BlockMaxima* maxima_;
   double length_ = 0, diagonal_ = 0, largest_ = 0;
   LineOfSight result_;
 };
@@ -156,7 +156,7 @@ class Search {
 }  // namespace
 
 LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
-                          const SightCurvature& curvature, const NodeMaxima* maxima) {
+                          const SightCurvature& curvature, const BlockMaxima* maxima) {
   return Search(SightLine(field, from, to, curvature), maxima).run();
 }
 

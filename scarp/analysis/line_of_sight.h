@@ -62,11 +62,11 @@ struct LineOfSight {
   double clearance_along = 0;  ///< where that is
 };
 
-class NodeMaxima;
+class BlockMaxima;
 
 /// Answers one query. Throws as SightLine does. `maxima`, those of the same field, give the same answer sooner where a
 /// field has many lines; without them every crossing is visited.
 LineOfSight line_of_sight(const HeightField& field, const SightEnd& from, const SightEnd& to,
-                          const SightCurvature& curvature = {}, const NodeMaxima* maxima = nullptr);
+                          const SightCurvature& curvature = {}, const BlockMaxima* maxima = nullptr);
 
 }  // namespace scarp

@@ -73,7 +73,11 @@ class Drawing {
     const bool kilometres = end_ >= 5000;
     const double unit = kilometres ? 1000 : 1, along = step_for(end_ / unit, box_.width / (8 * kText));
     const double below = box_.y + box_.height;
-    for (double d = 0; d * unit <= end_ * (1 + 1e-9); d += along) {
+    // Rounding may put the last tick beyond the end.
+    constexpr double kTickSlack = 1.0 / 1024;  // of a step: less than a pixel
+    const double last = std::floor(end_ / unit / along + kTickSlack);
+    for (double i = 0; i <= last; ++i) {
+      const double d = i * along;
       rule(x(d * unit), box_.y, x(d * unit), below);
       const std::string text = fmt::format("{:.6g}", d);
       pen_.write(x(d * unit) - pen_.width_of(text) / 2, below + 1.3 * pen_.line_height(), text);

@@ -13,6 +13,8 @@ namespace scarp::test {
 namespace {
 
 constexpr float kHole = std::numeric_limits<float>::quiet_NaN();
+constexpr float kMicrometre = 1e-6f;
+constexpr double kGrazingSun = 1e-6;  // radians above the horizon
 using Shape = std::function<float(int col, int row)>;
 
 HeightField sampled(int cols, int rows, double cell_x, double cell_y, const Shape& shape) {
@@ -68,7 +70,7 @@ const std::vector<std::pair<std::string, Shape>>& shapes() {
       {"rough", rough(4, 10)},
       {"rough and high", [shape = rough(5, 30)](int col, int row) { return 8000 + shape(col, row); }},
       {"very rough", rough(6, 10000)},
-      {"almost flat", rough(7, 1e-6f)},
+      {"almost flat", rough(7, kMicrometre)},
   };
   return all;
 }
@@ -138,7 +140,7 @@ std::vector<SunDirection> map_suns() {
   suns.push_back({90 * kDegree, std::atan(1.0)});
   suns.push_back({2.5, 89 * kDegree});
   suns.push_back({2.5, std::numbers::pi / 2});
-  suns.push_back({-1, 1e-6});
+  suns.push_back({-1, kGrazingSun});
   return suns;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "analysis/map_fields.h"
 #include "analysis/slow_judge.h"
@@ -16,6 +17,15 @@ namespace {
 std::string place(const MapField& kind, std::size_t i) {
   const auto cols = static_cast<std::size_t>(kind.field.cols());
   return kind.name + ", column " + std::to_string(i % cols) + ", row " + std::to_string(i / cols);
+}
+
+// All fields in optimised builds, a share in others: the judge's rational numbers take most of the time.
+std::vector<MapField> some_fields() {
+  const auto stride = static_cast<std::size_t>(cases(1, 1, 4));
+  auto all = map_fields();
+  std::vector<MapField> some;
+  for (std::size_t i = 0; i < all.size(); i += stride) some.push_back(std::move(all[i]));
+  return some;
 }
 
 // A share of the observers, others for each field.
@@ -32,7 +42,7 @@ TEST(Maps, ThereAreAtLeastSixtyFields) { EXPECT_GE(map_fields().size(), 60u); }
 TEST(Maps, ViewshedsEqualTheJudge) {
   std::size_t visible = 0, hidden = 0;
   unsigned turn = 0;
-  for (const MapField& kind : map_fields())
+  for (const MapField& kind : some_fields())
     for (const Node observer : some_observers(kind.field)) {
       // One set of settings per observer, in turn: all meet all shapes.
       const auto settings = map_settings();
@@ -46,13 +56,14 @@ TEST(Maps, ViewshedsEqualTheJudge) {
         hidden += codes[i] == Seen::hidden;
       }
     }
-  EXPECT_GT(visible, 1000u);
-  EXPECT_GT(hidden, 1000u);
+  const auto least = static_cast<std::size_t>(cases(1000, 1000, 100));
+  EXPECT_GT(visible, least);
+  EXPECT_GT(hidden, least);
 }
 
 TEST(Maps, LeastVisibleHeightsEqualTheJudge) {
   unsigned turn = 0;
-  for (const MapField& kind : map_fields())
+  for (const MapField& kind : some_fields())
     for (const Node observer : some_observers(kind.field)) {
       const auto settings = map_settings();
       const Viewpoint view(kind.field, observer, settings[turn++ % settings.size()]);
@@ -71,7 +82,7 @@ TEST(Maps, ShadowsEqualTheJudge) {
   const auto suns = map_suns();
   const auto turns = static_cast<std::size_t>(cases(static_cast<int>(suns.size()), 5, 2));
   std::size_t turn = 0;
-  for (const MapField& kind : map_fields())
+  for (const MapField& kind : some_fields())
     for (std::size_t k = 0; k < turns; ++k) {
       const SunDirection& sun = suns[turn++ % suns.size()];
       const auto codes = shadow(kind.field, sun), judged = judge_shadow(kind.field, sun);
@@ -80,7 +91,8 @@ TEST(Maps, ShadowsEqualTheJudge) {
         ++counts[static_cast<int>(codes[i])];
       }
     }
-  for (const std::size_t count : counts) EXPECT_GT(count, 100u);
+  const auto least = static_cast<std::size_t>(cases(100, 100, 10));
+  for (const std::size_t count : counts) EXPECT_GT(count, least);
 }
 
 // Terms that the filter cannot decide.

@@ -11,8 +11,8 @@
 #include "analysis/map_fields.h"
 #include "analysis/slow_judge.h"
 #include "cases.h"
+#include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/line_of_sight.h"
-#include "scarp/analysis/node_maxima.h"
 #include "scarp/analysis/profile.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -22,6 +22,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 const SightCurvature kFlat{.coefficient = 0};
+// Metres: 16 roundings of numbers below 2^17, as heights and drops of these fields are.
+constexpr double kHeightRounding = 0x1p17 * 16 * 0x1p-53;
 
 HeightField field_of(int cols, int rows, double cell, const std::function<double(int, int)>& height) {
   std::vector<float> samples;
@@ -57,7 +59,7 @@ TEST(LineOfSight, EqualsTheJudgeEverywhere) {
             << kind.name << ": " << from.col << "," << from.row << " to " << to.col << "," << to.row;
         EXPECT_EQ(answer.visible, !answer.obstruction);
         // Clearance is rounded; its sign is that of the answer but for grazing.
-        if (std::abs(answer.clearance) > 1e-6) {
+        if (std::abs(answer.clearance) > kHeightRounding) {
           EXPECT_EQ(answer.clearance > 0, answer.visible);
         }
         ++(judged ? visible : blocked);
@@ -78,7 +80,7 @@ TEST(LineOfSight, IsTheSameWithMaxima) {
     const auto field = field_of(300, 290, 10, [&](int col, int row) {
       return holes && (col * 7 + row * 3) % 5 == 0 ? std::nan("") : ridges(col, row);
     });
-    const NodeMaxima maxima(field);
+    const BlockMaxima maxima(field);
     int visible = 0, blocked = 0;
     for (int i = 0; i < cases(20000, 2000, 300); ++i) {
       SightEnd from = random_end(field, random), to = random_end(field, random);
@@ -114,7 +116,7 @@ TEST(LineOfSight, IsReciprocal) {
         const SightCurvature round{.coefficient = 1, .diameter = 1000};
         const LineOfSight over = line_of_sight(kind.field, from, to, round);
         // With curvature up to the rounding of lowered heights.
-        if (std::abs(over.clearance) > 1e-6) {
+        if (std::abs(over.clearance) > kHeightRounding) {
           ASSERT_EQ(over.visible, line_of_sight(kind.field, to, from, round).visible);
         }
       } catch (const Error&) {
@@ -166,7 +168,7 @@ TEST(Profile, HasEveryCrossingOnceAndKeepsTheGround) {
   // 23 column lines and 11 row lines between the ends, 11 of them at one node; and the ends.
   EXPECT_EQ(points.size(), 23u + 11 - 11 + 2);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    EXPECT_NEAR(points[i].ground, 3 * points[i].col - 2 * points[i].row, 1e-9);
+    EXPECT_NEAR(points[i].ground, 3 * points[i].col - 2 * points[i].row, kHeightRounding);
     if (i > 0) {
       EXPECT_GT(points[i].along, points[i - 1].along);
     }
