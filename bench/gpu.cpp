@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "bench/commands.h"
+#include "bench/device_seconds.h"
 #include "bench/judge.h"
 #include "bench/naive_search.h"
 #include "bench/scarp_engine.h"
@@ -41,17 +42,6 @@ constexpr double kNearlyRight = 0.001;
 constexpr double kMostSteps = 65536, kCpuDeviceMostSteps = 4096;
 
 bool is_cpu(const Device& device) { return device.description().kind == DeviceKind::cpu; }
-
-// Of all passes, by the device's clock.
-double seconds(const Device& device, const std::vector<PassTime>& passes) {
-  double sum = 0;
-  for (const PassTime& pass : passes) {
-    if (!pass.nanoseconds)
-      throw Error(fmt::format("device '{}': has no timestamps, by which gpu measures", device.description().name));
-    sum += *pass.nanoseconds * 1e-9;
-  }
-  return sum;
-}
 
 // As many blocks of rays, spread evenly, as take no longer than the limit.
 std::vector<Ray> affordable(const std::vector<Ray>& rays, double seconds_per_ray, double limit_s) {
@@ -201,7 +191,7 @@ class Comparison {
     contender.fetches = std::accumulate(costs.begin(), costs.end(), 0.0,
                                         [](double sum, const DeviceRayCost& cost) { return sum + cost.fetches; }) /
                         count;
-    contender.seconds_per_ray = seconds(device_, queries.passes()) / count;
+    contender.seconds_per_ray = device_seconds(device_, queries.passes()) / count;
   }
 
   // Naive at the cheapest settings that are good, for each meaning of good that there are settings for.
@@ -255,7 +245,7 @@ class Comparison {
         queries.set_march_settings(contenders[c].settings);
         const auto answers = ask(queries, ground.target, set.any_hit, parts[c], no_costs);
         if (pass > 0) {
-          times[c].push_back(seconds(device_, queries.passes()));
+          times[c].push_back(device_seconds(device_, queries.passes()));
         } else {
           hits[c] = static_cast<double>(
               std::count_if(answers.begin(), answers.end(), [](const Judge::Answer& answer) { return answer.hit; }));
@@ -297,7 +287,7 @@ class Comparison {
     std::vector<double> times;
     for (int repeat = 0; repeat < options_.repeats; ++repeat) {
       const DeviceGround again(device_, ground.bench.field);
-      times.push_back(seconds(device_, again.passes()));
+      times.push_back(device_seconds(device_, again.passes()));
     }
     const double samples = static_cast<double>(ground.bench.field.cols()) * ground.bench.field.rows();
     const auto [fastest, slowest] = std::minmax_element(times.begin(), times.end());

@@ -24,6 +24,7 @@
 #include <optional>
 
 #include "bench/commands.h"
+#include "bench/device_seconds.h"
 #include "bench/grid_mesh.glsl.h"
 #include "scarp/accel/device_ground.h"
 #include "scarp/base/error.h"
@@ -104,12 +105,12 @@ class GridMesh {
     push_.w = row(camera.forward);
   }
 
-  /// The time that it took.
-  double draw() {
+  /// Returns the times of its passes.
+  const std::vector<PassTime>& draw() {
     commands_.draw(target_, {draw_call(pipeline_, push_, count_, instances_, &indices_)});
     commands_.copy(target_, 0, depths_);
     commands_.run();
-    return commands_.passes().front().nanoseconds.value() * 1e-9;
+    return commands_.passes();
   }
   /// kNear / view depth, row by row; 0 where there is nothing.
   std::vector<float> depths() const {
@@ -217,11 +218,10 @@ double spread_of(const std::vector<double>& times) {
   return (*slowest - *fastest) / median(times);
 }
 
-double march(DeviceQueries& queries, const DeviceTarget& target, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
+double march(const Device& device, DeviceQueries& queries, const DeviceTarget& target, const std::vector<Ray>& rays,
+             std::vector<Hit>& hits) {
   queries.closest_hits(target, rays, hits);
-  double sum = 0;
-  for (const PassTime& pass : queries.passes()) sum += pass.nanoseconds.value() * 1e-9;
-  return sum;
+  return device_seconds(device, queries.passes());
 }
 
 // `device` and `drawing` are the same device, opened twice: where something was drawn before, lavapipe (Mesa 22.3)
@@ -238,9 +238,9 @@ void compare(const Device& device, const Device& drawing, const GpuOptions& opti
   std::vector<Hit> hits(set.rays.size());
   std::vector<double> ray_times, bilinear_times, mesh_times;
   for (int pass = 0; pass <= options.repeats; ++pass) {
-    const double bilinear_s = march(queries, {&ground.field, &bilinear_memory}, set.library_rays, hits);
-    const double ray_s = march(queries, {&triangles, &memory}, set.library_rays, hits);
-    const double mesh_s = mesh.draw();
+    const double bilinear_s = march(device, queries, {&ground.field, &bilinear_memory}, set.library_rays, hits);
+    const double ray_s = march(device, queries, {&triangles, &memory}, set.library_rays, hits);
+    const double mesh_s = device_seconds(device, mesh.draw());
     if (pass == 0) continue;
     bilinear_times.push_back(bilinear_s);
     ray_times.push_back(ray_s);

@@ -69,7 +69,7 @@ VoxelTriangles::VoxelTriangles(VoxelTriangles&&) noexcept = default;
 VoxelTriangles& VoxelTriangles::operator=(VoxelTriangles&&) noexcept = default;
 VoxelTriangles::~VoxelTriangles() = default;
 
-double VoxelTriangles::draw(const PictureFrame& frame) {
+void VoxelTriangles::draw(const PictureFrame& frame) {
   Impl& all = *impl_;
   const auto width = static_cast<std::uint32_t>(frame.width), height = static_cast<std::uint32_t>(frame.height);
   if (!all.target || all.target->width() != width || all.target->height() != height) {
@@ -93,8 +93,9 @@ double VoxelTriangles::draw(const PictureFrame& frame) {
   all.commands.draw(*all.target, {draw_call(all.pipeline, push, count, static_cast<std::uint32_t>(all.places.size()))});
   all.commands.copy(*all.target, 0, *all.pixels);
   all.commands.run();
-  return all.commands.passes().front().nanoseconds.value_or(std::numeric_limits<double>::quiet_NaN()) * 1e-9;
 }
+
+const std::vector<PassTime>& VoxelTriangles::passes() const { return impl_->commands.passes(); }
 
 std::vector<Hit> VoxelTriangles::drawn() const {
   std::vector<glsl::uvec4> words(impl_->pixels->bytes() / sizeof(glsl::uvec4));

@@ -30,8 +30,9 @@ class VoxelTriangles {
   VoxelTriangles& operator=(VoxelTriangles&&) noexcept;
   ~VoxelTriangles();
 
-  /// Draws and returns the seconds that took; NaN if the device has no timestamps.
-  double draw(const PictureFrame& frame);
+  void draw(const PictureFrame& frame);
+  /// Times of the last draw().
+  const std::vector<PassTime>& passes() const;
   /// What was drawn, row by row: hits without t.
   std::vector<Hit> drawn() const;
   /// How far beside its place an edge may be drawn, in pixels.

@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "bench/commands.h"
+#include "bench/device_seconds.h"
 #include "bench/pixel_match.h"
 #include "bench/protocol.h"
 #include "bench/voxel_sets.h"
@@ -25,13 +26,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kMiB = 1 << 20;
-
-// Passes of a picture, in milliseconds.
-double ms_of(const std::vector<PassTime>& passes) {
-  double sum = 0;
-  for (const PassTime& pass : passes) sum += pass.nanoseconds.value_or(std::numeric_limits<double>::quiet_NaN());
-  return sum * 1e-6;
-}
+constexpr double kMilliseconds = 1e3;  // in a second
 
 // Hits that are not those of the CPU.
 std::size_t count_wrong(std::span<const Hit> hits, std::span<const Hit> expected) {
@@ -74,7 +69,7 @@ class DeviceTables {
           std::vector<double> times;
           for (int pass = 0; pass <= options_.repeats; ++pass) {
             camera.look(way.drawing, picture, rays, hits);
-            if (pass > 0) times.push_back(ms_of(camera.passes()));
+            if (pass > 0) times.push_back(kMilliseconds * device_seconds(device_, camera.passes()));
           }
           const VoxelCamera::Bytes bytes = camera.bytes();
           Json row = head(set, places.size());
@@ -112,8 +107,8 @@ class DeviceTables {
     VoxelTriangles triangles(drawing_, voxel_object(set), places);
     std::vector<double> times;
     for (int pass = 0; pass <= options_.repeats; ++pass) {
-      const double seconds = triangles.draw(frame);
-      if (pass > 0) times.push_back(1e3 * seconds);
+      triangles.draw(frame);
+      if (pass > 0) times.push_back(kMilliseconds * device_seconds(device_, triangles.passes()));
     }
     Json row = head(set, places.size());
     row["engine"] = "triangles";

@@ -90,8 +90,7 @@ struct DeviceVoxels::Image {
     entry_data.resize(to.used_words);
     for (std::size_t i = 0; i < stored; ++i) {
       const auto words = voxels.packed_entries(i).words;
-      if (!words.empty())
-        std::memcpy(entry_data.data() + to.slots[i].first, words.data(), words.size_bytes());
+      if (!words.empty()) std::memcpy(entry_data.data() + to.slots[i].first, words.data(), words.size_bytes());
     }
     blocks[first_masks] = std::as_bytes(voxels.first_masks());
     blocks[masks] = std::as_bytes(voxels.masks());

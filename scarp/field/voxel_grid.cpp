@@ -390,7 +390,7 @@ VoxelBox VoxelGrid::subtract(const VoxelGrid& other) {
 VoxelBox VoxelGrid::page_box(std::size_t page) const {
   const ivec3 first = brick_at(page * kPageBricks), last = brick_at(page * kPageBricks + kPageBricks - 1);
   VoxelBox bricks{first, last + 1};
-  // Of a page that goes on in the next row or slab, all rows or slabs.
+  // A page that continues in the next row or slab counts with all of its rows or slabs.
   if (first.y != last.y || first.z != last.z) bricks.low.x = 0, bricks.high.x = bricks_.x;
   if (first.z != last.z) bricks.low.y = 0, bricks.high.y = bricks_.y;
   return {4 * bricks.low, 4 * bricks.high};

@@ -175,7 +175,7 @@ TEST(Filters, KnowWhereARayStarts) {
   const Scene waves(scene_function(HeightFunction(make_function(Sines{{{.amplitude = 2, .wavelength = 20}}}))));
   const SceneQuery nothing = waves.query({.accept = [](const Ray&, const Hit&) { return false; }});
   EXPECT_EQ(nothing.closest_hit({{5, 0, -1}, {0, 0, -1}}).status, HitStatus::below);
-  // Along flat ground there is no end of touches: the step limit ends the ray.
+  // A ray along flat ground touches it everywhere: the step limit ends it.
   const Scene flat(scene_function(HeightFunction(make_function(Plane{}))));
   EXPECT_NE(flat.query({.accept = [](const Ray&, const Hit&) { return false; }})
                 .closest_hit({.origin = {0, 0, 0}, .direction = {1, 0, 0}, .t_max = 100})

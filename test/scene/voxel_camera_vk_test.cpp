@@ -228,7 +228,7 @@ TEST_F(VoxelCameraOnDevice, FindsTheRaysOfACameraInBatches) {
       for (Ray& ray : rays) ray.direction = normalize(ray.direction);
     }
     const std::size_t of_camera = rays.size();
-    // Of a pixel that has one already, from elsewhere, and behind the camera.
+    // Second rays of pixels: the same ray, one that starts elsewhere, one that looks behind the camera.
     for (std::size_t i = 0; i < of_camera; i += 7) {
       rays.push_back(rays[i]);
       if (i % 3 == 1) rays.back().origin += 0.1;

@@ -42,8 +42,8 @@ struct DeviceRays {
 
 /// What is asked of rays.
 struct DeviceRayQuery {
-  bool any = false;         ///< any hit: only the status is told
-  bool statistics = false;  ///< whether steps and fetches are told, or zeros
+  bool any = false;         ///< any hit: only the status is valid
+  bool statistics = false;  ///< whether steps and fetches are counted; otherwise they are 0
   /// batch_ground_kind() of the ground makes a smaller shader; kBatchAnyGround: as the ground says. kScarpStarts among
   /// its flags: rays may start on the surface.
   std::uint32_t ground_kind = glsl::kBatchAnyGround;

@@ -13,13 +13,14 @@ struct FromVoxOptions {
 };
 
 /// Entries are palette indices. Materials of the file: colours that emit (_emit, doubled by each step of _flux) and
-/// metals (_metal, the less the rougher) become VoxelMaterial; all others, glass included, are opaque. A colour with an
-/// alpha of 1 to 254 is solid in as large a share of its voxels, by ordered_pattern.h; 0 means opaque, as many programs
-/// leave it out. Where instances overlap, one voxel remains at each position, the one that MagicaVoxel
-/// shows: of the first instance in files from version 200 on, and of the last in those before. An instance that loses
-/// voxels gets a model of its own; all others share the models of the file. Of instances that cover one another exactly
-/// one remains. Grids are models cut to the smallest box around their voxels. Throws Error: no such march, too many
-/// overlaps, or more than 1 GiB of memory (16 bytes per voxel of the file if that is more), before it is allocated.
+/// metals (_metal, reduced by _rough) become VoxelMaterial; all others, glass included, are opaque. An alpha of 1 to
+/// 254 is the share of a colour's voxels that are solid, chosen by ordered_pattern.h. An alpha of 0 means opaque,
+/// because many programs do not write alpha. Where instances overlap, one voxel remains at each position, the one that
+/// MagicaVoxel shows: that of the first instance in files from version 200 on, that of the last in older files. An
+/// instance that loses voxels gets a model of its own; all others share the models of the file. Of instances that cover
+/// one another exactly one remains. Grids are models cut to the smallest box around their voxels. Throws Error: no such
+/// march, too many overlaps, or more than 1 GiB of memory (16 bytes per voxel of the file if that is more), before it
+/// is allocated.
 PlacedVoxels placed_voxels_from(const VoxFile& file, const FromVoxOptions& options = {});
 
 }  // namespace scarp
