@@ -42,8 +42,8 @@ std::uint32_t march_of(const MarchedGrid& parts) {
   return parts.bricks ? glsl::kScarpVoxelBricks : glsl::kScarpVoxelPlanes;
 }
 
-// The accelerator as it is on the CPU.
-std::span<const std::byte> marks_of(const MarchedGrid& parts) {
+// The bytes of an accelerator that has one per voxel, as they are on the CPU.
+std::span<const std::byte> voxel_bytes_of(const MarchedGrid& parts) {
   const auto bytes_of = [](const VoxelBytes& of) {
     const ivec3& size = of.size();
     return std::as_bytes(std::span(of.data(), static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
@@ -52,8 +52,38 @@ std::span<const std::byte> marks_of(const MarchedGrid& parts) {
   if (parts.spheres) return bytes_of(parts.spheres->distances());
   if (parts.cubes) return bytes_of(parts.cubes->distances());
   if (parts.octants) return bytes_of(parts.octants->sides());
-  if (parts.bricks) return std::as_bytes(parts.bricks->masks());
   return {};
+}
+
+// Entries [begin, end) of a table, which may be in chunks.
+template <class T>
+std::vector<T> values_of(const SparseTable<T>& table, std::size_t begin, std::size_t end) {
+  std::vector<T> values(end - begin);
+  for (std::size_t i = table.next(begin); i < end; i = table.next(i + 1)) values[i - begin] = table[i];
+  return values;
+}
+template <class T>
+std::vector<T> values_of(const SparseTable<T>& table) {
+  return values_of(table, 0, table.size());
+}
+
+// Shaders count bricks, and the bytes of an accelerator, in 32 bits.
+constexpr std::uint64_t kMostIndex = std::uint64_t{1} << 32;
+
+void require_size(const MarchedGrid& parts) {
+  const ivec3 &size = parts.grid->size(), &bricks = parts.grid->bricks();
+  if (static_cast<std::uint64_t>(bricks.x) * static_cast<std::uint64_t>(bricks.y) *
+          static_cast<std::uint64_t>(bricks.z) >
+      kMostIndex) {
+    throw Error(fmt::format("voxels: {} x {} x {}, limited to 2^38 voxels on Vulkan devices (use the CPU)", size.x,
+                            size.y, size.z));
+  }
+  if (const std::uint64_t bytes = voxel_bytes_of(parts).size(); bytes > kMostIndex) {
+    throw Error(
+        fmt::format("voxels: {} x {} x {}, which is {:.1f} GiB for this march, limited to 4 GiB on Vulkan devices (use "
+                    "voxel-bricks or the CPU)",
+                    size.x, size.y, size.z, static_cast<double>(bytes) / (1 << 30)));
+  }
 }
 
 // Uploads from a byte to another of a block; both are widened to words, which `data` must have.
@@ -72,8 +102,10 @@ void upload_part(const DeviceBuffer& to, std::uint64_t offset, std::span<const s
 // The contents of a grid's blocks.
 struct DeviceVoxels::Image {
   std::size_t grid;
+  std::vector<std::uint32_t> first_data;
   std::vector<glsl::ScarpVoxelPage> page_data;
   std::vector<std::uint32_t> entry_data;
+  std::vector<std::uint64_t> sector_data;
   std::array<std::span<const std::byte>, kBlocks> blocks;
 
   Image(std::size_t index, Grid& to, const MarchedGrid& parts) : grid(index) {
@@ -92,25 +124,24 @@ struct DeviceVoxels::Image {
       const auto words = voxels.packed_entries(i).words;
       if (!words.empty()) std::memcpy(entry_data.data() + to.slots[i].first, words.data(), words.size_bytes());
     }
-    blocks[first_masks] = std::as_bytes(voxels.first_masks());
+    first_data = values_of(voxels.page_table());
+    blocks[first_masks] = std::as_bytes(std::span(first_data));
     blocks[masks] = std::as_bytes(voxels.masks());
     if (voxels.coloured_masks().data() != voxels.masks().data())
       blocks[coloured] = std::as_bytes(voxels.coloured_masks());
     blocks[pages] = std::as_bytes(std::span(page_data));
     blocks[entries] = std::as_bytes(std::span(entry_data));
-    blocks[marks] = marks_of(parts);
+    blocks[marks] = voxel_bytes_of(parts);
+    if (parts.bricks) {
+      sector_data = values_of(parts.bricks->levels()[0].masks);
+      blocks[marks] = std::as_bytes(std::span(sector_data));
+    }
   }
 };
 
 DeviceVoxels::DeviceVoxels(const Device& device, std::span<const MarchedGrid> grids)
     : device_(device), grids_(grids.size()), layout_(grids.size()) {
-  for (const MarchedGrid& of : grids) {
-    const ivec3& size = of.grid->size();
-    if (std::max({size.x, size.y, size.z}) > glsl::kScarpMostVoxels) {
-      throw Error(fmt::format("voxels: {} x {} x {}, limited to {} per side on Vulkan devices (use the CPU)", size.x,
-                              size.y, size.z, glsl::kScarpMostVoxels));
-    }
-  }
+  for (const MarchedGrid& of : grids) require_size(of);
   header_ = std::make_unique<DeviceBuffer>(
       device, std::max<std::size_t>(grids.size(), 1) * sizeof(glsl::ScarpVoxelGrid), "the voxels' layout");
   // As many grids at a time as fit in one buffer.
@@ -192,7 +223,7 @@ void DeviceVoxels::set_layout(std::size_t index, const MarchedGrid& parts) {
   to.high = parts.box.high;
   to.entry_bits = static_cast<std::uint32_t>(voxels.entry_bits());
   to.march = march_of(parts);
-  to.octant_bytes = parts.octants ? static_cast<std::uint32_t>(marks_of(parts).size() / 8) : 0;
+  to.octant_bytes = parts.octants ? static_cast<std::uint32_t>(voxel_bytes_of(parts).size() / 8) : 0;
   to.none = 0;
 }
 
@@ -232,7 +263,7 @@ void DeviceVoxels::update(std::size_t index, const MarchedGrid& parts, const Vox
   bool fits = voxels.masks().size_bytes() <= grid.places[masks].room && had_coloured == has_coloured &&
               voxels.masks().size() / VoxelGrid::kPageBricks * sizeof(glsl::ScarpVoxelPage) <= grid.places[pages].room;
   std::set<std::size_t> stored;
-  for (const std::size_t page : of_grid) stored.insert(voxels.first_masks()[page] / VoxelGrid::kPageBricks);
+  for (const std::size_t page : of_grid) stored.insert(voxels.page_table()[page] / VoxelGrid::kPageBricks);
   for (const std::size_t page : stored) fits = fits && grow(grid, parts, page);
   if (!fits) {
     place(index, parts);
@@ -242,9 +273,13 @@ void DeviceVoxels::update(std::size_t index, const MarchedGrid& parts, const Vox
       const Place& place = grid.places[block];
       upload_part(*place.buffer, place.offset, data, begin, end);
     };
-    if (!of_grid.empty()) {
-      upload_block(first_masks, std::as_bytes(voxels.first_masks()), 4 * *of_grid.begin(), 4 * (*of_grid.rbegin() + 1));
-    }
+    // Entries [begin, end) of a block that is a table on the CPU.
+    const auto upload_table = [&](Block block, const auto& table, std::size_t begin, std::size_t end) {
+      const auto values = values_of(table, begin, end);
+      const Place& place = grid.places[block];
+      upload(*place.buffer, place.offset + begin * sizeof(values[0]), values.data(), values.size() * sizeof(values[0]));
+    };
+    if (!of_grid.empty()) upload_table(first_masks, voxels.page_table(), *of_grid.begin(), *of_grid.rbegin() + 1);
     constexpr std::uint64_t kMaskBytes = 8 * VoxelGrid::kPageBricks;
     for (auto at = stored.begin(); at != stored.end();) {
       const std::size_t begin = *at;
@@ -265,10 +300,13 @@ void DeviceVoxels::update(std::size_t index, const MarchedGrid& parts, const Vox
       upload(*place.buffer, place.offset + begin * sizeof(of_pages[0]), of_pages.data(),
              of_pages.size() * sizeof(of_pages[0]));
     }
-    const std::span<const std::byte> data = marks_of(parts);
+    const std::span<const std::byte> data = voxel_bytes_of(parts);
     if (parts.bricks && !inside.empty()) {
-      // A few bytes: a mask per sector.
-      upload_block(marks, data, 0, data.size());
+      const BrickMasks::Level& sectors = parts.bricks->levels()[0];
+      constexpr int kSectorBits = 4;  // 2^4 voxels a side
+      const ivec3 low = inside.low >> kSectorBits, high = (inside.high - 1) >> kSectorBits;
+      for (int z = low.z; z <= high.z; ++z)
+        upload_table(marks, sectors.masks, sectors.index({low.x, low.y, z}), sectors.index({high.x, high.y, z}) + 1);
     } else if (const VoxelBox part = intersection(region, voxels.box()); !data.empty() && !part.empty()) {
       const ivec3& size = voxels.size();
       const auto row = static_cast<std::uint64_t>(size.x), slab = row * static_cast<std::uint64_t>(size.y);

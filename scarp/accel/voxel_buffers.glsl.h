@@ -26,9 +26,6 @@ const uint kScarpVoxelOctants = 3u;
 const uint kScarpVoxelBricks = 4u;
 const uint kScarpVoxelMarches = 5u;  ///< their number
 
-/// Voxels per side of the largest grids: distances fit in 32 bits (voxel_wide.glsl.h).
-const int kScarpMostVoxels = 2048;
-
 /// Entries of a page of 64 bricks.
 struct ScarpVoxelPage {
   uint first_word;  ///< of the entries
@@ -103,7 +100,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Vox
 
 // The index of a brick's mask.
 uint voxel_mask_index(ScarpVoxelGrid grid, ivec3 brick) {
-  uint index = uint(brick.x + grid.bricks.x * (brick.y + grid.bricks.y * brick.z));
+  uvec3 at = uvec3(brick), bricks = uvec3(grid.bricks);
+  uint index = at.x + bricks.x * (at.y + bricks.y * at.z);
   return VoxelWords(grid.first_masks).words[index >> 6] + (index & 63u);
 }
 uvec2 voxel_mask(ScarpVoxelGrid grid, ivec3 brick) {

@@ -164,7 +164,7 @@ TEST_F(SceneVoxelsOnDevice, EmptyOnesAreMissed) {
 }
 
 TEST_F(SceneVoxelsOnDevice, RefuseGridsThatAreTooLarge) {
-  VoxelGrid grid({glsl::kScarpMostVoxels + 1, 1, 1}, 1);
+  VoxelGrid grid({16384, 16384, 1028}, 1);
   grid.set({0, 0, 0}, 1);
   const auto model = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-bricks"));
   try {
@@ -172,8 +172,8 @@ TEST_F(SceneVoxelsOnDevice, RefuseGridsThatAreTooLarge) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
-                 "scene: field 0 (voxels): voxels: 2049 x 1 x 1, limited to 2048 per side on Vulkan devices (use the "
-                 "CPU)");
+                 "scene: field 0 (voxels): voxels: 16384 x 16384 x 1028, limited to 2^38 voxels on Vulkan devices (use "
+                 "the CPU)");
   }
 }
 

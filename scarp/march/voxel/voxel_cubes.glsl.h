@@ -15,7 +15,7 @@ uint scarp_voxel_byte(const ivec3& voxel, uint octant);
 
 /// Both cubes end that many planes ahead of the voxel along every axis, whichever way the ray goes.
 SCARP_FN bool scarp_cubes_turn(SCARP_INOUT(ScarpVoxelWalk) walk, SCARP_OUT(bool) solid) {
-  int side = int(scarp_voxel_byte(walk.voxel, walk.back));
+  int side = int(scarp_voxel_byte(walk.voxel, walk.back & 7u));
   solid = side == 0;
   bool inside = false;
   if (side == 1) {

@@ -11,7 +11,7 @@ const uint kScarpSolidSphere = 255u;  ///< EmptySpheres::kSolid
 
 /// `travel_per_voxel` is scarp_travel_per_voxel() of the ray.
 SCARP_FN bool scarp_spheres_turn(SCARP_INOUT(ScarpVoxelWalk) walk, uint travel_per_voxel, SCARP_OUT(bool) solid) {
-  uint radius = scarp_voxel_byte(walk.voxel, walk.back);
+  uint radius = scarp_voxel_byte(walk.voxel, walk.back & 7u);
   solid = radius == kScarpSolidSphere;
   bool inside = false;
   if (!solid) inside = scarp_voxel_travel(walk, radius, travel_per_voxel);

@@ -3,6 +3,8 @@
 // voxels. Text of C++ and of GLSL.
 //
 // Instead of comparing voxels with the box, it counts how many planes of each axis are left until the ray leaves it.
+//
+// Distances fit in 32 bits however far the ray goes: they begin again after every 256 voxels (scarp_voxel_rebase()).
 #ifndef SCARP_MARCH_VOXEL_WALK_GLSL_H
 #define SCARP_MARCH_VOXEL_WALK_GLSL_H
 
@@ -10,15 +12,17 @@
 
 SCARP_GLSL_BEGIN
 
-/// A quantised ray in a box. `back` has a bit per axis that it travels in the negative direction.
+/// A quantised ray in a box.
 struct ScarpVoxelWalk {
   ivec3 voxel;
   ivec3 left;  ///< planes to cross until it leaves the box, the last one included; 0 or less outside
-  uvec3 next;  ///< distance to the next plane in 2^-20 voxel; any positive number if speed is 0
+  uvec3 next;  ///< distance to the next plane in 2^-20 voxel, from where distances began; any if speed is 0
   uvec3 speed;
-  uint back;
-  int axis;  ///< crossed last; -1: none
+  uint back;  ///< bits 0 to 2: axes along which it travels in the negative direction; above: how often rebased
+  int axis;   ///< crossed last; -1: none
 };
+
+const uint kScarpBackBits = 3u;
 
 SCARP_FN int scarp_voxel_step(uint back, int axis) { return (back >> uint(axis) & 1u) != 0u ? -1 : 1; }
 
@@ -35,10 +39,20 @@ SCARP_FN void scarp_voxel_advance(SCARP_INOUT(ScarpVoxelWalk) walk, int axis, ui
   walk.left[axis] -= int(planes);
 }
 
+/// Measures distances from a later point of the ray, where it has gone 2^28 units along its longest axis and, exactly,
+/// speed[i] units along each: the order of planes is the same from there. A turn brings the next plane at most as far.
+SCARP_FN void scarp_voxel_rebase(SCARP_INOUT(ScarpVoxelWalk) walk) {
+  if (walk.next.x >= walk.speed.x && walk.next.y >= walk.speed.y && walk.next.z >= walk.speed.z) {
+    walk.next -= walk.speed;
+    walk.back += 1u << kScarpBackBits;
+  }
+}
+
 /// Crosses the next plane. Returns false if that leaves the box.
 SCARP_FN bool scarp_voxel_cross(SCARP_INOUT(ScarpVoxelWalk) walk) {
   walk.axis = scarp_first_plane(walk.next, walk.speed);
   scarp_voxel_advance(walk, walk.axis, 1u);
+  scarp_voxel_rebase(walk);
   return walk.left[walk.axis] > 0;
 }
 
@@ -57,6 +71,7 @@ SCARP_FN bool scarp_voxel_leave(SCARP_INOUT(ScarpVoxelWalk) walk, ivec3 part) {
     scarp_voxel_advance(walk, i, planes);
   }
   walk.axis = axis;
+  scarp_voxel_rebase(walk);
   return walk.left[axis] > 0;
 }
 
@@ -83,11 +98,15 @@ SCARP_FN bool scarp_voxel_travel(SCARP_INOUT(ScarpVoxelWalk) walk, uint voxels, 
       inside = inside && walk.left[i] > 0;
     }
   }
+  scarp_voxel_rebase(walk);
   return inside;
 }
 
-/// Distance of the last plane crossed along walk.axis, which must not be -1.
-SCARP_FN uint scarp_voxel_distance(ScarpVoxelWalk walk) { return walk.next[walk.axis] - kScarpVoxelPlaces; }
+/// Distance of the last plane crossed along walk.axis, which must not be -1, from the entry into the box: two words.
+SCARP_FN uvec2 scarp_voxel_distance(ScarpVoxelWalk walk) {
+  uvec2 rebased = scarp_words_product(walk.back >> kScarpBackBits, walk.speed[walk.axis]);
+  return scarp_words_minus(scarp_words_plus(rebased, walk.next[walk.axis]), uvec2(kScarpVoxelPlaces, 0u));
+}
 
 /// The time at the current voxel, given that at the entry into the box.
 SCARP_FN double scarp_voxel_time(ScarpVoxelWalk walk, double t_entered, double t_per_s) {

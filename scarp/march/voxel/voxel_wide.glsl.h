@@ -8,7 +8,7 @@
 //
 // and shaders with 64-bit integers define SCARP_INT64. Text of C++ and of GLSL.
 //
-// Distances are below 2^32 and speeds at most 2^28 (voxel_ray.h), so products are below 2^60.
+// Distances are at most 2^31 and speeds at most 2^28, so products are below 2^60.
 #ifndef SCARP_MARCH_VOXEL_WIDE_GLSL_H
 #define SCARP_MARCH_VOXEL_WIDE_GLSL_H
 
@@ -50,6 +50,7 @@ SCARP_FN uvec2 scarp_words_product(uint a, uint b) {
   return uvec2(low, high);
 }
 SCARP_FN uvec2 scarp_words_minus(uvec2 a, uvec2 b) { return uvec2(a.x - b.x, a.y - b.y - (a.x < b.x ? 1u : 0u)); }
+SCARP_FN uvec2 scarp_words_plus(uvec2 a, uint b) { return uvec2(a.x + b, a.y + (a.x + b < b ? 1u : 0u)); }
 
 /// Returns whether plane a comes before plane b: distance_a / speed_a < distance_b / speed_b.
 SCARP_FN bool scarp_plane_before(uint distance_a, uint speed_a, uint distance_b, uint speed_b) {
@@ -61,7 +62,7 @@ SCARP_FN bool scarp_plane_before(uint distance_a, uint speed_a, uint distance_b,
 }
 
 /// Returns the number of planes next / other, (next + 2^20) / other, ... that come no later than distance / speed; if
-/// `after` is 1, those at the same place come later. `slowness` is 1 / speed. There are less than 2^12.
+/// `after` is 1, those at the same place come later. `slowness` is 1 / speed. There are less than 2^9.
 SCARP_FN uint scarp_planes_until(uint distance, uint speed, float slowness, uint next, uint other, uint after) {
   // (distance other - next speed - after) / 2^20, rounded down: below 2^40.
   uint low = 0u, high = 0u;
@@ -83,7 +84,7 @@ SCARP_FN uint scarp_planes_until(uint distance, uint speed, float slowness, uint
     low = ahead.x >> 20 | ahead.y << 12;
     high = ahead.y >> 20;
   }
-  // The quotient is below 2^12 and off by less than 2^12 * 2^-21, so the remainder fits in one word.
+  // The quotient is below 2^9 and off by less than 2^9 * 2^-21, so the remainder fits in one word.
   uint planes = uint(any ? (float(high) * 4294967296.0f + float(low)) * slowness : 0.0f);
   int rest = int(low - planes * speed);
   planes += 1u - (rest < 0 ? 1u : 0u) + (rest >= int(speed) ? 1u : 0u);
@@ -117,7 +118,7 @@ SCARP_FN uint scarp_planes_before(uint until, uint next, uint speed) {
 }
 
 // Quotients in double, rounded as on the CPU: drivers divide doubles with errors of some units. A quotient is corrected
-// until its remainder, an exact integer, is less than half the divisor. (A quotient of two integers below 2^32, or of 1
+// until its remainder, an exact integer, is less than half the divisor. (A quotient of two integers below 2^53, or of 1
 // and a double, never lies halfway between two doubles.)
 
 /// Returns the double next to x, away from 0 or towards it. Not for 0.
@@ -128,7 +129,7 @@ SCARP_FN double scarp_next_double(double x, bool away) {
   return packDouble2x32(uvec2(low, words.y + carry));
 }
 
-/// Returns a / b for a, b > 0, given a quotient that is off by at most 3 units.
+/// Returns a / b for a, b > 0, given the low word of a and a quotient that is off by at most 3 units.
 SCARP_FN double scarp_corrected_ratio(double ratio, uint a, uint b) {
   SCARP_DONT_UNROLL for (int turn = 0; turn < 4; ++turn) {
     // ratio = mantissa 2^-shift; the remainder a 2^shift - mantissa b fits in a word.
@@ -163,9 +164,10 @@ SCARP_FN double scarp_corrected_inverse(double inverse, double x) {
   return inverse;
 }
 
-/// Returns a / b for b > 0.
-SCARP_FN double scarp_exact_ratio(uint a, uint b) {
-  return a == 0u ? double(0.0f) : scarp_corrected_ratio(double(a) / double(b), a, b);
+/// Returns a / b for b > 0; a, in two words, is below 2^52.
+SCARP_FN double scarp_exact_ratio(uvec2 a, uint b) {
+  if ((a.x | a.y) == 0u) return double(0.0f);
+  return scarp_corrected_ratio((double(a.y) * double(4294967296.0f) + double(a.x)) / double(b), a.x, b);
 }
 
 /// Returns 1 / x, and infinity with the sign of x for 0.

@@ -66,22 +66,24 @@ struct Asked {
 
   Asked(const Model& model, Random& random) {
     for (const VoxelRayKind& kind : spiteful_voxel_rays()) {
-      for (int i = 0; i < kRaysOfKind; ++i) add(kind.make(model.grid, random), model);
+      for (int i = 0; i < kRaysOfKind; ++i) add(kind.make(model.grid, random), model.target(), "voxel-planes");
     }
     for (std::size_t i = 0; i < rays.size(); ++i) from.push_back(starts[i] ? &starts[i] : nullptr);
   }
+  Asked(const std::vector<VoxelRay>& given, const VoxelTarget& target) : from(given.size()) {
+    for (const VoxelRay& ray : given) add(ray, target, "voxel-bricks");
+  }
 
  private:
-  void add(const VoxelRay& given, const Model& model) {
+  void add(const VoxelRay& given, const VoxelTarget& target, const char* march) {
     const Ray ray{.origin = given.origin, .direction = given.direction, .t_min = given.t_min, .t_max = given.t_max};
     const double longest = longest_of(ray.direction);
     const int exponent = is_usual(longest) ? 0 : std::ilogb(longest);
     const Ray usual = exponent == 0 ? ray : scaled_down(ray, exponent);
     VoxelHit hit;
     const auto quantised =
-        quantise(VoxelRay{usual.origin, usual.direction, usual.t_min, usual.t_max, given.start_voxel}, model.box);
-    if (quantised && is_direction(longest))
-      hit = find_voxel_march("voxel-planes").cpu(model.target(), *quantised, nullptr);
+        quantise(VoxelRay{usual.origin, usual.direction, usual.t_min, usual.t_max, given.start_voxel}, target.box);
+    if (quantised && is_direction(longest)) hit = find_voxel_march(march).cpu(target, *quantised, nullptr);
     if (hit) hit.t = std::ldexp(hit.t, -exponent);
     rays.push_back(ray);
     Hit start;
@@ -187,6 +189,50 @@ TEST_F(VoxelsOnDevice, TakeEdits) {
       judge(queries, DeviceVoxelObjects(device(), grids, 0), asked, false, fmt::format("{}, edit {}", name, i));
     }
     judge(queries, DeviceVoxelObjects(device(), grids, 1), Asked(still, random), false, name);
+  }
+}
+
+// Boxes of 2^34 voxels, whose tables are in chunks on the CPU; rays from one end to the other.
+TEST_F(VoxelsOnDevice, AnswerInWorlds) {
+  constexpr int kSide = VoxelGrid::kMaxSide, kHeight = 64;
+  constexpr int kRays = 200;
+  VoxelGrid grid({kSide, kSide, kHeight}, 4);
+  BrickMasks bricks(grid);
+  const auto build = [&](const VoxelBox& box, std::uint32_t entry) {
+    const VoxelBox changed = grid.fill(box, entry);
+    bricks.update(grid, changed);
+    return changed;
+  };
+  build({{kSide - 40, kSide - 40, 0}, {kSide, kSide, kHeight}}, 3);
+  build({{0, 0, 8}, {40, 40, kHeight - 8}}, 5);
+  VoxelTarget target{&grid, grid.box()};
+  target.bricks = &bricks;
+  Random random(9);
+  std::vector<VoxelRay> rays;
+  for (int i = 0; i < kRays; ++i) {
+    const dvec3 to(uniform(random, kSide - 48, kSide), uniform(random, kSide - 48, kSide), uniform(random, 0, kHeight));
+    const dvec3 from(uniform(random, -50, 10), uniform(random, -50, 10),
+                     to.z + std::ldexp(uniform(random, -1, 1), -i % 24));
+    rays.push_back(i % 2 ? VoxelRay{from, to - from} : VoxelRay{to, from - to});
+  }
+  DeviceVoxelQueries queries(device(), {.rays_at_once = 4096}), words(device(), {.rays_at_once = 4096, .words = true});
+  for (const char* name : {"voxel-bricks", "voxel-planes"}) {
+    MarchedGrid parts{&grid, grid.box()};
+    if (find_voxel_march(name).accelerator == VoxelAccelerator::bricks) parts.bricks = &bricks;
+    DeviceVoxels grids(device(), std::vector{parts});
+    const DeviceVoxelObjects objects(device(), grids, 0);
+    const Asked asked(rays, target);
+    EXPECT_GT(asked.hits, kRays / 2);
+    judge(queries, objects, asked, false, name);
+    judge(words, objects, asked, false, fmt::format("{}, words", name));
+    // A wall across the middle, then a gap in it.
+    const VoxelBox wall = build({{8000, 0, 0}, {8001, kSide, kHeight}}, 7);
+    grids.update(0, parts, wall, wall);
+    judge(queries, objects, Asked(rays, target), false, fmt::format("{}, wall", name));
+    const VoxelBox gap = grid.clear(wall);
+    bricks.update(grid, gap);
+    grids.update(0, parts, gap, gap);
+    judge(queries, objects, asked, false, fmt::format("{}, no wall", name));
   }
 }
 
