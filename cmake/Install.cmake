@@ -53,11 +53,13 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/scarp-config.cmake ${CMAKE_CURRENT_BIN
 set(shader_folder ${CMAKE_INSTALL_DATADIR}/scarp/glsl)
 set(marches_as_text height/max_mip height/height_marches)
 set(function_marches_as_text function/function_marches function/lipschitz_local shape/sphere_trace)
-set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/ground_buffers.glsl.h scarp/accel/function_buffers.glsl.h
+set(shader_texts scarp/vk/glsl_cpp.h scarp/accel/voxel_marks.glsl.h scarp/accel/ground_buffers.glsl.h scarp/accel/function_buffers.glsl.h
     scarp/accel/shape_buffers.glsl.h)
 foreach(name ${marches_as_text} ${function_marches_as_text} naive fixed_step relaxed lipschitz
         march_state sampling sampling_marches two_float ray_states height/ray_frame height/float_ray height/two_float_ray
         height/cell_surface height/surface_normal height/height_probe height/max_mip_easy height/textures function/noise function/function_heights
+        voxel/voxel_wide voxel/voxel_walk voxel/voxel_planes voxel/voxel_spheres voxel/voxel_cubes voxel/voxel_bricks
+        voxel/voxel_marches voxel/voxel_double voxel/voxel_quantise voxel/voxel_float_ray voxel/voxel_textures
         function/function_bounds function/function_frame shape/shape_distance shape/shape_grounds)
   list(APPEND shader_texts scarp/march/${name}.glsl.h)
 endforeach()
@@ -67,10 +69,14 @@ foreach(text IN LISTS shader_texts)
 endforeach()
 set(flat_texts "")
 list(TRANSFORM shader_texts PREPEND ${PROJECT_SOURCE_DIR}/ OUTPUT_VARIABLE all_texts)
-foreach(name IN LISTS marches_as_text function_marches_as_text ITEMS height/max_mip_easy height/textures)
+foreach(name IN LISTS marches_as_text function_marches_as_text ITEMS height/max_mip_easy height/textures
+        voxel/voxel_marches voxel/voxel_textures)
   set(files ${PROJECT_SOURCE_DIR}/scarp/march/${name}.glsl.h)
   if(name IN_LIST marches_as_text)
     string(PREPEND files ${PROJECT_SOURCE_DIR}/scarp/march/height/float_ray.glsl.h,)
+  endif()
+  if(name STREQUAL voxel/voxel_marches)
+    set(files ${PROJECT_SOURCE_DIR}/scarp/march/voxel/voxel_float_ray.glsl.h)
   endif()
   cmake_path(GET name FILENAME flat_name)
   set(flat ${PROJECT_BINARY_DIR}/glsl/${flat_name}.glsl)

@@ -67,22 +67,16 @@ std::vector<T> values_of(const SparseTable<T>& table) {
   return values_of(table, 0, table.size());
 }
 
-// Shaders count bricks, and the bytes of an accelerator, in 32 bits.
-constexpr std::uint64_t kMostIndex = std::uint64_t{1} << 32;
+// Shaders count bricks in 32 bits.
+constexpr std::uint64_t kMostBricks = std::uint64_t{1} << 32;
 
 void require_size(const MarchedGrid& parts) {
   const ivec3 &size = parts.grid->size(), &bricks = parts.grid->bricks();
   if (static_cast<std::uint64_t>(bricks.x) * static_cast<std::uint64_t>(bricks.y) *
           static_cast<std::uint64_t>(bricks.z) >
-      kMostIndex) {
+      kMostBricks) {
     throw Error(fmt::format("voxels: {} x {} x {}, limited to 2^38 voxels on Vulkan devices (use the CPU)", size.x,
                             size.y, size.z));
-  }
-  if (const std::uint64_t bytes = voxel_bytes_of(parts).size(); bytes > kMostIndex) {
-    throw Error(
-        fmt::format("voxels: {} x {} x {}, which is {:.1f} GiB for this march, limited to 4 GiB on Vulkan devices (use "
-                    "voxel-bricks or the CPU)",
-                    size.x, size.y, size.z, static_cast<double>(bytes) / (1 << 30)));
   }
 }
 

@@ -41,8 +41,8 @@ struct MarchedGrid {
 /// Voxel grids in device memory.
 class DeviceVoxels {
  public:
-  /// Copies the grids. Throws Error if one has more than 2^38 voxels in its box or more than 4 GiB of an accelerator
-  /// with bytes per voxel, or if the device lacks memory (stating the needed and the available size).
+  /// Copies the grids. Throws Error if one has more than 2^38 voxels in its box, or if the device lacks memory
+  /// (stating the needed and the available size).
   DeviceVoxels(const Device& device, std::span<const MarchedGrid> grids);
 
   /// Updates grid `index` after an edit that returned `changed`; the accelerator may have changed in `marks`. Copies

@@ -10,6 +10,7 @@
 #ifndef SCARP_ACCEL_VOXEL_BUFFERS_GLSL_H
 #define SCARP_ACCEL_VOXEL_BUFFERS_GLSL_H
 
+#include "scarp/accel/voxel_marks.glsl.h"
 #include "scarp/vk/glsl_cpp.h"
 
 #ifdef __cplusplus
@@ -17,14 +18,6 @@
 #endif
 
 SCARP_GLSL_BEGIN
-
-// Marches, which decide what the marks are.
-const uint kScarpVoxelPlanes = 0u;
-const uint kScarpVoxelSpheres = 1u;
-const uint kScarpVoxelCubes = 2u;
-const uint kScarpVoxelOctants = 3u;
-const uint kScarpVoxelBricks = 4u;
-const uint kScarpVoxelMarches = 5u;  ///< their number
 
 /// Entries of a page of 64 bricks.
 struct ScarpVoxelPage {

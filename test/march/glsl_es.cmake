@@ -57,6 +57,16 @@ string(REPLACE "// The marches ask the textures for their ground.\n" "MARCHES" s
 paste("${shader}" "MARCHES" "textures.glsl;max_mip.glsl;height_marches.glsl;max_mip_easy.glsl" ${WORK}/pasted.frag)
 check(${WORK}/pasted.frag TRUE)
 
+# The voxel marches, as the library's document shows them.
+string(REGEX MATCH "\n```glsl\n(#version 300 es\n[^`]*// here the text of (voxel_[a-z_.]+), then that of (voxel_[a-z_.]+)\n[^`]*)```\n"
+       ignored "${document}")
+if(NOT CMAKE_MATCH_1)
+  message(FATAL_ERROR "doc/library/glsl.md does not show a shader of voxels")
+endif()
+paste("${CMAKE_MATCH_1}" "// here the text of ${CMAKE_MATCH_2}, then that of ${CMAKE_MATCH_3}\n" "${CMAKE_MATCH_2};${CMAKE_MATCH_3}"
+      ${WORK}/pasted.frag)
+check(${WORK}/pasted.frag TRUE)
+
 # The march over a function, here of one instruction.
 file(READ ${FLAT}/lipschitz_local.glsl march)
 file(WRITE ${WORK}/pasted.frag "#version 300 es

@@ -42,6 +42,7 @@ SCARP_FN ivec3 scarp_planes_of_block(ScarpVoxelWalk walk, int level) {
   return planes;
 }
 
+/// Advances by one step and returns whether the ray is still in the box, or sets `solid`.
 SCARP_FN bool scarp_bricks_turn(SCARP_INOUT(ScarpVoxelWalk) walk, SCARP_OUT(bool) solid) {
   ivec3 brick = ivec3(walk.voxel.x >> 2, walk.voxel.y >> 2, walk.voxel.z >> 2);
   uint bit = scarp_voxel_bit(walk.voxel);

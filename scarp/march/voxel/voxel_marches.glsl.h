@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The loop of all voxel marches in shaders. Text of C++ and of GLSL. The host defines what the
+// The loop of all voxel marches in shaders. Text of C++ and of GLSL, GLSL ES 3.0 included. The host defines what the
 // marches ask for (voxel_planes.glsl.h, voxel_cubes.glsl.h, voxel_bricks.glsl.h).
 #ifndef SCARP_MARCH_VOXEL_MARCHES_GLSL_H
 #define SCARP_MARCH_VOXEL_MARCHES_GLSL_H
 
-#include "scarp/accel/voxel_buffers.glsl.h"
+#include "scarp/accel/voxel_marks.glsl.h"
 #include "scarp/march/voxel/voxel_bricks.glsl.h"
 #include "scarp/march/voxel/voxel_cubes.glsl.h"
 #include "scarp/march/voxel/voxel_planes.glsl.h"

@@ -12,8 +12,8 @@
 
 #include "scarp/march/voxel/voxel_batch.glsl.h"
 #include "scarp/march/voxel/voxel_boxes.glsl.h"
+#include "scarp/march/voxel/voxel_double.glsl.h"
 #include "scarp/march/voxel/voxel_marches.glsl.h"
-#include "scarp/march/voxel/voxel_quantise.glsl.h"
 
 // A ray on its way.
 struct VoxelQuery {

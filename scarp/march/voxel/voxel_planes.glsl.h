@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `voxel-planes` in shaders (voxel_planes.h). Text of C++ and of GLSL. The host defines scarp_voxel_mask().
+// `voxel-planes` in shaders (voxel_planes.h). Text of C++ and of GLSL, GLSL ES 3.0 included. The host defines
+// scarp_voxel_mask().
 #ifndef SCARP_MARCH_VOXEL_PLANES_GLSL_H
 #define SCARP_MARCH_VOXEL_PLANES_GLSL_H
 
@@ -16,6 +17,7 @@ uvec2 scarp_voxel_mask(const ivec3& brick);
 SCARP_FN uint scarp_voxel_bit(ivec3 voxel) {
   return uint(voxel.x & 3) | uint(voxel.y & 3) << 2 | uint(voxel.z & 3) << 4;
 }
+/// Returns whether a bit is set.
 SCARP_FN bool scarp_mask_has(uvec2 mask, uint bit) { return ((bit < 32u ? mask.x : mask.y) >> (bit & 31u) & 1u) != 0u; }
 
 /// Advances by one step and returns whether the ray is still in the box, or sets `solid`.

@@ -12,8 +12,8 @@
 #ifndef SCARP_MARCH_VOXEL_PROXIES_GLSL_H
 #define SCARP_MARCH_VOXEL_PROXIES_GLSL_H
 
+#include "scarp/march/voxel/voxel_double.glsl.h"
 #include "scarp/march/voxel/voxel_rays.glsl.h"
-#include "scarp/march/voxel/voxel_wide.glsl.h"
 
 SCARP_GLSL_BEGIN
 

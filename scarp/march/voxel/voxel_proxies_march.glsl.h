@@ -13,9 +13,9 @@ uvec2 scarp_voxel_mask(ivec3 brick);
 uvec2 scarp_voxel_sector(ivec3 sector);
 uint scarp_voxel_byte(ivec3 voxel, uint octant);
 
+#include "scarp/march/voxel/voxel_double.glsl.h"
 #include "scarp/march/voxel/voxel_marches.glsl.h"
 #include "scarp/march/voxel/voxel_proxies.glsl.h"
-#include "scarp/march/voxel/voxel_quantise.glsl.h"
 
 // Specialisation constants of all shaders of proxies.
 layout(constant_id = 0) const uint proxy_march = kScarpVoxelMarches;

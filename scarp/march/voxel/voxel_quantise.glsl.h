@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Quantises a ray where it enters a box of voxels: voxel_ray.cpp in shaders, in double, with the same operations in the
-// same order, one axis at a time. Text of C++ and of GLSL with float64.
+// Quantises a ray where it enters a box of voxels: voxel_ray.cpp in shaders, with the same operations in the same
+// order, one axis at a time. Text of C++ and of GLSL. `scarp_real` is double, as on the CPU (voxel_double.glsl.h), or
+// float where a shader has no float64 (voxel_float_ray.glsl.h); these include this text.
 //
 // Hosts keep what a ray has for each axis in memory and call these functions for the axes x, y, z in turn: doubles take
 // two registers each, and a shader has few.
@@ -16,47 +17,37 @@
 
 SCARP_GLSL_BEGIN
 
-SCARP_FN double scarp_magnitude(double x) { return x < double(0.0f) ? -x : x; }
-
-/// A component of grid_from_world * v, given its row.
-SCARP_FN double scarp_turned(dvec3 row, dvec3 v) {
-  SCARP_PRECISE double x = row.x * v.x;
-  SCARP_PRECISE double y = row.y * v.y;
-  SCARP_PRECISE double xy = x + y;
-  SCARP_PRECISE double z = row.z * v.z;
-  SCARP_PRECISE double sum = xy + z;
-  return sum;
-}
+SCARP_FN scarp_real scarp_magnitude(scarp_real x) { return x < scarp_real(0.0f) ? -x : x; }
 
 /// A component of the direction in 2^-28 of the longest one, given the least magnitude of inverse components.
-SCARP_FN uint scarp_voxel_speed(double given, double per_longest) {
-  SCARP_PRECISE double share = scarp_magnitude(given) * per_longest;
-  SCARP_PRECISE double units = share * double(268435456.0f) + double(0.5f);
-  return share <= double(1.0f) ? uint(units) : 0u;
+SCARP_FN uint scarp_voxel_speed(scarp_real given, scarp_real per_longest) {
+  SCARP_PRECISE scarp_real share = scarp_magnitude(given) * per_longest;
+  SCARP_PRECISE scarp_real units = share * scarp_real(268435456.0f) + scarp_real(0.5f);
+  return share <= scarp_real(1.0f) ? uint(units) : 0u;
 }
 /// t per unit of distance / speed.
-SCARP_FN double scarp_voxel_t_per_s(double per_longest) { return double(256.0f) * per_longest; }
+SCARP_FN scarp_real scarp_voxel_t_per_s(scarp_real per_longest) { return scarp_real(256.0f) * per_longest; }
 
 /// A ray that is clipped to a box, from t to t_out; begin with its range and entered = -1.
 struct ScarpVoxelClip {
-  double t;
-  double t_out;
+  scarp_real t;
+  scarp_real t_out;
   int entered;  ///< the axis along which it comes in; -1: it starts inside
 };
 
 /// Returns false if the ray misses the box. `start` is the place of the voxel where it starts, if `has_start`.
-SCARP_FN bool scarp_voxel_clip(int axis, double origin, double given, double inverse, int low, int high, bool has_start,
-                               int start, SCARP_INOUT(ScarpVoxelClip) clip) {
-  bool up = !(given < double(0.0f));
-  double from = double(up ? low : high), to = double(up ? high : low);
+SCARP_FN bool scarp_voxel_clip(int axis, scarp_real origin, scarp_real given, scarp_real inverse, int low, int high,
+                               bool has_start, int start, SCARP_INOUT(ScarpVoxelClip) clip) {
+  bool up = !(given < scarp_real(0.0f));
+  scarp_real from = scarp_real(up ? low : high), to = scarp_real(up ? high : low);
   bool met = true;
-  if (given == double(0.0f)) {
+  if (given == scarp_real(0.0f)) {
     met = origin >= from && origin < to;
   } else {
-    SCARP_PRECISE double before = from - origin;
-    SCARP_PRECISE double t_near = before * inverse;
-    SCARP_PRECISE double behind = to - origin;
-    SCARP_PRECISE double t_far = behind * inverse;
+    SCARP_PRECISE scarp_real before = from - origin;
+    SCARP_PRECISE scarp_real t_near = before * inverse;
+    SCARP_PRECISE scarp_real behind = to - origin;
+    SCARP_PRECISE scarp_real t_far = behind * inverse;
     bool outside = has_start && (up ? start < low : start >= high);
     met = !has_start || (up ? start < high : start >= low);
     if (outside || t_near >= clip.t) {
@@ -81,12 +72,12 @@ struct ScarpVoxelPlace {
 };
 
 /// Returns false if the ray only touches the box from outside.
-SCARP_FN bool scarp_voxel_place(int axis, double origin, double given, uint speed, int low, int high, bool has_start,
-                                int start, ScarpVoxelClip clip, SCARP_OUT(ScarpVoxelPlace) at) {
-  bool up = !(given < double(0.0f));
-  double bottom = double(low), top = double(high);
-  SCARP_PRECISE double way = clip.t * given;
-  SCARP_PRECISE double place = origin + way;
+SCARP_FN bool scarp_voxel_place(int axis, scarp_real origin, scarp_real given, uint speed, int low, int high,
+                                bool has_start, int start, ScarpVoxelClip clip, SCARP_OUT(ScarpVoxelPlace) at) {
+  bool up = !(given < scarp_real(0.0f));
+  scarp_real bottom = scarp_real(low), top = scarp_real(high);
+  SCARP_PRECISE scarp_real way = clip.t * given;
+  SCARP_PRECISE scarp_real place = origin + way;
   place = place > bottom ? place : bottom;
   place = place < top ? place : top;
   if (axis == clip.entered) {
@@ -96,14 +87,15 @@ SCARP_FN bool scarp_voxel_place(int axis, double origin, double given, uint spee
     at.voxel = start;
   } else {
     at.voxel = int(place);
-    if (!up && double(at.voxel) == place) at.voxel -= 1;
+    if (!up && scarp_real(at.voxel) == place) at.voxel -= 1;
   }
-  SCARP_PRECISE double distance = up ? (double(at.voxel) + double(1.0f)) - place : place - double(at.voxel);
-  SCARP_PRECISE double units = distance * double(1048576.0f) + double(0.5f);
+  SCARP_PRECISE scarp_real distance =
+      up ? (scarp_real(at.voxel) + scarp_real(1.0f)) - place : place - scarp_real(at.voxel);
+  SCARP_PRECISE scarp_real units = distance * scarp_real(1048576.0f) + scarp_real(0.5f);
   // A start voxel may be far from the place.
-  units = units > double(0.0f) ? units : double(0.0f);
-  units = units < double(1048576.0f) ? units : double(1048576.0f);
-  at.next = speed == 0u ? kScarpNever : uint(units);
+  units = units > scarp_real(0.0f) ? units : scarp_real(0.0f);
+  units = units < scarp_real(1048576.0f) ? units : scarp_real(1048576.0f);
+  at.next = speed == 0u ? kScarpNoPlane : uint(units);
   at.left = up ? high - at.voxel : at.voxel - low + 1;
   return at.voxel >= low && at.voxel < high;
 }

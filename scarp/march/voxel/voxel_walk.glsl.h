@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The path of a quantised ray from voxel to voxel in shaders: voxel_walk.h with the same integers, which gives the same
-// voxels. Text of C++ and of GLSL.
+// voxels. Text of C++ and of GLSL, GLSL ES 3.0 included.
 //
 // Instead of comparing voxels with the box, it counts how many planes of each axis are left until the ray leaves it.
 //
@@ -24,6 +24,7 @@ struct ScarpVoxelWalk {
 
 const uint kScarpBackBits = 3u;
 
+/// Returns 1 or -1: the ray's step along an axis.
 SCARP_FN int scarp_voxel_step(uint back, int axis) { return (back >> uint(axis) & 1u) != 0u ? -1 : 1; }
 
 /// Returns the axis of the first of three planes; of those at the same place the lowest one.
@@ -33,6 +34,7 @@ SCARP_FN int scarp_first_plane(uvec3 distance, uvec3 speed) {
   return scarp_plane_before(distance.z, speed.z, d, v) ? 2 : y_first ? 1 : 0;
 }
 
+/// Crosses planes of one axis.
 SCARP_FN void scarp_voxel_advance(SCARP_INOUT(ScarpVoxelWalk) walk, int axis, uint planes) {
   walk.next[axis] += planes << 20;
   walk.voxel[axis] += scarp_voxel_step(walk.back, axis) * int(planes);
@@ -108,16 +110,6 @@ SCARP_FN uvec2 scarp_voxel_distance(ScarpVoxelWalk walk) {
   return scarp_words_minus(scarp_words_plus(rebased, walk.next[walk.axis]), uvec2(kScarpVoxelPlaces, 0u));
 }
 
-/// The time at the current voxel, given that at the entry into the box.
-SCARP_FN double scarp_voxel_time(ScarpVoxelWalk walk, double t_entered, double t_per_s) {
-  SCARP_PRECISE double t = t_entered;
-  if (walk.axis >= 0) {
-    double ratio = scarp_exact_ratio(scarp_voxel_distance(walk), walk.speed[walk.axis]);
-    SCARP_PRECISE double later = ratio * t_per_s;
-    t = t_entered + later;
-  }
-  return t;
-}
 /// The face by which the current voxel was entered, given that by which the box was.
 SCARP_FN uint scarp_voxel_face(ScarpVoxelWalk walk, uint entered) {
   return walk.axis < 0 ? entered : 2u * uint(walk.axis) + (walk.back >> uint(walk.axis) & 1u);

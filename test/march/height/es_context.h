@@ -76,6 +76,20 @@ inline GLuint compiled(GLenum kind, const std::string& text) {
   return shader;
 }
 
+/// A texture in three dimensions of unsigned integers, one byte or two words per texel, for texelFetch.
+inline void fill_3d(GLenum unit, GLint format, const std::array<int, 3>& size, const void* texels) {
+  GLuint texture = 0;
+  glGenTextures(1, &texture);
+  glActiveTexture(GL_TEXTURE0 + unit);
+  glBindTexture(GL_TEXTURE_3D, texture);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  const bool words = format == GL_RG32UI;
+  glTexImage3D(GL_TEXTURE_3D, 0, format, size[0], size[1], size[2], 0, words ? GL_RG_INTEGER : GL_RED_INTEGER,
+               words ? GL_UNSIGNED_INT : GL_UNSIGNED_BYTE, texels);
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
 /// A texture of 32-bit floats for texelFetch; the unit is where the shader finds it.
 inline void fill(GLenum unit, GLint format, GLenum channels, const std::vector<TextureLevel>& levels) {
   GLuint texture = 0;
@@ -91,13 +105,13 @@ inline void fill(GLenum unit, GLint format, GLenum channels, const std::vector<T
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
 
-/// A fragment shader with three results of four floats.
+/// A fragment shader with three results of four floats, or of four words.
 class EsTest : public testing::Test {
  protected:
   static constexpr int kWidth = 16, kHeight = 16;
   static constexpr std::size_t kPixels = std::size_t{kWidth} * kHeight;
 
-  void use(const std::string& fragment_text) {
+  void use(const std::string& fragment_text, GLenum results = GL_RGBA32F) {
     program_ = glCreateProgram();
     glAttachShader(program_, compiled(GL_VERTEX_SHADER, kVertices));
     glAttachShader(program_, compiled(GL_FRAGMENT_SHADER, fragment_text));
@@ -112,7 +126,7 @@ class EsTest : public testing::Test {
     for (GLuint i = 0; i < targets.size(); ++i) {
       attachments[i] = GL_COLOR_ATTACHMENT0 + i;
       glBindTexture(GL_TEXTURE_2D, targets[i]);
-      glTexStorage2D(GL_TEXTURE_2D, 1, GL_RGBA32F, kWidth, kHeight);
+      glTexStorage2D(GL_TEXTURE_2D, 1, results, kWidth, kHeight);
       glFramebufferTexture2D(GL_FRAMEBUFFER, attachments[i], GL_TEXTURE_2D, targets[i], 0);
     }
     glDrawBuffers(attachments.size(), attachments.data());
@@ -125,6 +139,13 @@ class EsTest : public testing::Test {
     glReadBuffer(attachment);
     glReadPixels(0, 0, kWidth, kHeight, GL_RGBA, GL_FLOAT, pixels.data());
     return pixels;
+  }
+
+  static std::vector<GLuint> words_of(GLenum attachment) {
+    std::vector<GLuint> words(4 * kPixels);
+    glReadBuffer(attachment);
+    glReadPixels(0, 0, kWidth, kHeight, GL_RGBA_INTEGER, GL_UNSIGNED_INT, words.data());
+    return words;
   }
 
   EsContext context_;

@@ -15,8 +15,8 @@
 #include "scarp/accel/empty_spheres.h"
 #include "scarp/accel/octant_cubes.h"
 #include "scarp/march/voxel/voxel_ahead.h"
+#include "scarp/march/voxel/voxel_double.glsl.h"
 #include "scarp/march/voxel/voxel_marches.glsl.h"
-#include "scarp/march/voxel/voxel_quantise.glsl.h"
 #include "scarp/march/voxel/voxel_table.h"
 
 namespace scarp::glsl {
