@@ -129,6 +129,10 @@ struct SimtOptions {
   bool recount = false;        ///< with Vulkan: by the blocks as this build compiles them (simt_recount.h)
   std::string disassembly{};   ///< a folder for the disassemblies that are counted; empty: none
   std::string update{};        ///< a file to write the recounted table to, instead of tracing rays
+  bool voxels = false;         ///< instead: the marches of voxels, in pictures of the sets of voxel_sets.h
+  std::vector<std::string> voxel_sets{"standard", "degenerate", "far-wall"};
+  std::vector<int> voxel_layers{1, 16};  ///< of 1,024 objects
+  int voxel_stride = 4;                  ///< one tile of 8 x 8 pixels in stride x stride
 };
 void run_simt(const SimtOptions& options, const ReportOptions& report);
 

@@ -299,6 +299,7 @@ int run(int argc, char** argv) {
           "full: groups of 1920 x 1080 pixels and 2^20 rays for each other class; small: of 160 x 88 and 2^12, to see "
           "that all works")
       ->check(CLI::IsMember({"full", "small"}));
+  simt_command->add_flag("--voxels", simt.voxels, "instead: the voxel marches, in pictures of many objects");
   simt_command->add_option("--wrong-limit", simt.wrong_limit, "share of rays that naive may get wrong")
       ->check(number_in({0, 1}))
       ->capture_default_str();

@@ -296,6 +296,7 @@ void run_simt(const SimtOptions& options, const ReportOptions& report) {
   }
 #endif
   fmt::print("instructions by {}\n", shaders.compilers);
+  if (options.voxels) return run_simt_voxels(options, std::move(shaders), report);
   Comparison comparison(options, std::move(shaders));
   for (const int size : options.sizes) {
     FieldOptions field = options.field;

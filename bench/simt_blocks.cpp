@@ -34,15 +34,18 @@ std::vector<std::string> split(const std::string& text, char at) {
   return parts;
 }
 
-// "5 24-35": numbers of basic blocks, called one by one.
+// "5 24-35*3": numbers of basic blocks and how often each is run, called one by one.
 template <class Call>
 void each_of(const std::string& ranges, const Call& call) {
-  for (const std::string& range : split(ranges, ' ')) {
+  for (const std::string& written : split(ranges, ' ')) {
+    const std::string range = written.substr(0, written.find('*'));
+    const int turns =
+        range.size() == written.size() ? 1 : number(std::string_view(written).substr(range.size() + 1), "turns");
     const std::size_t dash = range.find('-');
     const int first = number(std::string_view(range).substr(0, dash), "basic blocks");
     const int last =
         dash == std::string::npos ? first : number(std::string_view(range).substr(dash + 1), "basic blocks");
-    for (int at = first; at <= last; ++at) call(at);
+    for (int at = first; at <= last; ++at) call(at, turns);
   }
 }
 
@@ -143,18 +146,18 @@ SimtShader count_blocks(const SimtShader& shader, std::string_view disassembly) 
     wrong += fmt::format("{}BB{} {}", wrong.empty() ? "" : ", ", at, what);
   };
   for (std::size_t block = 0; block < kSimtBlocks; ++block) {
-    each_of(shader.basic_blocks[block], [&](int at) {
+    each_of(shader.basic_blocks[block], [&](int at, int turns) {
       if (++used[at] == 2) is_wrong(at, "is in several blocks");
       // The compiler leaves out numbers.
       const auto basic = found.find(at);
       if (basic == found.end()) return;
-      counted.costs[block].instructions += basic->second.instructions;
-      counted.costs[block].vector += basic->second.vector;
-      counted.costs[block].memory += basic->second.memory;
+      counted.instructions += turns * basic->second.instructions;
+      counted.costs[block].instructions += turns * basic->second.instructions;
+      counted.costs[block].vector += turns * basic->second.vector;
+      counted.costs[block].memory += turns * basic->second.memory;
     });
   }
   for (const auto& [at, cost] : found) {
-    counted.instructions += cost.instructions;
     if (!used.contains(at)) is_wrong(at, fmt::format("({} instructions) is in no block", cost.instructions));
   }
   if (used.empty() || found.empty() || used.rbegin()->first > found.rbegin()->first)

@@ -27,10 +27,18 @@ enum class SimtBlock : std::uint8_t {
   answer,  ///< the answer is written: in the shader's main, which is not text of C++
   end,     ///< once
   unused,  ///< code for settings that are not counted, and for rays that are left to the second pass
+
+  // Of voxel marches, whose walk is a turn of the march, and whose frame is a node of the hierarchy over the objects.
+  object,  ///< the ray is quantised in an object's box
+  turned,  ///< its direction is, for objects turned another way than the last
+  cross,   ///< one plane is crossed
+  skip,    ///< planes up to the end of what is empty
+  sector,  ///< a sector is read, around an empty brick
 };
-inline constexpr std::size_t kSimtBlocks = 9;
+inline constexpr std::size_t kSimtBlocks = 14;
 inline constexpr std::array<std::string_view, kSimtBlocks> kSimtBlockNames = {
-    "begin", "frame", "walk", "cell", "probe", "hit", "answer", "end", "unused"};
+    "begin", "frame",  "walk",   "cell",   "probe", "hit",  "answer",
+    "end",   "unused", "object", "turned", "cross", "skip", "sector"};
 
 /// Loops around a block, and whether it is the first block of the innermost one.
 struct SimtNesting {
@@ -43,11 +51,16 @@ constexpr SimtNesting nesting(SimtBlock block) {
       return {1, true};
     case SimtBlock::hit:
     case SimtBlock::answer:
+    case SimtBlock::object:
+    case SimtBlock::turned:
       return {1, false};
     case SimtBlock::walk:
     case SimtBlock::probe:
       return {2, true};
     case SimtBlock::cell:
+    case SimtBlock::cross:
+    case SimtBlock::skip:
+    case SimtBlock::sector:
       return {2, false};
     default:
       return {0, false};
@@ -66,9 +79,10 @@ struct SimtCost {
 /// The blocks of one shader in one specialisation.
 struct SimtShader {
   std::string name;  ///< "max-mip", "max-mip any", "naive"
-  int instructions;  ///< of the whole shader, as the driver reports it
+  int instructions;  ///< of the whole shader, as the driver reports it; those of inner loops by their turns
   std::array<SimtCost, kSimtBlocks> costs{};
-  /// Numbers in the disassembly, "5 24-35"; empty: the shader has no such block.
+  /// Numbers in the disassembly, "5 24-35"; "24-35*3": of an inner loop with three turns. Empty: the shader has no such
+  /// block.
   std::array<std::string, kSimtBlocks> basic_blocks{};
 
   const SimtCost& operator[](SimtBlock block) const { return costs[static_cast<std::size_t>(block)]; }
@@ -87,6 +101,11 @@ struct SimtShaders {
 SimtShaders read_simt_shaders(const std::string& file);
 /// Throws Error if the file cannot be written.
 void write_simt_shaders(const std::string& file, const SimtShaders& shaders);
+
+/// `simt --voxels`.
+struct SimtOptions;
+struct ReportOptions;
+void run_simt_voxels(const SimtOptions& options, SimtShaders shaders, const ReportOptions& report);
 
 /// Counts the blocks of a shader anew, by its basic blocks, in RADV's disassembly of it. Throws Error that names the
 /// basic blocks that belong to none or to several blocks, or to one that the disassembly lacks.

@@ -9,6 +9,7 @@
 #include "bench/shader_compilation.h"
 #include "scarp/base/error.h"
 #include "scarp/march/height/queries_vk.h"
+#include "scarp/march/voxel/voxel_queries_vk.h"
 
 namespace scarp::bench {
 namespace {
@@ -17,8 +18,10 @@ constexpr const char* kFamily = "navi21";
 
 // Passes over the second pass of a march, which has the name of the first and follows it.
 ShaderProgram program_of(std::string_view name) {
-  for (const ShaderProgram& program : height_query_shaders()) {
-    if (program.variant == name) return program;
+  for (const auto& programs : {height_query_shaders(), voxel_query_shaders()}) {
+    for (const ShaderProgram& program : programs) {
+      if (program.variant == name) return program;
+    }
   }
   throw Error(fmt::format("shader '{}': is not one of the library's", name));
 }

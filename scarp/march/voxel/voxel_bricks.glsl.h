@@ -53,6 +53,7 @@ SCARP_FN bool scarp_bricks_turn(SCARP_INOUT(ScarpVoxelWalk) walk, SCARP_OUT(bool
   if ((mask.x | mask.y) != 0u) {
     level = scarp_pair_empty(mask, bit) ? 1 : 0;
   } else {
+    SCARP_COUNT(sector);
     uint brick_bit = scarp_voxel_bit(brick);
     uvec2 sector = scarp_voxel_sector(ivec3(brick.x >> 2, brick.y >> 2, brick.z >> 2));
     ahead = scarp_ahead(brick, walk.back);

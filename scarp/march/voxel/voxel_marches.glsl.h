@@ -19,6 +19,7 @@ SCARP_FN bool scarp_first_voxel(uint march, SCARP_INOUT(ScarpVoxelWalk) walk, SC
   bool solid = false;
   bool inside = true;
   while (inside && turns > 0) {
+    SCARP_COUNT(walk);
     if (march == kScarpVoxelPlanes) {
       inside = scarp_planes_turn(walk, solid);
     } else if (march == kScarpVoxelSpheres) {

@@ -52,6 +52,7 @@ SCARP_FN void scarp_voxel_rebase(SCARP_INOUT(ScarpVoxelWalk) walk) {
 
 /// Crosses the next plane. Returns false if that leaves the box.
 SCARP_FN bool scarp_voxel_cross(SCARP_INOUT(ScarpVoxelWalk) walk) {
+  SCARP_COUNT(cross);
   walk.axis = scarp_first_plane(walk.next, walk.speed);
   scarp_voxel_advance(walk, walk.axis, 1u);
   scarp_voxel_rebase(walk);
@@ -61,6 +62,7 @@ SCARP_FN bool scarp_voxel_cross(SCARP_INOUT(ScarpVoxelWalk) walk) {
 /// Crosses planes until one axis has crossed as many as `part` has for it: those out of a box around the voxel. Returns
 /// false if that leaves the box of the walk; `part` may extend beyond it.
 SCARP_FN bool scarp_voxel_leave(SCARP_INOUT(ScarpVoxelWalk) walk, ivec3 part) {
+  SCARP_COUNT(skip);
   uvec3 out_at;
   out_at.x = walk.next.x + (uint(min(part.x, walk.left.x) - 1) << 20);
   out_at.y = walk.next.y + (uint(min(part.y, walk.left.y) - 1) << 20);
@@ -87,12 +89,14 @@ SCARP_FN uint scarp_travel_per_voxel(uvec3 speed) {
 
 /// Crosses the next plane, then all planes within `voxels` further travel. Returns false if that leaves the box.
 SCARP_FN bool scarp_voxel_travel(SCARP_INOUT(ScarpVoxelWalk) walk, uint voxels, uint travel_per_voxel) {
+  SCARP_COUNT(cross);
   int axis = scarp_first_plane(walk.next, walk.speed);
   uint distance = walk.next[axis], speed = walk.speed[axis];
   walk.axis = axis;
   scarp_voxel_advance(walk, axis, 1u);
   bool inside = walk.left[axis] > 0;
   if (inside && voxels > 0u) {
+    SCARP_COUNT(skip);
     uint until = scarp_travelled(distance, speed, 1.0f / float(speed)) + voxels * travel_per_voxel;
     for (int i = 0; i < 3; ++i) {
       // None at speed 0.

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// The shader text of voxel marches, run on the CPU one ray at a time, with a record of what each ray does
+// (simt_bundle.h). The walk through the hierarchy over the objects, which is not text of C++, is written again here.
+#pragma once
+
+#include <memory>
+
+#include "bench/simt_bundle.h"
+#include "scarp/base/ray.h"
+#include "scarp/scene/placed_voxels.h"
+
+namespace scarp::bench {
+
+/// Voxel objects in the layout that they have in device memory.
+class SimtVoxels {
+ public:
+  /// All models have one march, which runs on devices. Their voxels count as cubes.
+  explicit SimtVoxels(const PlacedVoxels& voxels);
+  ~SimtVoxels();
+
+  /// The answer as a device gives it. `trace` may be null.
+  Hit trace(const Ray& ray, SimtTrace* trace) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace scarp::bench
