@@ -13,8 +13,12 @@
 #include "bench/simt_recount.h"
 #endif
 #include "bench/simt_trace.h"
+#include "bench/simt_voxel_trace.h"
+#include "bench/voxel_sets.h"
 #include "scarp/base/error.h"
 #include "scarp/march/height/max_mip.h"
+#include "scarp/march/voxel/voxel_table.h"
+#include "scarp/scene/scene.h"
 
 namespace scarp::bench {
 namespace {
@@ -117,6 +121,8 @@ TEST(SimtBlocks, CountsBasicBlocks) {
   EXPECT_EQ(counted[Block::begin].memory, 0);
   EXPECT_EQ(counted[Block::walk].instructions, 4);
   EXPECT_EQ(counted[Block::walk].memory, 1);
+  // An inner loop with three turns.
+  EXPECT_EQ(count_blocks(toy_shader("1-3*3"), kDisassembly)[Block::walk].instructions, 12);
   EXPECT_EQ(counted[Block::end].instructions, 1);
 }
 
@@ -239,6 +245,41 @@ TEST_F(SimtTraces, NaiveTakesFewerStepsWhenClipped) {
   }
   EXPECT_LT(steps[1], steps[0]);
   EXPECT_LT(others, set.library_rays.size() / 7 / 50);
+}
+
+TEST(SimtVoxelTraces, AnswerAsTheCpuDoes) {
+  SimtShaders shaders = read_simt_shaders(kTable);
+  for (const VoxelMarchEntry& march : voxel_marches()) {
+    if (!march.gpu) continue;
+    const auto model = std::make_shared<const VoxelModel>(voxel_object("standard"), march);
+    const PlacedVoxels placed{{model}, object_places(1)};
+    const SimtVoxels voxels(placed);
+    const Scene scene(scene_voxels(placed));
+    int hits = 0;
+    for (const Ray& ray : camera_rays(24)) {
+      SimtTrace trace;
+      const Hit hit = voxels.trace(ray, &trace);
+      MarchStats stats;
+      const Hit expected = scene.closest_hit(ray, nullptr, &stats);
+      ASSERT_EQ(static_cast<bool>(hit), static_cast<bool>(expected)) << march.name;
+      hits += static_cast<bool>(hit);
+      if (hit) {
+        EXPECT_TRUE(hit.t == expected.t && hit.voxel == expected.voxel && hit.face == expected.face &&
+                    hit.part == expected.part);
+      }
+      const SimtBundle bundle = replay(std::span(&trace, 1));
+      EXPECT_GE(bundle.of(SimtBlock::walk), bundle.of(SimtBlock::cross));
+      EXPECT_EQ(bundle.of(SimtBlock::object) > 0, bundle.of(SimtBlock::turned) == 1);
+      // A turn either takes a step or finds the voxel.
+      if (march.name == "voxel-planes") {
+        EXPECT_EQ(bundle.of(SimtBlock::walk), stats.steps + bundle.of(SimtBlock::hit));
+      }
+      for (std::size_t block = 0; block < kSimtBlocks; ++block)
+        EXPECT_TRUE(bundle.runs[block] == 0 || shaders.find(march.name).costs[block].instructions > 0)
+            << march.name << ", " << kSimtBlockNames[block];
+    }
+    EXPECT_GT(hits, 100);
+  }
 }
 
 TEST_F(SimtTraces, LeaveTheTraceOutWhenItIsNull) {

@@ -68,23 +68,29 @@ const uint kScarpNoChild = 0xffffffffu;
 // kScarpNoChild. Leaves the others in `rest`.
 uint nearest_child(VoxelNodes nodes, uint node, float end, inout uint rest) {
   vec3 origin = box_origin[gl_LocalInvocationIndex], inwards = box_inwards[gl_LocalInvocationIndex];
+  // All four at once, a vector per side.
+  bvec3 down = lessThan(inwards, vec3(0.0));
+  vec4 near = vec4(0.0), far = vec4(end);
+  vec4 low = nodes.of[node].low_x, high = nodes.of[node].high_x;
+  near = max(near, ((down.x ? high : low) - origin.x) * inwards.x);
+  far = min(far, ((down.x ? low : high) - origin.x) * (inwards.x * kRounding));
+  low = nodes.of[node].low_y, high = nodes.of[node].high_y;
+  near = max(near, ((down.y ? high : low) - origin.y) * inwards.y);
+  far = min(far, ((down.y ? low : high) - origin.y) * (inwards.y * kRounding));
+  low = nodes.of[node].low_z, high = nodes.of[node].high_z;
+  near = max(near, ((down.z ? high : low) - origin.z) * inwards.z);
+  far = min(far, ((down.z ? low : high) - origin.z) * (inwards.z * kRounding));
   uint found = kScarpNoChild, left = 0u, own = 0u;
   float nearest = 0.0;
-  [[dont_unroll]] for (uint k = 0u; k < 4u; ++k) {
-    vec3 low = vec3(nodes.of[node].low_x[k], nodes.of[node].low_y[k], nodes.of[node].low_z[k]);
-    vec3 high = vec3(nodes.of[node].high_x[k], nodes.of[node].high_y[k], nodes.of[node].high_z[k]);
-    bvec3 down = lessThan(inwards, vec3(0.0));
-    vec3 into = (mix(low, high, down) - origin) * inwards;
-    vec3 out_of = (mix(high, low, down) - origin) * (inwards * kRounding);
-    float near = max(max(into.x, into.y), max(into.z, 0.0));
-    if (!(near <= min(min(out_of.x, out_of.y), min(out_of.z, end))) || (rest >> k & 1u) == 0u) continue;
-    left |= 1u << k;
+  for (uint k = 0u; k < 4u; ++k) {
+    bool met = near[k] <= far[k] && (rest >> k & 1u) != 0u;
+    left |= met ? 1u << k : 0u;
     // The last one of equally near children, like BoxTree: steps then equal the CPU's.
-    if (found != kScarpNoChild && near > nearest) continue;
-    found = nodes.of[node].child[k];
+    if (!met || (own != 0u && near[k] > nearest)) continue;
     own = 1u << k;
-    nearest = near;
+    nearest = near[k];
   }
+  if (own != 0u) found = nodes.of[node].child[findLSB(own)];
   rest = left & ~own;
   return found;
 }
