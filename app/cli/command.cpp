@@ -147,6 +147,32 @@ std::vector<std::string> Command::typed_values() const {
   return values;
 }
 
+std::string Command::typed_words(const std::vector<std::string_view>& left_out) const {
+  constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./,:=+@%#";
+  const auto quoted = [&](const std::string& word) {
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    std::string text = "'";
+    for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    return text + "'";
+  };
+  std::string text;
+  for (const Typed& one : typed_) {
+    const Declared& option = *one.option;
+    if (std::find(left_out.begin(), left_out.end(), option.name) != left_out.end()) continue;
+    if (option.flag()) {
+      text += " " + option.name;
+    } else if (option.positional()) {
+      for (const std::string& value : one.values) text += " " + quoted(value);
+    } else if (option.option.repeats || one.values.size() == 1) {
+      for (const std::string& value : one.values) text += " " + option.name + "=" + quoted(value);
+    } else {
+      text += " " + option.name;
+      for (const std::string& value : one.values) text += " " + quoted(value);
+    }
+  }
+  return text;
+}
+
 void Command::require_effect(const Use& use) const {
   std::vector<const Declared*> seen;
   const std::function<void(const Declared&)> check = [&](const Declared& one) {
@@ -239,7 +265,8 @@ void Program::run(int argc, char** argv) {
   }
   std::string wrong;
   try {
-    std::vector<std::string> words(argv + 1, argv + argc);
+    words_.assign(argv + 1, argv + argc);
+    std::vector<std::string> words = words_;
     if (!words.empty() && (words[0] == "viewshed" || words[0] == "shadow")) words = without_gdal_words(words);
     std::reverse(words.begin(), words.end());  // as CLI11 takes them
     app.parse(std::move(words));

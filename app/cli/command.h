@@ -43,6 +43,8 @@ class Command {
   std::string value(std::string_view name) const;
   /// Every value except that of --output. Values that name files count as inputs, so new options are covered.
   std::vector<std::string> typed_values() const;
+  /// The words that were typed, but for the options `left_out`; quoted for a shell where they need it.
+  std::string typed_words(const std::vector<std::string_view>& left_out) const;
   /// Throws Error for the first option in the order typed that has no effect; an option that another one needs comes
   /// before it.
   void require_effect(const Use& use) const;
@@ -80,8 +82,11 @@ class Program {
 
   /// Parses and runs. Throws WrongUsage, and whatever the subcommand throws.
   void run(int argc, char** argv);
+  /// The words of the command line after the program's name.
+  const std::vector<std::string>& words() const { return words_; }
 
  private:
+  std::vector<std::string> words_;
   std::deque<Command> commands_;
 };
 

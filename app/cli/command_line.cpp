@@ -34,6 +34,9 @@ int flush_output() {
 
 void add_commands(Program& program) {
   add_render(program);
+#ifdef SCARP_VIEWER
+  add_view(program);
+#endif
   add_cast(program);
   add_composite(program);
   add_viewshed(program);
@@ -55,6 +58,10 @@ void add_commands(Program& program) {
 int run_command_line(int argc, char** argv) {
   Program program;
   add_commands(program);
+  return run_program(program, argc, argv);
+}
+
+int run_program(Program& program, int argc, char** argv) {
   if (argc < 2) {
     std::fputs(help_text(program).c_str(), stderr);
     return kWrongUsage;

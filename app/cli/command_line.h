@@ -9,4 +9,8 @@ namespace scarp::cli {
 /// What main() does. To be called once per process: handlers of signals and the state of progress are the process's.
 int run_command_line(int argc, char** argv);
 
+class Program;
+/// The same with the subcommands of `program`; likewise.
+int run_program(Program& program, int argc, char** argv);
+
 }  // namespace scarp::cli

@@ -17,6 +17,7 @@ void add_profile(Program& program);
 void add_replay(Program& program);
 void add_section(Program& program);
 void add_shadow(Program& program);
+void add_view(Program& program);  // with SCARP_VIEWER
 void add_viewshed(Program& program);
 void add_voxelise(Program& program);
 void add_devices(Program& program);  // with SCARP_VULKAN

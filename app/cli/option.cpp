@@ -34,6 +34,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, kTopics> kTo
     {"functions", "Terrain functions"},
     {"input", "Input interpretation"},
     {"march", "March settings"},
+    {"window", "Window"},
 }};
 
 std::string kinds_text(unsigned kinds) {

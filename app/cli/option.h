@@ -48,8 +48,9 @@ enum class Topic : std::uint8_t {
   functions,
   input,
   march,
+  window,
 };
-constexpr int kTopics = 17;
+constexpr int kTopics = 18;
 std::string_view name_of(Topic topic);
 std::string_view heading_of(Topic topic);
 

@@ -175,51 +175,63 @@ void add_light_options(Command& command, RenderOptions& o) {
                                  kEveryInput & ~kFunction}}});
 }
 
-void add_camera_options(Command& command, RenderOptions& o) {
+// Without `frames` there are no options of several pictures.
+void add_camera_options(Command& command, RenderOptions& o, bool frames) {
   const auto add = [&](Binding to, Option option) {
     option.topic = Topic::camera;
     command.add(std::move(to), std::move(option));
   };
-  const Rule no_frames{"has no effect with --path or --turntable, which define their own cameras",
-                       [&o] { return !o.frames.several(); }};
+  using Rules = std::vector<Rule>;
+  const Rules no_frames = frames ? Rules{{"has no effect with --path or --turntable, which define their own cameras",
+                                          [&o] { return !o.frames.several(); }}}
+                                 : Rules{};
+  const Rules no_path =
+      frames
+          ? Rules{{"has no effect with --path, whose table holds the cameras", [&o] { return o.frames.path.empty(); }}}
+          : Rules{};
+  const std::string or_path = frames ? " or --path FILE" : "";
+  const auto with = [](Rules rules, Rule more) {
+    rules.push_back(std::move(more));
+    return rules;
+  };
   const ViewSettings view;
-  add(&o.view,
-      {.names = "--view",
-       .value = "AZ,EL[,DIST]",
-       .help = "camera position: compass azimuth and elevation in degrees, distance as a multiple of the one "
-               "that fits everything",
-       .fallback = fmt::format("{},{},{}", view.azimuth_deg, view.elevation_deg, view.distance),
-       .common = true,
-       .rules = {{"has no effect with --path, whose table holds the cameras", [&o] { return o.frames.path.empty(); }}},
-       .excludes = {"--eye"}});
+  add(&o.view, {.names = "--view",
+                .value = "AZ,EL[,DIST]",
+                .help = "camera position: compass azimuth and elevation in degrees, distance as a multiple of the one "
+                        "that fits everything",
+                .fallback = fmt::format("{},{},{}", view.azimuth_deg, view.elevation_deg, view.distance),
+                .common = true,
+                .rules = no_path,
+                .excludes = {"--eye"}});
   add(&o.eye, {.names = "--eye",
                .value = "X,Y[,Z]",
                .help = "eye in coordinates of --coords",
                .note = "Z is needed without --eye-above",
                .common = true,
-               .rules = {no_frames}});
+               .rules = no_frames});
   add(&o.eye_above,
       {.names = "--eye-above",
        .help = "height of the eye above the highest surface or water below it",
        .unit = "metres",
        .range = {.least = 0, .most = kMostOfGround, .above_least = true},
        .note = "not exaggerated",
-       .rules = {needs("--eye X,Y or --path FILE", [&o] { return !o.eye.empty() || !o.frames.path.empty(); })}});
+       .rules = {needs("--eye X,Y" + or_path, [&o] { return !o.eye.empty() || !o.frames.path.empty(); })}});
   add(&o.target, {.names = "--target",
                   .value = "X,Y[,Z]",
                   .help = "point that the eye looks at; without Z on the ground",
                   .fallback = "the middle",
                   .common = true,
-                  .rules = {no_frames, needs("--eye X,Y[,Z]", [&o] { return !o.eye.empty(); })}});
+                  .rules = with(no_frames, needs("--eye X,Y[,Z]", [&o] { return !o.eye.empty(); }))});
   add_coordinates_option(
       command, o.coordinates,
       {.names = "--coords",
-       .help = "coordinates of --eye, --target, --mesh-at and --path",
+       .help = frames ? "coordinates of --eye, --target, --mesh-at and --path"
+                      : "coordinates of --eye, --target and --mesh-at",
        .closed = true,
        .note = "local: metres from the south-west sample, z exaggerated; map: units of the CRS; lonlat: degrees, WGS "
                "84; with map and lonlat z is a height of the file in metres",
        .topic = Topic::camera,
-       .rules = {needs("--eye, --path or --mesh-at",
+       .rules = {needs(frames ? "--eye, --path or --mesh-at" : "--eye or --mesh-at",
                        [&o] { return !o.eye.empty() || !o.frames.path.empty() || !o.mesh.at.empty(); })}});
   add(&o.fov_deg,
       {.names = "--fov",
@@ -232,28 +244,28 @@ void add_camera_options(Command& command, RenderOptions& o) {
                .help = "map: straight down, without perspective, grid north up",
                .common = true,
                .inputs = {kEveryInput & ~kFunction, "functions have no border to fit a map to"},
-               .rules = {no_frames},
+               .rules = no_frames,
                .excludes = {"--view", "--eye", "--fov"}});
 }
 
 }  // namespace
 
-Command& declare_render(Program& program, RenderOptions& o) {
-  Command& command =
-      program.add("render", "Render an elevation model, voxels, a mesh, a scene or a terrain function as a picture");
+void declare_picture(Command& command, RenderOptions& o, bool written) {
   add_raster_inputs(command, o.inputs, kEveryFile, false);
-  add_output_option(command, o.output, picture_help(), picture_extensions());
+  if (written) add_output_option(command, o.output, picture_help(), picture_extensions());
   add_device_option(command, o.device);
   add_voxel_drawing_option(command, o.voxel_drawing, o.device);
   add_threads_option(command, o.threads);
   add_picture_options(command, o);
   add_light_options(command, o);
-  add_camera_options(command, o);
+  add_camera_options(command, o, written);
   add_field_options(command, o.field, BeyondBorders::mirrors, &o.exaggeration);
   add_look_options(command, o.look_options);
-  add_figure_options(command, o.figure, o.top, o.output);
-  add_frame_options(command, o.frames);
-  add_depth_options(command, o.depth);
+  if (written) {
+    add_figure_options(command, o.figure, o.top, o.output);
+    add_frame_options(command, o.frames);
+    add_depth_options(command, o.depth);
+  }
   add_mesh_options(command, o.mesh, "--coords");
   add_vox_options(command, o.vox);
   add_vox_rounding_options(command, o.vox_look);
@@ -268,6 +280,12 @@ Command& declare_render(Program& program, RenderOptions& o) {
                         .inputs = {kTerrain, "other inputs are always read completely"}});
   add_march_option(command, o.march);
   add_march_options(command, o.march_settings);
+}
+
+Command& declare_render(Program& program, RenderOptions& o) {
+  Command& command =
+      program.add("render", "Render an elevation model, voxels, a mesh, a scene or a terrain function as a picture");
+  declare_picture(command, o, true);
   command.example("scarp render dem.tif -o dem.png --sun 300,30");
   command.example("scarp render dem.tif -o map.png --top --contours 20 --legend --scale-bar");
   command.example("scarp render city.vox -o city.png --samples 16 --view 220,30");

@@ -41,6 +41,9 @@ struct RenderOptions : InputOptions {
   bool is_given(std::string_view option) const;
 };
 
+/// Declares the options of pictures; if `written`, those of files, figures and several frames as well.
+void declare_picture(Command& command, RenderOptions& options, bool written);
+
 /// Adds the subcommand and declares its options.
 Command& declare_render(Program& program, RenderOptions& options);
 

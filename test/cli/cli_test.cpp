@@ -405,9 +405,8 @@ TEST_F(Cli, AnUnknownSubcommandGetsTheListOfSubcommands) {
     const auto result = run(arguments);
     EXPECT_EQ(result.status, 2);
     EXPECT_EQ(test::lines(result.err), 1) << result.err;
-    EXPECT_EQ(
-        result.err.find("scarp: error: unknown subcommand 'rendr' (did you mean 'render'? available: render, cast, "),
-        0u)
+    EXPECT_EQ(result.err.find("scarp: error: unknown subcommand 'rendr' (did you mean 'render'? available: render, "),
+              0u)
         << result.err;
   }
   const auto file = run({good()});

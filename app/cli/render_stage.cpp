@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+#include "app/cli/render_stage.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "app/cli/mesh_options.h"
+#include "app/cli/progress.h"
+#include "scarp/base/error.h"
+
+namespace scarp::cli {
+namespace {
+
+// Seconds since it was made or last asked.
+class Watch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(begin_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+// A map without --size has the shape of the scene, its longer side as long as a picture's default width.
+void fit_size_to_scene(const WorldBox& box, PictureSettings& picture) {
+  const dvec3 size = box.high - box.low;
+  const double pixels_per_metre = picture.width / std::max(size.x, size.y);
+  picture.width = std::max(1, static_cast<int>(std::lround(size.x * pixels_per_metre)));
+  picture.height = std::max(1, static_cast<int>(std::lround(size.y * pixels_per_metre)));
+}
+
+SceneDetail detail_of(const Camera& camera, int aa) {
+  return {camera.eye(), camera.forward(), [&camera, aa](double depth) { return camera.pixel_width(depth) / aa; }};
+}
+
+}  // namespace
+
+void RenderStage::open() {
+  Watch watch;
+  const MeshInput mesh(options_.mesh);
+  input_ = open_render_input(kind_, options_, typed_view_);
+  options_.typed.insert(options_.typed.end(), input_.files.begin(), input_.files.end());
+  stop_if_interrupted();
+  read_s_ = watch.lap();
+  places_.emplace(input_.raster, find_coordinates(options_.coordinates), exaggeration());
+  input_.scene = mesh.with_mesh(std::move(input_.scene), *places_);
+  input_.notes.insert(input_.notes.end(), mesh.notes().begin(), mesh.notes().end());
+  if (input_.coarse_voxels) {
+    scene_ = input_.scene;
+  } else {
+    put_on_device(input_.scene);
+  }
+  stop_if_interrupted();
+  if (options_.top && options_.size.empty()) fit_size_to_scene(picture_box(scene_), options_.picture);
+  facts_.heights = input_.heights;
+  if (kind_ == InputKind::function) facts_.function_reach = options_.march_settings.function.reach;
+  finish_look(options_.look_options, input_.across, input_.heights, input_.exaggeration, options_.picture);
+  build_s_ = watch.lap();
+}
+
+void RenderStage::put_on_device(const Scene& scene) {
+  there_ = scene_on_device(options_.device, scene, options_.voxel_drawing);
+  scene_ = there_.scene;
+}
+
+std::string RenderStage::on_device() const {
+  if (there_.device.empty()) return {};
+  const std::string drawn = drawn_by(there_);
+  return fmt::format(", on {}{}{}", there_.device, drawn.empty() ? "" : ", ", drawn);
+}
+
+WorldBox RenderStage::scene_box() const {
+  const WorldBox& box = scene_.box();
+  if (!box.empty() || !scene_.endless()) return picture_box(scene_);
+  return scene_.terrain() ? picture_box(scene_)
+                          : WorldBox{input_.target.value_or(dvec3(0.0)), input_.target.value_or(dvec3(0.0))};
+}
+
+void RenderStage::finish(Camera& camera) {
+  camera.set_reach(reach_of(options_.look_options, input_.across, scene_, scene_box(), camera));
+  // The judge has to stop where the march does.
+  if (kind_ == InputKind::function && options_.picture.look == Look::error)
+    camera.set_reach(std::min(camera.reach(), options_.march_settings.function.reach));
+  if (input_.coarse_voxels) put_on_device(input_.scene.coarser(detail_of(camera, options_.picture.aa)));
+}
+
+Camera RenderStage::framed(const ViewSettings& view) {
+  const FieldView found = input_.framed(scene_, view);
+  raised_ = std::max(raised_, found.raised);
+  return found.camera;
+}
+
+double RenderStage::exaggeration() const {
+  const HeightField* field = input_.scene.terrain();
+  return field ? field->settings().exaggeration : 1;
+}
+
+dvec3 RenderStage::typed_eye() const {
+  constexpr std::string_view kEye = "--eye";
+  const TypedPlace eye = typed_place(options_.eye, kEye);
+  if (eye.z) return places_->world(eye, input_.scene, kEye);
+  return above_surface(places_->world(dvec3(eye.x, eye.y, 0), kEye), kEye);
+}
+
+// --eye-above over the surface at (x, y) of `at`, or over water that covers it.
+dvec3 RenderStage::above_surface(const dvec3& at, std::string_view what) const {
+  dvec3 eye = places_->on_surface(at, input_.scene, what);
+  if (options_.picture.water) eye.z = std::max(eye.z, options_.picture.water->level * exaggeration());
+  return eye + dvec3(0, 0, *options_.eye_above * exaggeration());
+}
+
+Camera RenderStage::camera() {
+  const int width = options_.picture.width, height = options_.picture.height;
+  if (options_.top && scene_.box().empty() && scene_.endless() && !scene_.terrain())
+    throw Error(
+        "--top: everything in the scene is endless, without a border to fit a map to (leave --top out, and use "
+        "--eye and --target)");
+  if (options_.top) return Camera::top(picture_box(scene_), width, height);
+  if (!options_.eye.empty()) {
+    const dvec3 target = !options_.target.empty()
+                             ? places_->world(typed_place(options_.target, "--target"), input_.scene, "--target")
+                         : input_.target ? *input_.target
+                                         : picture_box(scene_).middle();
+    return Camera::look_at(typed_eye(), target, input_.view.fov_deg, width, height);
+  }
+  if (options_.view.empty()) {
+    if (input_.eye) return Camera::look_at(*input_.eye, *input_.target, input_.view.fov_deg, width, height);
+    if (options_.picture.look == Look::comanche && scene_.terrain() && !input_.viewed) {
+      return flight_camera(*scene_.terrain(), options_.picture.grid_north_azimuth, input_.view.fov_deg, width, height);
+    }
+  }
+  return framed(input_.view);
+}
+
+PathPlaces RenderStage::path_places() const {
+  PathPlaces path{*places_, input_.scene};
+  if (options_.eye_above)
+    path.above_surface = [this](const dvec3& at, const std::string& what) { return above_surface(at, what); };
+  return path;
+}
+
+}  // namespace scarp::cli

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// The scene of `scarp render` and of the window, ready for rays: inputs read, put on the device, and the cameras that
+// the options ask for.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "app/cli/device_option.h"
+#include "app/cli/places.h"
+#include "app/cli/render_input.h"
+#include "app/cli/render_options.h"
+#include "app/cli/seen.h"
+
+namespace scarp::cli {
+
+class RenderStage {
+ public:
+  /// `view` is what was typed. The options are consistent with each other.
+  RenderStage(InputKind kind, RenderOptions options, const ViewSettings& view)
+      : options_(std::move(options)), kind_(kind), typed_view_(view) {}
+  RenderStage(const RenderStage&) = delete;
+  RenderStage& operator=(const RenderStage&) = delete;
+
+  /// Reads the inputs and builds what rays need. Throws Error naming the file.
+  void open();
+
+  const RenderOptions& options() const { return options_; }
+  InputKind kind() const { return kind_; }
+  PictureSettings& picture() { return options_.picture; }
+  const PictureSettings& picture() const { return options_.picture; }
+  /// Of the files alone; that of the pictures may be coarser, and on a device.
+  const Scene& given_scene() const { return input_.scene; }
+  const Scene& scene() const { return scene_; }
+  const RenderInput& input() const { return input_; }
+  const Places& places() const { return *places_; }
+  const SceneOnDevice& there() const { return there_; }
+  const BlankFacts& facts() const { return facts_; }
+  double read_seconds() const { return read_s_; }
+  double build_seconds() const { return build_s_; }
+  /// Metres by which eyes were lifted out of the ground, the most so far.
+  double raised() const { return raised_; }
+  /// ", on NAME", and what it drew; empty on the CPU.
+  std::string on_device() const;
+  /// Where nothing has an end, a point: the middle of what the picture is about.
+  WorldBox scene_box() const;
+  /// The factor between heights of the file and z.
+  double exaggeration() const;
+
+  /// The camera of the options.
+  Camera camera();
+  /// A camera that frames the scene.
+  Camera framed(const ViewSettings& view);
+  PathPlaces path_places() const;
+  /// Sets what depends on where a picture is seen from: reach, and coarser voxels.
+  void finish(Camera& camera);
+
+ private:
+  void put_on_device(const Scene& scene);
+  dvec3 typed_eye() const;
+  dvec3 above_surface(const dvec3& at, std::string_view what) const;
+
+  RenderOptions options_;
+  InputKind kind_;
+  ViewSettings typed_view_;
+  RenderInput input_{Scene({}, {})};
+  std::optional<Places> places_;
+  Scene scene_{{}, {}};
+  SceneOnDevice there_{Scene({}, {}), {}};
+  double read_s_ = 0, build_s_ = 0;
+  double raised_ = 0;
+  BlankFacts facts_;
+};
+
+}  // namespace scarp::cli

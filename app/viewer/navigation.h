@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Moving through a scene by mouse and keys: events and time in, cameras out. Knows neither window nor device.
+//
+//   orbit  around a point; left drag turns, right or middle drag shifts, the wheel comes nearer
+//   fly    W A S D Q E move, a drag looks around, the wheel changes the speed
+//   walk   as fly, 1.7 m above the ground; hits are those of exact rays, so nobody walks through a wall
+//   top    a map, straight down; a drag shifts, the wheel zooms towards the cursor
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "scarp/render/camera/camera.h"
+#include "scarp/scene/scene.h"
+
+namespace scarp::viewer {
+
+enum class MoveMode { orbit, fly, walk, top };
+
+/// Where one stands and looks. Angles in radians: azimuth of the view direction in the world's axes, counterclockwise
+/// from x; its altitude above the horizon.
+struct Pose {
+  MoveMode mode = MoveMode::orbit;
+  dvec3 eye{0.0};
+  double azimuth = 0, altitude = 0;
+  double distance = 1;  ///< metres from the eye to the point that orbit turns around
+  double fov_deg = 30;
+  double map_width = 0;  ///< metres that a map shows from left to right
+};
+
+dvec3 forward_of(const Pose& pose);
+
+enum class MoveKey { forward, back, left, right, up, down, fast };
+constexpr std::size_t kMoveKeys = 7;
+
+class Navigator {
+ public:
+  static constexpr double kEyeHeight = 1.7;  ///< metres above the ground, of a walker
+
+  /// `scene` answers walkers, and must outlive the navigator; `across` are metres that the scene is about.
+  Navigator(const Scene& scene, const Camera& first, double fov_deg, double across);
+
+  /// The camera of the pose for a picture of this size.
+  Camera camera(int width, int height) const;
+  const Pose& pose() const { return pose_; }
+  /// Takes over another pose; a walker is put on the ground.
+  void set_pose(const Pose& pose);
+  void set_mode(MoveMode mode);
+  /// Metres per second of fly and walk.
+  double speed() const { return speed_; }
+
+  // Events. `size` is that of the picture, drags and places are in it, y down.
+  void key(MoveKey key, bool down) { keys_[static_cast<std::size_t>(key)] = down; }
+  void turn(const dvec2& drag, const dvec2& size);
+  void shift(const dvec2& drag, const dvec2& size);
+  void wheel(double steps, const dvec2& at, const dvec2& size);
+  /// Moves towards a point of the scene that was clicked: orbit turns around it from then on.
+  void go_to(const dvec3& point);
+  void release_keys() { keys_ = {}; }
+
+  /// Moves by what keys are held for `seconds`. Returns whether the pose changed since the last call.
+  bool advance(double seconds);
+  bool moving() const;
+
+ private:
+  dvec3 point() const { return pose_.eye + pose_.distance * forward_of(pose_); }
+  double high() const;  // above everything
+  std::optional<double> ground_below(const dvec3& at) const;
+  void walk(const dvec3& step);
+  void stand();
+
+  const Scene& scene_;
+  Pose pose_;
+  double across_, speed_;
+  std::array<bool, kMoveKeys> keys_{};
+  bool changed_ = true;
+};
+
+}  // namespace scarp::viewer

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// What is under the cursor, by one ray in double precision, as text; and whether two points see one another.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/cli/places.h"
+#include "scarp/render/camera/camera.h"
+#include "scarp/scene/scene.h"
+
+namespace scarp::viewer {
+
+/// Coordinates in which places are told, beside metres: those that the input's georeference allows.
+struct ReadingFrames {
+  explicit ReadingFrames(const cli::PlaceRaster& raster);
+  std::unique_ptr<CoordinateFrame> map{}, lonlat{};  ///< null: it allows none
+};
+
+struct Reading {
+  dvec3 point{0.0};  ///< world metres
+  Ray ray{};
+  Hit hit{};
+  std::vector<std::string> lines{};  ///< "x 1203.4 m, y 880.1 m, height 512.3 m"
+};
+
+/// Follows the ray through (x, y) of the camera's picture. Nullopt if it meets nothing. `scene` is on the CPU; heights
+/// are told without `exaggeration`.
+std::optional<Reading> read_under(const Scene& scene, const Camera& camera, const dvec2& at,
+                                  const ReadingFrames& frames, double exaggeration);
+
+/// A line between two points of surfaces: its length, slope, the profile of the ground below it, and whether its ends
+/// see one another from `above` metres over the surface.
+struct MeasuredLine {
+  double flat = 0, rise = 0;  ///< metres
+  bool sees = false;
+  std::vector<float> heights{};  ///< of the ground at even distances, without exaggeration; NaN: none
+};
+MeasuredLine measure_line(const Scene& scene, const dvec3& from, const dvec3& to, double above, double exaggeration);
+
+}  // namespace scarp::viewer

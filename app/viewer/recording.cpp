@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "app/viewer/recording.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+
+#include "scarp/base/error.h"
+#include "scarp/base/replace_file.h"
+
+namespace scarp::viewer {
+namespace {
+
+constexpr std::string_view kFirst = "scarp-view";
+constexpr std::array<std::string_view, 4> kKinds = {"move", "button", "key", "wheel"};
+constexpr int kMostSide = 16384;
+
+}  // namespace
+
+Recording read_recording(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) throw Error(fmt::format("'{}': cannot be read", file));
+  Recording recording;
+  std::string line;
+  int number = 0;
+  double before = 0;
+  const auto fail = [&](std::string_view expected) {
+    throw Error(fmt::format("'{}', line {}: expected {}", file, number, expected));
+  };
+  while (std::getline(in, line)) {
+    ++number;
+    std::istringstream words(line);
+    if (number == 1) {
+      std::string first;
+      char by = 0;
+      if (!(words >> first >> recording.width >> by >> recording.height) || first != kFirst || by != 'x' ||
+          recording.width < 1 || recording.height < 1 || recording.width > kMostSide || recording.height > kMostSide)
+        fail("'scarp-view WIDTHxHEIGHT'");
+      continue;
+    }
+    if (line.empty()) continue;
+    WindowEvent event;
+    std::string kind;
+    if (!(words >> event.seconds >> kind) || !(event.seconds >= before))
+      fail("a time no earlier than the last, and an event");
+    before = event.seconds;
+    bool good = true;
+    if (kind == "move" || kind == "wheel") {
+      event.kind = kind == "move" ? WindowEvent::Kind::move : WindowEvent::Kind::wheel;
+      good = static_cast<bool>(words >> event.x >> event.y) && std::isfinite(event.x) && std::isfinite(event.y);
+    } else if (kind == "button" || kind == "key") {
+      event.kind = kind == "button" ? WindowEvent::Kind::button : WindowEvent::Kind::key;
+      good = static_cast<bool>(words >> event.code >> event.down >> event.modifiers);
+    } else {
+      good = false;
+    }
+    if (!good)
+      fail("'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS' or 'key CODE DOWN MODIFIERS' after the time");
+    recording.events.push_back(event);
+  }
+  if (number == 0) throw Error(fmt::format("'{}': is empty", file));
+  return recording;
+}
+
+void write_recording(const std::string& file, const Recording& recording) {
+  ReplaceFile replace(file);
+  std::ofstream out(replace.temporary_path());
+  out << fmt::format("{} {}x{}\n", kFirst, recording.width, recording.height);
+  for (const WindowEvent& event : recording.events) {
+    out << fmt::format("{:.4f} {} ", event.seconds, kKinds[static_cast<std::size_t>(event.kind)]);
+    const bool placed = event.kind == WindowEvent::Kind::move || event.kind == WindowEvent::Kind::wheel;
+    out << (placed ? fmt::format("{} {}\n", event.x, event.y)
+                   : fmt::format("{} {:d} {}\n", event.code, event.down, event.modifiers));
+  }
+  out.close();
+  if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", file));
+  replace.commit();
+}
+
+}  // namespace scarp::viewer

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// What mouse and keys did, as text, one event a line: "1.25 move 320 240". A recording is played with a clock of its
+// own, so the same recording ends at the same view on every machine.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace scarp::viewer {
+
+struct WindowEvent {
+  enum class Kind { move, button, key, wheel };
+  double seconds = 0;  ///< since the window opened
+  Kind kind = Kind::move;
+  int code = 0;         ///< GLFW's number of the button or key
+  bool down = false;    ///< pressed
+  int modifiers = 0;    ///< GLFW's bits
+  double x = 0, y = 0;  ///< move: the cursor, in pixels; wheel: y is the steps
+};
+
+struct Recording {
+  int width = 1280, height = 720;  ///< of the window
+  std::vector<WindowEvent> events{};
+};
+
+/// Throws Error naming the file and the line.
+Recording read_recording(const std::string& file);
+/// Throws Error if the file cannot be written.
+void write_recording(const std::string& file, const Recording& recording);
+
+}  // namespace scarp::viewer

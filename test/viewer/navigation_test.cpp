@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Moving through scenes, without a window.
+#include "app/viewer/navigation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scarp/scarp.h"
+
+namespace scarp::viewer {
+namespace {
+
+constexpr dvec2 kSize{800, 600};
+constexpr double kSecond = 1.0, kFrame = 1.0 / 60;
+
+// Level ground of 100 x 100 m with a wall of 20 m at x = 50.
+Terrain ground_with_wall() {
+  std::vector<float> samples(101 * 101, 0.0f);
+  for (std::size_t row = 0; row < 101; ++row) samples[101 * row + 50] = 20.0f;
+  return Terrain::own(std::move(samples), 101, 101);
+}
+
+Navigator at(const Scene& scene, const dvec3& eye, const dvec3& target) {
+  return {scene, Camera::look_at(eye, target, 40, 800, 600), 40, 100};
+}
+
+void hold(Navigator& navigator, MoveKey key, double seconds) {
+  navigator.key(key, true);
+  for (double t = 0; t < seconds; t += kFrame) navigator.advance(kFrame);
+  navigator.key(key, false);
+}
+
+struct Navigation : testing::Test {
+  Terrain terrain = ground_with_wall();
+  Scene scene{terrain};
+};
+
+TEST_F(Navigation, BeginsWithTheGivenCamera) {
+  const Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
+  const Camera camera = navigator.camera(800, 600);
+  EXPECT_EQ(camera.eye(), dvec3(20, 5, 30));
+  EXPECT_LT(length(camera.forward() - normalize(dvec3(0, 45, -30))), 1e-12);
+  // It turns around the point of the ground in the middle.
+  EXPECT_NEAR(navigator.pose().distance, std::hypot(45, 30), 1e-6);
+}
+
+TEST_F(Navigation, OrbitKeepsItsPoint) {
+  Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
+  navigator.turn({120, 35}, kSize);
+  navigator.turn({-33, 70}, kSize);
+  const Pose& pose = navigator.pose();
+  EXPECT_LT(length(pose.eye + pose.distance * forward_of(pose) - dvec3(20, 50, 0)), 1e-6);
+  EXPECT_GT(length(pose.eye - dvec3(20, 5, 30)), 1.0);
+  // A drag to the right brings the scene along: the eye goes to the left.
+  Navigator other = at(scene, {20, 5, 30}, {20, 50, 0});
+  other.turn({10, 0}, kSize);
+  EXPECT_LT(other.pose().eye.x, 20);
+}
+
+TEST_F(Navigation, OrbitDoesNotTurnOver) {
+  Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
+  for (int i = 0; i < 50; ++i) navigator.turn({0, 100}, kSize);
+  EXPECT_LT(std::abs(navigator.pose().altitude), 1.5707);
+  EXPECT_NO_THROW(navigator.camera(80, 60));
+}
+
+TEST_F(Navigation, TheWheelComesNearerAndShiftKeepsTheDistance) {
+  Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
+  const double before = navigator.pose().distance;
+  navigator.wheel(1, {400, 300}, kSize);
+  EXPECT_LT(navigator.pose().distance, before);
+  const double near = navigator.pose().distance;
+  navigator.shift({50, 20}, kSize);
+  EXPECT_EQ(navigator.pose().distance, near);
+}
+
+TEST_F(Navigation, AMapZoomsTowardsTheCursor) {
+  Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
+  navigator.set_mode(MoveMode::top);
+  const dvec2 cursor(700, 100);
+  const auto under = [&] { return navigator.camera(800, 600).ray(cursor.x, cursor.y).origin; };
+  const dvec3 before = under();
+  navigator.wheel(3, cursor, kSize);
+  const dvec3 after = under();
+  EXPECT_NEAR(after.x, before.x, 1e-6);
+  EXPECT_NEAR(after.y, before.y, 1e-6);
+  // A drag takes the ground along.
+  navigator.shift({30, -40}, kSize);
+  const dvec3 moved = navigator.camera(800, 600).ray(cursor.x + 30, cursor.y - 40).origin;
+  EXPECT_NEAR(moved.x, after.x, 1e-6);
+  EXPECT_NEAR(moved.y, after.y, 1e-6);
+}
+
+TEST_F(Navigation, FlyingIsAsFarAsTheSpeed) {
+  Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 30});
+  navigator.set_mode(MoveMode::fly);
+  hold(navigator, MoveKey::forward, kSecond);
+  EXPECT_NEAR(navigator.pose().eye.y, 5 + navigator.speed() * kSecond, navigator.speed() * 2 * kFrame);
+  EXPECT_FALSE(navigator.moving());
+  EXPECT_FALSE(navigator.advance(kFrame)) << "nothing moves";
+}
+
+TEST_F(Navigation, AWalkerStandsOnTheGroundAndStopsAtWalls) {
+  Navigator navigator = at(scene, {10, 20, 30}, {90, 20, 30});
+  navigator.set_mode(MoveMode::walk);
+  EXPECT_NEAR(navigator.pose().eye.z, Navigator::kEyeHeight, 1e-6);
+  // At any speed, and in steps of any length.
+  for (const double step : {kFrame, 1.0, 30.0}) {
+    for (double t = 0; t < 60; t += step) {
+      navigator.key(MoveKey::forward, true);
+      navigator.key(MoveKey::fast, true);
+      navigator.advance(step);
+    }
+    EXPECT_LT(navigator.pose().eye.x, 50) << "through the wall";
+    EXPECT_GT(navigator.pose().eye.x, 45);
+  }
+  // Nor over the border.
+  navigator.key(MoveKey::forward, false);
+  for (int i = 0; i < 600; ++i) {
+    navigator.key(MoveKey::back, true);
+    navigator.advance(1.0);
+  }
+  EXPECT_GE(navigator.pose().eye.x, 0);
+}
+
+TEST_F(Navigation, ADoubleClickGoesThere) {
+  Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
+  const dvec3 clicked(30, 60, 0);
+  const double before = length(clicked - navigator.pose().eye);
+  navigator.go_to(clicked);
+  const Pose& pose = navigator.pose();
+  EXPECT_LT(length(clicked - pose.eye), before / 2);
+  EXPECT_LT(length(pose.eye + pose.distance * forward_of(pose) - clicked), 1e-6);
+}
+
+}  // namespace
+}  // namespace scarp::viewer
