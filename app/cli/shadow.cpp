@@ -17,6 +17,7 @@
 #include "app/cli/progress.h"
 #include "app/cli/raster_output.h"
 #include "app/cli/shared_options.h"
+#include "scarp/analysis/map_part.h"
 #ifdef SCARP_ERFA
 #include "scarp/analysis/sun_position.h"
 #endif
@@ -116,9 +117,10 @@ std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options) {
 }
 
 // Share of the disc's area that is lit: strips of equal height, each as its middle is.
-std::vector<float> lit_fraction(const HeightField& field, const SunDirection& sun, const Progress& progress) {
+std::vector<float> lit_fraction(const HeightField& field, const SunDirection& sun, const RowBand& rows,
+                                const Progress& progress) {
   constexpr int kStrips = 16;
-  std::vector<float> lit(static_cast<std::size_t>(field.cols()) * field.rows(), 0);
+  std::vector<float> lit(static_cast<std::size_t>(field.cols()) * rows.rows(), 0);
   const auto area_below = [](double y) {  // of the unit disc, as a share
     return 0.5 + (y * std::sqrt(1 - y * y) + std::asin(y)) / std::numbers::pi;
   };
@@ -127,7 +129,7 @@ std::vector<float> lit_fraction(const HeightField& field, const SunDirection& su
     const double altitude = sun.altitude + (low + high) / 2 * kSunDiameter / 2;
     if (altitude <= 0 || altitude > std::numbers::pi / 2) continue;
     const auto weight = static_cast<float>(area_below(high) - area_below(low));
-    const auto codes = shadow(field, {sun.azimuth, altitude}, progress);
+    const auto codes = shadow_rows(field, {sun.azimuth, altitude}, rows, progress);
     for (std::size_t k = 0; k < lit.size(); ++k) {
       if (codes[k] == Shade::lit) lit[k] += weight;
       if (codes[k] == Shade::hole) lit[k] = -1;
@@ -147,28 +149,29 @@ void run(ShadowOptions options, const Command& command) {
   const std::vector<Sun> suns = suns_of(input, options);
   const HeightField field =
       input.field_at((input.field().cols() - 1) / 2.0, (input.field().rows() - 1) / 2.0, HUGE_VAL);
-  const double nodes = static_cast<double>(field.cols()) * field.rows();
+  const RowBand rows = rows_of_part(input, options.raster_output);
+  const double nodes = static_cast<double>(field.cols()) * rows.rows();
   if (options.raster_output.dry_run) {
     constexpr double kNode_s = 1e-7;
-    print_dry_run(input, options.output, static_cast<double>(suns.size()) * (options.fraction ? 4 : 1) + 1,
+    print_dry_run(input, rows, options.output, static_cast<double>(suns.size()) * (options.fraction ? 4 : 1) + 1,
                   nodes * kNode_s * static_cast<double>(suns.size()) * (options.fraction ? 16 : 1));
     return;
   }
   std::string places;
   for (const Sun& sun : suns) places += fmt::format("{}{}: {}", places.empty() ? "" : "; ", sun.name, sun.place);
-  RasterMap map = map_of(input, options.raster_output, kMethod, {{"SUN", places}});
+  RasterMap map = map_of(input, options.raster_output, rows, kMethod, {{"SUN", places}});
   const Progress progress = terminal_progress("shadow");
   std::vector<std::vector<std::uint8_t>> codes(suns.size());
   std::vector<std::vector<float>> fractions(suns.size());
   double lit = 0;
   for (std::size_t i = 0; i < suns.size(); ++i) {
     if (options.fraction) {
-      fractions[i] = lit_fraction(field, suns[i].direction, progress);
+      fractions[i] = lit_fraction(field, suns[i].direction, rows, progress);
       for (const float share : fractions[i]) lit += std::max(share, 0.0f);
       map.bands.push_back({suns[i].name, "", std::span<const float>(fractions[i]), -1});
       continue;
     }
-    const auto shades = shadow(field, suns[i].direction, progress);
+    const auto shades = shadow_rows(field, suns[i].direction, rows, progress);
     codes[i].reserve(shades.size());
     for (const Shade shade : shades)
       codes[i].push_back(shade == Shade::hole ? kNodata : static_cast<std::uint8_t>(shade));
@@ -183,7 +186,7 @@ void run(ShadowOptions options, const Command& command) {
                           {kNodata, "no sample", {255, 255, 255, 0}}}});
   }
   write_raster_map(options.output, map, terminal_progress("write"));
-  print_map_summary(input, options.raster_output, options.output,
+  print_map_summary(input, options.raster_output, rows, options.output,
                     fmt::format("{}; {:.3g} % lit", places, 100 * lit / nodes / static_cast<double>(suns.size())),
                     begin);
 }

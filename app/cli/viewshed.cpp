@@ -19,6 +19,7 @@
 #include "app/cli/raster_output.h"
 #include "app/cli/shared_options.h"
 #include "app/cli/sight_options.h"
+#include "scarp/analysis/map_part.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 
@@ -139,7 +140,8 @@ std::vector<Observer> observers_of(MapInput& input, const ViewshedOptions& optio
 using Codes = std::vector<std::uint8_t>;
 
 // Pixels of `visible`: the best that any observer has of a node.
-Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptions& options, const Progress& progress) {
+Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptions& options, const RowBand& rows,
+                     const Progress& progress) {
   const auto out = static_cast<std::uint8_t>(options.out_of_range.value_or(options.nodata.value_or(kNodata)));
   const auto hole = static_cast<std::uint8_t>(options.nodata.value_or(kNodata));
   const std::uint8_t value_of[] = {static_cast<std::uint8_t>(options.hidden),
@@ -147,7 +149,7 @@ Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptio
   Codes pixels;
   std::vector<Seen> best;
   for (const Observer& one : observers) {
-    auto codes = viewshed(one.field, one.node, one.settings, progress);
+    auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
     if (best.empty()) {
       best = std::move(codes);
       continue;
@@ -162,10 +164,11 @@ Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptio
 
 constexpr std::uint16_t kNoCount = 65535;
 
-std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers, const Progress& progress) {
+std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers, const RowBand& rows,
+                                          const Progress& progress) {
   std::vector<std::uint16_t> counts;
   for (const Observer& one : observers) {
-    const auto codes = viewshed(one.field, one.node, one.settings, progress);
+    const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
     if (counts.empty()) counts.assign(codes.size(), kNoCount);
     for (std::size_t i = 0; i < codes.size(); ++i) {
       if (codes[i] == Seen::hole || codes[i] == Seen::out_of_range) continue;
@@ -177,16 +180,16 @@ std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers
 }
 
 std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDatum datum, float nodata,
-                                const Progress& progress) {
+                                const RowBand& rows, const Progress& progress) {
   std::vector<float> pixels;
   for (const Observer& one : observers) {
-    const auto least = least_visible(one.field, one.node, one.settings, progress);
+    const auto least = least_visible_rows(one.field, one.node, one.settings, rows, progress);
     const Viewpoint view(one.field, one.node, one.settings);
     if (pixels.empty()) pixels.assign(least.size(), nodata);
     const int cols = one.field.cols();
-    parallel_for(one.field.rows(), 16, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(rows.rows(), 16, [&](std::int64_t begin, std::int64_t end) {
       for (auto i = static_cast<std::size_t>(begin) * cols; i < static_cast<std::size_t>(end) * cols; ++i) {
-        const Node node{static_cast<int>(i % cols), static_cast<int>(i / cols)};
+        const Node node{static_cast<int>(i % cols), rows.first + static_cast<int>(i / cols)};
         const float height = least_height(view.ground(), node, least[i], datum);
         if (!std::isnan(height)) pixels[i] = pixels[i] == nodata ? height : std::min(pixels[i], height);
       }
@@ -219,11 +222,12 @@ void run(ViewshedOptions options, const Command& command) {
   if (options.mode == "count" && observers.size() >= kNoCount)
     throw Error(fmt::format("--mode count: {} observers (limit: {})", observers.size(), kNoCount - 1));
 
-  const double nodes = static_cast<double>(input.field().cols()) * input.field().rows();
+  const RowBand rows = rows_of_part(input, options.raster_output);
+  const double nodes = static_cast<double>(input.field().cols()) * rows.rows();
   if (options.raster_output.dry_run) {
     // One sweep per observer, on one thread.
     constexpr double kNode_s = 6e-8;
-    print_dry_run(input, options.output, options.mode == "dem" || options.mode == "ground" ? 12 : 3,
+    print_dry_run(input, rows, options.output, options.mode == "dem" || options.mode == "ground" ? 12 : 3,
                   static_cast<double>(observers.size()) * nodes * kNode_s);
     return;
   }
@@ -240,7 +244,7 @@ void run(ViewshedOptions options, const Command& command) {
                                             : fmt::format("{:.10g} m above ground", one.settings.observer_height));
   }
   const SightCurvature curvature = input.curvature();
-  RasterMap map = map_of(input, options.raster_output, kMethod,
+  RasterMap map = map_of(input, options.raster_output, rows, kMethod,
                          {{"MODE", options.mode},
                           {"OBSERVERS", places},
                           {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)},
@@ -252,7 +256,7 @@ void run(ViewshedOptions options, const Command& command) {
   std::vector<float> heights;
   std::string what;
   if (options.mode == "visible") {
-    codes = visible_pixels(observers, options, progress);
+    codes = visible_pixels(observers, options, rows, progress);
     const int nodata = static_cast<int>(options.nodata.value_or(kNodata));
     map.bands.push_back({"visible",
                          "",
@@ -264,21 +268,21 @@ void run(ViewshedOptions options, const Command& command) {
     what = fmt::format("{:.3g} % visible",
                        share_of(static_cast<double>(std::count(codes.begin(), codes.end(), options.visible)), nodes));
   } else if (options.mode == "count") {
-    counts = counted_pixels(observers, progress);
+    counts = counted_pixels(observers, rows, progress);
     map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kNoCount});
     what = fmt::format("{} observers", observers.size());
   } else {
     const bool dem = options.mode == "dem";
     const double nodata = options.nodata.value_or(-9999);
-    heights =
-        least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, static_cast<float>(nodata), progress);
+    heights = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, static_cast<float>(nodata), rows,
+                           progress);
     map.bands.push_back({dem ? "least visible height above sea" : "least visible height above ground", "m",
                          std::span<const float>(heights), nodata});
     what = "least visible heights";
   }
   write_raster_map(options.output, map, terminal_progress("write"));
-  print_map_summary(input, options.raster_output, options.output, fmt::format("{}; {}", what, input.curvature_text()),
-                    begin);
+  print_map_summary(input, options.raster_output, rows, options.output,
+                    fmt::format("{}; {}", what, input.curvature_text()), begin);
 }
 
 }  // namespace

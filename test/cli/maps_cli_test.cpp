@@ -165,6 +165,43 @@ TEST_F(MapsCli, ShadowTakesTimes) {
   expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", "-o", path("x.tif")}, "CRS");
 }
 
+// The parts put together are the whole, pixel by pixel, and lie where their rows do.
+TEST_F(MapsCli, PartsArePiecesOfTheWhole) {
+  const Names maps[] = {
+      Names{"viewshed", "--observer", "500105,5000105,2", "--observer", "500255,5000055,9"},
+      Names{"viewshed", "--observer", "500105,5000105,2", "--mode", "ground", "--max-distance", "60"},
+      Names{"shadow", "--sun", "160,20", "--sun", "280,3"},
+      Names{"shadow", "--sun", "70,10", "--fraction"},
+  };
+  for (const Names& map : maps) {
+    const Names words = map + Names{dem_, "--raster-crs", "EPSG:32633", "-o"};
+    ASSERT_EQ(run(words + Names{path("whole.tif")}).status, 0);
+    const auto whole = open(path("whole.tif"));
+    for (int band = 1; band <= whole->GetRasterCount(); ++band) {
+      std::vector<float> together;
+      for (int i = 1; i <= 3; ++i) {
+        const auto result = run(words + Names{path("part.tif"), "--part", fmt::format("{}/3", i)});
+        ASSERT_EQ(result.status, 0) << result.err;
+        const auto part = open(path("part.tif"));
+        double place[6];
+        ASSERT_EQ(part->GetGeoTransform(place), CE_None);
+        EXPECT_EQ(place[0], 500000);
+        EXPECT_EQ(place[3], 5000200 - 10. * static_cast<double>(together.size()) / 30);
+        const auto pixels = pixels_of(*part, band);
+        EXPECT_EQ(pixels.cols, 30);
+        together.insert(together.end(), pixels.samples.begin(), pixels.samples.end());
+      }
+      EXPECT_EQ(pixels_of(*whole, band).samples, together) << map[0];
+    }
+  }
+  const Names sun = on_dem("shadow") + Names{"--sun", "160,20", "-o", path("x.tif"), "--part"};
+  expect_refused(sun + Names{"0/3"}, "--part '0/3': expected I/N");
+  expect_refused(sun + Names{"4/3"}, "1 <= I <= N");
+  expect_refused(sun + Names{"1.5/3"}, "whole numbers");
+  expect_refused(sun + Names{"2"}, "for example 3/16");
+  expect_refused(sun + Names{"1/21"}, "has only 20 rows");
+}
+
 TEST_F(MapsCli, LosAnswersInCsvAndGeoJson) {
   const Names places{"--from", "500105,5000105,2", "--to", "500185,5000105", "--to", "500285,5000105,5", "--cc", "0"};
   const auto csv = run(on_dem("los") + places);
