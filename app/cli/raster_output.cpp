@@ -4,7 +4,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
+#include <vector>
 
+#include "app/cli/kept_inputs.h"
+#include "app/cli/map_preview.h"
 #include "app/cli/numbers.h"
 #include "scarp/base/error.h"
 
@@ -31,14 +35,28 @@ void add_raster_output_options(Command& command, RasterOutput& options) {
                               .note = "bands of rows, from north to south",
                               .fallback = "all",
                               .common = true});
+  command.add(&options.preview, {.names = "--preview",
+                                 .value = "FILE",
+                                 .help = "picture of the first band over the shaded model, with a legend",
+                                 .files = "png jpg pdf",
+                                 .fallback = "none",
+                                 .common = true});
   command.add(&options.dry_run,
               {.names = "--dry-run", .help = "print size, memory and time, and write nothing", .common = true});
   command.add(&options.quiet, {.names = "--quiet", .help = "no summary", .common = true});
 }
 
-void settle_driver(RasterOutput& options, const std::string& output) {
-  if (options.driver.empty()) options.driver = raster_driver_of(output);
+void settle_output(RasterOutput& options, const MapOptions& map) {
+  if (options.driver.empty()) options.driver = raster_driver_of(map.output);
   require_raster_driver(options.driver, options.creation);
+  keep_inputs(map.output, map.typed);
+  if (options.preview.empty()) return;
+  preview_format_of(options.preview);
+  if (std::filesystem::path(options.preview).lexically_normal() == std::filesystem::path(map.output).lexically_normal())
+    throw Error(fmt::format("--preview '{}': is the output (name another file)", options.preview));
+  std::vector<std::string> others = map.typed;
+  std::erase(others, options.preview);
+  keep_inputs(options.preview, others);
 }
 
 RowBand rows_of_part(const MapInput& input, const RasterOutput& options) {

@@ -18,14 +18,16 @@ struct RasterOutput {
   std::string driver;                 ///< empty: by the extension
   std::vector<std::string> creation;  ///< NAME=VALUE
   std::string part;                   ///< I/N; empty: all
+  std::string preview;                ///< picture; empty: none
   bool dry_run = false, quiet = false;
 };
 
-/// Declares --of, --co, --part, --dry-run and --quiet.
+/// Declares --of, --co, --part, --preview, --dry-run and --quiet.
 void add_raster_output_options(Command& command, RasterOutput& options);
 
-/// Throws Error for a format that cannot be written, before hours of work; sets the driver.
-void settle_driver(RasterOutput& options, const std::string& output);
+/// Throws Error for formats that cannot be written, before hours of work, and for a preview in a file of the command
+/// line; sets the driver.
+void settle_output(RasterOutput& options, const MapOptions& map);
 
 /// Returns the rows of --part. Throws Error.
 RowBand rows_of_part(const MapInput& input, const RasterOutput& options);

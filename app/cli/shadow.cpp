@@ -8,12 +8,14 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/map_input.h"
+#include "app/cli/map_preview.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_output.h"
 #include "app/cli/shared_options.h"
@@ -140,8 +142,7 @@ std::vector<float> lit_fraction(const HeightField& field, const SunDirection& su
 
 void run(ShadowOptions options, const Command& command) {
   command.require_effect({});
-  settle_driver(options.raster_output, options.output);
-  keep_inputs(options.output, options.typed);
+  settle_output(options.raster_output, options);
   const ThreadLimit limit(options.threads);
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);
@@ -157,6 +158,8 @@ void run(ShadowOptions options, const Command& command) {
                   nodes * kNode_s * static_cast<double>(suns.size()) * (options.fraction ? 16 : 1));
     return;
   }
+  std::optional<MapPreview> preview;
+  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
   std::string places;
   for (const Sun& sun : suns) places += fmt::format("{}{}: {}", places.empty() ? "" : "; ", sun.name, sun.place);
   RasterMap map = map_of(input, options.raster_output, rows, kMethod, {{"SUN", places}});
@@ -168,7 +171,7 @@ void run(ShadowOptions options, const Command& command) {
     if (options.fraction) {
       fractions[i] = lit_fraction(field, suns[i].direction, rows, progress);
       for (const float share : fractions[i]) lit += std::max(share, 0.0f);
-      map.bands.push_back({suns[i].name, "", std::span<const float>(fractions[i]), -1});
+      map.bands.push_back({fmt::format("lit share, {}", suns[i].name), "", std::span<const float>(fractions[i]), -1});
       continue;
     }
     const auto shades = shadow_rows(field, suns[i].direction, rows, progress);
@@ -186,6 +189,7 @@ void run(ShadowOptions options, const Command& command) {
                           {kNodata, "no sample", {255, 255, 255, 0}}}});
   }
   write_raster_map(options.output, map, terminal_progress("write"));
+  if (preview) preview->write(map, rows, "grey");
   print_map_summary(input, options.raster_output, rows, options.output,
                     fmt::format("{}; {:.3g} % lit", places, 100 * lit / nodes / static_cast<double>(suns.size())),
                     begin);

@@ -9,12 +9,14 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/map_input.h"
+#include "app/cli/map_preview.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_output.h"
 #include "app/cli/shared_options.h"
@@ -212,8 +214,7 @@ double share_of(double part, double whole) { return whole > 0 ? 100 * part / who
 void run(ViewshedOptions options, const Command& command) {
   command.require_effect({});
   options.mode = mode_of(options.mode);
-  settle_driver(options.raster_output, options.output);
-  keep_inputs(options.output, options.typed);
+  settle_output(options.raster_output, options);
   const ThreadLimit limit(options.threads);
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);
@@ -231,6 +232,8 @@ void run(ViewshedOptions options, const Command& command) {
                   static_cast<double>(observers.size()) * nodes * kNode_s);
     return;
   }
+  std::optional<MapPreview> preview;
+  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
   std::string places;
   for (const Observer& one : observers) {
     constexpr std::size_t kListed = 20;
@@ -281,6 +284,7 @@ void run(ViewshedOptions options, const Command& command) {
     what = "least visible heights";
   }
   write_raster_map(options.output, map, terminal_progress("write"));
+  if (preview) preview->write(map, rows, "viridis");
   print_map_summary(input, options.raster_output, rows, options.output,
                     fmt::format("{}; {}", what, input.curvature_text()), begin);
 }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
 
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -235,6 +236,45 @@ TEST_F(MapsCli, ProfileIsATableOrAFigure) {
   EXPECT_EQ(text_of(path("p.png")).substr(1, 3), "PNG");
 #endif
   expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg or .png");
+}
+
+// Green where the observer sees the ground, grey where not, the colours of heights where nothing was asked.
+TEST_F(MapsCli, PreviewShowsTheMapOverTheModel) {
+  const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("v.tif")};
+#ifndef SCARP_CAIRO
+  expect_refused(view + Names{"--preview", path("v.png")}, "SCARP_CAIRO");
+#else
+  const auto result = run(view + Names{"--max-distance", "170", "--preview", path("v.png")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(scratch_.files(), (Names{"dem.asc", "v.png", "v.tif"}));
+  const auto picture = open(path("v.png"));
+  ASSERT_TRUE(picture);
+  const Pixels red = pixels_of(*picture, 1), green = pixels_of(*picture, 2), blue = pixels_of(*picture, 3);
+  int greens = 0, greys = 0, whites = 0;
+  for (std::size_t i = 0; i < red.samples.size(); ++i) {
+    const float r = red.samples[i], g = green.samples[i], b = blue.samples[i];
+    greens += g > 1.5f * r && g > 1.5f * b;
+    greys += r < 250 && r > 100 && std::abs(r - g) < 12 && std::abs(g - b) < 12;
+    whites += r + g + b == 3 * 255;
+  }
+  const auto share = [&](int pixels) { return static_cast<double>(pixels) / static_cast<double>(red.samples.size()); };
+  EXPECT_GT(share(greens), 0.3);
+  EXPECT_GT(share(greys), 0.02);
+  EXPECT_GT(share(whites), 0.05);  // the margin with the legend
+  // A map of heights, of a part, has a ramp.
+  EXPECT_EQ(run(view + Names{"--mode", "ground", "--part", "1/2", "--preview", path("g.pdf")}).status, 0);
+  EXPECT_EQ(text_of(path("g.pdf")).substr(0, 4), "%PDF");
+  fs::remove(path("g.pdf"));
+  const Names shadow = on_dem("shadow") + Names{"--sun", "90,45", "-o", path("x.tif"), "--preview"};
+  expect_refused(shadow + Names{path("x.exr")}, "no margins");
+  expect_refused(shadow + Names{path("x.png.txt")}, "unknown picture format");
+  expect_refused(shadow + Names{path("./x.tif")}, "x.tif");
+  expect_refused(shadow + Names{path("none/x.png")}, "none");
+  expect_refused(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("y.png"), "--preview", path("./y.png")},
+                 "is the output");
+  const std::string line = scratch_.write("line.asc", "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3");
+  expect_refused({"shadow", line, "--sun", "90,45", "-o", path("x.tif"), "--preview", path("x.png")}, "no ground");
+#endif
 }
 
 TEST_F(MapsCli, BadInputIsOneLineAndNothingIsWritten) {
