@@ -7,12 +7,13 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <type_traits>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "app/cli/figure_options.h"
 #include "app/cli/kept_inputs.h"
@@ -71,24 +72,34 @@ Paint paint_of_classes(const MapBand& band, std::span<const std::uint8_t> codes)
   return {[=](std::size_t i) { return colours[codes[i]]; }, std::move(key)};
 }
 
+// The range that colours show: of whole numbers all; of others without the 1 % at either end, among them lines of sight
+// straight down.
+template <class Sample>
+std::pair<double, double> range_of(std::vector<Sample> numbers) {
+  if (numbers.empty()) return {0, 0};
+  const std::size_t last = numbers.size() - 1, cut = std::is_integral_v<Sample> ? 0 : numbers.size() / 100;
+  const auto at = [&](std::size_t i) {
+    std::nth_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(i), numbers.end());
+    return static_cast<double>(numbers[i]);
+  };
+  const double low = at(cut);
+  return {low, at(last - cut)};
+}
+
 template <class Sample>
 Paint paint_of_numbers(const MapBand& band, std::span<const Sample> samples, const std::string& ramp) {
   const auto is_hole = [nodata = band.nodata](Sample sample) {
     return nodata && static_cast<double>(sample) == *nodata;
   };
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const Sample sample : samples) {
-    if (is_hole(sample)) continue;
-    low = std::min(low, static_cast<double>(sample));
-    high = std::max(high, static_cast<double>(sample));
-  }
-  if (low > high) low = high = 0;
+  std::vector<Sample> numbers;
+  std::copy_if(samples.begin(), samples.end(), std::back_inserter(numbers), [&](Sample s) { return !is_hole(s); });
+  const auto [low, high] = range_of(std::move(numbers));
   FigureLegend legend = legend_of(band.unit.empty() ? band.name : fmt::format("{}, {}", band.name, band.unit), low,
                                   high, Ramp(ramp, low, high), 1, std::is_integral_v<Sample> ? 1 : 0);
   const double per_unit = high > low ? static_cast<double>(legend.colours.size()) / (high - low) : 0;
-  const auto colour = [=, colours = legend.colours](std::size_t i) {
+  const auto colour = [=, low = low, colours = legend.colours](std::size_t i) {
     if (is_hole(samples[i])) return Colour{};
-    const auto at = static_cast<std::size_t>((static_cast<double>(samples[i]) - low) * per_unit);
+    const auto at = static_cast<std::size_t>(std::max(0.0, (static_cast<double>(samples[i]) - low) * per_unit));
     const auto& rgb = colours[std::min(at, colours.size() - 1)];
     return Colour{rgb[0], rgb[1], rgb[2], 255};
   };

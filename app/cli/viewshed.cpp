@@ -30,6 +30,7 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr int kNodata = 255;
+constexpr double kNoHeight = -9999;  // nodata of heights and angles
 constexpr const char* kMethod =
     "exact lines of sight; ground linear at crossings of grid lines; grazing is visible (scarp viewshed)";
 
@@ -38,7 +39,10 @@ constexpr const char* kFooter = R"(Modes:
   count    number of observers that see the target
   dem      least height above sea at which a target is visible, metres
   ground   the same above ground: 0 where the ground itself is visible
-Pixels without a sample, or outside every observer's limits, are nodata.
+  angle    degrees above the horizontal at which an observer sees the target, the largest of all
+           observers that see it (r.viewshed of GRASS: add 90)
+Pixels without a sample, or outside every observer's limits, are nodata; those of `angle` also where
+the target is hidden.
 
 Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a_nodata -b -co -of
 -f -q, with the output as last word.)";
@@ -200,6 +204,19 @@ std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDa
   return pixels;
 }
 
+std::vector<float> angle_pixels(const std::vector<Observer>& observers, float nodata, const RowBand& rows,
+                                const Progress& progress) {
+  std::vector<float> pixels;
+  for (const Observer& one : observers) {
+    const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
+    const auto angles = sight_angles(Viewpoint(one.field, one.node, one.settings), codes, rows.first);
+    if (pixels.empty()) pixels.assign(angles.size(), nodata);
+    for (std::size_t i = 0; i < angles.size(); ++i)
+      if (!std::isnan(angles[i])) pixels[i] = pixels[i] == nodata ? angles[i] : std::max(pixels[i], angles[i]);
+  }
+  return pixels;
+}
+
 std::string mode_of(const std::string& typed) {
   // As gdal_viewshed has them.
   if (typed == "NORMAL") return "visible";
@@ -228,7 +245,7 @@ void run(ViewshedOptions options, const Command& command) {
   if (options.raster_output.dry_run) {
     // One sweep per observer, on one thread.
     constexpr double kNode_s = 6e-8;
-    print_dry_run(input, rows, options.output, options.mode == "dem" || options.mode == "ground" ? 12 : 3,
+    print_dry_run(input, rows, options.output, options.mode == "visible" || options.mode == "count" ? 3 : 12,
                   static_cast<double>(observers.size()) * nodes * kNode_s);
     return;
   }
@@ -256,7 +273,7 @@ void run(ViewshedOptions options, const Command& command) {
   const Progress progress = terminal_progress("viewshed");
   Codes codes;
   std::vector<std::uint16_t> counts;
-  std::vector<float> heights;
+  std::vector<float> numbers;
   std::string what;
   if (options.mode == "visible") {
     codes = visible_pixels(observers, options, rows, progress);
@@ -274,13 +291,19 @@ void run(ViewshedOptions options, const Command& command) {
     counts = counted_pixels(observers, rows, progress);
     map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kNoCount});
     what = fmt::format("{} observers", observers.size());
+  } else if (options.mode == "angle") {
+    const double nodata = options.nodata.value_or(kNoHeight);
+    numbers = angle_pixels(observers, static_cast<float>(nodata), rows, progress);
+    map.bands.push_back({"angle above horizontal", "degrees", std::span<const float>(numbers), nodata});
+    const auto hidden = std::count(numbers.begin(), numbers.end(), static_cast<float>(nodata));
+    what = fmt::format("{:.3g} % visible", share_of(nodes - static_cast<double>(hidden), nodes));
   } else {
     const bool dem = options.mode == "dem";
-    const double nodata = options.nodata.value_or(-9999);
-    heights = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, static_cast<float>(nodata), rows,
+    const double nodata = options.nodata.value_or(kNoHeight);
+    numbers = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, static_cast<float>(nodata), rows,
                            progress);
     map.bands.push_back({dem ? "least visible height above sea" : "least visible height above ground", "m",
-                         std::span<const float>(heights), nodata});
+                         std::span<const float>(numbers), nodata});
     what = "least visible heights";
   }
   write_raster_map(options.output, map, terminal_progress("write"));
@@ -312,7 +335,7 @@ void add_viewshed(Program& program) {
   command.add(&o.mode, {.names = "--mode",
                         .value = "MODE",
                         .help = "what pixels hold",
-                        .choices = {"visible", "count", "dem", "ground", "NORMAL", "ACCUM", "DEM", "GROUND"},
+                        .choices = {"visible", "count", "dem", "ground", "angle", "NORMAL", "ACCUM", "DEM", "GROUND"},
                         .closed = true,
                         .common = true});
   add_sight_heights(command, o.heights);
@@ -350,11 +373,11 @@ void add_viewshed(Program& program) {
                                 .range = {0, 255},
                                 .fallback = "nodata",
                                 .rules = {codes}});
-  const Rule marked = needs("--mode visible, dem or ground", [&o] { return mode_of(o.mode) != "count"; });
+  const Rule marked = needs("--mode visible, dem, ground or angle", [&o] { return mode_of(o.mode) != "count"; });
   command.add(&o.nodata, {.names = "--nodata-value",
                           .help = "pixel value without a sample",
                           .range = {-1e30, 1e30},
-                          .fallback = "255; heights: -9999",
+                          .fallback = "255; heights and angles: -9999",
                           .rules = {marked}});
   add_raster_output_options(command, o.raster_output);
   add_map_options(command, o);

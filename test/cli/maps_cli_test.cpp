@@ -137,6 +137,22 @@ TEST_F(MapsCli, CountsObserversAndFindsLeastHeights) {
   EXPECT_EQ(ground.at(0, 0), -9999);
 }
 
+TEST_F(MapsCli, AnglesCountFromTheHorizontal) {
+  const Names angles = on_dem("viewshed") + Names{"--mode", "angle", "--cc", "0", "-o", path("angle.tif")};
+  ASSERT_EQ(run(angles + Names{"--observer", "500105,5000105,2"}).status, 0);
+  const auto dataset = open(path("angle.tif"));
+  EXPECT_STREQ(dataset->GetRasterBand(1)->GetUnitType(), "degrees");
+  const auto one = pixels_of(*dataset);
+  // Cells are 0.01 % longer than in the map.
+  EXPECT_NEAR(one.at(15, 9), std::atan(-2 / 50.) * 180 / 3.14159265, 1e-2);
+  EXPECT_NEAR(one.at(20, 9), std::atan(48 / 100.) * 180 / 3.14159265, 1e-2);
+  EXPECT_EQ(one.at(25, 9), -9999);
+  EXPECT_EQ(one.at(0, 0), -9999);
+  // The higher one of two observers sees the ground at a smaller angle.
+  ASSERT_EQ(run(angles + Names{"--observer", "500105,5000105,2", "--observer", "500105,5000105,9"}).status, 0);
+  EXPECT_EQ(pixels_of(*open(path("angle.tif"))).at(15, 9), one.at(15, 9));
+}
+
 TEST_F(MapsCli, ShadowHasABandPerSunAndCodes) {
   ASSERT_EQ(run(on_dem("shadow") + Names{"--sun", "90,45", "--sun", "270,45", "-o", path("sun.tif")}).status, 0);
   const auto dataset = open(path("sun.tif"));
@@ -171,6 +187,7 @@ TEST_F(MapsCli, PartsArePiecesOfTheWhole) {
   const Names maps[] = {
       Names{"viewshed", "--observer", "500105,5000105,2", "--observer", "500255,5000055,9"},
       Names{"viewshed", "--observer", "500105,5000105,2", "--mode", "ground", "--max-distance", "60"},
+      Names{"viewshed", "--observer", "500105,5000105,2", "--observer", "500255,5000055,9", "--mode", "angle"},
       Names{"shadow", "--sun", "160,20", "--sun", "280,3"},
       Names{"shadow", "--sun", "70,10", "--fraction"},
   };
