@@ -16,11 +16,6 @@ namespace {
 
 RowBand all_rows(const HeightField& field) { return {0, field.rows()}; }
 
-void require_band(const HeightField& field, const RowBand& band) {
-  if (band.first < 0 || band.last > field.rows() || band.first >= band.last)
-    throw Error(fmt::format("rows {} to {} are no part of a map of {} rows", band.first, band.last - 1, field.rows()));
-}
-
 // The rows as a field of their own, over the same samples.
 HeightField rows_of(const HeightField& field, const RowBand& band) {
   if (band == all_rows(field)) return field;
@@ -74,6 +69,11 @@ RowBand rows_towards(const HeightField& field, const SunDirection& sun, const Ro
 }
 
 }  // namespace
+
+void require_band(const HeightField& field, const RowBand& band) {
+  if (band.first < 0 || band.last > field.rows() || band.first >= band.last)
+    throw Error(fmt::format("rows {} to {} are no part of a map of {} rows", band.first, band.last - 1, field.rows()));
+}
 
 RowBand row_band(int rows, int part, int parts) {
   if (part < 1 || part > parts) throw Error(fmt::format("part {} of {}: expected 1 to {}", part, parts, parts));

@@ -28,7 +28,10 @@ struct RowBand {
 /// Throws Error unless 1 <= part <= parts <= rows.
 RowBand row_band(int rows, int part, int parts);
 
-/// Rows of viewshed(). Throws as it does, and for an empty band or one outside the field; so do those below.
+/// Throws Error for an empty band, and one that is not inside the field.
+void require_band(const HeightField& field, const RowBand& band);
+
+/// Rows of viewshed(). Throws as it does, and as require_band(); so do those below.
 std::vector<Seen> viewshed_rows(const HeightField& field, Node observer, const ViewshedSettings& settings,
                                 const RowBand& band, const Progress& progress = {});
 

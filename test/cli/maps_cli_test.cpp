@@ -179,6 +179,20 @@ TEST_F(MapsCli, ShadowTakesTimes) {
   expect_refused(on_dem("shadow") + Names{"--time", "2026-06-21T01:00+02:00", "-o", path("x.tif")},
                  "below the horizon");
   expect_refused(on_dem("shadow") + Names{"--time", "21.6.2026 12:00", "-o", path("x.tif")}, "2026-06-21T09:00+02:00");
+  // The sun of every pixel: here within 0.003 degrees of the one at the centre.
+  EXPECT_NE(result.err.find("--sun-per-cell"), std::string::npos) << result.err;
+  const Names evening = on_dem("shadow") + Names{"--time", "2026-06-21T19:00+02:00", "-o"};
+  const auto local = run(evening + Names{path("local.tif"), "--sun-per-cell"});
+  ASSERT_EQ(local.status, 0) << local.err;
+  EXPECT_EQ(local.err.find("one sun"), std::string::npos) << local.err;
+  ASSERT_EQ(run(evening + Names{path("one.tif")}).status, 0);
+  EXPECT_EQ(pixels_of(*open(path("local.tif"))).samples, pixels_of(*open(path("one.tif"))).samples);
+  for (const char* part : {"1/2", "2/2"})
+    EXPECT_EQ(run(evening + Names{path("p.tif"), "--sun-per-cell", "--fraction", "--part", part}).status, 0);
+  fs::remove(path("p.tif"));
+  expect_refused(on_dem("shadow") + Names{"--sun", "90,9", "--sun-per-cell", "-o", path("x.tif")}, "--time");
+  expect_refused(on_dem("shadow") + Names{"--time", "2026-06-21T01:00+02:00", "--sun-per-cell", "-o", path("x.tif")},
+                 "below the horizon");
   expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", "-o", path("x.tif")}, "CRS");
 }
 
