@@ -34,8 +34,6 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr int kNodata = 255;
-constexpr const char* kMethod =
-    "exact rays to the sun; ground linear at crossings of grid lines; flat Earth; grazing is lit (scarp shadow)";
 constexpr const char* kFooter = R"(Pixels:
   0  lit
   1  self-shaded: the ground itself faces away from the sun
@@ -161,18 +159,23 @@ std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options, double& 
   return suns;
 }
 
-std::vector<Shade> shades_of(const HeightField& field, const Sun& sun, const RowBand& rows, const Progress& progress) {
+std::vector<Shade> shades_of(const SunGround& ground, const Sun& sun, const RowBand& rows, const Progress& progress) {
 #ifdef SCARP_ERFA
-  if (sun.local) return local_shadow(field, *sun.local, rows, progress);
+  if (sun.local) return local_shadow(ground, *sun.local, rows, progress);
 #endif
-  return shadow_rows(field, sun.direction, rows, progress);
+  return ground.rows(sun.direction, rows, progress);
 }
 
-std::vector<float> shares_of(const HeightField& field, const Sun& sun, const RowBand& rows, const Progress& progress) {
+std::vector<float> shares_of(const SunGround& ground, const Sun& sun, const RowBand& rows, const Progress& progress) {
 #ifdef SCARP_ERFA
-  if (sun.local) return local_lit_share(field, *sun.local, rows, progress);
+  if (sun.local) return local_lit_share(ground, *sun.local, rows, progress);
 #endif
-  return lit_share(field, sun.direction, rows, progress);
+  return lit_share(ground, sun.direction, rows, progress);
+}
+
+std::string method_of(const ShadowOptions& options) {
+  return fmt::format("exact rays to the sun{}; ground {}; flat Earth; grazing is lit (scarp shadow)",
+                     options.per_cell ? " of every pixel" : "", surface_text(options.surface));
 }
 
 void run(ShadowOptions options, const Command& command) {
@@ -192,7 +195,7 @@ void run(ShadowOptions options, const Command& command) {
   const RowBand rows = rows_of_part(input, options.raster_output);
   const double nodes = static_cast<double>(field.cols()) * rows.rows();
   if (options.raster_output.dry_run) {
-    const double kNode_s = options.per_cell ? 4e-6 : 1e-7;
+    const double kNode_s = options.per_cell ? 4e-6 : options.surface == "bilinear" ? 1e-6 : 1e-7;
     print_dry_run(input, rows, options.output, static_cast<double>(suns.size()) * (options.fraction ? 4 : 1) + 1,
                   nodes * kNode_s * static_cast<double>(suns.size()) *
                       (!options.fraction  ? 1
@@ -204,22 +207,22 @@ void run(ShadowOptions options, const Command& command) {
   if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
   std::string places;
   for (const Sun& sun : suns) places += fmt::format("{}{}: {}", places.empty() ? "" : "; ", sun.name, sun.place);
-  RasterMap map = map_of(input, options.raster_output, rows,
-                         fmt::format("{}{}", options.per_cell ? "sun, north and scale of every pixel; " : "", kMethod),
-                         {{"SUN", places}});
+  RasterMap map = map_of(input, options.raster_output, rows, method_of(options), {{"SUN", places}});
   const Progress progress = terminal_progress("shadow");
+  const std::optional<BilinearGround> bilinear = input.bilinear_ground(field);
+  const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(field);
   std::vector<std::vector<std::uint8_t>> codes(suns.size());
   std::vector<std::vector<float>> fractions(suns.size());
   double lit = 0;
   for (std::size_t i = 0; i < suns.size(); ++i) {
     if (options.fraction) {
-      fractions[i] = shares_of(field, suns[i], rows, progress);
+      fractions[i] = shares_of(ground, suns[i], rows, progress);
       for (const float share : fractions[i]) lit += std::max(share, 0.0f);
       map.bands.push_back(
           {fmt::format("lit share, {}", suns[i].name), "", std::span<const float>(fractions[i]), kNoShare});
       continue;
     }
-    const auto shades = shades_of(field, suns[i], rows, progress);
+    const auto shades = shades_of(ground, suns[i], rows, progress);
     codes[i].reserve(shades.size());
     for (const Shade shade : shades)
       codes[i].push_back(shade == Shade::hole ? kNodata : static_cast<std::uint8_t>(shade));
@@ -270,6 +273,7 @@ void add_shadow(Program& program) {
       &o.fraction,
       {.names = "--fraction", .help = "lit share of the sun's disc (0.533 degrees) instead of codes", .common = true});
   add_output_option(command, o.output, "raster to write", "tif tiff img asc");
+  add_surface_option(command, o.surface);
   add_raster_output_options(command, o.raster_output);
   add_map_options(command, o);
   command.footer(kFooter);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "scarp/analysis/sight_rays.h"
 #include "scarp/analysis/sun_disc.h"
 #include "scarp/base/parallel.h"
 
@@ -56,12 +55,12 @@ class Places {
   std::vector<dvec3> places_;
 };
 
-// Sets every value of a map to value(ground, node, steps, sun at the node), or to `hole`.
+// Sets every value of a map to value(node, steps, sun at the node), or to `hole`.
 template <class T, class Value>
-std::vector<T> map_of(const HeightField& field, const LocalSun& sun, const RowBand& band, T hole,
+std::vector<T> map_of(const SunGround& ground, const LocalSun& sun, const RowBand& band, T hole,
                       const Progress& progress, const Value& value) {
+  const HeightField& field = ground.field();
   require_band(field, band);
-  const SightGround ground(field);
   const SunAtTime sky(sun.time);
   const auto cols = static_cast<std::size_t>(field.cols());
   std::vector<T> map(cols * static_cast<std::size_t>(band.rows()), hole);
@@ -74,12 +73,12 @@ std::vector<T> map_of(const HeightField& field, const LocalSun& sun, const RowBa
         for (int row = first; row < last; ++row)
           for (int col = 0; col < field.cols(); ++col) {
             const Node node{col, row};
-            const auto height = ground.height(node);
+            const auto height = ground.heights().height(node);
             if (!height) continue;
             const dvec3& at = places.at(col, row);
             const SunPosition here = sky.at({at.x * kRadians, at.y * kRadians, *height}, sun.refraction);
             map[static_cast<std::size_t>(row - band.first) * cols + static_cast<std::size_t>(col)] =
-                value(ground, node, places.steps(node), here);
+                value(node, places.steps(node), here);
           }
       },
       progress);
@@ -97,34 +96,30 @@ NodeSteps node_steps(const dvec3& here, const dvec3& west, const dvec3& east, in
   return {step(west, east, cols), step(north, south, rows)};
 }
 
-std::vector<Shade> local_shadow(const HeightField& field, const LocalSun& sun, const RowBand& band,
+std::vector<Shade> local_shadow(const SunGround& ground, const LocalSun& sun, const RowBand& band,
                                 const Progress& progress) {
-  return map_of(field, sun, band, Shade::hole, progress,
-                [](const SightGround& ground, Node node, const NodeSteps& steps, const SunPosition& at) {
+  return map_of(ground, sun, band, Shade::hole, progress,
+                [&](Node node, const NodeSteps& steps, const SunPosition& at) {
                   if (at.altitude <= 0) return Shade::self_shaded;
-                  return shade(ground, sun_ray(steps, {at.azimuth, at.altitude}), node);
+                  return ground.shade(sun_ray(steps, {at.azimuth, at.altitude}), node);
                 });
 }
 
-std::vector<float> local_lit_share(const HeightField& field, const LocalSun& sun, const RowBand& band,
+std::vector<float> local_lit_share(const SunGround& ground, const LocalSun& sun, const RowBand& band,
                                    const Progress& progress) {
-  return map_of(field, sun, band, kNoShare, progress,
-                [](const SightGround& ground, Node node, const NodeSteps& steps, const SunPosition& at) {
-                  const auto strips = sun_strips();
-                  const auto is_dark = [&](const SunStrip& strip) {
-                    const double altitude = at.altitude + strip.rise;
-                    return altitude <= 0 || shade(ground, sun_ray(steps, {at.azimuth, altitude}), node) != Shade::lit;
-                  };
-                  const auto is_up = [&](const SunStrip& strip) {
-                    return at.altitude + strip.rise <= std::numbers::pi / 2;
-                  };
-                  // A strip above a lit one is lit: its ray is higher at every crossing.
-                  const auto end = std::partition_point(strips.begin(), strips.end(), is_up);
-                  float lit = 0;
-                  for (auto strip = std::partition_point(strips.begin(), end, is_dark); strip != end; ++strip)
-                    lit += strip->share;
-                  return lit;
-                });
+  return map_of(ground, sun, band, kNoShare, progress, [&](Node node, const NodeSteps& steps, const SunPosition& at) {
+    const auto strips = sun_strips();
+    const auto is_dark = [&](const SunStrip& strip) {
+      const double altitude = at.altitude + strip.rise;
+      return altitude <= 0 || ground.shade(sun_ray(steps, {at.azimuth, altitude}), node) != Shade::lit;
+    };
+    const auto is_up = [&](const SunStrip& strip) { return at.altitude + strip.rise <= std::numbers::pi / 2; };
+    // A strip above a lit one is lit: its ray is higher at every crossing.
+    const auto end = std::partition_point(strips.begin(), strips.end(), is_up);
+    float lit = 0;
+    for (auto strip = std::partition_point(strips.begin(), end, is_dark); strip != end; ++strip) lit += strip->share;
+    return lit;
+  });
 }
 
 }  // namespace scarp

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Shadows by the sun of every node: its position in the sky, north and the steps to the neighbours are those at the
-// node's own place on Earth, not those at the centre of the field. One ray per node (sight_rays.h). Requires a build
+// node's own place on Earth, not those at the centre of the field. One ray per node. Requires a build
 // with ERFA (SCARP_ERFA).
 //
 // A ray keeps the direction that it has at its node; ground beside it is where the field's grid has it. The sun at or
@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "scarp/analysis/map_part.h"
+#include "scarp/analysis/sun_ground.h"
 #include "scarp/analysis/sun_position.h"
 
 namespace scarp {
@@ -25,11 +25,11 @@ struct LocalSun {
 };
 
 /// Returns the codes of the band. Throws Error for a wrapped field, an empty band, a place at a pole.
-std::vector<Shade> local_shadow(const HeightField& field, const LocalSun& sun, const RowBand& band,
+std::vector<Shade> local_shadow(const SunGround& ground, const LocalSun& sun, const RowBand& band,
                                 const Progress& progress = {});
 
 /// Returns the lit share of the sun's disc, as lit_share() does.
-std::vector<float> local_lit_share(const HeightField& field, const LocalSun& sun, const RowBand& band,
+std::vector<float> local_lit_share(const SunGround& ground, const LocalSun& sun, const RowBand& band,
                                    const Progress& progress = {});
 
 /// Returns the steps between nodes at `here`, from places one or two columns and rows apart. Places as above.

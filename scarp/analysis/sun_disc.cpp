@@ -29,13 +29,13 @@ std::span<const SunStrip> sun_strips() {
   return strips;
 }
 
-std::vector<float> lit_share(const HeightField& field, const SunDirection& sun, const RowBand& band,
+std::vector<float> lit_share(const SunGround& ground, const SunDirection& sun, const RowBand& band,
                              const Progress& progress) {
-  std::vector<float> lit(static_cast<std::size_t>(field.cols()) * static_cast<std::size_t>(band.rows()), 0);
+  std::vector<float> lit(static_cast<std::size_t>(ground.field().cols()) * static_cast<std::size_t>(band.rows()), 0);
   for (const SunStrip& strip : sun_strips()) {
     const double altitude = sun.altitude + strip.rise;
     if (altitude <= 0 || altitude > std::numbers::pi / 2) continue;
-    const auto codes = shadow_rows(field, {sun.azimuth, altitude}, band, progress);
+    const auto codes = ground.rows({sun.azimuth, altitude}, band, progress);
     for (std::size_t k = 0; k < lit.size(); ++k) {
       if (codes[k] == Shade::lit) lit[k] += strip.share;
       if (codes[k] == Shade::hole) lit[k] = kNoShare;

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "scarp/analysis/map_part.h"
+#include "scarp/analysis/sun_ground.h"
 
 namespace scarp {
 
@@ -25,8 +25,8 @@ std::span<const SunStrip> sun_strips();
 inline constexpr float kNoShare = -1;
 
 /// Returns the share of the disc that is lit, 0..1, for every node of the band; kNoShare for holes. Strips below the
-/// horizon are dark. Throws as shadow_rows() does.
-std::vector<float> lit_share(const HeightField& field, const SunDirection& sun, const RowBand& band,
+/// horizon are dark. Throws as SunGround::rows() does.
+std::vector<float> lit_share(const SunGround& ground, const SunDirection& sun, const RowBand& band,
                              const Progress& progress = {});
 
 }  // namespace scarp

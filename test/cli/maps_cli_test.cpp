@@ -234,6 +234,33 @@ TEST_F(MapsCli, PartsArePiecesOfTheWhole) {
   expect_refused(sun + Names{"1/21"}, "has only 20 rows");
 }
 
+// Between the samples of a saddle the ground is higher than on any grid line that a diagonal crosses.
+TEST_F(MapsCli, SurfaceMayBeBilinear) {
+  const std::string saddle =
+      scratch_.write("saddle.asc", "ncols 2\nnrows 2\nxllcorner -5\nyllcorner -5\ncellsize 10\n0 30\n30 0\n");
+  const Names line{"los", saddle, "--crs", "map", "--cc", "0", "--from", "0,10,8", "--to", "10,0,8"};
+  const auto crossings = run(line), bilinear = run(line + Names{"--surface", "bilinear"});
+  ASSERT_EQ(bilinear.status, 0) << bilinear.err;
+  EXPECT_NE(crossings.out.find("\n1,1,"), std::string::npos) << crossings.out;
+  EXPECT_NE(bilinear.out.find("\n1,0,14.14213562,8,8,-7,"), std::string::npos) << bilinear.out;
+  const Names sun{"shadow", saddle, "--sun", "135,10", "-o", path("s.tif")};
+  ASSERT_EQ(run(sun).status, 0);
+  EXPECT_EQ(pixels_of(*open(path("s.tif"))).at(0, 0), 0);
+  for (const char* part : {"1/1", "1/2"}) {
+    ASSERT_EQ(run(sun + Names{"--surface", "bilinear", "--part", part}).status, 0);
+    const auto dataset = open(path("s.tif"));
+    EXPECT_EQ(pixels_of(*dataset).at(0, 0), 1);
+    EXPECT_NE(std::string(dataset->GetMetadataItem("METHOD")).find("bilinear"), std::string::npos);
+  }
+  ASSERT_EQ(run(sun + Names{"--surface", "bilinear", "--fraction"}).status, 0);
+  EXPECT_EQ(pixels_of(*open(path("s.tif"))).at(0, 0), 0);
+  fs::remove(path("s.tif"));
+  expect_refused(on_dem("los") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "--surface", "bilinear"},
+                 "--cc 0");
+  const std::string row = scratch_.write("row.asc", "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3");
+  expect_refused({"shadow", row, "--sun", "90,45", "--surface", "bilinear", "-o", path("x.tif")}, "row.asc: ");
+}
+
 TEST_F(MapsCli, LosAnswersInCsvAndGeoJson) {
   const Names places{"--from", "500105,5000105,2", "--to", "500185,5000105", "--to", "500285,5000105,5", "--cc", "0"};
   const auto csv = run(on_dem("los") + places);
