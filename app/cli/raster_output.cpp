@@ -11,6 +11,7 @@
 #include "app/cli/map_preview.h"
 #include "app/cli/numbers.h"
 #include "scarp/base/error.h"
+#include "scarp/base/replace_file.h"
 
 namespace scarp::cli {
 
@@ -50,6 +51,8 @@ void settle_output(RasterOutput& options, const MapOptions& map) {
   if (options.driver.empty()) options.driver = raster_driver_of(map.output);
   require_raster_driver(options.driver, options.creation);
   keep_inputs(map.output, map.typed);
+  // Not kept: formats choose their own temporary files.
+  if (!options.dry_run) const ReplaceFile writable(map.output);
   if (options.preview.empty()) return;
   preview_format_of(options.preview);
   if (std::filesystem::path(options.preview).lexically_normal() == std::filesystem::path(map.output).lexically_normal())

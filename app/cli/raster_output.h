@@ -25,8 +25,8 @@ struct RasterOutput {
 /// Declares --of, --co, --part, --preview, --dry-run and --quiet.
 void add_raster_output_options(Command& command, RasterOutput& options);
 
-/// Throws Error for formats that cannot be written, before hours of work, and for a preview in a file of the command
-/// line; sets the driver.
+/// Throws Error for formats and files that cannot be written, before hours of work, and for files of the command line;
+/// sets the driver.
 void settle_output(RasterOutput& options, const MapOptions& map);
 
 /// Returns the rows of --part. Throws Error.

@@ -89,7 +89,8 @@ TEST(BilinearGround, ShadesEqualDenseSamples) {
 TEST(BilinearGround, LinesOfSightEqualDenseSamples) {
   std::mt19937 random(5);
   int visible = 0, hidden = 0;
-  for (const auto& [name, field] : map_fields()) {
+  for (const MapField& kind : map_fields()) {
+    const HeightField& field = kind.field;
     if (!field.has_cells()) continue;
     const BilinearGround ground(field);
     const auto place = [&](int nodes) {
@@ -114,8 +115,8 @@ TEST(BilinearGround, LinesOfSightEqualDenseSamples) {
       const double clearance =
           dense_clearance(field, from.col, from.row, cols, rows, line.eye, line.target - line.eye, 1);
       const auto where = [&] {
-        return testing::Message() << name << ", " << from.col << ", " << from.row << " to " << to.col << ", " << to.row
-                                  << ": " << clearance;
+        return testing::Message() << kind.name << ", " << from.col << ", " << from.row << " to " << to.col << ", "
+                                  << to.row << ": " << clearance;
       };
       if (clearance < -kRounding) {
         EXPECT_FALSE(line.visible) << where();

@@ -4,11 +4,15 @@
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
+#include <sys/resource.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cli/program.h"
@@ -367,6 +371,133 @@ TEST_F(MapsCli, BadInputIsOneLineAndNothingIsWritten) {
                  "--to: 499999,5000105 is outside");
   expect_refused(on_dem("los") + Names{"--lines", path("missing.csv")}, "missing.csv");
   expect_refused(on_dem("los") + Names{"--lines", dem_}, "dem.asc");
+}
+
+// What else people type, one line each.
+TEST_F(MapsCli, PlacesTimesAndFilesAreChecked) {
+  const std::string out = path("x.tif");
+  const Names view = on_dem("viewshed") + Names{"-o", out, "--observer"};
+  for (const char* place : {"500105", "nan,5000105", "500105,5000105,1e300", "500105,5000105,2,3", ""})
+    expect_refused(view + Names{place}, fmt::format("--observer '{}': expected", place));
+  for (const char* number : {"-1", "nan", "1e300", "six"}) {
+    const std::string wanted = fmt::format("--cc '{}': expected a number from 0 to 1", number);
+    expect_refused(view + Names{"500105,5000105", fmt::format("--cc={}", number)}, wanted);
+    expect_refused(view + Names{"500105,5000105", "-cc", number}, wanted);
+    expect_refused(on_dem("los") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "--cc", number}, wanted);
+    expect_refused(on_dem("profile") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "--cc", number},
+                   wanted);
+  }
+  const Names watch = on_dem("viewshed") + Names{"-o", out, "--observers"};
+  expect_refused(watch + Names{scratch_.write("empty.csv", "")}, "empty.csv: is empty");
+  expect_refused(watch + Names{scratch_.write("blank.csv", "x,y\n,\n")}, "blank.csv: line 2: x ''");
+  expect_refused(watch + Names{scratch_.write("both.csv", "x,y,lon,lat\n1,2,3,4\n")}, "both.csv: ");
+  expect_refused(watch + Names{scratch_.write("none.geojson", R"({"type":"FeatureCollection","features":[]})")},
+                 "none.geojson: contains no points");
+  expect_refused(
+      watch + Names{scratch_.write("null.geojson", R"({"type":"FeatureCollection","features":[{"type":"Feature",)"
+                                                   R"("properties":{},"geometry":null}]})")},
+      "null.geojson: feature 1: has no geometry");
+  expect_refused(watch + Names{path("missing.csv")}, "missing.csv: cannot be opened");
+#ifdef SCARP_ERFA
+  const Names sun = on_dem("shadow") + Names{"-o", out, "--time"};
+  expect_refused(sun + Names{"21-06-2026T09:00Z"}, "expected YYYY-MM-DD");
+  expect_refused(sun + Names{"2026-21-06T09:00Z"}, "no such date");
+  expect_refused(sun + Names{"2026-02-30T09:00Z"}, "no such date");
+  expect_refused(sun + Names{"2026-06-21T09:00"}, "UTC offset");
+  expect_refused(sun + Names{"1526-06-21T09:00Z"}, "1900 to 2100");
+  for (const char* rule : {"--sun-per-cell", "--refraction"})
+    expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", rule, "-o", out},
+                   "--raster-crs");
+#endif
+  // Found before the work.
+  const Names there = on_dem("viewshed") + Names{"--observer", "500105,5000105", "--of", "GTiff", "-o"};
+  expect_refused(there + Names{path("none/x.tif")}, "'" + path("none") + "' does not exist");
+  expect_refused(there + Names{path("")}, path(""));
+}
+
+TEST_F(MapsCli, InputsAreKept) {
+  const std::string lines_file = scratch_.write("lines.csv", "x,y,tx,ty\n500105,5000105,500185,5000105\n");
+  const std::string tower = scratch_.write("tower.csv", "x,y\n500105,5000105\n");
+  fs::create_hard_link(dem_, path("link.tif"));
+  fs::create_symlink(dem_, path("link.png"));
+  const Names one{"--observer", "500105,5000105"};
+  expect_refused(on_dem("viewshed") + one + Names{"-o", path("link.tif")}, "is the input");
+  expect_refused(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("link.tif")}, "is the input");
+  expect_refused(on_dem("viewshed") + Names{"--observers", tower, "--of", "GTiff", "-o", tower}, "is the input");
+  expect_refused(on_dem("los") + Names{"--lines", lines_file, "-o", lines_file}, "is the input");
+#ifdef SCARP_CAIRO
+  expect_refused(on_dem("viewshed") + one + Names{"-o", path("x.tif"), "--preview", path("link.png")}, "is the input");
+  expect_refused(
+      on_dem("profile") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "-o", path("link.png")},
+      "is the input");
+#endif
+}
+
+// A limit on the size of files stands for the full disk: write() fails in the same way.
+TEST_F(MapsCli, AFullDiskLeavesNothing) {
+  const auto expect_full = [&](const Names& arguments, ::rlim_t bytes, const std::string& name) {
+    const auto before = scratch_.files();
+    struct rlimit limit {};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+    const struct rlimit small { bytes, limit.rlim_max };
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+    const auto result = Program(arguments).result();
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(name + ": cannot be written"), std::string::npos) << result.err;
+    EXPECT_EQ(scratch_.files(), before);
+  };
+  constexpr ::rlim_t kFew = 600;
+  const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105"};
+  const Names ends{"--from", "500105,5000105", "--to", "500285,5000105", "--to", "500285,5000055"};
+  const Names line{"--from", "500105,5000105", "--to", "500285,5000105"};
+  expect_full(view + Names{"-o", path("x.tif")}, kFew, "x.tif");
+  expect_full(view + Names{"--mode", "ground", "--of", "COG", "-o", path("x.tif")}, kFew, "x.tif");
+  expect_full(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("x.img")}, kFew, "x.img");
+  expect_full(on_dem("los") + ends + Names{"-o", path("x.geojson")}, kFew, "x.geojson");
+  expect_full(on_dem("profile") + line + Names{"-o", path("x.csv")}, kFew, "x.csv");
+#ifdef SCARP_CAIRO
+  expect_full(on_dem("profile") + line + Names{"-o", path("x.svg")}, kFew, "x.svg");
+  expect_full(on_dem("profile") + line + Names{"-o", path("x.png")}, kFew, "x.png");
+  // The map is there, its picture is not.
+  constexpr ::rlim_t kSome = 6000;
+  scratch_.write("x.tif", "old");
+  expect_full(view + Names{"-o", path("x.tif"), "--preview", path("x.png")}, kSome, "x.png");
+  EXPECT_TRUE(open(path("x.tif")));
+#endif
+  for (const Names& command : {on_dem("los") + ends, on_dem("profile") + line}) {
+    const auto result = Program(command, "/dev/full").result();
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find("standard output: cannot be written"), std::string::npos) << result.err;
+  }
+}
+
+// Ctrl-C in the middle of long work.
+TEST_F(MapsCli, AnInterruptLeavesNothing) {
+  std::string text = "ncols 400\nnrows 400\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n", table = "x,y\n";
+  for (int i = 0; i < 400 * 400; ++i) text += fmt::format("{} ", i * 7919 % 31);
+  for (int i = 0; i < 40000; ++i) table += fmt::format("{},{}\n", 500005 + i % 200 * 10, 5000005 + i / 200 * 10);
+  const std::string dem = scratch_.write("large.asc", text), towers = scratch_.write("towers.csv", table);
+  const auto before = scratch_.files();
+  for (const char* mode : {"count", "ground", "angle"}) {
+    Program program({"viewshed", dem, "--raster-crs", "EPSG:32633", "--observers", towers, "--mode", mode, "-o",
+                     path("x.tif"), "--preview", path("x.png")});
+#ifdef SCARP_CAIRO
+    // The picture's file is reserved when the work begins.
+    for (int i = 0; i < 2000 && scratch_.files() == before; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_NE(scratch_.files(), before);
+#endif
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    ::kill(program.pid(), SIGINT);
+    const auto result = program.result();
+#ifdef SCARP_CAIRO
+    EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
+    EXPECT_TRUE(result.err.ends_with("scarp: interrupted\n")) << result.err;
+#endif
+    EXPECT_EQ(scratch_.files(), before);
+  }
 }
 
 TEST_F(MapsCli, DryRunWritesNothing) {
