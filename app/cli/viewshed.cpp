@@ -231,6 +231,10 @@ double share_of(double part, double whole) { return whole > 0 ? 100 * part / who
 void run(ViewshedOptions options, const Command& command) {
   command.require_effect({});
   options.mode = mode_of(options.mode);
+  if (const double nodata = options.nodata.value_or(kNodata);
+      options.mode == "visible" && !(nodata >= 0 && nodata <= 255 && nodata == std::floor(nodata)))
+    throw Error(
+        fmt::format("--nodata-value {:.10g}: expected a whole number from 0 to 255 for --mode visible", nodata));
   settle_output(options.raster_output, options);
   const ThreadLimit limit(options.threads);
   const auto begin = std::chrono::steady_clock::now();

@@ -387,6 +387,8 @@ TEST_F(MapsCli, PlacesTimesAndFilesAreChecked) {
     expect_refused(on_dem("profile") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "--cc", number},
                    wanted);
   }
+  for (const char* value : {"256", "-1", "2.5"})
+    expect_refused(view + Names{"500105,5000105", fmt::format("--nodata-value={}", value)}, "from 0 to 255");
   const Names watch = on_dem("viewshed") + Names{"-o", out, "--observers"};
   expect_refused(watch + Names{scratch_.write("empty.csv", "")}, "empty.csv: is empty");
   expect_refused(watch + Names{scratch_.write("blank.csv", "x,y\n,\n")}, "blank.csv: line 2: x ''");
