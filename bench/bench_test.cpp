@@ -215,7 +215,7 @@ TEST(ScarpBench, PyramidWritesTheDocumentedFields) {
 }
 
 TEST(ScarpBench, MapsWritesTheDocumentedFields) {
-  const json all = output_of("maps --sizes 65 --repeats 1 --judged 100");
+  const json all = output_of("maps --sizes 65 --repeats 1 --judged 100 --programs none");
   expect_head(all);
   for (const json& row : all["rows"]) {
     expect_fields(row, {"size", "map", "threads", "seconds", "ns_per_node", "cpu_ns_per_node", "skipped", "careful",
@@ -223,6 +223,23 @@ TEST(ScarpBench, MapsWritesTheDocumentedFields) {
     EXPECT_EQ(row["wrong"], 0);
   }
 }
+
+#ifdef SCARP_BENCH_SCARP
+TEST(ScarpBench, MapsMeasuresPrograms) {
+  const json all =
+      output_of("maps --sizes 65 --repeats 1 --judged 100 --programs scarp --scarp '" SCARP_BENCH_SCARP "'");
+  std::set<std::string> maps;
+  for (const json& row : all["rows"]) {
+    if (!row.contains("program")) continue;
+    expect_fields(row, {"size", "map", "program", "seconds", "cpu_s", "peak_mb", "scarp_ratio", "judged", "wrong"});
+    EXPECT_GT(row["seconds"], 0);
+    EXPECT_EQ(row["judged"], 65 * 65);
+    EXPECT_EQ(row["wrong"], 0);
+    maps.insert(row["map"]);
+  }
+  EXPECT_EQ(maps, (std::set<std::string>{"viewshed", "shadow"}));
+}
+#endif
 
 TEST(ScarpBench, VolumesWritesTheDocumentedFields) {
   const json all = output_of("volumes --side 64 --repeats 1");

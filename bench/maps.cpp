@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench maps`: viewsheds and shadows of all nodes, ns per node and what the sweeps skip. Some nodes are also
-// answered by one ray each.
+// `scarp-bench maps`: viewsheds and shadows of all nodes, ns per node and what the sweeps skip, compared with one ray
+// each at random nodes; and `scarp` beside other programs that make such maps.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,10 @@
 #include <vector>
 
 #include "bench/commands.h"
-#include "bench/random.h"
+#include "bench/map_truth.h"
+#ifdef SCARP_BENCH_GDAL
+#include "bench/map_programs.h"
+#endif
 #include "scarp/analysis/shadow_sweep.h"
 #include "scarp/analysis/sight_rays.h"
 #include "scarp/analysis/viewshed_sweep.h"
@@ -25,19 +28,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
-
-// Nodes drawn at random, the same for all maps of a field.
-template <class Judge>
-std::int64_t wrong_nodes(const HeightField& field, std::int64_t judged, const Judge& is_right) {
-  Random random(1, 0);
-  std::int64_t wrong = 0;
-  for (std::int64_t n = 0; n < judged; ++n) {
-    const scarp::Node node{random.below(field.cols()), random.below(field.rows())};
-    wrong += !is_right(node, static_cast<std::size_t>(node.row) * static_cast<std::size_t>(field.cols()) +
-                                 static_cast<std::size_t>(node.col));
-  }
-  return wrong;
-}
 
 // `sweep` makes the map anew and returns its statistics.
 template <class Sweep>
@@ -72,6 +62,7 @@ std::vector<Json> measure_maps(const MapsOptions& options, const HeightField& fi
   const Viewpoint view(field, {field.cols() / 2, field.rows() / 2},
                        {.observer_height = static_cast<double>(options.observer_height)});
   const SightGround ground(field);
+  const std::vector<scarp::Node> judged = random_nodes(field, options.judged);
   const SunRay sun = sun_ray(field, {options.azimuth_deg * kDegree, options.altitude_deg * kDegree});
   std::vector<Json> rows;
   const auto add = [&](Json row, double share, std::int64_t wrong) {
@@ -86,26 +77,47 @@ std::vector<Json> measure_maps(const MapsOptions& options, const HeightField& fi
   std::vector<Seen> seen(nodes);
   Json row =
       measure_map(field, "viewshed", threads, options.repeats, [&] { return sweep_viewshed(view, seen.data()); });
-  add(std::move(row), share(seen, Seen::visible),
-      wrong_nodes(field, options.judged, [&](scarp::Node node, std::size_t i) {
+  add(std::move(row), share(seen, Seen::visible), count_wrong(field, judged, [&](scarp::Node node, std::size_t i) {
         const double target = view.target(*view.ground().lowered(node));
         return sees(view.ground(), view.observer(), view.eye(), node, target) == (seen[i] == Seen::visible);
       }));
   std::vector<Shade> shades(nodes);
   row =
       measure_map(field, "shadow", threads, options.repeats, [&] { return sweep_shadow(ground, sun, shades.data()); });
-  add(std::move(row), share(shades, Shade::lit),
-      wrong_nodes(field, options.judged,
-                  [&](scarp::Node node, std::size_t i) { return shade(ground, sun, node) == shades[i]; }));
+  add(std::move(row), share(shades, Shade::lit), count_wrong(field, judged, [&](scarp::Node node, std::size_t i) {
+        return shade(ground, sun, node) == shades[i];
+      }));
   std::vector<double> least(nodes);
   row = measure_map(field, "least height", threads, options.repeats,
                     [&] { return sweep_least_visible(view, least.data()); });
-  add(std::move(row), share(seen, Seen::visible),
-      wrong_nodes(field, options.judged, [&](scarp::Node node, std::size_t i) {
+  add(std::move(row), share(seen, Seen::visible), count_wrong(field, judged, [&](scarp::Node node, std::size_t i) {
         return least_visible(view.ground(), view.observer(), view.eye(), node) == least[i];
       }));
   return rows;
 }
+
+#ifdef SCARP_BENCH_GDAL
+// Prints and returns a row for each program and size, the smallest first: what is too slow is not run at larger ones.
+std::vector<Json> measure_programs(const MapsOptions& options) {
+  std::vector<std::vector<std::string>> lines{
+      {"nodes", "map", "program", "s", "CPU s", "MB", "x scarp", "judged", "wrong"}};
+  MapPrograms programs(options);
+  std::vector<int> sizes = options.sizes;
+  std::sort(sizes.begin(), sizes.end());
+  std::vector<Json> rows;
+  for (const int size : sizes) {
+    for (Json& row : programs.measure(size)) {
+      lines.push_back({fmt::format("{0} x {0}", size), row["map"], row["program"], short_number(row["seconds"]),
+                       short_number(row["cpu_s"]), short_number(row["peak_mb"]), short_number(row["scarp_ratio"]),
+                       row["judged"].is_null() ? "-" : row["judged"].dump(),
+                       row["wrong"].is_null() ? "-" : row["wrong"].dump()});
+      rows.push_back(std::move(row));
+    }
+  }
+  if (!rows.empty()) print_table(lines, 3);
+  return rows;
+}
+#endif
 
 }  // namespace
 
@@ -134,6 +146,9 @@ void run_maps(const MapsOptions& options, const ReportOptions& report) {
     }
   }
   print_table(lines, 2);
+#ifdef SCARP_BENCH_GDAL
+  for (Json& row : measure_programs(options)) rows.push_back(std::move(row));
+#endif
   write_json(report, rows);
   if (wrong > 0) throw Error(fmt::format("maps: {} nodes differ from their rays", wrong));
 }
