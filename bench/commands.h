@@ -87,6 +87,7 @@ struct MapsOptions {
   std::int64_t judged = 100'000;  ///< nodes per map that a ray answers, too
   std::vector<std::string> programs{"scarp", "gdal_viewshed", "r.viewshed", "r.sunmask", "saga"};
   std::string scarp;             ///< path of the program
+  int observers = 500;           ///< of a cumulative viewshed; 0: none
   double program_limit_s = 120;  ///< programs that take longer are ended, and not run at larger sizes
 };
 /// Throws Error, after the report, if a node differs from its ray.

@@ -225,6 +225,9 @@ int run(int argc, char** argv) {
   maps_command->add_option("--scarp", maps.scarp, "path of scarp, one of the programs")
       ->check(CLI::ExistingFile)
       ->default_str("beside scarp-bench");
+  maps_command->add_option("--observers", maps.observers, "of a cumulative viewshed; 0: none")
+      ->check(CLI::Range(0, 65533))
+      ->capture_default_str();
   maps_command->add_option("--program-limit", maps.program_limit_s, "seconds that a program may take")
       ->check(number_in(kAboveZero))
       ->capture_default_str();

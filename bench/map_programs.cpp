@@ -3,15 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <optional>
 
 #include "bench/map_truth.h"
 #include "bench/program_run.h"
+#include "scarp/analysis/sight_rays.h"
 #include "scarp/base/error.h"
 #include "scarp/output/raster_map.h"
 #include "scarp/scene/file/from_raster.h"
@@ -153,6 +156,20 @@ std::int64_t wrong_in(const std::string& path, const MapProgram& program, const 
       raster.samples);
 }
 
+// Counts of `scarp viewshed --mode count` that differ from rays.
+std::int64_t wrong_counts(const std::string& path, const std::vector<Viewpoint>& views,
+                          const std::vector<scarp::Node>& judged) {
+  RasterOptions first_band;
+  first_band.band = 1;
+  const Raster raster = read_raster(path, first_band);
+  return wrong_nodes(views[0].ground().field(), judged, [&](scarp::Node node, std::size_t i) {
+    double count = 0;
+    for (const Viewpoint& view : views)
+      count += sees(view.ground(), view.observer(), view.eye(), node, view.target(*view.ground().lowered(node)));
+    return std::visit([&](const auto& samples) { return static_cast<double>(samples.at(i)); }, raster.samples) == count;
+  });
+}
+
 // Runs in turn; what takes long runs once.
 std::vector<std::vector<ProgramRun>> runs_of(const std::vector<MapProgram>& programs, const std::string& folder,
                                              const MapsOptions& options) {
@@ -231,6 +248,61 @@ std::vector<Json> MapPrograms::measure(int size) {
     }
     rows.push_back(std::move(row));
   }
+  return rows;
+}
+
+std::vector<Json> MapPrograms::measure_cumulative(int size) {
+  if (options_.observers == 0 || !names_.contains("scarp")) return {};
+  const ScratchFolder folder;
+  const auto file = [&](const char* name) { return (fs::path(folder.path()) / name).string(); };
+  Raster raster = make_dem(file(kDem), options_, size);
+  const auto map = raster.georeference.map_from_node;
+  const HeightField field = height_field_from(std::move(raster));
+  std::vector<Viewpoint> views;
+  std::vector<Question> questions;
+  std::ofstream table(file("observers.csv"));
+  table << "x,y\n";
+  for (const scarp::Node node : random_nodes(field, options_.observers)) {
+    views.emplace_back(field, node, ViewshedSettings{.observer_height = static_cast<double>(options_.observer_height)});
+    questions.push_back({map[0] + node.col * map[1], map[3] + node.row * map[5], options_.observer_height, 0, 0});
+    table << fmt::format("{},{}\n", questions.back().x, questions.back().y);
+  }
+  table.close();
+  std::vector<Json> rows;
+  const auto add = [&](const std::string& program, double wall_s, double cpu_s, std::optional<double> peak_mb) {
+    rows.push_back({{"size", size},
+                    {"map", "cumulative"},
+                    {"program", program},
+                    {"observers", options_.observers},
+                    {"seconds", wall_s},
+                    {"cpu_s", cpu_s},
+                    {"peak_mb", peak_mb ? Json(*peak_mb) : Json()},
+                    {"scarp_ratio", rows.empty() ? 1 : wall_s / rows[0]["seconds"].get<double>()},
+                    {"judged", nullptr},
+                    {"wrong", nullptr}});
+  };
+  constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+  const auto own = run_program(
+      {options_.scarp, "viewshed", kDem, "--observers", "observers.csv", "--observer-height",
+       std::to_string(options_.observer_height), "--mode", "count", "--co", kTiled, "--co", kPlain, "-o", "count.tif"},
+      folder.path(), kNoLimit);
+  add("scarp", own->wall_s, own->cpu_s, own->peak_mb);
+  // As many rays as for other maps.
+  const auto judged = random_nodes(field, std::max<std::int64_t>(options_.judged / options_.observers, 1));
+  rows[0]["judged"] = judged.size();
+  rows[0]["wrong"] = wrong_counts(file("count.tif"), views, judged);
+  if (!names_.contains("gdal_viewshed")) return rows;
+  ProgramRun all;
+  for (const Question& ask : questions) {
+    const auto programs = map_programs(options_.scarp, ask);
+    const auto gdal = std::find_if(programs.begin(), programs.end(),
+                                   [](const MapProgram& program) { return program.name == "gdal_viewshed"; });
+    const auto run = run_program(gdal->words, folder.path(), kNoLimit);
+    all.wall_s += run->wall_s;
+    all.cpu_s += run->cpu_s;
+    all.peak_mb = run->peak_mb;
+  }
+  add("gdal_viewshed", all.wall_s, all.cpu_s, all.peak_mb);
   return rows;
 }
 

@@ -19,6 +19,10 @@ class MapPrograms {
   /// longer than options.program_limit_s has no time, and no row in later calls.
   std::vector<nlohmann::ordered_json> measure(int size);
 
+  /// How many of options.observers at random places see each pixel: one run of scarp, and one run of gdal_viewshed for
+  /// each.
+  std::vector<nlohmann::ordered_json> measure_cumulative(int size);
+
  private:
   MapsOptions options_;
   std::set<std::string> names_, late_;

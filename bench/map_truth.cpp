@@ -33,7 +33,7 @@ MapTruth truth(const HeightField& field, std::int64_t judged, const Sweep& sweep
     truth.nodes.resize(count);
     std::iota(truth.nodes.begin(), truth.nodes.end(), std::size_t{0});
     const auto wrong =
-        count_wrong(field, sample, [&](scarp::Node node, std::size_t i) { return truth.positive[i] == ray(node); });
+        wrong_nodes(field, sample, [&](scarp::Node node, std::size_t i) { return truth.positive[i] == ray(node); });
     if (wrong > 0) throw Error(fmt::format("maps: {} of {} nodes differ from their rays", wrong, judged));
     return truth;
   }
@@ -58,7 +58,7 @@ std::vector<scarp::Node> random_nodes(const HeightField& field, std::int64_t cou
   return nodes;
 }
 
-std::int64_t count_wrong(const HeightField& field, const std::vector<scarp::Node>& nodes,
+std::int64_t wrong_nodes(const HeightField& field, const std::vector<scarp::Node>& nodes,
                          const std::function<bool(scarp::Node, std::size_t)>& is_right) {
   std::atomic<std::int64_t> wrong = 0;
   parallel_for(static_cast<std::int64_t>(nodes.size()), kGrain, [&](std::int64_t begin, std::int64_t end) {

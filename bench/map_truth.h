@@ -22,7 +22,7 @@ struct MapTruth {
 std::vector<scarp::Node> random_nodes(const HeightField& field, std::int64_t count);
 
 /// Returns how many of these nodes are not right, on all threads. `is_right` gets the node and its index in a map.
-std::int64_t count_wrong(const HeightField& field, const std::vector<scarp::Node>& nodes,
+std::int64_t wrong_nodes(const HeightField& field, const std::vector<scarp::Node>& nodes,
                          const std::function<bool(scarp::Node, std::size_t)>& is_right);
 
 /// Of all nodes up to 2048 x 2048 samples: by a sweep that is compared with a ray at `judged` random nodes. Above: of

@@ -77,20 +77,20 @@ std::vector<Json> measure_maps(const MapsOptions& options, const HeightField& fi
   std::vector<Seen> seen(nodes);
   Json row =
       measure_map(field, "viewshed", threads, options.repeats, [&] { return sweep_viewshed(view, seen.data()); });
-  add(std::move(row), share(seen, Seen::visible), count_wrong(field, judged, [&](scarp::Node node, std::size_t i) {
+  add(std::move(row), share(seen, Seen::visible), wrong_nodes(field, judged, [&](scarp::Node node, std::size_t i) {
         const double target = view.target(*view.ground().lowered(node));
         return sees(view.ground(), view.observer(), view.eye(), node, target) == (seen[i] == Seen::visible);
       }));
   std::vector<Shade> shades(nodes);
   row =
       measure_map(field, "shadow", threads, options.repeats, [&] { return sweep_shadow(ground, sun, shades.data()); });
-  add(std::move(row), share(shades, Shade::lit), count_wrong(field, judged, [&](scarp::Node node, std::size_t i) {
+  add(std::move(row), share(shades, Shade::lit), wrong_nodes(field, judged, [&](scarp::Node node, std::size_t i) {
         return shade(ground, sun, node) == shades[i];
       }));
   std::vector<double> least(nodes);
   row = measure_map(field, "least height", threads, options.repeats,
                     [&] { return sweep_least_visible(view, least.data()); });
-  add(std::move(row), share(seen, Seen::visible), count_wrong(field, judged, [&](scarp::Node node, std::size_t i) {
+  add(std::move(row), share(seen, Seen::visible), wrong_nodes(field, judged, [&](scarp::Node node, std::size_t i) {
         return least_visible(view.ground(), view.observer(), view.eye(), node) == least[i];
       }));
   return rows;
@@ -105,15 +105,18 @@ std::vector<Json> measure_programs(const MapsOptions& options) {
   std::vector<int> sizes = options.sizes;
   std::sort(sizes.begin(), sizes.end());
   std::vector<Json> rows;
-  for (const int size : sizes) {
-    for (Json& row : programs.measure(size)) {
-      lines.push_back({fmt::format("{0} x {0}", size), row["map"], row["program"], short_number(row["seconds"]),
-                       short_number(row["cpu_s"]), short_number(row["peak_mb"]), short_number(row["scarp_ratio"]),
-                       row["judged"].is_null() ? "-" : row["judged"].dump(),
+  const auto add = [&](std::vector<Json> measured) {
+    for (Json& row : measured) {
+      lines.push_back({fmt::format("{0} x {0}", row["size"].get<int>()), row["map"], row["program"],
+                       short_number(row["seconds"]), short_number(row["cpu_s"]), short_number(row["peak_mb"]),
+                       short_number(row["scarp_ratio"]), row["judged"].is_null() ? "-" : row["judged"].dump(),
                        row["wrong"].is_null() ? "-" : row["wrong"].dump()});
       rows.push_back(std::move(row));
     }
-  }
+  };
+  for (const int size : sizes) add(programs.measure(size));
+  constexpr int kCumulativeSide = 2048;
+  add(programs.measure_cumulative(std::min(sizes.back(), kCumulativeSide)));
   if (!rows.empty()) print_table(lines, 3);
   return rows;
 }

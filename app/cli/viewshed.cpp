@@ -19,6 +19,7 @@
 #include "app/cli/raster_output.h"
 #include "app/cli/shared_options.h"
 #include "app/cli/sight_options.h"
+#include "scarp/analysis/observer_count.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 
@@ -138,41 +139,37 @@ std::vector<Observer> observers_of(MapInput& input, const ViewshedOptions& optio
 
 using Codes = std::vector<std::uint8_t>;
 
+std::vector<Viewpoint> views_of(const std::vector<Observer>& observers) {
+  std::vector<Viewpoint> views;
+  for (const Observer& one : observers) views.emplace_back(one.field, one.node, one.settings);
+  return views;
+}
+
 // Pixels of `visible`: the best that any observer has of a node.
 Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptions& options, const Progress& progress) {
-  const auto out = static_cast<std::uint8_t>(options.out_of_range.value_or(options.nodata.value_or(kNodata)));
   const auto hole = static_cast<std::uint8_t>(options.nodata.value_or(kNodata));
-  const std::uint8_t value_of[] = {static_cast<std::uint8_t>(options.hidden),
-                                   static_cast<std::uint8_t>(options.visible), out, hole};
+  const auto out = static_cast<std::uint8_t>(options.out_of_range.value_or(hole));
+  const auto hidden = static_cast<std::uint8_t>(options.hidden), visible = static_cast<std::uint8_t>(options.visible);
   Codes pixels;
-  std::vector<Seen> best;
-  for (const Observer& one : observers) {
-    auto codes = viewshed(one.field, one.node, one.settings, progress);
-    if (best.empty()) {
-      best = std::move(codes);
-      continue;
-    }
-    for (std::size_t i = 0; i < best.size(); ++i)
-      if (codes[i] == Seen::visible || (codes[i] == Seen::hidden && best[i] == Seen::out_of_range)) best[i] = codes[i];
+  if (observers.size() == 1) {
+    const std::uint8_t value_of[] = {hidden, visible, out, hole};
+    const Observer& one = observers.front();
+    const auto codes = viewshed(one.field, one.node, one.settings, progress);
+    pixels.reserve(codes.size());
+    for (const Seen code : codes) pixels.push_back(value_of[static_cast<std::size_t>(code)]);
+    return pixels;
   }
-  pixels.reserve(best.size());
-  for (const Seen code : best) pixels.push_back(value_of[static_cast<std::size_t>(code)]);
+  const auto counts = observer_count(views_of(observers), progress);
+  pixels.reserve(counts.size());
+  for (const std::uint16_t count : counts)
+    pixels.push_back(count == kCountHole ? hole : count == kCountOutOfRange ? out : count > 0 ? visible : hidden);
   return pixels;
 }
 
-constexpr std::uint16_t kNoCount = 65535;
-
 std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers, const Progress& progress) {
-  std::vector<std::uint16_t> counts;
-  for (const Observer& one : observers) {
-    const auto codes = viewshed(one.field, one.node, one.settings, progress);
-    if (counts.empty()) counts.assign(codes.size(), kNoCount);
-    for (std::size_t i = 0; i < codes.size(); ++i) {
-      if (codes[i] == Seen::hole || codes[i] == Seen::out_of_range) continue;
-      if (counts[i] == kNoCount) counts[i] = 0;
-      counts[i] = static_cast<std::uint16_t>(counts[i] + (codes[i] == Seen::visible));
-    }
-  }
+  auto counts = observer_count(views_of(observers), progress);
+  for (std::uint16_t& count : counts)
+    if (count == kCountOutOfRange) count = kCountHole;
   return counts;
 }
 
@@ -216,8 +213,6 @@ void run(ViewshedOptions options, const Command& command) {
   MapInput input(options);
   keep_inputs(options.output, input.files());
   const std::vector<Observer> observers = observers_of(input, options);
-  if (options.mode == "count" && observers.size() >= kNoCount)
-    throw Error(fmt::format("--mode count: {} observers (limit: {})", observers.size(), kNoCount - 1));
 
   const double nodes = static_cast<double>(input.field().cols()) * input.field().rows();
   if (options.raster_output.dry_run) {
@@ -265,7 +260,7 @@ void run(ViewshedOptions options, const Command& command) {
                        share_of(static_cast<double>(std::count(codes.begin(), codes.end(), options.visible)), nodes));
   } else if (options.mode == "count") {
     counts = counted_pixels(observers, progress);
-    map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kNoCount});
+    map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kCountHole});
     what = fmt::format("{} observers", observers.size());
   } else {
     const bool dem = options.mode == "dem";
