@@ -224,6 +224,17 @@ TEST(ScarpBench, MapsWritesTheDocumentedFields) {
   }
 }
 
+TEST(ScarpBench, MapsMeasuresLinesOfSight) {
+  const json all = output_of("maps --sizes 1024 --repeats 1 --judged 1000 --lines 1000 --programs none");
+  for (const json& row : all["rows"]) {
+    if (row["map"] != "lines of sight") continue;
+    expect_fields(row, {"size", "threads", "lines", "height", "seconds", "ns_per_line", "positive", "judged", "wrong"});
+    EXPECT_EQ(row["judged"], 1000);
+    EXPECT_EQ(row["wrong"], 0);
+  }
+  EXPECT_EQ(all["rows"].back()["map"], "lines of sight");
+}
+
 #ifdef SCARP_BENCH_SCARP
 TEST(ScarpBench, MapsMeasuresPrograms) {
   const json all = output_of(

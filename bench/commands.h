@@ -85,6 +85,7 @@ struct MapsOptions {
   int azimuth_deg = 135, altitude_deg = 20;  ///< of the sun
   int repeats = 3;
   std::int64_t judged = 100'000;  ///< nodes per map that a ray answers, too
+  int lines = 1'000'000;          ///< of sight
   std::vector<std::string> programs{"scarp", "gdal_viewshed", "r.viewshed", "r.sunmask", "saga"};
   std::string scarp;             ///< path of the program
   int observers = 500;           ///< of a cumulative viewshed; 0: none

@@ -214,6 +214,9 @@ int run(int argc, char** argv) {
   maps_command->add_option("--judged", maps.judged, "nodes per map that a ray answers, too")
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
+  maps_command->add_option("--lines", maps.lines, "of sight, of 500 cells each; 0: none")
+      ->check(CLI::Range(0, 100'000'000))
+      ->capture_default_str();
 #ifdef SCARP_BENCH_GDAL
   maps.scarp = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "scarp").string();
   std::vector<std::string> map_programs = maps.programs;

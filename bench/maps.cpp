@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <thread>
@@ -12,12 +13,14 @@
 
 #include "bench/commands.h"
 #include "bench/map_truth.h"
+#include "bench/random.h"
 #ifdef SCARP_BENCH_GDAL
 #include "bench/map_programs.h"
 #endif
 #include "scarp/analysis/shadow_sweep.h"
 #include "scarp/analysis/sight_rays.h"
 #include "scarp/analysis/viewshed_sweep.h"
+#include "scarp/analysis/visible_lines.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/source/procedural_dem.h"
@@ -28,6 +31,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
+
+// Lines of sight: their length, and the side of the largest field.
+constexpr int kLineCells = 500, kLinesSide = 2048;
+
+HeightField bench_ground(const MapsOptions& options, int size) {
+  const ProceduralDem dem{.cols = size, .rows = size, .seed = options.seed, .kind = *terrain_kind(options.kind)};
+  return HeightField::own(generate_dem(dem), size, size, {.cell_x = dem.cell_m, .cell_y = dem.cell_m});
+}
 
 // `sweep` makes the map anew and returns its statistics.
 template <class Sweep>
@@ -96,6 +107,52 @@ std::vector<Json> measure_maps(const MapsOptions& options, const HeightField& fi
   return rows;
 }
 
+// Lines between random places, in random directions, with both ends at one height above ground.
+std::vector<LineEnds> random_lines(const HeightField& field, int count, double height) {
+  std::vector<LineEnds> lines;
+  for (std::uint64_t n = 0; lines.size() < static_cast<std::size_t>(count); ++n) {
+    Random random(2, n);
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const SightEnd from{random.uniform(0, field.cols() - 1), random.uniform(0, field.rows() - 1), height};
+    const SightEnd to{from.col + kLineCells * std::cos(angle), from.row + kLineCells * std::sin(angle), height};
+    if (to.col >= 0 && to.row >= 0 && to.col <= field.cols() - 1 && to.row <= field.rows() - 1)
+      lines.push_back({from, to});
+  }
+  return lines;
+}
+
+// Lines of sight near the ground and far above it, on all threads; each row with the share that is visible.
+std::vector<Json> measure_lines(const MapsOptions& options, const HeightField& field, int threads) {
+  const ThreadLimit limit(threads);
+  std::vector<Json> rows;
+  for (const double height : {2.0, 100.0}) {
+    const auto lines = random_lines(field, options.lines, height);
+    std::vector<double> seconds;
+    std::vector<char> visible;
+    for (int repeat = 0; repeat < options.repeats; ++repeat) {
+      const Stopwatch watch;
+      visible = visible_lines(field, lines, BlockMaxima(field));
+      seconds.push_back(watch.wall_s());
+    }
+    std::int64_t wrong = 0;
+    const std::size_t judged = std::min(lines.size(), static_cast<std::size_t>(options.judged));
+    for (std::size_t i = 0; i < judged; ++i)
+      wrong += line_of_sight(field, lines[i].from, lines[i].to).visible != (visible[i] != 0);
+    const auto seen = std::count(visible.begin(), visible.end(), 1);
+    rows.push_back({{"size", field.cols()},
+                    {"map", "lines of sight"},
+                    {"threads", threads},
+                    {"lines", lines.size()},
+                    {"height", height},
+                    {"seconds", median(seconds)},
+                    {"ns_per_line", median(seconds) / static_cast<double>(lines.size()) * 1e9},
+                    {"positive", static_cast<double>(seen) / static_cast<double>(lines.size())},
+                    {"judged", judged},
+                    {"wrong", wrong}});
+  }
+  return rows;
+}
+
 #ifdef SCARP_BENCH_GDAL
 // Prints and returns a row for each program and size, the smallest first: what is too slow is not run at larger ones.
 std::vector<Json> measure_programs(const MapsOptions& options) {
@@ -133,9 +190,7 @@ void run_maps(const MapsOptions& options, const ReportOptions& report) {
                                                "careful", "by rays", "seen or lit", "wrong"}};
   std::int64_t wrong = 0;
   for (const int size : options.sizes) {
-    const ProceduralDem dem{.cols = size, .rows = size, .seed = options.seed, .kind = *terrain_kind(options.kind)};
-    const HeightField field =
-        HeightField::own(generate_dem(dem), size, size, {.cell_x = dem.cell_m, .cell_y = dem.cell_m});
+    const HeightField field = bench_ground(options, size);
     for (const int count : threads) {
       for (const Json& row : measure_maps(options, field, count)) {
         const auto percent = [&](const char* name) { return fmt::format("{:.3g} %", 100 * row[name].get<double>()); };
@@ -149,6 +204,22 @@ void run_maps(const MapsOptions& options, const ReportOptions& report) {
     }
   }
   print_table(lines, 2);
+  const int lines_side = std::min(kLinesSide, *std::max_element(options.sizes.begin(), options.sizes.end()));
+  if (options.lines > 0 && lines_side > kLineCells) {
+    std::vector<std::vector<std::string>> table{
+        {"nodes", "threads", "lines", "m above ground", "s", "ns/line", "visible", "wrong"}};
+    const HeightField field = bench_ground(options, lines_side);
+    for (const int count : threads) {
+      for (const Json& row : measure_lines(options, field, count)) {
+        table.push_back({fmt::format("{0} x {0}", lines_side), short_number(count), short_number(row["lines"], 8),
+                         short_number(row["height"]), short_number(row["seconds"]), short_number(row["ns_per_line"]),
+                         fmt::format("{:.3g} %", 100 * row["positive"].get<double>()), short_number(row["wrong"])});
+        wrong += row["wrong"].get<std::int64_t>();
+        rows.push_back(row);
+      }
+    }
+    print_table(table, 1);
+  }
 #ifdef SCARP_BENCH_GDAL
   for (Json& row : measure_programs(options)) rows.push_back(std::move(row));
 #endif

@@ -14,6 +14,7 @@
 #include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/line_of_sight.h"
 #include "scarp/analysis/profile.h"
+#include "scarp/analysis/visible_lines.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 
@@ -102,6 +103,48 @@ TEST(LineOfSight, IsTheSameWithMaxima) {
     EXPECT_GT(visible, 20);
     EXPECT_GT(blocked, 20);
   }
+}
+
+// On small fields with ties and holes, and on fields of several blocks.
+TEST(VisibleLines, EqualLinesOfSight) {
+  std::mt19937 random(4);
+  auto fields = map_fields();
+  const auto ridges = [](int col, int row) {
+    return 30 * std::sin(0.11 * col) * std::cos(0.07 * row) + (col * row) % 3;
+  };
+  fields.push_back({"ridges", field_of(300, 290, 10, ridges)});
+  fields.push_back({"ridges with holes", field_of(290, 300, 10, [&](int col, int row) {
+                      return (col * 7 + row * 3) % 5 == 0 ? std::nan("") : ridges(col, row);
+                    })});
+  std::size_t visible = 0, blocked = 0;
+  for (const MapField& kind : fields) {
+    const BlockMaxima maxima(kind.field);
+    const int count = kind.field.cols() > 100 ? cases(20000, 4000, 400) : cases(400, 100, 20);
+    for (const double coefficient : {0., 1.}) {
+      const SightCurvature curvature{coefficient, kind.field.cols() > 100 ? 1e5 : 300};
+      std::vector<LineEnds> lines;
+      std::vector<char> expected;
+      for (int i = 0; i < count; ++i) {
+        LineEnds ends{random_end(kind.field, random), random_end(kind.field, random)};
+        if (i % 4 == 0) ends.from.height = ends.to.height = 25;
+        try {
+          expected.push_back(line_of_sight(kind.field, ends.from, ends.to, curvature).visible);
+          lines.push_back(ends);
+        } catch (const Error&) {  // an end on a hole
+        }
+      }
+      const auto answers = visible_lines(kind.field, lines, maxima, curvature);
+      ASSERT_EQ(answers.size(), expected.size());
+      for (std::size_t i = 0; i < answers.size(); ++i)
+        ASSERT_EQ(answers[i], expected[i]) << kind.name << ": " << lines[i].from.col << "," << lines[i].from.row
+                                           << " to " << lines[i].to.col << "," << lines[i].to.row;
+      const auto seen = static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1));
+      visible += seen;
+      blocked += answers.size() - seen;
+    }
+  }
+  EXPECT_GT(visible, 500u);
+  EXPECT_GT(blocked, 500u);
 }
 
 TEST(LineOfSight, IsReciprocal) {
