@@ -232,13 +232,21 @@ TEST(Viewshed, SeesAllOfAPlaneFromAboveIt) {
       EXPECT_EQ(code, Seen::visible);
 }
 
-// From the foot of a cone one sees its near side up to the tangents; from the tip everything.
+// An eye at the height of a cone's base sees of its flank what faces it: up to the tangents from the eye to the base,
+// where the cosine of the angle around the axis is radius over distance. From the tip it sees everything.
 TEST(Viewshed, SeesTheNearSideOfACone) {
   const auto field =
       field_of(81, 81, 10, [](int col, int row) { return std::max(0., 200 - 10 * std::hypot(col - 40, row - 40)); });
   const auto codes = viewshed(field, {40, 78}, {.observer_height = 0.01, .curvature = kFlat});
-  EXPECT_EQ(codes[40 + 81 * 45], Seen::visible);
-  EXPECT_EQ(codes[40 + 81 * 35], Seen::hidden);
+  const double tangent = 20. / 38, margin = 0.1;  // the flank is made of facets
+  for (int row = 20; row <= 60; ++row) {
+    for (int col = 20; col <= 60; ++col) {
+      const double radius = std::hypot(col - 40, row - 40), cosine = (row - 40) / radius;
+      if (radius < 2 || radius > 19 || std::abs(cosine - tangent) < margin) continue;
+      EXPECT_EQ(codes[static_cast<std::size_t>(row * 81 + col)], cosine > tangent ? Seen::visible : Seen::hidden)
+          << col << "," << row;
+    }
+  }
   EXPECT_EQ(codes[40 + 81 * 2], Seen::hidden);
   for (const Seen code : viewshed(field, {40, 40}, {.observer_height = 1, .curvature = kFlat}))
     EXPECT_EQ(code, Seen::visible);
