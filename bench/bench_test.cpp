@@ -215,7 +215,7 @@ TEST(ScarpBench, PyramidWritesTheDocumentedFields) {
 }
 
 TEST(ScarpBench, MapsWritesTheDocumentedFields) {
-  const json all = output_of("maps --sizes 65 --repeats 1 --judged 100");
+  const json all = output_of("maps --sizes 65 --repeats 1 --judged 100 --programs none");
   expect_head(all);
   for (const json& row : all["rows"]) {
     expect_fields(row, {"size", "map", "threads", "seconds", "ns_per_node", "cpu_ns_per_node", "skipped", "careful",
@@ -223,6 +223,34 @@ TEST(ScarpBench, MapsWritesTheDocumentedFields) {
     EXPECT_EQ(row["wrong"], 0);
   }
 }
+
+TEST(ScarpBench, MapsMeasuresLinesOfSight) {
+  const json all = output_of("maps --sizes 1024 --repeats 1 --judged 1000 --lines 1000 --programs none");
+  for (const json& row : all["rows"]) {
+    if (row["map"] != "lines of sight") continue;
+    expect_fields(row, {"size", "threads", "lines", "height", "seconds", "ns_per_line", "positive", "judged", "wrong"});
+    EXPECT_EQ(row["judged"], 1000);
+    EXPECT_EQ(row["wrong"], 0);
+  }
+  EXPECT_EQ(all["rows"].back()["map"], "lines of sight");
+}
+
+#ifdef SCARP_BENCH_SCARP
+TEST(ScarpBench, MapsMeasuresPrograms) {
+  const json all = output_of(
+      "maps --sizes 65 --repeats 1 --judged 100 --observers 3 --programs scarp --scarp '" SCARP_BENCH_SCARP "'");
+  std::set<std::string> maps;
+  for (const json& row : all["rows"]) {
+    if (!row.contains("program")) continue;
+    expect_fields(row, {"size", "map", "program", "seconds", "cpu_s", "peak_mb", "scarp_ratio", "judged", "wrong"});
+    EXPECT_GT(row["seconds"], 0);
+    EXPECT_EQ(row["judged"], row["map"] == "cumulative" ? 33 : 65 * 65);
+    EXPECT_EQ(row["wrong"], 0);
+    maps.insert(row["map"]);
+  }
+  EXPECT_EQ(maps, (std::set<std::string>{"viewshed", "shadow", "cumulative"}));
+}
+#endif
 
 TEST(ScarpBench, VolumesWritesTheDocumentedFields) {
   const json all = output_of("volumes --side 64 --repeats 1");

@@ -76,7 +76,7 @@ struct PyramidOptions {
 };
 void run_pyramid(const PyramidOptions& options, const ReportOptions& report);
 
-/// `maps`: viewsheds, shadows and least visible heights of all nodes of procedural DEMs.
+/// `maps`: viewsheds, shadows and least visible heights of all nodes of procedural DEMs; `scarp` beside other programs.
 struct MapsOptions {
   std::vector<int> sizes{1024, 2048, 4096};
   std::string kind = "fbm";  ///< or "ridged"
@@ -84,7 +84,12 @@ struct MapsOptions {
   int observer_height = 2;                   ///< metres; the observer stands in the middle
   int azimuth_deg = 135, altitude_deg = 20;  ///< of the sun
   int repeats = 3;
-  std::int64_t judged = 2000;  ///< nodes per map that a ray answers, too
+  std::int64_t judged = 100'000;  ///< nodes per map that a ray answers, too
+  int lines = 1'000'000;          ///< of sight
+  std::vector<std::string> programs{"scarp", "gdal_viewshed", "r.viewshed", "r.sunmask", "saga"};
+  std::string scarp;             ///< path of the program
+  int observers = 500;           ///< of a cumulative viewshed; 0: none
+  double program_limit_s = 120;  ///< programs that take longer are ended, and not run at larger sizes
 };
 /// Throws Error, after the report, if a node differs from its ray.
 void run_maps(const MapsOptions& options, const ReportOptions& report);

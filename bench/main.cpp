@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -213,6 +214,27 @@ int run(int argc, char** argv) {
   maps_command->add_option("--judged", maps.judged, "nodes per map that a ray answers, too")
       ->check(CLI::Range(0, 1'000'000))
       ->capture_default_str();
+  maps_command->add_option("--lines", maps.lines, "of sight, of 500 cells each; 0: none")
+      ->check(CLI::Range(0, 100'000'000))
+      ->capture_default_str();
+#ifdef SCARP_BENCH_GDAL
+  maps.scarp = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "scarp").string();
+  std::vector<std::string> map_programs = maps.programs;
+  map_programs.emplace_back("none");
+  maps_command->add_option("--programs", maps.programs, "programs to measure as whole processes, if installed")
+      ->delimiter(',')
+      ->check(CLI::IsMember(map_programs))
+      ->capture_default_str();
+  maps_command->add_option("--scarp", maps.scarp, "path of scarp, one of the programs")
+      ->check(CLI::ExistingFile)
+      ->default_str("beside scarp-bench");
+  maps_command->add_option("--observers", maps.observers, "of a cumulative viewshed; 0: none")
+      ->check(CLI::Range(0, 65533))
+      ->capture_default_str();
+  maps_command->add_option("--program-limit", maps.program_limit_s, "seconds that a program may take")
+      ->check(number_in(kAboveZero))
+      ->capture_default_str();
+#endif
   add_json_option(*maps_command, report);
 
 #ifdef SCARP_BENCH_VULKAN

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench maps`: viewsheds and shadows of all nodes, ns per node and what the sweeps skip. Some nodes are also
-// answered by one ray each.
+// `scarp-bench maps`: viewsheds and shadows of all nodes, ns per node and what the sweeps skip, compared with one ray
+// each at random nodes; and `scarp` beside other programs that make such maps.
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 #include <thread>
@@ -11,10 +12,15 @@
 #include <vector>
 
 #include "bench/commands.h"
+#include "bench/map_truth.h"
 #include "bench/random.h"
+#ifdef SCARP_BENCH_GDAL
+#include "bench/map_programs.h"
+#endif
 #include "scarp/analysis/shadow_sweep.h"
 #include "scarp/analysis/sight_rays.h"
 #include "scarp/analysis/viewshed_sweep.h"
+#include "scarp/analysis/visible_lines.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 #include "scarp/source/procedural_dem.h"
@@ -26,17 +32,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-// Nodes drawn at random, the same for all maps of a field.
-template <class Judge>
-std::int64_t wrong_nodes(const HeightField& field, std::int64_t judged, const Judge& is_right) {
-  Random random(1, 0);
-  std::int64_t wrong = 0;
-  for (std::int64_t n = 0; n < judged; ++n) {
-    const scarp::Node node{random.below(field.cols()), random.below(field.rows())};
-    wrong += !is_right(node, static_cast<std::size_t>(node.row) * static_cast<std::size_t>(field.cols()) +
-                                 static_cast<std::size_t>(node.col));
-  }
-  return wrong;
+// Lines of sight: their length, and the side of the largest field.
+constexpr int kLineCells = 500, kLinesSide = 2048;
+
+HeightField bench_ground(const MapsOptions& options, int size) {
+  const ProceduralDem dem{.cols = size, .rows = size, .seed = options.seed, .kind = *terrain_kind(options.kind)};
+  return HeightField::own(generate_dem(dem), size, size, {.cell_x = dem.cell_m, .cell_y = dem.cell_m});
 }
 
 // `sweep` makes the map anew and returns its statistics.
@@ -72,6 +73,7 @@ std::vector<Json> measure_maps(const MapsOptions& options, const HeightField& fi
   const Viewpoint view(field, {field.cols() / 2, field.rows() / 2},
                        {.observer_height = static_cast<double>(options.observer_height)});
   const SightGround ground(field);
+  const std::vector<scarp::Node> judged = random_nodes(field, options.judged);
   const SunRay sun = sun_ray(field, {options.azimuth_deg * kDegree, options.altitude_deg * kDegree});
   std::vector<Json> rows;
   const auto add = [&](Json row, double share, std::int64_t wrong) {
@@ -86,26 +88,96 @@ std::vector<Json> measure_maps(const MapsOptions& options, const HeightField& fi
   std::vector<Seen> seen(nodes);
   Json row =
       measure_map(field, "viewshed", threads, options.repeats, [&] { return sweep_viewshed(view, seen.data()); });
-  add(std::move(row), share(seen, Seen::visible),
-      wrong_nodes(field, options.judged, [&](scarp::Node node, std::size_t i) {
+  add(std::move(row), share(seen, Seen::visible), wrong_nodes(field, judged, [&](scarp::Node node, std::size_t i) {
         const double target = view.target(*view.ground().lowered(node));
         return sees(view.ground(), view.observer(), view.eye(), node, target) == (seen[i] == Seen::visible);
       }));
   std::vector<Shade> shades(nodes);
   row =
       measure_map(field, "shadow", threads, options.repeats, [&] { return sweep_shadow(ground, sun, shades.data()); });
-  add(std::move(row), share(shades, Shade::lit),
-      wrong_nodes(field, options.judged,
-                  [&](scarp::Node node, std::size_t i) { return shade(ground, sun, node) == shades[i]; }));
+  add(std::move(row), share(shades, Shade::lit), wrong_nodes(field, judged, [&](scarp::Node node, std::size_t i) {
+        return shade(ground, sun, node) == shades[i];
+      }));
   std::vector<double> least(nodes);
   row = measure_map(field, "least height", threads, options.repeats,
                     [&] { return sweep_least_visible(view, least.data()); });
-  add(std::move(row), share(seen, Seen::visible),
-      wrong_nodes(field, options.judged, [&](scarp::Node node, std::size_t i) {
+  add(std::move(row), share(seen, Seen::visible), wrong_nodes(field, judged, [&](scarp::Node node, std::size_t i) {
         return least_visible(view.ground(), view.observer(), view.eye(), node) == least[i];
       }));
   return rows;
 }
+
+// Lines between random places, in random directions, with both ends at one height above ground.
+std::vector<LineEnds> random_lines(const HeightField& field, int count, double height) {
+  std::vector<LineEnds> lines;
+  for (std::uint64_t n = 0; lines.size() < static_cast<std::size_t>(count); ++n) {
+    Random random(2, n);
+    const double angle = random.uniform(0, 2 * std::numbers::pi);
+    const SightEnd from{random.uniform(0, field.cols() - 1), random.uniform(0, field.rows() - 1), height};
+    const SightEnd to{from.col + kLineCells * std::cos(angle), from.row + kLineCells * std::sin(angle), height};
+    if (to.col >= 0 && to.row >= 0 && to.col <= field.cols() - 1 && to.row <= field.rows() - 1)
+      lines.push_back({from, to});
+  }
+  return lines;
+}
+
+// Lines of sight near the ground and far above it, on all threads; each row with the share that is visible.
+std::vector<Json> measure_lines(const MapsOptions& options, const HeightField& field, int threads) {
+  const ThreadLimit limit(threads);
+  std::vector<Json> rows;
+  for (const double height : {2.0, 100.0}) {
+    const auto lines = random_lines(field, options.lines, height);
+    std::vector<double> seconds;
+    std::vector<char> visible;
+    for (int repeat = 0; repeat < options.repeats; ++repeat) {
+      const Stopwatch watch;
+      visible = visible_lines(field, lines, BlockMaxima(field));
+      seconds.push_back(watch.wall_s());
+    }
+    std::int64_t wrong = 0;
+    const std::size_t judged = std::min(lines.size(), static_cast<std::size_t>(options.judged));
+    for (std::size_t i = 0; i < judged; ++i)
+      wrong += line_of_sight(field, lines[i].from, lines[i].to).visible != (visible[i] != 0);
+    const auto seen = std::count(visible.begin(), visible.end(), 1);
+    rows.push_back({{"size", field.cols()},
+                    {"map", "lines of sight"},
+                    {"threads", threads},
+                    {"lines", lines.size()},
+                    {"height", height},
+                    {"seconds", median(seconds)},
+                    {"ns_per_line", median(seconds) / static_cast<double>(lines.size()) * 1e9},
+                    {"positive", static_cast<double>(seen) / static_cast<double>(lines.size())},
+                    {"judged", judged},
+                    {"wrong", wrong}});
+  }
+  return rows;
+}
+
+#ifdef SCARP_BENCH_GDAL
+// Prints and returns a row for each program and size, the smallest first: what is too slow is not run at larger ones.
+std::vector<Json> measure_programs(const MapsOptions& options) {
+  std::vector<std::vector<std::string>> lines{
+      {"nodes", "map", "program", "s", "CPU s", "MB", "x scarp", "judged", "wrong"}};
+  MapPrograms programs(options);
+  std::vector<int> sizes = options.sizes;
+  std::sort(sizes.begin(), sizes.end());
+  std::vector<Json> rows;
+  const auto add = [&](std::vector<Json> measured) {
+    for (Json& row : measured) {
+      lines.push_back({fmt::format("{0} x {0}", row["size"].get<int>()), row["map"], row["program"],
+                       short_number(row["seconds"]), short_number(row["cpu_s"]), short_number(row["peak_mb"]),
+                       short_number(row["scarp_ratio"]), row["judged"].is_null() ? "-" : row["judged"].dump(),
+                       row["wrong"].is_null() ? "-" : row["wrong"].dump()});
+      rows.push_back(std::move(row));
+    }
+  };
+  for (const int size : sizes) add(programs.measure(size));
+  constexpr int kCumulativeSide = 2048;
+  add(programs.measure_cumulative(std::min(sizes.back(), kCumulativeSide)));
+  if (!rows.empty()) print_table(lines, 3);
+  return rows;
+}
+#endif
 
 }  // namespace
 
@@ -118,9 +190,7 @@ void run_maps(const MapsOptions& options, const ReportOptions& report) {
                                                "careful", "by rays", "seen or lit", "wrong"}};
   std::int64_t wrong = 0;
   for (const int size : options.sizes) {
-    const ProceduralDem dem{.cols = size, .rows = size, .seed = options.seed, .kind = *terrain_kind(options.kind)};
-    const HeightField field =
-        HeightField::own(generate_dem(dem), size, size, {.cell_x = dem.cell_m, .cell_y = dem.cell_m});
+    const HeightField field = bench_ground(options, size);
     for (const int count : threads) {
       for (const Json& row : measure_maps(options, field, count)) {
         const auto percent = [&](const char* name) { return fmt::format("{:.3g} %", 100 * row[name].get<double>()); };
@@ -134,6 +204,25 @@ void run_maps(const MapsOptions& options, const ReportOptions& report) {
     }
   }
   print_table(lines, 2);
+  const int lines_side = std::min(kLinesSide, *std::max_element(options.sizes.begin(), options.sizes.end()));
+  if (options.lines > 0 && lines_side > kLineCells) {
+    std::vector<std::vector<std::string>> table{
+        {"nodes", "threads", "lines", "m above ground", "s", "ns/line", "visible", "wrong"}};
+    const HeightField field = bench_ground(options, lines_side);
+    for (const int count : threads) {
+      for (const Json& row : measure_lines(options, field, count)) {
+        table.push_back({fmt::format("{0} x {0}", lines_side), short_number(count), short_number(row["lines"], 8),
+                         short_number(row["height"]), short_number(row["seconds"]), short_number(row["ns_per_line"]),
+                         fmt::format("{:.3g} %", 100 * row["positive"].get<double>()), short_number(row["wrong"])});
+        wrong += row["wrong"].get<std::int64_t>();
+        rows.push_back(row);
+      }
+    }
+    print_table(table, 1);
+  }
+#ifdef SCARP_BENCH_GDAL
+  for (Json& row : measure_programs(options)) rows.push_back(std::move(row));
+#endif
   write_json(report, rows);
   if (wrong > 0) throw Error(fmt::format("maps: {} nodes differ from their rays", wrong));
 }

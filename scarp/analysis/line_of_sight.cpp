@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/sight_crossings.h"
+#include "scarp/analysis/sight_pieces.h"
 #include "scarp/base/error.h"
 
 namespace scarp {
@@ -58,35 +58,31 @@ namespace {
 // nor be nearer to it.
 class Search {
  public:
-  Search(const SightLine& line, const BlockMaxima* maxima) : line_(line), maxima_(maxima) {
-    const double cols = line.to().col - line.from().col, rows = line.to().row - line.from().row;
-    length_ = std::abs(cols) >= std::abs(rows) ? cols : rows;
-    const auto& cell = line.ground().field().settings();
-    diagonal_ = std::hypot(cell.cell_x, cell.cell_y);
-    largest_ = std::abs(line.eye()) + std::abs(line.target());
+  Search(const SightLine& line, const BlockMaxima* maxima) : line_(line) {
+    if (maxima) pieces_.emplace(line, *maxima);
   }
 
   LineOfSight run() {
     result_.distance = line_.distance();
     result_.eye = line_.eye();
     result_.target = line_.target() + line_.ground().drop(line_.to().col, line_.to().row);
-    if (!maxima_) {
+    if (!pieces_) {
       for (int axis = 0; axis < 2; ++axis) visit(axis, {});
-    } else if (length_ != 0) {
-      pieces(0, std::abs(length_), BlockMaxima::kCoarse);
+    } else if (pieces_->length() != 0) {
+      search(0, pieces_->length(), BlockMaxima::kCoarse);
     }
     return result_;
   }
 
  private:
   // The line from `begin` to `end`, in cells along its larger axis.
-  void pieces(double begin, double end, int side) {
+  void search(double begin, double end, int side) {
     for (double at = begin; at < end; at += side) {
       const double to = std::min(at + side, end);
-      const Box box = box_of(at, to);
+      const SightBox box = pieces_->box(at, to);
       if (passes(box, at, to, side)) continue;
       if (side == BlockMaxima::kCoarse) {
-        pieces(at, to, BlockMaxima::kSide);
+        search(at, to, BlockMaxima::kSide);
       } else {
         visit(0, {box.low[0], box.high[0]});
         visit(1, {box.low[1], box.high[1]});
@@ -94,38 +90,10 @@ class Search {
     }
   }
 
-  // The nodes beside a piece; also the grid lines that it may cross.
-  struct Box {
-    int low[2], high[2];
-  };
-  Box box_of(double at, double to) const {
-    constexpr double kRounding = 1e-6;  // cells; positions are below 2^20, rounded to 2^-32
-    const int sides[2] = {line_.ground().field().cols(), line_.ground().field().rows()};
-    Box box{};
-    for (int axis = 0; axis < 2; ++axis) {
-      const auto place = [&](double cells) {
-        const double along = cells / std::abs(length_);
-        return axis == 0 ? line_.col(along) : line_.row(along);
-      };
-      const double a = place(at), b = place(to);
-      box.low[axis] = std::max(static_cast<int>(std::floor(std::min(a, b) - kRounding)), 0);
-      box.high[axis] = std::min(static_cast<int>(std::ceil(std::max(a, b) + kRounding)), sides[axis] - 1);
-    }
-    return box;
-  }
-
-  bool passes(const Box& box, double at, double to, int side) const {
-    const double top = maxima_->highest(side, box.low[0], box.low[1], box.high[0], box.high[1]);
-    if (top == -std::numeric_limits<double>::infinity()) return true;
-    const double near = at / std::abs(length_), far = to / std::abs(length_);
-    const auto ray = [&](double along) { return line_.eye() + along * (line_.target() - line_.eye()); };
-    // The nodes of a side that the line crosses are at most a diagonal nearer to the eye than the crossing.
-    const double reach = std::max(near * line_.distance() - diagonal_, 0.0);
-    const double drop = line_.ground().drop_at(reach * reach);
-    const double rounding = 16 * kSumRounding * (largest_ + std::abs(top) + drop);
+  bool passes(const SightBox& box, double at, double to, int side) const {
     // Pieces share grid lines at their ends: the obstruction so far may lie beyond this piece.
-    const bool first_is_known = !result_.visible && result_.obstruction->along <= near;
-    return std::min(ray(near), ray(far)) - (top - drop) - rounding >=
+    const bool first_is_known = !result_.visible && result_.obstruction->along <= at / pieces_->length();
+    return pieces_->clearance(box, at, to, side) >=
            (first_is_known ? result_.clearance : std::max(result_.clearance, 0.0));
   }
 
@@ -148,8 +116,7 @@ class Search {
   }
 
   const SightLine& line_;
-  const BlockMaxima* maxima_;
-  double length_ = 0, diagonal_ = 0, largest_ = 0;
+  std::optional<SightPieces> pieces_;
   LineOfSight result_;
 };
 

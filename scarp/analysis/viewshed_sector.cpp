@@ -154,15 +154,14 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
   void is_above(int side) {
     if (!is_target(side)) return;
     if (!lone_.empty()) return test(horizon_.find(u(side)), side);
-    Seen& code = code_of(frame_.node(ring_, side));
-    if (code == Seen::hidden) code = Seen::visible;
+    const Node node = frame_.node(ring_, side);
+    if (is_asked(node)) mark_visible(node);
   }
   void test(std::size_t i, int side) {
     if (!is_target(side) || now_[side] == kNoGround) return;
     const HorizonSample sample{ring_, side};
     const Node node = frame_.node(sample);
-    Seen& code = code_of(node);
-    if (code != Seen::hidden) return;
+    if (!is_asked(node)) return;
     const double at = u(side), target = view_.target(edges_.lowered(sample)), s = (target - view_.eye()) / x_;
     const HorizonEnvelope::Answer answer = horizon_.test(i, at, s, kSweepRounding * std::abs(s), sample);
     if (answer == HorizonEnvelope::Answer::blocked) return;
@@ -174,14 +173,14 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
       terms.r = target;
       if (sign_of(terms) > 0) return;
     }
-    code = Seen::visible;
+    mark_visible(node);
   }
 
   void test_all(std::size_t i, int side) {
     if (!is_target(side)) return;
     const HorizonSample sample{ring_, side};
     const Node node = frame_.node(sample);
-    double& least = maps_.least[static_cast<std::ptrdiff_t>(node.row) * grid_.cols + node.col];
+    double& least = maps_.least[index(node)];
     if (std::isnan(least)) return;
     const double at = u(side);
     if (!horizon_.is_sure(i, at)) {
@@ -203,7 +202,19 @@ class Sector : public RingSweep<Sector<T, kLeast>, T> {
  private:
   static constexpr double kCut = 2;  // beyond the sector: where spokes from the observer's ring are cut
 
-  Seen& code_of(Node node) { return maps_.codes[static_cast<std::ptrdiff_t>(node.row) * grid_.cols + node.col]; }
+  std::ptrdiff_t index(Node node) const { return static_cast<std::ptrdiff_t>(node.row) * grid_.cols + node.col; }
+  // Whether the answer for a node with a sample is asked for.
+  bool is_asked(Node node) const {
+    if (maps_.codes) return maps_.codes[index(node)] == Seen::hidden;
+    return !view_.has_limits() || view_.in_range(node, view_.target(*view_.ground().lowered(node)));
+  }
+  void mark_visible(Node node) {
+    if (maps_.codes) {
+      maps_.codes[index(node)] = Seen::visible;
+    } else {
+      add_visible(maps_.counts[index(node)]);
+    }
+  }
   bool is_target(int side) const {
     const double y = frame_.y(side), low = low_ * x_, high = high_ * x_;
     if (y < low || y > high) return false;

@@ -2,6 +2,8 @@
 // One part of a sector of a viewshed: see viewshed_sweep.h.
 #pragma once
 
+#include <atomic>
+
 #include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/sight_edges.h"
 #include "scarp/analysis/viewshed_sweep.h"
@@ -18,10 +20,15 @@ struct SectorPart {
 
 /// Maps that a sweep writes, and maxima that it reads. One of the maps is not null.
 struct SectorMaps {
-  Seen* codes = nullptr;                ///< nodes that are visible, if they are `hidden` before
-  double* least = nullptr;              ///< nodes that are not NaN before: their least visible height
-  const BlockMaxima* maxima = nullptr;  ///< of the field, for `codes`; null: no block is skipped
+  Seen* codes = nullptr;    ///< nodes that are visible, if they are `hidden` before
+  double* least = nullptr;  ///< nodes that are not NaN before: their least visible height
+  /// Of nodes that are visible, each one more. Other sweeps may add to the same map at the same time.
+  std::uint16_t* counts = nullptr;
+  const BlockMaxima* maxima = nullptr;  ///< of the field, for `codes` and `counts`; null: no block is skipped
 };
+
+/// Adds one to the count of a node, whatever other threads add.
+inline void add_visible(std::uint16_t& count) { std::atomic_ref(count).fetch_add(1, std::memory_order_relaxed); }
 
 SweepStatistics sweep_sector(const Viewpoint& view, const SectorPart& part, const SectorMaps& maps);
 

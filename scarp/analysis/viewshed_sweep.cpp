@@ -79,7 +79,14 @@ SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progres
   if (maxima == nullptr) maxima = &own_maxima.emplace(field);
   Seen& own = codes[static_cast<std::ptrdiff_t>(view.observer().row) * field.cols() + view.observer().col];
   if (own == Seen::hidden) own = Seen::visible;
-  return sweep(view, {codes, nullptr, maxima}, progress);
+  return sweep(view, {.codes = codes, .maxima = maxima}, progress);
+}
+
+SweepStatistics sweep_count(const Viewpoint& view, std::uint16_t* counts, const BlockMaxima& maxima) {
+  const Node own = view.observer();
+  if (const auto lowered = view.ground().lowered(own); lowered && view.in_range(own, view.target(*lowered)))
+    add_visible(counts[static_cast<std::ptrdiff_t>(own.row) * view.ground().field().cols() + own.col]);
+  return sweep(view, {.counts = counts, .maxima = &maxima}, {});
 }
 
 SweepStatistics sweep_least_visible(const Viewpoint& view, double* least, const Progress& progress) {
@@ -87,7 +94,7 @@ SweepStatistics sweep_least_visible(const Viewpoint& view, double* least, const 
   for_each_node(view, progress, [&](Node node, std::size_t i, double lowered) {
     least[i] = lowered == kNever || !view.in_range(node, view.target(lowered)) ? kNan : kNever;
   });
-  return sweep(view, {nullptr, least}, progress);
+  return sweep(view, {.least = least}, progress);
 }
 
 }  // namespace scarp

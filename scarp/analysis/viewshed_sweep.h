@@ -45,6 +45,10 @@ struct SweepStatistics {
 SweepStatistics sweep_viewshed(const Viewpoint& view, Seen* codes, const Progress& progress = {},
                                const BlockMaxima* maxima = nullptr);
 
+/// Adds 1 to the count of every node that is visible and within the limits. Other threads may add to the same counts.
+/// `maxima`: of the view's field.
+SweepStatistics sweep_count(const Viewpoint& view, std::uint16_t* counts, const BlockMaxima& maxima);
+
 /// Writes the least visible height of every node (least_visible() in viewshed.h).
 SweepStatistics sweep_least_visible(const Viewpoint& view, double* least, const Progress& progress = {});
 

@@ -14,6 +14,7 @@
 #include "scarp/analysis/block_maxima.h"
 #include "scarp/analysis/line_of_sight.h"
 #include "scarp/analysis/profile.h"
+#include "scarp/analysis/visible_lines.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
 
@@ -104,6 +105,48 @@ TEST(LineOfSight, IsTheSameWithMaxima) {
   }
 }
 
+// On small fields with ties and holes, and on fields of several blocks.
+TEST(VisibleLines, EqualLinesOfSight) {
+  std::mt19937 random(4);
+  auto fields = map_fields();
+  const auto ridges = [](int col, int row) {
+    return 30 * std::sin(0.11 * col) * std::cos(0.07 * row) + (col * row) % 3;
+  };
+  fields.push_back({"ridges", field_of(300, 290, 10, ridges)});
+  fields.push_back({"ridges with holes", field_of(290, 300, 10, [&](int col, int row) {
+                      return (col * 7 + row * 3) % 5 == 0 ? std::nan("") : ridges(col, row);
+                    })});
+  std::size_t visible = 0, blocked = 0;
+  for (const MapField& kind : fields) {
+    const BlockMaxima maxima(kind.field);
+    const int count = kind.field.cols() > 100 ? cases(20000, 4000, 400) : cases(400, 100, 20);
+    for (const double coefficient : {0., 1.}) {
+      const SightCurvature curvature{coefficient, kind.field.cols() > 100 ? 1e5 : 300};
+      std::vector<LineEnds> lines;
+      std::vector<char> expected;
+      for (int i = 0; i < count; ++i) {
+        LineEnds ends{random_end(kind.field, random), random_end(kind.field, random)};
+        if (i % 4 == 0) ends.from.height = ends.to.height = 25;
+        try {
+          expected.push_back(line_of_sight(kind.field, ends.from, ends.to, curvature).visible);
+          lines.push_back(ends);
+        } catch (const Error&) {  // an end on a hole
+        }
+      }
+      const auto answers = visible_lines(kind.field, lines, maxima, curvature);
+      ASSERT_EQ(answers.size(), expected.size());
+      for (std::size_t i = 0; i < answers.size(); ++i)
+        ASSERT_EQ(answers[i], expected[i]) << kind.name << ": " << lines[i].from.col << "," << lines[i].from.row
+                                           << " to " << lines[i].to.col << "," << lines[i].to.row;
+      const auto seen = static_cast<std::size_t>(std::count(answers.begin(), answers.end(), 1));
+      visible += seen;
+      blocked += answers.size() - seen;
+    }
+  }
+  EXPECT_GT(visible, 500u);
+  EXPECT_GT(blocked, 500u);
+}
+
 TEST(LineOfSight, IsReciprocal) {
   std::mt19937 random(2);
   for (const MapField& kind : map_fields())
@@ -189,13 +232,21 @@ TEST(Viewshed, SeesAllOfAPlaneFromAboveIt) {
       EXPECT_EQ(code, Seen::visible);
 }
 
-// From the foot of a cone one sees its near side up to the tangents; from the tip everything.
+// An eye at the height of a cone's base sees of its flank what faces it: up to the tangents from the eye to the base,
+// where the cosine of the angle around the axis is radius over distance. From the tip it sees everything.
 TEST(Viewshed, SeesTheNearSideOfACone) {
   const auto field =
       field_of(81, 81, 10, [](int col, int row) { return std::max(0., 200 - 10 * std::hypot(col - 40, row - 40)); });
   const auto codes = viewshed(field, {40, 78}, {.observer_height = 0.01, .curvature = kFlat});
-  EXPECT_EQ(codes[40 + 81 * 45], Seen::visible);
-  EXPECT_EQ(codes[40 + 81 * 35], Seen::hidden);
+  const double tangent = 20. / 38, margin = 0.1;  // the flank is made of facets
+  for (int row = 20; row <= 60; ++row) {
+    for (int col = 20; col <= 60; ++col) {
+      const double radius = std::hypot(col - 40, row - 40), cosine = (row - 40) / radius;
+      if (radius < 2 || radius > 19 || std::abs(cosine - tangent) < margin) continue;
+      EXPECT_EQ(codes[static_cast<std::size_t>(row * 81 + col)], cosine > tangent ? Seen::visible : Seen::hidden)
+          << col << "," << row;
+    }
+  }
   EXPECT_EQ(codes[40 + 81 * 2], Seen::hidden);
   for (const Seen code : viewshed(field, {40, 40}, {.observer_height = 1, .curvature = kFlat}))
     EXPECT_EQ(code, Seen::visible);

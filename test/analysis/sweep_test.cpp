@@ -187,32 +187,94 @@ TEST(Sweeps, ShadowsEqualRays) {
   EXPECT_GT(statistics.skipped, 100);
 }
 
-// A field turned by a quarter or mirrored has its maps turned and mirrored: no direction is favoured.
+// One of the eight symmetries of the grid: swaps the axes, then mirrors columns and rows.
+struct GridSymmetry {
+  bool swaps, mirrors_cols, mirrors_rows;
+  int cols, rows;  // of the image
+
+  GridSymmetry(int number, int from_cols, int from_rows)
+      : swaps(number & 1),
+        mirrors_cols(number & 2),
+        mirrors_rows(number & 4),
+        cols(swaps ? from_rows : from_cols),
+        rows(swaps ? from_cols : from_rows) {}
+  Node operator()(Node n) const {
+    if (swaps) std::swap(n.col, n.row);
+    return {mirrors_cols ? cols - 1 - n.col : n.col, mirrors_rows ? rows - 1 - n.row : n.row};
+  }
+  SunRay operator()(SunRay sun) const {
+    if (swaps) std::swap(sun.col, sun.row);
+    return {mirrors_cols ? -sun.col : sun.col, mirrors_rows ? -sun.row : sun.row, sun.rise};
+  }
+};
+
+// A field turned by quarters or mirrored has its maps turned and mirrored: no direction is favoured.
 TEST(Sweeps, AreSymmetric) {
   SweepDraw draw(4);
-  for (int number = 0; number < 60; ++number) {
+  for (int number = 0; number < 64; ++number) {
     const int cols = 5 + draw.below(40), rows = 5 + draw.below(40);
+    const bool holes = draw.one_in(3);
     std::vector<float> samples, turned(static_cast<std::size_t>(cols) * static_cast<std::size_t>(rows));
-    for (int i = 0; i < cols * rows; ++i) samples.push_back(static_cast<float>(draw.below(6)));
-    const bool flips = draw.one_in(2), mirrors = draw.one_in(2);
-    // Swaps the axes if it flips, then mirrors the columns.
-    const int turned_cols = flips ? rows : cols, turned_rows = flips ? cols : rows;
-    const auto turn = [&](Node n) {
-      if (flips) n = {n.row, n.col};
-      if (mirrors) n.col = turned_cols - 1 - n.col;
-      return n;
-    };
+    for (int i = 0; i < cols * rows; ++i)
+      samples.push_back(holes && draw.one_in(9) ? std::nanf("") : static_cast<float>(draw.below(6)));
+    const GridSymmetry turn(number % 8, cols, rows);
     const HeightField field = HeightField::own(samples, cols, rows);
-    const auto at = [&](Node n) { return static_cast<std::size_t>(n.row * turned_cols + n.col); };
+    const auto at = [&](Node n) { return static_cast<std::size_t>(n.row * turn.cols + n.col); };
     for_nodes(field, [&](Node node, std::size_t i) { turned[at(turn(node))] = samples[i]; });
-    const HeightField other = HeightField::own(turned, turned_cols, turned_rows);
+    const HeightField other = HeightField::own(turned, turn.cols, turn.rows);
     const Node observer{draw.below(cols), draw.below(rows)};
-    const ViewshedSettings settings{.observer_height = 1};
+    const ViewshedSettings settings{.observer_z = 7};
+    const SunRay sun = sun_ray(field, sweep_sun(draw));
+    const std::size_t size = sweep_size(field);
     const auto codes = viewshed(field, observer, settings), turned_codes = viewshed(other, turn(observer), settings);
+    const auto least = least_visible(field, observer, settings),
+               turned_least = least_visible(other, turn(observer), settings);
+    std::vector<Shade> shades(size), turned_shades(size);
+    sweep_shadow(SightGround(field), sun, shades.data());
+    sweep_shadow(SightGround(other), turn(sun), turned_shades.data());
     for_nodes(field, [&](Node node, std::size_t i) {
-      ASSERT_EQ(codes[i], turned_codes[at(turn(node))]) << sweep_place(number, field, node);
+      const std::size_t k = at(turn(node));
+      ASSERT_EQ(codes[i], turned_codes[k]) << sweep_place(number, field, node);
+      ASSERT_TRUE(least[i] == turned_least[k] || (std::isnan(least[i]) && std::isnan(turned_least[k])))
+          << sweep_place(number, field, node);
+      ASSERT_EQ(shades[i], turned_shades[k]) << sweep_place(number, field, node);
     });
   }
+}
+
+// What two nodes see of one another, and what a higher sun does.
+TEST(Sweeps, AreReciprocalAndMonotone) {
+  SweepDraw draw(6);
+  int visible = 0, lit_later = 0;
+  for (int number = 0; number < 40; ++number) {
+    const HeightField field = sweep_field(number, draw);
+    ViewshedSettings settings{.observer_height = 1, .target_height = 1, .curvature = {.coefficient = 0}};
+    const SightGround ground(field);
+    const Node a{draw.below(field.cols()), draw.below(field.rows())};
+    if (!ground.height(a)) continue;
+    const auto seen = viewshed(field, a, settings);
+    for (int i = 0; i < 8; ++i) {
+      const Node b{draw.below(field.cols()), draw.below(field.rows())};
+      if (!ground.height(b)) continue;
+      const auto back = viewshed(field, b, settings);
+      ASSERT_EQ(seen[sweep_index(field, b)], back[sweep_index(field, a)]) << sweep_place(number, field, b);
+      visible += back[sweep_index(field, a)] == Seen::visible;
+    }
+    const double azimuth = draw.below(6283) * 1e-3;
+    std::vector<Shade> before;
+    for (const double altitude : {0.02, 0.1, 0.3, 0.9, 1.4}) {
+      const auto shades = shadow(field, {azimuth, altitude});
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        if (before[i] == Shade::lit) {
+          ASSERT_EQ(shades[i], Shade::lit) << "field " << number;
+        }
+        lit_later += before[i] != Shade::lit && shades[i] == Shade::lit;
+      }
+      before = shades;
+    }
+  }
+  EXPECT_GT(visible, 50);
+  EXPECT_GT(lit_later, 500);
 }
 
 TEST(Sweeps, DoNotDependOnThreads) {
