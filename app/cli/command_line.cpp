@@ -25,10 +25,9 @@ int fail(std::string text, int status) {
   return status;
 }
 
-int flush_output() {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
-  return fail("standard output: cannot be written (is the disk full?)", kFailed);
-}
+int fail_output() { return fail("standard output: cannot be written (is the disk full?)", kFailed); }
+
+int flush_output() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 ? 0 : fail_output(); }
 
 }  // namespace
 
@@ -72,7 +71,8 @@ int run_command_line(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return fail("out of memory (a smaller window or picture needs less)", kFailed);
   } catch (const std::exception& error) {
-    return fail(error.what(), kFailed);
+    // fmt::print() throws, without the name of the stream.
+    return std::ferror(stdout) != 0 ? fail_output() : fail(error.what(), kFailed);
   }
 }
 

@@ -115,14 +115,18 @@ std::vector<FigureTick> ticks_of(double low, double high, double least_step = 0)
   return ticks;
 }
 
-// Numbers from low to high; the ramp knows them multiplied.
-FigureLegend legend_of(std::string title, double low, double high, const Ramp& ramp, double per_colour = 1) {
-  FigureLegend legend{std::move(title), {}, ticks_of(low, high)};
+}  // namespace
+
+FigureLegend legend_of(std::string title, double low, double high, const Ramp& ramp, double per_colour,
+                       double least_step) {
+  FigureLegend legend{std::move(title), {}, ticks_of(low, high, least_step)};
   for (int i = 0; i < kColours; ++i) {
     legend.colours.push_back(bytes(ramp((low + (high - low) * (i + 0.5) / kColours) * per_colour)));
   }
   return legend;
 }
+
+namespace {
 
 // The legend of the only height ramp in the scene: that of a material, or that of ground without a material.
 FigureLegend legend_of_heights(const PictureSettings& settings, const Scene& scene, const PaintExtent& extent) {
@@ -166,8 +170,7 @@ void add_meaning(const PictureSettings& settings, const Scene& scene, const std:
   switch (settings.comanche.heights ? Look::height : settings.look) {
     case Look::steps:
       figure.legend = legend_of("steps per ray", picture.steps->scale.low, picture.steps->scale.high,
-                                ramp_over(settings, picture.steps->scale.low, picture.steps->scale.high));
-      figure.legend->ticks = ticks_of(picture.steps->scale.low, picture.steps->scale.high, 1);
+                                ramp_over(settings, picture.steps->scale.low, picture.steps->scale.high), 1, 1);
       break;
     case Look::error: {
       FigureKey key{"the march is", {}};

@@ -10,6 +10,7 @@
 #include "scarp/base/georeference.h"
 #include "scarp/output/figure.h"
 #include "scarp/render/frame/picture.h"
+#include "scarp/render/surface/ramp.h"
 #include "scarp/scene/file/from_volume.h"
 
 namespace scarp::cli {
@@ -48,5 +49,10 @@ std::optional<Figure> figure_of(const FigureOptions& options, const PictureSetti
 /// Adds the legend of a rendered picture if it was asked for. Throws Error where colours have no scale.
 void add_legend(const FigureOptions& options, const PictureSettings& settings, const FigureSubject& subject,
                 const Picture& picture, std::optional<Figure>& figure);
+
+/// The legend of a ramp over numbers from low to high, which it takes multiplied by `per_colour`. Numbers at its ticks
+/// are multiples of a power of ten of at least `least_step`. Builds with Cairo only.
+FigureLegend legend_of(std::string title, double low, double high, const Ramp& ramp, double per_colour = 1,
+                       double least_step = 0);
 
 }  // namespace scarp::cli

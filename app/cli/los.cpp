@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -142,9 +143,19 @@ void run(LosOptions options, const Command& command) {
   std::vector<Answer> answers(table.rows.size());
   for (std::size_t i = 0; i < answers.size(); ++i) answers[i].ends = sight_ends(input, table, i, options.heights);
   const SightCurvature curvature = input.curvature();
+  if (options.surface == "bilinear" && curvature.coefficient != 0)
+    throw Error("--surface bilinear: its rays are straight (add --cc 0)");
+  const std::optional<BilinearGround> bilinear = input.bilinear_ground(input.field());
   const auto answer = [&](std::size_t i, const HeightField& field, const BlockMaxima* maxima) {
+    const auto& [from, to] = answers[i].ends;
     try {
-      answers[i].line = line_of_sight(field, answers[i].ends.from, answers[i].ends.to, curvature, maxima);
+      if (!bilinear) {
+        answers[i].line = line_of_sight(field, from, to, curvature, maxima);
+      } else if (maxima) {
+        answers[i].line = bilinear->line_of_sight(from, to);
+      } else {
+        answers[i].line = BilinearGround(field, *bilinear).line_of_sight(from, to);
+      }
     } catch (const Error& error) {
       throw Error(fmt::format("{}: {}", table.rows[i].line > 0 ? table.where(i) : input.path(), error.what()));
     }
@@ -197,6 +208,7 @@ void add_los(Program& program) {
                          .common = true,
                          .rules = {needs("a .geojson output", [&o] { return is_json(o.output); })}});
   add_sight_heights(command, o.heights);
+  add_surface_option(command, o.surface);
   add_curvature_option(command, o.curvature);
   add_map_options(command, o);
   command.footer(kOutput);

@@ -55,6 +55,20 @@ void add_curvature_option(Command& command, std::optional<double>& coefficient) 
                              .common = true});
 }
 
+void add_surface_option(Command& command, std::string& surface) {
+  command.add(&surface, {.names = "--surface",
+                         .value = "KIND",
+                         .help = "surface between samples",
+                         .choices = {"crossings", "bilinear"},
+                         .closed = true,
+                         .note = "crossings: linear on grid lines, nothing between them",
+                         .common = true});
+}
+
+std::string_view surface_text(std::string_view surface) {
+  return surface == "crossings" ? "linear at crossings of grid lines" : surface;
+}
+
 MapInput::MapInput(const MapOptions& options)
     : options_(options), field_(HeightField::own(std::vector<float>{0}, 1, 1)) {
   Raster raster = read(options);
@@ -163,6 +177,15 @@ HeightField MapInput::field_at(double col, double row, double reach) {
                     "to {:.2g} cells off",
                     plane.cell_x, plane.cell_y, plane.error_cells));
   return with_cells(field_, plane.cell_x, plane.cell_y);
+}
+
+std::optional<BilinearGround> MapInput::bilinear_ground(const HeightField& field) const {
+  if (options_.surface != "bilinear") return std::nullopt;
+  try {
+    return BilinearGround(field);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path_, error.what()));
+  }
 }
 
 double MapInput::grid_north_at(double col, double row, double reach) {

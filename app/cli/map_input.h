@@ -8,6 +8,7 @@
 
 #include "app/cli/command.h"
 #include "app/cli/places.h"
+#include "scarp/analysis/bilinear_ground.h"
 #include "scarp/analysis/sight.h"
 #include "scarp/base/georeference.h"
 #include "scarp/field/height_field.h"
@@ -24,6 +25,7 @@ struct MapOptions {
   std::string coordinates;          ///< of places; empty: map, or local without a georeference
   std::optional<double> curvature;  ///< coefficient; empty: by the body
   double plane_error = 0.1;         ///< cells
+  std::string surface = "crossings";
   int threads = 0;
   std::string output;
   std::vector<std::string> typed;
@@ -33,6 +35,11 @@ struct MapOptions {
 void add_map_options(Command& command, MapOptions& options);
 /// Declares --cc.
 void add_curvature_option(Command& command, std::optional<double>& coefficient);
+
+/// Declares --surface.
+void add_surface_option(Command& command, std::string& surface);
+/// "bilinear", or what `crossings` means.
+std::string_view surface_text(std::string_view surface);
 
 class MapInput {
  public:
@@ -64,6 +71,9 @@ class MapInput {
   /// The field with the lengths of its cells at a place. Geographic rasters only; others keep those of their centre.
   /// Throws Error if samples within `reach` metres are farther off than --plane-error allows.
   HeightField field_at(double col, double row, double reach);
+  /// The ground of --surface bilinear; nullopt for `crossings`. `field` is one of field_at(). Throws Error naming the
+  /// file.
+  std::optional<BilinearGround> bilinear_ground(const HeightField& field) const;
   /// Azimuth of grid north at that place, radians.
   double grid_north_at(double col, double row, double reach);
 

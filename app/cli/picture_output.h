@@ -12,8 +12,12 @@
 #include "scarp/output/geotiff.h"
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/film.h"
+#include "scarp/render/frame/picture.h"
 
 namespace scarp::cli {
+
+/// Gives a map the shape of the scene, its longer side as long as the picture is wide.
+void fit_size_to_scene(const WorldBox& box, PictureSettings& picture);
 
 /// The place of a picture of `width` x `height` pixels by a camera of Camera::top(), over a raster of so many rows.
 /// Nullopt without a georeference.

@@ -40,14 +40,6 @@ class Watch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-// A map without --size has the shape of the scene, its longer side as long as a picture's default width.
-void fit_size_to_scene(const WorldBox& box, PictureSettings& picture) {
-  const dvec3 size = box.high - box.low;
-  const double pixels_per_metre = picture.width / std::max(size.x, size.y);
-  picture.width = std::max(1, static_cast<int>(std::lround(size.x * pixels_per_metre)));
-  picture.height = std::max(1, static_cast<int>(std::lround(size.y * pixels_per_metre)));
-}
-
 SceneDetail detail_of(const Camera& camera, int aa) {
   return {camera.eye(), camera.forward(), [&camera, aa](double depth) { return camera.pixel_width(depth) / aa; }};
 }

@@ -8,17 +8,23 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/map_input.h"
+#include "app/cli/map_preview.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_output.h"
 #include "app/cli/shared_options.h"
+#include "scarp/analysis/map_part.h"
+#include "scarp/analysis/sun_disc.h"
 #ifdef SCARP_ERFA
-#include "scarp/analysis/sun_position.h"
+#include "scarp/analysis/local_sun.h"
+#include "scarp/source/node_places.h"
 #endif
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -27,10 +33,7 @@ namespace scarp::cli {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr double kSunDiameter = 0.533 / kDegrees;  // radians, mean
 constexpr int kNodata = 255;
-constexpr const char* kMethod =
-    "exact rays to the sun; ground linear at crossings of grid lines; flat Earth; grazing is lit (scarp shadow)";
 constexpr const char* kFooter = R"(Pixels:
   0  lit
   1  self-shaded: the ground itself faces away from the sun
@@ -39,7 +42,7 @@ With --fraction: share of the sun's disc above the terrain, 0 to 1.)";
 
 struct ShadowOptions : MapOptions {
   std::vector<std::string> suns, times;
-  bool fraction = false, refraction = false;
+  bool fraction = false, refraction = false, per_cell = false;
   RasterOutput raster_output;
 };
 
@@ -48,48 +51,91 @@ struct Sun {
   SunDirection direction;
   std::string name;   // of the band
   std::string place;  // azimuth and altitude in degrees
+#ifdef SCARP_ERFA
+  std::optional<LocalSun> local{};  // in place of the direction
+#endif
 };
 
-Sun sun_from(double azimuth, double altitude, double grid_north, std::string name) {
-  return {{azimuth - grid_north, altitude},
-          std::move(name),
-          fmt::format("azimuth {:.4f}, altitude {:.4f} degrees", azimuth * kDegrees, altitude * kDegrees)};
+std::string place_text(double azimuth, double altitude) {
+  return fmt::format("azimuth {:.4f}, altitude {:.4f} degrees", azimuth * kDegrees, altitude * kDegrees);
 }
 
+dvec2 centre_of(const MapInput& input) { return {(input.field().cols() - 1) / 2.0, (input.field().rows() - 1) / 2.0}; }
+
+// Azimuth of grid north on the plane of the whole raster.
+double grid_north_of(MapInput& input) { return input.grid_north_at(centre_of(input).x, centre_of(input).y, HUGE_VAL); }
+
 #ifdef SCARP_ERFA
-// The sun at the centre; `error`: how far it is off in the corners, radians.
-Sun sun_at_time(MapInput& input, const std::string& text, bool refraction, double grid_north, double& error) {
+// The sun of one time over a raster.
+struct SunSpread {
+  SunPosition centre;
+  double error = 0;                // how far it is off in the corners, radians
+  double lowest = 0, highest = 0;  // altitudes at centre and corners
+};
+
+SunSpread sun_spread(const MapInput& input, const std::string& text, bool refraction) {
+  const SunAtTime sky(parse_time(text));
   const double last_col = input.field().cols() - 1, last_row = input.field().rows() - 1;
+  const double height = 0.5 * (input.field().min_height() + input.field().max_height());
   const auto position = [&](double col, double row) {
     const auto at = input.lonlat_of(col, row);
     if (!at)
       throw Error(fmt::format("{}: --time needs a raster with a CRS (give --raster-crs, or --sun)", input.path()));
-    const double height = 0.5 * (input.field().min_height() + input.field().max_height());
-    return sun_position(parse_time(text), {at->x / kDegrees, at->y / kDegrees, height}, refraction);
+    return sky.at({at->x / kDegrees, at->y / kDegrees, height}, refraction);
   };
-  SunPosition sun;
-  try {
-    sun = position(last_col / 2, last_row / 2);
-  } catch (const Error& error_of_time) {
-    throw Error(fmt::format("--time: {}", error_of_time.what()));
-  }
+  SunSpread spread{position(last_col / 2, last_row / 2)};
+  const SunPosition& sun = spread.centre;
+  spread.lowest = spread.highest = sun.altitude;
   for (const double col : {0.0, last_col})
     for (const double row : {0.0, last_row}) {
       const SunPosition corner = position(col, row);
       const double cosine = std::sin(sun.altitude) * std::sin(corner.altitude) +
                             std::cos(sun.altitude) * std::cos(corner.altitude) * std::cos(sun.azimuth - corner.azimuth);
-      error = std::max(error, std::acos(std::min(cosine, 1.0)));
+      spread.error = std::max(spread.error, std::acos(std::min(cosine, 1.0)));
+      spread.lowest = std::min(spread.lowest, corner.altitude);
+      spread.highest = std::max(spread.highest, corner.altitude);
     }
-  if (sun.altitude <= 0)
-    throw Error(
-        fmt::format("--time '{}': the sun is {:.2f} degrees below the horizon", text, -sun.altitude * kDegrees));
-  return sun_from(sun.azimuth, sun.altitude, grid_north, text);
+  return spread;
+}
+
+void add_suns_of_times(MapInput& input, const ShadowOptions& options, std::vector<Sun>& suns, double& lowest) {
+  double error = 0;
+  std::shared_ptr<const NodePlaces> places;
+  for (const std::string& text : options.times) {
+    SunSpread spread;
+    try {
+      spread = sun_spread(input, text, options.refraction);
+    } catch (const Error& error_of_time) {
+      throw Error(fmt::format("--time: {}", error_of_time.what()));
+    }
+    const auto& [azimuth, altitude] = spread.centre;
+    if (const double highest = options.per_cell ? spread.highest : altitude; highest <= 0)
+      throw Error(fmt::format("--time '{}': the sun is {:.2f} degrees below the horizon", text, -highest * kDegrees));
+    lowest = std::min(lowest, spread.lowest);
+    error = std::max(error, spread.error);
+    if (!options.per_cell) {
+      suns.push_back({{azimuth - grid_north_of(input), altitude}, text, place_text(azimuth, altitude)});
+      continue;
+    }
+    if (!places)
+      places = std::make_shared<const NodePlaces>(input.georeference(), input.field().cols(), input.field().rows());
+    suns.push_back(
+        {{},
+         text,
+         place_text(azimuth, altitude) + " at the centre",
+         LocalSun{parse_time(text), options.refraction,
+                  [places](int row, int first_col, std::span<dvec3> nodes) { places->row(row, first_col, nodes); }}});
+  }
+  if (!options.per_cell)
+    input.notes.push_back(
+        fmt::format("one sun for the whole raster, that at its centre; it is up to {:.3g} degrees off in the corners "
+                    "(--sun-per-cell)",
+                    error * kDegrees));
 }
 #endif
 
-std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options) {
-  const double col = (input.field().cols() - 1) / 2.0, row = (input.field().rows() - 1) / 2.0;
-  const double grid_north = input.grid_north_at(col, row, HUGE_VAL);
+// `lowest`: the lowest altitude of the suns of --time, radians.
+std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options, double& lowest) {
   std::vector<Sun> suns;
   for (const std::string& text : options.suns) {
     constexpr std::string_view kForm =
@@ -97,17 +143,15 @@ std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options) {
     const auto n = numbers_from(text, ',', 2, 2, "--sun", kForm);
     if (!(n[1] > 0 && n[1] <= 90) || std::abs(n[0]) > 360)
       throw Error(fmt::format("--sun '{}': expected {}", text, kForm));
-    suns.push_back(sun_from(n[0] / kDegrees, n[1] / kDegrees, grid_north, fmt::format("sun {}", text)));
+    const double azimuth = n[0] / kDegrees, altitude = n[1] / kDegrees;
+    suns.push_back(
+        {{azimuth - grid_north_of(input), altitude}, fmt::format("sun {}", text), place_text(azimuth, altitude)});
   }
   if (!options.times.empty()) {
 #ifdef SCARP_ERFA
-    double error = 0;
-    for (const std::string& text : options.times)
-      suns.push_back(sun_at_time(input, text, options.refraction, grid_north, error));
-    input.notes.push_back(
-        fmt::format("one sun for the whole raster, that at its centre; it is up to {:.3g} degrees off in the corners",
-                    error * kDegrees));
+    add_suns_of_times(input, options, suns, lowest);
 #else
+    static_cast<void>(lowest);
     throw Error("--time: this build does not compute the sun's position (SCARP_ERFA=OFF)");
 #endif
   }
@@ -115,60 +159,70 @@ std::vector<Sun> suns_of(MapInput& input, const ShadowOptions& options) {
   return suns;
 }
 
-// Share of the disc's area that is lit: strips of equal height, each as its middle is.
-std::vector<float> lit_fraction(const HeightField& field, const SunDirection& sun, const Progress& progress) {
-  constexpr int kStrips = 16;
-  std::vector<float> lit(static_cast<std::size_t>(field.cols()) * field.rows(), 0);
-  const auto area_below = [](double y) {  // of the unit disc, as a share
-    return 0.5 + (y * std::sqrt(1 - y * y) + std::asin(y)) / std::numbers::pi;
-  };
-  for (int i = 0; i < kStrips; ++i) {
-    const double low = 2.0 * i / kStrips - 1, high = 2.0 * (i + 1) / kStrips - 1;
-    const double altitude = sun.altitude + (low + high) / 2 * kSunDiameter / 2;
-    if (altitude <= 0 || altitude > std::numbers::pi / 2) continue;
-    const auto weight = static_cast<float>(area_below(high) - area_below(low));
-    const auto codes = shadow(field, {sun.azimuth, altitude}, progress);
-    for (std::size_t k = 0; k < lit.size(); ++k) {
-      if (codes[k] == Shade::lit) lit[k] += weight;
-      if (codes[k] == Shade::hole) lit[k] = -1;
-    }
-  }
-  return lit;
+std::vector<Shade> shades_of(const SunGround& ground, const Sun& sun, const RowBand& rows, const Progress& progress) {
+#ifdef SCARP_ERFA
+  if (sun.local) return local_shadow(ground, *sun.local, rows, progress);
+#endif
+  return ground.rows(sun.direction, rows, progress);
+}
+
+std::vector<float> shares_of(const SunGround& ground, const Sun& sun, const RowBand& rows, const Progress& progress) {
+#ifdef SCARP_ERFA
+  if (sun.local) return local_lit_share(ground, *sun.local, rows, progress);
+#endif
+  return lit_share(ground, sun.direction, rows, progress);
+}
+
+std::string method_of(const ShadowOptions& options) {
+  return fmt::format("exact rays to the sun{}; ground {}; flat Earth; grazing is lit (scarp shadow)",
+                     options.per_cell ? " of every pixel" : "", surface_text(options.surface));
 }
 
 void run(ShadowOptions options, const Command& command) {
   command.require_effect({});
-  settle_driver(options.raster_output, options.output);
-  keep_inputs(options.output, options.typed);
+  settle_output(options.raster_output, options);
   const ThreadLimit limit(options.threads);
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);
   keep_inputs(options.output, input.files());
-  const std::vector<Sun> suns = suns_of(input, options);
+  double lowest = std::numbers::pi / 2;
+  const std::vector<Sun> suns = suns_of(input, options, lowest);
+  // One sun needs a plane of the whole raster; rays of cells need one as far as a shadow reaches.
+  const double relief = input.field().max_height() - input.field().min_height();
+  const bool whole = !options.per_cell || !options.suns.empty() || lowest <= 0;
   const HeightField field =
-      input.field_at((input.field().cols() - 1) / 2.0, (input.field().rows() - 1) / 2.0, HUGE_VAL);
-  const double nodes = static_cast<double>(field.cols()) * field.rows();
+      input.field_at(centre_of(input).x, centre_of(input).y, whole ? HUGE_VAL : relief / std::tan(lowest));
+  const RowBand rows = rows_of_part(input, options.raster_output);
+  const double nodes = static_cast<double>(field.cols()) * rows.rows();
   if (options.raster_output.dry_run) {
-    constexpr double kNode_s = 1e-7;
-    print_dry_run(input, options.output, static_cast<double>(suns.size()) * (options.fraction ? 4 : 1) + 1,
-                  nodes * kNode_s * static_cast<double>(suns.size()) * (options.fraction ? 16 : 1));
+    const double kNode_s = options.per_cell ? 4e-6 : options.surface == "bilinear" ? 1e-6 : 1e-7;
+    print_dry_run(input, rows, options.output, static_cast<double>(suns.size()) * (options.fraction ? 4 : 1) + 1,
+                  nodes * kNode_s * static_cast<double>(suns.size()) *
+                      (!options.fraction  ? 1
+                       : options.per_cell ? 2
+                                          : 16));
     return;
   }
+  std::optional<MapPreview> preview;
+  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
   std::string places;
   for (const Sun& sun : suns) places += fmt::format("{}{}: {}", places.empty() ? "" : "; ", sun.name, sun.place);
-  RasterMap map = map_of(input, options.raster_output, kMethod, {{"SUN", places}});
+  RasterMap map = map_of(input, options.raster_output, rows, method_of(options), {{"SUN", places}});
   const Progress progress = terminal_progress("shadow");
+  const std::optional<BilinearGround> bilinear = input.bilinear_ground(field);
+  const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(field);
   std::vector<std::vector<std::uint8_t>> codes(suns.size());
   std::vector<std::vector<float>> fractions(suns.size());
   double lit = 0;
   for (std::size_t i = 0; i < suns.size(); ++i) {
     if (options.fraction) {
-      fractions[i] = lit_fraction(field, suns[i].direction, progress);
+      fractions[i] = shares_of(ground, suns[i], rows, progress);
       for (const float share : fractions[i]) lit += std::max(share, 0.0f);
-      map.bands.push_back({suns[i].name, "", std::span<const float>(fractions[i]), -1});
+      map.bands.push_back(
+          {fmt::format("lit share, {}", suns[i].name), "", std::span<const float>(fractions[i]), kNoShare});
       continue;
     }
-    const auto shades = shadow(field, suns[i].direction, progress);
+    const auto shades = shades_of(ground, suns[i], rows, progress);
     codes[i].reserve(shades.size());
     for (const Shade shade : shades)
       codes[i].push_back(shade == Shade::hole ? kNodata : static_cast<std::uint8_t>(shade));
@@ -183,7 +237,8 @@ void run(ShadowOptions options, const Command& command) {
                           {kNodata, "no sample", {255, 255, 255, 0}}}});
   }
   write_raster_map(options.output, map, terminal_progress("write"));
-  print_map_summary(input, options.raster_output, options.output,
+  if (preview) preview->write(map, rows, "grey");
+  print_map_summary(input, options.raster_output, rows, options.output,
                     fmt::format("{}; {:.3g} % lit", places, 100 * lit / nodes / static_cast<double>(suns.size())),
                     begin);
 }
@@ -210,10 +265,15 @@ void add_shadow(Program& program) {
                               .help = "raise the sun of --time by the refraction of a standard atmosphere",
                               .common = true,
                               .rules = {needs("--time", [&o] { return !o.times.empty(); })}});
+  command.add(&o.per_cell, {.names = "--sun-per-cell",
+                            .help = "the sun's position, north and scale at every pixel instead of at the centre",
+                            .common = true,
+                            .rules = {needs("--time", [&o] { return !o.times.empty(); })}});
   command.add(
       &o.fraction,
       {.names = "--fraction", .help = "lit share of the sun's disc (0.533 degrees) instead of codes", .common = true});
   add_output_option(command, o.output, "raster to write", "tif tiff img asc");
+  add_surface_option(command, o.surface);
   add_raster_output_options(command, o.raster_output);
   add_map_options(command, o);
   command.footer(kFooter);

@@ -8,7 +8,7 @@
 
 namespace scarp::cli {
 TablePlace typed_height_place(const std::string& text, std::string_view option) {
-  const auto n = numbers_from(text, ',', 2, 3, option, "X,Y or X,Y,HEIGHT, for example 692000,5143000,2");
+  const auto n = ground_numbers_from(text, 2, 3, option, "X,Y or X,Y,HEIGHT, for example 692000,5143000,2");
   return {n[0], n[1], n.size() > 2 ? std::optional(n[2]) : std::nullopt};
 }
 

@@ -9,16 +9,19 @@
 #include <limits>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/cli/commands.h"
 #include "app/cli/kept_inputs.h"
 #include "app/cli/map_input.h"
+#include "app/cli/map_preview.h"
 #include "app/cli/progress.h"
 #include "app/cli/raster_output.h"
 #include "app/cli/shared_options.h"
 #include "app/cli/sight_options.h"
+#include "scarp/analysis/map_part.h"
 #include "scarp/analysis/observer_count.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -28,6 +31,7 @@ namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr int kNodata = 255;
+constexpr double kNoHeight = -9999;  // nodata of heights and angles
 constexpr const char* kMethod =
     "exact lines of sight; ground linear at crossings of grid lines; grazing is visible (scarp viewshed)";
 
@@ -36,7 +40,10 @@ constexpr const char* kFooter = R"(Modes:
   count    number of observers that see the target
   dem      least height above sea at which a target is visible, metres
   ground   the same above ground: 0 where the ground itself is visible
-Pixels without a sample, or outside every observer's limits, are nodata.
+  angle    degrees above the horizontal at which an observer sees the target, the largest of all
+           observers that see it (r.viewshed of GRASS: add 90)
+Pixels without a sample, or outside every observer's limits, are nodata; those of `angle` also where
+the target is hidden.
 
 Flags of gdal_viewshed are taken too: -ox -oy -oz -tz -md -cc -vv -iv -ov -om -a_nodata -b -co -of
 -f -q, with the output as last word.)";
@@ -146,7 +153,8 @@ std::vector<Viewpoint> views_of(const std::vector<Observer>& observers) {
 }
 
 // Pixels of `visible`: the best that any observer has of a node.
-Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptions& options, const Progress& progress) {
+Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptions& options, const RowBand& rows,
+                     const Progress& progress) {
   const auto hole = static_cast<std::uint8_t>(options.nodata.value_or(kNodata));
   const auto out = static_cast<std::uint8_t>(options.out_of_range.value_or(hole));
   const auto hidden = static_cast<std::uint8_t>(options.hidden), visible = static_cast<std::uint8_t>(options.visible);
@@ -154,40 +162,54 @@ Codes visible_pixels(const std::vector<Observer>& observers, const ViewshedOptio
   if (observers.size() == 1) {
     const std::uint8_t value_of[] = {hidden, visible, out, hole};
     const Observer& one = observers.front();
-    const auto codes = viewshed(one.field, one.node, one.settings, progress);
+    const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
     pixels.reserve(codes.size());
     for (const Seen code : codes) pixels.push_back(value_of[static_cast<std::size_t>(code)]);
     return pixels;
   }
-  const auto counts = observer_count(views_of(observers), progress);
+  const auto counts = observer_count_rows(views_of(observers), rows, progress);
   pixels.reserve(counts.size());
   for (const std::uint16_t count : counts)
     pixels.push_back(count == kCountHole ? hole : count == kCountOutOfRange ? out : count > 0 ? visible : hidden);
   return pixels;
 }
 
-std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers, const Progress& progress) {
-  auto counts = observer_count(views_of(observers), progress);
+std::vector<std::uint16_t> counted_pixels(const std::vector<Observer>& observers, const RowBand& rows,
+                                          const Progress& progress) {
+  auto counts = observer_count_rows(views_of(observers), rows, progress);
   for (std::uint16_t& count : counts)
     if (count == kCountOutOfRange) count = kCountHole;
   return counts;
 }
 
 std::vector<float> least_pixels(const std::vector<Observer>& observers, HeightDatum datum, float nodata,
-                                const Progress& progress) {
+                                const RowBand& rows, const Progress& progress) {
   std::vector<float> pixels;
   for (const Observer& one : observers) {
-    const auto least = least_visible(one.field, one.node, one.settings, progress);
+    const auto least = least_visible_rows(one.field, one.node, one.settings, rows, progress);
     const Viewpoint view(one.field, one.node, one.settings);
     if (pixels.empty()) pixels.assign(least.size(), nodata);
     const int cols = one.field.cols();
-    parallel_for(one.field.rows(), 16, [&](std::int64_t begin, std::int64_t end) {
+    parallel_for(rows.rows(), 16, [&](std::int64_t begin, std::int64_t end) {
       for (auto i = static_cast<std::size_t>(begin) * cols; i < static_cast<std::size_t>(end) * cols; ++i) {
-        const Node node{static_cast<int>(i % cols), static_cast<int>(i / cols)};
+        const Node node{static_cast<int>(i % cols), rows.first + static_cast<int>(i / cols)};
         const float height = least_height(view.ground(), node, least[i], datum);
         if (!std::isnan(height)) pixels[i] = pixels[i] == nodata ? height : std::min(pixels[i], height);
       }
     });
+  }
+  return pixels;
+}
+
+std::vector<float> angle_pixels(const std::vector<Observer>& observers, float nodata, const RowBand& rows,
+                                const Progress& progress) {
+  std::vector<float> pixels;
+  for (const Observer& one : observers) {
+    const auto codes = viewshed_rows(one.field, one.node, one.settings, rows, progress);
+    const auto angles = sight_angles(Viewpoint(one.field, one.node, one.settings), codes, rows.first);
+    if (pixels.empty()) pixels.assign(angles.size(), nodata);
+    for (std::size_t i = 0; i < angles.size(); ++i)
+      if (!std::isnan(angles[i])) pixels[i] = pixels[i] == nodata ? angles[i] : std::max(pixels[i], angles[i]);
   }
   return pixels;
 }
@@ -206,22 +228,28 @@ double share_of(double part, double whole) { return whole > 0 ? 100 * part / who
 void run(ViewshedOptions options, const Command& command) {
   command.require_effect({});
   options.mode = mode_of(options.mode);
-  settle_driver(options.raster_output, options.output);
-  keep_inputs(options.output, options.typed);
+  if (const double nodata = options.nodata.value_or(kNodata);
+      options.mode == "visible" && !(nodata >= 0 && nodata <= 255 && nodata == std::floor(nodata)))
+    throw Error(
+        fmt::format("--nodata-value {:.10g}: expected a whole number from 0 to 255 for --mode visible", nodata));
+  settle_output(options.raster_output, options);
   const ThreadLimit limit(options.threads);
   const auto begin = std::chrono::steady_clock::now();
   MapInput input(options);
   keep_inputs(options.output, input.files());
   const std::vector<Observer> observers = observers_of(input, options);
 
-  const double nodes = static_cast<double>(input.field().cols()) * input.field().rows();
+  const RowBand rows = rows_of_part(input, options.raster_output);
+  const double nodes = static_cast<double>(input.field().cols()) * rows.rows();
   if (options.raster_output.dry_run) {
     // One sweep per observer, on one thread.
     constexpr double kNode_s = 6e-8;
-    print_dry_run(input, options.output, options.mode == "dem" || options.mode == "ground" ? 12 : 3,
+    print_dry_run(input, rows, options.output, options.mode == "visible" || options.mode == "count" ? 3 : 12,
                   static_cast<double>(observers.size()) * nodes * kNode_s);
     return;
   }
+  std::optional<MapPreview> preview;
+  if (!options.raster_output.preview.empty()) preview.emplace(options.raster_output.preview, input);
   std::string places;
   for (const Observer& one : observers) {
     constexpr std::size_t kListed = 20;
@@ -235,7 +263,7 @@ void run(ViewshedOptions options, const Command& command) {
                                             : fmt::format("{:.10g} m above ground", one.settings.observer_height));
   }
   const SightCurvature curvature = input.curvature();
-  RasterMap map = map_of(input, options.raster_output, kMethod,
+  RasterMap map = map_of(input, options.raster_output, rows, kMethod,
                          {{"MODE", options.mode},
                           {"OBSERVERS", places},
                           {"TARGET_HEIGHT", fmt::format("{:.10g} m above ground", options.heights.target)},
@@ -244,10 +272,10 @@ void run(ViewshedOptions options, const Command& command) {
   const Progress progress = terminal_progress("viewshed");
   Codes codes;
   std::vector<std::uint16_t> counts;
-  std::vector<float> heights;
+  std::vector<float> numbers;
   std::string what;
   if (options.mode == "visible") {
-    codes = visible_pixels(observers, options, progress);
+    codes = visible_pixels(observers, options, rows, progress);
     const int nodata = static_cast<int>(options.nodata.value_or(kNodata));
     map.bands.push_back({"visible",
                          "",
@@ -256,24 +284,31 @@ void run(ViewshedOptions options, const Command& command) {
                          {{options.hidden, "hidden", {205, 205, 205, 255}},
                           {options.visible, "visible", {44, 150, 60, 255}},
                           {nodata, "no sample or out of range", {255, 255, 255, 0}}}});
-    what = fmt::format("{:.3g} % visible",
-                       share_of(static_cast<double>(std::count(codes.begin(), codes.end(), options.visible)), nodes));
+    const auto count = [&](int code) { return static_cast<double>(std::count(codes.begin(), codes.end(), code)); };
+    what = fmt::format("{:.3g} % visible", share_of(count(options.visible), nodes - count(nodata)));
   } else if (options.mode == "count") {
-    counts = counted_pixels(observers, progress);
+    counts = counted_pixels(observers, rows, progress);
     map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kCountHole});
     what = fmt::format("{} observers", observers.size());
+  } else if (options.mode == "angle") {
+    const double nodata = options.nodata.value_or(kNoHeight);
+    numbers = angle_pixels(observers, static_cast<float>(nodata), rows, progress);
+    map.bands.push_back({"angle above horizontal", "degrees", std::span<const float>(numbers), nodata});
+    const auto hidden = std::count(numbers.begin(), numbers.end(), static_cast<float>(nodata));
+    what = fmt::format("{:.3g} % visible", share_of(nodes - static_cast<double>(hidden), nodes));
   } else {
     const bool dem = options.mode == "dem";
-    const double nodata = options.nodata.value_or(-9999);
-    heights =
-        least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, static_cast<float>(nodata), progress);
+    const double nodata = options.nodata.value_or(kNoHeight);
+    numbers = least_pixels(observers, dem ? HeightDatum::sea : HeightDatum::ground, static_cast<float>(nodata), rows,
+                           progress);
     map.bands.push_back({dem ? "least visible height above sea" : "least visible height above ground", "m",
-                         std::span<const float>(heights), nodata});
+                         std::span<const float>(numbers), nodata});
     what = "least visible heights";
   }
   write_raster_map(options.output, map, terminal_progress("write"));
-  print_map_summary(input, options.raster_output, options.output, fmt::format("{}; {}", what, input.curvature_text()),
-                    begin);
+  if (preview) preview->write(map, rows, "viridis");
+  print_map_summary(input, options.raster_output, rows, options.output,
+                    fmt::format("{}; {}", what, input.curvature_text()), begin);
 }
 
 }  // namespace
@@ -299,7 +334,7 @@ void add_viewshed(Program& program) {
   command.add(&o.mode, {.names = "--mode",
                         .value = "MODE",
                         .help = "what pixels hold",
-                        .choices = {"visible", "count", "dem", "ground", "NORMAL", "ACCUM", "DEM", "GROUND"},
+                        .choices = {"visible", "count", "dem", "ground", "angle", "NORMAL", "ACCUM", "DEM", "GROUND"},
                         .closed = true,
                         .common = true});
   add_sight_heights(command, o.heights);
@@ -337,11 +372,11 @@ void add_viewshed(Program& program) {
                                 .range = {0, 255},
                                 .fallback = "nodata",
                                 .rules = {codes}});
-  const Rule marked = needs("--mode visible, dem or ground", [&o] { return mode_of(o.mode) != "count"; });
+  const Rule marked = needs("--mode visible, dem, ground or angle", [&o] { return mode_of(o.mode) != "count"; });
   command.add(&o.nodata, {.names = "--nodata-value",
                           .help = "pixel value without a sample",
                           .range = {-1e30, 1e30},
-                          .fallback = "255; heights: -9999",
+                          .fallback = "255; heights and angles: -9999",
                           .rules = {marked}});
   add_raster_output_options(command, o.raster_output);
   add_map_options(command, o);

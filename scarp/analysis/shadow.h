@@ -37,7 +37,14 @@ struct SunRay {
   static constexpr std::int64_t kUnit = std::int64_t{1} << 26;
 };
 
-/// Throws Error if the direction is out of range.
+/// The steps between nodes on the ground, in metres east and north.
+struct NodeSteps {
+  dvec2 col, row;  ///< to the next column and row
+};
+
+/// Throws Error if the direction is out of range. `azimuth` counts from the north of the steps.
+SunRay sun_ray(const NodeSteps& steps, const SunDirection& sun);
+/// With the field's cells, and grid north for north.
 SunRay sun_ray(const HeightField& field, const SunDirection& sun);
 
 /// Returns the code of every node, rows from north to south. Throws Error for a direction out of range or a wrapped

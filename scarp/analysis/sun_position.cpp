@@ -60,16 +60,38 @@ UtcTime parse_time(const std::string& text) {
   return time;
 }
 
-SunPosition sun_position(const UtcTime& time, const EarthPlace& place, bool refraction) {
+SunAtTime::SunAtTime(const UtcTime& time) {
+  // The steps of eraApco13() that do not depend on the place. UT1 - UTC: see the header.
+  double tai[2], ut1[2];
+  if (eraUtctai(time.day, time.fraction, &tai[0], &tai[1]) < 0 ||
+      eraTaitt(tai[0], tai[1], &terrestrial_.day, &terrestrial_.fraction) < 0 ||
+      eraUtcut1(time.day, time.fraction, 0, &ut1[0], &ut1[1]) < 0)
+    throw Error("sun: the time is out of range");
+  const double tt[2] = {terrestrial_.day, terrestrial_.fraction};
+  double from_sun[2][3], pole[3][3];
+  eraEpv00(tt[0], tt[1], from_sun, earth_);
+  eraCp(from_sun[0], from_sun_);
+  eraPnm06a(tt[0], tt[1], pole);
+  eraBpn2xy(pole, &pole_x_, &pole_y_);
+  origin_s_ = eraS06(tt[0], tt[1], pole_x_, pole_y_);
+  rotation_ = eraEra00(ut1[0], ut1[1]);
+  origin_sp_ = eraSp00(tt[0], tt[1]);
+}
+
+SunPosition SunAtTime::at(const EarthPlace& place, bool refraction) const {
   // Standard atmosphere: pressure falls by e in 8.4 km.
   constexpr double kSeaPressure = 1013.25, kScaleHeight = 8434.5, kCelsius = 10, kHumidity = 0.5, kMicrometres = 0.55;
-  const double pressure = refraction ? kSeaPressure * std::exp(-place.height / kScaleHeight) : 0;
+  double tangent = 0, cube = 0;
+  if (refraction)
+    eraRefco(kSeaPressure * std::exp(-place.height / kScaleHeight), kCelsius, kHumidity, kMicrometres, &tangent, &cube);
+  // ERFA's arguments are not const.
+  double earth[2][3], from_sun[3];
+  eraCpv(const_cast<double(*)[3]>(earth_), earth);
+  eraCp(const_cast<double*>(from_sun_), from_sun);
   eraASTROM astrom;
-  double origins = 0;
-  // Polar motion is below 0.0002 degree, UT1 - UTC: see the header.
-  if (eraApco13(time.day, time.fraction, 0, place.longitude, place.latitude, place.height, 0, 0, pressure, kCelsius,
-                kHumidity, kMicrometres, &astrom, &origins) < 0)
-    throw Error("sun: the time is out of range");
+  // Polar motion is below 0.0002 degree.
+  eraApco(terrestrial_.day, terrestrial_.fraction, earth, from_sun, pole_x_, pole_y_, origin_s_, rotation_,
+          place.longitude, place.latitude, place.height, 0, 0, origin_sp_, tangent, cube, &astrom);
   // From the observer to the sun; the sun hardly moves while its light is under way.
   double sun[3];
   eraSxp(-1, astrom.eh, sun);
@@ -80,6 +102,10 @@ SunPosition sun_position(const UtcTime& time, const EarthPlace& place, bool refr
   double azimuth = 0, zenith = 0, hour_angle = 0, declination = 0, ascension = 0;
   eraAtioq(eraAnp(longitude), latitude, &astrom, &azimuth, &zenith, &hour_angle, &declination, &ascension);
   return {azimuth, ERFA_DPI / 2 - zenith};
+}
+
+SunPosition sun_position(const UtcTime& time, const EarthPlace& place, bool refraction) {
+  return SunAtTime(time).at(place, refraction);
 }
 
 }  // namespace scarp

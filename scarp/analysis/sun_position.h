@@ -30,6 +30,22 @@ struct SunPosition {
   double altitude = 0;  ///< radians above the horizon; negative at night
 };
 
+/// The sun at one time, for many places: what does not depend on the place is computed once.
+class SunAtTime {
+ public:
+  /// Throws Error for a time out of ERFA's range.
+  explicit SunAtTime(const UtcTime& time);
+
+  /// As sun_position().
+  SunPosition at(const EarthPlace& place, bool refraction = false) const;
+
+ private:
+  UtcTime terrestrial_;
+  double earth_[2][3], from_sun_[3];   // of the Earth: barycentric place and velocity, and place seen from the sun
+  double pole_x_, pole_y_, origin_s_;  // celestial pole and origin
+  double rotation_, origin_sp_;        // of the Earth, and the terrestrial origin
+};
+
 /// `refraction`: of a standard atmosphere at this height, 10 degrees Celsius; lifts the sun by 0.5 degree at the
 /// horizon. Below about 1 degree of altitude refraction is uncertain by more than 0.01 degree.
 SunPosition sun_position(const UtcTime& time, const EarthPlace& place, bool refraction = false);

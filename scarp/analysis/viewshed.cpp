@@ -8,6 +8,7 @@
 
 #include "scarp/analysis/viewshed_sweep.h"
 #include "scarp/base/error.h"
+#include "scarp/base/parallel.h"
 #include "scarp/base/setting.h"
 
 namespace scarp {
@@ -55,6 +56,10 @@ Viewpoint::Viewpoint(const HeightField& field, Node observer, const ViewshedSett
   limits_pitch_ = settings.low_pitch > -kPi / 2 || settings.high_pitch < kPi / 2;
 }
 
+double Viewpoint::pitch(Node node, double target) const {
+  return std::atan2(target - eye_, std::sqrt(ground_.square_distance(node.col, node.row)));
+}
+
 bool Viewpoint::in_range(Node node, double target) const {
   if (!has_limits()) return true;
   const double square = ground_.square_distance(node.col, node.row);
@@ -71,8 +76,8 @@ bool Viewpoint::in_range(Node node, double target) const {
     if (first <= last ? azimuth < first || azimuth > last : azimuth < first && azimuth > last) return false;
   }
   if (limits_pitch_) {
-    const double pitch = std::atan2(target - eye_, std::sqrt(square));
-    if (pitch < settings_.low_pitch || pitch > settings_.high_pitch) return false;
+    const double angle = pitch(node, target);
+    if (angle < settings_.low_pitch || angle > settings_.high_pitch) return false;
   }
   return true;
 }
@@ -91,6 +96,22 @@ std::vector<double> least_visible(const HeightField& field, Node observer, const
   std::vector<double> least(static_cast<std::size_t>(field.cols()) * static_cast<std::size_t>(field.rows()));
   sweep_least_visible(view, least.data(), progress);
   return least;
+}
+
+std::vector<float> sight_angles(const Viewpoint& view, std::span<const Seen> codes, int first_row) {
+  constexpr double kDegrees = 180 / kPi;
+  const auto cols = static_cast<std::size_t>(view.ground().field().cols());
+  std::vector<float> angles(codes.size(), std::numeric_limits<float>::quiet_NaN());
+  constexpr std::int64_t kGrain = 16;  // rows
+  parallel_for(static_cast<std::int64_t>(codes.size() / cols), kGrain, [&](std::int64_t begin, std::int64_t end) {
+    for (std::size_t i = static_cast<std::size_t>(begin) * cols; i < static_cast<std::size_t>(end) * cols; ++i) {
+      if (codes[i] != Seen::visible) continue;
+      const Node node{static_cast<int>(i % cols), first_row + static_cast<int>(i / cols)};
+      if (const auto lowered = view.ground().lowered(node))
+        angles[i] = static_cast<float>(kDegrees * view.pitch(node, view.target(*lowered)));
+    }
+  });
+  return angles;
 }
 
 float least_height(const SightGround& ground, Node node, double least_visible, HeightDatum datum) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "scarp/analysis/sight.h"
@@ -53,6 +54,8 @@ class Viewpoint {
 
   /// Height of the target over a node with this lowered height.
   double target(double lowered) const { return lowered + settings_.target_height; }
+  /// Angle in radians, -pi/2..pi/2, by which the line to a target of this height, lowered, rises above the horizontal.
+  double pitch(Node node, double target) const;
   /// Whether any node may be out of range.
   bool has_limits() const { return limits_distance_ || limits_azimuth_ || limits_pitch_; }
   /// Whether a node is within the limits; `target` is its target's height, lowered.
@@ -76,6 +79,11 @@ std::vector<Seen> viewshed(const HeightField& field, Node observer, const Viewsh
 /// matters for pitch limits.
 std::vector<double> least_visible(const HeightField& field, Node observer, const ViewshedSettings& settings = {},
                                   const Progress& progress = {});
+
+/// Returns, for every node, the angle in degrees above the horizontal at which the observer sees its target
+/// (Viewpoint::pitch()); NaN where the target is hidden or out of range, and for holes. `codes` is the viewshed of the
+/// same observer, or some of its rows, the first of which is `first_row`.
+std::vector<float> sight_angles(const Viewpoint& view, std::span<const Seen> codes, int first_row = 0);
 
 /// Converts one result of least_visible(): the least height of a visible target above sea (at least the ground) or
 /// above ground (at least 0), in metres. NaN stays NaN.

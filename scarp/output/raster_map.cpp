@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <set>
 
 #include "scarp/base/error.h"
 #include "scarp/base/file_name.h"
@@ -100,24 +101,24 @@ int CPL_STDCALL report(double done, const char*, void* progress) {
   return !call || call(done) ? TRUE : FALSE;
 }
 
-// Files beside the main one, which have its temporary name and other extensions: moved, or removed.
+// Files beside the main one, which have its temporary name and other extensions: moved, or removed. Files that were
+// there before belong to others, such as a picture of the same name in the making.
 class SideFiles {
  public:
-  SideFiles(const std::string& temporary, const std::string& path) : temporary_(temporary), path_(path) {}
+  SideFiles(const std::string& temporary, const std::string& path)
+      : temporary_(temporary), path_(path), before_(beside()) {}
   ~SideFiles() {
     std::error_code ignored;
     for (const auto& [from, to] : files_) fs::remove(from, ignored);
   }
   void find() {
-    const fs::path main(temporary_);
-    std::error_code ignored;
-    const fs::path folder = main.has_parent_path() ? main.parent_path() : fs::path(".");
-    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-      const std::string name = entry.path().filename().string(), stem = main.stem().string();
-      if (!name.starts_with(stem) || name == main.filename().string()) continue;
+    const std::string stem = fs::path(temporary_).stem().string();
+    for (const fs::path& file : beside()) {
+      if (before_.contains(file)) continue;
       // NAME.hdr beside NAME.img, or NAME.img.aux.xml.
-      files_[entry.path().string()] =
-          (fs::path(path_).parent_path() / (fs::path(path_).stem().string() + name.substr(stem.size()))).string();
+      files_[file.string()] = (fs::path(path_).parent_path() /
+                               (fs::path(path_).stem().string() + file.filename().string().substr(stem.size())))
+                                  .string();
     }
   }
   void commit() {
@@ -130,7 +131,20 @@ class SideFiles {
   }
 
  private:
+  std::set<fs::path> beside() const {
+    const fs::path main(temporary_);
+    std::set<fs::path> found;
+    std::error_code ignored;
+    const fs::path folder = main.has_parent_path() ? main.parent_path() : fs::path(".");
+    for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with(main.stem().string()) && name != main.filename().string()) found.insert(entry.path());
+    }
+    return found;
+  }
+
   std::string temporary_, path_;
+  std::set<fs::path> before_;
   std::map<std::string, std::string> files_;
 };
 

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <span>
 #include <utility>
 
 #include "analysis/map_fields.h"
@@ -75,6 +77,32 @@ TEST(Maps, LeastVisibleHeightsEqualTheJudge) {
             << place(kind, i) << ": " << least[i] << ", not " << judged;
       }
     }
+}
+
+// A plane 10 m below the eye; a wall with a hole on it hides what is behind.
+TEST(Maps, AnglesAreThoseOfTheLinesOfSight) {
+  constexpr int kSide = 21;
+  std::vector<float> heights(kSide * kSide, 0);
+  for (int row = 0; row < kSide; ++row) heights[static_cast<std::size_t>(row * kSide + 15)] = 40;
+  heights[15] = std::nanf("");
+  const auto field = HeightField::own(std::move(heights), kSide, kSide, {.cell_x = 20, .cell_y = 30});
+  const ViewshedSettings settings{.observer_height = 10, .target_height = 5, .curvature = {1, 5000}};
+  const Viewpoint view(field, {10, 10}, settings);
+  const auto codes = viewshed(field, {10, 10}, settings);
+  const auto angles = sight_angles(view, codes);
+  const auto at = [&](int col, int row) { return angles[static_cast<std::size_t>(row * kSide + col)]; };
+  const auto expected = [](double height, double distance) {
+    return std::atan((height - distance * distance / 5000) / distance) * 180 / std::numbers::pi;
+  };
+  EXPECT_NEAR(at(10, 0), expected(5 - 10, 300), 1e-5);
+  EXPECT_NEAR(at(8, 11), expected(5 - 10, 50), 1e-5);
+  EXPECT_NEAR(at(15, 10), expected(45 - 10, 100), 1e-5);
+  EXPECT_EQ(at(10, 10), -90);  // straight down
+  EXPECT_TRUE(std::isnan(at(17, 10)));
+  EXPECT_TRUE(std::isnan(at(15, 0)));
+  for (std::size_t i = 0; i < codes.size(); ++i) EXPECT_EQ(std::isnan(angles[i]), codes[i] != Seen::visible);
+  const auto last = sight_angles(view, std::span(codes).last(2 * kSide), kSide - 2);
+  EXPECT_EQ(last[3], at(3, kSide - 2));
 }
 
 TEST(Maps, ShadowsEqualTheJudge) {

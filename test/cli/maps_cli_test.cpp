@@ -4,10 +4,15 @@
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
+#include <sys/resource.h>
 
+#include <chrono>
+#include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cli/program.h"
@@ -136,6 +141,22 @@ TEST_F(MapsCli, CountsObserversAndFindsLeastHeights) {
   EXPECT_EQ(ground.at(0, 0), -9999);
 }
 
+TEST_F(MapsCli, AnglesCountFromTheHorizontal) {
+  const Names angles = on_dem("viewshed") + Names{"--mode", "angle", "--cc", "0", "-o", path("angle.tif")};
+  ASSERT_EQ(run(angles + Names{"--observer", "500105,5000105,2"}).status, 0);
+  const auto dataset = open(path("angle.tif"));
+  EXPECT_STREQ(dataset->GetRasterBand(1)->GetUnitType(), "degrees");
+  const auto one = pixels_of(*dataset);
+  // Cells are 0.01 % longer than in the map.
+  EXPECT_NEAR(one.at(15, 9), std::atan(-2 / 50.) * 180 / 3.14159265, 1e-2);
+  EXPECT_NEAR(one.at(20, 9), std::atan(48 / 100.) * 180 / 3.14159265, 1e-2);
+  EXPECT_EQ(one.at(25, 9), -9999);
+  EXPECT_EQ(one.at(0, 0), -9999);
+  // The higher one of two observers sees the ground at a smaller angle.
+  ASSERT_EQ(run(angles + Names{"--observer", "500105,5000105,2", "--observer", "500105,5000105,9"}).status, 0);
+  EXPECT_EQ(pixels_of(*open(path("angle.tif"))).at(15, 9), one.at(15, 9));
+}
+
 TEST_F(MapsCli, ShadowHasABandPerSunAndCodes) {
   ASSERT_EQ(run(on_dem("shadow") + Names{"--sun", "90,45", "--sun", "270,45", "-o", path("sun.tif")}).status, 0);
   const auto dataset = open(path("sun.tif"));
@@ -162,7 +183,86 @@ TEST_F(MapsCli, ShadowTakesTimes) {
   expect_refused(on_dem("shadow") + Names{"--time", "2026-06-21T01:00+02:00", "-o", path("x.tif")},
                  "below the horizon");
   expect_refused(on_dem("shadow") + Names{"--time", "21.6.2026 12:00", "-o", path("x.tif")}, "2026-06-21T09:00+02:00");
+  // The sun of every pixel: here within 0.003 degrees of the one at the centre.
+  EXPECT_NE(result.err.find("--sun-per-cell"), std::string::npos) << result.err;
+  const Names evening = on_dem("shadow") + Names{"--time", "2026-06-21T19:00+02:00", "-o"};
+  const auto local = run(evening + Names{path("local.tif"), "--sun-per-cell"});
+  ASSERT_EQ(local.status, 0) << local.err;
+  EXPECT_EQ(local.err.find("one sun"), std::string::npos) << local.err;
+  ASSERT_EQ(run(evening + Names{path("one.tif")}).status, 0);
+  EXPECT_EQ(pixels_of(*open(path("local.tif"))).samples, pixels_of(*open(path("one.tif"))).samples);
+  for (const char* part : {"1/2", "2/2"})
+    EXPECT_EQ(run(evening + Names{path("p.tif"), "--sun-per-cell", "--fraction", "--part", part}).status, 0);
+  fs::remove(path("p.tif"));
+  expect_refused(on_dem("shadow") + Names{"--sun", "90,9", "--sun-per-cell", "-o", path("x.tif")}, "--time");
+  expect_refused(on_dem("shadow") + Names{"--time", "2026-06-21T01:00+02:00", "--sun-per-cell", "-o", path("x.tif")},
+                 "below the horizon");
   expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", "-o", path("x.tif")}, "CRS");
+}
+
+// The parts put together are the whole, pixel by pixel, and lie where their rows do.
+TEST_F(MapsCli, PartsArePiecesOfTheWhole) {
+  const Names maps[] = {
+      Names{"viewshed", "--observer", "500105,5000105,2", "--observer", "500255,5000055,9"},
+      Names{"viewshed", "--observer", "500105,5000105,2", "--mode", "ground", "--max-distance", "60"},
+      Names{"viewshed", "--observer", "500105,5000105,2", "--observer", "500255,5000055,9", "--mode", "angle"},
+      Names{"shadow", "--sun", "160,20", "--sun", "280,3"},
+      Names{"shadow", "--sun", "70,10", "--fraction"},
+  };
+  for (const Names& map : maps) {
+    const Names words = map + Names{dem_, "--raster-crs", "EPSG:32633", "-o"};
+    ASSERT_EQ(run(words + Names{path("whole.tif")}).status, 0);
+    const auto whole = open(path("whole.tif"));
+    for (int band = 1; band <= whole->GetRasterCount(); ++band) {
+      std::vector<float> together;
+      for (int i = 1; i <= 3; ++i) {
+        const auto result = run(words + Names{path("part.tif"), "--part", fmt::format("{}/3", i)});
+        ASSERT_EQ(result.status, 0) << result.err;
+        const auto part = open(path("part.tif"));
+        double place[6];
+        ASSERT_EQ(part->GetGeoTransform(place), CE_None);
+        EXPECT_EQ(place[0], 500000);
+        EXPECT_EQ(place[3], 5000200 - 10. * static_cast<double>(together.size()) / 30);
+        const auto pixels = pixels_of(*part, band);
+        EXPECT_EQ(pixels.cols, 30);
+        together.insert(together.end(), pixels.samples.begin(), pixels.samples.end());
+      }
+      EXPECT_EQ(pixels_of(*whole, band).samples, together) << map[0];
+    }
+  }
+  const Names sun = on_dem("shadow") + Names{"--sun", "160,20", "-o", path("x.tif"), "--part"};
+  expect_refused(sun + Names{"0/3"}, "--part '0/3': expected I/N");
+  expect_refused(sun + Names{"4/3"}, "1 <= I <= N");
+  expect_refused(sun + Names{"1.5/3"}, "whole numbers");
+  expect_refused(sun + Names{"2"}, "for example 3/16");
+  expect_refused(sun + Names{"1/21"}, "has only 20 rows");
+}
+
+// Between the samples of a saddle the ground is higher than on any grid line that a diagonal crosses.
+TEST_F(MapsCli, SurfaceMayBeBilinear) {
+  const std::string saddle =
+      scratch_.write("saddle.asc", "ncols 2\nnrows 2\nxllcorner -5\nyllcorner -5\ncellsize 10\n0 30\n30 0\n");
+  const Names line{"los", saddle, "--crs", "map", "--cc", "0", "--from", "0,10,8", "--to", "10,0,8"};
+  const auto crossings = run(line), bilinear = run(line + Names{"--surface", "bilinear"});
+  ASSERT_EQ(bilinear.status, 0) << bilinear.err;
+  EXPECT_NE(crossings.out.find("\n1,1,"), std::string::npos) << crossings.out;
+  EXPECT_NE(bilinear.out.find("\n1,0,14.14213562,8,8,-7,"), std::string::npos) << bilinear.out;
+  const Names sun{"shadow", saddle, "--sun", "135,10", "-o", path("s.tif")};
+  ASSERT_EQ(run(sun).status, 0);
+  EXPECT_EQ(pixels_of(*open(path("s.tif"))).at(0, 0), 0);
+  for (const char* part : {"1/1", "1/2"}) {
+    ASSERT_EQ(run(sun + Names{"--surface", "bilinear", "--part", part}).status, 0);
+    const auto dataset = open(path("s.tif"));
+    EXPECT_EQ(pixels_of(*dataset).at(0, 0), 1);
+    EXPECT_NE(std::string(dataset->GetMetadataItem("METHOD")).find("bilinear"), std::string::npos);
+  }
+  ASSERT_EQ(run(sun + Names{"--surface", "bilinear", "--fraction"}).status, 0);
+  EXPECT_EQ(pixels_of(*open(path("s.tif"))).at(0, 0), 0);
+  fs::remove(path("s.tif"));
+  expect_refused(on_dem("los") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "--surface", "bilinear"},
+                 "--cc 0");
+  const std::string row = scratch_.write("row.asc", "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3");
+  expect_refused({"shadow", row, "--sun", "90,45", "--surface", "bilinear", "-o", path("x.tif")}, "row.asc: ");
 }
 
 TEST_F(MapsCli, LosAnswersInCsvAndGeoJson) {
@@ -200,6 +300,45 @@ TEST_F(MapsCli, ProfileIsATableOrAFigure) {
   expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg or .png");
 }
 
+// Green where the observer sees the ground, grey where not, the colours of heights where nothing was asked.
+TEST_F(MapsCli, PreviewShowsTheMapOverTheModel) {
+  const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105,2", "-o", path("v.tif")};
+#ifndef SCARP_CAIRO
+  expect_refused(view + Names{"--preview", path("v.png")}, "SCARP_CAIRO");
+#else
+  const auto result = run(view + Names{"--max-distance", "170", "--preview", path("v.png")});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(scratch_.files(), (Names{"dem.asc", "v.png", "v.tif"}));
+  const auto picture = open(path("v.png"));
+  ASSERT_TRUE(picture);
+  const Pixels red = pixels_of(*picture, 1), green = pixels_of(*picture, 2), blue = pixels_of(*picture, 3);
+  int greens = 0, greys = 0, whites = 0;
+  for (std::size_t i = 0; i < red.samples.size(); ++i) {
+    const float r = red.samples[i], g = green.samples[i], b = blue.samples[i];
+    greens += g > 1.5f * r && g > 1.5f * b;
+    greys += r < 250 && r > 100 && std::abs(r - g) < 12 && std::abs(g - b) < 12;
+    whites += r + g + b == 3 * 255;
+  }
+  const auto share = [&](int pixels) { return static_cast<double>(pixels) / static_cast<double>(red.samples.size()); };
+  EXPECT_GT(share(greens), 0.3);
+  EXPECT_GT(share(greys), 0.02);
+  EXPECT_GT(share(whites), 0.05);  // the margin with the legend
+  // A map of heights, of a part, has a ramp.
+  EXPECT_EQ(run(view + Names{"--mode", "ground", "--part", "1/2", "--preview", path("g.pdf")}).status, 0);
+  EXPECT_EQ(text_of(path("g.pdf")).substr(0, 4), "%PDF");
+  fs::remove(path("g.pdf"));
+  const Names shadow = on_dem("shadow") + Names{"--sun", "90,45", "-o", path("x.tif"), "--preview"};
+  expect_refused(shadow + Names{path("x.exr")}, "no margins");
+  expect_refused(shadow + Names{path("x.png.txt")}, "unknown picture format");
+  expect_refused(shadow + Names{path("./x.tif")}, "x.tif");
+  expect_refused(shadow + Names{path("none/x.png")}, "none");
+  expect_refused(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("y.png"), "--preview", path("./y.png")},
+                 "is the output");
+  const std::string line = scratch_.write("line.asc", "ncols 3\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3");
+  expect_refused({"shadow", line, "--sun", "90,45", "-o", path("x.tif"), "--preview", path("x.png")}, "no ground");
+#endif
+}
+
 TEST_F(MapsCli, BadInputIsOneLineAndNothingIsWritten) {
   const std::string out = path("x.tif");
   const Names view = on_dem("viewshed") + Names{"-o", out};
@@ -232,6 +371,135 @@ TEST_F(MapsCli, BadInputIsOneLineAndNothingIsWritten) {
                  "--to: 499999,5000105 is outside");
   expect_refused(on_dem("los") + Names{"--lines", path("missing.csv")}, "missing.csv");
   expect_refused(on_dem("los") + Names{"--lines", dem_}, "dem.asc");
+}
+
+// What else people type, one line each.
+TEST_F(MapsCli, PlacesTimesAndFilesAreChecked) {
+  const std::string out = path("x.tif");
+  const Names view = on_dem("viewshed") + Names{"-o", out, "--observer"};
+  for (const char* place : {"500105", "nan,5000105", "500105,5000105,1e300", "500105,5000105,2,3", ""})
+    expect_refused(view + Names{place}, fmt::format("--observer '{}': expected", place));
+  for (const char* number : {"-1", "nan", "1e300", "six"}) {
+    const std::string wanted = fmt::format("--cc '{}': expected a number from 0 to 1", number);
+    expect_refused(view + Names{"500105,5000105", fmt::format("--cc={}", number)}, wanted);
+    expect_refused(view + Names{"500105,5000105", "-cc", number}, wanted);
+    expect_refused(on_dem("los") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "--cc", number}, wanted);
+    expect_refused(on_dem("profile") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "--cc", number},
+                   wanted);
+  }
+  for (const char* value : {"256", "-1", "2.5"})
+    expect_refused(view + Names{"500105,5000105", fmt::format("--nodata-value={}", value)}, "from 0 to 255");
+  const Names watch = on_dem("viewshed") + Names{"-o", out, "--observers"};
+  expect_refused(watch + Names{scratch_.write("empty.csv", "")}, "empty.csv: is empty");
+  expect_refused(watch + Names{scratch_.write("blank.csv", "x,y\n,\n")}, "blank.csv: line 2: x ''");
+  expect_refused(watch + Names{scratch_.write("both.csv", "x,y,lon,lat\n1,2,3,4\n")}, "both.csv: ");
+  expect_refused(watch + Names{scratch_.write("none.geojson", R"({"type":"FeatureCollection","features":[]})")},
+                 "none.geojson: contains no points");
+  expect_refused(
+      watch + Names{scratch_.write("null.geojson", R"({"type":"FeatureCollection","features":[{"type":"Feature",)"
+                                                   R"("properties":{},"geometry":null}]})")},
+      "null.geojson: feature 1: has no geometry");
+  expect_refused(watch + Names{path("missing.csv")}, "missing.csv: cannot be opened");
+#ifdef SCARP_ERFA
+  const Names sun = on_dem("shadow") + Names{"-o", out, "--time"};
+  expect_refused(sun + Names{"21-06-2026T09:00Z"}, "expected YYYY-MM-DD");
+  expect_refused(sun + Names{"2026-21-06T09:00Z"}, "no such date");
+  expect_refused(sun + Names{"2026-02-30T09:00Z"}, "no such date");
+  expect_refused(sun + Names{"2026-06-21T09:00"}, "UTC offset");
+  expect_refused(sun + Names{"1526-06-21T09:00Z"}, "1900 to 2100");
+  for (const char* rule : {"--sun-per-cell", "--refraction"})
+    expect_refused({"shadow", dem_, "--raster-crs", "none", "--time", "2026-06-21T12:00Z", rule, "-o", out},
+                   "--raster-crs");
+#endif
+  // Found before the work.
+  const Names there = on_dem("viewshed") + Names{"--observer", "500105,5000105", "--of", "GTiff", "-o"};
+  expect_refused(there + Names{path("none/x.tif")}, "'" + path("none") + "' does not exist");
+  expect_refused(there + Names{path("")}, path(""));
+}
+
+TEST_F(MapsCli, InputsAreKept) {
+  const std::string lines_file = scratch_.write("lines.csv", "x,y,tx,ty\n500105,5000105,500185,5000105\n");
+  const std::string tower = scratch_.write("tower.csv", "x,y\n500105,5000105\n");
+  fs::create_hard_link(dem_, path("link.tif"));
+  fs::create_symlink(dem_, path("link.png"));
+  const Names one{"--observer", "500105,5000105"};
+  expect_refused(on_dem("viewshed") + one + Names{"-o", path("link.tif")}, "is the input");
+  expect_refused(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("link.tif")}, "is the input");
+  expect_refused(on_dem("viewshed") + Names{"--observers", tower, "--of", "GTiff", "-o", tower}, "is the input");
+  expect_refused(on_dem("los") + Names{"--lines", lines_file, "-o", lines_file}, "is the input");
+#ifdef SCARP_CAIRO
+  expect_refused(on_dem("viewshed") + one + Names{"-o", path("x.tif"), "--preview", path("link.png")}, "is the input");
+  expect_refused(
+      on_dem("profile") + Names{"--from", "500105,5000105", "--to", "500185,5000105", "-o", path("link.png")},
+      "is the input");
+#endif
+}
+
+// A limit on the size of files stands for the full disk: write() fails in the same way.
+TEST_F(MapsCli, AFullDiskLeavesNothing) {
+  const auto expect_full = [&](const Names& arguments, ::rlim_t bytes, const std::string& name) {
+    const auto before = scratch_.files();
+    struct rlimit limit {};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
+    const struct rlimit small { bytes, limit.rlim_max };
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+    const auto result = Program(arguments).result();
+    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+    EXPECT_EQ(result.status, 1);
+    EXPECT_EQ(lines(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(name + ": cannot be written"), std::string::npos) << result.err;
+    EXPECT_EQ(scratch_.files(), before);
+  };
+  constexpr ::rlim_t kFew = 600;
+  const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105"};
+  const Names ends{"--from", "500105,5000105", "--to", "500285,5000105", "--to", "500285,5000055"};
+  const Names line{"--from", "500105,5000105", "--to", "500285,5000105"};
+  expect_full(view + Names{"-o", path("x.tif")}, kFew, "x.tif");
+  expect_full(view + Names{"--mode", "ground", "--of", "COG", "-o", path("x.tif")}, kFew, "x.tif");
+  expect_full(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("x.img")}, kFew, "x.img");
+  expect_full(on_dem("los") + ends + Names{"-o", path("x.geojson")}, kFew, "x.geojson");
+  expect_full(on_dem("profile") + line + Names{"-o", path("x.csv")}, kFew, "x.csv");
+#ifdef SCARP_CAIRO
+  expect_full(on_dem("profile") + line + Names{"-o", path("x.svg")}, kFew, "x.svg");
+  expect_full(on_dem("profile") + line + Names{"-o", path("x.png")}, kFew, "x.png");
+  // The map is there, its picture is not.
+  constexpr ::rlim_t kSome = 6000;
+  scratch_.write("x.tif", "old");
+  expect_full(view + Names{"-o", path("x.tif"), "--preview", path("x.png")}, kSome, "x.png");
+  EXPECT_TRUE(open(path("x.tif")));
+#endif
+  for (const Names& command : {on_dem("los") + ends, on_dem("profile") + line}) {
+    const auto result = Program(command, "/dev/full").result();
+    EXPECT_EQ(result.status, 1);
+    EXPECT_NE(result.err.find("standard output: cannot be written"), std::string::npos) << result.err;
+  }
+}
+
+// Ctrl-C in the middle of long work.
+TEST_F(MapsCli, AnInterruptLeavesNothing) {
+  std::string text = "ncols 400\nnrows 400\nxllcorner 500000\nyllcorner 5000000\ncellsize 10\n", table = "x,y\n";
+  for (int i = 0; i < 400 * 400; ++i) text += fmt::format("{} ", i * 7919 % 31);
+  for (int i = 0; i < 40000; ++i) table += fmt::format("{},{}\n", 500005 + i % 200 * 10, 5000005 + i / 200 * 10);
+  const std::string dem = scratch_.write("large.asc", text), towers = scratch_.write("towers.csv", table);
+  const auto before = scratch_.files();
+  for (const char* mode : {"count", "ground", "angle"}) {
+    Program program({"viewshed", dem, "--raster-crs", "EPSG:32633", "--observers", towers, "--mode", mode, "-o",
+                     path("x.tif"), "--preview", path("x.png")});
+#ifdef SCARP_CAIRO
+    // The picture's file is reserved when the work begins.
+    for (int i = 0; i < 2000 && scratch_.files() == before; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_NE(scratch_.files(), before);
+#endif
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    ::kill(program.pid(), SIGINT);
+    const auto result = program.result();
+#ifdef SCARP_CAIRO
+    EXPECT_EQ(result.status, 128 + SIGINT) << result.err;
+    EXPECT_TRUE(result.err.ends_with("scarp: interrupted\n")) << result.err;
+#endif
+    EXPECT_EQ(scratch_.files(), before);
+  }
 }
 
 TEST_F(MapsCli, DryRunWritesNothing) {

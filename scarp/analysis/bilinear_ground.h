@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Shadows and lines of sight over the bilinear surface of a field, by exact rays (`max-mip`, march/height/max_mip.h),
+// in place of ground that is known at crossings of grid lines alone (sight.h).
+//
+// A ray is blocked where it is strictly below the surface, by more than rounding; a ray that grazes the surface passes.
+// Cells with a missing sample are holes: rays pass through them, but not through the ground at their rims. Rays that
+// run exactly along the line between a hole and ground may be in either. The Earth is flat.
+#pragma once
+
+#include <memory>
+
+#include "scarp/accel/max_pyramid.h"
+#include "scarp/analysis/line_of_sight.h"
+#include "scarp/analysis/shadow.h"
+#include "scarp/march/height/height_target.h"
+
+namespace scarp {
+
+/// A field ready for rays. Thread-safe. A plain view: the field's samples must outlive it, without edits.
+class BilinearGround {
+ public:
+  /// Builds the pyramid. Throws Error for a wrapped field, and for one without cells.
+  explicit BilinearGround(const HeightField& field);
+  /// Shares the pyramid of a field of the same samples with cells of other lengths.
+  BilinearGround(const HeightField& field, const BilinearGround& same_samples);
+
+  const HeightField& field() const { return field_; }
+
+  /// Returns the shade of a node; self_shaded if the cell beside it blocks the ray.
+  Shade shade(const SunRay& sun, Node node) const;
+
+  /// Answers one query, as scarp::line_of_sight() without curvature. `clearance` is that at crossings and between.
+  LineOfSight line_of_sight(const SightEnd& from, const SightEnd& to) const;
+
+ private:
+  Hit block(Ray ray) const;
+
+  HeightField field_;  // solid below the surface, so that rims of holes block
+  std::shared_ptr<const MaxPyramid> pyramid_;
+
+  HeightTarget target() const { return {.field = &field_, .pyramid = pyramid_.get()}; }
+};
+
+}  // namespace scarp

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// Shadows by the sun of every node: its position in the sky, north and the steps to the neighbours are those at the
+// node's own place on Earth, not those at the centre of the field. One ray per node. Requires a build
+// with ERFA (SCARP_ERFA).
+//
+// A ray keeps the direction that it has at its node; ground beside it is where the field's grid has it. The sun at or
+// below the horizon leaves a node self-shaded.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "scarp/analysis/sun_ground.h"
+#include "scarp/analysis/sun_position.h"
+
+namespace scarp {
+
+struct LocalSun {
+  UtcTime time{};
+  bool refraction = false;
+  /// Sets x and y to longitude and latitude in degrees (WGS 84) of the nodes (first_col + i, row), from several threads
+  /// at once (NodePlaces, scarp/source/node_places.h). Fields of one column or row need those beside it, too.
+  std::function<void(int row, int first_col, std::span<dvec3> places)> places{};
+};
+
+/// Returns the codes of the band. Throws Error for a wrapped field, an empty band, a place at a pole.
+std::vector<Shade> local_shadow(const SunGround& ground, const LocalSun& sun, const RowBand& band,
+                                const Progress& progress = {});
+
+/// Returns the lit share of the sun's disc, as lit_share() does.
+std::vector<float> local_lit_share(const SunGround& ground, const LocalSun& sun, const RowBand& band,
+                                   const Progress& progress = {});
+
+/// Returns the steps between nodes at `here`, from places one or two columns and rows apart. Places as above.
+NodeSteps node_steps(const dvec3& here, const dvec3& west, const dvec3& east, int cols, const dvec3& north,
+                     const dvec3& south, int rows);
+
+}  // namespace scarp
