@@ -163,17 +163,15 @@ const MetricPlane& MapInput::plane_at(double col, double row, double reach) {
                     "-r bilinear {} utm.tif; or set a distance limit; or raise --plane-error)",
                     path_, error, options_.plane_error, at.y < 0 ? 327 : 326, zone, path_));
   }
-  if (error > worst_) worst_ = error;
   return last_->plane;
 }
 
 HeightField MapInput::field_at(double col, double row, double reach) {
   if (!geographic_) return field_;
-  const bool first = worst_ == 0;
   const MetricPlane& plane = plane_at(col, row, reach);
-  if (first)
+  if (!std::exchange(plane_is_noted_, true))
     notes.push_back(
-        fmt::format("degrees: computed on a metric plane at the observer, cells {:.6g} x {:.6g} m, samples up "
+        fmt::format("degrees: computed on a local metric plane, cells {:.6g} x {:.6g} m, samples up "
                     "to {:.2g} cells off",
                     plane.cell_x, plane.cell_y, plane.error_cells));
   return with_cells(field_, plane.cell_x, plane.cell_y);

@@ -94,7 +94,7 @@ class MapInput {
     MetricPlane plane;
   };
   std::optional<Plane> last_;  // places that follow one another often have one observer
-  double worst_ = 0;           // error told so far
+  bool plane_is_noted_ = false;
 };
 
 }  // namespace scarp::cli

@@ -213,11 +213,12 @@ void run(ShadowOptions options, const Command& command) {
   const SunGround ground = bilinear ? SunGround(*bilinear) : SunGround(field);
   std::vector<std::vector<std::uint8_t>> codes(suns.size());
   std::vector<std::vector<float>> fractions(suns.size());
-  double lit = 0;
+  double lit = 0, with_sample = 0;  // pixels of all bands
   for (std::size_t i = 0; i < suns.size(); ++i) {
     if (options.fraction) {
       fractions[i] = shares_of(ground, suns[i], rows, progress);
       for (const float share : fractions[i]) lit += std::max(share, 0.0f);
+      with_sample += nodes - static_cast<double>(std::count(fractions[i].begin(), fractions[i].end(), kNoShare));
       map.bands.push_back(
           {fmt::format("lit share, {}", suns[i].name), "", std::span<const float>(fractions[i]), kNoShare});
       continue;
@@ -227,6 +228,7 @@ void run(ShadowOptions options, const Command& command) {
     for (const Shade shade : shades)
       codes[i].push_back(shade == Shade::hole ? kNodata : static_cast<std::uint8_t>(shade));
     lit += static_cast<double>(std::count(codes[i].begin(), codes[i].end(), 0));
+    with_sample += nodes - static_cast<double>(std::count(codes[i].begin(), codes[i].end(), kNodata));
     map.bands.push_back({suns[i].name,
                          "",
                          std::span<const std::uint8_t>(codes[i]),
@@ -239,8 +241,7 @@ void run(ShadowOptions options, const Command& command) {
   write_raster_map(options.output, map, terminal_progress("write"));
   if (preview) preview->write(map, rows, "grey");
   print_map_summary(input, options.raster_output, rows, options.output,
-                    fmt::format("{}; {:.3g} % lit", places, 100 * lit / nodes / static_cast<double>(suns.size())),
-                    begin);
+                    fmt::format("{}; {:.3g} % lit", places, with_sample > 0 ? 100 * lit / with_sample : 0), begin);
 }
 
 }  // namespace

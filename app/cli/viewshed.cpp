@@ -284,8 +284,8 @@ void run(ViewshedOptions options, const Command& command) {
                          {{options.hidden, "hidden", {205, 205, 205, 255}},
                           {options.visible, "visible", {44, 150, 60, 255}},
                           {nodata, "no sample or out of range", {255, 255, 255, 0}}}});
-    what = fmt::format("{:.3g} % visible",
-                       share_of(static_cast<double>(std::count(codes.begin(), codes.end(), options.visible)), nodes));
+    const auto count = [&](int code) { return static_cast<double>(std::count(codes.begin(), codes.end(), code)); };
+    what = fmt::format("{:.3g} % visible", share_of(count(options.visible), nodes - count(nodata)));
   } else if (options.mode == "count") {
     counts = counted_pixels(observers, rows, progress);
     map.bands.push_back({"observers that see the pixel", "", std::span<const std::uint16_t>(counts), kCountHole});

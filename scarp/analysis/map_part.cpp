@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "scarp/analysis/observer_count.h"
 #include "scarp/base/error.h"
 
 namespace scarp {
@@ -92,32 +93,6 @@ std::vector<Seen> viewshed_rows(const HeightField& field, Node observer, const V
   });
 }
 
-std::vector<std::uint16_t> observer_count_rows(std::span<const Viewpoint> views, const RowBand& band,
-                                               const Progress& progress) {
-  if (views.empty()) return observer_count(views, progress);  // which says so
-  const HeightField& field = views.front().ground().field();
-  require_band(field, band);
-  if (band == all_rows(field)) return observer_count(views, progress);
-  // The rows between the band and all observers that reach it.
-  RowBand matter = band;
-  std::vector<const Viewpoint*> near;
-  for (const Viewpoint& view : views) {
-    if (out_of_reach(view, band)) continue;
-    near.push_back(&view);
-    const RowBand between = rows_between(view.observer(), band);
-    matter = {std::min(matter.first, between.first), std::max(matter.last, between.last)};
-  }
-  if (near.empty()) return fill_rows(views.front(), band, kCountOutOfRange, kCountHole);
-  std::vector<HeightField> fields;
-  fields.reserve(near.size());  // views refer to them
-  std::vector<Viewpoint> parts;
-  for (const Viewpoint* view : near) {
-    const HeightField& rows = fields.emplace_back(rows_of(view->ground().field(), matter));
-    parts.emplace_back(rows, Node{view->observer().col, view->observer().row - matter.first}, view->settings());
-  }
-  return band_of(field, matter, band, [&](const HeightField&, int) { return observer_count(parts, progress); });
-}
-
 std::vector<double> least_visible_rows(const HeightField& field, Node observer, const ViewshedSettings& settings,
                                        const RowBand& band, const Progress& progress) {
   require_band(field, band);
@@ -127,6 +102,24 @@ std::vector<double> least_visible_rows(const HeightField& field, Node observer, 
   return band_of(field, rows_between(observer, band), band, [&](const HeightField& rows, int first) {
     return least_visible(rows, {observer.col, observer.row - first}, settings, progress);
   });
+}
+
+std::vector<std::uint16_t> observer_count_rows(std::span<const Viewpoint> views, const RowBand& band,
+                                               const Progress& progress) {
+  if (views.empty() || band == all_rows(views.front().ground().field())) return observer_count(views, progress);
+  // Each observer has rows of its own that matter.
+  std::vector<std::uint16_t> counts;
+  for (const Viewpoint& view : views) {
+    const auto codes = viewshed_rows(view.ground().field(), view.observer(), view.settings(), band, progress);
+    counts.resize(codes.size(), kCountOutOfRange);
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+      if (codes[i] == Seen::hole) counts[i] = kCountHole;
+      if (codes[i] == Seen::hole || codes[i] == Seen::out_of_range) continue;
+      if (counts[i] == kCountOutOfRange) counts[i] = 0;
+      counts[i] = static_cast<std::uint16_t>(counts[i] + (codes[i] == Seen::visible));
+    }
+  }
+  return counts;
 }
 
 std::vector<Shade> shadow_rows(const HeightField& field, const SunDirection& sun, const RowBand& band,

@@ -12,7 +12,6 @@
 #include <span>
 #include <vector>
 
-#include "scarp/analysis/observer_count.h"
 #include "scarp/analysis/shadow.h"
 #include "scarp/analysis/viewshed.h"
 #include "scarp/base/progress.h"
@@ -38,13 +37,13 @@ void require_band(const HeightField& field, const RowBand& band);
 std::vector<Seen> viewshed_rows(const HeightField& field, Node observer, const ViewshedSettings& settings,
                                 const RowBand& band, const Progress& progress = {});
 
-/// Rows of observer_count().
-std::vector<std::uint16_t> observer_count_rows(std::span<const Viewpoint> views, const RowBand& band,
-                                               const Progress& progress = {});
-
 /// Rows of least_visible().
 std::vector<double> least_visible_rows(const HeightField& field, Node observer, const ViewshedSettings& settings,
                                        const RowBand& band, const Progress& progress = {});
+
+/// Rows of observer_count().
+std::vector<std::uint16_t> observer_count_rows(std::span<const Viewpoint> views, const RowBand& band,
+                                               const Progress& progress = {});
 
 /// Rows of shadow().
 std::vector<Shade> shadow_rows(const HeightField& field, const SunDirection& sun, const RowBand& band,

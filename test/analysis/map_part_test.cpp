@@ -10,6 +10,7 @@
 #include "analysis/map_fields.h"
 #include "cases.h"
 #include "scarp/analysis/map_part.h"
+#include "scarp/analysis/observer_count.h"
 #include "scarp/base/error.h"
 
 namespace scarp::test {
@@ -83,17 +84,20 @@ TEST(MapPart, PartsTogetherAreTheWhole) {
                                                               return viewshed_rows(field, observer, chosen, band);
                                                             }))
             << name << " from " << observer.col << ", " << observer.row;
-        const std::vector<Viewpoint> views{{field, observer, chosen},
-                                           {field, map_observers(field).front(), settings[0]}};
-        EXPECT_EQ(observer_count(views),
-                  joined(field, parts, [&](const RowBand& band) { return observer_count_rows(views, band); }))
-            << name << " from " << observer.col << ", " << observer.row;
         EXPECT_EQ(bits_of(least_visible(field, observer, chosen)),
                   bits_of(joined(field, parts,
                                  [&, &field = field](const RowBand& band) {
                                    return least_visible_rows(field, observer, chosen, band);
                                  })))
             << name << " from " << observer.col << ", " << observer.row;
+      }
+      std::vector<Viewpoint> views;
+      for (const Node observer : map_observers(field))
+        views.emplace_back(field, observer, settings[turn++ % settings.size()]);
+      if (!views.empty()) {
+        EXPECT_EQ(observer_count(views),
+                  joined(field, parts, [&](const RowBand& band) { return observer_count_rows(views, band); }))
+            << name;
       }
       for (int i = 0; i < 4; ++i) {
         const SunDirection& sun = suns[turn++ % suns.size()];
