@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
+#include <optional>
 #include <vector>
 
 #include "bench/commands.h"
@@ -128,9 +130,17 @@ void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& re
   scenes[0]->closest_hits(rays, expected);
   Json rows = Json::array();
   std::vector<std::vector<std::string>> lines{
-      {"side", "engine", "mode", "Mrays/s", "hits", "other ppm", "MiB", "build s", "peak MiB"}};
+      {"side", "engine", "mode", "Mrays/s", "hits", "other ppm", "steps", "MiB", "build s", "peak MiB"}};
   std::vector<std::vector<double>> seconds(engines.size());
   std::vector<std::size_t> others(engines.size()), hits(engines.size());
+  // Steps are the same one at a time and in batches.
+  std::vector<std::optional<double>> steps(engines.size());
+  for (std::size_t s = 0; s < scenes.size(); ++s) {
+    std::vector<std::uint32_t> of_rays(rays.size());
+    scenes[s]->closest_hits(rays, answers, of_rays);
+    const double all = std::accumulate(of_rays.begin(), of_rays.end(), 0.0);
+    steps[2 * s] = steps[2 * s + 1] = all / static_cast<double>(rays.size());
+  }
   for (int repeat = 0; repeat < options.repeats; ++repeat) {
     for (std::size_t e = 0; e < engines.size(); ++e) {
       const Stopwatch watch;
@@ -154,12 +164,14 @@ void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& re
                 {"mrays_per_cpu_s", 1e-6 * count / median(seconds[e])},
                 {"hit_share", static_cast<double>(hits[e]) / count},
                 {"other_ppm", 1e6 * static_cast<double>(others[e]) / count},
+                {"steps_per_ray", steps[e] ? Json(*steps[e]) : Json()},
                 {"mib", engines[e].mib},
                 {"grid_mib", grid_mib},
                 {"build_s", build_s},
                 {"build_peak_mib", build_peak}};
     std::vector<std::string> line{std::to_string(options.side), engines[e].name, engines[e].mode};
-    for (const char* key : {"mrays_per_cpu_s", "hit_share", "other_ppm", "mib", "build_s", "build_peak_mib"})
+    for (const char* key :
+         {"mrays_per_cpu_s", "hit_share", "other_ppm", "steps_per_ray", "mib", "build_s", "build_peak_mib"})
       line.push_back(short_number(row[key]));
     lines.push_back(std::move(line));
     rows.push_back(std::move(row));

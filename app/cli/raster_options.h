@@ -12,7 +12,8 @@ namespace scarp::cli {
 
 /// Help of IN for subcommands that take every input.
 constexpr const char* kEveryFile =
-    "raster (anything GDAL reads, .npy, .npz, .exr), voxels (.vox, .binvox, .qb, .kv6, .vxl), mesh (.obj, .gltf, .glb) "
+    "raster (anything GDAL reads, .npy, .npz, .exr), voxels (.vox, .binvox, .qb, .kv6, .vxl, .vdb, .nvdb), mesh (.obj, "
+    ".gltf, .glb) "
     "or scene (.json)";
 
 /// Declares IN, one or several files or folders: what read_tiles() takes. `kinds` is its help.

@@ -10,6 +10,7 @@
 
 #include "app/cli/vox_input.h"
 #include "scarp/scene/scene_field.h"
+#include "scarp/source/vdb_file.h"
 #include "scarp/source/vox_animation.h"
 
 namespace scarp::cli {
@@ -214,8 +215,11 @@ std::string vox_text_of(const Json& info) {
   } else {
     const auto at = [&](const char* name, int axis) { return info[name][axis].get<std::int64_t>(); };
     const auto size = [&](int axis) { return at("high", axis) - at("low", axis); };
-    line("box", fmt::format("{} x {} x {} voxels, ({}, {}, {}) to ({}, {}, {})", size(0), size(1), size(2),
-                            at("low", 0), at("low", 1), at("low", 2), at("high", 0), at("high", 1), at("high", 2)));
+    // Files with a transform of their own.
+    const bool metres = is_vdb_path(info["path"].get<std::string>());
+    line("box", fmt::format("{} x {} x {} {}, ({}, {}, {}) to ({}, {}, {})", size(0), size(1), size(2),
+                            metres ? "m" : "voxels", at("low", 0), at("low", 1), at("low", 2), at("high", 0),
+                            at("high", 1), at("high", 2)));
   }
   for (const Json& note : info["notes"]) line("note", note.get<std::string>());
   return out;

@@ -13,6 +13,7 @@
 #include "scarp/base/file_name.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/scene/file/from_parts.h"
+#include "scarp/scene/file/from_vdb.h"
 
 namespace scarp::cli {
 namespace {
@@ -20,7 +21,8 @@ namespace {
 constexpr int kRampColours = 255;
 
 bool is_voxel_path(const std::string& path) {
-  return extension_of(path) == ".vox" || extension_of(path) == ".binvox" || is_voxel_parts_path(path);
+  return extension_of(path) == ".vox" || extension_of(path) == ".binvox" || is_voxel_parts_path(path) ||
+         is_vdb_path(path);
 }
 
 void refuse(bool given, const char* option, const char* files) {
@@ -71,7 +73,7 @@ void add_vox_options(Command& command, VoxOptions& options) {
                             .rules = {needs("--volume FORMAT", [&options] { return !options.volume.empty(); })}});
   add(&options.up, {.names = "--up",
                     .value = "AXIS",
-                    .help = "axis of a binvox file or volume that points up",
+                    .help = "axis of a binvox or OpenVDB file or volume that points up",
                     .choices = {"y", "z"},
                     .closed = true});
 }
@@ -150,6 +152,15 @@ VoxInput read_parts(const std::string& path, const VoxelFileOptions& voxels) {
   return input;
 }
 
+VoxInput read_grid(const std::string& path, const VoxelFileOptions& voxels, UpAxis up) {
+  const VdbVoxels grid = read_vdb(path);
+  stop_if_interrupted();
+  VoxInput input{{}, naming(path, [&] { return placed_voxels_from(grid, voxels, up); })};
+  input.format = fmt::format("{}, {} '{}'", grid.format, grid.kind, grid.grid);
+  input.notes = grid.notes;
+  return input;
+}
+
 VoxInput read_document(const std::string& path, const VoxOptions& options, const VoxelFileOptions& voxels) {
   VoxFile document = read_vox(path);
   VoxInput input{{}, naming(path, [&] { return placed_voxels_from(document, {options.scene, voxels}); })};
@@ -166,9 +177,11 @@ VoxInput read_any_voxels(const std::string& path, const VoxOptions& options, con
   const bool volume = !options.volume.empty(), binvox = !volume && extension_of(path) == ".binvox";
   const bool parts = !volume && !binvox && is_voxel_parts_file(path);
   const FromVolumeOptions from{voxels, options.up == "y" ? UpAxis::y : UpAxis::z, options.solid_from};
-  refuse((volume || binvox || parts) && options.scene.frame > 0, "--frame", "MagicaVoxel files");
-  refuse((volume || binvox || parts) && options.scene.hidden, "--hidden", "MagicaVoxel files");
-  refuse(!volume && !binvox && options.up != "z", "--up", "binvox files and volumes");
+  const bool vdb = !volume && is_vdb_path(path);
+  refuse((volume || binvox || parts || vdb) && options.scene.frame > 0, "--frame", "MagicaVoxel files");
+  refuse((volume || binvox || parts || vdb) && options.scene.hidden, "--hidden", "MagicaVoxel files");
+  refuse(!volume && !binvox && !vdb && options.up != "z", "--up", "binvox and OpenVDB files and volumes");
+  if (vdb) return read_grid(path, voxels, from.up);
   if (volume) return read_volume_voxels(path, options, from, ramp);
   if (parts) return read_parts(path, voxels);
   if (!binvox) return read_document(path, options, voxels);

@@ -101,8 +101,8 @@ void run(const SectionOptions& options) {
   if (extension_of(options.output) != ".svg")
     throw Error(fmt::format("output '{}': sections are written as SVG (name it *.svg)", options.output));
   if (!is_vox_input({options.input}, options.vox))
-    throw Error(
-        fmt::format("'{}': not a voxel file (expected .vox, .binvox, .qb, .kv6 or .vxl, or --volume)", options.input));
+    throw Error(fmt::format(
+        "'{}': not a voxel file (expected .vox, .binvox, .qb, .kv6, .vxl, .vdb, .nvdb, or --volume)", options.input));
   const VoxInput input = read_voxels(options.input, options.vox, {}, {});
   const auto& models = input.voxels.models;
   if (options.model >= static_cast<int>(models.size()))
@@ -142,8 +142,8 @@ void add_section(Program& program) {
   const auto options = std::make_shared<SectionOptions>();
   SectionOptions& o = *options;
   command.add(&o.input, {.names = "IN",
-                         .help = "voxel file (.vox, .binvox, .qb, .kv6, .vxl) or volume",
-                         .files = "vox binvox qb kv6 vxl npy raw",
+                         .help = "voxel file (.vox, .binvox, .qb, .kv6, .vxl, .vdb, .nvdb) or volume",
+                         .files = "vox binvox qb kv6 vxl vdb nvdb npy raw",
                          .required = true});
   add_output_option(command, o.output, "SVG to write", "svg");
   command.add(&o.radii, {.names = "--radii",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp voxelise`: converts every input to voxels, as a MagicaVoxel or binvox file.
+// `scarp voxelise`: converts every input to voxels, as a MagicaVoxel, binvox or OpenVDB file.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,6 +20,7 @@
 #include "scarp/base/parallel.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/render/surface/voxel_colours.h"
+#include "scarp/scene/file/to_vdb.h"
 #include "scarp/scene/file/to_vox.h"
 #include "scarp/scene/voxelised.h"
 #include "scarp/source/binvox.h"
@@ -69,9 +70,10 @@ double side_of(const VoxeliseOptions& options, InputKind kind, const Scene& scen
 
 void run(const VoxeliseOptions& options, const Command& command) {
   const std::string extension = extension_of(options.output);
-  if (extension != ".vox" && extension != ".binvox") {
+  if (extension != ".vox" && extension != ".binvox" && extension != ".vdb") {
     throw Error(
-        fmt::format("output '{}': voxels are MagicaVoxel or binvox files (name it *.vox or *.binvox)", options.output));
+        fmt::format("output '{}': voxels are MagicaVoxel, binvox or OpenVDB files (name it *.vox, *.binvox or *.vdb)",
+                    options.output));
   }
   const std::optional<WorldBox> within = box_of(options);
   const ThreadLimit limit(options.threads);
@@ -83,14 +85,21 @@ void run(const VoxeliseOptions& options, const Command& command) {
   stop_if_interrupted();
   const double side = side_of(options, kind, input.scene, within);
   const std::string name = options.inputs.empty() ? "--function" : options.inputs.front();
-  const VoxelLattice lattice = naming(name, [&] { return lattice_around(input.scene, side, within); });
-  const VoxelGrid grid = voxelised(input.scene, lattice, voxel_colours(materials), terminal_progress("voxelise"));
+  // Worlds: of terrain, in files that hold them.
+  const HeightField* const ground = extension == ".vdb" ? input.scene.only_heights() : nullptr;
+  const int most = ground ? VoxelGrid::kMaxSide : VoxelGrid::kMaxModelSide;
+  const VoxelLattice lattice = naming(name, [&] { return lattice_around(input.scene, side, within, most); });
+  const Progress progress = terminal_progress("voxelise");
+  const VoxelGrid grid = ground ? voxelised_ground(*ground, lattice, progress)
+                                : voxelised(input.scene, lattice, voxel_colours(materials), progress);
   if (grid.solid_count() == 0)
     throw Error(fmt::format("'{}': no voxel of {:.6g} m has its middle inside; take smaller ones",
                             options.inputs.front(), side));
   bool exact_colours = true;
   if (extension == ".vox") {
     write_vox(options.output, vox_file_of(grid, lattice.box.low, exact_colours));
+  } else if (extension == ".vdb") {
+    write_vdb(options.output, vdb_of(grid, lattice.box.low, side));
   } else {
     Binvox binvox;
     binvox.size = grid.size();
@@ -112,19 +121,20 @@ void run(const VoxeliseOptions& options, const Command& command) {
 }  // namespace
 
 void add_voxelise(Program& program) {
-  Command& command = program.add("voxelise", "Convert terrain, voxels, a mesh or a scene to voxels: .vox or .binvox");
+  Command& command =
+      program.add("voxelise", "Convert terrain, voxels, a mesh or a scene to voxels: .vox, .binvox or .vdb");
   const auto options = std::make_shared<VoxeliseOptions>();
   VoxeliseOptions& o = *options;
   add_raster_inputs(command, o.inputs, kEveryFile);
-  add_output_option(command, o.output, "voxels: .vox or .binvox", "vox binvox");
+  add_output_option(command, o.output, "voxels: .vox, .binvox or .vdb (without colours)", "vox binvox vdb");
   command.add(&o.voxel, {.names = "--voxel",
                          .help = "side of a voxel",
                          .unit = "metres",
                          .range = kAboveZero,
                          .fallback = "derived from --count; 1 for voxels"});
   command.add(&o.count, {.names = "--count",
-                         .help = "voxels along the longest side",
-                         .range = {2, VoxelGrid::kMaxModelSide},
+                         .help = "voxels along the longest side; above 2,048 for terrain in .vdb files",
+                         .range = {2, VoxelGrid::kMaxSide},
                          .fallback = fmt::format("{}", kUsualCount),
                          .excludes = {"--voxel"}});
   command.add(&o.within, {.names = "--within",

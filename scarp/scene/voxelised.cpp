@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
+#include "scarp/field/ground_voxels.h"
 
 namespace scarp {
 namespace {
@@ -16,7 +18,7 @@ constexpr double kFarthest = 1 << 24;  // voxels
 
 }  // namespace
 
-VoxelLattice lattice_around(const Scene& scene, double side, const std::optional<WorldBox>& within) {
+VoxelLattice lattice_around(const Scene& scene, double side, const std::optional<WorldBox>& within, int most) {
   if (!(side > 0 && std::isfinite(side)))
     throw Error(fmt::format("voxels: their side is {} m (must be above 0)", side));
   if (!within && scene.endless()) throw Error("voxels: the scene is endless (set a box to make voxels in)");
@@ -33,9 +35,9 @@ VoxelLattice lattice_around(const Scene& scene, double side, const std::optional
   VoxelLattice lattice{side, {}};
   for (int axis = 0; axis < 3; ++axis) {
     const double low = std::floor(box.low[axis] / side), high = std::max(low + 1, std::ceil(box.high[axis] / side));
-    if (high - low > VoxelGrid::kMaxModelSide) {
+    if (high - low > most) {
       throw Error(fmt::format("voxels of {} m: {} along {} (limited to {}; choose larger voxels)", side, high - low,
-                              "xyz"[axis], VoxelGrid::kMaxModelSide));
+                              "xyz"[axis], most));
     }
     if (!(std::abs(low) <= kFarthest && std::abs(high) <= kFarthest))
       throw Error(fmt::format("voxels of {} m: {} of them from the origin (limited to 2^24)", side,
@@ -76,6 +78,38 @@ VoxelGrid voxelised(const Scene& scene, const VoxelLattice& lattice,
       return surface ? VoxelGrid::Voxel(entry(*surface)) : VoxelGrid::Voxel();
     });
   }
+  if (progress) progress(1);
+  return grid;
+}
+
+VoxelGrid voxelised_ground(const HeightField& heights, const VoxelLattice& lattice, const Progress& progress) {
+  constexpr int kRows = 256;
+  const ivec3 size = lattice.box.high - lattice.box.low;
+  std::vector<std::int32_t> tops(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y));
+  const auto middle = [&](int x, int y, int z) {
+    return lattice.side * (dvec3(lattice.box.low + ivec3(x, y, z)) + 0.5);
+  };
+  // Middles at or below the ground, counted by the comparison that voxelised() makes.
+  const auto top = [&](int x, int y) {
+    const dvec3 lowest = middle(x, y, 0);
+    const auto height = heights.height(lowest.x, lowest.y);
+    if (!height) return 0;
+    int z = static_cast<int>(std::clamp((*height - lowest.z) / lattice.side, 0.0, static_cast<double>(size.z)));
+    while (z < size.z && middle(x, y, z).z <= *height) ++z;
+    while (z > 0 && middle(x, y, z - 1).z > *height) --z;
+    return z;
+  };
+  for (int from = 0; from < size.y; from += kRows) {
+    if (progress && !progress(static_cast<double>(from) / size.y)) throw Interrupted();
+    parallel_for(std::min(kRows, size.y - from), 4, [&](std::int64_t begin, std::int64_t end) {
+      for (int y = from + static_cast<int>(begin); y < from + end; ++y) {
+        for (int x = 0; x < size.x; ++x)
+          tops[static_cast<std::size_t>(x) + static_cast<std::size_t>(size.x) * static_cast<std::size_t>(y)] =
+              top(x, y);
+      }
+    });
+  }
+  VoxelGrid grid = ground_voxels(size, tops, 1, [](const ivec3&) { return 0; });
   if (progress) progress(1);
   return grid;
 }

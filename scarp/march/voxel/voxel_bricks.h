@@ -4,7 +4,7 @@
 //   sector  16 x 16 x 16 voxels   a bit per brick
 //   brick    4 x  4 x  4 voxels   a bit per voxel, those of the grid itself
 //   and in both, 2 x 2 x 2 bits that are all 0 form one block of twice the size. Grids with a side above 512 have
-//   levels of 64, 256, ... voxels, too
+//   levels of 64, 256, ... voxels, too. There rays descend from the largest cell that they have just entered
 //
 // In a brick only voxels ahead count: a brick whose solid voxels are all behind the ray's octant is left at once.
 //

@@ -9,7 +9,7 @@ namespace scarp {
 /// `advance(walk, voxel, solid)` sets `solid`, or advances and returns whether the ray is still in the box.
 /// `found(walk)` returns the answer for the solid voxel at the current position.
 template <class Advance, class Found, class Answer>
-Answer walk_voxels(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, const Advance& advance,
+Answer walk_voxels(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, Advance advance,
                    const Found& found, Answer missed) {
   VoxelWalk walk(ray, target.box);
   std::uint32_t steps = 0;
@@ -28,13 +28,13 @@ Answer walk_voxels(const VoxelTarget& target, const QuantisedRay& ray, MarchStat
 }
 
 template <class Advance>
-VoxelHit first_voxel(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, const Advance& advance) {
+VoxelHit first_voxel(const VoxelTarget& target, const QuantisedRay& ray, MarchStats* stats, Advance advance) {
   return walk_voxels(
       target, ray, stats, advance, [&](const VoxelWalk& walk) { return walk.hit(*target.grid); }, VoxelHit{});
 }
 
 template <class Advance>
-bool any_voxel(const VoxelTarget& target, const QuantisedRay& ray, const Advance& advance) {
+bool any_voxel(const VoxelTarget& target, const QuantisedRay& ray, Advance advance) {
   return walk_voxels(
       target, ray, nullptr, advance, [&](const VoxelWalk& walk) { return walk.in_range(); }, false);
 }

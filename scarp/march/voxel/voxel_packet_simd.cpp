@@ -4,12 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "scarp/accel/brick_masks.h"
-#include "scarp/accel/empty_cubes.h"
-#include "scarp/accel/empty_spheres.h"
-#include "scarp/accel/octant_cubes.h"
 #include "scarp/march/usual_ray.h"
-#include "scarp/march/voxel/voxel_ahead.h"
 #include "scarp/march/voxel/voxel_packet.h"
 
 // Compiled once per instruction set. Vectors whose length the compiler does not know cannot be members.
@@ -20,40 +15,18 @@
 // foreach_target.h must come first.
 #include "hwy/highway.h"
 #include "scarp/march/ray_numbers_simd.h"
+#include "scarp/march/voxel/voxel_looks_simd.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-constexpr hn::CappedTag<double, 8> dd;
-constexpr hn::RebindToSigned<decltype(dd)> di;
-constexpr hn::RebindToUnsigned<decltype(dd)> du;
-constexpr hn::Rebind<std::int32_t, decltype(dd)> di_part;
-constexpr hn::Rebind<float, decltype(dd)> df_part;
-constexpr std::size_t N = hn::MaxLanes(dd);
-using VD = hn::Vec<decltype(dd)>;
-using VI = hn::Vec<decltype(di)>;
-using MD = hn::Mask<decltype(dd)>;
-using MI = hn::Mask<decltype(di)>;
-
 constexpr std::size_t kVectors = VoxelPacket::kRays / N;
 constexpr std::size_t kSaved = 4;  // vectors: below that, compaction costs more than it saves
 // 2^52 as a double: its last bits count ones.
 constexpr double kOnes = 0x1p52;
 
-// Integers in 64 bits whose upper halves are 0.
-#if HWY_TARGET == HWY_SCALAR
-HWY_INLINE VI product(VI a, VI b) { return hn::Set(di, (hn::GetLane(a) & 0xffffffff) * (hn::GetLane(b) & 0xffffffff)); }
-HWY_INLINE VI lesser(VI a, VI b) { return hn::Min(a, b); }
-#else
-constexpr hn::Repartition<std::uint32_t, decltype(dd)> du32;
-constexpr hn::Repartition<std::int32_t, decltype(dd)> di32;
-HWY_INLINE VI product(VI a, VI b) { return hn::BitCast(di, hn::MulEven(hn::BitCast(du32, a), hn::BitCast(du32, b))); }
-HWY_INLINE VI lesser(VI a, VI b) { return hn::BitCast(di, hn::Min(hn::BitCast(di32, a), hn::BitCast(di32, b))); }
-#endif
 // A distance times a speed, in boxes with a side above 2,048: 34 by 29 bits.
 HWY_INLINE VI wide_product(VI distance, VI speed) {
   const VI upper = hn::BitCast(di, hn::ShiftRight<32>(hn::BitCast(du, distance)));
@@ -94,165 +67,6 @@ HWY_INLINE void transform(const glm::dmat3& m, const VD (&v)[3], VD (&to)[3]) {
   }
 }
 
-// Result of a lookup: whether voxels are solid, and otherwise how many planes may be crossed along each axis. `at` are
-// the voxels, mirrored along negative directions.
-struct LookResult {
-  MI solid;
-  VI planes[3];
-};
-
-HWY_INLINE VI index_in(const VI (&v)[3], const ivec3& size) {
-  return hn::Add(v[0], product(hn::Set(di, size.x), hn::Add(v[1], product(hn::Set(di, size.y), v[2]))));
-}
-HWY_INLINE VI bit_in(const VI (&v)[3]) {
-  const VI three = hn::Set(di, 3);
-  return hn::Or(hn::And(v[0], three),
-                hn::Or(hn::ShiftLeft<2>(hn::And(v[1], three)), hn::ShiftLeft<4>(hn::And(v[2], three))));
-}
-HWY_INLINE VI shifted(VI word, VI by) { return hn::BitCast(di, hn::Shr(hn::BitCast(du, word), hn::BitCast(du, by))); }
-HWY_INLINE VI gather_words(const std::uint64_t* words, VI index) {
-  return hn::GatherIndex(di, reinterpret_cast<const std::int64_t*>(words), index);
-}
-HWY_INLINE VI gather_bytes(const std::uint8_t* bytes, VI offset) {
-  return hn::And(hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(bytes), offset), hn::Set(di, 255));
-}
-
-HWY_INLINE VI gather_ints(const std::uint32_t* ints, VI index) {
-  const VI found = hn::GatherOffset(di, reinterpret_cast<const std::int64_t*>(ints), hn::ShiftLeft<2>(index));
-  return hn::And(found, hn::Set(di, 0xffffffff));
-}
-// The place of an entry among the values of a table.
-template <class T>
-HWY_INLINE VI place_in(const SparseTable<T>& table, VI index) {
-  if (table.flat()) return index;
-  constexpr int kBits = SparseTable<T>::kChunkBits;
-  const VI chunk = gather_ints(table.chunks().data(), hn::ShiftRight<kBits>(index));
-  return hn::Add(chunk, hn::And(index, hn::Set(di, (1 << kBits) - 1)));
-}
-
-// Masks of bricks, as VoxelGrid::mask().
-HWY_INLINE VI gather_masks(const VoxelGrid& grid, VI brick) {
-  static_assert(VoxelGrid::kPageBricks == 64);
-  const VI page = place_in(grid.page_table(), hn::ShiftRight<6>(brick));
-  const VI first_mask = gather_ints(grid.first_masks().data(), page);
-  return gather_words(grid.masks().data(), hn::Add(first_mask, hn::And(brick, hn::Set(di, 63))));
-}
-
-// One plane at a time.
-template <bool kWideBox>
-struct PlanesLook {
-  static constexpr bool kSingle = true, kTravels = false, kWide = kWideBox;
-  const VoxelGrid& grid;
-
-  explicit PlanesLook(const VoxelTarget& target) : grid(*target.grid) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
-    const VI brick[3] = {hn::ShiftRight<2>(v[0]), hn::ShiftRight<2>(v[1]), hn::ShiftRight<2>(v[2])};
-    const VI mask = gather_masks(grid, hn::IfThenElseZero(alive, index_in(brick, grid.bricks())));
-    const VI one = hn::Set(di, 1);
-    return {hn::Ne(hn::And(shifted(mask, bit_in(v)), one), hn::Zero(di)), {one, one, one}};
-  }
-};
-
-// Cubes around voxels, or ahead of them: a byte each.
-struct CubesLook {
-  static constexpr bool kSingle = false, kTravels = false, kWide = false;
-  const VoxelBytes& bytes;
-
-  explicit CubesLook(const VoxelTarget& target) : bytes(target.cubes->distances()) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
-    const VI index = hn::IfThenElseZero(alive, index_in(v, bytes.size()));
-    const VI distance = gather_bytes(bytes.data(), index);
-    return {hn::Eq(distance, hn::Zero(di)), {distance, distance, distance}};
-  }
-};
-
-// One plane, then all planes within `planes[0]` voxels of travel: a byte each.
-struct SpheresLook {
-  static constexpr bool kSingle = true, kTravels = true, kWide = false;
-  const VoxelBytes& bytes;
-
-  explicit SpheresLook(const VoxelTarget& target) : bytes(target.spheres->distances()) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&)[3], MI alive) const {
-    const VI index = hn::IfThenElseZero(alive, index_in(v, bytes.size()));
-    const VI distance = gather_bytes(bytes.data(), index);
-    return {hn::Eq(distance, hn::Set(di, EmptySpheres::kSolid)), {distance, distance, distance}};
-  }
-};
-
-struct CubesJumpLook {
-  static constexpr bool kSingle = true, kTravels = true, kWide = false;
-  CubesLook cubes;
-
-  explicit CubesJumpLook(const VoxelTarget& target) : cubes(target) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive) const {
-    LookResult seen = cubes(v, at, down, alive);
-    seen.planes[0] = hn::Sub(seen.planes[0], hn::Set(di, 1));
-    return seen;
-  }
-};
-
-struct OctantsLook {
-  static constexpr bool kSingle = false, kTravels = false, kWide = false;
-  const VoxelBytes& bytes;
-  ivec3 size;
-
-  explicit OctantsLook(const VoxelTarget& target) : bytes(target.octants->sides()), size(target.grid->size()) {}
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&)[3], const VI (&down)[3], MI alive) const {
-    const VI octant = hn::Or(hn::And(down[0], hn::Set(di, 1)),
-                             hn::Or(hn::And(down[1], hn::Set(di, 2)), hn::And(down[2], hn::Set(di, 4))));
-    const VI z = hn::Add(v[2], product(octant, hn::Set(di, size.z)));
-    const VI index = hn::IfThenElseZero(alive, index_in({v[0], v[1], z}, size));
-    const VI side = gather_bytes(bytes.data(), index);
-    return {hn::Eq(side, hn::Zero(di)), {side, side, side}};
-  }
-};
-
-// Blocks of 2^level voxels, as in voxel_bricks.cpp.
-template <bool kWideBox>
-struct BricksLook {
-  static constexpr bool kSingle = false, kTravels = false, kWide = kWideBox;
-  const VoxelGrid& grid;
-  const BrickMasks& bricks;
-
-  explicit BricksLook(const VoxelTarget& target) : grid(*target.grid), bricks(*target.bricks) {}
-  static HWY_INLINE MI pair_empty(VI mask, VI bit) {
-    const VI pair = shifted(mask, hn::And(bit, hn::Set(di, kEven)));
-    return hn::Eq(hn::And(pair, hn::Set(di, static_cast<std::int64_t>(kPair))), hn::Zero(di));
-  }
-  HWY_INLINE LookResult operator()(const VI (&v)[3], const VI (&at)[3], const VI (&down)[3], MI alive) const {
-    const VI zero = hn::Zero(di), one = hn::Set(di, 1);
-    const VI octant = hn::Or(hn::And(down[0], hn::Set(di, 64)),
-                             hn::Or(hn::And(down[1], hn::Set(di, 128)), hn::And(down[2], hn::Set(di, 256))));
-    const VI brick[3] = {hn::ShiftRight<2>(v[0]), hn::ShiftRight<2>(v[1]), hn::ShiftRight<2>(v[2])};
-    const VI bit = bit_in(v);
-    const VI mask = hn::And(gather_masks(grid, hn::IfThenElseZero(alive, index_in(brick, grid.bricks()))),
-                            gather_words(kAhead[0].data(), hn::Or(octant, bit)));
-    const MI solid = hn::Ne(hn::And(shifted(mask, bit), one), zero);
-    VI last = hn::IfThenElseZero(pair_empty(mask, bit), one);  // side of the block - 1
-    // From level to level, those around whose cell nothing is ahead.
-    MI clear = hn::And(alive, hn::Eq(mask, zero));
-    VI cell[3] = {brick[0], brick[1], brick[2]}, cell_last = hn::Set(di, 3);
-    for (const BrickMasks::Level& level : bricks.levels()) {
-      if (hn::AllFalse(di, clear)) break;
-      const VI cell_bit = bit_in(cell), own = hn::BitCast(di, hn::Shl(hn::BitCast(du, one), hn::BitCast(du, cell_bit)));
-      for (VI& c : cell) c = hn::ShiftRight<2>(c);
-      const VI index = hn::IfThenElseZero(clear, index_in(cell, level.size));
-      const VI cells = hn::And(gather_words(level.masks.values().data(), place_in(level.masks, index)),
-                               gather_words(kAhead[0].data(), hn::Or(octant, cell_bit)));
-      const VI twice = hn::Add(hn::Add(cell_last, cell_last), one);
-      last = hn::IfThenElse(clear, hn::IfThenElse(pair_empty(cells, cell_bit), twice, cell_last), last);
-      clear = hn::And(clear, hn::Eq(hn::AndNot(own, cells), zero));
-      cell_last = hn::Add(hn::Add(twice, twice), one);
-      last = hn::IfThenElse(clear, cell_last, last);
-    }
-    // From a voxel, counted along the ray, to the end of its block.
-    const VI side = hn::Add(last, one);
-    return {solid,
-            {hn::Sub(side, hn::And(at[0], last)), hn::Sub(side, hn::And(at[1], last)),
-             hn::Sub(side, hn::And(at[2], last))}};
-  }
-};
-
 // Rays in one box, in lanes; each compaction removes finished ones.
 struct LaneWalk {
   using Numbers = VoxelPacket::Lanes<std::int64_t>;
@@ -260,13 +74,15 @@ struct LaneWalk {
   alignas(64) Numbers next[3], at[3], end[3], speed[3], down[3];
   // crossed: the axis of the last plane crossed; before the first step, kEntered and the axis of entry.
   alignas(64) Numbers crossed, ray;
+  // For looks that descend: bits of the voxel that the last step changed, on any axis; at first all.
+  alignas(64) Numbers moved;
   // 1 / speed, or for looks that travel: in [0], the travel per voxel, as voxel_travel.h has it.
   alignas(64) VoxelPacket::Lanes<double> slowness[3];
   std::size_t lanes = 0;               // in use
   std::uint64_t alive[kVectors] = {};  // lanes of each vector
   std::uint64_t solid[kVectors] = {};  // at a solid voxel, waiting to be reported: many cost as much as one
 
-  static constexpr std::int64_t kEntered = 8, kInside = 7;
+  static constexpr std::int64_t kEntered = 8, kInside = 7, kAllMoved = 0x7fff'ffff;
 };
 
 // Set lanes of a vector, in order; hn::Compress() of Highway 1.0.3 copies its table to the stack each time.
@@ -379,6 +195,7 @@ HWY_INLINE MI enter(const VoxelBox& box, const VoxelStand& stand, VoxelPacket& p
   }
   chosen.append(entered, walk.crossed + to);
   chosen.append(hn::Iota(di, static_cast<std::int64_t>(o)), walk.ray + to);
+  if constexpr (Look::kDescends) chosen.append(hn::Set(di, LaneWalk::kAllMoved), walk.moved + to);
   walk.lanes += hn::CountTrue(di, in);
   hn::Store(t, dd, packet.t_in + o);
   return in;
@@ -424,6 +241,16 @@ HWY_NOINLINE void finish_all(VoxelPacket& packet, LaneWalk& walk) {
   }
 }
 
+template <class Look>
+HWY_INLINE LookResult look_at(const Look& look, const VI (&voxel)[3], const VI (&at)[3], const VI (&down)[3], MI alive,
+                              const LaneWalk& walk, std::size_t o) {
+  if constexpr (Look::kDescends) {
+    return look(voxel, at, down, alive, hn::Load(di, walk.moved + o));
+  } else {
+    return look(voxel, at, down, alive);
+  }
+}
+
 // VoxelWalk::leave(), or step(), of each ray that is not in a solid voxel; returns those still in the box. The others
 // do not change.
 template <class Look>
@@ -436,7 +263,7 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
     speed[i] = hn::Load(di, walk.speed[i] + o), down[i] = hn::Load(di, walk.down[i] + o);
     voxel[i] = hn::Xor(at[i], down[i]);
   }
-  const LookResult seen = look(voxel, at, down, alive);
+  const LookResult seen = look_at(look, voxel, at, down, alive, walk, o);
   const MI solid = hn::And(alive, seen.solid);
   if (!hn::AllFalse(di, solid)) {
     walk.solid[o / N] |= bits_of(solid);
@@ -499,13 +326,17 @@ HWY_INLINE MI advance(const Look& look, VoxelPacket& packet, LaneWalk& walk, std
     }
   }
   MI inside = alive;
+  VI moved = zero;
   for (int i = 0; i < 3; ++i) {
     crossed[i] = hn::IfThenElseZero(alive, crossed[i]);
+    const VI from = at[i];
     at[i] = hn::Add(at[i], crossed[i]);
+    if constexpr (Look::kDescends) moved = hn::Or(moved, hn::Xor(at[i], from));
     hn::Store(at[i], di, walk.at[i] + o);
     hn::Store(hn::Add(next[i], hn::ShiftLeft<kPlaceBits>(crossed[i])), di, walk.next[i] + o);
     inside = hn::And(inside, hn::Lt(at[i], end[i]));
   }
+  if constexpr (Look::kDescends) hn::Store(moved, di, walk.moved + o);
   hn::Store(hn::IfThenElse(alive, axis, hn::Load(di, walk.crossed + o)), di, walk.crossed + o);
   return inside;
 }
@@ -527,6 +358,7 @@ HWY_NOINLINE void compact(LaneWalk& walk) {
     }
     chosen.append(hn::Load(di, walk.crossed + o), walk.crossed + to);
     chosen.append(hn::Load(di, walk.ray + o), walk.ray + to);
+    chosen.append(hn::Load(di, walk.moved + o), walk.moved + to);
     to += hn::CountTrue(di, lanes_of(bits));
   }
   walk.lanes = to;
@@ -637,8 +469,9 @@ std::uint64_t march_octants(const VoxelTarget& target, const VoxelStand& stand, 
 }
 std::uint64_t march_bricks(const VoxelTarget& target, const VoxelStand& stand, VoxelPacket& packet,
                            std::uint64_t rays) {
-  return is_wide(target.box) ? march<BricksLook<true>>(target, stand, packet, rays)
-                             : march<BricksLook<false>>(target, stand, packet, rays);
+  if (is_wide(target.box)) return march<BricksLook<true, true>>(target, stand, packet, rays);
+  return target.bricks->levels().size() > 1 ? march<BricksLook<false, true>>(target, stand, packet, rays)
+                                            : march<BricksLook<false, false>>(target, stand, packet, rays);
 }
 
 }  // namespace

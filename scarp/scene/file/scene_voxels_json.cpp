@@ -11,6 +11,7 @@
 #include "scarp/base/file_name.h"
 #include "scarp/scene/combined_voxels.h"
 #include "scarp/scene/file/from_parts.h"
+#include "scarp/scene/file/from_vdb.h"
 #include "scarp/scene/file/from_volume.h"
 #include "scarp/scene/file/from_vox.h"
 #include "scarp/scene/file/json_object.h"
@@ -39,10 +40,10 @@ void require_keys_of_format(const Json& json, const std::string& path) {
   const bool volume = json.contains("volume");
   if (!volume) refuse({"solid_from"}, "only valid for volumes");
   const bool parts = !volume && is_voxel_parts_path(json["file"].get<std::string>());
-  if (volume || parts || is_binvox(json)) refuse({"frame", "hidden"}, "only valid for MagicaVoxel files");
-  if (!volume && !is_binvox(json)) {
-    refuse({"up", "colour"}, "only valid for binvox files and volumes");
-  }
+  const bool vdb = !volume && is_vdb_path(json["file"].get<std::string>());
+  if (volume || parts || vdb || is_binvox(json)) refuse({"frame", "hidden"}, "only valid for MagicaVoxel files");
+  if (!volume && !is_binvox(json)) refuse({"colour"}, "only valid for binvox files and volumes");
+  if (!volume && !vdb && !is_binvox(json)) refuse({"up"}, "only valid for binvox and OpenVDB files and volumes");
 }
 
 PlacedVoxels voxels_of_file(const Json& json, const std::string& file, const VoxelFileOptions& voxels,
@@ -54,6 +55,11 @@ PlacedVoxels voxels_of_file(const Json& json, const std::string& file, const Vox
   if (json.contains("volume")) {
     require_marchable(volume_format_of(file, json["volume"]), voxels);
     return placed_voxels_from(read_volume(file, json["volume"]), std::vector{colour}, {}, volume);
+  }
+  if (is_vdb_path(file)) {
+    const VdbVoxels grid = read_vdb(file);
+    for (const std::string& note : grid.notes) notes.push_back(fmt::format("{}: {}", file, note));
+    return placed_voxels_from(grid, voxels, volume.up);
   }
   if (is_voxel_parts_file(file)) {
     const VoxelParts parts = read_voxel_parts(file);

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// Voxels of OpenVDB files as one model, in the place and size that the file gives them.
+#pragma once
+
+#include "scarp/scene/file/from_volume.h"
+#include "scarp/scene/placed_voxels.h"
+#include "scarp/source/vdb_file.h"
+
+namespace scarp {
+
+/// A voxel is the cube around its point of the file's grid. Entries are RGB in 24 bits; without colours, all voxels are
+/// plain. Throws Error: no such march, no solid voxel, a grid too large for the march, or more than 4 GiB of memory,
+/// before it is allocated.
+PlacedVoxels placed_voxels_from(const VdbVoxels& file, const VoxelFileOptions& options = {}, UpAxis up = UpAxis::z);
+
+}  // namespace scarp
