@@ -343,9 +343,15 @@ class Viewer {
       const double now = seconds();
       step(now, now - before, waits ? 0.0 : now - before);
       before = now;
-      if (redraws_ > 0) {
+      // New pictures at once. The rest of the window changes no faster than they do: a present by a CPU driver takes
+      // the processors from the worker.
+      const double wait = drawn_at_ + 1 / PictureWorker::kFramesPerSecond - now;
+      if (redraws_ > 0 && (unpresented_ || wait <= 0)) {
         --redraws_;
+        drawn_at_ = now;
         draw(nullptr);
+      } else if (redraws_ > 0) {
+        glfwWaitEventsTimeout(wait);
       } else if (!asked_rest_) {
         // Until the view counts as being at rest.
         glfwWaitEventsTimeout(kRest / 4);
@@ -588,7 +594,7 @@ class Viewer {
   std::optional<Camera> camera_;  // of the view as it is, at the window's size
   std::uint64_t generation_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double play_seconds_ = 0, changed_at_ = 0, last_click_ = -1, way_ = 0;
+  double play_seconds_ = 0, changed_at_ = 0, drawn_at_ = -1, last_click_ = -1, way_ = 0;
   bool asked_rest_ = false, settings_changed_ = true, saves_ = false, shows_panel_ = true;
   bool render_failed_ = false;
   bool unpresented_ = false;  // shown_ is newer than what the window shows
