@@ -4,9 +4,9 @@
 namespace scarp::cli {
 
 const std::vector<std::string_view> kWindowOptions = {
-    "--size",  "--look",          "--view",       "--eye",    "--eye-above",  "--target",    "--fov",
-    "--top",   "--sun",           "--aa",         "--haze",   "--no-shadows", "--water",     "--samples",
-    "--march", "--window-device", "--validation", "--record", "--play",       "--screenshot"};
+    "--size",  "--look",          "--view",       "--eye",    "--eye-above",  "--target", "--fov",
+    "--top",   "--sun",           "--aa",         "--haze",   "--no-shadows", "--water",  "--samples",
+    "--march", "--window-device", "--validation", "--record", "--timings",    "--play",   "--screenshot"};
 
 Command& declare_view(Program& program, ViewOptions& o) {
   Command& command = program.add("view", "Open a window on an elevation model, voxels, a mesh, a scene or a function");
@@ -26,6 +26,10 @@ Command& declare_view(Program& program, ViewOptions& o) {
                       .help = "picture of the window, when the last view of --play is complete",
                       .files = "png",
                       .rules = {needs("--play FILE", [&o] { return !o.play.empty(); })}});
+  add(&o.timings, {.names = "--timings",
+                   .value = "FILE",
+                   .help = "table of when events came and pictures were shown",
+                   .files = "csv"});
   add(&o.window_device, {.names = "--window-device",
                          .value = "NAME",
                          .help = "Vulkan device that shows the window: auto or part of a name",

@@ -14,6 +14,7 @@ struct ViewOptions : RenderOptions {
   std::string record;      ///< file to write events to; empty: none
   std::string play;        ///< file of events to play, with a fixed clock, before the window closes
   std::string screenshot;  ///< picture of the window after the last event, once it has converged
+  std::string timings;     ///< table of events and presents to write; empty: none
   std::string window_device = "auto";
   bool validation = false;
   std::string words{};  ///< what was typed about the input and what the window does not change, for commands

@@ -22,6 +22,8 @@ constexpr double kArm = 0.3;                         // metres that a walker kee
 constexpr double kStride = 0.5;                      // metres of a step of which the ground is asked
 constexpr double kLeastMap = 1e-6, kMostMap = 100;   // times the size of the scene
 constexpr double kFarAbove = 1e6;                    // metres, over endless ground
+constexpr int kMostStrides = 500;                    // of a walker between two frames: each traces two rays
+constexpr double kFarthest = 1e4;                    // times the size of the scene from the first eye: digits run out
 
 dvec3 right_of(const Pose& pose) { return {std::sin(pose.azimuth), -std::cos(pose.azimuth), 0}; }
 
@@ -35,7 +37,7 @@ dvec3 forward_of(const Pose& pose) {
 Navigator::Navigator(const Scene& scene, const Camera& first, double fov_deg, double across)
     : scene_(scene), across_(across > 0 ? across : 1), speed_(kSpeedShare * across_) {
   pose_.fov_deg = fov_deg;
-  pose_.eye = first.eye();
+  first_eye_ = pose_.eye = first.eye();
   const dvec3 forward = first.forward();
   pose_.azimuth = std::atan2(forward.y, forward.x);
   pose_.altitude = std::clamp(std::asin(std::clamp(forward.z, -1.0, 1.0)), -kSteepest, kSteepest);
@@ -161,6 +163,10 @@ bool Navigator::advance(double seconds) {
       changed_ = true;
     }
   }
+  if (changed_) {
+    for (int i = 0; i < 3; ++i)
+      pose_.eye[i] = std::clamp(pose_.eye[i], first_eye_[i] - kFarthest * across_, first_eye_[i] + kFarthest * across_);
+  }
   return std::exchange(changed_, false);
 }
 
@@ -184,15 +190,16 @@ void Navigator::stand() {
 
 // A stride at a time: up to a wall, and never where there is nothing to stand on.
 void Navigator::walk(const dvec3& step) {
-  const double whole = length(step);
+  const double whole = std::min(length(step), kMostStrides * kStride);
+  const dvec3 way = step / length(step);
   const int strides = std::max(1, static_cast<int>(std::ceil(whole / kStride)));
   for (int i = 0; i < strides; ++i) {
     Ray ahead;
     ahead.origin = pose_.eye;
-    ahead.direction = step / whole;
+    ahead.direction = way;
     ahead.t_max = whole / strides + kArm;
     if (scene_.occluded(ahead)) return;
-    const dvec3 to = pose_.eye + step / static_cast<double>(strides);
+    const dvec3 to = pose_.eye + whole / strides * way;
     const auto ground = ground_below(to + dvec3(0, 0, kStepHeight));
     if (!ground) return;
     pose_.eye = {to.x, to.y, *ground + kEyeHeight};

@@ -71,6 +71,7 @@ class Navigator {
 
   const Scene& scene_;
   Pose pose_;
+  dvec3 first_eye_{0.0};
   double across_, speed_;
   std::array<bool, kMoveKeys> keys_{};
   bool changed_ = true;

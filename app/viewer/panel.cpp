@@ -63,6 +63,25 @@ bool draw_look(PictureSettings& picture) {
   return changed;
 }
 
+// Returns whether one was let go: the input is opened again, which takes time.
+bool draw_parameters(const std::vector<MarchParameter>& parameters) {
+  bool changed = false;
+  constexpr ImGuiSliderFlags kFlags = ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp;
+  for (const MarchParameter& parameter : parameters) {
+    const auto least = static_cast<float>(parameter.least), most = static_cast<float>(parameter.most);
+    if (int* const* whole = std::get_if<int*>(&parameter.to)) {
+      ImGui::SliderInt(parameter.name.c_str(), *whole, static_cast<int>(least), static_cast<int>(most), "%d", kFlags);
+    } else {
+      double& value = **std::get_if<double*>(&parameter.to);
+      auto number = static_cast<float>(value);
+      if (ImGui::SliderFloat(parameter.name.c_str(), &number, least, most, "%.3g", kFlags)) value = number;
+    }
+    changed |= ImGui::IsItemDeactivatedAfterEdit();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", parameter.help.c_str());
+  }
+  return changed;
+}
+
 void draw_cost(const PanelState& state) {
   if (!state.shown) return;
   const Image& image = state.shown->picture.image;
@@ -94,6 +113,7 @@ PanelActions draw_panel(PanelState& state) {
       }
       ImGui::EndCombo();
     }
+    actions.parameter_changed = draw_parameters(state.parameters);
     ImGui::PopItemWidth();
     if (state.mode == MoveMode::fly || state.mode == MoveMode::walk) ImGui::Text("%.1f m/s", state.speed);
     ImGui::Separator();

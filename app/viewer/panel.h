@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/viewer/navigation.h"
+#include "app/viewer/opening.h"
 #include "app/viewer/picture_worker.h"
 #include "app/viewer/reading.h"
 #include "scarp/render/frame/picture.h"
@@ -15,13 +16,14 @@ namespace scarp::viewer {
 
 /// What the panel shows and changes.
 struct PanelState {
-  PictureSettings* picture;              ///< changed in place
-  std::vector<std::string> marches{};    ///< that the input has
-  std::string march{};                   ///< in use; a change asks for the input to be opened again
-  MoveMode mode = MoveMode::orbit;       ///< as `march`
-  double speed = 0;                      ///< metres per second
-  std::string device{};                  ///< that answers rays
-  const WorkedPicture* shown = nullptr;  ///< the picture in the window
+  PictureSettings* picture;                  ///< changed in place
+  std::vector<std::string> marches{};        ///< that the input has
+  std::string march{};                       ///< in use; a change asks for the input to be opened again
+  std::vector<MarchParameter> parameters{};  ///< of the march; changed in place
+  MoveMode mode = MoveMode::orbit;           ///< as `march`
+  double speed = 0;                          ///< metres per second
+  std::string device{};                      ///< that answers rays
+  const WorkedPicture* shown = nullptr;      ///< the picture in the window
   bool busy = false;
   std::optional<Reading> reading{};
   std::optional<MeasuredLine> line{};
@@ -31,7 +33,7 @@ struct PanelState {
 };
 
 struct PanelActions {
-  bool picture_changed = false, save = false, copy = false;
+  bool picture_changed = false, parameter_changed = false, save = false, copy = false;
   std::optional<std::string> march{};
   std::optional<MoveMode> mode{};
 };

@@ -555,9 +555,12 @@ bool Presenter::present(Image* seen) {
         vkAcquireNextImageKHR(all.device, all.swapchain, kForever, all.acquired, VK_NULL_HANDLE, &index);
     if (got == VK_SUCCESS || got == VK_SUBOPTIMAL_KHR) break;
     constexpr int kAttempts = 4;
-    if ((got != VK_ERROR_OUT_OF_DATE_KHR && got != VK_ERROR_SURFACE_LOST_KHR) || attempt == kAttempts)
+    if ((got != VK_ERROR_OUT_OF_DATE_KHR && got != VK_ERROR_SURFACE_LOST_KHR) ||
+        (got == VK_ERROR_SURFACE_LOST_KHR && attempt == kAttempts))
       require(got, "asking for an image of the window");
     all.destroy_targets();
+    // The size changes faster than images are made: the next frame will do.
+    if (attempt == kAttempts) return false;
   }
   const Impl::Target& target = all.targets[index];
   all.begin();

@@ -18,6 +18,7 @@ namespace {
 constexpr std::string_view kFirst = "scarp-view";
 constexpr std::array<std::string_view, 4> kKinds = {"move", "button", "key", "wheel"};
 constexpr int kMostSide = 16384;
+constexpr double kMostPlace = 1e6;  // pixels or steps: no mouse is farther away
 
 }  // namespace
 
@@ -51,7 +52,8 @@ Recording read_recording(const std::string& file) {
     bool good = true;
     if (kind == "move" || kind == "wheel") {
       event.kind = kind == "move" ? WindowEvent::Kind::move : WindowEvent::Kind::wheel;
-      good = static_cast<bool>(words >> event.x >> event.y) && std::isfinite(event.x) && std::isfinite(event.y);
+      good = static_cast<bool>(words >> event.x >> event.y) && std::abs(event.x) <= kMostPlace &&
+             std::abs(event.y) <= kMostPlace;
     } else if (kind == "button" || kind == "key") {
       event.kind = kind == "button" ? WindowEvent::Kind::button : WindowEvent::Kind::key;
       good = static_cast<bool>(words >> event.code >> event.down >> event.modifiers);

@@ -7,22 +7,28 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <tuple>
 #include <utility>
 
 #include "app/cli/kept_inputs.h"
 #include "app/cli/progress.h"
 #include "app/cli/render_stage.h"
+#include "app/viewer/kept_settings.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/picture_worker.h"
 #include "app/viewer/presenter.h"
 #include "app/viewer/reading.h"
 #include "app/viewer/recording.h"
+#include "app/viewer/timings.h"
+#include "app/viewer/view_output.h"
+#include "app/viewer/window.h"
 #include "scarp/base/error.h"
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/height/height_table.h"
@@ -37,51 +43,7 @@ constexpr double kClickPixels = 4;      // a longer way is a drag
 constexpr double kPlayStep = 1.0 / 60;  // seconds of a recording's own time per step
 constexpr double kSignalWait = 0.5;     // seconds between two looks for Ctrl-C
 constexpr int kRedraws = 3;             // frames that Dear ImGui needs to come to rest after an event
-constexpr const char* kPathFile = "scarp-path.csv";
 constexpr int kBookmarks = 9;
-
-// GLFW's window, from init to termination.
-class Glfw {
- public:
-  Glfw(int width, int height, const std::string& title) {
-    glfwSetErrorCallback([](int, const char*) {});
-    if (!glfwInit())
-      throw Error(
-          "window: there is no display to open it on (is DISPLAY or WAYLAND_DISPLAY set? `scarp render` needs none)");
-    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
-    if (!window_) {
-      glfwTerminate();
-      throw Error("window: it cannot be opened on this display");
-    }
-  }
-  ~Glfw() {
-    glfwDestroyWindow(window_);
-    glfwTerminate();
-  }
-  Glfw(const Glfw&) = delete;
-  Glfw& operator=(const Glfw&) = delete;
-  GLFWwindow* get() const { return window_; }
-
- private:
-  GLFWwindow* window_ = nullptr;
-};
-
-class Imgui {
- public:
-  Imgui() {
-    ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;
-    ImGui::StyleColorsDark();
-  }
-  ~Imgui() {
-    if (has_window) ImGui_ImplGlfw_Shutdown();
-    ImGui::DestroyContext();
-  }
-  Imgui(const Imgui&) = delete;
-  Imgui& operator=(const Imgui&) = delete;
-  bool has_window = false;
-};
 
 std::vector<std::string> marches_for(cli::InputKind kind) {
   std::vector<std::string> names;
@@ -95,27 +57,27 @@ std::vector<std::string> marches_for(cli::InputKind kind) {
 
 class Viewer {
  public:
-  Viewer(cli::InputKind kind, cli::ViewOptions options, const ViewSettings& view)
-      : kind_(kind), options_(std::move(options)), typed_view_(view) {
+  explicit Viewer(Opening opening)
+      : opening_(std::move(opening)), options_(*opening_.options), timings_(options_.timings) {
     if (!options_.play.empty()) played_ = read_recording(options_.play);
     cli::keep_inputs(options_.record, options_.typed);
     cli::keep_inputs(options_.screenshot, options_.typed);
     if (played_) {
       width_ = played_->width, height_ = played_->height;
     } else {
-      width_ = options_.picture.width, height_ = options_.picture.height;
+      const KeptSettings kept = read_settings(settings_file());
+      const bool typed = !options_.size.empty();
+      width_ = typed ? options_.picture.width : kept.width;
+      height_ = typed ? options_.picture.height : kept.height;
+      shows_panel_ = kept.panel;
     }
-    open_stage();
+    settle(open_stage(opening_));
     glfw_ = std::make_unique<Glfw>(width_, height_, title());
-    imgui_.has_window = false;
     if (!played_) listen();
-    ImGui_ImplGlfw_InitForVulkan(glfw_->get(), !played_);
-    imgui_.has_window = true;
+    imgui_ = std::make_unique<Imgui>(glfw_->get(), !played_);
     presenter_ = std::make_unique<Presenter>(glfw_->get(), options_.window_device, options_.validation);
     start_worker();
-    panel_.marches = marches_for(kind_);
-    panel_.march = std::string(cli::march_of(options_, kind_));
-    panel_.device = stage_->there().device.empty() ? "the CPU" : stage_->there().device;
+    describe_input();
   }
 
   ~Viewer() { worker_.reset(); }
@@ -127,6 +89,7 @@ class Viewer {
       play();
     } else {
       loop();
+      write_settings(settings_file(), {width_, height_, shows_panel_});
     }
     worker_.reset();
     if (!options_.record.empty()) {
@@ -139,22 +102,42 @@ class Viewer {
 
  private:
   std::string title() const {
-    const auto& inputs = options_.inputs;
+    const auto& inputs = opening_.options->inputs;
     return inputs.empty() ? "Scarp" : std::filesystem::path(inputs.front()).filename().string() + " - Scarp";
   }
 
-  void open_stage() {
-    cli::RenderOptions options = options_;
+  std::unique_ptr<cli::RenderStage> open_stage(const Opening& opening) const {
+    cli::RenderOptions options = *opening.options;
     options.picture.width = width_, options.picture.height = height_;
-    stage_ = std::make_unique<cli::RenderStage>(kind_, std::move(options), typed_view_);
-    stage_->open();
-    settings_ = stage_->picture();
-    frames_ = std::make_unique<ReadingFrames>(stage_->input().raster);
-    const Camera first = stage_->camera();
+    auto stage = std::make_unique<cli::RenderStage>(opening.kind, std::move(options), opening.view);
+    stage->open();
+    return stage;
+  }
+
+  // Goes over to another input, from its first view, without a worker. If this throws, nothing has changed.
+  void settle(std::unique_ptr<cli::RenderStage> stage) {
+    const Camera first = stage->camera();
+    auto frames = std::make_unique<ReadingFrames>(stage->input().raster);
     // Rays of single points are the CPU's.
-    navigator_ = std::make_unique<Navigator>(stage_->given_scene(), first, stage_->input().view.fov_deg,
-                                             std::max(stage_->input().across, 1e-9));
+    auto navigator = std::make_unique<Navigator>(stage->given_scene(), first, stage->input().view.fov_deg,
+                                                 std::max(stage->input().across, 1e-9));
+    worker_.reset();
+    navigator_ = std::move(navigator), frames_ = std::move(frames), stage_ = std::move(stage);
+    settings_ = stage_->picture();
     first_ = navigator_->pose();
+    camera_.reset();
+    line_from_.reset();
+    settings_changed_ = true;
+    // Generations begin again.
+    generation_ = 0;
+    if (shown_) shown_->generation = 0;
+  }
+
+  void describe_input() {
+    panel_.marches = marches_for(opening_.kind);
+    panel_.march = std::string(cli::march_of(*opening_.options, opening_.kind));
+    panel_.parameters = parameters_of(opening_, panel_.march);
+    panel_.device = stage_->there().device.empty() ? "the CPU" : stage_->there().device;
   }
 
   // As `scarp render` makes the picture of this camera.
@@ -193,6 +176,10 @@ class Viewer {
     glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) {
       self(w)->note({.kind = WindowEvent::Kind::wheel, .x = x, .y = y});
     });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { self(w)->redraws_ = kRedraws; });
+    glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** files) {
+      if (count > 0) self(w)->open_file(files[0]);
+    });
     glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
       if (!focused) self(w)->navigator_->release_keys();
     });
@@ -200,6 +187,7 @@ class Viewer {
 
   void note(WindowEvent event) {
     event.seconds = seconds();
+    timings_.event(generation_);
     if (!options_.record.empty()) recorded_.events.push_back(event);
     take(event);
   }
@@ -315,7 +303,7 @@ class Viewer {
         line_from_.reset();
         return;
       case GLFW_KEY_K:
-        return add_to_path();
+        return keep_in_path();
       case GLFW_KEY_C:
         return copy_command();
       case GLFW_KEY_P:
@@ -355,9 +343,15 @@ class Viewer {
       const double now = seconds();
       step(now, now - before, waits ? 0.0 : now - before);
       before = now;
-      if (redraws_ > 0) {
+      // New pictures at once. The rest of the window changes no faster than they do: a present by a CPU driver takes
+      // the processors from the worker.
+      const double wait = drawn_at_ + 1 / PictureWorker::kFramesPerSecond - now;
+      if (redraws_ > 0 && (unpresented_ || wait <= 0)) {
         --redraws_;
+        drawn_at_ = now;
         draw(nullptr);
+      } else if (redraws_ > 0) {
+        glfwWaitEventsTimeout(wait);
       } else if (!asked_rest_) {
         // Until the view counts as being at rest.
         glfwWaitEventsTimeout(kRest / 4);
@@ -397,11 +391,14 @@ class Viewer {
   void show(WorkedPicture worked) {
     redraws_ = kRedraws;
     if (!worked.error.empty()) {
-      panel_.message = worked.error;
+      fail(worked.error);
+      render_failed_ = worked.generation == generation_;
       return;
     }
+    render_failed_ = false;
     presenter_->set_image(worked.picture.image);
     shown_ = std::move(worked);
+    unpresented_ = true;
     if (saves_ && shown_->stage == PictureStage::converged && shown_->generation == generation_) save_picture();
   }
 
@@ -434,7 +431,11 @@ class Viewer {
       actions = draw_panel(panel_);
     }
     ImGui::Render();
-    presenter_->present(seen);
+    if (presenter_->present(seen)) {
+      if (std::exchange(unpresented_, false)) timings_.present(*shown_);
+    } else if (int across = 0, down = 0; glfwGetFramebufferSize(glfw_->get(), &across, &down), across > 0 && down > 0) {
+      redraws_ = kRedraws;  // again: the size changed meanwhile
+    }
     act(actions);
   }
 
@@ -445,68 +446,76 @@ class Viewer {
     if (actions.save) saves_ = true;
     if (saves_ && shown_ && shown_->stage == PictureStage::converged && shown_->generation == generation_)
       save_picture();
-    if (actions.march) change_march(*actions.march);
+    if (actions.march) opening_.options->march = *actions.march;
+    if (actions.march || actions.parameter_changed) reopen();
   }
 
-  void change_march(const std::string& march) {
-    const std::string before = std::exchange(options_.march, march);
-    const Pose pose = navigator_->pose();
-    worker_.reset();
-    PictureSettings kept = settings_;
+  // Opens the input again with other settings of the march. View and look stay. If it fails, as when the file is gone,
+  // the window goes on with what it has.
+  void reopen() {
     try {
-      open_stage();
-      panel_.march = march;
-    } catch (const Error& error) {
-      panel_.message = error.what();
-      options_.march = before;
-      open_stage();
+      auto stage = open_stage(opening_);
+      const Pose pose = navigator_->pose();
+      const PictureSettings kept = settings_;
+      settle(std::move(stage));
+      settings_ = kept;
+      navigator_->set_pose(pose);
+      start_worker();
+      marched_ = {opening_.options->march, opening_.options->march_settings};
+    } catch (const std::exception& error) {
+      fail(error.what());
+      std::tie(opening_.options->march, opening_.options->march_settings) = marched_;
     }
-    settings_ = kept;
-    navigator_->set_pose(pose);
-    start_worker();
-    settings_changed_ = true;
+    describe_input();
   }
 
-  // --- what leaves the window
-  // -----------------------------------------------------------------------------------------
+  // Goes over to a file that was dropped on the window, if it can be opened.
+  void open_file(const std::string& file) {
+    redraws_ = kRedraws;
+    try {
+      Opening opening = opening_of(file);
+      auto stage = open_stage(opening);
+      settle(std::move(stage));
+      opening_ = std::move(opening);
+      marched_ = {opening_.options->march, opening_.options->march_settings};
+      bookmarks_ = {};
+      panel_.line.reset();
+      panel_.message.clear();
+      start_worker();
+      describe_input();
+      glfwSetWindowTitle(glfw_->get(), title().c_str());
+    } catch (const std::exception& error) {
+      fail(error.what());
+    }
+  }
+
+  // Errors are seen even if the panel was hidden; the last good picture stays.
+  void fail(const std::string& message) {
+    panel_.message = message;
+    shows_panel_ = true;
+    redraws_ = kRedraws;
+  }
+
+  // --- what leaves the window ---------------------------------------------------------------------------------------
 
   void save_picture() {
     saves_ = false;
-    std::string name;
-    for (int i = 1; name.empty() || std::filesystem::exists(name); ++i) name = fmt::format("scarp-view-{}.png", i);
+    redraws_ = kRedraws;
     try {
-      const Image& image = shown_->picture.image;
-      write_png(name, {image.rgb.data(), image.width, image.height});
+      const std::string name = save_numbered(shown_->picture.image);
       panel_.message = name + " is saved";
       fmt::print("{}: {}\n", name, command(name));
       std::fflush(stdout);
     } catch (const Error& error) {
-      panel_.message = error.what();
+      fail(error.what());
     }
-    redraws_ = kRedraws;
   }
 
-  // The command that makes the picture again.
   std::string command(const std::string& output) const {
-    const Pose& pose = navigator_->pose();
-    const dvec3 target = pose.eye + forward_of(pose);
-    std::string text = fmt::format("scarp render{} -o {} --size {}x{}", options_.words, output, width_, height_);
-    if (pose.mode == MoveMode::top) {
-      text += " --top";
-    } else {
-      text += fmt::format(" --eye={:.17g},{:.17g},{:.17g} --target={:.17g},{:.17g},{:.17g} --fov {:.17g}", pose.eye.x,
-                          pose.eye.y, pose.eye.z, target.x, target.y, target.z, pose.fov_deg);
-    }
-    text += fmt::format(" --look {}", name_of(settings_.look));
-    if (settings_.look == Look::shaded || settings_.look == Look::hillshade)
-      text += fmt::format(" --sun {:.17g},{:.17g}", settings_.sun.azimuth_deg, settings_.sun.altitude_deg);
-    if (settings_.look == Look::shaded) {
-      text += fmt::format(" --aa {} --samples {} --haze {:.17g}", settings_.aa, settings_.samples, settings_.haze);
-      if (!settings_.shadows) text += " --no-shadows";
-      if (settings_.water) text += fmt::format(" --water {:.17g}", settings_.water->level);
-    }
-    if (!options_.march.empty()) text += " --march " + options_.march;
-    return text;
+    PictureSettings picture = settings_;
+    picture.width = width_, picture.height = height_;
+    return render_command(*opening_.options, navigator_->pose(), picture, output) +
+           parameter_words(opening_, panel_.march);
   }
 
   void copy_command() {
@@ -517,25 +526,15 @@ class Viewer {
     std::fflush(stdout);
   }
 
-  void add_to_path() {
-    const Pose& pose = navigator_->pose();
-    const dvec3 target = pose.eye + forward_of(pose);
-    const bool begins = !std::filesystem::exists(kPathFile);
-    std::FILE* file = std::fopen(kPathFile, "a");
-    const bool opened = file != nullptr;
-    bool written = opened;
-    if (opened) {
-      if (begins) std::fputs("x,y,z,tx,ty,tz\n", file);
-      fmt::print(file, "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", pose.eye.x, pose.eye.y, pose.eye.z,
-                 target.x, target.y, target.z);
-      written = std::fclose(file) == 0;
+  void keep_in_path() {
+    try {
+      panel_.message = "the view is in " + add_to_path(navigator_->pose());
+    } catch (const Error& error) {
+      fail(error.what());
     }
-    panel_.message = written ? fmt::format("the view is in {}", kPathFile)
-                             : fmt::format("'{}' cannot be written; is the disk full?", kPathFile);
   }
 
-  // --- recordings
-  // -----------------------------------------------------------------------------------------------------
+  // --- recordings ---------------------------------------------------------------------------------------------------
 
   // Steps of one length, whatever the time they take; then the picture is waited for.
   void play() {
@@ -559,8 +558,7 @@ class Viewer {
       play_seconds_ += kPlayStep;
       step(play_seconds_, kPlayStep, kPlayStep);
       draw(nullptr);
-      if (!panel_.message.empty() && !worker_->busy() && !is_complete() && shown_ == std::nullopt)
-        throw Error(panel_.message);
+      if (render_failed_ && !worker_->busy()) throw Error(panel_.message);
     }
     Image seen;
     for (int i = 0; i < kRedraws; ++i) draw(&seen);
@@ -574,28 +572,32 @@ class Viewer {
     take(event);
   }
 
-  cli::InputKind kind_;
-  cli::ViewOptions options_;
-  ViewSettings typed_view_;
+  Opening opening_;
+  const cli::ViewOptions options_;  // of the window itself
+  Timings timings_;
   int width_ = 0, height_ = 0;
   std::optional<Recording> played_;
   Recording recorded_;
   std::unique_ptr<cli::RenderStage> stage_;
+  std::pair<std::string, MarchSettings> marched_{opening_.options->march,
+                                                 opening_.options->march_settings};  // by stage_
   std::unique_ptr<ReadingFrames> frames_;
   PictureSettings settings_;  // of the converged picture, as the panel has them
   std::unique_ptr<Navigator> navigator_;
   Pose first_;
   std::array<std::optional<Pose>, kBookmarks> bookmarks_;
   std::unique_ptr<Glfw> glfw_;
-  Imgui imgui_;
+  std::unique_ptr<Imgui> imgui_;
   std::unique_ptr<Presenter> presenter_;
   PanelState panel_{nullptr};
   std::optional<WorkedPicture> shown_;
   std::optional<Camera> camera_;  // of the view as it is, at the window's size
   std::uint64_t generation_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double play_seconds_ = 0, changed_at_ = 0, last_click_ = -1, way_ = 0;
+  double play_seconds_ = 0, changed_at_ = 0, drawn_at_ = -1, last_click_ = -1, way_ = 0;
   bool asked_rest_ = false, settings_changed_ = true, saves_ = false, shows_panel_ = true;
+  bool render_failed_ = false;
+  bool unpresented_ = false;  // shown_ is newer than what the window shows
   int redraws_ = kRedraws, dragging_ = -1;
   dvec2 cursor_{-1.0};
   std::optional<dvec3> line_from_;
@@ -604,8 +606,6 @@ class Viewer {
 
 }  // namespace
 
-void run_viewer(cli::InputKind kind, cli::ViewOptions options, const ViewSettings& view) {
-  Viewer(kind, std::move(options), view).run();
-}
+void run_viewer(Opening opening) { Viewer(std::move(opening)).run(); }
 
 }  // namespace scarp::viewer

@@ -2,12 +2,12 @@
 // The window of `scarp view`: events move the navigator, its views go to the worker, whose pictures are presented.
 #pragma once
 
-#include "app/cli/view_options.h"
+#include "app/viewer/opening.h"
 
 namespace scarp::viewer {
 
 /// Opens the window and returns when it is closed, or when the recording was played. Throws Error: no display, no
 /// device, an input that cannot be read.
-void run_viewer(cli::InputKind kind, cli::ViewOptions options, const ViewSettings& view);
+void run_viewer(Opening opening);
 
 }  // namespace scarp::viewer

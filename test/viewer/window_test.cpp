@@ -10,11 +10,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "scarp/scarp.h"
+#include "cases.h"
 
 namespace scarp::test {
 namespace {
@@ -81,6 +82,20 @@ class Window : public testing::Test {
     std::ofstream(folder_ / "events") << "scarp-view 320x240\n" << events;
     return run("'" SCARP_VIEW "' " + arguments + " --play events --validation");
   }
+  // Opens the window, waits for its picture, and runs xdotool's commands on it; $window is its number.
+  int use(const std::string& arguments, const std::string& commands) {
+    std::ofstream(folder_ / "use.sh")
+        << "export XDG_CONFIG_HOME=$PWD/settings\n"
+           "rm -f times.csv\n"
+           "'" SCARP_VIEW "' "
+        << arguments
+        << " --timings times.csv --validation &\n"
+           "pid=$!\n"
+           "until grep -qs converged times.csv; do kill -0 $pid || exit 9; sleep 0.05; done\n"
+           "window=$(xdotool search --name Scarp)\n"
+        << commands << "\nwait $pid\n";
+    return run("timeout 60 bash use.sh");
+  }
   std::string bytes_of(const std::string& name) const {
     std::ifstream in(folder_ / name, std::ios::binary);
     std::stringstream text;
@@ -137,6 +152,81 @@ TEST_F(Window, SaysWhatIsWrong) {
   EXPECT_EQ(view("", "dem.tif --window-device nosuch"), 1);
   EXPECT_NE(output_.find("--window-device 'nosuch': no such device"), std::string::npos) << output_;
   EXPECT_EQ(view("", "dem.tif --screenshot /dev/full"), 1) << output_;
+}
+
+TEST_F(Window, TakesRealPressesAndDrags) {
+  ASSERT_EQ(
+      use("dem.tif --size 320x240 --record events",
+          "xdotool mousemove 280 200 sleep 0.1 mousedown 1 sleep 0.1 mousemove_relative 30 5 sleep 0.1 mouseup 1\n"
+          "xdotool click 4 sleep 0.1 keydown c sleep 0.1 keyup c sleep 0.1 key Escape"),
+      0)
+      << output_;
+  // The command's camera is no longer that of the start.
+  EXPECT_TRUE(output_.starts_with("scarp render dem.tif -o picture.png --size 320x240 --eye=")) << output_;
+  const std::string events = bytes_of("events");
+  for (const char* event : {"button 0 1 0", "button 0 0 0", "wheel 0 1", "key 67 1 0", "key 256 1 0"})
+    EXPECT_NE(events.find(event), std::string::npos) << event << '\n' << events;
+}
+
+TEST_F(Window, SurvivesChangesOfItsSize) {
+  ASSERT_EQ(use("dem.tif --size 320x240",
+                "for size in '400 300' '100 90' '1 1' '639 31' '320 400'; do xdotool windowsize $window $size; done\n"
+                "xdotool windowunmap $window sleep 0.3 windowmap $window sleep 0.3 windowsize --sync $window 333 222\n"
+                "xdotool mousemove 300 200\n"
+                "until grep -q 'converged,333,222' times.csv; do kill -0 $pid || exit 9; sleep 0.05; done\n"
+                "xdotool key Escape"),
+            0)
+      << output_;
+  // The next window is as large.
+  EXPECT_EQ(bytes_of("settings/scarp/view"), "size 333 222\npanel 1\n");
+  ASSERT_EQ(use("dem.tif --record events", "xdotool mousemove 300 200 sleep 0.1 key Escape"), 0) << output_;
+  EXPECT_TRUE(bytes_of("events").starts_with("scarp-view 333x222\n"));
+}
+
+TEST_F(Window, SaysWhatCannotBeSaved) {
+  // A folder that is gone takes no files.
+  std::ofstream(folder_ / "events") << "scarp-view 320x240\n" << kSave << "1.2 key 75 1 0\n";
+  const std::string where = folder_.string();
+  ASSERT_EQ(run("(mkdir gone && cd gone && rmdir ../gone && '" SCARP_VIEW "' '" + where + "/dem.tif' --play '" + where +
+                "/events' --screenshot '" + where + "/window.png' --validation)"),
+            0)
+      << output_;
+  EXPECT_EQ(output_, "");
+  EXPECT_GT(bytes_of("window.png").size(), 1000u);
+}
+
+// Random mouse and keys, ten events per step of the clock, on the picture and on the panel.
+std::string random_events(int count, unsigned seed) {
+  std::mt19937 random(seed);
+  const auto pick = [&](int least, int most) { return std::uniform_int_distribution<int>(least, most)(random); };
+  std::string keys = "WASDQEOFGTHMKCP123456789";
+  std::ostringstream text;
+  for (int i = 0; i < count; ++i) {
+    text << i / 600.0 << ' ';
+    const int kind = pick(0, 9);
+    if (kind < 4) {
+      const bool outside = pick(0, 19) == 0;
+      text << "move " << (outside ? pick(-100'000, 100'000) : pick(0, 320)) << ' '
+           << (outside ? pick(-100'000, 100'000) : pick(0, 240)) << '\n';
+    } else if (kind < 6) {
+      text << "button " << pick(0, 9) % 4 << ' ' << pick(0, 1) << ' ' << pick(0, 15) << '\n';
+    } else if (kind < 9) {
+      constexpr int kOthers[] = {256, 257, 258, 259, 290, 340, 344, 32, 320};
+      const int which = pick(0, static_cast<int>(keys.size() + std::size(kOthers)) - 1);
+      const int code = which < static_cast<int>(keys.size()) ? keys[static_cast<std::size_t>(which)]
+                                                             : kOthers[which - static_cast<int>(keys.size())];
+      text << "key " << code << ' ' << pick(0, 1) << ' ' << pick(0, 15) << '\n';
+    } else {
+      text << "wheel 0 " << (pick(0, 9) == 0 ? pick(-1000, 1000) : pick(-3, 3)) << '\n';
+    }
+  }
+  return text.str();
+}
+
+TEST_F(Window, RandomEventsEndWithoutACrash) {
+  const int count = cases(100'000, 1'500, 500);
+  ASSERT_EQ(view(random_events(count, 1), "dem.tif"), 0) << output_;
+  ASSERT_EQ(view(random_events(count / 3, 2), "--function hills"), 0) << output_;
 }
 
 }  // namespace

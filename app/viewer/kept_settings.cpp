@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+#include "app/viewer/kept_settings.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace scarp::viewer {
+namespace {
+
+constexpr int kLeastSide = 64, kMostSide = 16384;  // of a window that one finds again
+
+}  // namespace
+
+std::string settings_file() {
+  const char* const folder = std::getenv("XDG_CONFIG_HOME");
+  // Relative paths count as not set, by the XDG specification.
+  if (folder && folder[0] == '/') return std::string(folder) + "/scarp/view";
+  const char* const home = std::getenv("HOME");
+  return home && home[0] == '/' ? std::string(home) + "/.config/scarp/view" : std::string();
+}
+
+KeptSettings read_settings(const std::string& file) {
+  KeptSettings settings;
+  std::ifstream in(file);
+  for (std::string word; in >> word;) {
+    if (word == "size") {
+      int width = 0, height = 0;
+      if (in >> width >> height && width >= kLeastSide && height >= kLeastSide && width <= kMostSide &&
+          height <= kMostSide)
+        settings.width = width, settings.height = height;
+    } else if (word == "panel") {
+      bool panel = true;
+      if (in >> panel) settings.panel = panel;
+    }
+  }
+  return settings;
+}
+
+bool write_settings(const std::string& file, const KeptSettings& settings) {
+  if (file.empty()) return false;
+  std::error_code none;
+  std::filesystem::create_directories(std::filesystem::path(file).parent_path(), none);
+  std::ofstream out(file);
+  out << "size " << settings.width << ' ' << settings.height << "\npanel " << settings.panel << '\n';
+  out.close();
+  return static_cast<bool>(out);
+}
+
+}  // namespace scarp::viewer

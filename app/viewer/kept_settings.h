@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// What the window remembers from one start to the next: scarp/view in the XDG folder of settings.
+#pragma once
+
+#include <string>
+
+namespace scarp::viewer {
+
+struct KeptSettings {
+  int width = 1280, height = 720;  ///< of the window
+  bool panel = true;               ///< whether it is visible
+};
+
+/// $XDG_CONFIG_HOME/scarp/view, or ~/.config/scarp/view; empty if neither variable is set.
+std::string settings_file();
+/// Reads the file; keeps the default of all that is missing or wrong.
+KeptSettings read_settings(const std::string& file);
+/// Returns false if the file cannot be written.
+bool write_settings(const std::string& file, const KeptSettings& settings);
+
+}  // namespace scarp::viewer

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// When events came and pictures were presented, as a table for bench/view.sh.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <string>
+
+#include "app/viewer/picture_worker.h"
+
+namespace scarp::viewer {
+
+class Timings {
+ public:
+  /// Writes the header. Throws Error if the file cannot be written. An empty name keeps no times.
+  explicit Timings(const std::string& file);
+  ~Timings();
+  Timings(const Timings&) = delete;
+  Timings& operator=(const Timings&) = delete;
+
+  /// An event came when `generation` was the last that was requested: pictures of later ones carry it.
+  void event(std::uint64_t generation);
+  /// A picture was presented for the first time.
+  void present(const WorkedPicture& shown);
+
+ private:
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace scarp::viewer

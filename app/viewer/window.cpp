@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "app/viewer/window.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scarp/base/error.h"
+
+namespace scarp::viewer {
+namespace {
+
+constexpr float kFontPixels = 13;  // for which Dear ImGui's font is drawn
+constexpr float kMostScale = 8;    // of fonts that are textures
+
+}  // namespace
+
+Glfw::Glfw(int width, int height, const std::string& title) {
+  glfwSetErrorCallback([](int, const char*) {});
+  if (!glfwInit())
+    throw Error(
+        "window: there is no display to open it on (is DISPLAY or WAYLAND_DISPLAY set? `scarp render` needs none)");
+  glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+  window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+  if (!window_) {
+    glfwTerminate();
+    throw Error("window: it cannot be opened on this display");
+  }
+}
+
+Glfw::~Glfw() {
+  glfwDestroyWindow(window_);
+  glfwTerminate();
+}
+
+Imgui::Imgui(GLFWwindow* window, bool listens) {
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  ImGui::StyleColorsDark();
+  float x = 1, y = 1;
+  glfwGetWindowContentScale(window, &x, &y);
+  const float scale = std::clamp(std::max(x, y), 1.0f, kMostScale);
+  ImFontConfig font;
+  font.SizePixels = std::round(kFontPixels * scale);
+  io.Fonts->AddFontDefault(&font);
+  ImGui::GetStyle().ScaleAllSizes(scale);
+  ImGui_ImplGlfw_InitForVulkan(window, listens);
+}
+
+Imgui::~Imgui() {
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+}  // namespace scarp::viewer

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// GLFW's window and Dear ImGui's state, from their start to their end.
+#pragma once
+
+#include <string>
+
+struct GLFWwindow;
+
+namespace scarp::viewer {
+
+class Glfw {
+ public:
+  /// Throws Error if there is no display.
+  Glfw(int width, int height, const std::string& title);
+  ~Glfw();
+  Glfw(const Glfw&) = delete;
+  Glfw& operator=(const Glfw&) = delete;
+  GLFWwindow* get() const { return window_; }
+
+ private:
+  GLFWwindow* window_ = nullptr;
+};
+
+/// Ends before the window.
+class Imgui {
+ public:
+  /// With `listens`, takes the window's events after the callbacks that are set. The font and the panels have the
+  /// scale of the window's screen.
+  Imgui(GLFWwindow* window, bool listens);
+  ~Imgui();
+  Imgui(const Imgui&) = delete;
+  Imgui& operator=(const Imgui&) = delete;
+};
+
+}  // namespace scarp::viewer

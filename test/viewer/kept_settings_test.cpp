@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// What the window remembers is read as written; what is wrong in the file has no effect.
+#include "app/viewer/kept_settings.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+namespace scarp::viewer {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Settings : testing::Test {
+  fs::path folder = fs::temp_directory_path() / ("scarp-settings-" + std::to_string(::getpid()));
+  std::string file = folder / "scarp" / "view";
+  ~Settings() override { fs::remove_all(folder); }
+};
+
+TEST_F(Settings, AreReadAsWritten) {
+  ASSERT_TRUE(write_settings(file, {800, 600, false}));
+  const KeptSettings read = read_settings(file);
+  EXPECT_EQ(read.width, 800);
+  EXPECT_EQ(read.height, 600);
+  EXPECT_FALSE(read.panel);
+}
+
+TEST_F(Settings, HaveDefaultsForWhatIsMissingOrWrong) {
+  EXPECT_EQ(read_settings(file).width, 1280);
+  fs::create_directories(folder / "scarp");
+  std::ofstream(file) << "size 0 -3\npanel 0\nsize 99999 5 nonsense";
+  const KeptSettings read = read_settings(file);
+  EXPECT_EQ(read.width, 1280);
+  EXPECT_EQ(read.height, 720);
+  EXPECT_FALSE(read.panel);
+  EXPECT_FALSE(write_settings("/proc/nowhere/view", {}));
+  EXPECT_FALSE(write_settings("", {}));
+}
+
+TEST_F(Settings, AreInTheFolderOfTheEnvironment) {
+  ::setenv("XDG_CONFIG_HOME", folder.c_str(), 1);
+  EXPECT_EQ(settings_file(), file);
+  ::setenv("XDG_CONFIG_HOME", "relative", 1);
+  ::setenv("HOME", folder.c_str(), 1);
+  EXPECT_EQ(settings_file(), (folder / ".config" / "scarp" / "view").string());
+}
+
+}  // namespace
+}  // namespace scarp::viewer
