@@ -30,8 +30,8 @@ constexpr std::int64_t kSamplesPerPixel = 16;
 std::int64_t samples_shown(const RenderOptions& options, const ViewSettings& view) {
   constexpr std::int64_t kLeast = kSamplesPerPixel * 1000 * 1000, kMost = Decimation{}.above;
   const PictureSettings& picture = options.picture;
-  if (!options.eye.empty() || !options.frames.path.empty() || view.distance < 1 || options.is_given("--fov") ||
-      picture.look == Look::comanche)
+  if (options.moves || !options.eye.empty() || !options.frames.path.empty() || view.distance < 1 ||
+      options.is_given("--fov") || picture.look == Look::comanche)
     return kMost;
   // The longer side is the width; the other one follows from the raster.
   const int height = options.top && options.size.empty() ? picture.width : picture.height;

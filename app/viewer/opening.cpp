@@ -45,6 +45,7 @@ MarchParameter parameter_of(const cli::Declared& declared, std::variant<int*, do
 Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cli::ViewOptions> options,
                        const cli::Command& command) {
   cli::ViewOptions& o = *options;
+  o.moves = true;
   o.given = command.given();
   o.typed = command.typed_values();
   std::vector<std::string_view> left_out = cli::kWindowOptions;
