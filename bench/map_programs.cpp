@@ -58,7 +58,7 @@ struct MapProgram {
 bool is_one(double sample) { return sample == 1; }
 bool is_zero(double sample) { return sample == 0; }
 // A shadow is pi/2, in float; lit is nodata.
-bool is_not_half_pi(double sample) { return !(std::abs(sample - std::numbers::pi / 2) < 1e-6); }
+bool is_not_half_pi(double sample) { return static_cast<float>(sample) != static_cast<float>(std::numbers::pi / 2); }
 
 std::vector<MapProgram> map_programs(const std::string& scarp, const Question& ask) {
   const auto text = [](double value) { return fmt::format("{}", value); };

@@ -25,8 +25,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kMicroseconds = 1e6;  // in a second
+
 double seconds(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) * 1e-6;
+  return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) / kMicroseconds;
 }
 
 // Starts a program as the leader of a process group of its own: all of it can be ended.

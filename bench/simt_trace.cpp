@@ -1,26 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The shader text asks its host for samples and quads: here they come from memory, and a trace notes their addresses.
 
-// What the text marks, before anything includes it.
-#define SCARP_COUNT(block) ::scarp::bench::note_block(::scarp::bench::SimtBlock::block)
-
+#include "bench/simt_note.h"
+// After the definition of SCARP_COUNT, as all that includes the text.
 #include "bench/simt_trace.h"
-
-namespace scarp::bench {
-namespace {
-
-// Null: nothing is noted.
-thread_local SimtTrace* noted = nullptr;
-
-void note_block(SimtBlock block) {
-  if (noted) noted->enter(block);
-}
-void note_fetch(std::uint64_t address, std::uint64_t bytes) {
-  if (noted) noted->fetch(address, bytes);
-}
-
-}  // namespace
-}  // namespace scarp::bench
 
 #include <algorithm>
 #include <cmath>

@@ -1,26 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The shader text asks its host for masks and bytes: here they come from memory, and a trace notes their addresses.
 
-// What the text marks, before anything includes it.
-#define SCARP_COUNT(block) ::scarp::bench::note_voxel_block(::scarp::bench::SimtBlock::block)
-
+#include "bench/simt_note.h"
+// After the definition of SCARP_COUNT, as all that includes the text.
 #include "bench/simt_voxel_trace.h"
-
-namespace scarp::bench {
-namespace {
-
-// Null: nothing is noted.
-thread_local SimtTrace* noted_voxels = nullptr;
-
-void note_voxel_block(SimtBlock block) {
-  if (noted_voxels) noted_voxels->enter(block);
-}
-void note_voxel_fetch(std::uint64_t address, std::uint64_t bytes) {
-  if (noted_voxels) noted_voxels->fetch(address, bytes);
-}
-
-}  // namespace
-}  // namespace scarp::bench
 
 #include <algorithm>
 #include <array>
@@ -68,14 +51,14 @@ bool scarp_voxel_words() { return false; }
 uvec2 scarp_voxel_mask(const ivec3& brick) {
   const VoxelGrid& grid = *bench::marched_grid->grid;
   const std::uint64_t index = grid.brick_index(brick), page = index / VoxelGrid::kPageBricks;
-  bench::note_voxel_fetch(bench::marched_address + sizeof(uint) * page, sizeof(uint));
+  bench::note_fetch(bench::marched_address + sizeof(uint) * page, sizeof(uint));
   const std::uint64_t at = grid.page_table()[page] + index % VoxelGrid::kPageBricks;
-  bench::note_voxel_fetch(bench::marched_address + bench::kMasks + sizeof(uvec2) * at, sizeof(uvec2));
+  bench::note_fetch(bench::marched_address + bench::kMasks + sizeof(uvec2) * at, sizeof(uvec2));
   return halves(grid.mask(brick));
 }
 uvec2 scarp_voxel_sector(const ivec3& sector) {
   const BrickMasks::Level& level = bench::marched_grid->bricks->levels()[0];
-  bench::note_voxel_fetch(bench::marched_address + bench::kMarks + sizeof(uvec2) * level.index(sector), sizeof(uvec2));
+  bench::note_fetch(bench::marched_address + bench::kMarks + sizeof(uvec2) * level.index(sector), sizeof(uvec2));
   return halves(level.mask(sector));
 }
 uint scarp_voxel_byte(const ivec3& voxel, uint octant) {
@@ -86,7 +69,7 @@ uint scarp_voxel_byte(const ivec3& voxel, uint octant) {
   const std::uint64_t of_octant = target.octants ? x * y * z * octant : 0;
   const std::uint64_t at = of_octant + static_cast<std::uint64_t>(voxel.x) +
                            x * (static_cast<std::uint64_t>(voxel.y) + y * static_cast<std::uint64_t>(voxel.z));
-  bench::note_voxel_fetch(bench::marched_address + bench::kMarks + at / sizeof(uint) * sizeof(uint), sizeof(uint));
+  bench::note_fetch(bench::marched_address + bench::kMarks + at / sizeof(uint) * sizeof(uint), sizeof(uint));
   if (target.spheres) return static_cast<uint>(target.spheres->distance(voxel));
   if (target.cubes) return static_cast<uint>(target.cubes->distance(voxel));
   return static_cast<uint>(target.octants->side(voxel, static_cast<int>(octant)));
@@ -189,7 +172,7 @@ struct TurnedRay {
   double t_per_s = 0;
 
   void set(std::uint32_t to, const glm::dmat3& grid_from_world, const dvec3& direction) {
-    note_voxel_block(SimtBlock::turned);
+    note_block(SimtBlock::turned);
     turn = to;
     given = grid_from_world * direction;
     back = 0;
@@ -210,7 +193,7 @@ struct ObjectRay {
   bool met = true;
 
   ObjectRay(const TurnedRay& ray, const dvec3& origin, double t_min, double t_max, const VoxelBox& box) {
-    note_voxel_block(SimtBlock::object);
+    note_block(SimtBlock::object);
     glsl::ScarpVoxelClip clip{t_min, t_max, -1};
     for (int axis = 0; axis < 3; ++axis) {
       met = glsl::scarp_voxel_clip(axis, origin[axis], ray.given[axis], ray.inverse[axis], box.low[axis],
@@ -244,7 +227,7 @@ SimtVoxels::~SimtVoxels() = default;
 Hit SimtVoxels::trace(const Ray& ray, SimtTrace* trace) const {
   const Impl& all = *impl_;
   Hit best;
-  noted_voxels = trace;
+  noted = trace;
   BoxRay boxes(ray, all.tree);
   if (boxes.met && !all.nodes.empty()) {
     TurnedRay turned;
@@ -252,7 +235,7 @@ Hit SimtVoxels::trace(const Ray& ray, SimtTrace* trace) const {
     std::vector<std::uint32_t> waiting;  // a node, and the children that are left
     std::uint32_t node = 0, rest = 15;
     for (bool over = false; !over;) {
-      note_voxel_block(SimtBlock::frame);
+      note_block(SimtBlock::frame);
       const std::uint32_t child = boxes.nearest_child(all.nodes[node], rest);
       if (rest != 0) waiting.push_back(node << 4 | rest);
       node = child;
@@ -275,7 +258,7 @@ Hit SimtVoxels::trace(const Ray& ray, SimtTrace* trace) const {
       marched_address = std::uint64_t{object.model} << kGridBits;
       int turns = std::numeric_limits<int>::max();
       if (!glsl::scarp_first_voxel(all.march, begun.walk, turns)) continue;
-      note_voxel_block(SimtBlock::hit);
+      note_block(SimtBlock::hit);
       const double t = glsl::scarp_voxel_time(begun.walk, begun.t, turned.t_per_s);
       if (!(t < t_max || (t == t_max && (!best || object.part <= best.part)))) continue;
       t_max = t;
@@ -286,9 +269,9 @@ Hit SimtVoxels::trace(const Ray& ray, SimtTrace* trace) const {
       best.face = static_cast<VoxelFace>(glsl::scarp_voxel_face(begun.walk, begun.entered));
       boxes.end = std::min(boxes.end, boxes.end_of(t));
     }
-    note_voxel_block(SimtBlock::answer);
+    note_block(SimtBlock::answer);
   }
-  noted_voxels = nullptr;
+  noted = nullptr;
   return best;
 }
 

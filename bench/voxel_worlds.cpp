@@ -26,7 +26,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMiB = 1 << 20;
+constexpr double kMiB = 1 << 20, kMillion = 1e6;
 constexpr int kTile = 8;
 
 // Tops of columns, one per sample, so that the lowest is 1.
@@ -161,7 +161,7 @@ void run_voxel_worlds(const VoxelWorldsOptions& options, const ReportOptions& re
                 {"solid", solid},
                 {"engine", engines[e].name},
                 {"mode", engines[e].mode},
-                {"mrays_per_cpu_s", 1e-6 * count / median(seconds[e])},
+                {"mrays_per_cpu_s", count / kMillion / median(seconds[e])},
                 {"hit_share", static_cast<double>(hits[e]) / count},
                 {"other_ppm", 1e6 * static_cast<double>(others[e]) / count},
                 {"steps_per_ray", steps[e] ? Json(*steps[e]) : Json()},

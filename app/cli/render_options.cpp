@@ -175,7 +175,7 @@ void add_light_options(Command& command, RenderOptions& o) {
                                  kEveryInput & ~kFunction}}});
 }
 
-// Without `frames` there are no options of several pictures.
+// `frames`: whether the command has options for several pictures.
 void add_camera_options(Command& command, RenderOptions& o, bool frames) {
   const auto add = [&](Binding to, Option option) {
     option.topic = Topic::camera;

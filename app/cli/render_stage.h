@@ -31,7 +31,7 @@ class RenderStage {
   InputKind kind() const { return kind_; }
   PictureSettings& picture() { return options_.picture; }
   const PictureSettings& picture() const { return options_.picture; }
-  /// Of the files alone; that of the pictures may be coarser, and on a device.
+  /// The scene as it was read. scene() may have coarser voxels or be on a device.
   const Scene& given_scene() const { return input_.scene; }
   const Scene& scene() const { return scene_; }
   const RenderInput& input() const { return input_; }

@@ -88,7 +88,9 @@ void draw_cost(const PanelState& state) {
   ImGui::Text("%s, %d x %d, %.0f ms%s", kStages[static_cast<std::size_t>(state.shown->stage)], image.width,
               image.height, 1e3 * state.shown->seconds, state.busy ? " ..." : "");
   if (image.width > 0 && state.shown->seconds > 0) {
-    ImGui::Text("%.1f million pixels per second on %s", 1e-6 * image.width * image.height / state.shown->seconds,
+    constexpr double kMillion = 1e6;
+    ImGui::Text("%.1f million pixels per second on %s",
+                static_cast<double>(image.width) * image.height / kMillion / state.shown->seconds,
                 state.device.c_str());
   }
 }

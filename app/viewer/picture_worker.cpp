@@ -13,6 +13,8 @@ namespace scarp::viewer {
 namespace {
 
 constexpr int kLeastRows = 90;
+// No clock resolves less.
+constexpr double kLeastSeconds = 1e-6;
 // Of the measured rate: pictures of one view differ in cost.
 constexpr double kCaution = 0.8;
 
@@ -115,7 +117,8 @@ bool PictureWorker::render_stage(const PictureRequest& request, PictureStage sta
   }
   worked.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   if (stage == PictureStage::moving && worked.error.empty())
-    pixels_per_second_ = static_cast<double>(settings.width) * settings.height / std::max(worked.seconds, 1e-6);
+    pixels_per_second_ =
+        static_cast<double>(settings.width) * settings.height / std::max(worked.seconds, kLeastSeconds);
   const bool failed = !worked.error.empty();
   {
     const std::scoped_lock lock(mutex_);

@@ -13,7 +13,7 @@
 
 namespace scarp::viewer {
 
-/// Coordinates in which places are told, beside metres: those that the input's georeference allows.
+/// The coordinates besides metres in which the window shows places, as far as the input's georeference allows.
 struct ReadingFrames {
   explicit ReadingFrames(const cli::PlaceRaster& raster);
   std::unique_ptr<CoordinateFrame> map{}, lonlat{};  ///< null: it allows none
@@ -26,8 +26,8 @@ struct Reading {
   std::vector<std::string> lines{};  ///< "x 1203.4 m, y 880.1 m, height 512.3 m"
 };
 
-/// Follows the ray through (x, y) of the camera's picture. Nullopt if it meets nothing. `scene` is on the CPU; heights
-/// are told without `exaggeration`.
+/// Follows the ray through (x, y) of the camera's picture. Nullopt if it meets nothing. `scene` is on the CPU. Heights
+/// in the text are divided by `exaggeration`.
 std::optional<Reading> read_under(const Scene& scene, const Camera& camera, const dvec2& at,
                                   const ReadingFrames& frames, double exaggeration);
 

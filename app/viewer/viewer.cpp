@@ -119,8 +119,8 @@ class Viewer {
     const Camera first = stage->camera();
     auto frames = std::make_unique<ReadingFrames>(stage->input().raster);
     // Rays of single points are the CPU's.
-    auto navigator = std::make_unique<Navigator>(stage->given_scene(), first, stage->input().view.fov_deg,
-                                                 std::max(stage->input().across, 1e-9));
+    auto navigator =
+        std::make_unique<Navigator>(stage->given_scene(), first, stage->input().view.fov_deg, stage->input().across);
     worker_.reset();
     navigator_ = std::move(navigator), frames_ = std::move(frames), stage_ = std::move(stage);
     settings_ = stage_->picture();

@@ -25,10 +25,6 @@ class BrickMasks {
 
   /// Mask of the sector with these coordinates, which must exist.
   std::uint64_t sector(const ivec3& sector) const { return levels_[0].mask(sector); }
-  /// Sectors per axis, and all masks, x fastest; of grids with more than 2^33 voxels in chunks (Level::masks).
-  const ivec3& sectors() const { return levels_[0].size; }
-  std::span<const std::uint64_t> masks() const { return levels_[0].masks.values().first(levels_[0].masks.size()); }
-
   /// The largest side of grids that have sectors only.
   static constexpr int kOneLevel = 512;
   /// Cells of 16 * 4^level voxels a side. Bit i of a mask: whether the cell i of the level below has solid voxels.

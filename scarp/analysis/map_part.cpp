@@ -73,7 +73,8 @@ RowBand rows_towards(const HeightField& field, const SunDirection& sun, const Ro
 
 void require_band(const HeightField& field, const RowBand& band) {
   if (band.first < 0 || band.last > field.rows() || band.first >= band.last)
-    throw Error(fmt::format("rows {} to {} are no part of a map of {} rows", band.first, band.last - 1, field.rows()));
+    throw Error(
+        fmt::format("rows {} to {}: not within the {} rows of the map", band.first, band.last - 1, field.rows()));
 }
 
 RowBand row_band(int rows, int part, int parts) {

@@ -152,13 +152,15 @@ TEST(BilinearGround, CountsWhatLiesBetweenCrossings) {
   EXPECT_TRUE(line_of_sight(field, {0, 0, 4}, {1, 1, 4}, {.coefficient = 0}).visible);
   const auto low = ground.line_of_sight({0, 0, 4}, {1, 1, 4});
   ASSERT_FALSE(low.visible);
-  EXPECT_NEAR(low.clearance, -1, 1e-9);
-  EXPECT_NEAR(low.clearance_along, 0.5, 1e-9);
-  EXPECT_NEAR(low.obstruction->along, 0.5 - std::sqrt(0.05), 1e-9);  // 20 t (1 - t) = 4
-  EXPECT_NEAR(low.obstruction->height, 4, 1e-9);
+  // Numbers up to 20, and a root whose derivative is below 1 there: some tens of roundings.
+  constexpr double kRoundings = 20 * 0x1p-47;
+  EXPECT_NEAR(low.clearance, -1, kRoundings);
+  EXPECT_NEAR(low.clearance_along, 0.5, kRoundings);
+  EXPECT_NEAR(low.obstruction->along, 0.5 - std::sqrt(0.05), kRoundings);  // 20 t (1 - t) = 4
+  EXPECT_NEAR(low.obstruction->height, 4, kRoundings);
   const auto high = ground.line_of_sight({0, 0, 5.5}, {1, 1, 5.5});
   EXPECT_TRUE(high.visible);
-  EXPECT_NEAR(high.clearance, 0.5, 1e-9);
+  EXPECT_NEAR(high.clearance, 0.5, kRoundings);
 }
 
 TEST(BilinearGround, GrazingIsVisible) {

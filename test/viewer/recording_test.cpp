@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Recordings are read as written, and what is wrong in them is told by line.
+// Recordings are read as written; errors name the line.
 #include "app/viewer/recording.h"
 
 #include <gtest/gtest.h>

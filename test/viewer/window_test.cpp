@@ -161,7 +161,6 @@ TEST_F(Window, TakesRealPressesAndDrags) {
           "xdotool click 4 sleep 0.1 keydown c sleep 0.1 keyup c sleep 0.1 key Escape"),
       0)
       << output_;
-  // The command's camera is no longer that of the start.
   EXPECT_TRUE(output_.starts_with("scarp render dem.tif -o picture.png --size 320x240 --eye=")) << output_;
   const std::string events = bytes_of("events");
   for (const char* event : {"button 0 1 0", "button 0 0 0", "wheel 0 1", "key 67 1 0", "key 256 1 0"})

@@ -7,7 +7,7 @@
 
 namespace scarp {
 
-/// Of a grid whose corner is at the voxel `low` of the world, with voxels of `side` metres. Without colours.
+/// Converts a grid without its colours. Its corner is at voxel `low` of the world; voxels have a side of `side` metres.
 VdbVoxels vdb_of(const VoxelGrid& grid, const ivec3& low, double side);
 
 }  // namespace scarp
