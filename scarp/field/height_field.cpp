@@ -309,9 +309,34 @@ dvec3 HeightField::normal(Cell cell, double u, double v) const {
   return normalize(dvec3(-slope.x, -slope.y, 1.0));
 }
 
-dvec3 HeightField::shading_normal(Cell cell, double u, double v) const {
+// The common case of shading_normal(), with the same operations: all neighbours exist.
+template <class T>
+dvec3 HeightField::shading_normal_inside(const SampleGrid<T>& grid, Cell cell, double u, double v) const {
+  const T* rows[4];
+  for (int i = 0; i < 4; ++i) rows[i] = grid.row(cell.row - 1 + i) + (cell.col - 1);
+  const auto half = [](T behind, T ahead) { return (static_cast<double>(ahead) - static_cast<double>(behind)) / 2; };
+  dvec2 sum(0.0);
+  for (int dr = 0; dr < 2; ++dr) {
+    for (int dc = 0; dc < 2; ++dc) {
+      const double weight = (dc ? u : 1 - u) * (dr ? v : 1 - v);
+      sum.x += weight * half(rows[dr + 1][dc], rows[dr + 1][dc + 2]);
+      sum.y += weight * half(rows[dr][dc + 1], rows[dr + 2][dc + 1]);
+    }
+  }
+  return normal_of_slopes(sum);
+}
+
+// Of slopes in sample units per cell, rows southwards.
+dvec3 HeightField::normal_of_slopes(const dvec2& slopes) const {
   const double metres = settings_.scale * settings_.exaggeration;
+  return normalize(dvec3(-slopes.x * metres * per_cell_x_, slopes.y * metres * per_cell_y_, 1.0));
+}
+
+dvec3 HeightField::shading_normal(Cell cell, double u, double v) const {
   return visit([&](const auto& grid) {
+    if (!grid.has_holes && cell.col > 0 && cell.col + 2 < cols_ && cell.row > 0 && cell.row + 2 < rows_) {
+      return shading_normal_inside(grid, cell, u, v);
+    }
     // Difference over the widest span of valid samples around a node, along one axis.
     const auto slope = [&](int col, int row, int dcol, int drow) {
       // Both sides of a shared border are one node: its outer neighbour is the second node of the other side.
@@ -336,7 +361,7 @@ dvec3 HeightField::shading_normal(Cell cell, double u, double v) const {
         sum.y += weight * slope(cell.col + dc, cell.row + dr, 0, 1);
       }
     }
-    return normalize(dvec3(-sum.x * metres * per_cell_x_, sum.y * metres * per_cell_y_, 1.0));
+    return normal_of_slopes(sum);
   });
 }
 

@@ -235,6 +235,9 @@ class HeightField {
   template <class T, class Sample>
   void require_shared_border(const SampleGrid<T>& grid, const Sample& sample) const;
   CellBox cells_of(const SampleRect& rect) const;
+  template <class T>
+  dvec3 shading_normal_inside(const SampleGrid<T>& grid, Cell cell, double u, double v) const;
+  dvec3 normal_of_slopes(const dvec2& slopes) const;
 
   // A position on the border stays there: rounding must not move it out of the field.
   double col_from_x(double x) const {

@@ -70,6 +70,10 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
     t_out = std::min(t_out, std::max(a, b));
   }
   if (!(t_in <= t_out)) return {};
+  const bool has_holes = field_.nodata_count() > 0;
+  const bool from_top = side == 2 && local.direction.z < 0;
+  // Behind the border only rims of holes have walls.
+  if (from_top && !has_holes) return {};
 
   // Walk the cells from crossing to crossing.
   std::array<int, 2> cell{}, step{};
@@ -88,11 +92,9 @@ std::optional<Plinth::Wall> Plinth::intersect(const Ray& ray) const {
     step[i] = d > 0 ? 1 : -1;
     next[i] = crossing_ahead(i);
   }
-  const bool has_holes = field_.nodata_count() > 0;
   double t = t_in;
   std::size_t crossed = side == 1 ? 1 : 0;
   bool from_outside = side == 0 || side == 1;
-  const bool from_top = side == 2 && local.direction.z < 0;
   if (!from_outside && !from_top) {
     const auto heights = field_.cell_heights({cell[0], cell[1]});
     if (heights && under_ground(field_, *heights, cell, local, t)) return {};

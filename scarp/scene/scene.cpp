@@ -270,20 +270,38 @@ bool Scene::any(const StartedRay& ray) const {
          tree_blocks(ray);
 }
 
+namespace {
+
+bool all_free(std::span<const Ray> rays, std::span<const Hit* const> from) {
+  return from.empty() && std::all_of(rays.begin(), rays.end(), [](const Ray& r) { return r.start == RayStart::free; });
+}
+
+}  // namespace
+
 void Scene::closest_of_piece(std::span<const Ray> rays, From from, std::span<Hit> hits, const SceneRules* rules) const {
-  std::vector<Ray> locals(rays.size());
+  std::vector<Ray> locals;
   std::vector<const Hit*> on_object(from.size());
   std::vector<Hit> answers(rays.size());
   std::fill(hits.begin(), hits.end(), Hit{});
+  bool any_hit = false;
   for (const std::uint32_t object : beside_tree_) {
     if (!sees(rules, objects_[object])) continue;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      const StartedRay ray(rays, from, i);
-      make_local(ray, object, hits[i], locals[i]);
-      if (!from.empty()) on_object[i] = ray.from_on(object);
+    // Without hits so far, free rays are those of an object in its place.
+    std::span<const Ray> asked = rays;
+    if (any_hit || !in_place_[object] || !all_free(rays, from)) {
+      locals.resize(rays.size());
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        const StartedRay ray(rays, from, i);
+        make_local(ray, object, hits[i], locals[i]);
+        if (!from.empty()) on_object[i] = ray.from_on(object);
+      }
+      asked = locals;
     }
-    field_of(object).closest_hits(locals, answers, on_object);
-    for (std::size_t i = 0; i < rays.size(); ++i) take_hit(answers[i], object, hits[i]);
+    field_of(object).closest_hits(asked, answers, on_object);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      take_hit(answers[i], object, hits[i]);
+      any_hit = any_hit || hits[i].status != HitStatus::miss;
+    }
   }
   if (tree_.empty()) return;
   for (std::size_t i = 0; i < rays.size(); ++i) trace_tree({rays, from, i, rules}, hits[i], nullptr);

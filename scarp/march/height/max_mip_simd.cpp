@@ -242,8 +242,34 @@ class VectorWalk {
       all_free &= rays_[first + j].start == RayStart::free;
     }
     for (std::size_t j = count; j < N; ++j) r_.dx[j] = r_.dy[j] = 0;
-    for (std::size_t j = 0; !all_free && j < count; ++j) {
-      if (rays_[first + j].start == RayStart::on_surface) take_on_surface(j, first + j, fresh);
+    if (!all_free) start_on_surface(first, count, fresh);
+  }
+  void start_on_surface(std::size_t first, std::size_t count, Lanes& fresh) {
+    alignas(64) std::int32_t decided[N] = {};
+    if (!g_.triangles) {
+      Cells cells;
+      alignas(64) double on_surface[N] = {};
+      for (std::size_t j = 0; j < N; ++j) {
+        const Ray& ray = rays_[first + std::min(j, count - 1)];
+        const bool exists = ray.start_cell.col >= 0 && ray.start_cell.col <= g_.last_col && ray.start_cell.row >= 0 &&
+                            ray.start_cell.row <= g_.last_row;
+        on_surface[j] = j < count && exists && ray.start == RayStart::on_surface;
+        cells.load(g_, j, exists ? ray.start_cell.col : 0, exists ? ray.start_cell.row : 0);
+      }
+      leave_surface(f_, cells, on_surface, r_, decided);
+    }
+    for (std::size_t j = 0; j < count; ++j) {
+      if (rays_[first + j].start != RayStart::on_surface) continue;
+      if (decided[j] == kLeaves) {
+        r_.seen[j] = 1;
+      } else if (decided[j] == kNoHit || (any && decided[j] == kFalls)) {
+        fresh.ray[j] = -1, r_.dx[j] = r_.dy[j] = 0;
+        Hit hit;
+        if (decided[j] == kFalls) hit.status = HitStatus::hit;
+        put_answer(first + j, hit);
+      } else {
+        take_on_surface(j, first + j, fresh);
+      }
     }
   }
   void take_on_surface(std::size_t j, std::size_t index, Lanes& fresh) {
@@ -513,7 +539,6 @@ class VectorWalk {
   static constexpr std::size_t kCacheLine = 64;  // bytes; with longer lines some are requested twice
   static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that form a beam
   static constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << N) - 1;
-  static constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
   // In cells, to the origin of a ray and to the last copy traversed here. Horizontally, |origin| + |path| along x and y
   // is then at most eight times that plus twice the sides of a copy, also in the frames of copies.
   static constexpr double kFarthestCopy = 0x1p17;

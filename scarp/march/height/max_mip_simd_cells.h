@@ -20,6 +20,8 @@ namespace {
 
 using MD = hn::Mask<decltype(dd)>;
 
+constexpr double kNearCell = 0x1p-20;  // of a cell, far beyond rounding
+
 // One cell per lane, and its corners in sample units. `first`: the first lines of its copy of the ground; 0 if the
 // ground is not wrapped, or rays are in the frame of the copy.
 struct Cells {
@@ -166,6 +168,61 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
     const auto up = hn::Min(crossed, hn::Set(di_part, 1));
     hn::Store(hn::Max(hn::Load(di_part, a.level + part), up), di_part, a.level + part);
     hn::Store(hn::DemoteTo(df_part, hn::IfThenElse(clear, way, place(a.T))), df_part, a.T + part);
+  }
+}
+
+// What becomes of rays in the cell on whose surface they start. kUndecided: the scalar traversal decides.
+enum FirstCell : std::int32_t { kUndecided, kLeaves, kNoHit, kFalls };
+
+// For rays in `r` with `on_surface` 1, their start cells in `cells`: what Walk::leave_start_cell() does, by the same
+// operations in the same order, except within rounding of a hit and for rare paths. Rays that leave their cell get the
+// height of the surface they start on and begin behind the cell.
+HWY_NOINLINE void leave_surface(const FieldFrame& f, const Cells& cells, const double* on_surface, GridRays& r,
+                                std::int32_t* first_cell) {
+  for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) {
+    const VD zero = hn::Zero(dd), one = hn::Set(dd, 1), cols = hn::Set(dd, f.cols), rows = hn::Set(dd, f.rows);
+    CellRays c(r, cells, part);
+    const VD t_in = hn::Load(dd, r.t_min + part), t_max = hn::Load(dd, r.t_max + part);
+    const VD tx = c.x_out(), ty = c.y_out(), t_line = hn::Min(tx, ty);
+    const auto is_in = [](VD o, VD d, VD t, VD cell) HWY_ATTR {
+      const VD off = hn::Sub(hn::Sub(hn::Add(o, hn::Mul(d, t)), cell), hn::Set(dd, 0.5));
+      return hn::Lt(hn::Abs(off), hn::Set(dd, 0.5 + kNearCell));
+    };
+    const VD longest = hn::Max(hn::Abs(c.dx), hn::Abs(c.dy));
+    const MD usual = hn::And(hn::Gt(longest, hn::Set(dd, 0x1p-300)), hn::Lt(longest, hn::Set(dd, 0x1p300)));
+    const MD placed = hn::And(is_in(c.ox, c.dx, t_in, c.col), is_in(c.oy, c.dy, t_in, c.row));
+    const MD known = hn::And(hn::And(hn::Eq(hn::Load(dd, on_surface + part), one), placed),
+                             hn::And(hn::And(c.moves(), usual), hn::Gt(t_line, t_in)));
+    const VD u = c.u(t_in), v = c.v(t_in), hu = hn::Sub(c.h10, c.h00), hv = hn::Sub(c.h01, c.h00);
+    const VD twist = hn::Sub(hn::Sub(c.h11, c.h01), hu);
+    const VD surface = hn::Add(hn::Add(hn::Add(c.h00, hn::Mul(hu, u)), hn::Mul(hv, v)), hn::Mul(hn::Mul(twist, u), v));
+    c.oz = hn::Sub(surface, hn::Mul(c.dz, t_in));
+    // Without the root at the start, the clearance s (a s + b) is below right after it, or after the second root.
+    const auto [a, b, at_start] = c.clearance_from(t_in);
+    const VD length = hn::Sub(t_line, t_in);
+    const MD dips = hn::And(hn::And(hn::Gt(a, zero), hn::Lt(b, zero)),
+                            hn::Lt(hn::Neg(b), hn::Mul(hn::Mul(hn::Set(dd, 2), a), length)));
+    const VD last = hn::Mul(length, hn::Add(hn::Mul(a, length), b));
+    const VD bottom = hn::Div(hn::Mul(hn::Neg(b), b), hn::Mul(hn::Set(dd, 4), a));
+    const VD lowest = hn::IfThenElse(dips, bottom, last);
+    const MD may_fall = hn::Lt(lowest, zero);
+    const VD doubt = rounding(f, c.ox, c.oy, c.oz, c.dx, c.dy, c.dz, t_in);
+    const VD root = hn::Div(b, hn::Neg(a));
+    const VD s = hn::IfThenZeroElse(hn::Or(hn::Lt(b, zero), hn::Eq(a, zero)), root);
+    const VD t_hit = hn::IfThenElse(hn::Gt(s, zero), hn::Min(hn::Add(t_in, s), t_line), t_in);
+    const MD falls = hn::And(known, hn::Lt(lowest, hn::Neg(doubt))), hits = hn::And(falls, hn::Lt(t_hit, t_max));
+    // At its border a ray leaves the field through a line that ends it.
+    const VD exit_x = CellRays::line(hn::IfThenElse(c.back_x, zero, cols), c.ox, c.per_x);
+    const VD exit_y = CellRays::line(hn::IfThenElse(c.back_y, zero, rows), c.oy, c.per_y);
+    const VD t_end = hn::Min(t_max, hn::Min(exit_x, exit_y));
+    const MD on = hn::AndNot(may_fall, known);
+    const MD leaves = hn::And(on, hn::Lt(t_line, t_end));
+    const auto number = [](MD where, FirstCell what) HWY_ATTR { return hn::IfThenElseZero(where, hn::Set(dd, what)); };
+    const VD found = hn::Add(hn::Add(number(leaves, kLeaves), number(hits, kFalls)),
+                             hn::Add(number(hn::AndNot(leaves, on), kNoHit), number(hn::AndNot(hits, falls), kNoHit)));
+    hn::Store(hn::DemoteTo(di_part, found), di_part, first_cell + part);
+    hn::Store(hn::IfThenElse(leaves, c.oz, hn::Load(dd, r.oz + part)), dd, r.oz + part);
+    hn::Store(hn::IfThenElse(leaves, t_line, t_in), dd, r.t_min + part);
   }
 }
 

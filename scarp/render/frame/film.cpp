@@ -10,7 +10,7 @@ namespace scarp {
 namespace {
 
 // Pixels along a tile's side: neighbouring rays meet the same cells, and a tile is some milliseconds of work.
-constexpr int kTile = 16;
+constexpr int kTile = 32;
 constexpr int kMostPointsPerSide = 32;
 static_assert(kMostPointsPerSide * kMostPointsPerSide == kMostPointsOfTile);
 

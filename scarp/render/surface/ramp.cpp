@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <string>
 
 #include "scarp/base/error.h"
@@ -54,6 +57,43 @@ std::vector<vec3> from_stops(std::span<const Stop> stops) {
   }
   return colours;
 }
+
+// scarp_srgb_byte() without its power: the byte at the beginning of a piece of the channel's range, and whether the
+// next byte has begun. No piece holds the beginnings of two.
+class SrgbBytes {
+ public:
+  SrgbBytes() {
+    for (std::size_t byte = 1; byte < begin_.size() - 1; ++byte) begin_[byte] = first_with(static_cast<float>(byte));
+    begin_.back() = std::numeric_limits<float>::infinity();
+    for (std::uint32_t i = 0; i < kPieces; ++i) byte_[i] = by_power(std::bit_cast<float>(kFirst + (i << kShift)));
+  }
+  unsigned char operator()(float linear) const {
+    if (!(linear > 0)) return 0;
+    if (linear >= 1) return 255;
+    const std::uint32_t bits = std::max(std::bit_cast<std::uint32_t>(linear), kFirst);
+    const unsigned byte = byte_[(bits - kFirst) >> kShift];
+    return static_cast<unsigned char>(byte + (linear >= begin_[byte + 1]));
+  }
+
+ private:
+  // Pieces of floats from 2^-13, which is black, to 1: 256 of each power of two.
+  static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(0x1p-13f), kShift = 15;
+  static constexpr std::uint32_t kPieces = (std::bit_cast<std::uint32_t>(1.0f) - kFirst) >> kShift;
+
+  static unsigned char by_power(float linear) { return static_cast<unsigned char>(glsl::scarp_srgb_byte(linear)); }
+  // The least float with this byte.
+  static float first_with(float byte) {
+    std::uint32_t below = 0, from = std::bit_cast<std::uint32_t>(1.0f);
+    while (from - below > 1) {
+      const std::uint32_t middle = below + (from - below) / 2;
+      (glsl::scarp_srgb_byte(std::bit_cast<float>(middle)) < byte ? below : from) = middle;
+    }
+    return std::bit_cast<float>(from);
+  }
+
+  std::array<float, 257> begin_{};
+  std::array<unsigned char, kPieces> byte_{};
+};
 
 }  // namespace
 
@@ -106,6 +146,9 @@ vec3 Ramp::operator()(double value) const {
 
 vec3 linear_from_srgb(vec3 srgb) { return glsl::scarp_linear_from_srgb(srgb); }
 
-unsigned char srgb_byte(float linear) { return static_cast<unsigned char>(glsl::scarp_srgb_byte(linear)); }
+unsigned char srgb_byte(float linear) {
+  static const SrgbBytes bytes;
+  return bytes(linear);
+}
 
 }  // namespace scarp

@@ -2,7 +2,9 @@
 // Ramps, light and sky.
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <glm/trigonometric.hpp>
 #include <limits>
 #include <string>
@@ -10,6 +12,7 @@
 #include "scarp/base/error.h"
 #include "scarp/render/frame/film.h"
 #include "scarp/render/light/light.h"
+#include "scarp/render/surface/colour.glsl.h"
 #include "scarp/render/surface/ramp.h"
 #include "scarp/render/surface/ramp_tables.h"
 
@@ -77,6 +80,18 @@ TEST(Ramp, BytesSurviveTheWayThroughLinearLight) {
     const auto s = static_cast<float>(byte) / 255.0f;
     EXPECT_EQ(srgb_byte(linear_from_srgb({s, s, s}).y), byte);
   }
+}
+
+// srgb_byte() uses a table; all floats around the beginnings of bytes, and some of the others.
+TEST(Ramp, BytesAreThoseOfTheShaders) {
+  const auto expect_same = [](float linear) { ASSERT_EQ(srgb_byte(linear), glsl::scarp_srgb_byte(linear)) << linear; };
+  for (std::uint32_t bits = 0; bits < 0x40000000; bits += 4001) expect_same(std::bit_cast<float>(bits));
+  for (std::uint32_t bits = 1; bits < 0x3f800000; bits += 1024) {
+    const float here = std::bit_cast<float>(bits), next = std::bit_cast<float>(bits + 1024);
+    if (srgb_byte(here) == srgb_byte(next)) continue;
+    for (std::uint32_t i = 0; i < 1024; ++i) expect_same(std::bit_cast<float>(bits + i));
+  }
+  for (const float linear : {-1.0f, -0.0f, 1e30f, std::numeric_limits<float>::infinity()}) expect_same(linear);
 }
 
 TEST(Light, LevelGroundInFullSunIsOne) {
