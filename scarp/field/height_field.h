@@ -177,6 +177,9 @@ class HeightField {
   /// borders and holes), interpolated bilinearly.
   dvec3 shading_normal(Cell cell, double u, double v) const;
 
+  /// Asks for the samples that shading_normal() of this cell reads. The cell must exist.
+  void prefetch_around(Cell cell) const;
+
   /// Overwrites a rectangle of samples and returns the cells that changed, for updates of accelerators. `stride` counts
   /// samples per row of `samples`. T must match sample_type(). Throws Error, changing nothing, for a rectangle that is
   /// empty or not inside the field, a null pointer, rows that overlap, another sample type, an infinite sample, a

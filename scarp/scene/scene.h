@@ -122,6 +122,8 @@ class Scene {
 
   /// Returns the surface at a hit of this ray: position, normals, material, colour.
   SceneSurface surface(const Ray& ray, const Hit& hit) const;
+  /// Asks for the memory that surface() of this hit will read.
+  void prefetch_surface(const Hit& hit) const { field_of(hit.object).prefetch_surface(hit); }
 
   /// Returns SceneSurface::material of a hit, alone.
   std::uint32_t material(const Ray& ray, const Hit& hit) const;

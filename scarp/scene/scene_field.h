@@ -100,6 +100,8 @@ class SceneField {
   /// fields and tiles have one side. By default throws Error if the filter rejects a hit: not every march can go on.
   virtual Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const;
   virtual FieldSurface surface(const Ray& ray, const Hit& hit) const = 0;
+  /// Asks for the memory that surface() will read, so that it does not wait for it later.
+  virtual void prefetch_surface(const Hit&) const {}
   /// FieldSurface::material.
   virtual int material(const Ray& ray, const Hit& hit) const { return surface(ray, hit).material; }
 

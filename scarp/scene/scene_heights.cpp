@@ -99,6 +99,7 @@ class Heights final : public SceneField {
             .material = material(ray, hit),
             .height = height_at(hit)};
   }
+  void prefetch_surface(const Hit& hit) const override { field_.prefetch_around(hit.cell); }
   std::string no_contacts() const override {
     if (answered_by_ == AnsweredBy::back_end) return kNotOnCpu;
     if (!pyramid_) return fmt::format("scene: contacts need the march max-mip, not {}", march_.name);

@@ -25,15 +25,16 @@ class PlinthField final : public SceneField {
 
   Hit closest_hit(const Ray& ray, const Hit*, MarchStats* stats) const override {
     if (stats) *stats = {};
-    const std::optional<Plinth::Wall> wall = plinth_.intersect(ray);
-    if (!wall) return {};
     Hit hit;
-    hit.status = HitStatus::hit;
-    hit.wall = true;
-    hit.face = wall->face;
-    hit.t = wall->t;
-    hit.height = ray.at(wall->t).z;
+    if (const auto wall = plinth_.intersect(ray)) set(hit, ray, *wall);
     return hit;
+  }
+  // Most rays of a picture meet no wall.
+  void closest_hits(std::span<const Ray> rays, std::span<Hit> hits, std::span<const Hit* const>) const override {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      hits[i].status = HitStatus::miss;
+      if (const auto wall = plinth_.intersect(rays[i])) set(hits[i] = Hit{}, rays[i], *wall);
+    }
   }
   // A ray through a wall is inside, where it hits none.
   Hit accepted_hit(const Ray& ray, const Hit* from, const HitRules& rules, MarchStats* stats) const override {
@@ -52,6 +53,14 @@ class PlinthField final : public SceneField {
   bool likes_batches() const override { return true; }
 
  private:
+  static void set(Hit& hit, const Ray& ray, const Plinth::Wall& wall) {
+    hit.status = HitStatus::hit;
+    hit.wall = true;
+    hit.face = wall.face;
+    hit.t = wall.t;
+    hit.height = ray.at(wall.t).z;
+  }
+
   HeightField field_;
   Plinth plinth_;
   std::uint64_t edits_ = field_.edits();  // when the plinth was built

@@ -14,6 +14,8 @@ namespace {
 // Steps that fog by iterations and pictures of iterations take for the most, where the march has no such number.
 constexpr double kMostSteps = 256;
 constexpr std::string_view kFixedStep = "fixed-step";
+// Points whose surfaces are asked of memory ahead of time.
+constexpr std::size_t kPointsAhead = 8;
 
 // Surfaces of voxels, shapes and meshes that lie in the plane of the water: rounding decides which of the two a ray
 // meets first. Relative to the distance, or to the diagonal of the scene if that is longer. Rays through voxels are
@@ -227,6 +229,11 @@ void FrameTile::take_sent(const RayRound& round) {
   }
 }
 
+FrameTile::Seen* FrameTile::seen_or_sent(std::size_t i) {
+  if (i < seen_.size()) return &seen_[i];
+  return i - seen_.size() < sent_.size() ? &sent_[i - seen_.size()] : nullptr;
+}
+
 bool FrameTile::ask_light(RayRound& round) {
   if (shows_steps()) return false;
   const Lighting& lighting = view_.lighting();
@@ -237,7 +244,9 @@ bool FrameTile::ask_light(RayRound& round) {
   round.from.clear();
   for (; asked_points_ < seen_.size() + sent_.size(); ++asked_points_) {
     if (round.rays.size() + lighting.most_rays() > kMostRaysOfRound) return true;
-    Seen& seen = asked_points_ < seen_.size() ? seen_[asked_points_] : sent_[asked_points_ - seen_.size()];
+    Seen& seen = *seen_or_sent(asked_points_);
+    if (const Seen* soon = seen_or_sent(asked_points_ + kPointsAhead); soon && soon->hit)
+      view_.scene().prefetch_surface(soon->hit);
     const SceneSurface surface = seen.hit ? view_.scene().surface(seen.ray, seen.hit) : SceneSurface{};
     seen.lit = seen.hit && FrameView::is_lit(surface);
     if (!seen.lit) {

@@ -70,6 +70,8 @@ class FrameTile {
   void take_look(const RayRound& round);
   bool ask_sent(RayRound& round);
   void take_sent(const RayRound& round);
+  // By number, those of seen_ first; null after the last.
+  Seen* seen_or_sent(std::size_t i);
   bool ask_light(RayRound& round);
   void take_light(const RayRound& round);
   void find_water();
