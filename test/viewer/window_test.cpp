@@ -96,6 +96,19 @@ class Window : public testing::Test {
         << commands << "\nwait $pid\n";
     return run("timeout 60 bash use.sh");
   }
+  // Runs the command that P has printed in output_ for a picture: it makes the same file.
+  void expect_saved_again(int number) {
+    const std::string name = "scarp-view-" + std::to_string(number) + ".png", begin = name + ": scarp ";
+    const std::size_t at = output_.find(begin);
+    ASSERT_NE(at, std::string::npos) << output_;
+    std::string command = output_.substr(at + begin.size());
+    command.erase(command.find('\n'));
+    command.replace(command.find("-o " + name), 3 + name.size(), "-o again.png");
+    const std::string printed = output_;
+    ASSERT_EQ(run(SCARP_PROGRAM " " + command), 0) << output_;
+    EXPECT_TRUE(bytes_of(name) == bytes_of("again.png")) << command;
+    output_ = printed;
+  }
   std::string bytes_of(const std::string& name) const {
     std::ifstream in(folder_ / name, std::ios::binary);
     std::stringstream text;
@@ -114,12 +127,63 @@ constexpr const char* kSave = "1.0 key 80 1 0\n1.1 key 80 0 0\n";
 TEST_F(Window, SavesWhatRenderMakes) {
   ASSERT_EQ(view(std::string(kDrag) + kSave, "dem.tif --exaggeration 2 --samples 2"), 0) << output_;
   ASSERT_TRUE(output_.starts_with("scarp-view-1.png: scarp render dem.tif --exaggeration=2 ")) << output_;
-  std::string command = output_.substr(output_.find(": ") + 2);
-  command.replace(0, std::string("scarp").size(), SCARP_PROGRAM);
-  command.replace(command.find("-o scarp-view-1.png"), std::string("-o scarp-view-1.png").size(), "-o again.png");
-  command.pop_back();
-  ASSERT_EQ(run(command), 0) << output_;
-  EXPECT_TRUE(bytes_of("scarp-view-1.png") == bytes_of("again.png"));
+  expect_saved_again(1);
+}
+
+TEST_F(Window, SavesWhatRenderMakesOfItsSettings) {
+  // Water, fog and colours; ground that is opened again; a look with its scale; a part of a map; the sun, dragged.
+  const std::string kSettings[] = {
+      "0.7 option --water 300\n0.7 option --fog height\n0.7 option --visibility 9000\n0.7 option --ramp viridis\n",
+      "0.7 option --exaggeration 3\n0.7 option --no-plinth true\n0.7 option --haze 0.3\n",
+      "0.7 option --look steps\n0.7 option --steps-range 2,30\n0.7 option --march naive\n"
+      "0.7 option --naive-step-factor 0.3\n",
+      "0.7 key 84 1 0\n0.72 wheel 0 5\n0.74 button 1 1 0\n0.76 move 100 180\n0.78 button 1 0 0\n",
+      "0.7 button 0 1 2\n0.72 move 200 150\n0.74 button 0 0 2\n"};
+  for (const std::string& settings : kSettings) {
+    ASSERT_EQ(view(kDrag + settings + kSave, "dem.tif"), 0) << output_;
+    expect_saved_again(1);
+    std::istringstream lines(settings);
+    for (std::string word; lines >> word;) {
+      if (!word.starts_with("--")) continue;
+      EXPECT_NE(output_.find(word), std::string::npos) << word << ": " << output_;
+    }
+    fs::remove(folder_ / "scarp-view-1.png");
+  }
+  EXPECT_NE(output_.find("--sun="), std::string::npos) << output_;
+}
+
+TEST_F(Window, SavesBothSides) {
+  ASSERT_EQ(view(std::string(kDrag) + "0.7 compare march fixed-step\n0.8 key 67 1 0\n" + kSave, "dem.tif"), 0)
+      << output_;
+  EXPECT_TRUE(output_.starts_with("scarp render dem.tif -o left.png ")) << output_;
+  EXPECT_NE(output_.find("\nscarp render dem.tif --march=fixed-step -o right.png "), std::string::npos) << output_;
+  expect_saved_again(1);
+  expect_saved_again(2);
+  EXPECT_FALSE(bytes_of("scarp-view-1.png") == bytes_of("scarp-view-2.png"));
+}
+
+TEST_F(Window, TheLineBetweenTwoSidesIsDragged) {
+  // Over the whole width, so that one side alone is seen: that of the saved picture, without the panel.
+  const std::string drag_to = "0.8 move 160 30\n0.9 button 0 1 0\n1.0 move ";
+  for (const int side : {1, 2}) {
+    ASSERT_EQ(view(std::string(kDrag) + "0.7 compare look height\n0.72 key 258 1 0\n" + drag_to +
+                       (side == 1 ? "500" : "-50") + " 30\n1.1 button 0 0 0\n1.2 key 80 1 0\n",
+                   "dem.tif --screenshot window.png"),
+              0)
+        << output_;
+    EXPECT_TRUE(bytes_of("window.png") == bytes_of("scarp-view-" + std::to_string(side) + ".png")) << side;
+    fs::remove(folder_ / "scarp-view-1.png");
+    fs::remove(folder_ / "scarp-view-2.png");
+  }
+}
+
+TEST_F(Window, GoesOnAfterAWrongOption) {
+  ASSERT_EQ(view("0.1 option --samples -1\n0.2 option --waves 0.1\n0.3 option --nothing 1\n0.4 compare march none\n" +
+                     std::string(kSave),
+                 "dem.tif"),
+            0)
+      << output_;
+  expect_saved_again(1);
 }
 
 TEST_F(Window, RecordingsEndAtTheSamePicture) {
