@@ -253,7 +253,7 @@ class Viewer {
     if (event.down) {
       if (on_panel || dragging_ >= 0) return;
       dragging_ = event.code;
-      dragged_ = is_split() && line_.is_at(cursor_, size())  ? Dragged::line
+      dragged_ = compares() && line_.is_at(cursor_, size())  ? Dragged::line
                  : (event.modifiers & GLFW_MOD_CONTROL) != 0 ? Dragged::sun
                                                              : Dragged::view;
       way_ = 0;
@@ -418,12 +418,13 @@ class Viewer {
   bool is_complete() const {
     return shown_ && shown_->stage == PictureStage::converged && shown_->generation == generation_;
   }
-  bool is_split() const { return shown_ && shown_->sides.size() > 1; }
+  // Not by the picture in the window: recordings end at the same view, however long pictures take.
+  bool compares() const { return !subject_->compared().empty(); }
 
   void show_sides() {
     if (!shown_) return;
     const Image& first = shown_->sides.front().image;
-    if (is_split()) {
+    if (shown_->sides.size() > 1) {
       presenter_->set_image(split_image(first, shown_->sides[1].image, line_.column(first.width)));
     } else {
       presenter_->set_image(first);
@@ -449,7 +450,7 @@ class Viewer {
       io.MousePos = {static_cast<float>(cursor_.x), static_cast<float>(cursor_.y)};
     }
     ImGui::NewFrame();
-    if (is_split()) draw_split(line_.share() * ImGui::GetIO().DisplaySize.x, panel_.names);
+    if (compares()) draw_split(line_.share() * ImGui::GetIO().DisplaySize.x, panel_.names);
     PanelActions actions;
     if (shows_panel_) {
       panel_.mode = navigator_->pose().mode;
