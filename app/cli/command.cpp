@@ -188,6 +188,14 @@ void Command::require_effect(const Use& use) const {
   for (const Typed& one : typed_) check(*one.option);
 }
 
+std::vector<std::string> Command::without_effect(const Use& use) const {
+  std::vector<std::string> names;
+  for (const Typed& one : typed_) {
+    if (!has_effect(*one.option, use)) names.push_back(one.option->name);
+  }
+  return names;
+}
+
 void Command::set_values() {
   for (const bool first : {true, false}) {
     for (const Typed& one : typed_) {

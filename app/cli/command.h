@@ -54,6 +54,10 @@ class Command {
     const Declared* option;
     std::vector<std::string> values;
   };
+  /// In the order typed, each option once.
+  const std::vector<Typed>& all_typed() const { return typed_; }
+  /// The names of the options that were typed and have no effect.
+  std::vector<std::string> without_effect(const Use& use) const;
   /// Sets the variables and runs. Throws WrongUsage, and whatever the work throws.
   void run(std::vector<Typed> typed);
 

@@ -239,4 +239,13 @@ void require_effect(const Declared& declared, const Use& use) {
   }
 }
 
+bool has_effect(const Declared& declared, const Use& use) {
+  try {
+    require_effect(declared, use);
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
+}
+
 }  // namespace scarp::cli

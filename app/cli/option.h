@@ -137,6 +137,8 @@ struct Use {
   std::string_view march{};
 };
 void require_effect(const Declared& option, const Use& use);
+/// Returns whether require_effect() does not throw.
+bool has_effect(const Declared& option, const Use& use);
 
 /// The words of a text with single spaces.
 std::vector<std::string_view> words_of(std::string_view text);

@@ -30,8 +30,8 @@ constexpr std::int64_t kSamplesPerPixel = 16;
 std::int64_t samples_shown(const RenderOptions& options, const ViewSettings& view) {
   constexpr std::int64_t kLeast = kSamplesPerPixel * 1000 * 1000, kMost = Decimation{}.above;
   const PictureSettings& picture = options.picture;
-  if (options.moves || !options.eye.empty() || !options.frames.path.empty() || view.distance < 1 ||
-      options.is_given("--fov") || picture.look == Look::comanche)
+  if (options.moves || !options.eye.empty() || !options.area.empty() || !options.frames.path.empty() ||
+      view.distance < 1 || options.is_given("--fov") || picture.look == Look::comanche)
     return kMost;
   // The longer side is the width; the other one follows from the raster.
   const int height = options.top && options.size.empty() ? picture.width : picture.height;
@@ -78,14 +78,72 @@ void require_ground(const HeightField& field, const std::string& path) {
                     path));
 }
 
+// Meadows, dry grass and snow by height, rock where it is steep; or one of the ramps. The last one is the function's.
+std::vector<Material> materials_of(const ReliefRange& range, const std::string& ramp) {
+  if (!ramp.empty()) return {HeightRamp{ramp, range.low, range.high}};
+  const auto at = [&](double share) { return range.low + share * (range.high - range.low); };
+  return {HeightStops{{{at(0.0), {0.40f, 0.47f, 0.30f}},
+                       {at(0.35), {0.50f, 0.53f, 0.33f}},
+                       {at(0.6), {0.62f, 0.57f, 0.42f}},
+                       {at(0.8), {0.66f, 0.62f, 0.57f}},
+                       {at(0.88), {0.93f, 0.94f, 0.96f}}}},
+          PlainColour{{0.47f, 0.43f, 0.40f}}, Blend{Blend::By::slope, 30, 45, 0, 1}};
+}
+
+// Limits rays over functions to the distance at which haze hides everything.
+void settle_function(RenderOptions& options) {
+  const double extent = options.function.extent;
+  PictureSettings& picture = options.picture;
+  const double haze = options.is_given("--haze") ? picture.haze : kFunctionHaze;
+  picture.haze = haze;
+  picture.haze_distance = haze > 0 ? -extent / std::log1p(-haze) : kUnlimited;
+  double& reach = options.march_settings.function.reach;
+  if (std::isinf(reach)) reach = std::min(picture.haze_distance * std::log(kFaintest), kLongReach * extent);
+  if (std::isinf(picture.ao_distance)) picture.ao_distance = extent / 8;
+}
+
+void paint_function(const ReliefRange& heights, RenderOptions& options) {
+  const double extent = options.function.extent;
+  PictureSettings& picture = options.picture;
+  picture.ground_box =
+      WorldBox{{-0.5 * extent, -0.5 * extent, heights.low}, {0.5 * extent, 0.5 * extent, heights.high}};
+  // A ramp from a file and natural ground are painted by the renderer.
+  if (!picture.ground.natural && !picture.ramp_stops)
+    picture.materials = materials_of(picture.ramp_range.value_or(heights), picture.ramp);
+}
+
+// The input's own settings count where no option was given.
+void take_defaults(InputKind kind, const RenderInput& input, RenderOptions& options) {
+  PictureSettings& picture = options.picture;
+  switch (kind) {
+    case InputKind::terrain:
+      picture.grid_north_azimuth = input.raster.georeference.grid_north_azimuth;
+      return;
+    case InputKind::scene:
+      if (!options.is_given("--haze")) picture.haze = 0;
+      take_environment(*input.document, options.given, options.look_options);
+      settle_environment(options.look_options, picture);
+      picture = picture_of(*input.document, picture, options.given);
+      return;
+    case InputKind::function:
+      paint_function(input.heights, options);
+      return;
+    case InputKind::voxels:
+    case InputKind::mesh:
+      if (!options.is_given("--sun")) picture.sun.azimuth_deg = kModelSunAzimuth;
+      if (!options.is_given("--haze")) picture.haze = 0;
+  }
+}
+
 RenderInput terrain(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
-  options.picture.grid_north_azimuth = opened.georeference.grid_north_azimuth;
   const HeightField& field = *opened.scene.only_heights();
   require_ground(field, opened.path);
   RenderInput input{options.no_plinth ? opened.scene : with_plinth(opened.scene)};
   input.view = view;
   input.across = default_reach(field), input.heights = {field.min_height(), field.max_height()};
   input.exaggeration = field.settings().exaggeration;
+  input.raster = {opened.path, opened.georeference, opened.cols, opened.rows};
+  take_defaults(InputKind::terrain, input, options);
   input.framed = [&picture = options.picture](const Scene& seen, const ViewSettings& of) {
     return view_of_field(*seen.terrain(), picture_box(seen), of, picture.grid_north_azimuth, picture.width,
                          picture.height);
@@ -95,24 +153,20 @@ RenderInput terrain(OpenedInput opened, RenderOptions& options, const ViewSettin
 
 // Voxels and meshes.
 RenderInput model(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
-  if (!options.is_given("--sun")) options.picture.sun.azimuth_deg = kModelSunAzimuth;
-  if (!options.is_given("--haze")) options.picture.haze = 0;
   RenderInput input{std::move(opened.scene)};
   input.view = view;
   input.coarse_voxels = options.vox_look.coarse;
+  take_defaults(InputKind::voxels, input, options);
   frame_by_box(input, options);
   measure(input);
   return input;
 }
 
-// The file's own settings count where no option was given.
 RenderInput scene_file(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
-  const SceneFile& document = *opened.document;
-  if (!options.is_given("--haze")) options.picture.haze = 0;
-  take_environment(document, options.given, options.look_options);
-  settle_environment(options.look_options, options.picture);
-  options.picture = picture_of(document, options.picture, options.given);
   RenderInput input{std::move(opened.scene)};
+  input.document = std::make_shared<const SceneFile>(std::move(*opened.document));
+  take_defaults(InputKind::scene, input, options);
+  const SceneFile& document = *input.document;
   input.view = view_of(document, view, options.given);
   input.coarse_voxels = document.picture.coarse_voxels || options.vox_look.coarse;
   input.viewed = document.camera.azimuth_deg || document.camera.elevation_deg || document.camera.distance;
@@ -135,28 +189,12 @@ ReliefRange heights_around(const HeightFunction& function, double extent) {
   return range;
 }
 
-// Meadows, dry grass and snow by height, rock where it is steep; or one of the ramps. The last one is the function's.
-std::vector<Material> materials_of(const ReliefRange& range, const std::string& ramp) {
-  if (!ramp.empty()) return {HeightRamp{ramp, range.low, range.high}};
-  const auto at = [&](double share) { return range.low + share * (range.high - range.low); };
-  return {HeightStops{{{at(0.0), {0.40f, 0.47f, 0.30f}},
-                       {at(0.35), {0.50f, 0.53f, 0.33f}},
-                       {at(0.6), {0.62f, 0.57f, 0.42f}},
-                       {at(0.8), {0.66f, 0.62f, 0.57f}},
-                       {at(0.88), {0.93f, 0.94f, 0.96f}}}},
-          PlainColour{{0.47f, 0.43f, 0.40f}}, Blend{Blend::By::slope, 30, 45, 0, 1}};
-}
-
 RenderInput function(OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
   const double extent = options.function.extent;
   PictureSettings& picture = options.picture;
   const HeightFunction function = std::move(*opened.function);
   const ReliefRange heights = heights_around(function, extent);
-  picture.ground_box =
-      WorldBox{{-0.5 * extent, -0.5 * extent, heights.low}, {0.5 * extent, 0.5 * extent, heights.high}};
-  // A ramp from a file and natural ground are painted by the renderer.
-  if (!picture.ground.natural && !picture.ramp_stops)
-    picture.materials = materials_of(picture.ramp_range.value_or(heights), picture.ramp);
+  paint_function(heights, options);
   const auto material = static_cast<std::uint32_t>(std::max<std::size_t>(picture.materials.size(), 1) - 1);
   RenderInput input{Scene(opened.scene.fields(), {{.material = material}})};
   input.march = opened.scene.marches() +
@@ -175,17 +213,6 @@ RenderInput function(OpenedInput opened, RenderOptions& options, const ViewSetti
     return FieldView{Camera::look_at(eye, target, of.fov_deg, picture.width, picture.height), raised};
   };
   return input;
-}
-
-// Limits rays over functions to the distance at which haze hides everything.
-void settle_function(RenderOptions& options) {
-  const double extent = options.function.extent;
-  PictureSettings& picture = options.picture;
-  const double haze = options.is_given("--haze") ? picture.haze : kFunctionHaze;
-  picture.haze_distance = haze > 0 ? -extent / std::log1p(-haze) : kUnlimited;
-  double& reach = options.march_settings.function.reach;
-  if (std::isinf(reach)) reach = std::min(picture.haze_distance * std::log(kFaintest), kLongReach * extent);
-  if (std::isinf(picture.ao_distance)) picture.ao_distance = extent / 8;
 }
 
 RenderInput with_defaults(InputKind kind, OpenedInput opened, RenderOptions& options, const ViewSettings& view) {
@@ -219,9 +246,8 @@ RenderInput open_render_input(InputKind kind, RenderOptions& options, const View
   files.insert(files.end(), overlay.begin(), overlay.end());
   keep_inputs(options.output, files);
   const std::optional<SolidRange> numbers = opened.numbers;
-  PlaceRaster raster{opened.path, opened.georeference, opened.cols, opened.rows};
   RenderInput input = with_defaults(kind, std::move(opened), options, view);
-  input.numbers = numbers, input.raster = std::move(raster);
+  input.numbers = numbers;
   const bool in_perspective =
       !options.top && (options.picture.look == Look::shaded || options.picture.look == Look::comanche);
   if (kind == InputKind::terrain && in_perspective && !options.is_given("--exaggeration")) {
@@ -231,6 +257,12 @@ RenderInput open_render_input(InputKind kind, RenderOptions& options, const View
   }
   input.notes = std::move(notes), input.files = std::move(files);
   return input;
+}
+
+void settle_again(InputKind kind, const RenderInput& input, const RenderOptions& before, RenderOptions& options) {
+  if (kind == InputKind::function) settle_function(options);
+  options.picture.ground.drape = before.picture.ground.drape;
+  take_defaults(kind, input, options);
 }
 
 }  // namespace scarp::cli

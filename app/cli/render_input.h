@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,10 +20,11 @@ namespace scarp::cli {
 /// the options' picture settings.
 struct RenderInput {
   Scene scene;
-  std::vector<std::string> notes{};  ///< one line each, for people
-  std::vector<std::string> files{};  ///< that were read, beside those that were typed
-  PlaceRaster raster{};              ///< by which positions are converted; terrain only
-  std::string march{};               ///< what times are printed with; empty: nothing
+  std::vector<std::string> notes{};             ///< one line each, for people
+  std::vector<std::string> files{};             ///< that were read, beside those that were typed
+  PlaceRaster raster{};                         ///< by which positions are converted; terrain only
+  std::shared_ptr<const SceneFile> document{};  ///< scene files only
+  std::string march{};                          ///< what times are printed with; empty: nothing
   ViewSettings view{};
   bool viewed = false;  ///< the input itself says from where it is seen, by azimuth, elevation or distance
   bool coarse_voxels = false;
@@ -37,5 +39,8 @@ struct RenderInput {
 
 /// Reads the inputs and builds what rays need. `view` is what was typed. Throws Error naming the file.
 RenderInput open_render_input(InputKind kind, RenderOptions& options, const ViewSettings& view);
+
+/// Puts into other options of the picture what follows from the input, which was opened with the options `before`.
+void settle_again(InputKind kind, const RenderInput& input, const RenderOptions& before, RenderOptions& options);
 
 }  // namespace scarp::cli

@@ -59,7 +59,8 @@ void add_picture_options(Command& command, RenderOptions& o) {
       {.names = "--size",
        .value = "WIDTHxHEIGHT",
        .help = "size of the picture in pixels",
-       .fallback = fmt::format("{}x{}; with --top the aspect ratio of the ground", o.picture.width, o.picture.height),
+       .fallback =
+           fmt::format("{}x{}; with --top the aspect ratio of the ground or --area", o.picture.width, o.picture.height),
        .common = true,
        .looks = {"shaded hillshade height steps error level", "it has --lowres WIDTHxHEIGHT and --pixel-size PX"}});
   add([&o](const std::string& text) { set_look(text, o); },
@@ -225,14 +226,15 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
   add_coordinates_option(
       command, o.coordinates,
       {.names = "--coords",
-       .help = frames ? "coordinates of --eye, --target, --mesh-at and --path"
-                      : "coordinates of --eye, --target and --mesh-at",
+       .help = frames ? "coordinates of --eye, --target, --area, --mesh-at and --path"
+                      : "coordinates of --eye, --target, --area and --mesh-at",
        .closed = true,
        .note = "local: metres from the south-west sample, z exaggerated; map: units of the CRS; lonlat: degrees, WGS "
                "84; with map and lonlat z is a height of the file in metres",
        .topic = Topic::camera,
-       .rules = {needs(frames ? "--eye, --path or --mesh-at" : "--eye or --mesh-at",
-                       [&o] { return !o.eye.empty() || !o.frames.path.empty() || !o.mesh.at.empty(); })}});
+       .rules = {needs(frames ? "--eye, --area, --path or --mesh-at" : "--eye, --area or --mesh-at", [&o] {
+         return !o.eye.empty() || !o.area.empty() || !o.frames.path.empty() || !o.mesh.at.empty();
+       })}});
   add(&o.fov_deg,
       {.names = "--fov",
        .help = "vertical field of view",
@@ -246,6 +248,11 @@ void add_camera_options(Command& command, RenderOptions& o, bool frames) {
                .inputs = {kEveryInput & ~kFunction, "functions have no border to fit a map to"},
                .rules = no_frames,
                .excludes = {"--view", "--eye", "--fov"}});
+  add(&o.area, {.names = "--area",
+                .value = "W,S,E,N",
+                .help = "part that the map shows, in coordinates of --coords",
+                .fallback = "everything",
+                .rules = {needs("--top", [&o] { return o.top; })}});
 }
 
 }  // namespace

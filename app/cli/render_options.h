@@ -27,7 +27,7 @@ struct RenderOptions : InputOptions {
   FrameOptions frames;
   DepthOptions depth;
   FigureOptions figure;
-  std::string size, look = "shaded", steps_range, sun, sky, view, eye, target, coordinates = "local";
+  std::string size, look = "shaded", steps_range, sun, sky, view, eye, target, area, coordinates = "local";
   std::string voxel_drawing = "compute";
   std::optional<double> eye_above;
   const PictureFormat* format = nullptr;  ///< of the output

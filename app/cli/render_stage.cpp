@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "app/cli/mesh_options.h"
+#include "app/cli/numbers.h"
 #include "app/cli/picture_output.h"
 #include "app/cli/progress.h"
 #include "scarp/base/error.h"
@@ -49,7 +50,7 @@ void RenderStage::open() {
     put_on_device(input_.scene);
   }
   stop_if_interrupted();
-  if (options_.top && options_.size.empty()) fit_size_to_scene(picture_box(scene_), options_.picture);
+  if (options_.top && options_.size.empty()) fit_size_to_scene(map_box(), options_.picture);
   facts_.heights = input_.heights;
   if (kind_ == InputKind::function) facts_.function_reach = options_.march_settings.function.reach;
   finish_look(options_.look_options, input_.across, input_.heights, input_.exaggeration, options_.picture);
@@ -74,12 +75,36 @@ WorldBox RenderStage::scene_box() const {
                           : WorldBox{input_.target.value_or(dvec3(0.0)), input_.target.value_or(dvec3(0.0))};
 }
 
-void RenderStage::finish(Camera& camera) {
-  camera.set_reach(reach_of(options_.look_options, input_.across, scene_, scene_box(), camera));
+void RenderStage::finish(Camera& camera, const RenderOptions& options) {
+  camera.set_reach(reach_of(options.look_options, input_.across, scene_, scene_box(), camera));
   // The judge has to stop where the march does.
-  if (kind_ == InputKind::function && options_.picture.look == Look::error)
-    camera.set_reach(std::min(camera.reach(), options_.march_settings.function.reach));
-  if (input_.coarse_voxels) put_on_device(input_.scene.coarser(detail_of(camera, options_.picture.aa)));
+  if (kind_ == InputKind::function && options.picture.look == Look::error)
+    camera.set_reach(std::min(camera.reach(), options.march_settings.function.reach));
+  if (input_.coarse_voxels) put_on_device(input_.scene.coarser(detail_of(camera, options.picture.aa)));
+}
+
+bool RenderStage::restyles(const Declared& option) const {
+  switch (option.option.topic) {
+    case Topic::picture:
+      return option.name != "--no-plinth";
+    case Topic::ground:
+      // Functions have materials by --ramp, and volumes colours.
+      return option.name != "--overlay" && kind_ != InputKind::function && kind_ != InputKind::voxels;
+    case Topic::light:
+      // Rays over functions end where haze hides everything.
+      return option.name != "--haze" || kind_ != InputKind::function;
+    case Topic::water:
+    case Topic::fog:
+      return true;
+    default:
+      return false;
+  }
+}
+
+RenderOptions RenderStage::restyled(RenderOptions options) const {
+  settle_again(kind_, input_, options_, options);
+  finish_look(options.look_options, input_.across, input_.heights, input_.exaggeration, options.picture);
+  return options;
 }
 
 Camera RenderStage::framed(const ViewSettings& view) {
@@ -107,13 +132,28 @@ dvec3 RenderStage::above_surface(const dvec3& at, std::string_view what) const {
   return eye + dvec3(0, 0, *options_.eye_above * exaggeration());
 }
 
+// What --top shows.
+WorldBox RenderStage::map_box() const {
+  WorldBox box = picture_box(scene_);
+  if (options_.area.empty()) return box;
+  constexpr std::string_view kArea = "--area";
+  const auto edges =
+      ground_numbers_from(options_.area, 4, 4, kArea, "W,S,E,N in coordinates of --coords, for example 0,0,500,300");
+  const dvec3 low = places_->world(dvec3(edges[0], edges[1], 0), kArea),
+              high = places_->world(dvec3(edges[2], edges[3], 0), kArea);
+  if (!(low.x < high.x && low.y < high.y))
+    throw Error(fmt::format("{} '{}': expected W below E, and S below N", kArea, options_.area));
+  box.low.x = low.x, box.low.y = low.y, box.high.x = high.x, box.high.y = high.y;
+  return box;
+}
+
 Camera RenderStage::camera() {
   const int width = options_.picture.width, height = options_.picture.height;
   if (options_.top && scene_.box().empty() && scene_.endless() && !scene_.terrain())
     throw Error(
         "--top: everything in the scene is endless, without a border to fit a map to (leave --top out, and use "
         "--eye and --target)");
-  if (options_.top) return Camera::top(picture_box(scene_), width, height);
+  if (options_.top) return Camera::top(map_box(), width, height);
   if (!options_.eye.empty()) {
     const dvec3 target = !options_.target.empty()
                              ? places_->world(typed_place(options_.target, "--target"), input_.scene, "--target")

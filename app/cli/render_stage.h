@@ -55,9 +55,17 @@ class RenderStage {
   Camera framed(const ViewSettings& view);
   PathPlaces path_places() const;
   /// Sets what depends on where a picture is seen from: reach, and coarser voxels.
-  void finish(Camera& camera);
+  void finish(Camera& camera) { finish(camera, options_); }
+  /// The same for options of restyled().
+  void finish(Camera& camera, const RenderOptions& options);
+
+  /// Whether restyled() takes another value of the option over, without the inputs being read again.
+  bool restyles(const Declared& option) const;
+  /// Completes other options, settled, by the input. They differ from options() by those that restyles() names.
+  RenderOptions restyled(RenderOptions options) const;
 
  private:
+  WorldBox map_box() const;
   void put_on_device(const Scene& scene);
   dvec3 typed_eye() const;
   dvec3 above_surface(const dvec3& at, std::string_view what) const;

@@ -4,9 +4,8 @@
 namespace scarp::cli {
 
 const std::vector<std::string_view> kWindowOptions = {
-    "--size",  "--look",          "--view",       "--eye",    "--eye-above",  "--target", "--fov",
-    "--top",   "--sun",           "--aa",         "--haze",   "--no-shadows", "--water",  "--samples",
-    "--march", "--window-device", "--validation", "--record", "--timings",    "--play",   "--screenshot"};
+    "--size", "--view",          "--eye",        "--eye-above", "--target",  "--fov",  "--top",
+    "--area", "--window-device", "--validation", "--record",    "--timings", "--play", "--screenshot"};
 
 Command& declare_view(Program& program, ViewOptions& o) {
   Command& command = program.add("view", "Open a window on an elevation model, voxels, a mesh, a scene or a function");

@@ -17,7 +17,6 @@ struct ViewOptions : RenderOptions {
   std::string timings;     ///< table of events and presents to write; empty: none
   std::string window_device = "auto";
   bool validation = false;
-  std::string words{};  ///< what was typed about the input and what the window does not change, for commands
 };
 
 /// Options that the command of a window's picture states itself, or that `scarp render` has not.

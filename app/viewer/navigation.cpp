@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "scarp/render/frame/picture.h"
+
 namespace scarp::viewer {
 namespace {
 
@@ -34,8 +36,37 @@ dvec3 forward_of(const Pose& pose) {
   return {flat * std::cos(pose.azimuth), flat * std::sin(pose.azimuth), std::sin(pose.altitude)};
 }
 
+Pose with_heights_times(const Pose& pose, double factor) {
+  Pose there = pose;
+  // Those that turn around a point go on to turn around it.
+  const dvec3 way = pose.mode == MoveMode::orbit ? pose.distance * forward_of(pose) : dvec3(0.0);
+  there.eye = pose.eye + way;
+  there.eye.z *= factor;
+  there.eye -= way;
+  return there;
+}
+
+std::array<dvec2, 2> map_corners(const Pose& pose, int width, int height) {
+  const dvec2 half(pose.map_width / 2, pose.map_width / 2 * height / width);
+  return {dvec2(pose.eye) - half, dvec2(pose.eye) + half};
+}
+
+dvec2 dragged_sun(const dvec2& sun, const dvec2& drag, const dvec2& size) {
+  const double azimuth = sun.x + 180 * drag.x / size.y, altitude = sun.y - 90 * drag.y / size.y;
+  return {azimuth - 360 * std::floor(azimuth / 360), std::clamp(altitude, 0.0, 90.0)};
+}
+
+namespace {
+
+WorldBox box_of_map(const Scene& scene) {
+  const bool endless = scene.box().empty() && !(scene.terrain() && scene.wraps());
+  return endless ? WorldBox{} : picture_box(scene);
+}
+
+}  // namespace
+
 Navigator::Navigator(const Scene& scene, const Camera& first, double fov_deg, double across)
-    : scene_(scene), across_(across > 0 ? across : 1), speed_(kSpeedShare * across_) {
+    : scene_(scene), box_(box_of_map(scene)), across_(across > 0 ? across : 1), speed_(kSpeedShare * across_) {
   pose_.fov_deg = fov_deg;
   first_eye_ = pose_.eye = first.eye();
   const dvec3 forward = first.forward();
@@ -51,10 +82,10 @@ Navigator::Navigator(const Scene& scene, const Camera& first, double fov_deg, do
 
 Camera Navigator::camera(int width, int height) const {
   if (pose_.mode == MoveMode::top) {
-    const dvec3 half(pose_.map_width / 2, pose_.map_width / 2 * height / width, 0);
-    const double high = scene_.box().empty() ? pose_.eye.z : scene_.box().high.z;
-    const dvec3 middle(pose_.eye.x, pose_.eye.y, high);
-    return Camera::top({middle - half, middle + half}, width, height);
+    // As `scarp render --top --area` makes it.
+    const auto [low, high] = map_corners(pose_, width, height);
+    const double bottom = box_.empty() ? pose_.eye.z : box_.low.z, top = box_.empty() ? pose_.eye.z : box_.high.z;
+    return Camera::top({dvec3(low, bottom), dvec3(high, top)}, width, height);
   }
   return Camera::look_at(pose_.eye, pose_.eye + forward_of(pose_), pose_.fov_deg, width, height);
 }

@@ -29,6 +29,13 @@ struct Pose {
 };
 
 dvec3 forward_of(const Pose& pose);
+/// The pose that shows the same places when all heights are multiplied by a factor.
+Pose with_heights_times(const Pose& pose, double factor);
+/// The corners of the map of a pose, for a picture of this size: west and south, east and north.
+std::array<dvec2, 2> map_corners(const Pose& pose, int width, int height);
+
+/// Azimuth and altitude of the sun in degrees after a drag in a picture of this size: azimuth by x, altitude by y.
+dvec2 dragged_sun(const dvec2& sun, const dvec2& drag, const dvec2& size);
 
 enum class MoveKey { forward, back, left, right, up, down, fast };
 constexpr std::size_t kMoveKeys = 7;
@@ -70,6 +77,7 @@ class Navigator {
   void stand();
 
   const Scene& scene_;
+  WorldBox box_;  // of what a map shows; empty: it has no end
   Pose pose_;
   dvec3 first_eye_{0.0};
   double across_, speed_;

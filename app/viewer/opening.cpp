@@ -4,8 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <sstream>
+#include <map>
 #include <utility>
 
 #include "app/cli/render_settle.h"
@@ -13,32 +12,43 @@
 namespace scarp::viewer {
 namespace {
 
-// A slider goes from a fraction of the default to a multiple of it.
-constexpr double kSpan = 64;
+cli::Use use_of(cli::InputKind kind, const cli::ViewOptions& options) {
+  return {kind, options.look, cli::march_of(options, kind)};
+}
 
-bool reads(const cli::Option& option, std::string_view march) {
-  std::istringstream names{std::string(option.marches)};
-  for (std::string name; names >> name;) {
-    if (name == march) return true;
+bool contains(const std::vector<std::string>& names, std::string_view name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool excludes(const cli::Declared& one, const cli::Declared& other) {
+  return contains(one.option.excludes, other.name) || contains(other.option.excludes, one.name);
+}
+
+// Without those that cannot be combined with newer ones.
+std::vector<GivenOption> combinable(const cli::Command& command, const std::vector<GivenOption>& given) {
+  std::vector<GivenOption> used;
+  for (auto one = given.rbegin(); one != given.rend(); ++one) {
+    const cli::Declared& declared = *command.find(one->name);
+    if (std::none_of(used.begin(), used.end(),
+                     [&](const GivenOption& newer) { return excludes(declared, *command.find(newer.name)); }))
+      used.push_back(*one);
   }
-  return false;
+  std::reverse(used.begin(), used.end());
+  return used;
 }
 
-double value_of(const MarchParameter& parameter) {
-  return std::visit([](auto* to) { return static_cast<double>(*to); }, parameter.to);
-}
+struct Parsed {
+  std::shared_ptr<cli::Program> program = std::make_shared<cli::Program>();
+  std::shared_ptr<cli::ViewOptions> options = std::make_shared<cli::ViewOptions>();
+  cli::Command& command = declare_view(*program, *options);
 
-MarchParameter parameter_of(const cli::Declared& declared, std::variant<int*, double*> to) {
-  const cli::Option& option = declared.option;
-  // Not the value that it has: sliders stay as they are while they move.
-  const double usual = declared.default_text.empty() ? 0 : std::atof(declared.default_text.c_str());
-  const bool whole = std::holds_alternative<int*>(to);
-  double least = whole ? std::floor(usual / kSpan) : usual / kSpan;
-  double most = usual > 0 ? kSpan * usual : 1;
-  least = std::max(least, option.range.above_least ? most / (kSpan * kSpan * kSpan) : option.range.least);
-  most = std::min(most, option.range.most);
-  return {declared.name.substr(2), option.help, to, least, most};
-}
+  explicit Parsed(const std::vector<GivenOption>& given) {
+    command.runs([] {});
+    std::vector<cli::Command::Typed> typed;
+    for (const GivenOption& one : given) typed.push_back({command.find(one.name), one.values});
+    command.run(std::move(typed));
+  }
+};
 
 }  // namespace
 
@@ -48,51 +58,57 @@ Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cl
   o.moves = true;
   o.given = command.given();
   o.typed = command.typed_values();
-  std::vector<std::string_view> left_out = cli::kWindowOptions;
-  for (const cli::Declared& declared : command.options()) {
-    if (declared.option.topic == cli::Topic::march && !declared.option.marches.empty() &&
-        (std::holds_alternative<int*>(declared.to) || std::holds_alternative<double*>(declared.to)))
-      left_out.push_back(declared.name);
-  }
-  o.words = command.typed_words(left_out);
   const cli::InputKind kind = cli::kind_of_input(command, o);
-  command.require_effect({kind, o.look, cli::march_of(o, kind)});
+  command.require_effect(use_of(kind, o));
   const ViewSettings view = cli::settle_picture(o);
   cli::require_places(o);
-  return {std::move(program), std::move(options), kind, view};
+  std::vector<GivenOption> given;
+  for (const cli::Command::Typed& one : command.all_typed()) given.push_back({one.option->name, one.values});
+  return {std::move(program), std::move(options), kind, view, std::move(given)};
 }
 
 Opening opening_of(const std::string& file) {
-  auto program = std::make_shared<cli::Program>();
-  auto options = std::make_shared<cli::ViewOptions>();
-  cli::Command& command = declare_view(*program, *options);
-  command.runs([] {});
-  std::string name = "scarp", view = "view", input = file;
-  char* words[] = {name.data(), view.data(), input.data()};
-  program->run(3, words);
-  return settle_opening(std::move(program), std::move(options), command);
+  const Parsed parsed({{"IN", {file}}});
+  return settle_opening(parsed.program, parsed.options, parsed.command);
 }
 
-std::vector<MarchParameter> parameters_of(const Opening& opening, std::string_view march) {
-  std::vector<MarchParameter> found;
-  for (const cli::Declared& declared : opening.program->find("view")->options()) {
-    const cli::Option& option = declared.option;
-    if (option.topic != cli::Topic::march || !reads(option, march)) continue;
-    if ((option.inputs.kinds & static_cast<unsigned>(opening.kind)) == 0) continue;
-    if (int* const* whole = std::get_if<int*>(&declared.to)) found.push_back(parameter_of(declared, *whole));
-    if (double* const* number = std::get_if<double*>(&declared.to)) found.push_back(parameter_of(declared, *number));
+Opening changed(const Opening& before, const OptionChange& change) {
+  if (!before.command().find(change.option)) throw cli::WrongUsage(fmt::format("unknown option '{}'", change.option));
+  std::vector<GivenOption> given = before.given;
+  std::erase_if(given, [&](const GivenOption& one) { return one.name == change.option; });
+  if (change.text) given.push_back({change.option, {*change.text}});
+  std::vector<GivenOption> used = combinable(before.command(), given);
+  for (;;) {
+    const Parsed parsed(used);
+    const cli::Use use = use_of(cli::kind_of_input(parsed.command, *parsed.options), *parsed.options);
+    const std::vector<std::string> idle = parsed.command.without_effect(use);
+    if (change.text && contains(idle, change.option))
+      cli::require_effect(*parsed.command.find(change.option), use);  // throws
+    if (idle.empty()) {
+      Opening opening = settle_opening(parsed.program, parsed.options, parsed.command);
+      opening.given = std::move(given);
+      return opening;
+    }
+    std::erase_if(used, [&](const GivenOption& one) { return contains(idle, one.name); });
   }
-  return found;
 }
 
-std::string parameter_words(const Opening& opening, std::string_view march) {
-  std::string words;
-  for (const MarchParameter& parameter : parameters_of(opening, march)) {
-    const cli::Declared* declared = opening.program->find("view")->find("--" + parameter.name);
-    const std::string value = fmt::format("{:.17g}", value_of(parameter));
-    if (std::atof(declared->default_text.c_str()) != value_of(parameter)) words += " --" + parameter.name + "=" + value;
+std::vector<std::string> differences(const Opening& a, const Opening& b) {
+  const auto values_of = [](const Opening& opening) {
+    std::map<std::string, std::vector<std::string>> values;
+    for (const cli::Command::Typed& one : opening.command().all_typed()) values[one.option->name] = one.values;
+    return values;
+  };
+  const auto of_a = values_of(a), of_b = values_of(b);
+  std::vector<std::string> names;
+  for (const auto& [name, values] : of_a) {
+    const auto other = of_b.find(name);
+    if (other == of_b.end() || other->second != values) names.push_back(name);
   }
-  return words;
+  for (const auto& [name, values] : of_b) {
+    if (!of_a.contains(name)) names.push_back(name);
+  }
+  return names;
 }
 
 }  // namespace scarp::viewer

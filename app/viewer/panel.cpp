@@ -4,102 +4,217 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "app/viewer/keys.h"
+#include "app/viewer/verdict_text.h"
 
 namespace scarp::viewer {
 namespace {
 
 constexpr std::array<const char*, 4> kModes = {"orbit", "fly", "walk", "top"};
-constexpr std::array<const char*, 3> kStages = {"moving", "full resolution", "complete"};
-constexpr std::array<Look, 5> kLooks = {Look::shaded, Look::hillshade, Look::height, Look::steps, Look::error};
+constexpr std::array<const char*, 4> kStages = {"moving", "full resolution", "refining", "complete"};
+// Pixels at a scale of 1.
+constexpr float kControlWidth = 160, kTextWidth = 340, kMargin = 10;
 
-bool slider(const char* label, double& value, float least, float most, const char* format) {
-  auto number = static_cast<float>(value);
-  if (!ImGui::SliderFloat(label, &number, least, most, format)) return false;
-  value = number;
-  return true;
-}
+float scaled(float pixels) { return pixels * ImGui::GetFontSize() / 13; }
 
 void draw_help(bool& open) {
   if (!open) return;
   if (ImGui::Begin("Mouse and keys", &open, ImGuiWindowFlags_AlwaysAutoResize)) {
-    ImGui::TextUnformatted(
-        "left drag      turn, look around; top: shift\n"
-        "right drag     shift\n"
-        "wheel          nearer; fly and walk: speed\n"
-        "double click   go there\n"
-        "W A S D Q E    fly and walk; with Shift faster\n"
-        "O F G T        orbit, fly, walk, top\n"
-        "H              the first view\n"
-        "Ctrl 1..9      keep the view; 1..9 return to it\n"
-        "M              measure between two clicks\n"
-        "K              add the view to scarp-path.csv, for scarp render --path\n"
-        "C              copy the command that makes the picture again\n"
-        "P              save the picture\n"
-        "Tab            hide the panel");
+    for (const HelpLine& line : help_lines()) {
+      ImGui::TextUnformatted(line.input);
+      ImGui::SameLine(scaled(kControlWidth));
+      ImGui::TextUnformatted(line.effect);
+    }
   }
   ImGui::End();
 }
 
-bool draw_look(PictureSettings& picture) {
-  bool changed = false;
-  if (ImGui::BeginCombo("look", std::string(name_of(picture.look)).c_str())) {
-    for (const Look look : kLooks) {
-      if (ImGui::Selectable(std::string(name_of(look)).c_str(), look == picture.look)) {
-        picture.look = look;
-        changed = true;
-      }
-    }
-    ImGui::EndCombo();
+// A slider that moves a number; returns whether it is to be taken over.
+bool draw_slider(const char* label, Control& control, double& value, double least, double most, bool whole) {
+  const ImGuiSliderFlags flags =
+      ImGuiSliderFlags_AlwaysClamp | (control.logarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+  bool moved;
+  if (whole) {
+    int number = static_cast<int>(std::lround(value));
+    moved = ImGui::SliderInt(label, &number, static_cast<int>(least), static_cast<int>(most), "%d", flags);
+    if (moved) value = number;
+  } else {
+    auto number = static_cast<float>(value);
+    moved = ImGui::SliderFloat(label, &number, static_cast<float>(least), static_cast<float>(most), "%.4g", flags);
+    if (moved) value = number;
   }
-  changed |= slider("sun azimuth", picture.sun.azimuth_deg, 0, 360, "%.0f");
-  changed |= slider("sun altitude", picture.sun.altitude_deg, 1, 90, "%.0f");
-  changed |= ImGui::Checkbox("shadows", &picture.shadows);
-  changed |= ImGui::SliderInt("soft light rays", &picture.samples, 0, 64);
-  changed |= ImGui::SliderInt("anti-aliasing", &picture.aa, 1, 4);
-  changed |= slider("haze", picture.haze, 0, 0.95f, "%.2f");
-  if (picture.water) changed |= ImGui::InputDouble("water level", &picture.water->level, 1, 10, "%.1f");
+  return control.at_once ? moved : ImGui::IsItemDeactivatedAfterEdit();
+}
+
+bool draw_choice(Control& control) {
+  bool changed = false;
+  if (!ImGui::BeginCombo(control.label.c_str(), control.choice.c_str())) return false;
+  for (const std::string& choice : control.choices) {
+    if (ImGui::Selectable(choice.c_str(), choice == control.choice) && choice != control.choice) {
+      control.choice = choice;
+      changed = true;
+    }
+  }
+  ImGui::EndCombo();
   return changed;
 }
 
-// Returns whether one was let go: the input is opened again, which takes time.
-bool draw_parameters(const std::vector<MarchParameter>& parameters) {
-  bool changed = false;
-  constexpr ImGuiSliderFlags kFlags = ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp;
-  for (const MarchParameter& parameter : parameters) {
-    const auto least = static_cast<float>(parameter.least), most = static_cast<float>(parameter.most);
-    if (int* const* whole = std::get_if<int*>(&parameter.to)) {
-      ImGui::SliderInt(parameter.name.c_str(), *whole, static_cast<int>(least), static_cast<int>(most), "%d", kFlags);
-    } else {
-      double& value = **std::get_if<double*>(&parameter.to);
-      auto number = static_cast<float>(value);
-      if (ImGui::SliderFloat(parameter.name.c_str(), &number, least, most, "%.3g", kFlags)) value = number;
+bool draw_pair(Control& control) {
+  auto low = static_cast<float>(control.numbers[0]), high = static_cast<float>(control.numbers[1]);
+  const float step = std::max((high - low) / 200, 0.01f);
+  bool moved = ImGui::DragFloatRange2(control.label.c_str(), &low, &high, step, static_cast<float>(control.least),
+                                      static_cast<float>(control.most), "%.4g", nullptr, ImGuiSliderFlags_AlwaysClamp);
+  if (moved) control.numbers = {low, high, 0};
+  if (!control.at_once) moved = ImGui::IsItemDeactivatedAfterEdit();
+  return moved && low < high;
+}
+
+// Returns whether the option has another value.
+bool draw_value(Control& control) {
+  switch (control.kind) {
+    case ControlKind::flag:
+      return ImGui::Checkbox(control.label.c_str(), &control.on);
+    case ControlKind::choice:
+      return draw_choice(control);
+    case ControlKind::number:
+      return draw_slider(control.label.c_str(), control, control.numbers[0], control.least, control.most,
+                         control.whole);
+    case ControlKind::pair:
+      return draw_pair(control);
+    case ControlKind::angles: {
+      const bool azimuth =
+          draw_slider((control.label + " azimuth").c_str(), control, control.numbers[0], 0, 360, false);
+      ImGui::SetNextItemWidth(scaled(kControlWidth));
+      const bool altitude =
+          draw_slider((control.label + " altitude").c_str(), control, control.numbers[1], 0, 90, false);
+      return azimuth || altitude;
     }
-    changed |= ImGui::IsItemDeactivatedAfterEdit();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", parameter.help.c_str());
+    case ControlKind::colour:
+      break;
   }
+  float rgb[3];
+  std::copy(control.numbers.begin(), control.numbers.end(), rgb);
+  const bool moved = ImGui::ColorEdit3(control.label.c_str(), rgb, ImGuiColorEditFlags_NoInputs);
+  if (moved) std::copy_n(rgb, 3, control.numbers.begin());
+  return control.at_once ? moved : ImGui::IsItemDeactivatedAfterEdit();
+}
+
+bool draw_control(Control& control) {
+  ImGui::PushID(control.option.c_str());
+  bool changed = false;
+  if (control.may_rest) {
+    bool given = !control.rests;
+    if (ImGui::Checkbox(given ? "##given" : control.label.c_str(), &given)) {
+      control.rests = !given;
+      changed = true;
+    }
+    if (!control.rests) ImGui::SameLine();
+  }
+  if (!control.rests) {
+    const float box = control.may_rest ? ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.x : 0;
+    ImGui::SetNextItemWidth(scaled(kControlWidth) - box);
+    changed |= draw_value(control);
+  }
+  if (ImGui::IsItemHovered()) {
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(scaled(kTextWidth));
+    ImGui::TextUnformatted((control.option + ": " + control.help).c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+  }
+  ImGui::PopID();
   return changed;
+}
+
+// The common options, then the others under the headings of their topics.
+std::optional<OptionChange> draw_controls(std::vector<Control>& controls) {
+  std::optional<OptionChange> change;
+  const auto draw = [&](Control& control) {
+    if (draw_control(control)) change = change_of(control);
+  };
+  for (Control& control : controls) {
+    if (control.common) draw(control);
+  }
+  for (int i = 0; i < cli::kTopics; ++i) {
+    const auto topic = static_cast<cli::Topic>(i);
+    const auto is_here = [&](const Control& control) { return control.topic == topic && !control.common; };
+    if (std::none_of(controls.begin(), controls.end(), is_here)) continue;
+    if (!ImGui::TreeNode(std::string(cli::heading_of(topic)).c_str())) continue;
+    for (Control& control : controls) {
+      if (is_here(control)) draw(control);
+    }
+    ImGui::TreePop();
+  }
+  return change;
+}
+
+std::optional<std::string> draw_comparisons(const PanelState& state) {
+  constexpr const char* kNothing = "nothing";
+  std::optional<std::string> chosen;
+  ImGui::SetNextItemWidth(scaled(kControlWidth));
+  if (!ImGui::BeginCombo("compare with", state.compared.empty() ? kNothing : state.compared.c_str())) return {};
+  if (ImGui::Selectable(kNothing, state.compared.empty())) chosen = "";
+  for (const std::string& with : state.comparisons) {
+    if (ImGui::Selectable(with.c_str(), with == state.compared)) chosen = with;
+  }
+  ImGui::EndCombo();
+  return chosen;
 }
 
 void draw_cost(const PanelState& state) {
-  if (!state.shown) return;
-  const Image& image = state.shown->picture.image;
-  ImGui::Text("%s, %d x %d, %.0f ms%s", kStages[static_cast<std::size_t>(state.shown->stage)], image.width,
-              image.height, 1e3 * state.shown->seconds, state.busy ? " ..." : "");
-  if (image.width > 0 && state.shown->seconds > 0) {
+  if (!state.shown || state.shown->sides.empty()) return;
+  const WorkedPicture& shown = *state.shown;
+  const Image& image = shown.sides.front().image;
+  std::string stage = kStages[static_cast<std::size_t>(shown.stage)];
+  if (shown.stage == PictureStage::refining) {
+    stage += fmt::format(" (aa {}", shown.aa);
+    stage += shown.samples > 0 ? fmt::format(", {} samples)", shown.samples) : ")";
+  }
+  ImGui::Text("%s, %d x %d, %.0f ms%s", stage.c_str(), image.width, image.height, 1e3 * shown.seconds,
+              state.busy ? " ..." : "");
+  if (image.width > 0 && shown.seconds > 0) {
     constexpr double kMillion = 1e6;
     ImGui::Text("%.1f million pixels per second on %s",
-                static_cast<double>(image.width) * image.height / kMillion / state.shown->seconds,
+                static_cast<double>(image.width) * image.height * static_cast<double>(shown.sides.size()) / kMillion /
+                    shown.seconds,
                 state.device.c_str());
   }
+  if (!state.verdict) return;
+  for (std::size_t i = 0; i < state.verdict->sides.size(); ++i) {
+    const std::string text = verdict_text(state.verdict->sides[i]);
+    if (text.empty()) continue;
+    const bool named = state.verdict->sides.size() > 1 && i < state.names.size();
+    ImGui::PushTextWrapPos(scaled(kTextWidth));
+    ImGui::TextUnformatted(((named ? state.names[i] + ": " : "") + text).c_str());
+    ImGui::PopTextWrapPos();
+  }
+}
+
+void draw_reading(const PanelState& state) {
+  if (state.reading) {
+    for (const std::string& line : state.reading->lines) ImGui::TextUnformatted(line.c_str());
+  } else {
+    ImGui::TextUnformatted("nothing under the cursor");
+  }
+  if (state.measures) ImGui::TextUnformatted("click both ends of a line");
+  if (!state.line) return;
+  ImGui::Text("%.1f m, rises %.1f m; the ends %s", state.line->flat, state.line->rise,
+              state.line->sees ? "see one another" : "are hidden from one another");
+  ImGui::PlotLines("##profile", state.line->heights.data(), static_cast<int>(state.line->heights.size()), 0, nullptr,
+                   FLT_MAX, FLT_MAX, {300, 70});
 }
 
 }  // namespace
 
 PanelActions draw_panel(PanelState& state) {
   PanelActions actions;
-  ImGui::SetNextWindowPos({10, 10}, ImGuiCond_FirstUseEver);
+  const float margin = scaled(kMargin);
+  ImGui::SetNextWindowPos({margin, margin}, ImGuiCond_FirstUseEver);
+  ImGui::SetNextWindowSizeConstraints({0, 0}, {FLT_MAX, std::max(ImGui::GetIO().DisplaySize.y - 2 * margin, 1.0f)});
   ImGui::SetNextWindowBgAlpha(0.8f);
   if (ImGui::Begin("Scarp", nullptr, ImGuiWindowFlags_AlwaysAutoResize)) {
     for (std::size_t i = 0; i < kModes.size(); ++i) {
@@ -107,43 +222,43 @@ PanelActions draw_panel(PanelState& state) {
       const auto mode = static_cast<MoveMode>(i);
       if (ImGui::RadioButton(kModes[i], state.mode == mode)) actions.mode = mode;
     }
-    ImGui::PushItemWidth(160);
-    actions.picture_changed = draw_look(*state.picture);
-    if (state.marches.size() > 1 && ImGui::BeginCombo("march", state.march.c_str())) {
-      for (const std::string& march : state.marches) {
-        if (ImGui::Selectable(march.c_str(), march == state.march) && march != state.march) actions.march = march;
-      }
-      ImGui::EndCombo();
-    }
-    actions.parameter_changed = draw_parameters(state.parameters);
-    ImGui::PopItemWidth();
+    actions.change = draw_controls(state.controls);
+    actions.compare = draw_comparisons(state);
     if (state.mode == MoveMode::fly || state.mode == MoveMode::walk) ImGui::Text("%.1f m/s", state.speed);
     ImGui::Separator();
     draw_cost(state);
     ImGui::Separator();
-    if (state.reading) {
-      for (const std::string& line : state.reading->lines) ImGui::TextUnformatted(line.c_str());
-    } else {
-      ImGui::TextUnformatted("nothing under the cursor");
-    }
-    if (state.measures) ImGui::TextUnformatted("click both ends of a line");
-    if (state.line) {
-      ImGui::Text("%.1f m, rises %.1f m; the ends %s", state.line->flat, state.line->rise,
-                  state.line->sees ? "see one another" : "are hidden from one another");
-      ImGui::PlotLines("##profile", state.line->heights.data(), static_cast<int>(state.line->heights.size()), 0,
-                       nullptr, FLT_MAX, FLT_MAX, {300, 70});
-    }
+    draw_reading(state);
     ImGui::Separator();
     actions.save = ImGui::Button("Save picture (P)");
     ImGui::SameLine();
     actions.copy = ImGui::Button("Copy command (C)");
     ImGui::SameLine();
     if (ImGui::Button("Help (F1)")) state.help = !state.help;
-    if (!state.message.empty()) ImGui::TextUnformatted(state.message.c_str());
+    if (!state.message.empty()) {
+      ImGui::PushTextWrapPos(scaled(kTextWidth));
+      ImGui::TextUnformatted(state.message.c_str());
+      ImGui::PopTextWrapPos();
+    }
   }
   ImGui::End();
   draw_help(state.help);
   return actions;
+}
+
+void draw_split(double x, const std::vector<std::string>& names) {
+  constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 220), kBlack = IM_COL32(0, 0, 0, 160);
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float height = ImGui::GetIO().DisplaySize.y, at = static_cast<float>(x), margin = scaled(kMargin);
+  list.AddLine({at, 0}, {at, height}, kBlack, 3);
+  list.AddLine({at, 0}, {at, height}, kWhite, 1);
+  // The left name ends at the line, the right one begins there.
+  for (std::size_t i = 0; i < names.size() && i < 2; ++i) {
+    const ImVec2 size = ImGui::CalcTextSize(names[i].c_str());
+    const ImVec2 place{i == 0 ? at - margin - size.x : at + margin, height - margin - size.y};
+    list.AddRectFilled({place.x - 3, place.y - 2}, {place.x + size.x + 3, place.y + size.y + 2}, kBlack);
+    list.AddText(place, kWhite, names[i].c_str());
+  }
 }
 
 }  // namespace scarp::viewer

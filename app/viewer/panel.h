@@ -6,24 +6,24 @@
 #include <string>
 #include <vector>
 
+#include "app/viewer/controls.h"
 #include "app/viewer/navigation.h"
-#include "app/viewer/opening.h"
 #include "app/viewer/picture_worker.h"
 #include "app/viewer/reading.h"
-#include "scarp/render/frame/picture.h"
 
 namespace scarp::viewer {
 
 /// What the panel shows and changes.
 struct PanelState {
-  PictureSettings* picture;                  ///< changed in place
-  std::vector<std::string> marches{};        ///< that the input has
-  std::string march{};                       ///< in use; a change asks for the input to be opened again
-  std::vector<MarchParameter> parameters{};  ///< of the march; changed in place
-  MoveMode mode = MoveMode::orbit;           ///< as `march`
-  double speed = 0;                          ///< metres per second
-  std::string device{};                      ///< that answers rays
-  const WorkedPicture* shown = nullptr;      ///< the picture in the window
+  std::vector<Control> controls{};         ///< numbers move in place; a change is an action
+  std::vector<std::string> comparisons{};  ///< what the picture can be compared with
+  std::string compared{};                  ///< in use; empty: nothing
+  MoveMode mode = MoveMode::orbit;         ///< a change is an action
+  double speed = 0;                        ///< metres per second
+  std::string device{};                    ///< that answers rays
+  const WorkedPicture* shown = nullptr;    ///< the picture in the window
+  const WorkedVerdict* verdict = nullptr;  ///< of the picture in the window
+  std::vector<std::string> names{};        ///< of its sides
   bool busy = false;
   std::optional<Reading> reading{};
   std::optional<MeasuredLine> line{};
@@ -33,12 +33,16 @@ struct PanelState {
 };
 
 struct PanelActions {
-  bool picture_changed = false, parameter_changed = false, save = false, copy = false;
-  std::optional<std::string> march{};
+  bool save = false, copy = false;
+  std::optional<OptionChange> change{};
+  std::optional<std::string> compare{};  ///< empty: nothing
   std::optional<MoveMode> mode{};
 };
 
 /// Draws the panel between ImGui::NewFrame() and ImGui::Render().
 PanelActions draw_panel(PanelState& state);
+
+/// Draws the line between two pictures over a window of this size, and what stands on its sides.
+void draw_split(double x, const std::vector<std::string>& names);
 
 }  // namespace scarp::viewer

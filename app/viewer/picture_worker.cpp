@@ -19,11 +19,33 @@ constexpr int kGoodRows = 360;
 constexpr double kLeastSeconds = 1e-6;
 // Of the measured rate: pictures of one view differ in cost.
 constexpr double kCaution = 0.8;
+// Between the costs of two stages at rest.
+constexpr int kGrowth = 4;
+
+class Watch {
+ public:
+  double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count(); }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+// Renders into `worked`, or sets its error. Returns false if it was interrupted.
+template <class Render>
+bool attempt(WorkedPicture& worked, const Render& render) {
+  try {
+    render();
+  } catch (const Interrupted&) {
+    return false;
+  } catch (const std::exception& error) {
+    worked.error = error.what();
+  }
+  return true;
+}
 
 }  // namespace
 
-PictureWorker::PictureWorker(Render render, std::function<void()> ready)
-    : render_(std::move(render)), ready_(std::move(ready)), thread_([this] { work(); }) {}
+PictureWorker::PictureWorker(std::function<void()> ready) : ready_(std::move(ready)), thread_([this] { work(); }) {}
 
 PictureWorker::~PictureWorker() {
   {
@@ -51,6 +73,11 @@ std::optional<WorkedPicture> PictureWorker::take() {
   return std::exchange(done_, std::nullopt);
 }
 
+std::optional<WorkedVerdict> PictureWorker::take_verdict() {
+  const std::scoped_lock lock(mutex_);
+  return std::exchange(verdict_, std::nullopt);
+}
+
 bool PictureWorker::busy() const {
   const std::scoped_lock lock(mutex_);
   return busy_ || next_.has_value();
@@ -67,9 +94,32 @@ int PictureWorker::rows_for(double pixels_per_second, int width, int height) {
   return std::clamp(rows, std::min(kLeastRows, height), height);
 }
 
+std::vector<PictureSettings> PictureWorker::refinement_of(const PictureSettings& settings) {
+  std::vector<PictureSettings> stages{settings};
+  // Other looks trace one ray per pixel.
+  if (settings.look != Look::shaded && settings.look != Look::comanche) return stages;
+  for (PictureSettings next = settings; next.aa > 1 || next.samples > 0;) {
+    // Anti-aliasing multiplies the rays of samples, and costs as its square.
+    if (next.aa > 1) {
+      next.aa /= 2;
+    } else {
+      next.samples /= kGrowth;
+      if (next.samples < kGrowth) next.samples = 0;
+    }
+    stages.push_back(next);
+  }
+  std::reverse(stages.begin(), stages.end());
+  return stages;
+}
+
 bool PictureWorker::outdated(std::uint64_t generation) const {
   const std::scoped_lock lock(mutex_);
   return stop_ || generation != generation_;
+}
+
+bool PictureWorker::stopped() const {
+  const std::scoped_lock lock(mutex_);
+  return stop_;
 }
 
 void PictureWorker::work() {
@@ -86,52 +136,102 @@ void PictureWorker::work() {
       generation = generation_;
       busy_ = true;
     }
-    bool goes_on = render_stage(request, PictureStage::moving, generation);
-    if (request.moving) continue;
-    for (const PictureStage stage : {PictureStage::full, PictureStage::converged})
-      goes_on = goes_on && render_stage(request, stage, generation);
+    if (!render_moving(request, generation) || request.moving) continue;
+    if (render_at_rest(request, generation)) judge(request, generation);
   }
 }
 
-// Returns whether the next stage is wanted.
-bool PictureWorker::render_stage(const PictureRequest& request, PictureStage stage, std::uint64_t generation) {
-  PictureSettings settings = request.settings;
-  const bool is_full = settings.aa == 1 && settings.samples == 0;
-  if (stage == PictureStage::full && is_full) return true;  // the same as converged
-  if (stage != PictureStage::converged) settings.aa = 1, settings.samples = 0;
-  if (stage == PictureStage::moving) {
-    const int rows = rows_for(pixels_per_second_, settings.width, settings.height);
-    settings.width =
-        std::max(1, static_cast<int>(std::lround(static_cast<double>(settings.width) * rows / settings.height)));
-    settings.height = rows;
-  }
-  const auto begin = std::chrono::steady_clock::now();
-  WorkedPicture worked;
-  worked.stage = stage;
-  worked.generation = generation;
-  try {
-    worked.picture = render_(request.camera(settings.width, settings.height), settings, [&](double) {
-      // What is under way while moving is shown; only the end of the window ends it.
-      if (stage != PictureStage::moving) return !outdated(generation);
-      const std::scoped_lock lock(mutex_);
-      return !stop_;
-    });
-  } catch (const Interrupted&) {
-    return false;
-  } catch (const std::exception& error) {
-    worked.error = error.what();
-  }
-  worked.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (stage == PictureStage::moving && worked.error.empty())
-    pixels_per_second_ =
-        static_cast<double>(settings.width) * settings.height / std::max(worked.seconds, kLeastSeconds);
+// Hands the picture over. Returns whether there is one.
+bool PictureWorker::deliver(WorkedPicture worked) {
   const bool failed = !worked.error.empty();
   {
     const std::scoped_lock lock(mutex_);
     done_ = std::move(worked);
   }
   ready_();
-  return !failed && !outdated(generation);
+  return !failed;
+}
+
+// Returns whether the next stage is wanted, as the two below.
+bool PictureWorker::render_moving(const PictureRequest& request, std::uint64_t generation) {
+  const PictureSettings& asked = request.sides.front().settings;
+  const int height = rows_for(pixels_per_second_, asked.width, asked.height);
+  const int width =
+      std::max(1, static_cast<int>(std::lround(static_cast<double>(asked.width) * height / asked.height)));
+  WorkedPicture worked;
+  worked.generation = generation;
+  const Watch watch;
+  const bool done = attempt(worked, [&] {
+    const Camera camera = request.camera(width, height);
+    for (const PictureSide& side : request.sides) {
+      PictureSettings settings = side.settings;
+      settings.width = width, settings.height = height;
+      settings.aa = 1, settings.samples = 0;
+      // What is under way while moving is shown; only the end of the window ends it.
+      worked.sides.push_back(side.render(camera, settings, [&](double) { return !stopped(); }));
+    }
+  });
+  if (!done) return false;
+  worked.seconds = watch.seconds();
+  if (worked.error.empty())
+    pixels_per_second_ = static_cast<double>(width) * height / std::max(worked.seconds, kLeastSeconds);
+  return deliver(std::move(worked)) && !outdated(generation);
+}
+
+bool PictureWorker::render_at_rest(const PictureRequest& request, std::uint64_t generation) {
+  const PictureSettings& asked = request.sides.front().settings;
+  std::vector<std::vector<PictureSettings>> stages;
+  std::size_t count = 1;
+  for (const PictureSide& side : request.sides) {
+    stages.push_back(refinement_of(side.settings));
+    count = std::max(count, stages.back().size());
+  }
+  std::vector<Picture> before;
+  for (std::size_t i = 0; i < count; ++i) {
+    WorkedPicture worked;
+    worked.generation = generation;
+    worked.stage = i + 1 == count ? PictureStage::converged : i == 0 ? PictureStage::full : PictureStage::refining;
+    const Watch watch;
+    const bool done = attempt(worked, [&] {
+      const Camera camera = request.camera(asked.width, asked.height);
+      for (std::size_t s = 0; s < stages.size(); ++s) {
+        // All sides are complete at the last stage.
+        const std::size_t last = stages[s].size() - 1, left = count - 1 - i;
+        const PictureSettings& settings = stages[s][last - std::min(last, left)];
+        if (i > 0 && left >= last) {
+          worked.sides.push_back(before[s]);  // its only stage so far
+          continue;
+        }
+        if (s == 0) worked.aa = settings.aa, worked.samples = settings.samples;
+        worked.sides.push_back(
+            request.sides[s].render(camera, settings, [&](double) { return !outdated(generation); }));
+      }
+    });
+    worked.seconds = watch.seconds();
+    if (i + 1 < count) before = worked.sides;
+    if (!done || !deliver(std::move(worked)) || outdated(generation)) return false;
+  }
+  return true;
+}
+
+void PictureWorker::judge(const PictureRequest& request, std::uint64_t generation) {
+  const PictureSettings& asked = request.sides.front().settings;
+  WorkedVerdict verdict;
+  verdict.generation = generation;
+  try {
+    for (const PictureSide& side : request.sides) {
+      verdict.sides.push_back(side.judge ? side.judge(request.camera(asked.width, asked.height),
+                                                      [&](double) { return !outdated(generation); })
+                                         : std::nullopt);
+    }
+  } catch (const std::exception&) {
+    return;  // interrupted, or a device that is gone: the picture is there
+  }
+  {
+    const std::scoped_lock lock(mutex_);
+    verdict_ = std::move(verdict);
+  }
+  ready_();
 }
 
 }  // namespace scarp::viewer

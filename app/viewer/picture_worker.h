@@ -3,7 +3,11 @@
 //
 //   while moving   few rows, as many as can be traced in a frame; one sample per pixel, hard shadows
 //   then           full resolution, one sample per pixel
+//   refining       more and more samples, see refinement_of()
 //   at rest        the settings as they were asked for: what `scarp render` writes
+//   afterwards     some rays of the picture are judged
+//
+// A picture may have two sides, such as the same view by two marches. Each stage renders both.
 //
 // Each request has a number, its generation. A newer request ends the work on all but the first stage of the older
 // one, which is shown even if the view goes on to move.
@@ -16,35 +20,48 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "scarp/render/camera/camera.h"
 #include "scarp/render/frame/picture.h"
+#include "scarp/render/look/judged_rays.h"
 
 namespace scarp::viewer {
 
-enum class PictureStage { moving, full, converged };
+enum class PictureStage { moving, full, refining, converged };
+
+struct PictureSide {
+  PictureSettings settings;  ///< of the converged picture
+  /// Renders a picture; throws Interrupted when the progress asks for it. Called on the worker's thread alone.
+  std::function<Picture(const Camera& camera, const PictureSettings& settings, const Progress& progress)> render;
+  /// Judges some rays of a camera; nullopt: nothing judges them. Thrown and called as `render`. May be null.
+  std::function<std::optional<JudgedRays>(const Camera& camera, const Progress& progress)> judge{};
+};
 
 struct PictureRequest {
   std::function<Camera(int width, int height)> camera;
-  PictureSettings settings;  ///< of the converged picture
-  bool moving = false;       ///< more requests will follow soon: no other stage than the first is begun
+  std::vector<PictureSide> sides;  ///< at least one; all have the same size
+  bool moving = false;             ///< more requests will follow soon: no other stage than the first is begun
 };
 
 struct WorkedPicture {
-  Picture picture;
+  std::vector<Picture> sides{};
   PictureStage stage = PictureStage::moving;
+  int aa = 1, samples = 0;  ///< of this stage
   std::uint64_t generation = 0;
   double seconds = 0;
   std::string error{};  ///< why there is no picture
 };
 
+struct WorkedVerdict {
+  std::vector<std::optional<JudgedRays>> sides{};
+  std::uint64_t generation = 0;
+};
+
 class PictureWorker {
  public:
-  /// Renders a picture; throws Interrupted when the progress asks for it. Called on the worker's thread alone.
-  using Render =
-      std::function<Picture(const Camera& camera, const PictureSettings& settings, const Progress& progress)>;
-  /// `ready` is called on the worker's thread when there is something to take().
-  PictureWorker(Render render, std::function<void()> ready);
+  /// `ready` is called on the worker's thread when there is something to take.
+  explicit PictureWorker(std::function<void()> ready);
   ~PictureWorker();
   PictureWorker(const PictureWorker&) = delete;
   PictureWorker& operator=(const PictureWorker&) = delete;
@@ -53,6 +70,8 @@ class PictureWorker {
   std::uint64_t request(PictureRequest request);
   /// The newest picture that was not taken yet.
   std::optional<WorkedPicture> take();
+  /// The newest verdict that was not taken yet.
+  std::optional<WorkedVerdict> take_verdict();
   /// Whether there is work to do.
   bool busy() const;
 
@@ -61,18 +80,25 @@ class PictureWorker {
   /// Rows of the first stage: as many as can be rendered in a frame, of at most `height`, by the pixels per second of
   /// the last first stage.
   static int rows_for(double pixels_per_second, int width, int height);
+  /// The settings of the stages at rest, from one sample per pixel to those that are asked for. Each costs at least
+  /// about four times the one before, so all but the last together cost a third of the last.
+  static std::vector<PictureSettings> refinement_of(const PictureSettings& settings);
 
  private:
   void work();
-  bool render_stage(const PictureRequest& request, PictureStage stage, std::uint64_t generation);
+  bool render_moving(const PictureRequest& request, std::uint64_t generation);
+  bool render_at_rest(const PictureRequest& request, std::uint64_t generation);
+  void judge(const PictureRequest& request, std::uint64_t generation);
+  bool deliver(WorkedPicture worked);
   bool outdated(std::uint64_t generation) const;
+  bool stopped() const;
 
-  Render render_;
   std::function<void()> ready_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<PictureRequest> next_;
   std::optional<WorkedPicture> done_;
+  std::optional<WorkedVerdict> verdict_;
   std::uint64_t generation_ = 0;
   bool stop_ = false, busy_ = false;
   double pixels_per_second_ = 4e6;  // until it was measured; of the worker's thread alone

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "scarp/base/error.h"
+#include "scarp/scene/voxel_entry.h"
 #include "scarp/source/coordinates.h"
 
 namespace scarp::viewer {
@@ -61,9 +62,12 @@ std::optional<Reading> read_under(const Scene& scene, const Camera& camera, cons
   if (reading.hit.voxel.x >= 0) {
     const ivec3& v = reading.hit.voxel;
     reading.lines.push_back(fmt::format("voxel {}, {}, {} of object {}", v.x, v.y, v.z, reading.hit.part));
-    if (surface.colour)
+    if (surface.colour) {
+      const VoxelColour& c = *surface.colour;
+      const std::optional<std::uint32_t> entry = palette_entry(scene, reading.hit);
       reading.lines.push_back(
-          fmt::format("colour {}, {}, {}", (*surface.colour)[0], (*surface.colour)[1], (*surface.colour)[2]));
+          fmt::format("{} ({}, {}, {})", entry ? fmt::format("palette {}", *entry) : "colour", c[0], c[1], c[2]));
+    }
   } else if (scene.terrain()) {
     reading.lines.push_back(fmt::format("cell {}, {}", reading.hit.cell.col, reading.hit.cell.row));
   }

@@ -16,7 +16,7 @@ namespace scarp::viewer {
 namespace {
 
 constexpr std::string_view kFirst = "scarp-view";
-constexpr std::array<std::string_view, 4> kKinds = {"move", "button", "key", "wheel"};
+constexpr std::array<std::string_view, 6> kKinds = {"move", "button", "key", "wheel", "option", "compare"};
 constexpr int kMostSide = 16384;
 constexpr double kMostPlace = 1e6;  // pixels or steps: no mouse is farther away
 
@@ -57,11 +57,18 @@ Recording read_recording(const std::string& file) {
     } else if (kind == "button" || kind == "key") {
       event.kind = kind == "button" ? WindowEvent::Kind::button : WindowEvent::Kind::key;
       good = static_cast<bool>(words >> event.code >> event.down >> event.modifiers);
+    } else if (kind == "option" || kind == "compare") {
+      event.kind = kind == "option" ? WindowEvent::Kind::option : WindowEvent::Kind::compare;
+      std::getline(words >> std::ws, event.text);
+      good = kind == "compare" || event.text.starts_with("--");
     } else {
       good = false;
     }
-    if (!good)
-      fail("'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS' or 'key CODE DOWN MODIFIERS' after the time");
+    if (!good) {
+      fail(
+          "'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS', 'key CODE DOWN MODIFIERS', 'option --NAME [VALUE]' "
+          "or 'compare [march NAME | look NAME]' after the time");
+    }
     recording.events.push_back(event);
   }
   if (number == 0) throw Error(fmt::format("'{}': is empty", file));
@@ -74,9 +81,19 @@ void write_recording(const std::string& file, const Recording& recording) {
   out << fmt::format("{} {}x{}\n", kFirst, recording.width, recording.height);
   for (const WindowEvent& event : recording.events) {
     out << fmt::format("{:.4f} {} ", event.seconds, kKinds[static_cast<std::size_t>(event.kind)]);
-    const bool placed = event.kind == WindowEvent::Kind::move || event.kind == WindowEvent::Kind::wheel;
-    out << (placed ? fmt::format("{} {}\n", event.x, event.y)
-                   : fmt::format("{} {:d} {}\n", event.code, event.down, event.modifiers));
+    switch (event.kind) {
+      case WindowEvent::Kind::move:
+      case WindowEvent::Kind::wheel:
+        out << fmt::format("{} {}\n", event.x, event.y);
+        break;
+      case WindowEvent::Kind::button:
+      case WindowEvent::Kind::key:
+        out << fmt::format("{} {:d} {}\n", event.code, event.down, event.modifiers);
+        break;
+      case WindowEvent::Kind::option:
+      case WindowEvent::Kind::compare:
+        out << event.text << '\n';
+    }
   }
   out.close();
   if (!out) throw Error(fmt::format("'{}': cannot be written; is the disk full?", file));

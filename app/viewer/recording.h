@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What mouse and keys did, as text, one event a line: "1.25 move 320 240". A recording is played with a clock of its
-// own, so the same recording ends at the same view on every machine.
+// own, so the same recording ends at the same view on every machine. "2 option --water 120" and "2 compare march naive"
+// set what the panel sets, wherever it stands.
 #pragma once
 
 #include <string>
@@ -9,13 +10,14 @@
 namespace scarp::viewer {
 
 struct WindowEvent {
-  enum class Kind { move, button, key, wheel };
+  enum class Kind { move, button, key, wheel, option, compare };
   double seconds = 0;  ///< since the window opened
   Kind kind = Kind::move;
   int code = 0;         ///< GLFW's number of the button or key
   bool down = false;    ///< pressed
   int modifiers = 0;    ///< GLFW's bits
   double x = 0, y = 0;  ///< move: the cursor, in pixels; wheel: y is the steps
+  std::string text{};   ///< option: "--water 120", or "--water" where it is left out; compare: "march naive"
 };
 
 struct Recording {

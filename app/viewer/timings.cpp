@@ -11,7 +11,7 @@
 namespace scarp::viewer {
 namespace {
 
-constexpr std::array<const char*, 3> kStageNames = {"moving", "full", "converged"};
+constexpr std::array<const char*, 4> kStageNames = {"moving", "full", "refining", "converged"};
 
 // The clock of other programs.
 double unix_seconds() {
@@ -39,7 +39,7 @@ void Timings::event(std::uint64_t generation) {
 
 void Timings::present(const WorkedPicture& shown) {
   if (!file_) return;
-  const Image& image = shown.picture.image;
+  const Image& image = shown.sides.front().image;
   fmt::print(file_, "present,{:.6f},{},{},{},{},{:.6f}\n", unix_seconds(), shown.generation,
              kStageNames[static_cast<std::size_t>(shown.stage)], image.width, image.height, shown.seconds);
 }

@@ -16,27 +16,19 @@ constexpr const char* kPathFile = "scarp-path.csv";
 
 }  // namespace
 
-std::string render_command(const cli::ViewOptions& options, const Pose& pose, const PictureSettings& picture,
-                           const std::string& output) {
-  const dvec3 target = pose.eye + forward_of(pose);
+std::string render_command(const Opening& opening, const Pose& pose, int width, int height, const std::string& output) {
+  std::vector<std::string_view> left_out = cli::kWindowOptions;
+  // Places of the command are local.
+  if (opening.options->mesh.at.empty()) left_out.emplace_back("--coords");
   std::string text =
-      fmt::format("scarp render{} -o {} --size {}x{}", options.words, output, picture.width, picture.height);
+      fmt::format("scarp render{} -o {} --size {}x{}", opening.command().typed_words(left_out), output, width, height);
   if (pose.mode == MoveMode::top) {
-    text += " --top";
-  } else {
-    text += fmt::format(" --eye={:.17g},{:.17g},{:.17g} --target={:.17g},{:.17g},{:.17g} --fov {:.17g}", pose.eye.x,
-                        pose.eye.y, pose.eye.z, target.x, target.y, target.z, pose.fov_deg);
+    const auto [low, high] = map_corners(pose, width, height);
+    return text + fmt::format(" --top --area={:.17g},{:.17g},{:.17g},{:.17g}", low.x, low.y, high.x, high.y);
   }
-  text += fmt::format(" --look {}", name_of(picture.look));
-  if (picture.look == Look::shaded || picture.look == Look::hillshade)
-    text += fmt::format(" --sun {:.17g},{:.17g}", picture.sun.azimuth_deg, picture.sun.altitude_deg);
-  if (picture.look == Look::shaded) {
-    text += fmt::format(" --aa {} --samples {} --haze {:.17g}", picture.aa, picture.samples, picture.haze);
-    if (!picture.shadows) text += " --no-shadows";
-    if (picture.water) text += fmt::format(" --water {:.17g}", picture.water->level);
-  }
-  if (!options.march.empty()) text += " --march " + options.march;
-  return text;
+  const dvec3 target = pose.eye + forward_of(pose);
+  return text + fmt::format(" --eye={:.17g},{:.17g},{:.17g} --target={:.17g},{:.17g},{:.17g} --fov {:.17g}", pose.eye.x,
+                            pose.eye.y, pose.eye.z, target.x, target.y, target.z, pose.fov_deg);
 }
 
 std::string save_numbered(const Image& image) {

@@ -13,25 +13,24 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <tuple>
 #include <utility>
 
 #include "app/cli/kept_inputs.h"
 #include "app/cli/progress.h"
-#include "app/cli/render_stage.h"
 #include "app/viewer/kept_settings.h"
+#include "app/viewer/keys.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/panel.h"
 #include "app/viewer/picture_worker.h"
 #include "app/viewer/presenter.h"
 #include "app/viewer/reading.h"
 #include "app/viewer/recording.h"
+#include "app/viewer/split.h"
+#include "app/viewer/subject.h"
 #include "app/viewer/timings.h"
 #include "app/viewer/view_output.h"
 #include "app/viewer/window.h"
 #include "scarp/base/error.h"
-#include "scarp/march/function/function_table.h"
-#include "scarp/march/height/height_table.h"
 #include "scarp/output/png.h"
 
 namespace scarp::viewer {
@@ -45,20 +44,12 @@ constexpr double kSignalWait = 0.5;     // seconds between two looks for Ctrl-C
 constexpr int kRedraws = 3;             // frames that Dear ImGui needs to come to rest after an event
 constexpr int kBookmarks = 9;
 
-std::vector<std::string> marches_for(cli::InputKind kind) {
-  std::vector<std::string> names;
-  if (kind == cli::InputKind::terrain) {
-    for (const HeightMarchEntry& march : height_marches()) names.emplace_back(march.name);
-  } else if (kind == cli::InputKind::function) {
-    for (const FunctionMarchEntry& march : function_marches()) names.emplace_back(march.name);
-  }
-  return names;
-}
+// What a drag with the left button moves.
+enum class Dragged { view, sun, line };
 
 class Viewer {
  public:
-  explicit Viewer(Opening opening)
-      : opening_(std::move(opening)), options_(*opening_.options), timings_(options_.timings) {
+  explicit Viewer(Opening opening) : options_(*opening.options), timings_(options_.timings) {
     if (!options_.play.empty()) played_ = read_recording(options_.play);
     cli::keep_inputs(options_.record, options_.typed);
     cli::keep_inputs(options_.screenshot, options_.typed);
@@ -71,13 +62,12 @@ class Viewer {
       height_ = typed ? options_.picture.height : kept.height;
       shows_panel_ = kept.panel;
     }
-    settle(open_stage(opening_));
+    show_first_view(std::make_unique<Subject>(std::move(opening), width_, height_));
     glfw_ = std::make_unique<Glfw>(width_, height_, title());
     if (!played_) listen();
     imgui_ = std::make_unique<Imgui>(glfw_->get(), !played_);
     presenter_ = std::make_unique<Presenter>(glfw_->get(), options_.window_device, options_.validation);
-    start_worker();
-    describe_input();
+    worker_ = std::make_unique<PictureWorker>([] { glfwPostEmptyEvent(); });
   }
 
   ~Viewer() { worker_.reset(); }
@@ -102,56 +92,74 @@ class Viewer {
 
  private:
   std::string title() const {
-    const auto& inputs = opening_.options->inputs;
+    const auto& inputs = subject_->opening().options->inputs;
     return inputs.empty() ? "Scarp" : std::filesystem::path(inputs.front()).filename().string() + " - Scarp";
   }
 
-  std::unique_ptr<cli::RenderStage> open_stage(const Opening& opening) const {
-    cli::RenderOptions options = *opening.options;
-    options.picture.width = width_, options.picture.height = height_;
-    auto stage = std::make_unique<cli::RenderStage>(opening.kind, std::move(options), opening.view);
-    stage->open();
-    return stage;
+  // Goes over to another input, from its first view.
+  void show_first_view(std::unique_ptr<Subject> subject) {
+    std::swap(subject_, subject);  // the one before lives until nothing refers to it
+    navigate(subject_->first_camera());
+    first_ = navigator_->pose();
   }
 
-  // Goes over to another input, from its first view, without a worker. If this throws, nothing has changed.
-  void settle(std::unique_ptr<cli::RenderStage> stage) {
-    const Camera first = stage->camera();
-    auto frames = std::make_unique<ReadingFrames>(stage->input().raster);
+  void navigate(const Camera& first) {
+    const cli::RenderInput& input = subject_->stage().input();
     // Rays of single points are the CPU's.
-    auto navigator =
-        std::make_unique<Navigator>(stage->given_scene(), first, stage->input().view.fov_deg, stage->input().across);
-    worker_.reset();
-    navigator_ = std::move(navigator), frames_ = std::move(frames), stage_ = std::move(stage);
-    settings_ = stage_->picture();
-    first_ = navigator_->pose();
+    navigator_ = std::make_unique<Navigator>(subject_->stage().given_scene(), first, input.view.fov_deg, input.across);
+    frames_ = std::make_unique<ReadingFrames>(input.raster);
     camera_.reset();
     line_from_.reset();
+    note_change();
+  }
+
+  // The picture and the panel are others.
+  void note_change() {
     settings_changed_ = true;
-    // Generations begin again.
-    generation_ = 0;
-    if (shown_) shown_->generation = 0;
+    redraws_ = kRedraws;
+    describe();
   }
 
-  void describe_input() {
-    panel_.marches = marches_for(opening_.kind);
-    panel_.march = std::string(cli::march_of(*opening_.options, opening_.kind));
-    panel_.parameters = parameters_of(opening_, panel_.march);
-    panel_.device = stage_->there().device.empty() ? "the CPU" : stage_->there().device;
+  void describe() {
+    const auto& steps = shown_ && !shown_->sides.empty() ? shown_->sides.front().steps : std::nullopt;
+    panel_.controls = subject_->controls(steps ? std::optional(steps->scale) : std::nullopt);
+    panel_.comparisons = subject_->comparisons();
+    panel_.compared = subject_->compared();
+    panel_.device = subject_->device();
+    panel_.names = {subject_->comparable(), subject_->compared()};
   }
 
-  // As `scarp render` makes the picture of this camera.
-  void start_worker() {
-    worker_ = std::make_unique<PictureWorker>(
-        [this](const Camera& seen, const PictureSettings& asked, const Progress& progress) {
-          Camera camera = seen;
-          PictureSettings settings = asked;
-          stage_->finish(camera);
-          cli::see_from_afar(stage_->options().look_options, stage_->scene_box(), camera, settings);
-          cli::look_through(stage_->there(), camera, settings.look == Look::shaded ? settings.aa : 1);
-          return render_picture(stage_->scene(), camera, settings, progress);
-        },
-        [] { glfwPostEmptyEvent(); });
+  // --- what is set --------------------------------------------------------------------------------------------------
+
+  // If it fails, as when the file is gone, the window goes on with what it has.
+  void change(const OptionChange& change) {
+    const double height = subject_->stage().exaggeration();
+    const Pose pose = navigator_->pose();
+    try {
+      if (subject_->change(change)) {
+        navigate(subject_->first_camera());
+        navigator_->set_pose(with_heights_times(pose, subject_->stage().exaggeration() / height));
+      }
+      panel_.message.clear();
+    } catch (const std::exception& error) {
+      fail(error.what());
+    }
+    note_change();
+  }
+
+  void compare(const std::string& with) {
+    try {
+      subject_->compare(with);
+    } catch (const std::exception& error) {
+      fail(error.what());
+    }
+    note_change();
+  }
+
+  void drag_sun(const dvec2& drag) {
+    const SunSettings& sun = subject_->opening().options->picture.sun;
+    const dvec2 to = dragged_sun({sun.azimuth_deg, sun.altitude_deg}, drag, size());
+    change({"--sun", fmt::format("{:.2f},{:.2f}", to.x, to.y)});
   }
 
   // --- events -------------------------------------------------------------------------------------------------------
@@ -205,13 +213,7 @@ class Viewer {
       case WindowEvent::Kind::move: {
         const dvec2 to(event.x, event.y), drag = to - cursor_;
         cursor_ = to;
-        if (dragging_ < 0) return;
-        way_ += std::hypot(drag.x, drag.y);
-        if (dragging_ == GLFW_MOUSE_BUTTON_LEFT) {
-          navigator_->turn(drag, size());
-        } else {
-          navigator_->shift(drag, size());
-        }
+        if (dragging_ >= 0) take_drag(drag);
         return;
       }
       case WindowEvent::Kind::button:
@@ -222,6 +224,28 @@ class Viewer {
       case WindowEvent::Kind::key:
         if (!io.WantTextInput || !event.down) take_key(event);
         return;
+      case WindowEvent::Kind::option: {
+        const std::size_t space = event.text.find(' ');
+        const bool is_set = space != std::string::npos;
+        return change(
+            {event.text.substr(0, space), is_set ? std::optional(event.text.substr(space + 1)) : std::nullopt});
+      }
+      case WindowEvent::Kind::compare:
+        return compare(event.text);
+    }
+  }
+
+  void take_drag(const dvec2& drag) {
+    way_ += std::hypot(drag.x, drag.y);
+    if (dragging_ != GLFW_MOUSE_BUTTON_LEFT) return navigator_->shift(drag, size());
+    switch (dragged_) {
+      case Dragged::view:
+        return navigator_->turn(drag, size());
+      case Dragged::sun:
+        return drag_sun(drag);
+      case Dragged::line:
+        line_.drag_to(cursor_.x, size().x);
+        show_sides();
     }
   }
 
@@ -229,12 +253,15 @@ class Viewer {
     if (event.down) {
       if (on_panel || dragging_ >= 0) return;
       dragging_ = event.code;
+      dragged_ = compares() && line_.is_at(cursor_, size())  ? Dragged::line
+                 : (event.modifiers & GLFW_MOD_CONTROL) != 0 ? Dragged::sun
+                                                             : Dragged::view;
       way_ = 0;
       return;
     }
     if (event.code != dragging_) return;
     dragging_ = -1;
-    if (way_ > kClickPixels || event.code != GLFW_MOUSE_BUTTON_LEFT) return;
+    if (way_ > kClickPixels || event.code != GLFW_MOUSE_BUTTON_LEFT || dragged_ != Dragged::view) return;
     const double now = seconds();
     const std::optional<Reading> clicked = reading_at(cursor_);
     if (panel_.measures) {
@@ -251,32 +278,14 @@ class Viewer {
       return;
     }
     constexpr double kAbove = 1.7;  // metres, of eyes at both ends
-    panel_.line = measure_line(stage_->given_scene(), *line_from_, point, kAbove, stage_->exaggeration());
+    const cli::RenderStage& stage = subject_->stage();
+    panel_.line = measure_line(stage.given_scene(), *line_from_, point, kAbove, stage.exaggeration());
     line_from_.reset();
     panel_.measures = false;
   }
 
   void take_key(const WindowEvent& event) {
-    const auto move = [&](MoveKey key) { navigator_->key(key, event.down); };
-    switch (event.code) {
-      case GLFW_KEY_W:
-        return move(MoveKey::forward);
-      case GLFW_KEY_S:
-        return move(MoveKey::back);
-      case GLFW_KEY_A:
-        return move(MoveKey::left);
-      case GLFW_KEY_D:
-        return move(MoveKey::right);
-      case GLFW_KEY_E:
-        return move(MoveKey::up);
-      case GLFW_KEY_Q:
-        return move(MoveKey::down);
-      case GLFW_KEY_LEFT_SHIFT:
-      case GLFW_KEY_RIGHT_SHIFT:
-        return move(MoveKey::fast);
-      default:
-        break;
-    }
+    if (const auto key = move_key_of(event.code)) return navigator_->key(*key, event.down);
     if (!event.down) return;
     if (event.code >= GLFW_KEY_1 && event.code < GLFW_KEY_1 + kBookmarks) {
       std::optional<Pose>& bookmark = bookmarks_[static_cast<std::size_t>(event.code - GLFW_KEY_1)];
@@ -287,43 +296,44 @@ class Viewer {
       }
       return;
     }
-    switch (event.code) {
-      case GLFW_KEY_O:
+    if (const auto action = action_of(event.code)) act(*action);
+  }
+
+  void act(WindowAction action) {
+    switch (action) {
+      case WindowAction::orbit:
         return navigator_->set_mode(MoveMode::orbit);
-      case GLFW_KEY_F:
+      case WindowAction::fly:
         return navigator_->set_mode(MoveMode::fly);
-      case GLFW_KEY_G:
+      case WindowAction::walk:
         return navigator_->set_mode(MoveMode::walk);
-      case GLFW_KEY_T:
+      case WindowAction::top:
         return navigator_->set_mode(MoveMode::top);
-      case GLFW_KEY_H:
+      case WindowAction::first_view:
         return navigator_->set_pose(first_);
-      case GLFW_KEY_M:
+      case WindowAction::measure:
         panel_.measures = !panel_.measures;
         line_from_.reset();
         return;
-      case GLFW_KEY_K:
+      case WindowAction::keep_in_path:
         return keep_in_path();
-      case GLFW_KEY_C:
+      case WindowAction::copy:
         return copy_command();
-      case GLFW_KEY_P:
+      case WindowAction::save:
         saves_ = true;
         return;
-      case GLFW_KEY_TAB:
+      case WindowAction::panel:
         shows_panel_ = !shows_panel_;
         return;
-      case GLFW_KEY_F1:
+      case WindowAction::help:
         panel_.help = !panel_.help;
         return;
-      case GLFW_KEY_ESCAPE:
+      case WindowAction::escape:
         if (panel_.measures || panel_.help) {
           panel_.measures = panel_.help = false;
         } else {
           glfwSetWindowShouldClose(glfw_->get(), GLFW_TRUE);
         }
-        return;
-      default:
-        return;
     }
   }
 
@@ -376,15 +386,17 @@ class Viewer {
       ask(false);
     }
     if (auto worked = worker_->take()) show(std::move(*worked));
+    if (auto verdict = worker_->take_verdict()) {
+      verdict_ = std::move(verdict);
+      redraws_ = kRedraws;
+    }
   }
 
   void ask(bool moving) {
-    PictureSettings settings = settings_;
-    settings.width = width_, settings.height = height_;
     // A copy: the navigator moves on.
     const Navigator there = *navigator_;
-    generation_ =
-        worker_->request({[there](int width, int height) { return there.camera(width, height); }, settings, moving});
+    generation_ = worker_->request({[there](int width, int height) { return there.camera(width, height); },
+                                    subject_->sides(width_, height_), moving});
     camera_ = navigator_->camera(width_, height_);
   }
 
@@ -396,16 +408,34 @@ class Viewer {
       return;
     }
     render_failed_ = false;
-    presenter_->set_image(worked.picture.image);
     shown_ = std::move(worked);
     unpresented_ = true;
-    if (saves_ && shown_->stage == PictureStage::converged && shown_->generation == generation_) save_picture();
+    show_sides();
+    if (is_complete() && subject_->opening().options->picture.look == Look::steps) describe();
+    if (saves_ && is_complete()) save_picture();
+  }
+
+  bool is_complete() const {
+    return shown_ && shown_->stage == PictureStage::converged && shown_->generation == generation_;
+  }
+  // Not by the picture in the window: recordings end at the same view, however long pictures take.
+  bool compares() const { return !subject_->compared().empty(); }
+
+  void show_sides() {
+    if (!shown_) return;
+    const Image& first = shown_->sides.front().image;
+    if (shown_->sides.size() > 1) {
+      presenter_->set_image(split_image(first, shown_->sides[1].image, line_.column(first.width)));
+    } else {
+      presenter_->set_image(first);
+    }
   }
 
   std::optional<Reading> reading_at(const dvec2& at) const {
     if (!camera_) return {};
+    const cli::RenderStage& stage = subject_->stage();
     try {
-      return read_under(stage_->given_scene(), *camera_, at, *frames_, stage_->exaggeration());
+      return read_under(stage.given_scene(), *camera_, at, *frames_, stage.exaggeration());
     } catch (const Error&) {
       return {};  // fields that the device alone answers
     }
@@ -420,12 +450,13 @@ class Viewer {
       io.MousePos = {static_cast<float>(cursor_.x), static_cast<float>(cursor_.y)};
     }
     ImGui::NewFrame();
+    if (compares()) draw_split(line_.share() * ImGui::GetIO().DisplaySize.x, panel_.names);
     PanelActions actions;
     if (shows_panel_) {
-      panel_.picture = &settings_;
       panel_.mode = navigator_->pose().mode;
       panel_.speed = navigator_->speed();
       panel_.shown = shown_ ? &*shown_ : nullptr;
+      panel_.verdict = verdict_ && verdict_->generation == generation_ ? &*verdict_ : nullptr;
       panel_.busy = worker_->busy();
       panel_.reading = reading_at(cursor_);
       actions = draw_panel(panel_);
@@ -440,49 +471,22 @@ class Viewer {
   }
 
   void act(const PanelActions& actions) {
-    settings_changed_ |= actions.picture_changed;
     if (actions.mode) navigator_->set_mode(*actions.mode);
     if (actions.copy) copy_command();
     if (actions.save) saves_ = true;
-    if (saves_ && shown_ && shown_->stage == PictureStage::converged && shown_->generation == generation_)
-      save_picture();
-    if (actions.march) opening_.options->march = *actions.march;
-    if (actions.march || actions.parameter_changed) reopen();
-  }
-
-  // Opens the input again with other settings of the march. View and look stay. If it fails, as when the file is gone,
-  // the window goes on with what it has.
-  void reopen() {
-    try {
-      auto stage = open_stage(opening_);
-      const Pose pose = navigator_->pose();
-      const PictureSettings kept = settings_;
-      settle(std::move(stage));
-      settings_ = kept;
-      navigator_->set_pose(pose);
-      start_worker();
-      marched_ = {opening_.options->march, opening_.options->march_settings};
-    } catch (const std::exception& error) {
-      fail(error.what());
-      std::tie(opening_.options->march, opening_.options->march_settings) = marched_;
-    }
-    describe_input();
+    if (saves_ && is_complete()) save_picture();
+    if (actions.change) change(*actions.change);
+    if (actions.compare) compare(*actions.compare);
   }
 
   // Goes over to a file that was dropped on the window, if it can be opened.
   void open_file(const std::string& file) {
     redraws_ = kRedraws;
     try {
-      Opening opening = opening_of(file);
-      auto stage = open_stage(opening);
-      settle(std::move(stage));
-      opening_ = std::move(opening);
-      marched_ = {opening_.options->march, opening_.options->march_settings};
+      show_first_view(std::make_unique<Subject>(opening_of(file), width_, height_));
       bookmarks_ = {};
       panel_.line.reset();
       panel_.message.clear();
-      start_worker();
-      describe_input();
       glfwSetWindowTitle(glfw_->get(), title().c_str());
     } catch (const std::exception& error) {
       fail(error.what());
@@ -498,30 +502,34 @@ class Viewer {
 
   // --- what leaves the window ---------------------------------------------------------------------------------------
 
+  // Of two sides both.
   void save_picture() {
     saves_ = false;
     redraws_ = kRedraws;
     try {
-      const std::string name = save_numbered(shown_->picture.image);
-      panel_.message = name + " is saved";
-      fmt::print("{}: {}\n", name, command(name));
+      std::string names;
+      for (std::size_t i = 0; i < shown_->sides.size(); ++i) {
+        const std::string name = save_numbered(shown_->sides[i].image);
+        names += (names.empty() ? "" : " and ") + name;
+        fmt::print("{}: {}\n", name, command(i, name));
+      }
+      panel_.message = names + (shown_->sides.size() > 1 ? " are saved" : " is saved");
       std::fflush(stdout);
     } catch (const Error& error) {
       fail(error.what());
     }
   }
 
-  std::string command(const std::string& output) const {
-    PictureSettings picture = settings_;
-    picture.width = width_, picture.height = height_;
-    return render_command(*opening_.options, navigator_->pose(), picture, output) +
-           parameter_words(opening_, panel_.march);
+  std::string command(std::size_t side, const std::string& output) const {
+    return render_command(*subject_->openings()[side], navigator_->pose(), width_, height_, output);
   }
 
   void copy_command() {
-    const std::string text = command("picture.png");
+    const bool two = subject_->openings().size() > 1;
+    std::string text = command(0, two ? "left.png" : "picture.png");
+    if (two) text += "\n" + command(1, "right.png");
     glfwSetClipboardString(glfw_->get(), text.c_str());
-    panel_.message = "the command is copied";
+    panel_.message = two ? "the commands are copied" : "the command is copied";
     fmt::print("{}\n", text);
     std::fflush(stdout);
   }
@@ -549,10 +557,7 @@ class Viewer {
       step(play_seconds_, kPlayStep, kPlayStep);
       draw(nullptr);
     }
-    const auto is_complete = [&] {
-      return shown_ && shown_->generation == generation_ && shown_->stage == PictureStage::converged;
-    };
-    while (!is_complete() || saves_) {
+    while (!is_complete() || saves_ || worker_->busy()) {
       glfwWaitEventsTimeout(kRest);
       if (cli::caught_signal() != 0) throw Interrupted();
       play_seconds_ += kPlayStep;
@@ -572,25 +577,22 @@ class Viewer {
     take(event);
   }
 
-  Opening opening_;
   const cli::ViewOptions options_;  // of the window itself
   Timings timings_;
   int width_ = 0, height_ = 0;
   std::optional<Recording> played_;
   Recording recorded_;
-  std::unique_ptr<cli::RenderStage> stage_;
-  std::pair<std::string, MarchSettings> marched_{opening_.options->march,
-                                                 opening_.options->march_settings};  // by stage_
+  std::unique_ptr<Subject> subject_;
   std::unique_ptr<ReadingFrames> frames_;
-  PictureSettings settings_;  // of the converged picture, as the panel has them
   std::unique_ptr<Navigator> navigator_;
   Pose first_;
   std::array<std::optional<Pose>, kBookmarks> bookmarks_;
   std::unique_ptr<Glfw> glfw_;
   std::unique_ptr<Imgui> imgui_;
   std::unique_ptr<Presenter> presenter_;
-  PanelState panel_{nullptr};
+  PanelState panel_;
   std::optional<WorkedPicture> shown_;
+  std::optional<WorkedVerdict> verdict_;
   std::optional<Camera> camera_;  // of the view as it is, at the window's size
   std::uint64_t generation_ = 0;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
@@ -599,6 +601,8 @@ class Viewer {
   bool render_failed_ = false;
   bool unpresented_ = false;  // shown_ is newer than what the window shows
   int redraws_ = kRedraws, dragging_ = -1;
+  Dragged dragged_ = Dragged::view;
+  SplitLine line_;
   dvec2 cursor_{-1.0};
   std::optional<dvec3> line_from_;
   std::unique_ptr<PictureWorker> worker_;  // ends first

@@ -130,7 +130,7 @@ TEST_F(Places, WhatIsWrongIsSaidInOneLine) {
   expect_refused({"--eye", "5,5"}, "--eye '5,5': expected X,Y,Z, or X,Y with --eye-above M");
   expect_refused({"--eye", "5,5,200", "--eye-above", "2"}, "--eye-above replaces Z");
   expect_refused({"--eye-above", "2"}, "--eye-above has no effect without --eye X,Y or --path FILE");
-  expect_refused({"--coords", "map"}, "--coords has no effect without --eye, --path or --mesh-at");
+  expect_refused({"--coords", "map"}, "--coords has no effect without --eye, --area, --path or --mesh-at");
   expect_refused({"--coords", "map", "--eye", "20,10", "--eye-above", "2"},
                  "--eye: there is no ground at 20,10, outside the bounds in map coordinates: x 1005 to 1205, y 2005 to "
                  "2205");

@@ -11,6 +11,8 @@
 #include "base/refusal.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_vox.h"
+#include "scarp/scene/scene.h"
+#include "scarp/scene/voxel_entry.h"
 
 namespace scarp {
 namespace {
@@ -339,6 +341,27 @@ VoxFile two_cubes(int version) {
                 {3, {}, VoxTransform{4, -1, -1, {{{"_t", "2 0 0"}}}}},
                 {4, {}, VoxShape{{{1, {}}}}}};
   return file;
+}
+
+TEST(FromVox, HitsHaveTheirPaletteEntry) {
+  const Scene scene(scene_voxels(placed_voxels_from(two_cubes(200))));
+  Ray down;
+  down.origin = {-1.5, 0.5, 10}, down.direction = {0, 0, -1};
+  const auto entry_at = [&](double x) {
+    down.origin.x = x;
+    return palette_entry(scene, scene.closest_hit(down));
+  };
+  EXPECT_EQ(entry_at(-1.5), 1u);
+  EXPECT_EQ(entry_at(3.5), 2u);
+  EXPECT_EQ(entry_at(50), std::nullopt);
+  // Entries without a palette are colours.
+  VoxelGrid grid({1, 1, 1}, 24);
+  grid.set({0, 0, 0}, 0x0a0b0c);
+  const auto coloured = std::make_shared<const VoxelModel>(std::move(grid), find_voxel_march("voxel-planes"));
+  const Scene plain(scene_voxels(PlacedVoxels{.models = {coloured}, .places = {VoxelPlace{}}}));
+  down.origin = {0.5, 0.5, 10};
+  ASSERT_TRUE(plain.closest_hit(down));
+  EXPECT_EQ(palette_entry(plain, plain.closest_hit(down)), std::nullopt);
 }
 
 // From version 200 on the first of two is seen where they overlap, before the last.

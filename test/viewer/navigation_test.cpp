@@ -134,5 +134,39 @@ TEST_F(Navigation, ADoubleClickGoesThere) {
   EXPECT_LT(length(pose.eye + pose.distance * forward_of(pose) - clicked), 1e-6);
 }
 
+TEST_F(Navigation, AMapIsThatOfItsCorners) {
+  Navigator navigator = at(scene, {20, 5, 30}, {20, 50, 0});
+  navigator.set_mode(MoveMode::top);
+  navigator.wheel(3, {200, 100}, kSize);
+  navigator.shift({31, -7}, kSize);
+  const auto [low, high] = map_corners(navigator.pose(), 800, 600);
+  EXPECT_NEAR((high.x - low.x) / (high.y - low.y), 800.0 / 600, 1e-12);
+  WorldBox box = scene.box();
+  box.low = {low.x, low.y, box.low.z}, box.high = {high.x, high.y, box.high.z};
+  const Camera map = Camera::top(box, 800, 600), shown = navigator.camera(800, 600);
+  for (const dvec2 pixel : {dvec2(0.5, 0.5), dvec2(400, 300), dvec2(799.5, 12.5)}) {
+    EXPECT_EQ(map.ray(pixel.x, pixel.y).origin, shown.ray(pixel.x, pixel.y).origin);
+    EXPECT_EQ(map.ray(pixel.x, pixel.y).direction, shown.ray(pixel.x, pixel.y).direction);
+  }
+}
+
+TEST_F(Navigation, HigherGroundKeepsThePointInTheMiddle) {
+  const Navigator navigator = at(scene, {20, 5, 30}, {50, 50, 20});
+  const Pose before = navigator.pose(), after = with_heights_times(before, 3);
+  const dvec3 was = before.eye + before.distance * forward_of(before),
+              is = after.eye + after.distance * forward_of(after);
+  EXPECT_NEAR(is.x, was.x, 1e-9);
+  EXPECT_NEAR(is.z, 3 * was.z, 1e-9);
+  Pose flies = before;
+  flies.mode = MoveMode::fly;
+  EXPECT_EQ(with_heights_times(flies, 3).eye, dvec3(20, 5, 90));
+}
+
+TEST(Sun, FollowsADrag) {
+  EXPECT_EQ(dragged_sun({315, 45}, {60, -60}, {800, 600}), dvec2(333, 54));
+  EXPECT_EQ(dragged_sun({350, 80}, {60, -600}, {800, 600}), dvec2(8, 90));
+  EXPECT_EQ(dragged_sun({5, 10}, {-60, 600}, {800, 600}), dvec2(347, 0));
+}
+
 }  // namespace
 }  // namespace scarp::viewer

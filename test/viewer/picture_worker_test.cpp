@@ -28,7 +28,13 @@ class Worker : public testing::Test {
     return {[](int width, int height) {
               return Camera::look_at({0, 0, 1}, {0, 1, 0}, 40, width, height);
             },
-            settings, moving};
+            {side(settings)},
+            moving};
+  }
+  PictureSide side(const PictureSettings& settings) {
+    return {settings, [this](const Camera&, const PictureSettings& asked, const Progress& progress) {
+              return render(asked, progress);
+            }};
   }
 
   // Renders nothing, for `render_time` or until it is interrupted.
@@ -47,9 +53,7 @@ class Worker : public testing::Test {
   }
 
   std::unique_ptr<PictureWorker> make() {
-    return std::make_unique<PictureWorker>([this](const Camera&, const PictureSettings& settings,
-                                                  const Progress& progress) { return render(settings, progress); },
-                                           [this] { ++ready_; });
+    return std::make_unique<PictureWorker>([this] { ++ready_; });
   }
 
   // The next picture, within ten seconds.
@@ -80,15 +84,17 @@ TEST_F(Worker, GoesThroughAllStages) {
   const auto last = converged(*worker);
   ASSERT_TRUE(last);
   EXPECT_EQ(last->generation, generation);
-  EXPECT_EQ(last->picture.image.width, 400);
+  EXPECT_EQ(last->sides.front().image.width, 400);
   const std::scoped_lock lock(mutex_);
-  ASSERT_EQ(asked_.size(), 3u);
+  ASSERT_EQ(asked_.size(), 4u);
   EXPECT_LE(asked_[0].height, 300);
   EXPECT_EQ(asked_[0].aa, 1);
   EXPECT_EQ(asked_[1].height, 300);
   EXPECT_EQ(asked_[1].samples, 0);
-  EXPECT_EQ(asked_[2].aa, 2);
+  EXPECT_EQ(asked_[2].aa, 1);
   EXPECT_EQ(asked_[2].samples, 4);
+  EXPECT_EQ(asked_[3].aa, 2);
+  EXPECT_EQ(asked_[3].samples, 4);
   EXPECT_GE(ready_, 1);
 }
 
@@ -98,6 +104,75 @@ TEST_F(Worker, SkipsAStageThatIsTheSame) {
   ASSERT_TRUE(converged(*worker));
   const std::scoped_lock lock(mutex_);
   EXPECT_EQ(asked_.size(), 2u);
+}
+
+// Rays of a picture: each sample has one, and as many to the sun and to the sky as are asked for.
+double cost_of(const PictureSettings& settings) { return settings.aa * settings.aa * (1 + 2.0 * settings.samples); }
+
+TEST_F(Worker, RefinementEndsAtWhatIsAskedForAndCostsAThirdMore) {
+  for (const auto& [aa, samples] : {std::pair{1, 0}, {2, 0}, {4, 64}, {3, 5}, {16, 0}, {1, 4096}}) {
+    PictureSettings settings;
+    settings.aa = aa, settings.samples = samples;
+    const std::vector<PictureSettings> stages = PictureWorker::refinement_of(settings);
+    EXPECT_EQ(cost_of(stages.front()), 1) << aa << ' ' << samples;
+    EXPECT_EQ(stages.back().aa, aa);
+    EXPECT_EQ(stages.back().samples, samples);
+    double before_the_last = 0;
+    for (std::size_t i = 0; i + 1 < stages.size(); ++i) {
+      before_the_last += cost_of(stages[i]);
+      EXPECT_GT(cost_of(stages[i + 1]), 3 * cost_of(stages[i]));
+    }
+    // Of 4^k samples: the sum of 1 + 2 * 4^j from j = 1 to k - 1, and 1, is a third of 1 + 2 * 4^k, and k - 3 more.
+    EXPECT_LE(before_the_last, cost_of(stages.back()) / 3 + 3) << aa << ' ' << samples;
+  }
+  PictureSettings counted;
+  counted.look = Look::steps, counted.aa = 4, counted.samples = 64;
+  EXPECT_EQ(PictureWorker::refinement_of(counted).size(), 1u);
+}
+
+TEST_F(Worker, BothSidesAreCompleteAtTheEnd) {
+  PictureRequest both = request(false, 4, 16);
+  PictureSettings counted = both.sides.front().settings;
+  counted.look = Look::steps;
+  both.sides.push_back(side(counted));
+  const auto worker = make();
+  worker->request(both);
+  const auto last = converged(*worker);
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->sides.size(), 2u);
+  const std::scoped_lock lock(mutex_);
+  // Moving: both. At rest: (1, 0), the counts once, (1, 4), (1, 16), (2, 16), (4, 16).
+  ASSERT_EQ(asked_.size(), 8u);
+  EXPECT_EQ(asked_[3].samples, 16);
+  EXPECT_EQ(asked_[5].samples, 16);
+  EXPECT_EQ(asked_[7].aa, 4);
+  EXPECT_EQ(asked_[7].samples, 16);
+}
+
+TEST_F(Worker, JudgesTheCompletePicture) {
+  PictureRequest judged = request(false);
+  judged.sides.front().judge = [](const Camera& camera, const Progress& progress) -> std::optional<JudgedRays> {
+    if (!progress(0)) throw Interrupted();
+    JudgedRays rays;
+    rays.mean_steps = camera.size().x;
+    return rays;
+  };
+  const auto worker = make();
+  const auto generation = worker->request(judged);
+  ASSERT_TRUE(converged(*worker));
+  while (worker->busy()) std::this_thread::sleep_for(1ms);
+  const auto verdict = worker->take_verdict();
+  ASSERT_TRUE(verdict);
+  EXPECT_EQ(verdict->generation, generation);
+  ASSERT_TRUE(verdict->sides.at(0));
+  EXPECT_EQ(verdict->sides[0]->mean_steps, 400);
+  EXPECT_FALSE(worker->take_verdict());
+  // Nothing is judged while the view moves.
+  judged.moving = true;
+  worker->request(judged);
+  ASSERT_TRUE(next(*worker));
+  while (worker->busy()) std::this_thread::sleep_for(1ms);
+  EXPECT_FALSE(worker->take_verdict());
 }
 
 TEST_F(Worker, RendersTheFirstStageAloneWhileMoving) {

@@ -35,6 +35,9 @@ TEST_F(Recordings, AreReadAsWritten) {
       {.seconds = 0.5, .kind = WindowEvent::Kind::button, .code = 1, .down = true, .modifiers = 2});
   recording.events.push_back({.seconds = 0.5, .kind = WindowEvent::Kind::key, .code = 87, .down = false});
   recording.events.push_back({.seconds = 2, .kind = WindowEvent::Kind::wheel, .x = 0, .y = -1});
+  recording.events.push_back({.seconds = 3, .kind = WindowEvent::Kind::option, .text = "--sun 300,20"});
+  recording.events.push_back({.seconds = 3, .kind = WindowEvent::Kind::compare, .text = "march naive"});
+  recording.events.push_back({.seconds = 3, .kind = WindowEvent::Kind::compare});
   write_recording(file, recording);
   const Recording read = read_recording(file);
   EXPECT_EQ(read.width, 640);
@@ -43,7 +46,7 @@ TEST_F(Recordings, AreReadAsWritten) {
   for (std::size_t i = 0; i < read.events.size(); ++i) {
     const WindowEvent &a = read.events[i], &b = recording.events[i];
     EXPECT_TRUE(a.seconds == b.seconds && a.kind == b.kind && a.code == b.code && a.down == b.down &&
-                a.modifiers == b.modifiers && a.x == b.x && a.y == b.y)
+                a.modifiers == b.modifiers && a.x == b.x && a.y == b.y && a.text == b.text)
         << i;
   }
 }
@@ -55,8 +58,9 @@ TEST_F(Recordings, TellWhatIsWrong) {
   EXPECT_EQ(why_not("scarp-view 9x9\n1 move 1 1\n0.5 move 1 1\n"),
             ", line 3: expected a time no earlier than the last, and an event");
   const char* kWords =
-      ", line 2: expected 'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS' or 'key CODE DOWN MODIFIERS' after the "
-      "time";
+      ", line 2: expected 'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS', 'key CODE DOWN MODIFIERS', 'option "
+      "--NAME [VALUE]' or 'compare [march NAME | look NAME]' after the time";
+  EXPECT_EQ(why_not("scarp-view 9x9\n1 option water\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 jump\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 move 3\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 key 3 7 0\n"), kWords);

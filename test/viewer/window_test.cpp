@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cases.h"
+#include "output/read_png.h"
 
 namespace scarp::test {
 namespace {
@@ -96,6 +97,19 @@ class Window : public testing::Test {
         << commands << "\nwait $pid\n";
     return run("timeout 60 bash use.sh");
   }
+  // Runs the command that P has printed in output_ for a picture: it makes the same file.
+  void expect_saved_again(int number) {
+    const std::string name = "scarp-view-" + std::to_string(number) + ".png", begin = name + ": scarp ";
+    const std::size_t at = output_.find(begin);
+    ASSERT_NE(at, std::string::npos) << output_;
+    std::string command = output_.substr(at + begin.size());
+    command.erase(command.find('\n'));
+    command.replace(command.find("-o " + name), 3 + name.size(), "-o again.png");
+    const std::string printed = output_;
+    ASSERT_EQ(run(SCARP_PROGRAM " " + command), 0) << output_;
+    EXPECT_TRUE(bytes_of(name) == bytes_of("again.png")) << command;
+    output_ = printed;
+  }
   std::string bytes_of(const std::string& name) const {
     std::ifstream in(folder_ / name, std::ios::binary);
     std::stringstream text;
@@ -107,26 +121,92 @@ class Window : public testing::Test {
   std::string output_;
 };
 
+// The panel, which hides most of so small a window, is hidden by the key Tab.
 constexpr const char* kDrag =
-    "0.1 move 200 120\n0.2 button 0 1 0\n0.3 move 230 130\n0.4 move 260 125\n0.5 button 0 0 0\n0.6 wheel 0 2\n";
+    "0.05 key 258 1 0\n0.1 move 200 120\n0.2 button 0 1 0\n0.3 move 230 130\n0.4 move 260 125\n0.5 button 0 0 0\n0.6 "
+    "wheel 0 2\n";
 constexpr const char* kSave = "1.0 key 80 1 0\n1.1 key 80 0 0\n";
 
 TEST_F(Window, SavesWhatRenderMakes) {
   ASSERT_EQ(view(std::string(kDrag) + kSave, "dem.tif --exaggeration 2 --samples 2"), 0) << output_;
   ASSERT_TRUE(output_.starts_with("scarp-view-1.png: scarp render dem.tif --exaggeration=2 ")) << output_;
-  std::string command = output_.substr(output_.find(": ") + 2);
-  command.replace(0, std::string("scarp").size(), SCARP_PROGRAM);
-  command.replace(command.find("-o scarp-view-1.png"), std::string("-o scarp-view-1.png").size(), "-o again.png");
-  command.pop_back();
-  ASSERT_EQ(run(command), 0) << output_;
-  EXPECT_TRUE(bytes_of("scarp-view-1.png") == bytes_of("again.png"));
+  expect_saved_again(1);
+}
+
+TEST_F(Window, SavesWhatRenderMakesOfItsSettings) {
+  // Water, fog and colours; ground that is opened again; a look with its scale; a part of a map; the sun, dragged.
+  const std::string kSettings[] = {
+      "0.7 option --water 300\n0.7 option --fog height\n0.7 option --visibility 9000\n0.7 option --ramp viridis\n",
+      "0.7 option --exaggeration 3\n0.7 option --no-plinth true\n0.7 option --haze 0.3\n",
+      "0.7 option --look steps\n0.7 option --steps-range 2,30\n0.7 option --march naive\n"
+      "0.7 option --naive-step-factor 0.3\n",
+      "0.7 key 84 1 0\n0.72 wheel 0 5\n0.74 button 1 1 0\n0.76 move 100 180\n0.78 button 1 0 0\n",
+      "0.7 button 0 1 2\n0.72 move 200 150\n0.74 button 0 0 2\n"};
+  for (const std::string& settings : kSettings) {
+    ASSERT_EQ(view(kDrag + settings + kSave, "dem.tif"), 0) << output_;
+    expect_saved_again(1);
+    std::istringstream lines(settings);
+    for (std::string word; lines >> word;) {
+      if (!word.starts_with("--")) continue;
+      EXPECT_NE(output_.find(word), std::string::npos) << word << ": " << output_;
+    }
+    fs::remove(folder_ / "scarp-view-1.png");
+  }
+  EXPECT_NE(output_.find("--sun="), std::string::npos) << output_;
+}
+
+TEST_F(Window, SavesBothSides) {
+  ASSERT_EQ(view(std::string(kDrag) + "0.7 compare march fixed-step\n0.8 key 67 1 0\n" + kSave, "dem.tif"), 0)
+      << output_;
+  EXPECT_TRUE(output_.starts_with("scarp render dem.tif -o left.png ")) << output_;
+  EXPECT_NE(output_.find("\nscarp render dem.tif --march=fixed-step -o right.png "), std::string::npos) << output_;
+  expect_saved_again(1);
+  expect_saved_again(2);
+  EXPECT_FALSE(bytes_of("scarp-view-1.png") == bytes_of("scarp-view-2.png"));
+}
+
+// Whether two pictures are the same where neither the line between two sides nor their names are drawn.
+bool same_beside_line(const Rgb& a, const Rgb& b) {
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 5; x < 315; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        const auto at = static_cast<std::size_t>(3 * (y * 320 + x) + c);
+        if (a.bytes.at(at) != b.bytes.at(at)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+TEST_F(Window, TheLineBetweenTwoSidesIsDragged) {
+  // To the edges of the window, so that one side alone is seen.
+  for (const int side : {1, 2}) {
+    ASSERT_EQ(view(std::string(kDrag) + "0.7 compare look height\n0.8 move 160 30\n0.9 button 0 1 0\n1.0 move " +
+                       (side == 1 ? "500" : "-50") + " 30\n1.1 button 0 0 0\n1.2 key 80 1 0\n",
+                   "dem.tif --screenshot window.png"),
+              0)
+        << output_;
+    const auto picture = [&](const char* name) { return read_png((folder_ / name).string()); };
+    const Rgb window = picture("window.png");
+    EXPECT_EQ(same_beside_line(window, picture("scarp-view-1.png")), side == 1);
+    EXPECT_EQ(same_beside_line(window, picture("scarp-view-2.png")), side == 2);
+    for (const char* name : {"window.png", "scarp-view-1.png", "scarp-view-2.png"}) fs::remove(folder_ / name);
+  }
+}
+
+TEST_F(Window, GoesOnAfterAWrongOption) {
+  ASSERT_EQ(view("0.1 option --samples -1\n0.2 option --waves 0.1\n0.3 option --nothing 1\n0.4 compare march none\n" +
+                     std::string(kSave),
+                 "dem.tif"),
+            0)
+      << output_;
+  expect_saved_again(1);
 }
 
 TEST_F(Window, RecordingsEndAtTheSamePicture) {
   const char* kFlight = "0.7 key 70 1 0\n0.8 key 87 1 0\n1.0 key 87 0 0\n1.1 key 84 1 0\n1.2 wheel 0 1\n";
   for (const char* name : {"one.png", "two.png"}) {
-    ASSERT_EQ(view(std::string(kDrag) + kFlight + "1.5 key 258 1 0\n", std::string("dem.tif --screenshot ") + name), 0)
-        << output_;
+    ASSERT_EQ(view(std::string(kDrag) + kFlight, std::string("dem.tif --screenshot ") + name), 0) << output_;
   }
   EXPECT_GT(bytes_of("one.png").size(), 1000u);
   EXPECT_TRUE(bytes_of("one.png") == bytes_of("two.png"));
@@ -134,11 +214,11 @@ TEST_F(Window, RecordingsEndAtTheSamePicture) {
 
 TEST_F(Window, ShowsWhatItRenders) {
   // Without the panel, the window shows the film, and nothing else.
-  ASSERT_EQ(view(std::string(kDrag) + "0.7 key 258 1 0\n" + kSave, "dem.tif --screenshot window.png"), 0) << output_;
+  ASSERT_EQ(view(std::string(kDrag) + kSave, "dem.tif --screenshot window.png"), 0) << output_;
   ASSERT_TRUE(fs::exists(folder_ / "scarp-view-1.png"));
   EXPECT_TRUE(bytes_of("window.png") == bytes_of("scarp-view-1.png"));
   // The panel is on top of it.
-  ASSERT_EQ(view(kDrag, "dem.tif --screenshot panel.png"), 0) << output_;
+  ASSERT_EQ(view(std::string(kDrag) + "0.7 key 258 1 0\n", "dem.tif --screenshot panel.png"), 0) << output_;
   EXPECT_FALSE(bytes_of("panel.png") == bytes_of("window.png"));
 }
 

@@ -14,6 +14,7 @@
 #include "scarp/render/frame/middles.h"
 #include "scarp/render/frame/tile_work.h"
 #include "scarp/render/light/light.h"
+#include "scarp/render/look/judged_rays.h"
 #include "scarp/render/surface/ramp.h"
 
 namespace scarp {
@@ -114,7 +115,7 @@ class ErrorTile final : public TileWork {
  private:
   void judge_pixel(int x, int y, const Ray& ray, const Hit& answer) const {
     const Hit truth = judges_.closest_hit(ray);
-    const Verdict verdict = judge(answer, truth, tolerance(truth));
+    const Verdict verdict = judge(answer, truth, hit_tolerance(judges_, truth, settings_));
     ++tally_.pixels[static_cast<std::size_t>(verdict)];
     vec3 colour = linear_from_srgb(style_of(verdict).srgb);
     // Relief without shadows behind the colours of surfaces shows where the errors are.
@@ -125,12 +126,6 @@ class ErrorTile final : public TileWork {
     set_pixel(image_, x, y, colour);
     const bool chosen = x % kProvenEvery == kProvenEvery / 2 && y % kProvenEvery == kProvenEvery / 2;
     if (function_ && chosen && truth.status != HitStatus::below && std::isfinite(ray.t_max)) prove(ray, truth);
-  }
-
-  double tolerance(const Hit& truth) const {
-    if (!truth) return 0;
-    const double cell = judges_.field_of(truth.object).cell_side() * judges_.objects()[truth.object].placement.scale;
-    return cell > 0 ? settings_.tolerance * cell : settings_.share * truth.t;
   }
 
   void prove(const Ray& ray, const Hit& truth) const {

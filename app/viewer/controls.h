@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// The controls of the panel, made of the declared options: flags become check boxes, choices lists, numbers sliders.
+//
+// A control shows the value that an option has, and turns what one does with it into a text for the option. An option
+// has a control where it has an effect.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/viewer/opening.h"
+
+namespace scarp::viewer {
+
+enum class ControlKind {
+  flag,    ///< on or off
+  choice,  ///< one of `choices`
+  number,  ///< numbers[0]
+  pair,    ///< "LOW,HIGH"
+  angles,  ///< "AZ,ALT" in degrees
+  colour,  ///< "RRGGBB"; numbers are red, green and blue, 0..1
+};
+
+struct Control {
+  std::string option;  ///< "--no-shadows"
+  std::string label;   ///< "shadows"
+  std::string help{};  ///< what the option's help says
+  cli::Topic topic = cli::Topic::picture;
+  bool common = false;  ///< one of the options that a plain `--help` shows
+  ControlKind kind = ControlKind::flag;
+  bool at_once = false;   ///< takes effect while it moves; others open the input again, and wait until it is let go
+  bool inverted = false;  ///< a flag that begins with "no-": on is the option that is not given
+  bool worded = false;    ///< a flag with the values true and false
+  bool on = false;        ///< flags
+  bool may_rest = false;  ///< may be left out, with a meaning that no value has: no water
+  bool rests = false;     ///< is left out
+  bool whole = false;     ///< whole numbers
+  bool logarithmic = false;
+  double least = 0, most = 1;  ///< of sliders
+  std::array<double, 3> numbers{};
+  std::vector<std::string> choices{};
+  std::string choice{};
+};
+
+/// What an input says about its options.
+struct ControlScales {
+  double low = 0, high = 0;               ///< heights in metres, not exaggerated
+  double across = 1;                      ///< metres that a picture is about
+  double steps_low = 0, steps_high = 64;  ///< of the colours of the look `steps`
+  double exaggeration = 1;
+  std::vector<std::string> marches{};  ///< of the input; empty: it has no choice
+  std::string march{};                 ///< in use
+};
+
+/// The controls of the options that have an effect, in the order of their declarations. `at_once` says which of them
+/// need no opening of the input.
+std::vector<Control> controls_of(const Opening& opening, const ControlScales& scales,
+                                 const std::function<bool(const cli::Declared&)>& at_once);
+
+/// The change that gives the option the value of the control.
+OptionChange change_of(const Control& control);
+
+}  // namespace scarp::viewer

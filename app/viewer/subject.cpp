@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: MIT
+#include "app/viewer/subject.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "app/cli/device_option.h"
+#include "app/cli/look_options.h"
+#include "scarp/base/error.h"
+#include "scarp/march/function/function_table.h"
+#include "scarp/march/height/height_table.h"
+#include "scarp/march/voxel/voxel_table.h"
+
+namespace scarp::viewer {
+namespace {
+
+constexpr std::array<Look, 5> kLooks = {Look::shaded, Look::hillshade, Look::height, Look::steps, Look::error};
+constexpr int kJudgedRays = 1000;
+constexpr ErrorSettings kOneCell{.tolerance = 1};
+
+std::vector<std::string> marches_for(cli::InputKind kind) {
+  std::vector<std::string> names;
+  const auto add = [&](const auto& table) {
+    for (const MarchEntry& march : table) names.emplace_back(march.name);
+  };
+  if (kind == cli::InputKind::terrain) add(height_marches());
+  if (kind == cli::InputKind::function) add(function_marches());
+  if (kind == cli::InputKind::voxels) add(voxel_marches());
+  return names;
+}
+
+// Rays through pixels that are spread evenly over the picture: the sequence R2 of additive recurrence, by the plastic
+// number.
+std::vector<Ray> sampled_rays(const Camera& camera) {
+  constexpr double kStepX = 0.75487766624669276, kStepY = 0.56984029099805327;
+  std::vector<Ray> rays;
+  for (int i = 0; i < kJudgedRays; ++i) {
+    const double x = std::fmod(0.5 + i * kStepX, 1.0), y = std::fmod(0.5 + i * kStepY, 1.0);
+    rays.push_back(camera.ray(std::floor(x * camera.size().x) + 0.5, std::floor(y * camera.size().y) + 0.5));
+  }
+  return rays;
+}
+
+}  // namespace
+
+Subject::Subject(Opening opening, int width, int height)
+    : width_(width),
+      height_(height),
+      main_(open(std::move(opening))),
+      first_camera_(main_.opened->stage.camera()),
+      device_(stage().there().device.empty() ? "the CPU" : stage().there().device) {}
+
+Subject::Side Subject::open(Opening opening) const {
+  auto opened = std::make_shared<Opened>(opening);
+  opened->stage.picture().width = width_, opened->stage.picture().height = height_;
+  opened->stage.open();
+  auto options = std::make_shared<const cli::RenderOptions>(opened->stage.options());
+  // What the input itself sets, for the controls.
+  opening.options->picture = options->picture, opening.options->look_options = options->look_options;
+  return {std::move(opening), std::move(opened), std::move(options)};
+}
+
+Subject::Side Subject::side_of(Opening opening, const Side& like, const Side* or_like) const {
+  for (const Side* side : {&like, or_like}) {
+    if (!side) continue;
+    const cli::RenderStage& stage = side->opened->stage;
+    const std::vector<std::string> names = differences(side->opened->opening, opening);
+    if (!std::all_of(names.begin(), names.end(),
+                     [&](const std::string& name) { return stage.restyles(*opening.command().find(name)); }))
+      continue;
+    auto options = std::make_shared<const cli::RenderOptions>(stage.restyled(*opening.options));
+    opening.options->picture = options->picture, opening.options->look_options = options->look_options;
+    return {std::move(opening), side->opened, std::move(options)};
+  }
+  return open(std::move(opening));
+}
+
+bool Subject::change(const OptionChange& change) {
+  Side main = side_of(changed(main_.opening, change), main_, nullptr);
+  std::optional<Side> other = beside(main);
+  const bool again = main.opened != main_.opened;
+  main_ = std::move(main), other_ = std::move(other);
+  return again;
+}
+
+std::vector<std::string> Subject::comparisons() const {
+  std::vector<std::string> words;
+  for (const std::string& march : marches_for(opening().kind)) words.push_back("march " + march);
+  for (const Look look : kLooks) words.push_back("look " + std::string(name_of(look)));
+  return words;
+}
+
+// "--march", "naive" of "march naive".
+OptionChange Subject::comparison() const {
+  const std::size_t space = compared_.find(' ');
+  return {"--" + compared_.substr(0, space), compared_.substr(space + 1)};
+}
+
+std::string Subject::comparable() const {
+  if (compared_.starts_with("look")) return "look " + std::string(name_of(main_.options->picture.look));
+  return "march " + stage().given_scene().marches();
+}
+
+std::optional<Subject::Side> Subject::beside(const Side& main) const {
+  if (compared_.empty()) return {};
+  return side_of(changed(main.opening, comparison()), main, other_ ? &*other_ : nullptr);
+}
+
+void Subject::compare(const std::string& with) {
+  std::string before = std::exchange(compared_, with);
+  try {
+    other_ = beside(main_);
+  } catch (...) {
+    compared_ = std::move(before);
+    throw;
+  }
+}
+
+// As `scarp render` makes it.
+PictureSide Subject::picture_side(const Side& side, int width, int height) {
+  PictureSide picture;
+  picture.settings = side.options->picture;
+  picture.settings.width = width, picture.settings.height = height;
+  picture.render = [opened = side.opened, options = side.options](const Camera& seen, const PictureSettings& asked,
+                                                                  const Progress& progress) {
+    Camera camera = seen;
+    PictureSettings settings = asked;
+    cli::RenderStage& stage = opened->stage;
+    stage.finish(camera, *options);
+    cli::see_from_afar(options->look_options, stage.scene_box(), camera, settings);
+    cli::look_through(stage.there(), camera, settings.look == Look::shaded ? settings.aa : 1);
+    return render_picture(stage.scene(), camera, settings, progress);
+  };
+  // Coarser voxels are others in every picture, and the look comanche has rays of its own.
+  if (side.opened->stage.input().coarse_voxels || picture.settings.look == Look::comanche) return picture;
+  picture.judge = [opened = side.opened, options = side.options](
+                      const Camera& seen, const Progress& progress) -> std::optional<JudgedRays> {
+    Camera camera = seen;
+    cli::RenderOptions judged = *options;
+    judged.picture.look = Look::error;  // rays end where the judge ends
+    opened->stage.finish(camera, judged);
+    const Scene& scene = opened->stage.scene();
+    if (!opened->judges) opened->judges = scene.judge();
+    if (opened->judges->marches() == scene.marches()) return {};
+    return judge_rays(scene, *opened->judges, sampled_rays(camera), kOneCell, progress);
+  };
+  return picture;
+}
+
+std::vector<PictureSide> Subject::sides(int width, int height) const {
+  std::vector<PictureSide> sides{picture_side(main_, width, height)};
+  if (other_) sides.push_back(picture_side(*other_, width, height));
+  return sides;
+}
+
+std::vector<const Opening*> Subject::openings() const {
+  std::vector<const Opening*> openings{&main_.opening};
+  if (other_) openings.push_back(&other_->opening);
+  return openings;
+}
+
+std::vector<Control> Subject::controls(const std::optional<StepScale>& steps) const {
+  ControlScales scales;
+  const cli::RenderInput& input = stage().input();
+  scales.exaggeration = stage().exaggeration();
+  scales.low = input.heights.low / input.exaggeration, scales.high = input.heights.high / input.exaggeration;
+  if (input.across > 0) scales.across = input.across;
+  if (steps) scales.steps_low = steps->low, scales.steps_high = steps->high;
+  scales.marches = marches_for(opening().kind);
+  scales.march = stage().given_scene().marches();
+  return controls_of(opening(), scales, [&](const cli::Declared& declared) { return stage().restyles(declared); });
+}
+
+}  // namespace scarp::viewer

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// What the window shows: an input with its options, and beside it, if one compares, the same input with one other
+// option: another march, or another look.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/render_stage.h"
+#include "app/viewer/controls.h"
+#include "app/viewer/opening.h"
+#include "app/viewer/picture_worker.h"
+
+namespace scarp::viewer {
+
+class Subject {
+ public:
+  /// Opens the input, for pictures of a window of this size. Throws Error.
+  Subject(Opening opening, int width, int height);
+
+  const Opening& opening() const { return main_.opening; }
+  const cli::RenderStage& stage() const { return main_.opened->stage; }
+  /// The camera of the options.
+  const Camera& first_camera() const { return first_camera_; }
+  /// Where rays are answered: a device's name, or "the CPU".
+  const std::string& device() const { return device_; }
+
+  /// Changes an option. Returns whether the input was opened again: then stage() is another one. If it throws Error,
+  /// nothing has changed.
+  bool change(const OptionChange& change);
+
+  /// What can be shown beside: "march naive", "look steps".
+  std::vector<std::string> comparisons() const;
+  /// Shows it beside; empty: nothing. If it throws Error, nothing has changed.
+  void compare(const std::string& with);
+  const std::string& compared() const { return compared_; }
+  /// "march max-mip" beside "march naive": the main picture, in the words of compared().
+  std::string comparable() const;
+
+  /// The pictures, at this size: that of the input, and that beside it.
+  std::vector<PictureSide> sides(int width, int height) const;
+  /// The inputs with their options, in the same order.
+  std::vector<const Opening*> openings() const;
+
+  std::vector<Control> controls(const std::optional<StepScale>& steps) const;
+
+ private:
+  // The stage is the worker's, once it was opened; the options say how the inputs were opened.
+  struct Opened {
+    explicit Opened(Opening of) : opening(std::move(of)), stage(opening.kind, *opening.options, opening.view) {}
+    Opening opening;
+    cli::RenderStage stage;
+    std::optional<Scene> judges{};  // once they were asked
+  };
+  struct Side {
+    Opening opening;
+    std::shared_ptr<Opened> opened;
+    std::shared_ptr<const cli::RenderOptions> options;
+  };
+
+  Side open(Opening opening) const;
+  // Without reading the inputs again, if it can be.
+  Side side_of(Opening opening, const Side& like, const Side* or_like) const;
+  std::optional<Side> beside(const Side& main) const;
+  OptionChange comparison() const;
+  static PictureSide picture_side(const Side& side, int width, int height);
+
+  int width_, height_;
+  Side main_;
+  std::string compared_{};
+  std::optional<Side> other_{};
+  Camera first_camera_;
+  std::string device_;
+};
+
+}  // namespace scarp::viewer

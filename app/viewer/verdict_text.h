@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// The judgement of some rays of a picture, in words.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "scarp/render/look/judged_rays.h"
+
+namespace scarp::viewer {
+
+/// "23.4 steps per ray; 3 of 1000 sampled rays wrong: 2 lost, 1 early"; empty if nothing judged them.
+std::string verdict_text(const std::optional<JudgedRays>& judged);
+
+}  // namespace scarp::viewer

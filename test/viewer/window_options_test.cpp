@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+// What the panel shows and sets, without a window: controls made of the declared options, and what changes of options
+// do to the pictures.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "app/viewer/controls.h"
+#include "app/viewer/subject.h"
+#include "app/viewer/view_output.h"
+#include "scarp/base/error.h"
+
+namespace scarp::viewer {
+namespace {
+
+struct WindowOptions : testing::Test {
+  std::string file =
+      std::filesystem::temp_directory_path() / ("scarp-window-options-" + std::to_string(::getpid()) + ".npy");
+
+  WindowOptions() {
+    // Waves of 24 m over 65 x 65 samples.
+    std::vector<float> samples;
+    for (int row = 0; row < 65; ++row) {
+      for (int col = 0; col < 65; ++col)
+        samples.push_back(static_cast<float>(12 + 12 * std::sin(0.3 * col) * std::cos(0.25 * row)));
+    }
+    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (65, 65), }";
+    header.resize(117, ' ');
+    std::ofstream out(file, std::ios::binary);
+    out.write("\x93NUMPY\x01\x00\x76\x00", 10);
+    out << header << '\n';
+    out.write(reinterpret_cast<const char*>(samples.data()), static_cast<std::streamsize>(4 * samples.size()));
+  }
+  ~WindowOptions() override { std::filesystem::remove(file); }
+
+  static Opening with(Opening opening, const std::vector<OptionChange>& changes) {
+    for (const OptionChange& change : changes) opening = changed(opening, change);
+    return opening;
+  }
+  static std::string words_of(const Opening& opening) { return opening.command().typed_words({"IN"}); }
+  static Control control(const std::vector<Control>& controls, std::string_view option) {
+    const auto found =
+        std::find_if(controls.begin(), controls.end(), [&](const Control& c) { return c.option == option; });
+    if (found == controls.end()) throw Error("there is no control of " + std::string(option));
+    return *found;
+  }
+  static bool has_control(const std::vector<Control>& controls, std::string_view option) {
+    return std::any_of(controls.begin(), controls.end(), [&](const Control& c) { return c.option == option; });
+  }
+  static std::vector<std::uint8_t> picture_of(const Subject& subject, std::size_t side = 0) {
+    const PictureSide of = subject.sides(64, 48)[side];
+    PictureSettings settings = of.settings;
+    settings.aa = 1;
+    return of.render(subject.first_camera(), settings, [](double) { return true; }).image.rgb;
+  }
+};
+
+TEST_F(WindowOptions, RestWhileTheyHaveNoEffect) {
+  const Opening plain = opening_of(file);
+  EXPECT_EQ(words_of(plain), "");
+  const Opening wavy = with(plain, {{"--water", "10"}, {"--waves", "0.1"}});
+  EXPECT_EQ(words_of(wavy), " --water=10 --waves=0.1");
+  // Without water there are no waves; with water, they are back.
+  const Opening dry = with(wavy, {{"--water", {}}});
+  EXPECT_EQ(words_of(dry), "");
+  EXPECT_FALSE(dry.options->picture.water);
+  EXPECT_EQ(words_of(with(dry, {{"--water", "12"}})), " --waves=0.1 --water=12");
+  const Opening counted = with(wavy, {{"--look", "steps"}});
+  EXPECT_EQ(words_of(counted), " --look=steps");
+  EXPECT_EQ(words_of(with(counted, {{"--look", {}}})), " --water=10 --waves=0.1");
+  // What cannot be combined: the newer one counts.
+  const Opening unlit = with(plain, {{"--samples", "4"}, {"--unlit", "true"}});
+  EXPECT_EQ(words_of(unlit), " --unlit");
+  EXPECT_EQ(words_of(with(unlit, {{"--samples", "8"}})), " --samples=8");
+}
+
+TEST_F(WindowOptions, SaysWhatIsWrong) {
+  const Opening plain = opening_of(file);
+  EXPECT_THROW(changed(plain, {"--nothing", "1"}), cli::WrongUsage);
+  EXPECT_THROW(changed(plain, {"--samples", "-1"}), cli::WrongUsage);
+  EXPECT_THROW(changed(plain, {"--waves", "0.1"}), Error);  // there is no water
+  EXPECT_THROW(changed(plain, {"--sun", "high"}), Error);
+}
+
+TEST_F(WindowOptions, ControlsShowTheDeclaredOptions) {
+  Subject subject(opening_of(file), 64, 48);
+  std::vector<Control> controls = subject.controls({});
+  const Control samples = control(controls, "--samples");
+  EXPECT_EQ(samples.kind, ControlKind::number);
+  EXPECT_TRUE(samples.whole && samples.at_once && samples.common);
+  EXPECT_EQ(samples.most, 4096);
+  EXPECT_FALSE(control(controls, "--exaggeration").at_once);
+  EXPECT_EQ(control(controls, "--exaggeration").numbers[0], 1);
+  EXPECT_EQ(control(controls, "--no-shadows").label, "shadows");
+  EXPECT_TRUE(control(controls, "--no-shadows").on);
+  EXPECT_EQ(control(controls, "--march").choice, "max-mip");
+  EXPECT_EQ(control(controls, "--sun").numbers[0], 315);
+  EXPECT_EQ(control(controls, "--haze").numbers[0], 0.1);
+  const Control water = control(controls, "--water");
+  EXPECT_TRUE(water.may_rest && water.rests);
+  EXPECT_NEAR(water.least, 0, 0.1);
+  EXPECT_NEAR(water.most, 30, 0.2);
+  // Options that need others, or have an effect on others, have no control.
+  EXPECT_FALSE(has_control(controls, "--waves"));
+  EXPECT_FALSE(has_control(controls, "--naive-step-factor"));
+  EXPECT_FALSE(has_control(controls, "--frame"));
+  subject.change({"--water", "7"});
+  subject.change({"--march", "naive"});
+  controls = subject.controls({});
+  EXPECT_FALSE(control(controls, "--water").rests);
+  EXPECT_EQ(control(controls, "--water").numbers[0], 7);
+  EXPECT_TRUE(has_control(controls, "--waves"));
+  EXPECT_EQ(control(controls, "--naive-step-factor").numbers[0], 0.7);
+  subject.change({"--look", "steps"});
+  controls = subject.controls(StepScale{3, 40});
+  EXPECT_EQ(control(controls, "--steps-range").numbers[1], 40);
+  EXPECT_FALSE(has_control(controls, "--water"));
+}
+
+// Whatever a control does is an option with a value of its range, and the control then shows it.
+TEST_F(WindowOptions, EveryControlChangesItsOption) {
+  for (const char* look : {"shaded", "steps", "height", "error", "hillshade"}) {
+    Subject subject(with(opening_of(file), {{"--look", look}}), 64, 48);
+    for (Control moved : subject.controls({})) {
+      if (moved.option == "--march" || moved.option == "--look") continue;
+      moved.rests = false;
+      if (moved.kind == ControlKind::flag) moved.on = !moved.on;
+      if (!moved.choices.empty()) moved.choice = moved.choices.back();
+      if (moved.kind == ControlKind::number) moved.numbers[0] = moved.least + 0.3 * (moved.most - moved.least);
+      // The fog of steps is for the look comanche.
+      if (moved.option == "--fog") moved.choice = "height";
+      const OptionChange change = change_of(moved);
+      ASSERT_NO_THROW(subject.change(change)) << change.option << ' ' << change.text.value_or("");
+      const std::vector<Control> after = subject.controls({});
+      if (!has_control(after, moved.option)) continue;
+      const Control shown = control(after, moved.option);
+      EXPECT_EQ(shown.on, moved.on) << moved.option;
+      EXPECT_EQ(shown.choice, moved.choice) << moved.option;
+      EXPECT_FALSE(shown.rests) << moved.option;
+      for (std::size_t i = 0; i < 3; ++i) {
+        // As many digits as a text of it has.
+        const double tolerance = moved.kind == ControlKind::colour ? 0.5 / 255 : std::max(1e-3 * moved.numbers[i], 0.5);
+        EXPECT_NEAR(shown.numbers[i], moved.numbers[i], tolerance) << moved.option;
+      }
+      EXPECT_NO_THROW(picture_of(subject)) << moved.option;
+      subject.change({moved.option, {}});
+    }
+  }
+}
+
+// Without the input being read again, the picture is that of an input that is.
+TEST_F(WindowOptions, WhatTakesEffectAtOnceIsTheSame) {
+  const std::vector<OptionChange> changes = {{"--water", "8"},      {"--fog", "height"}, {"--fog-base", "4"},
+                                             {"--ramp", "viridis"}, {"--sun", "100,20"}, {"--sky", "scattering"},
+                                             {"--haze", "0.4"},     {"--contours", "3"}, {"--look", "height"}};
+  Subject subject(opening_of(file), 64, 48);
+  Opening opening = opening_of(file);
+  std::vector<std::uint8_t> before = picture_of(subject);
+  for (const OptionChange& change : changes) {
+    if (change.option == "--haze") {
+      subject.change({"--fog", {}});
+      opening = changed(opening, {"--fog", {}});
+    }
+    EXPECT_FALSE(subject.change(change)) << change.option;
+    opening = changed(opening, change);
+    const Subject again(opening, 64, 48);
+    const std::vector<std::uint8_t> picture = picture_of(subject);
+    EXPECT_TRUE(picture == picture_of(again)) << change.option;
+    EXPECT_FALSE(picture == before) << change.option;
+    before = picture;
+  }
+  EXPECT_TRUE(subject.change({"--exaggeration", "3"}));
+  EXPECT_EQ(subject.stage().exaggeration(), 3);
+}
+
+TEST_F(WindowOptions, TwoSidesDifferInOneOption) {
+  Subject subject(opening_of(file), 64, 48);
+  const auto with = subject.comparisons();
+  EXPECT_NE(std::find(with.begin(), with.end(), "march fixed-step"), with.end());
+  EXPECT_NE(std::find(with.begin(), with.end(), "look steps"), with.end());
+  // Settings of a march rest while another one is in use.
+  for (const OptionChange& change : {OptionChange{"--march", "fixed-step"}, {"--fixed-step", "30"}, {"--march", {}}})
+    subject.change(change);
+  EXPECT_EQ(words_of(subject.opening()), "");
+  subject.compare("march fixed-step");
+  ASSERT_EQ(subject.sides(64, 48).size(), 2u);
+  EXPECT_EQ(words_of(*subject.openings()[1]), " --fixed-step=30 --march=fixed-step");
+  EXPECT_FALSE(picture_of(subject, 0) == picture_of(subject, 1));
+  // Both sides take changes over.
+  subject.change({"--water", "9"});
+  EXPECT_EQ(words_of(*subject.openings()[0]), " --water=9");
+  EXPECT_EQ(words_of(*subject.openings()[1]), " --fixed-step=30 --water=9 --march=fixed-step");
+  // An exact march is never wrong; a long step is.
+  subject.change({"--exaggeration", "20"});
+  const Camera camera = subject.first_camera();
+  const auto sides = subject.sides(64, 48);
+  const auto wrong = [&](std::size_t side) {
+    const auto judged = sides[side].judge(camera, {});
+    int rays = 0;
+    for (const Verdict verdict : {Verdict::lost, Verdict::invented, Verdict::early, Verdict::late, Verdict::gave_up})
+      rays += (*judged)[verdict];
+    EXPECT_GT(judged->mean_steps, 0);
+    return rays;
+  };
+  EXPECT_EQ(wrong(0), 0);
+  EXPECT_GT(wrong(1), 0);
+  subject.compare("look steps");
+  EXPECT_EQ(words_of(*subject.openings()[1]), " --exaggeration=20 --look=steps");
+  EXPECT_THROW(subject.compare("march nothing"), Error);
+  EXPECT_EQ(subject.compared(), "look steps");
+  subject.compare("");
+  EXPECT_EQ(subject.sides(64, 48).size(), 1u);
+}
+
+TEST_F(WindowOptions, TheCommandHasWhatWasSet) {
+  const Opening opening = with(opening_of(file), {{"--sun", "100,20"}, {"--no-shadows", "true"}, {"--top", "true"}});
+  Pose pose;
+  pose.mode = MoveMode::top;
+  pose.eye = {10, 20, 5}, pose.map_width = 8;
+  EXPECT_EQ(render_command(opening, pose, 80, 40, "a.png"),
+            "scarp render " + file + " --sun=100,20 --no-shadows -o a.png --size 80x40 --top --area=6,18,14,22");
+  pose.mode = MoveMode::orbit;
+  EXPECT_TRUE(render_command(opening, pose, 80, 40, "a.png")
+                  .starts_with("scarp render " + file +
+                               " --sun=100,20 --no-shadows -o a.png --size 80x40 --eye=10,20,5 --target="));
+}
+
+}  // namespace
+}  // namespace scarp::viewer
