@@ -467,7 +467,7 @@ class VectorWalk {
       t_clear[i] = c.t_clear[k];
     }
     for (std::size_t h = 0; h < N; h += hn::MaxLanes(dd)) {
-      const VD zero = hn::Zero(dd), one = hn::Set(dd, 1), two = hn::Set(dd, 2), four = hn::Set(dd, 4);
+      const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
       const CellRays r(rays, cells, h);
       const VD vt_min = hn::Load(dd, rays.t_min + h), vt_max = hn::Load(dd, rays.t_max + h);
       const VD tx = r.x_out(), ty = r.y_out();
@@ -477,17 +477,17 @@ class VectorWalk {
       const VD exit_x = CellRays::line(last_x, r.ox, r.per_x), exit_y = CellRays::line(last_y, r.oy, r.per_y);
       const VD t_in = hn::Max(vt_min, hn::Max(r.x_in(), r.y_in()));
       const VD t_end = hn::Min(vt_max, hn::Min(exit_x, exit_y));
-      const VD t_line = hn::Min(tx, ty), t_out = hn::Min(t_line, t_end), length = hn::Sub(t_out, t_in);
-      const auto [a, b, cc] = r.clearance_from(t_in);
+      const VD t_line = hn::Min(tx, ty), t_out = hn::Min(t_line, t_end);
       const VD z_in = r.height(t_in), z_out = r.height(t_out);
       const VD out = r.clearance_out(t_out, hn::Le(tx, ty));
+      const CellMeeting m = g_.triangles ? meet_triangles(r, t_in, t_out, out) : meet_bilinear(r, t_in, t_out, out);
       const VD t_far = hn::Max(hn::Abs(t_in), hn::Abs(t_out));
       const VD doubt = rounding(f_, r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, t_far);
       // Above until it enters the cell: known up to t_clear, and from there on by the maximum slope of the ground.
       const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, t_clear + h)), zero);
       const VD steepest =
           hn::Add(hn::Abs(r.dz), hn::Mul(hn::Add(hn::Abs(r.dx), hn::Abs(r.dy)), hn::Set(dd, f_.cell_relief)));
-      const auto above = hn::Gt(cc, hn::Add(hn::Mul(gap, steepest), doubt));
+      const auto above = hn::Gt(m.in, hn::Add(hn::Mul(gap, steepest), doubt));
       // march_max_mip() starts where the ray comes down to the highest sample, not before.
       const VD quotient = hn::Div(hn::Sub(hn::Set(dd, f_.highest), r.oz), r.dz);
       const VD t_top = hn::Sub(quotient, hn::Mul(hn::Set(dd, 2 * kUnit), hn::Abs(quotient)));
@@ -496,23 +496,15 @@ class VectorWalk {
       const auto usual = hn::And(above, visited);
       const VD highest = hn::Max(hn::Max(r.h00, r.h10), hn::Max(r.h01, r.h11));
       const VD lowest = hn::IfThenElse(hn::Lt(r.dz, zero), z_out, z_in);
-      const VD square = hn::Mul(b, b), ac4 = hn::Mul(hn::Mul(four, a), cc);
-      const auto dips = hn::And(hn::And(hn::Gt(a, zero), hn::Lt(b, zero)),
-                                hn::And(hn::Lt(hn::Neg(b), hn::Mul(hn::Mul(two, a), length)), hn::Ge(square, ac4)));
-      const auto hit = hn::And(hn::And(usual, hn::Not(hn::Gt(lowest, highest))), hn::Or(hn::Le(out, zero), dips));
-      const VD root = hn::Sqrt(hn::Max(zero, hn::Sub(square, ac4)));
-      const auto falls = hn::Lt(b, zero);
-      const VD s = hn::Div(hn::IfThenElse(falls, hn::Mul(two, cc), hn::Neg(hn::Add(b, root))),
-                           hn::IfThenElse(falls, hn::Sub(root, b), hn::Mul(two, a)));
-      const VD in_cell = hn::IfThenElseZero(hn::Ge(s, zero), hn::Min(s, length));
+      const auto hit = hn::And(hn::And(usual, hn::Not(hn::Gt(lowest, highest))), m.meets);
       // As std::min() and std::max() order zeros of both signs.
-      const VD inside = hn::Add(t_in, in_cell), by_end = hn::IfThenElse(hn::Lt(t_out, inside), t_out, inside);
+      const VD inside = hn::Add(t_in, m.s), by_end = hn::IfThenElse(hn::Lt(t_out, inside), t_out, inside);
       const VD time = hn::IfThenElse(hn::Lt(by_end, vt_min), vt_min, by_end);
       hn::Store(time, dd, t + h);
       hn::Store(r.u(time), dd, u + h), hn::Store(r.v(time), dd, v + h), hn::Store(r.height(time), dd, height + h);
       hn::Store(hn::IfThenElseZero(hit, one), dd, found + h);
     }
-    const bool usual = options_.find_hits && !g_.triangles;
+    const bool usual = options_.find_hits;
     for (std::size_t i = 0; i < c.count; ++i) {
       const Ray& ray = rays_[static_cast<std::size_t>(c.ray[i])];
       Hit& to = answers_[c.ray[i]];

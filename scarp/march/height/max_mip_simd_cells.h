@@ -90,16 +90,69 @@ struct CellRays {
     return q;
   }
 
+  // edge_height().
+  static HWY_INLINE VD edge(VD p, VD q, VD w) {
+    return hn::Min(hn::Max(hn::Add(p, hn::Mul(w, hn::Sub(q, p))), hn::Min(p, q)), hn::Max(p, q));
+  }
+
   // clearance() at t, where the ray leaves the cell through a line: of a column, or of a row.
   HWY_INLINE VD clearance_out(VD t, MD through_column) const {
-    const auto edge = [](VD p, VD q, VD w) HWY_ATTR {
-      return hn::Min(hn::Max(hn::Add(p, hn::Mul(w, hn::Sub(q, p))), hn::Min(p, q)), hn::Max(p, q));
-    };
     const VD on_x = edge(hn::IfThenElse(back_x, h00, h10), hn::IfThenElse(back_x, h01, h11), v(t));
     const VD on_y = edge(hn::IfThenElse(back_y, h00, h01), hn::IfThenElse(back_y, h10, h11), u(t));
     return hn::Sub(height(t), hn::IfThenElse(through_column, on_x, on_y));
   }
+
+  // CellPlane over the triangle that the ray is over at t_side: the clearance s after t is c + b s.
+  struct Linear {
+    VD b, c;
+  };
+  HWY_INLINE Linear over_triangle(VD t_side, VD t) const {
+    const VD one = hn::Set(dd, 1), u_at = u(t), v_at = v(t);
+    const MD south_east = hn::Gt(hn::Add(u(t_side), v(t_side)), one);
+    const VD hu = hn::IfThenElse(south_east, hn::Sub(h11, h01), hn::Sub(h10, h00));
+    const VD hv = hn::IfThenElse(south_east, hn::Sub(h11, h10), hn::Sub(h01, h00));
+    const VD nw = hn::Add(hn::Add(h00, hn::Mul(hu, u_at)), hn::Mul(hv, v_at));
+    const VD se = hn::Sub(hn::Sub(h11, hn::Mul(hu, hn::Sub(one, u_at))), hn::Mul(hv, hn::Sub(one, v_at)));
+    return {hn::Sub(dz, hn::Add(hn::Mul(hu, dx), hn::Mul(hv, dy))),
+            hn::Sub(height(t), hn::IfThenElse(south_east, se, nw))};
+  }
 };
+
+// Where a ray that enters its cell at t_in meets the surface before it leaves it at t_out, with the clearance `out`.
+struct CellMeeting {
+  VD in;  // clearance at t_in
+  VD s;   // t - t_in, if it meets
+  MD meets;
+};
+
+HWY_INLINE CellMeeting meet_bilinear(const CellRays& r, VD t_in, VD t_out, VD out) {
+  const VD zero = hn::Zero(dd), two = hn::Set(dd, 2), length = hn::Sub(t_out, t_in);
+  const auto [a, b, c] = r.clearance_from(t_in);
+  const VD square = hn::Mul(b, b), ac4 = hn::Mul(hn::Mul(hn::Set(dd, 4), a), c);
+  const MD dips = hn::And(hn::And(hn::Gt(a, zero), hn::Lt(b, zero)),
+                          hn::And(hn::Lt(hn::Neg(b), hn::Mul(hn::Mul(two, a), length)), hn::Ge(square, ac4)));
+  const VD root = hn::Sqrt(hn::Max(zero, hn::Sub(square, ac4)));
+  const MD falls = hn::Lt(b, zero);
+  const VD s = hn::Div(hn::IfThenElse(falls, hn::Mul(two, c), hn::Neg(hn::Add(b, root))),
+                       hn::IfThenElse(falls, hn::Sub(root, b), hn::Mul(two, a)));
+  return {c, hn::IfThenElseZero(hn::Ge(s, zero), hn::Min(s, length)), hn::Or(hn::Le(out, zero), dips)};
+}
+
+// At the diagonal, if it is crossed, or at the end.
+HWY_INLINE CellMeeting meet_triangles(const CellRays& r, VD t_in, VD t_out, VD out) {
+  const VD zero = hn::Zero(dd), half = hn::Set(dd, 0.5);
+  const VD sum = hn::Add(hn::Add(r.col, r.row), hn::Set(dd, 1));
+  const VD t_diagonal = hn::Div(hn::Sub(sum, hn::Add(r.ox, r.oy)), hn::Add(r.dx, r.dy));
+  const MD crosses = hn::And(hn::Gt(t_diagonal, t_in), hn::Lt(t_diagonal, t_out));
+  const VD crossing = hn::Sub(r.height(t_diagonal), CellRays::edge(r.h10, r.h01, r.v(t_diagonal)));
+  const MD at_first = hn::And(crosses, hn::Le(crossing, zero));
+  const VD begin = hn::IfThenElse(hn::AndNot(at_first, crosses), t_diagonal, t_in);
+  const VD end = hn::IfThenElse(at_first, t_diagonal, t_out), length = hn::Sub(end, begin);
+  const CellRays::Linear f = r.over_triangle(hn::Mul(half, hn::Add(begin, end)), begin);
+  const VD s = hn::IfThenElseZero(hn::Gt(f.c, zero), hn::Div(hn::Neg(f.c), f.b));
+  const VD within = hn::IfThenElse(hn::Ge(s, zero), hn::Min(s, length), length);
+  return {r.over_triangle(t_in, t_in).c, hn::Add(hn::Sub(begin, t_in), within), hn::Or(at_first, hn::Le(out, zero))};
+}
 
 // Rays in the cell that they start in, offset slightly from the ground like shadow rays: within the margin of floats,
 // which would leave each of them to the scalar traversal. Rays that are above the ground all the way through the cell
