@@ -24,14 +24,16 @@ struct TraceOptions {
   std::vector<int> threads{1};
   int repeats = 3;
   double pass_limit_s = 10;
-  std::int64_t judged = 20000;  ///< rays per class that the judge answers
+  std::int64_t judged = 20000;             ///< rays per class that the judge answers
+  std::string instruction_set = "native";  ///< bench/instruction_set.h (heights, survey)
 };
 
-/// `heights`: all marches beside Embree in the five ray classes.
+/// `heights`: all marches beside all modes of Embree in several ray classes.
 struct HeightsOptions {
   TraceOptions trace;
   std::vector<int> sizes{2049};
-  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes"};
+  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "nodes", "lidar", "lidar-ground", "near"};
+  std::vector<std::string> marches;  ///< modes of scarp, as rows name them; empty: all
   std::vector<std::string> engines{"scarp", "embree-tri", "embree-grid"};  ///< and "bullet", which is slow
   std::string embree_quality = "high";
 };
@@ -49,7 +51,7 @@ struct SurveyOptions {
   TraceOptions trace;
   std::vector<std::string> kinds{"ridged", "fbm"};
   std::vector<std::string> dems;
-  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao"};
+  std::vector<std::string> classes{"primary", "shadow", "grazing", "ao", "lidar", "lidar-ground", "near"};
   std::vector<std::string> peers{"embree-tri", "embree-grid"};
 };
 void run_survey(const SurveyOptions& options, const ReportOptions& report);

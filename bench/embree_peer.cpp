@@ -4,12 +4,11 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <cstring>
 
-#include "bench/denormals_off.h"
+#include "bench/embree_modes.h"
+#include "bench/instruction_set.h"
 #include "bench/protocol.h"
 #include "scarp/base/error.h"
 #include "scarp/base/parallel.h"
@@ -30,81 +29,6 @@ struct Memory {
     return true;
   }
 };
-
-void fill(RTCRay& to, const BenchRay& from) {
-  to.org_x = from.ox, to.org_y = from.oy, to.org_z = from.oz;
-  to.dir_x = from.dx, to.dir_y = from.dy, to.dir_z = from.dz;
-  to.tnear = 0, to.tfar = from.t_max;
-  to.time = 0, to.mask = ~0u, to.id = 0, to.flags = 0;
-}
-
-void fill(RTCRay8& to, const RayPacket& from) {
-  std::memcpy(to.org_x, from.ox, sizeof from.ox), std::memcpy(to.org_y, from.oy, sizeof from.oy);
-  std::memcpy(to.org_z, from.oz, sizeof from.oz), std::memcpy(to.dir_x, from.dx, sizeof from.dx);
-  std::memcpy(to.dir_y, from.dy, sizeof from.dy), std::memcpy(to.dir_z, from.dz, sizeof from.dz);
-  std::memcpy(to.tfar, from.t_max, sizeof from.t_max);
-  std::memset(to.tnear, 0, sizeof to.tnear), std::memset(to.time, 0, sizeof to.time);
-  std::memset(to.mask, 0xff, sizeof to.mask), std::memset(to.id, 0, sizeof to.id),
-      std::memset(to.flags, 0, sizeof to.flags);
-}
-
-RTCIntersectContext context_with(RTCIntersectContextFlags flags) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = flags;
-  return context;
-}
-
-void trace_single(RTCScene scene, const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
-  const DenormalsOff denormals_off;
-  RTCIntersectContext context = context_with(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-  const BenchRay* rays = set.rays.data();
-  if (set.any_hit) {
-    RTCRay ray;
-    for (std::int64_t i = begin; i < end; ++i) {
-      fill(ray, rays[i]);
-      rtcOccluded1(scene, &context, &ray);
-      *answers++ = ray.tfar < 0 ? kBlocked : kMiss;
-    }
-  } else {
-    RTCRayHit query;
-    for (std::int64_t i = begin; i < end; ++i) {
-      fill(query.ray, rays[i]);
-      query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(scene, &context, &query);
-      *answers++ = query.hit.geomID != RTC_INVALID_GEOMETRY_ID ? query.ray.tfar : kMiss;
-    }
-  }
-}
-
-void trace_packets(RTCScene scene, RTCIntersectContextFlags flags, const RaySet& set, std::int64_t begin,
-                   std::int64_t end, float* answers) {
-  const DenormalsOff denormals_off;
-  RTCIntersectContext context = context_with(flags);
-  if (set.any_hit) {
-    RTCRay8 rays;
-    for (std::int64_t i = begin; i < end; i += 8) {
-      const RayPacket& packet = set.packets[static_cast<std::size_t>(i / 8)];
-      fill(rays, packet);
-      rtcOccluded8(packet.valid, scene, &context, &rays);
-      const std::int64_t lanes = std::min<std::int64_t>(8, end - i);
-      for (std::int64_t lane = 0; lane < lanes; ++lane) *answers++ = rays.tfar[lane] < 0 ? kBlocked : kMiss;
-    }
-  } else {
-    RTCRayHit8 query;
-    for (std::int64_t i = begin; i < end; i += 8) {
-      const RayPacket& packet = set.packets[static_cast<std::size_t>(i / 8)];
-      fill(query.ray, packet);
-      std::memset(query.hit.geomID, 0xff, sizeof query.hit.geomID);
-      std::memset(query.hit.instID, 0xff, sizeof query.hit.instID);
-      rtcIntersect8(packet.valid, scene, &context, &query);
-      const std::int64_t lanes = std::min<std::int64_t>(8, end - i);
-      for (std::int64_t lane = 0; lane < lanes; ++lane) {
-        *answers++ = query.hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID ? query.ray.tfar[lane] : kMiss;
-      }
-    }
-  }
-}
 
 constexpr std::int64_t kRowsPerPiece = 64;
 
@@ -151,6 +75,7 @@ struct EmbreePeer::Scene {
   std::vector<float> vertices;
   std::vector<std::uint32_t> indices;
   EmbreeSurface surface;
+  bool robust;
   double build_s = 0;
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
@@ -178,17 +103,18 @@ EmbreeQuality find_embree_quality(std::string_view name) {
   throw Error(fmt::format("Embree quality '{}': unknown (available: medium, high)", name));
 }
 
-EmbreePeer::EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality)
+EmbreePeer::EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality, bool robust)
     : scene_(std::make_unique<Scene>()) {
   Scene& s = *scene_;
   s.surface = surface;
-  s.device = rtcNewDevice(nullptr);
+  s.robust = robust;
+  s.device = rtcNewDevice(embree_configuration());
   s.check("device");
   rtcSetDeviceMemoryMonitorFunction(s.device, &Memory::count, &s.memory);
 
   const Stopwatch watch;
   s.scene = rtcNewScene(s.device);
-  rtcSetSceneFlags(s.scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneFlags(s.scene, robust ? RTC_SCENE_FLAG_ROBUST : RTC_SCENE_FLAG_NONE);
   rtcSetSceneBuildQuality(s.scene, quality == EmbreeQuality::high ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM);
   s.vertices = vertices_of(field);
   const std::size_t vertex_count = static_cast<std::size_t>(field.cols()) * static_cast<std::size_t>(field.rows());
@@ -221,24 +147,21 @@ std::vector<Engine> EmbreePeer::engines() const {
   const Scene& s = *scene_;
   Engine common;
   common.name = s.surface == EmbreeSurface::grid ? "embree-grid" : "embree-tri";
+  if (!s.robust) common.name += "-default";
   common.bytes = static_cast<double>(s.memory.current) + s.input_bytes();
   common.peak_bytes = static_cast<double>(s.memory.peak) + s.input_bytes();
   common.build_s = s.build_s;
-  std::vector<Engine> engines(3, common);
-  const RTCScene scene = s.scene;
-  engines[0].mode = "x1";
-  engines[0].trace = [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
-    trace_single(scene, set, begin, end, answers);
-  };
-  const auto packets = [=](RTCIntersectContextFlags flags) {
-    return [=](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
-      trace_packets(scene, flags, set, begin, end, answers);
+  std::vector<Engine> engines;
+  for (const EmbreeMode& mode : embree_modes()) {
+    Engine engine = common;
+    engine.mode = mode.name;
+    // The yardstick is always measured.
+    engine.on_trial = s.surface == EmbreeSurface::grid || !s.robust || engines.size() > 0;
+    engine.trace = [&mode, scene = s.scene](const RaySet& set, std::int64_t begin, std::int64_t end, float* answers) {
+      mode.trace(scene, mode, set, begin, end, answers);
     };
-  };
-  engines[1].mode = "x8-coherent";
-  engines[1].trace = packets(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-  engines[2].mode = "x8-incoherent";
-  engines[2].trace = packets(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    engines.push_back(std::move(engine));
+  }
   return engines;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Embree 3.13 on the same samples, used as its documentation recommends: ROBUST scenes, no filter functions, denormals
-// off in the threads that trace, packets laid out beforehand.
+// Embree 3.13 on the same samples, used as its documentation recommends: no filter functions, denormals off in the
+// threads that trace, packets and streams laid out beforehand.
 #pragma once
 
 #include <memory>
@@ -22,13 +22,13 @@ EmbreeQuality find_embree_quality(std::string_view name);
 class EmbreePeer {
  public:
   /// Builds the scene and takes the time, making its vertices and indices included. Throws Error with Embree's own
-  /// words.
-  EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality);
+  /// words. `robust`: RTC_SCENE_FLAG_ROBUST, else no flag.
+  EmbreePeer(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality, bool robust = true);
   ~EmbreePeer();
   EmbreePeer(const EmbreePeer&) = delete;
   EmbreePeer& operator=(const EmbreePeer&) = delete;
 
-  /// Its modes x1, x8-coherent and x8-incoherent.
+  /// One for each of embree_modes(), x1 first: "embree-tri" or "embree-grid"; "-default" follows if not robust.
   std::vector<Engine> engines() const;
 
   /// "3.13.5"

@@ -19,11 +19,13 @@ constexpr float kBlocked = -std::numeric_limits<float>::infinity();
 
 struct Engine {
   std::string name;  ///< "scarp", "embree-tri", "embree-grid"
-  std::string mode;  ///< the march, or "x1", "x8-coherent", "x8-incoherent"
+  std::string mode;  ///< the march, or one of Embree's (bench/embree_modes.h)
   double bytes = 0;  ///< what has to stay in memory for tracing: samples or vertices, and the acceleration structure
   double peak_bytes = 0;  ///< the most that was in use while it was built
   double build_s = 0;     ///< from samples to ready for tracing
-  /// Answers rays [begin, end) of a set, begin a multiple of 8, into answers[0 ...]. Called from several threads.
+  /// One of very many: timed in full only if it is among the fastest of these in a short trial.
+  bool on_trial = false;
+  /// Answers rays [begin, end) of a set, begin a multiple of 16, into answers[0 ...]. Called from several threads.
   std::function<void(const RaySet& set, std::int64_t begin, std::int64_t end, float* answers)> trace;
 
   // For the judge, null in peers, whose surface is another one.

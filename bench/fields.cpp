@@ -19,6 +19,13 @@
 namespace scarp::bench {
 namespace {
 
+// Like the metres of SRTM at 30 m.
+constexpr double kInt16Step = 0x1p-5;
+
+Surface surface_of(const FieldOptions& options) {
+  return options.surface == "triangles" ? Surface::triangles : Surface::bilinear;
+}
+
 // In every row of cells, this many are asked for their slope.
 constexpr int kSlopesPerRow = 64;
 
@@ -48,11 +55,21 @@ BenchField procedural(const FieldOptions& options) {
   const auto kind = terrain_kind(options.kind);
   if (!kind) throw Error(fmt::format("procedural DEM '{}': unknown (available: ridged, fbm)", options.kind));
   dem.kind = *kind;
-  return described(HeightField::own(generate_dem(dem), options.size, options.size),
-                   fmt::format("{}, seed {}", options.kind, options.seed));
+  HeightFieldSettings settings;
+  settings.surface = surface_of(options);
+  const std::string name = fmt::format("{}, seed {}", options.kind, options.seed);
+  std::vector<float> heights = generate_dem(dem);
+  if (options.samples == "float32")
+    return described(HeightField::own(std::move(heights), options.size, options.size, settings), name);
+  settings.scale = kInt16Step;
+  std::vector<std::int16_t> steps(heights.size());
+  std::transform(heights.begin(), heights.end(), steps.begin(), [](float height) {
+    return static_cast<std::int16_t>(std::lround(std::clamp(height / kInt16Step, -32768.0, 32767.0)));
+  });
+  return described(HeightField::own(std::move(steps), options.size, options.size, settings), name);
 }
 
-BenchField from_file(const std::string& path) {
+BenchField from_file(const std::string& path, Surface surface) {
 #ifdef SCARP_BENCH_GDAL
   Raster raster = read_raster(path, {});
   // From metres to cells, in all three axes.
@@ -61,7 +78,9 @@ BenchField from_file(const std::string& path) {
   raster.georeference.cell_x_m = 1;
   raster.scale /= cell_m;
   raster.offset /= cell_m;
-  HeightField field = height_field_from(std::move(raster));
+  scarp::FieldOptions options;
+  options.surface = surface;
+  HeightField field = height_field_from(std::move(raster), options);
   if (!field.has_cells())
     throw Error(fmt::format("DEM '{}': {} x {} samples; at least 2 x 2 are needed", path, field.cols(), field.rows()));
   if (field.nodata_count() > 0) {
@@ -78,7 +97,7 @@ BenchField from_file(const std::string& path) {
 }  // namespace
 
 BenchField load_field(const FieldOptions& options) {
-  return options.dem.empty() ? procedural(options) : from_file(options.dem);
+  return options.dem.empty() ? procedural(options) : from_file(options.dem, surface_of(options));
 }
 
 BenchField exaggerated(const BenchField& ground, double exaggeration) {

@@ -15,7 +15,9 @@ struct FieldOptions {
   int size = 2049;              ///< samples per side of a procedural DEM, >= 33
   std::string kind = "ridged";  ///< "ridged" or "fbm"
   std::uint64_t seed = 1;
-  std::string dem;  ///< a raster file instead of a procedural DEM
+  std::string dem;                   ///< a raster file instead of a procedural DEM
+  std::string samples = "float32";   ///< of a procedural DEM; "int16": in steps of 1/32 cell
+  std::string surface = "bilinear";  ///< of Scarp, or "triangles"
 };
 
 /// A field and what readers of a result want to know about it.
@@ -26,7 +28,7 @@ struct BenchField {
   double mean_slope_deg = 0;  ///< mean angle of the cells' slope in their middle
 };
 
-/// The samples, float32 for procedural ones, not exaggerated. Throws Error when the file cannot be used: unreadable, a
+/// The samples, not exaggerated. Throws Error when the file cannot be used: unreadable, a
 /// single row or column, or with holes (over which the engines would answer different questions).
 BenchField load_field(const FieldOptions& options);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `scarp-bench heights`: all marches beside Embree, five classes of rays, one run.
+// `scarp-bench heights`: all marches beside Embree, several classes of rays, one run.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include "bench/bullet_peer.h"
 #include "bench/commands.h"
 #include "bench/embree_peer.h"
+#include "bench/instruction_set.h"
 #include "bench/judge.h"
 #include "bench/scarp_engine.h"
 #include "scarp/base/error.h"
@@ -37,14 +38,16 @@ class Contest {
     const EmbreeQuality quality = find_embree_quality(options.embree_quality);
     for (const std::string& name : options.engines) {
       if (name == "scarp") {
-        add(scarp_.engines());
+        for (Engine& engine : scarp_.engines()) {
+          const auto& wanted = options.marches;
+          if (wanted.empty() || std::find(wanted.begin(), wanted.end(), engine.mode) != wanted.end())
+            engines_.push_back(std::move(engine));
+        }
       } else if (name == "embree-tri") {
         if (!has_room_for_triangles(ground.field)) continue;
-        triangles_.emplace(ground.field, EmbreeSurface::triangles, quality);
-        add(triangles_->engines());
+        add_embree(ground.field, EmbreeSurface::triangles, quality);
       } else if (name == "embree-grid") {
-        grid_.emplace(ground.field, EmbreeSurface::grid, quality);
-        add(grid_->engines());
+        add_embree(ground.field, EmbreeSurface::grid, quality);
       } else if (name == "bullet") {
         for (const bool accelerated : {true, false})
           add({bullets_.emplace_back(std::make_unique<BulletPeer>(ground.field, accelerated))->engine()});
@@ -62,8 +65,13 @@ class Contest {
     for (Engine& engine : engines) engines_.push_back(std::move(engine));
   }
 
+  void add_embree(const HeightField& field, EmbreeSurface surface, EmbreeQuality quality) {
+    for (const bool robust : {true, false})
+      add(embrees_.emplace_back(std::make_unique<EmbreePeer>(field, surface, quality, robust))->engines());
+  }
+
   ScarpGround scarp_;
-  std::optional<EmbreePeer> triangles_, grid_;
+  std::vector<std::unique_ptr<EmbreePeer>> embrees_;
   std::vector<std::unique_ptr<BulletPeer>> bullets_;
   std::vector<Engine> engines_;
 };
@@ -94,39 +102,85 @@ Json row_of(const Engine& engine, const RaySet& set, const Timing& timing, const
   row["hit_share"] = static_cast<double>(timing.hits) / static_cast<double>(timing.rays);
   row["spread"] = timing.spread;
   row["busy"] = timing.busy;
+  row["in_full"] = timing.in_full;
   return row;
 }
 
-void print(const std::vector<Json>& rows) {
-  // By processor time: single rays against Embree's triangles.
-  double yardstick = 0;
+bool is_embree(const Json& row) { return row["engine"].get<std::string>().starts_with("embree"); }
+
+// By processor time: relative to single rays against Embree's triangles, and to the fastest of all modes of Embree that
+// are measured in full.
+void add_ratios(std::vector<Json>& rows) {
+  const Json* fastest = nullptr;
+  const Json* single = nullptr;
+  const auto speed = [](const Json& row) { return row["mrays_per_cpu_s"].get<double>(); };
   for (const Json& row : rows) {
-    if (row["engine"] == "embree-tri" && row["mode"] == "x1") yardstick = row["mrays_per_cpu_s"];
+    if (row["engine"] == "embree-tri" && row["mode"] == "x1") single = &row;
+    if (is_embree(row) && row["in_full"] && (!fastest || speed(row) > speed(*fastest))) fastest = &row;
   }
-  std::vector<std::vector<std::string>> lines{{"class", "engine", "mode", "Mrays/s", "x tri x1", "busy", "B/sample",
-                                               "build s", "hits %", "lost", "missed %", "false %", "error p99", "steps",
-                                               "rays"}};
+  const double tri_x1 = single ? speed(*single) : 0, best = fastest ? speed(*fastest) : 0;
+  const Json name =
+      fastest ? Json((*fastest)["engine"].get<std::string>() + " " + (*fastest)["mode"].get<std::string>()) : Json();
+  for (Json& row : rows) {
+    row["x_tri_x1"] = single ? Json(speed(row) / tri_x1) : Json();
+    row["x_fastest_embree"] = fastest ? Json(speed(row) / best) : Json();
+    row["fastest_embree"] = name;
+  }
+}
+
+void print(const std::vector<Json>& rows) {
+  std::vector<std::vector<std::string>> lines{{"class", "engine", "mode", "Mrays/s", "x tri x1", "x fastest Embree",
+                                               "busy", "B/sample", "build s", "hits %", "lost", "missed %", "false %",
+                                               "error p99", "steps", "rays"}};
   const auto percent = [](const Json& share) {
     return share.is_null() ? std::string("-") : short_number(100 * share.get<double>());
   };
+  const auto ratio = [](const Json& value) {
+    return value.is_null() ? std::string("-") : fmt::format("{:.2f}", value.get<double>());
+  };
+  std::size_t left_out = 0;
   for (const Json& row : rows) {
-    const double speed = row["mrays_per_s"], effort = row["mrays_per_cpu_s"];
-    lines.push_back({row["class"], row["engine"], row["mode"], short_number(speed),
-                     yardstick > 0 ? fmt::format("{:.2f}", effort / yardstick) : "-",
-                     fmt::format("{:.2f}", row["busy"].get<double>()), short_number(row["bytes_per_sample"]),
-                     short_number(row["build_s"]), fmt::format("{:.3f}", 100 * row["hit_share"].get<double>()),
-                     short_number(row["lost"]), percent(row["miss_rate"]), percent(row["false_rate"]),
-                     short_number(row["error_p99"], 2), short_number(row["steps_per_ray"]), short_number(row["rays"])});
+    if (!row["in_full"]) {
+      ++left_out;
+      continue;
+    }
+    const double speed = row["mrays_per_s"];
+    lines.push_back({row["class"], row["engine"], row["mode"], short_number(speed), ratio(row["x_tri_x1"]),
+                     ratio(row["x_fastest_embree"]), fmt::format("{:.2f}", row["busy"].get<double>()),
+                     short_number(row["bytes_per_sample"]), short_number(row["build_s"]),
+                     fmt::format("{:.3f}", 100 * row["hit_share"].get<double>()), short_number(row["lost"]),
+                     percent(row["miss_rate"]), percent(row["false_rate"]), short_number(row["error_p99"], 2),
+                     short_number(row["steps_per_ray"]), short_number(row["rays"])});
   }
   print_table(lines, 3);
+  if (left_out > 0) {
+    fmt::print("fastest of Embree: {}; {} other modes were slower in a short trial\n",
+               rows.front()["fastest_embree"].get<std::string>(), left_out);
+  }
+}
+
+// What tracing keeps in memory, once per structure.
+void print_memory(const std::vector<Engine>& engines, const HeightField& field) {
+  std::vector<std::string> said;
+  for (const Engine& engine : engines) {
+    const std::string who = engine.name == "scarp" ? engine.name + " " + engine.mode : engine.name;
+    if (std::find(said.begin(), said.end(), who) != said.end()) continue;
+    said.push_back(who);
+    fmt::print("{}{}: {:.1f} bytes per sample", said.size() == 1 ? "memory: " : ", ", who,
+               engine.bytes / (static_cast<double>(field.cols()) * field.rows()));
+  }
+  fmt::print("\n");
 }
 
 void contest(const BenchField& ground, double exaggeration, const HeightsOptions& options,
              const std::vector<RayClass>& classes, Json& all_rows) {
   const TraceOptions& trace = options.trace;
   const int build_threads = *std::max_element(trace.threads.begin(), trace.threads.end());
-  fmt::print("\n{} x {} samples, {}, exaggeration {}: relief {:.1f} cells, mean slope {:.1f} degrees\n",
-             ground.field.cols(), ground.field.rows(), ground.name, exaggeration, ground.relief, ground.mean_slope_deg);
+  fmt::print(
+      "\n{} x {} samples, {}, {}, {}, exaggeration {}: relief {:.1f} cells, mean slope {:.1f} degrees; instruction set "
+      "{}\n",
+      ground.field.cols(), ground.field.rows(), name_of(ground.field.sample_type()), trace.field.surface, ground.name,
+      exaggeration, ground.relief, ground.mean_slope_deg, instruction_set());
   std::fflush(stdout);
   const std::vector<RaySet> sets = make_rays(ground, classes, trace.rays, trace.ray_seed);
   std::optional<Contest> engines;
@@ -134,6 +188,7 @@ void contest(const BenchField& ground, double exaggeration, const HeightsOptions
     const ThreadLimit limit(build_threads);
     engines.emplace(ground, options);
   }
+  print_memory(engines->engines(), ground.field);
   for (const RaySet& set : sets) {
     const Judge judge(engines->target(), set, trace.judged, trace.ray_seed);
     std::vector<std::optional<Judgement>> judged;
@@ -141,7 +196,7 @@ void contest(const BenchField& ground, double exaggeration, const HeightsOptions
       judged.push_back(engine.closest ? std::optional(judge.judge(engine)) : std::nullopt);
     }
     for (const int threads : trace.threads) {
-      const auto timings = measure(engines->engines(), set, {threads, trace.repeats, trace.pass_limit_s});
+      const auto timings = measure_fastest(engines->engines(), set, {threads, trace.repeats, trace.pass_limit_s});
       std::vector<Json> rows;
       for (std::size_t e = 0; e < timings.size(); ++e) {
         Json row;
@@ -153,9 +208,13 @@ void contest(const BenchField& ground, double exaggeration, const HeightsOptions
         row["exaggeration"] = exaggeration;
         row["relief"] = ground.relief;
         row["mean_slope_deg"] = ground.mean_slope_deg;
-        rows.push_back(row);
-        all_rows.push_back(std::move(row));
+        row["samples"] = name_of(ground.field.sample_type());
+        row["surface"] = trace.field.surface;
+        row["instruction_set"] = instruction_set();
+        rows.push_back(std::move(row));
       }
+      add_ratios(rows);
+      for (const Json& row : rows) all_rows.push_back(row);
       fmt::print("\n{} thread{}\n", threads, threads == 1 ? "" : "s");
       print(rows);
     }
@@ -165,6 +224,7 @@ void contest(const BenchField& ground, double exaggeration, const HeightsOptions
 }  // namespace
 
 void run_heights(const HeightsOptions& options, const ReportOptions& report) {
+  hold_to_instruction_set(options.trace.instruction_set);
   std::vector<RayClass> classes;
   for (const std::string& name : options.classes) classes.push_back(find_ray_class(name));
   Json rows = Json::array();

@@ -169,6 +169,7 @@ class Leaks {
       }
     }
     if (!floats.rays.empty()) {
+      floats.records = records_of(floats.rays);
       std::vector<float> answers(floats.rays.size());
       job.ground->embree->engines()[0].trace(floats, 0, floats.size(), answers.data());
       sum.embree = floats.size();

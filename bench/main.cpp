@@ -49,7 +49,7 @@ void add_measure_options(CLI::App& command, TraceOptions& trace) {
       .add_option_function<std::string>(
           "--rays",
           [&trace](const std::string& size) {
-            if (size == "small") trace.rays = {160, 88, 4096, 4096};
+            if (size == "small") trace.rays = {160, 88, 4096, 4096, 1024, 32, 128};
           },
           "full: 1920 x 1080 pixels and 2^20 rays for each other class; small: 160 x 88 and 2^12, to see that all "
           "works")
@@ -72,6 +72,16 @@ void add_trace_options(CLI::App& command, TraceOptions& trace) {
       ->capture_default_str();
 }
 
+// Held to one instruction set, and over which samples and surface.
+void add_field_options(CLI::App& command, TraceOptions& trace) {
+  const auto choice = [&](const char* name, std::string& value, const char* text, std::vector<std::string> values) {
+    command.add_option(name, value, text)->check(CLI::IsMember(std::move(values)))->capture_default_str();
+  };
+  choice("--target", trace.instruction_set, "instruction set of Scarp and Embree", {"native", "avx2", "avx512"});
+  choice("--samples", trace.field.samples, "of the procedural DEM", {"float32", "int16"});
+  choice("--surface", trace.field.surface, "of Scarp", {"bilinear", "triangles"});
+}
+
 void add_json_option(CLI::App& command, ReportOptions& report) {
   command.add_option("--json", report.json, "file to write {machine, command, date, rows} to");
   command.add_option("--csv", report.csv, "file to write the rows to, as in bench/results");
@@ -84,7 +94,7 @@ int run(int argc, char** argv) {
   for (int i = 0; i < argc; ++i) report.command += (i ? " " : "") + std::string(i ? argv[i] : "scarp-bench");
 
   HeightsOptions heights;
-  CLI::App* heights_command = app.add_subcommand("heights", "all marches beside Embree in five classes of rays");
+  CLI::App* heights_command = app.add_subcommand("heights", "all marches beside all modes of Embree");
   heights_command->add_option("--sizes", heights.sizes, "samples per side of the procedural DEM, one or several")
       ->delimiter(',')
       ->check(CLI::Range(kLeastSize, kMostSize))
@@ -100,6 +110,8 @@ int run(int argc, char** argv) {
   heights_command->add_option("--embree-quality", heights.embree_quality, "of Embree's build")
       ->check(CLI::IsMember({"medium", "high"}))
       ->capture_default_str();
+  heights_command->add_option("--marches", heights.marches, "modes of scarp to measure (all)")->delimiter(',');
+  add_field_options(*heights_command, heights.trace);
   add_trace_options(*heights_command, heights.trace);
   add_json_option(*heights_command, report);
 
@@ -122,6 +134,7 @@ int run(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::IsMember(survey.peers))
       ->capture_default_str();
+  add_field_options(*survey_command, survey.trace);
   add_measure_options(*survey_command, survey.trace);
   add_json_option(*survey_command, report);
 

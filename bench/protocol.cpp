@@ -110,4 +110,30 @@ std::vector<Timing> measure(const std::vector<Engine>& engines, const RaySet& se
   return timings;
 }
 
+std::vector<Timing> measure_fastest(const std::vector<Engine>& engines, const RaySet& set,
+                                    const ProtocolOptions& options) {
+  std::vector<std::size_t> on_trial, finalists;
+  for (std::size_t e = 0; e < engines.size(); ++e) (engines[e].on_trial ? on_trial : finalists).push_back(e);
+  const auto measured = [&](const std::vector<std::size_t>& which, const ProtocolOptions& how) {
+    std::vector<Engine> some;
+    for (const std::size_t e : which) some.push_back(engines[e]);
+    return measure(some, set, how);
+  };
+  std::vector<Timing> timings(engines.size());
+  const std::vector<Timing> trial =
+      measured(on_trial, {options.threads, 1, std::min(kTrialPass_s, options.pass_limit_s)});
+  for (std::size_t i = 0; i < on_trial.size(); ++i) {
+    timings[on_trial[i]] = trial[i];
+    timings[on_trial[i]].in_full = false;
+  }
+  std::stable_sort(on_trial.begin(), on_trial.end(), [&](std::size_t a, std::size_t b) {
+    return timings[a].mrays_per_cpu_s > timings[b].mrays_per_cpu_s;
+  });
+  on_trial.resize(std::min(on_trial.size(), kFinalists));
+  finalists.insert(finalists.end(), on_trial.begin(), on_trial.end());
+  const std::vector<Timing> final = measured(finalists, options);
+  for (std::size_t i = 0; i < finalists.size(); ++i) timings[finalists[i]] = final[i];
+  return timings;
+}
+
 }  // namespace scarp::bench

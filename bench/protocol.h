@@ -39,9 +39,17 @@ struct Timing {
   double busy = 0;    ///< processor time / (wall time * threads) of all counted passes; well below 1: not alone
   std::int64_t rays = 0;  ///< traced per pass
   std::int64_t hits = 0;
+  bool in_full = true;  ///< false: the pass of a trial, of an engine that is not among the fastest
 };
 
 /// One Timing per engine. All engines get the same threads, blocks and repeats.
 std::vector<Timing> measure(const std::vector<Engine>& engines, const RaySet& set, const ProtocolOptions& options);
+
+/// The same, but of the engines on trial only the kFinalists fastest by processor time are measured by `options`. The
+/// trial is one pass of at most kTrialPass_s (at least 16 blocks) after as long a warm-up.
+constexpr std::size_t kFinalists = 3;
+constexpr double kTrialPass_s = 0.05;
+std::vector<Timing> measure_fastest(const std::vector<Engine>& engines, const RaySet& set,
+                                    const ProtocolOptions& options);
 
 }  // namespace scarp::bench

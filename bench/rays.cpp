@@ -172,6 +172,41 @@ std::vector<BenchRay> node_rays(const HeightField& field, std::int64_t count, st
   return rays;
 }
 
+// Above both surfaces, and inside the field, under the point at which the camera looks.
+constexpr double kScannerHeight = 2, kNearHeight = 3;  // cells
+constexpr double kNearPitch = -5 * kPi / 180;
+constexpr double kLowestElevation = -25 * kPi / 180, kHighestElevation = 15 * kPi / 180;
+
+dvec3 stand(const HeightField& field, const RayView& view, double height) {
+  dvec3 at = lifted(field, view.target.x * field.width(), view.target.y * field.depth());
+  if (height > 0) at.z = as_float(at.z - kLift + height);
+  return at;
+}
+
+std::vector<BenchRay> lidar_rays(dvec3 scanner, const RayCounts& counts) {
+  std::vector<BenchRay> rays;
+  rays.reserve(static_cast<std::size_t>(counts.lidar_rows) * static_cast<std::size_t>(counts.lidar_columns));
+  for (int row = 0; row < counts.lidar_rows; ++row) {
+    const double elevation =
+        kHighestElevation + (row + 0.5) / counts.lidar_rows * (kLowestElevation - kHighestElevation);
+    for (int column = 0; column < counts.lidar_columns; ++column) {
+      const double azimuth = (column + 0.5) / counts.lidar_columns * 2 * kPi;
+      rays.push_back(make_ray(scanner, direction_to(azimuth, elevation)));
+    }
+  }
+  return rays;
+}
+
+// Looks north-east.
+PinholeCamera near_camera(const HeightField& field, const RayCounts& counts, const RayView& view) {
+  PinholeCamera camera = primary_camera(field, counts.width, counts.height, view);
+  camera.eye = stand(field, view, kNearHeight);
+  camera.forward = direction_to(kPi / 4, kNearPitch);
+  camera.right = normalize(cross(camera.forward, dvec3(0, 0, 1)));
+  camera.up = cross(camera.right, camera.forward);
+  return camera;
+}
+
 std::vector<Ray> library_rays_of(const std::vector<BenchRay>& rays) {
   std::vector<Ray> to(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -184,10 +219,11 @@ std::vector<Ray> library_rays_of(const std::vector<BenchRay>& rays) {
 }
 
 std::vector<RayPacket> packets_of(const std::vector<BenchRay>& rays) {
-  std::vector<RayPacket> packets((rays.size() + 7) / 8);
-  for (std::size_t i = 0; i < packets.size() * 8; ++i) {
-    RayPacket& packet = packets[i / 8];
-    const std::size_t lane = i % 8;
+  constexpr std::size_t kLanes = RayPacket::kLanes;
+  std::vector<RayPacket> packets((rays.size() + kLanes - 1) / kLanes);
+  for (std::size_t i = 0; i < packets.size() * kLanes; ++i) {
+    RayPacket& packet = packets[i / kLanes];
+    const std::size_t lane = i % kLanes;
     const BenchRay& ray = rays[std::min(i, rays.size() - 1)];
     packet.ox[lane] = ray.ox, packet.oy[lane] = ray.oy, packet.oz[lane] = ray.oz;
     packet.dx[lane] = ray.dx, packet.dy[lane] = ray.dy, packet.dz[lane] = ray.dz;
@@ -198,6 +234,14 @@ std::vector<RayPacket> packets_of(const std::vector<BenchRay>& rays) {
 }
 
 }  // namespace
+
+std::vector<RayRecord> records_of(const std::vector<BenchRay>& rays) {
+  std::vector<RayRecord> to;
+  to.reserve(rays.size());
+  for (const BenchRay& ray : rays)
+    to.push_back({ray.ox, ray.oy, ray.oz, 0, ray.dx, ray.dy, ray.dz, 0, ray.t_max, ~0u, 0, 0});
+  return to;
+}
 
 std::string_view name_of(RayClass ray_class) {
   switch (ray_class) {
@@ -212,16 +256,25 @@ std::string_view name_of(RayClass ray_class) {
     case RayClass::nodes:
       return "nodes";
     case RayClass::chunk:
+      return "chunk";
+    case RayClass::lidar:
+      return "lidar";
+    case RayClass::lidar_ground:
+      return "lidar-ground";
+    case RayClass::near:
       break;
   }
-  return "chunk";
+  return "near";
 }
 
 RayClass find_ray_class(std::string_view name) {
   for (const RayClass ray_class : kRayClasses) {
     if (name_of(ray_class) == name) return ray_class;
   }
-  throw Error(fmt::format("ray class '{}': unknown (available: primary, shadow, grazing, ao, nodes, chunk)", name));
+  throw Error(
+      fmt::format("ray class '{}': unknown (available: primary, shadow, grazing, ao, nodes, chunk, lidar, "
+                  "lidar-ground, near)",
+                  name));
 }
 
 PinholeCamera primary_camera(const HeightField& field, int width, int height, const RayView& view) {
@@ -286,12 +339,22 @@ std::vector<RaySet> make_rays(const BenchField& ground, const std::vector<RayCla
         set.any_hit = true;
         set.rays = chunk_rays(field, counts.chunk, sun);
         break;
+      case RayClass::lidar:
+        set.rays = lidar_rays(stand(field, view, kScannerHeight), counts);
+        break;
+      case RayClass::lidar_ground:
+        set.rays = lidar_rays(stand(field, view, 0), counts);
+        break;
+      case RayClass::near:
+        set.rays = primary_rays(near_camera(field, counts, view));
+        break;
     }
     if (set.rays.empty()) {
       throw Error(fmt::format("ray class '{}': no primary ray hits {}; it needs at least one", name_of(ray_class),
                               ground.name));
     }
     set.packets = packets_of(set.rays);
+    set.records = records_of(set.rays);
     set.library_rays = library_rays_of(set.rays);
     sets.push_back(std::move(set));
   }

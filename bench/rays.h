@@ -7,6 +7,9 @@
 //   ao        from the primary hits, cosine-distributed about the surface normal; in their order
 //   grazing   from random points of the surface, 3 degrees above the horizon, any azimuth
 //   nodes     from far above at nodes, points of edges and points of diagonals, ending below the ground: each must hit
+//   lidar     a scanner 2 cells above the ground: rows of elevation, each all around
+//   lidar-ground  the same scanner on the ground
+//   near      the pixels of primary by a camera 3 cells above the ground that looks along it
 //   chunk     from points spread evenly over the field to the same sun, as for a shadow map of it; in tiles of 8 x 8
 //
 // Rays from the surface begin a little above both surfaces, the bilinear one and the two triangles (kLift), so that no
@@ -25,9 +28,10 @@ namespace scarp::bench {
 /// Height above the higher of the two surfaces at which rays from the surface begin, in cells.
 constexpr double kLift = 0.01;
 
-enum class RayClass { primary, shadow, grazing, ao, nodes, chunk };
-constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow, RayClass::grazing,
-                                    RayClass::ao,      RayClass::nodes,  RayClass::chunk};
+enum class RayClass { primary, shadow, grazing, ao, nodes, chunk, lidar, lidar_ground, near };
+constexpr RayClass kRayClasses[] = {RayClass::primary, RayClass::shadow,       RayClass::grazing,
+                                    RayClass::ao,      RayClass::nodes,        RayClass::chunk,
+                                    RayClass::lidar,   RayClass::lidar_ground, RayClass::near};
 std::string_view name_of(RayClass ray_class);
 /// Throws Error listing the classes when there is no such one.
 RayClass find_ray_class(std::string_view name);
@@ -39,14 +43,26 @@ struct BenchRay {
   float t_max;
 };
 
-/// Eight rays side by side, as packet engines want them; the last packet of a set may have invalid ones (valid 0, else
-/// -1).
-struct alignas(32) RayPacket {
-  float ox[8], oy[8], oz[8];
-  float dx[8], dy[8], dz[8];
-  float t_max[8];
-  int valid[8];
+/// Sixteen rays side by side, as packet engines want them, which may take four or eight of them at a time; the last
+/// packet of a set may have invalid ones (valid 0, else -1).
+struct alignas(64) RayPacket {
+  static constexpr int kLanes = 16;
+  float ox[kLanes], oy[kLanes], oz[kLanes];
+  float dx[kLanes], dy[kLanes], dz[kLanes];
+  float t_max[kLanes];
+  int valid[kLanes];
 };
+
+/// A ray as Embree lays it out (RTCRay).
+struct alignas(16) RayRecord {
+  float ox, oy, oz, t_near;
+  float dx, dy, dz, time;
+  float t_max;
+  std::uint32_t mask, id, flags;
+};
+
+/// The same rays, from t = 0, with all bits of the mask.
+std::vector<RayRecord> records_of(const std::vector<BenchRay>& rays);
 
 struct RaySet {
   RayClass ray_class;
@@ -54,6 +70,7 @@ struct RaySet {
   bool must_hit;  ///< whether every ray hits
   std::vector<BenchRay> rays;
   std::vector<RayPacket> packets{};  ///< the same rays, as packet engines want them
+  std::vector<RayRecord> records{};  ///< the same rays, one after the other as Embree wants them
   std::vector<Ray> library_rays{};   ///< the same rays, as the library wants them
 
   std::int64_t size() const { return static_cast<std::int64_t>(rays.size()); }
@@ -65,6 +82,7 @@ struct RayCounts {
   std::int64_t grazing = 1 << 20;
   std::int64_t nodes = 1 << 20;
   int chunk = 1024;  ///< points per side, a multiple of 8
+  int lidar_rows = 512, lidar_columns = 2048;
 };
 
 /// Where the camera of the primary rays is and looks to, and where the sun of the shadow rays is.

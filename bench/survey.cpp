@@ -12,6 +12,7 @@
 
 #include "bench/commands.h"
 #include "bench/embree_peer.h"
+#include "bench/instruction_set.h"
 #include "bench/scarp_engine.h"
 #include "scarp/base/error.h"
 
@@ -40,14 +41,16 @@ class Survey {
     const std::size_t ours = engines.size();
     for (const std::string& name : options_.peers) {
       const EmbreeSurface surface = name == "embree-grid" ? EmbreeSurface::grid : EmbreeSurface::triangles;
-      peers.push_back(std::make_unique<EmbreePeer>(ground.field, surface, EmbreeQuality::high));
-      for (Engine& engine : peers.back()->engines()) engines.push_back(std::move(engine));
+      for (const bool robust : {true, false}) {
+        peers.push_back(std::make_unique<EmbreePeer>(ground.field, surface, EmbreeQuality::high, robust));
+        for (Engine& engine : peers.back()->engines()) engines.push_back(std::move(engine));
+      }
     }
     const TraceOptions& trace = options_.trace;
     for (const RayView& view : kViews) {
       for (const RaySet& set : make_rays(ground, classes_, trace.rays, trace.ray_seed, view)) {
         for (const int threads : trace.threads) {
-          const auto timings = measure(engines, set, {threads, trace.repeats, trace.pass_limit_s});
+          const auto timings = measure_fastest(engines, set, {threads, trace.repeats, trace.pass_limit_s});
           add(ground, view, set, threads, engines, timings, ours);
         }
       }
@@ -84,7 +87,8 @@ class Survey {
   void add(const BenchField& ground, const RayView& view, const RaySet& set, int threads,
            const std::vector<Engine>& engines, const std::vector<Timing>& timings, std::size_t ours) {
     const auto best = [&](std::size_t begin, std::size_t end) {
-      const auto faster = [](const Timing& a, const Timing& b) { return a.mrays_per_cpu_s < b.mrays_per_cpu_s; };
+      const auto speed = [](const Timing& a) { return a.in_full ? a.mrays_per_cpu_s : 0; };
+      const auto faster = [&](const Timing& a, const Timing& b) { return speed(a) < speed(b); };
       const auto at = [&](std::size_t i) { return timings.begin() + static_cast<std::ptrdiff_t>(i); };
       return static_cast<std::size_t>(std::max_element(at(begin), at(end), faster) - timings.begin());
     };
@@ -108,6 +112,9 @@ class Survey {
     row["busy"] = busy;
     row["relief"] = ground.relief;
     row["mean_slope_deg"] = ground.mean_slope_deg;
+    row["samples"] = name_of(ground.field.sample_type());
+    row["surface"] = options_.trace.field.surface;
+    row["instruction_set"] = instruction_set();
     rows_.push_back(std::move(row));
   }
 
@@ -119,6 +126,7 @@ class Survey {
 }  // namespace
 
 void run_survey(const SurveyOptions& options, const ReportOptions& report) {
+  hold_to_instruction_set(options.trace.instruction_set);
   Survey survey(options);
   FieldOptions field = options.trace.field;
   for (const std::string& kind : options.kinds) {
