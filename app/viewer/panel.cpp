@@ -17,7 +17,7 @@ namespace {
 constexpr std::array<const char*, 4> kModes = {"orbit", "fly", "walk", "top"};
 constexpr std::array<const char*, 4> kStages = {"moving", "full resolution", "refining", "complete"};
 // Pixels at a scale of 1.
-constexpr float kControlWidth = 160, kTextWidth = 340, kProfileHeight = 70, kMargin = 10;
+constexpr float kControlWidth = 160, kTextWidth = 350, kProfileHeight = 70, kMargin = 10;
 
 float scaled(float pixels) { return pixels * ImGui::GetFontSize() / 13; }
 
@@ -185,7 +185,7 @@ void draw_cost(const PanelState& state) {
               state.busy ? " ..." : "");
   if (image.width > 0 && shown.seconds > 0) {
     constexpr double kMillion = 1e6;
-    ImGui::Text("%.1f million pixels per second on %s",
+    ImGui::Text("%.2g million pixels per second on %s",
                 static_cast<double>(image.width) * image.height * static_cast<double>(shown.sides.size()) / kMillion /
                     shown.seconds,
                 state.device.c_str());
