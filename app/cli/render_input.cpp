@@ -38,12 +38,8 @@ std::int64_t samples_shown(const RenderOptions& options, const ViewSettings& vie
   return std::clamp(kSamplesPerPixel * picture.width * height, kLeast, kMost);
 }
 
-// Looks that measure read all samples.
 std::optional<Decimation> decimation_for(const RenderOptions& options, const ViewSettings& view) {
-  const Look look = options.picture.look;
-  const bool measures = look == Look::steps || look == Look::error || look == Look::level;
-  // The shared border would be averaged with what lies beside it.
-  if (options.full || measures || options.field.wrap == Wrap::shared_border) return {};
+  if (reads_all_samples(options)) return {};
   Decimation decimation;
   decimation.samples = samples_shown(options, view);
   return decimation;
@@ -233,6 +229,14 @@ RenderInput with_defaults(InputKind kind, OpenedInput opened, RenderOptions& opt
 }  // namespace
 
 bool RenderOptions::is_given(std::string_view option) const { return cli::is_given(given, option); }
+
+// Looks that measure do.
+bool reads_all_samples(const RenderOptions& options) {
+  const Look look = options.picture.look;
+  const bool measures = look == Look::steps || look == Look::error || look == Look::level;
+  // The shared border would be averaged with what lies beside it.
+  return options.full || measures || options.field.wrap == Wrap::shared_border;
+}
 
 RenderInput open_render_input(InputKind kind, RenderOptions& options, const ViewSettings& view) {
   if (kind == InputKind::function) settle_function(options);

@@ -40,6 +40,9 @@ struct RenderInput {
 /// Reads the inputs and builds what rays need. `view` is what was typed. Throws Error naming the file.
 RenderInput open_render_input(InputKind kind, RenderOptions& options, const ViewSettings& view);
 
+/// Returns whether rasters are read completely, however large they are; otherwise large ones are averaged.
+bool reads_all_samples(const RenderOptions& options);
+
 /// Puts into other options of the picture what follows from the input, which was opened with the options `before`.
 void settle_again(InputKind kind, const RenderInput& input, const RenderOptions& before, RenderOptions& options);
 

@@ -101,6 +101,13 @@ bool RenderStage::restyles(const Declared& option) const {
   }
 }
 
+bool RenderStage::may_read_otherwise(const RenderOptions& options) const {
+  if (kind_ != InputKind::terrain || reads_all_samples(options) == reads_all_samples(options_)) return false;
+  // Averages of blocks have at least a quarter as many samples as they may have: blocks of 2 x 2 at least.
+  const std::int64_t samples = std::int64_t{input_.raster.cols} * input_.raster.rows;
+  return 4 * samples >= Decimation{}.above;
+}
+
 RenderOptions RenderStage::restyled(RenderOptions options) const {
   settle_again(kind_, input_, options_, options);
   finish_look(options.look_options, input_.across, input_.heights, input_.exaggeration, options.picture);

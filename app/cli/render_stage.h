@@ -61,6 +61,8 @@ class RenderStage {
 
   /// Whether restyled() takes another value of the option over, without the inputs being read again.
   bool restyles(const Declared& option) const;
+  /// Whether a raster may have other samples for other options, settled, because it is large (reads_all_samples()).
+  bool may_read_otherwise(const RenderOptions& options) const;
   /// Completes other options, settled, by the input. They differ from options() by those that restyles() names.
   RenderOptions restyled(RenderOptions options) const;
 

@@ -171,6 +171,8 @@ class Maker {
     const bool no_least = range.least <= -cli::kMostOfGround;
     if (!no_least && range.most - range.least <= kWidest) {
       control.least = range.least, control.most = range.most;
+      // Few are as good as twice as many.
+      if (control.whole && range.most - range.least > kMostCount) control.logarithmic = true;
       if (range.above_least) control.least = range.most / (kSpan * kSpan), control.logarithmic = true;
     } else if (option.unit == "metres" && no_least) {
       control.least = scales_.low, control.most = scales_.high + kBeyond * (scales_.high - scales_.low);

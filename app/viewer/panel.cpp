@@ -17,12 +17,20 @@ namespace {
 constexpr std::array<const char*, 4> kModes = {"orbit", "fly", "walk", "top"};
 constexpr std::array<const char*, 4> kStages = {"moving", "full resolution", "refining", "complete"};
 // Pixels at a scale of 1.
-constexpr float kControlWidth = 160, kTextWidth = 340, kMargin = 10;
+constexpr float kControlWidth = 160, kTextWidth = 350, kProfileHeight = 70, kMargin = 10;
 
 float scaled(float pixels) { return pixels * ImGui::GetFontSize() / 13; }
 
+void draw_wrapped(const std::string& text) {
+  ImGui::PushTextWrapPos(scaled(kTextWidth));
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::PopTextWrapPos();
+}
+
 void draw_help(bool& open) {
   if (!open) return;
+  const float margin = scaled(kMargin);
+  ImGui::SetNextWindowPos({ImGui::GetIO().DisplaySize.x - margin, margin}, ImGuiCond_Appearing, {1, 0});
   if (ImGui::Begin("Mouse and keys", &open, ImGuiWindowFlags_AlwaysAutoResize)) {
     for (const HelpLine& line : help_lines()) {
       ImGui::TextUnformatted(line.input);
@@ -121,9 +129,7 @@ bool draw_control(Control& control) {
   }
   if (ImGui::IsItemHovered()) {
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(scaled(kTextWidth));
-    ImGui::TextUnformatted((control.option + ": " + control.help).c_str());
-    ImGui::PopTextWrapPos();
+    draw_wrapped(control.option + ": " + control.help);
     ImGui::EndTooltip();
   }
   ImGui::PopID();
@@ -143,7 +149,8 @@ std::optional<OptionChange> draw_controls(std::vector<Control>& controls) {
     const auto topic = static_cast<cli::Topic>(i);
     const auto is_here = [&](const Control& control) { return control.topic == topic && !control.common; };
     if (std::none_of(controls.begin(), controls.end(), is_here)) continue;
-    if (!ImGui::TreeNode(std::string(cli::heading_of(topic)).c_str())) continue;
+    const ImGuiTreeNodeFlags open = topic == cli::Topic::march ? ImGuiTreeNodeFlags_DefaultOpen : 0;
+    if (!ImGui::TreeNodeEx(std::string(cli::heading_of(topic)).c_str(), open)) continue;
     for (Control& control : controls) {
       if (is_here(control)) draw(control);
     }
@@ -178,7 +185,7 @@ void draw_cost(const PanelState& state) {
               state.busy ? " ..." : "");
   if (image.width > 0 && shown.seconds > 0) {
     constexpr double kMillion = 1e6;
-    ImGui::Text("%.1f million pixels per second on %s",
+    ImGui::Text("%.2g million pixels per second on %s",
                 static_cast<double>(image.width) * image.height * static_cast<double>(shown.sides.size()) / kMillion /
                     shown.seconds,
                 state.device.c_str());
@@ -188,9 +195,7 @@ void draw_cost(const PanelState& state) {
     const std::string text = verdict_text(state.verdict->sides[i]);
     if (text.empty()) continue;
     const bool named = state.verdict->sides.size() > 1 && i < state.names.size();
-    ImGui::PushTextWrapPos(scaled(kTextWidth));
-    ImGui::TextUnformatted(((named ? state.names[i] + ": " : "") + text).c_str());
-    ImGui::PopTextWrapPos();
+    draw_wrapped((named ? state.names[i] + ": " : "") + text);
   }
 }
 
@@ -202,10 +207,10 @@ void draw_reading(const PanelState& state) {
   }
   if (state.measures) ImGui::TextUnformatted("click both ends of a line");
   if (!state.line) return;
-  ImGui::Text("%.1f m, rises %.1f m; the ends %s", state.line->flat, state.line->rise,
-              state.line->sees ? "see one another" : "are hidden from one another");
+  draw_wrapped(fmt::format("{:.1f} m, rises {:.1f} m; the ends {}", state.line->flat, state.line->rise,
+                           state.line->sees ? "see one another" : "are hidden from one another"));
   ImGui::PlotLines("##profile", state.line->heights.data(), static_cast<int>(state.line->heights.size()), 0, nullptr,
-                   FLT_MAX, FLT_MAX, {300, 70});
+                   FLT_MAX, FLT_MAX, {scaled(kTextWidth), scaled(kProfileHeight)});
 }
 
 }  // namespace
@@ -235,11 +240,7 @@ PanelActions draw_panel(PanelState& state) {
     actions.copy = ImGui::Button("Copy command (C)");
     ImGui::SameLine();
     if (ImGui::Button("Help (F1)")) state.help = !state.help;
-    if (!state.message.empty()) {
-      ImGui::PushTextWrapPos(scaled(kTextWidth));
-      ImGui::TextUnformatted(state.message.c_str());
-      ImGui::PopTextWrapPos();
-    }
+    if (!state.message.empty()) draw_wrapped(state.message);
   }
   ImGui::End();
   draw_help(state.help);

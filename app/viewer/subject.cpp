@@ -67,7 +67,8 @@ Subject::Side Subject::side_of(Opening opening, const Side& like, const Side* or
     const cli::RenderStage& stage = side->opened->stage;
     const std::vector<std::string> names = differences(side->opened->opening, opening);
     if (!std::all_of(names.begin(), names.end(),
-                     [&](const std::string& name) { return stage.restyles(*opening.command().find(name)); }))
+                     [&](const std::string& name) { return stage.restyles(*opening.command().find(name)); }) ||
+        stage.may_read_otherwise(*opening.options))
       continue;
     auto options = std::make_shared<const cli::RenderOptions>(stage.restyled(*opening.options));
     opening.options->picture = options->picture, opening.options->look_options = options->look_options;

@@ -565,6 +565,7 @@ class Viewer {
       draw(nullptr);
       if (render_failed_ && !worker_->busy()) throw Error(panel_.message);
     }
+    step(play_seconds_, kPlayStep, 0);  // takes the verdict, which the worker leaves last
     Image seen;
     for (int i = 0; i < kRedraws; ++i) draw(&seen);
     if (!options_.screenshot.empty()) write_png(options_.screenshot, {seen.rgb.data(), seen.width, seen.height});
