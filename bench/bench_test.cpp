@@ -17,103 +17,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/program_output.h"
+
 namespace {
 
 using nlohmann::json;
-
-// The JSON that a command writes.
-json output_of(const std::string& arguments) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / fmt::format("scarp-bench-test-{}.json", getpid());
-  const std::string command =
-      fmt::format("'{}' {} --json '{}' > /dev/null", SCARP_BENCH_PROGRAM, arguments, file.string());
-  EXPECT_EQ(std::system(command.c_str()), 0) << command;
-  std::ifstream stream(file);
-  json all = json::parse(stream, nullptr, false);
-  std::filesystem::remove(file);
-  EXPECT_FALSE(all.is_discarded()) << "no JSON from: " << command;
-  return all;
-}
-
-void expect_fields(const json& object, const std::set<std::string>& fields) {
-  for (const std::string& field : fields) EXPECT_TRUE(object.contains(field)) << field;
-}
-
-void expect_head(const json& all) {
-  expect_fields(all, {"machine", "command", "date", "rows"});
-  EXPECT_TRUE(all["machine"].is_string());
-  EXPECT_EQ(all["command"].get<std::string>().substr(0, 12), "scarp-bench ");
-  EXPECT_FALSE(all["rows"].empty());
-}
-
-TEST(ScarpBench, HeightsWritesTheDocumentedFieldsAndMaxMipIsRight) {
-  const json all = output_of("heights --sizes 129 --rays small --repeats 1 --threads 1,2");
-  expect_head(all);
-  std::set<std::string> engines, classes;
-  for (const json& row : all["rows"]) {
-    expect_fields(row, {"size",
-                        "class",
-                        "engine",
-                        "mode",
-                        "threads",
-                        "mrays_per_s",
-                        "mrays_per_cpu_s",
-                        "bytes_per_sample",
-                        "peak_bytes_per_sample",
-                        "build_s",
-                        "build_threads",
-                        "lost",
-                        "miss_rate",
-                        "false_rate",
-                        "error_p99",
-                        "late_rate",
-                        "early_rate",
-                        "exhausted",
-                        "steps_per_ray",
-                        "cell_tests_per_ray",
-                        "judged",
-                        "rays",
-                        "hit_share",
-                        "spread",
-                        "busy",
-                        "field",
-                        "exaggeration",
-                        "relief",
-                        "mean_slope_deg"});
-    const std::string engine = row["engine"], ray_class = row["class"];
-    SCOPED_TRACE(fmt::format("{} {} {}", ray_class, engine, row["mode"].get<std::string>()));
-    engines.insert(engine);
-    classes.insert(ray_class);
-    EXPECT_GT(row["mrays_per_s"], 0.0);
-    EXPECT_GT(row["bytes_per_sample"], 0.0);
-    EXPECT_EQ(row["lost"].is_null(), ray_class != "nodes");
-    EXPECT_EQ(row["miss_rate"].is_null(), engine != "scarp");
-    if (row["mode"] == "max-mip") {
-      EXPECT_EQ(row["miss_rate"], 0.0);
-      EXPECT_EQ(row["false_rate"], 0.0);
-      EXPECT_LT(row["error_p99"], 1e-3);  // of a cell: what is promised
-      if (ray_class == "nodes") {
-        EXPECT_EQ(row["lost"], 0);
-      }
-    }
-  }
-  EXPECT_EQ(engines, (std::set<std::string>{"scarp", "embree-tri", "embree-grid"}));
-  EXPECT_EQ(classes, (std::set<std::string>{"primary", "shadow", "grazing", "ao", "nodes"}));
-}
-
-TEST(ScarpBench, EnginesAgreeOnWhatIsHit) {
-  // The same rays against another surface, which at this size differs for 2 % of the shadow rays, or an engine has got
-  // other rays.
-  std::map<std::string, double> max_mip;
-  const json all = output_of("heights --sizes 129 --rays small --repeats 1");
-  for (const json& row : all["rows"]) {
-    if (row["mode"] == "max-mip") max_mip[row["class"]] = row["hit_share"];
-  }
-  for (const json& row : all["rows"]) {
-    if (row["engine"] == "scarp") continue;
-    EXPECT_NEAR(row["hit_share"].get<double>(), max_mip.at(row["class"]), 0.04) << row.dump();
-  }
-}
+using scarp::bench::expect_fields, scarp::bench::expect_head, scarp::bench::output_of;
 
 TEST(ScarpBench, NaiveWritesTheDocumentedFields) {
   const json all =
@@ -168,19 +77,6 @@ TEST(ScarpBench, BatchesOfAllSizes) {
   }
 }
 
-TEST(ScarpBench, SurveyTellsTheFastestOfEach) {
-  const json all = output_of("survey --size 129 --kinds fbm --rays small --repeats 1");
-  expect_head(all);
-  EXPECT_EQ(all["rows"].size(), 3u * 4u);  // views and classes
-  for (const json& row : all["rows"]) {
-    expect_fields(
-        row, {"size", "field", "view", "class", "threads", "rays", "hit_share", "scarp_mode", "scarp_mrays_per_cpu_s",
-              "peer", "peer_mode", "peer_mrays_per_cpu_s", "ratio", "busy", "relief", "mean_slope_deg"});
-    EXPECT_DOUBLE_EQ(row["ratio"],
-                     row["scarp_mrays_per_cpu_s"].get<double>() / row["peer_mrays_per_cpu_s"].get<double>());
-  }
-}
-
 TEST(ScarpBench, ExtentsAnswerAsWindowsDo) {
   const json all = output_of("extents --sizes 600x513 --windows 2");
   expect_head(all);
@@ -189,20 +85,6 @@ TEST(ScarpBench, ExtentsAnswerAsWindowsDo) {
                         "rays", "ns_per_ray", "primary_ns", "shadow_ns", "grazing_ns", "ao_ns", "lost", "different"});
     EXPECT_EQ(row["lost"], 0);
     EXPECT_EQ(row["different"], 0);
-  }
-}
-
-TEST(ScarpBench, BulletWithoutItsAcceleratorAnswersAsEmbreeDoes) {
-  std::map<std::string, double> embree;
-  const json all = output_of("heights --sizes 129 --rays small --repeats 1 --engines embree-tri,bullet");
-  for (const json& row : all["rows"]) {
-    if (row["mode"] == "x1") embree[row["class"]] = row["hit_share"];
-  }
-  for (const json& row : all["rows"]) {
-    // The same triangles; at their edges either may lose a ray: 0.4 % of those aimed at them, by `lost`.
-    if (row["mode"] == "plain") {
-      EXPECT_NEAR(row["hit_share"].get<double>(), embree.at(row["class"]), 0.01) << row.dump();
-    }
   }
 }
 
