@@ -31,11 +31,12 @@ namespace HWY_NAMESPACE {
 namespace {
 
 constexpr std::int32_t kMostCells = std::numeric_limits<std::int32_t>::max();
-// Found with scarp-bench (decisions.md): minimum ratio of length to width of a beam; shortest step in cells; first step
-// as a fraction of the previous beam's length; factor of steps after it.
-constexpr float kSlender = 8, kShortestStep = 4, kShareOfBefore = 0.9f, kShorter = 0.25f;
+// Found with scarp-bench (decisions.md): minimum ratio of length to width of a beam; first step as a fraction of the
+// previous beam's length; factor of steps after it. The shortest step is the width of the beam, within limits in cells.
+constexpr float kSlender = 8, kShareOfBefore = 0.9f, kShorter = 0.25f;
+constexpr std::int32_t kLeastShortest = 1, kMostShortest = 4;
 // Level at which its rays continue.
-constexpr std::int32_t kLevelAfterBeam = 2;
+constexpr std::int32_t kLevelAfterBeam = 1;
 
 // Highest code over the cells [x0, x1] x [y0, y1], of up to four blocks.
 template <class T>
@@ -53,6 +54,8 @@ HWY_INLINE std::int32_t highest_over(const VectorGround<T>& g, std::int32_t x0, 
 struct BeamPlace {
   std::int32_t x0, x1, y0, y1;  // cells of their frames, inclusive
   float low;                    // lowest height of the rays
+
+  std::int32_t width() const { return std::max(x1 - x0, y1 - y0); }
 };
 
 class Beam {
@@ -145,11 +148,10 @@ HWY_NOINLINE std::size_t follow_beam(const VectorGround<T>& g, Lanes* lanes, std
   Beam beam(lanes, count);
   if (!beam.goes_one_way()) return 0;
   BeamPlace here = beam.at(0);
-  const auto width = static_cast<float>(std::max(here.x1 - here.x0, here.y1 - here.y0));
-  if (width * kSlender > beam.end() || !beam.is_free(g, here, here)) return 0;
+  if (static_cast<float>(here.width()) * kSlender > beam.end() || !beam.is_free(g, here, here)) return 0;
   const bool guessed = expected > 0;
   float clear = 0, step = guessed ? kShareOfBefore * std::min(expected, beam.end()) : beam.end() / 2;
-  while (step >= kShortestStep) {
+  while (step >= static_cast<float>(std::clamp(here.width(), kLeastShortest, kMostShortest))) {
     const float then = clear + step;
     if (then < beam.end()) {
       const BeamPlace there = beam.at(then);
