@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 
+#include "app/viewer/view_output.h"
+
 namespace scarp::viewer {
 namespace {
 
@@ -58,7 +60,7 @@ bool draw_look(PictureSettings& picture) {
   changed |= ImGui::Checkbox("shadows", &picture.shadows);
   changed |= ImGui::SliderInt("soft light rays", &picture.samples, 0, 64);
   changed |= ImGui::SliderInt("anti-aliasing", &picture.aa, 1, 4);
-  changed |= slider("haze", picture.haze, 0, 0.95f, "%.2f");
+  if (has_haze(picture)) changed |= slider("haze", picture.haze, 0, 0.95f, "%.2f");
   if (picture.water) changed |= ImGui::InputDouble("water level", &picture.water->level, 1, 10, "%.1f");
   return changed;
 }
@@ -85,9 +87,10 @@ bool draw_parameters(const std::vector<MarchParameter>& parameters) {
 void draw_cost(const PanelState& state) {
   if (!state.shown) return;
   const Image& image = state.shown->picture.image;
-  ImGui::Text("%s, %d x %d, %.0f ms%s", kStages[static_cast<std::size_t>(state.shown->stage)], image.width,
-              image.height, 1e3 * state.shown->seconds, state.busy ? " ..." : "");
-  if (image.width > 0 && state.shown->seconds > 0) {
+  const std::string time = state.times ? fmt::format(", {:.0f} ms", 1e3 * state.shown->seconds) : std::string();
+  ImGui::Text("%s, %d x %d%s%s", kStages[static_cast<std::size_t>(state.shown->stage)], image.width, image.height,
+              time.c_str(), state.busy ? " ..." : "");
+  if (state.times && image.width > 0 && state.shown->seconds > 0) {
     constexpr double kMillion = 1e6;
     ImGui::Text("%.1f million pixels per second on %s",
                 static_cast<double>(image.width) * image.height / kMillion / state.shown->seconds,

@@ -24,6 +24,7 @@ struct PanelState {
   double speed = 0;                          ///< metres per second
   std::string device{};                      ///< that answers rays
   const WorkedPicture* shown = nullptr;      ///< the picture in the window
+  bool times = true;                         ///< how long it took, too
   bool busy = false;
   std::optional<Reading> reading{};
   std::optional<MeasuredLine> line{};

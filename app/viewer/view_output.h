@@ -11,6 +11,9 @@
 
 namespace scarp::viewer {
 
+/// Whether PictureSettings::haze has an effect: fog, or haze by a distance, replaces it.
+bool has_haze(const PictureSettings& picture);
+
 /// The command that writes the picture of `pose` to `output`.
 std::string render_command(const cli::ViewOptions& options, const Pose& pose, const PictureSettings& picture,
                            const std::string& output);
@@ -20,7 +23,7 @@ std::string render_command(const cli::ViewOptions& options, const Pose& pose, co
 std::string save_numbered(const Image& image);
 
 /// Adds the pose to scarp-path.csv, for `scarp render --path`, and returns the file's name. Throws Error if the file
-/// cannot be written.
+/// cannot be written; then it stays as it was.
 std::string add_to_path(const Pose& pose);
 
 }  // namespace scarp::viewer

@@ -426,6 +426,7 @@ class Viewer {
       panel_.mode = navigator_->pose().mode;
       panel_.speed = navigator_->speed();
       panel_.shown = shown_ ? &*shown_ : nullptr;
+      panel_.times = !played_;  // no two runs take as long
       panel_.busy = worker_->busy();
       panel_.reading = reading_at(cursor_);
       actions = draw_panel(panel_);
@@ -550,7 +551,8 @@ class Viewer {
       draw(nullptr);
     }
     const auto is_complete = [&] {
-      return shown_ && shown_->generation == generation_ && shown_->stage == PictureStage::converged;
+      return shown_ && shown_->generation == generation_ && shown_->stage == PictureStage::converged &&
+             !worker_->busy();
     };
     while (!is_complete() || saves_) {
       glfwWaitEventsTimeout(kRest);

@@ -2,110 +2,20 @@
 // The window on a display without a screen: recordings are played, the picture of the window is looked at, and that
 // which P saves is, byte for byte, what `scarp render` makes of the command that it prints.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "cases.h"
+#include "viewer/window_case.h"
 
 namespace scarp::test {
 namespace {
 
 namespace fs = std::filesystem;
-
-// An X server without a screen, for all tests of the process.
-class Display {
- public:
-  Display() {
-    int pipe_ends[2];
-    if (::pipe(pipe_ends) != 0) return;
-    pid_ = ::fork();
-    if (pid_ == 0) {
-      const std::string to = std::to_string(pipe_ends[1]);
-      ::close(pipe_ends[0]);
-      if (std::freopen("/dev/null", "w", stderr) == nullptr) ::_exit(1);
-      ::execl(XVFB, XVFB, "-displayfd", to.c_str(), "-screen", "0", "640x480x24", "-nolisten", "tcp", nullptr);
-      ::_exit(1);
-    }
-    ::close(pipe_ends[1]);
-    std::string number;
-    for (char c = 0; ::read(pipe_ends[0], &c, 1) == 1 && c != '\n';) number += c;
-    ::close(pipe_ends[0]);
-    if (!number.empty()) ::setenv("DISPLAY", (":" + number).c_str(), 1);
-    starts = !number.empty();
-  }
-  ~Display() {
-    if (pid_ <= 0) return;
-    ::kill(pid_, SIGTERM);
-    ::waitpid(pid_, nullptr, 0);
-  }
-  bool starts = false;
-
- private:
-  pid_t pid_ = -1;
-};
-
-class Window : public testing::Test {
- protected:
-  void SetUp() override {
-    static const Display display;
-    ASSERT_TRUE(display.starts) << "Xvfb does not start";
-    folder_ =
-        fs::path(SCARP_WORK) / ("window-" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-    if (run(std::string(SCARP_PROGRAM) + " generate --size 129 -o dem.tif") != 0) FAIL() << output_;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  // Runs a command in the folder; its output is in output_.
-  int run(const std::string& command) {
-    const fs::path out = folder_ / "out.txt";
-    const std::string whole = "cd '" + folder_.string() + "' && " + command + " >out.txt 2>&1";
-    const int status = std::system(whole.c_str());
-    std::ifstream in(out);
-    std::stringstream text;
-    text << in.rdbuf();
-    output_ = text.str();
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-  int view(const std::string& events, const std::string& arguments) {
-    std::ofstream(folder_ / "events") << "scarp-view 320x240\n" << events;
-    return run("'" SCARP_VIEW "' " + arguments + " --play events --validation");
-  }
-  // Opens the window, waits for its picture, and runs xdotool's commands on it; $window is its number.
-  int use(const std::string& arguments, const std::string& commands) {
-    std::ofstream(folder_ / "use.sh")
-        << "export XDG_CONFIG_HOME=$PWD/settings\n"
-           "rm -f times.csv\n"
-           "'" SCARP_VIEW "' "
-        << arguments
-        << " --timings times.csv --validation &\n"
-           "pid=$!\n"
-           "until grep -qs converged times.csv; do kill -0 $pid || exit 9; sleep 0.05; done\n"
-           "window=$(xdotool search --name Scarp)\n"
-        << commands << "\nwait $pid\n";
-    return run("timeout 60 bash use.sh");
-  }
-  std::string bytes_of(const std::string& name) const {
-    std::ifstream in(folder_ / name, std::ios::binary);
-    std::stringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
-
-  fs::path folder_;
-  std::string output_;
-};
 
 constexpr const char* kDrag =
     "0.1 move 200 120\n0.2 button 0 1 0\n0.3 move 230 130\n0.4 move 260 125\n0.5 button 0 0 0\n0.6 wheel 0 2\n";
@@ -114,11 +24,7 @@ constexpr const char* kSave = "1.0 key 80 1 0\n1.1 key 80 0 0\n";
 TEST_F(Window, SavesWhatRenderMakes) {
   ASSERT_EQ(view(std::string(kDrag) + kSave, "dem.tif --exaggeration 2 --samples 2"), 0) << output_;
   ASSERT_TRUE(output_.starts_with("scarp-view-1.png: scarp render dem.tif --exaggeration=2 ")) << output_;
-  std::string command = output_.substr(output_.find(": ") + 2);
-  command.replace(0, std::string("scarp").size(), SCARP_PROGRAM);
-  command.replace(command.find("-o scarp-view-1.png"), std::string("-o scarp-view-1.png").size(), "-o again.png");
-  command.pop_back();
-  ASSERT_EQ(run(command), 0) << output_;
+  ASSERT_EQ(run(printed_command("again.png")), 0) << output_;
   EXPECT_TRUE(bytes_of("scarp-view-1.png") == bytes_of("again.png"));
 }
 
