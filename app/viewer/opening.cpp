@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "app/cli/kept_inputs.h"
 #include "app/cli/render_settle.h"
 
 namespace scarp::viewer {
@@ -40,6 +41,15 @@ MarchParameter parameter_of(const cli::Declared& declared, std::variant<int*, do
   return {declared.name.substr(2), option.help, to, least, most};
 }
 
+// What the window writes is none of what it reads.
+void keep_inputs(const cli::ViewOptions& options) {
+  for (const std::string& output : {options.record, options.screenshot, options.timings}) {
+    std::vector<std::string> others = options.typed;
+    if (const auto own = std::find(others.begin(), others.end(), output); own != others.end()) others.erase(own);
+    if (!output.empty()) cli::keep_inputs(output, others);
+  }
+}
+
 }  // namespace
 
 Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cli::ViewOptions> options,
@@ -59,6 +69,7 @@ Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cl
   command.require_effect({kind, o.look, cli::march_of(o, kind)});
   const ViewSettings view = cli::settle_picture(o);
   cli::require_places(o);
+  keep_inputs(o);
   return {std::move(program), std::move(options), kind, view};
 }
 

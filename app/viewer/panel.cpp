@@ -39,6 +39,7 @@ void draw_help(bool& open) {
         "K              add the view to scarp-path.csv, for scarp render --path\n"
         "C              copy the command that makes the picture again\n"
         "P              save the picture\n"
+        "F5             open the input again\n"
         "Tab            hide the panel");
   }
   ImGui::End();

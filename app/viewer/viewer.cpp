@@ -16,7 +16,6 @@
 #include <tuple>
 #include <utility>
 
-#include "app/cli/kept_inputs.h"
 #include "app/cli/progress.h"
 #include "app/cli/render_stage.h"
 #include "app/viewer/kept_settings.h"
@@ -60,8 +59,6 @@ class Viewer {
   explicit Viewer(Opening opening)
       : opening_(std::move(opening)), options_(*opening_.options), timings_(options_.timings) {
     if (!options_.play.empty()) played_ = read_recording(options_.play);
-    cli::keep_inputs(options_.record, options_.typed);
-    cli::keep_inputs(options_.screenshot, options_.typed);
     if (played_) {
       width_ = played_->width, height_ = played_->height;
     } else {
@@ -312,6 +309,8 @@ class Viewer {
       case GLFW_KEY_TAB:
         shows_panel_ = !shows_panel_;
         return;
+      case GLFW_KEY_F5:
+        return reopen();
       case GLFW_KEY_F1:
         panel_.help = !panel_.help;
         return;
@@ -451,8 +450,8 @@ class Viewer {
     if (actions.march || actions.parameter_changed) reopen();
   }
 
-  // Opens the input again with other settings of the march. View and look stay. If it fails, as when the file is gone,
-  // the window goes on with what it has.
+  // Opens the input again, as with other settings of the march. View and look stay. If it fails, as when the file is
+  // gone, the window goes on with what it has.
   void reopen() {
     try {
       auto stage = open_stage(opening_);
