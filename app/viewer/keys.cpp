@@ -17,7 +17,7 @@ std::optional<Value> find(const std::array<std::pair<int, Value>, Count>& table,
   return found == table.end() ? std::nullopt : std::optional(found->second);
 }
 
-constexpr std::array<std::pair<int, WindowAction>, 12> kActions = {{
+constexpr std::array<std::pair<int, WindowAction>, 13> kActions = {{
     {GLFW_KEY_O, WindowAction::orbit},
     {GLFW_KEY_F, WindowAction::fly},
     {GLFW_KEY_G, WindowAction::walk},
@@ -27,6 +27,7 @@ constexpr std::array<std::pair<int, WindowAction>, 12> kActions = {{
     {GLFW_KEY_K, WindowAction::keep_in_path},
     {GLFW_KEY_C, WindowAction::copy},
     {GLFW_KEY_P, WindowAction::save},
+    {GLFW_KEY_F5, WindowAction::reopen},
     {GLFW_KEY_TAB, WindowAction::panel},
     {GLFW_KEY_F1, WindowAction::help},
     {GLFW_KEY_ESCAPE, WindowAction::escape},
@@ -43,7 +44,7 @@ constexpr std::array<std::pair<int, MoveKey>, 8> kMoves = {{
     {GLFW_KEY_RIGHT_SHIFT, MoveKey::fast},
 }};
 
-constexpr std::array<HelpLine, 16> kHelp = {{
+constexpr std::array<HelpLine, 17> kHelp = {{
     {"left drag", "turn, look around; top: shift"},
     {"right or middle drag", "shift"},
     {"Ctrl and left drag", "move the sun"},
@@ -58,6 +59,7 @@ constexpr std::array<HelpLine, 16> kHelp = {{
     {"K", "add the view to scarp-path.csv, for scarp render --path"},
     {"C", "copy the command that makes the picture again"},
     {"P", "save the picture"},
+    {"F5", "open the input again"},
     {"Tab", "hide the panel"},
     {"F1, Esc", "this list; close"},
 }};

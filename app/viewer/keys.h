@@ -9,7 +9,21 @@
 
 namespace scarp::viewer {
 
-enum class WindowAction { orbit, fly, walk, top, first_view, measure, keep_in_path, copy, save, panel, help, escape };
+enum class WindowAction {
+  orbit,
+  fly,
+  walk,
+  top,
+  first_view,
+  measure,
+  keep_in_path,
+  copy,
+  save,
+  reopen,
+  panel,
+  help,
+  escape
+};
 
 struct HelpLine {
   const char* input;   ///< "left drag"

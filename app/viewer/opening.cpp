@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "app/cli/kept_inputs.h"
 #include "app/cli/render_settle.h"
 
 namespace scarp::viewer {
@@ -50,6 +51,15 @@ struct Parsed {
   }
 };
 
+// What the window writes is none of what it reads.
+void keep_inputs(const cli::ViewOptions& options) {
+  for (const std::string& output : {options.record, options.screenshot, options.timings}) {
+    std::vector<std::string> others = options.typed;
+    if (const auto own = std::find(others.begin(), others.end(), output); own != others.end()) others.erase(own);
+    if (!output.empty()) cli::keep_inputs(output, others);
+  }
+}
+
 }  // namespace
 
 Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cli::ViewOptions> options,
@@ -62,6 +72,7 @@ Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cl
   command.require_effect(use_of(kind, o));
   const ViewSettings view = cli::settle_picture(o);
   cli::require_places(o);
+  keep_inputs(o);
   std::vector<GivenOption> given;
   for (const cli::Command::Typed& one : command.all_typed()) given.push_back({one.option->name, one.values});
   return {std::move(program), std::move(options), kind, view, std::move(given)};

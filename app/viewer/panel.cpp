@@ -181,9 +181,9 @@ void draw_cost(const PanelState& state) {
     stage += fmt::format(" (aa {}", shown.aa);
     stage += shown.samples > 0 ? fmt::format(", {} samples)", shown.samples) : ")";
   }
-  ImGui::Text("%s, %d x %d, %.0f ms%s", stage.c_str(), image.width, image.height, 1e3 * shown.seconds,
-              state.busy ? " ..." : "");
-  if (image.width > 0 && shown.seconds > 0) {
+  const std::string time = state.times ? fmt::format(", {:.0f} ms", 1e3 * shown.seconds) : std::string();
+  ImGui::Text("%s, %d x %d%s%s", stage.c_str(), image.width, image.height, time.c_str(), state.busy ? " ..." : "");
+  if (state.times && image.width > 0 && shown.seconds > 0) {
     constexpr double kMillion = 1e6;
     ImGui::Text("%.2g million pixels per second on %s",
                 static_cast<double>(image.width) * image.height * static_cast<double>(shown.sides.size()) / kMillion /

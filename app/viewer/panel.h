@@ -24,6 +24,7 @@ struct PanelState {
   const WorkedPicture* shown = nullptr;    ///< the picture in the window
   const WorkedVerdict* verdict = nullptr;  ///< of the picture in the window
   std::vector<std::string> names{};        ///< of its sides
+  bool times = true;                       ///< how long the picture took, too
   bool busy = false;
   std::optional<Reading> reading{};
   std::optional<MeasuredLine> line{};

@@ -85,6 +85,13 @@ bool Subject::change(const OptionChange& change) {
   return again;
 }
 
+void Subject::reopen() {
+  Side main = open(main_.opening);
+  std::optional<Side> other;
+  if (!compared_.empty()) other = side_of(changed(main.opening, comparison()), main, nullptr);
+  main_ = std::move(main), other_ = std::move(other);
+}
+
 std::vector<std::string> Subject::comparisons() const {
   std::vector<std::string> words;
   for (const std::string& march : marches_for(opening().kind)) words.push_back("march " + march);

@@ -32,6 +32,9 @@ class Subject {
   /// nothing has changed.
   bool change(const OptionChange& change);
 
+  /// Opens the input again, as after a change of its file. If it throws Error, nothing has changed.
+  void reopen();
+
   /// What can be shown beside: "march naive", "look steps".
   std::vector<std::string> comparisons() const;
   /// Shows it beside; empty: nothing. If it throws Error, nothing has changed.

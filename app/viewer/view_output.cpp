@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "scarp/base/error.h"
+#include "scarp/base/replace_file.h"
 #include "scarp/output/png.h"
 
 namespace scarp::viewer {
@@ -40,13 +43,21 @@ std::string save_numbered(const Image& image) {
 
 std::string add_to_path(const Pose& pose) {
   const dvec3 target = pose.eye + forward_of(pose);
-  const bool begins = !std::filesystem::exists(kPathFile);
-  std::FILE* file = std::fopen(kPathFile, "a");
-  if (!file) throw Error(fmt::format("'{}' cannot be written", kPathFile));
-  if (begins) std::fputs("x,y,z,tx,ty,tz\n", file);
-  fmt::print(file, "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", pose.eye.x, pose.eye.y, pose.eye.z, target.x,
-             target.y, target.z);
-  if (std::fclose(file) != 0) throw Error(fmt::format("'{}' cannot be written; is the disk full?", kPathFile));
+  ReplaceFile replace(kPathFile);
+  std::string text;
+  if (std::filesystem::exists(kPathFile)) {
+    std::ifstream before(kPathFile, std::ios::binary);
+    text.assign(std::istreambuf_iterator<char>(before), {});
+    if (!before) throw Error(fmt::format("'{}' cannot be read", kPathFile));
+  }
+  if (text.empty()) text = "x,y,z,tx,ty,tz\n";
+  text += fmt::format("{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", pose.eye.x, pose.eye.y, pose.eye.z, target.x,
+                      target.y, target.z);
+  std::ofstream out(replace.temporary_path(), std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw Error(fmt::format("'{}' cannot be written; is the disk full?", kPathFile));
+  replace.commit();
   return kPathFile;
 }
 

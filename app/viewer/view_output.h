@@ -18,7 +18,7 @@ std::string render_command(const Opening& opening, const Pose& pose, int width, 
 std::string save_numbered(const Image& image);
 
 /// Adds the pose to scarp-path.csv, for `scarp render --path`, and returns the file's name. Throws Error if the file
-/// cannot be written.
+/// cannot be written; then it stays as it was.
 std::string add_to_path(const Pose& pose);
 
 }  // namespace scarp::viewer

@@ -12,10 +12,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <utility>
 
-#include "app/cli/kept_inputs.h"
 #include "app/cli/progress.h"
 #include "app/viewer/kept_settings.h"
 #include "app/viewer/keys.h"
@@ -51,8 +51,6 @@ class Viewer {
  public:
   explicit Viewer(Opening opening) : options_(*opening.options), timings_(options_.timings) {
     if (!options_.play.empty()) played_ = read_recording(options_.play);
-    cli::keep_inputs(options_.record, options_.typed);
-    cli::keep_inputs(options_.screenshot, options_.typed);
     if (played_) {
       width_ = played_->width, height_ = played_->height;
     } else {
@@ -133,10 +131,20 @@ class Viewer {
 
   // If it fails, as when the file is gone, the window goes on with what it has.
   void change(const OptionChange& change) {
+    attempt([&] { return subject_->change(change); });
+  }
+  void reopen() {
+    attempt([&] {
+      subject_->reopen();
+      return true;
+    });
+  }
+  // `changed` returns whether the input was opened again: the view stays.
+  void attempt(const std::function<bool()>& changed) {
     const double height = subject_->stage().exaggeration();
     const Pose pose = navigator_->pose();
     try {
-      if (subject_->change(change)) {
+      if (changed()) {
         navigate(subject_->first_camera());
         navigator_->set_pose(with_heights_times(pose, subject_->stage().exaggeration() / height));
       }
@@ -325,6 +333,8 @@ class Viewer {
       case WindowAction::panel:
         shows_panel_ = !shows_panel_;
         return;
+      case WindowAction::reopen:
+        return reopen();
       case WindowAction::help:
         panel_.help = !panel_.help;
         return;
@@ -457,6 +467,7 @@ class Viewer {
       panel_.speed = navigator_->speed();
       panel_.shown = shown_ ? &*shown_ : nullptr;
       panel_.verdict = verdict_ && verdict_->generation == generation_ ? &*verdict_ : nullptr;
+      panel_.times = !played_;  // no two runs take as long
       panel_.busy = worker_->busy();
       panel_.reading = reading_at(cursor_);
       actions = draw_panel(panel_);

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Compares a picture with one that was looked at and found good. After a change that is meant to be seen: run the tests
+// with SCARP_NEW_GOLDEN=1, which copies the new pictures over the old ones, and look at them.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "output/read_png.h"
+#include "scarp/output/png.h"
+
+namespace scarp::test {
+
+/// A byte may round the other way where the mathematical library's pow, exp, sin or cos differs in its last bit.
+inline constexpr int kByteRounding = 2;
+/// And a ray may pass the other side of a crest or a shadow's edge: that changes one of a pixel's four samples, at most
+/// from white to black, and does so in few pixels. Of one sample per pixel it changes all.
+inline constexpr int kMaxDifference = 140, kAnyDifference = 255;
+inline constexpr double kMaxShare = 0.001;
+
+/// Expects that no byte of the PNG `picture` differs by more than `most` from the PNG `golden`, and few by more than
+/// kByteRounding. If they do, `failed` + "_now.png" and "_difference.png" show it.
+inline void expect_golden(const std::string& picture, const std::filesystem::path& golden_path, int most,
+                          const std::string& failed) {
+  namespace fs = std::filesystem;
+  if (std::getenv("SCARP_NEW_GOLDEN")) fs::copy_file(picture, golden_path, fs::copy_options::overwrite_existing);
+  const Rgb now = read_png(picture);
+  const std::string kept = failed + "_now.png";
+  fs::copy_file(picture, kept, fs::copy_options::overwrite_existing);
+  ASSERT_TRUE(fs::exists(golden_path)) << "the picture is " << kept;
+  const Rgb golden = read_png(golden_path.string());
+  ASSERT_EQ(now.width, golden.width);
+  ASSERT_EQ(now.height, golden.height);
+
+  int largest = 0;
+  std::int64_t differing = 0;
+  std::vector<std::uint8_t> difference(now.bytes.size());
+  for (std::size_t pixel = 0; pixel < now.bytes.size(); pixel += 3) {
+    int here = 0;
+    for (std::size_t i = pixel; i < pixel + 3; ++i) here = std::max(here, std::abs(now.bytes[i] - golden.bytes[i]));
+    largest = std::max(largest, here);
+    differing += here > kByteRounding;
+    // Amplified, so that one sees it.
+    std::fill_n(difference.begin() + static_cast<std::ptrdiff_t>(pixel), 3,
+                static_cast<std::uint8_t>(std::min(255, 8 * here)));
+  }
+  const double share = static_cast<double>(differing) / (static_cast<double>(now.width) * now.height);
+  EXPECT_LE(largest, most);
+  EXPECT_LE(share, kMaxShare);
+  if (testing::Test::HasFailure()) {
+    const std::string shown = failed + "_difference.png";
+    write_png(shown, {difference.data(), now.width, now.height});
+    ADD_FAILURE() << "differences, 8 times as bright: " << shown << "; the picture itself: " << kept;
+  } else {
+    fs::remove(kept);
+  }
+}
+
+}  // namespace scarp::test
