@@ -45,7 +45,13 @@ Scene ground_and_voxels() {
   return {fields, objects};
 }
 
-PictureRequest request_from(double turn, bool moving) {
+Picture render(const Scene& given, const Camera& camera, const PictureSettings& settings, const Progress& progress) {
+  const Scene seen = given.coarser(
+      {camera.eye(), camera.forward(), [&](double depth) { return camera.pixel_width(depth) / settings.aa; }});
+  return render_picture(seen, camera, settings, progress);
+}
+
+PictureRequest request_from(const Scene& scene, double turn, bool moving) {
   PictureSettings settings;
   settings.width = 96, settings.height = 64;
   settings.aa = 2, settings.samples = 2;
@@ -53,24 +59,18 @@ PictureRequest request_from(double turn, bool moving) {
             return Camera::look_at({32 + 60 * std::cos(turn), 32 + 60 * std::sin(turn), 30}, {28, 28, 4}, 40, width,
                                    height);
           },
-          settings, moving};
-}
-
-Picture render(const Scene& given, const Camera& camera, const PictureSettings& settings, const Progress& progress) {
-  const Scene seen = given.coarser(
-      {camera.eye(), camera.forward(), [&](double depth) { return camera.pixel_width(depth) / settings.aa; }});
-  return render_picture(seen, camera, settings, progress);
+          {{settings, [&scene](const Camera& camera, const PictureSettings& asked,
+                               const Progress& progress) { return render(scene, camera, asked, progress); }}},
+          moving};
 }
 
 TEST(SharedScene, IsAskedWhileItIsRendered) {
   const Scene scene = ground_and_voxels();
-  PictureWorker worker([&](const Camera& camera, const PictureSettings& settings,
-                           const Progress& progress) { return render(scene, camera, settings, progress); },
-                       [] {});
+  PictureWorker worker([] {});
   constexpr int kRequests = 60;
   int pictures = 0, read = 0;
   for (int i = 0; i < kRequests; ++i) {
-    const PictureRequest request = request_from(0.05 * i, i % 4 != 3);
+    const PictureRequest request = request_from(scene, 0.05 * i, i % 4 != 3);
     const Camera camera = request.camera(96, 64);
     worker.request(request);
     // As many readings as it takes until there is a picture, so that the threads meet.
@@ -94,7 +94,7 @@ TEST(SharedScene, IsAskedWhileItIsRendered) {
   EXPECT_GT(pictures, 0);
   EXPECT_GT(read, 0);
   // The last picture is the one that is rendered alone.
-  const PictureRequest last = request_from(1, false);
+  const PictureRequest last = request_from(scene, 1, false);
   const std::uint64_t generation = worker.request(last);
   std::optional<WorkedPicture> worked;
   for (int i = 0; i < 60'000; ++i) {
@@ -103,8 +103,8 @@ TEST(SharedScene, IsAskedWhileItIsRendered) {
     std::this_thread::sleep_for(1ms);
   }
   ASSERT_TRUE(worked);
-  const Picture alone = render(scene, last.camera(96, 64), last.settings, [](double) { return true; });
-  EXPECT_TRUE(worked->picture.image.rgb == alone.image.rgb);
+  const Picture alone = render(scene, last.camera(96, 64), last.sides.front().settings, [](double) { return true; });
+  EXPECT_TRUE(worked->sides.front().image.rgb == alone.image.rgb);
 }
 
 }  // namespace
