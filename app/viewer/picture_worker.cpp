@@ -13,8 +13,6 @@ namespace scarp::viewer {
 namespace {
 
 constexpr int kLeastRows = 90;
-// At least as many as that, where kLeastFramesPerSecond allow it.
-constexpr int kGoodRows = 360;
 // No clock resolves less.
 constexpr double kLeastSeconds = 1e-6;
 // Of the measured rate: pictures of one view differ in cost.
@@ -85,12 +83,7 @@ bool PictureWorker::busy() const {
 
 int PictureWorker::rows_for(double pixels_per_second, int width, int height) {
   const double aspect = static_cast<double>(width) / height;
-  const auto rows_in = [&](double seconds) {
-    return static_cast<int>(std::sqrt(kCaution * pixels_per_second * seconds / aspect));
-  };
-  // Fewer pictures rather than few rows, as long as they still move.
-  int rows = rows_in(1 / kFramesPerSecond);
-  if (rows < kGoodRows) rows = std::min(kGoodRows, rows_in(1 / kLeastFramesPerSecond));
+  const int rows = static_cast<int>(std::sqrt(kCaution * pixels_per_second / kFramesPerSecond / aspect));
   return std::clamp(rows, std::min(kLeastRows, height), height);
 }
 

@@ -76,7 +76,7 @@ class PictureWorker {
   bool busy() const;
 
   /// Pictures per second of the first stage.
-  static constexpr double kFramesPerSecond = 30, kLeastFramesPerSecond = 20;
+  static constexpr double kFramesPerSecond = 30;
   /// Rows of the first stage: as many as can be rendered in a frame, of at most `height`, by the pixels per second of
   /// the last first stage.
   static int rows_for(double pixels_per_second, int width, int height);
