@@ -96,6 +96,14 @@ struct MapsOptions {
 /// Throws Error, after the report, if a node differs from its ray.
 void run_maps(const MapsOptions& options, const ReportOptions& report);
 
+/// `view`: the window, measured by view.sh on a display without a screen.
+struct ViewOptions {
+  std::vector<int> sizes{2049, 4097, 8193};
+  std::string csv;  ///< file to write the rows to; empty: the output
+};
+/// Throws Error if the script cannot be started; otherwise does not return.
+[[noreturn]] void run_view(const ViewOptions& options);
+
 /// `gpu`: the marches on a Vulkan device, and the article's comparison there.
 struct GpuOptions {
   FieldOptions field;

@@ -250,6 +250,14 @@ int run(int argc, char** argv) {
 #endif
   add_json_option(*maps_command, report);
 
+  ViewOptions view;
+  CLI::App* view_command = app.add_subcommand("view", "the window on a display without a screen");
+  view_command->add_option("--sizes", view.sizes, "samples per side, one or several")
+      ->delimiter(',')
+      ->check(CLI::Range(kLeastSize, kMostSize))
+      ->capture_default_str();
+  view_command->add_option("--csv", view.csv, "file to write the rows to, as in bench/results");
+
 #ifdef SCARP_BENCH_VULKAN
   GpuOptions gpu;
   CLI::App* gpu_command =
@@ -647,6 +655,7 @@ int run(int argc, char** argv) {
   if (*volumes_command) run_volumes(volumes, report);
   if (*pyramid_command) run_pyramid(pyramid, report);
   if (*maps_command) run_maps(maps, report);
+  if (*view_command) run_view(view);
 #ifdef SCARP_BENCH_VULKAN
   if (*gpu_command) (gpu.raster ? run_gpu_raster : run_gpu)(gpu, report);
   if (*shaders_command) run_shaders(shaders, report);

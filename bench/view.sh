@@ -5,7 +5,7 @@ set -euo pipefail
 
 scarp=$(readlink -f -- "${1:?usage: view.sh SCARP [SIDES [OUT.csv]]}")
 sides=${2:-2049,4097,8193}
-out=$(readlink -m -- "${3:-/dev/stdout}")
+[[ -z ${3:-} ]] || exec >"$3"
 folder=$(mktemp -d)
 view_pid='' display_pid=''
 trap 'kill $view_pid $display_pid 2>/dev/null || true; rm -rf "$folder"' EXIT
@@ -127,4 +127,4 @@ latencies() {
     rm -f scarp-view-1.png commands
     echo "$side,$(difference "$begin" "$first"),$first_rows,$(difference "$begin" "$full"),$idle,$rest,$rest_most,$turned,$turned_most,$fps,$rows,$converged,$render,$same,$mb"
   done
-} >"$out"
+}

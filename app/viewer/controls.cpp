@@ -24,7 +24,7 @@ constexpr double kLeastLength = 1e-3, kBeyond = 0.25;
 constexpr double kMostCount = 100;  // of whole numbers without an end
 // A range of more is no slider.
 constexpr double kWidest = 1e5;
-// Options that the window sets in its own way, or that are no numbers of a picture.
+// Options without a control: the window has its own way to set them, or they choose the input or a preset.
 constexpr std::array<std::string_view, 4> kNone = {"--size", "--preset", "--function", "--lowres"};
 constexpr std::array<cli::Topic, 9> kShown = {cli::Topic::picture, cli::Topic::light,     cli::Topic::surface,
                                               cli::Topic::ground,  cli::Topic::water,     cli::Topic::fog,

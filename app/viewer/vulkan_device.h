@@ -38,7 +38,7 @@ class VulkanDevice {
   /// `choice`: "auto" or part of a device's name. With `validation`, the validation layer's objections are counted and
   /// printed. Throws Error naming what is missing: loader, driver, device, layer.
   void open(const std::string& choice, bool validation);
-  /// Replaces a surface that was lost. There is no swapchain of it any more.
+  /// Replaces a lost surface. Its swapchain must have been destroyed.
   void reopen_surface();
 
   /// Replaces `of` by a buffer that is mapped.

@@ -55,6 +55,22 @@ TEST(HeightField, ScalesOffsetsAndExaggeratesSamples) {
   EXPECT_DOUBLE_EQ(field.max_height(), 232);
 }
 
+// A hole far away takes the general way to the same bits.
+TEST(HeightField, ShadingNormalsDoNotDependOnHolesElsewhere) {
+  constexpr int kSide = 8;
+  std::vector<float> samples;
+  for (int i = 0; i < kSide * kSide; ++i) samples.push_back(static_cast<float>(std::sin(0.7 * i) * 10));
+  std::vector<float> holed = samples;
+  holed.back() = kNaN;
+  const HeightFieldSettings settings{.cell_x = 3, .cell_y = 2, .scale = 0.1, .exaggeration = 2};
+  const HeightField whole = HeightField::own<float>(samples, kSide, kSide, settings);
+  const HeightField with_hole = HeightField::own<float>(holed, kSide, kSide, settings);
+  for (int col = 0; col < kSide - 3; ++col) {
+    for (int row = 0; row < kSide - 3; ++row)
+      EXPECT_EQ(whole.shading_normal({col, row}, 0.3, 0.8), with_hole.shading_normal({col, row}, 0.3, 0.8));
+  }
+}
+
 TEST(HeightField, MakesAHoleOfEveryCellThatTouchesNodata) {
   const HeightField field =
       HeightField::own<std::int16_t>({1, 2, 3, 4, -9999, 6, 7, 8, 9, 10, 11, 12}, 4, 3, {.nodata = -9999});

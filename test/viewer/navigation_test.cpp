@@ -140,7 +140,7 @@ TEST_F(Navigation, AMapIsThatOfItsCorners) {
   navigator.wheel(3, {200, 100}, kSize);
   navigator.shift({31, -7}, kSize);
   const auto [low, high] = map_corners(navigator.pose(), 800, 600);
-  EXPECT_NEAR((high.x - low.x) / (high.y - low.y), 800.0 / 600, 1e-12);
+  EXPECT_DOUBLE_EQ((high.x - low.x) / (high.y - low.y), 800.0 / 600);
   WorldBox box = scene.box();
   box.low = {low.x, low.y, box.low.z}, box.high = {high.x, high.y, box.high.z};
   const Camera map = Camera::top(box, 800, 600), shown = navigator.camera(800, 600);
@@ -155,8 +155,10 @@ TEST_F(Navigation, HigherGroundKeepsThePointInTheMiddle) {
   const Pose before = navigator.pose(), after = with_heights_times(before, 3);
   const dvec3 was = before.eye + before.distance * forward_of(before),
               is = after.eye + after.distance * forward_of(after);
-  EXPECT_NEAR(is.x, was.x, 1e-9);
-  EXPECT_NEAR(is.z, 3 * was.z, 1e-9);
+  // Some tens of roundings of coordinates below 1000 m, each at most 2^-44 m.
+  constexpr double kRounding = 0x1p-38;
+  EXPECT_NEAR(is.x, was.x, kRounding);
+  EXPECT_NEAR(is.z, 3 * was.z, kRounding);
   Pose flies = before;
   flies.mode = MoveMode::fly;
   EXPECT_EQ(with_heights_times(flies, 3).eye, dvec3(20, 5, 90));

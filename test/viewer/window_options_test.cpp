@@ -47,7 +47,7 @@ struct WindowOptions : testing::Test {
   static Control control(const std::vector<Control>& controls, std::string_view option) {
     const auto found =
         std::find_if(controls.begin(), controls.end(), [&](const Control& c) { return c.option == option; });
-    if (found == controls.end()) throw Error("there is no control of " + std::string(option));
+    if (found == controls.end()) throw Error("no control for " + std::string(option));
     return *found;
   }
   static bool has_control(const std::vector<Control>& controls, std::string_view option) {
