@@ -16,7 +16,8 @@ namespace scarp::bench {
 void run_view(const ViewOptions& options) {
   const std::string scarp = (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "scarp").string();
   const std::string sizes = fmt::format("{}", fmt::join(options.sizes, ","));
-  ::execlp("bash", "bash", SCARP_SOURCE_DIR "/bench/view.sh", scarp.c_str(), sizes.c_str(), options.csv.c_str(), nullptr);
+  ::execlp("bash", "bash", SCARP_SOURCE_DIR "/bench/view.sh", scarp.c_str(), sizes.c_str(), options.csv.c_str(),
+           nullptr);
   throw Error(fmt::format("view: bash cannot be started: {}", std::strerror(errno)));
 }
 
