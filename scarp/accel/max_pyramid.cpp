@@ -12,11 +12,8 @@
 namespace scarp {
 namespace {
 
-constexpr std::int64_t kEntriesPerPiece = 1 << 16;
 // Rows prefetched ahead. More would keep the processor from other requests.
 constexpr int kRowsAhead = 4;
-
-std::int64_t rows_per_piece(int cols) { return std::max<std::int64_t>(1, kEntriesPerPiece / std::max(cols, 1)); }
 
 // One row of cells, columns [begin, end), of a field with holes: the extremes of each cell's four corners. Holes get
 // the lowest value for both, so that they raise no maximum and leave no minimum.
@@ -155,6 +152,7 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
   shared_->maxima[entries_] = shared_->minima[entries_] = 0;
   set_range(field, reserve);
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
+  shared_->planes.build(field, levels_, extremes(), reserve);
 }
 
 void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleRange>& reserve) {
@@ -168,9 +166,11 @@ void MaxPyramid::update(const HeightField& field, const CellBox& changed) {
   if (levels_.empty()) return;
   if (!is_in_range(field, shared_->range)) {
     set_range(field, shared_->range);
-    return build(field, {0, 0, field.cell_cols(), field.cell_rows()});
+    build(field, {0, 0, field.cell_cols(), field.cell_rows()});
+    return shared_->planes.build(field, levels_, extremes(), shared_->range);
   }
   for (const CellBox& part : parts_inside(field, changed)) build(field, part);
+  shared_->planes.update(field, levels_, extremes(), changed);
 }
 
 void MaxPyramid::build(const HeightField& field, const CellBox& changed) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Maximum and minimum mipmap of a height field: for every block of 2^level x 2^level cells, an upper and a lower bound
-// of the surface in it.
+// of the surface in it, and a tilted plane above it (block_planes.h).
 //
 //   level 0: the cells themselves, the extremes of their FOUR corner samples (both surfaces stay between them). Not
 //            stored: a cell test needs the samples anyway, and all other levels take a quarter of the memory
@@ -13,7 +13,8 @@
 //
 // Source: A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic height field
 // rendering", I3D 2008 (with maxima of cells instead of samples: maxima of samples do not bound the surface between
-// them). Cost: 4/3 bytes per cell; built in one pass over the samples and one over each level.
+// them). Cost: 8/3 bytes per cell, half of them for the planes; built in one pass over the samples and one over each
+// level.
 #pragma once
 
 #include <cstddef>
@@ -22,6 +23,7 @@
 #include <optional>
 #include <vector>
 
+#include "scarp/accel/block_planes.h"
 #include "scarp/accel/height_code.h"
 #include "scarp/accel/pyramid_levels.h"
 #include "scarp/field/height_field.h"
@@ -46,7 +48,9 @@ class MaxPyramid {
 
   /// Coarsest level; levels are 1 .. top_level(). 0 if the field has no cells.
   int top_level() const { return static_cast<int>(levels_.size()); }
-  std::size_t bytes() const { return 2 * entries_ * sizeof(std::uint16_t); }
+  /// Blocks of all levels.
+  std::size_t entries() const { return entries_; }
+  std::size_t bytes() const { return 2 * entries_ * sizeof(std::uint16_t) + planes().bytes(); }
 
   using Level = PyramidLevel;
   /// Levels 1, 2, ...; entries in rows from north to south, no padding. One extra entry is allocated after the last:
@@ -55,6 +59,7 @@ class MaxPyramid {
   const HeightCode& code() const { return shared_->code; }
   const std::uint16_t* maxima() const { return shared_->maxima.get(); }
   const std::uint16_t* minima() const { return shared_->minima.get(); }
+  const BlockPlanes& planes() const { return shared_->planes; }
 
   /// Bounds of one block in sample units, level 1 .. top_level(): the minimum is -infinity if there is none, the
   /// maximum of a block of holes is that of code 0.
@@ -75,10 +80,12 @@ class MaxPyramid {
     int cell_relief = 0;
     std::uint64_t edits = 0;
     std::unique_ptr<std::uint16_t[]> maxima, minima;
+    BlockPlanes planes;
   };
 
   void set_range(const HeightField& field, const std::optional<SampleRange>& reserve);
   void build(const HeightField& field, const CellBox& changed);
+  BlockExtremes extremes() const { return {maxima(), minima(), code()}; }
 
   std::vector<Level> levels_;
   std::size_t entries_ = 0;

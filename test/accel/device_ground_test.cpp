@@ -29,7 +29,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 // Interleaved as on the device.
 std::vector<std::uint32_t> entries_of(const MaxPyramid& pyramid) {
-  std::vector<std::uint32_t> entries(pyramid.bytes() / 4);
+  std::vector<std::uint32_t> entries(pyramid.entries());
   for (std::size_t i = 0; i < entries.size(); ++i) {
     entries[i] = pyramid.maxima()[i] | std::uint32_t{pyramid.minima()[i]} << 16;
   }

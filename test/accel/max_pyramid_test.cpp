@@ -69,7 +69,7 @@ void expect_tight(const HeightField& field, const MaxPyramid& pyramid) {
       }
     }
   }
-  EXPECT_EQ(pyramid.bytes(), 2 * entries * sizeof(std::uint16_t));
+  EXPECT_EQ(pyramid.entries(), entries);
   EXPECT_EQ(pyramid.levels().back().cols, 1);
   EXPECT_EQ(pyramid.levels().back().rows, 1);
 }
@@ -171,7 +171,7 @@ RC_GTEST_PROP(MaxPyramid, BoundsTheSurfaceBetweenTheSamples, ()) {
 }
 
 std::vector<std::uint16_t> entries(const MaxPyramid& pyramid) {
-  const std::size_t count = pyramid.bytes() / (2 * sizeof(std::uint16_t));
+  const std::size_t count = pyramid.entries();
   std::vector<std::uint16_t> all(pyramid.maxima(), pyramid.maxima() + count);
   all.insert(all.end(), pyramid.minima(), pyramid.minima() + count);
   return all;

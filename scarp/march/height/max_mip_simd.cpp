@@ -58,9 +58,13 @@ class VectorWalk {
              const VectorOptions& options)
       : target_(target), field_(*target.field), rays_(rays), answers_(answers), options_(options) {
     const MaxPyramid& pyramid = *target.pyramid;
-    const HeightCode& code = pyramid.code();
+    const BlockPlanes& planes = pyramid.planes();
+    const HeightCode &code = planes.code(), &maxima_code = pyramid.code();
     g_ = {};
-    g_.maxima = pyramid.maxima();
+    g_.planes = planes.entries(), g_.maxima = pyramid.maxima();
+    g_.unit = planes.unit(), g_.tilt_margin = static_cast<float>(kTiltMargins * kSideways * planes.steepest());
+    g_.maxima_scale = static_cast<float>(maxima_code.step * code.per_step);
+    g_.maxima_shift = static_cast<float>((maxima_code.base - code.base) * code.per_step + kUpright);
     g_.samples = grid.data, g_.stride = grid.row_stride;
     g_.last_col = grid.cell_cols - 1, g_.last_row = grid.cell_rows - 1, g_.top = pyramid.top_level();
     for (int level = 1; level <= g_.top; ++level) {
@@ -71,7 +75,7 @@ class VectorWalk {
     g_.triangles = field_.settings().surface == Surface::triangles;
     g_.seam_col = field_.wraps() ? g_.last_col : -1, g_.seam_row = field_.wraps() ? g_.last_row : -1;
     const double low = field_.min_sample(), high = field_.max_sample(), relief = high - low;
-    const double cell_relief = std::min(relief, pyramid.cell_relief() * code.step);
+    const double cell_relief = std::min(relief, pyramid.cell_relief() * maxima_code.step);
     g_.margin_per_cell = static_cast<float>(4 * kSideways * cell_relief * code.per_step);
     // At least 2: a mask of 0 would not show what is mirrored.
     const auto side = std::bit_ceil(static_cast<unsigned>(std::max({grid.cell_cols, grid.cell_rows, 2})));
@@ -594,8 +598,8 @@ bool walks_over(const HeightTarget& target) {
   const HeightField& field = *target.field;
   if (!field.has_cells() || field.nodata_count() > 0) return false;
   if (field.wraps() && std::min(field.cols(), field.rows()) < kNarrowestCopy) return false;
-  const HeightCode& code = target.pyramid->code();
-  return target.pyramid->bytes() < (std::size_t{1} << 32) && code.per_step > 0x1p-100 && code.per_step < 0x1p100 &&
+  const HeightCode& code = target.pyramid->planes().code();
+  return target.pyramid->entries() < (std::size_t{1} << 30) && code.per_step > 0x1p-100 && code.per_step < 0x1p100 &&
          std::abs(code.base) < 0x1p100;
 }
 

@@ -38,16 +38,17 @@ constexpr std::int32_t kLeastShortest = 1, kMostShortest = 4;
 // Level at which its rays continue.
 constexpr std::int32_t kLevelAfterBeam = 1;
 
-// Highest code over the cells [x0, x1] x [y0, y1], of up to four blocks.
+// Height above the cells [x0, x1] x [y0, y1], of up to four blocks.
 template <class T>
-HWY_INLINE std::int32_t highest_over(const VectorGround<T>& g, std::int32_t x0, std::int32_t x1, std::int32_t y0,
-                                     std::int32_t y1) {
+HWY_INLINE float highest_over(const VectorGround<T>& g, std::int32_t x0, std::int32_t x1, std::int32_t y0,
+                              std::int32_t y1) {
   const auto span = static_cast<unsigned>(std::max(x1 - x0, y1 - y0));
   const int level = std::clamp(static_cast<int>(std::bit_width(span)), 1, static_cast<int>(g.top));
   const std::int32_t cols = (g.last_col >> level) + 1;
   const std::uint16_t* codes = g.maxima + g.level_begin[level];
   const std::int32_t c0 = x0 >> level, c1 = x1 >> level, r0 = (y0 >> level) * cols, r1 = (y1 >> level) * cols;
-  return std::max(std::max(codes[r0 + c0], codes[r0 + c1]), std::max(codes[r1 + c0], codes[r1 + c1]));
+  const int code = std::max(std::max(codes[r0 + c0], codes[r0 + c1]), std::max(codes[r1 + c0], codes[r1 + c1]));
+  return static_cast<float>(code) * g.maxima_scale + g.maxima_shift;
 }
 
 // Common bounds of the rays at a time.
@@ -107,7 +108,7 @@ class Beam {
     // Mirrored, the far corner comes first.
     const auto [c0, c1] = std::minmax({from.x0 ^ mirror_x_, to.x1 ^ mirror_x_});
     const auto [r0, r1] = std::minmax({from.y0 ^ mirror_y_, to.y1 ^ mirror_y_});
-    return std::min(from.low, to.low) > static_cast<float>(highest_over(g, c0, c1, r0, r1));
+    return std::min(from.low, to.low) > highest_over(g, c0, c1, r0, r1);
   }
 
   /// Continues the rays from there one by one; returns their number.

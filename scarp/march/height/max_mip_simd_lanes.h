@@ -35,6 +35,8 @@ using VD = hn::Vec<decltype(dd)>;
 constexpr float kNever = 0x1p100f;
 // Rounding of positions and line times, per cell of the ray's path, and of heights, in codes: numerics.md.
 constexpr double kSideways = 0x1p-21, kUpright = 0.25;
+// Of a tilted plane, in what its slopes rise over the rounding of a position.
+constexpr double kTiltMargins = 8;
 constexpr double kUnit = 0x1p-53, kRoundings = 64;  // four times rounding_of_clearance()
 
 // kAlone: not for vector code.
@@ -63,13 +65,16 @@ struct Lanes {
 // The ground in the form that vectors need.
 template <class T>
 struct VectorGround {
+  const std::uint32_t* planes;  // BlockPlanes
   const std::uint16_t* maxima;
   const T* samples;
   std::ptrdiff_t stride;
   std::int32_t last_col, last_row, top;
   alignas(64) std::int32_t level_begin[32];
-  float base, per_step, offset;  // a sample's code is (sample - base) * per_step + offset
-  float margin_per_cell;         // twice that of the heights
+  float base, per_step, offset;      // a sample's code is (sample - base) * per_step + offset
+  float margin_per_cell;             // twice that of the heights
+  float unit, tilt_margin;           // BlockPlanes::unit(); margin of tilted planes per cell of the path
+  float maxima_scale, maxima_shift;  // from codes of maxima to those of planes, rounded up
   bool triangles;
   std::int32_t seam_col, seam_row;  // the first column and row follow after these; -1 if the ground is not wrapped
 
@@ -119,16 +124,18 @@ struct Packet {
 
   // Where the ray leaves its block.
   struct Exit {
-    VI x, y;       // lines ahead
-    VF tx, ty, T;  // times of their crossings; the first of them, or the ray's end
+    VI x, y;        // lines ahead
+    VF to_x, to_y;  // from the ray's origin to them
+    VF tx, ty, T;   // times of their crossings; the first of them, or the ray's end
   };
   HWY_INLINE Exit exit() const {
     const VI one = hn::Set(di, 1), inside = hn::Sub(hn::Shl(one, level), one);
     const VF never = hn::Set(df, kNever);
     Exit e;
     e.x = hn::Add(hn::Or(x, inside), one), e.y = hn::Add(hn::Or(y, inside), one);
-    e.tx = hn::Mul(hn::Sub(hn::ConvertTo(df, hn::Sub(e.x, begin_x)), ox), per_x);
-    e.ty = hn::Mul(hn::Sub(hn::ConvertTo(df, hn::Sub(e.y, begin_y)), oy), per_y);
+    e.to_x = hn::Sub(hn::ConvertTo(df, hn::Sub(e.x, begin_x)), ox);
+    e.to_y = hn::Sub(hn::ConvertTo(df, hn::Sub(e.y, begin_y)), oy);
+    e.tx = hn::Mul(e.to_x, per_x), e.ty = hn::Mul(e.to_y, per_y);
     // At its end it leaves the field, not through a line.
     e.tx = hn::IfThenElse(hn::RebindMask(df, hn::Gt(e.x, last_x)), never, e.tx);
     e.ty = hn::IfThenElse(hn::RebindMask(df, hn::Gt(e.y, last_y)), never, e.ty);
@@ -178,26 +185,34 @@ HWY_INLINE VI level_begin(const std::int32_t* table, VI level, bool many) {
   }
 }
 
-HWY_INLINE VI entries(const std::uint16_t* codes, VI at) {
-  return hn::And(hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(codes), hn::Add(at, at)),
-                 hn::Set(di, 0xffff));
-}
-
 // One step of the lanes that are at blocks.
 template <class T>
 HWY_INLINE void block_step(const VectorGround<T>& g, Packet& p) {
   const VI zero = hn::Zero(di), one = hn::Set(di, 1);
   const MI walking = hn::And(hn::Eq(p.status, zero), hn::Gt(p.level, zero));
   const Packet::Exit e = p.exit();
-  const VF low = hn::Min(p.height(p.T), p.height(e.T));
   // Other lanes read level 1.
   const VI level = hn::Max(p.level, one);
   const VI col = hn::Shr(hn::Xor(p.x, p.mirror_x), level), row = hn::Shr(hn::Xor(p.y, p.mirror_y), level);
   const VI cols = hn::Add(hn::Shr(hn::Set(di, g.last_col), level), one);
   const VI at = hn::Add(level_begin(g.level_begin, level, g.top > 15), hn::Add(hn::Mul(row, cols), col));
-  const VF highest = hn::ConvertTo(df, entries(g.maxima, at));
-  // if (low > highest) above all of the block
-  const MI clear = hn::And(walking, hn::RebindMask(di, hn::Gt(low, highest)));
+  const VI plane = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(g.planes), at);
+  const VF middle = hn::ConvertTo(df, hn::And(plane, hn::Set(di, 0xffff)));
+  // The slope along the ray: backwards, it falls where the plane rises. Masks of mirrored lanes are odd.
+  const auto slope = [&](VI steps, VI mirror) HWY_ATTR {
+    const VF sign = hn::BitCast(df, hn::ShiftLeft<31>(mirror));
+    return hn::Xor(hn::Mul(hn::ConvertTo(df, hn::ShiftRight<24>(steps)), hn::Set(df, g.unit)), sign);
+  };
+  const VF slope_x = slope(hn::ShiftLeft<8>(plane), p.mirror_x), slope_y = slope(plane, p.mirror_y);
+  // The ray is above the plane by above + rises T.
+  const VF half = hn::BitCast(df, hn::ShiftLeft<23>(hn::Add(level, hn::Set(di, 126))));
+  const VF above =
+      hn::MulAdd(slope_x, hn::Sub(e.to_x, half), hn::MulAdd(slope_y, hn::Sub(e.to_y, half), hn::Sub(p.z, middle)));
+  const VF rises = hn::NegMulAdd(slope_x, p.dx, hn::NegMulAdd(slope_y, p.dy, p.dz));
+  const VF least = hn::Min(hn::MulAdd(rises, p.T, above), hn::MulAdd(rises, e.T, above));
+  const VF margin = hn::Mul(hn::Set(df, g.tilt_margin), hn::Add(e.T, hn::Set(df, 2)));
+  // if (least > margin) above all of the block
+  const MI clear = hn::And(walking, hn::RebindMask(di, hn::Gt(least, margin)));
   const MI down = hn::AndNot(clear, walking);
   p.seen = hn::IfThenElse(clear, one, p.seen);
   p.level = hn::IfThenElse(down, hn::Sub(p.level, one), p.level);
