@@ -63,6 +63,7 @@ class VectorWalk {
     g_ = {};
     g_.planes = planes.entries(), g_.maxima = pyramid.maxima();
     g_.unit = planes.unit(), g_.tilt_margin = static_cast<float>(kTiltMargins * kSideways * planes.steepest());
+    g_.usual_slope = planes.steepest() / 8;
     g_.maxima_scale = static_cast<float>(maxima_code.step * code.per_step);
     g_.maxima_shift = static_cast<float>((maxima_code.base - code.base) * code.per_step + kUpright);
     g_.samples = grid.data, g_.stride = grid.row_stride;

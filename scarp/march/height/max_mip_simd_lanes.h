@@ -37,6 +37,8 @@ constexpr float kNever = 0x1p100f;
 constexpr double kSideways = 0x1p-21, kUpright = 0.25;
 // Of a tilted plane, in what its slopes rise over the rounding of a position.
 constexpr double kTiltMargins = 8;
+// A block's tilt times these is the height above its plane from which a ray rises by two levels at once, and by three.
+constexpr float kHigh = 2, kHigher = 8;
 constexpr double kUnit = 0x1p-53, kRoundings = 64;  // four times rounding_of_clearance()
 
 // kAlone: not for vector code.
@@ -73,6 +75,7 @@ struct VectorGround {
   alignas(64) std::int32_t level_begin[32];
   float base, per_step, offset;      // a sample's code is (sample - base) * per_step + offset
   float margin_per_cell;             // twice that of the heights
+  float usual_slope;                 // an eighth of the steepest of a plane, in codes per cell
   float unit, tilt_margin;           // BlockPlanes::unit(); margin of tilted planes per cell of the path
   float maxima_scale, maxima_shift;  // from codes of maxima to those of planes, rounded up
   bool triangles;
@@ -152,19 +155,19 @@ struct Packet {
   }
 
   // Lanes of `clear` finish at their end, or continue to the next block: across the line ahead, and along the other
-  // axis to their position, never back. One level up if the line is the border of a coarser block.
-  HWY_INLINE void leave(MI clear, const Exit& e, std::int32_t top) {
-    const VI one = hn::Set(di, 1);
+  // axis to their position, never back. Up to `rise` levels up, as far as the line is the border of coarser blocks.
+  HWY_INLINE void leave(MI clear, const Exit& e, std::int32_t top, VI rise) {
     const MI ends = hn::And(clear, hn::RebindMask(di, hn::Ge(e.T, end))), on = hn::AndNot(ends, clear);
     status = hn::IfThenElse(ends, hn::Set(di, kMiss), status);
     const VI at_x = hn::Max(hn::Add(hn::ConvertTo(di, hn::MulAdd(dx, e.T, ox)), begin_x), x);
     const VI at_y = hn::Max(hn::Add(hn::ConvertTo(di, hn::MulAdd(dy, e.T, oy)), begin_y), y);
     const VI to_x = hn::Min(hn::IfThenElse(hn::RebindMask(di, hn::Le(e.tx, e.T)), e.x, at_x), last_x);
     const VI to_y = hn::Min(hn::IfThenElse(hn::RebindMask(di, hn::Le(e.ty, e.T)), e.y, at_y), last_y);
-    const VI coarser = hn::Add(level, one);
-    const VI crossed = hn::Shr(hn::Or(hn::Xor(x, to_x), hn::Xor(y, to_y)), coarser);
-    const MI up = hn::And(on, hn::Gt(crossed, hn::Zero(di)));
-    level = hn::IfThenElse(up, hn::Min(coarser, hn::Set(di, top)), level);
+    // The coarsest level at which the block changes, from the exponent of a float.
+    const VI crossed = hn::Or(hn::Xor(x, to_x), hn::Xor(y, to_y));
+    const VI border = hn::Sub(hn::ShiftRight<23>(hn::BitCast(di, hn::ConvertTo(df, crossed))), hn::Set(di, 127));
+    const VI up = hn::Min(hn::Min(hn::Add(level, rise), border), hn::Set(di, top));
+    level = hn::IfThenElse(on, hn::Max(level, up), level);
     x = hn::IfThenElse(on, to_x, x);
     y = hn::IfThenElse(on, to_y, y);
     T = hn::IfThenElse(hn::RebindMask(df, on), e.T, T);
@@ -216,7 +219,12 @@ HWY_INLINE void block_step(const VectorGround<T>& g, Packet& p) {
   const MI down = hn::AndNot(clear, walking);
   p.seen = hn::IfThenElse(clear, one, p.seen);
   p.level = hn::IfThenElse(down, hn::Sub(p.level, one), p.level);
-  p.leave(clear, e, g.top);
+  // Far above the plane, longer steps are likely to be free.
+  const VF height = hn::MulAdd(rises, e.T, above), tilt = hn::Mul(half, hn::Set(df, g.usual_slope));
+  const auto more = [&](float times) HWY_ATTR {
+    return hn::IfThenElseZero(hn::RebindMask(di, hn::Gt(height, hn::Mul(tilt, hn::Set(df, times)))), one);
+  };
+  p.leave(clear, e, g.top, hn::Add(one, hn::Add(more(kHigh), more(kHigher))));
 }
 
 // Heights of each lane's cell as codes.
@@ -331,7 +339,7 @@ HWY_INLINE void cell_step(const VectorGround<T>& g, MI may_put_off, Packet& p) {
     p.seen = hn::IfThenElse(clear, one, p.seen);
   }
   p.status = hn::IfThenElse(unsure, hn::Set(di, kUnsure), p.status);
-  p.leave(on, e, g.top);
+  p.leave(on, e, g.top, one);
 }
 
 }  // namespace
