@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -81,7 +80,8 @@ class AheadWalk {
           slack_cells * std::abs(slope) < 0x1p-4)) {
       return false;
     }
-    const bool falls = dz<0, from_above = height(t_border)> highest;
+    const bool falls = dz < 0;
+    const bool from_above = height(t_border) > highest;
     const double tie = 0x1p-40 * (std::abs(t_border) + std::abs(t_exit));
     const bool stays_above = height(t_border) > over && t_border < t_exit && (!falls || height(t_exit + slack) > over);
     if (t_border - t_exit > tie + 2 * slack || stays_above) {
@@ -296,7 +296,7 @@ class AheadWalk {
       const Ways w = ways(f, child, nx, ny, part);
       U4 rows[kRows];
       for (std::size_t j = 0; j < kRows; ++j) {
-        const std::int32_t row = (4 * ny + part * static_cast<std::int32_t>(kRows) + static_cast<std::int32_t>(j));
+        const std::int32_t row = 4 * ny + part * static_cast<std::int32_t>(kRows) + static_cast<std::int32_t>(j);
         rows[j] = hn::LoadU(hn::CappedTag<std::uint16_t, 4>(),
                             codes + std::ptrdiff_t{std::min(row ^ mirror_y, at.rows - 1)} * at.cols);
       }
