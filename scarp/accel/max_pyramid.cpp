@@ -147,9 +147,10 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
   if (levels_.empty()) return;
   entries_ = static_cast<std::size_t>(levels_.back().begin + 1);
   // Not zeroed: the thread that builds an entry writes it first.
-  shared_->maxima.reset(new std::uint16_t[entries_ + 1]);
-  shared_->minima.reset(new std::uint16_t[entries_ + 1]);
-  shared_->maxima[entries_] = shared_->minima[entries_] = 0;
+  shared_->maxima.reset(new std::uint16_t[entries_ + kSpareEntries]);
+  shared_->minima.reset(new std::uint16_t[entries_ + kSpareEntries]);
+  std::fill_n(shared_->maxima.get() + entries_, kSpareEntries, kNoMinimum);
+  std::fill_n(shared_->minima.get() + entries_, kSpareEntries, kNoMinimum);
   set_range(field, reserve);
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
   shared_->planes.build(field, levels_, extremes(), reserve);

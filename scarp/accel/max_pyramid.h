@@ -53,8 +53,8 @@ class MaxPyramid {
   std::size_t bytes() const { return 2 * entries_ * sizeof(std::uint16_t) + planes().bytes(); }
 
   using Level = PyramidLevel;
-  /// Levels 1, 2, ...; entries in rows from north to south, no padding. One extra entry is allocated after the last:
-  /// vector code reads two entries at a time.
+  /// Levels 1, 2, ...; entries in rows from north to south, no padding. Three extra entries are allocated after the
+  /// last: vector code reads up to four entries at a time.
   const std::vector<Level>& levels() const { return levels_; }
   const HeightCode& code() const { return shared_->code; }
   const std::uint16_t* maxima() const { return shared_->maxima.get(); }
@@ -82,6 +82,8 @@ class MaxPyramid {
     std::unique_ptr<std::uint16_t[]> maxima, minima;
     BlockPlanes planes;
   };
+
+  static constexpr std::size_t kSpareEntries = 3;
 
   void set_range(const HeightField& field, const std::optional<SampleRange>& reserve);
   void build(const HeightField& field, const CellBox& changed);

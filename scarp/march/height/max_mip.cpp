@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scarp/march/height/max_mip_ahead.h"
 #include "scarp/march/height/max_mip_march.h"
 #include "scarp/march/height/max_mip_resume.h"
 
 namespace scarp {
 namespace {
 
+using max_mip::Ahead;
 using max_mip::Ask;
 using max_mip::march;
 
@@ -36,7 +38,13 @@ Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const March
 }
 
 bool occluded_max_mip(const HeightTarget& target, const Ray& ray) {
-  return march<Ask::any>(target, ray, {}, nullptr).status == HitStatus::hit;
+  require(target, HeightPart::pyramid);
+  double t_clear = max_mip::kNotClear;
+  if (ray.start == RayStart::free && max_mip::looks_ahead(target)) {
+    const Ahead ahead = max_mip::look_ahead(target, ray, t_clear);
+    if (ahead != Ahead::open) return ahead == Ahead::hit;
+  }
+  return resume_occluded_max_mip(target, ray, t_clear);
 }
 
 Hit resume_max_mip(const HeightTarget& target, const Ray& ray, double t_clear) {

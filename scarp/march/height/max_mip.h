@@ -43,7 +43,8 @@ Hit march_max_mip_bisect(const HeightTarget& target, const Ray& ray, const March
                          MarchStats* stats = nullptr);
 
 /// Any hit: march_max_mip(...).status == hit, without computing t. A ray that was above at the entry of a block without
-/// holes, and falls below the block's minimum, is occluded without further traversal.
+/// holes, and falls below the block's minimum, is occluded without further traversal. Over ground without holes and
+/// wrap vectors follow the ray first (max_mip_ahead.h).
 bool occluded_max_mip(const HeightTarget& target, const Ray& ray);
 
 /// All hits in the ray's range, in order of t: each time the ray goes from above to on or below the surface (at most
