@@ -28,6 +28,7 @@ const Variant kVariants[] = {
     {"no-put-off", {.put_off = false}},
     {"no-find-hits", {.find_hits = false}},
     {"no-beam", {.beam = false}},
+    {"no-together", {.together = false}},
     {"none", {.refill = false, .wait = false, .doubles = false, .put_off = false, .find_hits = false, .beam = false}},
 };
 

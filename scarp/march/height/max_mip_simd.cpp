@@ -28,6 +28,7 @@
 #include "scarp/march/height/max_mip_simd_cells.h"
 #include "scarp/march/height/max_mip_simd_lanes.h"
 #include "scarp/march/height/max_mip_simd_rays.h"
+#include "scarp/march/height/max_mip_simd_together.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scarp {
@@ -121,6 +122,7 @@ class VectorWalk {
     stats.block_lanes += stats_.block_lanes, stats.block_steps += stats_.block_steps;
     stats.cell_lanes += stats_.cell_lanes, stats.cell_steps += stats_.cell_steps;
     stats.handed_over += stats_.handed_over, stats.beam_rays += stats_.beam_rays;
+    stats.together_rays += stats_.together_rays;
   }
 
  private:
@@ -190,9 +192,10 @@ class VectorWalk {
     fresh_at_ = 0;
     for (Lanes& fresh : fresh_) take_rays(fresh);
     if (!any && options_.beam) {
-      const std::uint64_t rays = follow_beam(g_, fresh_, kFresh, beam_length_);
-      stats_.beam_rays += rays;
-      together_ = rays > 0;
+      const std::size_t rays = options_.together ? walk_together(g_, fresh_, kFresh) : 0;
+      const std::size_t beam_rays = rays > 0 ? 0 : follow_beam(g_, fresh_, kFresh, beam_length_);
+      stats_.together_rays += rays, stats_.beam_rays += beam_rays;
+      together_ = rays + beam_rays > 0;
     }
     for (std::size_t k = 0; k < kFresh; ++k) {
       Packet p;

@@ -6,7 +6,8 @@
 //   cells    . r1 .  ... r14      lanes at a cell wait until enough of them do, then four samples are loaded
 //   done     r0 .  r2 ... .       finished lanes also wait until enough of them are, then get the next rays
 //
-// Camera rays start together, deep in the field: max_mip_simd_beam.h.
+// Camera rays from above start together, deep in the field: max_mip_simd_beam.h. Rays from one place over the field
+// share their blocks: max_mip_simd_together.h.
 //
 // Vector results are proven, with a margin for single precision (for double in first cells; doc/dev/numerics.md): that
 // a ray is above the ground up to a time, or that it is above at one time and below at a later one. Any hit needs no
@@ -34,6 +35,7 @@ struct VectorOptions {
   bool put_off = true;    ///< any hit: decides a doubtful cell only if nothing behind it stops the ray
   bool find_hits = true;  ///< closest hit: computed for many rays at once
   bool beam = true;       ///< closest hit: rays from above in the same vector start together
+  bool together = true;   ///< closest hit, with `beam`: rays from one place go through the same blocks together
 };
 
 /// hits[i] is march_max_mip() of rays[i], bit for bit. Runs on the calling thread; the spans have equal lengths below
@@ -53,6 +55,7 @@ struct VectorStats {
   std::uint64_t cell_lanes = 0, cell_steps = 0;    ///< the same for cell tests
   std::uint64_t handed_over = 0;                   ///< rays that the scalar traversal continued
   std::uint64_t beam_rays = 0;                     ///< rays that a beam advanced
+  std::uint64_t together_rays = 0;                 ///< rays that shared their blocks
 };
 VectorStats take_vector_stats();
 

@@ -171,6 +171,7 @@ TEST(MaxMipSimd, EveryInstructionSetBatchSizeAndIdea) {
           compare(target, rays, expected, rays.size(), {.put_off = false}, name + ", nothing put off");
           compare(target, rays, expected, rays.size(), {.find_hits = false}, name + ", no hits found");
           compare(target, rays, expected, rays.size(), {.beam = false}, name + ", no beam");
+          compare(target, rays, expected, rays.size(), {.together = false}, name + ", not together");
           if (HasFatalFailure()) return;
         }
       }
@@ -470,6 +471,90 @@ TEST(MaxMipSimd, BeamsLoseNothing) {
   }
   // Else there was nothing to lose.
   for (const auto& [name, rays] : in_beams) EXPECT_GT(rays, 0u) << name;
+}
+
+// Fans of rays from one place: through nodes and along lines of cells, parallel to an axis, almost so, across it and
+// across the border, narrow and wide, with other rays between, with ends, from places over rough and smooth ground.
+std::vector<Ray> fans(const HeightField& field, Random& random) {
+  std::vector<Ray> rays;
+  const auto pick = [&](double low, double high) {
+    const double at = uniform(random, low, high);
+    return uniform(random, 0, 1) < 0.5 ? std::floor(at) : at;
+  };
+  for (int fan = 0; fan < 24; ++fan) {
+    const double beside = fan % 8 == 7 ? 3 : 0;
+    dvec3 eye{pick(-beside, field.width() + beside), pick(-beside, field.depth() + beside), 0};
+    eye.z = field.height(eye.x, eye.y).value_or(400) + std::exp2(uniform(random, -20, 6));
+    // Level rays by little below a peak, which only an exact maximum does not pass.
+    const bool level = fan % 8 == 5;
+    dvec3 peak = eye;
+    if (level) {
+      const double from_x = std::floor(uniform(random, 9, field.width() - 9)),
+                   from_y = std::floor(uniform(random, 9, field.depth() - 9));
+      peak = {from_x, from_y, 0};
+      for (int i = 0; i < 81; ++i) {
+        const dvec2 at{from_x + i % 9, from_y + i / 9};
+        const double z = *field.height(at.x, at.y);
+        if (z > peak.z) peak = {at.x, at.y, z};
+      }
+      eye = {peak.x + uniform(random, -4, 4), peak.y + uniform(random, -4, 4), peak.z};
+      eye.z -= std::exp2(-uniform(random, 6, 20));
+    }
+    const double azimuth = fan % 3 == 0 ? std::floor(uniform(random, 0, 8)) * (std::numbers::pi / 4)
+                                        : uniform(random, 0, 2 * std::numbers::pi);
+    const double wide = std::exp2(-uniform(random, 0, fan % 2 ? 6 : 40)), slope = uniform(random, -0.5, 0.2);
+    const double high = std::exp2(-uniform(random, 2, 20));
+    const double node = std::floor(uniform(random, 2, 60));
+    for (int i = 0; i < 64 + fan % 3; ++i) {
+      Ray ray;
+      ray.origin = eye;
+      const double turn = azimuth + wide * (i % 8) / 8;
+      ray.direction = {std::cos(turn), std::sin(turn), slope + high * (i / 8)};
+      if (fan % 4 == 1) {  // through nodes
+        ray.direction.x = std::floor(eye.x + node * std::cos(azimuth)) + i % 8 - eye.x;
+        ray.direction.y = std::floor(eye.y + node * std::sin(azimuth)) + (i / 8) % 3 - eye.y;
+        ray.direction.z *= node;
+      } else if (fan % 4 == 2 && i % 2 == 0) {  // along a line
+        ray.direction.x = std::round(ray.direction.x), ray.direction.y = std::round(ray.direction.y);
+      }
+      if (level) ray.direction = {peak.x - eye.x + 1e-3 * (i % 8), peak.y - eye.y + 1e-3 * (i / 8), 0};
+      if (length(dvec2(ray.direction.x, ray.direction.y)) == 0 || (fan % 5 == 0 && i % 13 == 0)) {
+        ray.direction = {0, 0, -1};
+      }
+      if (fan % 5 == 1 && i % 7 == 0) ray.origin.x += uniform(random, -1, 1);
+      if (fan % 6 == 2 && i % 3 == 0) ray.t_max = uniform(random, 0, 100);
+      if (fan % 6 == 3 && i % 3 == 0) ray.t_min = uniform(random, -5, 20);
+      rays.push_back(ray);
+    }
+  }
+  return rays;
+}
+
+TEST(MaxMipSimd, RaysThatGoTogetherLoseNothing) {
+  Random random(82);
+  std::map<std::string, std::uint64_t> together;
+  for (const Kind kind : {Kind::plain, Kind::endless}) {
+    for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
+      const HeightField field = hills<float>(surface, kind, random);
+      const MaxPyramid pyramid(field);
+      const HeightTarget target{&field, &pyramid};
+      for (int round = 0; round < 2 * kCameras; ++round) {
+        const std::vector<Ray> rays = fans(field, random);
+        const std::vector<Hit> expected = scalar(target, rays);
+        for (const std::int64_t set : instruction_sets()) {
+          const InstructionSet only(set);
+          const std::string name = hwy::TargetName(set);
+          take_vector_stats();
+          for (const std::size_t size : {rays.size(), std::size_t{65}, std::size_t{5}}) {
+            compare(target, rays, expected, size, {}, name + ", fans in batches of " + std::to_string(size));
+          }
+          together[name] += take_vector_stats().together_rays;
+          if (HasFatalFailure()) return;
+        }
+      }
+    }
+  }
+  for (const auto& [name, rays] : together) EXPECT_GT(rays, 10'000u * kCameras / 60) << name;
 }
 
 // Else the vectors could hand over all rays and be right.
