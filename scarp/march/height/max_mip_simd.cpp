@@ -35,11 +35,21 @@ namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Rays that may hit in a cell.
+// Rays that may hit in a cell; -1: none.
 struct Candidates {
   std::size_t count = 0;
   std::int32_t ray[N], col[N], row[N], seen[N], copy_x[N], copy_y[N];
-  double t_clear[N];
+  alignas(64) double t_clear[N];
+
+  HWY_INLINE void put(std::size_t i, const Lanes& a, std::size_t j) {
+    ray[i] = a.ray[j], seen[i] = a.seen[j], copy_x[i] = a.copy_x[j], copy_y[i] = a.copy_y[j];
+    col[i] = a.x[j] ^ a.mirror_x[j], row[i] = a.y[j] ^ a.mirror_y[j];
+    t_clear[i] = a.t_begin[j] + static_cast<double>(a.T[j]) * a.t_per_cell[j];
+  }
+  HWY_INLINE void copy(std::size_t i, std::size_t j) {
+    ray[i] = ray[j], seen[i] = seen[j], copy_x[i] = copy_x[j], copy_y[i] = copy_y[j];
+    col[i] = col[j], row[i] = row[j], t_clear[i] = t_clear[j];
+  }
 };
 
 // A ray that is to cross a copy of a wrapped ground.
@@ -190,12 +200,9 @@ class VectorWalk {
   // Prepares the next rays in fresh_. Answers those that need no traversal.
   HWY_NOINLINE void take_rays() {
     fresh_at_ = 0;
-    for (Lanes& fresh : fresh_) take_rays(fresh);
-    if (!any && options_.beam) {
-      const std::size_t rays = options_.together ? walk_together(g_, fresh_, kFresh) : 0;
-      const std::size_t beam_rays = rays > 0 ? 0 : follow_beam(g_, fresh_, kFresh, beam_length_);
-      stats_.together_rays += rays, stats_.beam_rays += beam_rays;
-      together_ = rays + beam_rays > 0;
+    for (std::size_t k = 0; k < kFresh; ++k) take_rays(fresh_[k], r_[k]);
+    if constexpr (!any) {
+      if (options_.beam) go_together();
     }
     for (std::size_t k = 0; k < kFresh; ++k) {
       Packet p;
@@ -205,24 +212,34 @@ class VectorWalk {
     }
   }
 
+  // Coherent rays: through the pyramid, or as a beam to where its rays part.
+  void go_together() {
+    const std::size_t rays = options_.together ? walk_together(g_, fresh_, kFresh) : 0;
+    const std::size_t beam_rays = rays > 0 ? 0 : follow_beam(g_, fresh_, kFresh, beam_length_);
+    stats_.together_rays += rays, stats_.beam_rays += beam_rays;
+    together_ = rays + beam_rays > 0;
+    if (rays == 0 || field_.wraps()) return;
+    for (std::size_t k = 0; k < kFresh; ++k) find_hits_in_place(k);
+  }
+
   // First cells are left here, when all lanes are busy. Any-hit rays usually start next to the ground: doubles are used
   // at once where floats would be unsure of most.
-  void take_rays(Lanes& fresh) {
+  void take_rays(Lanes& fresh, GridRays& r) {
     if (field_.wraps()) {
-      take_endless(fresh);
+      take_endless(fresh, r);
     } else {
-      take_bounded(fresh);
+      take_bounded(fresh, r);
     }
-    prepare(f_, r_, fresh);
+    prepare(f_, r, fresh);
     if (!options_.doubles || g_.triangles || !begins_over_field(fresh)) return;
     if constexpr (any) {
-      leave_first_cells<any>(g_, f_, r_, fresh);
+      leave_first_cells<any>(g_, f_, r, fresh);
     } else {
       Packet p;
       p.load(fresh);
       cell_step<any>(g_, put_off_all(), p);
       p.store(fresh);
-      leave_first_cells<any>(g_, f_, r_, fresh);
+      leave_first_cells<any>(g_, f_, r, fresh);
     }
   }
 
@@ -234,25 +251,25 @@ class VectorWalk {
     for (std::size_t i = 0; i < N * sizeof(Ray); i += kCacheLine) hwy::Prefetch(bytes + i);
   }
 
-  void take_bounded(Lanes& fresh) {
+  void take_bounded(Lanes& fresh, GridRays& r) {
     const std::size_t first = next_, count = std::min(N, rays_.size() - first);
     next_ += count;
     for (std::size_t j = count; j < N; ++j) fresh.ray[j] = -1;
     if (count == 0) {
-      std::fill_n(r_.dx, N, 0), std::fill_n(r_.dy, N, 0);
+      std::fill_n(r.dx, N, 0), std::fill_n(r.dy, N, 0);
       return;
     }
     prefetch_rays(first + kAhead);
-    r_.load(f_, [&](std::size_t j) -> const Ray& { return rays_[first + std::min(j, count - 1)]; });
+    r.load(f_, [&](std::size_t j) -> const Ray& { return rays_[first + std::min(j, count - 1)]; });
     bool all_free = true;
     for (std::size_t j = 0; j < count; ++j) {
-      fresh.ray[j] = static_cast<std::int32_t>(first + j), r_.seen[j] = fresh.copy_x[j] = fresh.copy_y[j] = 0;
+      fresh.ray[j] = static_cast<std::int32_t>(first + j), r.seen[j] = fresh.copy_x[j] = fresh.copy_y[j] = 0;
       all_free &= rays_[first + j].start == RayStart::free;
     }
-    for (std::size_t j = count; j < N; ++j) r_.dx[j] = r_.dy[j] = 0;
-    if (!all_free) start_on_surface(first, count, fresh);
+    for (std::size_t j = count; j < N; ++j) r.dx[j] = r.dy[j] = 0;
+    if (!all_free) start_on_surface(first, count, fresh, r);
   }
-  void start_on_surface(std::size_t first, std::size_t count, Lanes& fresh) {
+  void start_on_surface(std::size_t first, std::size_t count, Lanes& fresh, GridRays& r) {
     alignas(64) std::int32_t decided[N] = {};
     if (!g_.triangles) {
       Cells cells;
@@ -264,41 +281,41 @@ class VectorWalk {
         on_surface[j] = j < count && exists && ray.start == RayStart::on_surface;
         cells.load(g_, j, exists ? ray.start_cell.col : 0, exists ? ray.start_cell.row : 0);
       }
-      leave_surface(f_, cells, on_surface, r_, decided);
+      leave_surface(f_, cells, on_surface, r, decided);
     }
     for (std::size_t j = 0; j < count; ++j) {
       if (rays_[first + j].start != RayStart::on_surface) continue;
       if (decided[j] == kLeaves) {
-        r_.seen[j] = 1;
+        r.seen[j] = 1;
       } else if (decided[j] == kNoHit || (any && decided[j] == kFalls)) {
-        fresh.ray[j] = -1, r_.dx[j] = r_.dy[j] = 0;
+        fresh.ray[j] = -1, r.dx[j] = r.dy[j] = 0;
         Hit hit;
         if (decided[j] == kFalls) hit.status = HitStatus::hit;
         put_answer(first + j, hit);
       } else {
-        take_on_surface(j, first + j, fresh);
+        take_on_surface(j, first + j, fresh, r);
       }
     }
   }
-  void take_on_surface(std::size_t j, std::size_t index, Lanes& fresh) {
+  void take_on_surface(std::size_t j, std::size_t index, Lanes& fresh, GridRays& r) {
     const Ray& ray = rays_[index];
     const SurfaceStart start = begin_on_surface(ray, field_.grid_from_world(ray));
     if (start.decided) {
-      fresh.ray[j] = -1, r_.dx[j] = r_.dy[j] = 0;
+      fresh.ray[j] = -1, r.dx[j] = r.dy[j] = 0;
       put_answer(index, start.hit);
     } else {
-      r_.oz[j] = start.z, r_.t_min[j] = start.t, r_.seen[j] = start.above;
+      r.oz[j] = start.z, r.t_min[j] = start.t, r.seen[j] = start.above;
     }
   }
-  void take_endless(Lanes& fresh) {
+  void take_endless(Lanes& fresh, GridRays& r) {
     for (std::size_t j = 0; j < N; ++j) {
       fresh.ray[j] = -1, fresh.copy_x[j] = fresh.copy_y[j] = 0;
-      r_.dx[j] = r_.dy[j] = 0;
+      r.dx[j] = r.dy[j] = 0;
       if (!copies_.empty()) {
-        take_copy(j, copies_.back(), fresh);
+        take_copy(j, copies_.back(), fresh, r);
         copies_.pop_back();
       } else if (next_ < rays_.size()) {
-        begin_endless(j, next_++, fresh);
+        begin_endless(j, next_++, fresh, r);
       }
     }
   }
@@ -352,7 +369,7 @@ class VectorWalk {
   // Wrapped ground is traversed copy by copy, each as a separate ground with the ray in the copy's frame. The rounding
   // of heights is within the margin, see kFarthestCopy. Nothing may be in doubt in the first copy, so rays that start
   // next to a border are left to the scalar traversal, which has more ways to start and counts farther.
-  void begin_endless(std::size_t j, std::size_t index, Lanes& fresh) {
+  void begin_endless(std::size_t j, std::size_t index, Lanes& fresh, GridRays& r) {
     const Ray& ray = rays_[index];
     const GridRay local = field_.grid_from_world(ray);
     if (ray.start == RayStart::on_surface || !is_near(local.origin.x, local.origin.y) ||
@@ -375,13 +392,13 @@ class VectorWalk {
     const auto [x, inside_x] = begin(local.origin.x, local.direction.x, f_.cols);
     const auto [y, inside_y] = begin(local.origin.y, local.direction.y, f_.rows);
     if (!inside_x || !inside_y || !is_near(x * f_.cols, y * f_.rows)) return answer_alone(index);
-    take_copy(j, {index, static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), false}, fresh);
+    take_copy(j, {index, static_cast<std::int32_t>(x), static_cast<std::int32_t>(y), false}, fresh, r);
   }
   static bool is_near(double x, double y) { return std::abs(x) < kFarthestCopy && std::abs(y) < kFarthestCopy; }
-  void take_copy(std::size_t j, const CopyRay& copy, Lanes& fresh) {
+  void take_copy(std::size_t j, const CopyRay& copy, Lanes& fresh, GridRays& r) {
     const Ray& ray = rays_[copy.ray];
-    put_ray(r_, j, ray, field_.grid_from_world(ray));
-    r_.ox[j] -= copy.x * f_.cols, r_.oy[j] -= copy.y * f_.rows, r_.seen[j] = copy.seen;
+    put_ray(r, j, ray, field_.grid_from_world(ray));
+    r.ox[j] -= copy.x * f_.cols, r.oy[j] -= copy.y * f_.rows, r.seen[j] = copy.seen;
     fresh.ray[j] = static_cast<std::int32_t>(copy.ray);
     fresh.copy_x[j] = copy.x, fresh.copy_y[j] = copy.y;
   }
@@ -433,11 +450,11 @@ class VectorWalk {
   }
   void answer(const Lanes& a, std::size_t j) {
     const std::int32_t ray = a.ray[j];
-    const auto time = [&](float cells) { return a.t_begin[j] + static_cast<double>(cells) * a.t_per_cell[j]; };
     if constexpr (any) {
+      const double doubt = a.t_begin[j] + static_cast<double>(a.doubt[j]) * a.t_per_cell[j];
       ++stats_.handed_over;
       answers_[ray] = resume_occluded_max_mip(target_, rays_[static_cast<std::size_t>(ray)],
-                                              a.doubt[j] < kNever ? time(a.doubt[j]) : max_mip::kNotClear);
+                                              a.doubt[j] < kNever ? doubt : max_mip::kNotClear);
     } else {
       if (a.status[j] == kMiss) {
         if (field_.wraps()) {
@@ -451,28 +468,48 @@ class VectorWalk {
         answer_alone(static_cast<std::size_t>(ray));
         return;
       }
-      Candidates& c = candidates_;
-      c.ray[c.count] = ray, c.seen[c.count] = a.seen[j];
-      c.copy_x[c.count] = a.copy_x[j], c.copy_y[c.count] = a.copy_y[j];
-      c.col[c.count] = a.x[j] ^ a.mirror_x[j], c.row[c.count] = a.y[j] ^ a.mirror_y[j];
-      c.t_clear[c.count] = time(a.T[j]);
-      if (++c.count == N) find_hits();
+      candidates_.put(candidates_.count++, a, j);
+      if (candidates_.count == N) find_hits();
     }
+  }
+
+  // The hits of rays that went together, most of which are at cells: without gathering them first.
+  HWY_INLINE void find_hits_in_place(std::size_t k) {
+    Lanes& a = fresh_[k];
+    const MI taken = hn::Gt(hn::LoadU(di, a.ray), hn::Set(di, -1));
+    const MI at_cells = hn::And(taken, hn::Eq(hn::Load(di, a.status), hn::Set(di, kUnsure)));
+    const std::uint64_t lanes = bits_of(at_cells);
+    if (static_cast<std::size_t>(std::popcount(lanes)) < N / 2) return;
+    Candidates c;
+    const auto some = static_cast<std::size_t>(std::countr_zero(lanes));
+    for (std::size_t j = 0; j < N; ++j) {
+      const bool used = lanes >> j & 1;
+      c.put(j, a, used ? j : some);
+      if (!used) c.ray[j] = -1;
+      if (used) a.ray[j] = -1;
+    }
+    c.count = N;
+    find_hits(c, r_[k]);
+  }
+
+  // The hits of candidates_.
+  HWY_NOINLINE void find_hits() {
+    Candidates& c = candidates_;
+    // Fills the vector with copies that are not answered.
+    for (std::size_t i = c.count; i < N; ++i) c.copy(i, 0);
+    GridRays rays;
+    rays.load(f_, [&](std::size_t i) -> const Ray& { return rays_[static_cast<std::size_t>(c.ray[i])]; });
+    find_hits(c, rays);
+    c.count = 0;
   }
 
   // Hits in the cells of the candidates as march_max_mip() computes them, bit for bit: the same operations in the same
   // order, for the common path through a cell. Other paths, and cells without a hit, fall back to march_max_mip().
-  HWY_NOINLINE void find_hits() {
-    Candidates& c = candidates_;
-    GridRays rays;
+  HWY_NOINLINE void find_hits(const Candidates& c, const GridRays& rays) {
     Cells cells;
-    alignas(64) double t_clear[N], t[N], u[N], v[N], height[N], found[N];
-    const auto filled = [&](std::size_t i) { return i < c.count ? i : 0; };
-    rays.load(f_, [&](std::size_t i) -> const Ray& { return rays_[static_cast<std::size_t>(c.ray[filled(i)])]; });
+    alignas(64) double t[N], u[N], v[N], height[N], found[N];
     for (std::size_t i = 0; i < N; ++i) {
-      const std::size_t k = filled(i);
-      cells.load(g_, i, c.col[k], c.row[k], c.copy_x[k] * f_.cols, c.copy_y[k] * f_.rows);
-      t_clear[i] = c.t_clear[k];
+      cells.load(g_, i, c.col[i], c.row[i], c.copy_x[i] * f_.cols, c.copy_y[i] * f_.rows);
     }
     for (std::size_t h = 0; h < N; h += hn::MaxLanes(dd)) {
       const VD zero = hn::Zero(dd), one = hn::Set(dd, 1);
@@ -492,7 +529,7 @@ class VectorWalk {
       const VD t_far = hn::Max(hn::Abs(t_in), hn::Abs(t_out));
       const VD doubt = rounding(f_, r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, t_far);
       // Above until it enters the cell: known up to t_clear, and from there on by the maximum slope of the ground.
-      const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, t_clear + h)), zero);
+      const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, c.t_clear + h)), zero);
       const VD steepest =
           hn::Add(hn::Abs(r.dz), hn::Mul(hn::Add(hn::Abs(r.dx), hn::Abs(r.dy)), hn::Set(dd, f_.cell_relief)));
       const auto above = hn::Gt(m.in, hn::Add(hn::Mul(gap, steepest), doubt));
@@ -514,6 +551,7 @@ class VectorWalk {
     }
     const bool usual = options_.find_hits;
     for (std::size_t i = 0; i < c.count; ++i) {
+      if (c.ray[i] < 0) continue;
       const Ray& ray = rays_[static_cast<std::size_t>(c.ray[i])];
       Hit& to = answers_[c.ray[i]];
       if (usual && found[i] != 0 && ray.start == RayStart::free) {
@@ -528,7 +566,6 @@ class VectorWalk {
         to = resume_max_mip(target_, ray, c.seen[i] ? c.t_clear[i] : max_mip::kNotClear);
       }
     }
-    c.count = 0;
   }
 
   // From a search over the rays of scarp-bench (decisions.md): number of waiting lanes that triggers their processing.
@@ -550,7 +587,7 @@ class VectorWalk {
   const VectorOptions& options_;
   VectorGround<T> g_;
   FieldFrame f_;
-  GridRays r_;
+  GridRays r_[kFresh];
   Lanes fresh_[kFresh], lanes_[kPackets];
   std::size_t next_ = 0, fresh_at_ = kFresh;
   std::vector<CopyRay> copies_;         // waiting to be traversed

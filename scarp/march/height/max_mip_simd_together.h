@@ -153,7 +153,8 @@ class Together {
     const auto row = [&](std::int32_t y) { return std::min((y ^ mirror_y_) >> level, last_row) * cols; };
     const std::int32_t c0 = col(block.x), c1 = col(x1 > last_x_ ? block.x : x1);
     const std::int32_t r0 = row(block.y), r1 = row(y1 > last_y_ ? block.y : y1);
-    const auto set = [](std::uint16_t code) HWY_ATTR { return hn::Set(df, static_cast<float>(code)); };
+    const auto set = [&](std::uint16_t code)
+                         HWY_ATTR { return hn::Set(df, static_cast<float>(code) * g_.maxima_scale + g_.maxima_shift); };
     const VF near = set(codes[r0 + c0]), side_x = set(codes[r0 + c1]), side_y = set(codes[r1 + c0]),
              far = set(codes[r1 + c1]);
     std::uint64_t at_near = 0, at_x = 0, at_y = 0, at_far = 0;
