@@ -479,7 +479,7 @@ class VectorWalk {
     const MI taken = hn::Gt(hn::LoadU(di, a.ray), hn::Set(di, -1));
     const MI at_cells = hn::And(taken, hn::Eq(hn::Load(di, a.status), hn::Set(di, kUnsure)));
     const std::uint64_t lanes = bits_of(at_cells);
-    if (static_cast<std::size_t>(std::popcount(lanes)) < N / 2) return;
+    if (lanes == 0 || static_cast<std::size_t>(std::popcount(lanes)) < N / 2) return;
     Candidates c;
     const auto some = static_cast<std::size_t>(std::countr_zero(lanes));
     for (std::size_t j = 0; j < N; ++j) {
