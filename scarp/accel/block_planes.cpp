@@ -113,7 +113,9 @@ void BlockPlanes::build(const HeightField& field, const std::vector<PyramidLevel
   entries_.reset();
   count_ = 0;
   if (levels.empty() || field.nodata_count() > 0) return;
-  count_ = static_cast<std::size_t>(levels.back().begin + 1);
+  const auto count = static_cast<std::size_t>(levels.back().begin + 1);
+  if (count > kMostEntries) return;
+  count_ = count;
   // Not zeroed: the thread that builds an entry writes it first.
   entries_.reset(new std::uint32_t[count_]);
   set_scale(field, levels.front(), extremes, reserve);

@@ -13,7 +13,8 @@
 // the steepest cells, but at most eight times the mean.
 //
 // Source: own; bounding slabs with a direction are common for meshes (T. Kay, J. Kajiya, "Ray tracing complex scenes",
-// SIGGRAPH 1986). Cost: 4/3 bytes per cell. Fields with holes have no planes.
+// SIGGRAPH 1986). Cost: 4/3 bytes per cell. Fields with holes have no planes, nor have
+// those with more blocks than kMostEntries, which vectors do not traverse.
 #pragma once
 
 #include <cstddef>
@@ -37,6 +38,8 @@ struct BlockExtremes {
 
 class BlockPlanes {
  public:
+  static constexpr std::size_t kMostEntries = std::size_t{1} << 30;
+
   /// Planes of the blocks of all levels, on all threads. Codes cover the field's samples, and `reserve`.
   void build(const HeightField& field, const std::vector<PyramidLevel>& levels, const BlockExtremes& extremes,
              const std::optional<SampleRange>& reserve);
@@ -44,7 +47,7 @@ class BlockPlanes {
   void update(const HeightField& field, const std::vector<PyramidLevel>& levels, const BlockExtremes& extremes,
               const CellBox& changed);
 
-  /// Entries of all levels in the order of the pyramid's; null for fields with holes.
+  /// Entries of all levels in the order of the pyramid's; null for fields without planes.
   const std::uint32_t* entries() const { return entries_.get(); }
   const HeightCode& code() const { return code_; }
   float unit() const { return unit_; }

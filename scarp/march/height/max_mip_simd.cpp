@@ -637,11 +637,10 @@ constexpr int kNarrowestCopy = 128;
 bool walks_over(const HeightTarget& target) {
   require(target, HeightPart::pyramid);
   const HeightField& field = *target.field;
-  if (!field.has_cells() || field.nodata_count() > 0) return false;
+  if (field.nodata_count() > 0 || target.pyramid->planes().entries() == nullptr) return false;
   if (field.wraps() && std::min(field.cols(), field.rows()) < kNarrowestCopy) return false;
   const HeightCode& code = target.pyramid->planes().code();
-  return target.pyramid->entries() < (std::size_t{1} << 30) && code.per_step > 0x1p-100 && code.per_step < 0x1p100 &&
-         std::abs(code.base) < 0x1p100;
+  return code.per_step > 0x1p-100 && code.per_step < 0x1p100 && std::abs(code.base) < 0x1p100;
 }
 
 }  // namespace
