@@ -85,7 +85,7 @@ uvec2 scarp_quad(int level, int col, int row) {
 // For the second pass, which is not traced.
 float scarp_maximum(int level, int col, int row) {
   const MaxPyramid::Level& at = bench::ground->pyramid.levels()[static_cast<std::size_t>(level - 1)];
-  return bench::ground->pyramid.maxima()[at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col];
+  return bench::ground->pyramid.maximum_code(at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col);
 }
 float scarp_minimum(int level, int col, int row) {
   const MaxPyramid::Level& at = bench::ground->pyramid.levels()[static_cast<std::size_t>(level - 1)];

@@ -44,6 +44,7 @@ void pick_of_four(const T* north, const T* south, int fine_cols, T* coarse, Pick
   if (fine_cols % 2 != 0) coarse[pairs] = pick(north[2 * pairs], south[2 * pairs]);
 }
 constexpr auto kHigher = [](auto a, auto b) { return std::max(a, b); };
+constexpr auto kHigherMaximum = [](std::uint32_t a, std::uint32_t b) { return std::max(a & 0xffff, b & 0xffff); };
 constexpr auto kLower = [](auto a, auto b) { return std::min(a, b); };
 
 // Extremes of blocks of 2 x 2 cells without holes, from 3 x 3 samples: first down each sample column, then across.
@@ -90,17 +91,18 @@ void raise(std::atomic<int>& to, int value) {
 // Level 1, from the samples. Intermediate rows are temporary.
 template <class T>
 void build_first(const SampleGrid<T>& grid, const HeightCode& code, const CellBox& part, int cols,
-                 std::uint16_t* maxima, std::uint16_t* minima, std::atomic<int>& relief) {
+                 std::uint32_t* blocks, std::uint16_t* minima, std::atomic<int>& relief) {
   const int begin = 2 * part.col_begin, end = std::min(2 * part.col_end, grid.cell_cols);
   const int width = part.col_end - part.col_begin;
   parallel_for(part.row_end - part.row_begin, rows_per_piece(width), [&](std::int64_t first, std::int64_t last) {
     const auto cells = static_cast<std::size_t>(end - begin);
     std::vector<T> highest(2 * cells + 1), lowest(2 * cells + 1), high(static_cast<std::size_t>(width)),
         low(high.size());
+    std::vector<std::uint16_t> maxima(high.size());
     for (int row = part.row_begin + static_cast<int>(first); row < part.row_begin + last; ++row) {
       if (row + kRowsAhead < part.row_begin + last) {
         const std::ptrdiff_t ahead = static_cast<std::ptrdiff_t>(row + kRowsAhead) * cols + part.col_begin;
-        prefetch_for_write(maxima + ahead, width);
+        prefetch_for_write(blocks + ahead, width);
         prefetch_for_write(minima + ahead, width);
       }
       const std::size_t second = 2 * row + 1 < grid.cell_rows ? cells : 0;
@@ -115,23 +117,23 @@ void build_first(const SampleGrid<T>& grid, const HeightCode& code, const CellBo
                             lowest.data(), high.data(), low.data());
       }
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(row) * cols + part.col_begin;
-      encode_above(code, high.data(), width, maxima + at);
+      encode_above(code, high.data(), width, maxima.data());
+      std::copy(maxima.begin(), maxima.end(), blocks + at);
       encode_below(code, low.data(), width, minima + at);
-      raise(relief, most_relief(maxima + at, minima + at, width));
+      raise(relief, most_relief(maxima.data(), minima + at, width));
     }
   });
 }
 
 // A coarser level of maxima or minima from the finer one.
-template <class Pick>
-void build_coarser(const std::uint16_t* fine, const MaxPyramid::Level& finer, const CellBox& part, int cols,
-                   std::uint16_t* coarse, Pick pick) {
+template <class T, class Pick>
+void build_coarser(const T* fine, const MaxPyramid::Level& finer, const CellBox& part, int cols, T* coarse, Pick pick) {
   const int begin = 2 * part.col_begin, end = std::min(2 * part.col_end, finer.cols);
   parallel_for(part.row_end - part.row_begin, rows_per_piece(part.col_end - part.col_begin),
                [&](std::int64_t first, std::int64_t last) {
                  for (int row = part.row_begin + static_cast<int>(first); row < part.row_begin + last; ++row) {
-                   const std::uint16_t* north = fine + static_cast<std::ptrdiff_t>(2 * row) * finer.cols + begin;
-                   const std::uint16_t* south = 2 * row + 1 < finer.rows ? north + finer.cols : north;
+                   const T* north = fine + static_cast<std::ptrdiff_t>(2 * row) * finer.cols + begin;
+                   const T* south = 2 * row + 1 < finer.rows ? north + finer.cols : north;
                    pick_of_four(north, south, end - begin,
                                 coarse + static_cast<std::ptrdiff_t>(row) * cols + part.col_begin, pick);
                  }
@@ -147,13 +149,13 @@ MaxPyramid::MaxPyramid(const HeightField& field, const std::optional<SampleRange
   if (levels_.empty()) return;
   entries_ = static_cast<std::size_t>(levels_.back().begin + 1);
   // Not zeroed: the thread that builds an entry writes it first.
-  shared_->maxima.reset(new std::uint16_t[entries_ + kSpareEntries]);
+  shared_->blocks.reset(new std::uint32_t[entries_ + kSpareEntries]);
   shared_->minima.reset(new std::uint16_t[entries_ + kSpareEntries]);
-  std::fill_n(shared_->maxima.get() + entries_, kSpareEntries, kNoMinimum);
+  std::fill_n(shared_->blocks.get() + entries_, kSpareEntries, 0);
   std::fill_n(shared_->minima.get() + entries_, kSpareEntries, kNoMinimum);
   set_range(field, reserve);
   build(field, {0, 0, field.cell_cols(), field.cell_rows()});
-  shared_->planes.build(field, levels_, extremes(), reserve);
+  shared_->planes.build(field, all_blocks(), reserve);
 }
 
 void MaxPyramid::set_range(const HeightField& field, const std::optional<SampleRange>& reserve) {
@@ -168,14 +170,15 @@ void MaxPyramid::update(const HeightField& field, const CellBox& changed) {
   if (!is_in_range(field, shared_->range)) {
     set_range(field, shared_->range);
     build(field, {0, 0, field.cell_cols(), field.cell_rows()});
-    return shared_->planes.build(field, levels_, extremes(), shared_->range);
+    return shared_->planes.build(field, all_blocks(), shared_->range);
   }
   for (const CellBox& part : parts_inside(field, changed)) build(field, part);
-  shared_->planes.update(field, levels_, extremes(), changed);
+  shared_->planes.update(field, all_blocks(), changed);
 }
 
 void MaxPyramid::build(const HeightField& field, const CellBox& changed) {
-  std::uint16_t *maxima = shared_->maxima.get(), *minima = shared_->minima.get();
+  std::uint32_t* blocks = shared_->blocks.get();
+  std::uint16_t* minima = shared_->minima.get();
   CellBox part = changed;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     part = coarser(part);
@@ -183,19 +186,19 @@ void MaxPyramid::build(const HeightField& field, const CellBox& changed) {
     if (l == 0) {
       std::atomic<int> relief = shared_->cell_relief;
       field.visit(
-          [&](const auto& grid) { build_first(grid, shared_->code, part, level.cols, maxima, minima, relief); });
+          [&](const auto& grid) { build_first(grid, shared_->code, part, level.cols, blocks, minima, relief); });
       shared_->cell_relief = relief;
       continue;
     }
     const Level& finer = levels_[l - 1];
-    build_coarser(maxima + finer.begin, finer, part, level.cols, maxima + level.begin, kHigher);
+    build_coarser(blocks + finer.begin, finer, part, level.cols, blocks + level.begin, kHigherMaximum);
     build_coarser(minima + finer.begin, finer, part, level.cols, minima + level.begin, kLower);
   }
 }
 
 double MaxPyramid::maximum(int level, int col, int row) const {
   const Level& at = levels_[static_cast<std::size_t>(level - 1)];
-  return code().height(maxima()[at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col]);
+  return code().height(maximum_code(at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col));
 }
 
 double MaxPyramid::minimum(int level, int col, int row) const {

@@ -13,7 +13,7 @@
 //
 // Source: A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic height field
 // rendering", I3D 2008 (with maxima of cells instead of samples: maxima of samples do not bound the surface between
-// them). Cost: 8/3 bytes per cell, half of them for the planes; built in one pass over the samples and one over each
+// them). Cost: 2 bytes per cell; built in one pass over the samples and one over each
 // level.
 #pragma once
 
@@ -50,14 +50,16 @@ class MaxPyramid {
   int top_level() const { return static_cast<int>(levels_.size()); }
   /// Blocks of all levels.
   std::size_t entries() const { return entries_; }
-  std::size_t bytes() const { return 2 * entries_ * sizeof(std::uint16_t) + planes().bytes(); }
+  std::size_t bytes() const { return entries_ * (sizeof(std::uint32_t) + sizeof(std::uint16_t)); }
 
   using Level = PyramidLevel;
   /// Levels 1, 2, ...; entries in rows from north to south, no padding. Three extra entries are allocated after the
   /// last: vector code reads up to four entries at a time.
   const std::vector<Level>& levels() const { return levels_; }
   const HeightCode& code() const { return shared_->code; }
-  const std::uint16_t* maxima() const { return shared_->maxima.get(); }
+  /// Maxima in the lower halves, planes in the upper.
+  const std::uint32_t* blocks() const { return shared_->blocks.get(); }
+  std::uint16_t maximum_code(std::ptrdiff_t entry) const { return static_cast<std::uint16_t>(blocks()[entry]); }
   const std::uint16_t* minima() const { return shared_->minima.get(); }
   const BlockPlanes& planes() const { return shared_->planes; }
 
@@ -79,7 +81,8 @@ class MaxPyramid {
     SampleRange range;  // range of the codes
     int cell_relief = 0;
     std::uint64_t edits = 0;
-    std::unique_ptr<std::uint16_t[]> maxima, minima;
+    std::unique_ptr<std::uint32_t[]> blocks;
+    std::unique_ptr<std::uint16_t[]> minima;
     BlockPlanes planes;
   };
 
@@ -87,7 +90,7 @@ class MaxPyramid {
 
   void set_range(const HeightField& field, const std::optional<SampleRange>& reserve);
   void build(const HeightField& field, const CellBox& changed);
-  BlockExtremes extremes() const { return {maxima(), minima(), code()}; }
+  Blocks all_blocks() const { return {levels_, shared_->blocks.get(), minima(), code()}; }
 
   std::vector<Level> levels_;
   std::size_t entries_ = 0;

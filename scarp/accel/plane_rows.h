@@ -8,21 +8,21 @@
 namespace scarp {
 
 struct PlaneFit {
-  float unit;         ///< codes per cell and step of a slope
-  float half;         ///< half the side of a child, in cells; unused for the first level
-  std::int32_t most;  ///< steps of the steepest slope allowed
+  float unit;          ///< codes per cell and step of a slope
+  float half;          ///< half the side of a child, in cells; for the first level half a cell
+  std::int32_t most;   ///< steps of the steepest slope allowed
+  float scale, shift;  ///< from codes of maxima to those of planes, rounded up
 };
 
-/// Entries that kernels read beyond the end of a row, and write. A row of samples has one more.
+/// Entries that kernels read and write beyond the end of a row.
 constexpr std::size_t kPlaneRowPadding = 64;
 
-/// The first level: blocks of 2 x 2 cells, from rows of 2 * count + 1 sample codes. `flat`: codes above
-/// the blocks, at most 65535, used without a slope where a plane would be higher in the middle of the block.
+/// Adds planes to the maxima in a row of `blocks`, of 2 x 2 cells, from rows of 2 * count + 1 sample codes.
 void fit_first_planes(const PlaneFit& fit, const float* north, const float* middle, const float* south,
-                      const float* flat, std::size_t count, std::uint32_t* entries);
+                      std::size_t count, std::uint32_t* blocks);
 
-/// A coarser level, from rows of 2 * count entries of the finer one.
-void fit_coarser_planes(const PlaneFit& fit, const std::uint32_t* north, const std::uint32_t* south, const float* flat,
-                        std::size_t count, std::uint32_t* entries);
+/// The same for a coarser level, from rows of 2 * count children.
+void fit_coarser_planes(const PlaneFit& fit, const std::uint32_t* north, const std::uint32_t* south, std::size_t count,
+                        std::uint32_t* blocks);
 
 }  // namespace scarp

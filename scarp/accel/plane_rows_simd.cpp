@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/accel/plane_rows.h"
 
+#include "scarp/accel/block_planes.h"
+
 // Compiled once per instruction set.
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
 #undef HWY_TARGET_INCLUDE
@@ -16,6 +18,9 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+constexpr int kSlopeBits = BlockPlanes::kSlopeBits, kDepthBits = BlockPlanes::kDepthBits;
+constexpr float kDepthUnits = BlockPlanes::kDepthUnits;
+
 constexpr hn::CappedTag<float, 16> df;
 constexpr hn::RebindToSigned<decltype(df)> di;
 constexpr hn::RebindToUnsigned<decltype(df)> du;
@@ -25,8 +30,8 @@ using VI = hn::Vec<decltype(di)>;
 using VU = hn::Vec<decltype(du)>;
 static_assert(2 * N + 1 <= kPlaneRowPadding);
 
-// Rounds up by more than the rounding errors of a fit: numerics.md.
-constexpr float kUp = 1.125f;
+// More than the rounding errors of a fit: numerics.md.
+constexpr float kUp = 0.125f;
 
 HWY_INLINE VI clamped(const PlaneFit& fit, VI slope) {
   return hn::Max(hn::Min(slope, hn::Set(di, fit.most)), hn::Set(di, -fit.most));
@@ -34,18 +39,29 @@ HWY_INLINE VI clamped(const PlaneFit& fit, VI slope) {
 
 HWY_INLINE VF steps(const PlaneFit& fit, VI slope) { return hn::Mul(hn::ConvertTo(df, slope), hn::Set(df, fit.unit)); }
 
-HWY_INLINE void put(VF middle, VI slope_x, VI slope_y, const float* flat, std::uint32_t* entries) {
-  const VI zero = hn::Zero(di), byte = hn::Set(di, 255);
-  const VI up = hn::ConvertTo(di, hn::Add(middle, hn::Set(df, kUp))), highest = hn::ConvertTo(di, hn::LoadU(df, flat));
-  const auto tilted = hn::Lt(up, highest);
-  const VI x = hn::And(hn::IfThenElse(tilted, slope_x, zero), byte);
-  const VI y = hn::And(hn::IfThenElse(tilted, slope_y, zero), byte);
-  const VI slopes = hn::Or(hn::ShiftLeft<16>(x), hn::ShiftLeft<24>(y));
-  hn::StoreU(hn::BitCast(du, hn::Or(hn::Min(up, highest), slopes)), du, entries);
+// Maxima of blocks, as codes of planes.
+HWY_INLINE VF maxima(const PlaneFit& fit, VI blocks) {
+  return hn::MulAdd(hn::ConvertTo(df, hn::And(blocks, hn::Set(di, 0xffff))), hn::Set(df, fit.scale),
+                    hn::Set(df, fit.shift));
 }
 
-void fit_first(const PlaneFit& fit, const float* north, const float* middle, const float* south, const float* flat,
-               std::size_t count, std::uint32_t* entries) {
+// Writes a plane of which the height in the middle and the slopes are known. `half`: of the block's side.
+HWY_INLINE void put(const PlaneFit& fit, float half, VF middle, VI slope_x, VI slope_y, std::uint32_t* blocks) {
+  const VI zero = hn::Zero(di), slope_bits = hn::Set(di, (1 << kSlopeBits) - 1);
+  const VI maximum = hn::And(hn::BitCast(di, hn::LoadU(du, blocks)), hn::Set(di, 0xffff));
+  const VF below = hn::Sub(hn::Sub(maxima(fit, maximum), middle), hn::Set(df, kUp));
+  // Rounded down.
+  const VI depth = hn::Min(hn::ConvertTo(di, hn::Mul(below, hn::Set(df, 1 / (kDepthUnits * fit.unit * half)))),
+                           hn::Set(di, (1 << kDepthBits) - 1));
+  const auto tilted = hn::Gt(depth, zero);
+  const VI x = hn::ShiftLeft<16>(hn::And(slope_x, slope_bits));
+  const VI y = hn::ShiftLeft<16 + kSlopeBits>(hn::And(slope_y, slope_bits));
+  const VI plane = hn::Or(hn::Or(x, y), hn::ShiftLeft<16 + 2 * kSlopeBits>(depth));
+  hn::StoreU(hn::BitCast(du, hn::Or(maximum, hn::IfThenElse(tilted, plane, zero))), du, blocks);
+}
+
+void fit_first(const PlaneFit& fit, const float* north, const float* middle, const float* south, std::size_t count,
+               std::uint32_t* blocks) {
   const VF per_unit = hn::Set(df, 0.25f / fit.unit);
   for (std::size_t i = 0; i < count; i += N) {
     struct Columns {
@@ -66,8 +82,8 @@ void fit_first(const PlaneFit& fit, const float* north, const float* middle, con
     const VF x = steps(fit, slope_x), y = steps(fit, slope_y);
     const auto highest = [&](const Columns& c)
                              HWY_ATTR { return hn::Max(c.middle, hn::Max(hn::Add(c.west, x), hn::Sub(c.east, x))); };
-    put(hn::Max(highest(m), hn::Max(hn::Add(highest(n), y), hn::Sub(highest(s), y))), slope_x, slope_y, flat + i,
-        entries + i);
+    put(fit, 2 * fit.half, hn::Max(highest(m), hn::Max(hn::Add(highest(n), y), hn::Sub(highest(s), y))), slope_x,
+        slope_y, blocks + i);
   }
 }
 
@@ -75,21 +91,23 @@ struct Planes {
   VF middle;
   VI x, y;  // slopes
 
-  explicit HWY_INLINE Planes(VU entries) {
-    const VI all = hn::BitCast(di, entries);
-    middle = hn::ConvertTo(df, hn::And(all, hn::Set(di, 0xffff)));
-    x = hn::ShiftRight<24>(hn::ShiftLeft<8>(all)), y = hn::ShiftRight<24>(all);
+  HWY_INLINE Planes(const PlaneFit& fit, VU blocks) {
+    const VI all = hn::BitCast(di, blocks);
+    const VI depth = hn::BitCast(di, hn::ShiftRight<16 + 2 * kSlopeBits>(blocks));
+    middle = hn::NegMulAdd(hn::ConvertTo(df, depth), hn::Set(df, kDepthUnits * fit.unit * fit.half), maxima(fit, all));
+    x = hn::ShiftRight<32 - kSlopeBits>(hn::ShiftLeft<16 - kSlopeBits>(all));
+    y = hn::ShiftRight<32 - kSlopeBits>(hn::ShiftLeft<16 - 2 * kSlopeBits>(all));
   }
 };
 
-void fit_coarser(const PlaneFit& fit, const std::uint32_t* north, const std::uint32_t* south, const float* flat,
-                 std::size_t count, std::uint32_t* entries) {
+void fit_coarser(const PlaneFit& fit, const std::uint32_t* north, const std::uint32_t* south, std::size_t count,
+                 std::uint32_t* blocks) {
   const VF half = hn::Set(df, fit.half);
   for (std::size_t i = 0; i < count; i += N) {
-    VU nw_entries, ne_entries, sw_entries, se_entries;
-    hn::LoadInterleaved2(du, north + 2 * i, nw_entries, ne_entries);
-    hn::LoadInterleaved2(du, south + 2 * i, sw_entries, se_entries);
-    const Planes nw(nw_entries), ne(ne_entries), sw(sw_entries), se(se_entries);
+    VU nw_blocks, ne_blocks, sw_blocks, se_blocks;
+    hn::LoadInterleaved2(du, north + 2 * i, nw_blocks, ne_blocks);
+    hn::LoadInterleaved2(du, south + 2 * i, sw_blocks, se_blocks);
+    const Planes nw(fit, nw_blocks), ne(fit, ne_blocks), sw(fit, sw_blocks), se(fit, se_blocks);
     const auto mean = [&](VI a, VI b, VI c, VI d) HWY_ATTR {
       const VI sum = hn::Add(hn::Add(a, b), hn::Add(c, d));
       return clamped(fit, hn::ShiftRight<2>(hn::Add(sum, hn::Set(di, 2))));
@@ -103,7 +121,7 @@ void fit_coarser(const PlaneFit& fit, const std::uint32_t* north, const std::uin
     };
     const VF west = hn::Max(hn::Add(above(nw), y), hn::Sub(above(sw), y));
     const VF east = hn::Max(hn::Add(above(ne), y), hn::Sub(above(se), y));
-    put(hn::Max(hn::Add(west, x), hn::Sub(east, x)), slope_x, slope_y, flat + i, entries + i);
+    put(fit, 2 * fit.half, hn::Max(hn::Add(west, x), hn::Sub(east, x)), slope_x, slope_y, blocks + i);
   }
 }
 
@@ -122,13 +140,13 @@ HWY_EXPORT(fit_coarser);
 }  // namespace
 
 void fit_first_planes(const PlaneFit& fit, const float* north, const float* middle, const float* south,
-                      const float* flat, std::size_t count, std::uint32_t* entries) {
-  HWY_DYNAMIC_DISPATCH(fit_first)(fit, north, middle, south, flat, count, entries);
+                      std::size_t count, std::uint32_t* blocks) {
+  HWY_DYNAMIC_DISPATCH(fit_first)(fit, north, middle, south, count, blocks);
 }
 
-void fit_coarser_planes(const PlaneFit& fit, const std::uint32_t* north, const std::uint32_t* south, const float* flat,
-                        std::size_t count, std::uint32_t* entries) {
-  HWY_DYNAMIC_DISPATCH(fit_coarser)(fit, north, south, flat, count, entries);
+void fit_coarser_planes(const PlaneFit& fit, const std::uint32_t* north, const std::uint32_t* south, std::size_t count,
+                        std::uint32_t* blocks) {
+  HWY_DYNAMIC_DISPATCH(fit_coarser)(fit, north, south, count, blocks);
 }
 
 }  // namespace scarp

@@ -31,7 +31,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 std::vector<std::uint32_t> entries_of(const MaxPyramid& pyramid) {
   std::vector<std::uint32_t> entries(pyramid.entries());
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    entries[i] = pyramid.maxima()[i] | std::uint32_t{pyramid.minima()[i]} << 16;
+    entries[i] = pyramid.maximum_code(static_cast<std::ptrdiff_t>(i)) | std::uint32_t{pyramid.minima()[i]} << 16;
   }
   return entries;
 }

@@ -172,7 +172,8 @@ RC_GTEST_PROP(MaxPyramid, BoundsTheSurfaceBetweenTheSamples, ()) {
 
 std::vector<std::uint16_t> entries(const MaxPyramid& pyramid) {
   const std::size_t count = pyramid.entries();
-  std::vector<std::uint16_t> all(pyramid.maxima(), pyramid.maxima() + count);
+  std::vector<std::uint16_t> all;
+  for (std::size_t i = 0; i < count; ++i) all.push_back(pyramid.maximum_code(static_cast<std::ptrdiff_t>(i)));
   all.insert(all.end(), pyramid.minima(), pyramid.minima() + count);
   return all;
 }
@@ -228,10 +229,10 @@ TEST(MaxPyramid, AnUpdateTouchesNothingElse) {
   HeightField field = HeightField::own(noise<std::int16_t>(65, 65), 65, 65);
   MaxPyramid pyramid(field);
   // An entry spoilt far from the edit stays spoilt.
-  const_cast<std::uint16_t*>(pyramid.maxima())[0] = 12345;
+  const_cast<std::uint32_t*>(pyramid.blocks())[0] = 12345;
   const std::int16_t sample = 7;
   pyramid.update(field, field.set_samples({60, 60, 1, 1}, &sample, 1));
-  EXPECT_EQ(pyramid.maxima()[0], 12345);
+  EXPECT_EQ(pyramid.maximum_code(0), 12345);
 }
 
 TEST(MaxPyramid, IsBuiltAnewWhenSamplesLeaveTheRangeOfItsCodes) {

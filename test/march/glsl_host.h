@@ -33,7 +33,7 @@ inline bool scarp_is_nodata(float sample) {
 }
 inline float scarp_maximum(int level, int col, int row) {
   const MaxPyramid::Level& at = host_pyramid->levels()[static_cast<std::size_t>(level - 1)];
-  return host_pyramid->maxima()[at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col];
+  return host_pyramid->maximum_code(at.begin + static_cast<std::ptrdiff_t>(row) * at.cols + col);
 }
 inline float scarp_minimum(int level, int col, int row) {
   const MaxPyramid::Level& at = host_pyramid->levels()[static_cast<std::size_t>(level - 1)];

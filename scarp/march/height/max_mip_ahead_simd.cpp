@@ -258,17 +258,6 @@ class AheadWalk {
   }
 
   // Four entries of each row.
-  using U4 = hn::Vec<hn::CappedTag<std::uint16_t, 4>>;
-  HWY_INLINE static VF join(const U4* rows) {
-    constexpr hn::CappedTag<std::uint16_t, 8> du8;
-#if HWY_CAP_GE512
-    constexpr hn::CappedTag<std::uint16_t, 16> du16;
-    const auto codes = hn::Combine(du16, hn::Combine(du8, rows[3], rows[2]), hn::Combine(du8, rows[1], rows[0]));
-#else
-    const auto codes = hn::Combine(du8, rows[1], rows[0]);
-#endif
-    return hn::ConvertTo(df, hn::PromoteTo(di, codes));
-  }
   HWY_INLINE static VF join(const VF4* rows) {
 #if HWY_CAP_GE512
     constexpr hn::CappedTag<float, 8> df8;
@@ -290,15 +279,16 @@ class AheadWalk {
     const int child = level - 2;
     const MaxPyramid::Level& at = pyramid_.levels()[static_cast<std::size_t>(child - 1)];
     const std::int32_t mirror_x = r_.mirror_x >> child, mirror_y = r_.mirror_y >> child;
-    const std::uint16_t* codes = pyramid_.maxima() + at.begin + ((4 * nx ^ mirror_x) & ~3);
+    const std::uint32_t* in_rows = pyramid_.blocks() + at.begin + ((4 * nx ^ mirror_x) & ~3);
     std::uint32_t bits = 0;
     for (int part = 0; part < kParts; ++part) {
       const Ways w = ways(f, child, nx, ny, part);
-      U4 rows[kRows];
+      VF4 rows[kRows];
       for (std::size_t j = 0; j < kRows; ++j) {
         const std::int32_t row = 4 * ny + part * static_cast<std::int32_t>(kRows) + static_cast<std::int32_t>(j);
-        rows[j] = hn::LoadU(hn::CappedTag<std::uint16_t, 4>(),
-                            codes + std::ptrdiff_t{std::min(row ^ mirror_y, at.rows - 1)} * at.cols);
+        const std::uint32_t* from = in_rows + std::ptrdiff_t{std::min(row ^ mirror_y, at.rows - 1)} * at.cols;
+        const auto block = hn::LoadU(di4, reinterpret_cast<const std::int32_t*>(from));
+        rows[j] = hn::ConvertTo(df4, hn::And(block, hn::Set(di4, 0xffff)));
       }
       const VF highest = hn::TableLookupLanes(join(rows), f.along_x);
       bits |= lane_bits(hn::AndNot(hn::Gt(w.low, highest), w.crossed)) << (part * static_cast<int>(N));

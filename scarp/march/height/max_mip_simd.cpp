@@ -72,11 +72,11 @@ class VectorWalk {
     const BlockPlanes& planes = pyramid.planes();
     const HeightCode &code = planes.code(), &maxima_code = pyramid.code();
     g_ = {};
-    g_.planes = planes.entries(), g_.maxima = pyramid.maxima();
-    g_.unit = planes.unit(), g_.tilt_margin = static_cast<float>(kTiltMargins * kSideways * planes.steepest());
-    g_.usual_slope = planes.steepest() / 8;
-    g_.maxima_scale = static_cast<float>(maxima_code.step * code.per_step);
-    g_.maxima_shift = static_cast<float>((maxima_code.base - code.base) * code.per_step + kUpright);
+    g_.blocks = pyramid.blocks();
+    g_.unit = planes.unit(), g_.depth_unit = BlockPlanes::kDepthUnits * planes.unit();
+    g_.tilt_margin = static_cast<float>(kTiltMargins * kSideways * planes.steepest());
+    g_.usual_slope = 2 * planes.steepest();
+    g_.maxima_scale = planes.scale(), g_.maxima_shift = planes.shift();
     g_.samples = grid.data, g_.stride = grid.row_stride;
     g_.last_col = grid.cell_cols - 1, g_.last_row = grid.cell_rows - 1, g_.top = pyramid.top_level();
     for (int level = 1; level <= g_.top; ++level) {
@@ -637,7 +637,7 @@ constexpr int kNarrowestCopy = 128;
 bool walks_over(const HeightTarget& target) {
   require(target, HeightPart::pyramid);
   const HeightField& field = *target.field;
-  if (field.nodata_count() > 0 || target.pyramid->planes().entries() == nullptr) return false;
+  if (field.nodata_count() > 0 || !target.pyramid->planes().exist()) return false;
   if (field.wraps() && std::min(field.cols(), field.rows()) < kNarrowestCopy) return false;
   const HeightCode& code = target.pyramid->planes().code();
   return code.per_step > 0x1p-100 && code.per_step < 0x1p100 && std::abs(code.base) < 0x1p100;

@@ -45,10 +45,11 @@ HWY_INLINE float highest_over(const VectorGround<T>& g, std::int32_t x0, std::in
   const auto span = static_cast<unsigned>(std::max(x1 - x0, y1 - y0));
   const int level = std::clamp(static_cast<int>(std::bit_width(span)), 1, static_cast<int>(g.top));
   const std::int32_t cols = (g.last_col >> level) + 1;
-  const std::uint16_t* codes = g.maxima + g.level_begin[level];
+  const std::uint32_t* blocks = g.blocks + g.level_begin[level];
   const std::int32_t c0 = x0 >> level, c1 = x1 >> level, r0 = (y0 >> level) * cols, r1 = (y1 >> level) * cols;
-  const int code = std::max(std::max(codes[r0 + c0], codes[r0 + c1]), std::max(codes[r1 + c0], codes[r1 + c1]));
-  return static_cast<float>(code) * g.maxima_scale + g.maxima_shift;
+  const auto code = [blocks](std::int32_t entry) { return static_cast<int>(blocks[entry] & 0xffff); };
+  const int highest = std::max(std::max(code(r0 + c0), code(r0 + c1)), std::max(code(r1 + c0), code(r1 + c1)));
+  return static_cast<float>(highest) * g.maxima_scale + g.maxima_shift;
 }
 
 // Common bounds of the rays at a time.

@@ -13,6 +13,7 @@
 #include <cstring>
 
 #include "hwy/highway.h"
+#include "scarp/accel/block_planes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scarp {
@@ -37,6 +38,7 @@ constexpr float kNever = 0x1p100f;
 constexpr double kSideways = 0x1p-21, kUpright = 0.25;
 // Of a tilted plane, in what its slopes rise over the rounding of a position.
 constexpr double kTiltMargins = 8;
+constexpr int kSlopeBits = BlockPlanes::kSlopeBits, kDepthBits = BlockPlanes::kDepthBits;
 // A block's tilt times these is the height above its plane from which a ray rises by two levels at once, and by three.
 constexpr float kHigh = 2, kHigher = 8;
 constexpr double kUnit = 0x1p-53, kRoundings = 64;  // four times rounding_of_clearance()
@@ -67,17 +69,16 @@ struct Lanes {
 // The ground in the form that vectors need.
 template <class T>
 struct VectorGround {
-  const std::uint32_t* planes;  // BlockPlanes
-  const std::uint16_t* maxima;
+  const std::uint32_t* blocks;  // MaxPyramid::blocks()
   const T* samples;
   std::ptrdiff_t stride;
   std::int32_t last_col, last_row, top;
   alignas(64) std::int32_t level_begin[32];
-  float base, per_step, offset;      // a sample's code is (sample - base) * per_step + offset
-  float margin_per_cell;             // twice that of the heights
-  float usual_slope;                 // an eighth of the steepest of a plane, in codes per cell
-  float unit, tilt_margin;           // BlockPlanes::unit(); margin of tilted planes per cell of the path
-  float maxima_scale, maxima_shift;  // from codes of maxima to those of planes, rounded up
+  float base, per_step, offset;         // a sample's code is (sample - base) * per_step + offset
+  float margin_per_cell;                // twice that of the heights
+  float usual_slope;                    // twice the steepest of a plane, in codes per cell
+  float unit, depth_unit, tilt_margin;  // BlockPlanes::unit(); margin of tilted planes per cell of the path
+  float maxima_scale, maxima_shift;     // from codes of maxima to those of planes, rounded up
   bool triangles;
   std::int32_t seam_col, seam_row;  // the first column and row follow after these; -1 if the ground is not wrapped
 
@@ -199,16 +200,20 @@ HWY_INLINE void block_step(const VectorGround<T>& g, Packet& p) {
   const VI col = hn::Shr(hn::Xor(p.x, p.mirror_x), level), row = hn::Shr(hn::Xor(p.y, p.mirror_y), level);
   const VI cols = hn::Add(hn::Shr(hn::Set(di, g.last_col), level), one);
   const VI at = hn::Add(level_begin(g.level_begin, level, g.top > 15), hn::Add(hn::Mul(row, cols), col));
-  const VI plane = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(g.planes), at);
-  const VF middle = hn::ConvertTo(df, hn::And(plane, hn::Set(di, 0xffff)));
+  const VI block = hn::GatherIndex(di, reinterpret_cast<const std::int32_t*>(g.blocks), at);
+  const VF half = hn::BitCast(df, hn::ShiftLeft<23>(hn::Add(level, hn::Set(di, 126))));
+  const VI depth = hn::And(hn::ShiftRight<16 + 2 * kSlopeBits>(block), hn::Set(di, (1 << kDepthBits) - 1));
+  const VF maximum = hn::MulAdd(hn::ConvertTo(df, hn::And(block, hn::Set(di, 0xffff))), hn::Set(df, g.maxima_scale),
+                                hn::Set(df, g.maxima_shift));
+  const VF middle = hn::NegMulAdd(hn::ConvertTo(df, depth), hn::Mul(half, hn::Set(df, g.depth_unit)), maximum);
   // The slope along the ray: backwards, it falls where the plane rises. Masks of mirrored lanes are odd.
   const auto slope = [&](VI steps, VI mirror) HWY_ATTR {
     const VF sign = hn::BitCast(df, hn::ShiftLeft<31>(mirror));
-    return hn::Xor(hn::Mul(hn::ConvertTo(df, hn::ShiftRight<24>(steps)), hn::Set(df, g.unit)), sign);
+    return hn::Xor(hn::Mul(hn::ConvertTo(df, hn::ShiftRight<32 - kSlopeBits>(steps)), hn::Set(df, g.unit)), sign);
   };
-  const VF slope_x = slope(hn::ShiftLeft<8>(plane), p.mirror_x), slope_y = slope(plane, p.mirror_y);
+  const VF slope_x = slope(hn::ShiftLeft<16 - kSlopeBits>(block), p.mirror_x);
+  const VF slope_y = slope(hn::ShiftLeft<16 - 2 * kSlopeBits>(block), p.mirror_y);
   // The ray is above the plane by above + rises T.
-  const VF half = hn::BitCast(df, hn::ShiftLeft<23>(hn::Add(level, hn::Set(di, 126))));
   const VF above =
       hn::MulAdd(slope_x, hn::Sub(e.to_x, half), hn::MulAdd(slope_y, hn::Sub(e.to_y, half), hn::Sub(p.z, middle)));
   const VF rises = hn::NegMulAdd(slope_x, p.dx, hn::NegMulAdd(slope_y, p.dy, p.dz));

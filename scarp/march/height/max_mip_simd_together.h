@@ -148,15 +148,15 @@ class Together {
     const std::int32_t level = block.level - 1, half = 1 << level, x1 = block.x + half, y1 = block.y + half;
     const Lines l = lines(block.x, block.y, half);
     const std::int32_t cols = (g_.last_col >> level) + 1, last_row = g_.last_row >> level;
-    const std::uint16_t* codes = g_.maxima + g_.level_begin[level];
+    const std::uint32_t* blocks = g_.blocks + g_.level_begin[level];
     const auto col = [&](std::int32_t x) { return std::min((x ^ mirror_x_) >> level, cols - 1); };
     const auto row = [&](std::int32_t y) { return std::min((y ^ mirror_y_) >> level, last_row) * cols; };
     const std::int32_t c0 = col(block.x), c1 = col(x1 > last_x_ ? block.x : x1);
     const std::int32_t r0 = row(block.y), r1 = row(y1 > last_y_ ? block.y : y1);
-    const auto set = [&](std::uint16_t code)
-                         HWY_ATTR { return hn::Set(df, static_cast<float>(code) * g_.maxima_scale + g_.maxima_shift); };
-    const VF near = set(codes[r0 + c0]), side_x = set(codes[r0 + c1]), side_y = set(codes[r1 + c0]),
-             far = set(codes[r1 + c1]);
+    const auto maximum = [&](std::int32_t entry) HWY_ATTR {
+      return hn::Set(df, static_cast<float>(blocks[entry] & 0xffff) * g_.maxima_scale + g_.maxima_shift);
+    };
+    const VF near = maximum(r0 + c0), side_x = maximum(r0 + c1), side_y = maximum(r1 + c0), far = maximum(r1 + c1);
     std::uint64_t at_near = 0, at_x = 0, at_y = 0, at_far = 0;
     for (std::uint64_t rest = vectors; rest != 0; rest &= rest - 1) {
       const auto k = static_cast<std::size_t>(std::countr_zero(rest));

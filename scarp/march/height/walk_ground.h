@@ -20,7 +20,7 @@ class WalkGround {
       : field_(field),
         grid_(grid),
         code_(pyramid.code()),
-        maxima_(pyramid.maxima()),
+        blocks_(pyramid.blocks()),
         minima_(pyramid.minima()),
         base_(UpsideDown ? -(code_.base + code_.step * kHighestCode) : code_.base) {}
 
@@ -36,10 +36,10 @@ class WalkGround {
   double metres(double height) const { return field_.height_from_sample(UpsideDown ? -height : height); }
 
   /// Codes of a block's bounds; minima are kNoMinimum for blocks with a hole.
-  std::uint16_t maximum(std::ptrdiff_t entry) const { return UpsideDown ? other(minima_[entry]) : maxima_[entry]; }
+  std::uint16_t maximum(std::ptrdiff_t entry) const { return UpsideDown ? other(minima_[entry]) : highest_in(entry); }
   std::uint16_t minimum(std::ptrdiff_t entry) const {
     if constexpr (UpsideDown) {
-      return minima_[entry] == MaxPyramid::kNoMinimum ? MaxPyramid::kNoMinimum : other(maxima_[entry]);
+      return minima_[entry] == MaxPyramid::kNoMinimum ? MaxPyramid::kNoMinimum : other(highest_in(entry));
     }
     return minima_[entry];
   }
@@ -51,12 +51,14 @@ class WalkGround {
 
  private:
   static constexpr int kHighestCode = 65535;
+  std::uint16_t highest_in(std::ptrdiff_t entry) const { return static_cast<std::uint16_t>(blocks_[entry]); }
   static std::uint16_t other(std::uint16_t code) { return static_cast<std::uint16_t>(kHighestCode - code); }
 
   const HeightField& field_;
   const SampleGrid<T>& grid_;
   HeightCode code_;
-  const std::uint16_t *maxima_, *minima_;
+  const std::uint32_t* blocks_;
+  const std::uint16_t* minima_;
   double base_;
 };
 

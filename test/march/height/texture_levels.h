@@ -38,7 +38,7 @@ inline std::vector<TextureLevel> bounds_of(const MaxPyramid& pyramid) {
       for (int col = 0; col < of.cols; ++col) {
         const std::ptrdiff_t entry = of.begin + std::ptrdiff_t{row} * of.cols + col;
         float* texel = &level.texels[2 * (static_cast<std::size_t>(row) * cols + static_cast<std::size_t>(col))];
-        texel[0] = pyramid.maxima()[entry];
+        texel[0] = pyramid.maximum_code(entry);
         texel[1] = pyramid.minima()[entry];
       }
     }
