@@ -2,7 +2,9 @@
 #include "scarp/accel/block_planes.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "scarp/accel/height_encode.h"
@@ -17,13 +19,10 @@ namespace {
 constexpr double kSteepest = 0.5;
 // Codes of tilt over half a block: floats stay accurate.
 constexpr double kMostTilt = 0x1p15;
-// Codes that maxima are rounded up by when they are converted.
-constexpr double kConversion = 0x1p-4;
 
-// The code of planes. For 16-bit samples, which rarely use their whole range, it is finer than that of the pyramid, by
-// a power of two: conversions are exact.
-HeightCode plane_code(SampleType type, const SampleRange& range) {
-  if (type == SampleType::float32) return height_code(type, range);
+// The code for 16-bit samples, which rarely use their whole range: finer than that of the pyramid by a power of two, so
+// that conversions are exact.
+HeightCode finer_code(const SampleRange& range) {
   const double finer = std::exp2(std::floor(std::log2(kTopCode / std::max(range.high - range.low + 1, 1.0))));
   return {std::floor(range.low), 1 / finer, finer};
 }
@@ -114,7 +113,8 @@ void BlockPlanes::build(const HeightField& field, const Blocks& blocks, const st
 }
 
 void BlockPlanes::update(const HeightField& field, const Blocks& blocks, const CellBox& changed) {
-  if (exist_ && field.nodata_count() == 0 && field.max_sample() <= highest_) {
+  const bool fits = field.nodata_count() == 0 && field.min_sample() >= range_.low && field.max_sample() <= range_.high;
+  if (exist_ && fits) {
     for (const CellBox& part : parts_inside(field, changed)) fit(field, blocks, part);
     return;
   }
@@ -124,16 +124,28 @@ void BlockPlanes::update(const HeightField& field, const Blocks& blocks, const C
 }
 
 void BlockPlanes::set_scale(const HeightField& field, const Blocks& blocks, const std::optional<SampleRange>& reserve) {
-  const SampleRange range = code_range(field, reserve);
-  highest_ = range.high;
-  code_ = plane_code(field.sample_type(), range);
+  if (field.sample_type() == SampleType::float32) {
+    // The pyramid is rebuilt when samples leave the range of its code.
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    range_ = {-kInfinity, kInfinity};
+    code_ = blocks.code;
+  } else {
+    range_ = code_range(field, reserve);
+    code_ = finer_code(range_);
+  }
   scale_ = static_cast<float>(blocks.code.step * code_.per_step);
-  shift_ = static_cast<float>((blocks.code.base - code_.base) * code_.per_step + kConversion);
+  shift_ = static_cast<float>((blocks.code.base - code_.base) * code_.per_step);
   const PyramidLevel& first = blocks.levels.front();
-  const auto count = static_cast<std::int64_t>(first.cols) * first.rows;
-  std::int64_t sum = 0;
-  for (std::int64_t i = 0; i < count; ++i) sum += static_cast<int>(blocks.maxima[i] & 0xffff) - blocks.minima[i];
-  const double mean = static_cast<double>(sum) / static_cast<double>(count) * blocks.code.step * code_.per_step;
+  std::atomic<std::int64_t> sum = 0;
+  parallel_for(first.rows, rows_per_piece(first.cols), [&](std::int64_t begin, std::int64_t end) {
+    std::int64_t part = 0;
+    for (std::int64_t i = begin * first.cols; i < end * first.cols; ++i) {
+      part += static_cast<int>(blocks.maxima[i] & 0xffff) - blocks.minima[i];
+    }
+    sum += part;
+  });
+  const double count = static_cast<double>(first.cols) * first.rows;
+  const double mean = static_cast<double>(sum) / count * blocks.code.step * code_.per_step;
   unit_ = static_cast<float>(std::clamp(kSteepest * mean, 1.0, kMostTilt) / kMostSteps);
 }
 

@@ -7,10 +7,10 @@
 //              -'__--'                    of half a slope's step over half the block
 //              ground            block    maximum | slope_x << 16 | slope_y << 21 | depth << 26: one load
 //
-// A plane above the four corners of a cell is above both of its surfaces. Level 1 takes the slopes between its corner
-// samples; coarser levels take the mean slope of their four children and are above the children's planes. A block whose
-// plane would be as high in the middle as its maximum is left flat. Steeper slopes than
-// the range allows are cut off, and the plane is higher instead.
+// A plane above a cell's four corners is above the cell's surface, bilinear or triangles. Level 1 takes the slopes
+// between its corner samples; coarser levels take the mean slope of their four children and are above the children's
+// planes. A block whose plane would be less than a step of the depth below its maximum is left flat. Steeper slopes
+// than the range allows are cut off, and the plane is higher instead.
 //
 // Source: own; bounding slabs with a direction are common for meshes (T. Kay, J. Kajiya, "Ray tracing complex scenes",
 // SIGGRAPH 1986). Cost: 2/3 bytes per cell. Fields with holes have no planes, nor have
@@ -43,14 +43,15 @@ class BlockPlanes {
   /// Step of the depth, in steps of a slope times half the side of the block.
   static constexpr float kDepthUnits = 0.5f;
 
-  /// Fits planes to the blocks of all levels, on all threads. Codes cover the field's samples, and `reserve`.
+  /// Fits planes to the blocks of all levels, on all threads. For 16-bit samples, codes cover those of the field, and
+  /// `reserve`; float samples have the code of the maxima.
   void build(const HeightField& field, const Blocks& blocks, const std::optional<SampleRange>& reserve);
-  /// Fits planes to the blocks over `changed` after an edit, or to all if samples are higher than codes reach.
+  /// Fits planes to the blocks over `changed` after an edit; to all if 16-bit samples leave the codes' range, or if the
+  /// last hole is gone.
   void update(const HeightField& field, const Blocks& blocks, const CellBox& changed);
 
   bool exist() const { return exist_; }
-  /// Heights of planes and of rays are compared as codes. Maxima have another code (MaxPyramid::code()):
-  /// maximum * scale() + shift(), rounded up.
+  /// Heights of planes and of rays are compared as these codes; that of a maximum is maximum * scale() + shift().
   const HeightCode& code() const { return code_; }
   float scale() const { return scale_; }
   float shift() const { return shift_; }
@@ -69,7 +70,7 @@ class BlockPlanes {
 
   bool exist_ = false;
   HeightCode code_;
-  double highest_ = 0;  // that codes reach, in sample units
+  SampleRange range_;  // within which edits need no other code
   float scale_ = 1, shift_ = 0, unit_ = 1;
 };
 

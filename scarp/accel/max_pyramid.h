@@ -13,8 +13,7 @@
 //
 // Source: A. Tevs, I. Ihrke, H.-P. Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic height field
 // rendering", I3D 2008 (with maxima of cells instead of samples: maxima of samples do not bound the surface between
-// them). Cost: 2 bytes per cell; built in one pass over the samples and one over each
-// level.
+// them). Cost: 2 bytes per cell; built in two passes over the samples and two over each level.
 #pragma once
 
 #include <cstddef>
@@ -42,8 +41,8 @@ class MaxPyramid {
   /// samples for later edits; 16-bit samples never leave their range.
   explicit MaxPyramid(const HeightField& field, const std::optional<SampleRange>& reserve = std::nullopt);
 
-  /// Recomputes the entries over `changed` after an edit of the same field, so that the levels equal a rebuild with the
-  /// same range. Rebuilds everything if float samples leave the range.
+  /// Recomputes the entries over `changed` after an edit of the same field, so that the extremes equal a rebuild with
+  /// the same range. Rebuilds everything if float samples leave the range.
   void update(const HeightField& field, const CellBox& changed);
 
   /// Coarsest level; levels are 1 .. top_level(). 0 if the field has no cells.

@@ -29,8 +29,8 @@ inline CellBox coarser(const CellBox& box) {
 
 /// Returns how many rows of `cols` entries one thread builds at a time.
 inline std::int64_t rows_per_piece(int cols) {
-  constexpr std::int64_t kEntries = 1 << 16;
-  return std::max<std::int64_t>(1, kEntries / std::max(cols, 1));
+  constexpr std::int64_t kEntriesPerPiece = 1 << 16;
+  return std::max<std::int64_t>(1, kEntriesPerPiece / std::max(cols, 1));
 }
 
 /// Splits a box of a wrapped field that begins at -1, beyond the seam, into boxes within the field.

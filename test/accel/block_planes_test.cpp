@@ -129,9 +129,10 @@ TEST(BlockPlanes, FollowEdits) {
     for (int i = 0; i < 60; ++i) {
       SampleRect rect{below(cols), below(rows), 1, 1};
       rect.cols = 1 + below(cols - rect.col), rect.rows = 1 + below(rows - rect.row);
-      // Every tenth edit is higher than all before.
+      // Every tenth edit is higher than all before, every seventh lower.
       std::vector<std::int16_t> edit(static_cast<std::size_t>(rect.cols) * rect.rows);
-      for (auto& sample : edit) sample = static_cast<std::int16_t>(below(1000) + (i % 10 == 9 ? 300 * i : 0));
+      for (auto& sample : edit)
+        sample = static_cast<std::int16_t>(below(1000) + (i % 10 == 9 ? 300 * i : i % 7 == 6 ? -400 * i : 0));
       pyramid.update(field, field.set_samples(rect, edit.data(), rect.cols));
       expect_above(field, pyramid);
       if (HasFailure()) return;

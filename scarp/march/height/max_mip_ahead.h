@@ -2,7 +2,7 @@
 // Any hit of `max-mip` for one ray at a time, in single precision: the lanes of a vector are the 4 x 4 children of one
 // block.
 //
-//   block   . . . #     which children does the ray cross, and is it above all of each? One step for all of them,
+//   block   . . . #     which children does the ray cross, and does it clear each one? One step for all of them,
 //           . . # .     without branches. Lanes are numbered in rows along the ray, so their order is that of the ray:
 //           . # . .     the first child that is not clear is next, the others wait in a mask for each level
 //           # . . .

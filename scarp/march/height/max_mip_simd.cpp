@@ -75,7 +75,7 @@ class VectorWalk {
     g_.blocks = pyramid.blocks();
     g_.unit = planes.unit(), g_.depth_unit = BlockPlanes::kDepthUnits * planes.unit();
     g_.tilt_margin = static_cast<float>(kTiltMargins * kSideways * planes.steepest());
-    g_.usual_slope = 2 * planes.steepest();
+    g_.far_slope = 2 * planes.steepest();
     g_.maxima_scale = planes.scale(), g_.maxima_shift = planes.shift();
     g_.samples = grid.data, g_.stride = grid.row_stride;
     g_.last_col = grid.cell_cols - 1, g_.last_row = grid.cell_rows - 1, g_.top = pyramid.top_level();

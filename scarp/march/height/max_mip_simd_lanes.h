@@ -39,7 +39,8 @@ constexpr double kSideways = 0x1p-21, kUpright = 0.25;
 // Of a tilted plane, in what its slopes rise over the rounding of a position.
 constexpr double kTiltMargins = 8;
 constexpr int kSlopeBits = BlockPlanes::kSlopeBits, kDepthBits = BlockPlanes::kDepthBits;
-// A block's tilt times these is the height above its plane from which a ray rises by two levels at once, and by three.
+// Half a block's side times far_slope and these: heights above its plane from which a ray rises by two levels, and
+// three.
 constexpr float kHigh = 2, kHigher = 8;
 constexpr double kUnit = 0x1p-53, kRoundings = 64;  // four times rounding_of_clearance()
 
@@ -76,7 +77,7 @@ struct VectorGround {
   alignas(64) std::int32_t level_begin[32];
   float base, per_step, offset;         // a sample's code is (sample - base) * per_step + offset
   float margin_per_cell;                // twice that of the heights
-  float usual_slope;                    // twice the steepest of a plane, in codes per cell
+  float far_slope;                      // twice the steepest of planes, in codes per cell
   float unit, depth_unit, tilt_margin;  // BlockPlanes::unit(); margin of tilted planes per cell of the path
   float maxima_scale, maxima_shift;     // from codes of maxima to those of planes, rounded up
   bool triangles;
@@ -225,7 +226,7 @@ HWY_INLINE void block_step(const VectorGround<T>& g, Packet& p) {
   p.seen = hn::IfThenElse(clear, one, p.seen);
   p.level = hn::IfThenElse(down, hn::Sub(p.level, one), p.level);
   // Far above the plane, longer steps are likely to be free.
-  const VF height = hn::MulAdd(rises, e.T, above), tilt = hn::Mul(half, hn::Set(df, g.usual_slope));
+  const VF height = hn::MulAdd(rises, e.T, above), tilt = hn::Mul(half, hn::Set(df, g.far_slope));
   const auto more = [&](float times) HWY_ATTR {
     return hn::IfThenElseZero(hn::RebindMask(di, hn::Gt(height, hn::Mul(tilt, hn::Set(df, times)))), one);
   };

@@ -28,8 +28,8 @@ namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Cells over which rays that go together may begin: from one place, also if some have left their first cell.
-constexpr std::int32_t kWidestStart = 2;
+// Greatest spread, in cells, of the start cells of rays that go together, and cells up to which floats count exactly.
+constexpr std::int32_t kWidestStart = 2, kFarthestCell = 1 << 22;
 
 using MF = hn::Mask<decltype(df)>;
 
@@ -78,6 +78,7 @@ class Together {
       std::int32_t* status = lanes_[k].status;
       const MI above = hn::RebindMask(di, hn::Ge(hn::Load(df, numbers_[k].end), hn::Zero(df)));
       hn::Store(hn::IfThenElse(above, hn::Set(di, kMiss), hn::Load(di, status)), di, status);
+      hn::BlendedStore(hn::Set(di, 1), above, di, lanes_[k].seen);
     }
     return rays;
   }
@@ -164,9 +165,9 @@ class Together {
       const VF dz = hn::Load(df, lanes_[k].dz), z = hn::Load(df, lanes_[k].z);
       const auto height = [&](int i) HWY_ATTR { return hn::MulAdd(dz, t.t[i], z); };
       const VF h0 = height(0), h1 = height(1), h2 = height(2), h3 = height(3);
-      const auto low0 = hn::And(t.begins_before(0), hn::Le(hn::Min(h0, h1), near));
-      const auto low1 = hn::And(t.begins_before(1), hn::Le(hn::Min(h1, h2), hn::IfThenElse(t.by_x, side_x, side_y)));
-      const auto low2 = hn::And(t.begins_before(2), hn::Le(hn::Min(h2, h3), far));
+      const auto low0 = hn::AndNot(hn::Gt(hn::Min(h0, h1), near), t.begins_before(0));
+      const auto low1 = hn::AndNot(hn::Gt(hn::Min(h1, h2), hn::IfThenElse(t.by_x, side_x, side_y)), t.begins_before(1));
+      const auto low2 = hn::AndNot(hn::Gt(hn::Min(h2, h3), far), t.begins_before(2));
       const auto note = [k](std::uint64_t& at, auto low) HWY_ATTR { at |= std::uint64_t{!hn::AllFalse(df, low)} << k; };
       note(at_near, low0), note(at_x, hn::And(low1, t.by_x)), note(at_y, hn::AndNot(t.by_x, low1)), note(at_far, low2);
     }
@@ -200,8 +201,8 @@ class Together {
       for (int i = 0; i < 4; ++i) heights[i] = hn::MulAdd(dz, t.t[i], z);
       const auto test = [&](int i, int part, MF in_cell_i) HWY_ATTR {
         const VF z0 = heights[part], z1 = heights[part + 1], t0 = t.t[part], t1 = t.t[part + 1];
-        const MF low = hn::And(hn::And(in_cell_i, hn::Lt(t0, hn::Min(t1, hn::Load(df, r.end)))),
-                               hn::Le(hn::Min(z0, z1), hn::Set(df, highest[i])));
+        const MF passes = hn::And(in_cell_i, hn::Lt(t0, hn::Min(t1, hn::Load(df, r.end))));
+        const MF low = hn::AndNot(hn::Gt(hn::Min(z0, z1), hn::Set(df, highest[i])), passes);
         if (hn::AllFalse(df, low)) return;
         const std::int32_t x = block.x + i % 2, y = block.y + i / 2;
         const VF to_x =
@@ -256,6 +257,7 @@ class Together {
 // Traces the rays of `lanes` if they begin close together and advance along the same axes. Returns their number, or 0.
 template <class T>
 HWY_NOINLINE std::size_t walk_together(const VectorGround<T>& g, Lanes* lanes, std::size_t count) {
+  if (std::max(g.last_col, g.last_row) > kFarthestCell) return 0;
   const Beam beam(lanes, count);
   if (!beam.goes_one_way() || beam.at(0).width() > kWidestStart) return 0;
   return Together<T>(g, lanes, count).walk();
