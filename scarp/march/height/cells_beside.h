@@ -25,6 +25,7 @@ struct CellsBeside {
   CellsBeside(const GridAxis<Wraps>& axis, double t, double rounding) {
     const double at = axis.at(t), line = std::round(at), first = std::floor(at);
     const auto within = [&](double global) {
+      if (!(std::abs(global) < 0x1p62)) return -1;  // outside, as is NaN
       const std::int64_t number = static_cast<std::int64_t>(global) - axis.global_line(0);
       return static_cast<int>(Wraps ? (number % axis.cells + axis.cells) % axis.cells : number);
     };
