@@ -14,8 +14,8 @@
 namespace scarp {
 namespace {
 
-// The slopes' range, in the mean height difference in blocks of 2 x 2 cells: with finer steps instead, more slopes
-// would be too steep (decisions.md).
+// The slopes' range, in mean height differences in blocks of 2 x 2 cells. A smaller range has finer steps but cuts off
+// more slopes (decisions.md).
 constexpr double kSteepest = 0.5;
 // Codes of tilt over half a block: floats stay accurate.
 constexpr double kMostTilt = 0x1p15;

@@ -13,8 +13,8 @@
 // than the range allows are cut off, and the plane is higher instead.
 //
 // Source: own; bounding slabs with a direction are common for meshes (T. Kay, J. Kajiya, "Ray tracing complex scenes",
-// SIGGRAPH 1986). Cost: 2/3 bytes per cell. Fields with holes have no planes, nor have
-// those with more blocks than kMostEntries, which vectors do not traverse.
+// SIGGRAPH 1986). Cost: 2/3 bytes per cell. Fields with holes have no planes, nor do
+// those with more than kMostEntries blocks, which vectors do not traverse.
 #pragma once
 
 #include <cstddef>

@@ -36,7 +36,7 @@ using VD = hn::Vec<decltype(dd)>;
 constexpr float kNever = 0x1p100f;
 // Rounding of positions and line times, per cell of the ray's path, and of heights, in codes: numerics.md.
 constexpr double kSideways = 0x1p-21, kUpright = 0.25;
-// Of a tilted plane, in what its slopes rise over the rounding of a position.
+// Margin of a tilted plane: a multiple of its rise over the rounding error of a position (numerics.md).
 constexpr double kTiltMargins = 8;
 constexpr int kSlopeBits = BlockPlanes::kSlopeBits, kDepthBits = BlockPlanes::kDepthBits;
 // Half a block's side times far_slope and these: heights above its plane from which a ray rises by two levels, and
@@ -78,8 +78,8 @@ struct VectorGround {
   float base, per_step, offset;         // a sample's code is (sample - base) * per_step + offset
   float margin_per_cell;                // twice that of the heights
   float far_slope;                      // twice the steepest of planes, in codes per cell
-  float unit, depth_unit, tilt_margin;  // BlockPlanes::unit(); margin of tilted planes per cell of the path
-  float maxima_scale, maxima_shift;     // from codes of maxima to those of planes, rounded up
+  float unit, depth_unit, tilt_margin;  // steps of slopes and of depths; margin of planes per cell of the path
+  float maxima_scale, maxima_shift;     // from codes of maxima to those of planes
   bool triangles;
   std::int32_t seam_col, seam_row;  // the first column and row follow after these; -1 if the ground is not wrapped
 

@@ -74,7 +74,8 @@ TEST(MaxMipAhead, AnswersAsTheScalarWalkDoes) {
   }
 }
 
-// Fields of several blocks, whose sides are no powers of two; rays from some metres about the ground go far.
+// The field spans several blocks, and its sides are not powers of two. The rays start within metres of the ground and
+// travel far.
 TEST(MaxMipAhead, FollowsRaysAlongHills) {
   Random random(92);
   for (const Surface surface : {Surface::bilinear, Surface::triangles}) {
