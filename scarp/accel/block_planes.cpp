@@ -20,8 +20,8 @@ constexpr double kSteepest = 0.5;
 // Codes of tilt over half a block: floats stay accurate.
 constexpr double kMostTilt = 0x1p15;
 
-// The code for 16-bit samples, which rarely use their whole range: finer than that of the pyramid by a power of two, so
-// that conversions are exact.
+// The code for 16-bit samples, which rarely use their whole range: its step is that of the pyramid times a power of
+// two, so that conversions are exact.
 HeightCode finer_code(const SampleRange& range) {
   const double finer = std::exp2(std::floor(std::log2(kTopCode / std::max(range.high - range.low + 1, 1.0))));
   return {std::floor(range.low), 1 / finer, finer};
@@ -46,7 +46,7 @@ std::vector<T> padded_row(int count) {
   return std::vector<T>(static_cast<std::size_t>(count) + kPlaneRowPadding);
 }
 
-// Adds planes to a row of blocks, which vectors write beyond its end.
+// Adds planes to a row of blocks in a padded copy, because vectors write beyond its end.
 template <class Fit>
 void fit_row(std::uint32_t* blocks, int count, std::vector<std::uint32_t>& padded, const Fit& fit) {
   std::copy_n(blocks, count, padded.data());

@@ -8,9 +8,9 @@
 //              ground            block    maximum | slope_x << 16 | slope_y << 21 | depth << 26: one load
 //
 // A plane above a cell's four corners is above the cell's surface, bilinear or triangles. Level 1 takes the slopes
-// between its corner samples; coarser levels take the mean slope of their four children and are above the children's
-// planes. A block whose plane would be less than a step of the depth below its maximum is left flat. Steeper slopes
-// than the range allows are cut off, and the plane is higher instead.
+// between the corner samples of the block; coarser levels take the mean slope of their four children and are above the
+// children's planes. A block whose plane would be less than a step of the depth below its maximum is left flat. Slopes
+// beyond the range are clamped, which makes the plane higher.
 //
 // Source: own; bounding slabs with a direction are common for meshes (T. Kay, J. Kajiya, "Ray tracing complex scenes",
 // SIGGRAPH 1986). Cost: 2/3 bytes per cell. Fields with holes have no planes, nor do
@@ -28,7 +28,7 @@
 
 namespace scarp {
 
-/// The blocks whose planes are fitted. Their maxima and minima are known.
+/// The blocks to fit planes to; their maxima and minima are already computed.
 struct Blocks {
   const std::vector<PyramidLevel>& levels;
   std::uint32_t* maxima;  ///< planes are added
@@ -47,7 +47,8 @@ class BlockPlanes {
   /// `reserve`; float samples have the code of the maxima.
   void build(const HeightField& field, const Blocks& blocks, const std::optional<SampleRange>& reserve);
   /// Fits planes to the blocks over `changed` after an edit; to all if 16-bit samples leave the codes' range, or if the
-  /// last hole is gone.
+  /// last hole is gone. Fields with holes have none. While there is a hole, no planes exist. While there is
+  /// a hole, no planes exist.
   void update(const HeightField& field, const Blocks& blocks, const CellBox& changed);
 
   bool exist() const { return exist_; }
@@ -70,7 +71,7 @@ class BlockPlanes {
 
   bool exist_ = false;
   HeightCode code_;
-  SampleRange range_;  // within which edits need no other code
+  SampleRange range_;  // edits within it keep the code
   float scale_ = 1, shift_ = 0, unit_ = 1;
 };
 

@@ -38,11 +38,12 @@ class MaxPyramid {
   static constexpr std::uint16_t kNoMinimum = 0;
 
   /// Builds all levels, on all threads. A field without cells has no levels. `reserve` widens the code range of float
-  /// samples for later edits; 16-bit samples never leave their range.
+  /// samples, and that of the planes of 16-bit samples, for later edits.
   explicit MaxPyramid(const HeightField& field, const std::optional<SampleRange>& reserve = std::nullopt);
 
   /// Recomputes the entries over `changed` after an edit of the same field, so that the extremes equal a rebuild with
-  /// the same range. Rebuilds everything if float samples leave the range.
+  /// the same range. Rebuilds everything if float samples leave the range, and all planes if 16-bit samples leave
+  /// theirs.
   void update(const HeightField& field, const CellBox& changed);
 
   /// Coarsest level; levels are 1 .. top_level(). 0 if the field has no cells.

@@ -11,7 +11,7 @@ struct PlaneFit {
   float unit;          ///< codes per cell and step of a slope
   float half;          ///< half the side of a child, in cells; for the first level half a cell
   std::int32_t most;   ///< steps of the steepest slope allowed
-  float scale, shift;  ///< from codes of maxima to those of planes, rounded up
+  float scale, shift;  ///< from codes of maxima to those of planes, exact
 };
 
 /// Entries that kernels read and write beyond the end of a row.

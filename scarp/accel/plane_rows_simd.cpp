@@ -45,7 +45,7 @@ HWY_INLINE VF maxima(const PlaneFit& fit, VI blocks) {
                     hn::Set(df, fit.shift));
 }
 
-// Writes a plane of which the height in the middle and the slopes are known. `half`: of the block's side.
+// Writes planes, given their heights in the middle and their slopes. `half`: half the block's side, in cells.
 HWY_INLINE void put(const PlaneFit& fit, float half, VF middle, VI slope_x, VI slope_y, std::uint32_t* blocks) {
   const VI zero = hn::Zero(di), slope_bits = hn::Set(di, (1 << kSlopeBits) - 1);
   const VI maximum = hn::And(hn::BitCast(di, hn::LoadU(du, blocks)), hn::Set(di, 0xffff));

@@ -31,7 +31,7 @@ double plane_at(const MaxPyramid& pyramid, int level, int col, int row, int x, i
   return pyramid.planes().height(block, level, from_middle_x, from_middle_y);
 }
 
-// Sum of the heights of planes above the samples; each must be above.
+// Expects no plane below a sample. Returns the mean height of the planes above the samples.
 double expect_above(const HeightField& field, const MaxPyramid& pyramid, int level) {
   const PyramidLevel& at = pyramid.levels()[static_cast<std::size_t>(level - 1)];
   double sum = 0;
@@ -105,7 +105,7 @@ TEST(BlockPlanes, KeepCloseToGentleGroundBesideACliff) {
 }
 
 // Planes follow a slope, maxima cannot. On each level slopes are rounded by half a step at most, over half the block
-// along both axes, the depth by one step, and codes by one.
+// along both axes, the depth by one step, and codes by less than two.
 TEST(BlockPlanes, FollowASlope) {
   for (const auto& [east, south] : {std::pair{40.0, 0.0}, {0.0, -40.0}, {31.0, 17.0}, {-25.0, 38.0}}) {
     const HeightField field = field_of<float>(slope(129, 129, east, south), 129, 129);

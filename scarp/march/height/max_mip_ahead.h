@@ -11,7 +11,7 @@
 // The ray is followed from the block of its start upwards, as far as blocks are clear, and down again. Levels 1, 3, ...
 // are not used.
 //
-// As in max_mip_simd.h, a margin makes what vectors decide certain (doc/dev/numerics.md). The scalar traversal decides
+// As in max_mip_simd.h, vectors decide only what a margin proves (doc/dev/numerics.md). The scalar traversal decides
 // the rest, from the time up to which the ray is above the ground: answers equal its own.
 //
 // Source: I. Wald, C. Benthin, S. Boulos, "Getting rid of packets: efficient SIMD single-ray traversal using
@@ -23,7 +23,7 @@
 
 namespace scarp::max_mip {
 
-/// What vectors find out about a ray. `open`: that it is clear up to a time.
+/// Outcome for a ray. `open`: undecided, but clear up to a time.
 enum class Ahead { open, miss, hit };
 
 /// Whether vectors can follow rays over a field: without holes and wrap, and on this machine. Requires the pyramid.

@@ -19,6 +19,7 @@
 // foreach_target.h must come first.
 #include "hwy/highway.h"
 #include "scarp/march/height/max_mip_simd_lanes.h"
+#include "scarp/march/height/max_mip_simd_rays.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace scarp {
@@ -41,93 +42,66 @@ constexpr int kParts = 4 / static_cast<int>(kRows);  // vectors of all 16 childr
 
 HWY_INLINE std::uint32_t lane_bits(MF mask) { return static_cast<std::uint32_t>(bits_of(hn::RebindMask(di, mask))); }
 
-// The frame of one ray, as in Lanes.
+// The ray in lane 0 of Lanes, without the arrays.
 struct OneRay {
   float ox, oy, dx, dy, per_x, per_y, z, dz, margin, end;
   float start_x, start_y;  // times of lines 0
   std::int32_t x, y, last_x, last_y, mirror_x, mirror_y;
   int level;
   bool seen;
+
+  OneRay() = default;
+  HWY_INLINE explicit OneRay(const Lanes& a)
+      : ox(a.ox[0]),
+        oy(a.oy[0]),
+        dx(a.dx[0]),
+        dy(a.dy[0]),
+        per_x(a.per_x[0]),
+        per_y(a.per_y[0]),
+        z(a.z[0]),
+        dz(a.dz[0]),
+        margin(a.margin[0]),
+        end(a.end[0]),
+        start_x(-ox * per_x),
+        start_y(-oy * per_y),
+        x(a.x[0]),
+        y(a.y[0]),
+        last_x(a.last_x[0]),
+        last_y(a.last_y[0]),
+        mirror_x(a.mirror_x[0]),
+        mirror_y(a.mirror_y[0]),
+        level(std::max(2, a.level[0])),
+        seen(a.seen[0] != 0) {}
 };
 
 template <class T>
 class AheadWalk {
  public:
   AheadWalk(const HeightTarget& target, const SampleGrid<T>& grid)
-      : field_(*target.field), seam_(target.seam), pyramid_(*target.pyramid), grid_(grid) {}
+      : target_(target), field_(*target.field), pyramid_(*target.pyramid), grid_(grid) {}
 
-  // Prepares the ray: prepare() of max_mip_simd_rays.h, for one ray. Returns false if `answer` is all that is known.
+  // Prepares the ray. Returns false if `answer` is all that is known.
   HWY_INLINE bool prepare(const Ray& ray, Ahead& answer) {
-    const GridRay local = local_ = field_.grid_from_world(ray);
     const HeightCode& code = pyramid_.code();
-    const double low = field_.min_sample(), highest = field_.max_sample();
-    const double cell_relief = std::min(highest - low, pyramid_.cell_relief() * code.step);
-    const double cols = grid_.cell_cols, rows = grid_.cell_rows, oz = local.origin.z, dz = local.direction.z;
-    const Span x(local.origin.x, local.direction.x, cols), y(local.origin.y, local.direction.y, rows);
-    const double longest = std::max(x.direction, y.direction), per_longest = std::min(x.per, y.per);
-    const double t_border = std::max({ray.t_min, x.enter, y.enter}), t_exit = std::min({ray.t_max, x.exit, y.exit});
-    const auto height = [&](double t) { return oz + dz * t; };
-    const double t_far = std::max(std::abs(t_border), std::abs(t_exit));
-    const double doubt = 4 * rounding_of_clearance(field_, local, t_far), over = highest + doubt;
-    const double slope = dz * code.per_step * per_longest;
-    const double per_enter = x.enter >= y.enter ? x.per : y.per, per_exit = x.exit <= y.exit ? x.per : y.per;
-    // A sum, which NaN of either axis makes NaN.
-    const double slack = x.slack + y.slack + seam_ * std::max(per_enter, per_exit);
-    const double slack_cells = slack * longest;
-    // Written so that NaN is not followed.
-    const bool usual = longest > 0x1p-300 && longest < 0x1p300 && std::abs(slope) < 0x1p30 && t_far < 0x1p300;
-    if (!(usual && !x.is_beside(cols, seam_) && !y.is_beside(rows, seam_) && slack_cells < kSideways &&
-          slack_cells * std::abs(slope) < 0x1p-4)) {
-      return false;
-    }
-    const bool falls = dz < 0;
-    const bool from_above = height(t_border) > highest;
-    const double tie = 0x1p-40 * (std::abs(t_border) + std::abs(t_exit));
-    const bool stays_above = height(t_border) > over && t_border < t_exit && (!falls || height(t_exit + slack) > over);
-    if (t_border - t_exit > tie + 2 * slack || stays_above) {
-      answer = Ahead::miss;
-      return false;
-    }
-    double t_begin = t_border, t_end = t_exit;
-    if (from_above && falls) {
-      const double quotient = (over - oz) / dz;
-      t_begin = std::max(t_border, quotient - 4 * kUnit * std::abs(quotient));
-    } else if (dz > 0) {
-      t_end = std::min(t_exit, (over - oz) / dz);
-    }
-    if ((from_above && !falls) || !(t_begin < t_end)) return false;
-    const double at_x = x.origin + x.direction * t_begin, at_y = y.origin + y.direction * t_begin;
-    const auto cell = [](double at, double cells) { return std::min(std::max(std::floor(at), 0.0), cells - 1); };
-    const double cell_x = cell(at_x, cols), cell_y = cell(at_y, rows);
-    const auto inside = [](double place) { return static_cast<float>(std::min(std::max(place, 0.0), 1.0)); };
-    const auto bounded = [](double per) { return static_cast<float>(std::min(per, 0x1p60)); };
-    r_.ox = inside(at_x - cell_x), r_.oy = inside(at_y - cell_y);
-    r_.dx = static_cast<float>(x.direction * per_longest), r_.dy = static_cast<float>(y.direction * per_longest);
-    r_.per_x = bounded(longest * x.per), r_.per_y = bounded(longest * y.per);
-    r_.start_x = -r_.ox * r_.per_x, r_.start_y = -r_.oy * r_.per_y;
-    const double sideways = 2 * kSideways * cell_relief * code.per_step;
-    const double margin = kUpright + 2 * sideways + doubt * code.per_step;
-    r_.z = static_cast<float>((height(t_begin) - code.base) * code.per_step - margin);
-    r_.dz = static_cast<float>(slope - sideways);
-    r_.margin = static_cast<float>(margin + margin);
-    base_ = static_cast<float>(code.base), per_step_ = static_cast<float>(code.per_step);
-    offset_ = static_cast<float>((static_cast<double>(base_) - code.base) * code.per_step);
-    margin_per_cell_ = static_cast<float>(2 * sideways);
-    r_.end = static_cast<float>(((t_end - t_begin) * longest + slack_cells) * (1 + 0x1p-22));
-    t_per_cell_ = per_longest;
-    // The number of bits is even: each level is turned within groups of four.
+    // An even number of bits, because levels advance by two: mirroring then reverses whole groups of four children.
     const int bits = std::bit_width(static_cast<unsigned>(std::max(grid_.cell_cols, grid_.cell_rows) - 1));
     root_ = std::max(2, bits + (bits & 1));
-    const std::int32_t mask = (1 << root_) - 1;
-    const auto turned = [mask](bool back, std::int32_t cells) { return back ? mask + 1 - cells : 0; };
-    const std::int32_t shift_x = turned(x.back, grid_.cell_cols), shift_y = turned(y.back, grid_.cell_rows);
-    r_.mirror_x = x.back ? mask : 0, r_.mirror_y = y.back ? mask : 0;
-    r_.x = static_cast<std::int32_t>(cell_x) + shift_x, r_.y = static_cast<std::int32_t>(cell_y) + shift_y;
-    r_.last_x = shift_x + grid_.cell_cols - 1, r_.last_y = shift_y + grid_.cell_rows - 1;
-    t_begin_ = t_begin, t_max_ = ray.t_max, rounding_ = doubt, cell_relief_ = cell_relief;
-    per_x_ = x.back ? -x.per : x.per, per_y_ = y.back ? -y.per : y.per;
-    r_.level = std::min(t_begin != ray.t_min ? kFirstOutside : 2, root_);
-    r_.seen = from_above;
+    const FieldFrame frame = field_frame(target_, code, root_, std::min(kFirstOutside, root_));
+    local_ = field_.grid_from_world(ray);
+    const dvec3 &o = local_.origin, &d = local_.direction;
+    GridRays rays;
+    rays.ox[0] = o.x, rays.oy[0] = o.y, rays.oz[0] = o.z, rays.dx[0] = d.x, rays.dy[0] = d.y, rays.dz[0] = d.z;
+    rays.t_min[0] = ray.t_min, rays.t_max[0] = ray.t_max;
+    Lanes lanes;
+    prepare_part(hn::CappedTag<double, 1>(), frame, rays, 0, lanes);
+    if (lanes.status[0] == kMiss) answer = Ahead::miss;
+    if (lanes.status[0] != kWalking) return false;
+    r_ = OneRay(lanes);
+    base_ = static_cast<float>(code.base), per_step_ = static_cast<float>(code.per_step);
+    offset_ = static_cast<float>((static_cast<double>(base_) - code.base) * code.per_step);
+    cell_relief_ = frame.cell_relief;
+    margin_per_cell_ = static_cast<float>(4 * kSideways * cell_relief_ * code.per_step);
+    t_begin_ = lanes.t_begin[0], t_per_cell_ = lanes.t_per_cell[0], t_max_ = ray.t_max;
     return true;
   }
 
@@ -174,29 +148,6 @@ class AheadWalk {
  private:
   static constexpr int kMostLevels = 16;
   static constexpr int kFirstOutside = 6;  // level of the first block of rays that start above or outside
-
-  // One axis: mirrored so that the ray advances, and the times within the field, as AxisSpan.
-  struct Span {
-    double origin, direction, per, enter, exit, slack, given;
-    bool back;
-    HWY_INLINE Span(double o, double d, double cells) : given(o) {
-      back = d < 0;
-      origin = back ? cells - o : o;
-      direction = std::abs(d);
-      per = 1 / direction;
-      constexpr double far = std::numeric_limits<double>::infinity();
-      if (d == 0) {
-        enter = o >= 0 && o <= cells ? -far : far;
-        exit = far, slack = 0;
-      } else {
-        enter = -origin * per, exit = (cells - origin) * per;
-        slack = 8 * kUnit * (cells + std::abs(o)) * per;
-      }
-    }
-    HWY_INLINE bool is_beside(double cells, double seam) const {
-      return direction == 0 && !(given >= 0 && given <= cells) && std::max(-given, given - cells) <= seam;
-    }
-  };
 
   // The ray in all lanes, and where the lanes' children are in their block.
   struct Fixed {
@@ -382,19 +333,22 @@ class AheadWalk {
     const dvec3 &o = local_.origin, &d = local_.direction;
     const double col = cell.col, row = cell.row;
     const auto height = [&](double t) { return o.z + d.z * t; };
+    const double t_far = std::max(std::abs(t_begin_), std::abs(time(r_.end)));
+    const double rounding = 4 * rounding_of_clearance(field_, local_, t_far);
     {
       // The ray is within kSideways * (T + 2) cells of this one, and so is the parabola that belongs to it.
       const double t0 = time(in), length = time(out) - t0;
       const CellQuadratic f(h, o.x + d.x * t0 - col, o.y + d.y * t0 - row, d.x, d.y, height(t0), d.z);
       const bool between = f.a > 0 && f.b < 0 && -f.b < 2 * f.a * length;
       const double ends = std::min(f.c, f.at(length)), least = between ? std::min(ends, f.vertex_value()) : ends;
-      if (least > rounding_ + 4 * kSideways * (static_cast<double>(out) + 2) * cell_relief_) return Found::clear;
+      if (least > rounding + 4 * kSideways * (static_cast<double>(out) + 2) * cell_relief_) return Found::clear;
     }
     // Whether it is above where it enters the cell, and below after that by more than rounding, so that the scalar
     // traversal finds it, too. That tests the cell as a whole if the ray leaves it before its end.
     if (!(std::abs(d.x) > 0x1p-1000 && std::abs(d.y) > 0x1p-1000)) return Found::doubt;
-    const auto line_x = [&](double line) { return (line - o.x) * per_x_; };
-    const auto line_y = [&](double line) { return (line - o.y) * per_y_; };
+    const double per_x = 1 / d.x, per_y = 1 / d.y;
+    const auto line_x = [&](double line) { return (line - o.x) * per_x; };
+    const auto line_y = [&](double line) { return (line - o.y) * per_y; };
     const bool back_x = d.x < 0, back_y = d.y < 0;
     const double tx = line_x(back_x ? col : col + 1), ty = line_y(back_y ? row : row + 1);
     const double exit_x = line_x(back_x ? 0 : grid_.cell_cols), exit_y = line_y(back_y ? 0 : grid_.cell_rows);
@@ -406,19 +360,18 @@ class AheadWalk {
                           d.z);
     const bool between = f.a > 0 && f.b < 0 && -f.b < 2 * f.a * length;
     const double least = between ? f.vertex_value() : f.at(length);
-    return f.c > rounding_ && least < -rounding_ ? Found::hit : Found::doubt;
+    return f.c > rounding && least < -rounding ? Found::hit : Found::doubt;
   }
 
   HWY_INLINE double time(float cells) const { return t_begin_ + static_cast<double>(cells) * t_per_cell_; }
 
+  const HeightTarget& target_;
   const HeightField& field_;
-  const double seam_;
   const MaxPyramid& pyramid_;
   const SampleGrid<T>& grid_;
   OneRay r_;
   GridRay local_;
-  double t_begin_, t_per_cell_, t_max_, per_x_, per_y_, cell_relief_;
-  double rounding_;  // four times rounding_of_clearance()
+  double t_begin_, t_per_cell_, t_max_, cell_relief_;
   float margin_per_cell_, base_, per_step_, offset_;
   float doubt_;
   int root_;

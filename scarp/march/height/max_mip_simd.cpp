@@ -35,6 +35,15 @@ namespace scarp {
 namespace HWY_NAMESPACE {
 namespace {
 
+// Fills all lanes with rays.
+HWY_NOINLINE void prepare(const FieldFrame& f, const GridRays& r, Lanes& a) {
+  for (std::size_t part = 0; part < N; part += hn::MaxLanes(dd)) prepare_part(dd, f, r, part, a);
+  for (std::size_t j = 0; j < N; ++j) {
+    a.begin_x[j] = a.x[j], a.begin_y[j] = a.y[j], a.T[j] = 0, a.doubt[j] = kNever;
+    if (a.status[j] == kWalking) a.seen[j] |= r.seen[j];
+  }
+}
+
 // Rays that may hit in a cell; -1: none.
 struct Candidates {
   std::size_t count = 0;
@@ -70,7 +79,7 @@ class VectorWalk {
       : target_(target), field_(*target.field), rays_(rays), answers_(answers), options_(options) {
     const MaxPyramid& pyramid = *target.pyramid;
     const BlockPlanes& planes = pyramid.planes();
-    const HeightCode &code = planes.code(), &maxima_code = pyramid.code();
+    const HeightCode& code = planes.code();
     g_ = {};
     g_.blocks = pyramid.blocks();
     g_.unit = planes.unit(), g_.depth_unit = BlockPlanes::kDepthUnits * planes.unit();
@@ -86,29 +95,10 @@ class VectorWalk {
     g_.offset = static_cast<float>((static_cast<double>(g_.base) - code.base) * code.per_step);
     g_.triangles = field_.settings().surface == Surface::triangles;
     g_.seam_col = field_.wraps() ? g_.last_col : -1, g_.seam_row = field_.wraps() ? g_.last_row : -1;
-    const double low = field_.min_sample(), high = field_.max_sample(), relief = high - low;
-    const double cell_relief = std::min(relief, pyramid.cell_relief() * maxima_code.step);
-    g_.margin_per_cell = static_cast<float>(4 * kSideways * cell_relief * code.per_step);
-    // At least 2: a mask of 0 would not show what is mirrored.
-    const auto side = std::bit_ceil(static_cast<unsigned>(std::max({grid.cell_cols, grid.cell_rows, 2})));
-    f_ = {.cols = static_cast<double>(grid.cell_cols),
-          .rows = static_cast<double>(grid.cell_rows),
-          .sample_rows = static_cast<double>(field_.rows()) +
-                         (field_.wraps() ? 8 * kFarthestCopy + 2.0 * (grid.cell_cols + grid.cell_rows) : 0),
-          .highest = high,
-          .base = code.base,
-          .per_step = code.per_step,
-          .relief = relief,
-          .cell_relief = cell_relief,
-          .upright =
-              std::max(std::abs(low), std::abs(high)) + std::abs(field_.settings().offset) / field_.settings().scale,
-          .mask = static_cast<double>(side - 1),
-          .from_outside = static_cast<double>(std::max(g_.top - 3, 0)),
-          .seam = target.seam,
-          .scales = field_.grid_scales(),
-          .last_row = static_cast<double>(field_.rows() - 1),
-          .width = field_.wraps() ? -kNever : field_.width(),
-          .depth = field_.wraps() ? -kNever : field_.depth()};
+    // At least one bit: a mask of 0 would not show what is mirrored.
+    const auto cells = static_cast<unsigned>(std::max({grid.cell_cols, grid.cell_rows, 2}));
+    f_ = field_frame(target, code, std::bit_width(cells - 1), std::max(g_.top - 3, 0));
+    g_.margin_per_cell = static_cast<float>(4 * kSideways * f_.cell_relief * code.per_step);
   }
 
   void run(VectorStats& stats) {
@@ -527,7 +517,7 @@ class VectorWalk {
       const VD out = r.clearance_out(t_out, hn::Le(tx, ty));
       const CellMeeting m = g_.triangles ? meet_triangles(r, t_in, t_out, out) : meet_bilinear(r, t_in, t_out, out);
       const VD t_far = hn::Max(hn::Abs(t_in), hn::Abs(t_out));
-      const VD doubt = rounding(f_, r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, t_far);
+      const VD doubt = rounding(dd, f_, r.ox, r.oy, r.oz, r.dx, r.dy, r.dz, t_far);
       // Above until it enters the cell: known up to t_clear, and from there on by the maximum slope of the ground.
       const VD gap = hn::Max(hn::Sub(t_in, hn::Load(dd, c.t_clear + h)), zero);
       const VD steepest =
@@ -576,9 +566,6 @@ class VectorWalk {
   static constexpr std::size_t kCacheLine = 64;  // bytes; with longer lines some are requested twice
   static constexpr std::size_t kFresh = any ? 1 : std::max<std::size_t>(1, 64 / N);  // vectors that form a beam
   static constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << N) - 1;
-  // In cells, to the origin of a ray and to the last copy traversed here. Horizontally, |origin| + |path| along x and y
-  // is then at most eight times that plus twice the sides of a copy, also in the frames of copies.
-  static constexpr double kFarthestCopy = 0x1p17;
 
   const HeightTarget& target_;
   const HeightField& field_;

@@ -2,7 +2,7 @@
 // `max-mip` for many rays at once, in single precision, one ray per vector lane.
 //
 //   lanes    r0 r1 r2 ... r15     each with its own block, level and time; a step: where does the ray leave the
-//            |  |  |       |      block, is it above all of it? On to the next block, or one level down
+//            |  |  |       |      block, is it above its tilted plane? On to the next block, or one level down
 //   cells    . r1 .  ... r14      lanes at a cell wait until enough of them do, then four samples are loaded
 //   done     r0 .  r2 ... .       finished lanes also wait until enough of them are, then get the next rays
 //
@@ -34,7 +34,7 @@ struct VectorOptions {
   bool doubles = true;    ///< rays that start over the field: first cells in double
   bool put_off = true;    ///< any hit: decides a doubtful cell only if nothing behind it stops the ray
   bool find_hits = true;  ///< closest hit: computed for many rays at once
-  bool beam = true;       ///< closest hit: rays from above in the same vector start together
+  bool beam = true;       ///< closest hit: 64 consecutive rays from above start together
   bool together = true;   ///< closest hit, with `beam`: rays from one place go through the same blocks together
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A common deep start for all rays of a vector that come from above: the rays form a beam, and while the beam is above
-// the ground below it no single ray needs a test.
+// A common deep start for 64 consecutive rays from above: they form a beam, and while the beam is above the ground
+// below it no single ray needs a test.
 //
 //   \\\\ the beam, T to T + step       free if its lowest point is above the highest
 //    \\\\                              ground in the rectangle that it passes: at most
@@ -10,8 +10,8 @@
 //
 // All rays advance along both axes of their frames, so the near corner of the rectangle is that of the beam's start,
 // the far one that of its end. Source: A. Reshetov, A. Soupikov, J. Hurley, "Multi-level ray tracing algorithm", ACM
-// Transactions on Graphics 24(3), 2005 (one entry point for a beam of rays). The margins are those of block_step().
-// Compiled once per instruction set.
+// Transactions on Graphics 24(3), 2005 (one entry point for a beam of rays). Heights include the margin of Lanes;
+// maxima need no other. Compiled once per instruction set.
 #if defined(SCARP_MARCH_MAX_MIP_SIMD_BEAM_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_MAX_MIP_SIMD_BEAM_H
 #undef SCARP_MARCH_MAX_MIP_SIMD_BEAM_H

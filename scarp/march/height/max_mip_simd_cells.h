@@ -157,8 +157,8 @@ HWY_INLINE CellMeeting meet_triangles(const CellRays& r, VD t_in, VD t_out, VD o
 // Rays in the cell that they start in, offset slightly from the ground like shadow rays: within the margin of floats,
 // which would leave each of them to the scalar traversal. Rays that are above the ground all the way through the cell
 // continue behind it; any hit is decided for those that certainly fall below it. Closest hit: called where floats were
-// unsure. Any hit: called at once, except for rays that the scalar traversal knows to be above and that may be in doubt
-// where they start: floats postpone that.
+// unsure. Any hit: called at once, except for rays that are known to be above the ground (seen): floats can postpone a
+// doubt about those.
 template <bool any, class T>
 HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& f, const GridRays& r, Lanes& a) {
   constexpr Status kConcerned = any ? kWalking : kUnsure;
@@ -189,7 +189,7 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
     const MD over_column = hn::Le(tx, ty), over_row = hn::Le(ty, tx);
     const CellRays::Quadratic q = c.clearance_from(t_in);
     const VD out = c.clearance_out(t_out, over_column);
-    const VD doubt = rounding(f, c.ox, c.oy, c.oz, c.dx, c.dy, c.dz, hn::Max(hn::Abs(t_in), hn::Abs(t_out)));
+    const VD doubt = rounding(dd, f, c.ox, c.oy, c.oz, c.dx, c.dy, c.dz, hn::Max(hn::Abs(t_in), hn::Abs(t_out)));
     // The minimum of a parabola is at its ends or, if it opens upwards, between them. (A bound from its chord would
     // hide that rays which start this low rise from the ground.)
     const VD bottom = hn::Sub(q.c, hn::Div(hn::Mul(hn::Mul(q.b, q.b), hn::Set(dd, 0.25)), q.a));
@@ -224,7 +224,7 @@ HWY_NOINLINE void leave_first_cells(const VectorGround<T>& g, const FieldFrame& 
   }
 }
 
-// What becomes of rays in the cell on whose surface they start. kUndecided: the scalar traversal decides.
+// Outcomes of rays in the cell on whose surface they start. kUndecided: the scalar traversal decides.
 enum FirstCell : std::int32_t { kUndecided, kLeaves, kNoHit, kFalls };
 
 // For rays in `r` with `on_surface` 1, their start cells in `cells`: what Walk::leave_start_cell() does, by the same
@@ -259,7 +259,7 @@ HWY_NOINLINE void leave_surface(const FieldFrame& f, const Cells& cells, const d
     const VD bottom = hn::Div(hn::Mul(hn::Neg(b), b), hn::Mul(hn::Set(dd, 4), a));
     const VD lowest = hn::IfThenElse(dips, bottom, last);
     const MD may_fall = hn::Lt(lowest, zero);
-    const VD doubt = rounding(f, c.ox, c.oy, c.oz, c.dx, c.dy, c.dz, t_in);
+    const VD doubt = rounding(dd, f, c.ox, c.oy, c.oz, c.dx, c.dy, c.dz, t_in);
     const VD root = hn::Div(b, hn::Neg(a));
     const VD s = hn::IfThenZeroElse(hn::Or(hn::Lt(b, zero), hn::Eq(a, zero)), root);
     const VD t_hit = hn::IfThenElse(hn::Gt(s, zero), hn::Min(hn::Add(t_in, s), t_line), t_in);

@@ -57,7 +57,8 @@ HWY_INLINE std::uint64_t bits_of(MI mask) {
 
 // Rays of one vector in memory. Each has its own frame: x and y run along the ray, mirrored where it goes backwards;
 // time T is in cells along the longer axis, from the ray's start over the field; positions are relative to the cell
-// there; heights are codes, minus the margin.
+// there; heights are codes, minus the margin. seen: 1 if the ray has been above the ground. doubt: time at which it
+// entered the first cell that floats did not decide, or kNever.
 struct Lanes {
   alignas(64) float ox[N], oy[N], dx[N], dy[N], per_x[N], per_y[N], z[N], dz[N], margin[N], end[N], T[N], doubt[N];
   alignas(64) std::int32_t x[N], y[N], level[N], mirror_x[N], mirror_y[N], begin_x[N], begin_y[N], last_x[N], last_y[N],
@@ -118,7 +119,7 @@ struct Packet {
     whole(begin_x, a.begin_x), whole(begin_y, a.begin_y), whole(last_x, a.last_x), whole(last_y, a.last_y);
     whole(seen, a.seen), whole(status, a.status);
   }
-  // What steps change, and what answers need.
+  // Stores the members that steps change or answers need.
   HWY_INLINE void store(Lanes& a) const {
     hn::Store(mirror_x, di, a.mirror_x), hn::Store(mirror_y, di, a.mirror_y);
     hn::Store(T, df, a.T), hn::Store(doubt, df, a.doubt), hn::Store(x, di, a.x), hn::Store(y, di, a.y);

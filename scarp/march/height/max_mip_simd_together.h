@@ -8,8 +8,8 @@
 //   +---+---+   list at cells where they are not certainly above the ground.
 //
 // Source: I. Wald, P. Slusallek, C. Benthin, M. Wagner, "Interactive rendering with coherent ray tracing", Computer
-// Graphics Forum 20(3), 2001 (packets of rays). The margins are those of block_step() and cell_step(). Compiled once
-// per instruction set.
+// Graphics Forum 20(3), 2001 (packets of rays). Heights include the margin of Lanes; maxima need no other. Compiled
+// once per instruction set.
 #if defined(SCARP_MARCH_MAX_MIP_SIMD_TOGETHER_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SCARP_MARCH_MAX_MIP_SIMD_TOGETHER_H
 #undef SCARP_MARCH_MAX_MIP_SIMD_TOGETHER_H
@@ -254,7 +254,8 @@ class Together {
   std::size_t depth_ = 0;
 };
 
-// Traces the rays of `lanes` if they begin close together and advance along the same axes. Returns their number, or 0.
+// Traces the rays of `lanes` if they begin close together and run the same way along x and along y. Returns their
+// number, or 0.
 template <class T>
 HWY_NOINLINE std::size_t walk_together(const VectorGround<T>& g, Lanes* lanes, std::size_t count) {
   if (std::max(g.last_col, g.last_row) > kFarthestCell) return 0;
