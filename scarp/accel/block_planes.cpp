@@ -20,11 +20,15 @@ constexpr double kSteepest = 0.5;
 // Codes of tilt over half a block: floats stay accurate.
 constexpr double kMostTilt = 0x1p15;
 
-// The code for 16-bit samples, which rarely use their whole range: its step is that of the pyramid times a power of
-// two, so that conversions are exact.
-HeightCode finer_code(const SampleRange& range) {
-  const double finer = std::exp2(std::floor(std::log2(kTopCode / std::max(range.high - range.low + 1, 1.0))));
-  return {std::floor(range.low), 1 / finer, finer};
+// Range of codes for 16-bit samples, which rarely use that of their type: room for edits on either side, an eighth of
+// `range` at least, and no finer than the margins of vectors can use.
+constexpr double kLowestWhole = -0x1p15, kHighestWhole = 0x1p16;  // beyond all 16-bit samples
+constexpr double kRoom = 1.25, kLeastSpan = 256;
+// Its step is that of the pyramid times a power of two, so conversions are exact.
+HeightCode code_with_room(const SampleRange& range) {
+  const double span = std::max(kRoom * (range.high - range.low), kLeastSpan);
+  const double per_step = std::exp2(std::floor(std::log2(kTopCode / span)));
+  return {std::floor((range.low + range.high - kTopCode / per_step) / 2), 1 / per_step, per_step};
 }
 
 // A row of samples as codes, columns [begin, begin + count); beyond the field the last one is repeated.
@@ -118,9 +122,7 @@ void BlockPlanes::update(const HeightField& field, const Blocks& blocks, const C
     for (const CellBox& part : parts_inside(field, changed)) fit(field, blocks, part);
     return;
   }
-  // With room for the next edits.
-  const double low = field.min_sample(), high = field.max_sample(), room = (high - low) / 8;
-  build(field, blocks, SampleRange{low - room, high + room});
+  build(field, blocks, std::nullopt);
 }
 
 void BlockPlanes::set_scale(const HeightField& field, const Blocks& blocks, const std::optional<SampleRange>& reserve) {
@@ -130,8 +132,13 @@ void BlockPlanes::set_scale(const HeightField& field, const Blocks& blocks, cons
     range_ = {-kInfinity, kInfinity};
     code_ = blocks.code;
   } else {
-    range_ = code_range(field, reserve);
-    code_ = finer_code(range_);
+    SampleRange range{field.min_sample(), field.max_sample()};
+    if (reserve) {
+      range.low = std::min(range.low, std::max(reserve->low, kLowestWhole));
+      range.high = std::max(range.high, std::min(reserve->high, kHighestWhole));
+    }
+    code_ = code_with_room(range);
+    range_ = {code_.base, code_.base + code_.step * kTopCode};
   }
   scale_ = static_cast<float>(blocks.code.step * code_.per_step);
   shift_ = static_cast<float>((blocks.code.base - code_.base) * code_.per_step);

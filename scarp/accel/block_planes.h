@@ -43,12 +43,11 @@ class BlockPlanes {
   /// Step of the depth, in steps of a slope times half the side of the block.
   static constexpr float kDepthUnits = 0.5f;
 
-  /// Fits planes to the blocks of all levels, on all threads. For 16-bit samples, codes cover those of the field, and
-  /// `reserve`; float samples have the code of the maxima.
+  /// Fits planes to the blocks of all levels, on all threads. For 16-bit samples, codes cover those of the field and
+  /// `reserve`, with room for edits; float samples have the code of the maxima.
   void build(const HeightField& field, const Blocks& blocks, const std::optional<SampleRange>& reserve);
   /// Fits planes to the blocks over `changed` after an edit; to all if 16-bit samples leave the codes' range, or if the
-  /// last hole is gone. Fields with holes have none. While there is a hole, no planes exist. While there is
-  /// a hole, no planes exist.
+  /// last hole is gone. Fields with holes have none.
   void update(const HeightField& field, const Blocks& blocks, const CellBox& changed);
 
   bool exist() const { return exist_; }

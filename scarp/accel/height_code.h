@@ -27,7 +27,8 @@ struct SampleRange {
   double high = 0;
 };
 
-/// Returns the range that codes must cover: the field's samples and `reserve`. Undefined for 16-bit samples.
+/// Returns the range that codes must cover: the field's samples and `reserve`. Codes of 16-bit
+/// samples cover all values anyway.
 SampleRange code_range(const HeightField& field, const std::optional<SampleRange>& reserve);
 /// Returns whether the field's samples are still in range; always true for 16-bit samples, whose codes cover all
 /// values.

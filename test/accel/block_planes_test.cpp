@@ -140,6 +140,21 @@ TEST(BlockPlanes, FollowEdits) {
   }
 }
 
+// Otherwise one edit would refit all planes.
+TEST(BlockPlanes, HaveRoomForEditsAtOnce) {
+  for (const double height : {0.0, 1.0, 20.0}) {
+    HeightField field = field_of<std::int16_t>(noise(20, 20, height), 20, 20);
+    MaxPyramid pyramid(field);
+    const double low = field.min_sample(), high = field.max_sample(), base = pyramid.planes().code().base;
+    for (const double sample : {low - (high - low) / 8 - 1, high + (high - low) / 8 + 1}) {
+      const auto edit = static_cast<std::int16_t>(sample);
+      pyramid.update(field, field.set_samples({5, 5, 1, 1}, &edit, 1));
+      EXPECT_EQ(pyramid.planes().code().base, base) << height;
+      expect_above(field, pyramid);
+    }
+  }
+}
+
 TEST(BlockPlanes, ComeAndGoWithHoles) {
   HeightField field = field_of<std::int16_t>(noise(20, 20, 1), 20, 20, {.nodata = -1});
   MaxPyramid pyramid(field);

@@ -142,11 +142,11 @@ HWY_INLINE void prepare_part(D tag, const FieldFrame& f, const GridRays& r, std:
   const V zero = hn::Zero(tag), one = hn::Set(tag, 1), cols = hn::Set(tag, f.cols), rows = hn::Set(tag, f.rows);
   const V ox = hn::Load(tag, r.ox + part), oy = hn::Load(tag, r.oy + part), oz = hn::Load(tag, r.oz + part);
   const V dx = hn::Load(tag, r.dx + part), dy = hn::Load(tag, r.dy + part), dz = hn::Load(tag, r.dz + part);
-  const V t_min = hn::Load(tag, r.t_min + part);
+  const V t_min = hn::Load(tag, r.t_min + part), t_max = hn::Load(tag, r.t_max + part);
   const AxisSpan<D> x = axis_span(tag, ox, dx, cols, f.seam), y = axis_span(tag, oy, dy, rows, f.seam);
   const V longest = hn::Max(x.direction, y.direction), per_longest = hn::Min(x.per, y.per);
   const V t_border = hn::Max(t_min, hn::Max(x.enter, y.enter));
-  const V t_exit = hn::Min(hn::Load(tag, r.t_max + part), hn::Min(x.exit, y.exit));
+  const V t_exit = hn::Min(t_max, hn::Min(x.exit, y.exit));
   // A falling ray begins where it may come below the highest sample; a rising ray ends where it is above it.
   const V highest = hn::Set(tag, f.highest);
   const auto height = [&](V t) HWY_ATTR { return hn::Add(oz, hn::Mul(dz, t)); };
@@ -163,14 +163,15 @@ HWY_INLINE void prepare_part(D tag, const FieldFrame& f, const GridRays& r, std:
   const auto usual =
       hn::And(hn::And(hn::Gt(longest, hn::Set(tag, 0x1p-300)), hn::Lt(longest, hn::Set(tag, 0x1p300))),
               hn::And(hn::Lt(hn::Abs(slope), hn::Set(tag, 0x1p30)), hn::Lt(t_far, hn::Set(tag, 0x1p300))));
-  // The slack is a sum, so NaN along either axis makes it NaN, and the ray is left to the scalar traversal.
-  // The borders are accurate to less than a position's rounding, and a sixteenth of a code. A seam widens those that
-  // the ray crosses.
+  // Rays with NaN are left to the scalar traversal: minima and maxima of vectors may drop it. The slack is a sum, so
+  // NaN along either axis makes it NaN. The borders are accurate to less than a position's rounding, and a sixteenth of
+  // a code. A seam widens those that the ray crosses.
   const V per_enter = hn::IfThenElse(hn::Ge(x.enter, y.enter), x.per, y.per);
   const V per_exit = hn::IfThenElse(hn::Le(x.exit, y.exit), x.per, y.per);
   const V at_seam = hn::Mul(hn::Set(tag, f.seam), hn::Max(per_enter, per_exit));
   const V slack = hn::Add(hn::Add(x.slack, y.slack), at_seam), slack_cells = hn::Mul(slack, longest);
-  const auto clear_of_borders = hn::AndNot(hn::Or(x.beside, y.beside), usual);
+  const auto numbers = hn::And(hn::Eq(oz, oz), hn::Le(t_min, t_max));
+  const auto clear_of_borders = hn::AndNot(hn::Or(x.beside, y.beside), hn::And(usual, numbers));
   const auto sound =
       hn::And(clear_of_borders, hn::And(hn::Lt(slack_cells, hn::Set(tag, kSideways)),
                                         hn::Lt(hn::Mul(slack_cells, hn::Abs(slope)), hn::Set(tag, 0x1p-4))));

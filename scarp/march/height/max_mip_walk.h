@@ -483,7 +483,7 @@ class Walk {
       const double above = ray_height(t) - height_in_cell(field_.settings().surface, h, u, v);
       // Of the cell: less than what a ray from below has to rise.
       const double rounding = scarp::rounding_of_clearance(field_, ray, t, relief(h));
-      if (std::abs(above) > rounding) continue;
+      if (!(std::abs(above) <= rounding)) continue;
       if (touch(col, row, t, {u, v})) return true;
       if constexpr (ask != Ask::accepted) return false;
     }

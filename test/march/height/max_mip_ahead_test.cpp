@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -161,26 +160,7 @@ TEST(MaxMipAhead, TouchesOfTheHighestSample) {
 TEST(MaxMipAhead, UnusualNumbers) {
   const HeightField field = hills(129, 65, Surface::bilinear);
   const MaxPyramid pyramid(field);
-  constexpr double kNumbers[] = {
-      0, -0.0, 1, -1, 1e-320, 1e-200, 1e200, 1e308, HUGE_VAL, -HUGE_VAL, std::numeric_limits<double>::quiet_NaN()};
-  const Ray usual{.origin = {20, 20, field.max_height()}, .direction = {0.3, 0.2, -0.1}};
-  std::vector<Ray> rays;
-  for (const double one : kNumbers) {
-    for (const double other : kNumbers) {
-      for (int axis = 0; axis < 3; ++axis) {
-        Ray ray = usual;
-        ray.direction[axis] = one, ray.direction[(axis + 1) % 3] = other;
-        rays.push_back(ray);
-        ray.direction[(axis + 1) % 3] = usual.direction[(axis + 1) % 3];
-        ray.origin[axis] = other;
-        rays.push_back(ray);
-      }
-      Ray ray = usual;
-      ray.t_min = one, ray.t_max = other;
-      if (std::isfinite(one) && other >= one) rays.push_back(ray);
-    }
-  }
-  compare_on_all({&field, &pyramid}, rays, "unusual numbers");
+  compare_on_all({&field, &pyramid}, rays_of_unusual_numbers(field), "unusual numbers");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <string>
@@ -555,6 +556,32 @@ TEST(MaxMipSimd, RaysThatGoTogetherLoseNothing) {
     }
   }
   for (const auto& [name, rays] : together) EXPECT_GT(rays, 10'000u * kCameras / 60) << name;
+}
+
+// Each among rays that fall in from outside, which form beams.
+TEST(MaxMipSimd, UnusualNumbers) {
+  const HeightField field = test::hills(129, 65, Surface::bilinear);
+  const MaxPyramid pyramid(field);
+  std::vector<Ray> rays;
+  std::vector<Ray> unusual = rays_of_unusual_numbers(field);
+  for (const double z : {field.max_height(), std::numeric_limits<double>::quiet_NaN()}) {
+    unusual.push_back({.origin = {-50, 30, z}, .direction = {1, 0.01, -0.2}});
+  }
+  for (std::size_t i = 0; i < unusual.size(); ++i) {
+    for (std::size_t j = 0; j < 64; ++j) {
+      const double side = static_cast<double>(j) * 0.1;
+      rays.push_back(j == i % 64
+                         ? unusual[i]
+                         : Ray{.origin = {-50, 28 + side, field.max_height() + 9}, .direction = {1, 0.01, -0.2}});
+    }
+  }
+  const HeightTarget target{&field, &pyramid};
+  const std::vector<Hit> expected = scalar(target, rays);
+  for (const std::int64_t set : instruction_sets()) {
+    const InstructionSet only(set);
+    compare(target, rays, expected, 64, {}, hwy::TargetName(set));
+    if (HasFatalFailure()) return;
+  }
 }
 
 // Else the vectors could hand over all rays and be right.

@@ -49,4 +49,7 @@ HeightField hills(int cols, int rows, Surface surface);
 /// A ray along them, from their surface or from some metres about it.
 Ray along_hills(const HeightField& field, Random& random, bool from_surface);
 
+/// Rays with NaN, infinite, tiny and huge numbers, which queries need not accept, in every place of a ray.
+std::vector<Ray> rays_of_unusual_numbers(const HeightField& field);
+
 }  // namespace scarp::test

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "march/height/spiteful.h"
 
@@ -349,6 +350,29 @@ Ray along_hills(const HeightField& field, Random& random, bool from_surface) {
     ray.origin.z += uniform(random, -1, 20);
   }
   return ray;
+}
+
+std::vector<Ray> rays_of_unusual_numbers(const HeightField& field) {
+  constexpr double kNumbers[] = {
+      0, -0.0, 1, -1, 1e-320, 1e-200, 1e200, 1e308, HUGE_VAL, -HUGE_VAL, std::numeric_limits<double>::quiet_NaN()};
+  const Ray usual{.origin = {20, 20, field.max_height()}, .direction = {0.3, 0.2, -0.1}};
+  std::vector<Ray> rays;
+  for (const double one : kNumbers) {
+    for (const double other : kNumbers) {
+      for (int axis = 0; axis < 3; ++axis) {
+        Ray ray = usual;
+        ray.direction[axis] = one, ray.direction[(axis + 1) % 3] = other;
+        rays.push_back(ray);
+        ray.direction[(axis + 1) % 3] = usual.direction[(axis + 1) % 3];
+        ray.origin[axis] = other;
+        rays.push_back(ray);
+      }
+      Ray ray = usual;
+      ray.t_min = one, ray.t_max = other;
+      rays.push_back(ray);
+    }
+  }
+  return rays;
 }
 
 }  // namespace scarp::test
