@@ -510,6 +510,8 @@ TEST(ScarpBench, SaysInOneLineWhatIsWrong) {
   EXPECT_TRUE(fails("heights --classes sideways"));
   EXPECT_TRUE(fails("heights --engines none"));
   EXPECT_TRUE(fails("heights --dem /nowhere.tif --rays small"));
+  EXPECT_TRUE(fails("survey --dems /nowhere.tif --rays small"));
+  EXPECT_TRUE(fails("heights --csv /nowhere/rows.csv"));
   EXPECT_TRUE(fails("leaks --rays 0"));
   EXPECT_TRUE(fails("gpu --device none-of-that-name --sizes 33 --rays small"));
   EXPECT_TRUE(fails("edits --size 100 --rect 101"));

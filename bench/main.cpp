@@ -83,8 +83,8 @@ void add_field_options(CLI::App& command, TraceOptions& trace) {
 }
 
 void add_json_option(CLI::App& command, ReportOptions& report) {
-  command.add_option("--json", report.json, "file to write {machine, command, date, rows} to");
-  command.add_option("--csv", report.csv, "file to write the rows to, as in bench/results");
+  command.add_option("--json", report.json, "file to write {machine, command, date, rows} to")->check(writable);
+  command.add_option("--csv", report.csv, "file to write the rows to, as in bench/results")->check(writable);
 }
 
 int run(int argc, char** argv) {

@@ -76,6 +76,11 @@ void write_file(const std::string& name, const std::string& text) {
 
 }  // namespace
 
+std::string writable(const std::string& path) {
+  const ReplaceFile probe(path);
+  return {};
+}
+
 void write_json(const ReportOptions& options, const nlohmann::ordered_json& rows) {
   const auto now = std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
   const std::string date = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));

@@ -15,6 +15,10 @@ struct ReportOptions {
   std::string csv{};    ///< likewise
 };
 
+/// For the options that name these files, so that no figures are lost after a long run: throws Error if one cannot be
+/// written there; otherwise returns an empty string, as CLI11 expects of checks.
+std::string writable(const std::string& path);
+
 /// Writes the files of `options`: JSON is {machine, command, date, rows}; CSV has the first three as comments, and the
 /// rows as bench/results keeps them. Throws Error if a file cannot be written; it is then not left or changed.
 void write_json(const ReportOptions& options, const nlohmann::ordered_json& rows);

@@ -129,14 +129,18 @@ void run_survey(const SurveyOptions& options, const ReportOptions& report) {
   hold_to_instruction_set(options.trace.instruction_set);
   Survey survey(options);
   FieldOptions field = options.trace.field;
+  // Read first: a file that cannot be read fails at once.
+  std::vector<BenchField> files;
+  for (const std::string& dem : options.dems) {
+    field.dem = dem;
+    files.push_back(load_field(field));
+  }
+  field.dem.clear();
   for (const std::string& kind : options.kinds) {
     field.kind = kind;
     survey.run(load_field(field));
   }
-  for (const std::string& dem : options.dems) {
-    field.dem = dem;
-    survey.run(load_field(field));
-  }
+  for (const BenchField& file : files) survey.run(file);
   survey.print();
   write_json(report, survey.rows());
 }

@@ -21,7 +21,7 @@ constexpr double kSteepest = 0.5;
 constexpr double kMostTilt = 0x1p15;
 
 // Range of codes for 16-bit samples, which rarely use that of their type: room for edits on either side, an eighth of
-// `range` at least, and no finer than the margins of vectors can use.
+// `range` at least. At most 2^7 codes per sample: vectors err by about one code, less than anything samples can show.
 constexpr double kLowestWhole = -0x1p15, kHighestWhole = 0x1p16;  // beyond all 16-bit samples
 constexpr double kRoom = 1.25, kLeastSpan = 256;
 // Its step is that of the pyramid times a power of two, so conversions are exact.

@@ -42,38 +42,6 @@ constexpr int kParts = 4 / static_cast<int>(kRows);  // vectors of all 16 childr
 
 HWY_INLINE std::uint32_t lane_bits(MF mask) { return static_cast<std::uint32_t>(bits_of(hn::RebindMask(di, mask))); }
 
-// The ray in lane 0 of Lanes, without the arrays.
-struct OneRay {
-  float ox, oy, dx, dy, per_x, per_y, z, dz, margin, end;
-  float start_x, start_y;  // times of lines 0
-  std::int32_t x, y, last_x, last_y, mirror_x, mirror_y;
-  int level;
-  bool seen;
-
-  OneRay() = default;
-  HWY_INLINE explicit OneRay(const Lanes& a)
-      : ox(a.ox[0]),
-        oy(a.oy[0]),
-        dx(a.dx[0]),
-        dy(a.dy[0]),
-        per_x(a.per_x[0]),
-        per_y(a.per_y[0]),
-        z(a.z[0]),
-        dz(a.dz[0]),
-        margin(a.margin[0]),
-        end(a.end[0]),
-        start_x(-ox * per_x),
-        start_y(-oy * per_y),
-        x(a.x[0]),
-        y(a.y[0]),
-        last_x(a.last_x[0]),
-        last_y(a.last_y[0]),
-        mirror_x(a.mirror_x[0]),
-        mirror_y(a.mirror_y[0]),
-        level(std::max(2, a.level[0])),
-        seen(a.seen[0] != 0) {}
-};
-
 template <class T>
 class AheadWalk {
  public:
@@ -92,25 +60,25 @@ class AheadWalk {
     GridRays rays;
     rays.ox[0] = o.x, rays.oy[0] = o.y, rays.oz[0] = o.z, rays.dx[0] = d.x, rays.dy[0] = d.y, rays.dz[0] = d.z;
     rays.t_min[0] = ray.t_min, rays.t_max[0] = ray.t_max;
-    Lanes lanes;
-    prepare_part(hn::CappedTag<double, 1>(), frame, rays, 0, lanes);
-    if (lanes.status[0] == kMiss) answer = Ahead::miss;
-    if (lanes.status[0] != kWalking) return false;
-    r_ = OneRay(lanes);
+    prepare_part(hn::CappedTag<double, 1>(), frame, rays, 0, a_);
+    if (a_.status[0] == kMiss) answer = Ahead::miss;
+    if (a_.status[0] != kWalking) return false;
+    seen_ = a_.seen[0] != 0;
+    start_x_ = -a_.ox[0] * a_.per_x[0], start_y_ = -a_.oy[0] * a_.per_y[0];
     base_ = static_cast<float>(code.base), per_step_ = static_cast<float>(code.per_step);
     offset_ = static_cast<float>((static_cast<double>(base_) - code.base) * code.per_step);
     cell_relief_ = frame.cell_relief;
     margin_per_cell_ = static_cast<float>(4 * kSideways * cell_relief_ * code.per_step);
-    t_begin_ = lanes.t_begin[0], t_per_cell_ = lanes.t_per_cell[0], t_max_ = ray.t_max;
+    t_begin_ = a_.t_begin[0], t_per_cell_ = a_.t_per_cell[0], t_max_ = ray.t_max;
     return true;
   }
 
   // Follows the ray. Sets `t_clear` if the answer is open.
   HWY_INLINE Ahead run(double& t_clear) {
     std::uint32_t rest[kMostLevels], ahead = ~0u;
-    int level = r_.level, known = level;
-    std::int32_t nx = r_.x >> level, ny = r_.y >> level;
-    const Fixed fixed(r_);
+    int level = std::max(2, a_.level[0]), known = level;
+    std::int32_t nx = a_.x[0] >> level, ny = a_.y[0] >> level;
+    const Fixed fixed(a_, start_x_, start_y_);
     Ahead answer = Ahead::open;
     doubt_ = kNever;
     for (bool ends = false;;) {
@@ -154,21 +122,21 @@ class AheadWalk {
     VF ox, oy, per_x, per_y, start_x, start_y, z, dz, end, last_x, last_y;
     VI lane_x, lane_y;
     decltype(hn::SetTableIndices(df, static_cast<const std::int32_t*>(nullptr))) along_x;
-    HWY_INLINE explicit Fixed(const OneRay& r)
-        : ox(hn::Set(df, r.ox)),
-          oy(hn::Set(df, r.oy)),
-          per_x(hn::Set(df, r.per_x)),
-          per_y(hn::Set(df, r.per_y)),
-          start_x(hn::Set(df, r.start_x)),
-          start_y(hn::Set(df, r.start_y)),
-          z(hn::Set(df, r.z)),
-          dz(hn::Set(df, r.dz)),
-          end(hn::Set(df, r.end)),
-          last_x(hn::Set(df, static_cast<float>(r.last_x - r.x))),
-          last_y(hn::Set(df, static_cast<float>(r.last_y - r.y))) {
+    HWY_INLINE Fixed(const Lanes& r, float from_x, float from_y)
+        : ox(hn::Set(df, r.ox[0])),
+          oy(hn::Set(df, r.oy[0])),
+          per_x(hn::Set(df, r.per_x[0])),
+          per_y(hn::Set(df, r.per_y[0])),
+          start_x(hn::Set(df, from_x)),
+          start_y(hn::Set(df, from_y)),
+          z(hn::Set(df, r.z[0])),
+          dz(hn::Set(df, r.dz[0])),
+          end(hn::Set(df, r.end[0])),
+          last_x(hn::Set(df, static_cast<float>(r.last_x[0] - r.x[0]))),
+          last_y(hn::Set(df, static_cast<float>(r.last_y[0] - r.y[0]))) {
       const VI lanes = hn::Iota(di, 0);
       lane_x = hn::And(lanes, hn::Set(di, 3)), lane_y = hn::ShiftRight<2>(lanes);
-      along_x = hn::IndicesFromVec(df, hn::Xor(lanes, hn::Set(di, r.mirror_x & 3)));
+      along_x = hn::IndicesFromVec(df, hn::Xor(lanes, hn::Set(di, r.mirror_x[0] & 3)));
     }
     HWY_INLINE VF height(VF t) const { return hn::MulAdd(dz, t, z); }
   };
@@ -186,7 +154,7 @@ class AheadWalk {
       return hn::ConvertTo(df, hn::Add(hn::ShiftLeftSame(lane, child_level), hn::Set(di, first)));
     };
     Ways w;
-    w.x = lines(f.lane_x, 4 * nx * cells - r_.x), w.y = lines(f.lane_y, row * cells - r_.y);
+    w.x = lines(f.lane_x, 4 * nx * cells - a_.x[0]), w.y = lines(f.lane_y, row * cells - a_.y[0]);
     // One time for each line, in all blocks. At its end the ray leaves the field, not through a line.
     const auto times = [&](VF line, VF last, VF start, VF per)
                            HWY_ATTR { return hn::IfThenElse(hn::Gt(line, last), never, hn::MulAdd(line, per, start)); };
@@ -203,9 +171,9 @@ class AheadWalk {
   // Whether the ray ends in a block: children behind it are crossed later, by the same times.
   HWY_INLINE bool leaves_at_end(int level, std::int32_t nx, std::int32_t ny) const {
     const std::int32_t x = (nx + 1) << level, y = (ny + 1) << level;
-    const float tx = x > r_.last_x ? kNever : std::fma(static_cast<float>(x - r_.x), r_.per_x, r_.start_x);
-    const float ty = y > r_.last_y ? kNever : std::fma(static_cast<float>(y - r_.y), r_.per_y, r_.start_y);
-    return std::min(tx, ty) > r_.end;
+    const float tx = x > a_.last_x[0] ? kNever : std::fma(static_cast<float>(x - a_.x[0]), a_.per_x[0], start_x_);
+    const float ty = y > a_.last_y[0] ? kNever : std::fma(static_cast<float>(y - a_.y[0]), a_.per_y[0], start_y_);
+    return std::min(tx, ty) > a_.end[0];
   }
 
   // Four entries of each row.
@@ -229,7 +197,7 @@ class AheadWalk {
   HWY_INLINE std::uint32_t blocks(const Fixed& f, int level, std::int32_t nx, std::int32_t ny) const {
     const int child = level - 2;
     const MaxPyramid::Level& at = pyramid_.levels()[static_cast<std::size_t>(child - 1)];
-    const std::int32_t mirror_x = r_.mirror_x >> child, mirror_y = r_.mirror_y >> child;
+    const std::int32_t mirror_x = a_.mirror_x[0] >> child, mirror_y = a_.mirror_y[0] >> child;
     const std::uint32_t* in_rows = pyramid_.blocks() + at.begin + ((4 * nx ^ mirror_x) & ~3);
     std::uint32_t bits = 0;
     for (int part = 0; part < kParts; ++part) {
@@ -249,7 +217,7 @@ class AheadWalk {
 
   // The cells of a block of level 2. Returns true if `answer` is known.
   HWY_NOINLINE bool cells(const Fixed& f, std::int32_t nx, std::int32_t ny, Ahead& answer, double& t_clear) {
-    const std::int32_t col = (4 * nx ^ r_.mirror_x) & ~3, first_row = (4 * ny ^ r_.mirror_y) & ~3;
+    const std::int32_t col = (4 * nx ^ a_.mirror_x[0]) & ~3, first_row = (4 * ny ^ a_.mirror_y[0]) & ~3;
     const T* data = grid_.data + first_row * grid_.row_stride + col;
     std::ptrdiff_t stride = grid_.row_stride;
     T copy[5 * 8];
@@ -265,7 +233,8 @@ class AheadWalk {
       if (lane_bits(w.crossed) == 0) continue;
       VF4 nw[kRows], ne[kRows], sw[kRows], se[kRows];
       for (std::size_t j = 0; j < kRows; ++j) {
-        const int along = part * static_cast<int>(kRows) + static_cast<int>(j), row = r_.mirror_y ? 3 - along : along;
+        const int along = part * static_cast<int>(kRows) + static_cast<int>(j),
+                  row = a_.mirror_y[0] ? 3 - along : along;
         const T *north = data + row * stride, *south = north + stride;
         nw[j] = four(north), ne[j] = four(north + 1), sw[j] = four(south), se[j] = four(south + 1);
       }
@@ -279,13 +248,13 @@ class AheadWalk {
       if (lane_bits(near) == 0) continue;
       const CellCodes h{in_codes(samples_nw), in_codes(samples_ne), in_codes(samples_sw), in_codes(samples_se)};
       const VF one = hn::Set(df, 1), zero = hn::Zero(df);
-      const VF dx = hn::Set(df, r_.dx), dy = hn::Set(df, r_.dy);
+      const VF dx = hn::Set(df, a_.dx[0]), dy = hn::Set(df, a_.dy[0]);
       const auto place = [&](VF o, VF d, VF t, VF line, std::int32_t mirror) HWY_ATTR {
         const VF along = in_cell(hn::MulAdd(d, t, hn::Sub(o, line)));
         return mirror ? hn::Sub(one, along) : along;
       };
-      const VF u0 = place(f.ox, dx, w.in, w.x, r_.mirror_x), u1 = place(f.ox, dx, w.out, w.x, r_.mirror_x);
-      const VF v0 = place(f.oy, dy, w.in, w.y, r_.mirror_y), v1 = place(f.oy, dy, w.out, w.y, r_.mirror_y);
+      const VF u0 = place(f.ox, dx, w.in, w.x, a_.mirror_x[0]), u1 = place(f.ox, dx, w.out, w.x, a_.mirror_x[0]);
+      const VF v0 = place(f.oy, dy, w.in, w.y, a_.mirror_y[0]), v1 = place(f.oy, dy, w.out, w.y, a_.mirror_y[0]);
       const VF z0 = f.height(w.in), z1 = f.height(w.out);
       const Clearance c = field_.settings().surface == Surface::triangles
                               ? triangle_clearance(h, u0, v0, u1, v1, z0, z1)
@@ -296,27 +265,27 @@ class AheadWalk {
       alignas(64) float in[N], out[N];
       hn::Store(w.in, df, in), hn::Store(w.out, df, out);
       const std::uint32_t above = lane_bits(hn::Gt(c.in, zero));
-      r_.seen = r_.seen || in[std::countr_zero(open)] > 0 || (above & open & -open) != 0;
-      const VF margin = hn::MulAdd(hn::Set(df, margin_per_cell_), w.out, hn::Set(df, r_.margin));
+      seen_ = seen_ || in[std::countr_zero(open)] > 0 || (above & open & -open) != 0;
+      const VF margin = hn::MulAdd(hn::Set(df, margin_per_cell_), w.out, hn::Set(df, a_.margin[0]));
       const VF least_end = hn::MulSub(f.end, hn::Set(df, 1 - 0x1p-20f), hn::Set(df, static_cast<float>(4 * kSideways)));
       const MF below = hn::And(hn::Lt(hn::Add(c.out, margin), zero), hn::Lt(w.out, least_end));
-      if (r_.seen && (lane_bits(below) & open) != 0) {
+      if (seen_ && (lane_bits(below) & open) != 0) {
         answer = Ahead::hit;
         return true;
       }
       for (; open != 0; open &= open - 1) {
         const int lane = std::countr_zero(open);
         const int along_x = lane & 3, along_y = part * static_cast<int>(kRows) + lane / 4;
-        const Cell cell{(4 * nx + along_x) ^ r_.mirror_x, (4 * ny + along_y) ^ r_.mirror_y};
+        const Cell cell{(4 * nx + along_x) ^ a_.mirror_x[0], (4 * ny + along_y) ^ a_.mirror_y[0]};
         switch (in_doubles(cell, in[lane], out[lane])) {
           case Found::clear:
-            r_.seen = true;
+            seen_ = true;
             break;
           case Found::hit:
             answer = Ahead::hit;
             return true;
           case Found::doubt:
-            if (!r_.seen) return true;
+            if (!seen_) return true;
             doubt_ = std::min(doubt_, in[lane]);
         }
       }
@@ -333,7 +302,7 @@ class AheadWalk {
     const dvec3 &o = local_.origin, &d = local_.direction;
     const double col = cell.col, row = cell.row;
     const auto height = [&](double t) { return o.z + d.z * t; };
-    const double t_far = std::max(std::abs(t_begin_), std::abs(time(r_.end)));
+    const double t_far = std::max(std::abs(t_begin_), std::abs(time(a_.end[0])));
     const double rounding = 4 * rounding_of_clearance(field_, local_, t_far);
     {
       // The ray is within kSideways * (T + 2) cells of this one, and so is the parabola that belongs to it.
@@ -369,9 +338,11 @@ class AheadWalk {
   const HeightField& field_;
   const MaxPyramid& pyramid_;
   const SampleGrid<T>& grid_;
-  OneRay r_;
+  Lanes a_;  // the ray is in lane 0
   GridRay local_;
   double t_begin_, t_per_cell_, t_max_, cell_relief_;
+  bool seen_;
+  float start_x_, start_y_;  // times of lines 0
   float margin_per_cell_, base_, per_step_, offset_;
   float doubt_;
   int root_;
