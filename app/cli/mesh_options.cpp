@@ -85,11 +85,21 @@ MeshInput::MeshInput(const std::string& path, const MeshOptions& options) : opti
   if (!path.empty()) mesh_ = read_mesh(path, options.up == "z" ? MeshUp::z : MeshUp::y);
 }
 
-#ifdef SCARP_EMBREE
-
 namespace {
 
 constexpr std::string_view kMeshAt = "--mesh-at";
+
+}  // namespace
+
+std::string local_mesh_at(const MeshOptions& options, const Places& places) {
+  const TypedPlace typed = typed_place(options.at, kMeshAt);
+  const dvec3 at = places.world(dvec3(typed.x, typed.y, typed.z.value_or(0.0)), kMeshAt);
+  return fmt::format("{:.17g},{:.17g}", at.x, at.y) + (typed.z ? fmt::format(",{:.17g}", at.z) : "");
+}
+
+#ifdef SCARP_EMBREE
+
+namespace {
 
 // The point nearest to the middle of the scene, on a lattice, that has a surface; else the middle at the lowest height.
 dvec3 place_near_middle(const Scene& scene) {

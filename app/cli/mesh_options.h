@@ -51,6 +51,9 @@ class MeshInput {
   TriangleMesh mesh_;
 };
 
+/// --mesh-at as typed, converted to local coordinates: "X,Y[,Z]". Throws Error as Places::world() does.
+std::string local_mesh_at(const MeshOptions& options, const Places& places);
+
 /// The contents of a mesh file, for `scarp info`.
 nlohmann::ordered_json describe_mesh(const std::string& path, const MeshOptions& options);
 std::string mesh_text_of(const nlohmann::ordered_json& info);

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "app/cli/mesh_options.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/output/png.h"
@@ -19,12 +20,17 @@ constexpr const char* kPathFile = "scarp-path.csv";
 
 }  // namespace
 
-std::string render_command(const Opening& opening, const Pose& pose, int width, int height, const std::string& output) {
+std::string render_command(const Opening& opening, const cli::Places& places, const Pose& pose, int width, int height,
+                           const std::string& output) {
   std::vector<std::string_view> left_out = cli::kWindowOptions;
-  // Places of the command are local.
-  if (opening.options->mesh.at.empty()) left_out.emplace_back("--coords");
-  std::string text =
-      fmt::format("scarp render{} -o {} --size {}x{}", opening.command().typed_words(left_out), output, width, height);
+  left_out.emplace_back("--coords");
+  std::string mesh;
+  if (places.frame().coordinates() != Coordinates::local && !opening.options->mesh.at.empty()) {
+    left_out.emplace_back("--mesh-at");
+    mesh = " --mesh-at=" + cli::local_mesh_at(opening.options->mesh, places);
+  }
+  std::string text = fmt::format("scarp render{}{} -o {} --size {}x{}", opening.command().typed_words(left_out), mesh,
+                                 output, width, height);
   if (pose.mode == MoveMode::top) {
     const auto [low, high] = map_corners(pose, width, height);
     return text + fmt::format(" --top --area={:.17g},{:.17g},{:.17g},{:.17g}", low.x, low.y, high.x, high.y);

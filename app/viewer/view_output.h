@@ -4,14 +4,17 @@
 
 #include <string>
 
+#include "app/cli/places.h"
 #include "app/viewer/navigation.h"
 #include "app/viewer/opening.h"
 #include "scarp/render/frame/film.h"
 
 namespace scarp::viewer {
 
-/// The command that writes the picture of `pose`, of this size in pixels, to `output`.
-std::string render_command(const Opening& opening, const Pose& pose, int width, int height, const std::string& output);
+/// The command that writes the picture of `pose`, of this size in pixels, to `output`. All its positions are local;
+/// `places` converts that of a mesh.
+std::string render_command(const Opening& opening, const cli::Places& places, const Pose& pose, int width, int height,
+                           const std::string& output);
 
 /// Saves the picture under the first free name of scarp-view-1.png, scarp-view-2.png, ... and returns it. Throws Error
 /// if it cannot be written.

@@ -532,7 +532,8 @@ class Viewer {
   }
 
   std::string command(std::size_t side, const std::string& output) const {
-    return render_command(*subject_->openings()[side], navigator_->pose(), width_, height_, output);
+    return render_command(*subject_->openings()[side], subject_->stage().places(), navigator_->pose(), width_, height_,
+                          output);
   }
 
   void copy_command() {

@@ -220,15 +220,40 @@ TEST_F(WindowOptions, TwoSidesDifferInOneOption) {
 
 TEST_F(WindowOptions, TheCommandHasWhatWasSet) {
   const Opening opening = with(opening_of(file), {{"--sun", "100,20"}, {"--no-shadows", "true"}, {"--top", "true"}});
+  const cli::Places local({}, Coordinates::local, 1);
   Pose pose;
   pose.mode = MoveMode::top;
   pose.eye = {10, 20, 5}, pose.map_width = 8;
-  EXPECT_EQ(render_command(opening, pose, 80, 40, "a.png"),
+  EXPECT_EQ(render_command(opening, local, pose, 80, 40, "a.png"),
             "scarp render " + file + " --sun=100,20 --no-shadows -o a.png --size 80x40 --top --area=6,18,14,22");
   pose.mode = MoveMode::orbit;
-  EXPECT_TRUE(render_command(opening, pose, 80, 40, "a.png")
+  EXPECT_TRUE(render_command(opening, local, pose, 80, 40, "a.png")
                   .starts_with("scarp render " + file +
                                " --sun=100,20 --no-shadows -o a.png --size 80x40 --eye=10,20,5 --target="));
+}
+
+TEST_F(WindowOptions, TheCommandHasTheMeshWhereItStandsInTheWindow) {
+  // Cells of 2 m, the south-west one at 1000,2000 of the map: its sample at 1001,2001.
+  const std::string map = file + ".asc", mesh = file + ".obj";
+  std::ofstream grid(map);
+  grid << "ncols 3\nnrows 3\nxllcorner 1000\nyllcorner 2000\ncellsize 2\n0 0 0\n0 1 0\n0 0 0\n";
+  grid.close();
+  std::ofstream triangle(mesh);
+  triangle << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  triangle.close();
+  Subject subject(with(opening_of(map), {{"--mesh", mesh}, {"--mesh-at", "1004,2002"}, {"--coords", "map"}}), 64, 48);
+  const auto command = [&] {
+    return render_command(subject.opening(), subject.stage().places(), Pose{}, 80, 40, "a.png");
+  };
+  EXPECT_TRUE(command().starts_with("scarp render " + map + " --mesh=" + mesh + " --mesh-at=3,1 -o a.png"))
+      << command();
+  // Heights of the file become z of the world.
+  subject.change({"--exaggeration", "4"});
+  subject.change({"--mesh-at", "1004,2002,0.5"});
+  EXPECT_NE(command().find(" --mesh-at=3,1,2 "), std::string::npos) << command();
+  EXPECT_EQ(command().find("--coords"), std::string::npos) << command();
+  std::filesystem::remove(map);
+  std::filesystem::remove(mesh);
 }
 
 }  // namespace
