@@ -53,8 +53,9 @@ OpenedInput terrain(const InputOptions& options) {
   if (options.exaggeration.chosen) choose_exaggeration(raster, settings, opened.notes);
   HeightField field = height_field_from(std::move(raster), settings);
   stop_if_interrupted();
-  opened.scene = Scene(scene_heights(std::move(field), march, options.march_settings,
-                                     options.device.empty() ? AnsweredBy::cpu : AnsweredBy::back_end));
+  const bool on_cpu = options.device.empty() || options.moves;
+  opened.scene = Scene(
+      scene_heights(std::move(field), march, options.march_settings, on_cpu ? AnsweredBy::cpu : AnsweredBy::back_end));
   return opened;
 }
 

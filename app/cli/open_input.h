@@ -38,6 +38,8 @@ struct InputOptions {
   std::string march;  ///< empty: the fastest exact one
   MarchSettings march_settings;
   std::string device;
+  /// Whether the camera will move: large rasters are read for any view, and besides `device` the CPU answers rays.
+  bool moves = false;
 };
 
 /// Returns the kind of the inputs, by their names and options. Throws Error or WrongUsage if there is none or several.

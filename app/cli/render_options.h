@@ -33,8 +33,7 @@ struct RenderOptions : InputOptions {
   const PictureFormat* format = nullptr;  ///< of the output
   double fov_deg = ViewSettings{}.fov_deg, error_tolerance = ErrorSettings{}.tolerance;
   bool top = false, no_shadows = false, no_plinth = false, no_tone_curve = false;
-  bool full = false;   ///< reads all samples of large rasters
-  bool moves = false;  ///< the camera will move: large rasters are read for any view
+  bool full = false;  ///< reads all samples of large rasters
   int threads = 0;
   std::vector<std::string> given;  ///< names of the options that were typed
   std::vector<std::string> typed;  ///< and their values

@@ -61,7 +61,7 @@ double side_of(const VoxeliseOptions& options, InputKind kind, const Scene& scen
     throw Error("--within is required: the scene is endless (give XLOW,YLOW,ZLOW,XHIGH,YHIGH,ZHIGH)");
   if (options.voxel > 0) return options.voxel;
   // Voxels stay what they are.
-  if (options.count == 0 && kind == InputKind::voxels) return 1;
+  if (options.count == 0 && kind == InputKind::voxels) return scene.cell_side();
   const WorldBox& box = within ? *within : scene.box();
   const dvec3 size = box.high - box.low;
   // One less, for the lattice does not begin where the box does.
@@ -131,7 +131,7 @@ void add_voxelise(Program& program) {
                          .help = "side of a voxel",
                          .unit = "metres",
                          .range = kAboveZero,
-                         .fallback = "derived from --count; 1 for voxels"});
+                         .fallback = "derived from --count; that of the file for voxels"});
   command.add(&o.count, {.names = "--count",
                          .help = "voxels along the longest side; above 2,048 for terrain in .vdb files",
                          .range = {2, VoxelGrid::kMaxSide},

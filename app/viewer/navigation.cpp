@@ -75,7 +75,7 @@ Navigator::Navigator(const Scene& scene, const Camera& first, double fov_deg, do
   pose_.map_width = first.orthographic() ? first.pixel_width(0) * first.size().x : across_;
   const dvec2 size = first.size();
   const Ray middle = first.ray(size.x / 2, size.y / 2);
-  const Hit hit = scene_.on_device() ? Hit{} : scene_.closest_hit(middle);
+  const Hit hit = scene_.closest_hit(middle);
   pose_.distance = hit ? hit.t : across_;
   if (first.orthographic()) pose_.mode = MoveMode::top;
 }

@@ -55,7 +55,8 @@ bool is_vdb_path(std::string_view path);
 /// Throws Error naming the file: not readable, no grid, none of these kinds, voxels that are not cubes, more than
 /// kMaxVdbSide voxels along an axis, or Scarp was built without OpenVDB.
 VdbVoxels read_vdb(const std::string& path);
-/// Writes a .vdb file with a bool grid, `solid`. Colours are not written.
+/// Writes a .vdb file with a bool grid, `solid`. Colours are not written. Throws Error naming the file: it cannot be
+/// written, the disk is full, or Scarp was built without OpenVDB.
 void write_vdb(const std::string& path, const VdbVoxels& voxels);
 
 }  // namespace scarp

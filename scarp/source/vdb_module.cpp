@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <utility>
 
@@ -236,6 +237,14 @@ std::vector<Grid> grids_of(const std::string& path, VdbVoxels& voxels) {
   return grids;
 }
 
+// openvdb::io::File says nothing of bytes that the disk did not take.
+struct CheckedArchive : openvdb::io::Archive {
+  void save(std::ostream& out, const openvdb::GridCPtrVec& grids) const {
+    constexpr bool kWithOffsets = true;
+    write(out, grids, kWithOffsets);
+  }
+};
+
 template <class Work>
 bool without_throwing(std::string& error, const Work& work) {
   try {
@@ -276,9 +285,10 @@ bool write(const std::string& path, const VdbVoxels& voxels, std::string& error)
         if (from.solid[place.brick] >> place.bit & 1) leaf->setValueOn(static_cast<openvdb::Index>(n), true);
       }
     }
-    openvdb::io::File file(path);
-    file.write({grid});
+    std::ofstream file(path, std::ios::binary);
+    CheckedArchive().save(file, {grid});
     file.close();
+    if (!file) throw Refused("cannot be written; is the disk full?");
   });
 }
 

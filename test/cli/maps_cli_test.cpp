@@ -4,7 +4,6 @@
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
-#include <sys/resource.h>
 
 #include <chrono>
 #include <cmath>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "cli/program.h"
+#include "full_disk.h"
 
 namespace scarp::test {
 namespace {
@@ -435,22 +435,19 @@ TEST_F(MapsCli, InputsAreKept) {
 #endif
 }
 
-// A limit on the size of files stands for the full disk: write() fails in the same way.
 TEST_F(MapsCli, AFullDiskLeavesNothing) {
-  const auto expect_full = [&](const Names& arguments, ::rlim_t bytes, const std::string& name) {
+  const auto expect_full = [&](const Names& arguments, std::uint64_t bytes, const std::string& name) {
     const auto before = scratch_.files();
-    struct rlimit limit {};
-    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &limit), 0);
-    const struct rlimit small { bytes, limit.rlim_max };
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
-    const auto result = Program(arguments).result();
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+    const auto result = [&] {
+      const FullDisk disk(bytes);
+      return Program(arguments).result();
+    }();
     EXPECT_EQ(result.status, 1);
     EXPECT_EQ(lines(result.err), 1) << result.err;
     EXPECT_NE(result.err.find(name + ": cannot be written"), std::string::npos) << result.err;
     EXPECT_EQ(scratch_.files(), before);
   };
-  constexpr ::rlim_t kFew = 600;
+  constexpr std::uint64_t kFew = 600;
   const Names view = on_dem("viewshed") + Names{"--observer", "500105,5000105"};
   const Names ends{"--from", "500105,5000105", "--to", "500285,5000105", "--to", "500285,5000055"};
   const Names line{"--from", "500105,5000105", "--to", "500285,5000105"};
@@ -463,7 +460,7 @@ TEST_F(MapsCli, AFullDiskLeavesNothing) {
   expect_full(on_dem("profile") + line + Names{"-o", path("x.svg")}, kFew, "x.svg");
   expect_full(on_dem("profile") + line + Names{"-o", path("x.png")}, kFew, "x.png");
   // The map is there, its picture is not.
-  constexpr ::rlim_t kSome = 6000;
+  constexpr std::uint64_t kSome = 6000;
   scratch_.write("x.tif", "old");
   expect_full(view + Names{"-o", path("x.tif"), "--preview", path("x.png")}, kSome, "x.png");
   EXPECT_TRUE(open(path("x.tif")));

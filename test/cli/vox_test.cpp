@@ -258,6 +258,18 @@ TEST_F(CliVox, TerrainBecomesVoxels) {
   EXPECT_GT(json["colours_used"], 1);
 }
 
+TEST_F(CliVox, VoxelsKeepTheSideThatTheirFileStates) {
+  const std::string dem = path("dem.tif"), world = path("world.vdb"), copy = path("copy.vdb");
+  ASSERT_EQ(run({"generate", "--size", "9", "--cell", "10", "-o", dem}).status, 0);
+  const auto made = run({"voxelise", dem, "-o", world, "--voxel", "2.5", "--exaggeration", "30"});
+  if (made.err.find("OpenVDB") != std::string::npos) GTEST_SKIP() << made.err;
+  ASSERT_EQ(made.status, 0) << made.err;
+  const auto copied = run({"voxelise", world, "-o", copy});
+  ASSERT_EQ(copied.status, 0) << copied.err;
+  EXPECT_NE(made.out.find(" voxels of 2.5 m, "), std::string::npos) << made.out;
+  EXPECT_EQ(copied.out.substr(copied.out.find(": ")), made.out.substr(made.out.find(": ")));
+}
+
 TEST_F(CliVox, EachLookIsAnother) {
   std::vector<std::string> pictures;
   const std::string overlay = path("overlay.png");

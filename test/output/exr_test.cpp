@@ -2,16 +2,15 @@
 #include "scarp/output/exr.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <limits>
 #include <random>
 #include <vector>
 
+#include "full_disk.h"
 #include "output/read_exr.h"
 #include "scarp/base/error.h"
 
@@ -80,30 +79,23 @@ TEST_F(ExrFile, WhatIsWrittenIsReadBack) {
 TEST_F(ExrFile, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
   const std::vector<float> depth = noise(200 * 200);
   write_exr(path("whole.exr"), {200, 200, {{"Z", depth.data()}}});
-  const auto size = static_cast<rlim_t>(fs::file_size(path("whole.exr")));
+  const auto size = static_cast<std::uint64_t>(fs::file_size(path("whole.exr")));
   write_exr(path("a.exr"), {2, 2, {{"Z", depth.data()}}});
-  struct rlimit before {};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  // A limit on the size of files stands for the full disk: within the header, among the lines, before the last byte;
-  // and for a picture so small that nothing of it reaches the disk before the file is closed.
+  // Full within the header, among the lines, before the last byte; and for a picture so small that nothing of it
+  // reaches the disk before the file is closed.
   for (const auto& [side, limit_of_size] :
-       {std::pair(200, rlim_t{100}), {200, size / 2}, {200, size - 1}, {3, rlim_t{100}}}) {
-    struct rlimit limit = before;
-    limit.rlim_cur = limit_of_size;
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+       {std::pair(200, std::uint64_t{100}), {200, size / 2}, {200, size - 1}, {3, std::uint64_t{100}}}) {
     std::string message;
     try {
+      const test::FullDisk disk(limit_of_size);
       write_exr(path("a.exr"), {side, side, {{"Z", depth.data()}}});
     } catch (const Error& error) {
       message = error.what();
     }
-    ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
     EXPECT_NE(message.find("a.exr"), std::string::npos) << limit_of_size << ": '" << message << "'";
     EXPECT_EQ(test::read_exr(path("a.exr")).width, 2);
     EXPECT_EQ(files(), 2) << "temporary files were left behind";
   }
-  std::signal(SIGXFSZ, old_handler);
 }
 
 TEST_F(ExrFile, WhatCannotBeAPictureIsRefused) {

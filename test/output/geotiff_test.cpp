@@ -4,14 +4,13 @@
 #include <gdal_priv.h>
 #include <gtest/gtest.h>
 #include <ogr_spatialref.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <filesystem>
 #include <random>
 #include <vector>
 
+#include "full_disk.h"
 #include "scarp/base/error.h"
 #include "scarp/output/jpeg.h"
 
@@ -104,18 +103,13 @@ TEST_F(RasterOutput, JpegsAreCloseToThePicture) {
   EXPECT_EQ(files(), 1);
 }
 
-// A limit on the size of files stands for the full disk: write() fails in the same way.
 TEST_F(RasterOutput, AFullDiskIsAnErrorAndLeavesNothing) {
   const auto rgb = noise(600, 600, 3);
-  struct rlimit before {};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
   for (const bool tiff : {true, false}) {
     const std::string name = path(tiff ? "a.tif" : "a.jpg");
-    for (const ::rlim_t limit : {100u, 20000u, 100000u}) {
-      const struct rlimit small { limit, before.rlim_max };
-      ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+    for (const std::uint64_t limit : {100, 20000, 100000}) {
       try {
+        const test::FullDisk disk(limit);
         ReplaceFile file(name);
         const RgbView view{rgb.data(), 600, 600};
         tiff ? write_geotiff(file, name, view, {}, {}) : write_jpeg(file, name, view);
@@ -123,11 +117,9 @@ TEST_F(RasterOutput, AFullDiskIsAnErrorAndLeavesNothing) {
       } catch (const Error& error) {
         EXPECT_EQ(std::string(error.what()).find(name + ": cannot be written"), 0u) << error.what();
       }
-      ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
       EXPECT_EQ(files(), 0);
     }
   }
-  std::signal(SIGXFSZ, old_handler);
 }
 
 }  // namespace

@@ -2,14 +2,13 @@
 #include "scarp/output/png.h"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <filesystem>
 #include <random>
 #include <vector>
 
+#include "full_disk.h"
 #include "output/read_png.h"
 #include "scarp/base/error.h"
 
@@ -54,21 +53,13 @@ TEST_F(Png, WhatIsWrittenIsReadBack) {
 TEST_F(Png, AFullDiskIsAnErrorAndLeavesTheOldPicture) {
   const auto small = noise(2, 2), large = noise(200, 200);
   write_png(path("a.png"), {small.data(), 2, 2});
-  // A limit on the size of files stands for the full disk: write() fails in the same way.
-  struct rlimit before {};
-  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
-  const auto old_handler = std::signal(SIGXFSZ, SIG_IGN);
-  struct rlimit limit = before;
-  limit.rlim_cur = 10000;
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
   std::string message;
   try {
+    const test::FullDisk disk(10000);
     write_png(path("a.png"), {large.data(), 200, 200});
   } catch (const Error& error) {
     message = error.what();
   }
-  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
-  std::signal(SIGXFSZ, old_handler);
   EXPECT_NE(message.find("a.png"), std::string::npos) << "message: '" << message << "'";
   EXPECT_EQ(test::read_png(path("a.png")).width, 2);
   EXPECT_EQ(files(), 1) << "temporary files were left behind";

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "scarp/source/procedural_dem_file.h"
 
-#include <sys/resource.h>
-#include <csignal>
-
+#include "full_disk.h"
 #include "source/files.h"
 
 namespace scarp {
@@ -66,24 +64,18 @@ TEST_F(ProceduralDemFile, LeavesNothingWhenInterrupted) {
 }
 
 TEST_F(ProceduralDemFile, AFullDiskIsOneErrorAndLeavesNothing) {
-  // The limit on a file's length stands for the disk: writes beyond it fail.
-  rlimit before{};
-  getrlimit(RLIMIT_FSIZE, &before);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  for (const rlim_t length : {100u, 100000u, 500000u}) {
-    rlimit small = before;
-    small.rlim_cur = length;
-    ASSERT_EQ(0, setrlimit(RLIMIT_FSIZE, &small));
+  for (const std::uint64_t length : {100, 100000, 500000}) {
     ::testing::internal::CaptureStderr();
-    const std::string text = error_of([&] { write_procedural_dem(path("a.tif"), terrain(700, 530)); });
+    const std::string text = error_of([&] {
+      const test::FullDisk disk(length);
+      write_procedural_dem(path("a.tif"), terrain(700, 530));
+    });
     const std::string printed = ::testing::internal::GetCapturedStderr();
-    setrlimit(RLIMIT_FSIZE, &before);
     expect_says(text, path("a.tif") + ": ");
     expect_says(text, "is the disk full");
     EXPECT_EQ("", printed) << length;
     EXPECT_EQ(0u, files()) << length;
   }
-  std::signal(SIGXFSZ, handler);
 }
 
 TEST_F(ProceduralDemFile, UnwritablePlacesAreRefused) {

@@ -8,10 +8,13 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/viewer/controls.h"
+#include "app/viewer/navigation.h"
+#include "app/viewer/reading.h"
 #include "app/viewer/subject.h"
 #include "app/viewer/view_output.h"
 #include "scarp/base/error.h"
@@ -54,7 +57,8 @@ struct WindowOptions : testing::Test {
     return std::any_of(controls.begin(), controls.end(), [&](const Control& c) { return c.option == option; });
   }
   static std::vector<std::uint8_t> picture_of(const Subject& subject, std::size_t side = 0) {
-    const PictureSide of = subject.sides(64, 48)[side];
+    const dvec2 size = subject.first_camera().size();
+    const PictureSide of = subject.sides(static_cast<int>(size.x), static_cast<int>(size.y))[side];
     PictureSettings settings = of.settings;
     settings.aa = 1;
     return of.render(subject.first_camera(), settings, [](double) { return true; }).image.rgb;
@@ -126,7 +130,7 @@ TEST_F(WindowOptions, ControlsShowTheDeclaredOptions) {
 // Whatever a control does is an option with a value of its range, and the control then shows it.
 TEST_F(WindowOptions, EveryControlChangesItsOption) {
   for (const char* look : {"shaded", "steps", "height", "error", "hillshade"}) {
-    Subject subject(with(opening_of(file), {{"--look", look}}), 64, 48);
+    Subject subject(with(opening_of(file), {{"--look", look}}), 16, 12);
     for (Control moved : subject.controls({})) {
       if (moved.option == "--march" || moved.option == "--look") continue;
       moved.rests = false;
@@ -230,6 +234,26 @@ TEST_F(WindowOptions, TheCommandHasWhatWasSet) {
   EXPECT_TRUE(render_command(opening, local, pose, 80, 40, "a.png")
                   .starts_with("scarp render " + file +
                                " --sun=100,20 --no-shadows -o a.png --size 80x40 --eye=10,20,5 --target="));
+}
+
+// Ground below the eye and under the cursor is asked of the CPU.
+TEST_F(WindowOptions, OnADeviceSingleRaysAreTheCpus) {
+  std::optional<Subject> subject;
+  try {
+    subject.emplace(with(opening_of(file), {{"--device", "auto"}}), 64, 48);
+  } catch (const Error& error) {
+    if (!std::string_view(error.what()).starts_with("Vulkan: no ")) throw;
+    GTEST_SKIP() << error.what();
+  }
+  const Camera camera = subject->first_camera();
+  const Scene& scene = subject->stage().given_scene();
+  Navigator navigator(scene, camera, 50, 64);
+  Pose pose;
+  pose.mode = MoveMode::walk, pose.eye = {32, 32, 100};
+  navigator.set_pose(pose);
+  EXPECT_NEAR(navigator.pose().eye.z, *scene.height(32, 32) + Navigator::kEyeHeight, 1e-9);
+  EXPECT_TRUE(read_under(scene, camera, {32, 24}, ReadingFrames({}), 1));
+  EXPECT_FALSE(picture_of(*subject).empty());
 }
 
 TEST_F(WindowOptions, TheCommandHasTheMeshWhereItStandsInTheWindow) {

@@ -15,6 +15,7 @@
 #include <fstream>
 #include <random>
 
+#include "full_disk.h"
 #include "scarp/base/error.h"
 #include "scarp/scene/file/from_vdb.h"
 #include "scarp/scene/file/to_vdb.h"
@@ -123,6 +124,28 @@ TEST_F(VdbFiles, WhatIsWrittenIsRead) {
   ASSERT_EQ(read.solid_count(), grid.solid_count());
   for_each_voxel(read.box(), [&](const ivec3& v) { ASSERT_EQ(read.solid(v), grid.solid(v)); });
   EXPECT_TRUE(std::any_of(file.tiles.begin(), file.tiles.end(), [](const VdbTile& tile) { return tile.side == 128; }));
+}
+
+TEST_F(VdbFiles, AFullDiskIsAnErrorAndLeavesTheOldFile) {
+  VoxelGrid grid({64, 64, 64}, 1);
+  std::mt19937 random(4);
+  for (int i = 0; i < 5000; ++i) grid.set(ivec3(random() % 64, random() % 64, random() % 64), 0);
+  write_vdb(path("a.vdb"), vdb_of(grid, {0, 0, 0}, 1));
+  const auto size = std::filesystem::file_size(path("a.vdb"));
+  // The last byte is written when the file is closed.
+  for (const std::uintmax_t bytes : {std::uintmax_t{100}, size / 2, size - 1}) {
+    std::string message;
+    try {
+      const FullDisk disk(bytes);
+      write_vdb(path("a.vdb"), vdb_of(grid, {0, 0, 0}, 1));
+    } catch (const Error& error) {
+      message = error.what();
+    }
+    EXPECT_EQ(message, path("a.vdb") + ": cannot be written; is the disk full?") << bytes;
+    EXPECT_EQ(read_vdb(path("a.vdb")).leaves.size(), 512u);
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("")), {}), 1)
+        << "temporary files were left behind";
+  }
 }
 
 TEST_F(VdbFiles, GridsWithoutVoxelsAreRefused) {
