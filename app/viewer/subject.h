@@ -43,7 +43,7 @@ class Subject {
   /// "march max-mip" beside "march naive": the main picture, in the words of compared().
   std::string comparable() const;
 
-  /// The pictures, at this size: that of the input, and that beside it.
+  /// The pictures for a window of this size: that of the input, and that beside it.
   std::vector<PictureSide> sides(int width, int height) const;
   /// The inputs with their options, in the same order.
   std::vector<const Opening*> openings() const;

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "app/cli/progress.h"
+#include "app/viewer/film_size.h"
 #include "app/viewer/kept_settings.h"
 #include "app/viewer/keys.h"
 #include "app/viewer/navigation.h"
@@ -55,9 +56,9 @@ class Viewer {
       width_ = played_->width, height_ = played_->height;
     } else {
       const KeptSettings kept = read_settings(settings_file());
-      const bool typed = !options_.size.empty();
-      width_ = typed ? options_.picture.width : kept.width;
-      height_ = typed ? options_.picture.height : kept.height;
+      const bool typed = !options_.size.empty() || !options_.look_options.lowres.empty();
+      const FilmSize size = typed ? window_size(options_.picture) : FilmSize{kept.width, kept.height};
+      width_ = size.width, height_ = size.height;
       shows_panel_ = kept.panel;
     }
     show_first_view(std::make_unique<Subject>(std::move(opening), width_, height_));
@@ -433,11 +434,15 @@ class Viewer {
 
   void show_sides() {
     if (!shown_) return;
-    const Image& first = shown_->sides.front().image;
-    if (shown_->sides.size() > 1) {
-      presenter_->set_image(split_image(first, shown_->sides[1].image, line_.column(first.width)));
+    std::vector<Image> images;
+    for (const Picture& side : shown_->sides) {
+      // Large pixels have sharp edges; a picture beside them has another size.
+      images.push_back(shown_->large_pixels ? stretched(side.image, width_, height_) : side.image);
+    }
+    if (images.size() > 1) {
+      presenter_->set_image(split_image(images[0], images[1], line_.column(images[0].width)));
     } else {
-      presenter_->set_image(first);
+      presenter_->set_image(images[0]);
     }
   }
 

@@ -3,6 +3,8 @@
 // which P saves is, byte for byte, what `scarp render` makes of the command that it prints.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -50,6 +52,45 @@ TEST_F(Window, SavesWhatRenderMakesOfItsSettings) {
     fs::remove(folder_ / "scarp-view-1.png");
   }
   EXPECT_NE(output_.find("--sun="), std::string::npos) << output_;
+}
+
+TEST_F(Window, SavesWhatRenderMakesOfLargePixels) {
+  const std::string kArguments[] = {"dem.tif --look comanche", "dem.tif --look comanche --pixel-size 7",
+                                    "dem.tif --look height --lowres 30x20 --march fixed-step --shells"};
+  for (const std::string& arguments : kArguments) {
+    ASSERT_EQ(view(std::string(kDrag) + kSave, arguments + " --screenshot window.png"), 0) << output_;
+    expect_saved_again(1);
+    // The window shows the saved picture, stretched from whole large pixels to 320 x 240, with sharp edges.
+    const Rgb window = read_png((folder_ / "window.png").string());
+    const Rgb saved = read_png((folder_ / "scarp-view-1.png").string());
+    ASSERT_TRUE(window.width == 320 && window.height == 240);
+    EXPECT_LE(std::abs(saved.width - 320), 3) << arguments;
+    EXPECT_LE(std::abs(saved.height - 240), 3) << arguments;
+    int others = 0;
+    for (int y = 0; y < 240; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        const std::uint8_t* nearest = saved.pixel((2 * x + 1) * saved.width / 640, (2 * y + 1) * saved.height / 480);
+        others += !std::equal(nearest, nearest + 3, window.pixel(x, y));
+      }
+    }
+    EXPECT_EQ(others, 0) << arguments;
+    fs::remove(folder_ / "scarp-view-1.png");
+  }
+}
+
+TEST_F(Window, SavesLargePixelsAndTheLookBeside) {
+  ASSERT_EQ(view(std::string(kDrag) + "0.7 compare look steps\n" + kSave, "dem.tif --look comanche"), 0) << output_;
+  expect_saved_again(1);
+  expect_saved_again(2);
+}
+
+TEST_F(Window, ALowResolutionSetsTheSizeOfTheWindow) {
+  ASSERT_EQ(use("dem.tif --look comanche --lowres 100x70 --pixel-size 4 --record events",
+                "xdotool key c sleep 0.1 key Escape"),
+            0)
+      << output_;
+  EXPECT_TRUE(bytes_of("events").starts_with("scarp-view 400x280\n"));
+  EXPECT_NE(output_.find(" --pixel-size=4 -o picture.png --lowres 100x70 "), std::string::npos) << output_;
 }
 
 TEST_F(Window, SavesBothSides) {
