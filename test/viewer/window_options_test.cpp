@@ -88,6 +88,13 @@ TEST_F(WindowOptions, SaysWhatIsWrong) {
   EXPECT_THROW(changed(plain, {"--sun", "high"}), Error);
 }
 
+TEST_F(WindowOptions, ScreenshotsHaveNamesOfPng) {
+  const Opening played = with(opening_of(file), {{"--play", "events"}});
+  EXPECT_NO_THROW(changed(played, {"--screenshot", "window.PNG"}));
+  for (const char* name : {"window.bmp", "window", "png"})
+    EXPECT_THROW(changed(played, {"--screenshot", name}), Error) << name;
+}
+
 TEST_F(WindowOptions, ControlsShowTheDeclaredOptions) {
   Subject subject(opening_of(file), 64, 48);
   std::vector<Control> controls = subject.controls({});

@@ -169,7 +169,12 @@ TEST_F(Window, SaysWhatIsWrong) {
   EXPECT_NE(output_.find("'events', line 2: expected"), std::string::npos) << output_;
   EXPECT_EQ(view("", "dem.tif --window-device nosuch"), 1);
   EXPECT_NE(output_.find("--window-device 'nosuch': no such device"), std::string::npos) << output_;
-  EXPECT_EQ(view("", "dem.tif --screenshot /dev/full"), 1) << output_;
+  fs::create_symlink("/dev/full", folder_ / "full.png");
+  EXPECT_EQ(view("", "dem.tif --screenshot full.png"), 1) << output_;
+  EXPECT_EQ(view("", "dem.tif --screenshot window.bmp"), 1) << output_;
+  EXPECT_NE(output_.find("--screenshot 'window.bmp': is written as PNG (let the name end in .png)"), std::string::npos)
+      << output_;
+  EXPECT_FALSE(fs::exists(folder_ / "window.bmp"));
 }
 
 TEST_F(Window, TakesRealPressesAndDrags) {
