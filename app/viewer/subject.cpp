@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/viewer/subject.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -80,6 +82,10 @@ Subject::Side Subject::side_of(Opening opening, const Side& like, const Side* or
 }
 
 bool Subject::change(const OptionChange& change) {
+  if (std::find(cli::kWindowOptions.begin(), cli::kWindowOptions.end(), change.option) != cli::kWindowOptions.end()) {
+    throw cli::WrongUsage(
+        fmt::format("{}: takes effect only when the window opens (mouse and keys move its view)", change.option));
+  }
   Side main = side_of(changed(main_.opening, change), main_, nullptr);
   std::optional<Side> other = beside(main);
   const bool again = main.opened != main_.opened;

@@ -29,7 +29,7 @@ class Subject {
   const std::string& device() const { return device_; }
 
   /// Changes an option. Returns whether the input was opened again: then stage() is another one. If it throws Error,
-  /// nothing has changed.
+  /// nothing has changed: also for options of the window itself, kWindowOptions.
   bool change(const OptionChange& change);
 
   /// Opens the input again, as after a change of its file. If it throws Error, nothing has changed.

@@ -40,6 +40,7 @@ TEST_F(Recordings, AreReadAsWritten) {
   recording.events.push_back({.seconds = 3, .kind = WindowEvent::Kind::compare});
   write_recording(file, recording);
   const Recording read = read_recording(file);
+  EXPECT_EQ(read.events.back().line, 8);
   EXPECT_EQ(read.width, 640);
   EXPECT_EQ(read.height, 480);
   ASSERT_EQ(read.events.size(), recording.events.size());
@@ -61,6 +62,8 @@ TEST_F(Recordings, TellWhatIsWrong) {
       ", line 2: expected 'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS', 'key CODE DOWN MODIFIERS', 'option "
       "--NAME [VALUE]' or 'compare [march NAME | look NAME]' after the time";
   EXPECT_EQ(why_not("scarp-view 9x9\n1 option water\n"), kWords);
+  EXPECT_EQ(why_not("scarp-view 9x9\n1 compare foo bar\n"), kWords);
+  EXPECT_EQ(why_not("scarp-view 9x9\n1 compare march\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 jump\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 move 3\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 key 3 7 0\n"), kWords);

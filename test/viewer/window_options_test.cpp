@@ -86,6 +86,11 @@ TEST_F(WindowOptions, SaysWhatIsWrong) {
   EXPECT_THROW(changed(plain, {"--samples", "-1"}), cli::WrongUsage);
   EXPECT_THROW(changed(plain, {"--waves", "0.1"}), Error);  // there is no water
   EXPECT_THROW(changed(plain, {"--sun", "high"}), Error);
+  // What would change nothing in the window.
+  Subject subject(plain, 64, 48);
+  for (const OptionChange& change :
+       {OptionChange{"--top", "true"}, {"--fov", "30"}, {"--size", "80x60"}, {"--eye", {}}})
+    EXPECT_THROW(subject.change(change), cli::WrongUsage) << change.option;
 }
 
 TEST_F(WindowOptions, ScreenshotsHaveNamesOfPng) {
