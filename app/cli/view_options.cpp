@@ -22,7 +22,7 @@ Command& declare_view(Program& program, ViewOptions& o) {
                 .excludes = {"--record"}});
   add(&o.screenshot, {.names = "--screenshot",
                       .value = "FILE",
-                      .help = "picture of the window, when the last view of --play is complete",
+                      .help = "PNG picture of the window, when the last view of --play is complete",
                       .files = "png",
                       .rules = {needs("--play FILE", [&o] { return !o.play.empty(); })}});
   add(&o.timings, {.names = "--timings",

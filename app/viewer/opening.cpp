@@ -9,6 +9,8 @@
 
 #include "app/cli/kept_inputs.h"
 #include "app/cli/render_settle.h"
+#include "scarp/base/error.h"
+#include "scarp/base/file_name.h"
 
 namespace scarp::viewer {
 namespace {
@@ -60,6 +62,11 @@ void keep_inputs(const cli::ViewOptions& options) {
   }
 }
 
+void require_png(const std::string& screenshot) {
+  if (!screenshot.empty() && extension_of(screenshot) != ".png")
+    throw Error(fmt::format("--screenshot '{}': is written as PNG (let the name end in .png)", screenshot));
+}
+
 }  // namespace
 
 Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cli::ViewOptions> options,
@@ -72,6 +79,7 @@ Opening settle_opening(std::shared_ptr<cli::Program> program, std::shared_ptr<cl
   command.require_effect(use_of(kind, o));
   const ViewSettings view = cli::settle_picture(o);
   cli::require_places(o);
+  require_png(o.screenshot);
   keep_inputs(o);
   std::vector<GivenOption> given;
   for (const cli::Command::Typed& one : command.all_typed()) given.push_back({one.option->name, one.values});

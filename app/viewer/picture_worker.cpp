@@ -28,6 +28,14 @@ class Watch {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+WorkedPicture begun(const PictureRequest& request, std::uint64_t generation) {
+  WorkedPicture worked;
+  worked.generation = generation;
+  worked.large_pixels = std::any_of(request.sides.begin(), request.sides.end(),
+                                    [](const PictureSide& side) { return side.settings.look == Look::comanche; });
+  return worked;
+}
+
 // Renders into `worked`, or sets its error. Returns false if it was interrupted.
 template <class Render>
 bool attempt(WorkedPicture& worked, const Render& render) {
@@ -147,32 +155,31 @@ bool PictureWorker::deliver(WorkedPicture worked) {
 
 // Returns whether the next stage is wanted, as the two below.
 bool PictureWorker::render_moving(const PictureRequest& request, std::uint64_t generation) {
-  const PictureSettings& asked = request.sides.front().settings;
-  const int height = rows_for(pixels_per_second_, asked.width, asked.height);
-  const int width =
-      std::max(1, static_cast<int>(std::lround(static_cast<double>(asked.width) * height / asked.height)));
-  WorkedPicture worked;
-  worked.generation = generation;
+  std::int64_t most_pixels = 0;  // of one side
+  WorkedPicture worked = begun(request, generation);
   const Watch watch;
   const bool done = attempt(worked, [&] {
-    const Camera camera = request.camera(width, height);
     for (const PictureSide& side : request.sides) {
       PictureSettings settings = side.settings;
-      settings.width = width, settings.height = height;
+      const int rows = rows_for(pixels_per_second_, settings.width, settings.height);
+      settings.width =
+          std::max(1, static_cast<int>(std::lround(static_cast<double>(settings.width) * rows / settings.height)));
+      settings.height = rows;
       settings.aa = 1, settings.samples = 0;
+      most_pixels = std::max(most_pixels, std::int64_t{settings.width} * settings.height);
       // What is under way while moving is shown; only the end of the window ends it.
-      worked.sides.push_back(side.render(camera, settings, [&](double) { return !stopped(); }));
+      worked.sides.push_back(
+          side.render(request.camera(settings.width, settings.height), settings, [&](double) { return !stopped(); }));
     }
   });
   if (!done) return false;
   worked.seconds = watch.seconds();
   if (worked.error.empty())
-    pixels_per_second_ = static_cast<double>(width) * height / std::max(worked.seconds, kLeastSeconds);
+    pixels_per_second_ = static_cast<double>(most_pixels) / std::max(worked.seconds, kLeastSeconds);
   return deliver(std::move(worked)) && !outdated(generation);
 }
 
 bool PictureWorker::render_at_rest(const PictureRequest& request, std::uint64_t generation) {
-  const PictureSettings& asked = request.sides.front().settings;
   std::vector<std::vector<PictureSettings>> stages;
   std::size_t count = 1;
   for (const PictureSide& side : request.sides) {
@@ -181,12 +188,10 @@ bool PictureWorker::render_at_rest(const PictureRequest& request, std::uint64_t 
   }
   std::vector<Picture> before;
   for (std::size_t i = 0; i < count; ++i) {
-    WorkedPicture worked;
-    worked.generation = generation;
+    WorkedPicture worked = begun(request, generation);
     worked.stage = i + 1 == count ? PictureStage::converged : i == 0 ? PictureStage::full : PictureStage::refining;
     const Watch watch;
     const bool done = attempt(worked, [&] {
-      const Camera camera = request.camera(asked.width, asked.height);
       for (std::size_t s = 0; s < stages.size(); ++s) {
         // All sides are complete at the last stage.
         const std::size_t last = stages[s].size() - 1, left = count - 1 - i;
@@ -196,8 +201,8 @@ bool PictureWorker::render_at_rest(const PictureRequest& request, std::uint64_t 
           continue;
         }
         if (s == 0) worked.aa = settings.aa, worked.samples = settings.samples;
-        worked.sides.push_back(
-            request.sides[s].render(camera, settings, [&](double) { return !outdated(generation); }));
+        worked.sides.push_back(request.sides[s].render(request.camera(settings.width, settings.height), settings,
+                                                       [&](double) { return !outdated(generation); }));
       }
     });
     worked.seconds = watch.seconds();
@@ -208,12 +213,11 @@ bool PictureWorker::render_at_rest(const PictureRequest& request, std::uint64_t 
 }
 
 void PictureWorker::judge(const PictureRequest& request, std::uint64_t generation) {
-  const PictureSettings& asked = request.sides.front().settings;
   WorkedVerdict verdict;
   verdict.generation = generation;
   try {
     for (const PictureSide& side : request.sides) {
-      verdict.sides.push_back(side.judge ? side.judge(request.camera(asked.width, asked.height),
+      verdict.sides.push_back(side.judge ? side.judge(request.camera(side.settings.width, side.settings.height),
                                                       [&](double) { return !outdated(generation); })
                                          : std::nullopt);
     }

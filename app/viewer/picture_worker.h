@@ -40,14 +40,15 @@ struct PictureSide {
 
 struct PictureRequest {
   std::function<Camera(int width, int height)> camera;
-  std::vector<PictureSide> sides;  ///< at least one; all have the same size
+  std::vector<PictureSide> sides;  ///< at least one
   bool moving = false;             ///< more requests will follow soon: no other stage than the first is begun
 };
 
 struct WorkedPicture {
   std::vector<Picture> sides{};
   PictureStage stage = PictureStage::moving;
-  int aa = 1, samples = 0;  ///< of this stage
+  int aa = 1, samples = 0;    ///< of this stage
+  bool large_pixels = false;  ///< one side at least has the look comanche
   std::uint64_t generation = 0;
   double seconds = 0;
   std::string error{};  ///< why there is no picture

@@ -20,6 +20,14 @@ constexpr std::array<std::string_view, 6> kKinds = {"move", "button", "key", "wh
 constexpr int kMostSide = 16384;
 constexpr double kMostPlace = 1e6;  // pixels or steps: no mouse is farther away
 
+// "march NAME", "look NAME", or nothing.
+bool is_comparison(const std::string& text) {
+  std::istringstream words(text);
+  std::string what, name, more;
+  words >> what >> name >> more;
+  return what.empty() || ((what == "march" || what == "look") && !name.empty() && more.empty());
+}
+
 }  // namespace
 
 Recording read_recording(const std::string& file) {
@@ -45,6 +53,7 @@ Recording read_recording(const std::string& file) {
     }
     if (line.empty()) continue;
     WindowEvent event;
+    event.line = number;
     std::string kind;
     if (!(words >> event.seconds >> kind) || !(event.seconds >= before))
       fail("a time no earlier than the last, and an event");
@@ -60,7 +69,7 @@ Recording read_recording(const std::string& file) {
     } else if (kind == "option" || kind == "compare") {
       event.kind = kind == "option" ? WindowEvent::Kind::option : WindowEvent::Kind::compare;
       std::getline(words >> std::ws, event.text);
-      good = kind == "compare" || event.text.starts_with("--");
+      good = kind == "option" ? event.text.starts_with("--") : is_comparison(event.text);
     } else {
       good = false;
     }

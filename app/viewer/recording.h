@@ -18,6 +18,7 @@ struct WindowEvent {
   int modifiers = 0;    ///< GLFW's bits
   double x = 0, y = 0;  ///< move: the cursor, in pixels; wheel: y is the steps
   std::string text{};   ///< option: "--water 120", or "--water" where it is left out; compare: "march naive"
+  int line = 0;         ///< of the file that it was read from
 };
 
 struct Recording {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 namespace scarp::viewer {
 namespace {
@@ -10,6 +12,18 @@ namespace {
 constexpr double kReach = 6;  // pixels beside the line at which it is taken
 
 }  // namespace
+
+Image stretched(const Image& image, int width, int height) {
+  Image to(width, height);
+  for (int y = 0; y < height; ++y) {
+    const int from_y = static_cast<int>((std::int64_t{2} * y + 1) * image.height / (std::int64_t{2} * height));
+    for (int x = 0; x < width; ++x) {
+      const int from_x = static_cast<int>((std::int64_t{2} * x + 1) * image.width / (std::int64_t{2} * width));
+      std::copy_n(image.pixel(from_x, from_y), 3, to.pixel(x, y));
+    }
+  }
+  return to;
+}
 
 Image split_image(const Image& left, const Image& right, int column) {
   Image image = right;

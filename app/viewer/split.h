@@ -7,6 +7,9 @@
 
 namespace scarp::viewer {
 
+/// The nearest pixels of an image, in another size.
+Image stretched(const Image& image, int width, int height);
+
 /// The left picture up to a column, and the right one from there on. Both have the same size.
 Image split_image(const Image& left, const Image& right, int column);
 

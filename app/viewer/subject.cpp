@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "app/viewer/subject.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "app/cli/device_option.h"
 #include "app/cli/look_options.h"
+#include "app/viewer/film_size.h"
 #include "scarp/base/error.h"
 #include "scarp/march/function/function_table.h"
 #include "scarp/march/height/height_table.h"
@@ -53,7 +56,8 @@ Subject::Subject(Opening opening, int width, int height)
 
 Subject::Side Subject::open(Opening opening) const {
   auto opened = std::make_shared<Opened>(opening);
-  opened->stage.picture().width = width_, opened->stage.picture().height = height_;
+  const FilmSize size = film_size(opened->stage.picture(), width_, height_);
+  opened->stage.picture().width = size.width, opened->stage.picture().height = size.height;
   opened->stage.open();
   auto options = std::make_shared<const cli::RenderOptions>(opened->stage.options());
   // What the input itself sets, for the controls.
@@ -78,6 +82,10 @@ Subject::Side Subject::side_of(Opening opening, const Side& like, const Side* or
 }
 
 bool Subject::change(const OptionChange& change) {
+  if (std::find(cli::kWindowOptions.begin(), cli::kWindowOptions.end(), change.option) != cli::kWindowOptions.end()) {
+    throw cli::WrongUsage(
+        fmt::format("{}: takes effect only when the window opens (mouse and keys move its view)", change.option));
+  }
   Side main = side_of(changed(main_.opening, change), main_, nullptr);
   std::optional<Side> other = beside(main);
   const bool again = main.opened != main_.opened;
@@ -129,7 +137,8 @@ void Subject::compare(const std::string& with) {
 PictureSide Subject::picture_side(const Side& side, int width, int height) {
   PictureSide picture;
   picture.settings = side.options->picture;
-  picture.settings.width = width, picture.settings.height = height;
+  const FilmSize size = film_size(picture.settings, width, height);
+  picture.settings.width = size.width, picture.settings.height = size.height;
   picture.render = [opened = side.opened, options = side.options](const Camera& seen, const PictureSettings& asked,
                                                                   const Progress& progress) {
     Camera camera = seen;

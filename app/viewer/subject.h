@@ -29,7 +29,7 @@ class Subject {
   const std::string& device() const { return device_; }
 
   /// Changes an option. Returns whether the input was opened again: then stage() is another one. If it throws Error,
-  /// nothing has changed.
+  /// nothing has changed: also for options of the window itself, kWindowOptions.
   bool change(const OptionChange& change);
 
   /// Opens the input again, as after a change of its file. If it throws Error, nothing has changed.
@@ -43,7 +43,7 @@ class Subject {
   /// "march max-mip" beside "march naive": the main picture, in the words of compared().
   std::string comparable() const;
 
-  /// The pictures, at this size: that of the input, and that beside it.
+  /// The pictures for a window of this size: that of the input, and that beside it.
   std::vector<PictureSide> sides(int width, int height) const;
   /// The inputs with their options, in the same order.
   std::vector<const Opening*> openings() const;

@@ -9,6 +9,7 @@
 #include <iterator>
 
 #include "app/cli/mesh_options.h"
+#include "app/viewer/film_size.h"
 #include "scarp/base/error.h"
 #include "scarp/base/replace_file.h"
 #include "scarp/output/png.h"
@@ -29,10 +30,14 @@ std::string render_command(const Opening& opening, const cli::Places& places, co
     left_out.emplace_back("--mesh-at");
     mesh = " --mesh-at=" + cli::local_mesh_at(opening.options->mesh, places);
   }
-  std::string text = fmt::format("scarp render{}{} -o {} --size {}x{}", opening.command().typed_words(left_out), mesh,
-                                 output, width, height);
+  const PictureSettings& picture = opening.options->picture;
+  const bool large_pixels = picture.look == Look::comanche;
+  if (large_pixels) left_out.emplace_back("--lowres");
+  const FilmSize size = film_size(picture, width, height);
+  std::string text = fmt::format("scarp render{}{} -o {} {} {}x{}", opening.command().typed_words(left_out), mesh,
+                                 output, large_pixels ? "--lowres" : "--size", size.width, size.height);
   if (pose.mode == MoveMode::top) {
-    const auto [low, high] = map_corners(pose, width, height);
+    const auto [low, high] = map_corners(pose, size.width, size.height);
     return text + fmt::format(" --top --area={:.17g},{:.17g},{:.17g},{:.17g}", low.x, low.y, high.x, high.y);
   }
   const dvec3 target = pose.eye + forward_of(pose);

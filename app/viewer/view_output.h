@@ -11,8 +11,8 @@
 
 namespace scarp::viewer {
 
-/// The command that writes the picture of `pose`, of this size in pixels, to `output`. All its positions are local;
-/// `places` converts that of a mesh.
+/// The command that writes the picture of `pose` in a window of this size in pixels to `output`. All its positions are
+/// local; `places` converts that of a mesh.
 std::string render_command(const Opening& opening, const cli::Places& places, const Pose& pose, int width, int height,
                            const std::string& output);
 

@@ -17,6 +17,7 @@
 #include <utility>
 
 #include "app/cli/progress.h"
+#include "app/viewer/film_size.h"
 #include "app/viewer/kept_settings.h"
 #include "app/viewer/keys.h"
 #include "app/viewer/navigation.h"
@@ -55,9 +56,9 @@ class Viewer {
       width_ = played_->width, height_ = played_->height;
     } else {
       const KeptSettings kept = read_settings(settings_file());
-      const bool typed = !options_.size.empty();
-      width_ = typed ? options_.picture.width : kept.width;
-      height_ = typed ? options_.picture.height : kept.height;
+      const bool typed = !options_.size.empty() || !options_.look_options.lowres.empty();
+      const FilmSize size = typed ? window_size(options_.picture) : FilmSize{kept.width, kept.height};
+      width_ = size.width, height_ = size.height;
       shows_panel_ = kept.panel;
     }
     show_first_view(std::make_unique<Subject>(std::move(opening), width_, height_));
@@ -150,7 +151,7 @@ class Viewer {
       }
       panel_.message.clear();
     } catch (const std::exception& error) {
-      fail(error.what());
+      fail(error.what(), played_line_);
     }
     note_change();
   }
@@ -159,7 +160,7 @@ class Viewer {
     try {
       subject_->compare(with);
     } catch (const std::exception& error) {
-      fail(error.what());
+      fail(error.what(), played_line_);
     }
     note_change();
   }
@@ -329,6 +330,7 @@ class Viewer {
         return copy_command();
       case WindowAction::save:
         saves_ = true;
+        save_line_ = played_line_;
         return;
       case WindowAction::panel:
         shows_panel_ = !shows_panel_;
@@ -413,7 +415,7 @@ class Viewer {
   void show(WorkedPicture worked) {
     redraws_ = kRedraws;
     if (!worked.error.empty()) {
-      fail(worked.error);
+      fail(worked.error, 0);
       render_failed_ = worked.generation == generation_;
       return;
     }
@@ -433,11 +435,15 @@ class Viewer {
 
   void show_sides() {
     if (!shown_) return;
-    const Image& first = shown_->sides.front().image;
-    if (shown_->sides.size() > 1) {
-      presenter_->set_image(split_image(first, shown_->sides[1].image, line_.column(first.width)));
+    std::vector<Image> images;
+    for (const Picture& side : shown_->sides) {
+      // Large pixels have sharp edges; a picture beside them has another size.
+      images.push_back(shown_->large_pixels ? stretched(side.image, width_, height_) : side.image);
+    }
+    if (images.size() > 1) {
+      presenter_->set_image(split_image(images[0], images[1], line_.column(images[0].width)));
     } else {
-      presenter_->set_image(first);
+      presenter_->set_image(images[0]);
     }
   }
 
@@ -484,7 +490,7 @@ class Viewer {
   void act(const PanelActions& actions) {
     if (actions.mode) navigator_->set_mode(*actions.mode);
     if (actions.copy) copy_command();
-    if (actions.save) saves_ = true;
+    if (actions.save) saves_ = true, save_line_ = 0;
     if (saves_ && is_complete()) save_picture();
     if (actions.change) change(*actions.change);
     if (actions.compare) compare(*actions.compare);
@@ -500,12 +506,14 @@ class Viewer {
       panel_.message.clear();
       glfwSetWindowTitle(glfw_->get(), title().c_str());
     } catch (const std::exception& error) {
-      fail(error.what());
+      fail(error.what(), played_line_);
     }
   }
 
-  // Errors are seen even if the panel was hidden; the last good picture stays.
-  void fail(const std::string& message) {
+  // Errors are seen even if the panel was hidden; the last good picture stays. `line` is that of a recording which
+  // asked for what failed; 0: none did. Recordings end there.
+  void fail(const std::string& message, int line) {
+    if (line > 0) throw Error(fmt::format("'{}', line {}: {}", options_.play, line, message));
     panel_.message = message;
     shows_panel_ = true;
     redraws_ = kRedraws;
@@ -527,7 +535,7 @@ class Viewer {
       panel_.message = names + (shown_->sides.size() > 1 ? " are saved" : " is saved");
       std::fflush(stdout);
     } catch (const Error& error) {
-      fail(error.what());
+      fail(error.what(), save_line_);
     }
   }
 
@@ -550,7 +558,7 @@ class Viewer {
     try {
       panel_.message = "the view is in " + add_to_path(navigator_->pose());
     } catch (const Error& error) {
-      fail(error.what());
+      fail(error.what(), played_line_);
     }
   }
 
@@ -587,7 +595,11 @@ class Viewer {
     ImGuiIO& io = ImGui::GetIO();
     if (event.kind == WindowEvent::Kind::button && event.code >= 0 && event.code < IM_ARRAYSIZE(io.MouseDown))
       io.MouseDown[event.code] = event.down;
+    // A drag or a click may have been in vain when it was recorded.
+    const bool may_fail = event.kind == WindowEvent::Kind::move || event.kind == WindowEvent::Kind::button;
+    played_line_ = may_fail ? 0 : event.line;
     take(event);
+    played_line_ = 0;
   }
 
   const cli::ViewOptions options_;  // of the window itself
@@ -612,7 +624,8 @@ class Viewer {
   double play_seconds_ = 0, changed_at_ = 0, drawn_at_ = -1, last_click_ = -1, way_ = 0;
   bool asked_rest_ = false, settings_changed_ = true, saves_ = false, shows_panel_ = true;
   bool render_failed_ = false;
-  bool unpresented_ = false;  // shown_ is newer than what the window shows
+  int played_line_ = 0, save_line_ = 0;  // of the recording: of the event that is being taken, of the last P
+  bool unpresented_ = false;             // shown_ is newer than what the window shows
   int redraws_ = kRedraws, dragging_ = -1;
   Dragged dragged_ = Dragged::view;
   SplitLine line_;

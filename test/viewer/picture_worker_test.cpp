@@ -98,6 +98,28 @@ TEST_F(Worker, GoesThroughAllStages) {
   EXPECT_GE(ready_, 1);
 }
 
+TEST_F(Worker, SidesHaveTheirOwnSizes) {
+  const auto worker = make();
+  PictureRequest both = request(false, 1, 0);
+  std::vector<dvec2> cameras;  // of the worker's thread, until it has converged
+  PictureSettings large;
+  large.look = Look::comanche;
+  large.width = 40, large.height = 30, large.aa = 1;
+  both.sides.push_back({large, [&](const Camera& camera, const PictureSettings& asked, const Progress&) {
+                          cameras.push_back(camera.size());
+                          return Picture{Image(asked.width, asked.height)};
+                        }});
+  worker->request(std::move(both));
+  const auto last = converged(*worker);
+  ASSERT_TRUE(last);
+  EXPECT_TRUE(last->large_pixels);
+  EXPECT_EQ(last->sides[0].image.width, 400);
+  EXPECT_EQ(last->sides[1].image.width, 40);
+  EXPECT_EQ(last->sides[1].image.height, 30);
+  ASSERT_EQ(cameras.size(), 2u);
+  for (const dvec2& size : cameras) EXPECT_TRUE(size.x == 40 && size.y == 30) << size.x << ' ' << size.y;
+}
+
 TEST_F(Worker, SkipsAStageThatIsTheSame) {
   const auto worker = make();
   worker->request(request(false, 1, 0));

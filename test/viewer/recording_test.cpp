@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string>
 
 #include "scarp/base/error.h"
 
@@ -40,6 +43,7 @@ TEST_F(Recordings, AreReadAsWritten) {
   recording.events.push_back({.seconds = 3, .kind = WindowEvent::Kind::compare});
   write_recording(file, recording);
   const Recording read = read_recording(file);
+  EXPECT_EQ(read.events.back().line, 8);
   EXPECT_EQ(read.width, 640);
   EXPECT_EQ(read.height, 480);
   ASSERT_EQ(read.events.size(), recording.events.size());
@@ -48,6 +52,20 @@ TEST_F(Recordings, AreReadAsWritten) {
     EXPECT_TRUE(a.seconds == b.seconds && a.kind == b.kind && a.code == b.code && a.down == b.down &&
                 a.modifiers == b.modifiers && a.x == b.x && a.y == b.y && a.text == b.text)
         << i;
+  }
+}
+
+TEST_F(Recordings, TheExampleOfThePageIsOne) {
+  std::ifstream in(std::filesystem::path(SCARP_SOURCE_DIR) / "doc" / "user" / "viewer.md");
+  const std::string page{std::istreambuf_iterator<char>(in), {}}, fence = "\n```\n";
+  const std::size_t begin = page.find(fence, page.find("## Recordings")) + fence.size();
+  EXPECT_EQ(why_not(page.substr(begin, page.find(fence, begin) + 1 - begin)), "");
+  const Recording example = read_recording(file);
+  EXPECT_GT(example.width, 1);
+  for (int kind = 0; kind <= static_cast<int>(WindowEvent::Kind::compare); ++kind) {
+    EXPECT_TRUE(std::any_of(example.events.begin(), example.events.end(), [&](const WindowEvent& event) {
+      return event.kind == static_cast<WindowEvent::Kind>(kind);
+    })) << kind;
   }
 }
 
@@ -61,6 +79,8 @@ TEST_F(Recordings, TellWhatIsWrong) {
       ", line 2: expected 'move X Y', 'wheel X Y', 'button CODE DOWN MODIFIERS', 'key CODE DOWN MODIFIERS', 'option "
       "--NAME [VALUE]' or 'compare [march NAME | look NAME]' after the time";
   EXPECT_EQ(why_not("scarp-view 9x9\n1 option water\n"), kWords);
+  EXPECT_EQ(why_not("scarp-view 9x9\n1 compare foo bar\n"), kWords);
+  EXPECT_EQ(why_not("scarp-view 9x9\n1 compare march\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 jump\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 move 3\n"), kWords);
   EXPECT_EQ(why_not("scarp-view 9x9\n1 key 3 7 0\n"), kWords);

@@ -27,6 +27,21 @@ TEST(Split, ShowsEachPictureOnItsSide) {
   }
 }
 
+TEST(Split, StretchesByNearestPixels) {
+  Image image(3, 2);
+  for (int i = 0; i < 6; ++i) std::fill_n(image.pixel(i % 3, i / 3), 3, static_cast<std::uint8_t>(10 * i));
+  // Middles of 7 pixels over 3, and of 4 over 2.
+  constexpr int kColumns[] = {0, 0, 1, 1, 1, 2, 2}, kRows[] = {0, 0, 1, 1};
+  const Image to = stretched(image, 7, 4);
+  ASSERT_EQ(to.width, 7);
+  ASSERT_EQ(to.height, 4);
+  for (int y = 0; y < 4; ++y) {
+    for (int x = 0; x < 7; ++x) EXPECT_EQ(to.pixel(x, y)[1], 10 * (3 * kRows[y] + kColumns[x])) << x << ' ' << y;
+  }
+  EXPECT_EQ(stretched(image, 3, 2).rgb, image.rgb);
+  EXPECT_EQ(stretched(image, 1, 1).rgb, (std::vector<std::uint8_t>{40, 40, 40}));
+}
+
 TEST(Split, TheLineIsTakenAndDragged) {
   SplitLine line;
   EXPECT_EQ(line.column(640), 320);

@@ -75,11 +75,12 @@ TEST_F(WindowFaults, WhatIsMissingOrNoInputIsReportedInOneLine) {
     EXPECT_TRUE(is_one_line(": ")) << input << '\n' << output_;
   }
   const std::string dem = bytes_of("dem.tif");
-  for (const char* output : {"--screenshot", "--timings"}) {
-    EXPECT_EQ(view("", std::string("dem.tif ") + output + " dem.tif"), 1) << output;
+  fs::copy_file(folder_ / "dem.tif", folder_ / "dem.png");
+  for (const char* arguments : {"dem.tif --timings dem.tif", "dem.png --screenshot dem.png"}) {
+    EXPECT_EQ(view("", arguments), 1) << arguments;
     EXPECT_TRUE(is_one_line("is the input")) << output_;
   }
-  EXPECT_TRUE(bytes_of("dem.tif") == dem);
+  EXPECT_TRUE(bytes_of("dem.tif") == dem && bytes_of("dem.png") == dem);
 }
 
 TEST_F(WindowFaults, AFullDiskLeavesNoPartOfAPicture) {

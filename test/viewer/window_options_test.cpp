@@ -89,6 +89,18 @@ TEST_F(WindowOptions, SaysWhatIsWrong) {
   EXPECT_THROW(changed(plain, {"--samples", "-1"}), cli::WrongUsage);
   EXPECT_THROW(changed(plain, {"--waves", "0.1"}), Error);  // there is no water
   EXPECT_THROW(changed(plain, {"--sun", "high"}), Error);
+  // What would change nothing in the window.
+  Subject subject(plain, 64, 48);
+  for (const OptionChange& change :
+       {OptionChange{"--top", "true"}, {"--fov", "30"}, {"--size", "80x60"}, {"--eye", {}}})
+    EXPECT_THROW(subject.change(change), cli::WrongUsage) << change.option;
+}
+
+TEST_F(WindowOptions, ScreenshotsHaveNamesOfPng) {
+  const Opening played = with(opening_of(file), {{"--play", "events"}});
+  EXPECT_NO_THROW(changed(played, {"--screenshot", "window.PNG"}));
+  for (const char* name : {"window.bmp", "window", "png"})
+    EXPECT_THROW(changed(played, {"--screenshot", name}), Error) << name;
 }
 
 TEST_F(WindowOptions, ControlsShowTheDeclaredOptions) {
@@ -254,6 +266,55 @@ TEST_F(WindowOptions, OnADeviceSingleRaysAreTheCpus) {
   EXPECT_NEAR(navigator.pose().eye.z, *scene.height(32, 32) + Navigator::kEyeHeight, 1e-9);
   EXPECT_TRUE(read_under(scene, camera, {32, 24}, ReadingFrames({}), 1));
   EXPECT_FALSE(picture_of(*subject).empty());
+}
+
+TEST_F(WindowOptions, LargePixelsFillTheWindow) {
+  struct Case {
+    std::vector<OptionChange> changes;
+    std::string size;  // of the command
+    int width, height, side;
+  };
+  const Case cases[] = {
+      {{{"--look", "comanche"}}, " --look=comanche -o a.png --lowres 21x16 --eye=", 21, 16, 3},
+      // The window is 5.3 large pixels high.
+      {{{"--look", "comanche"}, {"--pixel-size", "9"}},
+       " --look=comanche --pixel-size=9 -o a.png --lowres 7x5 --eye=",
+       7,
+       5,
+       9},
+      {{{"--look", "comanche"}, {"--pixel-size", "64"}},
+       " --look=comanche --pixel-size=64 -o a.png --lowres 1x1 --eye=",
+       1,
+       1,
+       64},
+      // That which was typed is another window's.
+      {{{"--look", "height"}, {"--lowres", "300x200"}}, " --look=height -o a.png --lowres 21x16 --eye=", 21, 16, 3},
+      {{{"--look", "height"}}, " --look=height -o a.png --size 64x48 --eye=", 64, 48, 1}};
+  for (const Case& one : cases) {
+    const Subject subject(with(opening_of(file), one.changes), 64, 48);
+    const PictureSettings settings = subject.sides(64, 48).front().settings;
+    EXPECT_EQ(settings.width, one.width) << one.size;
+    EXPECT_EQ(settings.height, one.height) << one.size;
+    EXPECT_EQ(picture_of(subject).size(), static_cast<std::size_t>(3 * one.width * one.height * one.side * one.side))
+        << one.size;
+    const std::string command = render_command(subject.opening(), subject.stage().places(), Pose{}, 64, 48, "a.png");
+    EXPECT_TRUE(command.starts_with("scarp render " + file + one.size)) << command;
+  }
+}
+
+TEST_F(WindowOptions, OtherLooksAreComparedWithLargePixels) {
+  Subject subject(with(opening_of(file), {{"--look", "comanche"}, {"--pixel-size", "4"}}), 64, 48);
+  for (const std::string& comparison : subject.comparisons()) {
+    ASSERT_NO_THROW(subject.compare(comparison)) << comparison;
+    const bool look = comparison.starts_with("look");
+    const PictureSettings settings = subject.sides(64, 48)[1].settings;
+    EXPECT_EQ(settings.width, look ? 64 : 16) << comparison;
+    EXPECT_EQ(settings.height, look ? 48 : 12) << comparison;
+    const std::string command =
+        render_command(*subject.openings()[1], subject.stage().places(), Pose{}, 64, 48, "a.png");
+    EXPECT_NE(command.find(look ? " -o a.png --size 64x48 " : " --pixel-size=4 "), std::string::npos) << command;
+    EXPECT_EQ(command.find("--lowres 16x12") == std::string::npos, look) << command;
+  }
 }
 
 TEST_F(WindowOptions, TheCommandHasTheMeshWhereItStandsInTheWindow) {

@@ -3,11 +3,14 @@
 // which P saves is, byte for byte, what `scarp render` makes of the command that it prints.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "cases.h"
 #include "output/read_png.h"
@@ -52,6 +55,45 @@ TEST_F(Window, SavesWhatRenderMakesOfItsSettings) {
   EXPECT_NE(output_.find("--sun="), std::string::npos) << output_;
 }
 
+TEST_F(Window, SavesWhatRenderMakesOfLargePixels) {
+  const std::string kArguments[] = {"dem.tif --look comanche", "dem.tif --look comanche --pixel-size 7",
+                                    "dem.tif --look height --lowres 30x20 --march fixed-step --shells"};
+  for (const std::string& arguments : kArguments) {
+    ASSERT_EQ(view(std::string(kDrag) + kSave, arguments + " --screenshot window.png"), 0) << output_;
+    expect_saved_again(1);
+    // The window shows the saved picture, stretched from whole large pixels to 320 x 240, with sharp edges.
+    const Rgb window = read_png((folder_ / "window.png").string());
+    const Rgb saved = read_png((folder_ / "scarp-view-1.png").string());
+    ASSERT_TRUE(window.width == 320 && window.height == 240);
+    EXPECT_LE(std::abs(saved.width - 320), 3) << arguments;
+    EXPECT_LE(std::abs(saved.height - 240), 3) << arguments;
+    int others = 0;
+    for (int y = 0; y < 240; ++y) {
+      for (int x = 0; x < 320; ++x) {
+        const std::uint8_t* nearest = saved.pixel((2 * x + 1) * saved.width / 640, (2 * y + 1) * saved.height / 480);
+        others += !std::equal(nearest, nearest + 3, window.pixel(x, y));
+      }
+    }
+    EXPECT_EQ(others, 0) << arguments;
+    fs::remove(folder_ / "scarp-view-1.png");
+  }
+}
+
+TEST_F(Window, SavesLargePixelsAndTheLookBeside) {
+  ASSERT_EQ(view(std::string(kDrag) + "0.7 compare look steps\n" + kSave, "dem.tif --look comanche"), 0) << output_;
+  expect_saved_again(1);
+  expect_saved_again(2);
+}
+
+TEST_F(Window, ALowResolutionSetsTheSizeOfTheWindow) {
+  ASSERT_EQ(use("dem.tif --look comanche --lowres 100x70 --pixel-size 4 --record events",
+                "xdotool key c sleep 0.1 key Escape"),
+            0)
+      << output_;
+  EXPECT_TRUE(bytes_of("events").starts_with("scarp-view 400x280\n"));
+  EXPECT_NE(output_.find(" --pixel-size=4 -o picture.png --lowres 100x70 "), std::string::npos) << output_;
+}
+
 TEST_F(Window, SavesBothSides) {
   ASSERT_EQ(view(std::string(kDrag) + "0.7 compare march fixed-step\n0.8 key 67 1 0\n" + kSave, "dem.tif"), 0)
       << output_;
@@ -91,13 +133,23 @@ TEST_F(Window, TheLineBetweenTwoSidesIsDragged) {
   }
 }
 
-TEST_F(Window, GoesOnAfterAWrongOption) {
-  ASSERT_EQ(view("0.1 option --samples -1\n0.2 option --waves 0.1\n0.3 option --nothing 1\n0.4 compare march none\n" +
-                     std::string(kSave),
-                 "dem.tif"),
-            0)
-      << output_;
-  expect_saved_again(1);
+TEST_F(Window, ARecordingEndsAtALineThatFails) {
+  const std::pair<const char*, const char*> kLines[] = {
+      {"option --samples -1", "--samples '-1': expected a whole number"},
+      {"option --waves 0.1", "--waves has no effect without --water M"},
+      {"option --nothing 1", "unknown option '--nothing'"},
+      {"option --no-shadows no", "--no-shadows 'no': takes no value"},
+      {"option --top true", "--top: takes effect only when the window opens"},
+      {"option --overlay nothing.tif", "nothing.tif"},
+      {"compare march none", "none"},
+      {"compare foo bar", "expected "}};
+  for (const auto& [line, why] : kLines) {
+    EXPECT_EQ(view("0.1 key 258 1 0\n0.2 " + std::string(line) + '\n' + kSave, "dem.tif"), 1) << line;
+    EXPECT_TRUE(output_.starts_with("scarp: error: 'events', line 3: ")) << output_;
+    EXPECT_NE(output_.find(why), std::string::npos) << output_;
+    EXPECT_EQ(std::count(output_.begin(), output_.end(), '\n'), 1) << output_;
+    EXPECT_FALSE(fs::exists(folder_ / "scarp-view-1.png")) << line;
+  }
 }
 
 TEST_F(Window, RecordingsEndAtTheSamePicture) {
@@ -128,7 +180,12 @@ TEST_F(Window, SaysWhatIsWrong) {
   EXPECT_NE(output_.find("'events', line 2: expected"), std::string::npos) << output_;
   EXPECT_EQ(view("", "dem.tif --window-device nosuch"), 1);
   EXPECT_NE(output_.find("--window-device 'nosuch': no such device"), std::string::npos) << output_;
-  EXPECT_EQ(view("", "dem.tif --screenshot /dev/full"), 1) << output_;
+  fs::create_symlink("/dev/full", folder_ / "full.png");
+  EXPECT_EQ(view("", "dem.tif --screenshot full.png"), 1) << output_;
+  EXPECT_EQ(view("", "dem.tif --screenshot window.bmp"), 1) << output_;
+  EXPECT_NE(output_.find("--screenshot 'window.bmp': is written as PNG (let the name end in .png)"), std::string::npos)
+      << output_;
+  EXPECT_FALSE(fs::exists(folder_ / "window.bmp"));
 }
 
 TEST_F(Window, TakesRealPressesAndDrags) {
@@ -160,15 +217,17 @@ TEST_F(Window, SurvivesChangesOfItsSize) {
 }
 
 TEST_F(Window, SaysWhatCannotBeSaved) {
-  // A folder that is gone takes no files.
-  std::ofstream(folder_ / "events") << "scarp-view 320x240\n" << kSave << "1.2 key 75 1 0\n";
+  // A folder that is gone takes no files. K writes at once, P when the picture is complete.
   const std::string where = folder_.string();
-  ASSERT_EQ(run("(mkdir gone && cd gone && rmdir ../gone && '" SCARP_VIEW "' '" + where + "/dem.tif' --play '" + where +
-                "/events' --screenshot '" + where + "/window.png' --validation)"),
-            0)
-      << output_;
-  EXPECT_EQ(output_, "");
-  EXPECT_GT(bytes_of("window.png").size(), 1000u);
+  for (const char* key : {"75", "80"}) {
+    std::ofstream(folder_ / "events") << "scarp-view 320x240\n1 key " << key << " 1 0\n1.1 key " << key << " 0 0\n";
+    EXPECT_EQ(run("(mkdir gone && cd gone && rmdir ../gone && '" SCARP_VIEW "' '" + where + "/dem.tif' --play '" +
+                  where + "/events' --validation)"),
+              1)
+        << output_;
+    EXPECT_TRUE(output_.starts_with("scarp: error: '" + where + "/events', line 2: ")) << output_;
+    EXPECT_EQ(std::count(output_.begin(), output_.end(), '\n'), 1) << output_;
+  }
 }
 
 // Random mouse and keys, ten events per step of the clock, on the picture and on the panel.
