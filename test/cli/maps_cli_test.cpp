@@ -120,6 +120,55 @@ TEST_F(MapsCli, TakesTheFlagsOfGdalViewshed) {
   expect_refused({"viewshed", "-ox", "500105", dem_, path("c.tif")}, "give both");
 }
 
+TEST_F(MapsCli, PixelValuesOfViewshedsDiffer) {
+  const Names view = on_dem("viewshed") +
+                     Names{"--observer", "500105,5000105", "--max-distance", "150", "--cc", "0", "-o", path("a.tif")};
+  struct Seen {
+    double nodata;
+    float visible, hidden, beyond;
+    std::string share;
+  };
+  const auto seen = [&](const Names& more) {
+    const auto result = run(view + more);
+    EXPECT_EQ(result.status, 0) << result.err;
+    const auto dataset = open(path("a.tif"));
+    const Pixels pixels = pixels_of(*dataset);
+    const double nodata = dataset->GetRasterBand(1)->GetNoDataValue();
+    EXPECT_EQ(pixels.at(0, 0), nodata);
+    const auto end = result.out.find(" % visible");
+    return Seen{nodata, pixels.at(5, 5), pixels.at(22, 9), pixels.at(29, 19),
+                result.out.substr(result.out.rfind(' ', end - 1) + 1, end - result.out.rfind(' ', end - 1) - 1)};
+  };
+  const Seen plain = seen({});
+  EXPECT_EQ(plain.nodata, 255);
+  EXPECT_EQ(plain.beyond, 255);
+  const Seen recoded = seen({"-vv", "255"});
+  EXPECT_EQ(recoded.nodata, 254);
+  EXPECT_EQ(recoded.visible, 255);
+  EXPECT_EQ(recoded.hidden, 0);
+  EXPECT_EQ(recoded.beyond, 254);
+  EXPECT_EQ(recoded.share, plain.share);
+  const Seen crowded = seen({"-vv", "255", "-iv", "253", "-ov", "254"});
+  EXPECT_EQ(crowded.nodata, 252);
+  EXPECT_EQ(crowded.beyond, 254);
+  EXPECT_EQ(crowded.share, plain.share);
+  // As gdal_viewshed has them: hidden and out of range are one value.
+  const Seen theirs = seen({"-vv", "255", "-iv", "0", "-ov", "0", "-a_nodata", "0"});
+  EXPECT_EQ(theirs.nodata, 0);
+  EXPECT_EQ(theirs.visible, 255);
+  EXPECT_EQ(theirs.hidden, 0);
+  EXPECT_EQ(theirs.beyond, 0);
+  EXPECT_EQ(theirs.share, plain.share);
+  fs::remove(path("a.tif"));
+  expect_refused(view + Names{"--visible-value", "7", "--hidden-value", "7"}, "--visible-value 7 and --hidden-value 7");
+  expect_refused(view + Names{"-vv", "0"}, "--visible-value 0 and --hidden-value 0");
+  expect_refused(view + Names{"-vv", "9", "-ov", "9"}, "--visible-value 9 and --out-of-range-value 9");
+  expect_refused(view + Names{"-vv", "9", "-a_nodata", "9"}, "--visible-value 9 and --nodata-value 9");
+  expect_refused(view + Names{"--mode", "ground", "--nodata-value", "0"}, "is also a value of --mode ground");
+  expect_refused(view + Names{"--mode", "angle", "--nodata-value=-90"}, "is also a value of --mode angle");
+  expect_refused(view + Names{"--mode", "dem", "--nodata-value", "50"}, "is also a value of --mode dem");
+}
+
 TEST_F(MapsCli, CountsObserversAndFindsLeastHeights) {
   const std::string table = scratch_.write("towers.csv", "name,x,y,z\na,500105,5000105,2\nb,500285,5000105,2\n");
   ASSERT_EQ(run(on_dem("viewshed") + Names{"--observers", table, "--mode", "count", "-o", path("count.tif")}).status,
