@@ -345,6 +345,22 @@ TEST_F(MapsCli, ProfileIsATableOrAFigure) {
   EXPECT_NE(text_of(path("p.svg")).find("<svg"), std::string::npos);
   ASSERT_EQ(run(line + Names{"-o", path("p.png"), "--size", "400x300"}).status, 0);
   EXPECT_EQ(text_of(path("p.png")).substr(1, 3), "PNG");
+  // There are no samples in the middle of this line: only paper above that part of the axis.
+  const auto ground_at = [&](const std::string& name, double share) {
+    const auto picture = open(name);
+    const Pixels red = pixels_of(*picture, 1), blue = pixels_of(*picture, 3);
+    const int col = static_cast<int>(share * red.cols);
+    int ground = 0;
+    for (int row = 0; row < red.rows; ++row) ground += red.at(col, row) > blue.at(col, row) + 20;
+    return ground;
+  };
+  std::string table = "ncols 30\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\nNODATA_value -1\n";
+  for (int i = 0; i < 60; ++i) table += i % 30 > 12 && i % 30 < 18 ? "-1 " : "50 ";
+  const std::string holes = scratch_.write("holes.asc", table);
+  ASSERT_EQ(run({"profile", holes, "--from", "5,5,2", "--to", "295,5,2", "-o", path("h.png")}).status, 0);
+  EXPECT_GT(ground_at(path("h.png"), 0.3), 0);
+  EXPECT_EQ(ground_at(path("h.png"), 0.5), 0);
+  EXPECT_GT(ground_at(path("h.png"), 0.7), 0);
 #endif
   expect_refused(line + Names{"-o", path("p.gif")}, "expected .csv, .svg or .png");
 }
