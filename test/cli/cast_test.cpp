@@ -506,6 +506,8 @@ TEST_F(Cast, WrongOptionsAreRefused) {
   expect_rays_refused(good, "not shared", {"--wrap", "shared"});
   expect_rays_refused(good, "above 0", {"--exaggeration", "0"});
   expect_rays_refused(good, "unknown", {"--march", "quick"});
+  expect_rays_refused(good, "march 'sphere-trace': is not for terrain (available: exhaustive, max-mip",
+                      {"--march", "sphere-trace"});
   expect_rays_refused(good, "correct --raster-crs or --bounds", {"--raster-crs", "EPSG:4326"});
   hills();
   rays(good);
