@@ -394,7 +394,8 @@ TEST_F(MapsCli, PreviewShowsTheMapOverTheModel) {
   fs::remove(path("g.pdf"));
   const Names shadow = on_dem("shadow") + Names{"--sun", "90,45", "-o", path("x.tif"), "--preview"};
   expect_refused(shadow + Names{path("x.exr")}, "no margins");
-  expect_refused(shadow + Names{path("x.png.txt")}, "unknown picture format");
+  expect_refused(shadow + Names{path("x.png.txt")},
+                 "unknown picture format (name it *.png (PNG), *.jpg (JPEG), *.pdf (PDF))");
   expect_refused(shadow + Names{path("./x.tif")}, "x.tif");
   expect_refused(shadow + Names{path("none/x.png")}, "none");
   expect_refused(on_dem("shadow") + Names{"--sun", "90,45", "-o", path("y.png"), "--preview", path("./y.png")},
