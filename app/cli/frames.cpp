@@ -84,7 +84,8 @@ void add_frame_options(Command& command, FrameOptions& o) {
                .help = "table of cameras: columns x,y[,z] of the eye and tx,ty[,tz] of the target, or dx,dy,dz "
                        "of the direction, in coordinates of --coords",
                .files = "csv npy",
-               .note = "without z --eye-above M over the ground; the output is frame-####.png",
+               .note = "with --coords lonlat also lon,lat and tlon,tlat; without z --eye-above M over the ground; the "
+                       "output is frame-####.png",
                .topic = Topic::flight});
   command.add(&o.turntable, {.names = "--turntable",
                              .help = "one orbit around the scene, clockwise from --view; the output is frame-####.png",
@@ -124,6 +125,8 @@ std::vector<Camera> frame_cameras(const FrameOptions& o, const ViewSettings& vie
   }
   const RayTable table = read_path(o.path);
   if (table.rows.empty()) throw Error(fmt::format("path '{}': has no rows; one camera each is expected", o.path));
+  if (table.lonlat && path.places.frame().coordinates() != Coordinates::lonlat)
+    throw Error(fmt::format("path '{}': has columns lon and lat (give --coords lonlat)", o.path));
   if (table.has_z == static_cast<bool>(path.above_surface)) {
     throw Error(fmt::format("path '{}': {}", o.path,
                             table.has_z ? "has heights of the eye, which --eye-above replaces (leave out the column z)"
